@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Coefficients.h"
+
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+EdgeValues IsotropicCoefficients(const TriangleMesh& mesh, const ParallelFor& parallel)
+{
+  EdgeValues c(mesh.NumberOfTriangles(), 3);
+  ForEach(parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      const TriangleMesh::Shape& s = mesh.Shapes()[t];
+      // cot = (cosine part) / (sine part) of the two edges at each corner.
+      c(t, 0) = 0.5 * s.X / s.Y;
+      c(t, 1) = 0.5 * (s.Length - s.X) / s.Y;
+      c(t, 2) = 0.5 * (s.Y / s.Length - (s.X / s.Y) * ((s.Length - s.X) / s.Length));
+    });
+  return c;
+}
+
+EdgeValues DirectionalCoefficients(const TriangleMesh& mesh,
+  const Eigen::Ref<const PlaneVectors>& frames, const ParallelFor& parallel)
+{
+  EdgeValues c(mesh.NumberOfTriangles(), 3);
+  ForEach(parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      const TriangleMesh::Shape& s = mesh.Shapes()[t];
+      const double d1 = frames.row(t).dot(Gradient(s, 0.0, 1.0, 0.0)); // grad(phi_1) . e1
+      const double d2 = frames.row(t).dot(Gradient(s, 0.0, 0.0, 1.0));
+      const double d0 = -d1 - d2;
+      const double area = s.Area();
+      c(t, 0) = -area * d1 * d2;
+      c(t, 1) = -area * d2 * d0;
+      c(t, 2) = -area * d0 * d1;
+    });
+  return c;
+}
+
+EdgeValues AnisotropicCoefficients(const TriangleMesh& mesh, const EdgeValues& isotropic,
+  const Eigen::Ref<const PlaneVectors>& frames, double g1, double g2, const ParallelFor& parallel)
+{
+  EdgeValues c = DirectionalCoefficients(mesh, frames, parallel);
+  const double undirected = std::sqrt(g1) * std::sqrt(g2);
+  ForEach(parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      if (frames.row(t).isZero(0.0))
+      {
+        c.row(t) = undirected * isotropic.row(t);
+      }
+      else
+      {
+        c.row(t) = g1 * c.row(t) + g2 * (isotropic.row(t) - c.row(t));
+      }
+    });
+  return c;
+}
+
+} // namespace SurfaceDiffusion

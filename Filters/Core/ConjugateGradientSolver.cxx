@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LinearSolver.h"
+
+#include "Assembler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+class ConjugateGradientSolver : public LinearSolver
+{
+public:
+  ConjugateGradientSolver(const IterationLimits& limits, const ParallelFor& parallel)
+    : Limits(limits)
+    , Parallel(parallel)
+  {
+  }
+
+  void SetMatrix(const SparseMatrix& matrix, const Monitor& monitor) override
+  {
+    this->Matrix = &matrix;
+    const Index n = static_cast<Index>(matrix.rows());
+    this->InverseDiagonal.resize(n);
+    const Index* outer = matrix.outerIndexPtr();
+    const Index* inner = matrix.innerIndexPtr();
+    ForEach(this->Parallel, n,
+      [&](Index i)
+      {
+        const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
+        this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[slot];
+      });
+    monitor.Report(1.0);
+  }
+
+  SolveReport Solve(const Values& b, Values& x, const Monitor& monitor) override
+  {
+    switch (b.cols())
+    {
+      case 1:
+        return this->SolveColumns<1>(b, x, monitor);
+      case 2:
+        return this->SolveColumns<2>(b, x, monitor);
+      case 3:
+        return this->SolveColumns<3>(b, x, monitor);
+      default:
+        return this->SolveColumns<0>(b, x, monitor);
+    }
+  }
+
+private:
+  /// K columns, or as many as b has where K is 0. Every column runs its own recurrence and stops by
+  /// itself, so that its bits do not depend on its company.
+  template <int K>
+  SolveReport SolveColumns(const Values& b, Values& x, const Monitor& monitor)
+  {
+    const int k = K > 0 ? K : static_cast<int>(b.cols());
+    const Index n = static_cast<Index>(b.rows());
+    this->Resize(n, k);
+
+    // r = b - A x, p = z = r / diag(A)
+    Multiply(*this->Matrix, x, this->Q, this->Parallel);
+    this->SumBlocks(n, k, 2,
+      [&](Index i, double* sums)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          const double r = b(i, c) - this->Q(i, c);
+          const double z = this->InverseDiagonal[i] * r;
+          this->R(i, c) = r;
+          this->P(i, c) = z;
+          sums[c] += r * z;
+          sums[k + c] += b(i, c) * this->InverseDiagonal[i] * b(i, c);
+        }
+      });
+    for (int c = 0; c < k; ++c)
+    {
+      this->Rho[c] = this->Sums[c];
+      this->Scale[c] = this->Sums[k + c] > 0.0 ? this->Sums[k + c] : 1.0;
+    }
+
+    SolveReport report;
+    const double start = this->Residual(k);
+    if (!std::isfinite(start))
+    {
+      throw std::runtime_error("the linear system has no finite solution");
+    }
+    while (this->Residual(k) > this->Limits.Tolerance)
+    {
+      if (report.Iterations == this->Limits.MaximumNumberOfIterations)
+      {
+        report.Converged = false;
+        break;
+      }
+      ++report.Iterations;
+      this->Iterate<K>(n, k, x);
+      const double left = this->Residual(k);
+      if (!std::isfinite(left))
+      {
+        throw std::runtime_error("the linear system has no finite solution");
+      }
+      if (report.Iterations % 8 == 0)
+      {
+        // The residual falls by a constant factor per iteration: its logarithm tells how far.
+        const double all = std::log(start / this->Limits.Tolerance);
+        monitor.Report(std::min(0.99, std::max(0.0, std::log(start / left) / all)));
+      }
+    }
+    report.Residual = this->Residual(k);
+    monitor.Report(1.0);
+    return report;
+  }
+
+  template <int K>
+  void Iterate(Index n, int columns, Values& x)
+  {
+    const int k = K > 0 ? K : columns;
+    Multiply(*this->Matrix, this->P, this->Q, this->Parallel);
+    this->SumBlocks(n, k, 1,
+      [&](Index i, double* sums)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          sums[c] += this->P(i, c) * this->Q(i, c);
+        }
+      });
+    for (int c = 0; c < k; ++c)
+    {
+      const bool done = this->Finished(c) || !(this->Sums[c] > 0.0);
+      this->Alpha[c] = done ? 0.0 : this->Rho[c] / this->Sums[c];
+    }
+    this->SumBlocks(n, k, 1,
+      [&](Index i, double* sums)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          x(i, c) += this->Alpha[c] * this->P(i, c);
+          const double r = this->R(i, c) - this->Alpha[c] * this->Q(i, c);
+          this->R(i, c) = r;
+          sums[c] += r * this->InverseDiagonal[i] * r;
+        }
+      });
+    for (int c = 0; c < k; ++c)
+    {
+      this->Beta[c] = this->Rho[c] > 0.0 ? this->Sums[c] / this->Rho[c] : 0.0;
+      this->Rho[c] = this->Sums[c];
+    }
+    ForEach(this->Parallel, n,
+      [&](Index i)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          this->P(i, c) = this->InverseDiagonal[i] * this->R(i, c) + this->Beta[c] * this->P(i, c);
+        }
+      });
+  }
+
+  bool Finished(int c) const
+  {
+    return std::sqrt(this->Rho[c] / this->Scale[c]) <= this->Limits.Tolerance;
+  }
+
+  double Residual(int k) const
+  {
+    double largest = 0.0;
+    for (int c = 0; c < k; ++c)
+    {
+      const double residual = std::sqrt(this->Rho[c] / this->Scale[c]);
+      largest = residual <= largest ? largest : residual; // keeps NaN
+    }
+    return largest;
+  }
+
+  void Resize(Index n, int k)
+  {
+    if (this->R.rows() != n || this->R.cols() != k)
+    {
+      this->R.resize(n, k);
+      this->P.resize(n, k);
+      this->Q.resize(n, k);
+      for (std::vector<double>* scalars : { &this->Rho, &this->Scale, &this->Alpha, &this->Beta })
+      {
+        scalars->assign(k, 0.0);
+      }
+      this->Sums.assign(2 * k, 0.0);
+      this->Partial.assign(static_cast<std::size_t>(NumberOfBlocks(n)) * 2 * k, 0.0);
+    }
+  }
+
+  /// Sums = sum over i of what add(i, sums) adds to its `sets` x k sums.
+  template <typename Add>
+  void SumBlocks(Index n, int k, int sets, const Add& add)
+  {
+    const int width = sets * k;
+    ForEachBlock(this->Parallel, n,
+      [&](Index block, Index begin, Index end)
+      {
+        double* sums = this->Partial.data() + static_cast<std::size_t>(block) * width;
+        std::fill(sums, sums + width, 0.0);
+        for (Index i = begin; i < end; ++i)
+        {
+          add(i, sums);
+        }
+      });
+    std::fill(this->Sums.begin(), this->Sums.end(), 0.0);
+    for (Index block = 0; block < NumberOfBlocks(n); ++block)
+    {
+      for (int s = 0; s < width; ++s)
+      {
+        this->Sums[s] += this->Partial[static_cast<std::size_t>(block) * width + s];
+      }
+    }
+  }
+
+  IterationLimits Limits;
+  const ParallelFor& Parallel;
+  const SparseMatrix* Matrix = nullptr;
+  Vector InverseDiagonal;
+  Values R, P, Q;
+  std::vector<double> Rho, Scale, Alpha, Beta; // one per column
+  std::vector<double> Sums, Partial;
+};
+
+} // namespace
+
+std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
+  const IterationLimits& limits, const ParallelFor& parallel)
+{
+  return std::make_unique<ConjugateGradientSolver>(limits, parallel);
+}
+
+} // namespace SurfaceDiffusion

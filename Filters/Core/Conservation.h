@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Evolution.h"
+#include "Parallel.h"
+#include "TriangleMesh.h"
+
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Sum over the surface of A_i u_i for column k.
+double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k,
+  const ParallelFor& parallel = ParallelFor());
+
+/// Keeps sum A u to round-off, whatever tolerance the solver has: what a solve leaves over on a
+/// connected component is spread over it evenly. Acts on the components that conserve the sum: no
+/// fixed vertex, and no fidelity or one to the start itself (nothing missing, start = f).
+class Conservation
+{
+public:
+  Conservation() = default;
+  Conservation(const TriangleMesh& mesh, const PointData& data, bool hasFidelity,
+    const ParallelFor& parallel = ParallelFor());
+
+  void Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel) const;
+
+private:
+  struct Component
+  {
+    Index Begin, End;
+    double Area;
+  };
+  std::vector<Component> Components; ///< those that conserve
+  Values Targets;                    ///< sum A u at the start, component x column
+};
+
+} // namespace SurfaceDiffusion

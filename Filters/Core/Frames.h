@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "TriangleMesh.h"
+
+namespace SurfaceDiffusion
+{
+
+/// e1 of (4) on each triangle, as a unit vector in the triangle's own axes (see TriangleMesh);
+/// e2 is e1 turned by 90 degrees. (0, 0) where there is no direction: isotropic there. The sign
+/// does not matter anywhere.
+///
+/// Both take the points and triangles that the mesh was made from.
+
+/// From one vector per input triangle: its projection into the triangle, normalised.
+PlaneVectors FramesFromTriangleVectors(const TriangleMesh& mesh,
+  const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
+  const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel = ParallelFor());
+
+/// From one vector per input point: the main axis of the sum of d d^T over the corners, so that
+/// opposite vectors agree instead of cancelling.
+PlaneVectors FramesFromPointVectors(const TriangleMesh& mesh,
+  const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
+  const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel = ParallelFor());
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Evolution.h"
+#include "TriangleMesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// What the missing points of (18), (19) start from.
+enum class InitialFill
+{
+  Input, ///< the damaged values f themselves; the mean where they are NaN
+  Mean,  ///< the area-weighted mean of the known values of the connected component
+  Noise  ///< the paper's f_rd: uniform between the smallest and largest known value
+};
+
+/// Fill data.Start, and Given where it is NaN, from Given at the missing vertices; Start = Given
+/// elsewhere. A component without known values takes the mean of all components; with no known
+/// value at all it is 0. ids: one per vertex, for the random numbers.
+void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, std::int64_t seed,
+  const std::vector<std::int64_t>& ids);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LinearDiffusion.h"
+
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// gamma of SDIRK2: both stages share the matrix M + gamma dt K (R. Alexander, SIAM J. Numer.
+/// Anal. 14, 1977).
+const double Gamma = 1.0 - std::sqrt(0.5);
+
+} // namespace
+
+LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
+  EdgeValues coefficients, PointData data, const Settings& settings,
+  std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
+  : Operators(std::move(assembler))
+  , Coefficients(std::move(coefficients))
+  , Data(std::move(data))
+  , Options(settings)
+  , Solver(std::move(solver))
+  , Parallel(parallel)
+  , Conserved(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel)
+  , U(this->Data.Start)
+  , RightHandSide(U.rows(), U.cols())
+{
+}
+
+void LinearDiffusion::Restore(const double* checkpoint)
+{
+  std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
+}
+
+void LinearDiffusion::Prepare(const Monitor& monitor)
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  double scale = this->Options.TimeStep;
+  double inertia = 1.0;
+  switch (this->Options.TimeScheme)
+  {
+    case Scheme::BackwardEuler:
+      break;
+    case Scheme::SDIRK2:
+      scale *= Gamma;
+      break;
+    case Scheme::SteadyState:
+      this->PrepareSteadyState();
+      scale = 1.0;
+      inertia = 0.0;
+      break;
+  }
+  Vector diagonal(mesh.NumberOfVertices());
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    { diagonal[i] = mesh.ControlAreas()[i] * (inertia + scale * this->FidelityAt(i)); });
+  this->Matrix = this->Operators->Pattern();
+  this->Operators->Fill(
+    this->Matrix, diagonal, scale, this->Coefficients, nullptr, this->Parallel);
+  this->Load = Values::Zero(this->U.rows(), this->U.cols());
+  if (this->Data.Fixed.any())
+  {
+    this->Operators->Constrain(
+      this->Matrix, this->Data.Fixed, this->Data.Start, this->Load, this->Parallel);
+  }
+  this->Solver->SetMatrix(this->Matrix, monitor);
+  this->Prepared = true;
+}
+
+/// A component that neither fidelity nor a fixed vertex holds ends at its mean.
+void LinearDiffusion::PrepareSteadyState()
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const Index begin = mesh.ComponentsBegin()[c];
+    const Index size = mesh.ComponentsBegin()[c + 1] - begin;
+    bool held = false;
+    for (Index i = begin; i < begin + size && !held; ++i)
+    {
+      held = this->Data.Fixed[i] || this->FidelityAt(i) > 0.0;
+    }
+    if (!held)
+    {
+      const auto areas = mesh.ControlAreas().segment(begin, size);
+      auto start = this->Data.Start.middleRows(begin, size);
+      const Eigen::RowVectorXd mean = (areas.transpose() * start) / areas.sum();
+      start.rowwise() = mean;
+      this->Data.Fixed.segment(begin, size) = true;
+    }
+  }
+}
+
+StepReport LinearDiffusion::Advance(const Monitor& monitor)
+{
+  StepReport report;
+  const double setup = this->Prepared ? 0.0 : 0.5;
+  if (!this->Prepared)
+  {
+    this->Prepare(monitor.Part(0.0, setup));
+  }
+  if (this->Options.TimeScheme == Scheme::SDIRK2)
+  {
+    this->SDIRK2Step(report, monitor.Part(setup, 1.0));
+  }
+  else
+  {
+    this->BackwardEulerStep(report, monitor.Part(setup, 1.0));
+  }
+  return report;
+}
+
+/// (8), (14), with the fidelity of (16), (18):
+/// ((1 + lambda dt) M + dt K) u_new = M (u + lambda dt f); without M u where only the limit counts.
+void LinearDiffusion::BackwardEulerStep(StepReport& report, const Monitor& monitor)
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  const bool limit = this->Options.TimeScheme == Scheme::SteadyState;
+  const double inertia = limit ? 0.0 : 1.0;
+  const double dt = limit ? 1.0 : this->Options.TimeStep;
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      const double area = this->Data.Fixed[i] ? 0.0 : mesh.ControlAreas()[i];
+      this->RightHandSide.row(i) = area *
+          (inertia * this->U.row(i) + (dt * this->FidelityAt(i)) * this->Data.Given.row(i)) +
+        this->Load.row(i);
+    });
+  this->Solve(report, monitor);
+}
+
+/// With s the fidelity's source and both stages implicit,
+///   (M + gamma dt K) y = M u + gamma dt s
+///   (M + gamma dt K) u_new = M u + (1 - gamma) dt (s - K y) + gamma dt s,
+/// where the first stage gives dt (s - K y) = M (y - u) / gamma: no product with K is needed.
+void LinearDiffusion::SDIRK2Step(StepReport& report, const Monitor& monitor)
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  const double dt = Gamma * this->Options.TimeStep;
+  this->Previous = this->U;
+  const double ratio = (1.0 - Gamma) / Gamma;
+  for (const double second : { 0.0, ratio })
+  {
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double area = this->Data.Fixed[i] ? 0.0 : mesh.ControlAreas()[i];
+        this->RightHandSide.row(i) = area *
+            (this->Previous.row(i) + second * (this->U.row(i) - this->Previous.row(i)) +
+              (dt * this->FidelityAt(i)) * this->Data.Given.row(i)) +
+          this->Load.row(i);
+      });
+    this->Solve(report, second > 0.0 ? monitor.Part(0.5, 1.0) : monitor.Part(0.0, 0.5));
+  }
+}
+
+void LinearDiffusion::Solve(StepReport& report, const Monitor& monitor)
+{
+  const SolveReport solve = this->Solver->Solve(this->RightHandSide, this->U, monitor);
+  if (!solve.Converged)
+  {
+    throw NotConverged(solve);
+  }
+  report.Iterations += solve.Iterations;
+  report.Residual = std::max(report.Residual, solve.Residual);
+  this->Conserved.Restore(this->Operators->Mesh(), this->U, this->Parallel);
+}
+
+double LinearDiffusion::Energy() const
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  double energy = DirichletEnergy(mesh, this->Coefficients, this->U, this->Parallel);
+  if (this->Options.Fidelity > 0.0)
+  {
+    energy += 0.5 *
+      Sum(this->Parallel, mesh.NumberOfVertices(),
+        [&](Index i)
+        {
+          return mesh.ControlAreas()[i] * this->FidelityAt(i) *
+            (this->U.row(i) - this->Data.Given.row(i)).squaredNorm();
+        });
+  }
+  return energy;
+}
+
+double DirichletEnergy(const TriangleMesh& mesh, const EdgeValues& coefficients, const Values& u,
+  const ParallelFor& parallel)
+{
+  const Triangles& corners = mesh.TriangleVertices();
+  return 0.5 *
+    Sum(parallel, mesh.NumberOfTriangles(),
+      [&](Index t)
+      {
+        const auto square = [&](int a, int b)
+        { return (u.row(corners(t, a)) - u.row(corners(t, b))).squaredNorm(); };
+        return coefficients(t, 0) * square(1, 2) + coefficients(t, 1) * square(2, 0) +
+          coefficients(t, 2) * square(0, 1);
+      });
+}
+
+} // namespace SurfaceDiffusion

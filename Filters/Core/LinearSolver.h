@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Monitor.h"
+#include "Parallel.h"
+#include "Types.h"
+
+#include <memory>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+struct SolveReport
+{
+  int Iterations = 0; ///< of an iterative method, the most over the columns; 0 for a direct one
+  /// Largest over the columns of |b - A x| / |b| in the norm of diag(A)^-1, in which the equations
+  /// of small and of badly shaped cells count alike.
+  double Residual = 0.0;
+  bool Converged = true; ///< an iterative method reached its tolerance
+};
+
+/// Thrown by models where a solver ended at its iteration limit.
+struct NotConverged : std::runtime_error
+{
+  explicit NotConverged(const SolveReport& report);
+};
+
+/// Solves A x = b for symmetric positive definite matrices of one pattern.
+class LinearSolver
+{
+public:
+  virtual ~LinearSolver() = default;
+
+  /// Take the matrix, which must stay as it is until the next call. What holds for the pattern (an
+  /// ordering) is kept from call to call, what holds for the values too while they are the same.
+  virtual void SetMatrix(const SparseMatrix& matrix, const Monitor& monitor = Monitor()) = 0;
+
+  /// x: the start of an iterative method on entry, the solution on return; b, x: n x k. Throws
+  /// std::runtime_error where no finite solution exists.
+  virtual SolveReport Solve(
+    const Values& b, Values& x, const Monitor& monitor = Monitor()) = 0;
+};
+
+struct IterationLimits
+{
+  double Tolerance = 1e-10; ///< on SolveReport::Residual
+  int MaximumNumberOfIterations = 1000;
+};
+
+/// Sparse LDL^T with approximate minimum degree ordering (Eigen::SimplicialLDLT), one step of
+/// iterative refinement where the residual is above the tolerance.
+std::unique_ptr<LinearSolver> MakeCholeskySolver(
+  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = ParallelFor());
+
+/// Conjugate gradients with Jacobi preconditioner, all columns in one pass over the matrix, each
+/// with its own step lengths. The paper's PBCG is this method for symmetric matrices (Appendix).
+std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
+  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = ParallelFor());
+
+/// What decides which method is faster.
+struct SolverTask
+{
+  Index NumberOfVertices = 0;
+  double DiffusionNumber = 1.0;  ///< (largest diffusivity) x (time step) / h^2
+  double NumberOfSolves = 1.0;   ///< with one matrix
+};
+
+/// True where factorising is expected to be faster than conjugate gradients.
+bool PreferFactorization(const SolverTask& task);
+
+/// The faster of the two by PreferFactorization(); conjugate gradients that do not converge are
+/// followed by a factorisation.
+std::unique_ptr<LinearSolver> MakeAutomaticSolver(const SolverTask& task,
+  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = ParallelFor());
+
+} // namespace SurfaceDiffusion
