@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Parallel.h"
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace SurfaceDiffusion::Testing
+{
+
+/// Runs a loop on several threads, its pieces last to first and cut unevenly: whatever depends on
+/// the order or on who does the work shows.
+class ThreadedFor : public ParallelFor
+{
+public:
+  explicit ThreadedFor(int threads)
+    : NumberOfThreads(threads)
+  {
+  }
+
+  void Run(Index count, LoopBody body) const override
+  {
+    std::atomic<Index> left{ count };
+    const auto work = [&](Index piece)
+    {
+      while (true)
+      {
+        const Index end = left.fetch_sub(piece);
+        if (end <= 0)
+        {
+          return;
+        }
+        body(std::max(0, end - piece), end);
+      }
+    };
+    std::vector<std::thread> threads;
+    for (int i = 1; i < this->NumberOfThreads; ++i)
+    {
+      threads.emplace_back(work, i + 1);
+    }
+    work(1);
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+  }
+
+private:
+  int NumberOfThreads;
+};
+
+} // namespace SurfaceDiffusion::Testing
