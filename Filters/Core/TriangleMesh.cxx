@@ -279,7 +279,8 @@ void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
   struct Block
   {
     double Length = 0.0;
-    Index Edges = 0, Boundary = 0, NonManifold = 0;
+    Index Edges = 0, BoundaryEdges = 0, NonManifold = 0;
+    std::vector<Index> BoundaryVertices;
   };
   std::vector<Block> results(NumberOfBlocks(this->NumberOfVertices()));
   ForEachBlock(parallel, this->NumberOfVertices(),
@@ -321,7 +322,12 @@ void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
           }
           result.Length += edges[e].Length;
           ++result.Edges;
-          result.Boundary += uses == 1;
+          if (uses == 1)
+          {
+            ++result.BoundaryEdges;
+            result.BoundaryVertices.push_back(i);
+            result.BoundaryVertices.push_back(edges[e].Neighbour);
+          }
           result.NonManifold += uses > 2;
           e += uses;
         }
@@ -331,9 +337,14 @@ void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
   {
     this->EdgeLength += result.Length;
     this->Edges += result.Edges;
-    this->Found.BoundaryEdges += result.Boundary;
+    this->Found.BoundaryEdges += result.BoundaryEdges;
     this->Found.NonManifoldEdges += result.NonManifold;
+    this->Boundary.insert(
+      this->Boundary.end(), result.BoundaryVertices.begin(), result.BoundaryVertices.end());
   }
+  std::sort(this->Boundary.begin(), this->Boundary.end());
+  this->Boundary.erase(
+    std::unique(this->Boundary.begin(), this->Boundary.end()), this->Boundary.end());
 }
 
 Values GatherVertices(const TriangleMesh& mesh, const Eigen::Ref<const Values>& input)

@@ -76,6 +76,9 @@ public:
   double TotalEdgeLength() const { return this->EdgeLength; }
   Index NumberOfEdges() const { return this->Edges; }
 
+  /// Vertices of edges that only one triangle uses, ascending.
+  const std::vector<Index>& BoundaryVertices() const { return this->Boundary; }
+
   const Findings& GetFindings() const { return this->Found; }
 
 private:
@@ -94,6 +97,7 @@ private:
   std::vector<Index> CornerList;
   Vector Areas;
   std::vector<Index> Components;
+  std::vector<Index> Boundary;
   double Unit = 1.0;
   double EdgeLength = 0.0;
   Index Edges = 0;
