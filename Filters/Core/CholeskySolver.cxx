@@ -47,9 +47,8 @@ double RelativeResidual(
 class CholeskySolver : public LinearSolver
 {
 public:
-  CholeskySolver(const IterationLimits& limits, const ParallelFor& parallel)
-    : Limits(limits)
-    , Parallel(parallel)
+  explicit CholeskySolver(const ParallelFor& parallel)
+    : Parallel(parallel)
   {
   }
 
@@ -145,7 +144,6 @@ private:
     return RelativeResidual(*this->Matrix, this->R, b, this->Parallel);
   }
 
-  IterationLimits Limits;
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
   std::shared_ptr<Factorization> Factor;
@@ -154,10 +152,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<LinearSolver> MakeCholeskySolver(
-  const IterationLimits& limits, const ParallelFor& parallel)
+std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel)
 {
-  return std::make_unique<CholeskySolver>(limits, parallel);
+  return std::make_unique<CholeskySolver>(parallel);
 }
 
 } // namespace SurfaceDiffusion

@@ -18,9 +18,8 @@ namespace
 class ConjugateGradientSolver : public LinearSolver
 {
 public:
-  ConjugateGradientSolver(const IterationLimits& limits, const ParallelFor& parallel)
-    : Limits(limits)
-    , Parallel(parallel)
+  explicit ConjugateGradientSolver(const ParallelFor& parallel)
+    : Parallel(parallel)
   {
   }
 
@@ -73,10 +72,9 @@ private:
         for (int c = 0; c < k; ++c)
         {
           const double r = b(i, c) - this->Q(i, c);
-          const double z = this->InverseDiagonal[i] * r;
           this->R(i, c) = r;
-          this->P(i, c) = z;
-          sums[c] += r * z;
+          this->P(i, c) = this->InverseDiagonal[i] * r;
+          sums[c] += r * this->InverseDiagonal[i] * r; // as in Iterate(), to the bit
           sums[k + c] += b(i, c) * this->InverseDiagonal[i] * b(i, c);
         }
       });
@@ -219,7 +217,6 @@ private:
     }
   }
 
-  IterationLimits Limits;
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
@@ -230,10 +227,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
-  const IterationLimits& limits, const ParallelFor& parallel)
+std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(const ParallelFor& parallel)
 {
-  return std::make_unique<ConjugateGradientSolver>(limits, parallel);
+  return std::make_unique<ConjugateGradientSolver>(parallel);
 }
 
 } // namespace SurfaceDiffusion

@@ -36,7 +36,7 @@ public:
   /// solver: kept by the caller from run to run, so that the same matrix is not factorised twice.
   LinearDiffusion(std::shared_ptr<const Assembler> assembler, EdgeValues coefficients,
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
-    const ParallelFor& parallel = ParallelFor());
+    const ParallelFor& parallel = SerialFor());
 
   const Values& State() const override { return this->U; }
   StepReport Advance(const Monitor& monitor) override;

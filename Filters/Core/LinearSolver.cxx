@@ -45,11 +45,10 @@ namespace
 class AutomaticSolver : public LinearSolver
 {
 public:
-  AutomaticSolver(
-    const SolverTask& task, const IterationLimits& limits, const ParallelFor& parallel)
+  AutomaticSolver(const SolverTask& task, const ParallelFor& parallel)
     : Direct(PreferFactorization(task))
-    , Cholesky(MakeCholeskySolver(limits, parallel))
-    , Iterative(MakeConjugateGradientSolver(limits, parallel))
+    , Cholesky(MakeCholeskySolver(parallel))
+    , Iterative(MakeConjugateGradientSolver(parallel))
   {
   }
 
@@ -61,6 +60,8 @@ public:
 
   SolveReport Solve(const Values& b, Values& x, const Monitor& monitor) override
   {
+    this->Cholesky->SetLimits(this->Limits);
+    this->Iterative->SetLimits(this->Limits);
     if (!this->Direct)
     {
       const SolveReport report = this->Iterative->Solve(b, x, monitor.Part(0.0, 0.5));
@@ -85,9 +86,9 @@ private:
 } // namespace
 
 std::unique_ptr<LinearSolver> MakeAutomaticSolver(
-  const SolverTask& task, const IterationLimits& limits, const ParallelFor& parallel)
+  const SolverTask& task, const ParallelFor& parallel)
 {
-  return std::make_unique<AutomaticSolver>(task, limits, parallel);
+  return std::make_unique<AutomaticSolver>(task, parallel);
 }
 
 } // namespace SurfaceDiffusion

@@ -21,6 +21,12 @@ struct SolveReport
   bool Converged = true; ///< an iterative method reached its tolerance
 };
 
+struct IterationLimits
+{
+  double Tolerance = 1e-10; ///< on SolveReport::Residual
+  int MaximumNumberOfIterations = 1000;
+};
+
 /// Thrown by models where a solver ended at its iteration limit.
 struct NotConverged : std::runtime_error
 {
@@ -33,6 +39,8 @@ class LinearSolver
 public:
   virtual ~LinearSolver() = default;
 
+  void SetLimits(const IterationLimits& limits) { this->Limits = limits; }
+
   /// Take the matrix, which must stay as it is until the next call. What holds for the pattern (an
   /// ordering) is kept from call to call, what holds for the values too while they are the same.
   virtual void SetMatrix(const SparseMatrix& matrix, const Monitor& monitor = Monitor()) = 0;
@@ -41,23 +49,20 @@ public:
   /// std::runtime_error where no finite solution exists.
   virtual SolveReport Solve(
     const Values& b, Values& x, const Monitor& monitor = Monitor()) = 0;
-};
 
-struct IterationLimits
-{
-  double Tolerance = 1e-10; ///< on SolveReport::Residual
-  int MaximumNumberOfIterations = 1000;
+protected:
+  IterationLimits Limits;
 };
 
 /// Sparse LDL^T with approximate minimum degree ordering (Eigen::SimplicialLDLT), one step of
 /// iterative refinement where the residual is above the tolerance.
 std::unique_ptr<LinearSolver> MakeCholeskySolver(
-  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = ParallelFor());
+  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = SerialFor());
 
 /// Conjugate gradients with Jacobi preconditioner, all columns in one pass over the matrix, each
 /// with its own step lengths. The paper's PBCG is this method for symmetric matrices (Appendix).
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
-  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = ParallelFor());
+  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = SerialFor());
 
 /// What decides which method is faster.
 struct SolverTask
@@ -73,6 +78,6 @@ bool PreferFactorization(const SolverTask& task);
 /// The faster of the two by PreferFactorization(); conjugate gradients that do not converge are
 /// followed by a factorisation.
 std::unique_ptr<LinearSolver> MakeAutomaticSolver(const SolverTask& task,
-  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = ParallelFor());
+  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

@@ -23,6 +23,7 @@ public:
   using Callback = std::function<bool(double)>;
 
   Monitor() = default;
+  /// callback must outlive the monitor and its parts.
   explicit Monitor(const Callback& callback)
     : Call(&callback)
   {

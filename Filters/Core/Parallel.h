@@ -40,6 +40,13 @@ public:
   virtual void Run(Index count, LoopBody body) const { body(0, count); }
 };
 
+/// The serial loop, as the default of all that keeps a reference: a temporary would be gone.
+inline const ParallelFor& SerialFor()
+{
+  static const ParallelFor serial;
+  return serial;
+}
+
 /// Rows per block. Loops and sums are cut into these blocks whatever the number of threads, so
 /// that no bit of a result depends on it.
 constexpr Index BlockSize = 2048;

@@ -57,7 +57,7 @@ class Trajectory
 public:
   /// memoryLimit: bytes for checkpoints; 0 where only forward steps are expected.
   Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Evolution> evolution,
-    std::size_t memoryLimit, const ParallelFor& parallel = ParallelFor());
+    std::size_t memoryLimit, const ParallelFor& parallel = SerialFor());
 
   /// Announce that steps up to this one may be asked for.
   void Reserve(Index steps);
