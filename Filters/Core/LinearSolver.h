@@ -56,13 +56,12 @@ protected:
 
 /// Sparse LDL^T with approximate minimum degree ordering (Eigen::SimplicialLDLT), one step of
 /// iterative refinement where the residual is above the tolerance.
-std::unique_ptr<LinearSolver> MakeCholeskySolver(
-  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = SerialFor());
+std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = SerialFor());
 
 /// Conjugate gradients with Jacobi preconditioner, all columns in one pass over the matrix, each
 /// with its own step lengths. The paper's PBCG is this method for symmetric matrices (Appendix).
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
-  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = SerialFor());
+  const ParallelFor& parallel = SerialFor());
 
 /// What decides which method is faster.
 struct SolverTask
@@ -77,7 +76,7 @@ bool PreferFactorization(const SolverTask& task);
 
 /// The faster of the two by PreferFactorization(); conjugate gradients that do not converge are
 /// followed by a factorisation.
-std::unique_ptr<LinearSolver> MakeAutomaticSolver(const SolverTask& task,
-  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = SerialFor());
+std::unique_ptr<LinearSolver> MakeAutomaticSolver(
+  const SolverTask& task, const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion
