@@ -39,8 +39,8 @@ Frame BoundingFrame(
     }
   }
   const double extent = triangles.rows() > 0 ? (0.5 * high - 0.5 * low).maxCoeff() : 0.0;
-  // Half the extent cannot overflow; the unit is the next power of two above it.
-  const double unit = extent > 0.0 ? std::exp2(std::ilogb(extent) + 1.0) : 1.0;
+  // Half the extent cannot overflow; the unit is the next power of two above it, if there is one.
+  const double unit = extent > 0.0 ? std::exp2(std::min(std::ilogb(extent) + 1, 1023)) : 1.0;
   return { 0.5 * low + 0.5 * high, unit };
 }
 
@@ -106,17 +106,7 @@ TriangleMesh::TriangleMesh(const Eigen::Ref<const Points>& points,
   monitor.Report(0.6);
   this->ListCorners();
   monitor.Report(0.8);
-  this->Areas.resize(this->NumberOfVertices());
-  ForEach(parallel, this->NumberOfVertices(),
-    [&](Index i)
-    {
-      double area = 0.0;
-      for (Index c = this->CornersBegin[i]; c < this->CornersBegin[i + 1]; ++c)
-      {
-        area += this->TriangleShapes[this->CornerList[c] / 3].Area() / 3.0;
-      }
-      this->Areas[i] = area;
-    });
+  this->MeasureAreas(parallel);
   this->MeasureEdges(parallel);
   monitor.Report(1.0);
 }
@@ -272,6 +262,21 @@ void TriangleMesh::ListCorners()
   {
     this->CornerList[next[corners[c]]++] = c;
   }
+}
+
+void TriangleMesh::MeasureAreas(const ParallelFor& parallel)
+{
+  this->Areas.resize(this->NumberOfVertices());
+  ForEach(parallel, this->NumberOfVertices(),
+    [&](Index i)
+    {
+      double area = 0.0;
+      for (Index c = this->CornersBegin[i]; c < this->CornersBegin[i + 1]; ++c)
+      {
+        area += this->TriangleShapes[this->CornerList[c] / 3].Area() / 3.0;
+      }
+      this->Areas[i] = area;
+    });
 }
 
 void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
