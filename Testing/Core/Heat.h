@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Coefficients.h"
+#include "LinearDiffusion.h"
+#include "LinearSolver.h"
+
+#include <memory>
+#include <utility>
+
+namespace SurfaceDiffusion::Testing
+{
+
+using Scheme = LinearDiffusion::Scheme;
+
+/// Settings whose time step and fidelity are in coordinate units, as the exact solutions are.
+inline LinearDiffusion::Settings HeatSettings(
+  const TriangleMesh& mesh, double timeStep, double fidelity = 0.0, Scheme scheme = Scheme::SDIRK2)
+{
+  const double square = mesh.LengthUnit() * mesh.LengthUnit();
+  return { timeStep / square, fidelity * square, scheme };
+}
+
+/// Linear diffusion (1), (16), (18) of `data`.
+inline std::unique_ptr<LinearDiffusion> MakeHeat(std::shared_ptr<const Assembler> assembler,
+  PointData data, const LinearDiffusion::Settings& settings,
+  std::shared_ptr<LinearSolver> solver = MakeCholeskySolver(),
+  const ParallelFor& parallel = SerialFor())
+{
+  EdgeValues coefficients = IsotropicCoefficients(assembler->Mesh(), parallel);
+  return std::make_unique<LinearDiffusion>(std::move(assembler), std::move(coefficients),
+    std::move(data), settings, std::move(solver), parallel);
+}
+
+inline void Advance(Evolution& evolution, int steps)
+{
+  for (int step = 0; step < steps; ++step)
+  {
+    evolution.Advance(Monitor());
+  }
+}
+
+/// The state after `steps` steps over the time `time` in all, in coordinate units.
+inline Values Diffuse(std::shared_ptr<const Assembler> assembler, PointData data, double time,
+  int steps, double fidelity = 0.0, Scheme scheme = Scheme::SDIRK2)
+{
+  const auto settings = HeatSettings(assembler->Mesh(), time / steps, fidelity, scheme);
+  const auto heat = MakeHeat(std::move(assembler), std::move(data), settings);
+  Advance(*heat, steps);
+  return heat->State();
+}
+
+} // namespace SurfaceDiffusion::Testing
