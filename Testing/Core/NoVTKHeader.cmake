@@ -1,0 +1,11 @@
+# Fails if a source in FOLDER includes a VTK header: the numerics know nothing of VTK.
+file(GLOB_RECURSE sources "${FOLDER}/*.h" "${FOLDER}/*.cxx")
+if (NOT sources)
+  message(FATAL_ERROR "no sources in ${FOLDER}")
+endif ()
+foreach (source IN LISTS sources)
+  file(STRINGS "${source}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"]*/)?vtk")
+  if (lines)
+    message(SEND_ERROR "${source}: ${lines}")
+  endif ()
+endforeach ()
