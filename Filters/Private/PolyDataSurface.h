@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Assembler.h"
+#include "Core/Monitor.h"
+
+#include "vtkType.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkPolyData;
+
+/// The surface that the numerics work on, made from a vtkPolyData, and the way back to its points.
+struct PolyDataSurface
+{
+  /// What it is made from, beside the polydata itself.
+  struct Options
+  {
+    bool MergeCoincidentPoints = false;
+    double MergeTolerance = 0.0;
+    vtkDataArray* Excluded = nullptr; ///< per point; triangles with a nonzero corner take no part
+  };
+
+  /// What was left out or looks unintended, to be told to the user.
+  struct Findings
+  {
+    vtkIdType DegenerateTriangles = 0;
+    vtkIdType UnusedPoints = 0; ///< of no participating triangle, excluded ones not counted
+    vtkIdType NonManifoldEdges = 0;
+    vtkIdType CoincidentBoundaryPoints = 0; ///< where merging is off
+  };
+
+  /// Throws std::runtime_error on coordinates that are not finite and on more points or triangles
+  /// than 32-bit numbers count; SurfaceDiffusion::Aborted.
+  PolyDataSurface(
+    vtkPolyData* input, const Options& options, const SurfaceDiffusion::Monitor& monitor);
+
+  /// A text that differs whenever another surface would come out.
+  static std::string Key(vtkPolyData* input, const Options& options);
+
+  SurfaceDiffusion::Points Points;       ///< per input point
+  SurfaceDiffusion::Triangles Triangles; ///< rows of Points; merged points are one of them
+  std::vector<vtkIdType> TriangleCells;  ///< the input's cell of each row of Triangles
+  std::shared_ptr<const SurfaceDiffusion::TriangleMesh> Mesh;
+  std::shared_ptr<const SurfaceDiffusion::Assembler> Operators;
+  std::vector<SurfaceDiffusion::Index> PointToVertex; ///< -1 where a point takes no part
+  Findings Found;
+};

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Evolution.h"
+#include "Core/InitialState.h"
+#include "Core/LinearSolver.h"
+#include "Core/Trajectory.h"
+#include "PolyDataSurface.h"
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkPolyData;
+
+/// The input arrays of one block, resolved and checked.
+struct BlockArrays
+{
+  vtkDataArray* Data = nullptr;      ///< index 0
+  vtkDataArray* Mask = nullptr;      ///< index 1
+  vtkDataArray* Direction = nullptr; ///< index 2
+  bool DirectionOnCells = false;
+  vtkDataArray* Fixed = nullptr; ///< index 3
+  vtkDataArray* Rates = nullptr; ///< index 4
+};
+
+/// Lengths and values in the user's units and the core's. The core measures lengths in LengthUnit
+/// and values in ValueUnit.
+struct UnitSystem
+{
+  bool Natural = true;
+  double MeanEdgeLength = 1.0; ///< h, in coordinate units
+  double ValueRange = 1.0;     ///< R, in the array's units
+  double LengthUnit = 1.0;     ///< of the core's mesh, in coordinate units
+  double ValueUnit = 1.0;      ///< of the core's values, in the array's units
+
+  /// A user's quantity of dimension length^lengthPower value^valuePower in the core's units.
+  double ToCore(double quantity, double lengthPower, double valuePower) const
+  {
+    const double length = (this->Natural ? this->MeanEdgeLength : 1.0) / this->LengthUnit;
+    const double value = (this->Natural ? this->ValueRange : 1.0) / this->ValueUnit;
+    return quantity * std::pow(length, lengthPower) * std::pow(value, valuePower);
+  }
+  /// The core's quantity in coordinate and array units.
+  double FromCore(double quantity, double lengthPower, double valuePower) const
+  {
+    return quantity * std::pow(this->LengthUnit, lengthPower) *
+      std::pow(this->ValueUnit, valuePower);
+  }
+};
+
+/// What a model is made from.
+struct ModelInput
+{
+  vtkPolyData* Block;
+  const BlockArrays& Arrays;
+  const PolyDataSurface& Surface;
+  UnitSystem Units;
+  SurfaceDiffusion::PointData Data;       ///< in ValueUnit
+  SurfaceDiffusion::PlaneVectors Frames;  ///< one row per triangle; no row without a direction
+  std::vector<std::int64_t> Ids;          ///< per vertex, for random numbers
+  const SurfaceDiffusion::ParallelFor& Parallel;
+  SurfaceDiffusion::Monitor Progress;
+  /// The solver the filter's properties ask for, kept from run to run under this name, so that an
+  /// ordering or a factor still valid is used again.
+  std::function<std::shared_ptr<SurfaceDiffusion::LinearSolver>(
+    const std::string& name, const SurfaceDiffusion::SolverTask& task)>
+    Solver;
+};
+
+/// What is kept of one block from update to update, each part as long as its key stays the same.
+struct SurfaceRun
+{
+  std::string SurfaceKey;
+  std::unique_ptr<PolyDataSurface> Surface;
+  std::map<std::string, std::shared_ptr<SurfaceDiffusion::LinearSolver>> Solvers;
+  std::string RunKey;
+  bool HasMissing = false;
+  UnitSystem Units;
+  std::unique_ptr<SurfaceDiffusion::Trajectory> Path;
+};

@@ -1,0 +1,513 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Update.h"
+
+#include "Core/Frames.h"
+#include "PointArrays.h"
+#include "SMPParallelFor.h"
+
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+#include "vtkVersionMacros.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <sstream>
+
+using namespace SurfaceDiffusion;
+
+namespace
+{
+
+std::string Join(const std::vector<std::string>& sentences)
+{
+  std::string text;
+  for (const std::string& sentence : sentences)
+  {
+    text += (text.empty() ? "" : "; ") + sentence;
+  }
+  return text;
+}
+
+template <typename Array, typename Value>
+void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& value)
+{
+  vtkNew<Array> column;
+  column->SetName(name.c_str());
+  column->SetNumberOfTuples(rows);
+  for (int row = 0; row < rows; ++row)
+  {
+    column->SetValue(row, value(row));
+  }
+  table->AddColumn(column);
+}
+
+/// One vector per row of `count`.
+Points ReadVectors(vtkDataArray* array)
+{
+  Points vectors(array->GetNumberOfTuples(), 3);
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    array->GetTuple(i, vectors.row(i).data());
+  }
+  return vectors;
+}
+
+PlaneVectors MakeFrames(
+  const PolyDataSurface& surface, const BlockArrays& arrays, const ParallelFor& parallel)
+{
+  if (!arrays.Direction)
+  {
+    return PlaneVectors(0, 2);
+  }
+  const Points vectors = ReadVectors(arrays.Direction);
+  if (!arrays.DirectionOnCells)
+  {
+    return FramesFromPointVectors(
+      *surface.Mesh, surface.Points, surface.Triangles, vectors, parallel);
+  }
+  Points ofTriangles(surface.Triangles.rows(), 3);
+  for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
+  {
+    ofTriangles.row(t) = vectors.row(surface.TriangleCells[t]);
+  }
+  return FramesFromTriangleVectors(
+    *surface.Mesh, surface.Points, surface.Triangles, ofTriangles, parallel);
+}
+
+} // namespace
+
+vtkSurfaceDiffusionAlgorithm::Update::Update(
+  vtkSurfaceDiffusionAlgorithm& filter, vtkDataObject* input, vtkDataObject* output)
+  : Filter(filter)
+{
+  auto* compositeInput = vtkCompositeDataSet::SafeDownCast(input);
+  auto* compositeOutput = vtkCompositeDataSet::SafeDownCast(output);
+  if (!compositeInput)
+  {
+    output->ShallowCopy(input);
+    this->Collect(input, output);
+    return;
+  }
+  compositeOutput->CopyStructure(compositeInput);
+  compositeOutput->GetFieldData()->ShallowCopy(compositeInput->GetFieldData());
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(compositeInput->NewIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    vtkDataObject* leaf = iterator->GetCurrentDataObject();
+    auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
+    copy->ShallowCopy(leaf);
+    compositeOutput->SetDataSet(iterator, copy);
+    this->Collect(leaf, copy);
+  }
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::Collect(vtkDataObject* input, vtkDataObject* output)
+{
+  auto* data = vtkPolyData::SafeDownCast(input);
+  if (!data)
+  {
+    return;
+  }
+  this->AnyPoint = this->AnyPoint || data->GetNumberOfPoints() > 0;
+  if (data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0)
+  {
+    this->AnyPolygon = true;
+    this->Blocks.push_back({ data, vtkPolyData::SafeDownCast(output), BlockArrays() });
+  }
+}
+
+bool vtkSurfaceDiffusionAlgorithm::Update::Check()
+{
+  Problems problems;
+  this->Filter.CheckProperties(problems);
+  if (!this->AnyPoint)
+  {
+    problems.emplace_back("the input is empty; a surface of polygons or strips is needed");
+  }
+  else if (!this->AnyPolygon)
+  {
+    problems.emplace_back("the input has no polygons or strips; a surface is needed");
+  }
+  Problems ofArrays;
+  std::vector<Block> withData;
+  for (Block& block : this->Blocks)
+  {
+    if (this->Filter.FindArrays(block.Input, block.Arrays, ofArrays))
+    {
+      withData.push_back(block);
+    }
+  }
+  // Blocks without the arrays pass through as long as one has them.
+  if (withData.empty() || this->Blocks.size() == 1)
+  {
+    problems.insert(problems.end(), ofArrays.begin(), ofArrays.end());
+  }
+  this->Blocks.swap(withData);
+  if (!problems.empty())
+  {
+    std::sort(problems.begin(), problems.end());
+    problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
+    vtkErrorWithObjectMacro(&this->Filter, << Join(problems));
+    return false;
+  }
+  return true;
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::Run(int step, vtkTable* history)
+{
+  double reported = 0.0;
+  const Monitor::Callback callback = [&](double fraction)
+  {
+    reported = std::max(reported, fraction);
+    this->Filter.UpdateProgress(reported);
+    return !this->Filter.GetAbortExecute();
+  };
+  const Monitor monitor(callback);
+  try
+  {
+    this->MakeSurfaces(monitor.Part(0.0, 0.15));
+    this->MeasureUnits();
+    this->MakeRuns(monitor.Part(0.15, 0.25));
+    this->Seek(step, monitor.Part(0.25, 0.95));
+    for (const Block& block : this->Blocks)
+    {
+      this->Filter.WriteResult(*block.Run, block.Arrays, block.Output);
+    }
+    this->WriteHistory(step, history);
+    monitor.Report(1.0);
+    this->Warn();
+  }
+  catch (const Aborted&)
+  {
+    // The output is the unchanged input; what was made so far is kept for the next update.
+  }
+  catch (const std::bad_alloc&)
+  {
+    this->Filter.Runs.clear();
+    vtkErrorWithObjectMacro(&this->Filter, << "not enough memory");
+  }
+  catch (const std::exception& error)
+  {
+    this->Filter.Runs.clear();
+    vtkErrorWithObjectMacro(&this->Filter, << error.what());
+  }
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::MakeSurfaces(const Monitor& monitor)
+{
+  auto& runs = this->Filter.Runs;
+  runs.resize(this->Blocks.size());
+  for (std::size_t b = 0; b < runs.size(); ++b)
+  {
+    if (!runs[b])
+    {
+      runs[b] = std::make_unique<SurfaceRun>();
+    }
+    Block& block = this->Blocks[b];
+    block.Run = runs[b].get();
+    PolyDataSurface::Options options;
+    options.MergeCoincidentPoints = this->Filter.MergeCoincidentPoints;
+    options.MergeTolerance = this->Filter.MergeTolerance;
+    options.Excluded =
+      this->Filter.MaskMode == MASK_MODE_EXCLUDE ? block.Arrays.Mask : nullptr;
+    const std::string key = PolyDataSurface::Key(block.Input, options);
+    if (key != block.Run->SurfaceKey || !block.Run->Surface)
+    {
+      *block.Run = SurfaceRun(); // frees the old one first
+      const double count = static_cast<double>(runs.size());
+      block.Run->Surface = std::make_unique<PolyDataSurface>(
+        block.Input, options, monitor.Part(b / count, (b + 1) / count));
+      block.Run->SurfaceKey = key;
+    }
+  }
+}
+
+/// h and R of all blocks together.
+void vtkSurfaceDiffusionAlgorithm::Update::MeasureUnits()
+{
+  double length = 0.0;
+  double edges = 0.0;
+  ValueStatistics statistics;
+  for (const Block& block : this->Blocks)
+  {
+    const TriangleMesh& mesh = *block.Run->Surface->Mesh;
+    edges += mesh.NumberOfEdges();
+    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
+    if (block.Arrays.Data)
+    {
+      const bool inpaint = this->Filter.MaskMode == MASK_MODE_INPAINT;
+      statistics.Add(
+        block.Arrays.Data, inpaint ? block.Arrays.Mask : nullptr, block.Arrays.Fixed);
+    }
+  }
+  UnitSystem units;
+  units.Natural = this->Filter.Units == UNITS_NATURAL;
+  units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
+  const Dimension time = this->Filter.GetTimeDimension();
+  units.ValueRange = statistics.Range();
+  if (!std::isfinite(units.ValueRange) || !std::isfinite(units.MeanEdgeLength))
+  {
+    throw std::runtime_error(
+      "the range of the coordinates or of the values is larger than a double can hold");
+  }
+  // A power of two changes no bit; only values whose squares overflow or vanish need one.
+  const double magnitude = statistics.Magnitude;
+  if (magnitude > 0.0 && (magnitude > 1e100 || magnitude < 1e-100))
+  {
+    units.ValueUnit = std::exp2(std::ilogb(magnitude));
+  }
+  this->Filter.MeanEdgeLength = units.MeanEdgeLength;
+  this->Filter.ValueRange = units.ValueRange;
+  this->Filter.TimeUnit = this->Filter.GetTimeIsAbsolute()
+    ? 1.0
+    : std::pow(units.MeanEdgeLength, time.Length) * std::pow(units.ValueRange, time.Value);
+  for (const Block& block : this->Blocks)
+  {
+    units.LengthUnit = block.Run->Surface->Mesh->LengthUnit();
+    block.Run->Units = units;
+  }
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::MakeRuns(const Monitor& monitor)
+{
+  const double count = static_cast<double>(this->Blocks.size());
+  for (std::size_t b = 0; b < this->Blocks.size(); ++b)
+  {
+    Block& block = this->Blocks[b];
+    std::ostringstream key;
+    this->Filter.WriteRunKey(key);
+    key << this->Blocks.size() << ' ' << block.Run->Units.MeanEdgeLength << ' '
+        << block.Run->Units.ValueRange << ' ' << block.Run->Units.ValueUnit << ' '
+        << block.Arrays.DirectionOnCells;
+    vtkDataArray* const ids = block.Input->GetPointData()->GetGlobalIds();
+    for (vtkDataArray* array : { block.Arrays.Data, block.Arrays.Mask, block.Arrays.Direction,
+           block.Arrays.Fixed, block.Arrays.Rates, ids })
+    {
+      key << ' ' << array << ' ' << (array ? array->GetMTime() : 0);
+    }
+    if (block.Run->RunKey != key.str() || !block.Run->Path)
+    {
+      block.Run->Path.reset();
+      this->MakeRun(block, monitor.Part(b / count, (b + 1) / count));
+      block.Run->RunKey = key.str();
+    }
+  }
+  const auto hasMissing = [](const Block& block) { return block.Run->HasMissing; };
+  if (this->Filter.HoldKnownValues &&
+    std::none_of(this->Blocks.begin(), this->Blocks.end(), hasMissing))
+  {
+    throw std::runtime_error("HoldKnownValues is on but nothing is missing, so nothing would "
+                             "change; allowed: on with a mask in mode Inpaint or with NaN");
+  }
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::MakeRun(Block& block, const Monitor& monitor)
+{
+  SurfaceRun& run = *block.Run;
+  const ParallelFor& parallel = SMPParallelFor::Instance();
+  ModelInput input{ block.Input, block.Arrays, *run.Surface, run.Units, PointData(),
+    MakeFrames(*run.Surface, block.Arrays, parallel), ReadVertexIds(*run.Surface, block.Input),
+    parallel, monitor.Part(0.2, 1.0),
+    [this, &run](const std::string& name, const SolverTask& task)
+    { return this->FindSolver(run, name, task); } };
+  if (block.Arrays.Data)
+  {
+    const bool inpaint = this->Filter.MaskMode == MASK_MODE_INPAINT;
+    input.Data = ReadPointData(*run.Surface, block.Arrays.Data,
+      inpaint ? block.Arrays.Mask : nullptr, block.Arrays.Fixed, run.Units.ValueUnit);
+    run.HasMissing = input.Data.Missing.any();
+    FillMissing(*run.Surface->Mesh, input.Data,
+      static_cast<SurfaceDiffusion::InitialFill>(this->Filter.InitialFill),
+      this->Filter.RandomSeed, input.Ids);
+    if (this->Filter.HoldKnownValues)
+    {
+      input.Data.Fixed = input.Data.Fixed || !input.Data.Missing;
+    }
+  }
+  monitor.Report(0.2);
+  const std::size_t limit = this->Filter.GenerateTimeSteps
+    ? static_cast<std::size_t>(this->Filter.CheckpointMemoryLimit) * 1024 * 1024 /
+      this->Blocks.size()
+    : 0;
+  const int steps = this->Filter.GetEffectiveNumberOfTimeSteps();
+  run.Path = std::make_unique<Trajectory>(
+    run.Surface->Mesh, this->Filter.MakeEvolution(input, steps), limit, parallel);
+  run.Path->Reserve(steps);
+  monitor.Report(1.0);
+}
+
+std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Update::FindSolver(
+  SurfaceRun& run, const std::string& name, const SolverTask& task)
+{
+  int kind = this->Filter.Solver;
+  if (kind == SOLVER_AUTOMATIC && PreferFactorization(task))
+  {
+    kind = SOLVER_DIRECT;
+  }
+  const std::string prefix = name + ' ';
+  const std::string key = prefix + std::to_string(kind);
+  std::shared_ptr<LinearSolver> solver = run.Solvers[key];
+  if (!solver)
+  {
+    const ParallelFor& parallel = SMPParallelFor::Instance();
+    switch (kind)
+    {
+      case SOLVER_DIRECT:
+        solver = MakeCholeskySolver(parallel);
+        break;
+      case SOLVER_CONJUGATE_GRADIENT:
+        solver = MakeConjugateGradientSolver(parallel);
+        break;
+      default:
+        solver = MakeAutomaticSolver(task, parallel);
+        break;
+    }
+  }
+  // One solver per name: a factor that is no longer used would hold much memory.
+  for (auto it = run.Solvers.begin(); it != run.Solvers.end();)
+  {
+    it = it->first.compare(0, prefix.size(), prefix) == 0 ? run.Solvers.erase(it) : std::next(it);
+  }
+  run.Solvers[key] = solver;
+  IterationLimits limits;
+  limits.Tolerance = this->Filter.Tolerance;
+  limits.MaximumNumberOfIterations = this->Filter.MaximumNumberOfIterations;
+  solver->SetLimits(limits);
+  return solver;
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::Seek(int step, const Monitor& monitor)
+{
+  double all = 0.0;
+  for (const Block& block : this->Blocks)
+  {
+    all += block.Run->Surface->Mesh->NumberOfTriangles();
+  }
+  double done = 0.0;
+  for (const Block& block : this->Blocks)
+  {
+    const double size = block.Run->Surface->Mesh->NumberOfTriangles();
+    const Monitor part =
+      all > 0.0 ? monitor.Part(done / all, (done + size) / all) : monitor;
+    done += size;
+    const Index before = block.Run->Path->NumberOfAdvances();
+    block.Run->Path->Seek(step, part);
+    this->Filter.NumberOfStepsComputed += block.Run->Path->NumberOfAdvances() - before;
+  }
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::WriteHistory(int step, vtkTable* history)
+{
+  const int rows = step + 1;
+  std::vector<StepRecord> sums(rows);
+  Eigen::Index components = 0;
+  const Dimension energy = this->Filter.GetEnergyDimension();
+  for (const Block& block : this->Blocks)
+  {
+    components = std::max(components, block.Run->Path->State().cols());
+    const double energyUnit = block.Run->Units.FromCore(1.0, energy.Length, energy.Value);
+    for (int row = 0; row < rows; ++row)
+    {
+      const StepRecord& record = block.Run->Path->Records()[row];
+      sums[row].Energy += record.Energy * energyUnit;
+      sums[row].Iterations += record.Iterations;
+      sums[row].Residual = std::max(sums[row].Residual, record.Residual);
+      sums[row].Seconds += record.Seconds;
+    }
+  }
+  const double timeStep = this->Filter.GetEffectiveTimeStep();
+  AddColumn<vtkIntArray>(history, "Step", rows, [](int row) { return row; });
+  AddColumn<vtkDoubleArray>(history, "Time", rows, [&](int row) { return row * timeStep; });
+  for (Eigen::Index k = 0; k < components; ++k)
+  {
+    AddColumn<vtkDoubleArray>(history, "Total_" + std::to_string(k), rows,
+      [&](int row)
+      {
+        double total = 0.0;
+        for (const Block& block : this->Blocks)
+        {
+          const Trajectory& path = *block.Run->Path;
+          if (k < path.State().cols())
+          {
+            total += block.Run->Units.FromCore(path.TotalAt(row, static_cast<Index>(k)), 2.0, 1.0);
+          }
+        }
+        return total;
+      });
+  }
+  AddColumn<vtkDoubleArray>(history, "Energy", rows, [&](int row) { return sums[row].Energy; });
+  AddColumn<vtkIntArray>(
+    history, "Iterations", rows, [&](int row) { return sums[row].Iterations; });
+  AddColumn<vtkDoubleArray>(
+    history, "Residual", rows, [&](int row) { return sums[row].Residual; });
+  AddColumn<vtkDoubleArray>(history, "Seconds", rows, [&](int row) { return sums[row].Seconds; });
+  this->Filter.NumberOfIterations = 0;
+  this->Filter.Residual = 0.0;
+  for (const StepRecord& sum : sums)
+  {
+    this->Filter.NumberOfIterations += sum.Iterations;
+    this->Filter.Residual = std::max(this->Filter.Residual, sum.Residual);
+  }
+}
+
+bool vtkSurfaceDiffusionAlgorithm::Update::MaskChangesNothing() const
+{
+  bool anyMask = false;
+  bool anyMasked = false;
+  for (const Block& block : this->Blocks)
+  {
+    vtkDataArray* mask = block.Arrays.Mask;
+    anyMask = anyMask || mask;
+    for (vtkIdType i = 0; mask && !anyMasked && i < mask->GetNumberOfTuples(); ++i)
+    {
+      anyMasked = mask->GetComponent(i, 0) != 0.0;
+    }
+  }
+  const bool inert = this->Filter.MaskMode == MASK_MODE_INPAINT &&
+    this->Filter.InitialFill == INITIAL_FILL_INPUT && !this->Filter.UsesFidelity() &&
+    !this->Filter.HoldKnownValues;
+  return anyMask && (!anyMasked || inert);
+}
+
+void vtkSurfaceDiffusionAlgorithm::Update::Warn()
+{
+  PolyDataSurface::Findings sum;
+  for (const Block& block : this->Blocks)
+  {
+    const PolyDataSurface::Findings& found = block.Run->Surface->Found;
+    sum.DegenerateTriangles += found.DegenerateTriangles;
+    sum.UnusedPoints += found.UnusedPoints;
+    sum.NonManifoldEdges += found.NonManifoldEdges;
+    sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
+  }
+  std::vector<std::string> sentences;
+  const auto tell = [&](vtkIdType count, const char* what)
+  {
+    if (count > 0)
+    {
+      sentences.push_back(std::to_string(count) + what);
+    }
+  };
+  tell(sum.DegenerateTriangles, " triangles of zero area were left out");
+  tell(sum.UnusedPoints, " points that no triangle uses keep their values");
+  tell(sum.NonManifoldEdges, " edges have three or more triangles, which all exchange over them");
+  tell(sum.CoincidentBoundaryPoints,
+    " boundary points coincide with others and nothing flows between them (to join them, set "
+    "MergeCoincidentPoints)");
+  if (this->MaskChangesNothing())
+  {
+    sentences.emplace_back("the mask changes nothing with these settings");
+  }
+  if (!sentences.empty())
+  {
+    vtkWarningWithObjectMacro(&this->Filter, << Join(sentences));
+  }
+}

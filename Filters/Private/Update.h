@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "vtkSurfaceDiffusionAlgorithm.h"
+
+#include "Core/Monitor.h"
+#include "SurfaceRun.h"
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataObject;
+class vtkTable;
+
+/// One update of the filter: checks, makes what has changed, moves to the step wanted, writes.
+class vtkSurfaceDiffusionAlgorithm::Update
+{
+public:
+  /// The output becomes a copy of the input, which it stays until all has succeeded.
+  Update(vtkSurfaceDiffusionAlgorithm& filter, vtkDataObject* input, vtkDataObject* output);
+
+  /// False, after error messages, where properties or arrays are wrong.
+  bool Check();
+
+  /// Write the state after `step` steps and the history. An error or an abort leaves the output.
+  void Run(int step, vtkTable* history);
+
+private:
+  struct Block
+  {
+    vtkPolyData* Input;
+    vtkPolyData* Output;
+    BlockArrays Arrays;
+    SurfaceRun* Run = nullptr;
+  };
+
+  void Collect(vtkDataObject* input, vtkDataObject* output);
+  void MakeSurfaces(const SurfaceDiffusion::Monitor& monitor);
+  void MeasureUnits();
+  void MakeRuns(const SurfaceDiffusion::Monitor& monitor);
+  void MakeRun(Block& block, const SurfaceDiffusion::Monitor& monitor);
+  std::shared_ptr<SurfaceDiffusion::LinearSolver> FindSolver(
+    SurfaceRun& run, const std::string& name, const SurfaceDiffusion::SolverTask& task);
+  void Seek(int step, const SurfaceDiffusion::Monitor& monitor);
+  void WriteHistory(int step, vtkTable* history);
+  bool MaskChangesNothing() const;
+  void Warn();
+
+  vtkSurfaceDiffusionAlgorithm& Filter;
+  std::vector<Block> Blocks; ///< those that take part
+  bool AnyPoint = false;
+  bool AnyPolygon = false;
+};

@@ -1,0 +1,371 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSurfaceDiffusionAlgorithm.h"
+
+#include "Private/InputArrays.h"
+#include "Private/PointArrays.h"
+#include "Private/SurfaceRun.h"
+#include "Private/Update.h"
+
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace
+{
+
+/// The text of an enum value; checked at update, so a wrong one has a text too.
+template <std::size_t N>
+const char* TextOf(int value, const char* const (&texts)[N])
+{
+  return value >= 0 && value < static_cast<int>(N) ? texts[value] : "Unknown";
+}
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// More published times than this are a mistake: each is a number the whole pipeline carries.
+constexpr double LargestNumberOfPublishedTimes = 1e6;
+
+} // namespace
+
+vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm()
+{
+  this->SetNumberOfOutputPorts(2);
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+}
+
+vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
+
+const char* vtkSurfaceDiffusionAlgorithm::GetUnitsAsString()
+{
+  return TextOf(this->Units, { "Natural", "Absolute" });
+}
+
+const char* vtkSurfaceDiffusionAlgorithm::GetMaskModeAsString()
+{
+  return TextOf(this->MaskMode, { "Inpaint", "Exclude" });
+}
+
+const char* vtkSurfaceDiffusionAlgorithm::GetInitialFillAsString()
+{
+  return TextOf(this->InitialFill, { "Input", "Mean", "Noise" });
+}
+
+const char* vtkSurfaceDiffusionAlgorithm::GetTimeIntegratorAsString()
+{
+  return TextOf(this->TimeIntegrator, { "FirstOrder", "SecondOrder", "Implicit" });
+}
+
+const char* vtkSurfaceDiffusionAlgorithm::GetSolverAsString()
+{
+  return TextOf(this->Solver, { "Automatic", "Direct", "ConjugateGradient" });
+}
+
+const char* vtkSurfaceDiffusionAlgorithm::GetOutputPrecisionAsString()
+{
+  return TextOf(this->OutputPrecision, { "Input", "Single", "Double" });
+}
+
+void vtkSurfaceDiffusionAlgorithm::UsePaperScheme()
+{
+  this->SetTimeIntegratorToFirstOrder();
+  this->SetMaskModeToInpaint();
+  this->SetHoldKnownValues(false);
+  this->SetInitialFillToInput();
+}
+
+//------------------------------------------------------------------------------------------------
+void vtkSurfaceDiffusionAlgorithm::Require(
+  bool holds, const char* property, double value, const char* allowed, Problems& problems)
+{
+  if (!holds)
+  {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10 - 2);
+    text << property << " is " << value << "; allowed: " << allowed;
+    problems.push_back(text.str());
+  }
+}
+
+void vtkSurfaceDiffusionAlgorithm::CheckProperties(Problems& problems)
+{
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0.0; };
+  const auto notNegative = [](double x) { return std::isfinite(x) && x >= 0.0; };
+  const auto oneOf = [](int value, int count) { return value >= 0 && value < count; };
+  const char* const finite = "finite numbers, 0 or more";
+  Require(positive(this->TimeStep), "TimeStep", this->TimeStep, "finite numbers above 0", problems);
+  Require(this->NumberOfTimeSteps >= 0, "NumberOfTimeSteps", this->NumberOfTimeSteps,
+    "0 or more", problems);
+  Require(this->OutputInterval >= 1, "OutputInterval", this->OutputInterval, "1 or more", problems);
+  if (this->GenerateTimeSteps && this->OutputInterval >= 1)
+  {
+    const double times = std::ceil(static_cast<double>(this->GetEffectiveNumberOfTimeSteps()) /
+      this->OutputInterval);
+    Require(times <= LargestNumberOfPublishedTimes, "NumberOfTimeSteps / OutputInterval", times,
+      "up to 1000000 published times; raise OutputInterval", problems);
+  }
+  Require(
+    notNegative(this->FidelityWeight), "FidelityWeight", this->FidelityWeight, finite, problems);
+  Require(notNegative(this->AlongDiffusivity), "AlongDiffusivity", this->AlongDiffusivity, finite,
+    problems);
+  Require(notNegative(this->AcrossDiffusivity), "AcrossDiffusivity", this->AcrossDiffusivity,
+    finite, problems);
+  Require(this->Tolerance > 0.0 && this->Tolerance < 1.0, "Tolerance", this->Tolerance,
+    "numbers between 0 and 1, ends excluded", problems);
+  Require(this->MaximumNumberOfIterations >= 1, "MaximumNumberOfIterations",
+    this->MaximumNumberOfIterations, "1 or more", problems);
+  Require(
+    notNegative(this->MergeTolerance), "MergeTolerance", this->MergeTolerance, finite, problems);
+  Require(this->CheckpointMemoryLimit >= 0, "CheckpointMemoryLimit", this->CheckpointMemoryLimit,
+    "0 or more MiB", problems);
+  Require(oneOf(this->Units, 2), "Units", this->Units, "0 Natural, 1 Absolute", problems);
+  Require(oneOf(this->MaskMode, 2), "MaskMode", this->MaskMode, "0 Inpaint, 1 Exclude", problems);
+  Require(oneOf(this->InitialFill, 3), "InitialFill", this->InitialFill,
+    "0 Input, 1 Mean, 2 Noise", problems);
+  Require(oneOf(this->Solver, 3), "Solver", this->Solver,
+    "0 Automatic, 1 Direct, 2 ConjugateGradient", problems);
+  Require(oneOf(this->OutputPrecision, 3), "OutputPrecision", this->OutputPrecision,
+    "0 Input, 1 Single, 2 Double", problems);
+}
+
+bool vtkSurfaceDiffusionAlgorithm::FindArrays(
+  vtkPolyData* block, BlockArrays& arrays, Problems& problems)
+{
+  const InputArrays inputs(this, block, problems);
+  arrays.Data = inputs.FindOnPoints(0, "InputArray", InputArrays::AnyNumberOfComponents);
+  arrays.Mask = inputs.FindOnPoints(1, "MaskArray", 1);
+  arrays.Direction = inputs.Find(2, "DirectionArray", 3, arrays.DirectionOnCells);
+  arrays.Fixed = inputs.FindOnPoints(3, "FixedArray", 1);
+  if (!arrays.Direction && this->AlongDiffusivity != this->AcrossDiffusivity)
+  {
+    problems.emplace_back("AlongDiffusivity and AcrossDiffusivity differ but DirectionArray is "
+                          "not set; allowed: equal values, or an array of directions");
+  }
+  return arrays.Data != nullptr;
+}
+
+void vtkSurfaceDiffusionAlgorithm::WriteRunKey(std::ostream& key)
+{
+  key << std::hexfloat << this->GetEffectiveTimeStep() << ' '
+      << this->GetEffectiveNumberOfTimeSteps() << ' ' << this->Units << ' '
+      << this->GenerateTimeSteps << ' ' << this->FidelityWeight << ' ' << this->MaskMode << ' '
+      << this->InitialFill << ' ' << this->HoldKnownValues << ' ' << this->RandomSeed << ' '
+      << this->AlongDiffusivity << ' ' << this->AcrossDiffusivity << ' ' << this->TimeIntegrator
+      << ' ' << this->Solver << ' ' << this->Tolerance << ' ' << this->MaximumNumberOfIterations
+      << ' ' << this->CheckpointMemoryLimit << ' ';
+}
+
+void vtkSurfaceDiffusionAlgorithm::WriteResult(
+  const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output)
+{
+  std::string name = this->ResultArrayName;
+  if (name.empty())
+  {
+    name = arrays.Data->GetName() ? arrays.Data->GetName() : "";
+    name += this->GetResultSuffix();
+  }
+  int type = VTK_DOUBLE;
+  const int inputType = arrays.Data->GetDataType();
+  if (this->OutputPrecision == OUTPUT_PRECISION_SINGLE ||
+    (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_FLOAT))
+  {
+    type = VTK_FLOAT;
+  }
+  else if (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_UNSIGNED_CHAR)
+  {
+    type = VTK_UNSIGNED_CHAR;
+  }
+  vtkSmartPointer<vtkDataArray> result = WritePointArray(
+    *run.Surface, arrays.Data, run.Path->State(), run.Units.ValueUnit, type, name);
+  output->GetPointData()->AddArray(result);
+  output->GetPointData()->SetActiveScalars(name.c_str());
+}
+
+//------------------------------------------------------------------------------------------------
+int vtkSurfaceDiffusionAlgorithm::FillInputPortInformation(int, vtkInformation* info)
+{
+  // Composite data come as a whole, not block by block: the blocks share their natural units.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  return 1;
+}
+
+int vtkSurfaceDiffusionAlgorithm::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkTable");
+  return 1;
+}
+
+vtkTypeBool vtkSurfaceDiffusionAlgorithm::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->RequestDataObject(request, inputs, outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+int vtkSurfaceDiffusionAlgorithm::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+  if (!input)
+  {
+    return 0;
+  }
+  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
+  if (!output || !output->IsA(input->GetClassName()) || !input->IsA(output->GetClassName()))
+  {
+    auto made = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
+    outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
+  }
+  if (!vtkTable::GetData(outputs, 1))
+  {
+    vtkNew<vtkTable> table;
+    outputs->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), table);
+  }
+  return 1;
+}
+
+std::vector<double> vtkSurfaceDiffusionAlgorithm::PublishedTimes()
+{
+  std::vector<double> times;
+  const int last = this->GetEffectiveNumberOfTimeSteps();
+  for (vtkIdType step = 0; step < last; step += this->OutputInterval)
+  {
+    times.push_back(static_cast<double>(step) * this->GetEffectiveTimeStep());
+  }
+  times.push_back(last * this->GetEffectiveTimeStep());
+  return times;
+}
+
+int vtkSurfaceDiffusionAlgorithm::StepAtTime(double time)
+{
+  const std::vector<double> times = this->PublishedTimes();
+  // A time that went through another program's text or sums may have lost its last bits.
+  const double slack = 1e-9 * this->GetEffectiveTimeStep();
+  const auto after = std::upper_bound(times.begin(), times.end(), time + slack);
+  const auto index = static_cast<vtkIdType>(std::max<std::ptrdiff_t>(after - times.begin() - 1, 0));
+  return static_cast<int>(std::min<vtkIdType>(
+    index * this->OutputInterval, this->GetEffectiveNumberOfTimeSteps()));
+}
+
+int vtkSurfaceDiffusionAlgorithm::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  Problems problems;
+  this->CheckProperties(problems);
+  if (!this->GenerateTimeSteps || !problems.empty())
+  {
+    return 1; // the input's own times pass through; problems are told at update
+  }
+  const std::vector<double> times = this->PublishedTimes();
+  const double range[2] = { times.front(), times.back() };
+  for (int port = 0; port < 2; ++port)
+  {
+    vtkInformation* info = outputs->GetInformationObject(port);
+    info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+  return 1;
+}
+
+int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  if (this->GenerateTimeSteps)
+  {
+    // The time asked for is a diffusion time: it means nothing upstream.
+    vtkInformation* info = inputs[0]->GetInformationObject(0);
+    if (info->Has(Pipeline::TIME_STEPS()) && info->Length(Pipeline::TIME_STEPS()) > 0)
+    {
+      info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_STEPS())[0]);
+    }
+    else
+    {
+      info->Remove(Pipeline::UPDATE_TIME_STEP());
+    }
+  }
+  return 1;
+}
+
+int vtkSurfaceDiffusionAlgorithm::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
+  vtkTable* history = vtkTable::GetData(outputs, 1);
+  history->Initialize();
+
+  Update update(*this, input, output);
+  if (!update.Check())
+  {
+    return 1;
+  }
+  int step = this->GetEffectiveNumberOfTimeSteps();
+  if (this->GenerateTimeSteps)
+  {
+    const int port = request->Has(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT())
+      ? std::max(0, request->Get(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT()))
+      : 0;
+    vtkInformation* info = outputs->GetInformationObject(port);
+    if (info->Has(Pipeline::UPDATE_TIME_STEP()))
+    {
+      step = this->StepAtTime(info->Get(Pipeline::UPDATE_TIME_STEP()));
+    }
+    for (vtkDataObject* data : { output, static_cast<vtkDataObject*>(history) })
+    {
+      data->GetInformation()->Set(
+        vtkDataObject::DATA_TIME_STEP(), step * this->GetEffectiveTimeStep());
+    }
+  }
+  update.Run(step, history);
+  return 1;
+}
+
+//------------------------------------------------------------------------------------------------
+void vtkSurfaceDiffusionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "TimeStep: " << this->TimeStep << "\n";
+  os << indent << "NumberOfTimeSteps: " << this->NumberOfTimeSteps << "\n";
+  os << indent << "Units: " << this->GetUnitsAsString() << "\n";
+  os << indent << "GenerateTimeSteps: " << (this->GenerateTimeSteps ? "On" : "Off") << "\n";
+  os << indent << "OutputInterval: " << this->OutputInterval << "\n";
+  os << indent << "FidelityWeight: " << this->FidelityWeight << "\n";
+  os << indent << "MaskMode: " << this->GetMaskModeAsString() << "\n";
+  os << indent << "InitialFill: " << this->GetInitialFillAsString() << "\n";
+  os << indent << "HoldKnownValues: " << (this->HoldKnownValues ? "On" : "Off") << "\n";
+  os << indent << "RandomSeed: " << this->RandomSeed << "\n";
+  os << indent << "AlongDiffusivity: " << this->AlongDiffusivity << "\n";
+  os << indent << "AcrossDiffusivity: " << this->AcrossDiffusivity << "\n";
+  os << indent << "TimeIntegrator: " << this->GetTimeIntegratorAsString() << "\n";
+  os << indent << "Solver: " << this->GetSolverAsString() << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "MaximumNumberOfIterations: " << this->MaximumNumberOfIterations << "\n";
+  os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
+  os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
+  os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
+  os << indent << "OutputPrecision: " << this->GetOutputPrecisionAsString() << "\n";
+  os << indent << "CheckpointMemoryLimit: " << this->CheckpointMemoryLimit << "\n";
+  os << indent << "TimeUnit: " << this->TimeUnit << "\n";
+  os << indent << "MeanEdgeLength: " << this->MeanEdgeLength << "\n";
+  os << indent << "ValueRange: " << this->ValueRange << "\n";
+  os << indent << "NumberOfIterations: " << this->NumberOfIterations << "\n";
+  os << indent << "Residual: " << this->Residual << "\n";
+  os << indent << "NumberOfStepsComputed: " << this->NumberOfStepsComputed << "\n";
+}
