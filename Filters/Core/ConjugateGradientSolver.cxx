@@ -64,18 +64,23 @@ private:
     const Index n = static_cast<Index>(b.rows());
     this->Resize(n, k);
 
-    // r = b - A x, p = z = r / diag(A)
+    // r = b - A x, p = z = r / diag(A), in units of each column's own
     Multiply(*this->Matrix, x, this->Q, this->Parallel);
+    for (int c = 0; c < k; ++c)
+    {
+      this->Unit[c] = ScaleOf(b, this->Q, c, this->Parallel);
+    }
     this->SumBlocks(n, k, 2,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
         {
-          const double r = b(i, c) - this->Q(i, c);
+          const double bi = b(i, c) / this->Unit[c];
+          const double r = bi - this->Q(i, c) / this->Unit[c];
           this->R(i, c) = r;
           this->P(i, c) = this->InverseDiagonal[i] * r;
           sums[c] += r * this->InverseDiagonal[i] * r; // as in Iterate(), to the bit
-          sums[k + c] += b(i, c) * this->InverseDiagonal[i] * b(i, c);
+          sums[k + c] += bi * this->InverseDiagonal[i] * bi;
         }
       });
     for (int c = 0; c < k; ++c)
@@ -85,6 +90,7 @@ private:
     }
 
     SolveReport report;
+    double progress = 0.0;
     const double start = this->Residual(k);
     if (!std::isfinite(start))
     {
@@ -98,7 +104,11 @@ private:
         break;
       }
       ++report.Iterations;
-      this->Iterate<K>(n, k, x);
+      if (!this->Iterate<K>(n, k, x))
+      {
+        report.Converged = false; // the matrix is not positive definite
+        break;
+      }
       const double left = this->Residual(k);
       if (!std::isfinite(left))
       {
@@ -108,7 +118,8 @@ private:
       {
         // The residual falls by a constant factor per iteration: its logarithm tells how far.
         const double all = std::log(start / this->Limits.Tolerance);
-        monitor.Report(std::min(0.99, std::max(0.0, std::log(start / left) / all)));
+        progress = std::max(progress, std::min(0.99, std::log(start / left) / all));
+        monitor.Report(progress);
       }
     }
     report.Residual = this->Residual(k);
@@ -116,8 +127,9 @@ private:
     return report;
   }
 
+  /// False where no further progress is possible.
   template <int K>
-  void Iterate(Index n, int columns, Values& x)
+  bool Iterate(Index n, int columns, Values& x)
   {
     const int k = K > 0 ? K : columns;
     Multiply(*this->Matrix, this->P, this->Q, this->Parallel);
@@ -131,15 +143,19 @@ private:
       });
     for (int c = 0; c < k; ++c)
     {
-      const bool done = this->Finished(c) || !(this->Sums[c] > 0.0);
-      this->Alpha[c] = done ? 0.0 : this->Rho[c] / this->Sums[c];
+      const bool finished = this->Finished(c);
+      if (!finished && this->Sums[c] <= 0.0)
+      {
+        return false;
+      }
+      this->Alpha[c] = finished ? 0.0 : this->Rho[c] / this->Sums[c];
     }
     this->SumBlocks(n, k, 1,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
         {
-          x(i, c) += this->Alpha[c] * this->P(i, c);
+          x(i, c) += this->Alpha[c] * this->Unit[c] * this->P(i, c);
           const double r = this->R(i, c) - this->Alpha[c] * this->Q(i, c);
           this->R(i, c) = r;
           sums[c] += r * this->InverseDiagonal[i] * r;
@@ -158,6 +174,7 @@ private:
           this->P(i, c) = this->InverseDiagonal[i] * this->R(i, c) + this->Beta[c] * this->P(i, c);
         }
       });
+    return true;
   }
 
   bool Finished(int c) const
@@ -183,7 +200,8 @@ private:
       this->R.resize(n, k);
       this->P.resize(n, k);
       this->Q.resize(n, k);
-      for (std::vector<double>* scalars : { &this->Rho, &this->Scale, &this->Alpha, &this->Beta })
+      for (std::vector<double>* scalars :
+        { &this->Unit, &this->Rho, &this->Scale, &this->Alpha, &this->Beta })
       {
         scalars->assign(k, 0.0);
       }
@@ -221,7 +239,7 @@ private:
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
   Values R, P, Q;
-  std::vector<double> Rho, Scale, Alpha, Beta; // one per column
+  std::vector<double> Unit, Rho, Scale, Alpha, Beta; // one per column
   std::vector<double> Sums, Partial;
 };
 

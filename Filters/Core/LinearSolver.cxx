@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LinearSolver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -25,6 +26,14 @@ std::string DescribeFailure(const SolveReport& report)
 NotConverged::NotConverged(const SolveReport& report)
   : std::runtime_error(DescribeFailure(report))
 {
+}
+
+double LinearSolver::ScaleOf(
+  const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel)
+{
+  const double largest = Max(parallel, static_cast<Index>(a.rows()),
+    [&](Index i) { return std::max(std::abs(a(i, column)), std::abs(b(i, column))); });
+  return largest > 0.0 && std::isfinite(largest) ? std::exp2(std::ilogb(largest)) : 1.0;
 }
 
 bool PreferFactorization(const SolverTask& task)
@@ -67,6 +76,7 @@ public:
       const SolveReport report = this->Iterative->Solve(b, x, monitor.Part(0.0, 0.5));
       if (report.Converged)
       {
+        monitor.Report(1.0);
         return report;
       }
       this->Direct = true; // also from now on: what failed once fails again

@@ -51,6 +51,11 @@ public:
     const Values& b, Values& x, const Monitor& monitor = Monitor()) = 0;
 
 protected:
+  /// A power of two near the largest of two columns: squares of what is divided by it no double
+  /// need fear, and the division is exact.
+  static double ScaleOf(
+    const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel);
+
   IterationLimits Limits;
 };
 

@@ -5,6 +5,7 @@
 #include "Types.h"
 
 #include <algorithm>
+#include <atomic>
 #include <type_traits>
 #include <utility>
 
@@ -88,6 +89,27 @@ void ForEach(const ParallelFor& parallel, Index count, const Body& body)
         body(i);
       }
     });
+}
+
+/// Largest of f(i) >= 0 over [0, count); 0 for none.
+template <typename F>
+double Max(const ParallelFor& parallel, Index count, const F& f)
+{
+  std::atomic<double> largest{ 0.0 };
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      double ofBlock = 0.0;
+      for (Index i = begin; i < end; ++i)
+      {
+        ofBlock = std::max(ofBlock, f(i));
+      }
+      double known = largest;
+      while (ofBlock > known && !largest.compare_exchange_weak(known, ofBlock))
+      {
+      }
+    });
+  return largest;
 }
 
 /// Sum of f(i) over [0, count), block by block.
