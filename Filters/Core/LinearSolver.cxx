@@ -71,24 +71,26 @@ public:
   {
     this->Cholesky->SetLimits(this->Limits);
     this->Iterative->SetLimits(this->Limits);
-    if (!this->Direct)
+    if (this->Direct)
     {
-      const SolveReport report = this->Iterative->Solve(b, x, monitor.Part(0.0, 0.5));
-      if (report.Converged)
-      {
-        monitor.Report(1.0);
-        return report;
-      }
-      this->Direct = true; // also from now on: what failed once fails again
-      this->Cholesky->SetMatrix(*this->Matrix, monitor.Part(0.5, 0.9));
+      return this->Cholesky->Solve(b, x, monitor);
     }
+    const SolveReport report = this->Iterative->Solve(b, x, monitor.Part(0.0, 0.5));
+    if (report.Converged)
+    {
+      monitor.Report(1.0);
+      return report;
+    }
+    // The next solve tries again: were the failure remembered, the bits of a step would depend on
+    // the steps computed before it.
+    this->Cholesky->SetMatrix(*this->Matrix, monitor.Part(0.5, 0.9));
     return this->Cholesky->Solve(b, x, monitor.Part(0.9, 1.0));
   }
 
 private:
   LinearSolver& Chosen() { return this->Direct ? *this->Cholesky : *this->Iterative; }
 
-  bool Direct;
+  const bool Direct;
   std::unique_ptr<LinearSolver> Cholesky, Iterative;
   const SparseMatrix* Matrix = nullptr;
 };
