@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
+#include "Private/Execution.h"
 #include "Private/InputArrays.h"
 #include "Private/PointArrays.h"
 #include "Private/SurfaceRun.h"
-#include "Private/Update.h"
 
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
@@ -311,8 +311,8 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   vtkTable* history = vtkTable::GetData(outputs, 1);
   history->Initialize();
 
-  Update update(*this, input, output);
-  if (!update.Check())
+  Execution execution(*this, input, output);
+  if (!execution.Check())
   {
     return 1;
   }
@@ -333,7 +333,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
         vtkDataObject::DATA_TIME_STEP(), step * this->GetEffectiveTimeStep());
     }
   }
-  update.Run(step, history);
+  execution.Run(step, history);
   return 1;
 }
 

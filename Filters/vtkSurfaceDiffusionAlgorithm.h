@@ -411,8 +411,8 @@ private:
   vtkSurfaceDiffusionAlgorithm(const vtkSurfaceDiffusionAlgorithm&) = delete;
   void operator=(const vtkSurfaceDiffusionAlgorithm&) = delete;
 
-  class Update; // one RequestData
-  friend class Update;
+  class Execution; // one RequestData
+  friend class Execution;
 
   /// Step of the run that is published last at or before a time.
   int StepAtTime(double time);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Update.h"
+#include "Execution.h"
 
 #include "Core/Frames.h"
 #include "PointArrays.h"
@@ -84,7 +84,7 @@ PlaneVectors MakeFrames(
 
 } // namespace
 
-vtkSurfaceDiffusionAlgorithm::Update::Update(
+vtkSurfaceDiffusionAlgorithm::Execution::Execution(
   vtkSurfaceDiffusionAlgorithm& filter, vtkDataObject* input, vtkDataObject* output)
   : Filter(filter)
 {
@@ -109,7 +109,7 @@ vtkSurfaceDiffusionAlgorithm::Update::Update(
   }
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::Collect(vtkDataObject* input, vtkDataObject* output)
+void vtkSurfaceDiffusionAlgorithm::Execution::Collect(vtkDataObject* input, vtkDataObject* output)
 {
   auto* data = vtkPolyData::SafeDownCast(input);
   if (!data)
@@ -124,7 +124,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::Collect(vtkDataObject* input, vtkData
   }
 }
 
-bool vtkSurfaceDiffusionAlgorithm::Update::Check()
+bool vtkSurfaceDiffusionAlgorithm::Execution::Check()
 {
   Problems problems;
   this->Filter.CheckProperties(problems);
@@ -161,7 +161,7 @@ bool vtkSurfaceDiffusionAlgorithm::Update::Check()
   return true;
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::Run(int step, vtkTable* history)
+void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
 {
   double reported = 0.0;
   const Monitor::Callback callback = [&](double fraction)
@@ -201,7 +201,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::Run(int step, vtkTable* history)
   }
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::MakeSurfaces(const Monitor& monitor)
+void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurfaces(const Monitor& monitor)
 {
   auto& runs = this->Filter.Runs;
   runs.resize(this->Blocks.size());
@@ -231,7 +231,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::MakeSurfaces(const Monitor& monitor)
 }
 
 /// h and R of all blocks together.
-void vtkSurfaceDiffusionAlgorithm::Update::MeasureUnits()
+void vtkSurfaceDiffusionAlgorithm::Execution::MeasureUnits()
 {
   double length = 0.0;
   double edges = 0.0;
@@ -276,7 +276,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::MeasureUnits()
   }
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::MakeRuns(const Monitor& monitor)
+void vtkSurfaceDiffusionAlgorithm::Execution::MakeRuns(const Monitor& monitor)
 {
   const double count = static_cast<double>(this->Blocks.size());
   for (std::size_t b = 0; b < this->Blocks.size(); ++b)
@@ -309,7 +309,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::MakeRuns(const Monitor& monitor)
   }
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::MakeRun(Block& block, const Monitor& monitor)
+void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monitor& monitor)
 {
   SurfaceRun& run = *block.Run;
   const ParallelFor& parallel = SMPParallelFor::Instance();
@@ -344,7 +344,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::MakeRun(Block& block, const Monitor& 
   monitor.Report(1.0);
 }
 
-std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Update::FindSolver(
+std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Execution::FindSolver(
   SurfaceRun& run, const std::string& name, const SolverTask& task)
 {
   int kind = this->Filter.Solver;
@@ -384,7 +384,7 @@ std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Update::FindSolver(
   return solver;
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::Seek(int step, const Monitor& monitor)
+void vtkSurfaceDiffusionAlgorithm::Execution::Seek(int step, const Monitor& monitor)
 {
   double all = 0.0;
   for (const Block& block : this->Blocks)
@@ -404,7 +404,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::Seek(int step, const Monitor& monitor
   }
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::WriteHistory(int step, vtkTable* history)
+void vtkSurfaceDiffusionAlgorithm::Execution::WriteHistory(int step, vtkTable* history)
 {
   const int rows = step + 1;
   std::vector<StepRecord> sums(rows);
@@ -458,7 +458,7 @@ void vtkSurfaceDiffusionAlgorithm::Update::WriteHistory(int step, vtkTable* hist
   }
 }
 
-bool vtkSurfaceDiffusionAlgorithm::Update::MaskChangesNothing() const
+bool vtkSurfaceDiffusionAlgorithm::Execution::MaskChangesNothing() const
 {
   bool anyMask = false;
   bool anyMasked = false;
@@ -477,7 +477,7 @@ bool vtkSurfaceDiffusionAlgorithm::Update::MaskChangesNothing() const
   return anyMask && (!anyMasked || inert);
 }
 
-void vtkSurfaceDiffusionAlgorithm::Update::Warn()
+void vtkSurfaceDiffusionAlgorithm::Execution::Warn()
 {
   PolyDataSurface::Findings sum;
   for (const Block& block : this->Blocks)

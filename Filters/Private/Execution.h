@@ -16,11 +16,11 @@ class vtkDataObject;
 class vtkTable;
 
 /// One update of the filter: checks, makes what has changed, moves to the step wanted, writes.
-class vtkSurfaceDiffusionAlgorithm::Update
+class vtkSurfaceDiffusionAlgorithm::Execution
 {
 public:
   /// The output becomes a copy of the input, which it stays until all has succeeded.
-  Update(vtkSurfaceDiffusionAlgorithm& filter, vtkDataObject* input, vtkDataObject* output);
+  Execution(vtkSurfaceDiffusionAlgorithm& filter, vtkDataObject* input, vtkDataObject* output);
 
   /// False, after error messages, where properties or arrays are wrong.
   bool Check();
