@@ -80,7 +80,8 @@ Assembler::Assembler(
 }
 
 void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diagonal, double scale,
-  const EdgeValues& coefficients, const double* weights, const ParallelFor& parallel) const
+  const EdgeValues& coefficients, const double* weights, const ParallelFor& parallel,
+  const EdgeValues* signs) const
 {
   const auto& begin = this->Surface->VertexCornersBegin();
   const auto& corners = this->Surface->VertexCorners();
@@ -98,8 +99,8 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
         const double factor = weights ? scale * weights[t] : scale;
         const double toNext = factor * coefficients(t, (a + 2) % 3); // edge opposite the last
         const double toLast = factor * coefficients(t, (a + 1) % 3);
-        values[this->SlotMap[c].Next] -= toNext;
-        values[this->SlotMap[c].Last] -= toLast;
+        values[this->SlotMap[c].Next] -= signs ? (*signs)(t, (a + 2) % 3) * toNext : toNext;
+        values[this->SlotMap[c].Last] -= signs ? (*signs)(t, (a + 1) % 3) * toLast : toLast;
         onDiagonal += toNext + toLast;
       }
       values[this->DiagonalSlot[i]] = diagonal[i] + onDiagonal;

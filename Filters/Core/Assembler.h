@@ -29,9 +29,11 @@ public:
   /// matrix = diag(d) + scale K, with (K u)_i = -sum over triangles and j of c_ij u_j, rows summing
   /// to zero: (7) and (9), (12) summed over the triangles of D_1(i). `matrix` is a copy of
   /// Pattern(); weights, one per triangle, multiply the coefficients (g of (9)); none means 1.
+  /// signs, +1 or -1, multiply those off the diagonal, for fields whose neighbours are compared up
+  /// to the sign: the rows of K then give sum of c_ij (u_i - sign_ij u_j).
   void Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diagonal, double scale,
     const EdgeValues& coefficients, const double* weights = nullptr,
-    const ParallelFor& parallel = ParallelFor()) const;
+    const ParallelFor& parallel = ParallelFor(), const EdgeValues* signs = nullptr) const;
 
   /// Make `fixed` vertices known: their rows keep only the diagonal and their columns are taken
   /// out. load is what this adds to the right-hand side: -sum over fixed j of a_ij values_j in free
