@@ -82,11 +82,15 @@ public:
   const Findings& GetFindings() const { return this->Found; }
 
 private:
+  friend class MedialMesh; // makes one of its own
+
+  TriangleMesh() = default;
   void SelectTriangles(const Eigen::Ref<const Points>& points,
     const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel);
   void NumberVertices(const Eigen::Ref<const Points>& points,
     const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel);
   void ListCorners();
+  void MeasureAreas(const ParallelFor& parallel);
   void MeasureEdges(const ParallelFor& parallel);
 
   std::vector<Index> InputVertices;
