@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conservation.h"
 
+#include <utility>
+
 namespace SurfaceDiffusion
 {
 
@@ -67,6 +69,39 @@ void Conservation::Restore(
       const double shift = left / component.Area;
       ForEach(parallel, component.End - component.Begin,
         [&](Index i) { u(component.Begin + i, k) += shift; });
+    }
+  }
+}
+
+Balance::Balance(
+  const TriangleMesh& mesh, Vector weights, const Flags& fixed, const ParallelFor& parallel)
+  : Weights(std::move(weights))
+{
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const Index begin = mesh.ComponentsBegin()[c];
+    const Index end = mesh.ComponentsBegin()[c + 1];
+    if (!fixed.segment(begin, end - begin).any())
+    {
+      const double weight =
+        Sum(parallel, end - begin, [&](Index i) { return this->Weights[begin + i]; });
+      this->Components.push_back({ begin, end, weight });
+    }
+  }
+}
+
+void Balance::Restore(const Values& b, Values& x, const ParallelFor& parallel) const
+{
+  for (const Component& component : this->Components)
+  {
+    const Index begin = component.Begin;
+    const Index count = component.End - begin;
+    for (Eigen::Index k = 0; k < x.cols(); ++k)
+    {
+      const double left = Sum(parallel, count,
+        [&](Index i) { return b(begin + i, k) - this->Weights[begin + i] * x(begin + i, k); });
+      const double shift = left / component.Weight;
+      ForEach(parallel, count, [&](Index i) { x(begin + i, k) += shift; });
     }
   }
 }

@@ -37,4 +37,27 @@ private:
   Values Targets;                    ///< sum A u at the start, component x column
 };
 
+/// Makes solutions of (diag(w) + K) x = b satisfy the sum of the equations over each connected
+/// component without fixed vertices: sum w x = sum b, whatever K is, since its columns sum to zero.
+/// Where w is small against K (long steps, weak fidelity) the matrix tells the mean of x from
+/// nothing but the last digits of its diagonal; this sum tells it exactly.
+class Balance
+{
+public:
+  Balance() = default;
+  Balance(const TriangleMesh& mesh, Vector weights, const Flags& fixed,
+    const ParallelFor& parallel = ParallelFor());
+
+  void Restore(const Values& b, Values& x, const ParallelFor& parallel) const;
+
+private:
+  struct Component
+  {
+    Index Begin, End;
+    double Weight;
+  };
+  std::vector<Component> Components; ///< those with no fixed vertex
+  Vector Weights;                    ///< w
+};
+
 } // namespace SurfaceDiffusion

@@ -28,7 +28,15 @@ LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   , Conserved(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel)
   , U(this->Data.Start)
   , RightHandSide(U.rows(), U.cols())
+  , Origin(U.cols())
 {
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  const double area = mesh.ControlAreas().sum();
+  for (Eigen::Index k = 0; k < this->U.cols(); ++k)
+  {
+    const double mean = Total(mesh, this->U, k, parallel) / area;
+    this->Origin[k] = std::isfinite(mean) ? mean : 0.0;
+  }
 }
 
 void LinearDiffusion::Restore(const double* checkpoint)
@@ -64,9 +72,11 @@ void LinearDiffusion::Prepare(const Monitor& monitor)
   this->Load = Values::Zero(this->U.rows(), this->U.cols());
   if (this->Data.Fixed.any())
   {
+    const Values known = this->Data.Start.rowwise() - this->Origin;
     this->Operators->Constrain(
-      this->Matrix, this->Data.Fixed, this->Data.Start, this->Load, this->Parallel);
+      this->Matrix, this->Data.Fixed, known, this->Load, this->Parallel);
   }
+  this->Balanced = Balance(mesh, std::move(diagonal), this->Data.Fixed, this->Parallel);
   this->Solver->SetMatrix(this->Matrix, monitor);
   this->Prepared = true;
 }
@@ -103,6 +113,9 @@ StepReport LinearDiffusion::Advance(const Monitor& monitor)
   {
     this->Prepare(monitor.Part(0.0, setup));
   }
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  // Measured from the mean, so that the errors of a solve go with the contrast, not the offset.
+  ForEach(this->Parallel, mesh.NumberOfVertices(), [&](Index i) { this->U.row(i) -= this->Origin; });
   if (this->Options.TimeScheme == Scheme::SDIRK2)
   {
     this->SDIRK2Step(report, monitor.Part(setup, 1.0));
@@ -111,6 +124,19 @@ StepReport LinearDiffusion::Advance(const Monitor& monitor)
   {
     this->BackwardEulerStep(report, monitor.Part(setup, 1.0));
   }
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      if (this->Data.Fixed[i])
+      {
+        this->U.row(i) = this->Data.Start.row(i);
+      }
+      else
+      {
+        this->U.row(i) += this->Origin;
+      }
+    });
+  this->Conserved.Restore(mesh, this->U, this->Parallel);
   return report;
 }
 
@@ -127,7 +153,8 @@ void LinearDiffusion::BackwardEulerStep(StepReport& report, const Monitor& monit
     {
       const double area = this->Data.Fixed[i] ? 0.0 : mesh.ControlAreas()[i];
       this->RightHandSide.row(i) = area *
-          (inertia * this->U.row(i) + (dt * this->FidelityAt(i)) * this->Data.Given.row(i)) +
+          (inertia * this->U.row(i) +
+            (dt * this->FidelityAt(i)) * (this->Data.Given.row(i) - this->Origin)) +
         this->Load.row(i);
     });
   this->Solve(report, monitor);
@@ -151,7 +178,7 @@ void LinearDiffusion::SDIRK2Step(StepReport& report, const Monitor& monitor)
         const double area = this->Data.Fixed[i] ? 0.0 : mesh.ControlAreas()[i];
         this->RightHandSide.row(i) = area *
             (this->Previous.row(i) + second * (this->U.row(i) - this->Previous.row(i)) +
-              (dt * this->FidelityAt(i)) * this->Data.Given.row(i)) +
+              (dt * this->FidelityAt(i)) * (this->Data.Given.row(i) - this->Origin)) +
           this->Load.row(i);
       });
     this->Solve(report, second > 0.0 ? monitor.Part(0.5, 1.0) : monitor.Part(0.0, 0.5));
@@ -167,7 +194,7 @@ void LinearDiffusion::Solve(StepReport& report, const Monitor& monitor)
   }
   report.Iterations += solve.Iterations;
   report.Residual = std::max(report.Residual, solve.Residual);
-  this->Conserved.Restore(this->Operators->Mesh(), this->U, this->Parallel);
+  this->Balanced.Restore(this->RightHandSide, this->U, this->Parallel);
 }
 
 double LinearDiffusion::Energy() const

@@ -64,10 +64,12 @@ private:
   std::shared_ptr<LinearSolver> Solver;
   const ParallelFor& Parallel;
   Conservation Conserved;
+  Balance Balanced;
   SparseMatrix Matrix;
   bool Prepared = false;
   Values Load; ///< what fixed neighbours give to the right-hand side
   Values U, Previous, RightHandSide;
+  Eigen::RowVectorXd Origin; ///< mean of the start, from which values are measured in a step
 };
 
 /// int over the surface of c-weighted |grad u|^2 / 2: sum over triangles and edges of
