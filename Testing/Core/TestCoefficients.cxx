@@ -185,7 +185,7 @@ TEST(Coefficients, WithoutADirectionTheGeometricMeanActs)
 TEST(Coefficients, DiffusionAlongADirectionDoesNotSeeGradientsAcross)
 {
   // u = y with e1 = x: the flux c1 u vanishes at every vertex.
-  const Surface s = Jittered(Strip(6, 6), 0.05, 0, 1, 0, 1);
+  const Surface s = Jittered(Strip(6, 6), 0.04, 0, 1, 0, 1);
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
   PlaneVectors e1(mesh.NumberOfTriangles(), 2);

@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(TriangleMesh, AnySurface,
     AnySurface::ParamType{ "Cylinder", Rotated(Cylinder(20, 10)) },
     AnySurface::ParamType{ "Moebius", Moebius(31, 4) },
     AnySurface::ParamType{ "ThreeFins", ThreeFins(5) },
-    AnySurface::ParamType{ "Jittered", Jittered(Strip(10, 10), 0.045, 0, 1, 0, 1) },
+    AnySurface::ParamType{ "Jittered", Jittered(Strip(10, 10), 0.03, 0, 1, 0, 1) },
     AnySurface::ParamType{ "Several", Joined(Icosphere(1), Flipped(Disk(3))) }),
   NameOf);
 

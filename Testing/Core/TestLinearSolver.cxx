@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Coefficients.h"
+#include "LinearSolver.h"
+#include "Meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <ostream>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+/// M + dt K, dt in the mesh's own units.
+SparseMatrix HeatMatrix(const Assembler& assembler, double timeStep)
+{
+  SparseMatrix matrix = assembler.Pattern();
+  assembler.Fill(matrix, assembler.Mesh().ControlAreas(), timeStep,
+    IsotropicCoefficients(assembler.Mesh()));
+  return matrix;
+}
+
+SolverTask ManySolves()
+{
+  SolverTask task;
+  task.NumberOfVertices = 1000;
+  task.NumberOfSolves = 1000;
+  return task;
+}
+
+SolverTask OneShortStep()
+{
+  SolverTask task;
+  task.NumberOfVertices = 100000;
+  task.DiffusionNumber = 0.1;
+  return task;
+}
+
+struct Kind
+{
+  const char* Name;
+  std::function<std::unique_ptr<LinearSolver>()> Make;
+};
+
+void PrintTo(const Kind& kind, std::ostream* out)
+{
+  *out << kind.Name;
+}
+
+class AnySolver : public ::testing::TestWithParam<Kind>
+{
+protected:
+  std::unique_ptr<LinearSolver> Solver = GetParam().Make();
+};
+
+} // namespace
+
+TEST_P(AnySolver, SolvesAllColumnsToTheTolerance)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  for (const double timeStep : { 1e-6, 1e-2, 1.0 })
+  {
+    const SparseMatrix matrix = HeatMatrix(*assembler, timeStep);
+    this->Solver->SetMatrix(matrix);
+    for (const Eigen::Index columns : { 1, 2, 3, 5 })
+    {
+      const Values exact = Noise(assembler->Mesh(), columns);
+      const Values b = matrix * exact;
+      Values x = Values::Zero(exact.rows(), columns);
+      const SolveReport report = this->Solver->Solve(b, x);
+      EXPECT_TRUE(report.Converged);
+      EXPECT_LE(report.Residual, 1e-10);
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-8);
+      const double residual = (b - matrix * x).norm() / b.norm();
+      EXPECT_LT(residual, 1e-9); // what it reports is true
+    }
+  }
+}
+
+TEST_P(AnySolver, TakesEmptySystems)
+{
+  const SparseMatrix none(0, 0);
+  this->Solver->SetMatrix(none);
+  Values x(0, 1);
+  EXPECT_TRUE(this->Solver->Solve(Values(0, 1), x).Converged);
+}
+
+TEST_P(AnySolver, TakesNoColumns)
+{
+  const auto assembler = MakeAssembler(Icosphere(1));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  this->Solver->SetMatrix(matrix);
+  Values x(matrix.rows(), 0);
+  EXPECT_TRUE(this->Solver->Solve(Values(matrix.rows(), 0), x).Converged);
+  EXPECT_EQ(x.rows(), matrix.rows());
+}
+
+TEST_P(AnySolver, TakesAZeroRightHandSide)
+{
+  const auto assembler = MakeAssembler(Icosphere(1));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  this->Solver->SetMatrix(matrix);
+  Values x = Noise(assembler->Mesh());
+  EXPECT_TRUE(this->Solver->Solve(Values::Zero(matrix.rows(), 1), x).Converged);
+  EXPECT_LT(x.cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST_P(AnySolver, SizeOfTheRightHandSideDoesNotMatter)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 0.1);
+  this->Solver->SetMatrix(matrix);
+  const Values b = matrix * Noise(assembler->Mesh(), 2);
+  Values x = Values::Zero(b.rows(), 2);
+  this->Solver->Solve(b, x);
+  for (const int exponent : { -900, -600, 600, 900 }) // their squares no double holds
+  {
+    Values scaled = Values::Zero(b.rows(), 2);
+    const SolveReport report = this->Solver->Solve(std::ldexp(1.0, exponent) * b, scaled);
+    EXPECT_TRUE(report.Converged);
+    EXPECT_TRUE(std::ldexp(1.0, -exponent) * scaled == x) << exponent;
+  }
+}
+
+TEST_P(AnySolver, TakesANewMatrixOfTheSameOrAnotherPattern)
+{
+  for (const Surface& s : { Icosphere(2), Torus(12, 8) })
+  {
+    const auto assembler = MakeAssembler(s);
+    for (const double timeStep : { 0.1, 0.1, 0.3 })
+    {
+      const SparseMatrix matrix = HeatMatrix(*assembler, timeStep);
+      this->Solver->SetMatrix(matrix);
+      const Values exact = Noise(assembler->Mesh());
+      Values x = Values::Zero(exact.rows(), 1);
+      this->Solver->Solve(matrix * exact, x);
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-8);
+    }
+  }
+}
+
+TEST_P(AnySolver, DoesNotPassOffAnIndefiniteMatrixAsSolved)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  SparseMatrix matrix = assembler->Pattern();
+  assembler->Fill(matrix, -0.5 * assembler->Mesh().ControlAreas(), 1.0,
+    IsotropicCoefficients(assembler->Mesh()));
+  bool solved = false;
+  try
+  {
+    this->Solver->SetMatrix(matrix);
+    Values x = Values::Zero(matrix.rows(), 1);
+    solved = this->Solver->Solve(matrix.diagonal(), x).Converged;
+  }
+  catch (const std::runtime_error& error)
+  {
+    EXPECT_STREQ(error.what(), "the matrix of the linear system is not positive definite");
+  }
+  EXPECT_FALSE(solved);
+}
+
+TEST_P(AnySolver, RefusesWhatIsNotFinite)
+{
+  const auto assembler = MakeAssembler(Icosphere(1));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  this->Solver->SetMatrix(matrix);
+  Values b = Values::Ones(matrix.rows(), 2);
+  b(3, 1) = std::nan("");
+  Values x = Values::Zero(matrix.rows(), 2);
+  EXPECT_THROW(this->Solver->Solve(b, x), std::runtime_error);
+}
+
+TEST_P(AnySolver, StopsWhenAskedAndWorksAfterwards)
+{
+  const auto assembler = MakeAssembler(Icosphere(5)); // large enough to factorise in background
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  const Values exact = Noise(assembler->Mesh());
+  const Values b = matrix * exact;
+  Values x = Values::Zero(exact.rows(), 1);
+  const Monitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(
+    {
+      this->Solver->SetMatrix(matrix, Monitor(stop));
+      this->Solver->Solve(b, x, Monitor(stop));
+    },
+    Aborted);
+  this->Solver->SetMatrix(matrix);
+  this->Solver->Solve(b, x);
+  EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST_P(AnySolver, ReportsProgressUpwards)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  double last = 0.0;
+  bool upwards = true;
+  const Monitor::Callback watch = [&](double fraction)
+  {
+    upwards = upwards && fraction >= last;
+    last = fraction;
+    return true;
+  };
+  this->Solver->SetMatrix(matrix, Monitor(watch).Part(0.0, 0.5));
+  Values x = Values::Zero(matrix.rows(), 1);
+  this->Solver->Solve(matrix * Noise(assembler->Mesh()), x, Monitor(watch).Part(0.5, 1.0));
+  EXPECT_TRUE(upwards);
+  EXPECT_EQ(last, 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(LinearSolver, AnySolver,
+  ::testing::Values(Kind{ "Cholesky", [] { return MakeCholeskySolver(); } },
+    Kind{ "ConjugateGradient", [] { return MakeConjugateGradientSolver(); } },
+    Kind{ "AutomaticDirect", [] { return MakeAutomaticSolver(ManySolves()); } },
+    Kind{ "AutomaticIterative", [] { return MakeAutomaticSolver(OneShortStep()); } }),
+  [](const auto& parameter) { return parameter.param.Name; });
+
+TEST(ConjugateGradient, ReportsThatItDidNotConverge)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 10.0);
+  const auto solver = MakeConjugateGradientSolver();
+  solver->SetLimits({ 1e-10, 5 });
+  solver->SetMatrix(matrix);
+  Values x = Values::Zero(matrix.rows(), 1);
+  const SolveReport report = solver->Solve(matrix * Noise(assembler->Mesh()), x);
+  EXPECT_FALSE(report.Converged);
+  EXPECT_EQ(report.Iterations, 5);
+  EXPECT_GT(report.Residual, 1e-10);
+}
+
+TEST(ConjugateGradient, EveryColumnHasTheBitsItHasAlone)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 0.3);
+  const auto solver = MakeConjugateGradientSolver();
+  solver->SetMatrix(matrix);
+  for (const Eigen::Index columns : { 2, 3, 6 })
+  {
+    // Columns that converge at very different times: zero, smooth, rough.
+    Values b = matrix * Noise(assembler->Mesh(), columns);
+    b.col(0).setZero();
+    b.col(1) = assembler->Mesh().ControlAreas();
+    Values x = Values::Zero(b.rows(), columns);
+    solver->Solve(b, x);
+    for (Eigen::Index k = 0; k < columns; ++k)
+    {
+      Values alone = Values::Zero(b.rows(), 1);
+      solver->Solve(b.col(k), alone);
+      EXPECT_EQ(x.col(k), alone.col(0)) << k << " of " << columns;
+    }
+  }
+}
+
+TEST(ConjugateGradient, StartingAtTheSolutionTakesNoIteration)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 0.3);
+  const auto solver = MakeConjugateGradientSolver();
+  solver->SetMatrix(matrix);
+  Values x = Noise(assembler->Mesh());
+  const Values b = matrix * x;
+  EXPECT_EQ(solver->Solve(b, x).Iterations, 0);
+}
+
+TEST(Automatic, FactorisesWhereConjugateGradientsDoNotConverge)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
+  const auto solver = MakeAutomaticSolver(OneShortStep()); // told so, but the step is long
+  solver->SetLimits({ 1e-10, 10 });
+  solver->SetMatrix(matrix);
+  const Values exact = Noise(assembler->Mesh());
+  Values x = Values::Zero(exact.rows(), 1);
+  const SolveReport report = solver->Solve(matrix * exact, x);
+  EXPECT_TRUE(report.Converged);
+  EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(Automatic, PrefersWhatTheMeasurementsFoundFaster)
+{
+  const auto prefer = [](Index vertices, double diffusionNumber, double solves)
+  {
+    SolverTask task;
+    task.NumberOfVertices = vertices;
+    task.DiffusionNumber = diffusionNumber;
+    task.NumberOfSolves = solves;
+    return PreferFactorization(task);
+  };
+  EXPECT_TRUE(prefer(44000, 1.0, 20));
+  EXPECT_FALSE(prefer(44000, 1.0, 3));
+  EXPECT_TRUE(prefer(178000, 100.0, 20));
+  EXPECT_FALSE(prefer(178000, 100.0, 1));
+  EXPECT_FALSE(prefer(711000, 1.0, 10));
+  EXPECT_TRUE(prefer(711000, 1e4, 20));
+}
