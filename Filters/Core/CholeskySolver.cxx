@@ -16,34 +16,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Largest over the columns of |r| / |b| in the norm of diag(A)^-1.
-double RelativeResidual(
-  const SparseMatrix& matrix, const Values& r, const Values& b, const ParallelFor& parallel)
-{
-  const Index* outer = matrix.outerIndexPtr();
-  const auto diagonal = [&](Index i)
-  {
-    const Index* row = matrix.innerIndexPtr();
-    return matrix
-      .valuePtr()[std::lower_bound(row + outer[i], row + outer[i + 1], i) - row];
-  };
-  const Index n = static_cast<Index>(matrix.rows());
-  double largest = 0.0;
-  for (Eigen::Index k = 0; k < b.cols(); ++k)
-  {
-    const double ofR =
-      Sum(parallel, n, [&](Index i) { return r(i, k) * r(i, k) / diagonal(i); });
-    const double ofB =
-      Sum(parallel, n, [&](Index i) { return b(i, k) * b(i, k) / diagonal(i); });
-    if (!std::isfinite(ofR))
-    {
-      throw std::runtime_error("the linear system has no finite solution");
-    }
-    largest = std::max(largest, ofB > 0.0 ? std::sqrt(ofR / ofB) : std::sqrt(ofR));
-  }
-  return largest;
-}
-
 class CholeskySolver : public LinearSolver
 {
 public:
@@ -76,7 +48,7 @@ public:
     {
       RunInBackground([factor] { factor->Compute(); }, monitor);
     }
-    if (factor->Decomposition.info() != Eigen::Success)
+    if (!factor->IsPositive())
     {
       throw std::runtime_error("the matrix of the linear system is not positive definite");
     }
@@ -85,12 +57,12 @@ public:
 
   SolveReport Solve(const Values& b, Values& x, const Monitor& monitor) override
   {
-    x = this->Factor->Decomposition.solve(b);
+    this->Substitute(b, x);
     SolveReport report;
     report.Residual = this->ComputeResidual(b, x);
     if (report.Residual > this->Limits.Tolerance)
     {
-      this->Correction = this->Factor->Decomposition.solve(this->R);
+      this->Substitute(this->R, this->Correction);
       this->Correction += x;
       const double refined = this->ComputeResidual(b, this->Correction);
       if (refined < report.Residual)
@@ -109,6 +81,8 @@ private:
     SparseMatrix Matrix;
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> Decomposition;
     bool Analyzed = false;
+    Vector InverseDiagonal; ///< of the matrix
+    Vector InverseD;        ///< of the factor
 
     void Compute()
     {
@@ -118,6 +92,15 @@ private:
         this->Analyzed = true;
       }
       this->Decomposition.factorize(this->Matrix);
+      this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();
+      this->InverseD = this->Decomposition.vectorD().cwiseInverse();
+    }
+    /// A pivot of a nearly singular matrix (a huge time step) may be negative by round-off.
+    bool IsPositive() const
+    {
+      const double largest = this->Matrix.diagonal().cwiseAbs().maxCoeff();
+      return this->Decomposition.info() == Eigen::Success &&
+        this->Decomposition.vectorD().minCoeff() > -1e-12 * largest;
     }
     bool HoldsPatternOf(const SparseMatrix& matrix) const
     {
@@ -136,18 +119,110 @@ private:
     }
   };
 
+  /// x = P^T L^-T D^-1 L^-1 P b
+  void Substitute(const Values& b, Values& x)
+  {
+    x.resize(b.rows(), b.cols());
+    this->W.resize(b.rows(), b.cols());
+    switch (b.cols())
+    {
+      case 1:
+        return this->SubstituteColumns<1>(b, x);
+      case 2:
+        return this->SubstituteColumns<2>(b, x);
+      case 3:
+        return this->SubstituteColumns<3>(b, x);
+      default:
+        return this->SubstituteColumns<0>(b, x);
+    }
+  }
+
+  /// K columns, or as many as b has where K is 0, in one pass over the factor.
+  template <int K>
+  void SubstituteColumns(const Values& b, Values& x)
+  {
+    const int k = K > 0 ? K : static_cast<int>(b.cols());
+    const auto& decomposition = this->Factor->Decomposition;
+    const auto& lower = decomposition.matrixL().nestedExpression();
+    const Index n = static_cast<Index>(b.rows());
+    const Index* place = decomposition.permutationP().indices().data();
+    const Index* outer = lower.outerIndexPtr();
+    const Index* inner = lower.innerIndexPtr();
+    const double* l = lower.valuePtr();
+    const double* inverseD = this->Factor->InverseD.data();
+    const auto row = [&](Index i) { return this->W.data() + static_cast<std::ptrdiff_t>(i) * k; };
+    for (Index i = 0; i < n; ++i)
+    {
+      this->W.row(place[i]) = b.row(i);
+    }
+    for (Index j = 0; j < n; ++j)
+    {
+      const double* wj = row(j);
+      for (Index slot = outer[j]; slot < outer[j + 1]; ++slot)
+      {
+        double* wi = row(inner[slot]);
+        for (int c = 0; c < k; ++c)
+        {
+          wi[c] -= l[slot] * wj[c];
+        }
+      }
+    }
+    for (Index j = n - 1; j >= 0; --j)
+    {
+      double* wj = row(j);
+      for (int c = 0; c < k; ++c)
+      {
+        wj[c] *= inverseD[j];
+      }
+      for (Index slot = outer[j]; slot < outer[j + 1]; ++slot)
+      {
+        const double* wi = row(inner[slot]);
+        for (int c = 0; c < k; ++c)
+        {
+          wj[c] -= l[slot] * wi[c];
+        }
+      }
+    }
+    for (Index i = 0; i < n; ++i)
+    {
+      x.row(i) = this->W.row(place[i]);
+    }
+  }
+
+  /// R = b - A x; largest over the columns of |R| / |b| in the norm of diag(A)^-1.
   double ComputeResidual(const Values& b, const Values& x)
   {
+    const Vector& weights = this->Factor->InverseDiagonal;
+    const Index n = static_cast<Index>(b.rows());
     this->R.resize(b.rows(), b.cols());
     Multiply(*this->Matrix, x, this->R, this->Parallel);
-    this->R = b - this->R;
-    return RelativeResidual(*this->Matrix, this->R, b, this->Parallel);
+    double largest = 0.0;
+    for (Eigen::Index k = 0; k < b.cols(); ++k)
+    {
+      const double unit = ScaleOf(b, this->R, k, this->Parallel);
+      const double ofR = Sum(this->Parallel, n,
+        [&](Index i)
+        {
+          const double r = b(i, k) - this->R(i, k);
+          this->R(i, k) = r;
+          return weights[i] * (r / unit) * (r / unit);
+        });
+      const double ofB = Sum(this->Parallel, n,
+        [&](Index i) { return weights[i] * (b(i, k) / unit) * (b(i, k) / unit); });
+      if (!std::isfinite(ofR))
+      {
+        throw std::runtime_error("the linear system has no finite solution");
+      }
+      largest = std::max(largest, ofB > 0.0 ? std::sqrt(ofR / ofB) : std::sqrt(ofR));
+    }
+    return largest;
   }
 
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
   std::shared_ptr<Factorization> Factor;
   Values R, Correction;
+  Values W; ///< in the order of the factor
 };
 
 } // namespace
