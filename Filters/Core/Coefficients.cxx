@@ -15,9 +15,10 @@ EdgeValues IsotropicCoefficients(const TriangleMesh& mesh, const ParallelFor& pa
     {
       const TriangleMesh::Shape& s = mesh.Shapes()[t];
       // cot = (cosine part) / (sine part) of the two edges at each corner.
-      c(t, 0) = 0.5 * s.X / s.Y;
-      c(t, 1) = 0.5 * (s.Length - s.X) / s.Y;
-      c(t, 2) = 0.5 * (s.Y / s.Length - (s.X / s.Y) * ((s.Length - s.X) / s.Length));
+      const double half = 0.5 * s.Weight;
+      c(t, 0) = half * s.X / s.Y;
+      c(t, 1) = half * (s.Length - s.X) / s.Y;
+      c(t, 2) = half * (s.Y / s.Length - (s.X / s.Y) * ((s.Length - s.X) / s.Length));
     });
   return c;
 }
@@ -44,18 +45,26 @@ EdgeValues DirectionalCoefficients(const TriangleMesh& mesh,
 EdgeValues AnisotropicCoefficients(const TriangleMesh& mesh, const EdgeValues& isotropic,
   const Eigen::Ref<const PlaneVectors>& frames, double g1, double g2, const ParallelFor& parallel)
 {
+  return AnisotropicCoefficients(mesh, isotropic, frames,
+    Vector::Constant(mesh.NumberOfTriangles(), g1), Vector::Constant(mesh.NumberOfTriangles(), g2),
+    parallel);
+}
+
+EdgeValues AnisotropicCoefficients(const TriangleMesh& mesh, const EdgeValues& isotropic,
+  const Eigen::Ref<const PlaneVectors>& frames, const Eigen::Ref<const Vector>& g1,
+  const Eigen::Ref<const Vector>& g2, const ParallelFor& parallel)
+{
   EdgeValues c = DirectionalCoefficients(mesh, frames, parallel);
-  const double undirected = std::sqrt(g1) * std::sqrt(g2);
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
       if (frames.row(t).isZero(0.0))
       {
-        c.row(t) = undirected * isotropic.row(t);
+        c.row(t) = std::sqrt(g1[t]) * std::sqrt(g2[t]) * isotropic.row(t);
       }
       else
       {
-        c.row(t) = g1 * c.row(t) + g2 * (isotropic.row(t) - c.row(t));
+        c.row(t) = g1[t] * c.row(t) + g2[t] * (isotropic.row(t) - c.row(t));
       }
     });
   return c;

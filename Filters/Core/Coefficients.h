@@ -31,6 +31,11 @@ EdgeValues DirectionalCoefficients(const TriangleMesh& mesh,
 /// (12) g1 c1 + g2 c2 with constant g1, g2 >= 0; sqrt(g1 g2) c where the frame is zero.
 EdgeValues AnisotropicCoefficients(const TriangleMesh& mesh, const EdgeValues& isotropic,
   const Eigen::Ref<const PlaneVectors>& frames, double g1, double g2,
-  const ParallelFor& parallel = ParallelFor());
+  const ParallelFor& parallel = SerialFor());
+
+/// The same with g1, g2 of each triangle, m values each.
+EdgeValues AnisotropicCoefficients(const TriangleMesh& mesh, const EdgeValues& isotropic,
+  const Eigen::Ref<const PlaneVectors>& frames, const Eigen::Ref<const Vector>& g1,
+  const Eigen::Ref<const Vector>& g2, const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

@@ -31,19 +31,6 @@ Row3 Direction(const Row3& d)
   return std::isfinite(size) && size > 0.0 ? Row3((d / size).normalized()) : Row3(Row3::Zero());
 }
 
-/// Main axis of the symmetric tensor (a b; b c); zero where there is none.
-Eigen::RowVector2d MainAxis(double a, double b, double c)
-{
-  const double trace = a + c;
-  const double difference = std::hypot(a - c, 2.0 * b);
-  if (!(difference > 1e-12 * trace))
-  {
-    return Eigen::RowVector2d::Zero();
-  }
-  const double angle = 0.5 * std::atan2(2.0 * b, a - c);
-  return { std::cos(angle), std::sin(angle) };
-}
-
 template <typename TensorOf>
 PlaneVectors MainAxes(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
   const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel,
@@ -67,6 +54,18 @@ PlaneVectors MainAxes(const TriangleMesh& mesh, const Eigen::Ref<const Points>& 
 }
 
 } // namespace
+
+Eigen::RowVector2d MainAxis(double xx, double xy, double yy)
+{
+  const double trace = xx + yy;
+  const double difference = std::hypot(xx - yy, 2.0 * xy);
+  if (!(difference > 1e-12 * trace))
+  {
+    return Eigen::RowVector2d::Zero();
+  }
+  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  return { std::cos(angle), std::sin(angle) };
+}
 
 PlaneVectors FramesFromTriangleVectors(const TriangleMesh& mesh,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,

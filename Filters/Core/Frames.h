@@ -11,6 +11,10 @@ namespace SurfaceDiffusion
 /// e2 is e1 turned by 90 degrees. (0, 0) where there is no direction: isotropic there. The sign
 /// does not matter anywhere.
 ///
+/// Main axis of the symmetric tensor (xx xy; xy yy), such as a sum of d d^T; zero where there is
+/// none.
+Eigen::RowVector2d MainAxis(double xx, double xy, double yy);
+
 /// Both take the points and triangles that the mesh was made from.
 
 /// From one vector per input triangle: its projection into the triangle, normalised.

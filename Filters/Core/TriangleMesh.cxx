@@ -111,6 +111,22 @@ TriangleMesh::TriangleMesh(const Eigen::Ref<const Points>& points,
   monitor.Report(1.0);
 }
 
+TriangleMesh::TriangleMesh(const TriangleMesh& mesh, Triangles corners, std::vector<Shape> shapes,
+  const ParallelFor& parallel)
+  : InputVertices(mesh.InputVertices)
+  , Corners(std::move(corners))
+  , TriangleShapes(std::move(shapes))
+  , Components(mesh.Components)
+  , Boundary(mesh.Boundary)
+  , Unit(mesh.Unit)
+  , EdgeLength(mesh.EdgeLength)
+  , Edges(mesh.Edges)
+  , Found(mesh.Found)
+{
+  this->ListCorners();
+  this->MeasureAreas(parallel);
+}
+
 void TriangleMesh::SelectTriangles(const Eigen::Ref<const Points>& points,
   const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel)
 {

@@ -29,7 +29,10 @@ public:
   struct Shape
   {
     double Length, X, Y;
-    double Area() const { return 0.5 * Length * Y; }
+    /// The share of the surface it stands for: 1/2 where two sheets cover the surface (see
+    /// IntrinsicDelaunay.h).
+    double Weight = 1.0;
+    double Area() const { return 0.5 * Length * Y * Weight; }
   };
 
   /// What was found, to be told to the user.
@@ -45,12 +48,17 @@ public:
   TriangleMesh(const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
     const ParallelFor& parallel = ParallelFor(), const Monitor& monitor = Monitor());
 
+  /// The vertices of `mesh` with other triangles, which may have a vertex twice.
+  TriangleMesh(const TriangleMesh& mesh, Triangles corners, std::vector<Shape> shapes,
+    const ParallelFor& parallel);
+
   Index NumberOfVertices() const { return static_cast<Index>(this->InputVertices.size()); }
   Index NumberOfTriangles() const { return static_cast<Index>(this->Corners.rows()); }
 
   /// The row of the constructor's points that vertex i stands for.
   const std::vector<Index>& InputVertex() const { return this->InputVertices; }
-  /// The row of the constructor's triangles that triangle t stands for.
+  /// The row of the constructor's triangles that triangle t stands for; empty where they are not
+  /// triangles of the input.
   const std::vector<Index>& InputTriangle() const { return this->InputTriangles; }
 
   /// m x 3 vertex numbers.
