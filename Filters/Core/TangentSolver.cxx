@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TangentSolver.h"
+
+#include "Assembler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// Row i; K columns, known to the compiler unless it is Eigen::Dynamic.
+template <int K>
+Eigen::Map<Eigen::Matrix<double, 1, K>> Row(Values& v, Index i)
+{
+  return { v.data() + i * v.cols(), 1, v.cols() };
+}
+template <int K>
+Eigen::Map<const Eigen::Matrix<double, 1, K>> Row(const Values& v, Index i)
+{
+  return { v.data() + i * v.cols(), 1, v.cols() };
+}
+
+/// Take from row i of x what is not tangential to the sphere at u_i; all of it where i is fixed.
+template <int K>
+void Project(const Values& u, const Flags& fixed, Index i, Values& x)
+{
+  auto xi = Row<K>(x, i);
+  const auto ui = Row<K>(u, i);
+  if (fixed[i])
+  {
+    xi.setZero();
+    return;
+  }
+  xi -= (xi.dot(ui) / ui.squaredNorm()) * ui;
+}
+
+} // namespace
+
+SolveReport TangentSolver::Solve(const SparseMatrix& matrix, const Values& u, const Flags& fixed,
+  const Values& b, Values& x, LinearSolver* preconditioner, const IterationLimits& limits,
+  const Monitor& monitor)
+{
+  switch (u.cols())
+  {
+    case 2:
+      return this->SolveColumns<2>(matrix, u, fixed, b, x, preconditioner, limits, monitor);
+    case 3:
+      return this->SolveColumns<3>(matrix, u, fixed, b, x, preconditioner, limits, monitor);
+    default:
+      return this->SolveColumns<Eigen::Dynamic>(
+        matrix, u, fixed, b, x, preconditioner, limits, monitor);
+  }
+}
+
+template <int K>
+SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values& u,
+  const Flags& fixed, const Values& b, Values& x, LinearSolver* preconditioner,
+  const IterationLimits& limits, const Monitor& monitor)
+{
+  const Index n = static_cast<Index>(b.rows());
+  x.setZero(b.rows(), b.cols());
+  this->InverseDiagonal.resize(n);
+  this->R = b;
+  this->Z.resize(b.rows(), b.cols());
+  this->P.setZero(b.rows(), b.cols());
+  this->Q.resize(b.rows(), b.cols());
+  const Index* outer = matrix.outerIndexPtr();
+  const Index* inner = matrix.innerIndexPtr();
+
+  // The residual is measured as in LinearSolver: in the norm of diag(A)^-1, whatever preconditions.
+  const double whole = Sum(this->Parallel, n,
+    [&](Index i)
+    {
+      const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
+      this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[slot];
+      return this->InverseDiagonal[i] * Row<K>(b, i).squaredNorm();
+    });
+  const double start = Sum(this->Parallel, n,
+    [&](Index i)
+    {
+      Project<K>(u, fixed, i, this->R);
+      Project<K>(u, fixed, i, this->R); // near rest the first leaves as much round-off as there is
+      return this->InverseDiagonal[i] * Row<K>(this->R, i).squaredNorm();
+    });
+  if (!std::isfinite(start))
+  {
+    throw std::runtime_error("the linear system has no finite solution");
+  }
+
+  const double target = limits.Tolerance * limits.Tolerance;
+  const double roundOff = 1e-30 * whole; // of b itself: nothing smaller means anything
+  SolveReport report;
+  double left = start;
+  double rho = 0.0;
+  while (left > std::max(target * start, roundOff))
+  {
+    if (report.Iterations == limits.MaximumNumberOfIterations)
+    {
+      report.Converged = false;
+      break;
+    }
+    const double previous = rho;
+    rho = this->Precondition<K>(preconditioner, u, fixed);
+    const double beta = previous > 0.0 ? rho / previous : 0.0;
+    ForEach(this->Parallel, n,
+      [&](Index i)
+      { Row<K>(this->P, i) = Row<K>(this->Z, i) + beta * Row<K>(this->P, i); });
+    Multiply(matrix, this->P, this->Q, this->Parallel);
+    const double curvature = Sum(this->Parallel, n,
+      [&](Index i)
+      {
+        Project<K>(u, fixed, i, this->Q);
+        return Row<K>(this->P, i).dot(Row<K>(this->Q, i));
+      });
+    if (!(curvature > 0.0)) // all that is left is round-off
+    {
+      report.Converged = false;
+      break;
+    }
+    const double alpha = rho / curvature;
+    left = Sum(this->Parallel, n,
+      [&](Index i)
+      {
+        auto r = Row<K>(this->R, i);
+        Row<K>(x, i) += alpha * Row<K>(this->P, i);
+        r -= alpha * Row<K>(this->Q, i);
+        return this->InverseDiagonal[i] * r.squaredNorm();
+      });
+    if (++report.Iterations % 8 == 0)
+    {
+      monitor.Report(
+        std::min(0.99, std::max(0.0, std::log(left / start) / std::log(target))));
+    }
+  }
+  report.Residual = start > 0.0 ? std::sqrt(left / start) : 0.0;
+  monitor.Report(1.0);
+  return report;
+}
+
+/// Z = P C^-1 R for the preconditioner C; returns R.Z.
+template <int K>
+double TangentSolver::Precondition(
+  LinearSolver* preconditioner, const Values& u, const Flags& fixed)
+{
+  if (preconditioner)
+  {
+    preconditioner->Solve(this->R, this->Z);
+  }
+  return Sum(this->Parallel, static_cast<Index>(this->R.rows()),
+    [&](Index i)
+    {
+      if (preconditioner)
+      {
+        Project<K>(u, fixed, i, this->Z);
+      }
+      else
+      {
+        Row<K>(this->Z, i) = this->InverseDiagonal[i] * Row<K>(this->R, i);
+      }
+      return Row<K>(this->R, i).dot(Row<K>(this->Z, i));
+    });
+}
+
+} // namespace SurfaceDiffusion
