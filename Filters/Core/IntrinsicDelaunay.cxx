@@ -91,8 +91,9 @@ public:
       {
         continue;
       }
+      const Index twin = this->At(side).Twins[side % 3];
       this->Flip(side);
-      for (const Index t : { side / 3, this->At(side).Twins[side % 3] / 3 })
+      for (const Index t : { side / 3, twin / 3 })
       {
         for (int a = 0; a < 3; ++a)
         {

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Heat.h"
+#include "Meshes.h"
+
+#include "Coefficients.h"
+#include "Frames.h"
+#include "IntrinsicDelaunay.h"
+
+#include <gtest/gtest.h>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+/// Pressed flat along x, which makes most angles bad.
+Surface Pressed(Surface s, double factor)
+{
+  s.Vertices.col(0) *= factor;
+  return s;
+}
+
+/// Slanted within the plane: the same, and the boundary has obtuse angles opposite it.
+Surface Slanted(Surface s, double slope)
+{
+  s.Vertices.col(0) += slope * s.Vertices.col(1);
+  return s;
+}
+
+/// The square [-1, 1]^2 with bad angles inside and good ones at its boundary.
+Surface BadInside()
+{
+  Surface s = Plate(12, 1.0);
+  for (auto&& v : s.Vertices.rowwise())
+  {
+    v[0] += 0.9 * v[1] * std::pow(1.0 - v[0] * v[0], 2) * std::pow(1.0 - v[1] * v[1], 2);
+  }
+  return s;
+}
+
+std::vector<std::pair<const char*, Surface>> BadSurfaces()
+{
+  return { { "pressed sphere", Pressed(Icosphere(3), 0.05) },
+    { "slanted plate", Slanted(Plate(12, 1.0), 6.0) }, { "Moebius band", Pressed(Moebius(24, 4), 0.1) },
+    { "flat tetrahedron", Slanted(Tetrahedron(), 5.0) }, { "pressed torus", Pressed(Torus(24, 12), 0.05) },
+    { "twisted fins", Slanted(ThreeFins(6), 4.0) },
+    { "one triangle", MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 0.01, 0 } }, { { 0, 1, 2 } }) } };
+}
+
+SparseMatrix Stiffness(const Assembler& assembler)
+{
+  SparseMatrix k = assembler.Pattern();
+  assembler.Fill(k, Vector::Zero(assembler.Mesh().NumberOfVertices()), 1.0,
+    IsotropicCoefficients(assembler.Mesh()));
+  return k;
+}
+
+} // namespace
+
+TEST(IntrinsicDelaunay, MakesNoWeightNegative)
+{
+  for (const auto& [name, surface] : BadSurfaces())
+  {
+    const auto mesh = MakeMesh(surface);
+    const Assembler flipped(IntrinsicDelaunay(*mesh, nullptr));
+    const SparseMatrix before = Stiffness(Assembler(mesh));
+    const SparseMatrix after = Stiffness(flipped);
+    double worstBefore = 0.0;
+    double worstAfter = 0.0;
+    for (int j = 0; j < after.outerSize(); ++j)
+    {
+      for (SparseMatrix::InnerIterator it(before, j); it; ++it)
+      {
+        worstBefore = it.row() == j ? worstBefore : std::max(worstBefore, it.value());
+      }
+      for (SparseMatrix::InnerIterator it(after, j); it; ++it)
+      {
+        worstAfter = it.row() == j ? worstAfter : std::max(worstAfter, it.value());
+      }
+    }
+    EXPECT_GT(worstBefore, 0.01) << name << ": the surface is no test";
+    EXPECT_LT(worstAfter, 1e-8) << name;
+  }
+}
+
+TEST(IntrinsicDelaunay, KeepsTheArea)
+{
+  for (const auto& [name, surface] : BadSurfaces())
+  {
+    const auto mesh = MakeMesh(surface);
+    const auto flipped = IntrinsicDelaunay(*mesh, nullptr);
+    EXPECT_NEAR(flipped->ControlAreas().sum() / mesh->ControlAreas().sum(), 1.0, 1e-12) << name;
+    EXPECT_GT(flipped->ControlAreas().minCoeff(), 0.0) << name;
+    EXPECT_EQ(flipped->InputVertex(), mesh->InputVertex()) << name;
+  }
+}
+
+TEST(IntrinsicDelaunay, BackwardEulerKeepsTheBoundsAtAnyStep)
+{
+  for (const auto& [name, surface] : BadSurfaces())
+  {
+    const auto flipped =
+      std::make_shared<const Assembler>(IntrinsicDelaunay(*MakeMesh(surface), nullptr));
+    // One vertex at 1, the others at 0: what overshoots anywhere shows here.
+    Values spike = Values::Zero(flipped->Mesh().NumberOfVertices(), 1);
+    spike(spike.rows() / 2, 0) = 1.0;
+    for (const double dt : { 1e-6, 1e-3, 1.0, 1e3 })
+    {
+      const Values u = Diffuse(
+        flipped, PointData::FromValues(spike), dt, 1, 0.0, Scheme::BackwardEuler);
+      EXPECT_GE(u.minCoeff(), -1e-12) << name << ", time step " << dt;
+      EXPECT_LE(u.maxCoeff(), 1.0 + 1e-12) << name << ", time step " << dt;
+    }
+  }
+}
+
+TEST(IntrinsicDelaunay, WithoutItTheSamePlateOvershoots)
+{
+  const auto plain = MakeAssembler(Slanted(Plate(12, 1.0), 6.0));
+  Values spike = Values::Zero(plain->Mesh().NumberOfVertices(), 1);
+  spike(spike.rows() / 2, 0) = 1.0;
+  const Values u = Diffuse(
+    plain, PointData::FromValues(spike), 1e-3, 1, 0.0, Scheme::BackwardEuler);
+  EXPECT_LT(u.minCoeff(), -1e-4);
+}
+
+TEST(IntrinsicDelaunay, EnergyOfALinearFunctionIsExactOnAPlane)
+{
+  // Any triangulation of a plane has it right, on one sheet and on two, while no edge is flipped
+  // over the boundary.
+  const Surface plate = BadInside();
+  const auto flipped = IntrinsicDelaunay(*MakeMesh(plate), nullptr);
+  const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
+  EXPECT_NEAR(
+    DirichletEnergy(*flipped, IsotropicCoefficients(*flipped), u), 0.5 * 5.0 * 4.0, 1e-9);
+}
+
+TEST(IntrinsicDelaunay, CarriesDirectionsAlong)
+{
+  const Surface plate = BadInside();
+  const auto mesh = MakeMesh(plate);
+  const Eigen::RowVector3d direction(0.6, 0.8, 0.0);
+  PlaneVectors frames = FramesFromTriangleVectors(*mesh, plate.Vertices, plate.Faces,
+    direction.replicate(plate.Faces.rows(), 1));
+  const auto flipped = IntrinsicDelaunay(*mesh, &frames);
+  ASSERT_EQ(frames.rows(), flipped->NumberOfTriangles());
+  const EdgeValues c =
+    AnisotropicCoefficients(*flipped, IsotropicCoefficients(*flipped), frames, 3.0, 0.5);
+  const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
+  // grad u . e1 = 0.4, grad u . e2 = -2.2
+  EXPECT_NEAR(
+    DirichletEnergy(*flipped, c, u), 0.5 * (3.0 * 0.16 + 0.5 * 4.84) * 4.0, 1e-9);
+}
+
+TEST(IntrinsicDelaunay, LeavesADelaunayMeshAlone)
+{
+  const auto mesh = MakeMesh(Icosphere(3));
+  const auto flipped = IntrinsicDelaunay(*mesh, nullptr);
+  EXPECT_EQ(flipped->NumberOfTriangles(), mesh->NumberOfTriangles());
+  EXPECT_NEAR(
+    (Stiffness(Assembler(flipped)) - Stiffness(Assembler(mesh))).norm(), 0.0, 1e-11);
+}
