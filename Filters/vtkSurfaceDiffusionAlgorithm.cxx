@@ -82,6 +82,7 @@ const char* vtkSurfaceDiffusionAlgorithm::GetOutputPrecisionAsString()
 void vtkSurfaceDiffusionAlgorithm::UsePaperScheme()
 {
   this->SetTimeIntegratorToFirstOrder();
+  this->SetIntrinsicDelaunay(false);
   this->SetMaskModeToInpaint();
   this->SetHoldKnownValues(false);
   this->SetInitialFillToInput();
@@ -357,6 +358,7 @@ void vtkSurfaceDiffusionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Solver: " << this->GetSolverAsString() << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "MaximumNumberOfIterations: " << this->MaximumNumberOfIterations << "\n";
+  os << indent << "IntrinsicDelaunay: " << (this->IntrinsicDelaunay ? "On" : "Off") << "\n";
   os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
   os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
   os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";

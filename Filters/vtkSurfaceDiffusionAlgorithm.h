@@ -256,6 +256,18 @@ public:
 
   ///@{
   /**
+   * On: work on the intrinsic Delaunay triangulation of the same surface: no vertex moves, edges
+   * are flipped along geodesics, over two sheets where the surface has a boundary or is not a
+   * manifold (N. Sharp, K. Crane, SGP 2020). Linear diffusion FirstOrder then keeps the bounds of
+   * the data at any time step on any surface. Default: off.
+   */
+  vtkSetMacro(IntrinsicDelaunay, bool);
+  vtkGetMacro(IntrinsicDelaunay, bool);
+  vtkBooleanMacro(IntrinsicDelaunay, bool);
+  ///@}
+
+  ///@{
+  /**
    * On: points at one place (within MergeTolerance, in coordinate units, 0 or more, default 0) are
    * one point of the surface, as STL files and split normals need. The output keeps the input's
    * points. Off (default): coincident boundary points are counted in a warning.
@@ -307,7 +319,7 @@ public:
   ///@}
 
   /**
-   * Set what the paper does: FirstOrder, MaskMode Inpaint, HoldKnownValues off, InitialFill Input,
+   * Set what the paper does: FirstOrder, IntrinsicDelaunay off, MaskMode Inpaint, HoldKnownValues off, InitialFill Input,
    * and what subclasses add. Units, times, weights and the solver stay.
    */
   virtual void UsePaperScheme();
@@ -401,6 +413,7 @@ protected:
   int Solver = SOLVER_AUTOMATIC;
   double Tolerance = 1e-10;
   int MaximumNumberOfIterations = 1000;
+  bool IntrinsicDelaunay = false;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
   std::string ResultArrayName;

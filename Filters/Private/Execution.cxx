@@ -3,6 +3,7 @@
 #include "Execution.h"
 
 #include "Core/Frames.h"
+#include "Core/IntrinsicDelaunay.h"
 #include "PointArrays.h"
 #include "SMPParallelFor.h"
 
@@ -60,18 +61,15 @@ Points ReadVectors(vtkDataArray* array)
   return vectors;
 }
 
-PlaneVectors MakeFrames(
+/// The direction array as frames of the triangles of surface.InputMesh.
+PlaneVectors ReadFrames(
   const PolyDataSurface& surface, const BlockArrays& arrays, const ParallelFor& parallel)
 {
-  if (!arrays.Direction)
-  {
-    return PlaneVectors(0, 2);
-  }
   const Points vectors = ReadVectors(arrays.Direction);
   if (!arrays.DirectionOnCells)
   {
     return FramesFromPointVectors(
-      *surface.Mesh, surface.Points, surface.Triangles, vectors, parallel);
+      *surface.InputMesh, surface.Points, surface.Triangles, vectors, parallel);
   }
   Points ofTriangles(surface.Triangles.rows(), 3);
   for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
@@ -79,7 +77,23 @@ PlaneVectors MakeFrames(
     ofTriangles.row(t) = vectors.row(surface.TriangleCells[t]);
   }
   return FramesFromTriangleVectors(
-    *surface.Mesh, surface.Points, surface.Triangles, ofTriangles, parallel);
+    *surface.InputMesh, surface.Points, surface.Triangles, ofTriangles, parallel);
+}
+
+/// The frames of the triangles that the models work on; no row without a direction array.
+PlaneVectors MakeFrames(
+  const PolyDataSurface& surface, const BlockArrays& arrays, const ParallelFor& parallel)
+{
+  if (!arrays.Direction)
+  {
+    return PlaneVectors(0, 2);
+  }
+  PlaneVectors frames = ReadFrames(surface, arrays, parallel);
+  if (surface.Mesh != surface.InputMesh)
+  {
+    IntrinsicDelaunay(*surface.InputMesh, &frames, parallel); // the same flips again
+  }
+  return frames;
 }
 
 } // namespace
@@ -216,6 +230,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurfaces(const Monitor& monito
     PolyDataSurface::Options options;
     options.MergeCoincidentPoints = this->Filter.MergeCoincidentPoints;
     options.MergeTolerance = this->Filter.MergeTolerance;
+    options.IntrinsicDelaunay = this->Filter.IntrinsicDelaunay;
     options.Excluded =
       this->Filter.MaskMode == MASK_MODE_EXCLUDE ? block.Arrays.Mask : nullptr;
     const std::string key = PolyDataSurface::Key(block.Input, options);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PolyDataSurface.h"
 
+#include "Core/IntrinsicDelaunay.h"
 #include "SMPParallelFor.h"
 
 #include "vtkCellArray.h"
@@ -267,7 +268,7 @@ std::string PolyDataSurface::Key(vtkPolyData* input, const Options& options)
   {
     key << ghosts->GetMTime();
   }
-  key << ' ' << options.MergeCoincidentPoints << ' ' << std::hexfloat << options.MergeTolerance
+  key << ' ' << options.IntrinsicDelaunay << ' ' << options.MergeCoincidentPoints << ' ' << std::hexfloat << options.MergeTolerance
       << ' ';
   if (options.Excluded)
   {
@@ -301,8 +302,14 @@ PolyDataSurface::PolyDataSurface(
   }
   this->TriangleCells = std::move(triangulator.Cells);
   monitor.Report(0.2);
-  this->Mesh = std::make_shared<TriangleMesh>(
-    this->Points, this->Triangles, parallel, monitor.Part(0.2, 0.7));
+  this->InputMesh = std::make_shared<TriangleMesh>(
+    this->Points, this->Triangles, parallel, monitor.Part(0.2, 0.6));
+  this->Mesh = this->InputMesh;
+  if (options.IntrinsicDelaunay)
+  {
+    this->Mesh =
+      IntrinsicDelaunay(*this->InputMesh, nullptr, parallel, monitor.Part(0.6, 0.7));
+  }
   this->Operators =
     std::make_shared<Assembler>(this->Mesh, parallel, monitor.Part(0.7, 1.0));
 

@@ -22,6 +22,7 @@ struct PolyDataSurface
   {
     bool MergeCoincidentPoints = false;
     double MergeTolerance = 0.0;
+    bool IntrinsicDelaunay = false;
     vtkDataArray* Excluded = nullptr; ///< per point; triangles with a nonzero corner take no part
   };
 
@@ -45,6 +46,9 @@ struct PolyDataSurface
   SurfaceDiffusion::Points Points;       ///< per input point
   SurfaceDiffusion::Triangles Triangles; ///< rows of Points; merged points are one of them
   std::vector<vtkIdType> TriangleCells;  ///< the input's cell of each row of Triangles
+  std::shared_ptr<const SurfaceDiffusion::TriangleMesh> InputMesh; ///< of rows of Triangles
+  /// What the models work on: InputMesh, or its intrinsic Delaunay triangulation, which has the
+  /// same vertices.
   std::shared_ptr<const SurfaceDiffusion::TriangleMesh> Mesh;
   std::shared_ptr<const SurfaceDiffusion::Assembler> Operators;
   std::vector<SurfaceDiffusion::Index> PointToVertex; ///< -1 where a point takes no part
