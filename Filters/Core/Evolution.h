@@ -53,6 +53,9 @@ public:
   /// One time step. On an exception the state is not defined until Restore().
   virtual StepReport Advance(const Monitor& monitor) = 0;
 
+  /// True once further steps change nothing, by a stopping rule of the model's.
+  virtual bool Finished() const { return false; }
+
   /// The model's energy of the current state, in the units of the data and the mesh's lengths.
   virtual double Energy() const = 0;
 

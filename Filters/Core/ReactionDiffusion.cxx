@@ -1,0 +1,379 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ReactionDiffusion.h"
+
+#include "LinearDiffusion.h"
+#include "Random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <stdexcept>
+#include <thread>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+// ARS(2,2,2).
+const double Gamma = 1.0 - std::sqrt(0.5);
+const double Delta = 1.0 - 0.5 / Gamma;
+
+/// Root mean square of f(i), a value per vertex, over the surface; not divided by the area.
+template <typename F>
+double Norm(const TriangleMesh& mesh, const ParallelFor& parallel, const F& f)
+{
+  return std::sqrt(Sum(parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      const double value = f(i);
+      return mesh.ControlAreas()[i] * value * value;
+    }));
+}
+
+} // namespace
+
+Values NoisySteadyState(const Reaction& reaction, double noise, std::int64_t seed,
+  const std::vector<std::int64_t>& ids)
+{
+  const Eigen::Vector2d steady = reaction.Terms->SteadyState(reaction.Parameters);
+  Values u(static_cast<Eigen::Index>(ids.size()), 2);
+  for (Eigen::Index i = 0; i < u.rows(); ++i)
+  {
+    for (Eigen::Index k = 0; k < 2; ++k)
+    {
+      const double random = 2.0 * UniformRandom(seed, k, ids[static_cast<std::size_t>(i)]) - 1.0;
+      const double size = steady[k] != 0.0 ? steady[k] : 1.0;
+      u(i, k) = steady[k] + size * noise * random;
+    }
+  }
+  return u;
+}
+
+ReactionDiffusion::ReactionDiffusion(std::shared_ptr<const Assembler> assembler,
+  const Reaction& reaction, std::array<Chemical, 2> chemicals, PointData data,
+  const Settings& settings, const ParallelFor& parallel)
+  : Operators(std::move(assembler))
+  , Terms(reaction)
+  , Chemicals(std::move(chemicals))
+  , Data(std::move(data))
+  , Options(settings)
+  , Parallel(parallel)
+  , ImplicitTime(
+      settings.TimeStep * (settings.TimeScheme == Scheme::SecondOrder ? Gamma : 1.0))
+  , U(this->Data.Start)
+{
+  for (int c = 0; c < 2; ++c)
+  {
+    this->New[c] = this->U.col(c);
+    for (Pair* pair : { &this->Old, &this->Rates, &this->Force, &this->Explicit,
+           &this->RightHandSide, &this->Load })
+    {
+      (*pair)[c] = Values::Zero(this->U.rows(), 1);
+    }
+  }
+}
+
+std::size_t ReactionDiffusion::CheckpointSize() const
+{
+  return static_cast<std::size_t>(this->U.size()) + 1;
+}
+
+void ReactionDiffusion::Save(double* checkpoint) const
+{
+  *std::copy(this->U.data(), this->U.data() + this->U.size(), checkpoint) = this->Done ? 1.0 : 0.0;
+}
+
+void ReactionDiffusion::Restore(const double* checkpoint)
+{
+  std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
+  this->Done = checkpoint[this->U.size()] != 0.0;
+  for (int c = 0; c < 2; ++c)
+  {
+    this->New[c] = this->U.col(c);
+  }
+}
+
+void ReactionDiffusion::Prepare(const Monitor& monitor)
+{
+  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  for (int c = 0; c < 2; ++c)
+  {
+    SparseMatrix& matrix = this->Matrices[c];
+    matrix = this->Operators->Pattern();
+    this->Operators->Fill(matrix, areas, this->ImplicitTime, this->Chemicals[c].Coefficients,
+      nullptr, this->Parallel);
+    if (this->Data.Fixed.any())
+    {
+      this->Operators->Constrain(
+        matrix, this->Data.Fixed, this->New[c], this->Load[c], this->Parallel);
+    }
+    this->Chemicals[c].Solver->SetMatrix(matrix, monitor.Part(0.5 * c, 0.5 * c + 0.5));
+  }
+  this->Prepared = true;
+}
+
+StepReport ReactionDiffusion::Advance(const Monitor& monitor)
+{
+  StepReport report;
+  if (this->Done)
+  {
+    return report;
+  }
+  const double setup = this->Prepared ? 0.0 : 0.5;
+  if (!this->Prepared)
+  {
+    this->Prepare(monitor.Part(0.0, setup));
+  }
+  for (int c = 0; c < 2; ++c)
+  {
+    this->Old[c] = this->New[c];
+  }
+  if (this->Options.TimeScheme == Scheme::SecondOrder)
+  {
+    this->SecondOrderStep(report, monitor.Part(setup, 1.0));
+  }
+  else
+  {
+    this->FirstOrderStep(report, monitor.Part(setup, 1.0));
+  }
+  this->FinishStep();
+  return report;
+}
+
+/// (22) with (8), (23) with (14), both chemicals from the old level:
+/// (M + dt K_k) u_k,new = M (u_k + dt F_k(u1, u2)).
+void ReactionDiffusion::FirstOrderStep(StepReport& report, const Monitor& monitor)
+{
+  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  const double dt = this->Options.TimeStep;
+  this->React(this->Old, this->Rates);
+  ForEach(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+    [&](Index i)
+    {
+      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      for (int c = 0; c < 2; ++c)
+      {
+        this->RightHandSide[c](i) =
+          area * (this->Old[c](i) + dt * this->Rates[c](i)) + this->Load[c](i);
+      }
+    });
+  this->Solve(report, monitor);
+  this->Project(0.0, report);
+}
+
+/// With f = F + l, per chemical,
+///   (M + g dt K) y = M (u + g dt f(u)),   g = gamma,
+///   (M + g dt K) u_new = M (u + dt (d f(u) + (1 - d) f(y))) - (1 - g) dt K y,   d = delta,
+/// where the first stage gives dt K y = M ((u - y)/g + dt f(u)): no product with K is needed.
+void ReactionDiffusion::SecondOrderStep(StepReport& report, const Monitor& monitor)
+{
+  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  const Index n = this->Operators->Mesh().NumberOfVertices();
+  const double dt = this->Options.TimeStep;
+
+  this->React(this->Old, this->Rates);
+  this->AddHoldingForce(this->Old, this->Rates);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      for (int c = 0; c < 2; ++c)
+      {
+        this->RightHandSide[c](i) =
+          area * (this->Old[c](i) + Gamma * dt * this->Rates[c](i)) + this->Load[c](i);
+      }
+    });
+  this->Solve(report, monitor.Part(0.0, 0.5));
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      for (int c = 0; c < 2; ++c)
+      {
+        const double u = this->Old[c](i);
+        this->Explicit[c](i) = u + (1.0 - Gamma) / Gamma * (this->New[c](i) - u) +
+          dt * (Delta - 1.0 + Gamma) * this->Rates[c](i);
+      }
+    });
+  StepReport stage;
+  this->Project(Gamma * dt, stage);
+
+  this->React(this->New, this->Rates);
+  this->AddHoldingForce(this->New, this->Rates);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      for (int c = 0; c < 2; ++c)
+      {
+        this->RightHandSide[c](i) =
+          area * (this->Explicit[c](i) + (1.0 - Delta) * dt * this->Rates[c](i)) +
+          this->Load[c](i);
+        // Where an iterative solver starts: the straight line through u and y.
+        this->New[c](i) = this->Old[c](i) + (this->New[c](i) - this->Old[c](i)) / Gamma;
+      }
+    });
+  this->Solve(report, monitor.Part(0.5, 1.0));
+  this->Project(dt, report);
+}
+
+/// f = (F, G) at u.
+void ReactionDiffusion::React(const Pair& u, Pair& f) const
+{
+  ForEachBlock(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+    [&](Index, Index begin, Index end)
+    {
+      this->Terms.Terms->React(this->Terms.Parameters, end - begin, u[0].data() + begin,
+        u[1].data() + begin, f[0].data() + begin, f[1].data() + begin);
+      for (Values& rates : f)
+      {
+        rates.middleRows(begin, end - begin) *= this->Terms.Rate;
+      }
+    });
+}
+
+/// Force = l = max(0, (K u)_i / A_i - f) where u = 0, else 0: what holds u there; f += l.
+void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
+{
+  if (!this->Options.KeepNonNegative)
+  {
+    return;
+  }
+  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  for (int c = 0; c < 2; ++c)
+  {
+    const SparseMatrix& matrix = this->Matrices[c]; // M + ImplicitTime K
+    ForEach(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+      [&](Index i)
+      {
+        double force = 0.0;
+        if (u[c](i) <= 0.0 && !this->Data.Fixed[i])
+        {
+          double sum = -this->Load[c](i);
+          for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
+          {
+            sum += a.value() * u[c](a.index());
+          }
+          const double diffusion = (areas[i] * u[c](i) - sum) / (this->ImplicitTime * areas[i]);
+          force = std::max(0.0, -diffusion - f[c](i));
+        }
+        this->Force[c](i) = force;
+        f[c](i) += force;
+      });
+  }
+}
+
+/// New = the solutions for the right-hand sides.
+void ReactionDiffusion::Solve(StepReport& report, const Monitor& monitor)
+{
+  std::array<SolveReport, 2> reports;
+  std::array<std::exception_ptr, 2> failures;
+  const auto solve = [&](int c, const Monitor& progress)
+  {
+    try
+    {
+      reports[c] =
+        this->Chemicals[c].Solver->Solve(this->RightHandSide[c], this->New[c], progress);
+    }
+    catch (...)
+    {
+      failures[c] = std::current_exception();
+    }
+  };
+  if (this->Options.SideBySide)
+  {
+    std::thread second([&] { solve(1, Monitor()); });
+    solve(0, monitor);
+    second.join();
+  }
+  else
+  {
+    solve(0, monitor.Part(0.0, 0.5));
+    solve(1, monitor.Part(0.5, 1.0));
+  }
+  for (int c = 0; c < 2; ++c)
+  {
+    if (failures[c] && !this->RightHandSide[c].allFinite())
+    {
+      throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
+                               "other parameters of the kinetics, or clamp at zero");
+    }
+    if (failures[c])
+    {
+      std::rethrow_exception(failures[c]);
+    }
+    if (!reports[c].Converged)
+    {
+      throw NotConverged(reports[c]);
+    }
+    report.Iterations += reports[c].Iterations;
+    report.Residual = std::max(report.Residual, reports[c].Residual);
+  }
+}
+
+/// The solve had `dt` Force in it. Take it back, u - dt l, and hold at zero what falls below.
+void ReactionDiffusion::Project(double dt, StepReport& report)
+{
+  if (!this->Options.KeepNonNegative)
+  {
+    return;
+  }
+  const double held = Sum(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+    [&](Index i)
+    {
+      int count = 0;
+      for (int c = 0; c < 2; ++c)
+      {
+        const double u = this->New[c](i) - dt * this->Force[c](i);
+        const bool below = u < 0.0 && !this->Data.Fixed[i];
+        this->New[c](i) = below ? 0.0 : u;
+        count += below;
+      }
+      return static_cast<double>(count);
+    });
+  report.Clamped += static_cast<Index>(held);
+}
+
+void ReactionDiffusion::FinishStep()
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      for (int c = 0; c < 2; ++c)
+      {
+        this->U(i, c) = this->New[c](i);
+      }
+    });
+  if (!(this->Options.StopTolerance > 0.0))
+  {
+    return;
+  }
+  this->Done = true;
+  for (int c = 0; c < 2; ++c)
+  {
+    const Values& u = this->New[c];
+    const Values& before = this->Old[c];
+    const double area =
+      Sum(this->Parallel, mesh.NumberOfVertices(), [&](Index i) { return mesh.ControlAreas()[i]; });
+    const double mean = Sum(this->Parallel, mesh.NumberOfVertices(),
+                          [&](Index i) { return mesh.ControlAreas()[i] * u(i); }) /
+      area;
+    const double pattern = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - mean; });
+    const double change = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - before(i); });
+    this->Done = this->Done &&
+      change <= this->Options.StopTolerance * this->Options.TimeStep * pattern;
+  }
+}
+
+double ReactionDiffusion::Energy() const
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  return DirichletEnergy(
+           mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
+    DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel);
+}
+
+} // namespace SurfaceDiffusion
