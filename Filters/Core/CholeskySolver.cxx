@@ -78,6 +78,8 @@ public:
 private:
   struct Factorization
   {
+    static constexpr double Resolved = 1e-14; ///< of a diagonal entry: a few units in its last place
+
     SparseMatrix Matrix;
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> Decomposition;
     bool Analyzed = false;
@@ -92,15 +94,37 @@ private:
         this->Analyzed = true;
       }
       this->Decomposition.factorize(this->Matrix);
+      if (!this->PivotsAbove(Resolved))
+      {
+        // A mode is lost in the last digits of the diagonal (the mean, at a huge time step): round
+        // the diagonal up in these digits, which are wrong by as much, so that its pivot is safe.
+        this->Decomposition.setShift(0.0, 1.0 + Resolved);
+        this->Decomposition.factorize(this->Matrix);
+        this->Decomposition.setShift(0.0, 1.0);
+      }
       this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();
       this->InverseD = this->Decomposition.vectorD().cwiseInverse();
     }
-    /// A pivot of a nearly singular matrix (a huge time step) may be negative by round-off.
-    bool IsPositive() const
+    /// A pivot of a nearly singular matrix may be negative by round-off.
+    bool IsPositive() const { return this->PivotsAbove(-1e-10); }
+
+    /// Whether every pivot is above `bound` times its diagonal entry.
+    bool PivotsAbove(double bound) const
     {
-      const double largest = this->Matrix.diagonal().cwiseAbs().maxCoeff();
-      return this->Decomposition.info() == Eigen::Success &&
-        this->Decomposition.vectorD().minCoeff() > -1e-12 * largest;
+      if (this->Decomposition.info() != Eigen::Success)
+      {
+        return false;
+      }
+      const Vector diagonal = this->Matrix.diagonal();
+      const auto& place = this->Decomposition.permutationP().indices();
+      for (Eigen::Index i = 0; i < diagonal.size(); ++i)
+      {
+        if (!(this->Decomposition.vectorD()[place[i]] > bound * std::abs(diagonal[i])))
+        {
+          return false;
+        }
+      }
+      return true;
     }
     bool HoldsPatternOf(const SparseMatrix& matrix) const
     {
