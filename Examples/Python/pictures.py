@@ -1,0 +1,183 @@
+"""Pictures of coloured surfaces side by side, on a white page."""
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+# Both are imported for what they register with the rendering classes: OpenGL and the fonts.
+import vtkmodules.vtkRenderingFreeType  # noqa: F401
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
+from vtkmodules.vtkImagingCore import vtkImageShrink3D
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import (
+    vtkActor, vtkColorTransferFunction, vtkLight, vtkPolyDataMapper, vtkRenderer,
+    vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
+
+INK = (0.13, 0.14, 0.16)
+SMALL = 300  # panels of less height have a title only
+FINER = 2  # pictures are drawn this much larger and shrunk, which smooths every edge
+
+
+@dataclass
+class Panel:
+    surface: vtkPolyData
+    array: str                     # point array: a colour (unsigned char), or a number with `table`
+    title: str
+    note: str = ""                 # a smaller second line
+    view: tuple = (0, 0, 1)        # direction from the surface to the camera
+    up: tuple = (0, 1, 0)
+    table: vtkLookupTable = None
+    bar: bool = False              # whether to draw the table's colour bar
+
+
+def display_missing():
+    """Whether this VTK draws through an X server and there is none."""
+    return vtkRenderWindow().IsA("vtkXOpenGLRenderWindow") and not os.environ.get("DISPLAY")
+
+
+def colour_table(low, high, colours, below=None, steps=256):
+    """Colours at even distances from low to high, blended in so many steps; `below` (if any) is
+    for values under low."""
+    ramp = vtkColorTransferFunction()
+    ramp.SetColorSpaceToLab()
+    for i, colour in enumerate(colours):
+        ramp.AddRGBPoint(i / (len(colours) - 1), *colour)
+    table = vtkLookupTable()
+    table.SetNumberOfTableValues(steps)
+    table.SetTableRange(low, high)
+    for i in range(steps):
+        table.SetTableValue(i, *ramp.GetColor(i / (steps - 1)), 1)
+    if below:
+        table.SetBelowRangeColor(*below, 1)
+        table.UseBelowRangeColorOn()
+    return table
+
+
+def actor_of(panel):
+    normals = vtkPolyDataNormals()
+    normals.SplittingOff()
+    normals.SetInputData(panel.surface)
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputConnection(normals.GetOutputPort())
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray(panel.array)
+    if panel.table:
+        mapper.SetLookupTable(panel.table)
+        mapper.UseLookupTableScalarRangeOn()
+        mapper.InterpolateScalarsBeforeMappingOn()  # else the table's colours mix across triangles
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    material = actor.GetProperty()
+    material.SetAmbient(0.34)
+    material.SetDiffuse(0.70)
+    material.SetSpecular(0.06)
+    material.SetSpecularPower(20)
+    return actor
+
+
+def text_of(words, size, height, bold=False):
+    """A line of text, centred; height as a fraction of its panel."""
+    text = vtkTextActor()
+    text.SetInput(words)
+    style = text.GetTextProperty()
+    style.SetFontFamilyToArial()
+    style.SetFontSize(size * FINER)
+    style.SetBold(bold)
+    style.SetColor(*INK)
+    style.SetJustificationToCentered()
+    text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    text.SetPosition(0.5, height)
+    return text
+
+
+def bar_of(panel, size):
+    bar = vtkScalarBarActor()
+    bar.SetLookupTable(panel.table)
+    bar.SetOrientationToHorizontal()
+    bar.SetNumberOfLabels(5)
+    bar.SetLabelFormat("%.3g")
+    bar.SetUnconstrainedFontSize(True)
+    bar.SetPosition(0.25, 0.02)
+    bar.SetWidth(0.5)
+    bar.SetHeight(0.1)
+    style = bar.GetLabelTextProperty()
+    style.SetFontFamilyToArial()
+    style.SetFontSize(size * FINER)
+    style.SetColor(*INK)
+    style.BoldOff()
+    style.ItalicOff()
+    style.ShadowOff()
+    return bar
+
+
+def renderer_of(panel, height):
+    renderer = vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    renderer.AddActor(actor_of(panel))
+    renderer.AddActor(text_of(panel.title, max(13, height // 26), 0.93, bold=True))
+    if height >= SMALL:
+        renderer.AddActor(text_of(panel.note, height // 34, 0.885))
+        if panel.bar:
+            renderer.AddActor(bar_of(panel, height // 40))
+    renderer.AutomaticLightCreationOff()
+    for place, strength in (((-0.5, 0.7, 1), 0.88), ((0.8, -0.1, 0.8), 0.35)):
+        light = vtkLight()
+        light.SetLightTypeToCameraLight()
+        light.SetPosition(*place)
+        light.SetIntensity(strength)
+        renderer.AddLight(light)
+    camera = renderer.GetActiveCamera()
+    camera.ParallelProjectionOn()
+    camera.SetPosition(*panel.view)
+    camera.SetViewUp(*panel.up)
+    return renderer
+
+
+def fit(renderer, panel, height):
+    """Fill the panel with the surface as this camera sees it, between the title and the bar."""
+    renderer.ResetCamera()
+    camera = renderer.GetActiveCamera()
+    matrix = camera.GetViewTransformMatrix()
+    to_eye = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(2)])
+    seen = vtk_to_numpy(panel.surface.GetPoints().GetData()) @ to_eye[:, :3].T + to_eye[:, 3]
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    top = 0.85 if height >= SMALL else 0.9
+    bottom = 0.17 if panel.bar and height >= SMALL else 0.04
+    aspect = renderer.GetTiledAspectRatio()
+    wide, tall = high - low
+    scale = 0.5 * max(1.06 * wide / aspect, tall / (top - bottom))
+    camera.SetParallelScale(scale)
+    x, y = (low + high) / 2 / scale
+    camera.SetWindowCenter(x / aspect, y - (top + bottom - 1))
+
+
+def save_picture(path, panels, columns, panel_size):
+    rows = -(-len(panels) // columns)
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetMultiSamples(0)
+    window.SetSize(FINER * columns * panel_size[0], FINER * rows * panel_size[1])
+    for i, panel in enumerate(panels):
+        x, y = i % columns, rows - 1 - i // columns
+        renderer = renderer_of(panel, panel_size[1])
+        renderer.SetViewport(x / columns, y / rows, (x + 1) / columns, (y + 1) / rows)
+        window.AddRenderer(renderer)
+        fit(renderer, panel, panel_size[1])
+    window.Render()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    shrink = vtkImageShrink3D()
+    shrink.SetInputConnection(grab.GetOutputPort())
+    shrink.SetShrinkFactors(FINER, FINER, 1)
+    shrink.MeanOn()
+    writer = vtkPNGWriter()
+    writer.SetInputConnection(shrink.GetOutputPort())
+    writer.SetFileName(str(path))
+    writer.SetCompressionLevel(9)
+    writer.Write()

@@ -1,0 +1,55 @@
+#!/bin/bash
+# The library at work on real surfaces: installs what it needs (Debian 12), fetches the data,
+# builds, and draws four pictures. Arguments go on to Examples/Python/demo.py, see its --help.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+python=${PYTHON:-/usr/bin/python3}  # one that finds ParaView's or VTK's modules
+data=build/demo-data
+
+download()
+{
+  if ! apt-get -q download "$@"; then # perhaps there are no package lists yet
+    sudo=
+    [ "$(id -u)" -eq 0 ] || sudo=sudo
+    $sudo apt-get -q update
+    apt-get -q download "$@"
+  fi
+}
+
+echo "== Packages"
+.ci/install-packages demo
+
+echo "== Data"
+mkdir -p "$data"
+work=$(mktemp -d "$data/fetch.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+
+# fsaverage5, an average human cortex (Fischl et al. 1999), as nilearn carries it.
+if [ ! -d "$data/fsaverage5" ]; then
+  "$python" -m pip download --quiet --no-deps --dest "$work" nilearn==0.14.1
+  "$python" -m zipfile -e "$work"/nilearn-*.whl "$work/nilearn"
+  mv "$work/nilearn/nilearn/datasets/data/fsaverage5" "$data"
+fi
+
+# A scanned bunny (Stanford), as Debian's CGAL demos carry it.
+if [ ! -f "$data/bunny00.off" ]; then
+  (cd "$work" && download libcgal-demo)
+  dpkg-deb --extract "$work"/libcgal-demo_*.deb "$work/cgal"
+  tar -xzf "$work/cgal/usr/share/doc/libcgal-dev/data.tar.gz" -C "$work" data/meshes/bunny00.off
+  mv "$work/data/meshes/bunny00.off" "$data"
+fi
+
+echo "== Build"
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DPython3_EXECUTABLE="$python"
+cmake --build build
+
+echo "== Demo"
+display=()
+if [ -z "${DISPLAY:-}" ]; then
+  display=(xvfb-run -a -s "-screen 0 1024x768x24 -noreset")
+fi
+modules=$(dirname "$(find build/lib -type d -name surfacediffusion -path '*-packages/*' | head -1)")
+PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH} "${display[@]}" "$python" \
+  Examples/Python/demo.py --cortex "$data/fsaverage5" --mesh "$data/bunny00.off" \
+  --output build/demo "$@"
