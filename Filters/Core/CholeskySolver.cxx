@@ -83,23 +83,37 @@ private:
     SparseMatrix Matrix;
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> Decomposition;
     bool Analyzed = false;
+    bool Pruned = false;
     Vector InverseDiagonal; ///< of the matrix
     Vector InverseD;        ///< of the factor
 
     void Compute()
     {
-      if (!this->Analyzed)
+      // Held vertices leave zeros behind (and right angles too): without them the factor is that of
+      // the free vertices alone.
+      SparseMatrix pruned;
+      const double* values = this->Matrix.valuePtr();
+      const auto zeros = std::count(values, values + this->Matrix.nonZeros(), 0.0);
+      const bool prune = zeros > this->Matrix.nonZeros() / 20;
+      if (prune)
       {
-        this->Decomposition.analyzePattern(this->Matrix);
-        this->Analyzed = true;
+        pruned = this->Matrix;
+        pruned.prune([](Index, Index, double value) { return value != 0.0; });
       }
-      this->Decomposition.factorize(this->Matrix);
+      const SparseMatrix& matrix = prune ? pruned : this->Matrix;
+      if (!this->Analyzed || prune || this->Pruned)
+      {
+        this->Decomposition.analyzePattern(matrix);
+        this->Analyzed = true;
+        this->Pruned = prune;
+      }
+      this->Decomposition.factorize(matrix);
       if (!this->PivotsAbove(Resolved))
       {
         // A mode is lost in the last digits of the diagonal (the mean, at a huge time step): round
         // the diagonal up in these digits, which are wrong by as much, so that its pivot is safe.
         this->Decomposition.setShift(0.0, 1.0 + Resolved);
-        this->Decomposition.factorize(this->Matrix);
+        this->Decomposition.factorize(matrix);
         this->Decomposition.setShift(0.0, 1.0);
       }
       this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();

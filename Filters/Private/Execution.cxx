@@ -197,7 +197,10 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
     }
     this->WriteHistory(step, history);
     monitor.Report(1.0);
-    this->Warn();
+    if (this->MadeAnything) // playing time tells nothing anew
+    {
+      this->Warn();
+    }
   }
   catch (const Aborted&)
   {
@@ -241,6 +244,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurfaces(const Monitor& monito
       block.Run->Surface = std::make_unique<PolyDataSurface>(
         block.Input, options, monitor.Part(b / count, (b + 1) / count));
       block.Run->SurfaceKey = key;
+      this->MadeAnything = true;
     }
   }
 }
@@ -313,6 +317,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRuns(const Monitor& monitor)
       block.Run->Path.reset();
       this->MakeRun(block, monitor.Part(b / count, (b + 1) / count));
       block.Run->RunKey = key.str();
+      this->MadeAnything = true;
     }
   }
   const auto hasMissing = [](const Block& block) { return block.Run->HasMissing; };

@@ -53,4 +53,5 @@ private:
   std::vector<Block> Blocks; ///< those that take part
   bool AnyPoint = false;
   bool AnyPolygon = false;
+  bool MadeAnything = false; ///< false where only the time has changed
 };
