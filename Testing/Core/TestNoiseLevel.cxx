@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Heat.h"
+#include "Meshes.h"
+#include "NoiseLevel.h"
+
+#include <gtest/gtest.h>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+/// Gaussian random numbers of standard deviation 1 (Box and Muller).
+Values GaussianNoise(const TriangleMesh& mesh, Eigen::Index columns)
+{
+  Values u(mesh.NumberOfVertices(), columns);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    for (Eigen::Index k = 0; k < columns; ++k)
+    {
+      const double r = std::sqrt(-2.0 * std::log(1.0 - UniformRandom(1, 2 * k, i)));
+      u(i, k) = r * std::cos(2.0 * Pi * UniformRandom(1, 2 * k + 1, i));
+    }
+  }
+  return u;
+}
+
+/// Smooth parts and edges, values in 0 .. 1.
+Values Picture(const TriangleMesh& mesh, const Surface& s)
+{
+  return Sample(mesh, s,
+    [](const Eigen::RowVector3d& p)
+    { return (p[0] > 0.3 ? 1.0 : 0.2) * (0.7 + 0.3 * std::sin(3.0 * p[1])); });
+}
+
+} // namespace
+
+TEST(NoiseLevel, IsEstimatedWithinFivePercentUnderAPicture)
+{
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  for (const double sigma : { 0.05, 0.25 })
+  {
+    Values f = sigma * GaussianNoise(mesh, 1);
+    f += Picture(mesh, s);
+    EXPECT_NEAR(
+      EstimateNoiseLevel(*assembler, PointData::FromValues(f)), sigma, 0.05 * sigma);
+  }
+}
+
+TEST(NoiseLevel, IsTheRootMeanSquareOverTheColumns)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  Values f = GaussianNoise(assembler->Mesh(), 2);
+  f.col(1) *= 7.0;
+  EXPECT_NEAR(EstimateNoiseLevel(*assembler, PointData::FromValues(f)), 5.0, 0.25);
+}
+
+TEST(NoiseLevel, MissingValuesAreNotLookedAt)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  PointData data = PointData::FromValues(GaussianNoise(assembler->Mesh(), 1));
+  for (Index i = 0; i < assembler->Mesh().NumberOfVertices(); i += 20)
+  {
+    data.Missing[i] = true;
+    data.Given(i, 0) = 1e9;
+  }
+  EXPECT_NEAR(EstimateNoiseLevel(*assembler, data), 1.0, 0.06);
+}
+
+TEST(NoiseLevel, IsZeroWhereNothingCanBeSaid)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  PointData data = PointData::FromValues(Values::Constant(162, 2, 4.0));
+  EXPECT_EQ(EstimateNoiseLevel(*assembler, data), 0.0);
+  data.Missing.fill(true);
+  EXPECT_EQ(EstimateNoiseLevel(*assembler, data), 0.0);
+  const auto empty =
+    std::make_shared<Assembler>(std::make_shared<TriangleMesh>(Points(0, 3), Triangles(0, 3)));
+  EXPECT_EQ(EstimateNoiseLevel(*empty, PointData::FromValues(Values(0, 1))), 0.0);
+}
+
+TEST(NoiseLevel, DiscrepancyIsTheWeightedRootMeanSquareOfWhatIsKnown)
+{
+  const auto mesh = MakeMesh(Icosphere(2));
+  PointData data = PointData::FromValues(Values::Zero(162, 2));
+  Values u = Values::Constant(162, 2, 3.0);
+  u.col(1).setConstant(4.0);
+  EXPECT_NEAR(Discrepancy(*mesh, data, u), std::sqrt(12.5), 1e-13);
+  data.Missing.head(80) = true;
+  u.topRows(80).setConstant(1e9);
+  EXPECT_NEAR(Discrepancy(*mesh, data, u), std::sqrt(12.5), 1e-13);
+  data.Missing.fill(true);
+  EXPECT_EQ(Discrepancy(*mesh, data, u), 0.0);
+}
+
+TEST(NoiseLevel, FidelityIsFoundToOnePercent)
+{
+  for (const double exact : { 1e-5, 0.3, 1.0, 250.0, 1e6 })
+  {
+    int calls = 0;
+    const auto discrepancy = [&](double lambda)
+    {
+      ++calls;
+      return 2.0 * exact / (lambda + exact);
+    };
+    EXPECT_NEAR(FindFidelityByDiscrepancy(discrepancy, 1.0, 1.0), exact, 0.01 * exact);
+    EXPECT_LT(calls, 30);
+  }
+}
+
+TEST(NoiseLevel, SearchEndsAtItsLimits)
+{
+  EXPECT_NEAR(
+    std::log10(FindFidelityByDiscrepancy([](double) { return 0.1; }, 1.0, 5.0) / 5.0), -8.0, 0.7);
+  EXPECT_NEAR(
+    std::log10(FindFidelityByDiscrepancy([](double) { return 3.0; }, 1.0, 5.0) / 5.0), 8.0, 0.7);
+}
+
+TEST(NoiseLevel, SteadyStateAtTheFoundFidelityLeavesTheNoise)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const double sigma = 0.2;
+  const Values clean = Picture(mesh, s);
+  const Values f = clean + sigma * GaussianNoise(mesh, 1);
+  const auto data = PointData::FromValues(f);
+  const auto solve = [&](double lambda)
+  {
+    const auto heat = MakeHeat(assembler, data, { 1.0, lambda, Scheme::SteadyState });
+    Advance(*heat, 1);
+    return heat->State();
+  };
+  const double lambda = FindFidelityByDiscrepancy(
+    [&](double trial) { return Discrepancy(mesh, data, solve(trial)); }, sigma, 10.0);
+  const Values u = solve(lambda);
+  EXPECT_NEAR(Discrepancy(mesh, data, u), sigma, 0.01 * sigma);
+  EXPECT_LT(RootMeanSquare(mesh, u - clean), 0.5 * sigma); // and denoises
+}
