@@ -30,6 +30,7 @@ HarmonicMap::HarmonicMap(std::shared_ptr<const Assembler> assembler, EdgeValues 
   , Anchor(U)
   , RightHandSide(U.rows(), U.cols())
   , Step(U.rows(), U.cols())
+  , Other(U.rows(), U.cols())
 {
   if (this->Options.LineField)
   {
@@ -82,8 +83,10 @@ double HarmonicMap::GradientSquare(Index t, double* signs) const
   const TriangleMesh& mesh = this->Operators->Mesh();
   const auto v = mesh.TriangleVertices().row(t);
   const auto term = [&](int edge, double sign)
-  { return c[edge] * (this->U.row(v[(edge + 1) % 3]) - sign * this->U.row(v[(edge + 2) % 3]))
-                       .squaredNorm(); };
+  {
+    return c[edge] *
+      (this->U.row(v[(edge + 1) % 3]) - sign * this->U.row(v[(edge + 2) % 3])).squaredNorm();
+  };
   double smallest = 0.0;
   if (!this->Options.LineField)
   {
@@ -110,8 +113,7 @@ double HarmonicMap::GradientSquare(Index t, double* signs) const
       signs[edge] = flipped < 0 || edge == flipped ? 1.0 : -1.0;
     }
   }
-  const double square =
-    smallest / (mesh.Shapes()[t].Area() * this->Options.LargestDiffusivity);
+  const double square = smallest / (mesh.Shapes()[t].Area() * this->Options.LargestDiffusivity);
   return std::max(square, 0.0); // round-off on slivers
 }
 
@@ -149,10 +151,7 @@ double HarmonicMap::Energy() const
   double energy = this->Options.LargestDiffusivity *
     Sum(this->Parallel, mesh.NumberOfTriangles(),
       [&](Index t)
-      {
-        return mesh.Shapes()[t].Area() *
-          this->EnergyDensity(this->GradientSquare(t, nullptr));
-      });
+      { return mesh.Shapes()[t].Area() * this->EnergyDensity(this->GradientSquare(t, nullptr)); });
   if (this->Options.Fidelity > 0.0)
   {
     energy += 0.5 *
@@ -173,9 +172,7 @@ double HarmonicMap::Objective() const
   return this->Energy() +
     Sum(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i)
-      {
-        return mesh.ControlAreas()[i] * (this->U.row(i) - this->Anchor.row(i)).squaredNorm();
-      }) /
+      { return mesh.ControlAreas()[i] * (this->U.row(i) - this->Anchor.row(i)).squaredNorm(); }) /
     (2.0 * this->Options.TimeStep);
 }
 
@@ -228,9 +225,8 @@ void HarmonicMap::ExplicitReactionStep(StepReport& report, const Monitor& monito
       for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
       {
         const Index t = mesh.VertexCorners()[c] / 3;
-        const double rate = this->Options.ConsistentReaction
-          ? this->Weights[t] * this->Squares[t]
-          : std::pow(this->Squares[t], 0.5 * p);
+        const double rate = this->Options.ConsistentReaction ? this->Weights[t] * this->Squares[t]
+                                                             : std::pow(this->Squares[t], 0.5 * p);
         integral += mesh.Shapes()[t].Area() / 3.0 * rate;
       }
       const double area = mesh.ControlAreas()[i];
@@ -260,6 +256,14 @@ void HarmonicMap::ExplicitReactionStep(StepReport& report, const Monitor& monito
   }
   report.Iterations = solve.Iterations;
   report.Residual = solve.Residual;
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      if (this->Data.Fixed[i])
+      {
+        this->U.row(i) = this->Data.Start.row(i); // to the last bit
+      }
+    });
   this->ProjectToSphere();
 }
 
@@ -273,8 +277,8 @@ void HarmonicMap::TangentPlaneStep(StepReport& report, const Monitor& monitor)
 
 void HarmonicMap::MinimizingMovementStep(StepReport& report, const Monitor& monitor)
 {
-  constexpr int most = 50;         // repetitions
-  constexpr double little = 1e-4;  // of the step's decrease so far: it rests
+  constexpr int most = 50; // repetitions
+  constexpr double little = 1e-4; // of the step's decrease so far: it rests
   this->Anchor = this->U;
   const double start = this->Energy();
   double objective = start;
@@ -282,8 +286,8 @@ void HarmonicMap::MinimizingMovementStep(StepReport& report, const Monitor& moni
   {
     const double before = objective;
     // Each repetition is expected to need half of what is left.
-    objective = this->Descend(before, report,
-      monitor.Part(1.0 - std::pow(0.5, k), 1.0 - std::pow(0.5, k + 1)));
+    objective = this->Descend(
+      before, report, monitor.Part(1.0 - std::pow(0.5, k), 1.0 - std::pow(0.5, k + 1)));
     if (before - objective <= little * (start - objective))
     {
       return;
@@ -354,38 +358,37 @@ void HarmonicMap::FindDamping()
 
 SolveReport HarmonicMap::SolveInTangentSpaces(const Monitor& monitor)
 {
-  constexpr int patience = 300; // iterations, after which a factor is cheaper
-  const bool fallBack = this->Options.Method == Preconditioner::Automatic;
-  IterationLimits limits = this->Options.Limits;
-  SolveReport first;
-  if (this->Options.Method != Preconditioner::Factor)
-  {
-    if (fallBack)
-    {
-      limits.MaximumNumberOfIterations = std::min(limits.MaximumNumberOfIterations, patience);
-    }
-    first = this->Tangent.Solve(this->Matrix, this->Previous, this->Data.Fixed,
-      this->RightHandSide, this->Step, nullptr, limits, monitor.Part(0.0, 0.5));
-    if (first.Converged)
-    {
-      return first;
-    }
-    if (!fallBack)
-    {
-      throw NotConverged(first);
-    }
-  }
-  this->Solver->SetMatrix(this->Matrix, monitor.Part(0.5, 0.8));
-  this->Solver->SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
-  SolveReport report =
-    this->Tangent.Solve(this->Matrix, this->Previous, this->Data.Fixed, this->RightHandSide,
-      this->Step, this->Solver.get(), this->Options.Limits, monitor.Part(0.8, 1.0));
-  if (!report.Converged)
+  const bool jacobiAlone = this->Options.Method == Preconditioner::Jacobi;
+  const bool factor = this->Options.Method == Preconditioner::Factor;
+  SolveReport report = this->TrySolve(factor, this->Step, monitor.Part(0.0, 0.5));
+  if (!report.Converged && jacobiAlone)
   {
     throw NotConverged(report);
   }
-  report.Iterations += first.Iterations;
+  if (!report.Converged)
+  {
+    // Where triangles are so bad that neither gets there, the better of the two is a step too.
+    const SolveReport other = this->TrySolve(!factor, this->Other, monitor.Part(0.5, 1.0));
+    if (other.Residual < report.Residual)
+    {
+      report.Residual = other.Residual;
+      this->Step.swap(this->Other);
+    }
+    report.Iterations += other.Iterations;
+  }
   return report;
+}
+
+SolveReport HarmonicMap::TrySolve(bool factor, Values& step, const Monitor& monitor)
+{
+  if (factor)
+  {
+    this->Solver->SetMatrix(this->Matrix, monitor.Part(0.0, 0.5));
+    this->Solver->SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
+  }
+  return this->Tangent.Solve(this->Matrix, this->Previous, this->Data.Fixed, this->RightHandSide,
+    step, factor ? this->Solver.get() : nullptr, this->Options.Limits,
+    factor ? monitor.Part(0.5, 1.0) : monitor);
 }
 
 } // namespace SurfaceDiffusion

@@ -35,8 +35,9 @@ namespace SurfaceDiffusion
 ///   conjugate gradients started at x = 0.
 /// - |u_i + x_i| >= 1, and where both ends are at least 1 long, normalising brings neither two
 ///   vectors nor a vector and another's opposite further apart. With a_ij the entries of K(g),
-///   unit vectors have Q = 1/2 sum over edges of |a_ij| |u_i + sign(a_ij) u_j|^2 + const: normalising
-///   cannot raise that sum. So for a_ij <= 0 (no obtuse angles) the step is proven as it stands.
+///   unit vectors have Q = 1/2 sum over edges of |a_ij| |u_i + sign(a_ij) u_j|^2 + const:
+///   normalising cannot raise that sum. So for a_ij <= 0 (no obtuse angles) the step is proven as
+///   it stands.
 /// - Where some a_ij > 0, the sum differs from Q off the sphere by sum of 1/2 D_i |x_i|^2, with
 ///   D_i = sum of |a_ij| over j other than i, less a_ii: what K lacks in diagonal dominance. A step
 ///   with D > 0 added to the matrix does not raise the sum, and is proven again. As D slows down
@@ -62,11 +63,14 @@ public:
     MinimizingMovement
   };
 
-  /// What speeds up the conjugate gradients of the tangent spaces.
+  /// What speeds up the conjugate gradients of the tangent spaces. Factor is the factorised matrix
+  /// that does not know the tangent spaces: good on smooth maps at large steps, while on noise
+  /// Jacobi is never far behind. One that does not converge is followed by the other, and where
+  /// neither does, the step is as exact as the report says; Jacobi alone throws NotConverged.
   enum class Preconditioner
   {
-    Automatic, ///< Jacobi and, where that fails, Factor
-    Factor,    ///< the factorised M + dt K, for large steps
+    Automatic, ///< Jacobi first
+    Factor, ///< Factor first
     Jacobi
   };
 
@@ -74,11 +78,11 @@ public:
   {
     double TimeStep = 1.0; ///< in LengthUnit()^p
     double Exponent = 1.0; ///< p in [1, 2]
-    double Beta = 1e-6;    ///< in 1/LengthUnit()^2; > 0, or 0 where p = 2
+    double Beta = 1e-6; ///< in 1/LengthUnit()^2; > 0, or 0 where p = 2
     double Fidelity = 0.0; ///< lambda, in 1/LengthUnit()^p
     Scheme TimeScheme = Scheme::TangentPlane;
     bool ConsistentReaction = false; ///< of ExplicitReaction
-    bool ProjectToSphere = true;     ///< normalise after each step
+    bool ProjectToSphere = true; ///< normalise after each step
     bool LineField = false;
     double LargestDiffusivity = 1.0; ///< d of anisotropic coefficients
     Preconditioner Method = Preconditioner::Automatic;
@@ -86,7 +90,7 @@ public:
   };
 
   /// data: unit vectors (see PrepareUnitVectors). solver: kept by the caller from run to run; of
-  /// ExplicitReaction any, otherwise a direct one, used as Preconditioner says.
+  /// ExplicitReaction any, otherwise a direct one.
   HarmonicMap(std::shared_ptr<const Assembler> assembler, EdgeValues coefficients, PointData data,
     const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());
@@ -106,16 +110,14 @@ private:
   void MinimizingMovementStep(StepReport& report, const Monitor& monitor);
   double Descend(double objective, StepReport& report, const Monitor& monitor);
   SolveReport SolveInTangentSpaces(const Monitor& monitor);
+  SolveReport TrySolve(bool factor, Values& step, const Monitor& monitor);
   void FindDamping();
   void ProjectToSphere();
   double Objective() const;
   double GradientSquare(Index t, double* signs) const;
   double Weight(double square) const;
   double EnergyDensity(double square) const;
-  double FidelityAt(Index i) const
-  {
-    return this->Data.Missing[i] ? 0.0 : this->Options.Fidelity;
-  }
+  double FidelityAt(Index i) const { return this->Data.Missing[i] ? 0.0 : this->Options.Fidelity; }
   double SignOfGiven(Index i) const
   {
     return this->Options.LineField && this->Data.Given.row(i).dot(this->U.row(i)) < 0.0 ? -1.0
@@ -131,11 +133,11 @@ private:
   TangentSolver Tangent;
   SparseMatrix Matrix;
   Vector Diagonal; ///< (1 + lambda dt 1_D) M
-  Vector Damping;  ///< D, times dt
+  Vector Damping; ///< D, times dt
   Vector Weights, Squares; ///< g and |grad u|^2 per triangle
-  EdgeValues Signs;        ///< of line fields
-  Values Load;             ///< what fixed neighbours give to the right-hand side
-  Values U, Previous, Anchor, RightHandSide, Step;
+  EdgeValues Signs; ///< of line fields
+  Values Load; ///< what fixed neighbours give to the right-hand side
+  Values U, Previous, Anchor, RightHandSide, Step, Other;
 };
 
 } // namespace SurfaceDiffusion

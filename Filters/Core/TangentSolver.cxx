@@ -73,12 +73,12 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
   const Index* inner = matrix.innerIndexPtr();
 
   // The residual is measured as in LinearSolver: in the norm of diag(A)^-1, whatever preconditions.
-  const double whole = Sum(this->Parallel, n,
+  const double whole = Sum(this->Parallel, n, // the same of diag(A) u
     [&](Index i)
     {
       const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
       this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[slot];
-      return this->InverseDiagonal[i] * Row<K>(b, i).squaredNorm();
+      return matrix.valuePtr()[slot] * Row<K>(u, i).squaredNorm();
     });
   const double start = Sum(this->Parallel, n,
     [&](Index i)
@@ -93,7 +93,7 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
   }
 
   const double target = limits.Tolerance * limits.Tolerance;
-  const double roundOff = 1e-30 * whole; // of b itself: nothing smaller means anything
+  const double roundOff = 1e-30 * whole; // of b, which comes from A u: less means nothing
   SolveReport report;
   double left = start;
   double rho = 0.0;
@@ -108,8 +108,7 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
     rho = this->Precondition<K>(preconditioner, u, fixed);
     const double beta = previous > 0.0 ? rho / previous : 0.0;
     ForEach(this->Parallel, n,
-      [&](Index i)
-      { Row<K>(this->P, i) = Row<K>(this->Z, i) + beta * Row<K>(this->P, i); });
+      [&](Index i) { Row<K>(this->P, i) = Row<K>(this->Z, i) + beta * Row<K>(this->P, i); });
     Multiply(matrix, this->P, this->Q, this->Parallel);
     const double curvature = Sum(this->Parallel, n,
       [&](Index i)
@@ -133,8 +132,7 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
       });
     if (++report.Iterations % 8 == 0)
     {
-      monitor.Report(
-        std::min(0.99, std::max(0.0, std::log(left / start) / std::log(target))));
+      monitor.Report(std::min(0.99, std::max(0.0, std::log(left / start) / std::log(target))));
     }
   }
   report.Residual = start > 0.0 ? std::sqrt(left / start) : 0.0;

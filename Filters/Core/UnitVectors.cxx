@@ -12,8 +12,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// A mean shorter than this tells nothing about where the vectors point.
-constexpr double Undecided = 0.01;
+/// A mean shorter than this tells little about where the vectors point, and can mislead: that of
+/// the normals of a closed surface with a hole points away from the hole.
+constexpr double Undecided = 0.5;
 
 /// The direction that prevails among the known vectors of the vertices begin .. end; zero where
 /// there is none.
@@ -40,8 +41,7 @@ Eigen::RowVectorXd PrevailingDirection(
   if (lineField && area > 0.0)
   {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(tensor);
-    const bool decided =
-      axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > Undecided * area;
+    const bool decided = axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > Undecided * area;
     sum = decided ? Eigen::RowVectorXd(axes.eigenvectors().col(m - 1).transpose())
                   : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(m));
   }
@@ -136,13 +136,17 @@ void PrepareUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineFiel
     const Eigen::RowVectorXd mean = PrevailingDirection(mesh, data, lineField, begin, end);
     for (Index i = begin; i < end; ++i)
     {
-      const bool filled = fill == InitialFill::Noise ||
-        (fill == InitialFill::Input && !undirected[i]);
-      if (data.Missing[i] && !filled)
+      const bool directed = fill == InitialFill::Input && !undirected[i]; // a unit vector already
+      if (!data.Missing[i] || directed)
+      {
+        known[i] = true;
+        continue;
+      }
+      if (fill != InitialFill::Noise)
       {
         data.Start.row(i) = mean;
       }
-      known[i] = known[i] || Normalize(data.Start.row(i));
+      known[i] = Normalize(data.Start.row(i));
     }
     SpreadInwards(mesh, data.Start, known, lineField, begin, end);
   }

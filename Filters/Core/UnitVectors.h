@@ -34,7 +34,7 @@ bool Normalize(Row&& row)
 /// Make the data of a harmonic map from vectors of any length: Given is normalised where it is
 /// known; vectors without a direction (zero or NaN) become missing, and Start is filled there:
 /// - Mean: the normalised mean of the known vectors of the connected component (of lines: the main
-///   axis of the sum of u u^T). Where no direction prevails (the mean is shorter than 1/100, as of
+///   axis of the sum of u u^T). Where no direction prevails (the mean is shorter than 1/2, as of
 ///   the normals of a closed surface) the rim of the hole spreads inwards instead;
 /// - Input: the vectors themselves, Mean where they have no direction;
 /// - Noise: random directions, each component uniform between the smallest and largest known value.
