@@ -130,10 +130,11 @@ private:
         return false;
       }
       const Vector diagonal = this->Matrix.diagonal();
+      const Vector pivots = this->Decomposition.vectorD(); // a copy: not for each row anew
       const auto& place = this->Decomposition.permutationP().indices();
       for (Eigen::Index i = 0; i < diagonal.size(); ++i)
       {
-        if (!(this->Decomposition.vectorD()[place[i]] > bound * std::abs(diagonal[i])))
+        if (!(pivots[place[i]] > bound * std::abs(diagonal[i])))
         {
           return false;
         }
