@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the plugin share: a surface in a file, and the errors of a filter."""
+
+import math
+import random
+
+from paraview import servermanager
+from paraview.simple import XMLPolyDataReader
+from paraview.vtk import vtkDoubleArray, vtkStringArray, vtkUnsignedCharArray
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.vtkConstants import VTK_STRING
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+GARBAGE = 1000.0  # what the damaged values are
+
+
+def add_array(attributes, name, values, array=None):
+    """Add values, numbers or tuples of numbers, as an array."""
+    array = array or vtkDoubleArray()
+    array.SetName(name)
+    tuples = [value if isinstance(value, tuple) else (value,) for value in values]
+    array.SetNumberOfComponents(len(tuples[0]))
+    array.SetNumberOfTuples(len(tuples))
+    for i, value in enumerate(tuples):
+        array.SetTuple(i, value)
+    attributes.AddArray(array)
+    return array
+
+
+def write_sphere(path, centre=(0.0, 0.0, 0.0)):
+    """A sphere of radius 1 with arrays, among them `noisy`, the smooth `clean` with noise."""
+    source = vtkSphereSource()
+    source.SetRadius(1.0)
+    source.SetThetaResolution(64)
+    source.SetPhiResolution(64)
+    source.SetCenter(*centre)
+    source.Update()
+    sphere = source.GetOutput()
+    points = [
+        tuple(x - c for x, c in zip(sphere.GetPoint(i), centre))
+        for i in range(sphere.GetNumberOfPoints())
+    ]
+    data = sphere.GetPointData()
+    noise = random.Random(1)
+    clean = [z for _, _, z in points]
+    noisy = [value + noise.uniform(-0.3, 0.3) for value in clean]
+    hole = [int(x > 0.8) for x, _, _ in points]
+    add_array(data, "clean", clean)
+    data.SetScalars(add_array(data, "noisy", noisy))
+    add_array(data, "damaged", [GARBAGE if h else v for v, h in zip(noisy, hole)])
+    add_array(data, "hole", hole, vtkUnsignedCharArray())
+    add_array(data, "poles", [int(abs(z) > 0.95) for _, _, z in points], vtkUnsignedCharArray())
+    add_array(data, "east", [(-y, x, 0.0) for x, y, _ in points])
+    add_array(data, "pair", [(x, y) for x, y, _ in points])
+    names = vtkStringArray()
+    names.SetName("names")
+    for _ in points:
+        names.InsertNextValue("point")
+    data.AddArray(names)
+    add_array(sphere.GetCellData(), "up", [(0.0, 0.0, 1.0)] * sphere.GetNumberOfCells())
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(path)
+    writer.SetInputData(sphere)
+    writer.SetDataModeToBinary()  # appended data do not pass through every expat
+    assert writer.Write()
+
+
+def read_sphere(path, **arguments):
+    """A reader of such a sphere, up to date, as it is after Apply."""
+    write_sphere(path, **arguments)
+    reader = XMLPolyDataReader(FileName=[path])
+    reader.UpdatePipeline()
+    return reader
+
+
+def values(source, name, port=0):
+    """The values of a point array, or of a table's column, as a list of floats."""
+    output = servermanager.Fetch(source, idx=port)
+    kind = vtkDataObject.ROW if output.IsA("vtkTable") else vtkDataObject.POINT
+    array = output.GetAttributes(kind).GetArray(name)
+    if array is None:
+        return None
+    return [array.GetComponent(i, 0) for i in range(array.GetNumberOfTuples())]
+
+
+def root_mean_square(a, b):
+    """Of the difference of two lists."""
+    return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / len(a))
+
+
+def errors_of(source):
+    """The list that the errors of a filter are added to from now on, in place of the terminal."""
+    errors = []
+
+    @calldata_type(VTK_STRING)
+    def remember(_object, _event, text):
+        errors.append(text)
+
+    source.GetClientSideObject().AddObserver("ErrorEvent", remember)
+    return errors
