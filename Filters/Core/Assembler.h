@@ -10,7 +10,8 @@
 namespace SurfaceDiffusion
 {
 
-/// Turns coefficients per triangle into the matrices of (8), (11) and (14). The pattern and the map
+/// Turns coefficients per triangle into the matrices of (8), (11) and (14): what is left of the
+/// integrals of an equation over the control cells (5). The pattern and the map
 /// from triangles to its slots are made once; filling in values is then one pass over the
 /// triangles, gathered row by row: no two threads write one entry, the order of every sum is fixed,
 /// and the matrix is symmetric to the last bit.
@@ -26,8 +27,8 @@ public:
   /// A matrix of the pattern, all zero: a vertex and its neighbours, sorted.
   const SparseMatrix& Pattern() const { return this->Empty; }
 
-  /// matrix = diag(d) + scale K, with (K u)_i = -sum over triangles and j of c_ij u_j, rows summing
-  /// to zero: (7) and (9), (12) summed over the triangles of D_1(i). `matrix` is a copy of
+  /// matrix = diag(d) + scale K, with (K u)_i = -sum over triangles and j of c_ij u_j (6), rows
+  /// summing to zero: (7) and (9), (12) summed over the triangles of D_1(i). `matrix` is a copy of
   /// Pattern(); weights, one per triangle, multiply the coefficients (g of (9)); none means 1.
   /// signs, +1 or -1, multiply those off the diagonal, for fields whose neighbours are compared up
   /// to the sign: the rows of K then give sum of c_ij (u_i - sign_ij u_j).

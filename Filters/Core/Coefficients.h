@@ -12,7 +12,7 @@ namespace SurfaceDiffusion
 /// -area grad(phi_i); so every coefficient is c_ij = -area grad(phi_i) . D grad(phi_j), symmetric,
 /// and entry (t, a) of an EdgeValues is that of the two corners other than a.
 
-/// Gradient of the linear function with these corner values (6), in the triangle's own axes.
+/// Gradient of the linear function with these corner values, in the triangle's own axes.
 inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double u1, double u2)
 {
   const double x = (u1 - u0) / s.Length;
