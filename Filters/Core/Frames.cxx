@@ -41,8 +41,7 @@ PlaneVectors MainAxes(const TriangleMesh& mesh, const Eigen::Ref<const Points>& 
     [&](Index t)
     {
       const Index input = mesh.InputTriangle()[t];
-      const auto axes = AxesInSpace(points.row(triangles(input, 0)), points.row(triangles(input, 1)),
-        points.row(triangles(input, 2)), mesh.LengthUnit());
+      const auto axes = TriangleAxes(mesh, points, triangles, t);
       const Eigen::Matrix3d tensor = tensorOf(input);
       const Eigen::Matrix2d plane = axes.transpose() * tensor * axes;
       // A vector that stands almost upright on the triangle gives no direction in it.
@@ -54,6 +53,14 @@ PlaneVectors MainAxes(const TriangleMesh& mesh, const Eigen::Ref<const Points>& 
 }
 
 } // namespace
+
+Eigen::Matrix<double, 3, 2> TriangleAxes(const TriangleMesh& mesh,
+  const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles, Index t)
+{
+  const Index input = mesh.InputTriangle()[t];
+  return AxesInSpace(points.row(triangles(input, 0)), points.row(triangles(input, 1)),
+    points.row(triangles(input, 2)), mesh.LengthUnit());
+}
 
 Eigen::RowVector2d MainAxis(double xx, double xy, double yy)
 {
@@ -94,6 +101,20 @@ PlaneVectors FramesFromPointVectors(const TriangleMesh& mesh,
       }
       return tensor;
     });
+}
+
+Points VectorsFromFrames(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
+  const Eigen::Ref<const Triangles>& triangles, const Eigen::Ref<const PlaneVectors>& frames,
+  const ParallelFor& parallel)
+{
+  Points vectors = Points::Zero(triangles.rows(), 3);
+  ForEach(parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      vectors.row(mesh.InputTriangle()[t]) =
+        (TriangleAxes(mesh, points, triangles, t) * frames.row(t).transpose()).transpose();
+    });
+  return vectors;
 }
 
 } // namespace SurfaceDiffusion

@@ -11,11 +11,11 @@ namespace SurfaceDiffusion
 /// e2 is e1 turned by 90 degrees. (0, 0) where there is no direction: isotropic there. The sign
 /// does not matter anywhere.
 ///
+/// All that take points and triangles take those that the mesh was made from.
+
 /// Main axis of the symmetric tensor (xx xy; xy yy), such as a sum of d d^T; zero where there is
 /// none.
 Eigen::RowVector2d MainAxis(double xx, double xy, double yy);
-
-/// Both take the points and triangles that the mesh was made from.
 
 /// From one vector per input triangle: its projection into the triangle, normalised.
 PlaneVectors FramesFromTriangleVectors(const TriangleMesh& mesh,
@@ -27,5 +27,14 @@ PlaneVectors FramesFromTriangleVectors(const TriangleMesh& mesh,
 PlaneVectors FramesFromPointVectors(const TriangleMesh& mesh,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
   const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel = ParallelFor());
+
+/// The way back: one vector in space per input triangle, zero for those that are not in the mesh.
+Points VectorsFromFrames(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
+  const Eigen::Ref<const Triangles>& triangles, const Eigen::Ref<const PlaneVectors>& frames,
+  const ParallelFor& parallel = SerialFor());
+
+/// The axes of triangle t in space, as the columns of a 3 x 2 matrix.
+Eigen::Matrix<double, 3, 2> TriangleAxes(const TriangleMesh& mesh,
+  const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles, Index t);
 
 } // namespace SurfaceDiffusion
