@@ -92,6 +92,16 @@ TEST_P(WithSolver, SumIsKeptAtAnyOffsetOfTheData)
   EXPECT_LT(Drift(assembler->Mesh(), start, heat->State()), 1e-12);
 }
 
+TEST_P(WithSolver, SumIsKeptOverManySteps)
+{
+  const auto assembler = MakeAssembler(Icosphere(1));
+  const Values start = Noise(assembler->Mesh());
+  const auto heat = MakeHeat(assembler, PointData::FromValues(start),
+    HeatSettings(assembler->Mesh(), 1e-5), GetParam().Make());
+  Advance(*heat, 20000);
+  EXPECT_LT(Drift(assembler->Mesh(), start, heat->State()), 1e-14);
+}
+
 TEST_P(WithSolver, InpaintingWithoutFidelityKeepsTheSum)
 {
   const auto assembler = MakeAssembler(Icosphere(3));

@@ -176,6 +176,17 @@ TEST(Trajectory, AnAbortInsideAStepGoesBackToAKnownState)
   EXPECT_EQ(trajectory.State()(0, 0), 3.0);
 }
 
+TEST(Trajectory, AnAbortBetweenCheckpointsGoesBackToOne)
+{
+  Trajectory trajectory(NoMesh(), std::make_unique<Counter>(), 4 * sizeof(double));
+  trajectory.Seek(11); // kept: 0, 4, 8
+  const Monitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(trajectory.Seek(15, Monitor(stop)), Aborted);
+  EXPECT_EQ(trajectory.State()(0, 0), trajectory.Step());
+  trajectory.Seek(15);
+  EXPECT_EQ(trajectory.State()(0, 0), 15.0);
+}
+
 TEST(Trajectory, AFailedSolveLeavesItUsable)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
