@@ -35,6 +35,9 @@ const char* TextOf(int value, const char* const (&texts)[N])
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
+/// The history has a row for each.
+constexpr int LargestNumberOfTimeSteps = 1000000000;
+
 /// More published times than this are a mistake: each is a number the whole pipeline carries.
 constexpr double LargestNumberOfPublishedTimes = 1e6;
 
@@ -108,8 +111,8 @@ void vtkSurfaceDiffusionAlgorithm::CheckProperties(Problems& problems)
   const auto oneOf = [](int value, int count) { return value >= 0 && value < count; };
   const char* const finite = "finite numbers, 0 or more";
   Require(positive(this->TimeStep), "TimeStep", this->TimeStep, "finite numbers above 0", problems);
-  Require(this->NumberOfTimeSteps >= 0, "NumberOfTimeSteps", this->NumberOfTimeSteps,
-    "0 or more", problems);
+  Require(this->NumberOfTimeSteps >= 0 && this->NumberOfTimeSteps <= LargestNumberOfTimeSteps,
+    "NumberOfTimeSteps", this->NumberOfTimeSteps, "0 to 1000000000", problems);
   Require(this->OutputInterval >= 1, "OutputInterval", this->OutputInterval, "1 or more", problems);
   if (this->GenerateTimeSteps && this->OutputInterval >= 1)
   {
@@ -152,8 +155,11 @@ bool vtkSurfaceDiffusionAlgorithm::FindArrays(
   arrays.Fixed = inputs.FindOnPoints(3, "FixedArray", 1);
   if (!arrays.Direction && this->AlongDiffusivity != this->AcrossDiffusivity)
   {
-    problems.emplace_back("AlongDiffusivity and AcrossDiffusivity differ but DirectionArray is "
-                          "not set; allowed: equal values, or an array of directions");
+    std::ostringstream text;
+    text << "AlongDiffusivity is " << this->AlongDiffusivity << " and AcrossDiffusivity is "
+         << this->AcrossDiffusivity << " but DirectionArray is not set; allowed: equal values, or "
+         << "an array of directions";
+    problems.push_back(text.str());
   }
   return arrays.Data != nullptr;
 }
@@ -295,6 +301,10 @@ int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
     if (info->Has(Pipeline::TIME_STEPS()) && info->Length(Pipeline::TIME_STEPS()) > 0)
     {
       info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_STEPS())[0]);
+    }
+    else if (info->Has(Pipeline::TIME_RANGE()))
+    {
+      info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_RANGE())[0]);
     }
     else
     {

@@ -72,7 +72,7 @@ public:
 
   ///@{
   /**
-   * The number of time steps n: there are n + 1 states, from the initial one on. 0 or more.
+   * The number of time steps n: there are n + 1 states, from the initial one on. 0 to 1e9.
    * Default: 10.
    */
   vtkSetMacro(NumberOfTimeSteps, int);
