@@ -110,22 +110,22 @@ PointData ReadPointData(const PolyDataSurface& surface, vtkDataArray* array, vtk
   std::vector<Index> known(n, 0);
   for (vtkIdType i = 0; i < static_cast<vtkIdType>(values.rows()); ++i)
   {
+    const double* tuple = values.row(i).data();
+    if (std::any_of(tuple, tuple + components, [](double x) { return std::isinf(x); }))
+    {
+      throw PointError("InputArray", array, i, "is infinite", "allowed: finite values and NaN");
+    }
     const Index v = surface.PointToVertex[i];
     if (v < 0)
     {
       continue;
-    }
-    const double* tuple = values.row(i).data();
-    if (std::any_of(tuple, tuple + components, [](double x) { return std::isinf(x); }))
-    {
-      throw PointError("InputArray", array, i, "is infinite", "finite values and NaN are allowed");
     }
     const bool isFixed = IsSet(fixed, i);
     const bool isNaN = HasNaN(tuple, components);
     if (isFixed && isNaN)
     {
       throw PointError(
-        "InputArray", array, i, "is NaN where FixedArray holds it", "fixed values must be finite");
+        "InputArray", array, i, "is NaN where FixedArray holds it", "allowed there: finite values");
     }
     data.Fixed[v] = data.Fixed[v] || isFixed;
     damaged.row(v) = values.row(i) / unit;
