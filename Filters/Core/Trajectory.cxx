@@ -91,13 +91,19 @@ void Trajectory::Reserve(Index steps)
   this->Totals.reserve(rows * static_cast<std::size_t>(this->State().cols()));
 }
 
-void Trajectory::Seek(Index step, const Monitor& monitor)
+Index Trajectory::NumberOfStepsTo(Index step) const
 {
   const Index kept = this->Checkpoints.LatestAtOrBefore(step);
-  if (this->Current > step || this->Current < kept)
+  return step - (this->Current > step ? kept : std::max(kept, this->Current));
+}
+
+void Trajectory::Seek(Index step, const Monitor& monitor)
+{
+  const Index from = step - this->NumberOfStepsTo(step);
+  if (this->Current != from)
   {
-    this->Model->Restore(this->Checkpoints.At(kept));
-    this->Current = kept;
+    this->Model->Restore(this->Checkpoints.At(from));
+    this->Current = from;
   }
   const Index first = this->Current;
   const double count = std::max(1, step - first);

@@ -62,6 +62,9 @@ public:
   /// Announce that steps up to this one may be asked for.
   void Reserve(Index steps);
 
+  /// How many steps Seek() would compute.
+  Index NumberOfStepsTo(Index step) const;
+
   /// Move to `step`. Throws Aborted or std::runtime_error, after which any Seek() still works.
   void Seek(Index step, const Monitor& monitor = Monitor());
 

@@ -11,6 +11,8 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -50,13 +52,20 @@ void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& 
   table->AddColumn(column);
 }
 
-/// One vector per row of `count`.
-Points ReadVectors(vtkDataArray* array)
+/// One vector per row.
+Points ReadDirections(vtkDataArray* array)
 {
   Points vectors(array->GetNumberOfTuples(), 3);
   for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
   {
     array->GetTuple(i, vectors.row(i).data());
+    if (vectors.row(i).array().isInf().any())
+    {
+      std::ostringstream text;
+      text << "DirectionArray \"" << (array->GetName() ? array->GetName() : "")
+           << "\" is infinite at tuple " << i << "; allowed: finite values and NaN";
+      throw std::runtime_error(text.str());
+    }
   }
   return vectors;
 }
@@ -65,7 +74,7 @@ Points ReadVectors(vtkDataArray* array)
 PlaneVectors ReadFrames(
   const PolyDataSurface& surface, const BlockArrays& arrays, const ParallelFor& parallel)
 {
-  const Points vectors = ReadVectors(arrays.Direction);
+  const Points vectors = ReadDirections(arrays.Direction);
   if (!arrays.DirectionOnCells)
   {
     return FramesFromPointVectors(
@@ -112,6 +121,7 @@ vtkSurfaceDiffusionAlgorithm::Execution::Execution(
   }
   compositeOutput->CopyStructure(compositeInput);
   compositeOutput->GetFieldData()->ShallowCopy(compositeInput->GetFieldData());
+  output->GetInformation()->CopyEntry(input->GetInformation(), vtkDataObject::DATA_TIME_STEP());
   auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(compositeInput->NewIterator());
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
@@ -150,19 +160,23 @@ bool vtkSurfaceDiffusionAlgorithm::Execution::Check()
   {
     problems.emplace_back("the input has no polygons or strips; a surface is needed");
   }
-  Problems ofArrays;
+  Problems ofBlocksWithoutData;
   std::vector<Block> withData;
   for (Block& block : this->Blocks)
   {
-    if (this->Filter.FindArrays(block.Input, block.Arrays, ofArrays))
+    Problems ofArrays;
+    const bool hasData = this->Filter.FindArrays(block.Input, block.Arrays, ofArrays);
+    Problems& found = hasData ? problems : ofBlocksWithoutData;
+    found.insert(found.end(), ofArrays.begin(), ofArrays.end());
+    if (hasData)
     {
       withData.push_back(block);
     }
   }
-  // Blocks without the arrays pass through as long as one has them.
-  if (withData.empty() || this->Blocks.size() == 1)
+  // Blocks without data pass through as long as one has them.
+  if (withData.empty())
   {
-    problems.insert(problems.end(), ofArrays.begin(), ofArrays.end());
+    problems.insert(problems.end(), ofBlocksWithoutData.begin(), ofBlocksWithoutData.end());
   }
   this->Blocks.swap(withData);
   if (!problems.empty())
@@ -182,21 +196,26 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
   {
     reported = std::max(reported, fraction);
     this->Filter.UpdateProgress(reported);
-    return !this->Filter.GetAbortExecute();
+    return !this->IsAborted();
   };
   const Monitor monitor(callback);
   try
   {
     this->MakeSurfaces(monitor.Part(0.0, 0.15));
+    monitor.Report(0.15);
     this->MeasureUnits();
     this->MakeRuns(monitor.Part(0.15, 0.25));
-    this->Seek(step, monitor.Part(0.25, 0.95));
+    monitor.Report(0.25);
+    // Where at most one step is left to do, to write the result is much of the work.
+    const double written = this->NumberOfStepsTo(step) > 1 ? 0.95 : 0.7;
+    this->Seek(step, monitor.Part(0.25, written));
+    monitor.Report(written); // the last chance to abort: from here on the output changes
     for (const Block& block : this->Blocks)
     {
       this->Filter.WriteResult(*block.Run, block.Arrays, block.Output);
     }
     this->WriteHistory(step, history);
-    monitor.Report(1.0);
+    this->Filter.UpdateProgress(1.0);
     if (this->MadeAnything) // playing time tells nothing anew
     {
       this->Warn();
@@ -216,6 +235,16 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
     this->Filter.Runs.clear();
     vtkErrorWithObjectMacro(&this->Filter, << error.what());
   }
+}
+
+bool vtkSurfaceDiffusionAlgorithm::Execution::IsAborted()
+{
+  bool aborted = this->Filter.GetAbortExecute() != 0;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  aborted = aborted || this->Filter.CheckAbort(); // asks containers and the filters upstream too
+  this->Filter.SetAbortOutput(false); // the executive would empty the output
+#endif
+  return aborted;
 }
 
 void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurfaces(const Monitor& monitor)
@@ -402,6 +431,16 @@ std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Execution::FindSolve
   limits.MaximumNumberOfIterations = this->Filter.MaximumNumberOfIterations;
   solver->SetLimits(limits);
   return solver;
+}
+
+Index vtkSurfaceDiffusionAlgorithm::Execution::NumberOfStepsTo(int step) const
+{
+  Index most = 0;
+  for (const Block& block : this->Blocks)
+  {
+    most = std::max(most, block.Run->Path->NumberOfStepsTo(step));
+  }
+  return most;
 }
 
 void vtkSurfaceDiffusionAlgorithm::Execution::Seek(int step, const Monitor& monitor)

@@ -44,6 +44,9 @@ private:
   void MakeRun(Block& block, const SurfaceDiffusion::Monitor& monitor);
   std::shared_ptr<SurfaceDiffusion::LinearSolver> FindSolver(
     SurfaceRun& run, const std::string& name, const SurfaceDiffusion::SolverTask& task);
+  bool IsAborted();
+  /// How many steps have to be computed to be there.
+  SurfaceDiffusion::Index NumberOfStepsTo(int step) const;
   void Seek(int step, const SurfaceDiffusion::Monitor& monitor);
   void WriteHistory(int step, vtkTable* history);
   bool MaskChangesNothing() const;
