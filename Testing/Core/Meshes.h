@@ -125,12 +125,12 @@ inline Surface Icosphere(int subdivisions, double radius = 1.0)
 {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
   std::vector<Eigen::RowVector3d> vertices = { { -1, g, 0 }, { 1, g, 0 }, { -1, -g, 0 },
-    { 1, -g, 0 }, { 0, -1, g }, { 0, 1, g }, { 0, -1, -g }, { 0, 1, -g }, { g, 0, -1 },
-    { g, 0, 1 }, { -g, 0, -1 }, { -g, 0, 1 } };
-  std::vector<std::array<Index, 3>> faces = { { 0, 11, 5 }, { 0, 5, 1 }, { 0, 1, 7 },
-    { 0, 7, 10 }, { 0, 10, 11 }, { 1, 5, 9 }, { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 },
-    { 7, 1, 8 }, { 3, 9, 4 }, { 3, 4, 2 }, { 3, 2, 6 }, { 3, 6, 8 }, { 3, 8, 9 }, { 4, 9, 5 },
-    { 2, 4, 11 }, { 6, 2, 10 }, { 8, 6, 7 }, { 9, 8, 1 } };
+    { 1, -g, 0 }, { 0, -1, g }, { 0, 1, g }, { 0, -1, -g }, { 0, 1, -g }, { g, 0, -1 }, { g, 0, 1 },
+    { -g, 0, -1 }, { -g, 0, 1 } };
+  std::vector<std::array<Index, 3>> faces = { { 0, 11, 5 }, { 0, 5, 1 }, { 0, 1, 7 }, { 0, 7, 10 },
+    { 0, 10, 11 }, { 1, 5, 9 }, { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 }, { 7, 1, 8 }, { 3, 9, 4 },
+    { 3, 4, 2 }, { 3, 2, 6 }, { 3, 6, 8 }, { 3, 8, 9 }, { 4, 9, 5 }, { 2, 4, 11 }, { 6, 2, 10 },
+    { 8, 6, 7 }, { 9, 8, 1 } };
   for (auto& v : vertices)
   {
     v *= radius / v.norm();
@@ -140,8 +140,7 @@ inline Surface Icosphere(int subdivisions, double radius = 1.0)
     std::map<std::pair<Index, Index>, Index> middles;
     const auto middle = [&](Index a, Index b)
     {
-      const auto found =
-        middles.emplace(std::minmax(a, b), static_cast<Index>(vertices.size()));
+      const auto found = middles.emplace(std::minmax(a, b), static_cast<Index>(vertices.size()));
       if (found.second)
       {
         const Eigen::RowVector3d sum = vertices[a] + vertices[b];
@@ -344,8 +343,7 @@ inline Surface ThreeFins(Index cells)
       {
         const double x = static_cast<double>(i) / cells;
         const double y = static_cast<double>(j) / cells;
-        number.push_back(
-          j == 0 && fin > 0 ? i : static_cast<Index>(vertices.size()));
+        number.push_back(j == 0 && fin > 0 ? i : static_cast<Index>(vertices.size()));
         if (number.back() == static_cast<Index>(vertices.size()))
         {
           vertices.emplace_back(x, y * std::cos(angle), y * std::sin(angle));

@@ -22,8 +22,8 @@ Values DiffuseAlong(const Surface& s, const Points& directions, double g1, doubl
   const TriangleMesh& mesh = assembler->Mesh();
   const PlaneVectors frames = FramesFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
   const EdgeValues c = AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), frames, g1, g2);
-  LinearDiffusion heat(assembler, c, PointData::FromValues(start),
-    HeatSettings(mesh, time / steps), MakeCholeskySolver());
+  LinearDiffusion heat(assembler, c, PointData::FromValues(start), HeatSettings(mesh, time / steps),
+    MakeCholeskySolver());
   Advance(heat, steps);
   return heat.State();
 }
@@ -48,9 +48,8 @@ TEST(AnisotropicDiffusion, ModesOfACylinderDecayAtTheirOwnRates)
       const Surface upright = Cylinder(2 * along, along, radius, length);
       const Surface s = Rotated(upright);
       const auto mesh = MakeMesh(s);
-      const Points axis =
-        Rotated({ Eigen::RowVector3d(0, 0, -1), Triangles() }).Vertices.replicate(
-          s.NumberOfTriangles(), 1);
+      const Points axis = Rotated({ Eigen::RowVector3d(0, 0, -1), Triangles() })
+                            .Vertices.replicate(s.NumberOfTriangles(), 1);
       const Values start = Sample(*mesh, upright,
         [&](const Eigen::RowVector3d& p)
         { return std::cos(k * p[2]) * std::cos(n * std::atan2(p[1], p[0])); });
@@ -61,8 +60,8 @@ TEST(AnisotropicDiffusion, ModesOfACylinderDecayAtTheirOwnRates)
       if (coarser > 0.0)
       {
         const double order = ObservedOrder(coarser, error);
-        std::printf("k %d, n %d, %d rows: error %.2e, order in h %.3f\n", mode[0], n, along, error,
-          order);
+        std::printf(
+          "k %d, n %d, %d rows: error %.2e, order in h %.3f\n", mode[0], n, along, error, order);
         EXPECT_NEAR(order, 2.0, 0.1);
       }
       coarser = error;
@@ -77,13 +76,12 @@ TEST(AnisotropicDiffusion, GaussianSpreadsByTwiceGTimesTheTimeAlongEachAxis)
   const auto mesh = MakeMesh(s);
   const Eigen::RowVector3d e1 = Eigen::RowVector3d(2.0, 1.0, 0.0).normalized();
   const Eigen::RowVector3d e2(-e1[1], e1[0], 0.0);
-  const Values start = Sample(
-    *mesh, s, [](const Eigen::RowVector3d& p) { return std::exp(-p.squaredNorm() / 0.5); });
+  const Values start =
+    Sample(*mesh, s, [](const Eigen::RowVector3d& p) { return std::exp(-p.squaredNorm() / 0.5); });
   const double g1 = 1.0;
   const double g2 = 0.2;
   const double time = 0.5;
-  const Values u = DiffuseAlong(
-    s, e1.replicate(s.NumberOfTriangles(), 1), g1, g2, start, time, 10);
+  const Values u = DiffuseAlong(s, e1.replicate(s.NumberOfTriangles(), 1), g1, g2, start, time, 10);
   const auto moment = [&](const Values& v, const Eigen::RowVector3d& x, const Eigen::RowVector3d& y)
   {
     double sum = 0.0;
@@ -123,8 +121,8 @@ TEST(AnisotropicDiffusion, StrongAnisotropyStillConverges)
             std::sqrt(v1 * v2);
         });
     };
-    const Values u = DiffuseAlong(
-      s, e1.replicate(s.NumberOfTriangles(), 1), 1.0, 0.01, gaussian(0.0), time, 20);
+    const Values u =
+      DiffuseAlong(s, e1.replicate(s.NumberOfTriangles(), 1), 1.0, 0.01, gaussian(0.0), time, 20);
     const Values exact = gaussian(time);
     const double error = RootMeanSquare(*mesh, u - exact) / RootMeanSquare(*mesh, exact);
     if (coarser > 0.0)

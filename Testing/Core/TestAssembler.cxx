@@ -23,8 +23,8 @@ SparseMatrix WeightedMatrix(const Assembler& assembler, double diagonal, double 
     weights[t] = 0.1 + UniformRandom(3, 0, mesh.InputTriangle()[t]);
   }
   SparseMatrix matrix = assembler.Pattern();
-  assembler.Fill(matrix, diagonal * mesh.ControlAreas(), scale, IsotropicCoefficients(mesh),
-    weights.data());
+  assembler.Fill(
+    matrix, diagonal * mesh.ControlAreas(), scale, IsotropicCoefficients(mesh), weights.data());
   return matrix;
 }
 
@@ -67,8 +67,8 @@ TEST(Assembler, StiffnessMatrixIsPositiveSemidefinite)
   }
 }
 
-// (7): omega_ij = 1/2 (cot alpha_ij + cot beta_ij), here the diagonal of a rhombus with angles of 60
-// degrees opposite to it, and its sides on the boundary.
+// (7): omega_ij = 1/2 (cot alpha_ij + cot beta_ij), here the diagonal of a rhombus with angles of
+// 60 degrees opposite to it, and its sides on the boundary.
 TEST(Assembler, EntriesAreHalfTheSumOfOppositeCotangents)
 {
   const double h = std::sqrt(3.0);
@@ -111,8 +111,8 @@ TEST(Assembler, LinearFunctionsAreHarmonicInside)
   const TriangleMesh& mesh = assembler->Mesh();
   SparseMatrix k = assembler->Pattern();
   assembler->Fill(k, Vector::Zero(k.rows()), 1.0, IsotropicCoefficients(mesh));
-  const Values u = Sample(
-    mesh, s, [](const Eigen::RowVector3d& p) { return 2.0 * p[0] - 3.0 * p[1] + p[2]; });
+  const Values u =
+    Sample(mesh, s, [](const Eigen::RowVector3d& p) { return 2.0 * p[0] - 3.0 * p[1] + p[2]; });
   const Values flux = k * u;
   Flags boundary = Flags::Constant(mesh.NumberOfVertices(), false);
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)

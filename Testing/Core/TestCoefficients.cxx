@@ -57,8 +57,7 @@ TEST(Coefficients, GradientOfALinearFunctionIsExact)
   {
     const TriangleMesh::Shape shape = MakeMesh(s)->Shapes()[0];
     const auto f = [](double x, double y) { return 3.0 - 2.0 * x + 5.0 * y; };
-    const Plane g =
-      Gradient(shape, f(0, 0), f(shape.Length, 0), f(shape.X, shape.Y));
+    const Plane g = Gradient(shape, f(0, 0), f(shape.Length, 0), f(shape.X, shape.Y));
     EXPECT_NEAR(g[0], -2.0, 1e-9);
     EXPECT_NEAR(g[1], 5.0, 1e-9);
   }

@@ -41,9 +41,7 @@ void ExpectSameLines(const PlaneVectors& a, const PlaneVectors& b)
 Eigen::RowVector3d NormalOf(const Surface& s, Index t)
 {
   const Eigen::RowVector3d p = s.Vertices.row(s.Faces(t, 0));
-  return (s.Vertices.row(s.Faces(t, 1)) - p)
-    .cross(s.Vertices.row(s.Faces(t, 2)) - p)
-    .normalized();
+  return (s.Vertices.row(s.Faces(t, 1)) - p).cross(s.Vertices.row(s.Faces(t, 2)) - p).normalized();
 }
 
 } // namespace
@@ -112,14 +110,12 @@ TEST(Frames, SizeOfTheVectorsAndOfTheSurfaceDoesNotMatter)
   const PlaneVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, vectors);
   for (const double size : { 1e-300, 1e-150, 1e150, 1e300 })
   {
-    ExpectSameLines(
-      FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, size * vectors), frames);
+    ExpectSameLines(FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, size * vectors), frames);
   }
   for (const int exponent : { -498, 498 }) // 1e-150, 1e150
   {
     const Surface scaled = Scaled(s, std::ldexp(1.0, exponent));
     ExpectSameLines(
-      FramesFromTriangleVectors(*MakeMesh(scaled), scaled.Vertices, scaled.Faces, vectors),
-      frames);
+      FramesFromTriangleVectors(*MakeMesh(scaled), scaled.Vertices, scaled.Faces, vectors), frames);
   }
 }

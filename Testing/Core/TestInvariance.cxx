@@ -36,8 +36,8 @@ Values RunModel(const Surface& s, const Values& values, std::shared_ptr<LinearSo
     FramesFromPointVectors(*mesh, s.Vertices, s.Faces, directions, parallel);
   const EdgeValues c = AnisotropicCoefficients(
     *mesh, IsotropicCoefficients(*mesh, parallel), frames, 1.0, 0.3, parallel);
-  LinearDiffusion heat(assembler, c, std::move(data),
-    HeatSettings(*mesh, 0.002, 10.0, scheme), std::move(solver), parallel);
+  LinearDiffusion heat(assembler, c, std::move(data), HeatSettings(*mesh, 0.002, 10.0, scheme),
+    std::move(solver), parallel);
   Advance(heat, 3);
   Values u = ToInput(*mesh, heat.State(), s.NumberOfVertices());
   u.conservativeResize(u.rows() + 1, Eigen::NoChange);
@@ -78,8 +78,8 @@ TEST(Invariance, ThreadsDoNotChangeABit)
       }
     }
     const ThreadedFor parallel(3);
-    EXPECT_TRUE(
-      RunModel(s, f, MakeCholeskySolver(parallel), parallel) == RunModel(s, f, MakeCholeskySolver()));
+    EXPECT_TRUE(RunModel(s, f, MakeCholeskySolver(parallel), parallel) ==
+      RunModel(s, f, MakeCholeskySolver()));
   }
 }
 
@@ -97,8 +97,8 @@ TEST(Invariance, ThreadsDoNotChangeTheMeshOrTheMatrix)
   SparseMatrix a = serial.Pattern();
   SparseMatrix b = threaded.Pattern();
   serial.Fill(a, serialMesh->ControlAreas(), 0.1, IsotropicCoefficients(*serialMesh));
-  threaded.Fill(b, mesh->ControlAreas(), 0.1, IsotropicCoefficients(*mesh, parallel), nullptr,
-    parallel);
+  threaded.Fill(
+    b, mesh->ControlAreas(), 0.1, IsotropicCoefficients(*mesh, parallel), nullptr, parallel);
   ASSERT_EQ(a.nonZeros(), b.nonZeros());
   EXPECT_TRUE(std::equal(a.valuePtr(), a.valuePtr() + a.nonZeros(), b.valuePtr()));
 }
@@ -145,8 +145,7 @@ TEST(Invariance, PlaceAndPostureDoNotMatter)
   const auto run = [&](const Surface& moved)
   {
     const auto assembler = MakeAssembler(moved);
-    const Values u =
-      Diffuse(assembler, PointData::FromValues(Noise(assembler->Mesh())), 0.01, 3);
+    const Values u = Diffuse(assembler, PointData::FromValues(Noise(assembler->Mesh())), 0.01, 3);
     return ToInput(assembler->Mesh(), u, s.NumberOfVertices());
   };
   const Values u = run(s);

@@ -33,8 +33,8 @@ double Harmonic(int degree, const Eigen::RowVector3d& p)
 
 /// Root mean square error, relative to that of the exact solution, of Y_lm on a sphere of radius R
 /// after the time `time` in `steps` steps.
-double HarmonicError(int subdivisions, int degree, double radius, double time, int steps,
-  Scheme scheme)
+double HarmonicError(
+  int subdivisions, int degree, double radius, double time, int steps, Scheme scheme)
 {
   const Surface s = Icosphere(subdivisions, radius);
   const auto assembler = MakeAssembler(s);
@@ -57,8 +57,7 @@ TEST(LinearDiffusion, SphericalHarmonicsDecayAtTheirEigenvalueToSecondOrderInSpa
     double coarser = 0.0;
     for (int subdivisions = 3; subdivisions <= 5; ++subdivisions)
     {
-      const double error =
-        HarmonicError(subdivisions, degree, radius, time, 40, Scheme::SDIRK2);
+      const double error = HarmonicError(subdivisions, degree, radius, time, 40, Scheme::SDIRK2);
       if (coarser > 0.0)
       {
         const double order = ObservedOrder(coarser, error);
@@ -120,8 +119,8 @@ TEST(LinearDiffusion, OneStepMultipliesAnEigenvectorByTheSchemesFactor)
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
   // Vertices on the diagonal have area 1/3, the others 1/6; K = 1/2 (2, -1, -1) per corner.
-  const Values start = Sample(mesh, s,
-    [](const Eigen::RowVector3d& p) { return p[0] == p[1] ? 1.0 : -2.0; });
+  const Values start =
+    Sample(mesh, s, [](const Eigen::RowVector3d& p) { return p[0] == p[1] ? 1.0 : -2.0; });
   const double eigenvalue = 9.0;
   const double dt = 0.17;
   const double z = eigenvalue * dt;
@@ -148,8 +147,8 @@ TEST(LinearDiffusion, CosineOnAStripDecaysWithInsulatedEnds)
       const auto assembler = MakeAssembler(s);
       const TriangleMesh& mesh = assembler->Mesh();
       const double wave = k * Pi / length;
-      const Values start = Sample(
-        mesh, flat, [&](const Eigen::RowVector3d& p) { return std::cos(wave * p[0]); });
+      const Values start =
+        Sample(mesh, flat, [&](const Eigen::RowVector3d& p) { return std::cos(wave * p[0]); });
       const double time = 0.5 / (wave * wave);
       const Values exact = std::exp(-0.5) * start;
       const Values u = Diffuse(assembler, PointData::FromValues(start), time, 50);
@@ -214,8 +213,7 @@ TEST(LinearDiffusion, GaussianOfARequestedWidthIsRealised)
       [&](const Eigen::RowVector3d& p) { return std::exp(-p.squaredNorm() / (4.0 * t)) / t; });
   };
   // Widths add in squares: from FWHM 1 by FWHM 2 to FWHM sqrt(5).
-  const Values u =
-    Diffuse(assembler, PointData::FromValues(gaussian(before)), time(fwhm), 16);
+  const Values u = Diffuse(assembler, PointData::FromValues(gaussian(before)), time(fwhm), 16);
   const Values exact = gaussian(std::sqrt(fwhm * fwhm + before * before));
   EXPECT_LT(RootMeanSquare(mesh, u - exact) / RootMeanSquare(mesh, exact), 0.01);
 }
@@ -255,8 +253,8 @@ TEST(LinearDiffusion, FidelityOnTheWayIsOfTheSchemesOrder)
   const Surface s = Icosphere(3);
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
-  PointData data =
-    PointData::FromValues(Sample(mesh, s, [](const Eigen::RowVector3d& p) { return Harmonic(2, p); }));
+  PointData data = PointData::FromValues(
+    Sample(mesh, s, [](const Eigen::RowVector3d& p) { return Harmonic(2, p); }));
   data.Start.setZero(); // another start than f: fidelity pulls it up
   const double lambda = 4.0;
   const double time = 0.2;
@@ -264,12 +262,8 @@ TEST(LinearDiffusion, FidelityOnTheWayIsOfTheSchemesOrder)
   for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2 })
   {
     const auto error = [&](int steps)
-    {
-      return RootMeanSquare(
-        mesh, Diffuse(assembler, data, time, steps, lambda, scheme) - exact);
-    };
-    EXPECT_NEAR(
-      ObservedOrder(error(16), error(32)), scheme == Scheme::SDIRK2 ? 2.0 : 1.0, 0.1);
+    { return RootMeanSquare(mesh, Diffuse(assembler, data, time, steps, lambda, scheme) - exact); };
+    EXPECT_NEAR(ObservedOrder(error(16), error(32)), scheme == Scheme::SDIRK2 ? 2.0 : 1.0, 0.1);
   }
 }
 
@@ -359,8 +353,7 @@ TEST(LinearDiffusion, ConstantsStay)
     {
       for (const double lambda : { 0.0, 3.0 })
       {
-        for (const Scheme scheme :
-          { Scheme::BackwardEuler, Scheme::SDIRK2, Scheme::SteadyState })
+        for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2, Scheme::SteadyState })
         {
           const Values f = Values::Constant(mesh.NumberOfVertices(), 1, constant);
           const Values u = Diffuse(assembler, PointData::FromValues(f), 5.0, 5, lambda, scheme);

@@ -19,8 +19,8 @@ namespace
 SparseMatrix HeatMatrix(const Assembler& assembler, double timeStep)
 {
   SparseMatrix matrix = assembler.Pattern();
-  assembler.Fill(matrix, assembler.Mesh().ControlAreas(), timeStep,
-    IsotropicCoefficients(assembler.Mesh()));
+  assembler.Fill(
+    matrix, assembler.Mesh().ControlAreas(), timeStep, IsotropicCoefficients(assembler.Mesh()));
   return matrix;
 }
 
@@ -147,8 +147,8 @@ TEST_P(AnySolver, DoesNotPassOffAnIndefiniteMatrixAsSolved)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
   SparseMatrix matrix = assembler->Pattern();
-  assembler->Fill(matrix, -0.5 * assembler->Mesh().ControlAreas(), 1.0,
-    IsotropicCoefficients(assembler->Mesh()));
+  assembler->Fill(
+    matrix, -0.5 * assembler->Mesh().ControlAreas(), 1.0, IsotropicCoefficients(assembler->Mesh()));
   bool solved = false;
   try
   {

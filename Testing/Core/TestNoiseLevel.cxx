@@ -46,8 +46,7 @@ TEST(NoiseLevel, IsEstimatedWithinFivePercentUnderAPicture)
   {
     Values f = sigma * GaussianNoise(mesh, 1);
     f += Picture(mesh, s);
-    EXPECT_NEAR(
-      EstimateNoiseLevel(*assembler, PointData::FromValues(f)), sigma, 0.05 * sigma);
+    EXPECT_NEAR(EstimateNoiseLevel(*assembler, PointData::FromValues(f)), sigma, 0.05 * sigma);
   }
 }
 

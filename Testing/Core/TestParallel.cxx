@@ -41,7 +41,9 @@ TEST(Parallel, BlocksDoNotDependOnTheThreads)
   const Index count = 7 * BlockSize + 5;
   std::vector<std::array<Index, 2>> ranges(NumberOfBlocks(count));
   ForEachBlock(ThreadedFor(3), count,
-    [&](Index block, Index begin, Index end) { ranges[block] = { begin, end }; });
+    [&](Index block, Index begin, Index end) {
+      ranges[block] = { begin, end };
+    });
   for (Index block = 0; block < NumberOfBlocks(count); ++block)
   {
     EXPECT_EQ(ranges[block][0], block * BlockSize);

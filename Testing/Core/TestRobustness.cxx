@@ -51,8 +51,7 @@ TEST(Robustness, HugeStepsEndAtTheMean)
       // Powers of two make the entries of the strip exact, so that M is lost altogether.
       for (const double step : { 1e12, 1e16, std::ldexp(1.0, 60), 1e20, 1e100, 1e300 })
       {
-        const auto heat =
-          MakeHeat(assembler, PointData::FromValues(start), { step, 0.0, scheme });
+        const auto heat = MakeHeat(assembler, PointData::FromValues(start), { step, 0.0, scheme });
         Advance(*heat, 3);
         EXPECT_LT((heat->State() - means).cwiseAbs().maxCoeff(), 1e-9) << step;
       }
@@ -191,8 +190,7 @@ TEST(Robustness, SliverTrianglesGiveFiniteConservedResults)
     {
       for (const double step : { 1e-6, 1e-2, 1.0 })
       {
-        const auto heat =
-          MakeHeat(assembler, PointData::FromValues(start), { step, 0.0, scheme });
+        const auto heat = MakeHeat(assembler, PointData::FromValues(start), { step, 0.0, scheme });
         Advance(*heat, 5);
         EXPECT_LE(heat->State().cwiseAbs().maxCoeff(), 1.1) << aspect << " " << step;
         const double size = Total(mesh, start.cwiseAbs(), 0);
@@ -218,8 +216,7 @@ TEST(Robustness, OneSliverAmongGoodTrianglesDoesNoHarm)
     const Values u =
       Diffuse(assembler, PointData::FromValues(start), 0.05, 5, 0.0, Scheme::BackwardEuler);
     EXPECT_LE(u.cwiseAbs().maxCoeff(), 1.0) << height;
-    EXPECT_NEAR(
-      Total(mesh, u, 0), Total(mesh, start, 0), 1e-12 * Total(mesh, start.cwiseAbs(), 0));
+    EXPECT_NEAR(Total(mesh, u, 0), Total(mesh, start, 0), 1e-12 * Total(mesh, start.cwiseAbs(), 0));
   }
 }
 
@@ -298,8 +295,7 @@ TEST(Robustness, DirectionsWithoutDiffusionAcrossStayFinite)
   const TriangleMesh& mesh = assembler->Mesh();
   PlaneVectors e1 = PlaneVectors::Zero(mesh.NumberOfTriangles(), 2);
   e1.col(0).setOnes();
-  const EdgeValues c =
-    AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), e1, 1.0, 0.0);
+  const EdgeValues c = AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), e1, 1.0, 0.0);
   const Values start = Noise(mesh);
   LinearDiffusion heat(assembler, c, PointData::FromValues(start),
     HeatSettings(mesh, 0.1, 0.0, Scheme::BackwardEuler), MakeCholeskySolver());

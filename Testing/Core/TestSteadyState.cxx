@@ -11,11 +11,10 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-Values SteadyState(std::shared_ptr<const Assembler> assembler, const PointData& data,
-  double fidelity = 0.0)
+Values SteadyState(
+  std::shared_ptr<const Assembler> assembler, const PointData& data, double fidelity = 0.0)
 {
-  const auto heat =
-    MakeHeat(std::move(assembler), data, { 1.0, fidelity, Scheme::SteadyState });
+  const auto heat = MakeHeat(std::move(assembler), data, { 1.0, fidelity, Scheme::SteadyState });
   Advance(*heat, 1);
   return heat->State();
 }
@@ -89,7 +88,8 @@ TEST(SteadyState, MinimisesTheEnergy)
   const auto assembler = MakeAssembler(Icosphere(2));
   const TriangleMesh& mesh = assembler->Mesh();
   const Values f = Noise(mesh);
-  const auto heat = MakeHeat(assembler, PointData::FromValues(f), { 1.0, 3.0, Scheme::SteadyState });
+  const auto heat =
+    MakeHeat(assembler, PointData::FromValues(f), { 1.0, 3.0, Scheme::SteadyState });
   Advance(*heat, 1);
   const double least = heat->Energy();
   const Values minimiser = heat->State();

@@ -15,8 +15,8 @@ namespace
 
 const std::size_t Plenty = std::size_t(1) << 29;
 
-std::unique_ptr<Trajectory> MakeTrajectory(
-  std::shared_ptr<const Assembler> assembler, std::size_t memoryLimit, int columns = 1,
+std::unique_ptr<Trajectory> MakeTrajectory(std::shared_ptr<const Assembler> assembler,
+  std::size_t memoryLimit, int columns = 1,
   std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver())
 {
   const TriangleMesh& mesh = assembler->Mesh();

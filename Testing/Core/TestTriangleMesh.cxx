@@ -19,8 +19,8 @@ double SurfaceArea(const Surface& s)
   for (Index t = 0; t < s.NumberOfTriangles(); ++t)
   {
     const Eigen::RowVector3d p = s.Vertices.row(s.Faces(t, 0));
-    area += 0.5 *
-      (s.Vertices.row(s.Faces(t, 1)) - p).cross(s.Vertices.row(s.Faces(t, 2)) - p).norm();
+    area +=
+      0.5 * (s.Vertices.row(s.Faces(t, 1)) - p).cross(s.Vertices.row(s.Faces(t, 2)) - p).norm();
   }
   return area;
 }
@@ -62,8 +62,8 @@ TEST_P(AnySurface, ShapesKeepTheLengthsOfTheEdges)
     const double unit = mesh->LengthUnit();
     EXPECT_NEAR(shape.Length * unit, (corner(1) - corner(0)).norm(), 1e-14);
     EXPECT_NEAR(std::hypot(shape.X, shape.Y) * unit, (corner(2) - corner(0)).norm(), 1e-14);
-    EXPECT_NEAR(std::hypot(shape.X - shape.Length, shape.Y) * unit,
-      (corner(2) - corner(1)).norm(), 1e-14);
+    EXPECT_NEAR(
+      std::hypot(shape.X - shape.Length, shape.Y) * unit, (corner(2) - corner(1)).norm(), 1e-14);
     EXPECT_GT(shape.Y, 0.0);
   }
 }
@@ -81,8 +81,8 @@ TEST_P(AnySurface, RenumberingKeepsEveryTriangle)
     seen.insert(mesh->InputTriangle()[t]);
     for (int a = 0; a < 3; ++a)
     {
-      EXPECT_EQ(mesh->InputVertex()[mesh->TriangleVertices()(t, a)],
-        s.Faces(mesh->InputTriangle()[t], a));
+      EXPECT_EQ(
+        mesh->InputVertex()[mesh->TriangleVertices()(t, a)], s.Faces(mesh->InputTriangle()[t], a));
     }
   }
   EXPECT_EQ(seen.size(), static_cast<std::size_t>(s.NumberOfTriangles()));
@@ -137,8 +137,8 @@ TEST(TriangleMesh, CountsEdgesAndWhatIsOddAboutThem)
 TEST(TriangleMesh, MeanEdgeCountsSharedEdgesOnce)
 {
   // Two right triangles on the square of side 3: four sides and one diagonal.
-  EXPECT_NEAR(MeanEdge(*MakeMesh(Strip(1, 1, 3.0, 3.0))), (12.0 + 3.0 * std::sqrt(2.0)) / 5.0,
-    1e-14);
+  EXPECT_NEAR(
+    MeanEdge(*MakeMesh(Strip(1, 1, 3.0, 3.0))), (12.0 + 3.0 * std::sqrt(2.0)) / 5.0, 1e-14);
 }
 
 TEST(TriangleMesh, LeavesOutDegenerateTrianglesAndUnusedVertices)
@@ -150,9 +150,9 @@ TEST(TriangleMesh, LeavesOutDegenerateTrianglesAndUnusedVertices)
   vertices << s.Vertices, 9, 9, 9, 8, 8, 8, 7, 7, 7;
   Triangles faces(m + 4, 3);
   faces.topRows(m) = s.Faces;
-  faces.row(m) << 0, 1, 2;         // on one line
-  faces.row(m + 1) << 5, 5, 6;     // a corner twice
-  faces.row(m + 2) << n, n, n;     // a point
+  faces.row(m) << 0, 1, 2; // on one line
+  faces.row(m + 1) << 5, 5, 6; // a corner twice
+  faces.row(m + 2) << n, n, n; // a point
   faces.row(m + 3) << n, n + 1, n + 2; // on one line, of vertices used nowhere else
   const TriangleMesh mesh(vertices, faces);
   EXPECT_EQ(mesh.NumberOfTriangles(), m);
@@ -166,8 +166,8 @@ TEST(TriangleMesh, LeavesOutDegenerateTrianglesAndUnusedVertices)
 TEST(TriangleMesh, KeepsSliverTrianglesWithTheirArea)
 {
   const double height = 1e-13;
-  const auto mesh = MakeMesh(
-    MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.3, height, 0 } }, { { 0, 1, 2 } }));
+  const auto mesh =
+    MakeMesh(MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.3, height, 0 } }, { { 0, 1, 2 } }));
   ASSERT_EQ(mesh->NumberOfTriangles(), 1);
   const double unit = mesh->LengthUnit();
   EXPECT_NEAR(mesh->ControlAreas().sum() * unit * unit, 0.5 * height, 1e-12 * height);
@@ -188,8 +188,8 @@ TEST(TriangleMesh, IsEmptyWithoutUsableTriangles)
 
 TEST(TriangleMesh, ComponentsHoldConsecutiveVertices)
 {
-  const Surface s = Joined(Joined(Icosphere(1), Moved(Disk(4), { 0, 0, 0.01 })),
-    Moved(Icosphere(2), { 0.5, 0.0, 0.0 }));
+  const Surface s = Joined(
+    Joined(Icosphere(1), Moved(Disk(4), { 0, 0, 0.01 })), Moved(Icosphere(2), { 0.5, 0.0, 0.0 }));
   const auto mesh = MakeMesh(Renumbered(s, Permutation(s.NumberOfVertices(), 5)));
   ASSERT_EQ(mesh->NumberOfComponents(), 3);
   std::multiset<Index> sizes;
@@ -228,17 +228,16 @@ TEST(TriangleMesh, TakesTheLargestAndSmallestCoordinates)
   // Up to the largest double, and denormal numbers of about a thousand steps.
   for (const double size : { 0.5 * std::numeric_limits<double>::max(), 1e-320 })
   {
-    const auto mesh = MakeMesh(MakeSurface(
-      { { -size, -size, 0 }, { size, -size, 0 }, { 0, size, 0 } }, { { 0, 1, 2 } }));
+    const auto mesh = MakeMesh(
+      MakeSurface({ { -size, -size, 0 }, { size, -size, 0 }, { 0, size, 0 } }, { { 0, 1, 2 } }));
     ASSERT_EQ(mesh->NumberOfTriangles(), 1) << size;
     const TriangleMesh::Shape& shape = mesh->Shapes()[0];
     EXPECT_NEAR(shape.Length * mesh->LengthUnit() / size, 2.0, 1e-2) << size;
     EXPECT_NEAR(shape.Y * mesh->LengthUnit() / size, 2.0, 1e-2) << size;
   }
   const double largest = std::numeric_limits<double>::max();
-  const auto mesh = MakeMesh(MakeSurface({ { -largest, -largest, 0 }, { largest, -largest, 0 },
-                                           { 0, largest, 0 } },
-    { { 0, 1, 2 } }));
+  const auto mesh = MakeMesh(MakeSurface(
+    { { -largest, -largest, 0 }, { largest, -largest, 0 }, { 0, largest, 0 } }, { { 0, 1, 2 } }));
   EXPECT_EQ(mesh->NumberOfTriangles(), 1);
 }
 
