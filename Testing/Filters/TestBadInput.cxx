@@ -1,0 +1,394 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkCellData.h"
+#include "vtkFVMHeatFilter.h"
+#include "vtkStringArray.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+using namespace FilterTest;
+
+namespace
+{
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+const double Infinity = std::numeric_limits<double>::infinity();
+
+vtkSmartPointer<vtkPolyData> GoodInput()
+{
+  auto plane = Grid(6, 6);
+  AddRough(plane);
+  return plane;
+}
+
+using Change = std::function<void(vtkFVMHeatFilter*, vtkPolyData*)>;
+
+/**
+ * Expects one error that has all of `words` in it and an output that is the unchanged input; then
+ * that the same filter works on good input.
+ */
+void ExpectError(const std::vector<std::string>& words, const Change& change)
+{
+  SCOPED_TRACE(words.front());
+  auto input = GoodInput();
+  vtkNew<vtkFVMHeatFilter> filter;
+  change(filter, input);
+  filter->SetInputData(input);
+  const int arrays = input->GetPointData()->GetNumberOfArrays();
+  {
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(messages.Errors.size(), 1u);
+    for (const std::string& word : words)
+    {
+      if (!messages.Errors.empty())
+      {
+        EXPECT_NE(messages.Errors[0].find(word), std::string::npos)
+          << word << " is not in: " << messages.Errors[0];
+      }
+    }
+    vtkPolyData* output = filter->GetOutput();
+    EXPECT_EQ(output->GetPoints(), input->GetPoints());
+    EXPECT_EQ(output->GetNumberOfCells(), input->GetNumberOfCells());
+    EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), arrays);
+    EXPECT_EQ(output->GetPointData()->GetScalars(), input->GetPointData()->GetScalars());
+    EXPECT_EQ(History(filter)->GetNumberOfRows(), 0);
+  }
+  // The filter itself with all of its state, put right.
+  vtkNew<vtkFVMHeatFilter> fresh;
+  filter->SetTimeStep(fresh->GetTimeStep());
+  filter->SetNumberOfTimeSteps(fresh->GetNumberOfTimeSteps());
+  filter->SetGenerateTimeSteps(false);
+  filter->SetOutputInterval(1);
+  filter->SetFidelityWeight(0.0);
+  filter->SetAlongDiffusivity(1.0);
+  filter->SetAcrossDiffusivity(1.0);
+  filter->SetTolerance(fresh->GetTolerance());
+  filter->SetMaximumNumberOfIterations(1000);
+  filter->SetMergeTolerance(0.0);
+  filter->SetCheckpointMemoryLimit(512);
+  filter->SetHoldKnownValues(false);
+  filter->SetUnitsToNatural();
+  filter->SetMaskModeToInpaint();
+  filter->SetInitialFillToMean();
+  filter->SetSolverToAutomatic();
+  filter->SetOutputPrecisionToInput();
+  filter->SetTimeIntegratorToSecondOrder();
+  filter->SetModeToTimeSteps();
+  filter->SetFWHM(0.0);
+  filter->SetAutomaticFidelity(false);
+  filter->SetNoiseLevel(0.0);
+  for (int index = 0; index < 4; ++index)
+  {
+    SetInputArray(filter, index, index == 0 ? "f" : "");
+  }
+  auto good = GoodInput();
+  filter->SetInputData(good);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Errors.empty());
+  fresh->SetInputData(good);
+  fresh->Update();
+  EXPECT_TRUE(Identical(Result(filter), Result(fresh)));
+}
+
+template <typename Value>
+void ExpectPropertyError(const char* property, void (vtkFVMHeatFilter::*set)(Value),
+  const std::vector<std::pair<Value, const char*>>& bad)
+{
+  for (const auto& [value, text] : bad)
+  {
+    ExpectError({ std::string(property) + " is " + text, "allowed: " },
+      [&, v = value](vtkFVMHeatFilter* filter, vtkPolyData*) { (filter->*set)(v); });
+  }
+}
+
+} // namespace
+
+TEST(BadInput, NoSurfaceIsAnError)
+{
+  ExpectError({ "empty" }, [](vtkFVMHeatFilter*, vtkPolyData* input) { input->Initialize(); });
+  ExpectError({ "no polygons" },
+    [](vtkFVMHeatFilter*, vtkPolyData* input) { input->SetPolys(vtkNew<vtkCellArray>()); });
+  ExpectError({ "no polygons" },
+    [](vtkFVMHeatFilter*, vtkPolyData* input)
+    {
+      input->SetLines(input->GetPolys());
+      input->SetPolys(nullptr);
+    });
+}
+
+TEST(BadInput, AMissingConnectionDoesNotCrash)
+{
+  vtkNew<vtkFVMHeatFilter> filter;
+  Messages ofExecutive(filter->GetExecutive());
+  filter->Update();
+  EXPECT_EQ(ofExecutive.Errors.size(), 1u);
+}
+
+TEST(BadInput, ArraysThatCannotBeUsedAreErrors)
+{
+  ExpectError({ "InputArray", "\"nosuch\"" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*) { SetInputArray(filter, 0, "nosuch"); });
+  ExpectError({ "InputArray", "not set" },
+    [](vtkFVMHeatFilter*, vtkPolyData* input)
+    { input->GetPointData()->SetActiveScalars(nullptr); });
+  ExpectError({ "InputArray", "\"f\"", "association", "points" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*) { SetInputArray(filter, 0, "f", true); });
+  ExpectError({ "InputArray", "\"names\"", "vtkStringArray", "numeric" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      vtkNew<vtkStringArray> names;
+      names->SetName("names");
+      names->SetNumberOfValues(36);
+      input->GetPointData()->AddArray(names);
+      SetInputArray(filter, 0, "names");
+    });
+  ExpectError({ "InputArray", "\"short\"", "35", "36" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      input->GetPointData()->AddArray(MakeArray(VTK_DOUBLE, "short", 35, 1, Rough));
+      SetInputArray(filter, 0, "short");
+    });
+  ExpectError({ "MaskArray", "\"nosuch\"" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*) { SetInputArray(filter, 1, "nosuch"); });
+  ExpectError({ "MaskArray", "\"mask\"", "2 components", "1" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      AddPointArray(input, "mask", 2, Rough);
+      SetInputArray(filter, 1, "mask");
+    });
+  ExpectError({ "MaskArray", "\"mask\"", "association" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      input->GetCellData()->AddArray(MakeArray(VTK_INT, "mask", 50, 1, Rough));
+      SetInputArray(filter, 1, "mask", true);
+    });
+  ExpectError({ "DirectionArray", "\"e1\"", "2 components", "3" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      AddPointArray(input, "e1", 2, Rough);
+      SetInputArray(filter, 2, "e1");
+    });
+  ExpectError({ "DirectionArray", "\"e1\"", "36", "50" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      input->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "e1", 36, 3, Rough));
+      SetInputArray(filter, 2, "e1", true);
+    });
+  ExpectError({ "FixedArray", "\"nosuch\"" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*) { SetInputArray(filter, 3, "nosuch"); });
+}
+
+TEST(BadInput, NumbersThatAreNotFiniteAreErrors)
+{
+  for (const double bad : { NaN, Infinity, -Infinity })
+  {
+    ExpectError({ "coordinates", "point 7" },
+      [&](vtkFVMHeatFilter*, vtkPolyData* input)
+      { input->GetPoints()->SetPoint(7, 0.0, bad, 0.0); });
+  }
+  for (const double bad : { Infinity, -Infinity })
+  {
+    ExpectError({ "InputArray", "\"f\"", "infinite", "point 7" },
+      [&](vtkFVMHeatFilter*, vtkPolyData* input)
+      { input->GetPointData()->GetScalars()->SetComponent(7, 0, bad); });
+  }
+  ExpectError({ "InputArray", "\"f\"", "infinite", "point 36" }, // used by no triangle
+    [&](vtkFVMHeatFilter*, vtkPolyData* input)
+    {
+      input->GetPoints()->InsertNextPoint(0.0, 0.0, 1.0);
+      AddPointArray(
+        input, "f", 1, [](vtkIdType i, int k) { return i == 36 ? Infinity : Rough(i, k); });
+      input->GetPointData()->SetActiveScalars("f");
+    });
+  ExpectError({ "FixedArray", "NaN", "point 7", "finite" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      input->GetPointData()->GetScalars()->SetComponent(7, 0, NaN);
+      AddPointArray(input, "fixed", 1, [](vtkIdType i, int) { return i == 7; });
+      SetInputArray(filter, 3, "fixed");
+    });
+  ExpectError({ "double" },
+    [](vtkFVMHeatFilter*, vtkPolyData* input)
+    {
+      input->GetPointData()->GetScalars()->SetComponent(7, 0, 1.5e308);
+      input->GetPointData()->GetScalars()->SetComponent(8, 0, -1.5e308);
+    });
+}
+
+TEST(BadInput, InfiniteDirectionsAreErrors)
+{
+  ExpectError({ "DirectionArray", "\"e1\"", "infinite" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      AddPointArray(input, "e1", 3,
+        [](vtkIdType i, int k) { return i == 7 && k == 0 ? Infinity : Rough(i, k); });
+      SetInputArray(filter, 2, "e1");
+      filter->SetAlongDiffusivity(5.0);
+    });
+}
+
+TEST(BadInput, CellsThatReferToNoPointAreErrors)
+{
+  ExpectError({ "cell", "36" },
+    [](vtkFVMHeatFilter*, vtkPolyData* input) {
+      input->GetPolys()->InsertNextCell({ vtkIdType(0), vtkIdType(1), vtkIdType(36) });
+    });
+}
+
+TEST(BadInput, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
+{
+  const std::vector<std::pair<double, const char*>> notPositive{ { 0.0, "0" }, { -1.5, "-1.5" },
+    { NaN, "nan" }, { Infinity, "inf" } };
+  const std::vector<std::pair<double, const char*>> negative{ { -1.5, "-1.5" }, { NaN, "nan" },
+    { Infinity, "inf" } };
+  using Filter = vtkFVMHeatFilter;
+  ExpectPropertyError<double>("TimeStep", &Filter::SetTimeStep, notPositive);
+  ExpectPropertyError<double>("FidelityWeight", &Filter::SetFidelityWeight, negative);
+  ExpectPropertyError<double>("AlongDiffusivity", &Filter::SetAlongDiffusivity, negative);
+  ExpectPropertyError<double>("AcrossDiffusivity", &Filter::SetAcrossDiffusivity, negative);
+  ExpectPropertyError<double>("MergeTolerance", &Filter::SetMergeTolerance, negative);
+  ExpectPropertyError<double>("FWHM", &Filter::SetFWHM, negative);
+  ExpectPropertyError<double>("NoiseLevel", &Filter::SetNoiseLevel, negative);
+  ExpectPropertyError<double>("Tolerance", &Filter::SetTolerance,
+    { { 0.0, "0" }, { 1.0, "1" }, { -1.0, "-1" }, { NaN, "nan" } });
+  ExpectPropertyError<int>("NumberOfTimeSteps", &Filter::SetNumberOfTimeSteps, { { -1, "-1" } });
+  ExpectPropertyError<int>(
+    "OutputInterval", &Filter::SetOutputInterval, { { 0, "0" }, { -2, "-2" } });
+  ExpectPropertyError<int>(
+    "MaximumNumberOfIterations", &Filter::SetMaximumNumberOfIterations, { { 0, "0" } });
+  ExpectPropertyError<int>(
+    "CheckpointMemoryLimit", &Filter::SetCheckpointMemoryLimit, { { -1, "-1" } });
+  ExpectPropertyError<int>("Units", &Filter::SetUnits, { { 2, "2" }, { -1, "-1" } });
+  ExpectPropertyError<int>("MaskMode", &Filter::SetMaskMode, { { 2, "2" } });
+  ExpectPropertyError<int>("InitialFill", &Filter::SetInitialFill, { { 3, "3" } });
+  ExpectPropertyError<int>("Solver", &Filter::SetSolver, { { 3, "3" } });
+  ExpectPropertyError<int>("OutputPrecision", &Filter::SetOutputPrecision, { { 3, "3" } });
+  ExpectPropertyError<int>("Mode", &Filter::SetMode, { { 2, "2" } });
+  ExpectPropertyError<int>("TimeIntegrator", &Filter::SetTimeIntegrator,
+    { { vtkFVMHeatFilter::TIME_INTEGRATOR_IMPLICIT, "2" } });
+}
+
+TEST(BadInput, AllProblemsAreToldTogether)
+{
+  ExpectError({ "TimeStep is -1", "Tolerance is 2", "nosuch" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*)
+    {
+      filter->SetTimeStep(-1.0);
+      filter->SetTolerance(2.0);
+      SetInputArray(filter, 1, "nosuch");
+    });
+}
+
+TEST(BadInput, ContradictorySettingsAreErrors)
+{
+  ExpectError({ "FWHM", "FidelityWeight is 0.5", "allowed" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*)
+    {
+      filter->SetFWHM(2.0);
+      filter->SetFidelityWeight(0.5);
+    });
+  ExpectError({ "FWHM", "AutomaticFidelity is 1", "allowed" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*)
+    {
+      filter->SetFWHM(2.0);
+      filter->AutomaticFidelityOn();
+    });
+  ExpectError({ "FWHM", "AlongDiffusivity is 2", "AcrossDiffusivity is 3", "allowed" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      filter->SetFWHM(2.0);
+      filter->SetAlongDiffusivity(2.0);
+      filter->SetAcrossDiffusivity(3.0);
+      AddPointArray(input, "e1", 3, Rough);
+      SetInputArray(filter, 2, "e1");
+    });
+  ExpectError({ "FWHM", "Mode is 1", "allowed" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*)
+    {
+      filter->SetFWHM(2.0);
+      filter->SetModeToSteadyState();
+    });
+  ExpectError({ "AlongDiffusivity", "5", "AcrossDiffusivity", "1", "DirectionArray", "allowed" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*) { filter->SetAlongDiffusivity(5.0); });
+  ExpectError({ "HoldKnownValues", "on", "allowed" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*) { filter->HoldKnownValuesOn(); });
+  ExpectError({ "HoldKnownValues", "on", "allowed" }, // an excluded region is not missing
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      AddPointArray(input, "mask", 1, [](vtkIdType i, int) { return i == 7; });
+      SetInputArray(filter, 1, "mask");
+      filter->SetMaskModeToExclude();
+      filter->HoldKnownValuesOn();
+    });
+}
+
+TEST(BadInput, HugeNumbersOfStepsAreErrorsOrCanBeAborted)
+{
+  ExpectError({ "NumberOfTimeSteps / OutputInterval is 2000000", "OutputInterval" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*)
+    {
+      filter->SetNumberOfTimeSteps(2000000);
+      filter->GenerateTimeStepsOn();
+    });
+  ExpectPropertyError<int>("NumberOfTimeSteps", &vtkFVMHeatFilter::SetNumberOfTimeSteps,
+    { { std::numeric_limits<int>::max(), "2147483647" } });
+  auto input = GoodInput();
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(input);
+  filter->SetNumberOfTimeSteps(1000000000);
+  int reports = 0;
+  Listen(filter, [&](double) { filter->SetAbortExecute(++reports > 100); });
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
+}
+
+TEST(BadInput, HugeAndTinyTimesAndValuesGiveFiniteAnswersOrErrors)
+{
+  for (const double step : { 1e-300, 1e-30, 1e30, 1e300 })
+  {
+    for (const double scale : { 1e-300, 1e-150, 1e150, 1e300 })
+    {
+      for (const int units : { 0, 1 })
+      {
+        auto input = GoodInput();
+        for (vtkIdType i = 0; i < 36; ++i)
+        {
+          input->GetPointData()->GetScalars()->SetComponent(i, 0, scale * Rough(i, 0));
+        }
+        vtkNew<vtkFVMHeatFilter> filter;
+        filter->SetInputData(input);
+        filter->SetTimeStep(step);
+        filter->SetUnits(units);
+        Messages messages(filter);
+        filter->Update();
+        if (messages.Errors.empty())
+        {
+          EXPECT_TRUE(AllFinite(Result(filter))) << step << ' ' << scale;
+          EXPECT_NEAR(HistoryAt(filter, 10, "Total_0") / scale,
+            HistoryAt(filter, 0, "Total_0") / scale, 1e-11);
+        }
+        else
+        {
+          EXPECT_EQ(Result(filter), nullptr);
+        }
+      }
+    }
+  }
+}
+
+TEST(BadInput, TooFewIterationsAreAnErrorThatSaysWhatToChange)
+{
+  ExpectError({ "MaximumNumberOfIterations", "Tolerance" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData*)
+    {
+      filter->SetSolverToConjugateGradient();
+      filter->SetMaximumNumberOfIterations(1);
+    });
+}

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+#include "ImageTest.h"
+
+#include "vtkActor.h"
+#include "vtkCamera.h"
+#include "vtkFVMHeatFilter.h"
+#include "vtkLookupTable.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkProperty.h"
+#include "vtkRenderer.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace FilterTest;
+
+namespace
+{
+
+/// Error of the picture of the filter's result in twelve bands of color over [low, high].
+double Error(vtkFVMHeatFilter* filter, double low, double high, const std::string& baseline,
+  const std::string& output = "")
+{
+  filter->Update();
+  vtkNew<vtkLookupTable> bands;
+  bands->SetNumberOfTableValues(12);
+  bands->SetTableRange(low, high);
+  bands->SetHueRange(0.67, 0.0);
+  bands->Build();
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(filter->GetOutput());
+  mapper->SetLookupTable(bands);
+  mapper->UseLookupTableScalarRangeOn();
+  mapper->InterpolateScalarsBeforeMappingOn();
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->LightingOff();
+  vtkNew<vtkRenderer> renderer;
+  renderer->AddActor(actor);
+  renderer->SetBackground(1.0, 1.0, 1.0);
+  renderer->GetActiveCamera()->ParallelProjectionOn();
+  renderer->ResetCamera();
+  renderer->GetActiveCamera()->Zoom(1.4);
+  vtkNew<vtkRenderWindow> window;
+  ImageTest::Prepare(window);
+  window->AddRenderer(renderer);
+  return ImageTest::Error(window, baseline, output);
+}
+
+/// Two waves around the sphere and one along it.
+double Signal(const double* p)
+{
+  return std::sin(5.0 * p[0] + 1.0) + std::cos(6.0 * p[1]) + std::sin(4.0 * p[2]);
+}
+
+/// White noise, uniform in [-1, 1).
+class Noise
+{
+public:
+  double operator()(vtkIdType, int)
+  {
+    return static_cast<double>(this->Random()) / 0x80000000u - 1.0;
+  }
+
+private:
+  std::mt19937 Random;
+};
+
+} // namespace
+
+TEST(HeatImages, NoiseIsSmoothed)
+{
+  auto sphere = Sphere(5);
+  AddPointArray(sphere, "f", 1, Noise());
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(sphere);
+  SetInputArray(filter, 0, "f");
+  filter->SetTimeStep(2.0);
+  filter->SetNumberOfTimeSteps(10);
+  EXPECT_LE(Error(filter, -0.1, 0.1, "HeatSmoothed"), ImageTest::Tolerance);
+  filter->SetNumberOfTimeSteps(9);
+  EXPECT_GT(Error(filter, -0.1, 0.1, "HeatSmoothed", "HeatSmoothedTwin"), ImageTest::Tolerance);
+}
+
+TEST(HeatImages, NoiseIsTakenOffASignal)
+{
+  auto sphere = Sphere(5);
+  Noise noise;
+  AddPointArray(
+    sphere, "f", 1, [&](vtkIdType i, int k) { return Signal(sphere->GetPoint(i)) + noise(i, k); });
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(sphere);
+  SetInputArray(filter, 0, "f");
+  filter->SetModeToSteadyState();
+  filter->SetFidelityWeight(0.1);
+  EXPECT_LE(Error(filter, -2.5, 2.5, "HeatDenoised"), ImageTest::Tolerance);
+  filter->SetFidelityWeight(0.12);
+  EXPECT_GT(Error(filter, -2.5, 2.5, "HeatDenoised", "HeatDenoisedTwin"), ImageTest::Tolerance);
+}
+
+TEST(HeatImages, AHoleIsFilled)
+{
+  auto sphere = Sphere(5);
+  AddPointArray(sphere, "f", 1, [&](vtkIdType i, int) { return Signal(sphere->GetPoint(i)); });
+  AddPointArray(sphere, "mask", 1,
+    [&](vtkIdType i, int)
+    {
+      const double* p = sphere->GetPoint(i); // a round hole towards the camera
+      return p[2] > 0.0 && std::hypot(p[0], p[1]) < 0.6;
+    });
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(sphere);
+  SetInputArray(filter, 0, "f");
+  SetInputArray(filter, 1, "mask");
+  filter->SetFidelityWeight(5.0);
+  filter->SetTimeStep(4.0);
+  EXPECT_LE(Error(filter, -2.5, 2.5, "HeatInpainted"), ImageTest::Tolerance);
+  filter->SetNumberOfTimeSteps(9);
+  EXPECT_GT(Error(filter, -2.5, 2.5, "HeatInpainted", "HeatInpaintedTwin"), ImageTest::Tolerance);
+}
+
+TEST(HeatImages, NoiseIsSmearedAlongADirection)
+{
+  auto sphere = Sphere(5);
+  AddPointArray(sphere, "f", 1, Noise());
+  AddPointArray(sphere, "e1", 3,
+    [&](vtkIdType i, int k)
+    {
+      const double* p = sphere->GetPoint(i); // spirals around the axis of view
+      return k == 0 ? -p[1] + 0.5 * p[0] : k == 1 ? p[0] + 0.5 * p[1] : 0.0;
+    });
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(sphere);
+  SetInputArray(filter, 0, "f");
+  SetInputArray(filter, 2, "e1");
+  filter->SetTimeStep(4.0);
+  filter->SetAcrossDiffusivity(0.02);
+  EXPECT_LE(Error(filter, -0.1, 0.1, "HeatAnisotropic"), ImageTest::Tolerance);
+  filter->SetNumberOfTimeSteps(9);
+  EXPECT_GT(
+    Error(filter, -0.1, 0.1, "HeatAnisotropic", "HeatAnisotropicTwin"), ImageTest::Tolerance);
+}

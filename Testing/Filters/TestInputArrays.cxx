@@ -1,0 +1,364 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkFVMHeatFilter.h"
+#include "vtkIdTypeArray.h"
+#include "vtkSOADataArrayTemplate.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+using namespace FilterTest;
+
+namespace
+{
+
+const std::vector<int> NumericTypes{ VTK_BIT, VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR,
+  VTK_SHORT, VTK_UNSIGNED_SHORT, VTK_INT, VTK_UNSIGNED_INT, VTK_LONG, VTK_UNSIGNED_LONG,
+  VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG, VTK_ID_TYPE, VTK_FLOAT, VTK_DOUBLE };
+
+vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
+{
+  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+  filter->SetInputData(surface);
+  return filter;
+}
+
+bool InHole(vtkIdType i)
+{
+  return i % 10 > 5 && i % 10 < 9 && i / 10 > 3 && i / 10 < 7;
+}
+
+} // namespace
+
+TEST(InputArrays, DataOfAnyNumericTypeGiveTheSame)
+{
+  auto plane = Grid(10, 10);
+  const auto value = [](vtkIdType i, int) { return i % 3 == 0; };
+  AddPointArray(plane, "f", 1, value);
+  auto reference = MakeFilter(plane);
+  SetInputArray(reference, 0, "f");
+  reference->Update();
+  for (const int type : NumericTypes)
+  {
+    AddPointArray(plane, "typed", 1, value, type);
+    auto filter = MakeFilter(plane);
+    SetInputArray(filter, 0, "typed");
+    filter->SetOutputPrecisionToDouble();
+    filter->Update();
+    EXPECT_TRUE(Identical(Result(filter, "typedDiffused"), Result(reference))) << type;
+  }
+}
+
+TEST(InputArrays, DataMayBeStoredByComponent)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane, 3);
+  vtkNew<vtkSOADataArrayTemplate<double>> byComponent;
+  byComponent->SetNumberOfComponents(3);
+  byComponent->SetNumberOfTuples(100);
+  byComponent->SetName("soa");
+  for (vtkIdType i = 0; i < 100; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      byComponent->SetComponent(i, k, Rough(i, k));
+    }
+  }
+  plane->GetPointData()->AddArray(byComponent);
+  auto filter = MakeFilter(plane);
+  filter->Update();
+  const auto reference = Copy(Result(filter));
+  SetInputArray(filter, 0, "soa");
+  filter->Update();
+  EXPECT_TRUE(Identical(Result(filter, "soaDiffused"), reference));
+}
+
+TEST(InputArrays, AMaskOfAnyNumericTypeMeansTheSame)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane);
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
+  for (const int mode :
+    { vtkFVMHeatFilter::MASK_MODE_INPAINT, vtkFVMHeatFilter::MASK_MODE_EXCLUDE })
+  {
+    auto reference = MakeFilter(plane);
+    SetInputArray(reference, 1, "mask");
+    reference->SetMaskMode(mode);
+    reference->SetFidelityWeight(1.0);
+    reference->Update();
+    for (const int type : NumericTypes)
+    {
+      // Nonzero is missing, whatever the number.
+      const double missing = type == VTK_FLOAT || type == VTK_DOUBLE ? 0.01
+        : type == VTK_BIT                                            ? 1.0
+                                                                     : 77.0;
+      AddPointArray(
+        plane, "typed", 1, [&](vtkIdType i, int) { return InHole(i) ? missing : 0.0; }, type);
+      auto filter = MakeFilter(plane);
+      SetInputArray(filter, 1, "typed");
+      filter->SetMaskMode(mode);
+      filter->SetFidelityWeight(1.0);
+      filter->Update();
+      EXPECT_TRUE(Identical(Result(filter), Result(reference))) << type;
+    }
+  }
+}
+
+TEST(InputArrays, NaNInAnyComponentIsMissing)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane, 2);
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
+  AddPointArray(plane, "holed", 2,
+    [](vtkIdType i, int k)
+    { return InHole(i) && k == static_cast<int>(i % 2) ? std::nan("") : Rough(i, k); });
+  for (const int fill :
+    { vtkFVMHeatFilter::INITIAL_FILL_MEAN, vtkFVMHeatFilter::INITIAL_FILL_NOISE })
+  {
+    auto masked = MakeFilter(plane);
+    SetInputArray(masked, 1, "mask");
+    auto holed = MakeFilter(plane);
+    SetInputArray(holed, 0, "holed");
+    for (vtkFVMHeatFilter* filter : { masked.Get(), holed.Get() })
+    {
+      filter->SetInitialFill(fill);
+      filter->SetFidelityWeight(1.0);
+      filter->Update();
+    }
+    EXPECT_TRUE(Identical(Result(masked), Result(holed, "holedDiffused")));
+  }
+}
+
+TEST(InputArrays, FillsStartWhereTheySay)
+{
+  auto plane = Grid(10, 10);
+  AddPointArray(plane, "f", 1,
+    [](vtkIdType i, int k) { return i == 67 ? std::nan("")
+                               : InHole(i)  ? 50.0
+                                            : Rough(i, k); });
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
+  const std::vector<double> areas = ControlAreas(plane);
+  double sum = 0.0;
+  double area = 0.0;
+  double low = 1.0;
+  double high = -1.0;
+  for (vtkIdType i = 0; i < 100; ++i)
+  {
+    if (!InHole(i))
+    {
+      sum += areas[i] * Rough(i, 0);
+      area += areas[i];
+      low = std::min(low, Rough(i, 0));
+      high = std::max(high, Rough(i, 0));
+    }
+  }
+  auto filter = MakeFilter(plane);
+  SetInputArray(filter, 0, "f");
+  SetInputArray(filter, 1, "mask");
+  filter->SetNumberOfTimeSteps(0); // 0 steps: the initial state
+  const auto at = [&](vtkIdType i) { return Result(filter)->GetComponent(i, 0); };
+
+  filter->SetInitialFillToMean();
+  filter->Update();
+  EXPECT_NEAR(at(66), sum / area, 1e-14);
+  EXPECT_NEAR(at(67), sum / area, 1e-14);
+  EXPECT_EQ(at(0), Rough(0, 0));
+
+  filter->SetInitialFillToInput();
+  filter->Update();
+  EXPECT_EQ(at(66), 50.0);
+  EXPECT_NEAR(at(67), sum / area, 1e-14); // NaN falls back to the mean
+
+  filter->SetInitialFillToNoise();
+  filter->Update();
+  const auto first = Copy(Result(filter));
+  std::set<double> values;
+  for (vtkIdType i = 0; i < 100; ++i)
+  {
+    if (InHole(i))
+    {
+      values.insert(at(i));
+      EXPECT_GE(at(i), low);
+      EXPECT_LE(at(i), high);
+    }
+    else
+    {
+      EXPECT_EQ(at(i), Rough(i, 0));
+    }
+  }
+  EXPECT_EQ(values.size(), 9u); // all different
+  filter->SetRandomSeed(1);
+  filter->Update();
+  EXPECT_GT(std::abs(at(66) - first->GetComponent(66, 0)), 1e-6);
+  filter->SetRandomSeed(0);
+  filter->Update();
+  EXPECT_TRUE(Identical(first, Result(filter)));
+}
+
+TEST(InputArrays, MeanFillIsOfTheConnectedComponent)
+{
+  auto plane = Grid(10, 10);
+  vtkNew<vtkCellArray> halves; // cut between columns 4 and 5
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType c = 0; c < plane->GetNumberOfCells(); ++c)
+  {
+    if (c / 2 % 9 != 4)
+    {
+      plane->GetCellPoints(c, corners);
+      halves->InsertNextCell(corners);
+    }
+  }
+  plane->SetPolys(halves);
+  AddPointArray(plane, "f", 1,
+    [](vtkIdType i, int) { return i == 11 || i == 18 ? std::nan("")
+                             : i % 10 < 5            ? 2.0
+                                                     : 8.0; });
+  auto filter = MakeFilter(plane);
+  SetInputArray(filter, 0, "f");
+  filter->SetNumberOfTimeSteps(0);
+  filter->Update();
+  EXPECT_NEAR(Result(filter)->GetComponent(11, 0), 2.0, 1e-14);
+  EXPECT_NEAR(Result(filter)->GetComponent(18, 0), 8.0, 1e-14);
+}
+
+TEST(InputArrays, WhatIsMissingNeverEntersTheFidelity)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane);
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
+  AddPointArray(
+    plane, "damaged", 1, [](vtkIdType i, int k) { return InHole(i) ? 1e3 : Rough(i, k); });
+  vtkSmartPointer<vtkDataArray> first;
+  for (const char* name : { "f", "damaged" })
+  {
+    for (int fill = 0; fill < 3; ++fill)
+    {
+      auto filter = MakeFilter(plane);
+      SetInputArray(filter, 0, name);
+      SetInputArray(filter, 1, "mask");
+      filter->SetFidelityWeight(0.5);
+      filter->SetInitialFill(fill);
+      filter->SetModeToSteadyState();
+      filter->SetSolverToDirect();
+      filter->SetResultArrayName("u");
+      filter->Update();
+      if (!first)
+      {
+        first = Result(filter, "u");
+      }
+      EXPECT_LT(LargestDifference(first, Result(filter, "u")), 1e-9);
+    }
+  }
+}
+
+TEST(InputArrays, NoiseFollowsTheGlobalIds)
+{
+  auto plane = Grid(10, 10);
+  AddPointArray(
+    plane, "f", 2, [](vtkIdType i, int k) { return InHole(i) ? std::nan("") : Rough(i, k); });
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("ids");
+  for (vtkIdType i = 0; i < 100; ++i)
+  {
+    ids->InsertNextValue(i == 66 ? 57 : i == 57 ? 66 : i); // two of the hole exchange theirs
+  }
+  auto filter = MakeFilter(plane);
+  SetInputArray(filter, 0, "f");
+  filter->SetNumberOfTimeSteps(0);
+  filter->SetInitialFillToNoise();
+  filter->Update();
+  const auto byIndex = Copy(Result(filter));
+  plane->GetPointData()->SetGlobalIds(ids);
+  filter->Update();
+  for (int k = 0; k < 2; ++k)
+  {
+    EXPECT_EQ(Result(filter)->GetComponent(66, k), byIndex->GetComponent(57, k));
+    EXPECT_EQ(Result(filter)->GetComponent(57, k), byIndex->GetComponent(66, k));
+    EXPECT_EQ(Result(filter)->GetComponent(67, k), byIndex->GetComponent(67, k));
+  }
+  EXPECT_NE(byIndex->GetComponent(66, 0), byIndex->GetComponent(66, 1));
+}
+
+TEST(InputArrays, FixedBeatsMissing)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane);
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
+  AddPointArray(plane, "fixed", 1, [](vtkIdType i, int) { return i == 66; });
+  auto filter = MakeFilter(plane);
+  SetInputArray(filter, 1, "mask");
+  SetInputArray(filter, 3, "fixed");
+  filter->Update();
+  EXPECT_EQ(Result(filter)->GetComponent(66, 0), Rough(66, 0));
+  EXPECT_NE(Result(filter)->GetComponent(67, 0), Rough(67, 0));
+}
+
+TEST(InputArrays, NothingFlowsIntoOrOutOfAnExcludedRegion)
+{
+  auto plane = Grid(10, 10);
+  vtkDataArray* f = AddRough(plane);
+  // The two middle columns are excluded: two halves of four columns remain.
+  const auto excluded = [](vtkIdType i) { return i % 10 == 4 || i % 10 == 5; };
+  AddPointArray(plane, "mask", 1, [&](vtkIdType i, int) { return excluded(i); });
+  auto filter = MakeFilter(plane);
+  SetInputArray(filter, 1, "mask");
+  filter->SetMaskModeToExclude();
+  filter->SetUnitsToAbsolute();
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty());
+
+  auto half = Grid(4, 10);
+  AddPointArray(
+    half, "f", 1, [&](vtkIdType i, int) { return f->GetComponent(10 * (i / 4) + i % 4, 0); });
+  auto alone = MakeFilter(half);
+  SetInputArray(alone, 0, "f");
+  alone->SetUnitsToAbsolute();
+  alone->Update();
+  for (vtkIdType i = 0; i < 100; ++i)
+  {
+    if (excluded(i))
+    {
+      EXPECT_EQ(Result(filter)->GetComponent(i, 0), f->GetComponent(i, 0));
+    }
+    else if (i % 10 < 4)
+    {
+      EXPECT_NEAR(Result(filter)->GetComponent(i, 0),
+        Result(alone)->GetComponent(4 * (i / 10) + i % 10, 0), 1e-12);
+    }
+  }
+  // Kept over the region, with areas from its own triangles.
+  const std::vector<double> areas = ControlAreas(half);
+  EXPECT_NEAR(Total(areas, Result(alone)), Total(areas, half->GetPointData()->GetArray("f")),
+    1e-12 * TotalMagnitude(areas, Result(alone)));
+}
+
+TEST(InputArrays, AMaskThatCanChangeNothingIsOneWarning)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane);
+  AddPointArray(plane, "empty", 1, [](vtkIdType, int) { return 0.0; });
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
+  auto filter = MakeFilter(plane);
+  Messages messages(filter);
+  SetInputArray(filter, 1, "mask");
+  filter->Update(); // the hole starts from its mean
+  EXPECT_TRUE(messages.Warnings.empty());
+  filter->SetInitialFillToInput(); // without a fidelity missing and known points act alike
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("mask"), std::string::npos);
+  filter->SetFidelityWeight(1.0);
+  filter->Update();
+  EXPECT_EQ(messages.Warnings.size(), 1u);
+  SetInputArray(filter, 1, "empty");
+  filter->Update();
+  EXPECT_EQ(messages.Warnings.size(), 2u);
+  filter->SetMaskModeToExclude();
+  filter->Update();
+  EXPECT_EQ(messages.Warnings.size(), 3u);
+  EXPECT_TRUE(messages.Errors.empty());
+}

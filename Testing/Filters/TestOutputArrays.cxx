@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkCellData.h"
+#include "vtkFVMHeatFilter.h"
+#include "vtkFieldData.h"
+
+#include <gtest/gtest.h>
+
+using namespace FilterTest;
+
+namespace
+{
+
+vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
+{
+  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+  filter->SetInputData(surface);
+  return filter;
+}
+
+double Color(vtkIdType i, int k)
+{
+  return std::floor(127.5 + 127.0 * Rough(i, k));
+}
+
+} // namespace
+
+TEST(OutputArrays, TheOutputIsTheInputWithOneMoreActiveArray)
+{
+  auto plane = Grid(6, 5);
+  AddPointArray(plane, "other", 2, Rough);
+  AddRough(plane);
+  plane->GetCellData()->AddArray(
+    MakeArray(VTK_INT, "ofCells", plane->GetNumberOfCells(), 1, Rough));
+  plane->GetFieldData()->AddArray(MakeArray(VTK_INT, "ofField", 3, 1, Rough));
+  auto filter = MakeFilter(plane);
+  filter->Update();
+  vtkPolyData* output = filter->GetOutput();
+  EXPECT_EQ(output->GetPoints(), plane->GetPoints());
+  EXPECT_EQ(output->GetPolys(), plane->GetPolys());
+  ASSERT_EQ(output->GetPointData()->GetNumberOfArrays(), 3);
+  EXPECT_EQ(output->GetPointData()->GetArray("f"), plane->GetPointData()->GetArray("f"));
+  EXPECT_EQ(output->GetPointData()->GetArray("other"), plane->GetPointData()->GetArray("other"));
+  EXPECT_EQ(output->GetCellData()->GetArray("ofCells"), plane->GetCellData()->GetArray("ofCells"));
+  EXPECT_NE(output->GetFieldData()->GetArray("ofField"), nullptr);
+  EXPECT_EQ(output->GetPointData()->GetScalars(), Result(filter));
+  EXPECT_EQ(plane->GetPointData()->GetNumberOfArrays(), 2); // the input is not touched
+  EXPECT_STREQ(plane->GetPointData()->GetScalars()->GetName(), "f");
+}
+
+TEST(OutputArrays, TheResultIsNamedAsAsked)
+{
+  auto plane = Grid(6, 5);
+  AddRough(plane);
+  AddPointArray(plane, "unnamed", 1, Rough)->SetName(nullptr);
+  auto filter = MakeFilter(plane);
+  filter->SetResultArrayName("u");
+  filter->Update();
+  EXPECT_NE(Result(filter, "u"), nullptr);
+  EXPECT_EQ(Result(filter), nullptr);
+  const auto u = Copy(Result(filter, "u"));
+
+  filter->SetResultArrayName("f"); // replaced
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 2);
+  EXPECT_TRUE(Identical(u, Result(filter, "f")));
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), Result(filter, "f"));
+  EXPECT_EQ(plane->GetPointData()->GetArray("f")->GetComponent(3, 0), Rough(3, 0));
+
+  filter->SetResultArrayName("");
+  filter->Update();
+  EXPECT_TRUE(Identical(u, Result(filter)));
+}
+
+TEST(OutputArrays, PrecisionFollowsTheInputOrIsSet)
+{
+  auto plane = Grid(6, 5);
+  AddPointArray(plane, "uchar", 1, Color, VTK_UNSIGNED_CHAR);
+  AddPointArray(plane, "float", 1, Rough, VTK_FLOAT);
+  AddPointArray(plane, "double", 1, Rough, VTK_DOUBLE);
+  AddPointArray(plane, "int", 1, Color, VTK_INT);
+  AddPointArray(
+    plane, "char", 1, [](vtkIdType, int) { return 3.0; }, VTK_SIGNED_CHAR);
+  const std::map<std::string, int> types{ { "uchar", VTK_UNSIGNED_CHAR }, { "float", VTK_FLOAT },
+    { "double", VTK_DOUBLE }, { "int", VTK_DOUBLE }, { "char", VTK_DOUBLE } };
+  for (const auto& [name, type] : types)
+  {
+    auto filter = MakeFilter(plane);
+    SetInputArray(filter, 0, name.c_str());
+    const std::string result = name + "Diffused";
+    filter->Update();
+    EXPECT_EQ(Result(filter, result.c_str())->GetDataType(), type) << name;
+    filter->SetOutputPrecisionToSingle();
+    filter->Update();
+    EXPECT_EQ(Result(filter, result.c_str())->GetDataType(), VTK_FLOAT) << name;
+    filter->SetOutputPrecisionToDouble();
+    filter->Update();
+    EXPECT_EQ(Result(filter, result.c_str())->GetDataType(), VTK_DOUBLE) << name;
+  }
+}
+
+TEST(OutputArrays, ColorsOfAnyNumberOfComponentsCarryAlphaOver)
+{
+  auto sphere = Sphere(3);
+  for (int components = 1; components <= 4; ++components)
+  {
+    vtkDataArray* colors = AddPointArray(sphere, "rgb", components, Color, VTK_UNSIGNED_CHAR);
+    auto filter = MakeFilter(sphere);
+    SetInputArray(filter, 0, "rgb");
+    filter->Update();
+    vtkDataArray* result = Result(filter, "rgbDiffused");
+    ASSERT_EQ(result->GetNumberOfComponents(), components);
+    const int data = components % 2 ? components : components - 1;
+    EXPECT_EQ(History(filter)->GetColumnByName(("Total_" + std::to_string(data)).c_str()), nullptr);
+    EXPECT_NE(
+      History(filter)->GetColumnByName(("Total_" + std::to_string(data - 1)).c_str()), nullptr);
+    int changed = 0;
+    for (vtkIdType i = 0; i < colors->GetNumberOfTuples(); ++i)
+    {
+      if (data < components)
+      {
+        EXPECT_EQ(result->GetComponent(i, data), colors->GetComponent(i, data));
+      }
+      changed += result->GetComponent(i, 0) != colors->GetComponent(i, 0);
+    }
+    EXPECT_GT(changed, colors->GetNumberOfTuples() / 2);
+  }
+}
+
+TEST(OutputArrays, ColorsAreRoundedAtTheEndOnly)
+{
+  auto sphere = Sphere(3);
+  AddPointArray(sphere, "rgb", 3, Color, VTK_UNSIGNED_CHAR);
+  for (const bool timeSteps : { false, true })
+  {
+    auto filter = MakeFilter(sphere);
+    SetInputArray(filter, 0, "rgb");
+    filter->SetTimeStep(0.05); // so little that rounding every step would stop some changes
+    filter->SetNumberOfTimeSteps(60);
+    filter->SetGenerateTimeSteps(timeSteps);
+    filter->Update();
+    const auto rounded = Copy(Result(filter, "rgbDiffused"));
+    filter->SetOutputPrecisionToDouble();
+    filter->Update();
+    vtkDataArray* exact = Result(filter, "rgbDiffused");
+    for (vtkIdType i = 0; i < exact->GetNumberOfTuples(); ++i)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        ASSERT_EQ(rounded->GetComponent(i, k), std::round(exact->GetComponent(i, k)));
+      }
+    }
+  }
+}
+
+TEST(OutputArrays, ColorsAreClampedWhereTheStateLeavesTheirRange)
+{
+  auto sphere = Sphere(4);
+  AddPointArray(
+    sphere, "black", 1, [](vtkIdType i, int) { return i == 700 ? 255.0 : 0.0; }, VTK_UNSIGNED_CHAR);
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 0, "black");
+  filter->SetTimeStep(3.0); // second order overshoots at a large step
+  filter->SetNumberOfTimeSteps(1);
+  filter->SetOutputPrecisionToDouble();
+  filter->Update();
+  const auto exact = Copy(Result(filter, "blackDiffused"));
+  double range[2];
+  exact->GetRange(range);
+  filter->SetOutputPrecisionToInput();
+  filter->Update();
+  vtkDataArray* clamped = Result(filter, "blackDiffused");
+  for (vtkIdType i = 0; i < exact->GetNumberOfTuples(); ++i)
+  {
+    EXPECT_EQ(clamped->GetComponent(i, 0),
+      std::min(255.0, std::max(0.0, std::round(exact->GetComponent(i, 0)))));
+  }
+  EXPECT_LT(range[0], -1.0);
+}
+
+TEST(OutputArrays, PointsOfNoTriangleKeepTheirValueInEveryType)
+{
+  auto plane = Grid(6, 5);
+  plane->GetPoints()->InsertNextPoint(9.0, 9.0, 9.0);
+  for (const int type : { VTK_UNSIGNED_CHAR, VTK_FLOAT, VTK_DOUBLE, VTK_SHORT })
+  {
+    AddPointArray(
+      plane, "f", 2, [](vtkIdType i, int k) { return i == 30 ? 101.0 + k : Color(i, k); }, type);
+    auto filter = MakeFilter(plane);
+    SetInputArray(filter, 0, "f");
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(Result(filter)->GetComponent(30, 0), 101.0);
+    EXPECT_EQ(Result(filter)->GetComponent(30, 1), 102.0);
+    EXPECT_EQ(messages.Warnings.size(), 1u);
+  }
+}

@@ -1,0 +1,460 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFVMHeatFilter.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <gtest/gtest.h>
+
+using namespace FilterTest;
+
+namespace
+{
+
+vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
+{
+  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+  filter->SetInputData(surface);
+  return filter;
+}
+
+/// Two grids side by side that meet at x = 5 with points of their own: a seam nobody sewed.
+vtkSmartPointer<vtkPolyData> TwoSheets()
+{
+  auto sheets = Grid(6, 6);
+  auto right = Grid(6, 6);
+  vtkNew<vtkPoints> points;
+  points->DeepCopy(sheets->GetPoints());
+  for (vtkIdType i = 0; i < 36; ++i)
+  {
+    const double* p = right->GetPoint(i);
+    points->InsertNextPoint(p[0] + 5.0, p[1], p[2]);
+  }
+  sheets->GetPolys()->Append(right->GetPolys(), 36);
+  sheets->SetPoints(points);
+  return sheets;
+}
+
+/// f of the grid point (x, y), whatever number it has.
+double Place(const double* p)
+{
+  return std::sin(2.0 * p[0]) + std::cos(3.0 * p[1]) + 0.1 * p[0];
+}
+
+void AddPlaceData(vtkPolyData* surface)
+{
+  AddPointArray(surface, "f", 1, [&](vtkIdType i, int) { return Place(surface->GetPoint(i)); });
+  surface->GetPointData()->SetActiveScalars("f");
+}
+
+void AddGhosts(vtkPolyData* surface, const std::vector<vtkIdType>& cells, unsigned char kind)
+{
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(surface->GetNumberOfCells());
+  ghosts->FillValue(0);
+  for (const vtkIdType cell : cells)
+  {
+    ghosts->SetValue(cell, kind);
+  }
+  surface->GetCellData()->AddArray(ghosts);
+}
+
+} // namespace
+
+TEST(Surfaces, WhatIsWrongIsHandledAndToldInOneWarningWithCounts)
+{
+  auto surface = TwoSheets(); // 6 + 6 points on the seam
+  vtkPoints* points = surface->GetPoints();
+  for (int i = 0; i < 3; ++i)
+  {
+    points->InsertNextPoint(20.0 + i, 0.0, 0.0); // isolated
+  }
+  const vtkIdType top = points->InsertNextPoint(1.5, 1.0, 2.0);
+  vtkCellArray* cells = surface->GetPolys();
+  cells->InsertNextCell({ vtkIdType(7), vtkIdType(8), top }); // a third triangle at an edge
+  cells->InsertNextCell({ vtkIdType(0), vtkIdType(1), vtkIdType(2) }); // collinear
+  cells->InsertNextCell({ vtkIdType(3), vtkIdType(3), vtkIdType(9) }); // one point twice
+  AddPointArray(surface, "f", 2, Rough);
+  const std::vector<double> areas = ControlAreas(surface);
+  vtkDataArray* f = surface->GetPointData()->GetArray("f");
+  for (const int solver :
+    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+  {
+    auto filter = MakeFilter(surface);
+    SetInputArray(filter, 0, "f");
+    filter->SetSolver(solver);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty());
+    ASSERT_EQ(messages.Warnings.size(), 1u);
+    const std::string& text = messages.Warnings[0];
+    for (const char* words : { "2 triangles of zero area", "3 points that no triangle uses",
+           "1 edges have three or more triangles", "12 boundary points coincide" })
+    {
+      EXPECT_NE(text.find(words), std::string::npos) << words << " is not in: " << text;
+    }
+    ASSERT_TRUE(AllFinite(Result(filter)));
+    for (int k = 0; k < 2; ++k)
+    {
+      EXPECT_NEAR(
+        Total(areas, Result(filter), k), Total(areas, f, k), 1e-12 * TotalMagnitude(areas, f, k));
+    }
+    for (vtkIdType i = 72; i < 75; ++i)
+    {
+      EXPECT_EQ(Result(filter)->GetComponent(i, 0), f->GetComponent(i, 0));
+    }
+    EXPECT_NE(Result(filter)->GetComponent(top, 0), f->GetComponent(top, 0));
+    filter->SetTimeStep(2.0);
+    filter->Update();
+    EXPECT_EQ(messages.Warnings.size(), 2u); // once per update
+  }
+}
+
+TEST(Surfaces, NothingIsWarnedAboutOnAGoodSurface)
+{
+  auto sphere = Sphere(2);
+  AddRough(sphere);
+  auto filter = MakeFilter(sphere);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
+}
+
+TEST(Surfaces, OfZeroAreaOnlyKeepsItsValues)
+{
+  auto surface = Grid(3, 3);
+  for (vtkIdType i = 0; i < 9; ++i)
+  {
+    surface->GetPoints()->SetPoint(i, 1.0, 2.0, 3.0);
+  }
+  vtkDataArray* f = AddRough(surface);
+  for (const int mode : { vtkFVMHeatFilter::MODE_TIME_STEPS, vtkFVMHeatFilter::MODE_STEADY_STATE })
+  {
+    auto filter = MakeFilter(surface);
+    filter->SetMode(mode);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty());
+    EXPECT_EQ(messages.Warnings.size(), 1u);
+    EXPECT_TRUE(Identical(Result(filter), f));
+  }
+}
+
+TEST(Surfaces, WhollyExcludedOrWhollyMissingIsFinite)
+{
+  auto surface = Grid(5, 5);
+  vtkDataArray* f = AddRough(surface);
+  AddPointArray(surface, "all", 1, [](vtkIdType, int) { return 1.0; });
+  AddPointArray(surface, "nan", 1, [](vtkIdType, int) { return std::nan(""); });
+  auto filter = MakeFilter(surface);
+  SetInputArray(filter, 1, "all");
+  filter->SetMaskModeToExclude();
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(Identical(Result(filter), f));
+  filter->SetMaskModeToInpaint();
+  filter->SetFidelityWeight(1.0);
+  for (int fill = 0; fill < 3; ++fill)
+  {
+    for (const char* name : { "f", "nan" })
+    {
+      SetInputArray(filter, 0, name);
+      filter->SetResultArrayName("u");
+      filter->SetInitialFill(fill);
+      filter->Update();
+      EXPECT_TRUE(AllFinite(Result(filter, "u"))) << name << fill;
+    }
+  }
+  EXPECT_TRUE(messages.Errors.empty());
+}
+
+TEST(Surfaces, ComponentsDoNotExchangeAnything)
+{
+  auto sheets = TwoSheets();
+  vtkDataArray* f =
+    AddPointArray(sheets, "f", 1, [](vtkIdType i, int) { return i < 36 ? 1.0 : 4.0; });
+  auto filter = MakeFilter(sheets);
+  SetInputArray(filter, 0, "f");
+  Messages messages(filter);
+  filter->SetTimeStep(100.0);
+  filter->Update();
+  EXPECT_LT(LargestDifference(Result(filter), f), 1e-13);
+}
+
+TEST(Surfaces, MergedPointsAreOne)
+{
+  auto sheets = TwoSheets();
+  AddPlaceData(sheets);
+  auto whole = Grid(11, 6);
+  AddPlaceData(whole);
+  auto reference = MakeFilter(whole);
+  reference->SetUnitsToAbsolute();
+  reference->Update();
+  auto filter = MakeFilter(sheets);
+  filter->SetUnitsToAbsolute();
+  filter->MergeCoincidentPointsOn();
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty());
+  const auto compare = [&](double allowed)
+  {
+    for (vtkIdType i = 0; i < 72; ++i)
+    {
+      const int x = static_cast<int>(i % 6 + (i < 36 ? 0 : 5));
+      const int y = static_cast<int>(i % 36 / 6);
+      EXPECT_NEAR(Result(filter)->GetComponent(i, 0),
+        Result(reference)->GetComponent(x + 11 * y, 0), allowed);
+    }
+  };
+  compare(1e-12);
+
+  // A seam a little open needs a tolerance.
+  for (vtkIdType i = 36; i < 72; ++i)
+  {
+    double p[3];
+    sheets->GetPoint(i, p);
+    sheets->GetPoints()->SetPoint(i, p[0] + 1e-5, p[1], p[2]);
+  }
+  sheets->GetPoints()->Modified();
+  filter->Update();
+  EXPECT_GT(
+    std::abs(Result(filter)->GetComponent(5, 0) - Result(filter)->GetComponent(36, 0)), 1e-4);
+  filter->SetMergeTolerance(1e-4);
+  filter->Update();
+  EXPECT_EQ(Result(filter)->GetComponent(5, 0), Result(filter)->GetComponent(36, 0));
+  compare(1e-3);
+}
+
+TEST(Surfaces, MergedPointsWithDifferentDataTakeTheirMeanAndKeepTheSum)
+{
+  auto sheets = TwoSheets();
+  AddPointArray(sheets, "f", 1, [](vtkIdType i, int) { return i < 36 ? 1.0 : 3.0; });
+  auto filter = MakeFilter(sheets);
+  SetInputArray(filter, 0, "f");
+  filter->MergeCoincidentPointsOn();
+  filter->GenerateTimeStepsOn();
+  UpdateAt(filter, 0.0);
+  EXPECT_EQ(Result(filter)->GetComponent(5, 0), 2.0);
+  EXPECT_EQ(Result(filter)->GetComponent(36, 0), 2.0);
+  EXPECT_EQ(Result(filter)->GetComponent(4, 0), 1.0);
+  UpdateAt(filter, 10.0);
+  EXPECT_NEAR(HistoryAt(filter, 10, "Total_0"), 100.0, 1e-10); // 25 x 1 + 25 x 3
+}
+
+TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInsideOnly)
+{
+  const int n = 6;
+  auto triangles = Grid(n, n);
+  AddPlaceData(triangles);
+  auto reference = MakeFilter(triangles);
+  reference->SetUnitsToAbsolute();
+  reference->Update();
+  // Unit squares: both diagonals are right, the flux over a diagonal is zero either way.
+  for (const char* kind : { "quads", "strips", "hexagons" })
+  {
+    vtkNew<vtkPolyData> surface;
+    surface->SetPoints(triangles->GetPoints());
+    vtkNew<vtkCellArray> cells;
+    for (int j = 0; j + 1 < n; ++j)
+    {
+      if (std::string(kind) == "strips")
+      {
+        cells->InsertNextCell(2 * n);
+        for (int i = 0; i < n; ++i)
+        {
+          cells->InsertCellPoint(i + n * (j + 1));
+          cells->InsertCellPoint(i + n * j);
+        }
+        continue;
+      }
+      const bool hexagons = std::string(kind) == "hexagons"; // two squares and one more
+      for (vtkIdType i = 0; i + 1 < n; ++i)
+      {
+        const vtkIdType a = i + n * j;
+        if (hexagons && i % 2 == 0 && i + 2 < n)
+        {
+          cells->InsertNextCell({ a, a + 1, a + 2, a + n + 2, a + n + 1, a + n });
+          ++i;
+        }
+        else
+        {
+          cells->InsertNextCell({ a, a + 1, a + n + 1, a + n });
+        }
+      }
+    }
+    if (std::string(kind) == "strips")
+    {
+      surface->SetStrips(cells);
+    }
+    else
+    {
+      surface->SetPolys(cells);
+    }
+    AddPlaceData(surface);
+    auto filter = MakeFilter(surface);
+    filter->SetUnitsToAbsolute();
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Warnings.empty()) << kind;
+    EXPECT_EQ(
+      filter->GetOutput()->GetPolys()->GetNumberOfCells(), surface->GetPolys()->GetNumberOfCells());
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfStrips(), surface->GetNumberOfStrips());
+    EXPECT_NEAR(HistoryAt(filter, 10, "Total_0"), HistoryAt(filter, 0, "Total_0"), 1e-12);
+    if (std::string(kind) != "hexagons") // whose ears may make obtuse triangles
+    {
+      EXPECT_NEAR(HistoryAt(filter, 10, "Energy"), HistoryAt(reference, 10, "Energy"), 0.02)
+        << kind;
+    }
+    EXPECT_TRUE(AllFinite(Result(filter)));
+    EXPECT_NE(Result(filter)->GetComponent(14, 0), Place(surface->GetPoint(14)));
+  }
+}
+
+TEST(Surfaces, ConcavePolygonsAreCutInside)
+{
+  // An L of one hexagon: a diagonal outside would give it area 4 or more instead of 3.
+  vtkNew<vtkPolyData> surface;
+  vtkNew<vtkPoints> points;
+  for (const auto& p :
+    { std::array<double, 2>{ 2, 0 }, { 2, 1 }, { 1, 1 }, { 1, 2 }, { 0, 2 }, { 0, 0 } })
+  {
+    points->InsertNextPoint(p[0], p[1], 0.0);
+  }
+  vtkNew<vtkCellArray> polys;
+  polys->InsertNextCell(
+    { vtkIdType(0), vtkIdType(1), vtkIdType(2), vtkIdType(3), vtkIdType(4), vtkIdType(5) });
+  surface->SetPoints(points);
+  surface->SetPolys(polys);
+  AddPointArray(surface, "f", 1, [](vtkIdType, int) { return 1.0; });
+  auto filter = MakeFilter(surface);
+  SetInputArray(filter, 0, "f");
+  filter->Update();
+  EXPECT_NEAR(HistoryAt(filter, 0, "Total_0"), 3.0, 1e-14);
+  // A concave quadrilateral, an arrow head: area 1, with the other diagonal 3.
+  points->Initialize();
+  for (const auto& p : { std::array<double, 2>{ 0, 0 }, { 2, -1 }, { 1, 0 }, { 2, 1 } })
+  {
+    points->InsertNextPoint(p[0], p[1], 0.0);
+  }
+  for (int first = 0; first < 4; ++first)
+  {
+    vtkNew<vtkCellArray> quad;
+    quad->InsertNextCell(4);
+    for (int i = 0; i < 4; ++i)
+    {
+      quad->InsertCellPoint((first + i) % 4);
+    }
+    surface->SetPolys(quad);
+    AddPointArray(surface, "f", 1, [](vtkIdType, int) { return 1.0; });
+    surface->Modified();
+    filter->Update();
+    EXPECT_NEAR(HistoryAt(filter, 0, "Total_0"), 1.0, 1e-14) << first;
+  }
+}
+
+TEST(Surfaces, VertsAndLinesPassThroughAndCellDataStayWithTheirCells)
+{
+  auto plane = Grid(6, 6);
+  auto mixed = Grid(6, 6);
+  vtkNew<vtkCellArray> verts;
+  verts->InsertNextCell({ vtkIdType(3) });
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell({ vtkIdType(0), vtkIdType(35) });
+  mixed->SetVerts(verts);
+  mixed->SetLines(lines);
+  // Directions of cells count verts and lines first.
+  const auto direction = [](int offset)
+  { return [offset](vtkIdType c, int k) { return c < offset ? 0.0 : Rough(c - offset, k); }; };
+  plane->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "e1", 50, 3, direction(0)));
+  mixed->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "e1", 52, 3, direction(2)));
+  vtkSmartPointer<vtkDataArray> results[2];
+  int r = 0;
+  for (vtkPolyData* surface : { plane.Get(), mixed.Get() })
+  {
+    AddRough(surface);
+    auto filter = MakeFilter(surface);
+    SetInputArray(filter, 2, "e1", true);
+    filter->SetAlongDiffusivity(5.0);
+    filter->Update();
+    results[r++] = Result(filter);
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfVerts(), surface->GetNumberOfVerts());
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfLines(), surface->GetNumberOfLines());
+    EXPECT_EQ(
+      filter->GetOutput()->GetCellData()->GetArray("e1"), surface->GetCellData()->GetArray("e1"));
+  }
+  EXPECT_TRUE(Identical(results[0], results[1]));
+}
+
+TEST(Surfaces, GhostAndHiddenCellsTakeNoPart)
+{
+  for (const unsigned char kind :
+    { vtkDataSetAttributes::DUPLICATECELL, vtkDataSetAttributes::HIDDENCELL })
+  {
+    auto plane = Grid(6, 6);
+    vtkDataArray* f = AddRough(plane);
+    std::vector<vtkIdType> rightColumn;
+    for (vtkIdType row = 0; row < 5; ++row)
+    {
+      rightColumn.insert(rightColumn.end(), { 10 * row + 8, 10 * row + 9 });
+    }
+    AddGhosts(plane, rightColumn, kind);
+    auto rest = Grid(5, 6);
+    AddPointArray(
+      rest, "f", 1, [&](vtkIdType i, int) { return f->GetComponent(i % 5 + 6 * (i / 5), 0); });
+    rest->GetPointData()->SetActiveScalars("f");
+    auto filter = MakeFilter(plane);
+    auto reference = MakeFilter(rest);
+    for (vtkFVMHeatFilter* each : { filter.Get(), reference.Get() })
+    {
+      each->SetUnitsToAbsolute();
+      each->Update();
+    }
+    for (vtkIdType i = 0; i < 36; ++i)
+    {
+      EXPECT_NEAR(Result(filter)->GetComponent(i, 0),
+        i % 6 == 5 ? f->GetComponent(i, 0)
+                   : Result(reference)->GetComponent(i % 6 + 5 * (i / 6), 0),
+        1e-12);
+    }
+  }
+}
+
+TEST(Surfaces, NumberingAndOrientationDoNotMatter)
+{
+  auto sphere = Sphere(3);
+  AddPlaceData(sphere);
+  auto reference = MakeFilter(sphere);
+  reference->Update();
+  // Points backwards, triangles backwards, every third one the other way round.
+  const vtkIdType last = sphere->GetNumberOfPoints() - 1;
+  vtkNew<vtkPolyData> other;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType i = 0; i <= last; ++i)
+  {
+    points->InsertNextPoint(sphere->GetPoint(last - i));
+  }
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType c = sphere->GetNumberOfCells() - 1; c >= 0; --c)
+  {
+    sphere->GetCellPoints(c, ids);
+    const bool flip = c % 3 == 0;
+    cells->InsertNextCell(
+      { last - ids->GetId(flip ? 1 : 0), last - ids->GetId(flip ? 0 : 1), last - ids->GetId(2) });
+  }
+  other->SetPoints(points);
+  other->SetPolys(cells);
+  AddPlaceData(other);
+  auto filter = MakeFilter(other);
+  filter->Update();
+  for (vtkIdType i = 0; i <= last; ++i)
+  {
+    EXPECT_NEAR(
+      Result(filter)->GetComponent(i, 0), Result(reference)->GetComponent(last - i, 0), 1e-9);
+  }
+}

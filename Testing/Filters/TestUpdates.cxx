@@ -1,0 +1,373 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkFVMHeatFilter.h"
+#include "vtkSMPTools.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+
+using namespace FilterTest;
+
+// Counting every allocation needs a malloc of our own, which sanitizers bring themselves.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define SURFACEDIFFUSION_COUNT_ALLOCATIONS
+static std::atomic<long> NumberOfAllocations{ 0 };
+extern "C"
+{
+  void* __libc_malloc(std::size_t size);
+  void* malloc(std::size_t size)
+  {
+    NumberOfAllocations.fetch_add(1, std::memory_order_relaxed);
+    return __libc_malloc(size);
+  }
+}
+#endif
+
+namespace
+{
+
+vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
+{
+  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+  filter->SetInputData(surface);
+  return filter;
+}
+
+/// What a filter tells of its progress.
+struct Reports
+{
+  explicit Reports(vtkAlgorithm* filter)
+  {
+    Listen(filter,
+      [this](double amount)
+      {
+        this->Jump = std::max(this->Jump, amount - this->Last);
+        this->Backwards = this->Backwards || amount < this->Last;
+        this->Last = amount;
+        ++this->Count;
+      });
+  }
+  void Clear()
+  {
+    this->Count = 0;
+    this->Last = this->Jump = 0.0;
+    this->Backwards = false;
+  }
+
+  int Count = 0;
+  double Last = 0.0;
+  double Jump = 0.0;
+  bool Backwards = false;
+};
+
+} // namespace
+
+TEST(Updates, ReportProgressEvenly)
+{
+  auto sphere = Sphere(4);
+  AddRough(sphere);
+  for (const int solver :
+    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+  {
+    for (const int steps : { 0, 1, 2, 10, 200 })
+    {
+      for (const int mode : { 0, 1 })
+      {
+        auto filter = MakeFilter(sphere);
+        filter->SetSolver(solver);
+        filter->SetNumberOfTimeSteps(steps);
+        filter->SetMode(mode);
+        filter->SetFidelityWeight(1.0);
+        Reports reports(filter);
+        filter->Update();
+        EXPECT_GE(reports.Count, 10) << solver << ' ' << steps << ' ' << mode;
+        EXPECT_LE(reports.Jump, 0.5) << solver << ' ' << steps << ' ' << mode;
+        EXPECT_FALSE(reports.Backwards) << solver << ' ' << steps << ' ' << mode;
+        EXPECT_EQ(reports.Last, 1.0);
+      }
+    }
+  }
+}
+
+TEST(Updates, ReportProgressWhereNearlyEverythingIsKept)
+{
+  auto sphere = Sphere(4);
+  AddRough(sphere);
+  auto filter = MakeFilter(sphere);
+  filter->GenerateTimeStepsOn();
+  filter->Update();
+  Reports reports(filter);
+  for (const double time : { 5.0, 6.0, 0.0 })
+  {
+    reports.Clear();
+    UpdateAt(filter, time);
+    EXPECT_LE(reports.Jump, 0.5) << time;
+    EXPECT_FALSE(reports.Backwards) << time;
+    EXPECT_EQ(reports.Last, 1.0) << time;
+  }
+}
+
+TEST(Updates, ObeyAnAbortAndWorkAgainAfterwards)
+{
+  auto sphere = Sphere(4);
+  vtkDataArray* f = AddRough(sphere);
+  for (const int solver :
+    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+  {
+    auto reference = MakeFilter(sphere);
+    reference->SetSolver(solver);
+    reference->Update();
+    for (const double when : { 0.01, 0.1, 0.2, 0.3, 0.6, 0.9 })
+    {
+      auto filter = MakeFilter(sphere);
+      filter->SetSolver(solver);
+      int after = 0;
+      bool aborted = false;
+      const unsigned long tag = Listen(filter,
+        [&](double amount)
+        {
+          after += aborted;
+          if (amount >= when)
+          {
+            aborted = true;
+            filter->AbortExecuteOn();
+          }
+        });
+      Messages messages(filter);
+      filter->Update();
+      ASSERT_TRUE(aborted);
+      EXPECT_LE(after, 1) << "reports after the abort at " << when;
+      vtkPolyData* output = filter->GetOutput();
+      EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), 1) << when;
+      EXPECT_EQ(output->GetPointData()->GetScalars(), f) << when;
+      EXPECT_EQ(output->GetPolys(), sphere->GetPolys()) << when;
+      EXPECT_TRUE(messages.Errors.empty());
+
+      filter->RemoveObserver(tag);
+      filter->AbortExecuteOff();
+      filter->Modified();
+      filter->Update();
+      EXPECT_TRUE(Identical(Result(filter), Result(reference))) << when;
+    }
+  }
+}
+
+TEST(Updates, ChangesOfTheOutputAloneComputeNothing)
+{
+  auto sphere = Sphere(3);
+  AddRough(sphere);
+  auto filter = MakeFilter(sphere);
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 10);
+  filter->SetResultArrayName("u");
+  filter->Update();
+  filter->SetOutputPrecisionToSingle();
+  filter->Update();
+  filter->Modified();
+  filter->Update();
+  filter->SetOutputInterval(3);
+  filter->Update();
+  EXPECT_EQ(Result(filter, "u")->GetDataType(), VTK_FLOAT);
+  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 10);
+  AddPointArray(sphere, "unrelated", 1, Rough);
+  sphere->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 10);
+  EXPECT_NE(Result(filter, "unrelated"), nullptr);
+}
+
+TEST(Updates, ChangesOfWhatTheStepsDependOnComputeThemAgain)
+{
+  auto sphere = Sphere(3);
+  vtkDataArray* f = AddRough(sphere);
+  AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 4 == 0; });
+  AddPointArray(sphere, "e1", 3, Rough);
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 1, "mask");
+  filter->Update();
+  vtkIdType computed = filter->GetNumberOfStepsComputed();
+  const auto expectAgain = [&](const char* what)
+  {
+    filter->Update();
+    EXPECT_EQ(filter->GetNumberOfStepsComputed(), computed + 10) << what;
+    computed = filter->GetNumberOfStepsComputed();
+    // Nothing stale: a new filter with the same settings agrees.
+    auto fresh = MakeFilter(sphere);
+    SetInputArray(fresh, 1, "mask");
+    SetInputArray(fresh, 2, "e1");
+    fresh->SetTimeStep(filter->GetTimeStep());
+    fresh->SetUnits(filter->GetUnits());
+    fresh->SetFidelityWeight(filter->GetFidelityWeight());
+    fresh->SetInitialFill(filter->GetInitialFill());
+    fresh->SetRandomSeed(filter->GetRandomSeed());
+    fresh->SetAlongDiffusivity(filter->GetAlongDiffusivity());
+    fresh->SetTimeIntegrator(filter->GetTimeIntegrator());
+    fresh->SetSolver(filter->GetSolver());
+    fresh->SetTolerance(filter->GetTolerance());
+    fresh->SetMaskMode(filter->GetMaskMode());
+    fresh->Update();
+    EXPECT_TRUE(Identical(Result(filter), Result(fresh))) << what;
+  };
+  filter->SetTimeStep(2.0);
+  expectAgain("TimeStep");
+  filter->SetFidelityWeight(0.5);
+  expectAgain("FidelityWeight");
+  filter->SetInitialFillToNoise();
+  expectAgain("InitialFill");
+  filter->SetRandomSeed(3);
+  expectAgain("RandomSeed");
+  SetInputArray(filter, 2, "e1");
+  filter->SetAlongDiffusivity(3.0);
+  expectAgain("AlongDiffusivity");
+  filter->SetTimeIntegratorToFirstOrder();
+  expectAgain("TimeIntegrator");
+  filter->SetSolverToDirect();
+  expectAgain("Solver");
+  filter->SetSolverToConjugateGradient();
+  expectAgain("Solver");
+  filter->SetTolerance(1e-4);
+  expectAgain("Tolerance");
+  filter->SetUnitsToAbsolute();
+  expectAgain("Units");
+  filter->SetMaskModeToExclude();
+  expectAgain("MaskMode");
+  f->SetComponent(7, 0, 5.0);
+  f->Modified();
+  sphere->Modified();
+  expectAgain("data");
+  sphere->GetPoints()->SetPoint(7, 0.0, 0.0, 1.3);
+  sphere->GetPoints()->Modified();
+  sphere->Modified();
+  expectAgain("points");
+  sphere->GetPolys()->ReplaceCellAtId(3, { vtkIdType(0), vtkIdType(1), vtkIdType(2) });
+  sphere->GetPolys()->Modified();
+  sphere->Modified();
+  expectAgain("triangles");
+}
+
+TEST(Updates, WhatTheMeshAloneDecidesIsKept)
+{
+  auto sphere = Sphere(4);
+  AddRough(sphere);
+  auto filter = MakeFilter(sphere);
+  filter->Update();
+  double first = 2.0;
+  Listen(filter, [&](double amount) { first = amount > 0.0 ? std::min(first, amount) : first; });
+  filter->SetTimeStep(2.0);
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 20);
+  const double kept = first;
+  first = 2.0;
+  sphere->GetPoints()->Modified();
+  sphere->Modified();
+  filter->Update();
+  EXPECT_LT(first, kept); // building the surface reports first
+}
+
+TEST(Updates, ResultsDoNotDependOnTheNumberOfThreads)
+{
+  const std::string before = vtkSMPTools::GetBackend();
+  auto sphere = Sphere(6); // 16386 points: several blocks of work
+  AddRough(sphere, 3);
+  AddPointArray(sphere, "e1", 3, Rough);
+  AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 11 == 0; });
+  for (const int solver :
+    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+  {
+    vtkSmartPointer<vtkDataArray> first;
+    std::vector<double> history;
+    const auto run = [&](const char* backend, int threads)
+    {
+      if (!vtkSMPTools::SetBackend(backend))
+      {
+        return;
+      }
+      vtkSMPTools::Initialize(threads);
+      auto filter = MakeFilter(sphere);
+      SetInputArray(filter, 1, "mask");
+      SetInputArray(filter, 2, "e1");
+      filter->SetInitialFillToNoise();
+      filter->SetSolver(solver);
+      filter->SetAlongDiffusivity(4.0);
+      filter->SetNumberOfTimeSteps(2);
+      filter->Update();
+      if (!first)
+      {
+        first = Result(filter);
+      }
+      EXPECT_TRUE(Identical(first, Result(filter))) << backend << ' ' << threads;
+      std::vector<double> numbers;
+      for (int row = 0; row <= 2; ++row)
+      {
+        for (const char* column : { "Total_0", "Total_2", "Energy", "Iterations", "Residual" })
+        {
+          numbers.push_back(HistoryAt(filter, row, column));
+        }
+      }
+      history = history.empty() ? numbers : history;
+      EXPECT_EQ(history, numbers) << backend << ' ' << threads;
+    };
+    run("Sequential", 1);
+    for (const int threads : { 1, 2, 4 })
+    {
+      run("STDThread", threads);
+    }
+  }
+  vtkSMPTools::SetBackend(before.c_str());
+  vtkSMPTools::Initialize(0);
+}
+
+TEST(Updates, LaterStepsAllocateNothing)
+{
+#ifndef SURFACEDIFFUSION_COUNT_ALLOCATIONS
+  GTEST_SKIP() << "allocations cannot be counted in this build";
+#else
+  const std::string before = vtkSMPTools::GetBackend();
+  vtkSMPTools::SetBackend("Sequential"); // other back ends allocate for their threads
+  auto sphere = Sphere(4);
+  AddRough(sphere, 3);
+  const auto allocationsOf = [&](int steps, int integrator, bool timeSteps)
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetSolverToConjugateGradient();
+    filter->SetTimeIntegrator(integrator);
+    filter->SetGenerateTimeSteps(timeSteps);
+    filter->SetNumberOfTimeSteps(steps);
+    filter->UpdateInformation(); // the list of published times grows with the steps
+    const long start = NumberOfAllocations;
+    filter->Update();
+    return NumberOfAllocations - start;
+  };
+  for (const bool timeSteps : { false, true })
+  {
+    for (const int integrator : { vtkFVMHeatFilter::TIME_INTEGRATOR_FIRST_ORDER,
+           vtkFVMHeatFilter::TIME_INTEGRATOR_SECOND_ORDER })
+    {
+      const long few = allocationsOf(2, integrator, timeSteps);
+      EXPECT_GT(few, 0);
+      EXPECT_EQ(allocationsOf(60, integrator, timeSteps), few) << timeSteps << integrator;
+    }
+  }
+  vtkSMPTools::SetBackend(before.c_str());
+#endif
+}
+
+TEST(Updates, TheFactorIsUsedAgainWhereTheMatrixStays)
+{
+  auto sphere = Sphere(6);
+  AddRough(sphere);
+  auto filter = MakeFilter(sphere);
+  filter->SetSolverToDirect();
+  filter->SetNumberOfTimeSteps(1);
+  filter->Update();
+  const double withFactor = HistoryAt(filter, 1, "Seconds");
+  AddRough(sphere)->SetComponent(0, 0, 0.5); // other data, same matrix
+  sphere->Modified();
+  filter->Update();
+  EXPECT_LT(HistoryAt(filter, 1, "Seconds"), 0.5 * withFactor);
+}
