@@ -386,9 +386,10 @@ SolveReport HarmonicMap::TrySolve(bool factor, Values& step, const Monitor& moni
     this->Solver->SetMatrix(this->Matrix, monitor.Part(0.0, 0.5));
     this->Solver->SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
   }
-  return this->Tangent.Solve(this->Matrix, this->Previous, this->Data.Fixed, this->RightHandSide,
-    step, factor ? this->Solver.get() : nullptr, this->Options.Limits,
-    factor ? monitor.Part(0.5, 1.0) : monitor);
+  const TangentSystem system{ this->Matrix, this->Previous, this->Data.Fixed, this->RightHandSide,
+    this->Diagonal };
+  return this->Tangent.Solve(system, step, factor ? this->Solver.get() : nullptr,
+    this->Options.Limits, factor ? monitor.Part(0.5, 1.0) : monitor);
 }
 
 } // namespace SurfaceDiffusion

@@ -27,11 +27,11 @@ Eigen::Map<const Eigen::Matrix<double, 1, K>> Row(const Values& v, Index i)
 
 /// Take from row i of x what is not tangential to the sphere at u_i; all of it where i is fixed.
 template <int K>
-void Project(const Values& u, const Flags& fixed, Index i, Values& x)
+void Project(const TangentSystem& system, Index i, Values& x)
 {
   auto xi = Row<K>(x, i);
-  const auto ui = Row<K>(u, i);
-  if (fixed[i])
+  const auto ui = Row<K>(system.U, i);
+  if (system.Fixed[i])
   {
     xi.setZero();
     return;
@@ -41,27 +41,26 @@ void Project(const Values& u, const Flags& fixed, Index i, Values& x)
 
 } // namespace
 
-SolveReport TangentSolver::Solve(const SparseMatrix& matrix, const Values& u, const Flags& fixed,
-  const Values& b, Values& x, LinearSolver* preconditioner, const IterationLimits& limits,
-  const Monitor& monitor)
+SolveReport TangentSolver::Solve(const TangentSystem& system, Values& x,
+  LinearSolver* preconditioner, const IterationLimits& limits, const Monitor& monitor)
 {
-  switch (u.cols())
+  switch (system.U.cols())
   {
     case 2:
-      return this->SolveColumns<2>(matrix, u, fixed, b, x, preconditioner, limits, monitor);
+      return this->SolveColumns<2>(system, x, preconditioner, limits, monitor);
     case 3:
-      return this->SolveColumns<3>(matrix, u, fixed, b, x, preconditioner, limits, monitor);
+      return this->SolveColumns<3>(system, x, preconditioner, limits, monitor);
     default:
-      return this->SolveColumns<Eigen::Dynamic>(
-        matrix, u, fixed, b, x, preconditioner, limits, monitor);
+      return this->SolveColumns<Eigen::Dynamic>(system, x, preconditioner, limits, monitor);
   }
 }
 
 template <int K>
-SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values& u,
-  const Flags& fixed, const Values& b, Values& x, LinearSolver* preconditioner,
-  const IterationLimits& limits, const Monitor& monitor)
+SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
+  LinearSolver* preconditioner, const IterationLimits& limits, const Monitor& monitor)
 {
+  const SparseMatrix& matrix = system.Matrix;
+  const Values& b = system.B;
   const Index n = static_cast<Index>(b.rows());
   x.setZero(b.rows(), b.cols());
   this->InverseDiagonal.resize(n);
@@ -72,19 +71,20 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
 
-  // The residual is measured as in LinearSolver: in the norm of diag(A)^-1, whatever preconditions.
-  const double whole = Sum(this->Parallel, n, // the same of diag(A) u
+  // Measured as in LinearSolver: in the norm of diag(A)^-1, whatever preconditions.
+  const double scale = Sum(this->Parallel, n,
     [&](Index i)
     {
       const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
       this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[slot];
-      return matrix.valuePtr()[slot] * Row<K>(u, i).squaredNorm();
+      const double inertia = system.Inertia[i];
+      return inertia * inertia * this->InverseDiagonal[i] * Row<K>(system.U, i).squaredNorm();
     });
   const double start = Sum(this->Parallel, n,
     [&](Index i)
     {
-      Project<K>(u, fixed, i, this->R);
-      Project<K>(u, fixed, i, this->R); // near rest the first leaves as much round-off as there is
+      Project<K>(system, i, this->R);
+      Project<K>(system, i, this->R); // near rest the first leaves as much round-off as there is
       return this->InverseDiagonal[i] * Row<K>(this->R, i).squaredNorm();
     });
   if (!std::isfinite(start))
@@ -92,12 +92,11 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
     throw std::runtime_error("the linear system has no finite solution");
   }
 
-  const double target = limits.Tolerance * limits.Tolerance;
-  const double roundOff = 1e-30 * whole; // of b, which comes from A u: less means nothing
+  const double target = limits.Tolerance * limits.Tolerance * std::max(scale, start);
   SolveReport report;
   double left = start;
   double rho = 0.0;
-  while (left > std::max(target * start, roundOff))
+  while (left > target)
   {
     if (report.Iterations == limits.MaximumNumberOfIterations)
     {
@@ -105,7 +104,7 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
       break;
     }
     const double previous = rho;
-    rho = this->Precondition<K>(preconditioner, u, fixed);
+    rho = this->Precondition<K>(system, preconditioner);
     const double beta = previous > 0.0 ? rho / previous : 0.0;
     ForEach(this->Parallel, n,
       [&](Index i) { Row<K>(this->P, i) = Row<K>(this->Z, i) + beta * Row<K>(this->P, i); });
@@ -113,7 +112,7 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
     const double curvature = Sum(this->Parallel, n,
       [&](Index i)
       {
-        Project<K>(u, fixed, i, this->Q);
+        Project<K>(system, i, this->Q);
         return Row<K>(this->P, i).dot(Row<K>(this->Q, i));
       });
     if (!(curvature > 0.0)) // all that is left is round-off
@@ -132,18 +131,18 @@ SolveReport TangentSolver::SolveColumns(const SparseMatrix& matrix, const Values
       });
     if (++report.Iterations % 8 == 0)
     {
-      monitor.Report(std::min(0.99, std::max(0.0, std::log(left / start) / std::log(target))));
+      monitor.Report(
+        std::min(0.99, std::max(0.0, std::log(left / start) / std::log(target / start))));
     }
   }
-  report.Residual = start > 0.0 ? std::sqrt(left / start) : 0.0;
+  report.Residual = std::sqrt(left / std::max(scale, start));
   monitor.Report(1.0);
   return report;
 }
 
 /// Z = P C^-1 R for the preconditioner C; returns R.Z.
 template <int K>
-double TangentSolver::Precondition(
-  LinearSolver* preconditioner, const Values& u, const Flags& fixed)
+double TangentSolver::Precondition(const TangentSystem& system, LinearSolver* preconditioner)
 {
   if (preconditioner)
   {
@@ -154,7 +153,7 @@ double TangentSolver::Precondition(
     {
       if (preconditioner)
       {
-        Project<K>(u, fixed, i, this->Z);
+        Project<K>(system, i, this->Z);
       }
       else
       {

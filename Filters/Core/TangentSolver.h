@@ -7,11 +7,21 @@
 namespace SurfaceDiffusion
 {
 
-/// Solves P A P x = P b for symmetric positive definite A, where P takes each row x_i to its part
-/// orthogonal to u_i, and to 0 at fixed vertices: the linear system of a step whose unknowns lie
-/// in the tangent spaces of the sphere. Conjugate gradients from x = 0 with one recurrence for all
-/// columns, which P couples. Every iterate has a smaller 1/2 x.Ax - b.x than the one before: a step
-/// that uses an unfinished x still goes downhill.
+/// P A P x = P b for symmetric positive definite A, where P takes each row x_i to its part
+/// orthogonal to u_i, and to 0 at fixed vertices: the linear system of a step whose unknowns lie in
+/// the tangent spaces of the sphere.
+struct TangentSystem
+{
+  const SparseMatrix& Matrix;
+  const Values& U; ///< n x m, no row zero
+  const Flags& Fixed;
+  const Values& B;
+  const Vector& Inertia; ///< the part of diag(A) that multiplies u itself in a time step
+};
+
+/// Solves such systems by conjugate gradients from x = 0, with one recurrence for all columns,
+/// which P couples. Every iterate has a smaller 1/2 x.Ax - b.x than the one before: a step that
+/// uses an unfinished x still goes downhill.
 class TangentSolver
 {
 public:
@@ -20,19 +30,18 @@ public:
   {
   }
 
-  /// u: n x m, nonzero rows. preconditioner: a direct solver that has taken a matrix near A; none:
-  /// the diagonal of A (Jacobi). The report is in the terms of LinearSolver.
-  SolveReport Solve(const SparseMatrix& matrix, const Values& u, const Flags& fixed,
-    const Values& b, Values& x, LinearSolver* preconditioner, const IterationLimits& limits,
-    const Monitor& monitor = Monitor());
+  /// preconditioner: a direct solver that has taken a matrix near A; none: the diagonal of A
+  /// (Jacobi). The residual is in the norm of LinearSolver, relative to the larger of P b and
+  /// Inertia u: to what the right-hand side would be if x were the whole of u.
+  SolveReport Solve(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
+    const IterationLimits& limits, const Monitor& monitor = Monitor());
 
 private:
   template <int K>
-  SolveReport SolveColumns(const SparseMatrix& matrix, const Values& u, const Flags& fixed,
-    const Values& b, Values& x, LinearSolver* preconditioner, const IterationLimits& limits,
-    const Monitor& monitor);
+  SolveReport SolveColumns(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
+    const IterationLimits& limits, const Monitor& monitor);
   template <int K>
-  double Precondition(LinearSolver* preconditioner, const Values& u, const Flags& fixed);
+  double Precondition(const TangentSystem& system, LinearSolver* preconditioner);
 
   const ParallelFor& Parallel;
   Vector InverseDiagonal;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Allocations.h"
 #include "HarmonicMaps.h"
 #include "Heat.h"
 #include "ThreadedFor.h"
@@ -39,7 +40,7 @@ PointData Hedgehog(const TriangleMesh& mesh, const Surface& s, double turns)
 
 } // namespace
 
-TEST(HarmonicMap, ConstantMapsStayToTheLastBit)
+TEST(HarmonicMap, ConstantMapsStay)
 {
   const auto assembler = MakeAssembler(Jittered(Strip(12, 12), 0.03, 0.01, 0.99, 0.01, 0.99));
   const TriangleMesh& mesh = assembler->Mesh();
@@ -292,4 +293,34 @@ TEST(HarmonicMap, HalfTurnsAreSmoothAsLines)
   const auto vectors = MakeMap(assembler, Hedgehog(mesh, s, 0.5), settings);
   EXPECT_NEAR(half->Energy() / full->Energy(), 0.25, 0.05);
   EXPECT_GT(vectors->Energy(), 2.0 * half->Energy());
+}
+
+TEST(HarmonicMap, StepsAfterTheFirstAllocateNothing)
+{
+  const auto assembler = MakeAssembler(Icosphere(4)); // two blocks
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Monitor::Callback go = [](double) { return true; };
+  for (const Eigen::Index m : { 2, 3, 5 })
+  {
+    for (const MapScheme scheme : AllSchemes)
+    {
+      for (const bool lineField : { false, true })
+      {
+        auto data = PointData::FromValues(RandomUnitVectors(mesh, m));
+        data.Missing.head(50) = true;
+        data.Fixed.tail(50) = true;
+        auto settings = MapSettings(mesh, 1.5, 1e-3, 1e-4, scheme);
+        settings.Fidelity = 1.0;
+        settings.LineField = lineField;
+        const auto map = MakeMap(assembler, data, settings, MakeConjugateGradientSolver());
+        map->Advance(Monitor(go));
+        const long before = NumberOfAllocations();
+        map->Advance(Monitor(go));
+        map->Advance(Monitor(go));
+        map->Energy();
+        EXPECT_EQ(NumberOfAllocations() - before, 0)
+          << m << " components, scheme " << static_cast<int>(scheme);
+      }
+    }
+  }
 }
