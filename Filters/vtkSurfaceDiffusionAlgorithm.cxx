@@ -175,30 +175,41 @@ void vtkSurfaceDiffusionAlgorithm::WriteRunKey(std::ostream& key)
       << ' ' << this->CheckpointMemoryLimit << ' ';
 }
 
+void vtkSurfaceDiffusionAlgorithm::PrepareData(ModelInput& input)
+{
+  SurfaceDiffusion::FillMissing(*input.Surface.Mesh, input.Data,
+    static_cast<SurfaceDiffusion::InitialFill>(this->InitialFill), this->RandomSeed, input.Ids);
+}
+
 void vtkSurfaceDiffusionAlgorithm::WriteResult(
   const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output)
 {
-  std::string name = this->ResultArrayName;
-  if (name.empty())
+  vtkPointData* data = output->GetPointData();
+  const int index = data->AddArray(WritePointArray(*run.Surface, arrays.Data, run.Path->State(),
+    run.Units.ValueUnit, this->FindResultType(arrays), this->FindResultName(arrays)));
+  data->SetActiveAttribute(index, vtkDataSetAttributes::SCALARS);
+}
+
+std::string vtkSurfaceDiffusionAlgorithm::FindResultName(const BlockArrays& arrays)
+{
+  if (!this->ResultArrayName.empty())
   {
-    name = arrays.Data->GetName() ? arrays.Data->GetName() : "";
-    name += this->GetResultSuffix();
+    return this->ResultArrayName;
   }
-  int type = VTK_DOUBLE;
+  const char* name = arrays.Data->GetName();
+  return std::string(name ? name : "") + this->GetResultSuffix();
+}
+
+int vtkSurfaceDiffusionAlgorithm::FindResultType(const BlockArrays& arrays)
+{
   const int inputType = arrays.Data->GetDataType();
-  if (this->OutputPrecision == OUTPUT_PRECISION_SINGLE ||
-    (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_FLOAT))
+  if (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_UNSIGNED_CHAR)
   {
-    type = VTK_FLOAT;
+    return VTK_UNSIGNED_CHAR;
   }
-  else if (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_UNSIGNED_CHAR)
-  {
-    type = VTK_UNSIGNED_CHAR;
-  }
-  vtkSmartPointer<vtkDataArray> result = WritePointArray(
-    *run.Surface, arrays.Data, run.Path->State(), run.Units.ValueUnit, type, name);
-  output->GetPointData()->AddArray(result);
-  output->GetPointData()->SetActiveScalars(name.c_str());
+  const bool single = this->OutputPrecision == OUTPUT_PRECISION_SINGLE ||
+    (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_FLOAT);
+  return single ? VTK_FLOAT : VTK_DOUBLE;
 }
 
 //------------------------------------------------------------------------------------------------

@@ -49,6 +49,7 @@
 namespace SurfaceDiffusion
 {
 class Evolution;
+class Monitor;
 }
 class vtkDataArray;
 class vtkPolyData;
@@ -357,12 +358,23 @@ protected:
   /// Write everything of the class that a run's numbers depend on. Superclass first.
   virtual void WriteRunKey(std::ostream& key);
 
+  /// Fill in what is missing in input.Data, before values are held and the model is made.
+  virtual void PrepareData(ModelInput& input);
+
   /// Make the model. `steps` is how many are planned.
   virtual std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
     ModelInput& input, int steps) = 0;
 
+  /// Work on the current state of run.Path that may take long or fail. It comes before anything is
+  /// written to any block.
+  virtual void PrepareResult(const SurfaceRun&, const SurfaceDiffusion::Monitor&) {}
+
   /// Add the result, the current state of run.Path, to the output block.
   virtual void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output);
+
+  /// Helpers of WriteResult().
+  std::string FindResultName(const BlockArrays& arrays);
+  int FindResultType(const BlockArrays& arrays);
 
   /// What is added to the input array's name.
   virtual const char* GetResultSuffix() = 0;
@@ -382,6 +394,8 @@ protected:
   virtual bool UsesFidelity() { return this->FidelityWeight > 0.0; }
   /// Whether times are in absolute units whatever Units says.
   virtual bool GetTimeIsAbsolute() { return this->Units == UNITS_ABSOLUTE; }
+  /// Whether values are measured in R in natural units; R is 1 otherwise.
+  virtual bool HasValueRange() { return true; }
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;

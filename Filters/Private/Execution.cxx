@@ -209,6 +209,10 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
     // Where at most one step is left to do, to write the result is much of the work.
     const double written = this->NumberOfStepsTo(step) > 1 ? 0.95 : 0.7;
     this->Seek(step, monitor.Part(0.25, written));
+    for (const Block& block : this->Blocks)
+    {
+      this->Filter.PrepareResult(*block.Run, monitor.Part(written, written));
+    }
     monitor.Report(written); // the last chance to abort: from here on the output changes
     for (const Block& block : this->Blocks)
     {
@@ -300,14 +304,14 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MeasureUnits()
   units.Natural = this->Filter.Units == UNITS_NATURAL;
   units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
   const Dimension time = this->Filter.GetTimeDimension();
-  units.ValueRange = statistics.Range();
+  units.ValueRange = this->Filter.HasValueRange() ? statistics.Range() : 1.0;
   if (!std::isfinite(units.ValueRange) || !std::isfinite(units.MeanEdgeLength))
   {
     throw std::runtime_error(
       "the range of the coordinates or of the values is larger than a double can hold");
   }
   // A power of two changes no bit; only values whose squares overflow or vanish need one.
-  const double magnitude = statistics.Magnitude;
+  const double magnitude = this->Filter.HasValueRange() ? statistics.Magnitude : 0.0;
   if (magnitude > 0.0 && (magnitude > 1e100 || magnitude < 1e-100))
   {
     units.ValueUnit = std::exp2(std::ilogb(magnitude));
@@ -372,10 +376,8 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
     const bool inpaint = this->Filter.MaskMode == MASK_MODE_INPAINT;
     input.Data = ReadPointData(*run.Surface, block.Arrays.Data,
       inpaint ? block.Arrays.Mask : nullptr, block.Arrays.Fixed, run.Units.ValueUnit);
+    this->Filter.PrepareData(input);
     run.HasMissing = input.Data.Missing.any();
-    FillMissing(*run.Surface->Mesh, input.Data,
-      static_cast<SurfaceDiffusion::InitialFill>(this->Filter.InitialFill),
-      this->Filter.RandomSeed, input.Ids);
     if (this->Filter.HoldKnownValues)
     {
       input.Data.Fixed = input.Data.Fixed || !input.Data.Missing;
