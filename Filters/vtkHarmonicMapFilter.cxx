@@ -1,0 +1,392 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkHarmonicMapFilter.h"
+
+#include "Core/Coefficients.h"
+#include "Core/HarmonicMap.h"
+#include "Core/UnitVectors.h"
+#include "Core/VertexFit.h"
+#include "Private/PointArrays.h"
+#include "Private/SMPParallelFor.h"
+#include "Private/SurfaceRun.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFloatArray.h"
+#include "vtkInformation.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataNormals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <stdexcept>
+
+using SurfaceDiffusion::HarmonicMap;
+
+vtkStandardNewMacro(vtkHarmonicMapFilter);
+
+namespace
+{
+
+/// r of MoveVertices, in mean edge lengths: noise is shorter, the shape longer. Measured on noisy
+/// spheres and on fandisk.
+constexpr double FitRange = 5.0;
+
+/// Coordinates beyond these make single precision or squares overflow.
+constexpr double LargestExtent = 1e15;
+constexpr double SmallestExtent = 1e-15;
+
+/// The block, in coordinates whose squares a float can hold.
+vtkSmartPointer<vtkPolyData> WithModerateCoordinates(vtkPolyData* block)
+{
+  auto result = vtkSmartPointer<vtkPolyData>::New();
+  result->SetPoints(block->GetPoints());
+  result->SetPolys(block->GetPolys());
+  result->SetStrips(block->GetStrips());
+  double bounds[6];
+  result->GetBounds(bounds);
+  double extent = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    extent = std::max(extent, 0.5 * bounds[2 * k + 1] - 0.5 * bounds[2 * k]);
+  }
+  if (extent > 0.0 && (extent > LargestExtent || extent < SmallestExtent))
+  {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(block->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < block->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      block->GetPoint(i, x);
+      for (int k = 0; k < 3; ++k)
+      {
+        x[k] = x[k] / extent - bounds[2 * k] / extent;
+      }
+      points->SetPoint(i, x);
+    }
+    result->SetPoints(points);
+  }
+  return result;
+}
+
+/// One normal per point, the mean of those of its polygons; zero where there is none.
+vtkSmartPointer<vtkDataArray> ComputeNormals(vtkPolyData* block)
+{
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputData(WithModerateCoordinates(block));
+  normals->SplittingOff(); // one per point: what is computed fits the points as they are
+  normals->ConsistencyOff();
+  normals->ComputePointNormalsOn();
+  normals->ComputeCellNormalsOff();
+  normals->Update();
+  vtkSmartPointer<vtkDataArray> array = normals->GetOutput()->GetPointData()->GetNormals();
+  if (!array || array->GetNumberOfTuples() != block->GetNumberOfPoints())
+  {
+    array = vtkSmartPointer<vtkFloatArray>::New(); // no polygon has an area
+    array->SetNumberOfComponents(3);
+    array->SetNumberOfTuples(block->GetNumberOfPoints());
+    array->Fill(0.0);
+  }
+  array->SetName("Normals");
+  return array;
+}
+
+} // namespace
+
+vtkHarmonicMapFilter::vtkHarmonicMapFilter()
+{
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
+}
+
+vtkHarmonicMapFilter::~vtkHarmonicMapFilter() = default;
+
+const char* vtkHarmonicMapFilter::GetSchemeAsString()
+{
+  switch (this->Scheme)
+  {
+    case SCHEME_EXPLICIT_REACTION:
+      return "ExplicitReaction";
+    case SCHEME_TANGENT_PLANE:
+      return "TangentPlane";
+    case SCHEME_MINIMIZING_MOVEMENT:
+      return "MinimizingMovement";
+    default:
+      return "Unknown";
+  }
+}
+
+void vtkHarmonicMapFilter::UsePaperScheme()
+{
+  this->Superclass::UsePaperScheme();
+  this->SetSchemeToExplicitReaction();
+  this->SetConsistentReaction(false);
+  this->SetProjectToSphere(true);
+  this->SetLineField(false);
+  this->SetMoveVertices(false);
+}
+
+void vtkHarmonicMapFilter::CheckProperties(Problems& problems)
+{
+  this->Superclass::CheckProperties(problems);
+  Require(this->TimeIntegrator == TIME_INTEGRATOR_FIRST_ORDER, "TimeIntegrator",
+    this->TimeIntegrator, "0 FirstOrder", problems);
+  Require(this->Exponent >= 1.0 && this->Exponent <= 2.0, "Exponent", this->Exponent,
+    "numbers from 1 to 2", problems);
+  const bool betaMatters = this->Exponent != 2.0;
+  Require(std::isfinite(this->Beta) && (betaMatters ? this->Beta > 0.0 : this->Beta >= 0.0), "Beta",
+    this->Beta,
+    betaMatters ? "finite numbers above 0" : "finite numbers, 0 or more with Exponent 2", problems);
+  Require(this->Scheme >= SCHEME_EXPLICIT_REACTION && this->Scheme <= SCHEME_MINIMIZING_MOVEMENT,
+    "Scheme", this->Scheme, "0 ExplicitReaction, 1 TangentPlane, 2 MinimizingMovement", problems);
+}
+
+//------------------------------------------------------------------------------------------------
+int vtkHarmonicMapFilter::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  for (auto& computed : this->Computed)
+  {
+    computed.second.Used = false;
+  }
+  this->MeanDisplacement = this->MaximumDisplacement = 0.0;
+  this->VolumeBefore = this->VolumeAfter = 0.0;
+  this->MovedArea = 0.0;
+  const int result = this->Superclass::RequestData(request, inputs, outputs);
+  this->MovedPoints.clear();
+  for (auto it = this->Computed.begin(); it != this->Computed.end();)
+  {
+    it = it->second.Used ? std::next(it) : this->Computed.erase(it);
+  }
+  return result;
+}
+
+vtkDataArray* vtkHarmonicMapFilter::FindNormals(vtkPolyData* block)
+{
+  if (vtkDataArray* active = block->GetPointData()->GetNormals())
+  {
+    return active;
+  }
+  ComputedNormals& computed =
+    this->Computed[PolyDataSurface::Key(block, PolyDataSurface::Options())];
+  if (!computed.Array)
+  {
+    computed.Array = ComputeNormals(block);
+  }
+  computed.Used = true;
+  return computed.Array;
+}
+
+bool vtkHarmonicMapFilter::IsNormals(vtkDataArray* array, vtkPolyData* block) const
+{
+  return array == block->GetPointData()->GetNormals() ||
+    std::any_of(this->Computed.begin(), this->Computed.end(),
+      [&](const auto& computed) { return computed.second.Array == array; });
+}
+
+bool vtkHarmonicMapFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems)
+{
+  // Where nothing else is asked for, the block is read as if it had normals in any case.
+  vtkNew<vtkPolyData> withNormals;
+  withNormals->ShallowCopy(block);
+  vtkInformation* asked = this->GetInputArrayInformation(0);
+  const char* name =
+    asked->Has(vtkDataObject::FIELD_NAME()) ? asked->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  const bool byName = name && *name;
+  const bool byOtherAttribute = !name && asked->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) &&
+    asked->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) != vtkDataSetAttributes::NORMALS;
+  if (!byName && !byOtherAttribute)
+  {
+    vtkDataArray* const normals = this->FindNormals(block);
+    withNormals->GetPointData()->SetNormals(normals);
+    withNormals->GetPointData()->SetScalars(normals); // what an empty name stands for
+  }
+  if (!this->Superclass::FindArrays(withNormals, arrays, problems))
+  {
+    return false;
+  }
+  const std::string label =
+    std::string("InputArray \"") + (arrays.Data->GetName() ? arrays.Data->GetName() : "") + "\"";
+  if (NumberOfDataComponents(arrays.Data) < 2)
+  {
+    problems.push_back(label + " has " + std::to_string(arrays.Data->GetNumberOfComponents()) +
+      " components; allowed: 2 or more, alpha of colours not counted");
+  }
+  if (this->MoveVertices && !this->IsNormals(arrays.Data, block))
+  {
+    problems.push_back("MoveVertices is on but " + label +
+      " is not the surface's normals; allowed: off, or the active normals or none as InputArray");
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------------------------
+void vtkHarmonicMapFilter::WriteRunKey(std::ostream& key)
+{
+  this->Superclass::WriteRunKey(key);
+  key << this->Exponent << ' ' << this->Beta << ' ' << this->Scheme << ' '
+      << this->ConsistentReaction << ' ' << this->ProjectToSphere << ' ' << this->LineField << ' ';
+}
+
+void vtkHarmonicMapFilter::PrepareData(ModelInput& input)
+{
+  using namespace SurfaceDiffusion;
+  PrepareUnitVectors(*input.Surface.Mesh, input.Data, this->LineField,
+    static_cast<SurfaceDiffusion::InitialFill>(this->InitialFill), this->RandomSeed, input.Ids);
+  if ((input.Data.Fixed && input.Data.Missing).any())
+  {
+    throw std::runtime_error("InputArray has a vector of length zero where FixedArray holds it; "
+                             "fixed vectors must have a direction");
+  }
+}
+
+std::unique_ptr<SurfaceDiffusion::Evolution> vtkHarmonicMapFilter::MakeEvolution(
+  ModelInput& input, int steps)
+{
+  using namespace SurfaceDiffusion;
+  const TriangleMesh& mesh = *input.Surface.Mesh;
+  const EdgeValues isotropic = IsotropicCoefficients(mesh, input.Parallel);
+  const bool directed = this->AlongDiffusivity != this->AcrossDiffusivity;
+  EdgeValues coefficients = directed
+    ? AnisotropicCoefficients(mesh, isotropic, input.Frames, this->AlongDiffusivity,
+        this->AcrossDiffusivity, input.Parallel)
+    : EdgeValues(this->AlongDiffusivity * isotropic);
+  const double fastest = std::max(this->AlongDiffusivity, this->AcrossDiffusivity);
+
+  const double p = this->Exponent;
+  HarmonicMap::Settings settings;
+  settings.Exponent = p;
+  settings.TimeStep = input.Units.ToCore(this->TimeStep, p, 0.0);
+  settings.Beta = input.Units.ToCore(this->Beta, -2.0, 0.0);
+  settings.Fidelity = input.Units.ToCore(this->FidelityWeight, -p, 0.0);
+  settings.TimeScheme = static_cast<HarmonicMap::Scheme>(this->Scheme);
+  settings.ConsistentReaction = this->ConsistentReaction;
+  settings.ProjectToSphere = this->ProjectToSphere;
+  settings.LineField = this->LineField;
+  settings.LargestDiffusivity = fastest > 0.0 ? fastest : 1.0;
+  settings.Limits.Tolerance = this->Tolerance;
+  settings.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
+
+  const double h = input.Units.MeanEdgeLength / input.Units.LengthUnit;
+  SolverTask task;
+  task.NumberOfVertices = mesh.NumberOfVertices();
+  task.DiffusionNumber = fastest * settings.TimeStep / std::pow(h, p);
+  task.NumberOfSolves = p == 2.0 ? steps : 1.0;
+  switch (this->Solver)
+  {
+    case SOLVER_DIRECT:
+      settings.Method = HarmonicMap::Preconditioner::Factor;
+      break;
+    case SOLVER_CONJUGATE_GRADIENT:
+      settings.Method = HarmonicMap::Preconditioner::Jacobi;
+      break;
+    default:
+      settings.Method = HarmonicMap::Preconditioner::Automatic;
+      break;
+  }
+  if (this->Scheme != SCHEME_EXPLICIT_REACTION)
+  {
+    task.NumberOfSolves = 1e9; // a factor in any case: the model knows when to use it
+  }
+  return std::make_unique<HarmonicMap>(input.Surface.Operators, std::move(coefficients),
+    std::move(input.Data), settings, input.Solver("harmonic", task), input.Parallel);
+}
+
+//------------------------------------------------------------------------------------------------
+void vtkHarmonicMapFilter::PrepareResult(
+  const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor)
+{
+  using namespace SurfaceDiffusion;
+  if (!this->MoveVertices)
+  {
+    return;
+  }
+  const PolyDataSurface& surface = *run.Surface;
+  const TriangleMesh& mesh = *surface.InputMesh;
+  IterationLimits limits;
+  limits.Tolerance = this->Tolerance;
+  limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
+  VertexMotion motion;
+  const Points moved = FitVerticesToNormals(mesh, surface.Points, run.Path->State(),
+    FitRange * run.Units.MeanEdgeLength, motion, limits, SMPParallelFor::Instance(), monitor);
+
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(surface.Points.rows());
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    Eigen::RowVector3d x = surface.Points.row(i);
+    if (surface.PointToVertex[i] >= 0) // points merged into one vertex move together
+    {
+      const Index vertex = mesh.InputVertex()[surface.PointToVertex[i]];
+      x += moved.row(vertex) - surface.Points.row(vertex);
+    }
+    points->SetPoint(i, x.data());
+  }
+  this->MovedPoints[&run] = points;
+
+  const double area = mesh.ControlAreas().sum() * mesh.LengthUnit() * mesh.LengthUnit();
+  this->MovedArea += area;
+  this->MeanDisplacement +=
+    (motion.MeanDisplacement - this->MeanDisplacement) * (area / this->MovedArea);
+  this->MaximumDisplacement = std::max(this->MaximumDisplacement, motion.MaximumDisplacement);
+  this->VolumeBefore += motion.VolumeBefore;
+  this->VolumeAfter += motion.VolumeAfter;
+}
+
+void vtkHarmonicMapFilter::WriteResult(
+  const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output)
+{
+  using namespace SurfaceDiffusion;
+  vtkPointData* data = output->GetPointData();
+  const bool isNormals = this->IsNormals(arrays.Data, output);
+  const bool isColour = arrays.Data->GetDataType() == VTK_UNSIGNED_CHAR;
+  const int type = this->FindResultType(arrays);
+  Values state = run.Path->State();
+  if (type == VTK_UNSIGNED_CHAR)
+  {
+    const Values given = ReadPointData(*run.Surface, arrays.Data, nullptr, nullptr, 1.0).Given;
+    state.array().colwise() *= given.rowwise().norm().array(); // the input's brightness
+  }
+  const int index = data->AddArray(
+    WritePointArray(*run.Surface, arrays.Data, state, 1.0, type, this->FindResultName(arrays)));
+  const bool isVector = arrays.Data->GetNumberOfComponents() == 3 && !isColour;
+  data->SetActiveAttribute(
+    index, isVector ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS);
+  if (isNormals && this->UseAsNormals)
+  {
+    data->SetActiveAttribute(index, vtkDataSetAttributes::NORMALS);
+  }
+  const auto moved = this->MovedPoints.find(&run);
+  if (moved != this->MovedPoints.end())
+  {
+    vtkNew<vtkPoints> points;
+    points->SetDataType(output->GetPoints()->GetDataType());
+    points->InsertPoints(0, moved->second->GetNumberOfPoints(), 0, moved->second);
+    output->SetPoints(points);
+  }
+}
+
+void vtkHarmonicMapFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  const auto onOff = [](bool on) { return on ? "On" : "Off"; };
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Exponent: " << this->Exponent << "\n";
+  os << indent << "Beta: " << this->Beta << "\n";
+  os << indent << "Scheme: " << this->GetSchemeAsString() << "\n";
+  os << indent << "ConsistentReaction: " << onOff(this->ConsistentReaction) << "\n";
+  os << indent << "ProjectToSphere: " << onOff(this->ProjectToSphere) << "\n";
+  os << indent << "LineField: " << onOff(this->LineField) << "\n";
+  os << indent << "UseAsNormals: " << onOff(this->UseAsNormals) << "\n";
+  os << indent << "MoveVertices: " << onOff(this->MoveVertices) << "\n";
+  os << indent << "MeanDisplacement: " << this->MeanDisplacement << "\n";
+  os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
+  os << indent << "VolumeBefore: " << this->VolumeBefore << "\n";
+  os << indent << "VolumeAfter: " << this->VolumeAfter << "\n";
+}
