@@ -5,6 +5,7 @@
 #include "Core/Coefficients.h"
 #include "Core/LinearDiffusion.h"
 #include "Core/NoiseLevel.h"
+#include "Private/EnumText.h"
 #include "Private/SurfaceRun.h"
 
 #include "vtkObjectFactory.h"
@@ -24,15 +25,7 @@ vtkFVMHeatFilter::vtkFVMHeatFilter()
 
 const char* vtkFVMHeatFilter::GetModeAsString()
 {
-  switch (this->Mode)
-  {
-    case MODE_TIME_STEPS:
-      return "TimeSteps";
-    case MODE_STEADY_STATE:
-      return "SteadyState";
-    default:
-      return "Unknown";
-  }
+  return EnumText(this->Mode, { "TimeSteps", "SteadyState" });
 }
 
 void vtkFVMHeatFilter::UsePaperScheme()

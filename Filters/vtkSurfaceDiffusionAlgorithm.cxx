@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
+#include "Private/EnumText.h"
 #include "Private/Execution.h"
 #include "Private/InputArrays.h"
 #include "Private/PointArrays.h"
@@ -26,13 +27,6 @@
 namespace
 {
 
-/// The text of an enum value; checked at update, so a wrong one has a text too.
-template <std::size_t N>
-const char* TextOf(int value, const char* const (&texts)[N])
-{
-  return value >= 0 && value < static_cast<int>(N) ? texts[value] : "Unknown";
-}
-
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// The history has a row for each.
@@ -54,32 +48,32 @@ vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
 
 const char* vtkSurfaceDiffusionAlgorithm::GetUnitsAsString()
 {
-  return TextOf(this->Units, { "Natural", "Absolute" });
+  return EnumText(this->Units, { "Natural", "Absolute" });
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetMaskModeAsString()
 {
-  return TextOf(this->MaskMode, { "Inpaint", "Exclude" });
+  return EnumText(this->MaskMode, { "Inpaint", "Exclude" });
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetInitialFillAsString()
 {
-  return TextOf(this->InitialFill, { "Input", "Mean", "Noise" });
+  return EnumText(this->InitialFill, { "Input", "Mean", "Noise" });
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetTimeIntegratorAsString()
 {
-  return TextOf(this->TimeIntegrator, { "FirstOrder", "SecondOrder", "Implicit" });
+  return EnumText(this->TimeIntegrator, { "FirstOrder", "SecondOrder", "Implicit" });
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetSolverAsString()
 {
-  return TextOf(this->Solver, { "Automatic", "Direct", "ConjugateGradient" });
+  return EnumText(this->Solver, { "Automatic", "Direct", "ConjugateGradient" });
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetOutputPrecisionAsString()
 {
-  return TextOf(this->OutputPrecision, { "Input", "Single", "Double" });
+  return EnumText(this->OutputPrecision, { "Input", "Single", "Double" });
 }
 
 void vtkSurfaceDiffusionAlgorithm::UsePaperScheme()
