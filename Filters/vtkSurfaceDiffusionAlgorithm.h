@@ -386,6 +386,10 @@ protected:
   };
   virtual Dimension GetTimeDimension() = 0;
   virtual Dimension GetEnergyDimension() = 0;
+  /// What the natural unit of time is multiplied by beyond its dimension.
+  virtual double GetTimeFactor() { return 1.0; }
+  /// Whether the history has a column Clamped.
+  virtual bool CountsClamped() { return false; }
 
   /// Steps that a run has, and the time between them in units of TimeStep.
   virtual int GetEffectiveNumberOfTimeSteps() { return this->NumberOfTimeSteps; }

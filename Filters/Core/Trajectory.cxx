@@ -107,7 +107,7 @@ void Trajectory::Seek(Index step, const Monitor& monitor)
   }
   const Index first = this->Current;
   const double count = std::max(1, step - first);
-  while (this->Current < step)
+  while (this->Current < step && !this->Model->Finished())
   {
     const Monitor part =
       monitor.Part((this->Current - first) / count, (this->Current + 1 - first) / count);

@@ -65,7 +65,8 @@ public:
   /// How many steps Seek() would compute.
   Index NumberOfStepsTo(Index step) const;
 
-  /// Move to `step`. Throws Aborted or std::runtime_error, after which any Seek() still works.
+  /// Move to `step`, or to the last one where the evolution finishes before. Throws Aborted or
+  /// std::runtime_error, after which any Seek() still works.
   void Seek(Index step, const Monitor& monitor = Monitor());
 
   Index Step() const { return this->Current; }

@@ -320,7 +320,8 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MeasureUnits()
   this->Filter.ValueRange = units.ValueRange;
   this->Filter.TimeUnit = this->Filter.GetTimeIsAbsolute()
     ? 1.0
-    : std::pow(units.MeanEdgeLength, time.Length) * std::pow(units.ValueRange, time.Value);
+    : std::pow(units.MeanEdgeLength, time.Length) * std::pow(units.ValueRange, time.Value) *
+      this->Filter.GetTimeFactor();
   for (const Block& block : this->Blocks)
   {
     units.LengthUnit = block.Run->Surface->Mesh->LengthUnit();
@@ -370,7 +371,9 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
     MakeFrames(*run.Surface, block.Arrays, parallel), ReadVertexIds(*run.Surface, block.Input),
     parallel, monitor.Part(0.2, 1.0),
     [this, &run](const std::string& name, const SolverTask& task)
-    { return this->FindSolver(run, name, task); } };
+    { return this->FindSolver(run, name, task); },
+    run.Warnings };
+  run.Warnings.clear();
   if (block.Arrays.Data)
   {
     const bool inpaint = this->Filter.MaskMode == MASK_MODE_INPAINT;
@@ -467,7 +470,13 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Seek(int step, const Monitor& moni
 
 void vtkSurfaceDiffusionAlgorithm::Execution::WriteHistory(int step, vtkTable* history)
 {
-  const int rows = step + 1;
+  // A run that has ended by itself has no rows after its last step.
+  int rows = 0;
+  for (const Block& block : this->Blocks)
+  {
+    const int recorded = static_cast<int>(block.Run->Path->Records().size());
+    rows = std::max(rows, std::min(step + 1, recorded));
+  }
   std::vector<StepRecord> sums(rows);
   Eigen::Index components = 0;
   const Dimension energy = this->Filter.GetEnergyDimension();
@@ -475,10 +484,17 @@ void vtkSurfaceDiffusionAlgorithm::Execution::WriteHistory(int step, vtkTable* h
   {
     components = std::max(components, block.Run->Path->State().cols());
     const double energyUnit = block.Run->Units.FromCore(1.0, energy.Length, energy.Value);
+    const std::vector<StepRecord>& records = block.Run->Path->Records();
     for (int row = 0; row < rows; ++row)
     {
-      const StepRecord& record = block.Run->Path->Records()[row];
+      const bool ended = row >= static_cast<int>(records.size());
+      const StepRecord& record = ended ? records.back() : records[row];
       sums[row].Energy += record.Energy * energyUnit;
+      sums[row].Clamped += record.Clamped;
+      if (ended)
+      {
+        continue;
+      }
       sums[row].Iterations += record.Iterations;
       sums[row].Residual = std::max(sums[row].Residual, record.Residual);
       sums[row].Seconds += record.Seconds;
@@ -496,9 +512,11 @@ void vtkSurfaceDiffusionAlgorithm::Execution::WriteHistory(int step, vtkTable* h
         for (const Block& block : this->Blocks)
         {
           const Trajectory& path = *block.Run->Path;
+          const Index last = static_cast<Index>(path.Records().size()) - 1;
           if (k < path.State().cols())
           {
-            total += block.Run->Units.FromCore(path.TotalAt(row, static_cast<Index>(k)), 2.0, 1.0);
+            total += block.Run->Units.FromCore(
+              path.TotalAt(std::min(row, last), static_cast<Index>(k)), 2.0, 1.0);
           }
         }
         return total;
@@ -510,6 +528,10 @@ void vtkSurfaceDiffusionAlgorithm::Execution::WriteHistory(int step, vtkTable* h
   AddColumn<vtkDoubleArray>(
     history, "Residual", rows, [&](int row) { return sums[row].Residual; });
   AddColumn<vtkDoubleArray>(history, "Seconds", rows, [&](int row) { return sums[row].Seconds; });
+  if (this->Filter.CountsClamped())
+  {
+    AddColumn<vtkIntArray>(history, "Clamped", rows, [&](int row) { return sums[row].Clamped; });
+  }
   this->Filter.NumberOfIterations = 0;
   this->Filter.Residual = 0.0;
   for (const StepRecord& sum : sums)
@@ -523,18 +545,21 @@ bool vtkSurfaceDiffusionAlgorithm::Execution::MaskChangesNothing() const
 {
   bool anyMask = false;
   bool anyMasked = false;
+  bool anyData = false;
   for (const Block& block : this->Blocks)
   {
     vtkDataArray* mask = block.Arrays.Mask;
     anyMask = anyMask || mask;
+    anyData = anyData || block.Arrays.Data;
     for (vtkIdType i = 0; mask && !anyMasked && i < mask->GetNumberOfTuples(); ++i)
     {
       anyMasked = mask->GetComponent(i, 0) != 0.0;
     }
   }
-  const bool inert = this->Filter.MaskMode == MASK_MODE_INPAINT &&
-    this->Filter.InitialFill == INITIAL_FILL_INPUT && !this->Filter.UsesFidelity() &&
-    !this->Filter.HoldKnownValues;
+  const bool filling = this->Filter.InitialFill != INITIAL_FILL_INPUT ||
+    this->Filter.UsesFidelity() || this->Filter.HoldKnownValues;
+  const bool inert =
+    this->Filter.MaskMode == MASK_MODE_INPAINT && !(anyData && filling);
   return anyMask && (!anyMasked || inert);
 }
 
@@ -563,6 +588,16 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Warn()
   tell(sum.CoincidentBoundaryPoints,
     " boundary points coincide with others and nothing flows between them (to join them, set "
     "MergeCoincidentPoints)");
+  for (const Block& block : this->Blocks)
+  {
+    for (const std::string& sentence : block.Run->Warnings)
+    {
+      if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end())
+      {
+        sentences.push_back(sentence);
+      }
+    }
+  }
   if (this->MaskChangesNothing())
   {
     sentences.emplace_back("the mask changes nothing with these settings");

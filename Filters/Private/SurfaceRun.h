@@ -72,6 +72,7 @@ struct ModelInput
   std::function<std::shared_ptr<SurfaceDiffusion::LinearSolver>(
     const std::string& name, const SurfaceDiffusion::SolverTask& task)>
     Solver;
+  std::vector<std::string>& Warnings; ///< told to the user when all is done, once
 };
 
 /// What is kept of one block from update to update, each part as long as its key stays the same.
@@ -84,4 +85,5 @@ struct SurfaceRun
   bool HasMissing = false;
   UnitSystem Units;
   std::unique_ptr<SurfaceDiffusion::Trajectory> Path;
+  std::vector<std::string> Warnings; ///< of the model
 };

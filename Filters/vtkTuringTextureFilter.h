@@ -1,0 +1,360 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkTuringTextureFilter
+ * @brief   spots, stripes and labyrinths that two reacting chemicals draw on a surface
+ *
+ * Two chemicals with concentrations u1, u2 react with each other and diffuse over the surface (C.
+ * Wu, J. Deng, F. Chen, IEEE TVCG 14(3), 2008, equations (22) and (23)):
+ *
+ *     du1/dt = div(g11 (grad u1 . e1) e1 + g12 (grad u1 . e2) e2) + F(u1, u2)
+ *     du2/dt = div(g21 (grad u2 . e1) e1 + g22 (grad u2 . e2) e2) + G(u1, u2)
+ *
+ * with no flux over the boundary. Where u1 diffuses much faster than u2 the uniform state is
+ * unstable and a pattern of one wavelength grows out of noise (A. Turing, 1952). Kinetics chooses F
+ * and G; with the default, (24), F = s (gamma - u1 u2), G = s (u1 u2 - u2 - mu).
+ *
+ * **The wavelength** follows from the rates: the fastest-growing wave number k maximises the larger
+ * eigenvalue of J - k^2 diag(D1, D2), J the Jacobian of (F, G) at the steady state. FeatureSize
+ * sets it directly, in coordinate units, the same on a coarse and on a fine mesh. Standing patterns
+ * of (24) come out some 5 % narrower than the wave they grew from. Parameters and rates that can
+ * make no pattern are told in one warning that says why: (24) with its default parameters needs
+ * D1/D2 > 4; the mesh should have 6 edges per wavelength.
+ *
+ * **Direction**: with a direction array (input array 2, for instance of
+ * vtkSurfaceDirectionFieldFilter) rates across it may differ from those along. All four rates
+ * larger along by one factor stretch the pattern along e1; a larger rate of u2 alone makes stripes
+ * along e1. Input array 4 gives the four rates per cell (4 components: DiffusionRate1,
+ * DiffusionRateAcross1, DiffusionRate2, DiffusionRateAcross2), in place of the properties and in
+ * their units, so that direction and width can vary over the surface.
+ *
+ * **Start**: the steady state with seeded noise, or the two components of input array 0, if one is
+ * set (it is not by default; missing values are filled as InitialFill says).
+ *
+ * **Units**: natural units measure time in 1/ReactionRate, lengths in h (the mean edge length) and
+ * diffusion rates in h^2 ReactionRate; concentrations are the kinetics' own.
+ *
+ * **Scheme**: diffusion is implicit with one matrix per chemical, reaction explicit. TimeIntegrator
+ * SecondOrder (the default) is ARS(2,2,2) (Ascher, Ruuth, Spiteri 1997), FirstOrder backward Euler
+ * with the reaction of the old level, the paper's. ClampToNonNegative keeps concentrations at 0 and
+ * above: (24) as printed runs away as soon as u2 < 0. FirstOrder sets negative values to 0 after
+ * the step; SecondOrder solves the equations with the constraint u >= 0 (a force holds u where the
+ * reaction would take it below), to second order: on a sphere of 642 vertices after 5 units of time
+ * the error at TimeStep 1/8 is 0.2 %, that of FirstOrder 10 %.
+ *
+ * **Output**: point arrays u1 and u2, Texture (the chosen chemical with its contrast stretched to
+ * [0, 1]), with ColorOutput the RGB array TextureColor; ResultArrayName, if any, is put before each
+ * of these names. u1 is made active, or TextureColor. Points that take no part keep the values of
+ * input array 0, 0 without one. The history has a column `Clamped`: how many concentrations
+ * were held at zero in the step. Its energy is 1/2 int (D1 grad u1 . grad u1 + D2 grad u2 . grad
+ * u2) / ReactionRate, in coordinate units squared: how much pattern there is. It need not fall.
+ *
+ * Fidelity and the diffusivities of the superclass do not apply: FidelityWeight must be 0,
+ * AlongDiffusivity and AcrossDiffusivity 1.
+ *
+ * @sa vtkSurfaceDirectionFieldFilter vtkFVMHeatFilter
+ */
+#ifndef vtkTuringTextureFilter_h
+#define vtkTuringTextureFilter_h
+
+#include "vtkSurfaceDiffusionAlgorithm.h"
+
+#include <array> // for parameters
+
+class VTKSURFACEDIFFUSION_EXPORT vtkTuringTextureFilter : public vtkSurfaceDiffusionAlgorithm
+{
+public:
+  static vtkTuringTextureFilter* New();
+  vtkTypeMacro(vtkTuringTextureFilter, vtkSurfaceDiffusionAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum KineticsType
+  {
+    KINETICS_TURING = 0,
+    KINETICS_SCHNAKENBERG = 1,
+    KINETICS_GRAY_SCOTT = 2,
+    KINETICS_BRUSSELATOR = 3,
+    KINETICS_GIERER_MEINHARDT = 4,
+    KINETICS_FITZ_HUGH_NAGUMO = 5
+  };
+
+  ///@{
+  /**
+   * F and G, all times s = ReactionRate, with u1 the faster chemical in each:
+   *
+   * | kinetics | F | G |
+   * | --- | --- | --- |
+   * | Turing (default) | gamma - u1 u2 | u1 u2 - u2 - mu |
+   * | Schnakenberg | b - u1 u2^2 | a - u2 + u1 u2^2 |
+   * | GrayScott | 25 (f (1 - u1) - u1 u2^2) | 25 (u1 u2^2 - (f + k) u2) |
+   * | Brusselator | B u2 - u1 u2^2 | A - (B + 1) u2 + u1 u2^2 |
+   * | GiererMeinhardt | nu (u2^2 - u1) | u2^2 / (u1 (1 + kappa u2^2)) - u2 |
+   * | FitzHughNagumo | epsilon (u2 - beta u1 - alpha) | u2 - u2^3 - u1 |
+   *
+   * References: A. Turing 1952, G. Turk 1991; J. Schnakenberg 1979; P. Gray, S. Scott 1983, J.
+   * Pearson 1993 (whose unit of time is 25 of ours); I. Prigogine, R. Lefever 1968; A. Gierer, H.
+   * Meinhardt 1972; R. FitzHugh 1961, J. Nagumo et al. 1962. The default parameters make a pattern
+   * with the default rates; only (24) and the Brusselator grow it within the default time.
+   */
+  vtkSetMacro(Kinetics, int);
+  vtkGetMacro(Kinetics, int);
+  void SetKineticsToTuring() { this->SetKinetics(KINETICS_TURING); }
+  void SetKineticsToSchnakenberg() { this->SetKinetics(KINETICS_SCHNAKENBERG); }
+  void SetKineticsToGrayScott() { this->SetKinetics(KINETICS_GRAY_SCOTT); }
+  void SetKineticsToBrusselator() { this->SetKinetics(KINETICS_BRUSSELATOR); }
+  void SetKineticsToGiererMeinhardt() { this->SetKinetics(KINETICS_GIERER_MEINHARDT); }
+  void SetKineticsToFitzHughNagumo() { this->SetKinetics(KINETICS_FITZ_HUGH_NAGUMO); }
+  const char* GetKineticsAsString();
+  ///@}
+
+  ///@{
+  /**
+   * s, in 1/time; positive. The natural unit of time is 1/s. Default: 1.
+   */
+  vtkSetMacro(ReactionRate, double);
+  vtkGetMacro(ReactionRate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Diffusion rates of u1 and u2 along e1, or in all directions. 0 or more. Default: 21 and 2.6, in
+   * natural units: a wavelength of about 11 h with (24).
+   */
+  vtkSetMacro(DiffusionRate1, double);
+  vtkGetMacro(DiffusionRate1, double);
+  vtkSetMacro(DiffusionRate2, double);
+  vtkGetMacro(DiffusionRate2, double);
+  ///@}
+
+  ///@{
+  /**
+   * Diffusion rates of u1 and u2 along e2, across the direction; 0 or more, or -1 (default): the
+   * same as along. Others than along need the direction array.
+   */
+  vtkSetMacro(DiffusionRateAcross1, double);
+  vtkGetMacro(DiffusionRateAcross1, double);
+  vtkSetMacro(DiffusionRateAcross2, double);
+  vtkGetMacro(DiffusionRateAcross2, double);
+  ///@}
+
+  ///@{
+  /**
+   * The wavelength wanted, in coordinate units; 0 (default): off. All four diffusion rates are
+   * multiplied by the one factor with which the fastest-growing wavelength along e1 is this (with
+   * rates per cell: that of their means over the surface). Where no wave grows fastest the rates
+   * stay, with a warning.
+   */
+  vtkSetMacro(FeatureSize, double);
+  vtkGetMacro(FeatureSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Half width of the uniform noise around the steady state, relative to it (where the steady state
+   * is 0: absolute). 0 or more. Default: 0.1.
+   */
+  vtkSetMacro(InitialNoise, double);
+  vtkGetMacro(InitialNoise, double);
+  ///@}
+
+  ///@{
+  /**
+   * Keep concentrations at 0 and above, see above. FitzHughNagumo's values are no concentrations
+   * and are left alone. Default: on.
+   */
+  vtkSetMacro(ClampToNonNegative, bool);
+  vtkGetMacro(ClampToNonNegative, bool);
+  vtkBooleanMacro(ClampToNonNegative, bool);
+  ///@}
+
+  ///@{
+  /**
+   * On: the time step is 1/8 of the time constant of the kinetics' fastest mode, whatever TimeStep
+   * is: 1/16 for (24). Default: off.
+   */
+  vtkSetMacro(AutomaticTimeStep, bool);
+  vtkGetMacro(AutomaticTimeStep, bool);
+  vtkBooleanMacro(AutomaticTimeStep, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The run ends, before NumberOfTimeSteps, when the pattern stands: when the relative change per
+   * unit of time (root mean square, relative to the pattern's own) is at most this; about 0.05
+   * when it looks finished. Later times show the last state. 0 (default): all steps are run.
+   */
+  vtkSetMacro(StopTolerance, double);
+  vtkGetMacro(StopTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Parameters of Turing: gamma and mu, above 0. A steady state needs gamma > mu. Default: 16, 12.
+   */
+  vtkSetMacro(GrowthRate, double);
+  vtkGetMacro(GrowthRate, double);
+  vtkSetMacro(DecayRate, double);
+  vtkGetMacro(DecayRate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Parameters of Schnakenberg: a and b, above 0. Default: 0.01, 1.
+   */
+  vtkSetMacro(ActivatorSupply, double);
+  vtkGetMacro(ActivatorSupply, double);
+  vtkSetMacro(SubstrateSupply, double);
+  vtkGetMacro(SubstrateSupply, double);
+  ///@}
+
+  ///@{
+  /**
+   * Parameters of GrayScott: f and k, above 0. Default: 0.05, 0.06.
+   */
+  vtkSetMacro(FeedRate, double);
+  vtkGetMacro(FeedRate, double);
+  vtkSetMacro(KillRate, double);
+  vtkGetMacro(KillRate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Parameters of Brusselator: A and B, above 0. Default: 2, 4.
+   */
+  vtkSetMacro(ReactantA, double);
+  vtkGetMacro(ReactantA, double);
+  vtkSetMacro(ReactantB, double);
+  vtkGetMacro(ReactantB, double);
+  ///@}
+
+  ///@{
+  /**
+   * Parameters of GiererMeinhardt: nu, above 0, and kappa, 0 or more. Default: 1.05, 0.
+   */
+  vtkSetMacro(InhibitorDecayRate, double);
+  vtkGetMacro(InhibitorDecayRate, double);
+  vtkSetMacro(Saturation, double);
+  vtkGetMacro(Saturation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Parameters of FitzHughNagumo: epsilon and beta, above 0, and alpha. Default: 1.2, 0.9, 0.
+   */
+  vtkSetMacro(RecoveryRate, double);
+  vtkGetMacro(RecoveryRate, double);
+  vtkSetMacro(RecoveryDamping, double);
+  vtkGetMacro(RecoveryDamping, double);
+  vtkSetMacro(Stimulus, double);
+  vtkGetMacro(Stimulus, double);
+  ///@}
+
+  enum TextureChemicalType
+  {
+    TEXTURE_CHEMICAL_U1 = 0,
+    TEXTURE_CHEMICAL_U2 = 1
+  };
+
+  ///@{
+  /**
+   * The chemical that Texture and TextureColor show. Default: U1.
+   */
+  vtkSetMacro(TextureChemical, int);
+  vtkGetMacro(TextureChemical, int);
+  void SetTextureChemicalToU1() { this->SetTextureChemical(TEXTURE_CHEMICAL_U1); }
+  void SetTextureChemicalToU2() { this->SetTextureChemical(TEXTURE_CHEMICAL_U2); }
+  const char* GetTextureChemicalAsString();
+  ///@}
+
+  ///@{
+  /**
+   * On: add the point array TextureColor, RGB, a mixture of LowColor and HighColor (components in
+   * [0, 1]) by Texture, and make it active. Default: off; dark brown, sand.
+   */
+  vtkSetMacro(ColorOutput, bool);
+  vtkGetMacro(ColorOutput, bool);
+  vtkBooleanMacro(ColorOutput, bool);
+  vtkSetVector3Macro(LowColor, double);
+  vtkGetVector3Macro(LowColor, double);
+  vtkSetVector3Macro(HighColor, double);
+  vtkGetVector3Macro(HighColor, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of the last update (of the first block of composite data): the fastest-growing wavelength along
+   * e1 in coordinate units (0 where there is none), its growth rate in 1/(unit of time), the factor
+   * that FeatureSize put on the diffusion rates, and the time step taken.
+   */
+  vtkGetMacro(Wavelength, double);
+  vtkGetMacro(WavelengthGrowthRate, double);
+  vtkGetMacro(DiffusionRateFactor, double);
+  double GetEffectiveTimeStep() override;
+  ///@}
+
+  void UsePaperScheme() override;
+
+protected:
+  vtkTuringTextureFilter();
+  ~vtkTuringTextureFilter() override = default;
+
+  void CheckProperties(Problems& problems) override;
+  bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
+  void WriteRunKey(std::ostream& key) override;
+  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
+    ModelInput& input, int steps) override;
+  void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
+  const char* GetResultSuffix() override { return ""; }
+  Dimension GetTimeDimension() override { return { 0.0, 0.0 }; }
+  Dimension GetEnergyDimension() override { return { 2.0, 0.0 }; }
+  double GetTimeFactor() override { return 1.0 / this->ReactionRate; }
+  bool HasValueRange() override { return false; }
+  bool CountsClamped() override { return true; }
+  bool UsesFidelity() override { return false; }
+
+  int Kinetics = KINETICS_TURING;
+  double ReactionRate = 1.0;
+  double DiffusionRate1 = 21.0;
+  double DiffusionRate2 = 2.6;
+  double DiffusionRateAcross1 = -1.0;
+  double DiffusionRateAcross2 = -1.0;
+  double FeatureSize = 0.0;
+  double InitialNoise = 0.1;
+  bool ClampToNonNegative = true;
+  bool AutomaticTimeStep = false;
+  double StopTolerance = 0.0;
+  double GrowthRate = 16.0;
+  double DecayRate = 12.0;
+  double ActivatorSupply = 0.01;
+  double SubstrateSupply = 1.0;
+  double FeedRate = 0.05;
+  double KillRate = 0.06;
+  double ReactantA = 2.0;
+  double ReactantB = 4.0;
+  double InhibitorDecayRate = 1.05;
+  double Saturation = 0.0;
+  double RecoveryRate = 1.2;
+  double RecoveryDamping = 0.9;
+  double Stimulus = 0.0;
+  int TextureChemical = TEXTURE_CHEMICAL_U1;
+  bool ColorOutput = false;
+  double LowColor[3] = { 0.16, 0.09, 0.05 };
+  double HighColor[3] = { 0.93, 0.80, 0.58 };
+  double Wavelength = 0.0;
+  double WavelengthGrowthRate = 0.0;
+  double DiffusionRateFactor = 1.0;
+
+private:
+  vtkTuringTextureFilter(const vtkTuringTextureFilter&) = delete;
+  void operator=(const vtkTuringTextureFilter&) = delete;
+
+  struct Rates; // of the four diffusions, per triangle or everywhere
+
+  /// Of the kinetics chosen, in the order of the core's list.
+  std::array<double, 3> GetKineticsParameters();
+  bool AreRatesDirected();
+  Rates MakeRates(const ModelInput& input);
+  void ChooseFeatureSize(ModelInput& input, Rates& rates);
+};
+
+#endif
