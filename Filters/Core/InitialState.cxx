@@ -91,4 +91,26 @@ void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, st
   }
 }
 
+void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelity)
+{
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const Index begin = mesh.ComponentsBegin()[c];
+    const Index size = mesh.ComponentsBegin()[c + 1] - begin;
+    bool held = false;
+    for (Index i = begin; i < begin + size && !held; ++i)
+    {
+      held = data.Fixed[i] || (fidelity > 0.0 && !data.Missing[i]);
+    }
+    if (!held)
+    {
+      const auto areas = mesh.ControlAreas().segment(begin, size);
+      auto start = data.Start.middleRows(begin, size);
+      const Eigen::RowVectorXd mean = (areas.transpose() * start) / areas.sum();
+      start.rowwise() = mean;
+      data.Fixed.segment(begin, size) = true;
+    }
+  }
+}
+
 } // namespace SurfaceDiffusion

@@ -25,4 +25,8 @@ enum class InitialFill
 void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, std::int64_t seed,
   const std::vector<std::int64_t>& ids);
 
+/// For steady states: connected components that nothing holds, neither a fixed vertex nor fidelity
+/// at a known one, end at the mean of their Start; there Start becomes it, and fixed.
+void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelity);
+
 } // namespace SurfaceDiffusion

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LinearDiffusion.h"
 
+#include "InitialState.h"
+
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -57,7 +59,7 @@ void LinearDiffusion::Prepare(const Monitor& monitor)
       scale *= Gamma;
       break;
     case Scheme::SteadyState:
-      this->PrepareSteadyState();
+      FixFreeComponents(mesh, this->Data, this->Options.Fidelity);
       scale = 1.0;
       inertia = 0.0;
       break;
@@ -79,30 +81,6 @@ void LinearDiffusion::Prepare(const Monitor& monitor)
   this->Balanced = Balance(mesh, std::move(diagonal), this->Data.Fixed, this->Parallel);
   this->Solver->SetMatrix(this->Matrix, monitor);
   this->Prepared = true;
-}
-
-/// A component that neither fidelity nor a fixed vertex holds ends at its mean.
-void LinearDiffusion::PrepareSteadyState()
-{
-  const TriangleMesh& mesh = this->Operators->Mesh();
-  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
-  {
-    const Index begin = mesh.ComponentsBegin()[c];
-    const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    bool held = false;
-    for (Index i = begin; i < begin + size && !held; ++i)
-    {
-      held = this->Data.Fixed[i] || this->FidelityAt(i) > 0.0;
-    }
-    if (!held)
-    {
-      const auto areas = mesh.ControlAreas().segment(begin, size);
-      auto start = this->Data.Start.middleRows(begin, size);
-      const Eigen::RowVectorXd mean = (areas.transpose() * start) / areas.sum();
-      start.rowwise() = mean;
-      this->Data.Fixed.segment(begin, size) = true;
-    }
-  }
 }
 
 StepReport LinearDiffusion::Advance(const Monitor& monitor)

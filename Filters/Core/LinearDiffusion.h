@@ -48,7 +48,6 @@ public:
 
 private:
   void Prepare(const Monitor& monitor);
-  void PrepareSteadyState();
   void BackwardEulerStep(StepReport& report, const Monitor& monitor);
   void SDIRK2Step(StepReport& report, const Monitor& monitor);
   void Solve(StepReport& report, const Monitor& monitor);
