@@ -1,0 +1,825 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkHarmonicMapFilter.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSMPTools.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <sstream>
+
+using namespace FilterTest;
+
+namespace
+{
+
+const double Pi = vtkMath::Pi();
+
+vtkSmartPointer<vtkHarmonicMapFilter> MakeFilter(vtkDataObject* data)
+{
+  auto filter = vtkSmartPointer<vtkHarmonicMapFilter>::New();
+  filter->SetInputDataObject(data);
+  filter->SetTimeStep(0.05);
+  return filter;
+}
+
+/// The unit sphere with its exact normals, shaken, as the active normals "n".
+vtkSmartPointer<vtkPolyData> SphereWithNoisyNormals(int levels, double noise = 0.3)
+{
+  auto sphere = Sphere(levels);
+  AddPointArray(sphere, "n", 3,
+    [&](vtkIdType i, int k) { return sphere->GetPoint(i)[k] + noise * Rough(i, k); });
+  sphere->GetPointData()->SetActiveNormals("n");
+  return sphere;
+}
+
+double Length(vtkDataArray* array, vtkIdType i)
+{
+  double square = 0.0;
+  for (int k = 0; k < array->GetNumberOfComponents(); ++k)
+  {
+    square += array->GetComponent(i, k) * array->GetComponent(i, k);
+  }
+  return std::sqrt(square);
+}
+
+/// Largest ||u| - 1|.
+double LargestLengthError(vtkDataArray* array)
+{
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    largest = std::max(largest, std::abs(Length(array, i) - 1.0));
+  }
+  return largest;
+}
+
+/// Mean angle between the array and the points of a sphere around the origin, in radians.
+double MeanAngleToPoints(vtkPolyData* sphere, vtkDataArray* array)
+{
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    double p[3];
+    double u[3];
+    sphere->GetPoint(i, p);
+    array->GetTuple(i, u);
+    sum += vtkMath::AngleBetweenVectors(p, u);
+  }
+  return sum / array->GetNumberOfTuples();
+}
+
+std::string OnlyError(vtkHarmonicMapFilter* filter)
+{
+  Messages messages(filter);
+  filter->Update();
+  return messages.Errors.size() == 1 ? messages.Errors[0] : "";
+}
+
+void ExpectError(vtkHarmonicMapFilter* filter, const std::string& property)
+{
+  const std::string error = OnlyError(filter);
+  EXPECT_NE(error.find(property), std::string::npos) << error;
+  EXPECT_NE(error.find("allowed"), std::string::npos) << error;
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetArray("nHarmonic"), nullptr);
+}
+
+} // namespace
+
+TEST(HarmonicMapFilter, HasTheDocumentedDefaults)
+{
+  vtkNew<vtkHarmonicMapFilter> filter;
+  EXPECT_EQ(filter->GetExponent(), 1.0);
+  EXPECT_EQ(filter->GetBeta(), 1e-6);
+  EXPECT_EQ(filter->GetScheme(), vtkHarmonicMapFilter::SCHEME_TANGENT_PLANE);
+  EXPECT_STREQ(filter->GetSchemeAsString(), "TangentPlane");
+  EXPECT_FALSE(filter->GetConsistentReaction());
+  EXPECT_TRUE(filter->GetProjectToSphere());
+  EXPECT_FALSE(filter->GetLineField());
+  EXPECT_TRUE(filter->GetUseAsNormals());
+  EXPECT_FALSE(filter->GetMoveVertices());
+  EXPECT_EQ(filter->GetFidelityWeight(), 0.0);
+  EXPECT_EQ(filter->GetTimeIntegrator(), vtkHarmonicMapFilter::TIME_INTEGRATOR_FIRST_ORDER);
+  filter->SetSchemeToExplicitReaction();
+  EXPECT_EQ(filter->GetScheme(), 0);
+  EXPECT_STREQ(filter->GetSchemeAsString(), "ExplicitReaction");
+  filter->SetSchemeToTangentPlane();
+  EXPECT_EQ(filter->GetScheme(), 1);
+  filter->SetSchemeToMinimizingMovement();
+  EXPECT_EQ(filter->GetScheme(), 2);
+  EXPECT_STREQ(filter->GetSchemeAsString(), "MinimizingMovement");
+  filter->SetScheme(3);
+  EXPECT_STREQ(filter->GetSchemeAsString(), "Unknown");
+}
+
+TEST(HarmonicMapFilter, UsePaperSchemeSetsThePapersReading)
+{
+  vtkNew<vtkHarmonicMapFilter> filter;
+  filter->SetConsistentReaction(true);
+  filter->SetProjectToSphere(false);
+  filter->SetLineField(true);
+  filter->SetMoveVertices(true);
+  filter->SetExponent(1.7);
+  filter->SetIntrinsicDelaunay(true);
+  filter->UsePaperScheme();
+  EXPECT_EQ(filter->GetScheme(), vtkHarmonicMapFilter::SCHEME_EXPLICIT_REACTION);
+  EXPECT_FALSE(filter->GetConsistentReaction());
+  EXPECT_TRUE(filter->GetProjectToSphere());
+  EXPECT_FALSE(filter->GetLineField());
+  EXPECT_FALSE(filter->GetMoveVertices());
+  EXPECT_FALSE(filter->GetIntrinsicDelaunay());
+  EXPECT_EQ(filter->GetInitialFill(), vtkHarmonicMapFilter::INITIAL_FILL_INPUT);
+  EXPECT_EQ(filter->GetExponent(), 1.7); // stays
+}
+
+// --- Input and output arrays ---
+
+TEST(HarmonicMapFilter, ComputesNormalsWhereThereAreNone)
+{
+  auto sphere = Sphere(4);
+  auto filter = MakeFilter(sphere);
+  filter->SetExponent(2.0);
+  filter->Update();
+  vtkDataArray* result = Result(filter, "NormalsHarmonic");
+  ASSERT_NE(result, nullptr);
+  EXPECT_EQ(result->GetDataType(), VTK_FLOAT); // as vtkPolyDataNormals makes them
+  EXPECT_LT(MeanAngleToPoints(sphere, result), 0.01);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), result);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetVectors(), result);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
+  EXPECT_EQ(sphere->GetPointData()->GetNormals(), nullptr);
+}
+
+TEST(HarmonicMapFilter, AnEmptyNameMeansTheNormalsToo)
+{
+  auto sphere = SphereWithNoisyNormals(3);
+  AddPointArray(sphere, "other", 3, Rough);
+  sphere->GetPointData()->SetActiveScalars("other");
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 0, "");
+  filter->Update();
+  EXPECT_NE(Result(filter, "nHarmonic"), nullptr);
+}
+
+TEST(HarmonicMapFilter, RegularisesTheActiveNormals)
+{
+  auto sphere = SphereWithNoisyNormals(4);
+  for (const double exponent : { 1.0, 1.5, 2.0 })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetExponent(exponent);
+    filter->SetTimeStep(0.1);
+    filter->Update();
+    vtkDataArray* result = Result(filter, "nHarmonic");
+    ASSERT_NE(result, nullptr);
+    EXPECT_LT(LargestLengthError(result), 1e-12);
+    EXPECT_LT(MeanAngleToPoints(sphere, result),
+      0.35 * MeanAngleToPoints(sphere, sphere->GetPointData()->GetNormals()));
+    EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), result);
+    EXPECT_TRUE(Identical(Result(filter, "n"), sphere->GetPointData()->GetNormals()));
+  }
+}
+
+TEST(HarmonicMapFilter, UseAsNormalsActsOnNormalsOnly)
+{
+  auto sphere = SphereWithNoisyNormals(3);
+  vtkDataArray* normals = sphere->GetPointData()->GetNormals();
+  AddPointArray(sphere, "field", 3, Rough);
+  auto filter = MakeFilter(sphere);
+  filter->UseAsNormalsOff();
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), normals);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetVectors(), Result(filter, "nHarmonic"));
+  filter->UseAsNormalsOn();
+  SetInputArray(filter, 0, "field");
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), normals);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetVectors(), Result(filter, "fieldHarmonic"));
+  SetInputArray(filter, 0, "n"); // by name: the active normals all the same
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), Result(filter, "nHarmonic"));
+}
+
+TEST(HarmonicMapFilter, TakesAnyNumberOfComponentsFromTwo)
+{
+  auto sphere = Sphere(3);
+  for (const int components : { 2, 3, 4, 7 })
+  {
+    AddPointArray(sphere, "field", components, Rough);
+    auto filter = MakeFilter(sphere);
+    SetInputArray(filter, 0, "field");
+    filter->Update();
+    vtkDataArray* result = Result(filter, "fieldHarmonic");
+    ASSERT_NE(result, nullptr);
+    EXPECT_EQ(result->GetNumberOfComponents(), components);
+    EXPECT_LT(LargestLengthError(result), 1e-12);
+    EXPECT_EQ(HistoryAt(filter, 0, "Step"), 0.0);
+    EXPECT_LT(HistoryAt(filter, 10, "Energy"), HistoryAt(filter, 0, "Energy"));
+    vtkPointData* data = filter->GetOutput()->GetPointData();
+    EXPECT_EQ(components == 3 ? data->GetVectors() : data->GetScalars(), result);
+  }
+}
+
+TEST(HarmonicMapFilter, OnlyTheDirectionOfTheInputCounts)
+{
+  auto sphere = Sphere(3);
+  AddPointArray(sphere, "a", 3, Rough);
+  AddPointArray(sphere, "b", 3,
+    [](vtkIdType i, int k) { return Rough(i, k) * std::exp2(static_cast<double>(i % 9) - 4.0); });
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 0, "a");
+  filter->Update();
+  const auto a = Copy(Result(filter, "aHarmonic"));
+  SetInputArray(filter, 0, "b");
+  filter->Update();
+  EXPECT_LT(LargestDifference(a, Result(filter, "bHarmonic")), 1e-7);
+  EXPECT_EQ(filter->GetValueRange(), 1.0);
+}
+
+TEST(HarmonicMapFilter, ColoursKeepTheirBrightness)
+{
+  auto sphere = Sphere(4);
+  vtkDataArray* colours = AddPointArray(
+    sphere, "rgba", 4,
+    [&](vtkIdType i, int k)
+    {
+      const double chroma[3] = { 1.0 + 0.3 * Rough(i, 0), 1.0 + 0.3 * Rough(i, 1), 0.5 };
+      return k < 3 ? std::floor((60.0 + i % 60) * chroma[k]) : static_cast<double>(i % 256);
+    },
+    VTK_UNSIGNED_CHAR);
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 0, "rgba");
+  filter->SetTimeStep(0.5);
+  filter->Update();
+  vtkDataArray* result = Result(filter, "rgbaHarmonic");
+  ASSERT_NE(result, nullptr);
+  EXPECT_EQ(result->GetDataType(), VTK_UNSIGNED_CHAR);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), result);
+  for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i)
+  {
+    const auto brightness = [&](vtkDataArray* array)
+    {
+      const double* c = array->GetTuple(i);
+      return std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+    };
+    const double before = brightness(colours);
+    EXPECT_NEAR(brightness(result), before, 1.0);
+    EXPECT_EQ(result->GetComponent(i, 3), colours->GetComponent(i, 3));
+  }
+  filter->SetOutputPrecisionToDouble();
+  filter->Update();
+  const double* u = Result(filter, "rgbaHarmonic")->GetTuple(7);
+  EXPECT_NEAR(u[0] * u[0] + u[1] * u[1] + u[2] * u[2], 1.0, 1e-12);
+}
+
+TEST(HarmonicMapFilter, ZeroNaNAndMaskedVectorsAreFilledIn)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  auto sphere = Sphere(4);
+  const auto hole = [&](vtkIdType i) { return sphere->GetPoint(i)[2] > 0.8; };
+  AddPointArray(
+    sphere, "zero", 3, [&](vtkIdType i, int k) { return hole(i) ? 0.0 : sphere->GetPoint(i)[k]; });
+  AddPointArray(sphere, "nan", 3,
+    [&](vtkIdType i, int k) { return hole(i) && k == 1 ? nan : sphere->GetPoint(i)[k]; });
+  AddPointArray(sphere, "bad", 3,
+    [&](vtkIdType i, int k) { return hole(i) ? Rough(i, k) : sphere->GetPoint(i)[k]; });
+  AddPointArray(sphere, "mask", 1, [&](vtkIdType i, int) { return hole(i) ? 1.0 : 0.0; });
+  vtkSmartPointer<vtkDataArray> first;
+  for (const char* name : { "zero", "nan", "bad" })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetExponent(2.0);
+    filter->SetTimeStep(20.0);
+    filter->SetNumberOfTimeSteps(20);
+    filter->HoldKnownValuesOn();
+    SetInputArray(filter, 0, name);
+    SetInputArray(filter, 1, name == std::string("bad") ? "mask" : "");
+    filter->Update();
+    vtkDataArray* result = Result(filter, (name + std::string("Harmonic")).c_str());
+    ASSERT_NE(result, nullptr) << name;
+    EXPECT_LT(MeanAngleToPoints(sphere, result), 0.01) << name; // the identity is harmonic
+    EXPECT_LT(LargestLengthError(result), 1e-12);
+    if (!first)
+    {
+      first = Copy(result);
+    }
+    EXPECT_LT(LargestDifference(first, result), 1e-12) << name;
+  }
+  auto filter = MakeFilter(sphere);
+  filter->HoldKnownValuesOn();
+  SetInputArray(filter, 0, "bad");
+  EXPECT_NE(OnlyError(filter).find("HoldKnownValues"), std::string::npos);
+}
+
+TEST(HarmonicMapFilter, AZeroVectorCannotBeFixed)
+{
+  auto sphere = Sphere(2);
+  AddPointArray(sphere, "n", 3, [](vtkIdType i, int k) { return i == 5 ? 0.0 : Rough(i, k); });
+  AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i == 5 ? 1.0 : 0.0; });
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 0, "n");
+  SetInputArray(filter, 3, "fixed");
+  EXPECT_NE(OnlyError(filter).find("FixedArray"), std::string::npos);
+  EXPECT_EQ(Result(filter, "nHarmonic"), nullptr);
+}
+
+TEST(HarmonicMapFilter, FixedVectorsStay)
+{
+  auto sphere = SphereWithNoisyNormals(3);
+  AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i % 4 == 0 ? 1.0 : 0.0; });
+  for (const int scheme : { 0, 1, 2 })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetScheme(scheme);
+    SetInputArray(filter, 3, "fixed");
+    filter->Update();
+    vtkDataArray* n = sphere->GetPointData()->GetNormals();
+    vtkDataArray* u = Result(filter, "nHarmonic");
+    for (vtkIdType i = 0; i < u->GetNumberOfTuples(); i += 4)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        EXPECT_NEAR(u->GetComponent(i, k), n->GetComponent(i, k) / Length(n, i), 1e-15);
+      }
+    }
+  }
+}
+
+TEST(HarmonicMapFilter, PointsOfNoTriangleKeepTheirVector)
+{
+  auto grid = Grid(5, 5);
+  grid->GetPoints()->InsertNextPoint(9.0, 9.0, 0.0);
+  AddPointArray(grid, "v", 2, [](vtkIdType i, int k) { return 5.0 * Rough(i, k); });
+  auto filter = MakeFilter(grid);
+  SetInputArray(filter, 0, "v");
+  const Messages messages(filter);
+  filter->Update();
+  vtkDataArray* u = Result(filter, "vHarmonic");
+  ASSERT_NE(u, nullptr);
+  EXPECT_EQ(u->GetComponent(25, 0), 5.0 * Rough(25, 0));
+  EXPECT_EQ(u->GetComponent(25, 1), 5.0 * Rough(25, 1));
+  EXPECT_NEAR(Length(u, 24), 1.0, 1e-12);
+}
+
+TEST(HarmonicMapFilter, LineFieldsDoNotSeeTheSign)
+{
+  auto sphere = Sphere(3);
+  const auto field = [&](vtkIdType i, int k)
+  {
+    const double* p = sphere->GetPoint(i);
+    return k == 0 ? std::cos(p[2]) : k == 1 ? std::sin(2.0 * p[0]) : 0.3 * p[1];
+  };
+  AddPointArray(sphere, "vectors", 3, field);
+  AddPointArray(sphere, "lines", 3,
+    [&](vtkIdType i, int k) { return i % 3 == 0 ? -field(i, k) : field(i, k); });
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 0, "vectors");
+  filter->Update();
+  const auto vectors = Copy(Result(filter, "vectorsHarmonic"));
+  filter->LineFieldOn();
+  SetInputArray(filter, 0, "lines");
+  filter->Update();
+  vtkDataArray* lines = Result(filter, "linesHarmonic");
+  for (vtkIdType i = 0; i < lines->GetNumberOfTuples(); ++i)
+  {
+    double a[3];
+    double b[3];
+    vectors->GetTuple(i, a);
+    lines->GetTuple(i, b);
+    EXPECT_NEAR(std::abs(vtkMath::Dot(a, b)), 1.0, 1e-9);
+  }
+}
+
+// --- Energy, units, time ---
+
+TEST(HarmonicMapFilter, IdentityOfTheSphereHasEnergyFourPi)
+{
+  auto sphere = Sphere(5);
+  AddPointArray(sphere, "n", 3, [&](vtkIdType i, int k) { return sphere->GetPoint(i)[k]; });
+  sphere->GetPointData()->SetActiveNormals("n");
+  auto filter = MakeFilter(sphere);
+  filter->SetExponent(2.0);
+  filter->SetNumberOfTimeSteps(3);
+  filter->Update();
+  EXPECT_NEAR(HistoryAt(filter, 0, "Energy"), 4.0 * Pi, 0.02);
+  EXPECT_NEAR(HistoryAt(filter, 3, "Energy"), 4.0 * Pi, 0.02);
+  EXPECT_LT(MeanAngleToPoints(sphere, Result(filter, "nHarmonic")), 1e-3);
+}
+
+TEST(HarmonicMapFilter, EnergyNeverGrowsByDefault)
+{
+  auto sphere = SphereWithNoisyNormals(3, 2.0);
+  for (const double exponent : { 1.0, 1.4, 2.0 })
+  {
+    for (double step = 1e-4; step < 2e4; step *= 10.0)
+    {
+      auto filter = MakeFilter(sphere);
+      filter->SetExponent(exponent);
+      filter->SetTimeStep(step);
+      filter->SetNumberOfTimeSteps(4);
+      filter->Update();
+      for (int row = 1; row <= 4; ++row)
+      {
+        EXPECT_LE(HistoryAt(filter, row, "Energy"), HistoryAt(filter, row - 1, "Energy"))
+          << exponent << ' ' << step;
+        EXPECT_LE(HistoryAt(filter, row, "Residual"), filter->GetTolerance());
+      }
+      EXPECT_LT(LargestLengthError(Result(filter, "nHarmonic")), 1e-12);
+    }
+  }
+}
+
+TEST(HarmonicMapFilter, NaturalUnitsFitAnySizeOfTheSurface)
+{
+  for (const double exponent : { 1.0, 1.5, 2.0 })
+  {
+    vtkSmartPointer<vtkDataArray> first;
+    for (const double size : { 1.0, 1e3, 1e-100, 1e100 })
+    {
+      auto sphere = SphereWithNoisyNormals(3);
+      for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+      {
+        double p[3];
+        sphere->GetPoint(i, p);
+        vtkMath::MultiplyScalar(p, size);
+        sphere->GetPoints()->SetPoint(i, p);
+      }
+      auto filter = MakeFilter(sphere);
+      filter->SetExponent(exponent);
+      filter->SetFidelityWeight(0.3);
+      filter->Update();
+      vtkDataArray* result = Result(filter, "nHarmonic");
+      ASSERT_NE(result, nullptr) << size;
+      EXPECT_NEAR(
+        filter->GetTimeUnit() / std::pow(filter->GetMeanEdgeLength(), exponent), 1.0, 1e-12);
+      first = first ? first : Copy(result);
+      EXPECT_LT(LargestDifference(first, result), 1e-8) << size;
+
+      auto absolute = MakeFilter(sphere);
+      absolute->SetUnitsToAbsolute();
+      absolute->SetExponent(exponent);
+      absolute->SetTimeStep(0.05 * filter->GetTimeUnit());
+      absolute->SetFidelityWeight(0.3 / filter->GetTimeUnit());
+      absolute->SetBeta(1e-6 / filter->GetMeanEdgeLength() / filter->GetMeanEdgeLength());
+      if (size < 1e99 && size > 1e-99) // where beta is a number
+      {
+        absolute->Update();
+        EXPECT_EQ(absolute->GetTimeUnit(), 1.0);
+        EXPECT_LT(LargestDifference(first, Result(absolute, "nHarmonic")), 1e-8) << size;
+      }
+    }
+  }
+}
+
+TEST(HarmonicMapFilter, NormalsAreComputedAtAnySize)
+{
+  for (const double size : { 1e-140, 1.0, 1e140 })
+  {
+    auto sphere = Sphere(4);
+    for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+    {
+      double p[3];
+      sphere->GetPoint(i, p);
+      vtkMath::MultiplyScalar(p, size);
+      sphere->GetPoints()->SetPoint(i, p);
+    }
+    auto filter = MakeFilter(sphere);
+    filter->SetNumberOfTimeSteps(0);
+    filter->Update();
+    vtkDataArray* result = Result(filter, "NormalsHarmonic");
+    ASSERT_NE(result, nullptr);
+    for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i)
+    {
+      const double* p = sphere->GetPoint(i);
+      for (int k = 0; k < 3; ++k)
+      {
+        EXPECT_NEAR(result->GetComponent(i, k), p[k] / size, 0.02);
+      }
+    }
+  }
+}
+
+TEST(HarmonicMapFilter, TimesGiveTheSameBitsInAnyOrder)
+{
+  auto sphere = SphereWithNoisyNormals(3);
+  auto filter = MakeFilter(sphere);
+  filter->SetNumberOfTimeSteps(20);
+  filter->Update();
+  const auto end = Copy(Result(filter, "nHarmonic"));
+  filter->GenerateTimeStepsOn();
+  filter->SetOutputInterval(4);
+  EXPECT_EQ(PublishedTimes(filter).size(), 6u);
+  for (const double time : { 1.0, 0.2, 0.6, 1.0 })
+  {
+    UpdateAt(filter, time);
+    if (time == 1.0)
+    {
+      EXPECT_TRUE(Identical(Result(filter, "nHarmonic"), end));
+    }
+  }
+  UpdateAt(filter, 0.0); // the initial state: the input, normalised
+  vtkDataArray* n = sphere->GetPointData()->GetNormals();
+  EXPECT_NEAR(
+    Result(filter, "nHarmonic")->GetComponent(3, 1), n->GetComponent(3, 1) / Length(n, 3), 1e-15);
+  const vtkIdType computed = filter->GetNumberOfStepsComputed();
+  filter->SetMoveVertices(true); // no part of the run
+  filter->SetUseAsNormals(false);
+  UpdateAt(filter, 1.0);
+  EXPECT_LE(filter->GetNumberOfStepsComputed(), computed + 4);
+}
+
+TEST(HarmonicMapFilter, ComputedNormalsAreKeptWhilePlaying)
+{
+  auto filter = MakeFilter(Sphere(3));
+  filter->GenerateTimeStepsOn();
+  UpdateAt(filter, 0.5);
+  const vtkIdType computed = filter->GetNumberOfStepsComputed();
+  UpdateAt(filter, 0.4);
+  UpdateAt(filter, 0.5);
+  EXPECT_LE(filter->GetNumberOfStepsComputed(), computed + 2); // nothing was started anew
+}
+
+TEST(HarmonicMapFilter, BitsDoNotDependOnThreads)
+{
+  auto sphere = SphereWithNoisyNormals(5); // 8194 points
+  vtkSmartPointer<vtkDataArray> first;
+  for (const int threads : { 1, 2, 4 })
+  {
+    vtkSMPTools::Initialize(threads);
+    auto filter = MakeFilter(sphere);
+    filter->SetNumberOfTimeSteps(3);
+    filter->MoveVerticesOn();
+    filter->Update();
+    vtkDataArray* result = Result(filter, "nHarmonic");
+    first = first ? first : Copy(result);
+    EXPECT_TRUE(Identical(first, result)) << threads;
+  }
+  vtkSMPTools::Initialize(0);
+}
+
+// --- Moving vertices ---
+
+TEST(HarmonicMapFilter, MoveVerticesDenoisesTheSurface)
+{
+  auto sphere = Sphere(5);
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    sphere->GetPoint(i, p);
+    for (int k = 0; k < 3; ++k)
+    {
+      p[k] += 0.01 * Rough(i, k);
+    }
+    sphere->GetPoints()->SetPoint(i, p);
+  }
+  const auto roughness = [](vtkPolyData* surface)
+  {
+    double sum = 0.0; // mean distance of the centres of triangles from the unit sphere's normals
+    vtkNew<vtkIdList> corners;
+    for (vtkIdType c = 0; c < surface->GetNumberOfCells(); ++c)
+    {
+      surface->GetCellPoints(c, corners);
+      double p[3][3];
+      double normal[3];
+      double centre[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        surface->GetPoint(corners->GetId(a), p[a]);
+      }
+      vtkTriangle::ComputeNormal(p[0], p[1], p[2], normal);
+      vtkTriangle::TriangleCenter(p[0], p[1], p[2], centre);
+      sum += vtkMath::AngleBetweenVectors(normal, centre);
+    }
+    return sum / surface->GetNumberOfCells();
+  };
+  for (const bool delaunay : { false, true })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetIntrinsicDelaunay(delaunay);
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetPoints(), sphere->GetPoints());
+    EXPECT_EQ(filter->GetVolumeBefore(), 0.0);
+    filter->MoveVerticesOn();
+    filter->Update();
+    EXPECT_LT(roughness(filter->GetOutput()), 0.4 * roughness(sphere));
+    EXPECT_NEAR(filter->GetVolumeBefore(), 4.0 / 3.0 * Pi, 0.05);
+    EXPECT_NEAR(filter->GetVolumeAfter() / filter->GetVolumeBefore(), 1.0, 5e-3);
+    EXPECT_GT(filter->GetMeanDisplacement(), 1e-3);
+    EXPECT_LT(filter->GetMeanDisplacement(), filter->GetMaximumDisplacement());
+    EXPECT_LT(filter->GetMaximumDisplacement(), 0.05);
+    double largest = 0.0;
+    for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+    {
+      double p[3];
+      double q[3];
+      sphere->GetPoint(i, p);
+      filter->GetOutput()->GetPoint(i, q);
+      largest = std::max(largest, std::sqrt(vtkMath::Distance2BetweenPoints(p, q)));
+    }
+    EXPECT_NEAR(filter->GetMaximumDisplacement(), largest, 1e-14);
+    filter->MoveVerticesOff();
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetPoints(), sphere->GetPoints());
+    EXPECT_EQ(filter->GetMaximumDisplacement(), 0.0);
+  }
+}
+
+TEST(HarmonicMapFilter, MovedPointsKeepTheirPrecisionAndMergedOnesStayTogether)
+{
+  auto grid = Grid(6, 6);
+  vtkNew<vtkPoints> points; // two copies of the grid share nothing but places
+  points->SetDataTypeToFloat();
+  vtkNew<vtkCellArray> triangles;
+  for (int half = 0; half < 2; ++half)
+  {
+    for (vtkIdType i = 0; i < 36; ++i)
+    {
+      double p[3];
+      grid->GetPoint(i, p);
+      points->InsertNextPoint(half == 0 ? p[0] : -p[0], p[1], 0.2 * Rough(i, 2));
+    }
+    for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c)
+    {
+      vtkNew<vtkIdList> corners;
+      grid->GetCellPoints(c, corners);
+      triangles->InsertNextCell(
+        { corners->GetId(0) + 36 * half, corners->GetId(half == 0 ? 1 : 2) + 36 * half,
+          corners->GetId(half == 0 ? 2 : 1) + 36 * half });
+    }
+  }
+  vtkNew<vtkPolyData> roof;
+  roof->SetPoints(points);
+  roof->SetPolys(triangles);
+  auto filter = MakeFilter(roof);
+  filter->MergeCoincidentPointsOn();
+  filter->MoveVerticesOn();
+  filter->Update();
+  vtkPoints* moved = filter->GetOutput()->GetPoints();
+  EXPECT_EQ(moved->GetDataType(), VTK_FLOAT);
+  EXPECT_GT(filter->GetMaximumDisplacement(), 1e-3);
+  for (int j = 0; j < 6; ++j) // the common edge x = 0
+  {
+    double p[3];
+    double q[3];
+    moved->GetPoint(6 * j, p);
+    moved->GetPoint(6 * j + 36, q);
+    EXPECT_EQ(vtkMath::Distance2BetweenPoints(p, q), 0.0);
+  }
+  EXPECT_EQ(filter->GetVolumeBefore(), 0.0); // open
+}
+
+// --- Composite data, aborts, errors ---
+
+TEST(HarmonicMapFilter, BlocksAreTreatedAsOneProblem)
+{
+  auto small = SphereWithNoisyNormals(3);
+  auto bare = Sphere(2);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, small);
+  blocks->SetBlock(1, bare);
+  auto filter = MakeFilter(blocks);
+  filter->MoveVerticesOn();
+  filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_NE(output, nullptr);
+  auto* first = vtkPolyData::SafeDownCast(output->GetBlock(0));
+  auto* second = vtkPolyData::SafeDownCast(output->GetBlock(1));
+  EXPECT_NE(first->GetPointData()->GetArray("nHarmonic"), nullptr);
+  EXPECT_NE(second->GetPointData()->GetArray("NormalsHarmonic"), nullptr);
+  EXPECT_NE(first->GetPoints(), small->GetPoints());
+  auto alone = MakeFilter(small);
+  alone->SetUnitsToAbsolute();
+  alone->SetTimeStep(0.05 * filter->GetTimeUnit());
+  alone->SetBeta(1e-6 / filter->GetMeanEdgeLength() / filter->GetMeanEdgeLength());
+  alone->Update();
+  EXPECT_LT(
+    LargestDifference(first->GetPointData()->GetArray("nHarmonic"), Result(alone, "nHarmonic")),
+    1e-9);
+}
+
+TEST(HarmonicMapFilter, AnAbortLeavesTheInput)
+{
+  auto sphere = SphereWithNoisyNormals(4);
+  auto filter = MakeFilter(sphere);
+  filter->MoveVerticesOn();
+  const unsigned long tag = Listen(filter,
+    [&](double done)
+    {
+      if (done > 0.5)
+      {
+        filter->SetAbortExecute(1);
+      }
+    });
+  filter->Update();
+  EXPECT_EQ(Result(filter, "nHarmonic"), nullptr);
+  EXPECT_EQ(filter->GetOutput()->GetPoints(), sphere->GetPoints());
+  filter->RemoveObserver(tag);
+  filter->SetAbortExecute(0);
+  filter->Modified();
+  filter->Update();
+  EXPECT_NE(Result(filter, "nHarmonic"), nullptr);
+}
+
+TEST(HarmonicMapFilter, TellsWrongPropertiesAndArrays)
+{
+  auto sphere = SphereWithNoisyNormals(2);
+  AddPointArray(sphere, "one", 1, Rough);
+  AddPointArray(sphere, "field", 3, Rough);
+  AddPointArray(
+    sphere, "grey", 2, [](vtkIdType i, int) { return i % 200; }, VTK_UNSIGNED_CHAR);
+  const auto nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double exponent : { 0.9, 2.1, nan })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetExponent(exponent);
+    ExpectError(filter, "Exponent");
+  }
+  for (const double beta : { 0.0, -1.0, nan, std::numeric_limits<double>::infinity() })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetBeta(beta);
+    ExpectError(filter, "Beta");
+  }
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetBeta(0.0);
+    filter->SetExponent(2.0); // where beta does nothing
+    EXPECT_EQ(OnlyError(filter), "");
+    EXPECT_NE(Result(filter, "nHarmonic"), nullptr);
+  }
+  for (const int scheme : { -1, 3 })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetScheme(scheme);
+    ExpectError(filter, "Scheme");
+  }
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetTimeIntegratorToSecondOrder();
+    ExpectError(filter, "TimeIntegrator");
+  }
+  for (const char* name : { "one", "grey" }) // the second component of grey is alpha
+  {
+    auto filter = MakeFilter(sphere);
+    SetInputArray(filter, 0, name);
+    ExpectError(filter, name);
+  }
+  {
+    auto filter = MakeFilter(sphere);
+    SetInputArray(filter, 0, "field");
+    filter->MoveVerticesOn();
+    ExpectError(filter, "MoveVertices");
+  }
+  {
+    auto filter = MakeFilter(sphere);
+    SetInputArray(filter, 0, "absent");
+    const std::string error = OnlyError(filter);
+    EXPECT_NE(error.find("absent"), std::string::npos) << error;
+  }
+}
+
+TEST(HarmonicMapFilter, SolversAgreeAndConjugateGradientsTellTheirLimit)
+{
+  auto sphere = SphereWithNoisyNormals(4);
+  vtkSmartPointer<vtkDataArray> first;
+  for (const int solver : { 0, 1, 2 })
+  {
+    for (const int scheme : { 0, 1 })
+    {
+      auto filter = MakeFilter(sphere);
+      filter->SetSolver(solver);
+      filter->SetScheme(scheme);
+      filter->SetNumberOfTimeSteps(3);
+      filter->Update();
+      if (scheme == 1)
+      {
+        first = first ? first : Copy(Result(filter, "nHarmonic"));
+        EXPECT_LT(LargestDifference(first, Result(filter, "nHarmonic")), 1e-7) << solver;
+      }
+    }
+  }
+  auto filter = MakeFilter(sphere);
+  filter->SetSolverToConjugateGradient();
+  filter->SetMaximumNumberOfIterations(2);
+  EXPECT_NE(OnlyError(filter).find("MaximumNumberOfIterations"), std::string::npos);
+  filter->SetSolverToAutomatic(); // finds another way, and never fails
+  EXPECT_EQ(OnlyError(filter), "");
+  EXPECT_NE(Result(filter, "nHarmonic"), nullptr);
+}
+
+TEST(HarmonicMapFilter, PrintsItsProperties)
+{
+  vtkNew<vtkHarmonicMapFilter> filter;
+  std::ostringstream text;
+  filter->Print(text);
+  for (const char* name :
+    { "Exponent: 1", "Beta: 1e-06", "Scheme: TangentPlane", "ConsistentReaction: Off",
+      "ProjectToSphere: On", "LineField: Off", "UseAsNormals: On", "MoveVertices: Off",
+      "MeanDisplacement: 0", "MaximumDisplacement: 0", "VolumeBefore: 0", "VolumeAfter: 0" })
+  {
+    EXPECT_NE(text.str().find(name), std::string::npos) << name;
+  }
+}
