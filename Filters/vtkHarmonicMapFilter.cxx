@@ -6,6 +6,7 @@
 #include "Core/HarmonicMap.h"
 #include "Core/UnitVectors.h"
 #include "Core/VertexFit.h"
+#include "Private/EnumText.h"
 #include "Private/PointArrays.h"
 #include "Private/SMPParallelFor.h"
 #include "Private/SurfaceRun.h"
@@ -109,17 +110,7 @@ vtkHarmonicMapFilter::~vtkHarmonicMapFilter() = default;
 
 const char* vtkHarmonicMapFilter::GetSchemeAsString()
 {
-  switch (this->Scheme)
-  {
-    case SCHEME_EXPLICIT_REACTION:
-      return "ExplicitReaction";
-    case SCHEME_TANGENT_PLANE:
-      return "TangentPlane";
-    case SCHEME_MINIMIZING_MOVEMENT:
-      return "MinimizingMovement";
-    default:
-      return "Unknown";
-  }
+  return EnumText(this->Scheme, { "ExplicitReaction", "TangentPlane", "MinimizingMovement" });
 }
 
 void vtkHarmonicMapFilter::UsePaperScheme()
