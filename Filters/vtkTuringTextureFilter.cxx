@@ -61,8 +61,8 @@ std::string Quantity(double value)
   return text.str();
 }
 
-Eigen::Matrix2d JacobianAtRest(const SurfaceDiffusion::Kinetics& terms,
-  const KineticsParameters& parameters)
+Eigen::Matrix2d JacobianAtRest(
+  const SurfaceDiffusion::Kinetics& terms, const KineticsParameters& parameters)
 {
   const Eigen::Vector2d steady = terms.SteadyState(parameters);
   return terms.Jacobian(parameters, steady[0], steady[1]);
@@ -74,10 +74,12 @@ std::string Explain(const PatternForecast& forecast, double rate1, double rate2)
   switch (forecast.Obstacle)
   {
     case PatternObstacle::NoSteadyState:
-      return "the kinetics have no steady state with these parameters, out of which a pattern could "
+      return "the kinetics have no steady state with these parameters, out of which a pattern "
+             "could "
              "grow";
     case PatternObstacle::NotSteady:
-      return "the steady state of the kinetics runs away even without diffusion: all of the surface "
+      return "the steady state of the kinetics runs away even without diffusion: all of the "
+             "surface "
              "may oscillate together instead of standing in a pattern";
     case PatternObstacle::NoActivator:
       return "no pattern grows: neither chemical promotes itself with these parameters";
@@ -104,8 +106,9 @@ double WavelengthOf(const PatternForecast& forecast)
 
 /// An array of one value per point, 0 where a point takes no part, unless `source` has a value.
 template <typename Array>
-vtkSmartPointer<vtkDataArray> MakePointArray(const PolyDataSurface& surface, const std::string& name,
-  const Eigen::Ref<const Vector>& values, vtkDataArray* source, int component)
+vtkSmartPointer<vtkDataArray> MakePointArray(const PolyDataSurface& surface,
+  const std::string& name, const Eigen::Ref<const Vector>& values, vtkDataArray* source,
+  int component)
 {
   auto array = vtkSmartPointer<Array>::New();
   array->SetName(name.c_str());
@@ -124,9 +127,8 @@ vtkSmartPointer<vtkDataArray> MakePointArray(bool single, const PolyDataSurface&
   const std::string& name, const Eigen::Ref<const Vector>& values, vtkDataArray* source = nullptr,
   int component = 0)
 {
-  return single
-    ? MakePointArray<vtkFloatArray>(surface, name, values, source, component)
-    : MakePointArray<vtkDoubleArray>(surface, name, values, source, component);
+  return single ? MakePointArray<vtkFloatArray>(surface, name, values, source, component)
+                : MakePointArray<vtkDoubleArray>(surface, name, values, source, component);
 }
 
 } // namespace
@@ -215,8 +217,8 @@ void vtkTuringTextureFilter::CheckProperties(Problems& problems)
   require(notNegative(this->FeatureSize), "FeatureSize", this->FeatureSize, finite);
   require(notNegative(this->InitialNoise), "InitialNoise", this->InitialNoise, finite);
   require(notNegative(this->StopTolerance), "StopTolerance", this->StopTolerance, finite);
-  require(this->TextureChemical == TEXTURE_CHEMICAL_U1 ||
-      this->TextureChemical == TEXTURE_CHEMICAL_U2,
+  require(
+    this->TextureChemical == TEXTURE_CHEMICAL_U1 || this->TextureChemical == TEXTURE_CHEMICAL_U2,
     "TextureChemical", this->TextureChemical, "0 U1, 1 U2");
   for (int k = 0; k < 3; ++k)
   {
@@ -240,7 +242,7 @@ void vtkTuringTextureFilter::CheckProperties(Problems& problems)
     {
       const std::string above = "finite numbers above " + Quantity(parameter.Minimum);
       require(std::isfinite(values[p]) && values[p] > parameter.Minimum, parameter.Name, values[p],
-        parameter.Minimum == 0.0      ? above.c_str()
+        parameter.Minimum == 0.0     ? above.c_str()
           : parameter.Minimum < -1.0 ? "finite numbers"
                                      : finite);
     }
@@ -255,8 +257,7 @@ bool vtkTuringTextureFilter::AreRatesDirected()
     differs(this->DiffusionRate2, this->DiffusionRateAcross2);
 }
 
-bool vtkTuringTextureFilter::FindArrays(
-  vtkPolyData* block, BlockArrays& arrays, Problems& problems)
+bool vtkTuringTextureFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems)
 {
   const InputArrays inputs(this, block, problems);
   const std::size_t before = problems.size();
@@ -314,8 +315,9 @@ double vtkTuringTextureFilter::GetEffectiveTimeStep()
   {
     return this->TimeStep;
   }
-  const double step = ReactionTimeStep(JacobianAtRest(
-    SurfaceDiffusion::GetKinetics(static_cast<KineticsName>(this->Kinetics)), this->GetKineticsParameters()));
+  const double step = ReactionTimeStep(
+    JacobianAtRest(SurfaceDiffusion::GetKinetics(static_cast<KineticsName>(this->Kinetics)),
+      this->GetKineticsParameters()));
   if (!std::isfinite(step))
   {
     return this->TimeStep; // no steady state
@@ -363,8 +365,7 @@ vtkTuringTextureFilter::Rates vtkTuringTextureFilter::MakeRates(const ModelInput
       *means[d] = area > 0.0 ? sum / area : 0.0;
     }
   }
-  const bool directed =
-    rates.Along[0] != rates.Across[0] || rates.Along[1] != rates.Across[1];
+  const bool directed = rates.Along[0] != rates.Across[0] || rates.Along[1] != rates.Across[1];
   if (directed && !input.Arrays.Direction)
   {
     throw std::runtime_error("DiffusionRateArray has other rates across than along but "
@@ -377,8 +378,9 @@ vtkTuringTextureFilter::Rates vtkTuringTextureFilter::MakeRates(const ModelInput
 /// Scale the rates to FeatureSize, and tell what stands against a pattern.
 void vtkTuringTextureFilter::ChooseFeatureSize(ModelInput& input, Rates& rates)
 {
-  const Eigen::Matrix2d jacobian = JacobianAtRest(
-    SurfaceDiffusion::GetKinetics(static_cast<KineticsName>(this->Kinetics)), this->GetKineticsParameters());
+  const Eigen::Matrix2d jacobian =
+    JacobianAtRest(SurfaceDiffusion::GetKinetics(static_cast<KineticsName>(this->Kinetics)),
+      this->GetKineticsParameters());
   PatternForecast forecast = ForecastPattern(jacobian, rates.MeanAlong[0], rates.MeanAlong[1]);
   this->DiffusionRateFactor = 1.0;
   if (this->FeatureSize > 0.0)
@@ -402,8 +404,8 @@ void vtkTuringTextureFilter::ChooseFeatureSize(ModelInput& input, Rates& rates)
 
   const PatternForecast across =
     ForecastPattern(jacobian, rates.MeanAcross[0], rates.MeanAcross[1]);
-  const bool grows = forecast.Obstacle == PatternObstacle::None ||
-    across.Obstacle == PatternObstacle::None;
+  const bool grows =
+    forecast.Obstacle == PatternObstacle::None || across.Obstacle == PatternObstacle::None;
   const std::string reason = Explain(forecast, rates.MeanAlong[0], rates.MeanAlong[1]);
   if (!grows && !reason.empty())
   {

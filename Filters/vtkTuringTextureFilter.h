@@ -150,8 +150,8 @@ public:
 
   ///@{
   /**
-   * Half width of the uniform noise around the steady state, relative to it (where the steady state
-   * is 0: absolute). 0 or more. Default: 0.1.
+   * Half width of the uniform noise around the steady state, relative to it (FitzHughNagumo, whose
+   * values have either sign: absolute). 0 or more. Default: 0.1.
    */
   vtkSetMacro(InitialNoise, double);
   vtkGetMacro(InitialNoise, double);
@@ -301,8 +301,7 @@ protected:
   void CheckProperties(Problems& problems) override;
   bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
-  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
-    ModelInput& input, int steps) override;
+  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
   void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
   const char* GetResultSuffix() override { return ""; }
   Dimension GetTimeDimension() override { return { 0.0, 0.0 }; }

@@ -17,8 +17,7 @@ const double Pi = std::acos(-1.0);
 
 } // namespace
 
-double GrowthRate(
-  const Eigen::Matrix2d& jacobian, double d1, double d2, double squaredWaveNumber)
+double GrowthRate(const Eigen::Matrix2d& jacobian, double d1, double d2, double squaredWaveNumber)
 {
   const double a = jacobian(0, 0) - d1 * squaredWaveNumber;
   const double d = jacobian(1, 1) - d2 * squaredWaveNumber;
@@ -40,8 +39,7 @@ PatternForecast ForecastPattern(const Eigen::Matrix2d& jacobian, double d1, doub
   const double difference = d1 - d2;
   if (coupling > 0.0 && difference != 0.0)
   {
-    const double balance =
-      std::copysign((d1 + d2) * std::sqrt(coupling / (d1 * d2)), difference);
+    const double balance = std::copysign((d1 + d2) * std::sqrt(coupling / (d1 * d2)), difference);
     forecast.SquaredWaveNumber = std::max(0.0, (a - d + balance) / difference);
   }
   forecast.GrowthRate = GrowthRate(jacobian, d1, d2, forecast.SquaredWaveNumber);
@@ -77,8 +75,8 @@ double ReactionTimeStep(const Eigen::Matrix2d& jacobian)
   const double halfTrace = 0.5 * jacobian.trace();
   const double determinant = jacobian.determinant();
   const double discriminant = halfTrace * halfTrace - determinant;
-  const double largest = discriminant > 0.0 ? std::abs(halfTrace) + std::sqrt(discriminant)
-                                            : std::sqrt(determinant);
+  const double largest =
+    discriminant > 0.0 ? std::abs(halfTrace) + std::sqrt(discriminant) : std::sqrt(determinant);
   return 0.125 / largest;
 }
 

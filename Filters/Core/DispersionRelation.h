@@ -10,17 +10,16 @@ namespace SurfaceDiffusion
 /// Linear stability of a steady state of (22): a perturbation with wave number k grows like
 /// exp(rate t), where rate is the larger real part of the eigenvalues of J - k^2 diag(D1, D2) and
 /// J the Jacobian of (F, G) (A. Turing 1952; J. D. Murray, Mathematical Biology II, ch. 2).
-double GrowthRate(
-  const Eigen::Matrix2d& jacobian, double d1, double d2, double squaredWaveNumber);
+double GrowthRate(const Eigen::Matrix2d& jacobian, double d1, double d2, double squaredWaveNumber);
 
 /// Why no pattern grows out of small perturbations.
 enum class PatternObstacle
 {
   None,
-  NoSteadyState,   ///< the kinetics have no steady state with these parameters
-  NotSteady,       ///< the steady state runs away even without diffusion
-  NoActivator,     ///< neither chemical promotes itself: no diffusion rates make a pattern
-  RatesTooClose    ///< D1/D2 (or D2/D1) is not above the CriticalRatio
+  NoSteadyState, ///< the kinetics have no steady state with these parameters
+  NotSteady, ///< the steady state runs away even without diffusion
+  NoActivator, ///< neither chemical promotes itself: no diffusion rates make a pattern
+  RatesTooClose ///< D1/D2 (or D2/D1) is not above the CriticalRatio
 };
 
 /// What the dispersion relation tells about the pattern to come.

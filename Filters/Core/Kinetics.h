@@ -13,12 +13,12 @@ namespace SurfaceDiffusion
 /// the substrate) and u2 is the activator, as in (24), so that the same diffusion rates serve all.
 enum class KineticsName
 {
-  Turing,           ///< (24)
-  Schnakenberg,     ///< activator-substrate
-  GrayScott,        ///< activator-substrate, fed and washed out
-  Brusselator,      ///< activator-substrate
-  GiererMeinhardt,  ///< activator-inhibitor
-  FitzHughNagumo    ///< activator-inhibitor, values of either sign
+  Turing, ///< (24)
+  Schnakenberg, ///< activator-substrate
+  GrayScott, ///< activator-substrate, fed and washed out
+  Brusselator, ///< activator-substrate
+  GiererMeinhardt, ///< activator-inhibitor
+  FitzHughNagumo ///< activator-inhibitor, values of either sign
 };
 
 /// Values of a kinetics' parameters, in the order of its list.
@@ -30,8 +30,8 @@ struct Kinetics
   struct Parameter
   {
     const char* Name; ///< nullptr: not used
-    double Default;   ///< makes a pattern where D1/D2 is about 8
-    double Minimum;   ///< values must be above it
+    double Default; ///< makes a pattern where D1/D2 is about 8
+    double Minimum; ///< values must be above it
   };
 
   const char* Name;

@@ -51,8 +51,8 @@ void Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& so
   constexpr int steps = 4;
   const double dt = fwhm * fwhm / (16.0 * std::log(2.0)) / steps;
   SparseMatrix matrix = assembler.Pattern();
-  assembler.Fill(matrix, mesh.ControlAreas(), dt, IsotropicCoefficients(mesh, parallel), nullptr,
-    parallel);
+  assembler.Fill(
+    matrix, mesh.ControlAreas(), dt, IsotropicCoefficients(mesh, parallel), nullptr, parallel);
   solver.SetMatrix(matrix, monitor.Part(0.0, 0.5));
   for (int step = 0; step < steps; ++step)
   {

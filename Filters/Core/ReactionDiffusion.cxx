@@ -35,8 +35,8 @@ double Norm(const TriangleMesh& mesh, const ParallelFor& parallel, const F& f)
 
 } // namespace
 
-Values NoisySteadyState(const Reaction& reaction, double noise, std::int64_t seed,
-  const std::vector<std::int64_t>& ids)
+Values NoisySteadyState(
+  const Reaction& reaction, double noise, std::int64_t seed, const std::vector<std::int64_t>& ids)
 {
   const Eigen::Vector2d steady = reaction.Terms->SteadyState(reaction.Parameters);
   Values u(static_cast<Eigen::Index>(ids.size()), 2);
@@ -45,7 +45,7 @@ Values NoisySteadyState(const Reaction& reaction, double noise, std::int64_t see
     for (Eigen::Index k = 0; k < 2; ++k)
     {
       const double random = 2.0 * UniformRandom(seed, k, ids[static_cast<std::size_t>(i)]) - 1.0;
-      const double size = steady[k] != 0.0 ? steady[k] : 1.0;
+      const double size = reaction.Terms->NonNegative ? steady[k] : 1.0;
       u(i, k) = steady[k] + size * noise * random;
     }
   }
@@ -61,8 +61,7 @@ ReactionDiffusion::ReactionDiffusion(std::shared_ptr<const Assembler> assembler,
   , Data(std::move(data))
   , Options(settings)
   , Parallel(parallel)
-  , ImplicitTime(
-      settings.TimeStep * (settings.TimeScheme == Scheme::SecondOrder ? Gamma : 1.0))
+  , ImplicitTime(settings.TimeStep * (settings.TimeScheme == Scheme::SecondOrder ? Gamma : 1.0))
   , U(this->Data.Start)
 {
   for (int c = 0; c < 2; ++c)
@@ -103,8 +102,8 @@ void ReactionDiffusion::Prepare(const Monitor& monitor)
   {
     SparseMatrix& matrix = this->Matrices[c];
     matrix = this->Operators->Pattern();
-    this->Operators->Fill(matrix, areas, this->ImplicitTime, this->Chemicals[c].Coefficients,
-      nullptr, this->Parallel);
+    this->Operators->Fill(
+      matrix, areas, this->ImplicitTime, this->Chemicals[c].Coefficients, nullptr, this->Parallel);
     if (this->Data.Fixed.any())
     {
       this->Operators->Constrain(
@@ -209,8 +208,7 @@ void ReactionDiffusion::SecondOrderStep(StepReport& report, const Monitor& monit
       for (int c = 0; c < 2; ++c)
       {
         this->RightHandSide[c](i) =
-          area * (this->Explicit[c](i) + (1.0 - Delta) * dt * this->Rates[c](i)) +
-          this->Load[c](i);
+          area * (this->Explicit[c](i) + (1.0 - Delta) * dt * this->Rates[c](i)) + this->Load[c](i);
         // Where an iterative solver starts: the straight line through u and y.
         this->New[c](i) = this->Old[c](i) + (this->New[c](i) - this->Old[c](i)) / Gamma;
       }
@@ -274,8 +272,7 @@ void ReactionDiffusion::Solve(StepReport& report, const Monitor& monitor)
   {
     try
     {
-      reports[c] =
-        this->Chemicals[c].Solver->Solve(this->RightHandSide[c], this->New[c], progress);
+      reports[c] = this->Chemicals[c].Solver->Solve(this->RightHandSide[c], this->New[c], progress);
     }
     catch (...)
     {
@@ -363,16 +360,15 @@ void ReactionDiffusion::FinishStep()
       area;
     const double pattern = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - mean; });
     const double change = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - before(i); });
-    this->Done = this->Done &&
-      change <= this->Options.StopTolerance * this->Options.TimeStep * pattern;
+    this->Done =
+      this->Done && change <= this->Options.StopTolerance * this->Options.TimeStep * pattern;
   }
 }
 
 double ReactionDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  return DirichletEnergy(
-           mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
+  return DirichletEnergy(mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
     DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel);
 }
 

@@ -24,10 +24,10 @@ struct Reaction
 };
 
 /// The steady state with uniform relative noise of half width `noise`, the same for a seed on any
-/// machine: u_k = u*_k (1 + noise (2 r - 1)) with r in [0, 1) from seed, k and id; where u*_k = 0,
-/// u_k = noise (2 r - 1). ids: one per vertex.
-Values NoisySteadyState(const Reaction& reaction, double noise, std::int64_t seed,
-  const std::vector<std::int64_t>& ids);
+/// machine: u_k = u*_k (1 + noise (2 r - 1)) with r in [0, 1) from seed, k and id; for kinetics of
+/// either sign u_k = u*_k + noise (2 r - 1). ids: one per vertex.
+Values NoisySteadyState(
+  const Reaction& reaction, double noise, std::int64_t seed, const std::vector<std::int64_t>& ids);
 
 /// (22), (23): two chemicals that react and diffuse,
 ///   u1_t = div(D1 grad u1) + F(u1, u2),  u2_t = div(D2 grad u2) + G(u1, u2),

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Execution.h"
 
-#include "Core/Frames.h"
 #include "Core/IntrinsicDelaunay.h"
+#include "DirectionArrays.h"
 #include "PointArrays.h"
 #include "SMPParallelFor.h"
 
@@ -52,43 +52,6 @@ void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& 
   table->AddColumn(column);
 }
 
-/// One vector per row.
-Points ReadDirections(vtkDataArray* array)
-{
-  Points vectors(array->GetNumberOfTuples(), 3);
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-  {
-    array->GetTuple(i, vectors.row(i).data());
-    if (vectors.row(i).array().isInf().any())
-    {
-      std::ostringstream text;
-      text << "DirectionArray \"" << (array->GetName() ? array->GetName() : "")
-           << "\" is infinite at tuple " << i << "; allowed: finite values and NaN";
-      throw std::runtime_error(text.str());
-    }
-  }
-  return vectors;
-}
-
-/// The direction array as frames of the triangles of surface.InputMesh.
-PlaneVectors ReadFrames(
-  const PolyDataSurface& surface, const BlockArrays& arrays, const ParallelFor& parallel)
-{
-  const Points vectors = ReadDirections(arrays.Direction);
-  if (!arrays.DirectionOnCells)
-  {
-    return FramesFromPointVectors(
-      *surface.InputMesh, surface.Points, surface.Triangles, vectors, parallel);
-  }
-  Points ofTriangles(surface.Triangles.rows(), 3);
-  for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
-  {
-    ofTriangles.row(t) = vectors.row(surface.TriangleCells[t]);
-  }
-  return FramesFromTriangleVectors(
-    *surface.InputMesh, surface.Points, surface.Triangles, ofTriangles, parallel);
-}
-
 /// The frames of the triangles that the models work on; no row without a direction array.
 PlaneVectors MakeFrames(
   const PolyDataSurface& surface, const BlockArrays& arrays, const ParallelFor& parallel)
@@ -97,7 +60,8 @@ PlaneVectors MakeFrames(
   {
     return PlaneVectors(0, 2);
   }
-  PlaneVectors frames = ReadFrames(surface, arrays, parallel);
+  PlaneVectors frames =
+    ReadFrames(surface, arrays.Direction, arrays.DirectionOnCells, parallel);
   if (surface.Mesh != surface.InputMesh)
   {
     IntrinsicDelaunay(*surface.InputMesh, &frames, parallel); // the same flips again

@@ -116,11 +116,9 @@ TEST_P(AnyKinetics, PatternsBeginAtTheCriticalRatio)
 TEST_P(AnyKinetics, FeatureSizeFactorGivesThatWavelength)
 {
   const double wavelength = 0.37;
-  const double factor =
-    FeatureSizeFactor(ForecastPattern(this->Jacobian, D1, D2), wavelength);
+  const double factor = FeatureSizeFactor(ForecastPattern(this->Jacobian, D1, D2), wavelength);
   const PatternForecast scaled = ForecastPattern(this->Jacobian, factor * D1, factor * D2);
-  EXPECT_NEAR(
-    2.0 * std::acos(-1.0) / std::sqrt(scaled.SquaredWaveNumber), wavelength, 1e-12);
+  EXPECT_NEAR(2.0 * std::acos(-1.0) / std::sqrt(scaled.SquaredWaveNumber), wavelength, 1e-12);
 }
 
 TEST_P(AnyKinetics, HasAReferenceAndNamedParameters)
@@ -183,9 +181,7 @@ TEST(DispersionRelation, TuringNeedsARatioAboveFourAndIsCriticalAtItsKnownWaveNu
 TEST(DispersionRelation, ReasonsAgainstAPatternAreTold)
 {
   const auto obstacle = [](double a, double b, double c, double d, double d1, double d2)
-  {
-    return ForecastPattern((Eigen::Matrix2d() << a, b, c, d).finished(), d1, d2).Obstacle;
-  };
+  { return ForecastPattern((Eigen::Matrix2d() << a, b, c, d).finished(), d1, d2).Obstacle; };
   EXPECT_EQ(obstacle(-4.0, -4.0, 4.0, 3.0, 8.0, 1.0), PatternObstacle::None);
   EXPECT_EQ(obstacle(-4.0, -4.0, 4.0, 3.0, 1.0, 8.0), PatternObstacle::RatesTooClose);
   EXPECT_EQ(obstacle(-4.0, -4.0, 4.0, 3.0, 3.0, 3.0), PatternObstacle::RatesTooClose);

@@ -18,7 +18,7 @@ namespace
 struct Result
 {
   Points Directions; ///< per input triangle
-  Vector Strength;   ///< per triangle of the mesh, in 1/coordinate unit
+  Vector Strength; ///< per triangle of the mesh, in 1/coordinate unit
   std::shared_ptr<const Assembler> Operators;
 };
 

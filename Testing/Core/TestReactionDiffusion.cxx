@@ -41,9 +41,7 @@ std::unique_ptr<ReactionDiffusion> MakeModel(std::shared_ptr<const Assembler> as
 {
   const EdgeValues c = IsotropicCoefficients(assembler->Mesh());
   const auto solver = [&]() -> std::shared_ptr<LinearSolver>
-  {
-    return direct ? MakeCholeskySolver(parallel) : MakeConjugateGradientSolver(parallel);
-  };
+  { return direct ? MakeCholeskySolver(parallel) : MakeConjugateGradientSolver(parallel); };
   return std::make_unique<ReactionDiffusion>(std::move(assembler), reaction,
     std::array<ReactionDiffusion::Chemical, 2>{ { { d1 * c, solver() }, { d2 * c, solver() } } },
     std::move(data), settings, parallel);
@@ -64,8 +62,8 @@ std::unique_ptr<ReactionDiffusion> MakeTexture(std::shared_ptr<const Assembler> 
   const TriangleMesh& mesh = assembler->Mesh();
   const double square = MeanEdge(mesh) * MeanEdge(mesh);
   const Values start = NoisySteadyState(Reaction(), 0.1, 0, Ids(mesh));
-  return MakeModel(std::move(assembler), PointData::FromValues(start), 21.0 * square,
-    2.6 * square, settings, Reaction(), parallel, direct);
+  return MakeModel(std::move(assembler), PointData::FromValues(start), 21.0 * square, 2.6 * square,
+    settings, Reaction(), parallel, direct);
 }
 
 } // namespace
@@ -103,8 +101,8 @@ TEST(ReactionDiffusion, SphericalHarmonicsGrowAtTheLargestEigenvalue)
       const double square = mesh.LengthUnit() * mesh.LengthUnit();
       Settings settings;
       settings.TimeStep = 1.0 / 64.0;
-      const auto model = MakeModel(
-        assembler, PointData::FromValues(start), d1 / square, d2 / square, settings);
+      const auto model =
+        MakeModel(assembler, PointData::FromValues(start), d1 / square, d2 / square, settings);
       Advance(*model, 64);
       const Vector weighted = mesh.ControlAreas().cwiseProduct(y.col(0));
       const double growth = weighted.dot((model->State().col(0).array() - 4.0).matrix()) /
@@ -226,8 +224,8 @@ TEST(ReactionDiffusion, OrderInTimeHoldsWhereConcentrationsAreHeldAtZero)
     Settings settings;
     settings.TimeStep = dt;
     settings.TimeScheme = scheme;
-    const auto model = MakeModel(
-      assembler, PointData::FromValues(start), 21.0 * square, 2.6 * square, settings);
+    const auto model =
+      MakeModel(assembler, PointData::FromValues(start), 21.0 * square, 2.6 * square, settings);
     const int steps = static_cast<int>(std::lround(time / dt));
     for (int step = 0; step < steps; ++step)
     {
@@ -236,8 +234,8 @@ TEST(ReactionDiffusion, OrderInTimeHoldsWhereConcentrationsAreHeldAtZero)
     return Values(model->State());
   };
   // Noise itself has no order: start from where the pattern appears.
-  const Values start = run(NoisySteadyState(Reaction(), 0.1, 0, Ids(mesh)), 3.0, 1.0 / 64.0,
-    Scheme::SecondOrder);
+  const Values start =
+    run(NoisySteadyState(Reaction(), 0.1, 0, Ids(mesh)), 3.0, 1.0 / 64.0, Scheme::SecondOrder);
   const double time = 5.0;
   const Values exact = run(start, time, 1.0 / 512.0, Scheme::SecondOrder);
   EXPECT_GT(held, 50); // of 642 vertices
@@ -318,8 +316,8 @@ double ShareAcross(bool axial, const std::array<double, 2>& anisotropy)
   for (Index i = 0; i < s.NumberOfVertices(); ++i)
   {
     const Eigen::RowVector3d p = s.Vertices.row(i);
-    vectors.row(i) = axial ? Eigen::RowVector3d(0.0, 0.0, 1.0)
-                           : Eigen::RowVector3d(-p[1], p[0], 0.0);
+    vectors.row(i) =
+      axial ? Eigen::RowVector3d(0.0, 0.0, 1.0) : Eigen::RowVector3d(-p[1], p[0], 0.0);
   }
   const PlaneVectors frames = FramesFromPointVectors(mesh, s.Vertices, s.Faces, vectors);
   const double square = MeanEdge(mesh) * MeanEdge(mesh);
@@ -412,10 +410,7 @@ TEST(ReactionDiffusion, RatesPerTriangleGiveSpotsOfTwoSizes)
     areas[half] += shape.Area();
   }
   const auto waveNumber = [&](int half)
-  {
-    return std::sqrt(gradients[half] /
-      (squares[half] - sums[half] * sums[half] / areas[half]));
-  };
+  { return std::sqrt(gradients[half] / (squares[half] - sums[half] * sums[half] / areas[half])); };
   EXPECT_NEAR(waveNumber(0) / waveNumber(1), 2.0, 0.3);
 }
 
@@ -424,8 +419,7 @@ namespace
 
 /// Wavelength of a column on a square of side `length`, cells x cells, from its cosine transform:
 /// mean wave number of the power within half of an octave around 1/expected.
-double MeasureWavelength(
-  const Values& u, Index cells, double length, double expected)
+double MeasureWavelength(const Values& u, Index cells, double length, double expected)
 {
   const Index n = cells + 1;
   Eigen::MatrixXd cosines(n, n);
@@ -473,22 +467,22 @@ TEST(ReactionDiffusion, FeatureSizeIsTheWavelengthOnCoarseAndFineMeshes)
     const Surface s = Strip(cells, cells, side, side);
     const auto assembler = MakeAssembler(s);
     const TriangleMesh& mesh = assembler->Mesh();
-    const double factor = FeatureSizeFactor(
-      ForecastPattern(jacobian, 21.0, 2.6), wavelength / mesh.LengthUnit());
-    const auto model = MakeModel(assembler,
-      PointData::FromValues(NoisySteadyState(Reaction(), 0.1, 0, Ids(mesh))), factor * 21.0,
-      factor * 2.6, Settings());
+    const double factor =
+      FeatureSizeFactor(ForecastPattern(jacobian, 21.0, 2.6), wavelength / mesh.LengthUnit());
+    const auto model =
+      MakeModel(assembler, PointData::FromValues(NoisySteadyState(Reaction(), 0.1, 0, Ids(mesh))),
+        factor * 21.0, factor * 2.6, Settings());
     const auto measure = [&]
     {
-      return MeasureWavelength(ToInput(mesh, model->State(), s.NumberOfVertices()), cells, side,
-        wavelength);
+      return MeasureWavelength(
+        ToInput(mesh, model->State(), s.NumberOfVertices()), cells, side, wavelength);
     };
     Advance(*model, 80); // t = 5: the pattern appears
     const double growing = measure();
     Advance(*model, 160); // t = 15: it stands
     standing[mesh01] = measure();
-    std::printf("%d cells: wavelength %.3f growing, %.3f standing\n", cells, growing,
-      standing[mesh01]);
+    std::printf(
+      "%d cells: wavelength %.3f growing, %.3f standing\n", cells, growing, standing[mesh01]);
     EXPECT_NEAR(growing, wavelength, 0.05 * wavelength);
     EXPECT_NEAR(standing[mesh01], wavelength, 0.08 * wavelength);
     ++mesh01;
@@ -579,7 +573,7 @@ TEST(ReactionDiffusion, StopsWhenThePatternStands)
     ++steps;
   }
   std::printf("stands after %d steps\n", steps);
-  EXPECT_GT(steps, 80);   // not while noise turns into a pattern
+  EXPECT_GT(steps, 80); // not while noise turns into a pattern
   EXPECT_LT(steps, 1000);
   EXPECT_GT(model->State().maxCoeff() - model->State().minCoeff(), 5.0);
 

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSurfaceDirectionFieldFilter.h"
+
+#include "Core/DirectionField.h"
+#include "Private/DirectionArrays.h"
+#include "Private/InputArrays.h"
+#include "Private/SMPParallelFor.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <sstream>
+
+using namespace SurfaceDiffusion;
+
+vtkStandardNewMacro(vtkSurfaceDirectionFieldFilter);
+
+vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter() = default;
+
+const char* vtkSurfaceDirectionFieldFilter::GetMethodAsString()
+{
+  switch (this->Method)
+  {
+    case METHOD_PRINCIPAL_CURVATURE:
+      return "PrincipalCurvature";
+    case METHOD_CURVATURE_ALIGNED:
+      return "CurvatureAligned";
+    case METHOD_SMOOTH:
+      return "Smooth";
+    case METHOD_HINTS:
+      return "Hints";
+    default:
+      return "Unknown";
+  }
+}
+
+const char* vtkSurfaceDirectionFieldFilter::GetPrincipalDirectionAsString()
+{
+  switch (this->PrincipalDirection)
+  {
+    case PRINCIPAL_DIRECTION_MINIMUM:
+      return "Minimum";
+    case PRINCIPAL_DIRECTION_MAXIMUM:
+      return "Maximum";
+    default:
+      return "Unknown";
+  }
+}
+
+std::vector<std::string> vtkSurfaceDirectionFieldFilter::FindProblems(
+  vtkPolyData* input, vtkDataArray*& hints, bool& onCells)
+{
+  std::vector<std::string> problems;
+  const auto require = [&](bool holds, const char* property, double value, const char* allowed)
+  {
+    if (!holds)
+    {
+      std::ostringstream text;
+      text << property << " is " << value << "; allowed: " << allowed;
+      problems.push_back(text.str());
+    }
+  };
+  require(this->Method >= METHOD_PRINCIPAL_CURVATURE && this->Method <= METHOD_HINTS, "Method",
+    this->Method, "0 PrincipalCurvature, 1 CurvatureAligned, 2 Smooth, 3 Hints");
+  require(this->PrincipalDirection == PRINCIPAL_DIRECTION_MINIMUM ||
+      this->PrincipalDirection == PRINCIPAL_DIRECTION_MAXIMUM,
+    "PrincipalDirection", this->PrincipalDirection, "0 Minimum, 1 Maximum");
+  require(std::isfinite(this->SmoothingLength) &&
+      (this->SmoothingLength >= 0.0 || this->SmoothingLength == -1.0),
+    "SmoothingLength", this->SmoothingLength,
+    "finite numbers, 0 or more, or -1: four mean edge lengths");
+  require(std::isfinite(this->HintWeight) && this->HintWeight > 0.0, "HintWeight", this->HintWeight,
+    "finite numbers above 0");
+  require(std::isfinite(this->Angle), "Angle", this->Angle, "finite numbers");
+  require(std::isfinite(this->MergeTolerance) && this->MergeTolerance >= 0.0, "MergeTolerance",
+    this->MergeTolerance, "finite numbers, 0 or more");
+  if (this->ResultArrayName.empty())
+  {
+    problems.emplace_back("ResultArrayName is empty; allowed: any name");
+  }
+  if (input->GetNumberOfPoints() == 0)
+  {
+    problems.emplace_back("the input is empty; a surface of polygons or strips is needed");
+  }
+  else if (input->GetNumberOfPolys() + input->GetNumberOfStrips() == 0)
+  {
+    problems.emplace_back("the input has no polygons or strips; a surface is needed");
+  }
+  else if (this->Method == METHOD_HINTS)
+  {
+    const std::size_t before = problems.size();
+    hints = InputArrays(this, input, problems).Find(2, "DirectionArray", 3, onCells);
+    if (!hints && problems.size() == before)
+    {
+      problems.emplace_back("Method is Hints but DirectionArray is not set; allowed: an array of "
+                            "directions on points or cells");
+    }
+  }
+  return problems;
+}
+
+int vtkSurfaceDirectionFieldFilter::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* const input = vtkPolyData::GetData(inputs[0]);
+  vtkPolyData* const output = vtkPolyData::GetData(outputs);
+  output->ShallowCopy(input);
+  vtkDataArray* hints = nullptr;
+  bool onCells = false;
+  const std::vector<std::string> problems = this->FindProblems(input, hints, onCells);
+  if (!problems.empty())
+  {
+    std::string text;
+    for (const std::string& problem : problems)
+    {
+      text += (text.empty() ? "" : "; ") + problem;
+    }
+    vtkErrorMacro(<< text);
+    return 1;
+  }
+  try
+  {
+    this->MakeField(input, hints, onCells, output);
+  }
+  catch (const Aborted&)
+  {
+    // The output is the unchanged input.
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro(<< "not enough memory");
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+  }
+  return 1;
+}
+
+void vtkSurfaceDirectionFieldFilter::MakeField(
+  vtkPolyData* input, vtkDataArray* hints, bool onCells, vtkPolyData* output)
+{
+  double reported = 0.0;
+  const Monitor::Callback callback = [&](double fraction)
+  {
+    reported = std::max(reported, fraction);
+    this->UpdateProgress(reported);
+    return !this->GetAbortExecute();
+  };
+  const Monitor monitor(callback);
+  const ParallelFor& parallel = SMPParallelFor::Instance();
+
+  PolyDataSurface::Options options;
+  options.MergeCoincidentPoints = this->MergeCoincidentPoints;
+  options.MergeTolerance = this->MergeTolerance;
+  const PolyDataSurface surface(input, options, monitor.Part(0.0, 0.1));
+  const TriangleMesh& mesh = *surface.Mesh;
+  if (surface.Found.DegenerateTriangles > 0)
+  {
+    vtkWarningMacro(<< surface.Found.DegenerateTriangles
+                    << " triangles of zero area get no direction");
+  }
+  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
+  DirectionSettings settings;
+  settings.Method = static_cast<DirectionMethod>(this->Method);
+  settings.Perpendicular = this->PrincipalDirection == PRINCIPAL_DIRECTION_MAXIMUM;
+  settings.SmoothingLength =
+    this->SmoothingLength == -1.0 ? 4.0 * h : this->SmoothingLength / mesh.LengthUnit();
+  settings.HintWeight = this->HintWeight / (h * h);
+  settings.Angle = vtkMath::RadiansFromDegrees(this->Angle);
+  const PlaneVectors given =
+    hints ? ReadFrames(surface, hints, onCells, parallel) : PlaneVectors(0, 2);
+  const PlaneVectors frames = MakeDirectionField(*surface.Operators, surface.Points,
+    surface.Triangles, given, settings, parallel, monitor.Part(0.1, 0.95));
+  output->GetCellData()->AddArray(
+    WriteFrames(surface, input, frames, this->ResultArrayName, parallel));
+  output->GetCellData()->SetActiveVectors(this->ResultArrayName.c_str());
+  monitor.Report(1.0);
+}
+
+void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Method: " << this->GetMethodAsString() << "\n";
+  os << indent << "PrincipalDirection: " << this->GetPrincipalDirectionAsString() << "\n";
+  os << indent << "SmoothingLength: " << this->SmoothingLength << "\n";
+  os << indent << "HintWeight: " << this->HintWeight << "\n";
+  os << indent << "Angle: " << this->Angle << "\n";
+  os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
+  os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
+  os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
+}
