@@ -19,25 +19,32 @@
  * on the height of the data: a step of height R around a disk of radius r loses R in about r/2
  * units), h^2 with all others, h the mean edge length and R the range of the values. FidelityWeight
  * lambda is in 1/T, with FidelityNorm L1 in R/T; Beta in (R/h)^2; EdgeThreshold in R/h. In absolute
- * units g is what its formula says, in the units of coordinates and values. Where AcrossEdgeFunction
- * has another dimension than EdgeFunction, natural units make its formula one in x/h and u/R.
+ * units g is what its formula says, in the units of coordinates and values. Where
+ * AcrossEdgeFunction has another dimension than EdgeFunction, natural units make its formula one in
+ * x/h and u/R.
  *
  * **Schemes.** FirstOrder is the paper's (11): g at the old level, one linear system a step (one
  * per channel with PerChannel). It works for every edge function and keeps the bounds of the data
- * where no triangle is obtuse. Implicit, for convex energies (TotalVariation, Charbonnier,
- * Constant, with AcrossEdgeFunction Same), is backward Euler with g at the new level: each step
- * minimises int psi(|grad u|) + lambda/2 int 1_D |u - f|^2 + 1/(2 dt) int |u - u_old|^2 by ADMM to
- * StopTolerance, for TotalVariation without beta; steps may be long. SecondOrder does not exist
- * here: it is an error. Mode SteadyState minimises the same without the last term, in one step.
- * There AlongDiffusivity a and AcrossDiffusivity b act on the gradient: psi is taken at |S grad u|,
- * with S = diag(a, b) for TotalVariation, diag(sqrt(a), sqrt(b)) for the others (and K sqrt(max(a,
- * b)) for K), which is the flux of (4) along e1 and across it, and everywhere if a = b.
+ * where no triangle is obtuse. It is the default: ten steps of the default size, on noisy colours,
+ * come within 0.3 dB of the minimiser in a third of Implicit's time. Implicit, for convex energies
+ * (TotalVariation, Charbonnier, Constant, with AcrossEdgeFunction Same), is backward Euler with g
+ * at the new level: each step minimises int psi(|grad u|) + lambda/2 int 1_D |u - f|^2 + 1/(2 dt)
+ * int |u - u_old|^2 by ADMM to StopTolerance, for TotalVariation without beta; steps may be long.
+ * SecondOrder does not exist here: it is an error. Mode SteadyState minimises the same without the
+ * last term, in one step. With diffusivities g1 along and g2 across a direction the integral is
+ * that of
+ *
+ *     TotalVariation: sqrt((g1 grad u . e1)^2 + (g2 grad u . e2)^2),
+ *     others:         g psi(sqrt((g1/g) (grad u . e1)^2 + (g2/g) (grad u . e2)^2)),
+ *                     g the larger of g1 and g2,
+ *
+ * which has the flux of (4) for gradients along e1 or e2, and everywhere if g1 = g2.
  *
  * Without fidelity, fixed or held values the sum of A_i u_i is kept to 1e-12 of its start, with
  * FidelityNorm L2 also if nothing is missing.
  *
  * **Energy** in the history: int psi(|grad u|) + lambda/2 int 1_D |u - f|^2, with FidelityNorm L1
- * lambda int 1_D |u - f| in place of the latter, where psi' (s) = s g(s) and psi(0) = 0; for
+ * lambda int 1_D |u - f| in place of the latter, where psi'(s) = s g(s) and psi(0) = 0; for
  * TotalVariation psi(s) = sqrt(s^2 + beta) - sqrt(beta), s with Implicit and SteadyState. In
  * (length unit)(array unit) for TotalVariation, (array unit)^2 for the others. `Residual` is the
  * duality gap with Implicit and SteadyState.
@@ -93,12 +100,16 @@ public:
    *
    * | edge function | g(s) | source |
    * | --- | --- | --- |
-   * | TotalVariation (default) | 1/sqrt(s^2 + beta) | (3); L. Rudin, S. Osher, E. Fatemi, Physica D 60, 1992 |
-   * | PeronaMalikExponential | exp(-(s/K)^2) | P. Perona, J. Malik, IEEE PAMI 12(7), 1990 |
-   * | PeronaMalikRational | 1/(1 + (s/K)^2) | the same |
-   * | Charbonnier | 1/sqrt(1 + (s/K)^2) | P. Charbonnier et al., IEEE ICIP, 1994 |
-   * | Weickert | 1 - exp(-3.31488/(s/K)^8) | J. Weickert, Anisotropic Diffusion in Image Processing, 1998, 5.2 |
+   * | TotalVariation (default) | 1/sqrt(s^2 + beta) | (3); Rudin, Osher, Fatemi 1992 |
+   * | PeronaMalikExponential | exp(-(s/K)^2) | Perona, Malik 1990 |
+   * | PeronaMalikRational | 1/(1 + (s/K)^2) | Perona, Malik 1990 |
+   * | Charbonnier | 1/sqrt(1 + (s/K)^2) | Charbonnier et al. 1994 |
+   * | Weickert | 1 - exp(-3.31488/(s/K)^8) | Weickert 1998, section 5.2 |
    * | Constant | 1 | (1), linear diffusion |
+   *
+   * (L. Rudin, S. Osher, E. Fatemi, Physica D 60, 1992; P. Perona, J. Malik, IEEE PAMI 12(7), 1990;
+   * P. Charbonnier, L. Blanc-Feraud, G. Aubert, M. Barlaud, IEEE ICIP, 1994; J. Weickert,
+   * Anisotropic Diffusion in Image Processing, Teubner, 1998.)
    *
    * Perona-Malik and Weickert sharpen edges steeper than about K, and noise as steep likewise.
    */
@@ -280,7 +291,8 @@ public:
   /**
    * Where SteadyState and each step of Implicit stop: the duality gap, a bound of how far the
    * energy is above its minimum, relative to the energy. In (0, 1). Default: 1e-4.
-   * MaximumNumberOfIterations bounds the iterations of FirstOrder's linear systems only.
+   * 10,000 iterations that do not reach it are a warning with the gap. MaximumNumberOfIterations
+   * and Tolerance are of FirstOrder's linear systems.
    */
   vtkSetMacro(StopTolerance, double);
   vtkGetMacro(StopTolerance, double);
@@ -302,8 +314,8 @@ protected:
   void CheckProperties(Problems& problems) override;
   bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
-  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
-    ModelInput& input, int steps) override;
+  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
+  void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
   const char* GetResultSuffix() override { return "TV"; }
   Dimension GetTimeDimension() override;
   Dimension GetEnergyDimension() override;
@@ -326,6 +338,14 @@ protected:
 private:
   vtkIntrinsicTVFilter(const vtkIntrinsicTVFilter&) = delete;
   void operator=(const vtkIntrinsicTVFilter&) = delete;
+
+  class ModelMaker;
+
+  /// Whether steps minimise an energy: SteadyState or Implicit.
+  bool Minimizes() const;
+
+  /// Problems where there is no convex energy to minimise, which `purpose` needs.
+  void RequireConvexEnergy(const char* purpose, Problems& problems);
 };
 
 #endif
