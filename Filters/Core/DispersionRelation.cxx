@@ -43,6 +43,12 @@ PatternForecast ForecastPattern(const Eigen::Matrix2d& jacobian, double d1, doub
     forecast.SquaredWaveNumber = std::max(0.0, (a - d + balance) / difference);
   }
   forecast.GrowthRate = GrowthRate(jacobian, d1, d2, forecast.SquaredWaveNumber);
+  const double uniform = GrowthRate(jacobian, d1, d2, 0.0);
+  if (!(forecast.GrowthRate > uniform))
+  {
+    forecast.SquaredWaveNumber = 0.0;
+    forecast.GrowthRate = uniform;
+  }
   forecast.FirstIsFaster = d > a;
 
   const double activator = std::max(a, d);

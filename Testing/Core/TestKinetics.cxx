@@ -192,6 +192,14 @@ TEST(DispersionRelation, ReasonsAgainstAPatternAreTold)
   EXPECT_EQ(obstacle(3.0, 4.0, -4.0, -4.0, 8.0, 1.0), PatternObstacle::RatesTooClose);
 }
 
+TEST(DispersionRelation, NoWaveIsNamedWhereTheUniformStateDecaysSlowest)
+{
+  const PatternForecast forecast = ForecastPattern(TuringJacobian(), 0.2, 2.6);
+  EXPECT_EQ(forecast.SquaredWaveNumber, 0.0);
+  EXPECT_EQ(forecast.GrowthRate, -0.5); // half the trace: eigenvalues -0.5 +- 1.9 i
+  EXPECT_EQ(FeatureSizeFactor(forecast, 1.0), 0.0);
+}
+
 TEST(DispersionRelation, TimeStepOfTuringIsASixteenth)
 {
   EXPECT_NEAR(ReactionTimeStep(TuringJacobian()), 1.0 / 16.0, 1e-15);

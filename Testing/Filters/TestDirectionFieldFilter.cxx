@@ -1,0 +1,257 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkCellData.h"
+#include "vtkCylinderSource.h"
+#include "vtkFVMHeatFilter.h"
+#include "vtkStripper.h"
+#include "vtkSurfaceDirectionFieldFilter.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+using namespace FilterTest;
+
+namespace
+{
+
+/// Open cylinder about the z axis, 0 <= z <= 2.
+vtkSmartPointer<vtkPolyData> Cylinder(int around = 32, int along = 16)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> triangles;
+  for (int j = 0; j <= along; ++j)
+  {
+    for (int i = 0; i < around; ++i)
+    {
+      const double angle = 2.0 * vtkMath::Pi() * i / around;
+      points->InsertNextPoint(0.5 * std::cos(angle), 0.5 * std::sin(angle), 2.0 * j / along);
+      if (j < along)
+      {
+        const vtkIdType a = j * around + i;
+        const vtkIdType b = j * around + (i + 1) % around;
+        triangles->InsertNextCell({ a, b, b + around });
+        triangles->InsertNextCell({ a, b + around, a + around });
+      }
+    }
+  }
+  auto cylinder = vtkSmartPointer<vtkPolyData>::New();
+  cylinder->SetPoints(points);
+  cylinder->SetPolys(triangles);
+  return cylinder;
+}
+
+vtkDataArray* Direction(vtkPolyDataAlgorithm* filter)
+{
+  return filter->GetOutput()->GetCellData()->GetArray("Direction");
+}
+
+/// Smallest |d . axis| and largest deviation of |d| from one.
+void ExpectAlong(vtkDataArray* directions, const double axis[3], double tolerance)
+{
+  ASSERT_NE(directions, nullptr);
+  for (vtkIdType c = 0; c < directions->GetNumberOfTuples(); ++c)
+  {
+    double d[3];
+    directions->GetTuple(c, d);
+    EXPECT_NEAR(vtkMath::Norm(d), 1.0, 1e-9);
+    EXPECT_NEAR(std::abs(vtkMath::Dot(d, axis)), 1.0, tolerance);
+  }
+}
+
+std::string ErrorOf(vtkSurfaceDirectionFieldFilter* filter)
+{
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_EQ(messages.Errors.size(), 1u);
+  EXPECT_EQ(Direction(filter), nullptr);
+  return messages.Errors.empty() ? std::string() : messages.Errors.front();
+}
+
+const double X[3] = { 1.0, 0.0, 0.0 };
+const double Z[3] = { 0.0, 0.0, 1.0 };
+
+} // namespace
+
+TEST(DirectionFieldFilter, EveryMethodFindsTheAxisOfACylinder)
+{
+  auto cylinder = Cylinder();
+  AddPointArray(cylinder, "hint", 3, [](vtkIdType i, int k) { return i == 40 && k == 2; });
+  for (int method = 0; method < 4; ++method)
+  {
+    vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+    filter->SetInputData(cylinder);
+    filter->SetMethod(method);
+    SetInputArray(filter, 2, "hint");
+    filter->Update();
+    SCOPED_TRACE(filter->GetMethodAsString());
+    ExpectAlong(Direction(filter), Z, 1e-3);
+    EXPECT_EQ(filter->GetOutput()->GetCellData()->GetVectors(), Direction(filter));
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfCells(), cylinder->GetNumberOfCells());
+    EXPECT_TRUE(filter->GetOutput()->GetPointData()->HasArray("hint"));
+  }
+}
+
+TEST(DirectionFieldFilter, MaximumIsPerpendicularAndAngleTurns)
+{
+  auto cylinder = Cylinder();
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  filter->SetInputData(cylinder);
+  filter->SetPrincipalDirectionToMaximum();
+  filter->Update();
+  for (vtkIdType c = 0; c < cylinder->GetNumberOfCells(); ++c)
+  {
+    EXPECT_NEAR(Direction(filter)->GetComponent(c, 2), 0.0, 1e-2);
+  }
+  filter->SetAngle(90.0);
+  filter->Update();
+  ExpectAlong(Direction(filter), Z, 1e-3);
+  filter->SetAngle(60.0); // from the circle: a right-handed screw at 60 degrees
+  filter->Update();
+  for (vtkIdType c = 0; c < cylinder->GetNumberOfCells(); ++c)
+  {
+    double d[3];
+    Direction(filter)->GetTuple(c, d);
+    EXPECT_NEAR(std::abs(d[2]), std::sqrt(0.75), 1e-2);
+    double p[3];
+    cylinder->GetPoint(cylinder->GetCell(c)->GetPointId(0), p);
+    const double around = (p[0] * d[1] - p[1] * d[0]) / 0.5;
+    EXPECT_GT(around * d[2], 0.3);
+  }
+}
+
+TEST(DirectionFieldFilter, HintsOnCellsSpreadOverTheSurface)
+{
+  auto grid = Grid(12, 9);
+  const auto hints = MakeArray(VTK_FLOAT, "hints", grid->GetNumberOfCells(), 3,
+    [](vtkIdType c, int k) { return c == 3 ? (k == 0 ? -5.0 : 0.0) : std::nan(""); });
+  grid->GetCellData()->AddArray(hints);
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  filter->SetInputData(grid);
+  filter->SetMethodToHints();
+  EXPECT_NE(ErrorOf(filter).find("DirectionArray is not set"), std::string::npos);
+  SetInputArray(filter, 2, "hints", true);
+  filter->Update();
+  ExpectAlong(Direction(filter), X, 1e-9);
+}
+
+TEST(DirectionFieldFilter, PolygonsAndStripsGetOneDirectionEach)
+{
+  vtkNew<vtkCylinderSource> source; // quads, about the y axis, with caps of one polygon each
+  source->SetResolution(40);
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  filter->SetSmoothingLength(0.0);
+  filter->MergeCoincidentPointsOff();
+  filter->Update();
+  const vtkIdType sides = 40;
+  ASSERT_EQ(Direction(filter)->GetNumberOfTuples(), sides + 2);
+  for (vtkIdType c = 0; c < sides; ++c)
+  {
+    EXPECT_NEAR(std::abs(Direction(filter)->GetComponent(c, 1)), 1.0, 1e-3);
+  }
+  for (vtkIdType c = sides; c < sides + 2; ++c) // flat: none
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      EXPECT_EQ(Direction(filter)->GetComponent(c, k), 0.0);
+    }
+  }
+  vtkNew<vtkStripper> stripper;
+  stripper->SetInputData(Cylinder());
+  vtkNew<vtkSurfaceDirectionFieldFilter> ofStrips;
+  ofStrips->SetInputConnection(stripper->GetOutputPort());
+  ofStrips->Update();
+  ASSERT_LT(Direction(ofStrips)->GetNumberOfTuples(), 200);
+  EXPECT_TRUE(AllFinite(Direction(ofStrips)));
+}
+
+TEST(DirectionFieldFilter, DirectsTheHeatFilter)
+{
+  auto cylinder = Cylinder();
+  AddRough(cylinder);
+  vtkNew<vtkSurfaceDirectionFieldFilter> directions;
+  directions->SetInputData(cylinder);
+  vtkNew<vtkFVMHeatFilter> heat;
+  heat->SetInputConnection(directions->GetOutputPort());
+  SetInputArray(heat, 0, "f");
+  SetInputArray(heat, 2, "Direction", true);
+  heat->SetAcrossDiffusivity(0.001);
+  heat->SetTimeStep(20.0);
+  heat->Update();
+  // Alike along the axis, rough around it.
+  double along = 0.0;
+  double around = 0.0;
+  vtkDataArray* u = Result(heat);
+  for (vtkIdType i = 32; i < 64; ++i)
+  {
+    along += std::abs(u->GetComponent(i + 160, 0) - u->GetComponent(i, 0));
+    around += std::abs(u->GetComponent(32 + (i + 1) % 32, 0) - u->GetComponent(i, 0));
+  }
+  EXPECT_LT(along, 0.1 * around);
+}
+
+TEST(DirectionFieldFilter, RefusesWhatMakesNoSense)
+{
+  auto sphere = Sphere(1);
+  using Change = void (*)(vtkSurfaceDirectionFieldFilter*);
+  const std::pair<Change, const char*> cases[] = {
+    { [](auto* f) { f->SetMethod(4); }, "Method is 4" },
+    { [](auto* f) { f->SetPrincipalDirection(-1); }, "PrincipalDirection is -1" },
+    { [](auto* f) { f->SetSmoothingLength(-2.0); }, "SmoothingLength is -2" },
+    { [](auto* f) { f->SetHintWeight(0.0); }, "HintWeight is 0" },
+    { [](auto* f) { f->SetAngle(std::nan("")); }, "Angle is nan" },
+    { [](auto* f) { f->SetMergeTolerance(-1.0); }, "MergeTolerance is -1" },
+    { [](auto* f) { f->SetResultArrayName(""); }, "ResultArrayName is empty" },
+  };
+  for (const auto& [change, message] : cases)
+  {
+    vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+    filter->SetInputData(sphere);
+    change(filter);
+    const std::string error = ErrorOf(filter);
+    EXPECT_NE(error.find(message), std::string::npos) << error;
+  }
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  vtkNew<vtkPolyData> empty;
+  filter->SetInputData(empty);
+  EXPECT_NE(ErrorOf(filter).find("the input is empty"), std::string::npos);
+}
+
+TEST(DirectionFieldFilter, ObeysAnAbort)
+{
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  filter->SetInputData(Sphere(4));
+  filter->SetMethodToSmooth();
+  const unsigned long tag = Listen(filter,
+    [&](double amount)
+    {
+      if (amount > 0.3)
+      {
+        filter->AbortExecuteOn();
+      }
+    });
+  filter->Update();
+  EXPECT_EQ(Direction(filter), nullptr);
+  filter->RemoveObserver(tag);
+  filter->AbortExecuteOff();
+  filter->Modified();
+  filter->Update();
+  EXPECT_TRUE(AllFinite(Direction(filter)));
+}
+
+TEST(DirectionFieldFilter, PrintsEveryProperty)
+{
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  std::ostringstream text;
+  filter->Print(text);
+  for (const char* property : { "Method: PrincipalCurvature", "PrincipalDirection: Minimum",
+         "SmoothingLength: -1", "HintWeight: 0.1", "Angle: 0", "MergeCoincidentPoints: Off",
+         "MergeTolerance: 0", "ResultArrayName: Direction" })
+  {
+    EXPECT_NE(text.str().find(property), std::string::npos) << property;
+  }
+}

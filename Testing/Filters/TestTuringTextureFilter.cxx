@@ -1,0 +1,613 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkCellData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSMPTools.h"
+#include "vtkTuringTextureFilter.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <vector>
+
+using namespace FilterTest;
+
+namespace
+{
+
+vtkSmartPointer<vtkTuringTextureFilter> MakeFilter(vtkPolyData* surface, int steps = 16)
+{
+  auto filter = vtkSmartPointer<vtkTuringTextureFilter>::New();
+  filter->SetInputData(surface);
+  filter->SetNumberOfTimeSteps(steps);
+  return filter;
+}
+
+double Low(vtkDataArray* array, int component = 0)
+{
+  return array->GetRange(component)[0];
+}
+
+double High(vtkDataArray* array, int component = 0)
+{
+  return array->GetRange(component)[1];
+}
+
+/// Connected pieces of the surface where the array is above `level`.
+int CountPieces(vtkPolyData* surface, vtkDataArray* array, double level)
+{
+  std::vector<vtkIdType> parent(surface->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    parent[i] = i;
+  }
+  const auto find = [&](vtkIdType i)
+  {
+    while (parent[i] != i)
+    {
+      i = parent[i] = parent[parent[i]];
+    }
+    return i;
+  };
+  const auto inside = [&](vtkIdType i) { return array->GetComponent(i, 0) > level; };
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType c = 0; c < surface->GetNumberOfCells(); ++c)
+  {
+    surface->GetCellPoints(c, corners);
+    for (int a = 0; a < 3; ++a)
+    {
+      const vtkIdType i = corners->GetId(a);
+      const vtkIdType j = corners->GetId((a + 1) % 3);
+      if (inside(i) && inside(j))
+      {
+        parent[find(i)] = find(j);
+      }
+    }
+  }
+  int pieces = 0;
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    pieces += inside(i) && find(i) == i;
+  }
+  return pieces;
+}
+
+/// The one error of an update, whose output must be the unchanged input.
+std::string ErrorOf(vtkTuringTextureFilter* filter)
+{
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_EQ(messages.Errors.size(), 1u);
+  EXPECT_EQ(Result(filter, "u1"), nullptr);
+  EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 0);
+  return messages.Errors.empty() ? std::string() : messages.Errors.front();
+}
+
+std::string WarningOf(vtkTuringTextureFilter* filter)
+{
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Errors.empty());
+  EXPECT_LE(messages.Warnings.size(), 1u); // one per update
+  return messages.Warnings.empty() ? std::string() : messages.Warnings.front();
+}
+
+bool Contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST(TuringTextureFilter, HasTheDefaultsOfTheDesign)
+{
+  vtkNew<vtkTuringTextureFilter> filter;
+  EXPECT_EQ(filter->GetTimeStep(), 1.0 / 16.0);
+  EXPECT_EQ(filter->GetNumberOfTimeSteps(), 640);
+  EXPECT_STREQ(filter->GetKineticsAsString(), "Turing");
+  EXPECT_STREQ(filter->GetTimeIntegratorAsString(), "SecondOrder");
+  EXPECT_EQ(filter->GetDiffusionRate1(), 21.0);
+  EXPECT_EQ(filter->GetDiffusionRate2(), 2.6);
+  EXPECT_EQ(filter->GetDiffusionRateAcross1(), -1.0);
+  EXPECT_EQ(filter->GetDiffusionRateAcross2(), -1.0);
+  EXPECT_EQ(filter->GetReactionRate(), 1.0);
+  EXPECT_EQ(filter->GetGrowthRate(), 16.0);
+  EXPECT_EQ(filter->GetDecayRate(), 12.0);
+  EXPECT_EQ(filter->GetInitialNoise(), 0.1);
+  EXPECT_TRUE(filter->GetClampToNonNegative());
+  EXPECT_EQ(filter->GetFeatureSize(), 0.0);
+  EXPECT_EQ(filter->GetStopTolerance(), 0.0);
+  EXPECT_FALSE(filter->GetColorOutput());
+}
+
+TEST(TuringTextureFilter, DrawsSpotsOutOfNothing)
+{
+  auto sphere = Sphere(5);
+  AddRough(sphere); // active scalars are no initial state
+  const auto filter = MakeFilter(sphere, 320);
+  EXPECT_EQ(WarningOf(filter), "");
+  vtkDataArray* u1 = Result(filter, "u1");
+  vtkDataArray* u2 = Result(filter, "u2");
+  ASSERT_TRUE(AllFinite(u1) && AllFinite(u2));
+  EXPECT_EQ(u1->GetDataType(), VTK_DOUBLE);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), u1);
+  EXPECT_GE(Low(u2), 0.0);
+  EXPECT_GT(High(u2), 6.0); // around the steady state 4
+  EXPECT_NEAR(Low(Result(filter, "Texture")), 0.0, 1e-12);
+  EXPECT_NEAR(High(Result(filter, "Texture")), 1.0, 1e-12);
+  EXPECT_EQ(Result(filter, "TextureColor"), nullptr);
+  EXPECT_GT(CountPieces(sphere, u1, 4.2), 12);
+  EXPECT_NEAR(filter->GetWavelength() / filter->GetMeanEdgeLength(), 11.2, 0.1);
+  EXPECT_NEAR(filter->GetWavelengthGrowthRate(), 0.776, 1e-3);
+}
+
+TEST(TuringTextureFilter, EveryKineticsMakesAPatternWithItsDefaults)
+{
+  auto sphere = Sphere(4);
+  for (int kinetics = 0; kinetics < 6; ++kinetics)
+  {
+    const auto filter = MakeFilter(sphere, 1200);
+    filter->SetKinetics(kinetics);
+    filter->AutomaticTimeStepOn();
+    filter->SetStopTolerance(0.02);
+    EXPECT_EQ(WarningOf(filter), "") << filter->GetKineticsAsString();
+    vtkDataArray* u2 = Result(filter, "u2");
+    ASSERT_NE(u2, nullptr) << filter->GetKineticsAsString();
+    const double size = std::max(std::abs(High(u2)), std::abs(Low(u2)));
+    EXPECT_GT(High(u2) - Low(u2), 0.5 * size) << filter->GetKineticsAsString();
+  }
+}
+
+TEST(TuringTextureFilter, FeatureSizeGivesTheSameSpotsOnCoarseAndFineMeshes)
+{
+  int pieces[2];
+  for (const int fine : { 0, 1 })
+  {
+    auto sphere = Sphere(4 + fine);
+    const auto filter = MakeFilter(sphere, 400);
+    filter->SetTimeStep(0.125);
+    filter->SetDiffusionRate1(13.0); // 5 times DiffusionRate2: round spots
+    filter->SetFeatureSize(0.75);
+    EXPECT_EQ(WarningOf(filter), "");
+    EXPECT_NEAR(filter->GetWavelength(), 0.75, 1e-9);
+    pieces[fine] = CountPieces(sphere, Result(filter, "u1"), 4.2);
+  }
+  std::printf("%d and %d spots\n", pieces[0], pieces[1]);
+  // A hexagonal array of that distance between rows would have 4 pi sqrt(3)/2 / 0.75^2 = 19 spots,
+  // one of that distance between spots 26.
+  EXPECT_GE(std::min(pieces[0], pieces[1]), 17);
+  EXPECT_LE(std::max(pieces[0], pieces[1]), 28);
+  EXPECT_LE(std::abs(pieces[0] - pieces[1]), 3);
+}
+
+TEST(TuringTextureFilter, TellsOnceWhyNoPatternGrows)
+{
+  auto sphere = Sphere(4);
+  auto filter = MakeFilter(sphere);
+  filter->SetDiffusionRate1(3.0 * 2.6);
+  EXPECT_TRUE(Contains(WarningOf(filter), "more than 4 times that of u2, and is 3 times"));
+
+  filter = MakeFilter(sphere);
+  filter->SetDecayRate(14.0);
+  EXPECT_TRUE(Contains(WarningOf(filter), "runs away even without diffusion"));
+
+  filter = MakeFilter(sphere);
+  filter->SetFeatureSize(0.2);
+  const std::string tooSmall = WarningOf(filter);
+  EXPECT_TRUE(Contains(tooSmall, "0.2 is only")) << tooSmall;
+  EXPECT_TRUE(Contains(tooSmall, "cannot resolve")) << tooSmall;
+
+  filter = MakeFilter(sphere);
+  filter->SetDiffusionRate1(0.2);
+  filter->SetFeatureSize(0.8);
+  EXPECT_TRUE(Contains(WarningOf(filter), "FeatureSize has no effect"));
+}
+
+TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
+{
+  auto sphere = Sphere(2);
+  AddRough(sphere, 1);
+  AddPointArray(sphere, "state", 2, [](vtkIdType, int) { return 4.0; });
+  AddPointArray(sphere, "four", 4, [](vtkIdType, int) { return 1.0; });
+  const auto cells = MakeArray(VTK_DOUBLE, "rates", sphere->GetNumberOfCells(), 4,
+    [](vtkIdType i, int k) { return i == 7 && k == 2 ? -1.0 : 1.0; });
+  sphere->GetCellData()->AddArray(cells);
+  using Change = void (*)(vtkTuringTextureFilter*);
+  const std::pair<Change, const char*> cases[] = {
+    { [](auto* f) { f->SetDiffusionRate1(-1.0); }, "DiffusionRate1 is -1" },
+    { [](auto* f) { f->SetDiffusionRate2(std::nan("")); }, "DiffusionRate2 is nan" },
+    { [](auto* f) { f->SetDiffusionRateAcross1(-2.0); }, "DiffusionRateAcross1 is -2" },
+    { [](auto* f) { f->SetDiffusionRateAcross2(1.0); }, "DirectionArray is not set" },
+    { [](auto* f) { f->SetReactionRate(0.0); }, "ReactionRate is 0" },
+    { [](auto* f) { f->SetFeatureSize(-1.0); }, "FeatureSize is -1" },
+    { [](auto* f) { f->SetInitialNoise(-0.1); }, "InitialNoise is -0.1" },
+    { [](auto* f) { f->SetStopTolerance(-1.0); }, "StopTolerance is -1" },
+    { [](auto* f) { f->SetKinetics(6); }, "Kinetics is 6" },
+    { [](auto* f) { f->SetGrowthRate(0.0); }, "GrowthRate is 0" },
+    { [](auto* f) { f->SetDecayRate(17.0); }, "no steady state" },
+    { [](auto* f) { f->SetTextureChemical(2); }, "TextureChemical is 2" },
+    { [](auto* f) { f->SetLowColor(0.0, 2.0, 0.0); }, "LowColor is 2" },
+    { [](auto* f) { f->SetFidelityWeight(1.0); }, "FidelityWeight is 1" },
+    { [](auto* f) { f->SetAlongDiffusivity(2.0); }, "AlongDiffusivity is 2" },
+    { [](auto* f) { f->SetTimeIntegrator(2); }, "TimeIntegrator is 2" },
+    { [](auto* f) { SetInputArray(f, 0, "f"); }, "InputArray \"f\" has 1 components" },
+    { [](auto* f) { SetInputArray(f, 4, "four"); }, "DiffusionRateArray is a point array" },
+    { [](auto* f) { SetInputArray(f, 4, "rates", true); }, "DiffusionRateArray is -1 at cell 7" },
+    { [](auto* f) { SetInputArray(f, 3, "f"); }, "FixedArray is set but InputArray" },
+  };
+  for (const auto& [change, message] : cases)
+  {
+    const auto filter = MakeFilter(sphere, 2);
+    change(filter);
+    const std::string error = ErrorOf(filter);
+    EXPECT_TRUE(Contains(error, message)) << error;
+  }
+  // A value that another kinetics would refuse is not read.
+  const auto filter = MakeFilter(sphere, 2);
+  filter->SetFeedRate(-1.0);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Errors.empty());
+}
+
+TEST(TuringTextureFilter, TimesMayBeAskedForInAnyOrder)
+{
+  const auto filter = MakeFilter(Sphere(3), 40);
+  filter->Update();
+  const auto last = Copy(Result(filter, "u1"));
+  filter->GenerateTimeStepsOn();
+  filter->SetOutputInterval(8);
+  const std::vector<double> times = PublishedTimes(filter);
+  ASSERT_EQ(times.size(), 6u);
+  EXPECT_EQ(times.back(), 2.5);
+  UpdateAt(filter, times[5]);
+  EXPECT_TRUE(Identical(Result(filter, "u1"), last));
+  EXPECT_EQ(History(filter)->GetNumberOfRows(), 41);
+  UpdateAt(filter, times[2]);
+  const auto early = Copy(Result(filter, "u1"));
+  EXPECT_FALSE(Identical(early, last));
+  UpdateAt(filter, times[5]);
+  EXPECT_TRUE(Identical(Result(filter, "u1"), last));
+  UpdateAt(filter, times[2]);
+  EXPECT_TRUE(Identical(Result(filter, "u1"), early));
+  UpdateAt(filter, 0.0);
+  EXPECT_NEAR(High(Result(filter, "u1")), 4.4, 0.01); // noise of one tenth around 4
+  EXPECT_NEAR(Low(Result(filter, "u1")), 3.6, 0.01);
+}
+
+TEST(TuringTextureFilter, ARunEndsWhenThePatternStands)
+{
+  const auto filter = MakeFilter(Sphere(3), 1500);
+  filter->SetStopTolerance(0.05);
+  filter->Update();
+  const vtkIdType rows = History(filter)->GetNumberOfRows();
+  std::printf("stands after %d steps\n", static_cast<int>(rows - 1));
+  EXPECT_GT(rows, 50);
+  EXPECT_LT(rows, 1200);
+  const auto standing = Copy(Result(filter, "u1"));
+
+  filter->GenerateTimeStepsOn();
+  UpdateAt(filter, 1500.0 / 16.0);
+  EXPECT_TRUE(Identical(Result(filter, "u1"), standing));
+  EXPECT_EQ(History(filter)->GetNumberOfRows(), rows);
+  UpdateAt(filter, 1.0);
+  EXPECT_FALSE(Identical(Result(filter, "u1"), standing));
+  UpdateAt(filter, 80.0);
+  EXPECT_TRUE(Identical(Result(filter, "u1"), standing));
+}
+
+TEST(TuringTextureFilter, HistoryCountsWhatIsHeldAtZero)
+{
+  const auto filter = MakeFilter(Sphere(4), 160);
+  filter->Update();
+  EXPECT_EQ(HistoryAt(filter, 1, "Clamped"), 0.0);
+  EXPECT_GT(HistoryAt(filter, 160, "Clamped"), 20.0);
+  EXPECT_NEAR(HistoryAt(filter, 160, "Time"), 10.0, 1e-12);
+  const double total = Total(ControlAreas(filter->GetOutput()), Result(filter, "u2"));
+  EXPECT_NEAR(HistoryAt(filter, 160, "Total_1"), total, 1e-9 * total);
+  EXPECT_GT(HistoryAt(filter, 160, "Energy"), 10.0 * HistoryAt(filter, 24, "Energy"));
+}
+
+TEST(TuringTextureFilter, UnitsOnlyRelabelTheSameRun)
+{
+  const double rate = 3.0;
+  auto sphere = Sphere(3);
+  const auto natural = MakeFilter(sphere, 48);
+  natural->SetReactionRate(rate);
+  natural->Update();
+  EXPECT_NEAR(natural->GetTimeUnit(), 1.0 / rate, 1e-15);
+  const double h = natural->GetMeanEdgeLength();
+  const auto absolute = MakeFilter(sphere, 48);
+  absolute->SetUnitsToAbsolute();
+  absolute->SetReactionRate(rate);
+  absolute->SetTimeStep(natural->GetTimeStep() / rate);
+  absolute->SetDiffusionRate1(21.0 * h * h * rate);
+  absolute->SetDiffusionRate2(2.6 * h * h * rate);
+  absolute->Update();
+  EXPECT_EQ(absolute->GetTimeUnit(), 1.0);
+  EXPECT_LT(LargestDifference(Result(natural, "u1"), Result(absolute, "u1")), 1e-9);
+  EXPECT_NEAR(natural->GetWavelength(), absolute->GetWavelength(), 1e-12);
+}
+
+TEST(TuringTextureFilter, FeatureSizeOverridesTheScaleOfTheRates)
+{
+  auto sphere = Sphere(3);
+  const auto filter = MakeFilter(sphere, 24);
+  filter->SetFeatureSize(1.5);
+  filter->Update();
+  const auto expected = Copy(Result(filter, "u1"));
+  filter->SetDiffusionRate1(2100.0);
+  filter->SetDiffusionRate2(260.0);
+  filter->Update();
+  EXPECT_LT(LargestDifference(Result(filter, "u1"), expected), 1e-9);
+}
+
+TEST(TuringTextureFilter, TakesAnInitialState)
+{
+  auto sphere = Sphere(3);
+  AddPointArray(
+    sphere, "state", 2, [](vtkIdType i, int k) { return 4.0 + 0.2 * Rough(i, k); }, VTK_FLOAT);
+  const auto filter = MakeFilter(sphere, 0);
+  SetInputArray(filter, 0, "state");
+  filter->Update();
+  vtkDataArray* state = sphere->GetPointData()->GetArray("state");
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    EXPECT_EQ(Result(filter, "u1")->GetComponent(i, 0), state->GetComponent(i, 0));
+    EXPECT_EQ(Result(filter, "u2")->GetComponent(i, 0), state->GetComponent(i, 1));
+  }
+  EXPECT_EQ(Result(filter, "u1")->GetDataType(), VTK_FLOAT);
+  filter->SetNumberOfTimeSteps(16);
+  filter->Update();
+  EXPECT_GT(LargestDifference(Result(filter, "u1"),
+              MakeArray(VTK_DOUBLE, "", 258, 1, [](vtkIdType, int) { return 4.0; })),
+    0.001);
+}
+
+TEST(TuringTextureFilter, HoldsFixedPoints)
+{
+  auto sphere = Sphere(3);
+  AddPointArray(sphere, "state", 2, [](vtkIdType, int k) { return k == 0 ? 3.0 : 5.0; });
+  AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i % 5 == 0; });
+  const auto filter = MakeFilter(sphere, 32);
+  SetInputArray(filter, 0, "state");
+  SetInputArray(filter, 3, "fixed");
+  filter->Update();
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    const double u1 = Result(filter, "u1")->GetComponent(i, 0);
+    EXPECT_EQ(std::abs(u1 - 3.0) < 1e-12, i % 5 == 0) << i;
+  }
+}
+
+TEST(TuringTextureFilter, AnExcludedRegionTakesNoPart)
+{
+  auto sphere = Sphere(4);
+  const auto inRegion = [&](vtkIdType i) { return sphere->GetPoint(i)[2] > 0.5; };
+  AddPointArray(sphere, "mask", 1, [&](vtkIdType i, int) { return inRegion(i); });
+  const auto filter = MakeFilter(sphere, 16);
+  SetInputArray(filter, 1, "mask");
+  EXPECT_TRUE(Contains(WarningOf(filter), "the mask changes nothing"));
+  filter->SetMaskModeToExclude();
+  EXPECT_EQ(WarningOf(filter), "");
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    EXPECT_EQ(Result(filter, "u1")->GetComponent(i, 0) == 0.0, inRegion(i));
+  }
+}
+
+TEST(TuringTextureFilter, RatesPerCellAreThoseOfTheProperties)
+{
+  auto sphere = Sphere(3);
+  AddPointArray(sphere, "e1", 3, [&](vtkIdType, int k) { return k == 2; });
+  const double rates[4] = { 30.0, 15.0, 4.0, 2.0 };
+  const auto cells = MakeArray(
+    VTK_DOUBLE, "rates", sphere->GetNumberOfCells(), 4, [&](vtkIdType, int k) { return rates[k]; });
+  sphere->GetCellData()->AddArray(cells);
+  const auto byProperty = MakeFilter(sphere);
+  SetInputArray(byProperty, 2, "e1");
+  byProperty->SetDiffusionRate1(rates[0]);
+  byProperty->SetDiffusionRateAcross1(rates[1]);
+  byProperty->SetDiffusionRate2(rates[2]);
+  byProperty->SetDiffusionRateAcross2(rates[3]);
+  byProperty->Update();
+  const auto byCell = MakeFilter(sphere);
+  SetInputArray(byCell, 2, "e1");
+  SetInputArray(byCell, 4, "rates", true);
+  byCell->Update();
+  ASSERT_TRUE(AllFinite(Result(byCell, "u1")));
+  EXPECT_LT(LargestDifference(Result(byCell, "u1"), Result(byProperty, "u1")), 1e-12);
+  const auto isotropic = MakeFilter(sphere);
+  isotropic->Update();
+  EXPECT_GT(LargestDifference(Result(byCell, "u1"), Result(isotropic, "u1")), 1e-3);
+
+  // The half of the cells with other rates is seen.
+  for (vtkIdType c = 0; c < sphere->GetNumberOfCells(); c += 2)
+  {
+    cells->SetComponent(c, 0, 60.0);
+  }
+  cells->Modified();
+  byCell->Update();
+  EXPECT_GT(LargestDifference(Result(byCell, "u1"), Result(byProperty, "u1")), 1e-3);
+  byCell->IntrinsicDelaunayOn();
+  EXPECT_TRUE(Contains(ErrorOf(byCell), "IntrinsicDelaunay is on but DiffusionRateArray"));
+}
+
+TEST(TuringTextureFilter, ColorsMixTwoColorsByTheTexture)
+{
+  const auto filter = MakeFilter(Sphere(4), 160);
+  filter->ColorOutputOn();
+  filter->SetTextureChemicalToU2();
+  filter->SetLowColor(0.0, 0.2, 1.0);
+  filter->SetHighColor(1.0, 0.4, 0.0);
+  filter->SetResultArrayName("my");
+  filter->Update();
+  vtkDataArray* color = Result(filter, "myTextureColor");
+  vtkDataArray* texture = Result(filter, "myTexture");
+  ASSERT_NE(color, nullptr);
+  EXPECT_EQ(color->GetDataType(), VTK_UNSIGNED_CHAR);
+  EXPECT_EQ(color->GetNumberOfComponents(), 3);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), color);
+  vtkDataArray* u2 = Result(filter, "myu2");
+  double brightest = 0.0, darkest = 1.0;
+  for (vtkIdType i = 0; i < color->GetNumberOfTuples(); ++i)
+  {
+    const double t = texture->GetComponent(i, 0);
+    EXPECT_EQ(color->GetComponent(i, 0), std::round(255.0 * t));
+    EXPECT_EQ(color->GetComponent(i, 2), std::round(255.0 * (1.0 - t)));
+    brightest = u2->GetComponent(i, 0) == High(u2) ? t : brightest;
+    darkest = u2->GetComponent(i, 0) == Low(u2) ? t : darkest;
+  }
+  EXPECT_EQ(brightest, 1.0);
+  EXPECT_EQ(darkest, 0.0);
+}
+
+TEST(TuringTextureFilter, SeedsGiveDifferentPatternsAndTheSameSeedTheSameBits)
+{
+  auto sphere = Sphere(3);
+  const auto filter = MakeFilter(sphere);
+  filter->Update();
+  const auto first = Copy(Result(filter, "u1"));
+  filter->SetRandomSeed(1);
+  filter->Update();
+  EXPECT_GT(LargestDifference(Result(filter, "u1"), first), 0.01);
+  filter->SetRandomSeed(0);
+  filter->Update();
+  EXPECT_TRUE(Identical(Result(filter, "u1"), first));
+}
+
+TEST(TuringTextureFilter, ThreadsDoNotChangeABit)
+{
+  auto sphere = Sphere(5);
+  vtkSmartPointer<vtkDataArray> serial;
+  for (const int threads : { 1, 2, 4 })
+  {
+    vtkSMPTools::Initialize(threads);
+    const auto filter = MakeFilter(sphere, 8);
+    filter->Update();
+    if (!serial)
+    {
+      serial = Copy(Result(filter, "u1"));
+    }
+    EXPECT_TRUE(Identical(Result(filter, "u1"), serial)) << threads;
+  }
+  vtkSMPTools::Initialize(0);
+}
+
+TEST(TuringTextureFilter, SolversAgree)
+{
+  auto sphere = Sphere(4);
+  const auto direct = MakeFilter(sphere, 40);
+  direct->SetSolverToDirect();
+  direct->Update();
+  const auto iterative = MakeFilter(sphere, 40);
+  iterative->SetSolverToConjugateGradient();
+  iterative->Update();
+  EXPECT_GT(iterative->GetNumberOfIterations(), 0);
+  EXPECT_LT(LargestDifference(Result(iterative, "u1"), Result(direct, "u1")), 1e-6);
+}
+
+TEST(TuringTextureFilter, IntrinsicDelaunayChangesNoPointAndLittleElse)
+{
+  auto sphere = Sphere(4);
+  const auto filter = MakeFilter(sphere, 32);
+  filter->Update();
+  const auto expected = Copy(Result(filter, "u1"));
+  filter->IntrinsicDelaunayOn();
+  filter->Update();
+  EXPECT_LT(LargestDifference(Result(filter, "u1"), expected), 0.05);
+}
+
+TEST(TuringTextureFilter, BlocksShareTheirUnits)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, Sphere(3));
+  blocks->SetBlock(1, Grid(12, 12, 0.1));
+  vtkNew<vtkTuringTextureFilter> filter;
+  filter->SetInputDataObject(blocks);
+  filter->SetNumberOfTimeSteps(16);
+  filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  for (unsigned int b = 0; b < 2; ++b)
+  {
+    auto* block = vtkPolyData::SafeDownCast(output->GetBlock(b));
+    EXPECT_TRUE(AllFinite(block->GetPointData()->GetArray("u1")));
+  }
+  EXPECT_EQ(History(filter)->GetNumberOfRows(), 17);
+}
+
+TEST(TuringTextureFilter, ObeysAnAbort)
+{
+  const auto filter = MakeFilter(Sphere(4), 200);
+  bool stopped = false;
+  const unsigned long tag = Listen(filter,
+    [&](double amount)
+    {
+      if (amount > 0.5)
+      {
+        filter->AbortExecuteOn();
+        stopped = true;
+      }
+    });
+  filter->Update();
+  EXPECT_TRUE(stopped);
+  EXPECT_EQ(Result(filter, "u1"), nullptr);
+  filter->RemoveObserver(tag);
+  filter->AbortExecuteOff();
+  filter->Modified();
+  filter->Update();
+  const auto fresh = MakeFilter(Sphere(4), 200);
+  fresh->Update();
+  EXPECT_TRUE(Identical(Result(filter, "u1"), Result(fresh, "u1")));
+}
+
+TEST(TuringTextureFilter, PaperSchemeIsTheFirstOrderOne)
+{
+  vtkNew<vtkTuringTextureFilter> filter;
+  filter->SetKineticsToBrusselator();
+  filter->ClampToNonNegativeOff();
+  filter->SetDiffusionRate1(5.0);
+  filter->UsePaperScheme();
+  EXPECT_STREQ(filter->GetKineticsAsString(), "Turing");
+  EXPECT_STREQ(filter->GetTimeIntegratorAsString(), "FirstOrder");
+  EXPECT_FALSE(filter->GetClampToNonNegative()); // left alone
+  EXPECT_EQ(filter->GetDiffusionRate1(), 5.0);
+}
+
+TEST(TuringTextureFilter, FirstOrderAndSecondOrderMeetAtSmallSteps)
+{
+  auto sphere = Sphere(3);
+  const auto run = [&](bool second, int steps)
+  {
+    const auto filter = MakeFilter(sphere, steps);
+    filter->SetTimeStep(2.0 / steps);
+    filter->SetTimeIntegrator(second ? 1 : 0);
+    filter->Update();
+    return Copy(Result(filter, "u1"));
+  };
+  const auto exact = run(true, 512);
+  const double coarse = LargestDifference(run(false, 64), exact);
+  const double fine = LargestDifference(run(false, 256), exact);
+  EXPECT_LT(fine, 0.35 * coarse);
+  EXPECT_LT(LargestDifference(run(true, 64), exact), 0.1 * coarse);
+}
+
+TEST(TuringTextureFilter, PrintsEveryProperty)
+{
+  vtkNew<vtkTuringTextureFilter> filter;
+  std::ostringstream text;
+  filter->Print(text);
+  for (const char* property : { "Kinetics: Turing", "ReactionRate: 1", "DiffusionRate1: 21",
+         "DiffusionRate2: 2.6", "DiffusionRateAcross1: -1", "DiffusionRateAcross2: -1",
+         "FeatureSize: 0", "InitialNoise: 0.1", "ClampToNonNegative: On", "AutomaticTimeStep: Off",
+         "StopTolerance: 0", "GrowthRate: 16", "DecayRate: 12", "ActivatorSupply: 0.01",
+         "SubstrateSupply: 1", "FeedRate: 0.05", "KillRate: 0.06", "ReactantA: 2", "ReactantB: 4",
+         "InhibitorDecayRate: 1.05", "Saturation: 0", "RecoveryRate: 1.2", "RecoveryDamping: 0.9",
+         "Stimulus: 0", "TextureChemical: U1", "ColorOutput: Off", "LowColor: ", "HighColor: ",
+         "Wavelength: ", "WavelengthGrowthRate: ", "DiffusionRateFactor: " })
+  {
+    EXPECT_TRUE(Contains(text.str(), property)) << property;
+  }
+}
