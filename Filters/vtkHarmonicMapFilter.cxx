@@ -348,12 +348,12 @@ void vtkHarmonicMapFilter::WriteResult(
   const int index = data->AddArray(
     WritePointArray(*run.Surface, arrays.Data, state, 1.0, type, this->FindResultName(arrays)));
   const bool isVector = arrays.Data->GetNumberOfComponents() == 3 && !isColour;
-  data->SetActiveAttribute(
-    index, isVector ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS);
+  int attribute = isVector ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
   if (isNormals && this->UseAsNormals)
   {
-    data->SetActiveAttribute(index, vtkDataSetAttributes::NORMALS);
+    attribute = vtkDataSetAttributes::NORMALS; // alone: ParaView would not shade with vectors
   }
+  data->SetActiveAttribute(index, attribute);
   const auto moved = this->MovedPoints.find(&run);
   if (moved != this->MovedPoints.end())
   {

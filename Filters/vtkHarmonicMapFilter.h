@@ -22,7 +22,9 @@
  * from the rim of its hole instead. Colours (unsigned char) are regularised in chromaticity: with
  * OutputPrecision Input the result is a colour of the input's brightness |f|.
  *
- * The result becomes the active vectors (three components, no colour) or the active scalars.
+ * The result becomes the active normals (UseAsNormals; only these, since ParaView takes an array
+ * that is active vectors too for no normals), or else the active vectors (three components, no
+ * colour) or the active scalars.
  *
  * **Energy.** The history's energy is
  *

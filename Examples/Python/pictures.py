@@ -33,6 +33,7 @@ class Panel:
     up: tuple = (0, 1, 0)
     table: vtkLookupTable = None
     bar: bool = False              # whether to draw the table's colour bar
+    ball: tuple = None             # (centre, radius): fill the panel with this part alone
 
 
 def display_missing():
@@ -59,11 +60,13 @@ def colour_table(low, high, colours, below=None, steps=256):
 
 
 def actor_of(panel):
-    normals = vtkPolyDataNormals()
-    normals.SplittingOff()
-    normals.SetInputData(panel.surface)
     mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(normals.GetOutputPort())
+    mapper.SetInputData(panel.surface)
+    if not panel.surface.GetPointData().GetNormals():
+        normals = vtkPolyDataNormals()
+        normals.SplittingOff()
+        normals.SetInputData(panel.surface)
+        mapper.SetInputConnection(normals.GetOutputPort())
     mapper.SetScalarModeToUsePointFieldData()
     mapper.SelectColorArray(panel.array)
     if panel.table:
@@ -144,8 +147,13 @@ def fit(renderer, panel, height):
     camera = renderer.GetActiveCamera()
     matrix = camera.GetViewTransformMatrix()
     to_eye = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(2)])
-    seen = vtk_to_numpy(panel.surface.GetPoints().GetData()) @ to_eye[:, :3].T + to_eye[:, 3]
-    low, high = seen.min(axis=0), seen.max(axis=0)
+    if panel.ball:
+        centre, radius = panel.ball
+        middle = to_eye[:, :3] @ centre + to_eye[:, 3]
+        low, high = middle - radius, middle + radius
+    else:
+        seen = vtk_to_numpy(panel.surface.GetPoints().GetData()) @ to_eye[:, :3].T + to_eye[:, 3]
+        low, high = seen.min(axis=0), seen.max(axis=0)
     top = 0.85 if height >= SMALL else 0.9
     bottom = 0.17 if panel.bar and height >= SMALL else 0.04
     aspect = renderer.GetTiledAspectRatio()

@@ -7,7 +7,9 @@ import tempfile
 import unittest
 
 from paraview import servermanager
-from paraview.simple import Cone, FVMHeatFilter, HarmonicMapFilter, OutputPort, Sphere
+from paraview.simple import (
+    Cone, CreateView, FVMHeatFilter, HarmonicMapFilter, OutputPort, Show, Sphere,
+)
 from plugin_testing import errors_of, read_sphere, values
 
 
@@ -26,6 +28,11 @@ class TestHarmonicMapFilter(unittest.TestCase):
         self.assertEqual(harmonic.InputArray[1], "")
         data = servermanager.Fetch(harmonic).GetPointData()
         self.assertEqual(data.GetNormals().GetName(), "NormalsHarmonic")
+
+    def test_shading_shows_the_result_at_once(self):
+        harmonic = HarmonicMapFilter(self.sphere)
+        display = Show(harmonic, CreateView("RenderView"))
+        self.assertEqual(display.SelectNormalArray, "NormalsHarmonic")
 
     def test_a_surface_without_any_array_can_be_regularised(self):
         cone = Cone(Resolution=20)
