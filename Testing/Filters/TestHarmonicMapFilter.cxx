@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
 #include <limits>
 #include <sstream>
 
@@ -430,6 +431,43 @@ TEST(HarmonicMapFilter, EnergyNeverGrowsByDefault)
       EXPECT_LT(LargestLengthError(Result(filter, "nHarmonic")), 1e-12);
     }
   }
+}
+
+// A roof of two flat sides: after runs that leave the same noise on the sides, the ridge is sharper
+// with Exponent 1.
+TEST(HarmonicMapFilter, ExponentOneKeepsCreasesThatTwoRoundsOff)
+{
+  auto roof = Grid(41, 41);
+  const auto side = [&](vtkIdType i) { return roof->GetPoint(i)[0] < 20.0 ? -1.0 : 1.0; };
+  AddPointArray(roof, "n", 3,
+    [&](vtkIdType i, int k) {
+      return (k == 0 ? 0.7 * side(i) : k == 1 ? 0.0 : 0.7) + 0.2 * Rough(i, k);
+    });
+  roof->GetPointData()->SetActiveNormals("n");
+  const auto run = [&](double exponent, double step)
+  {
+    auto filter = MakeFilter(roof);
+    filter->SetExponent(exponent);
+    filter->SetTimeStep(step);
+    filter->Update();
+    double noise = 0.0;
+    double ridge = 0.0;
+    vtkDataArray* u = Result(filter, "nHarmonic");
+    for (vtkIdType i = 0; i < roof->GetNumberOfPoints(); ++i)
+    {
+      const double error = std::abs(u->GetComponent(i, 0) - std::sqrt(0.5) * side(i));
+      const double distance = std::abs(roof->GetPoint(i)[0] - 19.5);
+      noise += distance > 8.0 ? error : 0.0;
+      ridge += distance < 3.0 ? error : 0.0;
+    }
+    return std::make_pair(noise, ridge);
+  };
+  const auto two = run(2.0, 0.1);
+  const auto one = run(1.0, 0.03);
+  std::cout << "noise " << two.first << " and " << one.first << ", ridge " << two.second << " and "
+            << one.second << "\n";
+  EXPECT_LT(one.first, 1.05 * two.first);
+  EXPECT_LT(one.second, 0.5 * two.second);
 }
 
 TEST(HarmonicMapFilter, NaturalUnitsFitAnySizeOfTheSurface)
