@@ -9,13 +9,13 @@ namespace SurfaceDiffusion
 enum class ChannelCoupling
 {
   PerChannel, ///< every channel has its own
-  Joint       ///< one Euclidean norm over all: edges of all channels stay in one place
+  Joint ///< one Euclidean norm over all: edges of all channels stay in one place
 };
 
 enum class FidelityNorm
 {
   L2, ///< lambda/2 |u - f|^2, which pulls with lambda (f - u): Gaussian noise
-  L1  ///< lambda |u - f|, which pulls with lambda whatever the distance: impulse noise
+  L1 ///< lambda |u - f|, which pulls with lambda whatever the distance: impulse noise
 };
 
 } // namespace SurfaceDiffusion

@@ -14,6 +14,8 @@ namespace SurfaceDiffusion
 namespace
 {
 
+constexpr double LeastJump = 2.5; ///< in mean differences
+
 /// Each vertex takes the area-weighted mean of its triangles' means: keeps sum A x.
 void Spread(const TriangleMesh& mesh, Values& x, Values& means, const ParallelFor& parallel)
 {
@@ -51,8 +53,8 @@ Values Smoothed(const Assembler& operators, const Values& u, const ParallelFor& 
 {
   const Vector diagonal = Vector::Constant(u.rows(), std::sqrt(3.0));
   SparseMatrix matrix = operators.Pattern();
-  operators.Fill(matrix, diagonal, 1.0, IsotropicCoefficients(operators.Mesh(), parallel), nullptr,
-    parallel);
+  operators.Fill(
+    matrix, diagonal, 1.0, IsotropicCoefficients(operators.Mesh(), parallel), nullptr, parallel);
   const auto solver = MakeConjugateGradientSolver(parallel);
   solver->SetLimits({ 1e-8, 200 });
   solver->SetMatrix(matrix);
@@ -77,8 +79,8 @@ Values MeanDifference(const TriangleMesh& mesh, const Values& u, const ParallelF
         const double share = mesh.Shapes()[t].Area() / (9.0 * mesh.ControlAreas()[i]);
         for (int a = 0; a < 3; ++a)
         {
-          differences.row(i) += share *
-            (u.row(vertices(t, a)) - u.row(vertices(t, (a + 1) % 3))).cwiseAbs();
+          differences.row(i) +=
+            share * (u.row(vertices(t, a)) - u.row(vertices(t, (a + 1) % 3))).cwiseAbs();
         }
       }
     });
@@ -88,8 +90,8 @@ Values MeanDifference(const TriangleMesh& mesh, const Values& u, const ParallelF
 
 } // namespace
 
-Values EdgesFromVertices(const Assembler& operators, const MedialMesh& edges, const Values& u,
-  const ParallelFor& parallel)
+Values EdgesFromVertices(
+  const Assembler& operators, const MedialMesh& edges, const Values& u, const ParallelFor& parallel)
 {
   const TriangleMesh& mesh = operators.Mesh();
   const Values smooth = Smoothed(operators, u, parallel);
@@ -104,7 +106,7 @@ Values EdgesFromVertices(const Assembler& operators, const MedialMesh& edges, co
       {
         w(e, k) = 0.5 * u(i, k) + 0.5 * u(j, k);
         const double difference = std::abs(u(i, k) - u(j, k));
-        const double excess = 2.0 * difference / (typical(i, k) + typical(j, k)) - 2.0;
+        const double excess = 2.0 * difference / (typical(i, k) + typical(j, k)) - LeastJump;
         if (excess > 0.0)
         {
           const bool high = smooth(i, k) + smooth(j, k) > u(i, k) + u(j, k);
@@ -146,6 +148,13 @@ CrouzeixRaviartEvolution::CrouzeixRaviartEvolution(std::shared_ptr<const Assembl
   , Residue(U.rows(), U.cols())
   , TriangleMeans(this->Operators->Mesh().NumberOfTriangles(), U.cols())
 {
+  for (Index i = 0; i < static_cast<Index>(data.Given.rows()); ++i)
+  {
+    if (data.Missing[i]) // not to be read, even where known neighbours are judged
+    {
+      data.Given.row(i) = this->Start.row(i);
+    }
+  }
   PointData onEdges;
   onEdges.Given = EdgesFromVertices(*this->Operators, *this->Edges, data.Given, parallel);
   onEdges.Start = EdgesFromVertices(*this->Operators, *this->Edges, this->Start, parallel);

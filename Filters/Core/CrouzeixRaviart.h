@@ -15,9 +15,9 @@ namespace SurfaceDiffusion
 /// Values at edges from values at vertices: their means, except at clear jumps. There the means
 /// would be a belt of half values, whose two rims have other lengths than the jump; so an edge
 /// takes the value of the end on whose side its midpoint lies, judged by the data smoothed over
-/// one ring. An edge jumps where its difference is three times the mean difference about it (four
-/// to five times at a straight jump between smooth parts, seldom twice in noise); from twice on the
-/// end value starts to count.
+/// one ring. An edge jumps where its difference is 3.5 times the mean difference about it (4 to 5
+/// times at a straight jump between smooth parts, seldom in noise); from 2.5 times on the end value
+/// starts to count.
 Values EdgesFromVertices(const Assembler& vertices, const MedialMesh& edges, const Values& u,
   const ParallelFor& parallel = SerialFor());
 

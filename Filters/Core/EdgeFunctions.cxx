@@ -44,9 +44,8 @@ double EdgeFunction::Potential(double squared) const
   switch (this->Kind)
   {
     case EdgeFunctionKind::TotalVariation: // sqrt(s^2 + beta) - sqrt(beta)
-      return squared > 0.0
-        ? squared / (std::sqrt(squared + this->Beta) + std::sqrt(this->Beta))
-        : 0.0;
+      return squared > 0.0 ? squared / (std::sqrt(squared + this->Beta) + std::sqrt(this->Beta))
+                           : 0.0;
     case EdgeFunctionKind::PeronaMalikExponential:
       return -0.5 * k2 * std::expm1(-ratio);
     case EdgeFunctionKind::PeronaMalikRational:

@@ -13,19 +13,19 @@ namespace SurfaceDiffusion
 /// falls there, and no convex energy stands behind them.
 enum class EdgeFunctionKind
 {
-  TotalVariation,         ///< (3): 1/sqrt(s^2 + beta) (Rudin, Osher, Fatemi, Physica D 60, 1992)
+  TotalVariation, ///< (3): 1/sqrt(s^2 + beta) (Rudin, Osher, Fatemi, Physica D 60, 1992)
   PeronaMalikExponential, ///< exp(-(s/K)^2) (Perona, Malik, IEEE PAMI 12(7), 1990)
-  PeronaMalikRational,    ///< 1/(1 + (s/K)^2) (the same paper)
-  Charbonnier,            ///< 1/sqrt(1 + (s/K)^2) (Charbonnier et al., IEEE ICIP, 1994)
-  Weickert,               ///< 1 - exp(-3.31488/(s/K)^8), 1 at s = 0 (Weickert, Anisotropic
-                          ///< Diffusion in Image Processing, 1998, section 5.2)
-  Constant                ///< 1: linear diffusion (1)
+  PeronaMalikRational, ///< 1/(1 + (s/K)^2) (the same paper)
+  Charbonnier, ///< 1/sqrt(1 + (s/K)^2) (Charbonnier et al., IEEE ICIP, 1994)
+  Weickert, ///< 1 - exp(-3.31488/(s/K)^8), 1 at s = 0 (Weickert, Anisotropic
+            ///< Diffusion in Image Processing, 1998, section 5.2)
+  Constant ///< 1: linear diffusion (1)
 };
 
 struct EdgeFunction
 {
   EdgeFunctionKind Kind = EdgeFunctionKind::TotalVariation;
-  double Beta = 1e-6;     ///< of TotalVariation; > 0, and 0 where only Potential() is used
+  double Beta = 1e-6; ///< of TotalVariation; > 0, and 0 where only Potential() is used
   double Threshold = 1.0; ///< K > 0 of the others
 
   /// g from the square of s.

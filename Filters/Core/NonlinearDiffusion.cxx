@@ -27,8 +27,8 @@ SquaredGradient SquareGradient(const TriangleMesh& mesh, const PlaneVectors& fra
   SquaredGradient squared;
   for (Eigen::Index k = first; k < last; ++k)
   {
-    const Eigen::Vector2d gradient = Gradient(mesh.Shapes()[t], u(vertices(t, 0), k),
-      u(vertices(t, 1), k), u(vertices(t, 2), k));
+    const Eigen::Vector2d gradient =
+      Gradient(mesh.Shapes()[t], u(vertices(t, 0), k), u(vertices(t, 1), k), u(vertices(t, 2), k));
     squared.Total += gradient.squaredNorm();
     if (frames.rows() > 0)
     {
@@ -49,13 +49,17 @@ NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assemble
   , Options(settings)
   , Solver(std::move(solver))
   , Parallel(parallel)
-  , Conserved(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel)
   , Isotropic(IsotropicCoefficients(this->Operators->Mesh(), parallel))
   , Matrix(this->Operators->Pattern())
   , Weighted(this->Isotropic.rows(), 3)
   , Diagonal(this->Data.Start.rows())
   , U(this->Data.Start)
 {
+  if (settings.Norm == FidelityNorm::L2 || settings.Fidelity == 0.0) // L1 does not conserve
+  {
+    this->Conserved =
+      Conservation(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel);
+  }
   if (this->Frames.rows() > 0)
   {
     this->Directional = DirectionalCoefficients(this->Operators->Mesh(), this->Frames, parallel);
@@ -98,11 +102,11 @@ void NonlinearDiffusion::AdvanceColumns(
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
-      this->Diagonal[i] = mesh.ControlAreas()[i] *
-        (1.0 + this->Options.TimeStep * this->FidelityAt(i, first, last));
+      this->Diagonal[i] =
+        mesh.ControlAreas()[i] * (1.0 + this->Options.TimeStep * this->FidelityAt(i, first, last));
     });
-  this->Operators->Fill(this->Matrix, this->Diagonal, this->Options.TimeStep, this->Weighted,
-    nullptr, this->Parallel);
+  this->Operators->Fill(
+    this->Matrix, this->Diagonal, this->Options.TimeStep, this->Weighted, nullptr, this->Parallel);
   if (this->Data.Fixed.any())
   {
     this->Operators->Constrain(
@@ -130,8 +134,7 @@ void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
   ForEach(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      const double squared =
-        SquareGradient(mesh, this->Frames, this->U, t, first, last).Total;
+      const double squared = SquareGradient(mesh, this->Frames, this->U, t, first, last).Total;
       const double g1 = this->Options.AlongDiffusivity * this->Options.Along(squared);
       if (this->Frames.rows() == 0)
       {
@@ -208,8 +211,7 @@ double NonlinearDiffusion::Energy() const
     energy += Sum(this->Parallel, mesh.NumberOfTriangles(),
       [&](Index t)
       {
-        const SquaredGradient squared =
-          SquareGradient(mesh, this->Frames, this->U, t, first, last);
+        const SquaredGradient squared = SquareGradient(mesh, this->Frames, this->U, t, first, last);
         double psi1 = this->Options.AlongDiffusivity * this->Options.Along.Potential(squared.Total);
         if (this->Frames.rows() > 0 && squared.Total > 0.0)
         {

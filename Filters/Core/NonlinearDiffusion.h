@@ -31,8 +31,8 @@ public:
   {
     double TimeStep = 1.0;
     double Fidelity = 0.0; ///< lambda, in 1/time; value/time with L1
-    EdgeFunction Along;    ///< g1 is this times AlongDiffusivity
-    EdgeFunction Across;   ///< g2 is this times AcrossDiffusivity
+    EdgeFunction Along; ///< g1 is this times AlongDiffusivity
+    EdgeFunction Across; ///< g2 is this times AcrossDiffusivity
     double AlongDiffusivity = 1.0;
     double AcrossDiffusivity = 1.0;
     ChannelCoupling Coupling = ChannelCoupling::Joint;
@@ -57,8 +57,8 @@ public:
   void Restore(const double* checkpoint) override;
 
 private:
-  void AdvanceColumns(Eigen::Index first, Eigen::Index last, StepReport& report,
-    const Monitor& monitor);
+  void AdvanceColumns(
+    Eigen::Index first, Eigen::Index last, StepReport& report, const Monitor& monitor);
   void FillWeights(Eigen::Index first, Eigen::Index last);
   void FillChange(Eigen::Index first, Eigen::Index last);
   double FidelityAt(Index i, Eigen::Index first, Eigen::Index last) const;
@@ -70,7 +70,7 @@ private:
   std::shared_ptr<LinearSolver> Solver;
   const ParallelFor& Parallel;
   Conservation Conserved;
-  EdgeValues Isotropic;   ///< (10)
+  EdgeValues Isotropic; ///< (10)
   EdgeValues Directional; ///< (13), no rows where g1 = g2
   SparseMatrix Matrix;
   EdgeValues Weighted; ///< g1 c1 + g2 c2 of (12)

@@ -23,17 +23,20 @@ double ValueRange(const Values& u)
 } // namespace
 
 TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assembler,
-  const PlaneVectors& frames, PointData data, const Settings& settings,
-  const ParallelFor& parallel)
+  const PlaneVectors& frames, PointData data, const Settings& settings, const ParallelFor& parallel)
   : Operators(std::move(assembler))
   , Data(std::move(data))
   , Options(settings)
   , Parallel(parallel)
-  , Conserved(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel)
   , Diffusivity(std::max(settings.AlongDiffusivity, settings.AcrossDiffusivity))
   , U(this->Data.Start)
   , Target(this->Data.Given)
 {
+  if (settings.Norm == FidelityNorm::L2 || settings.Fidelity == 0.0) // L1 does not conserve
+  {
+    this->Conserved =
+      Conservation(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel);
+  }
   const TriangleMesh& mesh = this->Operators->Mesh();
   if (settings.SteadyState)
   {
@@ -53,8 +56,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
 
   // The minimiser's energy is E over Diffusivity, the step's term with it.
   const Index n = mesh.NumberOfVertices();
-  const double inertia =
-    settings.SteadyState ? 0.0 : 1.0 / (settings.TimeStep * this->Diffusivity);
+  const double inertia = settings.SteadyState ? 0.0 : 1.0 / (settings.TimeStep * this->Diffusivity);
   Vector quadratic(n);
   Vector absolute(n);
   ForEach(parallel, n,
@@ -71,10 +73,8 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   minimizer.Range = ValueRange(this->Data.Start);
   minimizer.StopTolerance = settings.StopTolerance;
   minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
-  minimizer.Penalty = settings.Penalty;
-  this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Operators,
-    std::move(gradients), std::move(quadratic), std::move(absolute), this->Data.Fixed, minimizer,
-    parallel);
+  this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Operators, std::move(gradients),
+    std::move(quadratic), std::move(absolute), this->Data.Fixed, minimizer, parallel);
 }
 
 void TotalVariationFlow::Restore(const double* checkpoint)
@@ -103,10 +103,9 @@ StepReport TotalVariationFlow::Advance(const Monitor& monitor)
     ForEach(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i)
       {
-        const double pull =
-          squared ? this->Options.TimeStep * this->FidelityAt(i) : 0.0;
-        this->Target.row(i) = this->U.row(i) +
-          (pull / (1.0 + pull)) * (this->Data.Given.row(i) - this->U.row(i));
+        const double pull = squared ? this->Options.TimeStep * this->FidelityAt(i) : 0.0;
+        this->Target.row(i) =
+          this->U.row(i) + (pull / (1.0 + pull)) * (this->Data.Given.row(i) - this->U.row(i));
       });
   }
   const TotalVariationMinimizer::Report result =
@@ -129,9 +128,9 @@ double TotalVariationFlow::Energy() const
       [&](Index i)
       {
         const auto distance = this->U.row(i) - this->Data.Given.row(i);
-        const double density = this->Options.Norm == FidelityNorm::L2
-          ? 0.5 * distance.squaredNorm()
-          : joint ? distance.norm() : distance.lpNorm<1>();
+        const double density = this->Options.Norm == FidelityNorm::L2 ? 0.5 * distance.squaredNorm()
+          : joint                                                     ? distance.norm()
+                                                                      : distance.lpNorm<1>();
         return mesh.ControlAreas()[i] * this->FidelityAt(i) * density;
       });
   }

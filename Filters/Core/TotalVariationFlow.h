@@ -39,7 +39,6 @@ public:
     FidelityNorm Norm = FidelityNorm::L2;
     double StopTolerance = 1e-4; ///< relative duality gap, see TotalVariationMinimizer
     int MaximumNumberOfIterations = 10000;
-    double Penalty = TotalVariationMinimizer::VertexPenalty;
   };
 
   /// frames: e1 per triangle (see Frames.h), without rows where g1 = g2.
@@ -58,10 +57,7 @@ public:
   void Restore(const double* checkpoint) override;
 
 private:
-  double FidelityAt(Index i) const
-  {
-    return this->Data.Missing[i] ? 0.0 : this->Options.Fidelity;
-  }
+  double FidelityAt(Index i) const { return this->Data.Missing[i] ? 0.0 : this->Options.Fidelity; }
 
   std::shared_ptr<const Assembler> Operators;
   PointData Data;

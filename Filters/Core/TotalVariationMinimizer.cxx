@@ -14,8 +14,20 @@ namespace
 {
 
 constexpr double OverRelaxation = 1.7;
+
+/// The penalty on S grad u - p, in units of g at one Range per vertex spacing. It moves work
+/// between finding edges and settling values and changes no result. Measured: 10 to 20 is best for
+/// noise, and within 1.5 times of the best for clean jumps, on meshes and medial meshes alike.
+constexpr double Penalty = 16.0;
+
 constexpr int InnerIterations = 4;
 constexpr int IterationsPerCheck = 10;
+
+EdgeFunction WithoutBeta(EdgeFunction function)
+{
+  function.Beta = 0.0;
+  return function;
+}
 
 /// The solution p of p + psi'(p)/r = s as a fraction of s >= 0.
 inline double Shrinkage(const EdgeFunction& function, double r, double s)
@@ -115,12 +127,11 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   , Solver(MakeConjugateGradientSolver(parallel))
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-  EdgeFunction exact = settings.Function;
-  exact.Beta = 0.0;
-  const double steepest = settings.Range / h;
-  this->GradientPenalty = settings.Penalty * exact(steepest * steepest);
-  this->ValuePenalty = this->GradientPenalty / (h * h);
+  const double spacing = std::sqrt(mesh.ControlAreas().mean());
+  const double steepest = settings.Range / spacing;
+  this->GradientPenalty = Penalty * WithoutBeta(settings.Function)(steepest * steepest);
+  this->ValuePenalty = 0.25 * this->GradientPenalty / (spacing * spacing) + // 0.1 to 0.5 is best
+    0.1 * this->Absolute.maxCoeff() / settings.Range;
 
   EdgeValues coefficients(mesh.NumberOfTriangles(), 3);
   this->Areas.resize(mesh.NumberOfTriangles());
@@ -318,8 +329,7 @@ struct TotalVariationMinimizer::Pass
         {
           for (int k = 0; k < this->Count(); ++k)
           {
-            sum[k] +=
-              area * this->Rho * (this->F(i, k) + this->Self.Q(i, k) - this->Self.C(i, k));
+            sum[k] += area * this->Rho * (this->F(i, k) + this->Self.Q(i, k) - this->Self.C(i, k));
           }
         }
         for (Index c = begin[i]; c < begin[i + 1]; ++c)
@@ -404,7 +414,9 @@ struct TotalVariationMinimizer::Pass
       const int a = corners[c] % 3;
       const GradientMap& map = this->Self.Gradients[t];
       const Eigen::Vector2d v = (this->R * this->Self.Areas[t]) *
-        (a == 1 ? map.First : a == 2 ? map.Second : Eigen::Vector2d(-map.First - map.Second));
+        (a == 1      ? map.First
+            : a == 2 ? map.Second
+                     : Eigen::Vector2d(-map.First - map.Second));
       const double* b = &this->Self.B(t, 0);
       for (int k = first; k < last; ++k)
       {
@@ -413,36 +425,41 @@ struct TotalVariationMinimizer::Pass
     }
     const double mu = this->Mesh.ControlAreas()[i] * this->Self.Quadratic[i];
     const double nu = this->Mesh.ControlAreas()[i] * this->Self.Absolute[i];
+    const bool fixed = this->Self.Fixed[i];
     const double range = this->Self.Options.Range * std::sqrt(static_cast<double>(last - first));
-    // u_i of the minimum, or where u_i is unbounded d . u_i of a point and the way from there.
+    double squared = 0.0; // of d, or of u_i - f without the pull of nu
     double value = 0.0;
-    double squared = 0.0;
-    if (mu > 0.0 && !this->Self.Fixed[i])
+    if (fixed || mu == 0.0)
     {
-      // Without nu, u = g - d/mu; f pulls it over by up to nu/mu.
-      for (int k = first; k < last && nu > 0.0; ++k)
+      // Unless fixed, u_i stays at f while |d| < nu, and else goes as far as Range allows.
+      double pull = 0.0;
+      for (int k = first; k < last; ++k)
+      {
+        const double u = nu > 0.0 && !fixed ? this->F(i, k) : this->U(i, k);
+        value += d[k] * u + 0.5 * mu * std::pow(u - this->G(i, k), 2);
+        squared += d[k] * d[k];
+        pull += std::pow(u - this->F(i, k), 2);
+      }
+      const double beyond = fixed ? 0.0 : std::max(0.0, std::sqrt(squared) - nu);
+      return value - beyond * range + (nu > 0.0 ? nu * std::sqrt(pull) : 0.0);
+    }
+    // Without nu, u_i = g - d/mu; it is drawn to f by up to nu/mu.
+    double drawn = 0.0;
+    if (nu > 0.0)
+    {
+      for (int k = first; k < last; ++k)
       {
         squared += std::pow(this->G(i, k) - d[k] / mu - this->F(i, k), 2);
       }
-      const double shift = std::sqrt(squared);
-      const double factor = nu > 0.0 ? std::max(0.0, 1.0 - nu / (mu * shift)) : 1.0;
-      const double kept = nu > 0.0 && !(mu * shift > nu) ? 0.0 : factor;
-      for (int k = first; k < last; ++k)
-      {
-        const double pulled = this->G(i, k) - d[k] / mu;
-        const double u = nu > 0.0 ? this->F(i, k) + kept * (pulled - this->F(i, k)) : pulled;
-        value += d[k] * u + 0.5 * mu * std::pow(u - this->G(i, k), 2);
-      }
-      return value + nu * kept * shift;
+      drawn = mu * std::sqrt(squared) > nu ? nu / (mu * std::sqrt(squared)) : 1.0;
     }
-    const bool known = nu > 0.0 && !this->Self.Fixed[i];
     for (int k = first; k < last; ++k)
     {
-      value += d[k] * (known ? this->F(i, k) : this->U(i, k));
-      squared += d[k] * d[k];
+      const double free = this->G(i, k) - d[k] / mu;
+      const double u = drawn > 0.0 ? free + drawn * (this->F(i, k) - free) : free;
+      value += d[k] * u + 0.5 * mu * std::pow(u - this->G(i, k), 2);
     }
-    const double pull = std::max(0.0, std::sqrt(squared) - (known ? nu : 0.0));
-    return this->Self.Fixed[i] ? value : value - pull * range;
+    return value + nu * (1.0 - drawn) * std::sqrt(squared);
   }
 };
 
@@ -454,6 +471,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::MinimizeColumns(
   Pass<K> pass{ *this, g, f, u };
   pass.Start();
   const double startEnergy = pass.Energy();
+  const double negligible = std::max(1e-3 * startEnergy, 1e-6 * this->NoiseEnergy());
   Report report;
   double energy = startEnergy;
   double progress = 0.0;
@@ -462,7 +480,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::MinimizeColumns(
     if (report.Iterations % IterationsPerCheck == 0)
     {
       energy = pass.Energy();
-      const double scale = std::max(energy, 1e-3 * startEnergy);
+      const double scale = std::max(energy, negligible);
       report.Gap = scale > 0.0 ? std::max(0.0, energy - pass.DualEnergy()) / scale : 0.0;
       if (!std::isfinite(report.Gap))
       {
@@ -516,13 +534,21 @@ void TotalVariationMinimizer::Prepare(const Values& u)
   this->Solver->SetMatrix(this->Matrix);
 }
 
+double TotalVariationMinimizer::NoiseEnergy() const
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  const EdgeFunction exact = WithoutBeta(this->Options.Function);
+  const double spacing = std::sqrt(mesh.ControlAreas().mean());
+  const double steepest = this->Options.Range / spacing;
+  return mesh.ControlAreas().sum() * exact.Potential(steepest * steepest);
+}
+
 double TotalVariationMinimizer::GradientEnergy(const Values& u) const
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
   const Triangles& vertices = mesh.TriangleVertices();
   const bool joint = this->Options.Coupling == ChannelCoupling::Joint;
-  EdgeFunction exact = this->Options.Function;
-  exact.Beta = 0.0;
+  const EdgeFunction exact = WithoutBeta(this->Options.Function);
   return Sum(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
@@ -534,8 +560,7 @@ double TotalVariationMinimizer::GradientEnergy(const Values& u) const
       double squared = 0.0;
       for (Eigen::Index k = 0; k < u.cols(); ++k)
       {
-        squared +=
-          ((u1[k] - u0[k]) * map.First + (u2[k] - u0[k]) * map.Second).squaredNorm();
+        squared += ((u1[k] - u0[k]) * map.First + (u2[k] - u0[k]) * map.Second).squaredNorm();
         if (!joint || k + 1 == u.cols())
         {
           density += exact.Potential(squared);

@@ -43,20 +43,13 @@ std::vector<GradientMap> StretchedGradients(const TriangleMesh& mesh,
 class TotalVariationMinimizer
 {
 public:
-  /// The penalty on S grad u - p, in units of g at one Range per edge length. It moves work between
-  /// finding edges and settling values, and changes no result. Measured: on vertices 10 to 20 is
-  /// best for noise and within 1.5 of the best for clean jumps; on the medial mesh 6 to 10.
-  static constexpr double VertexPenalty = 15.0;
-  static constexpr double EdgePenalty = 8.0;
-
   struct Settings
   {
     EdgeFunction Function; ///< TotalVariation (beta is not used), Charbonnier or Constant
     ChannelCoupling Coupling = ChannelCoupling::Joint;
-    double Range = 1.0;          ///< largest max - min of the data over the channels
+    double Range = 1.0; ///< largest max - min of the data over the channels
     double StopTolerance = 1e-4; ///< on the duality gap / E
     int MaximumNumberOfIterations = 10000;
-    double Penalty = VertexPenalty;
   };
 
   /// quadratic, absolute: mu and nu >= 0 per vertex; in every connected component one of them must
@@ -68,7 +61,9 @@ public:
   struct Report
   {
     int Iterations = 0;
-    double Gap = 0.0; ///< duality gap relative to E, or to a thousandth of E of the start if larger
+    /// Duality gap relative to E, or, where that is larger, to a thousandth of E of the start or a
+    /// millionth of what noise of the whole Range has: below it data are constant to round-off.
+    double Gap = 0.0;
   };
 
   /// u: the start on entry, the minimiser on return. The result depends on the arguments alone.
@@ -81,10 +76,11 @@ private:
   template <int K>
   struct Pass;
 
+  /// int psi for gradients of one Range per vertex spacing.
+  double NoiseEnergy() const;
   void Prepare(const Values& u);
   template <int K>
-  Report MinimizeColumns(
-    const Values& g, const Values& f, Values& u, const Monitor& monitor);
+  Report MinimizeColumns(const Values& g, const Values& f, Values& u, const Monitor& monitor);
 
   std::shared_ptr<const Assembler> Operators;
   std::vector<GradientMap> Gradients;
@@ -94,12 +90,12 @@ private:
   Settings Options;
   const ParallelFor& Parallel;
   double GradientPenalty; ///< r
-  double ValuePenalty;    ///< rho
+  double ValuePenalty; ///< rho
   SparseMatrix Matrix;
   std::unique_ptr<LinearSolver> Solver;
-  Values P, B;    ///< per triangle: split gradient and scaled multiplier, x of all columns, then y
+  Values P, B; ///< per triangle: split gradient and scaled multiplier, x of all columns, then y
   Values Corners; ///< per triangle corner: what the triangle gives to a vertex
-  Values Q, C;    ///< per vertex: split value and scaled multiplier of L1 fidelity
+  Values Q, C; ///< per vertex: split value and scaled multiplier of L1 fidelity
   Values RightHandSide, Load;
 };
 
