@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conservation.h"
+#include "ThreadedFor.h"
+#include "TotalVariation.h"
+
+#include <gtest/gtest.h>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+/// sum A_e w_e over the edges in units of the surface.
+double EdgeTotal(const MedialMesh& edges, const Values& w)
+{
+  return 4.0 * Total(*edges.Edges(), w, 0);
+}
+
+Values EdgeMeans(const MedialMesh& edges, const Values& u)
+{
+  Values w(static_cast<Eigen::Index>(edges.Ends().size()), u.cols());
+  for (Eigen::Index e = 0; e < w.rows(); ++e)
+  {
+    w.row(e) = 0.5 * (u.row(edges.Ends()[e][0]) + u.row(edges.Ends()[e][1]));
+  }
+  return w;
+}
+
+} // namespace
+
+TEST(CrouzeixRaviart, WayBackIsExactForMeansAndKeepsTheSum)
+{
+  for (const Surface& s : { Icosphere(3), Disk(8), ThreeFins(6) })
+  {
+    const auto mesh = MakeMesh(s);
+    const MedialMesh edges(*mesh);
+    const Values u = Noise(*mesh, 2);
+    Values back(u.rows(), 2);
+    VerticesFromEdges(*mesh, edges, EdgeMeans(edges, u), back);
+    EXPECT_LT((back - u).cwiseAbs().maxCoeff(), 1e-13);
+
+    const Values w = Noise(*edges.Edges());
+    Values v(u.rows(), 1);
+    VerticesFromEdges(*mesh, edges, w, v);
+    EXPECT_NEAR(Total(*mesh, v, 0), EdgeTotal(edges, w), 1e-13);
+  }
+}
+
+TEST(CrouzeixRaviart, SmoothDataAndNoiseStartFromMeans)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const MedialMesh edges(assembler->Mesh());
+  const Values smooth = Sample(assembler->Mesh(), s,
+    [](const Eigen::RowVector3d& x) { return std::sin(3.0 * x[0]) + x[1] * x[2]; });
+  EXPECT_LT(
+    (EdgesFromVertices(*assembler, edges, smooth) - EdgeMeans(edges, smooth)).cwiseAbs().maxCoeff(),
+    1e-15);
+
+  const Values noise = Noise(assembler->Mesh());
+  const Values change = EdgesFromVertices(*assembler, edges, noise) - EdgeMeans(edges, noise);
+  EXPECT_LT(RootMeanSquare(*edges.Edges(), change), 0.1 * RootMeanSquare(*edges.Edges(), noise));
+}
+
+TEST(CrouzeixRaviart, JumpsStartSharp)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const MedialMesh edges(assembler->Mesh());
+  const Values cap = Cap(assembler->Mesh(), s, 1.0);
+  const Values w = EdgesFromVertices(*assembler, edges, cap);
+  int wrong = 0, crossing = 0;
+  for (Eigen::Index e = 0; e < w.rows(); ++e)
+  {
+    EXPECT_GE(w(e, 0), 0.0);
+    EXPECT_LE(w(e, 0), 1.0);
+    Eigen::RowVector3d x[2];
+    for (int end = 0; end < 2; ++end)
+    {
+      x[end] = s.Vertices.row(assembler->Mesh().InputVertex()[edges.Ends()[e][end]]);
+    }
+    const Eigen::RowVector3d middle = (x[0] + x[1]).normalized();
+    crossing += cap(edges.Ends()[e][0], 0) != cap(edges.Ends()[e][1], 0);
+    wrong += std::abs(w(e, 0) - (std::acos(middle[2]) < 1.0 ? 1.0 : 0.0)) > 0.1;
+  }
+  EXPECT_GT(crossing, 100);
+  EXPECT_LT(wrong, crossing / 4); // the means are wrong at all of them
+}
+
+TEST(CrouzeixRaviart, CapFlowsToHalfAPercentOnAnyTurnOfTheMesh)
+{
+  for (const auto& [turn, angle, time] :
+    { std::array<double, 3>{ 0.0, Pi / 3.0, 0.2 }, { 0.7, 1.4, 0.1 } })
+  {
+    const Surface s = Rotated(Icosphere(5), turn); // 10,242 vertices
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const PointData data = PointData::FromValues(Cap(mesh, s, angle));
+    const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, time));
+    flow->Advance(Monitor());
+    const Plateaus plateaus = MeasurePlateaus(mesh, s, flow->State(), angle);
+    EXPECT_LT(PlateauError(plateaus, ExactPlateaus(angle, time)), 0.005) << turn;
+    const double jump = plateaus.Inside - plateaus.Outside;
+    EXPECT_LT(flow->State().maxCoeff(), plateaus.Inside + 0.1 * jump);
+    EXPECT_GT(flow->State().minCoeff(), plateaus.Outside - 0.1 * jump);
+    EXPECT_NEAR(Total(mesh, flow->State(), 0), Total(mesh, data.Start, 0), 1e-12);
+  }
+}
+
+TEST(CrouzeixRaviart, NoiseDoesNotComeBack)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(0.3 * Noise(mesh));
+  const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.05));
+  flow->Advance(Monitor());
+  EXPECT_LT(RootMeanSquare(mesh, flow->State()), 0.03 * RootMeanSquare(mesh, data.Start));
+}
+
+TEST(CrouzeixRaviart, ConstantsStay)
+{
+  const auto assembler = MakeAssembler(Disk(8));
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto constant =
+    MakeOnEdges(assembler, PointData::FromValues(Values::Constant(mesh.NumberOfVertices(), 2, 7.0)),
+      ExactSettings(mesh, 0.1, 1.0));
+  constant->Advance(Monitor());
+  EXPECT_LT((constant->State().array() - 7.0).abs().maxCoeff(), 1e-14);
+}
+
+TEST(CrouzeixRaviart, StartsFromThePointDataThemselvesAndRestoresEveryBit)
+{
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(Cap(mesh, s, 1.0) + 0.1 * Noise(mesh));
+  const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.02, 1.0));
+  EXPECT_TRUE(flow->State() == data.Start);
+  std::vector<double> first(flow->CheckpointSize()), second(flow->CheckpointSize());
+  flow->Save(first.data());
+  flow->Advance(Monitor());
+  const Values one = flow->State();
+  flow->Save(second.data());
+  flow->Advance(Monitor());
+  const Values two = flow->State();
+  flow->Restore(first.data());
+  EXPECT_TRUE(flow->State() == data.Start);
+  flow->Advance(Monitor());
+  EXPECT_TRUE(flow->State() == one);
+  flow->Restore(second.data());
+  EXPECT_TRUE(flow->State() == one);
+  flow->Advance(Monitor());
+  EXPECT_TRUE(flow->State() == two);
+}
+
+TEST(CrouzeixRaviart, ThreadsDoNotChangeABit)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(Cap(mesh, s, 1.0) + 0.1 * Noise(mesh));
+  const auto run = [&](const ParallelFor& parallel)
+  {
+    const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.01, 0.0, 1e-2), parallel);
+    flow->Advance(Monitor());
+    return flow->State();
+  };
+  const ThreadedFor parallel(3);
+  EXPECT_TRUE(run(SerialFor()) == run(parallel));
+}
+
+TEST(CrouzeixRaviart, FixedAndMissingVerticesAreHonoured)
+{
+  const auto assembler = MakeAssembler(Strip(20, 4, 5.0, 1.0));
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Index n = mesh.NumberOfVertices();
+  PointData data = PointData::FromValues(Noise(mesh));
+  for (Index i = 0; i < n; ++i)
+  {
+    data.Missing[i] = i % 7 == 0;
+    data.Fixed[i] = i % 5 == 0 && !data.Missing[i];
+    if (data.Missing[i])
+    {
+      data.Start(i, 0) = 0.0;
+    }
+  }
+  PointData other = data;
+  for (Index i = 0; i < n; i += 7)
+  {
+    other.Given(i, 0) = 0.5; // not to be read
+  }
+  const auto run = [&](const PointData& input)
+  {
+    const auto flow = MakeOnEdges(assembler, input, ExactSettings(mesh, 0.0, 2.0));
+    flow->Advance(Monitor());
+    return flow->State();
+  };
+  const Values u = run(data);
+  for (Index i = 0; i < n; ++i)
+  {
+    if (data.Fixed[i])
+    {
+      EXPECT_EQ(u(i, 0), data.Start(i, 0));
+    }
+  }
+  EXPECT_LT((run(other) - u).cwiseAbs().maxCoeff(), 1e-12);
+}

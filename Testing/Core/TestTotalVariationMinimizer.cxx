@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Coefficients.h"
+#include "Frames.h"
+#include "TotalVariation.h"
+
+#include <gtest/gtest.h>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+using Kind = EdgeFunctionKind;
+
+/// A minimisation and all it needs: noise on a small sphere.
+struct Problem
+{
+  std::shared_ptr<const Assembler> Operators = MakeAssembler(Icosphere(3));
+  const TriangleMesh& Mesh = Operators->Mesh();
+  Values Data = Noise(Mesh, 2);
+  double Quadratic = 10.0;
+  double Absolute = 0.0;
+  Flags Fixed = Flags::Constant(Mesh.NumberOfVertices(), false);
+  TotalVariationMinimizer::Settings Settings = { { Kind::TotalVariation, 0.0, 3.0 },
+    ChannelCoupling::Joint, 2.0, 1e-4, 10000 };
+
+  double Energy(const TotalVariationMinimizer& minimizer, const Values& u) const
+  {
+    double energy = minimizer.GradientEnergy(u);
+    for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
+    {
+      const auto distance = u.row(i) - this->Data.row(i);
+      const double absolute =
+        this->Settings.Coupling == ChannelCoupling::Joint ? distance.norm() : distance.lpNorm<1>();
+      energy += this->Mesh.ControlAreas()[i] *
+        (0.5 * this->Quadratic * distance.squaredNorm() + this->Absolute * absolute);
+    }
+    return energy;
+  }
+
+  std::pair<double, TotalVariationMinimizer::Report> Minimum(double tolerance)
+  {
+    this->Settings.StopTolerance = tolerance;
+    const Index n = this->Mesh.NumberOfVertices();
+    TotalVariationMinimizer minimizer(this->Operators, PlainGradients(this->Mesh, SerialFor()),
+      Vector::Constant(n, this->Quadratic), Vector::Constant(n, this->Absolute), this->Fixed,
+      this->Settings);
+    Values u = this->Data;
+    const auto report = minimizer.Minimize(this->Data, this->Data, u);
+    return { this->Energy(minimizer, u), report };
+  }
+};
+
+} // namespace
+
+TEST(TotalVariationMinimizer, GapBoundsTheDistanceToTheMinimum)
+{
+  for (const Kind kind : { Kind::TotalVariation, Kind::Charbonnier, Kind::Constant })
+  {
+    for (const ChannelCoupling coupling : { ChannelCoupling::PerChannel, ChannelCoupling::Joint })
+    {
+      for (const bool absolute : { false, true })
+      {
+        Problem problem;
+        problem.Settings.Function.Kind = kind;
+        problem.Settings.Coupling = coupling;
+        problem.Quadratic = absolute ? 0.0 : 10.0;
+        problem.Absolute = absolute ? 4.0 : 0.0;
+        const auto [minimum, fine] = problem.Minimum(1e-6);
+        EXPECT_LE(fine.Gap, 1e-6);
+        for (const double tolerance : { 1e-1, 1e-2, 1e-3 })
+        {
+          const auto [energy, report] = problem.Minimum(tolerance);
+          EXPECT_LE(report.Gap, tolerance);
+          EXPECT_LE(energy - minimum, report.Gap * energy * (1.0 + 1e-6))
+            << static_cast<int>(kind) << ' ' << absolute;
+          EXPECT_GE(energy - minimum, -1e-6 * energy);
+        }
+      }
+    }
+  }
+}
+
+TEST(TotalVariationMinimizer, NoSmallChangeLowersTheEnergy)
+{
+  for (const double absolute : { 0.0, 3.0 })
+  {
+    Problem problem;
+    problem.Absolute = absolute; // together with the quadratic term, as in a time step with L1
+    problem.Settings.StopTolerance = 1e-7;
+    const Index n = problem.Mesh.NumberOfVertices();
+    TotalVariationMinimizer minimizer(problem.Operators, PlainGradients(problem.Mesh, SerialFor()),
+      Vector::Constant(n, problem.Quadratic), Vector::Constant(n, absolute), problem.Fixed,
+      problem.Settings);
+    Values u = problem.Data;
+    minimizer.Minimize(problem.Data, problem.Data, u);
+    const double minimum = problem.Energy(minimizer, u);
+    for (int seed = 0; seed < 20; ++seed)
+    {
+      for (const double size : { 1e-1, 1e-2, 1e-3 })
+      {
+        EXPECT_GT(problem.Energy(minimizer, u + size * Noise(problem.Mesh, 2, seed)),
+          minimum * (1.0 - 1e-7));
+      }
+    }
+  }
+}
+
+TEST(TotalVariationMinimizer, FindsTheConstantBelowTheThresholdOfFidelity)
+{
+  // For small mu the minimiser is the mean: the dual field then bears all of the data.
+  Problem problem;
+  problem.Quadratic = 1e-3;
+  problem.Settings.StopTolerance = 1e-6;
+  const Index n = problem.Mesh.NumberOfVertices();
+  TotalVariationMinimizer minimizer(problem.Operators, PlainGradients(problem.Mesh, SerialFor()),
+    Vector::Constant(n, problem.Quadratic), Vector::Zero(n), problem.Fixed, problem.Settings);
+  Values u = problem.Data;
+  minimizer.Minimize(problem.Data, problem.Data, u);
+  const Eigen::RowVectorXd mean =
+    problem.Mesh.ControlAreas().transpose() * problem.Data / problem.Mesh.ControlAreas().sum();
+  EXPECT_LT((u.rowwise() - mean).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST(TotalVariationMinimizer, StretchedGradientsGiveTheAnisotropicCoefficients)
+{
+  const Surface s = Icosphere(2);
+  const auto mesh = MakeMesh(s);
+  const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
+  PlaneVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, directions);
+  frames.topRows(10).setZero();
+  const auto maps = StretchedGradients(*mesh, frames, std::sqrt(2.0), std::sqrt(0.3), SerialFor());
+  const EdgeValues c =
+    AnisotropicCoefficients(*mesh, IsotropicCoefficients(*mesh), frames, 2.0, 0.3);
+  for (Index t = 0; t < mesh->NumberOfTriangles(); ++t)
+  {
+    EXPECT_NEAR(c(t, 0), -mesh->Shapes()[t].Area() * maps[t].First.dot(maps[t].Second), 1e-13);
+  }
+}
+
+TEST(TotalVariationMinimizer, AbortsWithinAnIteration)
+{
+  Problem problem;
+  const Index n = problem.Mesh.NumberOfVertices();
+  TotalVariationMinimizer minimizer(problem.Operators, PlainGradients(problem.Mesh, SerialFor()),
+    Vector::Constant(n, 10.0), Vector::Zero(n), problem.Fixed, problem.Settings);
+  int calls = 0;
+  double last = 0.0;
+  const Monitor::Callback stop = [&](double progress)
+  {
+    EXPECT_GE(progress, last);
+    last = progress;
+    return ++calls < 7;
+  };
+  Values u = problem.Data;
+  EXPECT_THROW(minimizer.Minimize(problem.Data, problem.Data, u, Monitor(stop)), Aborted);
+  EXPECT_EQ(calls, 7);
+}
+
+TEST(TotalVariationMinimizer, SaysWhenTheIterationsEndIt)
+{
+  Problem problem;
+  problem.Settings.MaximumNumberOfIterations = 20;
+  const auto [energy, report] = problem.Minimum(1e-8);
+  EXPECT_EQ(report.Iterations, 20);
+  EXPECT_GT(report.Gap, 1e-8);
+  EXPECT_TRUE(std::isfinite(energy));
+}
