@@ -124,7 +124,7 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   , Fixed(std::move(fixed))
   , Options(settings)
   , Parallel(parallel)
-  , Solver(MakeConjugateGradientSolver(parallel))
+  , Descent(parallel)
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
   const double spacing = std::sqrt(mesh.ControlAreas().mean());
@@ -311,44 +311,38 @@ struct TotalVariationMinimizer::Pass
       });
   }
 
-  void GatherRightHandSide()
+  /// The change of the right-hand side goes into the residual.
+  void UpdateResidual()
   {
     const auto& begin = this->Mesh.VertexCornersBegin();
     const auto& corners = this->Mesh.VertexCorners();
     ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
       [&](Index i)
       {
-        const double area = this->Mesh.ControlAreas()[i];
-        const double mu = area * this->Self.Quadratic[i];
-        double* sum = &this->Self.RightHandSide(i, 0);
-        for (int k = 0; k < this->Count(); ++k)
-        {
-          sum[k] = mu * this->G(i, k);
-        }
-        if (this->Self.Absolute[i] > 0.0)
-        {
-          for (int k = 0; k < this->Count(); ++k)
-          {
-            sum[k] += area * this->Rho * (this->F(i, k) + this->Self.Q(i, k) - this->Self.C(i, k));
-          }
-        }
-        for (Index c = begin[i]; c < begin[i + 1]; ++c)
-        {
-          const double* corner = &this->Self.Corners(corners[c], 0);
-          for (int k = 0; k < this->Count(); ++k)
-          {
-            sum[k] += corner[k];
-          }
-        }
         if (this->Self.Fixed[i])
         {
-          this->Self.RightHandSide.row(i).setZero();
+          return;
+        }
+        const double area = this->Mesh.ControlAreas()[i];
+        const double mu = area * this->Self.Quadratic[i];
+        const double rho = this->Self.Absolute[i] > 0.0 ? area * this->Rho : 0.0;
+        double* side = &this->Self.RightHandSide(i, 0);
+        double* residual = &this->Self.Descent.Residual(i, 0);
+        for (int k = 0; k < this->Count(); ++k)
+        {
+          double sum = mu * this->G(i, k);
+          if (rho > 0.0)
+          {
+            sum += rho * (this->F(i, k) + this->Self.Q(i, k) - this->Self.C(i, k));
+          }
+          for (Index c = begin[i]; c < begin[i + 1]; ++c)
+          {
+            sum += this->Self.Corners(corners[c], k);
+          }
+          residual[k] += sum - side[k];
+          side[k] = sum;
         }
       });
-    if (this->Self.Load.size() > 0)
-    {
-      this->Self.RightHandSide += this->Self.Load;
-    }
   }
 
   double Energy() const
@@ -406,7 +400,7 @@ struct TotalVariationMinimizer::Pass
   {
     const auto& begin = this->Mesh.VertexCornersBegin();
     const auto& corners = this->Mesh.VertexCorners();
-    double* d = &this->Self.RightHandSide(i, 0); // free to use between two iterations
+    double* d = &this->Self.Dual(i, 0);
     std::fill(d + first, d + last, 0.0);
     for (Index c = begin[i]; c < begin[i + 1]; ++c)
     {
@@ -501,37 +495,40 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::MinimizeColumns(
     {
       pass.UpdateValues();
     }
-    pass.GatherRightHandSide();
-    this->Solver->Solve(this->RightHandSide, u);
+    pass.UpdateResidual();
+    this->Descent.Improve(u, InnerIterations);
   }
   monitor.Report(1.0);
   return report;
 }
 
-/// Sizes for as many columns as u has; the matrix with the fixed values of u.
+/// Sizes for as many columns as u has, and the residual of a right-hand side of zero.
 void TotalVariationMinimizer::Prepare(const Values& u)
 {
-  if (this->RightHandSide.cols() == u.cols())
+  if (this->RightHandSide.cols() != u.cols())
   {
-    return;
+    const Index triangles = this->Operators->Mesh().NumberOfTriangles();
+    this->P.resize(triangles, 2 * u.cols());
+    this->B.resize(triangles, 2 * u.cols());
+    this->Corners.resize(3 * static_cast<Eigen::Index>(triangles), u.cols());
+    this->RightHandSide.resize(u.rows(), u.cols());
+    this->Dual.resize(u.rows(), u.cols());
+    this->Descent.Residual.resize(u.rows(), u.cols());
+    if ((this->Absolute.array() > 0.0).any())
+    {
+      this->Q.resize(u.rows(), u.cols());
+      this->C.resize(u.rows(), u.cols());
+    }
+    this->Load = Values::Zero(u.rows(), u.cols());
+    if (this->Fixed.any())
+    {
+      this->Operators->Constrain(this->Matrix, this->Fixed, u, this->Load, this->Parallel);
+    }
+    this->Descent.SetMatrix(this->Matrix);
   }
-  const Index triangles = this->Operators->Mesh().NumberOfTriangles();
-  this->P.resize(triangles, 2 * u.cols());
-  this->B.resize(triangles, 2 * u.cols());
-  this->Corners.resize(3 * static_cast<Eigen::Index>(triangles), u.cols());
-  this->RightHandSide.resize(u.rows(), u.cols());
-  if ((this->Absolute.array() > 0.0).any())
-  {
-    this->Q.resize(u.rows(), u.cols());
-    this->C.resize(u.rows(), u.cols());
-  }
-  if (this->Fixed.any())
-  {
-    this->Load.resize(u.rows(), u.cols());
-    this->Operators->Constrain(this->Matrix, this->Fixed, u, this->Load, this->Parallel);
-  }
-  this->Solver->SetLimits({ 1e-14, InnerIterations });
-  this->Solver->SetMatrix(this->Matrix);
+  this->RightHandSide.setZero();
+  Multiply(this->Matrix, u, this->Descent.Residual, this->Parallel);
+  this->Descent.Residual = this->Load - this->Descent.Residual;
 }
 
 double TotalVariationMinimizer::NoiseEnergy() const

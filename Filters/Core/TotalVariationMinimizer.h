@@ -5,7 +5,8 @@
 #include "Assembler.h"
 #include "ChannelNorms.h"
 #include "EdgeFunctions.h"
-#include "LinearSolver.h"
+#include "Monitor.h"
+#include "QuadraticDescent.h"
 
 #include <memory>
 #include <vector>
@@ -92,11 +93,12 @@ private:
   double GradientPenalty; ///< r
   double ValuePenalty; ///< rho
   SparseMatrix Matrix;
-  std::unique_ptr<LinearSolver> Solver;
+  QuadraticDescent Descent;
   Values P, B; ///< per triangle: split gradient and scaled multiplier, x of all columns, then y
   Values Corners; ///< per triangle corner: what the triangle gives to a vertex
   Values Q, C; ///< per vertex: split value and scaled multiplier of L1 fidelity
   Values RightHandSide, Load;
+  Values Dual; ///< what the multipliers give to each vertex
 };
 
 } // namespace SurfaceDiffusion

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Coefficients.h"
+#include "Meshes.h"
+#include "QuadraticDescent.h"
+
+#include <gtest/gtest.h>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+/// A system M + K with k columns, and its descent.
+struct System
+{
+  std::shared_ptr<const Assembler> Operators = MakeAssembler(Icosphere(3));
+  const TriangleMesh& Mesh = Operators->Mesh();
+  SparseMatrix Matrix = Operators->Pattern();
+  QuadraticDescent Descent;
+  Values B, X;
+
+  explicit System(Eigen::Index columns)
+    : B(Noise(Mesh, columns))
+    , X(Values::Zero(Mesh.NumberOfVertices(), columns))
+  {
+    this->Operators->Fill(
+      this->Matrix, this->Mesh.ControlAreas(), 0.05, IsotropicCoefficients(this->Mesh));
+    this->Descent.SetMatrix(this->Matrix);
+    this->Descent.Residual = this->B;
+  }
+
+  Values TrueResidual() const
+  {
+    Values product(this->X.rows(), this->X.cols());
+    Multiply(this->Matrix, this->X, product);
+    return this->B - product;
+  }
+};
+
+} // namespace
+
+TEST(QuadraticDescent, KeepsTheResidualWhileTheRightHandSideMoves)
+{
+  for (const Eigen::Index columns : { 1, 2, 3, 5 })
+  {
+    System system(columns);
+    for (int call = 0; call < 20; ++call)
+    {
+      system.Descent.Improve(system.X, 3);
+      const Values change = 0.1 * Noise(system.Mesh, columns, call);
+      system.B += change;
+      system.Descent.Residual += change;
+      EXPECT_LT((system.Descent.Residual - system.TrueResidual()).cwiseAbs().maxCoeff(), 1e-12);
+    }
+  }
+}
+
+TEST(QuadraticDescent, EndsAtTheSolution)
+{
+  System system(3);
+  for (int call = 0; call < 100; ++call)
+  {
+    system.Descent.Improve(system.X, 4);
+  }
+  EXPECT_LT(system.TrueResidual().cwiseAbs().maxCoeff(), 1e-13);
+  const Values x = system.X;
+  system.Descent.Improve(system.X, 4); // nothing left to do
+  EXPECT_LT((system.X - x).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST(QuadraticDescent, ColumnsDoNotKnowOfEachOther)
+{
+  System all(3);
+  all.Descent.Improve(all.X, 4);
+  for (Eigen::Index k = 0; k < 3; ++k)
+  {
+    System one(1);
+    one.Descent.Residual = all.B.col(k);
+    one.Descent.Improve(one.X, 4);
+    EXPECT_TRUE(one.X == all.X.col(k));
+  }
+}
