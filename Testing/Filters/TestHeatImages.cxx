@@ -1,75 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "BandedImage.h"
 #include "FilterTest.h"
-#include "ImageTest.h"
 
-#include "vtkActor.h"
-#include "vtkCamera.h"
 #include "vtkFVMHeatFilter.h"
-#include "vtkLookupTable.h"
-#include "vtkPolyDataMapper.h"
-#include "vtkProperty.h"
-#include "vtkRenderer.h"
 
 #include <gtest/gtest.h>
 
-#include <random>
-
+using namespace BandedImage;
 using namespace FilterTest;
-
-namespace
-{
-
-/// Error of the picture of the filter's result in twelve bands of color over [low, high].
-double Error(vtkFVMHeatFilter* filter, double low, double high, const std::string& baseline,
-  const std::string& output = "")
-{
-  filter->Update();
-  vtkNew<vtkLookupTable> bands;
-  bands->SetNumberOfTableValues(12);
-  bands->SetTableRange(low, high);
-  bands->SetHueRange(0.67, 0.0);
-  bands->Build();
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(filter->GetOutput());
-  mapper->SetLookupTable(bands);
-  mapper->UseLookupTableScalarRangeOn();
-  mapper->InterpolateScalarsBeforeMappingOn();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->LightingOff();
-  vtkNew<vtkRenderer> renderer;
-  renderer->AddActor(actor);
-  renderer->SetBackground(1.0, 1.0, 1.0);
-  renderer->GetActiveCamera()->ParallelProjectionOn();
-  renderer->ResetCamera();
-  renderer->GetActiveCamera()->Zoom(1.4);
-  vtkNew<vtkRenderWindow> window;
-  ImageTest::Prepare(window);
-  window->AddRenderer(renderer);
-  return ImageTest::Error(window, baseline, output);
-}
-
-/// Two waves around the sphere and one along it.
-double Signal(const double* p)
-{
-  return std::sin(5.0 * p[0] + 1.0) + std::cos(6.0 * p[1]) + std::sin(4.0 * p[2]);
-}
-
-/// White noise, uniform in [-1, 1).
-class Noise
-{
-public:
-  double operator()(vtkIdType, int)
-  {
-    return static_cast<double>(this->Random()) / 0x80000000u - 1.0;
-  }
-
-private:
-  std::mt19937 Random;
-};
-
-} // namespace
 
 TEST(HeatImages, NoiseIsSmoothed)
 {
