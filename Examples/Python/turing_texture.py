@@ -1,0 +1,134 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Grow textures on surfaces: figure 8 of the paper.
+
+    turing_texture.py [surface.off or .vtp]
+
+Two chemicals react and diffuse, one much faster than the other, and a pattern grows out of noise:
+
+    du1/dt = D1 Lap u1 + F(u1, u2),   F = 16 - u1 u2,
+    du2/dt = D2 Lap u2 + G(u1, u2),   G = u1 u2 - u2 - 12.
+
+Drawn is u1. FeatureSize sets the width of the pattern, the ratio D1/D2 its kind: 5 makes spots, 16
+a labyrinth, 30 a net. Where D2 is larger along a direction than across it, stripes follow the
+direction, here that in which the surface bends most, smoothed. For each texture is told of how many
+pieces {u1 > median} consists and its Euler number (pieces minus holes).
+
+Without arguments: scans of libcgal-demo from the folder SURFACEDIFFUSION_MESH_DIR, or a made-up
+surface where that is not set. Written is turing_texture.png.
+
+Try next: SetKineticsToGrayScott() and the others, with AutomaticTimeStepOn(); rates per cell
+(input array 4), which let spots grow along the body; GenerateTimeStepsOn(), which keeps the way the
+pattern came.
+"""
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from pictures import Panel, display_missing, save_picture
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from surface_data import (
+    array_of, mean_edge_length, pebble, points_of, read_mesh, refined, triangles_of)
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+
+from surfacediffusion import vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter
+
+
+@dataclass
+class Texture:
+    title: str
+    ratio: float        # D1/D2 across the direction, if there is one
+    low: tuple          # colours
+    high: tuple
+    mesh: str
+    view: tuple
+    up: tuple
+    stripes: bool = False
+
+
+TEXTURES = [
+    Texture("spots", 5, (0.93, 0.80, 0.55), (0.30, 0.16, 0.07), "bunny00", (0, 0, 1), (0, 1, 0)),
+    Texture("labyrinth", 16, (0.13, 0.24, 0.33), (0.87, 0.90, 0.80), "refined_elephant",
+            (0.4, 0.25, 1), (0, 1, 0)),
+    Texture("net", 30, (0.95, 0.93, 0.86), (0.62, 0.25, 0.16), "bear", (0, 0, 1), (0, 1, 0)),
+    Texture("stripes", 8, (0.96, 0.95, 0.92), (0.10, 0.10, 0.11), "camel", (1, 0.1, 0.3), (0, 1, 0),
+            stripes=True),
+]
+VERTICES = 40_000
+
+
+def grown(surface, texture, size):
+    """The texture on the surface, with features of this size, and what it took."""
+    turing = vtkTuringTextureFilter()
+    turing.SetInputData(surface)
+    turing.SetFeatureSize(size)
+    turing.SetDiffusionRate1(2.6 * texture.ratio)
+    if texture.stripes:
+        field = vtkSurfaceDirectionFieldFilter()
+        field.SetInputData(surface)
+        field.SetMethodToCurvatureAligned()
+        field.SetPrincipalDirectionToMaximum()
+        field.SetSmoothingLength(size)
+        field.SetHintWeight(0.0005)
+        turing.SetInputConnection(field.GetOutputPort())
+        turing.SetInputArrayToProcess(
+            2, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "Direction")
+        turing.SetDiffusionRate2(2 * 2.6)
+        turing.SetDiffusionRateAcross2(2.6)
+    turing.SetTimeStep(1 / 8)
+    turing.SetNumberOfTimeSteps(800)
+    turing.SetStopTolerance(0.03)  # until the pattern stands
+    turing.ColorOutputOn()
+    turing.SetLowColor(texture.low)
+    turing.SetHighColor(texture.high)
+    turing.Update()
+    history = turing.GetOutputDataObject(1)
+    steps = history.GetNumberOfRows() - 1
+    seconds = vtk_to_numpy(history.GetColumnByName("Seconds"))
+    return turing.GetOutput(), steps, seconds.sum()
+
+
+def pieces_and_euler_number(surface, inside):
+    """Of the part of the surface whose corners are all inside."""
+    faces = triangles_of(surface)
+    pairs = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    edges = np.unique(np.sort(pairs, axis=1), axis=0)
+    joined = edges[inside[edges].all(axis=1)]
+    graph = coo_matrix((np.ones(len(joined)), joined.T), shape=(len(inside), len(inside)))
+    pieces = len(np.unique(connected_components(graph)[1][inside]))
+    euler = inside.sum() - len(joined) + inside[faces].all(axis=1).sum()
+    return pieces, euler
+
+
+def main():
+    folder = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
+    panels = []
+    for texture in TEXTURES:
+        if len(sys.argv) > 1:
+            surface = read_mesh(sys.argv[1])
+        elif folder:
+            surface = read_mesh(Path(folder) / f"{texture.mesh}.off")
+        else:
+            surface = pebble()
+        if surface.GetNumberOfPoints() < VERTICES / 2:
+            surface = refined(surface, VERTICES / 2)
+        size = max(12 * mean_edge_length(surface), np.ptp(points_of(surface), axis=0).max() / 28)
+        result, steps, seconds = grown(surface, texture, size)
+        u1 = array_of(result, "u1")
+        pieces, euler = pieces_and_euler_number(surface, u1 > np.median(u1))
+        print(f"{texture.title:9} on {surface.GetNumberOfPoints()} vertices: {pieces} pieces, Euler "
+              f"number {euler}; {steps} steps in {seconds:.1f} s")
+        panels.append(Panel(result, "TextureColor", texture.title,
+                            f"{pieces} pieces, Euler number {euler}", texture.view, texture.up))
+    if display_missing():
+        print("no picture: there is no display")
+    else:
+        save_picture("turing_texture.png", panels, 4, (400, 400))
+
+
+if __name__ == "__main__":
+    main()
