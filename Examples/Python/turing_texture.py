@@ -106,6 +106,7 @@ def pieces_and_euler_number(surface, inside):
 
 def main():
     folder = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
+    files = len(sys.argv) > 1 or folder
     panels = []
     for texture in TEXTURES:
         if len(sys.argv) > 1:
@@ -114,8 +115,7 @@ def main():
             surface = read_mesh(Path(folder) / f"{texture.mesh}.off")
         else:
             surface = pebble()
-        if surface.GetNumberOfPoints() < VERTICES / 2:
-            surface = refined(surface, VERTICES / 2)
+        surface = refined(surface, VERTICES / 2 if files else VERTICES / 8)
         size = max(12 * mean_edge_length(surface), np.ptp(points_of(surface), axis=0).max() / 28)
         result, steps, seconds = grown(surface, texture, size)
         u1 = array_of(result, "u1")
