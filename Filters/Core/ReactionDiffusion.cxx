@@ -232,7 +232,9 @@ void ReactionDiffusion::React(const Pair& u, Pair& f) const
     });
 }
 
-/// Force = l = max(0, (K u)_i / A_i - f) where u = 0, else 0: what holds u there; f += l.
+/// Force = l where u = 0, else 0: what holds u there against f and the diffusion -(K u)_i / A_i;
+/// f += l. From neighbours of 0 and more diffusion only brings, except through the negative weights
+/// of obtuse triangles, which without the inner bound would shake slivers.
 void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
 {
   if (!this->Options.KeepNonNegative)
@@ -255,7 +257,7 @@ void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
             sum += a.value() * u[c](a.index());
           }
           const double diffusion = (areas[i] * u[c](i) - sum) / (this->ImplicitTime * areas[i]);
-          force = std::max(0.0, -diffusion - f[c](i));
+          force = std::max(0.0, -std::max(0.0, diffusion) - f[c](i));
         }
         this->Force[c](i) = force;
         f[c](i) += force;

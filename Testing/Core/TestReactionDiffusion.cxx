@@ -284,6 +284,21 @@ TEST(ReactionDiffusion, TuringRunsAwayBelowZeroUnlessHeld)
   }
 }
 
+TEST(ReactionDiffusion, SliversDoNotShakeWhatIsHeldAtZero)
+{
+  // Sheared until the angles are between 0.3 and 179 degrees: half of the weights are negative.
+  Surface s = Strip(30, 30);
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    s.Vertices(i, 0) += 3.0 * s.Vertices(i, 1);
+    s.Vertices(i, 1) *= 0.05;
+  }
+  const auto model = MakeTexture(MakeAssembler(s), Settings());
+  Advance(*model, 240);
+  EXPECT_LT(model->State().maxCoeff(), 30.0);
+  EXPECT_GE(model->State().minCoeff(), 0.0);
+}
+
 TEST(ReactionDiffusion, BlowUpIsToldNotPassedOn)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
