@@ -11,6 +11,7 @@
 #include "Private/SMPParallelFor.h"
 #include "Private/SurfaceRun.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFloatArray.h"
@@ -49,13 +50,8 @@ vtkSmartPointer<vtkPolyData> WithModerateCoordinates(vtkPolyData* block)
   result->SetPoints(block->GetPoints());
   result->SetPolys(block->GetPolys());
   result->SetStrips(block->GetStrips());
-  double bounds[6];
-  result->GetBounds(bounds);
-  double extent = 0.0;
-  for (int k = 0; k < 3; ++k)
-  {
-    extent = std::max(extent, 0.5 * bounds[2 * k + 1] - 0.5 * bounds[2 * k]);
-  }
+  const vtkBoundingBox box(result->GetBounds());
+  const double extent = box.GetMaxLength();
   if (extent > 0.0 && (extent > LargestExtent || extent < SmallestExtent))
   {
     vtkNew<vtkPoints> points;
@@ -67,7 +63,7 @@ vtkSmartPointer<vtkPolyData> WithModerateCoordinates(vtkPolyData* block)
       block->GetPoint(i, x);
       for (int k = 0; k < 3; ++k)
       {
-        x[k] = x[k] / extent - bounds[2 * k] / extent;
+        x[k] = x[k] / extent - box.GetBound(2 * k) / extent;
       }
       points->SetPoint(i, x);
     }
