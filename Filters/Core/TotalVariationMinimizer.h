@@ -85,13 +85,12 @@ private:
 
   std::shared_ptr<const Assembler> Operators;
   std::vector<GradientMap> Gradients;
-  Vector Areas; ///< of the triangles
   Vector Quadratic, Absolute;
   Flags Fixed;
   Settings Options;
   const ParallelFor& Parallel;
-  double GradientPenalty; ///< r
-  double ValuePenalty; ///< rho
+  Vector GradientPenalty; ///< r per triangle, times its area
+  Vector ValuePenalty; ///< rho per vertex, times its area
   SparseMatrix Matrix;
   QuadraticDescent Descent;
   Values P, B; ///< per triangle: split gradient and scaled multiplier, x of all columns, then y

@@ -140,6 +140,25 @@ TEST(TotalVariationMinimizer, StretchedGradientsGiveTheAnisotropicCoefficients)
   }
 }
 
+TEST(TotalVariationMinimizer, SliversAndVeryUnevenTrianglesNeedFewIterationsToo)
+{
+  // Triangles 1000 times longer than high; next, two meshes of edges 1 and 1/1000 in one problem.
+  for (const Surface& s : { Strip(40, 10, 10.0, 0.0025), Joined(Icosphere(3), Icosphere(3, 1e-3)) })
+  {
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values f = Noise(mesh);
+    const Vector mu = (10.0 * mesh.ControlAreas().array().rsqrt()).matrix();
+    TotalVariationMinimizer minimizer(assembler, PlainGradients(mesh, SerialFor()), mu,
+      Vector::Zero(mesh.NumberOfVertices()), Flags::Constant(mesh.NumberOfVertices(), false),
+      { {}, ChannelCoupling::Joint, 2.0, 1e-4, 10000 });
+    Values u = f;
+    const auto report = minimizer.Minimize(f, f, u);
+    EXPECT_LE(report.Gap, 1e-4);
+    EXPECT_LE(report.Iterations, 1000);
+  }
+}
+
 TEST(TotalVariationMinimizer, AbortsWithinAnIteration)
 {
   Problem problem;
