@@ -20,6 +20,8 @@ from vtkmodules.vtkRenderingCore import (
 
 INK = (0.13, 0.14, 0.16)
 SMALL = 300  # panels of less height have a title only
+ENLARGED = 3  # how much close-ups are
+BESIDE = 0.33  # width of a close-up, which is a square on the panel's right
 FINER = 2  # pictures are drawn this much larger and shrunk, which smooths every edge
 
 
@@ -33,6 +35,7 @@ class Panel:
     up: tuple = (0, 1, 0)
     table: vtkLookupTable = None
     bar: bool = False              # whether to draw the table's colour bar
+    closeup: tuple = None          # a place, as fractions of width and height, to show enlarged
     ball: tuple = None             # (centre, radius): fill the panel with this part alone
 
 
@@ -119,14 +122,20 @@ def bar_of(panel, size):
 
 
 def renderer_of(panel, height):
-    renderer = vtkRenderer()
-    renderer.SetBackground(1, 1, 1)
+    renderer = lit_renderer(panel)
     renderer.AddActor(actor_of(panel))
     renderer.AddActor(text_of(panel.title, max(13, height // 26), 0.93, bold=True))
     if height >= SMALL:
         renderer.AddActor(text_of(panel.note, height // 34, 0.885))
         if panel.bar:
             renderer.AddActor(bar_of(panel, height // 40))
+    return renderer
+
+
+def lit_renderer(panel):
+    """Lights and a camera that looks the panel's way."""
+    renderer = vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
     renderer.AutomaticLightCreationOff()
     for place, strength in (((-0.5, 0.7, 1), 0.88), ((0.8, -0.1, 0.8), 0.35)):
         light = vtkLight()
@@ -141,27 +150,38 @@ def renderer_of(panel, height):
     return renderer
 
 
-def fit(renderer, panel, height):
-    """Fill the panel with the surface as this camera sees it, between the title and the bar."""
+def seen(renderer, panel):
+    """The surface's bounds as the camera sees it: low and high in its two directions."""
     renderer.ResetCamera()
-    camera = renderer.GetActiveCamera()
-    matrix = camera.GetViewTransformMatrix()
+    matrix = renderer.GetActiveCamera().GetViewTransformMatrix()
     to_eye = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(2)])
-    if panel.ball:
-        centre, radius = panel.ball
-        middle = to_eye[:, :3] @ centre + to_eye[:, 3]
-        low, high = middle - radius, middle + radius
-    else:
-        seen = vtk_to_numpy(panel.surface.GetPoints().GetData()) @ to_eye[:, :3].T + to_eye[:, 3]
-        low, high = seen.min(axis=0), seen.max(axis=0)
+    places = vtk_to_numpy(panel.surface.GetPoints().GetData()) @ to_eye[:, :3].T + to_eye[:, 3]
+    return places.min(axis=0), places.max(axis=0)
+
+
+def fit(renderer, panel, height):
+    """Fill the panel with the surface as this camera sees it, between the title and the bar and
+    left of the close-up. Returns its scale."""
+    low, high = seen(renderer, panel)
     top = 0.85 if height >= SMALL else 0.9
     bottom = 0.17 if panel.bar and height >= SMALL else 0.04
+    right = 1 - BESIDE if panel.closeup else 1
     aspect = renderer.GetTiledAspectRatio()
     wide, tall = high - low
-    scale = 0.5 * max(1.06 * wide / aspect, tall / (top - bottom))
+    scale = 0.5 * max(1.06 * wide / aspect / right, tall / (top - bottom))
+    camera = renderer.GetActiveCamera()
     camera.SetParallelScale(scale)
     x, y = (low + high) / 2 / scale
-    camera.SetWindowCenter(x / aspect, y - (top + bottom - 1))
+    camera.SetWindowCenter(x / aspect + 1 - right, y - (top + bottom - 1))
+    return scale
+
+
+def enlarge(renderer, panel, scale):
+    """Look at the panel's close-up at this scale."""
+    low, high = seen(renderer, panel)
+    camera = renderer.GetActiveCamera()
+    camera.SetParallelScale(scale)
+    camera.SetWindowCenter(*((low + (high - low) * panel.closeup) / scale))
 
 
 def save_picture(path, panels, columns, panel_size):
@@ -175,7 +195,15 @@ def save_picture(path, panels, columns, panel_size):
         renderer = renderer_of(panel, panel_size[1])
         renderer.SetViewport(x / columns, y / rows, (x + 1) / columns, (y + 1) / rows)
         window.AddRenderer(renderer)
-        fit(renderer, panel, panel_size[1])
+        scale = fit(renderer, panel, panel_size[1])
+        if panel.closeup:
+            closeup = lit_renderer(panel)
+            closeup.AddActor(actor_of(panel))
+            half = BESIDE / 2 * panel_size[0] / panel_size[1]  # of its height, in panels
+            closeup.SetViewport((x + 0.99 - BESIDE) / columns, (y + 0.45 - half) / rows,
+                                (x + 0.99) / columns, (y + 0.45 + half) / rows)
+            window.AddRenderer(closeup)
+            enlarge(closeup, panel, 2 * half * scale / ENLARGED)
     window.Render()
     grab = vtkWindowToImageFilter()
     grab.SetInput(window)

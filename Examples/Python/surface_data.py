@@ -3,12 +3,13 @@ from pathlib import Path
 
 import numpy as np
 from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
-from vtkmodules.vtkFiltersModeling import vtkLinearSubdivisionFilter
+from vtkmodules.vtkFiltersModeling import vtkLinearSubdivisionFilter, vtkLoopSubdivisionFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkIOImage import vtkImageReader2Factory
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 
@@ -59,12 +60,13 @@ def mean_edge_length(surface):
     return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean()
 
 
-def refined(surface, more_than):
-    """Every triangle cut into four until there are more than so many vertices."""
+def refined(surface, more_than, smooth=False):
+    """Every triangle cut into four until there are more than so many vertices; `smooth` also rounds
+    what the triangles had for corners (Loop's scheme)."""
     times = 0
     while surface.GetNumberOfPoints() * 4 ** times <= more_than:
         times += 1
-    cutter = vtkLinearSubdivisionFilter()
+    cutter = vtkLoopSubdivisionFilter() if smooth else vtkLinearSubdivisionFilter()
     cutter.SetInputData(surface)
     cutter.SetNumberOfSubdivisions(times)
     cutter.Update()
@@ -123,6 +125,21 @@ def read_off(path):
     return make_surface(xyz, face[:, 1:])
 
 
+def read_photo(path):
+    """A PNG or JPEG file as an array of rows, from below, of 1 or 3 values from 0 to 1."""
+    if not Path(path).is_file():
+        raise DataError(f"{path}: no such file")
+    reader = vtkImageReader2Factory.CreateImageReader2(str(path))
+    if reader is None:
+        raise DataError(f"{path}: not a picture")
+    reader.SetFileName(str(path))
+    reader.Update()
+    picture = reader.GetOutput()
+    width, height, _ = picture.GetDimensions()
+    values = vtk_to_numpy(picture.GetPointData().GetScalars()).reshape(height, width, -1) / 255
+    return values[:, :, :3] if values.shape[2] >= 3 else values[:, :, :1]
+
+
 def read_gifti(path, count):
     """The arrays of a GIFTI file, the neuroimaging format for surfaces and data on them."""
     try:
@@ -166,6 +183,15 @@ def pebble():
     return make_surface(bumps * points, triangles_of(ball.GetOutput()))
 
 
+def half_pebble():
+    """An open surface."""
+    whole = pebble()
+    front = points_of(whole)[:, 2] > 0
+    number = np.cumsum(front) - 1
+    triangles = triangles_of(whole)
+    return make_surface(points_of(whole)[front], number[triangles[front[triangles].all(axis=1)]])
+
+
 def pebble_cortex():
     """What read_cortex returns, for a pebble of the size of a brain."""
     small = pebble()
@@ -182,6 +208,33 @@ GLASS = np.array([[0.83, 0.20, 0.18], [0.95, 0.61, 0.15], [0.98, 0.84, 0.33], [0
                   [0.10, 0.45, 0.60], [0.44, 0.73, 0.83], [0.42, 0.28, 0.55], [0.90, 0.50, 0.55],
                   [0.94, 0.91, 0.82]])
 LEAD = np.array([0.10, 0.10, 0.14])
+
+
+def paint(surface, photo, view, up):
+    """The values that the points get when a photograph, just large enough to cover the surface, is
+    projected onto it against the direction of view, through to its back."""
+    view = np.array(view, float)
+    right = np.cross(up, view)
+    upwards = np.cross(view, right)
+    axes = np.array([right / np.linalg.norm(right), upwards / np.linalg.norm(upwards)])
+    place = points_of(surface) @ axes.T
+    low, high = place.min(axis=0), place.max(axis=0)
+    pixels = (np.array(photo.shape[1::-1]) / (high - low)).min()  # per unit of length
+
+    # Where pixels are smaller than triangles their means are drawn.
+    block = max(1, round(pixels * mean_edge_length(surface)))
+    rows, columns = photo.shape[0] // block, photo.shape[1] // block
+    photo = photo[:rows * block, :columns * block]
+    photo = photo.reshape(rows, block, columns, block, -1).mean(axis=(1, 3))
+
+    size = np.array([columns, rows])
+    place = (place - (low + high) / 2) * pixels / block + (size - 1) / 2
+    place = np.clip(place, 0, size - 1)
+    corner = np.minimum(place.astype(int), size - 2)
+    x, y = corner.T
+    s, t = (place - corner).T[:, :, None]
+    return ((1 - t) * ((1 - s) * photo[y, x] + s * photo[y, x + 1])
+            + t * ((1 - s) * photo[y + 1, x] + s * photo[y + 1, x + 1]))
 
 
 def spread_points(points, count):
@@ -214,6 +267,11 @@ def stained_glass(surface, seed=4):
     return np.rint(255 * colour).astype(np.uint8)
 
 
+def patches(surface):
+    """Paints wide patches of two colours from 0 to 1."""
+    return GLASS[np.where(waves(points_of(surface)) > 0.3, 8, 4)]
+
+
 def with_noise(colour, fraction, seed=1):
     """Gaussian noise whose standard deviation is this fraction of 255, clipped to 8 bits."""
     random = np.random.default_rng(seed)
@@ -221,8 +279,9 @@ def with_noise(colour, fraction, seed=1):
     return np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
 
 
-def damage(surface, fraction, seed=2):
-    """Marks this fraction of the points as missing: half of it scratches, half of it spots."""
+def damage(surface, fraction, scratches=0.5, width=4, seed=2):
+    """Marks this fraction of the points as missing. So much of it are scratches, so many mean edge
+    lengths wide, the rest are spots."""
     points, h = points_of(surface), mean_edge_length(surface)
     triangles = triangles_of(surface)
     random = np.random.default_rng(seed)
@@ -231,10 +290,11 @@ def damage(surface, fraction, seed=2):
         a, b, c = points[triangles[random.integers(len(triangles))]]
         away = points - (a + b + c) / 3
         distance = np.linalg.norm(away, axis=1)
-        if missing.mean() < fraction / 2:  # a scratch: near a plane that cuts the surface upright
+        if missing.mean() < scratches * fraction:
+            # Near a plane that cuts the surface upright.
             across = random.normal() * (b - a) + random.normal() * (c - a)
             off = np.abs(away @ across) / np.linalg.norm(across)
-            hit = (off < 2 * h) & (distance < random.uniform(30, 90) * h)
+            hit = (off < width / 2 * h) & (distance < random.uniform(30, 90) * h)
         else:
             hit = distance < random.uniform(2, 10) * h
         missing |= hit
