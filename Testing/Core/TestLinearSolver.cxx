@@ -219,6 +219,25 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, AnySolver,
     Kind{ "AutomaticIterative", [] { return MakeAutomaticSolver(OneShortStep()); } }),
   [](const auto& parameter) { return parameter.param.Name; });
 
+// It leaves out of its factor what is below round-off, much of it where steps are small.
+TEST(Cholesky, IsExactToRoundOffAtSmallAndLargeSteps)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const double h = assembler->Mesh().TotalEdgeLength() / assembler->Mesh().NumberOfEdges();
+  for (const double number : { 1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e6 })
+  {
+    const SparseMatrix matrix = HeatMatrix(*assembler, number * h * h);
+    const Values exact = Noise(assembler->Mesh(), 1);
+    Values b = exact;
+    Multiply(matrix, exact, b);
+    Values x = Values::Zero(b.rows(), 1);
+    const auto solver = MakeCholeskySolver();
+    solver->SetMatrix(matrix);
+    EXPECT_LT(solver->Solve(b, x).Residual, 2e-15) << number;
+    EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-13 * (1.0 + number)) << number;
+  }
+}
+
 TEST(ConjugateGradient, ReportsThatItDidNotConverge)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
