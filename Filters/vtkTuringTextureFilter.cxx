@@ -24,6 +24,8 @@
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <thread>
 
 using namespace SurfaceDiffusion;
 
@@ -102,6 +104,17 @@ double WavelengthOf(const PatternForecast& forecast)
   return forecast.SquaredWaveNumber > 0.0
     ? 2.0 * std::acos(-1.0) / std::sqrt(forecast.SquaredWaveNumber)
     : 0.0;
+}
+
+/// A factor's substitution runs on one thread, so two are better; the loops of conjugate gradients
+/// run on all. The back end Sequential is ParaView's default, nobody's wish for one thread.
+bool SolveSideBySide(bool direct)
+{
+  if (std::string(vtkSMPTools::GetBackend()) == "Sequential")
+  {
+    return std::thread::hardware_concurrency() > 1;
+  }
+  return direct && vtkSMPTools::GetEstimatedNumberOfThreads() > 1;
 }
 
 /// An array of one value per point, 0 where a point takes no part, unless `source` has a value.
@@ -479,8 +492,7 @@ std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& inp
     chemicals[c].Coefficients = AnisotropicCoefficients(
       mesh, isotropic, frames, rates.Along[c], rates.Across[c], input.Parallel);
   }
-  // A factor's substitution runs on one thread; the loops of conjugate gradients run on all.
-  settings.SideBySide = direct && vtkSMPTools::GetEstimatedNumberOfThreads() > 1;
+  settings.SideBySide = SolveSideBySide(direct);
   return std::make_unique<ReactionDiffusion>(input.Surface.Operators, reaction,
     std::move(chemicals), std::move(input.Data), settings, input.Parallel);
 }

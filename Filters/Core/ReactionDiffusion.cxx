@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <stdexcept>
-#include <thread>
 
 namespace SurfaceDiffusion
 {
@@ -110,6 +108,10 @@ void ReactionDiffusion::Prepare(const Monitor& monitor)
         matrix, this->Data.Fixed, this->New[c], this->Load[c], this->Parallel);
     }
     this->Chemicals[c].Solver->SetMatrix(matrix, monitor.Part(0.5 * c, 0.5 * c + 0.5));
+  }
+  if (this->Options.SideBySide)
+  {
+    this->Second = std::make_unique<Worker>([this] { this->SolveFor(1, Monitor()); });
   }
   this->Prepared = true;
 }
@@ -268,47 +270,49 @@ void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
 /// New = the solutions for the right-hand sides.
 void ReactionDiffusion::Solve(StepReport& report, const Monitor& monitor)
 {
-  std::array<SolveReport, 2> reports;
-  std::array<std::exception_ptr, 2> failures;
-  const auto solve = [&](int c, const Monitor& progress)
+  if (this->Second)
   {
-    try
-    {
-      reports[c] = this->Chemicals[c].Solver->Solve(this->RightHandSide[c], this->New[c], progress);
-    }
-    catch (...)
-    {
-      failures[c] = std::current_exception();
-    }
-  };
-  if (this->Options.SideBySide)
-  {
-    std::thread second([&] { solve(1, Monitor()); });
-    solve(0, monitor);
-    second.join();
+    this->Second->Start();
+    this->SolveFor(0, monitor);
+    this->Second->Wait();
   }
   else
   {
-    solve(0, monitor.Part(0.0, 0.5));
-    solve(1, monitor.Part(0.5, 1.0));
+    this->SolveFor(0, monitor.Part(0.0, 0.5));
+    this->SolveFor(1, monitor.Part(0.5, 1.0));
   }
   for (int c = 0; c < 2; ++c)
   {
-    if (failures[c] && !this->RightHandSide[c].allFinite())
+    const Solution& solution = this->Solutions[c];
+    if (solution.Failure && !this->RightHandSide[c].allFinite())
     {
       throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
                                "other parameters of the kinetics, or clamp at zero");
     }
-    if (failures[c])
+    if (solution.Failure)
     {
-      std::rethrow_exception(failures[c]);
+      std::rethrow_exception(solution.Failure);
     }
-    if (!reports[c].Converged)
+    if (!solution.Report.Converged)
     {
-      throw NotConverged(reports[c]);
+      throw NotConverged(solution.Report);
     }
-    report.Iterations += reports[c].Iterations;
-    report.Residual = std::max(report.Residual, reports[c].Residual);
+    report.Iterations += solution.Report.Iterations;
+    report.Residual = std::max(report.Residual, solution.Report.Residual);
+  }
+}
+
+void ReactionDiffusion::SolveFor(int c, const Monitor& monitor)
+{
+  this->Solutions[c] = Solution();
+  try
+  {
+    this->Solutions[c].Report =
+      this->Chemicals[c].Solver->Solve(this->RightHandSide[c], this->New[c], monitor);
+  }
+  catch (...)
+  {
+    this->Solutions[c].Failure = std::current_exception();
   }
 }
 

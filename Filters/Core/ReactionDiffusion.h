@@ -6,9 +6,11 @@
 #include "Evolution.h"
 #include "Kinetics.h"
 #include "LinearSolver.h"
+#include "Worker.h"
 
 #include <array>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <vector>
 
@@ -97,12 +99,19 @@ public:
 private:
   using Pair = std::array<Values, 2>; ///< one column per chemical
 
+  struct Solution
+  {
+    SolveReport Report;
+    std::exception_ptr Failure;
+  };
+
   void Prepare(const Monitor& monitor);
   void FirstOrderStep(StepReport& report, const Monitor& monitor);
   void SecondOrderStep(StepReport& report, const Monitor& monitor);
   void React(const Pair& u, Pair& f) const;
   void AddHoldingForce(const Pair& u, Pair& f);
   void Solve(StepReport& report, const Monitor& monitor);
+  void SolveFor(int chemical, const Monitor& monitor);
   void Project(double dt, StepReport& report);
   void FinishStep();
 
@@ -119,6 +128,8 @@ private:
   Pair Load; ///< what fixed neighbours give to the right-hand side
   Values U;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;
+  std::array<Solution, 2> Solutions;
+  std::unique_ptr<Worker> Second; ///< solves for u2; last: it uses the others
 };
 
 } // namespace SurfaceDiffusion

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Allocations.h"
 #include "Coefficients.h"
 #include "DispersionRelation.h"
 #include "Frames.h"
@@ -572,6 +573,22 @@ TEST(ReactionDiffusion, ThreadsDoNotChangeABit)
       EXPECT_TRUE(threaded->State() == serial->State());
       EXPECT_EQ(threaded->Energy(), serial->Energy());
     }
+  }
+}
+
+TEST(ReactionDiffusion, StepsAfterTheFirstAllocateNothing)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  for (const bool sideBySide : { false, true })
+  {
+    Settings settings;
+    settings.SideBySide = sideBySide;
+    settings.StopTolerance = 1e-6;
+    const auto model = MakeTexture(assembler, settings, SerialFor(), false);
+    Advance(*model, 1);
+    const long before = NumberOfAllocations();
+    Advance(*model, 100);
+    EXPECT_EQ(NumberOfAllocations(), before) << sideBySide;
   }
 }
 
