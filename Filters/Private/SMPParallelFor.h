@@ -6,6 +6,9 @@
 
 #include "vtkSMPTools.h"
 
+#include <exception>
+#include <mutex>
+
 /// The core's loops on VTK's threads.
 class SMPParallelFor : public SurfaceDiffusion::ParallelFor
 {
@@ -22,9 +25,26 @@ public:
       body(0, count);
       return;
     }
-    const auto loop = [&body](vtkIdType begin, vtkIdType end)
-    { body(static_cast<Index>(begin), static_cast<Index>(end)); };
+    // An exception that left a thread of VTK's would end the program (want of memory).
+    std::exception_ptr failure;
+    std::mutex ofFailure;
+    const auto loop = [&](vtkIdType begin, vtkIdType end)
+    {
+      try
+      {
+        body(static_cast<Index>(begin), static_cast<Index>(end));
+      }
+      catch (...)
+      {
+        const std::lock_guard<std::mutex> lock(ofFailure);
+        failure = std::current_exception();
+      }
+    };
     vtkSMPTools::For(0, count, loop);
+    if (failure)
+    {
+      std::rethrow_exception(failure);
+    }
   }
 
   /// The core keeps references: one object for all.
