@@ -7,26 +7,31 @@
 #include "Core/UnitVectors.h"
 #include "Core/VertexFit.h"
 #include "Private/EnumText.h"
+#include "Private/NewArray.h"
 #include "Private/PointArrays.h"
 #include "Private/SMPParallelFor.h"
 #include "Private/SurfaceRun.h"
 
 #include "vtkBoundingBox.h"
+#include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkInformation.h"
+#include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkPolyDataNormals.h"
+#include "vtkPolygon.h"
 
 #include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <stdexcept>
+#include <vector>
 
 using SurfaceDiffusion::HarmonicMap;
 
@@ -55,8 +60,7 @@ vtkSmartPointer<vtkPolyData> WithModerateCoordinates(vtkPolyData* block)
   if (extent > 0.0 && (extent > LargestExtent || extent < SmallestExtent))
   {
     vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->SetNumberOfPoints(block->GetNumberOfPoints());
+    points->SetData(NewArray<vtkDoubleArray>("Points", 3, block->GetNumberOfPoints()));
     for (vtkIdType i = 0; i < block->GetNumberOfPoints(); ++i)
     {
       double x[3];
@@ -72,25 +76,102 @@ vtkSmartPointer<vtkPolyData> WithModerateCoordinates(vtkPolyData* block)
   return result;
 }
 
+/// A copy in the precision of `type`.
+vtkSmartPointer<vtkPoints> ConvertPoints(vtkPoints* from, int type)
+{
+  const vtkIdType count = from->GetNumberOfPoints();
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  switch (type)
+  {
+    case VTK_DOUBLE:
+      points->SetData(NewArray<vtkDoubleArray>("Points", 3, count));
+      break;
+    case VTK_FLOAT:
+      points->SetData(NewArray<vtkFloatArray>("Points", 3, count));
+      break;
+    default:
+      points->SetDataType(type);
+      points->SetNumberOfPoints(count);
+      break;
+  }
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    points->SetPoint(i, from->GetPoint(i));
+  }
+  return points;
+}
+
+/// Adds the normals of the polygons to those of their points, one polygon after the other: sums in
+/// the order of threads would differ from run to run, as those of vtkPolyDataNormals do.
+class NormalSums
+{
+public:
+  explicit NormalSums(vtkPolyData* block)
+    : Coordinates(block->GetPoints())
+    , Sums(3 * static_cast<std::size_t>(block->GetNumberOfPoints()), 0.0)
+  {
+    this->AddCells(block->GetPolys(), false);
+    this->AddCells(block->GetStrips(), true);
+  }
+
+  std::vector<double>& Get() { return this->Sums; }
+
+private:
+  void AddCells(vtkCellArray* cells, bool strips)
+  {
+    const vtkIdType count = cells ? cells->GetNumberOfCells() : 0;
+    const vtkIdType points = this->Coordinates->GetNumberOfPoints();
+    for (vtkIdType c = 0; c < count; ++c)
+    {
+      vtkIdType size = 0;
+      const vtkIdType* ids = nullptr;
+      cells->GetCellAtId(c, size, ids);
+      if (size < 3 ||
+        std::any_of(ids, ids + size, [&](vtkIdType id) { return id < 0 || id >= points; }))
+      {
+        continue; // an error, told later with others of its kind
+      }
+      if (!strips)
+      {
+        this->AddPolygon(size, ids);
+      }
+      for (vtkIdType i = 0; strips && i + 2 < size; ++i)
+      {
+        const vtkIdType corners[3] = { ids[i], ids[i + 1 + i % 2], ids[i + 2 - i % 2] };
+        this->AddPolygon(3, corners);
+      }
+    }
+  }
+
+  void AddPolygon(vtkIdType size, const vtkIdType* ids)
+  {
+    double normal[3];
+    vtkPolygon::ComputeNormal(this->Coordinates, static_cast<int>(size), ids, normal);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        this->Sums[3 * ids[i] + k] += normal[k];
+      }
+    }
+  }
+
+  vtkPoints* Coordinates;
+  std::vector<double> Sums;
+};
+
 /// One normal per point, the mean of those of its polygons; zero where there is none.
 vtkSmartPointer<vtkDataArray> ComputeNormals(vtkPolyData* block)
 {
-  vtkNew<vtkPolyDataNormals> normals;
-  normals->SetInputData(WithModerateCoordinates(block));
-  normals->SplittingOff(); // one per point: what is computed fits the points as they are
-  normals->ConsistencyOff();
-  normals->ComputePointNormalsOn();
-  normals->ComputeCellNormalsOff();
-  normals->Update();
-  vtkSmartPointer<vtkDataArray> array = normals->GetOutput()->GetPointData()->GetNormals();
-  if (!array || array->GetNumberOfTuples() != block->GetNumberOfPoints())
+  const vtkSmartPointer<vtkPolyData> surface = WithModerateCoordinates(block);
+  NormalSums normals(surface);
+  const auto array = NewArray<vtkFloatArray>("Normals", 3, block->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < block->GetNumberOfPoints(); ++i)
   {
-    array = vtkSmartPointer<vtkFloatArray>::New(); // no polygon has an area
-    array->SetNumberOfComponents(3);
-    array->SetNumberOfTuples(block->GetNumberOfPoints());
-    array->Fill(0.0);
+    double* normal = normals.Get().data() + 3 * i;
+    vtkMath::Normalize(normal);
+    array->SetTuple(i, normal);
   }
-  array->SetName("Normals");
   return array;
 }
 
@@ -304,8 +385,7 @@ void vtkHarmonicMapFilter::PrepareResult(
     FitRange * run.Units.MeanEdgeLength, motion, limits, SMPParallelFor::Instance(), monitor);
 
   auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(surface.Points.rows());
+  points->SetData(NewArray<vtkDoubleArray>("Points", 3, surface.Points.rows()));
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {
     Eigen::RowVector3d x = surface.Points.row(i);
@@ -353,10 +433,7 @@ void vtkHarmonicMapFilter::WriteResult(
   const auto moved = this->MovedPoints.find(&run);
   if (moved != this->MovedPoints.end())
   {
-    vtkNew<vtkPoints> points;
-    points->SetDataType(output->GetPoints()->GetDataType());
-    points->InsertPoints(0, moved->second->GetNumberOfPoints(), 0, moved->second);
-    output->SetPoints(points);
+    output->SetPoints(ConvertPoints(moved->second, output->GetPoints()->GetDataType()));
   }
 }
 
