@@ -111,7 +111,8 @@ void ReactionDiffusion::Prepare(const Monitor& monitor)
   }
   if (this->Options.SideBySide)
   {
-    this->Second = std::make_unique<Worker>([this] { this->SolveFor(1, Monitor()); });
+    this->Second =
+      std::make_unique<Worker>([this] { this->SolveFor(1, Monitor(this->FirstGoesOn)); });
   }
   this->Prepared = true;
 }
@@ -272,14 +273,19 @@ void ReactionDiffusion::Solve(StepReport& report, const Monitor& monitor)
 {
   if (this->Second)
   {
+    this->FirstFailed = false;
     this->Second->Start();
     this->SolveFor(0, monitor);
+    this->FirstFailed = this->Solutions[0].Failure != nullptr; // an abort: the second ends too
     this->Second->Wait();
   }
   else
   {
     this->SolveFor(0, monitor.Part(0.0, 0.5));
-    this->SolveFor(1, monitor.Part(0.5, 1.0));
+    if (!this->Solutions[0].Failure)
+    {
+      this->SolveFor(1, monitor.Part(0.5, 1.0));
+    }
   }
   for (int c = 0; c < 2; ++c)
   {

@@ -9,6 +9,7 @@
 #include "Worker.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -129,6 +130,8 @@ private:
   Values U;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;
   std::array<Solution, 2> Solutions;
+  std::atomic<bool> FirstFailed{ false };
+  const Monitor::Callback FirstGoesOn = [this](double) { return !this->FirstFailed; };
   std::unique_ptr<Worker> Second; ///< solves for u2; last: it uses the others
 };
 
