@@ -89,6 +89,7 @@ public:
   {
     if (vtkUnsignedCharArray* ghosts = input->GetCellGhostArray())
     {
+      RequireTuples(ghosts, input->GetNumberOfCells(), "cell");
       this->Ghosts = ghosts->GetPointer(0);
     }
     vtkIdType cell = input->GetNumberOfVerts() + input->GetNumberOfLines();
@@ -275,6 +276,17 @@ std::string PolyDataSurface::Key(vtkPolyData* input, const Options& options)
     key << options.Excluded->GetMTime();
   }
   return key.str();
+}
+
+void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what)
+{
+  if (array->GetNumberOfTuples() != count)
+  {
+    std::ostringstream text;
+    text << "the input's array \"" << (array->GetName() ? array->GetName() : "") << "\" has "
+         << array->GetNumberOfTuples() << " tuples; allowed: " << count << ", one per " << what;
+    throw std::runtime_error(text.str());
+  }
 }
 
 PolyDataSurface::PolyDataSurface(

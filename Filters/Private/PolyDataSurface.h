@@ -14,6 +14,9 @@
 class vtkDataArray;
 class vtkPolyData;
 
+/// Throws std::runtime_error where the array has not one tuple for each of `count`.
+void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what);
+
 /// The surface that the numerics work on, made from a vtkPolyData, and the way back to its points.
 struct PolyDataSurface
 {

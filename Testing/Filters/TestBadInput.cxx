@@ -242,6 +242,22 @@ TEST(BadInput, CellsThatReferToNoPointAreErrors)
     });
 }
 
+TEST(BadInput, GhostsAndIdsOfTheWrongSizeAreErrors)
+{
+  ExpectError({ "vtkGhostType", "3 tuples", "50" },
+    [](vtkFVMHeatFilter*, vtkPolyData* input)
+    {
+      input->GetCellData()->AddArray(MakeArray(VTK_UNSIGNED_CHAR,
+        vtkDataSetAttributes::GhostArrayName(), 3, 1, [](vtkIdType, int) { return 0; }));
+    });
+  ExpectError({ "Ids", "3 tuples", "36" },
+    [](vtkFVMHeatFilter*, vtkPolyData* input)
+    {
+      input->GetPointData()->SetGlobalIds(
+        MakeArray(VTK_ID_TYPE, "Ids", 3, 1, [](vtkIdType i, int) { return i; }));
+    });
+}
+
 TEST(BadInput, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
 {
   const std::vector<std::pair<double, const char*>> notPositive{ { 0.0, "0" }, { -1.5, "-1.5" },
