@@ -181,10 +181,11 @@ void vtkSurfaceDirectionFieldFilter::MakeField(
     hints ? ReadFrames(surface, hints, onCells, parallel) : PlaneVectors(0, 2);
   const PlaneVectors frames = MakeDirectionField(*surface.Operators, surface.Points,
     surface.Triangles, given, settings, parallel, monitor.Part(0.1, 0.95));
-  output->GetCellData()->AddArray(
-    WriteFrames(surface, input, frames, this->ResultArrayName, parallel));
+  const auto array = WriteFrames(surface, input, frames, this->ResultArrayName, parallel);
+  monitor.Report(0.99); // the last chance to abort: from here on the output changes
+  output->GetCellData()->AddArray(array);
   output->GetCellData()->SetActiveVectors(this->ResultArrayName.c_str());
-  monitor.Report(1.0);
+  this->UpdateProgress(1.0);
 }
 
 void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)

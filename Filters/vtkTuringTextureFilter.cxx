@@ -7,6 +7,7 @@
 #include "Core/ReactionDiffusion.h"
 #include "Core/TextureColors.h"
 #include "Private/InputArrays.h"
+#include "Private/NewArray.h"
 #include "Private/SurfaceRun.h"
 
 #include "vtkDataArray.h"
@@ -123,10 +124,8 @@ vtkSmartPointer<vtkDataArray> MakePointArray(const PolyDataSurface& surface,
   const std::string& name, const Eigen::Ref<const Vector>& values, vtkDataArray* source,
   int component)
 {
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name.c_str());
   const auto count = static_cast<vtkIdType>(surface.PointToVertex.size());
-  array->SetNumberOfTuples(count);
+  auto array = NewArray<Array>(name, 1, count);
   for (vtkIdType i = 0; i < count; ++i)
   {
     const Index v = surface.PointToVertex[i];
@@ -522,10 +521,7 @@ void vtkTuringTextureFilter::WriteResult(
       this->HighColor[2] };
     const Colors ofVertices = MixColors(texture, low, high);
     const Colors elsewhere = MixColors(Vector::Zero(1), low, high);
-    vtkNew<vtkUnsignedCharArray> colors;
-    colors->SetName(active.c_str());
-    colors->SetNumberOfComponents(3);
-    colors->SetNumberOfTuples(output->GetNumberOfPoints());
+    const auto colors = NewArray<vtkUnsignedCharArray>(active, 3, output->GetNumberOfPoints());
     for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
       const Index v = run.Surface->PointToVertex[i];

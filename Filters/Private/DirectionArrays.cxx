@@ -3,6 +3,7 @@
 #include "DirectionArrays.h"
 
 #include "Core/Frames.h"
+#include "NewArray.h"
 
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -62,10 +63,7 @@ vtkSmartPointer<vtkDataArray> WriteFrames(const PolyDataSurface& surface, vtkPol
   const TriangleMesh& mesh = *surface.InputMesh;
   const Points vectors =
     VectorsFromFrames(mesh, surface.Points, surface.Triangles, frames, parallel);
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name.c_str());
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(input->GetNumberOfCells());
+  auto array = NewArray<vtkDoubleArray>(name, 3, input->GetNumberOfCells());
   array->Fill(0.0);
 
   Vector areas = Vector::Zero(surface.Triangles.rows());

@@ -4,6 +4,7 @@
 
 #include "Core/IntrinsicDelaunay.h"
 #include "DirectionArrays.h"
+#include "NewArray.h"
 #include "PointArrays.h"
 #include "SMPParallelFor.h"
 
@@ -29,6 +30,8 @@ using namespace SurfaceDiffusion;
 namespace
 {
 
+const char* const NotEnoughMemory = "not enough memory";
+
 std::string Join(const std::vector<std::string>& sentences)
 {
   std::string text;
@@ -42,9 +45,7 @@ std::string Join(const std::vector<std::string>& sentences)
 template <typename Array, typename Value>
 void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& value)
 {
-  vtkNew<Array> column;
-  column->SetName(name.c_str());
-  column->SetNumberOfTuples(rows);
+  const auto column = NewArray<Array>(name, 1, rows);
   for (int row = 0; row < rows; ++row)
   {
     column->SetValue(row, value(row));
@@ -115,6 +116,26 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Collect(vtkDataObject* input, vtkD
 bool vtkSurfaceDiffusionAlgorithm::Execution::Check()
 {
   Problems problems;
+  try
+  {
+    this->FindProblems(problems);
+  }
+  catch (const std::bad_alloc&)
+  {
+    problems.emplace_back(NotEnoughMemory);
+  }
+  if (problems.empty())
+  {
+    return true;
+  }
+  std::sort(problems.begin(), problems.end());
+  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
+  vtkErrorWithObjectMacro(&this->Filter, << Join(problems));
+  return false;
+}
+
+void vtkSurfaceDiffusionAlgorithm::Execution::FindProblems(Problems& problems)
+{
   this->Filter.CheckProperties(problems);
   if (!this->AnyPoint)
   {
@@ -143,14 +164,6 @@ bool vtkSurfaceDiffusionAlgorithm::Execution::Check()
     problems.insert(problems.end(), ofBlocksWithoutData.begin(), ofBlocksWithoutData.end());
   }
   this->Blocks.swap(withData);
-  if (!problems.empty())
-  {
-    std::sort(problems.begin(), problems.end());
-    problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
-    vtkErrorWithObjectMacro(&this->Filter, << Join(problems));
-    return false;
-  }
-  return true;
 }
 
 void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
@@ -195,14 +208,23 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
   }
   catch (const std::bad_alloc&)
   {
-    this->Filter.Runs.clear();
-    vtkErrorWithObjectMacro(&this->Filter, << "not enough memory");
+    this->Fail(NotEnoughMemory, history);
   }
   catch (const std::exception& error)
   {
-    this->Filter.Runs.clear();
-    vtkErrorWithObjectMacro(&this->Filter, << error.what());
+    this->Fail(error.what(), history);
   }
+}
+
+void vtkSurfaceDiffusionAlgorithm::Execution::Fail(const std::string& what, vtkTable* history)
+{
+  for (const Block& block : this->Blocks) // some may have been written already
+  {
+    block.Output->ShallowCopy(block.Input);
+  }
+  history->Initialize();
+  this->Filter.Runs.clear();
+  vtkErrorWithObjectMacro(&this->Filter, << what);
 }
 
 bool vtkSurfaceDiffusionAlgorithm::Execution::IsAborted()

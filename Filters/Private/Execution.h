@@ -37,6 +37,8 @@ private:
     SurfaceRun* Run = nullptr;
   };
 
+  /// Find the arrays, and what is wrong with them and with the properties.
+  void FindProblems(Problems& problems);
   void Collect(vtkDataObject* input, vtkDataObject* output);
   void MakeSurfaces(const SurfaceDiffusion::Monitor& monitor);
   void MeasureUnits();
@@ -44,6 +46,8 @@ private:
   void MakeRun(Block& block, const SurfaceDiffusion::Monitor& monitor);
   std::shared_ptr<SurfaceDiffusion::LinearSolver> FindSolver(
     SurfaceRun& run, const std::string& name, const SurfaceDiffusion::SolverTask& task);
+  /// Tell the error and take back what was done.
+  void Fail(const std::string& what, vtkTable* history);
   bool IsAborted();
   /// How many steps have to be computed to be there.
   SurfaceDiffusion::Index NumberOfStepsTo(int step) const;

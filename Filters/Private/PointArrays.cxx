@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointArrays.h"
 
+#include "NewArray.h"
 #include "SMPParallelFor.h"
 
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -192,6 +196,10 @@ double ValueStatistics::Range() const
 std::vector<std::int64_t> ReadVertexIds(const PolyDataSurface& surface, vtkPolyData* input)
 {
   vtkDataArray* global = input->GetPointData()->GetGlobalIds();
+  if (global)
+  {
+    RequireTuples(global, input->GetNumberOfPoints(), "point");
+  }
   std::vector<std::int64_t> ids(surface.Mesh->NumberOfVertices());
   for (std::size_t v = 0; v < ids.size(); ++v)
   {
@@ -204,12 +212,22 @@ std::vector<std::int64_t> ReadVertexIds(const PolyDataSurface& surface, vtkPolyD
 vtkSmartPointer<vtkDataArray> WritePointArray(const PolyDataSurface& surface, vtkDataArray* source,
   const Values& values, double unit, int type, const std::string& name)
 {
-  auto result = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
-  result->SetName(name.c_str());
   const int components = source->GetNumberOfComponents();
-  result->SetNumberOfComponents(components);
+  const vtkIdType tuples = source->GetNumberOfTuples();
+  vtkSmartPointer<vtkDataArray> result;
+  switch (type)
+  {
+    case VTK_UNSIGNED_CHAR:
+      result = NewArray<vtkUnsignedCharArray>(name, components, tuples);
+      break;
+    case VTK_FLOAT:
+      result = NewArray<vtkFloatArray>(name, components, tuples);
+      break;
+    default:
+      result = NewArray<vtkDoubleArray>(name, components, tuples);
+      break;
+  }
   result->CopyComponentNames(source);
-  result->SetNumberOfTuples(source->GetNumberOfTuples());
   const int dataComponents = static_cast<int>(values.cols());
   WithTuples(source,
     [&](const auto& from)
@@ -218,7 +236,7 @@ vtkSmartPointer<vtkDataArray> WritePointArray(const PolyDataSurface& surface, vt
       {
         auto to = vtk::DataArrayTupleRange(typed);
         using T = typename std::decay_t<decltype(to)>::ComponentType;
-        ForEach(SMPParallelFor::Instance(), static_cast<Index>(source->GetNumberOfTuples()),
+        ForEach(SMPParallelFor::Instance(), static_cast<Index>(tuples),
           [&](Index i)
           {
             auto tuple = to[i];
