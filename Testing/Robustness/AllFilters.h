@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "FilterTest.h"
+
+#include "vtkCellData.h"
+#include "vtkFVMHeatFilter.h"
+#include "vtkHarmonicMapFilter.h"
+#include "vtkIntrinsicTVFilter.h"
+#include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkTuringTextureFilter.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// What holds for every filter is tested on all of them alike.
+namespace FilterTest
+{
+
+struct FilterKind
+{
+  const char* Name;
+  std::function<vtkSmartPointer<vtkPolyDataAlgorithm>()> Make; ///< with few time steps
+  const char* Result; ///< the array it adds
+};
+
+template <typename Filter>
+FilterKind MakeKind(
+  const char* name, const char* result, int steps,
+  const std::function<void(Filter*)>& set = [](Filter*) {})
+{
+  return { name,
+    [=]() -> vtkSmartPointer<vtkPolyDataAlgorithm>
+    {
+      auto filter = vtkSmartPointer<Filter>::New();
+      filter->SetNumberOfTimeSteps(steps);
+      set(filter);
+      return filter;
+    },
+    result };
+}
+
+/// Every filter, and those of its models that take ways of their own through the code.
+inline std::vector<FilterKind> AllFilters()
+{
+  using Heat = vtkFVMHeatFilter;
+  using TV = vtkIntrinsicTVFilter;
+  using Harmonic = vtkHarmonicMapFilter;
+  using Turing = vtkTuringTextureFilter;
+  return {
+    MakeKind<Heat>("Heat", "fDiffused", 3),
+    MakeKind<Heat>(
+      "HeatConjugateGradient", "fDiffused", 3, [](Heat* f) { f->SetSolverToConjugateGradient(); }),
+    MakeKind<Heat>("HeatDelaunay", "fDiffused", 3, [](Heat* f) { f->IntrinsicDelaunayOn(); }),
+    MakeKind<Heat>("HeatSteady", "fDiffused", 1,
+      [](Heat* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetFidelityWeight(0.1);
+      }),
+    MakeKind<Heat>("HeatAutomatic", "fDiffused", 3, [](Heat* f) { f->AutomaticFidelityOn(); }),
+    MakeKind<TV>("TV", "fTV", 3),
+    MakeKind<TV>("TVImplicit", "fTV", 2, [](TV* f) { f->SetTimeIntegratorToImplicit(); }),
+    MakeKind<TV>("TVSteady", "fTV", 1, [](TV* f) { f->SetModeToSteadyState(); }),
+    MakeKind<TV>(
+      "TVCrouzeixRaviart", "fTV", 2, [](TV* f) { f->SetDiscretizationToCrouzeixRaviart(); }),
+    MakeKind<TV>("PeronaMalik", "fTV", 3,
+      [](TV* f)
+      {
+        f->SetEdgeFunctionToPeronaMalikRational();
+        f->SetFidelityWeight(0.1);
+      }),
+    MakeKind<Harmonic>("Harmonic", "NormalsHarmonic", 2),
+    MakeKind<Harmonic>(
+      "HarmonicMoved", "NormalsHarmonic", 2, [](Harmonic* f) { f->MoveVerticesOn(); }),
+    MakeKind<Harmonic>("HarmonicExplicit", "NormalsHarmonic", 2,
+      [](Harmonic* f) { f->SetSchemeToExplicitReaction(); }),
+    MakeKind<Turing>("Turing", "u1", 4),
+    MakeKind<Turing>("TuringFirstOrder", "u1", 4,
+      [](Turing* f)
+      {
+        f->SetTimeIntegratorToFirstOrder();
+        f->ColorOutputOn();
+      }),
+    { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
+      "Direction" },
+    { "DirectionSmooth",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New();
+        filter->SetMethodToSmooth();
+        return filter;
+      },
+      "Direction" },
+  };
+}
+
+inline std::string KindName(const testing::TestParamInfo<FilterKind>& info)
+{
+  return info.param.Name;
+}
+
+inline void PrintTo(const FilterKind& kind, std::ostream* os)
+{
+  *os << kind.Name;
+}
+
+/// What the filter has added, of points or of cells; null where it has added nothing.
+inline vtkDataArray* ResultOf(vtkPolyDataAlgorithm* filter, const char* name)
+{
+  vtkPolyData* output = filter->GetOutput();
+  vtkDataArray* ofPoints = output->GetPointData()->GetArray(name);
+  return ofPoints ? ofPoints : output->GetCellData()->GetArray(name);
+}
+
+/// Whether the output is the input and nothing else: the very arrays, points and cells.
+inline bool IsUnchanged(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
+{
+  vtkPolyData* output = filter->GetOutput();
+  bool same = output->GetPoints() == input->GetPoints() &&
+    output->GetPolys() == input->GetPolys() &&
+    output->GetPointData()->GetNumberOfArrays() == input->GetPointData()->GetNumberOfArrays() &&
+    output->GetCellData()->GetNumberOfArrays() == input->GetCellData()->GetNumberOfArrays();
+  for (int i = 0; same && i < input->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    same =
+      output->GetPointData()->GetAbstractArray(i) == input->GetPointData()->GetAbstractArray(i);
+  }
+  return same;
+}
+
+} // namespace FilterTest
