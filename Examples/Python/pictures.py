@@ -151,10 +151,15 @@ def lit_renderer(panel):
 
 
 def seen(renderer, panel):
-    """The surface's bounds as the camera sees it: low and high in its two directions."""
+    """Bounds of the surface, or of its ball, as the camera sees it: low and high in its two
+    directions."""
     renderer.ResetCamera()
     matrix = renderer.GetActiveCamera().GetViewTransformMatrix()
     to_eye = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(2)])
+    if panel.ball:
+        centre, radius = panel.ball
+        middle = to_eye[:, :3] @ centre + to_eye[:, 3]
+        return middle - radius, middle + radius
     places = vtk_to_numpy(panel.surface.GetPoints().GetData()) @ to_eye[:, :3].T + to_eye[:, 3]
     return places.min(axis=0), places.max(axis=0)
 
