@@ -40,7 +40,9 @@
  * above: (24) as printed runs away as soon as u2 < 0. FirstOrder sets negative values to 0 after
  * the step; SecondOrder solves the equations with the constraint u >= 0 (a force holds u where the
  * reaction would take it below), to second order: on a sphere of 642 vertices after 5 units of time
- * the error at TimeStep 1/8 is 0.2 %, that of FirstOrder 10 %.
+ * the error at TimeStep 1/8 is 0.2 %, that of FirstOrder 10 %. u1 and u2 are solved for on two
+ * threads where the machine has them; at 44,000 vertices a step takes 10 ms of processor time, and
+ * the pattern stands after about 18 units of time (StopTolerance 0.03).
  *
  * **Output**: point arrays u1 and u2, Texture (the chosen chemical with its contrast stretched to
  * [0, 1]), with ColorOutput the RGB array TextureColor; ResultArrayName, if any, is put before each

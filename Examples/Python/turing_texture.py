@@ -9,7 +9,7 @@ Two chemicals react and diffuse, one much faster than the other, and a pattern g
     du1/dt = D1 Lap u1 + F(u1, u2),   F = 16 - u1 u2,
     du2/dt = D2 Lap u2 + G(u1, u2),   G = u1 u2 - u2 - 12.
 
-Drawn is u1. FeatureSize sets the width of the pattern, the ratio D1/D2 its kind: 5 makes spots, 16
+Drawn is u1. FeatureSize sets the width of the pattern, the ratio D1/D2 its kind: 5 makes spots, 18
 a labyrinth, 30 a net. Where D2 is larger along a direction than across it, stripes follow the
 direction, here that in which the surface bends most, smoothed. For each texture is told of how many
 pieces {u1 > median} consists and its Euler number (pieces minus holes).
@@ -52,7 +52,7 @@ class Texture:
 
 TEXTURES = [
     Texture("spots", 5, (0.93, 0.80, 0.55), (0.30, 0.16, 0.07), "bunny00", (0, 0, 1), (0, 1, 0)),
-    Texture("labyrinth", 16, (0.13, 0.24, 0.33), (0.87, 0.90, 0.80), "refined_elephant",
+    Texture("labyrinth", 18, (0.13, 0.24, 0.33), (0.87, 0.90, 0.80), "refined_elephant",
             (0.4, 0.25, 1), (0, 1, 0)),
     Texture("net", 30, (0.95, 0.93, 0.86), (0.62, 0.25, 0.16), "bear", (0, 0, 1), (0, 1, 0)),
     Texture("stripes", 8, (0.96, 0.95, 0.92), (0.10, 0.10, 0.11), "camel", (1, 0.1, 0.3), (0, 1, 0),
