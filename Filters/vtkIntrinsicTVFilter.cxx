@@ -37,6 +37,7 @@ constexpr double TypicalGradient = 0.01;
 vtkIntrinsicTVFilter::vtkIntrinsicTVFilter()
 {
   this->FidelityWeight = 3.0;
+  this->Tolerance = 1e-3;
 }
 
 const char* vtkIntrinsicTVFilter::GetModeAsString()
@@ -295,6 +296,7 @@ private:
     SolverTask task;
     task.NumberOfVertices = operators->Mesh().NumberOfVertices();
     task.DiffusionNumber = settings.TimeStep * std::max(along, across) / (h * h);
+    task.Tolerance = this->Filter.Tolerance;
     return std::make_unique<NonlinearDiffusion>(std::move(operators), this->Frames(),
       std::move(data), settings, this->Input.Solver("diffusion", task), this->Input.Parallel);
   }

@@ -239,7 +239,9 @@ public:
   /**
    * On: lambda is chosen so that the steady state differs from the data by the noise, in the root
    * of the area-weighted mean square (discrepancy principle, V. Morozov, 1966); FidelityWeight is
-   * not read. Needs what SteadyState needs, and FidelityNorm L2. Default: off.
+   * not read. Needs what SteadyState needs, and FidelityNorm L2. The principle errs on the smooth
+   * side: on photographs under noise of 5 to 80 % its result was 1 to 3 dB from that of the best
+   * lambda, which leaves 0.88 to 0.99 of the noise in the residual. Default: off.
    */
   vtkSetMacro(AutomaticFidelity, bool);
   vtkGetMacro(AutomaticFidelity, bool);
@@ -292,7 +294,8 @@ public:
    * Where SteadyState and each step of Implicit stop: the duality gap, a bound of how far the
    * energy is above its minimum, relative to the energy. In (0, 1). Default: 1e-4.
    * 10,000 iterations that do not reach it are a warning with the gap. MaximumNumberOfIterations
-   * and Tolerance are of FirstOrder's linear systems.
+   * and Tolerance are of FirstOrder's linear systems; Tolerance is 1e-3 here, which changes ten
+   * steps by 2e-5 of the range and takes a quarter of the time of 1e-10.
    */
   vtkSetMacro(StopTolerance, double);
   vtkGetMacro(StopTolerance, double);

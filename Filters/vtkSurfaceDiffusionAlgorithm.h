@@ -246,7 +246,7 @@ public:
   ///@{
   /**
    * Where iterative solvers stop: relative residual, in the norm of the inverse diagonal. In
-   * (0, 1). Default: 1e-10. And the most iterations, 1 or more, default 1000: not to converge in
+   * (0, 1). Default: 1e-10, in vtkIntrinsicTVFilter 1e-3. And the most iterations, 1 or more, default 1000: not to converge in
    * them is an error.
    */
   vtkSetMacro(Tolerance, double);

@@ -43,7 +43,8 @@ bool PreferFactorization(const SolverTask& task)
   const double size = task.NumberOfVertices / 44000.0;
   const double factor = 0.106 * std::pow(size, 1.5);
   const double substitution = 0.004 * std::pow(size, 1.33);
-  const double iterations = 10.0 + 45.0 * std::pow(task.DiffusionNumber, 0.42);
+  const double digits = std::log10(task.Tolerance) / -8.0; // measured to 1e-8
+  const double iterations = digits * (10.0 + 45.0 * std::pow(task.DiffusionNumber, 0.42));
   const double conjugateGradients = 3.2e-4 * size * iterations;
   return factor + task.NumberOfSolves * substitution < task.NumberOfSolves * conjugateGradients;
 }

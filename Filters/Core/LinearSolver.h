@@ -74,6 +74,7 @@ struct SolverTask
   Index NumberOfVertices = 0;
   double DiffusionNumber = 1.0;  ///< (largest diffusivity) x (time step) / h^2
   double NumberOfSolves = 1.0;   ///< with one matrix
+  double Tolerance = 1e-8;       ///< of conjugate gradients
 };
 
 /// True where factorising is expected to be faster than conjugate gradients.

@@ -302,18 +302,22 @@ TEST(Automatic, FactorisesWhereConjugateGradientsDoNotConverge)
 
 TEST(Automatic, PrefersWhatTheMeasurementsFoundFaster)
 {
-  const auto prefer = [](Index vertices, double diffusionNumber, double solves)
+  const auto prefer =
+    [](Index vertices, double diffusionNumber, double solves, double tolerance = 1e-8)
   {
     SolverTask task;
     task.NumberOfVertices = vertices;
     task.DiffusionNumber = diffusionNumber;
     task.NumberOfSolves = solves;
+    task.Tolerance = tolerance;
     return PreferFactorization(task);
   };
   EXPECT_TRUE(prefer(44000, 1.0, 20));
   EXPECT_FALSE(prefer(44000, 1.0, 3));
   EXPECT_TRUE(prefer(178000, 100.0, 20));
   EXPECT_FALSE(prefer(178000, 100.0, 1));
+  EXPECT_TRUE(prefer(20000, 100.0, 1));
+  EXPECT_FALSE(prefer(20000, 100.0, 1, 1e-3));
   EXPECT_FALSE(prefer(711000, 1.0, 10));
   EXPECT_TRUE(prefer(711000, 1e4, 20));
 }
