@@ -20,9 +20,9 @@ constexpr int IterationsPerCheck = 10;
 /// The penalty on S grad u - p, in units of g at the steepest gradient of one Range on the
 /// triangle: small triangles and slivers then have no larger share in the equations than others. It
 /// moves work between finding edges and settling values and changes no result. Measured with the
-/// factor sqrt(triangles per unknown): 14 to 20 is best for noise, and within 1.5 times of the best
-/// for clean jumps, on meshes and medial meshes alike.
-constexpr double Penalty = 18.0;
+/// factor sqrt(triangles per unknown) on meshes and medial meshes: 14 to 28 is best for noise to a gap
+/// of 1e-3, 28 to 50 to 1e-5, the more so the more vertices.
+constexpr double Penalty = 28.0;
 
 /// The penalty on u - f - q in the same units: 1 to 10 is best. Very large nu need some more.
 constexpr double ValuePenaltyOfGradients = 4.0;
