@@ -1,22 +1,38 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the client shows before ClientHeat.xml starts: data on a sphere, and for the result a
-colour map of black and white bands, which make small differences of values large ones of images."""
+"""What the client shows before the events start: data on an ellipsoid. Results are shown in bands of
+black and white, which make small differences of values large ones of images."""
 
-from paraview.simple import Calculator, GetColorTransferFunction, Render, Show, Sphere
+from paraview.simple import (
+    Calculator, GenerateSurfaceNormals, GetActiveViewOrCreate, GetColorTransferFunction, Render,
+    RenameSource, ResetCamera, SetActiveSource, Show, Sphere, Transform,
+)
 
 sphere = Sphere(ThetaResolution=64, PhiResolution=64)
+ellipsoid = Transform(Input=sphere)
+ellipsoid.Transform.Scale = (1.0, 0.8, 0.6)
+normals = GenerateSurfaceNormals(Input=ellipsoid, Splitting=0)
 waves = "sin(14*coordsX)*sin(14*coordsY)*sin(14*coordsZ)"
-Show(Calculator(sphere, Function=waves, ResultArrayName="f"))
+data = Calculator(Input=normals, Function=waves, ResultArrayName="f")
+RenameSource("Data", data)
+view = GetActiveViewOrCreate("RenderView")
+Show(data, view)
 
-BANDS = 12
-colors = GetColorTransferFunction("fDiffused")
-colors.AutomaticRescaleRangeMode = "Never"
-colors.RGBPoints = [
-    number
-    for i in range(BANDS)
-    for number in (0.2 * (2 * i / (BANDS - 1) - 1), i % 2, i % 2, i % 2)
-]
-colors.Discretize = 1
-colors.NumberOfTableValues = BANDS
-Render()
+BANDS = 13  # odd: x and -x look the same, since the sign of a direction means nothing
+for array, largest in (
+    ("fDiffused", 0.2), ("fTV", 1.0), ("NormalsHarmonic", 1.0), ("Texture", 1.0), ("Direction", 1.0),
+):
+    colors = GetColorTransferFunction(array)
+    colors.AutomaticRescaleRangeMode = "Never"
+    colors.RGBPoints = [
+        number
+        for i in range(BANDS)
+        for number in (largest * (2 * i / (BANDS - 1) - 1), i % 2, i % 2, i % 2)
+    ]
+    colors.Discretize = 1
+    colors.NumberOfTableValues = BANDS
+    colors.VectorMode = "Component"
+    colors.VectorComponent = 0
+ResetCamera(view)
+Render(view)
+SetActiveSource(data)

@@ -3,15 +3,18 @@
 """What the tests of the plugin share: a surface in a file, and the errors of a filter."""
 
 import math
+import os
 import random
 
 from paraview import servermanager
-from paraview.simple import XMLPolyDataReader
+from paraview.simple import SaveScreenshot, XMLPolyDataReader
 from paraview.vtk import vtkDoubleArray, vtkStringArray, vtkUnsignedCharArray
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_STRING
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes
 from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkImagingCore import vtkImageDifference
+from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 GARBAGE = 1000.0  # what the damaged values are
@@ -101,3 +104,22 @@ def errors_of(source):
 
     source.GetClientSideObject().AddObserver("ErrorEvent", remember)
     return errors
+
+
+def assert_looks_like(view, baseline):
+    """The view's picture is that of the baseline, but for ten pixels that differ fully."""
+    folder = os.environ["SURFACEDIFFUSION_OUTPUT_DIR"]
+    written = os.path.join(folder, baseline + ".png")
+    SaveScreenshot(written, view, ImageResolution=[300, 300], OverrideColorPalette="WhiteBackground")
+    images = []
+    for path in (written, os.path.join(os.environ["SURFACEDIFFUSION_BASELINE_DIR"], baseline + ".png")):
+        reader = vtkPNGReader()
+        reader.SetFileName(path)
+        reader.Update()
+        images.append(reader)
+    difference = vtkImageDifference()
+    difference.SetInputConnection(images[0].GetOutputPort())
+    difference.SetImageConnection(images[1].GetOutputPort())
+    difference.Update()
+    error = difference.GetThresholdedError()
+    assert error <= 10.0, "%s differs from its baseline by %g pixels" % (written, error)
