@@ -122,3 +122,30 @@ def check_chart():
     assert (lines.UseIndexForXAxis, lines.XArrayName) == (0, "Time"), lines.XArrayName
     assert "Energy" in lines.SeriesVisibility, lines.SeriesVisibility
     say("as expected: chart")
+
+
+def check_selected_denoised():
+    """The macro took the source that was selected."""
+    source = GetActiveSource()
+    assert source == FindSource("Denoised") and source.Input == FindSource("Data")
+    assert source.PointData["fTV"] is not None
+    say("as expected: selected data")
+
+
+def select_nothing():
+    SetActiveSource(None)
+
+
+def check_macro():
+    """The picture of the example that a macro of Examples/ParaView shows."""
+    source, view = GetActiveSource(), render_view()
+    name = {
+        "IntrinsicTVFilter": "Inpaint" if source == FindSource("Inpainted") else "Denoise",
+        "HarmonicMapFilter": "DenoiseMesh",
+        "TuringTextureFilter": "Texture",
+    }[name_of(source)]
+    if name != "DenoiseMesh":
+        GetDisplayProperties(source, view).SetScalarBarVisibility(view, False)
+    view.OrientationAxesVisibility = 0
+    assert_looks_like(view, "Macro" + name)
+    say("as expected: " + name)
