@@ -296,7 +296,6 @@ private:
     SolverTask task;
     task.NumberOfVertices = operators->Mesh().NumberOfVertices();
     task.DiffusionNumber = settings.TimeStep * std::max(along, across) / (h * h);
-    task.Tolerance = this->Filter.Tolerance;
     return std::make_unique<NonlinearDiffusion>(std::move(operators), this->Frames(),
       std::move(data), settings, this->Input.Solver("diffusion", task), this->Input.Parallel);
   }

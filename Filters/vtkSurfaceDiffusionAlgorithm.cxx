@@ -68,7 +68,7 @@ const char* vtkSurfaceDiffusionAlgorithm::GetTimeIntegratorAsString()
 
 const char* vtkSurfaceDiffusionAlgorithm::GetSolverAsString()
 {
-  return EnumText(this->Solver, { "Automatic", "Direct", "ConjugateGradient" });
+  return EnumText(this->Solver, { "Automatic", "Direct", "ConjugateGradient", "Multigrid" });
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetOutputPrecisionAsString()
@@ -133,8 +133,8 @@ void vtkSurfaceDiffusionAlgorithm::CheckProperties(Problems& problems)
   Require(oneOf(this->MaskMode, 2), "MaskMode", this->MaskMode, "0 Inpaint, 1 Exclude", problems);
   Require(oneOf(this->InitialFill, 3), "InitialFill", this->InitialFill,
     "0 Input, 1 Mean, 2 Noise", problems);
-  Require(oneOf(this->Solver, 3), "Solver", this->Solver,
-    "0 Automatic, 1 Direct, 2 ConjugateGradient", problems);
+  Require(oneOf(this->Solver, 4), "Solver", this->Solver,
+    "0 Automatic, 1 Direct, 2 ConjugateGradient, 3 Multigrid", problems);
   Require(oneOf(this->OutputPrecision, 3), "OutputPrecision", this->OutputPrecision,
     "0 Input, 1 Single, 2 Double", problems);
 }

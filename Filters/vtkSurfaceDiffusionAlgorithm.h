@@ -226,20 +226,23 @@ public:
   {
     SOLVER_AUTOMATIC = 0,
     SOLVER_DIRECT = 1,
-    SOLVER_CONJUGATE_GRADIENT = 2
+    SOLVER_CONJUGATE_GRADIENT = 2,
+    SOLVER_MULTIGRID = 3
   };
 
   ///@{
   /**
    * How linear systems are solved. Direct: sparse Cholesky factorisation, kept while the matrix
-   * stays. ConjugateGradient: with Jacobi preconditioner, the paper's. Automatic (default): the
-   * faster of the two for the size, the step and the number of steps, by measurement.
+   * stays. ConjugateGradient: with Jacobi preconditioner, the paper's. Multigrid: conjugate gradients
+   * with smoothed aggregation, whose iterations hardly grow with size and time step. Automatic
+   * (default): the fastest of them for the size, the step and the number of steps, by measurement.
    */
   vtkSetMacro(Solver, int);
   vtkGetMacro(Solver, int);
   void SetSolverToAutomatic() { this->SetSolver(SOLVER_AUTOMATIC); }
   void SetSolverToDirect() { this->SetSolver(SOLVER_DIRECT); }
   void SetSolverToConjugateGradient() { this->SetSolver(SOLVER_CONJUGATE_GRADIENT); }
+  void SetSolverToMultigrid() { this->SetSolver(SOLVER_MULTIGRID); }
   const char* GetSolverAsString();
   ///@}
 

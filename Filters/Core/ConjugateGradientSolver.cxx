@@ -3,6 +3,7 @@
 #include "LinearSolver.h"
 
 #include "Assembler.h"
+#include "Multigrid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,9 @@ namespace
 class ConjugateGradientSolver : public LinearSolver
 {
 public:
-  explicit ConjugateGradientSolver(const ParallelFor& parallel)
+  ConjugateGradientSolver(std::unique_ptr<Multigrid> hierarchy, const ParallelFor& parallel)
     : Parallel(parallel)
+    , Hierarchy(std::move(hierarchy))
   {
   }
 
@@ -36,6 +38,10 @@ public:
         const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
         this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[slot];
       });
+    if (this->Hierarchy)
+    {
+      this->Hierarchy->SetMatrix(matrix, monitor);
+    }
     monitor.Report(1.0);
   }
 
@@ -64,7 +70,7 @@ private:
     const Index n = static_cast<Index>(b.rows());
     this->Resize(n, k);
 
-    // r = b - A x, p = z = r / diag(A), in units of each column's own
+    // r = b - A x in units of each column's own
     Multiply(*this->Matrix, x, this->Q, this->Parallel);
     for (int c = 0; c < k; ++c)
     {
@@ -78,16 +84,17 @@ private:
           const double bi = b(i, c) / this->Unit[c];
           const double r = bi - this->Q(i, c) / this->Unit[c];
           this->R(i, c) = r;
-          this->P(i, c) = this->InverseDiagonal[i] * r;
           sums[c] += r * this->InverseDiagonal[i] * r; // as in Iterate(), to the bit
           sums[k + c] += bi * this->InverseDiagonal[i] * bi;
         }
       });
     for (int c = 0; c < k; ++c)
     {
-      this->Rho[c] = this->Sums[c];
+      this->Square[c] = this->Sums[c];
       this->Scale[c] = this->Sums[k + c] > 0.0 ? this->Sums[k + c] : 1.0;
     }
+    this->Rho.assign(k, 0.0);
+    this->Turn<K>(n, k);
 
     SolveReport report;
     double progress = 0.0;
@@ -161,6 +168,33 @@ private:
           sums[c] += r * this->InverseDiagonal[i] * r;
         }
       });
+    std::copy(this->Sums.begin(), this->Sums.begin() + k, this->Square.begin());
+    this->Turn<K>(n, k);
+    return true;
+  }
+
+  /// P = B r + beta P, conjugate to what it was; B is diag(A)^-1 or a multigrid cycle.
+  template <int K>
+  void Turn(Index n, int columns)
+  {
+    const int k = K > 0 ? K : columns;
+    std::copy(this->Square.begin(), this->Square.end(), this->Sums.begin());
+    if (this->Hierarchy)
+    {
+      for (int c = 0; c < k; ++c)
+      {
+        this->Alpha[c] = this->Square[c] > 0.0 ? 1.0 / std::sqrt(this->Square[c]) : 1.0;
+      }
+      this->Hierarchy->Apply(this->R, this->Alpha, this->Q);
+      this->SumBlocks(n, k, 1,
+        [&](Index i, double* sums)
+        {
+          for (int c = 0; c < k; ++c)
+          {
+            sums[c] += this->R(i, c) * this->Q(i, c);
+          }
+        });
+    }
     for (int c = 0; c < k; ++c)
     {
       this->Beta[c] = this->Rho[c] > 0.0 ? this->Sums[c] / this->Rho[c] : 0.0;
@@ -171,15 +205,16 @@ private:
       {
         for (int c = 0; c < k; ++c)
         {
-          this->P(i, c) = this->InverseDiagonal[i] * this->R(i, c) + this->Beta[c] * this->P(i, c);
+          const double z =
+            this->Hierarchy ? this->Q(i, c) : this->InverseDiagonal[i] * this->R(i, c);
+          this->P(i, c) = z + this->Beta[c] * this->P(i, c);
         }
       });
-    return true;
   }
 
   bool Finished(int c) const
   {
-    return std::sqrt(this->Rho[c] / this->Scale[c]) <= this->Limits.Tolerance;
+    return std::sqrt(this->Square[c] / this->Scale[c]) <= this->Limits.Tolerance;
   }
 
   double Residual(int k) const
@@ -187,7 +222,7 @@ private:
     double largest = 0.0;
     for (int c = 0; c < k; ++c)
     {
-      const double residual = std::sqrt(this->Rho[c] / this->Scale[c]);
+      const double residual = std::sqrt(this->Square[c] / this->Scale[c]);
       largest = residual <= largest ? largest : residual; // keeps NaN
     }
     return largest;
@@ -198,10 +233,10 @@ private:
     if (this->R.rows() != n || this->R.cols() != k)
     {
       this->R.resize(n, k);
-      this->P.resize(n, k);
+      this->P.setZero(n, k); // what the first direction is turned from
       this->Q.resize(n, k);
       for (std::vector<double>* scalars :
-        { &this->Unit, &this->Rho, &this->Scale, &this->Alpha, &this->Beta })
+        { &this->Unit, &this->Square, &this->Rho, &this->Scale, &this->Alpha, &this->Beta })
       {
         scalars->assign(k, 0.0);
       }
@@ -236,10 +271,11 @@ private:
   }
 
   const ParallelFor& Parallel;
+  std::unique_ptr<Multigrid> Hierarchy;
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
   Values R, P, Q;
-  std::vector<double> Unit, Rho, Scale, Alpha, Beta; // one per column
+  std::vector<double> Unit, Square, Rho, Scale, Alpha, Beta; // one per column
   std::vector<double> Sums, Partial;
 };
 
@@ -247,7 +283,12 @@ private:
 
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(const ParallelFor& parallel)
 {
-  return std::make_unique<ConjugateGradientSolver>(parallel);
+  return std::make_unique<ConjugateGradientSolver>(nullptr, parallel);
+}
+
+std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel)
+{
+  return std::make_unique<ConjugateGradientSolver>(std::make_unique<Multigrid>(parallel), parallel);
 }
 
 } // namespace SurfaceDiffusion

@@ -15,13 +15,14 @@ namespace
 {
 
 /// A solver for systems with modes as long as the surface.
-std::unique_ptr<LinearSolver> MakeSolver(
-  Eigen::Index size, double solves, const ParallelFor& parallel)
+std::unique_ptr<LinearSolver> MakeSolverFor(
+  Eigen::Index size, double solves, bool keepsConstants, const ParallelFor& parallel)
 {
   SolverTask task;
   task.NumberOfVertices = static_cast<Index>(size);
   task.DiffusionNumber = 1e4;
   task.NumberOfSolves = solves;
+  task.KeepsConstants = keepsConstants;
   std::unique_ptr<LinearSolver> solver = MakeAutomaticSolver(task, parallel);
   IterationLimits limits;
   limits.Tolerance = 1e-8; // of directions more can't be seen
@@ -54,7 +55,7 @@ PlaneVectors MakeDirectionField(const Assembler& assembler, const Eigen::Ref<con
   Vector weights = Vector::Ones(mesh.NumberOfTriangles());
   if (settings.Method != DirectionMethod::Hints)
   {
-    const auto solver = MakeSolver(mesh.NumberOfVertices(), 4.0, parallel);
+    const auto solver = MakeSolverFor(mesh.NumberOfVertices(), 4.0, true, parallel);
     PrincipalDirections principal = FindPrincipalDirections(assembler, points, triangles,
       settings.SmoothingLength, *solver, parallel, monitor.Part(0.0, 0.3));
     frames = std::move(principal.LeastBent);
@@ -66,7 +67,7 @@ PlaneVectors MakeDirectionField(const Assembler& assembler, const Eigen::Ref<con
   {
     const LineFieldOperator lines(assembler.SharedMesh());
     monitor.Report(0.4);
-    const auto solver = MakeSolver(lines.Mass().size(), 10.0, parallel);
+    const auto solver = MakeSolverFor(lines.Mass().size(), 10.0, false, parallel);
     frames = settings.Method == DirectionMethod::Smooth
       ? SmoothestLineField(lines, frames, weights, *solver, monitor.Part(0.4, 1.0))
       : LineFieldFromHints(

@@ -36,46 +36,71 @@ double LinearSolver::ScaleOf(
   return largest > 0.0 && std::isfinite(largest) ? std::exp2(std::ilogb(largest)) : 1.0;
 }
 
-bool PreferFactorization(const SolverTask& task)
+SolverMethod ChooseMethod(const SolverTask& task)
 {
-  // Times measured for Eigen's LDL^T and Jacobi-preconditioned conjugate gradients on one core, as
-  // powers of the size through 44,000 and 711,000 vertices: seconds, up to one common factor.
-  const double size = task.NumberOfVertices / 44000.0;
-  const double factor = 0.106 * std::pow(size, 1.5);
-  const double substitution = 0.004 * std::pow(size, 1.33);
-  const double digits = std::log10(task.Tolerance) / -8.0; // measured to 1e-8
-  const double iterations = digits * (10.0 + 45.0 * std::pow(task.DiffusionNumber, 0.42));
-  const double conjugateGradients = 3.2e-4 * size * iterations;
-  return factor + task.NumberOfSolves * substitution < task.NumberOfSolves * conjugateGradients;
+  // Fitted to times on one core of scans with 11,000 to 178,000 vertices: seconds at 44,000, up to
+  // one common factor. Travelling once over the surface bounds the iterations of long steps. What
+  // iterates runs on all threads: its times are those between one thread and two.
+  constexpr double threads = 0.75;
+  // A factor this large takes more than 1 kB per vertex and, on regular meshes, up to ten times as
+  // long as on scans.
+  constexpr Index largestFactor = 500000;
+  const double n = task.NumberOfVertices;
+  const double size = n / 44000.0;
+  const double digits = std::log(task.Tolerance) / std::log(1e-10);
+  const double c = std::max(task.DiffusionNumber, 1e-2);
+  const double iterations =
+    digits * std::min(67.0 * std::pow(c, 0.4) * std::pow(size, 0.1), 6.5 * std::sqrt(n));
+  const double cycles = digits * (9.5 + 2.7 * std::log10(c));
+
+  const double direct =
+    0.098 * std::pow(size, 1.5) + task.NumberOfSolves * 0.005 * std::pow(size, 1.3);
+  const double conjugateGradient = threads * task.NumberOfSolves * iterations * 4.3e-4 * size;
+  const double multigrid = threads * (0.03 * size + task.NumberOfSolves * cycles * 3.1e-3 * size);
+  const double iterative =
+    task.KeepsConstants ? std::min(conjugateGradient, multigrid) : conjugateGradient;
+  if (direct < iterative && (task.NumberOfVertices <= largestFactor || !task.KeepsConstants))
+  {
+    return SolverMethod::Factorization;
+  }
+  return iterative < conjugateGradient ? SolverMethod::Multigrid : SolverMethod::ConjugateGradient;
+}
+
+std::unique_ptr<LinearSolver> MakeSolver(SolverMethod method, const ParallelFor& parallel)
+{
+  switch (method)
+  {
+    case SolverMethod::ConjugateGradient:
+      return MakeConjugateGradientSolver(parallel);
+    case SolverMethod::Multigrid:
+      return MakeMultigridSolver(parallel);
+    default:
+      return MakeCholeskySolver(parallel);
+  }
 }
 
 namespace
 {
 
+/// An iterative solver that a factorisation helps out.
 class AutomaticSolver : public LinearSolver
 {
 public:
-  AutomaticSolver(const SolverTask& task, const ParallelFor& parallel)
-    : Direct(PreferFactorization(task))
+  AutomaticSolver(SolverMethod method, const ParallelFor& parallel)
+    : Iterative(MakeSolver(method, parallel))
     , Cholesky(MakeCholeskySolver(parallel))
-    , Iterative(MakeConjugateGradientSolver(parallel))
   {
   }
 
   void SetMatrix(const SparseMatrix& matrix, const Monitor& monitor) override
   {
     this->Matrix = &matrix;
-    this->Chosen().SetMatrix(matrix, monitor);
+    this->Iterative->SetMatrix(matrix, monitor);
   }
 
   SolveReport Solve(const Values& b, Values& x, const Monitor& monitor) override
   {
-    this->Cholesky->SetLimits(this->Limits);
     this->Iterative->SetLimits(this->Limits);
-    if (this->Direct)
-    {
-      return this->Cholesky->Solve(b, x, monitor);
-    }
     const SolveReport report = this->Iterative->Solve(b, x, monitor.Part(0.0, 0.5));
     if (report.Converged)
     {
@@ -84,15 +109,13 @@ public:
     }
     // The next solve tries again: were the failure remembered, the bits of a step would depend on
     // the steps computed before it.
+    this->Cholesky->SetLimits(this->Limits);
     this->Cholesky->SetMatrix(*this->Matrix, monitor.Part(0.5, 0.9));
     return this->Cholesky->Solve(b, x, monitor.Part(0.9, 1.0));
   }
 
 private:
-  LinearSolver& Chosen() { return this->Direct ? *this->Cholesky : *this->Iterative; }
-
-  const bool Direct;
-  std::unique_ptr<LinearSolver> Cholesky, Iterative;
+  std::unique_ptr<LinearSolver> Iterative, Cholesky;
   const SparseMatrix* Matrix = nullptr;
 };
 
@@ -101,7 +124,12 @@ private:
 std::unique_ptr<LinearSolver> MakeAutomaticSolver(
   const SolverTask& task, const ParallelFor& parallel)
 {
-  return std::make_unique<AutomaticSolver>(task, parallel);
+  const SolverMethod method = ChooseMethod(task);
+  if (method == SolverMethod::Factorization)
+  {
+    return MakeCholeskySolver(parallel);
+  }
+  return std::make_unique<AutomaticSolver>(method, parallel);
 }
 
 } // namespace SurfaceDiffusion

@@ -47,8 +47,7 @@ public:
 
   /// x: the start of an iterative method on entry, the solution on return; b, x: n x k. Throws
   /// std::runtime_error where no finite solution exists.
-  virtual SolveReport Solve(
-    const Values& b, Values& x, const Monitor& monitor = Monitor()) = 0;
+  virtual SolveReport Solve(const Values& b, Values& x, const Monitor& monitor = Monitor()) = 0;
 
 protected:
   /// A power of two near the largest of two columns: squares of what is divided by it no double
@@ -68,20 +67,42 @@ std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = S
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
   const ParallelFor& parallel = SerialFor());
 
-/// What decides which method is faster.
+/// Conjugate gradients with a cycle of Multigrid as preconditioner: the number of iterations hardly
+/// grows with size and time step.
+std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel = SerialFor());
+
+/// What decides which method is fastest.
 struct SolverTask
 {
   Index NumberOfVertices = 0;
-  double DiffusionNumber = 1.0;  ///< (largest diffusivity) x (time step) / h^2
-  double NumberOfSolves = 1.0;   ///< with one matrix
-  double Tolerance = 1e-8;       ///< of conjugate gradients
+  double DiffusionNumber = 1.0; ///< (largest diffusivity) x (time step) / h^2
+  double NumberOfSolves = 1.0; ///< with one matrix
+  double Tolerance = 1e-10;
+  /// The diffusion part of the matrix maps constants to zero, as Multigrid expects; the connection
+  /// of direction fields does not.
+  bool KeepsConstants = true;
 };
 
-/// True where factorising is expected to be faster than conjugate gradients.
-bool PreferFactorization(const SolverTask& task);
+/// In the order of vtkSurfaceDiffusionAlgorithm::SolverType, which begins with Automatic.
+enum class SolverMethod
+{
+  Factorization,
+  ConjugateGradient,
+  Multigrid
+};
 
-/// The faster of the two by PreferFactorization(); conjugate gradients that do not converge are
-/// followed by a factorisation.
+/// The method that is expected to be fastest, by a model of measured times.
+SolverMethod ChooseMethod(const SolverTask& task);
+
+inline bool PreferFactorization(const SolverTask& task)
+{
+  return ChooseMethod(task) == SolverMethod::Factorization;
+}
+
+std::unique_ptr<LinearSolver> MakeSolver(
+  SolverMethod method, const ParallelFor& parallel = SerialFor());
+
+/// What ChooseMethod() says; an iteration that does not converge is followed by a factorisation.
 std::unique_ptr<LinearSolver> MakeAutomaticSolver(
   const SolverTask& task, const ParallelFor& parallel = SerialFor());
 

@@ -61,8 +61,7 @@ PlaneVectors MakeFrames(
   {
     return PlaneVectors(0, 2);
   }
-  PlaneVectors frames =
-    ReadFrames(surface, arrays.Direction, arrays.DirectionOnCells, parallel);
+  PlaneVectors frames = ReadFrames(surface, arrays.Direction, arrays.DirectionOnCells, parallel);
   if (surface.Mesh != surface.InputMesh)
   {
     IntrinsicDelaunay(*surface.InputMesh, &frames, parallel); // the same flips again
@@ -253,8 +252,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurfaces(const Monitor& monito
     options.MergeCoincidentPoints = this->Filter.MergeCoincidentPoints;
     options.MergeTolerance = this->Filter.MergeTolerance;
     options.IntrinsicDelaunay = this->Filter.IntrinsicDelaunay;
-    options.Excluded =
-      this->Filter.MaskMode == MASK_MODE_EXCLUDE ? block.Arrays.Mask : nullptr;
+    options.Excluded = this->Filter.MaskMode == MASK_MODE_EXCLUDE ? block.Arrays.Mask : nullptr;
     const std::string key = PolyDataSurface::Key(block.Input, options);
     if (key != block.Run->SurfaceKey || !block.Run->Surface)
     {
@@ -282,8 +280,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MeasureUnits()
     if (block.Arrays.Data)
     {
       const bool inpaint = this->Filter.MaskMode == MASK_MODE_INPAINT;
-      statistics.Add(
-        block.Arrays.Data, inpaint ? block.Arrays.Mask : nullptr, block.Arrays.Fixed);
+      statistics.Add(block.Arrays.Data, inpaint ? block.Arrays.Mask : nullptr, block.Arrays.Fixed);
     }
   }
   UnitSystem units;
@@ -385,31 +382,22 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
 }
 
 std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Execution::FindSolver(
-  SurfaceRun& run, const std::string& name, const SolverTask& task)
+  SurfaceRun& run, const std::string& name, SolverTask task)
 {
-  int kind = this->Filter.Solver;
-  if (kind == SOLVER_AUTOMATIC && PreferFactorization(task))
-  {
-    kind = SOLVER_DIRECT;
-  }
+  task.Tolerance = this->Filter.Tolerance;
+  const SolverMethod method = this->Filter.Solver == SOLVER_AUTOMATIC
+    ? ChooseMethod(task)
+    : static_cast<SolverMethod>(this->Filter.Solver - SOLVER_DIRECT);
+  const bool automatic =
+    this->Filter.Solver == SOLVER_AUTOMATIC && method != SolverMethod::Factorization;
   const std::string prefix = name + ' ';
-  const std::string key = prefix + std::to_string(kind);
+  const std::string key =
+    prefix + (automatic ? "automatic " : "") + std::to_string(static_cast<int>(method));
   std::shared_ptr<LinearSolver> solver = run.Solvers[key];
   if (!solver)
   {
     const ParallelFor& parallel = SMPParallelFor::Instance();
-    switch (kind)
-    {
-      case SOLVER_DIRECT:
-        solver = MakeCholeskySolver(parallel);
-        break;
-      case SOLVER_CONJUGATE_GRADIENT:
-        solver = MakeConjugateGradientSolver(parallel);
-        break;
-      default:
-        solver = MakeAutomaticSolver(task, parallel);
-        break;
-    }
+    solver = automatic ? MakeAutomaticSolver(task, parallel) : MakeSolver(method, parallel);
   }
   // One solver per name: a factor that is no longer used would hold much memory.
   for (auto it = run.Solvers.begin(); it != run.Solvers.end();)
@@ -445,8 +433,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Seek(int step, const Monitor& moni
   for (const Block& block : this->Blocks)
   {
     const double size = block.Run->Surface->Mesh->NumberOfTriangles();
-    const Monitor part =
-      all > 0.0 ? monitor.Part(done / all, (done + size) / all) : monitor;
+    const Monitor part = all > 0.0 ? monitor.Part(done / all, (done + size) / all) : monitor;
     done += size;
     const Index before = block.Run->Path->NumberOfAdvances();
     block.Run->Path->Seek(step, part);
@@ -511,8 +498,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::WriteHistory(int step, vtkTable* h
   AddColumn<vtkDoubleArray>(history, "Energy", rows, [&](int row) { return sums[row].Energy; });
   AddColumn<vtkIntArray>(
     history, "Iterations", rows, [&](int row) { return sums[row].Iterations; });
-  AddColumn<vtkDoubleArray>(
-    history, "Residual", rows, [&](int row) { return sums[row].Residual; });
+  AddColumn<vtkDoubleArray>(history, "Residual", rows, [&](int row) { return sums[row].Residual; });
   AddColumn<vtkDoubleArray>(history, "Seconds", rows, [&](int row) { return sums[row].Seconds; });
   if (this->Filter.CountsClamped())
   {
@@ -544,8 +530,7 @@ bool vtkSurfaceDiffusionAlgorithm::Execution::MaskChangesNothing() const
   }
   const bool filling = this->Filter.InitialFill != INITIAL_FILL_INPUT ||
     this->Filter.UsesFidelity() || this->Filter.HoldKnownValues;
-  const bool inert =
-    this->Filter.MaskMode == MASK_MODE_INPAINT && !(anyData && filling);
+  const bool inert = this->Filter.MaskMode == MASK_MODE_INPAINT && !(anyData && filling);
   return anyMask && (!anyMasked || inert);
 }
 

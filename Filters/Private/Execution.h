@@ -45,7 +45,7 @@ private:
   void MakeRuns(const SurfaceDiffusion::Monitor& monitor);
   void MakeRun(Block& block, const SurfaceDiffusion::Monitor& monitor);
   std::shared_ptr<SurfaceDiffusion::LinearSolver> FindSolver(
-    SurfaceRun& run, const std::string& name, const SurfaceDiffusion::SolverTask& task);
+    SurfaceRun& run, const std::string& name, SurfaceDiffusion::SolverTask task);
   /// Tell the error and take back what was done.
   void Fail(const std::string& what, vtkTable* history);
   bool IsAborted();

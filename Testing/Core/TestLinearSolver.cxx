@@ -215,6 +215,7 @@ TEST_P(AnySolver, ReportsProgressUpwards)
 INSTANTIATE_TEST_SUITE_P(LinearSolver, AnySolver,
   ::testing::Values(Kind{ "Cholesky", [] { return MakeCholeskySolver(); } },
     Kind{ "ConjugateGradient", [] { return MakeConjugateGradientSolver(); } },
+    Kind{ "Multigrid", [] { return MakeMultigridSolver(); } },
     Kind{ "AutomaticDirect", [] { return MakeAutomaticSolver(ManySolves()); } },
     Kind{ "AutomaticIterative", [] { return MakeAutomaticSolver(OneShortStep()); } }),
   [](const auto& parameter) { return parameter.param.Name; });
@@ -252,11 +253,20 @@ TEST(ConjugateGradient, ReportsThatItDidNotConverge)
   EXPECT_GT(report.Residual, 1e-10);
 }
 
-TEST(ConjugateGradient, EveryColumnHasTheBitsItHasAlone)
+class IterativeSolver : public AnySolver
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(LinearSolver, IterativeSolver,
+  ::testing::Values(Kind{ "ConjugateGradient", [] { return MakeConjugateGradientSolver(); } },
+    Kind{ "Multigrid", [] { return MakeMultigridSolver(); } }),
+  [](const auto& parameter) { return parameter.param.Name; });
+
+TEST_P(IterativeSolver, GivesEveryColumnTheBitsItHasAlone)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
   const SparseMatrix matrix = HeatMatrix(*assembler, 0.3);
-  const auto solver = MakeConjugateGradientSolver();
+  const auto& solver = this->Solver;
   solver->SetMatrix(matrix);
   for (const Eigen::Index columns : { 2, 3, 6 })
   {
@@ -275,15 +285,14 @@ TEST(ConjugateGradient, EveryColumnHasTheBitsItHasAlone)
   }
 }
 
-TEST(ConjugateGradient, StartingAtTheSolutionTakesNoIteration)
+TEST_P(IterativeSolver, TakesNoIterationFromTheSolution)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
   const SparseMatrix matrix = HeatMatrix(*assembler, 0.3);
-  const auto solver = MakeConjugateGradientSolver();
-  solver->SetMatrix(matrix);
+  this->Solver->SetMatrix(matrix);
   Values x = Noise(assembler->Mesh());
   const Values b = matrix * x;
-  EXPECT_EQ(solver->Solve(b, x).Iterations, 0);
+  EXPECT_EQ(this->Solver->Solve(b, x).Iterations, 0);
 }
 
 TEST(Automatic, FactorisesWhereConjugateGradientsDoNotConverge)
@@ -300,24 +309,35 @@ TEST(Automatic, FactorisesWhereConjugateGradientsDoNotConverge)
   EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-TEST(Automatic, PrefersWhatTheMeasurementsFoundFaster)
+TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
 {
-  const auto prefer =
-    [](Index vertices, double diffusionNumber, double solves, double tolerance = 1e-8)
+  const auto choice =
+    [](Index vertices, double diffusionNumber, double solves, double tolerance = 1e-10)
   {
     SolverTask task;
     task.NumberOfVertices = vertices;
     task.DiffusionNumber = diffusionNumber;
     task.NumberOfSolves = solves;
     task.Tolerance = tolerance;
-    return PreferFactorization(task);
+    return ChooseMethod(task);
   };
-  EXPECT_TRUE(prefer(44000, 1.0, 20));
-  EXPECT_FALSE(prefer(44000, 1.0, 3));
-  EXPECT_TRUE(prefer(178000, 100.0, 20));
-  EXPECT_FALSE(prefer(178000, 100.0, 1));
-  EXPECT_TRUE(prefer(20000, 100.0, 1));
-  EXPECT_FALSE(prefer(20000, 100.0, 1, 1e-3));
-  EXPECT_FALSE(prefer(711000, 1.0, 10));
-  EXPECT_TRUE(prefer(711000, 1e4, 20));
+  EXPECT_EQ(choice(44000, 0.1, 1), SolverMethod::ConjugateGradient);
+  EXPECT_EQ(choice(44000, 100.0, 1), SolverMethod::Multigrid);
+  EXPECT_EQ(choice(44000, 1.0, 10), SolverMethod::Factorization);
+  EXPECT_EQ(choice(44000, 1.0, 10, 1e-3), SolverMethod::ConjugateGradient);
+  EXPECT_EQ(choice(178000, 100.0, 20), SolverMethod::Factorization);
+  EXPECT_EQ(choice(178000, 1e4, 1), SolverMethod::Multigrid);
+  EXPECT_EQ(choice(711000, 0.1, 10), SolverMethod::ConjugateGradient);
+  EXPECT_EQ(choice(711000, 1e4, 10), SolverMethod::Multigrid);
+  EXPECT_EQ(choice(1000000, 0.3, 200), SolverMethod::ConjugateGradient);
+}
+
+TEST(Automatic, DoesNotChooseMultigridForWhatMovesConstants)
+{
+  SolverTask task;
+  task.NumberOfVertices = 711000;
+  task.DiffusionNumber = 1e4;
+  EXPECT_EQ(ChooseMethod(task), SolverMethod::Multigrid);
+  task.KeepsConstants = false;
+  EXPECT_NE(ChooseMethod(task), SolverMethod::Multigrid);
 }

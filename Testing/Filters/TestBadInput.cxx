@@ -284,7 +284,7 @@ TEST(BadInput, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
   ExpectPropertyError<int>("Units", &Filter::SetUnits, { { 2, "2" }, { -1, "-1" } });
   ExpectPropertyError<int>("MaskMode", &Filter::SetMaskMode, { { 2, "2" } });
   ExpectPropertyError<int>("InitialFill", &Filter::SetInitialFill, { { 3, "3" } });
-  ExpectPropertyError<int>("Solver", &Filter::SetSolver, { { 3, "3" } });
+  ExpectPropertyError<int>("Solver", &Filter::SetSolver, { { 4, "4" } });
   ExpectPropertyError<int>("OutputPrecision", &Filter::SetOutputPrecision, { { 3, "3" } });
   ExpectPropertyError<int>("Mode", &Filter::SetMode, { { 2, "2" } });
   ExpectPropertyError<int>("TimeIntegrator", &Filter::SetTimeIntegrator,

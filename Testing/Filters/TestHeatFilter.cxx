@@ -275,7 +275,8 @@ TEST(HeatFilter, FixedPointsKeepTheirValueWhileOthersChange)
   auto filter = MakeFilter(sphere);
   SetInputArray(filter, 3, "fixed");
   for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
+      vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     for (const double fidelity : { 0.0, 1.0 })
     {
@@ -341,7 +342,8 @@ TEST(HeatFilter, ComponentsTogetherEqualComponentsAlone)
       [&](vtkIdType i, int) { return f->GetComponent(i, k); });
   }
   for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
+      vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     auto together = MakeFilter(sphere);
     together->SetSolver(solver);
@@ -381,7 +383,7 @@ TEST(HeatFilter, SumIsKeptWhateverTheSolverAndIntegrator)
   vtkDataArray* f = AddRough(sphere, 3);
   const std::vector<double> areas = ControlAreas(sphere);
   for (const int solver : { vtkFVMHeatFilter::SOLVER_AUTOMATIC, vtkFVMHeatFilter::SOLVER_DIRECT,
-         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     for (const int integrator : { vtkFVMHeatFilter::TIME_INTEGRATOR_FIRST_ORDER,
            vtkFVMHeatFilter::TIME_INTEGRATOR_SECOND_ORDER })

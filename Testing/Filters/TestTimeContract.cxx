@@ -210,7 +210,7 @@ TEST(TimeContract, TheLastStateEqualsTheRunWithoutTimeSteps)
   auto sphere = Sphere(3);
   AddRough(sphere, 3);
   for (const int solver : { vtkFVMHeatFilter::SOLVER_AUTOMATIC, vtkFVMHeatFilter::SOLVER_DIRECT,
-         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     auto with = MakeFilter(sphere);
     auto without = MakeFilter(sphere, false);
@@ -229,7 +229,8 @@ TEST(TimeContract, OrderOfTheRequestsDoesNotMatter)
   auto sphere = Sphere(3);
   AddRough(sphere);
   for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
+      vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     auto through = MakeFilter(sphere);
     auto jumping = MakeFilter(sphere);

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Aggregation.h"
+#include "Allocations.h"
+#include "Coefficients.h"
+#include "LinearSolver.h"
+#include "MeshFiles.h"
+#include "Meshes.h"
+#include "Multigrid.h"
+#include "ThreadedFor.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+/// M + c h^2 K
+SparseMatrix HeatMatrix(const Assembler& assembler, double c, const EdgeValues& coefficients)
+{
+  const TriangleMesh& mesh = assembler.Mesh();
+  const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges();
+  SparseMatrix matrix = assembler.Pattern();
+  assembler.Fill(matrix, mesh.ControlAreas(), c * h * h, coefficients);
+  return matrix;
+}
+
+SparseMatrix HeatMatrix(const Assembler& assembler, double c)
+{
+  return HeatMatrix(assembler, c, IsotropicCoefficients(assembler.Mesh()));
+}
+
+int IterationsOf(const SparseMatrix& matrix, const Values& exact)
+{
+  const auto solver = MakeMultigridSolver();
+  solver->SetMatrix(matrix);
+  Values x = Values::Zero(exact.rows(), exact.cols());
+  const SolveReport report = solver->Solve(matrix * exact, x);
+  EXPECT_TRUE(report.Converged);
+  return report.Iterations;
+}
+
+} // namespace
+
+TEST(Multigrid, IterationsHardlyGrowWithSizeAndTimeStep)
+{
+  for (const double c : { 0.1, 1.0, 100.0, 1e4, 1e8 })
+  {
+    std::cout << "dt = " << c << " h^2, iterations:";
+    for (const int subdivisions : { 4, 5, 6 })
+    {
+      const auto assembler = MakeAssembler(Icosphere(subdivisions));
+      const int iterations = IterationsOf(HeatMatrix(*assembler, c), Noise(assembler->Mesh()));
+      std::cout << ' ' << iterations;
+      EXPECT_LE(iterations, c < 10.0 ? 12 : 25) << subdivisions;
+    }
+    std::cout << '\n';
+  }
+}
+
+TEST(Multigrid, FollowsStrongCoefficients)
+{
+  // 100:1 along one direction of a strip, where isotropic coarsening would stall.
+  const auto assembler = MakeAssembler(Strip(100, 100));
+  const TriangleMesh& mesh = assembler->Mesh();
+  PlaneVectors frames(mesh.NumberOfTriangles(), 2);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    frames.row(t) << 1.0, 0.0; // some edge of each
+  }
+  const Vector along = Vector::Constant(mesh.NumberOfTriangles(), 100.0);
+  const Vector across = Vector::Ones(mesh.NumberOfTriangles());
+  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0,
+    AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), frames, along, across));
+  EXPECT_LE(IterationsOf(matrix, Noise(mesh)), 60);
+}
+
+TEST(Multigrid, ConvergesOnRealMeshes)
+{
+  if (!HaveMeshFiles())
+  {
+    GTEST_SKIP() << "no folder with meshes";
+  }
+  for (const char* name : { "elephant", "bunny00", "fandisk", "blobby", "oblong-shuffled" })
+  {
+    const auto assembler = MakeAssembler(ReadMeshFile(name));
+    for (const double c : { 1.0, 1e4 })
+    {
+      const int iterations = IterationsOf(HeatMatrix(*assembler, c), Noise(assembler->Mesh()));
+      std::cout << name << ", dt = " << c << " h^2: " << iterations << " iterations\n";
+      EXPECT_LE(iterations, 60) << name;
+    }
+  }
+}
+
+TEST(Multigrid, SolvesComponentsApartFromEachOther)
+{
+  // Far apart in size and more of them than the coarsest level has vertices.
+  Surface s = Icosphere(4);
+  for (int i = 0; i < 700; ++i)
+  {
+    s = Joined(s, Moved(Scaled(Tetrahedron(), 1e-3), { 3.0 + i, 0.0, 0.0 }));
+  }
+  const auto assembler = MakeAssembler(s);
+  EXPECT_LE(IterationsOf(HeatMatrix(*assembler, 100.0), Noise(assembler->Mesh())), 30);
+}
+
+TEST(Multigrid, IsSymmetricAndPositive)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
+  const ParallelFor serial;
+  Multigrid multigrid(serial);
+  multigrid.SetMatrix(matrix);
+  const Vector inverse = matrix.diagonal().cwiseInverse();
+  const Values r = Noise(assembler->Mesh(), 2);
+  Values z(r.rows(), 2);
+  std::vector<double> scale(2);
+  for (int c = 0; c < 2; ++c)
+  {
+    scale[c] = 1.0 / std::sqrt(inverse.dot(r.col(c).cwiseAbs2()));
+  }
+  multigrid.Apply(r, scale, z);
+  const Eigen::Matrix2d products = r.transpose() * z;
+  EXPECT_GT(products(0, 0), 0.0);
+  EXPECT_GT(products.determinant(), 0.0);
+  const double size = std::sqrt(products(0, 0) * products(1, 1));
+  EXPECT_NEAR(products(0, 1), products(1, 0), 1e-5 * size); // single precision
+}
+
+TEST(Multigrid, HasTheSameBitsOnAnyNumberOfThreads)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
+  const Values b = matrix * Noise(assembler->Mesh(), 3);
+  const auto solve = [&](const ParallelFor& parallel)
+  {
+    const auto solver = MakeMultigridSolver(parallel);
+    solver->SetMatrix(matrix);
+    Values x = Values::Zero(b.rows(), b.cols());
+    solver->Solve(b, x);
+    return x;
+  };
+  const Values serial = solve(SerialFor());
+  for (const int threads : { 2, 4 })
+  {
+    EXPECT_TRUE(solve(ThreadedFor(threads)) == serial) << threads;
+  }
+}
+
+TEST(Multigrid, AllocatesNothingInLaterSolves)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
+  const auto solver = MakeMultigridSolver();
+  solver->SetMatrix(matrix);
+  const Values b = matrix * Noise(assembler->Mesh());
+  Values x = Values::Zero(b.rows(), 1);
+  solver->Solve(b, x);
+  x.setZero();
+  const auto before = NumberOfAllocations();
+  solver->Solve(b, x);
+  EXPECT_EQ(NumberOfAllocations(), before);
+}
+
+TEST(Multigrid, TakesOtherMatricesAndNumbersOfColumns)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const auto solver = MakeMultigridSolver();
+  for (const double c : { 1.0, 100.0 })
+  {
+    const SparseMatrix matrix = HeatMatrix(*assembler, c);
+    solver->SetMatrix(matrix);
+    for (const Eigen::Index columns : { 1, 5, 3 })
+    {
+      const Values exact = Noise(assembler->Mesh(), columns);
+      Values x = Values::Zero(exact.rows(), columns);
+      solver->Solve(matrix * exact, x);
+      EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-7);
+    }
+  }
+}
+
+TEST(SmoothedAggregation, KeepsTheKernel)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1e12); // constants are its kernel, all but
+  const Vector ones = Vector::Ones(matrix.rows());
+  Vector coarse = ones;
+  const SparseMatrix restriction = SmoothedAggregation(matrix, 0.08, coarse, SerialFor());
+  EXPECT_LT(restriction.rows(), matrix.rows() / 3);
+  EXPECT_EQ(coarse.size(), restriction.rows());
+  EXPECT_LT((restriction.transpose() * coarse - ones).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(SmoothedAggregation, LeavesOutRowsWithoutStrongEntries)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1e-6); // all but diagonal
+  Vector kernel = Vector::Ones(matrix.rows());
+  EXPECT_EQ(SmoothedAggregation(matrix, 0.08, kernel, SerialFor()).rows(), 0);
+}
+
+TEST(GalerkinProduct, EqualsTheProductOfThree)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  Vector kernel = Vector::Ones(matrix.rows());
+  const SparseMatrix restriction = SmoothedAggregation(matrix, 0.08, kernel, SerialFor());
+  const SparseMatrix prolongation = restriction.transpose();
+  const SparseMatrix product = GalerkinProduct(matrix, restriction, prolongation, ThreadedFor(2));
+  const SparseMatrix half = matrix * prolongation;
+  const SparseMatrix whole = restriction * half;
+  EXPECT_LT((product - whole).norm(), 1e-14 * whole.norm());
+}
