@@ -478,7 +478,7 @@ std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& inp
     ? input.Frames
     : PlaneVectors(PlaneVectors::Zero(mesh.NumberOfTriangles(), 2));
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
-  bool direct = this->Solver != SOLVER_CONJUGATE_GRADIENT;
+  bool direct = true;
   for (int c = 0; c < 2; ++c)
   {
     const double fastest = std::max(rates.MeanAlong[c], rates.MeanAcross[c]);
@@ -486,7 +486,10 @@ std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& inp
     task.NumberOfVertices = mesh.NumberOfVertices();
     task.DiffusionNumber = fastest * settings.TimeStep / (h * h);
     task.NumberOfSolves = secondOrder ? 2.0 * steps : steps;
-    direct = direct && (this->Solver == SOLVER_DIRECT || PreferFactorization(task));
+    task.Tolerance = this->Tolerance;
+    direct = direct &&
+      (this->Solver == SOLVER_DIRECT ||
+        (this->Solver == SOLVER_AUTOMATIC && PreferFactorization(task)));
     chemicals[c].Solver = input.Solver(c == 0 ? "u1" : "u2", task);
     chemicals[c].Coefficients = AnisotropicCoefficients(
       mesh, isotropic, frames, rates.Along[c], rates.Across[c], input.Parallel);
