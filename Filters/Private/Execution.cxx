@@ -331,6 +331,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRuns(const Monitor& monitor)
     }
     if (block.Run->RunKey != key.str() || !block.Run->Path)
     {
+      block.Run->RunKey.clear(); // an abort may leave a path that has none yet
       block.Run->Path.reset();
       this->MakeRun(block, monitor.Part(b / count, (b + 1) / count));
       block.Run->RunKey = key.str();

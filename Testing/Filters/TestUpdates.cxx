@@ -159,6 +159,35 @@ TEST(Updates, ObeyAnAbortAndWorkAgainAfterwards)
   }
 }
 
+TEST(Updates, AnAbortedRunIsNotTakenForTheOneBeforeIt)
+{
+  auto sphere = Sphere(4);
+  AddRough(sphere);
+  auto reference = MakeFilter(sphere);
+  reference->Update();
+  for (const double when : { 0.01, 0.2, 0.25, 0.3, 0.6, 0.9 })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->Update();
+    const double step = filter->GetTimeStep();
+    const unsigned long tag = Listen(filter,
+      [&](double amount)
+      {
+        if (amount >= when)
+        {
+          filter->AbortExecuteOn();
+        }
+      });
+    filter->SetTimeStep(2.0 * step);
+    filter->Update();
+    filter->RemoveObserver(tag);
+    filter->AbortExecuteOff();
+    filter->SetTimeStep(step);
+    filter->Update();
+    EXPECT_TRUE(Identical(Result(filter), Result(reference))) << when;
+  }
+}
+
 TEST(Updates, ChangesOfTheOutputAloneComputeNothing)
 {
   auto sphere = Sphere(3);
