@@ -132,6 +132,15 @@ def check_selected_denoised():
     say("as expected: selected data")
 
 
+def check_history():
+    """A chart of the energy stands beside the picture, which is still the active view."""
+    (chart,) = [view for view in GetViews() if name_of(view) == "XYChartView"]
+    (lines,) = chart.Representations
+    assert lines.Input.Port == 1 and "Energy" in lines.SeriesVisibility, lines.SeriesVisibility
+    assert GetActiveView() == render_view()
+    say("as expected: history")
+
+
 def select_nothing():
     SetActiveSource(None)
 

@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every filter on composite data of every kind; progress and abort, as the window has them."""
+
+import os
+import tempfile
+import unittest
+
+from paraview import servermanager
+from paraview.simple import (
+    FVMHeatFilter, GroupDatasets, HarmonicMapFilter, IntrinsicTVFilter,
+    SurfaceDirectionFieldFilter, TuringTextureFilter,
+)
+from plugin_testing import read_sphere, values
+
+# What each filter adds.
+FILTERS = (
+    (FVMHeatFilter, "noisyDiffused"), (IntrinsicTVFilter, "noisyTV"),
+    (HarmonicMapFilter, "NormalsHarmonic"), (TuringTextureFilter, "u1"),
+    (SurfaceDirectionFieldFilter, "Direction"),
+)
+KINDS = ("vtkMultiBlockDataSet", "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection")
+
+
+def leaves(data):
+    iterator = data.NewIterator()
+    while not iterator.IsDoneWithTraversal():
+        yield iterator.GetCurrentDataObject()
+        iterator.GoToNextItem()
+
+
+class TestComposite(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.spheres = [
+            read_sphere(os.path.join(folder.name, "%d.vtp" % x), centre=(x, 0.0, 0.0))
+            for x in (0.0, 5.0)
+        ]
+
+    def test_each_filter_on_each_kind_of_composite_data(self):
+        for name in KINDS:
+            group = GroupDatasets(Input=self.spheres, OutputType=name)
+            group.UpdatePipeline()
+            for make, array in FILTERS:
+                filter = make(group)
+                if make is TuringTextureFilter:
+                    filter.NumberOfTimeSteps = 5
+                filter.UpdatePipeline()
+                output = filter.GetClientSideObject().GetOutputDataObject(0)
+                self.assertEqual(output.GetClassName(), name)
+                blocks = list(leaves(output))
+                self.assertEqual(len(blocks), 2, name)
+                for block in blocks:
+                    data = block.GetCellData() if array == "Direction" else block.GetPointData()
+                    self.assertIsNotNone(data.GetArray(array), "%s of %s" % (array, name))
+
+    def test_progress_reaches_the_status_bar_and_abort_the_filter(self):
+        heat = FVMHeatFilter(self.spheres[0], NumberOfTimeSteps=300)
+        algorithm = heat.GetClientSideObject()
+        handler = servermanager.ActiveConnection.Session.GetProgressHandler()
+        seen = []
+
+        def look(_object, _event):
+            seen.append(handler.GetLastProgress())
+
+        tag = handler.AddObserver("ProgressEvent", look)
+        self.addCleanup(handler.RemoveObserver, tag)
+        heat.UpdatePipeline()
+        self.assertGreaterEqual(len(set(seen)), 3)
+        self.assertEqual(seen, sorted(seen))
+        complete = values(heat, "noisyDiffused")
+
+        def abort(_object, _event):
+            if algorithm.GetProgress() > 0.2:
+                algorithm.SetAbortExecute(1)
+
+        tag = algorithm.AddObserver("ProgressEvent", abort)
+        heat.TimeStep = 2
+        heat.UpdatePipeline()
+        self.assertIsNone(values(heat, "noisyDiffused"))
+        algorithm.RemoveObserver(tag)
+        algorithm.SetAbortExecute(0)
+        heat.TimeStep = 1
+        self.assertTrue(values(heat, "noisyDiffused") == complete)
+
+
+if __name__ == "__main__":
+    unittest.main()
