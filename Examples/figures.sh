@@ -1,7 +1,6 @@
 #!/bin/bash
-# Figures 4, 5 and 6 of the paper with photographs on scans: installs what it needs (Debian 12),
-# fetches the data, builds, draws, and prints what it took. Arguments go on to
-# Examples/Python/paper_figures.py, see its --help.
+# Figures 4 to 8 of the paper on scans, with photographs: installs what it needs (Debian 12), fetches
+# the data, builds, draws into build/figures, and prints what it took.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,8 +15,10 @@ echo "== Data"
 if [ ! -d "$data/photos" ]; then
   work=$(mktemp -d "$data/fetch.XXXXXX")
   trap 'rm -rf "$work"' EXIT
-  "$python" -m pip download --quiet --no-deps --dest "$work" scikit-image==0.24.0
+  "$python" -m pip download --quiet --no-deps --dest "$work" scikit-image==0.24.0 matplotlib==3.8.4
   "$python" -m zipfile -e "$work"/scikit_image-*.whl "$work/wheel"
+  "$python" -m zipfile -e "$work"/matplotlib-*.whl "$work/wheel"
+  mv "$work/wheel/matplotlib/mpl-data/sample_data/grace_hopper.jpg" "$work/wheel/skimage/data"
   mv "$work/wheel/skimage/data" "$data/photos"
 fi
 
@@ -31,6 +32,13 @@ if [ -z "${DISPLAY:-}" ]; then
   display=(xvfb-run -a -s "-screen 0 1024x768x24 -noreset")
 fi
 modules=$(dirname "$(find build/lib -type d -name surfacediffusion -path '*-packages/*' | head -1)")
-PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH} "${display[@]}" "$python" \
-  Examples/Python/paper_figures.py --meshes "$data/meshes" --photos "$data/photos" \
-  --output build/figures "$@"
+export PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH}
+export SURFACEDIFFUSION_MESH_DIR=$PWD/$data/meshes
+examples=$PWD/Examples/Python
+photos=$PWD/$data/photos
+mkdir -p build/figures
+cd build/figures
+"${display[@]}" "$python" "$examples/paper_figures.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
+  --photos "$photos" --output .
+"${display[@]}" "$python" "$examples/harmonic_map.py"
+"${display[@]}" "$python" "$examples/turing_texture.py"

@@ -295,6 +295,7 @@ private:
     const double across = settings.AcrossDiffusivity * settings.Across(gradient * gradient);
     SolverTask task;
     task.NumberOfVertices = operators->Mesh().NumberOfVertices();
+    task.AllowMultigrid = false;
     task.DiffusionNumber = settings.TimeStep * std::max(along, across) / (h * h);
     return std::make_unique<NonlinearDiffusion>(std::move(operators), this->Frames(),
       std::move(data), settings, this->Input.Solver("diffusion", task), this->Input.Parallel);

@@ -123,7 +123,8 @@ def main():
         print(f"{texture.title:9} on {surface.GetNumberOfPoints()} vertices: {pieces} pieces, Euler "
               f"number {euler}; {steps} steps in {seconds:.1f} s")
         panels.append(Panel(result, "TextureColor", texture.title,
-                            f"{pieces} pieces, Euler number {euler}", texture.view, texture.up))
+                            f"{pieces} piece{'s' * (pieces != 1)}, Euler number {euler}",
+                            texture.view, texture.up))
     if display_missing():
         print("no picture: there is no display")
     else:

@@ -16,13 +16,13 @@ namespace
 
 /// A solver for systems with modes as long as the surface.
 std::unique_ptr<LinearSolver> MakeSolverFor(
-  Eigen::Index size, double solves, bool keepsConstants, const ParallelFor& parallel)
+  Eigen::Index size, double solves, bool allowMultigrid, const ParallelFor& parallel)
 {
   SolverTask task;
   task.NumberOfVertices = static_cast<Index>(size);
   task.DiffusionNumber = 1e4;
   task.NumberOfSolves = solves;
-  task.KeepsConstants = keepsConstants;
+  task.AllowMultigrid = allowMultigrid;
   std::unique_ptr<LinearSolver> solver = MakeAutomaticSolver(task, parallel);
   IterationLimits limits;
   limits.Tolerance = 1e-8; // of directions more can't be seen

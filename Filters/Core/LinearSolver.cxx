@@ -58,8 +58,8 @@ SolverMethod ChooseMethod(const SolverTask& task)
   const double conjugateGradient = threads * task.NumberOfSolves * iterations * 4.3e-4 * size;
   const double multigrid = threads * (0.03 * size + task.NumberOfSolves * cycles * 3.1e-3 * size);
   const double iterative =
-    task.KeepsConstants ? std::min(conjugateGradient, multigrid) : conjugateGradient;
-  if (direct < iterative && (task.NumberOfVertices <= largestFactor || !task.KeepsConstants))
+    task.AllowMultigrid ? std::min(conjugateGradient, multigrid) : conjugateGradient;
+  if (direct < iterative && (task.NumberOfVertices <= largestFactor || !task.AllowMultigrid))
   {
     return SolverMethod::Factorization;
   }

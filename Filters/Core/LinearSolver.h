@@ -78,9 +78,10 @@ struct SolverTask
   double DiffusionNumber = 1.0; ///< (largest diffusivity) x (time step) / h^2
   double NumberOfSolves = 1.0; ///< with one matrix
   double Tolerance = 1e-10;
-  /// The diffusion part of the matrix maps constants to zero, as Multigrid expects; the connection
-  /// of direction fields does not.
-  bool KeepsConstants = true;
+  /// False where multigrid was measured to lose: connections of direction fields, which do not map
+  /// constants to zero, and coefficients that change in every step and by orders of magnitude from
+  /// triangle to triangle.
+  bool AllowMultigrid = true;
 };
 
 /// In the order of vtkSurfaceDiffusionAlgorithm::SolverType, which begins with Automatic.

@@ -332,12 +332,12 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
   EXPECT_EQ(choice(1000000, 0.3, 200), SolverMethod::ConjugateGradient);
 }
 
-TEST(Automatic, DoesNotChooseMultigridForWhatMovesConstants)
+TEST(Automatic, ChoosesMultigridOnlyWhereAllowed)
 {
   SolverTask task;
   task.NumberOfVertices = 711000;
   task.DiffusionNumber = 1e4;
   EXPECT_EQ(ChooseMethod(task), SolverMethod::Multigrid);
-  task.KeepsConstants = false;
+  task.AllowMultigrid = false;
   EXPECT_NE(ChooseMethod(task), SolverMethod::Multigrid);
 }
