@@ -11,7 +11,7 @@ from paraview.simple import (
     Contour, Delete, FindSource, FVMHeatFilter, GetActiveViewOrCreate, GetAnimationScene,
     GroupDatasets, LoadState, OutputPort, PointSource, ResetSession, SaveState, Show,
 )
-from plugin_testing import errors_of, read_sphere, root_mean_square, values
+from plugin_testing import errors_of, menu, read_sphere, root_mean_square, values
 
 
 class TestFVMHeatFilter(unittest.TestCase):
@@ -26,15 +26,6 @@ class TestFVMHeatFilter(unittest.TestCase):
 
     def path(self, name):
         return os.path.join(self.folder, name)
-
-    def menu(self, heat, name):
-        """What a menu of arrays lists: (association, name) each."""
-        domain = heat.SMProxy.GetProperty(name).FindDomain("vtkSMArrayListDomain")
-        names = [domain.GetString(i) for i in range(domain.GetNumberOfStrings())]
-        return {
-            ("POINTS", "CELLS")[domain.GetFieldAssociation(i)] + " " + text
-            for i, text in enumerate(names) if text
-        }
 
     def test_first_apply_removes_most_of_the_noise(self):
         heat = FVMHeatFilter(self.sphere)
@@ -60,10 +51,10 @@ class TestFVMHeatFilter(unittest.TestCase):
         heat = FVMHeatFilter(self.sphere)
         scalars = {"POINTS " + name for name in ("clean", "noisy", "damaged", "hole", "poles")}
         vectors = {"POINTS Normals", "POINTS east"}
-        self.assertEqual(self.menu(heat, "InputArray"), scalars | vectors | {"POINTS pair"})
-        self.assertEqual(self.menu(heat, "MaskArray"), scalars)
-        self.assertEqual(self.menu(heat, "FixedArray"), scalars)
-        self.assertEqual(self.menu(heat, "DirectionArray"), vectors | {"CELLS up"})
+        self.assertEqual(menu(heat, "InputArray"), scalars | vectors | {"POINTS pair"})
+        self.assertEqual(menu(heat, "MaskArray"), scalars)
+        self.assertEqual(menu(heat, "FixedArray"), scalars)
+        self.assertEqual(menu(heat, "DirectionArray"), vectors | {"CELLS up"})
 
     def test_optional_arrays_are_not_set_at_first(self):
         heat = FVMHeatFilter(self.sphere)

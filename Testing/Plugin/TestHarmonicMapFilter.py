@@ -10,7 +10,7 @@ from paraview import servermanager
 from paraview.simple import (
     Cone, CreateView, FVMHeatFilter, HarmonicMapFilter, OutputPort, Show, Sphere,
 )
-from plugin_testing import errors_of, read_sphere, values
+from plugin_testing import errors_of, menu, read_sphere, values
 
 
 class TestHarmonicMapFilter(unittest.TestCase):
@@ -28,6 +28,11 @@ class TestHarmonicMapFilter(unittest.TestCase):
         self.assertEqual(harmonic.InputArray[1], "")
         data = servermanager.Fetch(harmonic).GetPointData()
         self.assertEqual(data.GetNormals().GetName(), "NormalsHarmonic")
+
+    def test_the_menu_lists_only_vectors(self):
+        harmonic = HarmonicMapFilter(self.sphere)
+        self.assertEqual(
+            menu(harmonic, "InputArray"), {"POINTS Normals", "POINTS east", "POINTS pair"})
 
     def test_shading_shows_the_result_at_once(self):
         harmonic = HarmonicMapFilter(self.sphere)

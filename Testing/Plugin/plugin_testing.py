@@ -89,6 +89,16 @@ def values(source, name, port=0):
     return [array.GetComponent(i, 0) for i in range(array.GetNumberOfTuples())]
 
 
+def menu(source, name):
+    """What a menu of arrays lists: association and name each."""
+    domain = source.SMProxy.GetProperty(name).FindDomain("vtkSMArrayListDomain")
+    names = [domain.GetString(i) for i in range(domain.GetNumberOfStrings())]
+    return {
+        ("POINTS", "CELLS")[domain.GetFieldAssociation(i)] + " " + text
+        for i, text in enumerate(names) if text
+    }
+
+
 def root_mean_square(a, b):
     """Of the difference of two lists."""
     return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / len(a))
