@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace SurfaceDiffusion
@@ -82,8 +83,15 @@ public:
     }
     std::vector<char> queued(queue.size(), 1);
     // Flips end: each lowers an energy of finitely many triangulations (Bobenko and Springborn).
-    for (std::size_t done = 0; !queue.empty(); ++done)
+    // Round-off in the lengths of needles can still lead around in circles; such edges stay as they
+    // are after far more flips than any surface needs.
+    const std::size_t most = 50 * queue.size();
+    for (std::size_t done = 0; !queue.empty() && done < most; ++done)
     {
+      if (done % 65536 == 0)
+      {
+        monitor.Report(0.5);
+      }
       const Index side = queue.back();
       queue.pop_back();
       queued[side] = 0;
@@ -92,7 +100,10 @@ public:
         continue;
       }
       const Index twin = this->At(side).Twins[side % 3];
-      this->Flip(side);
+      if (!this->Flip(side))
+      {
+        continue;
+      }
       for (const Index t : { side / 3, twin / 3 })
       {
         for (int a = 0; a < 3; ++a)
@@ -104,10 +115,6 @@ public:
             queue.push_back(changed);
           }
         }
-      }
-      if (done % 65536 == 0)
-      {
-        monitor.Report(0.5);
       }
     }
   }
@@ -305,8 +312,17 @@ private:
     return Turn(t.Tensor, std::atan2(direction[1], direction[0]));
   }
 
-  /// Replace the edge PQ of triangles A P Q and B Q P by the edge AB.
-  void Flip(Index side)
+  /// False for what round-off has pressed flat: it would have no finite weights.
+  static bool IsProper(const std::array<double, 3>& l)
+  {
+    constexpr double flat = 4.0 * std::numeric_limits<double>::epsilon(); // as in TriangleMesh
+    const double longest = std::max({ l[0], l[1], l[2] });
+    return l[2] * Apex(l[0], l[1], l[2])[1] > flat * longest * longest;
+  }
+
+  /// Replace the edge PQ of triangles A P Q and B Q P by the edge AB; false, and nothing done, where
+  /// that makes a flat triangle.
+  bool Flip(Index side)
   {
     const Index twin = this->At(side).Twins[side % 3];
     const Index first = side / 3;
@@ -321,6 +337,12 @@ private:
     Vec2 below = Apex(g.Lengths[Last(b)], g.Lengths[Next(b)], pq);
     below[1] = -below[1];
     const double ab = (above - below).norm();
+    const std::array<double, 3> leftLengths{ g.Lengths[Next(b)], ab, f.Lengths[Last(a)] };
+    const std::array<double, 3> rightLengths{ f.Lengths[Next(a)], ab, g.Lengths[Last(b)] };
+    if (!IsProper(leftLengths) || !IsProper(rightLengths))
+    {
+      return false;
+    }
 
     // Outer sides: A P, Q A of the first, B Q, P B of the second, in their new places.
     const std::array<std::pair<Index, Index>, 4> outer{ { { 3 * first + Last(a), 3 * first + 2 },
@@ -347,9 +369,9 @@ private:
     Triangle& left = this->Triangles[first];
     Triangle& right = this->Triangles[second];
     left.Vertices = { A, P, B };
-    left.Lengths = { g.Lengths[Next(b)], ab, f.Lengths[Last(a)] };
+    left.Lengths = leftLengths;
     right.Vertices = { B, Q, A };
-    right.Lengths = { f.Lengths[Next(a)], ab, g.Lengths[Last(b)] };
+    right.Lengths = rightLengths;
     this->Join(3 * first + 1, 3 * second + 1);
     for (int k = 0; k < 4; ++k)
     {
@@ -365,6 +387,7 @@ private:
     left.Tensor = leftShare * Turn(sum, std::atan2(-above[1], -above[0]));
     const Vec2 fromBToQ = Vec2(pq, 0.0) - below;
     right.Tensor = (1.0 - leftShare) * Turn(sum, std::atan2(fromBToQ[1], fromBToQ[0]));
+    return true;
   }
 
   std::vector<Triangle> Triangles;
