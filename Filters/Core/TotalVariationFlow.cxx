@@ -13,9 +13,13 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The largest max - min over the columns; 1 for constants.
+/// The largest max - min over the columns; 1 for constants and where there are no values.
 double ValueRange(const Values& u)
 {
+  if (u.size() == 0)
+  {
+    return 1.0;
+  }
   const double range = (u.colwise().maxCoeff() - u.colwise().minCoeff()).maxCoeff();
   return range > 0.0 ? range : 1.0;
 }

@@ -550,6 +550,10 @@ void TotalVariationMinimizer::Prepare(const Values& u)
 double TotalVariationMinimizer::NoiseEnergy() const
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
+  if (mesh.NumberOfVertices() == 0)
+  {
+    return 0.0;
+  }
   const EdgeFunction exact = WithoutBeta(this->Options.Function);
   const double squared = this->Options.Range * this->Options.Range / mesh.ControlAreas().mean();
   return mesh.ControlAreas().sum() * exact.Potential(squared);
