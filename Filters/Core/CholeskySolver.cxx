@@ -51,7 +51,8 @@ public:
     }
     if (!factor->IsPositive())
     {
-      throw std::runtime_error("the matrix of the linear system is not positive definite");
+      throw std::runtime_error("the matrix of the linear system is not positive definite; if "
+                               "triangles are all but flat, IntrinsicDelaunay makes it so");
     }
     this->Factor = std::move(factor);
   }

@@ -290,7 +290,8 @@ void ReactionDiffusion::Solve(StepReport& report, const Monitor& monitor)
   for (int c = 0; c < 2; ++c)
   {
     const Solution& solution = this->Solutions[c];
-    if (solution.Failure && !this->RightHandSide[c].allFinite())
+    constexpr double boundless = 1e100;
+    if (solution.Failure && !(this->RightHandSide[c].array().abs() < boundless).all())
     {
       throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
                                "other parameters of the kinetics, or clamp at zero");

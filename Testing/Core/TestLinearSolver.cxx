@@ -158,7 +158,7 @@ TEST_P(AnySolver, DoesNotPassOffAnIndefiniteMatrixAsSolved)
   }
   catch (const std::runtime_error& error)
   {
-    EXPECT_STREQ(error.what(), "the matrix of the linear system is not positive definite");
+    EXPECT_NE(std::string(error.what()).find("not positive definite"), std::string::npos);
   }
   EXPECT_FALSE(solved);
 }
