@@ -1,0 +1,454 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RandomRun.h"
+
+#include "Coefficients.h"
+#include "Conservation.h"
+#include "CrouzeixRaviart.h"
+#include "DirectionField.h"
+#include "Frames.h"
+#include "HarmonicMap.h"
+#include "InitialState.h"
+#include "IntrinsicDelaunay.h"
+#include "LinearDiffusion.h"
+#include "MedialMesh.h"
+#include "NonlinearDiffusion.h"
+#include "ReactionDiffusion.h"
+#include "TotalVariationFlow.h"
+#include "UnitVectors.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace SurfaceDiffusion::Testing
+{
+
+namespace
+{
+
+void Require(bool holds, const char* what)
+{
+  if (!holds)
+  {
+    throw std::logic_error(what);
+  }
+}
+
+/// Numbers from bytes; zeros after the last of them.
+class Bytes
+{
+public:
+  Bytes(const std::uint8_t* bytes, std::size_t count)
+    : Next(bytes)
+    , End(bytes + count)
+  {
+  }
+  int Below(int limit) { return this->Byte() % limit; }
+  bool Flip(int oneIn = 2) { return this->Below(oneIn) == 1; }
+  /// In [-1, 1], few values of them, so that many are equal.
+  double Short() { return (this->Byte() - 128) / 128.0; }
+  /// A positive number of any size between 10^-span and 10^span.
+  double Size(double span) { return std::pow(10.0, span * this->Short()); }
+
+private:
+  std::uint8_t Byte() { return this->Next == this->End ? 0 : *this->Next++; }
+
+  const std::uint8_t* Next;
+  const std::uint8_t* End;
+};
+
+Points ReadPoints(Bytes& bytes)
+{
+  const int count = 3 + bytes.Below(18);
+  const double scale = bytes.Flip(4) ? bytes.Size(150.0) : 1.0;
+  const double offset = bytes.Flip(4) ? 1e6 * bytes.Short() : 0.0;
+  const bool flat = bytes.Flip();
+  const double unevenness = bytes.Flip() ? bytes.Size(14.0) : 1.0;
+  Points points(count, 3);
+  for (int i = 0; i < count; ++i)
+  {
+    points.row(i) << bytes.Below(5), bytes.Below(5), flat ? 0 : bytes.Below(3);
+    if (bytes.Flip(3)) // near one that is there already: needles and slivers
+    {
+      points.row(i) = points.row(bytes.Below(i + 1));
+      points(i, bytes.Below(3)) += bytes.Short() * std::min(unevenness, 1.0);
+    }
+  }
+  return scale * (points.array() + offset).matrix();
+}
+
+Triangles ReadTriangles(Bytes& bytes, int points)
+{
+  const int count = bytes.Below(40);
+  Triangles triangles(count, 3);
+  for (int t = 0; t < count; ++t)
+  {
+    const int a = bytes.Below(points);
+    // Mostly among neighbours, so that triangles share edges.
+    triangles.row(t) << a, (a + 1 + bytes.Below(3)) % points, bytes.Below(points);
+  }
+  return triangles;
+}
+
+/// Values between 10^-span and 10^span in size.
+PointData ReadData(Bytes& bytes, const TriangleMesh& mesh, double span)
+{
+  const int columns = 1 + bytes.Below(4);
+  const double scale = bytes.Flip(4) ? bytes.Size(span) : 1.0;
+  const double offset = bytes.Flip(4) ? 1e6 * bytes.Short() : 0.0;
+  const bool holes = bytes.Flip();
+  const bool held = bytes.Flip(3);
+  PointData data = PointData::FromValues(Values(mesh.NumberOfVertices(), columns));
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    for (int k = 0; k < columns; ++k)
+    {
+      data.Given(i, k) = scale * (bytes.Short() + offset);
+    }
+    data.Missing[i] = holes && bytes.Flip(3);
+    data.Fixed[i] = held && !data.Missing[i] && bytes.Flip(4);
+    if (data.Missing[i] && bytes.Flip())
+    {
+      data.Given(i, 0) = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return data;
+}
+
+std::vector<std::int64_t> Ids(const TriangleMesh& mesh)
+{
+  std::vector<std::int64_t> ids(mesh.NumberOfVertices());
+  std::iota(ids.begin(), ids.end(), 0);
+  return ids;
+}
+
+std::shared_ptr<LinearSolver> ReadSolver(Bytes& bytes)
+{
+  std::shared_ptr<LinearSolver> solver;
+  if (bytes.Flip())
+  {
+    solver = MakeCholeskySolver();
+  }
+  else
+  {
+    solver = MakeConjugateGradientSolver();
+  }
+  solver->SetLimits({ 1e-10, 1000 });
+  return solver;
+}
+
+EdgeFunction ReadEdgeFunction(Bytes& bytes)
+{
+  EdgeFunction function;
+  function.Kind = static_cast<EdgeFunctionKind>(bytes.Below(6));
+  function.Beta = bytes.Size(8.0);
+  function.Threshold = bytes.Size(3.0);
+  return function;
+}
+
+/// What a run must keep beyond being finite.
+struct Promises
+{
+  bool Sum = false; ///< of A u
+  bool Bounds = false; ///< of the start
+  bool Energy = false; ///< does not grow
+  bool Length = false; ///< every row is one long
+  bool Solution = true; ///< the systems have one
+};
+
+/// Cotangents that large leave no digit of what they are added to.
+bool HasFlatTriangles(const TriangleMesh& mesh)
+{
+  const EdgeValues c = IsotropicCoefficients(mesh);
+  return c.size() > 0 && c.cwiseAbs().maxCoeff() > 1e8;
+}
+
+void CheckState(const TriangleMesh& mesh, const Evolution& model, const Values& start,
+  double energyBefore, double energyAtStart, const Promises& promises)
+{
+  const Values& u = model.State();
+  Require(u.allFinite(), "a state is not finite");
+  const double energy = model.Energy();
+  Require(std::isfinite(energy) || !promises.Energy, "an energy is not finite");
+  // Round-off of a constant has energy too.
+  const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0.0;
+  const double roundOff = 1e-9 * energyAtStart + 1e-26 * largest * largest;
+  Require(!promises.Energy || energy <= energyBefore + roundOff, "an energy grows");
+  for (Eigen::Index k = 0; k < u.cols(); ++k)
+  {
+    const double size = Total(mesh, start.cwiseAbs(), k);
+    Require(!promises.Sum || std::abs(Total(mesh, u, k) - Total(mesh, start, k)) <= 1e-12 * size,
+      "a sum is not kept");
+    if (promises.Bounds && u.rows() > 0)
+    {
+      const double low = start.col(k).minCoeff();
+      const double high = start.col(k).maxCoeff();
+      const double slack = 1e-8 * (high - low) + 1e-13 * start.col(k).cwiseAbs().maxCoeff();
+      Require(u.col(k).minCoeff() >= low - slack && u.col(k).maxCoeff() <= high + slack,
+        "bounds are not kept");
+    }
+  }
+  Require(!promises.Length || u.rows() == 0 ||
+      (u.rowwise().norm().array() - 1.0).abs().maxCoeff() < 1e-12,
+    "a vector is not one long");
+}
+
+/// Three steps, and the last once more from the state before it.
+void Run(const TriangleMesh& mesh, Evolution& model, const Promises& promises)
+{
+  const Values start = model.State();
+  const double energy = model.Energy();
+  CheckState(mesh, model, start, energy, energy, promises);
+  std::vector<double> checkpoint;
+  try
+  {
+    for (int step = 0; step < 3; ++step)
+    {
+      const double before = model.Energy();
+      checkpoint.resize(model.CheckpointSize());
+      model.Save(checkpoint.data());
+      model.Advance(Monitor());
+      CheckState(mesh, model, start, before, energy, promises);
+    }
+    const Values last = model.State();
+    model.Restore(checkpoint.data());
+    model.Advance(Monitor());
+    Require(model.State() == last, "a restored state goes on differently");
+  }
+  catch (const NotConverged&)
+  {
+  }
+  catch (const std::runtime_error& error)
+  {
+    const bool boundless = std::string(error.what()).find("without bounds") != std::string::npos;
+    Require(boundless || !promises.Solution || HasFlatTriangles(mesh), error.what());
+  }
+}
+
+bool Any(const Flags& flags)
+{
+  return flags.size() > 0 && flags.any();
+}
+
+void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+  const PlaneVectors& frames, bool delaunay)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  using Scheme = LinearDiffusion::Scheme;
+  LinearDiffusion::Settings settings;
+  settings.TimeStep = bytes.Size(8.0);
+  settings.Fidelity = bytes.Flip() ? bytes.Size(6.0) : 0.0;
+  settings.TimeScheme = static_cast<Scheme>(bytes.Below(3));
+  EdgeValues coefficients = IsotropicCoefficients(mesh);
+  const bool directed = bytes.Flip();
+  const double across = bytes.Flip(4) ? 0.0 : bytes.Size(3.0);
+  if (directed)
+  {
+    coefficients = AnisotropicCoefficients(mesh, coefficients, frames, bytes.Size(3.0), across);
+  }
+  Promises promises;
+  // Where nothing flows across, many steady states are equally good.
+  promises.Solution = !(directed && across == 0.0 && settings.TimeScheme == Scheme::SteadyState);
+  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
+  promises.Bounds = delaunay && !directed && settings.TimeScheme == Scheme::BackwardEuler &&
+    settings.Fidelity == 0.0;
+  promises.Energy = settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed);
+  LinearDiffusion model(assembler, coefficients, std::move(data), settings, ReadSolver(bytes));
+  Run(mesh, model, promises);
+}
+
+void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+  const PlaneVectors& frames)
+{
+  NonlinearDiffusion::Settings settings;
+  settings.TimeStep = bytes.Size(6.0);
+  settings.Fidelity = bytes.Flip() ? bytes.Size(4.0) : 0.0;
+  settings.Along = ReadEdgeFunction(bytes);
+  settings.Across = bytes.Flip() ? ReadEdgeFunction(bytes) : settings.Along;
+  settings.AlongDiffusivity = bytes.Size(2.0);
+  settings.AcrossDiffusivity = bytes.Flip() ? bytes.Size(2.0) : settings.AlongDiffusivity;
+  settings.Coupling = bytes.Flip() ? ChannelCoupling::Joint : ChannelCoupling::PerChannel;
+  settings.Norm = bytes.Flip() ? FidelityNorm::L1 : FidelityNorm::L2;
+  Promises promises;
+  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
+  const TriangleMesh& mesh = assembler->Mesh();
+  if (bytes.Flip(3))
+  {
+    const auto edges = std::make_shared<const MedialMesh>(mesh);
+    const auto operators = std::make_shared<const Assembler>(edges->Edges());
+    if (HasFlatTriangles(mesh))
+    {
+      return; // its start has a system of its own
+    }
+    CrouzeixRaviartEvolution model(assembler, edges, std::move(data),
+      [&](PointData ofEdges)
+      {
+        settings.Across = settings.Along;
+        settings.AcrossDiffusivity = settings.AlongDiffusivity;
+        return std::make_unique<NonlinearDiffusion>(
+          operators, PlaneVectors(0, 2), std::move(ofEdges), settings, ReadSolver(bytes));
+      });
+    Run(mesh, model, promises);
+    return;
+  }
+  NonlinearDiffusion model(assembler, frames, std::move(data), settings, ReadSolver(bytes));
+  Run(mesh, model, promises);
+}
+
+void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+  const PlaneVectors& frames)
+{
+  TotalVariationFlow::Settings settings;
+  settings.SteadyState = bytes.Flip();
+  settings.TimeStep = bytes.Size(5.0);
+  settings.Fidelity = bytes.Flip() ? bytes.Size(4.0) : 0.0;
+  settings.Function.Beta = 0.0;
+  settings.Function.Threshold = bytes.Size(2.0);
+  settings.Function.Kind = std::array<EdgeFunctionKind, 3>{ EdgeFunctionKind::TotalVariation,
+    EdgeFunctionKind::Charbonnier, EdgeFunctionKind::Constant }[bytes.Below(3)];
+  settings.AlongDiffusivity = bytes.Size(1.0);
+  settings.AcrossDiffusivity = bytes.Flip() ? bytes.Size(1.0) : settings.AlongDiffusivity;
+  settings.Coupling = bytes.Flip() ? ChannelCoupling::Joint : ChannelCoupling::PerChannel;
+  settings.Norm = bytes.Flip() ? FidelityNorm::L1 : FidelityNorm::L2;
+  settings.MaximumNumberOfIterations = 200;
+  Promises promises;
+  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
+  TotalVariationFlow model(assembler, frames, std::move(data), settings);
+  Run(assembler->Mesh(), model, promises);
+}
+
+void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  HarmonicMap::Settings settings;
+  settings.TimeStep = bytes.Size(6.0);
+  settings.Exponent = 1.0 + bytes.Below(5) / 4.0;
+  settings.Beta = bytes.Size(8.0);
+  settings.Fidelity = bytes.Flip() ? bytes.Size(4.0) : 0.0;
+  settings.TimeScheme = static_cast<HarmonicMap::Scheme>(bytes.Below(3));
+  settings.ConsistentReaction = bytes.Flip();
+  settings.LineField = bytes.Flip(3);
+  settings.Limits = { 1e-8, 200 };
+  if (data.Given.cols() < 2)
+  {
+    data.Given = data.Given.replicate(1, 2).eval();
+  }
+  PrepareUnitVectors(
+    mesh, data, settings.LineField, static_cast<InitialFill>(bytes.Below(3)), 1, Ids(mesh));
+  const bool paper = settings.TimeScheme == HarmonicMap::Scheme::ExplicitReaction;
+  Promises promises;
+  promises.Length = true;
+  promises.Energy = !paper;
+  HarmonicMap model(assembler, IsotropicCoefficients(mesh), std::move(data), settings,
+    paper ? ReadSolver(bytes) : MakeCholeskySolver());
+  Run(mesh, model, promises);
+}
+
+void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  Reaction reaction;
+  reaction.Terms = &GetKinetics(static_cast<KineticsName>(bytes.Below(NumberOfKinetics)));
+  reaction.Parameters = reaction.Terms->Defaults();
+  reaction.Rate = bytes.Size(2.0);
+  ReactionDiffusion::Settings settings;
+  settings.TimeStep = bytes.Size(3.0) / 16.0;
+  settings.TimeScheme =
+    bytes.Flip() ? ReactionDiffusion::Scheme::FirstOrder : ReactionDiffusion::Scheme::SecondOrder;
+  settings.KeepNonNegative = reaction.Terms->NonNegative && bytes.Flip();
+  settings.StopTolerance = bytes.Flip(4) ? bytes.Size(4.0) : 0.0;
+  settings.SideBySide = bytes.Flip(4);
+  PointData data =
+    PointData::FromValues(NoisySteadyState(reaction, std::abs(bytes.Short()), 1, Ids(mesh)));
+  std::array<ReactionDiffusion::Chemical, 2> chemicals;
+  for (auto& chemical : chemicals)
+  {
+    chemical.Coefficients = bytes.Size(4.0) * IsotropicCoefficients(mesh);
+    chemical.Solver = ReadSolver(bytes);
+  }
+  ReactionDiffusion model(assembler, reaction, chemicals, std::move(data), settings);
+  Run(mesh, model, Promises());
+}
+
+void RunDirections(Bytes& bytes, const Assembler& assembler, const Points& points,
+  const Triangles& triangles, const PlaneVectors& frames)
+{
+  DirectionSettings settings;
+  settings.Method = static_cast<DirectionMethod>(bytes.Below(4));
+  settings.Perpendicular = bytes.Flip();
+  settings.SmoothingLength = bytes.Flip() ? bytes.Size(3.0) : 0.0;
+  settings.HintWeight = bytes.Size(6.0);
+  settings.Angle = 10.0 * bytes.Short();
+  if (HasFlatTriangles(assembler.Mesh()))
+  {
+    return;
+  }
+  const PlaneVectors field = MakeDirectionField(assembler, points, triangles,
+    settings.Method == DirectionMethod::Hints ? frames : PlaneVectors(0, 2), settings);
+  Require(field.rows() == assembler.Mesh().NumberOfTriangles(), "a triangle has no direction");
+  for (const auto& d : field.rowwise())
+  {
+    Require(std::abs(d.norm() - 1.0) < 1e-9 || d.norm() == 0.0, "a direction is not one long");
+  }
+}
+
+} // namespace
+
+void RunFromBytes(const std::uint8_t* begin, std::size_t count)
+{
+  Bytes bytes(begin, count);
+  const int model = bytes.Below(6);
+  const Points points = ReadPoints(bytes);
+  const Triangles triangles = ReadTriangles(bytes, static_cast<int>(points.rows()));
+  const auto original = std::make_shared<TriangleMesh>(points, triangles);
+  Points vectors(points.rows(), 3);
+  for (Eigen::Index i = 0; i < vectors.rows(); ++i)
+  {
+    vectors.row(i) << bytes.Short(), bytes.Short(), bytes.Short();
+  }
+  PlaneVectors frames = FramesFromPointVectors(*original, points, triangles, vectors);
+  if (model == 5)
+  {
+    RunDirections(bytes, Assembler(original), points, triangles, frames);
+    return;
+  }
+  const bool delaunay = bytes.Flip();
+  std::shared_ptr<const TriangleMesh> mesh = original;
+  if (delaunay)
+  {
+    mesh = IntrinsicDelaunay(*original, &frames);
+  }
+  const auto assembler = std::make_shared<const Assembler>(mesh);
+  if (model == 4)
+  {
+    RunReaction(bytes, assembler);
+    return;
+  }
+  // The minimiser's accuracy is relative to the change that a step can make.
+  PointData data = ReadData(bytes, *mesh, model == 2 ? 3.0 : 90.0);
+  if (model == 3)
+  {
+    RunHarmonic(bytes, assembler, std::move(data));
+    return;
+  }
+  FillMissing(*mesh, data, static_cast<InitialFill>(bytes.Below(3)), 1, Ids(*mesh));
+  switch (model)
+  {
+    case 0:
+      RunLinear(bytes, assembler, std::move(data), frames, delaunay);
+      break;
+    case 1:
+      RunNonlinear(bytes, assembler, std::move(data), frames);
+      break;
+    default:
+      RunMinimizing(bytes, assembler, std::move(data), frames);
+      break;
+  }
+}
+
+} // namespace SurfaceDiffusion::Testing
