@@ -11,6 +11,8 @@
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkTuringTextureFilter.h"
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <string>
 #include <vector>

@@ -172,6 +172,9 @@ inline std::vector<NamedSurface> BadMeshes()
     flat.Vertices.row(flat.Faces(t, 0)) = flat.Vertices.row(flat.Faces(t, 1));
   }
   family.push_back({ "TrianglesOfZeroArea", flat });
+  family.push_back({ "NoArea",
+    MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 }, { 3, 0, 0 } },
+      { { 0, 1, 2 }, { 1, 2, 3 }, { 3, 3, 3 } }) });
   return family;
 }
 

@@ -5,8 +5,6 @@
 // does not converge: an error where it is one, the unchanged input as output, and a filter that
 // works on the next update.
 
-#include <gtest/gtest.h>
-
 #include "AllFilters.h"
 
 #include <atomic>

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <gtest/gtest.h>
-
 #include "AllFilters.h"
 
 #include "vtkSMPTools.h"
