@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How long an abort can go unanswered and how much memory a run takes, for every filter on a torus
+// of a million vertices (or as many as the first argument says, squared): the longest time between
+// two questions whether to go on, when in the run that was, and the peak of memory per vertex above
+// what the input takes.
+
+#include "Meshes.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFVMHeatFilter.h"
+#include "vtkHarmonicMapFilter.h"
+#include "vtkIntrinsicTVFilter.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkTuringTextureFilter.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <string>
+
+using namespace SurfaceDiffusion;
+
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+/// A line of /proc/self/status, in bytes.
+double Memory(const std::string& name)
+{
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+  {
+    if (line.compare(0, name.size(), name) == 0)
+    {
+      return 1024.0 * std::strtod(line.c_str() + name.size() + 1, nullptr);
+    }
+  }
+  return 0.0;
+}
+
+vtkSmartPointer<vtkPolyData> MakeInput(Index around)
+{
+  const Testing::Surface torus = Testing::Torus(around, around);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> f;
+  f->SetName("f");
+  for (Index i = 0; i < torus.NumberOfVertices(); ++i)
+  {
+    points->InsertNextPoint(torus.Vertices.row(i).data());
+    f->InsertNextValue(UniformRandom(1, 0, i));
+  }
+  vtkNew<vtkCellArray> cells;
+  for (Index t = 0; t < torus.NumberOfTriangles(); ++t)
+  {
+    cells->InsertNextCell({ torus.Faces(t, 0), torus.Faces(t, 1), torus.Faces(t, 2) });
+  }
+  auto input = vtkSmartPointer<vtkPolyData>::New();
+  input->SetPoints(points);
+  input->SetPolys(cells);
+  input->GetPointData()->SetScalars(f);
+  return input;
+}
+
+/// The longest silence between reports.
+struct Watch
+{
+  Clock::time_point Last = Clock::now();
+  double LastAmount = 0.0;
+  double Longest = 0.0;
+  double Where = 0.0; ///< progress before the longest
+
+  void Report(double amount)
+  {
+    const Clock::time_point now = Clock::now();
+    const double silence = std::chrono::duration<double>(now - this->Last).count();
+    // The last part, after all is computed, cannot be aborted any more.
+    if (silence > this->Longest && amount < 1.0)
+    {
+      this->Longest = silence;
+      this->Where = this->LastAmount;
+    }
+    this->Last = now;
+    this->LastAmount = amount;
+  }
+};
+
+void Measure(const char* name, vtkPolyData* input, vtkPolyDataAlgorithm* filter)
+{
+  Watch watch;
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(&watch);
+  command->SetCallback([](vtkObject*, unsigned long, void* client, void* amount)
+    { static_cast<Watch*>(client)->Report(*static_cast<double*>(amount)); });
+  filter->AddObserver(vtkCommand::ProgressEvent, command);
+  filter->SetInputData(input);
+  std::ofstream("/proc/self/clear_refs") << 5; // the peak starts anew
+  const double before = Memory("VmRSS:");
+  const Clock::time_point start = Clock::now();
+  watch.Last = start;
+  filter->Update();
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  std::printf("%-24s %7.2f s   silent %6.3f s at most, after progress %.3f   %6.0f bytes/vertex\n",
+    name, seconds, watch.Longest, watch.Where,
+    (Memory("VmHWM:") - before) / static_cast<double>(input->GetNumberOfPoints()));
+  std::fflush(stdout);
+}
+
+template <typename Filter>
+void MeasureWith(const char* name, vtkPolyData* input, const std::function<void(Filter*)>& set)
+{
+  vtkNew<Filter> filter;
+  set(filter);
+  Measure(name, input, filter);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  const auto input = MakeInput(argc > 1 ? std::atoi(argv[1]) : 1000);
+  using Heat = vtkFVMHeatFilter;
+  using TV = vtkIntrinsicTVFilter;
+  using Harmonic = vtkHarmonicMapFilter;
+  using Turing = vtkTuringTextureFilter;
+  using Field = vtkSurfaceDirectionFieldFilter;
+  MeasureWith<Heat>("Heat, gradients", input, [](Heat* f) { f->SetSolverToConjugateGradient(); });
+  MeasureWith<Heat>("Heat, factor", input, [](Heat* f) { f->SetSolverToDirect(); });
+  MeasureWith<Heat>("Heat, Delaunay", input,
+    [](Heat* f)
+    {
+      f->IntrinsicDelaunayOn();
+      f->SetSolverToConjugateGradient();
+    });
+  MeasureWith<TV>("TV", input, [](TV* f) { f->SetNumberOfTimeSteps(3); });
+  MeasureWith<TV>("TV, minimiser", input,
+    [](TV* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetStopTolerance(0.1);
+    });
+  MeasureWith<TV>("TV, Crouzeix-Raviart", input,
+    [](TV* f)
+    {
+      f->SetDiscretizationToCrouzeixRaviart();
+      f->SetNumberOfTimeSteps(2);
+    });
+  MeasureWith<Harmonic>("Harmonic map", input,
+    [](Harmonic* f)
+    {
+      f->SetNumberOfTimeSteps(2);
+      f->SetSolverToConjugateGradient();
+    });
+  MeasureWith<Turing>("Turing", input,
+    [](Turing* f)
+    {
+      f->SetNumberOfTimeSteps(5);
+      f->SetSolverToConjugateGradient();
+    });
+  MeasureWith<Field>("Principal curvature", input, [](Field*) {});
+  return 0;
+}
