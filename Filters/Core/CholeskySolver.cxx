@@ -28,6 +28,10 @@ public:
   void SetMatrix(const SparseMatrix& matrix, const Monitor& monitor) override
   {
     this->Matrix = &matrix;
+    if (matrix.rows() == 0) // Eigen's ordering writes beyond the end of nothing
+    {
+      return;
+    }
     if (this->Factor && this->Factor->Holds(matrix))
     {
       return;
@@ -59,8 +63,13 @@ public:
 
   SolveReport Solve(const Values& b, Values& x, const Monitor& monitor) override
   {
-    this->Substitute(b, x);
     SolveReport report;
+    if (b.rows() == 0)
+    {
+      x = b;
+      return report;
+    }
+    this->Substitute(b, x);
     report.Residual = this->ComputeResidual(b, x);
     if (report.Residual > this->Limits.Tolerance)
     {
