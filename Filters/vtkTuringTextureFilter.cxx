@@ -8,6 +8,7 @@
 #include "Core/TextureColors.h"
 #include "Private/InputArrays.h"
 #include "Private/NewArray.h"
+#include "Private/PointArrays.h"
 #include "Private/SurfaceRun.h"
 
 #include "vtkDataArray.h"
@@ -292,6 +293,9 @@ bool vtkTuringTextureFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays,
       problems.emplace_back(what);
     }
   };
+  tell(arrays.Data && NumberOfDataComponents(arrays.Data) != 2,
+    "InputArray holds colours, whose last component is alpha; allowed: 2 components of a type other "
+    "than unsigned char");
   tell(arrays.Rates && !onCells,
     "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell");
   tell(arrays.Rates && this->IntrinsicDelaunay,

@@ -77,7 +77,8 @@ Values ReadValues(vtkDataArray* array)
   return values;
 }
 
-/// Rounded to the nearest and clamped where T is an integer type, the value itself otherwise.
+/// Rounded to the nearest and clamped where T is an integer type, the value itself otherwise; throws
+/// where T cannot hold it.
 template <typename T>
 T Convert(double value)
 {
@@ -86,6 +87,11 @@ T Convert(double value)
     const double low = static_cast<double>(std::numeric_limits<T>::lowest());
     const double high = static_cast<double>(std::numeric_limits<T>::max());
     return static_cast<T>(std::min(high, std::max(low, std::round(value))));
+  }
+  if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<T>::max()))
+  {
+    throw std::runtime_error("the result has values that are larger than a float can hold; set "
+                             "OutputPrecision to Double");
   }
   return static_cast<T>(value);
 }
@@ -245,7 +251,7 @@ vtkSmartPointer<vtkDataArray> WritePointArray(const PolyDataSurface& surface, vt
             for (int k = 0; k < components; ++k)
             {
               tuple[k] = v >= 0 && k < dataComponents ? Convert<T>(values(v, k) * unit)
-                                                      : static_cast<T>(old[k]);
+                                                      : Convert<T>(static_cast<double>(old[k]));
             }
           });
       };
