@@ -315,11 +315,9 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   settings.AcrossDiffusivity = bytes.Flip() ? bytes.Size(1.0) : settings.AlongDiffusivity;
   settings.Coupling = bytes.Flip() ? ChannelCoupling::Joint : ChannelCoupling::PerChannel;
   settings.Norm = bytes.Flip() ? FidelityNorm::L1 : FidelityNorm::L2;
-  settings.MaximumNumberOfIterations = 200;
-  Promises promises;
-  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
+  settings.MaximumNumberOfIterations = 200; // far from the minimum: no more is sure than finite
   TotalVariationFlow model(assembler, frames, std::move(data), settings);
-  Run(assembler->Mesh(), model, promises);
+  Run(assembler->Mesh(), model, Promises());
 }
 
 void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
