@@ -129,9 +129,14 @@ def read_photo(path):
     """A PNG or JPEG file as an array of rows, from below, of 1 or 3 values from 0 to 1."""
     if not Path(path).is_file():
         raise DataError(f"{path}: no such file")
+    content = Path(path).read_bytes()
+    ends = {b"\x89PNG": b"IEND\xaeB`\x82", b"\xff\xd8": b"\xff\xd9"}  # of whole files
+    end = next((ends[start] for start in ends if content.startswith(start)), None)
     reader = vtkImageReader2Factory.CreateImageReader2(str(path))
-    if reader is None:
-        raise DataError(f"{path}: not a picture")
+    if end is None or reader is None:
+        raise DataError(f"{path}: not a PNG or JPEG picture")
+    if end not in content[-64:]:  # VTK's reader would end the program
+        raise DataError(f"{path}: damaged picture, cut off at its end")
     reader.SetFileName(str(path))
     reader.Update()
     picture = reader.GetOutput()
