@@ -7,6 +7,7 @@
 #include "Core/NonlinearDiffusion.h"
 #include "Core/TotalVariationFlow.h"
 #include "Private/EnumText.h"
+#include "Private/SMPParallelFor.h"
 #include "Private/SurfaceRun.h"
 
 #include "vtkObjectFactory.h"
@@ -355,11 +356,24 @@ std::unique_ptr<Evolution> vtkIntrinsicTVFilter::MakeEvolution(ModelInput& input
   {
     return maker.Make(input.Surface.Operators, std::move(input.Data), fidelity);
   }
-  const auto edges = std::make_shared<MedialMesh>(*input.Surface.Mesh);
-  const auto operators = std::make_shared<Assembler>(edges->Edges(), input.Parallel);
+  // Seconds for a million vertices: in the background an abort need not wait for them.
+  struct EdgeUnknowns
+  {
+    std::shared_ptr<const MedialMesh> Mesh;
+    std::shared_ptr<const Assembler> Operators;
+  };
+  const auto edges = std::make_shared<EdgeUnknowns>();
+  RunInBackground(
+    [edges, mesh = input.Surface.Mesh]
+    {
+      edges->Mesh = std::make_shared<MedialMesh>(*mesh);
+      edges->Operators =
+        std::make_shared<Assembler>(edges->Mesh->Edges(), SMPParallelFor::Instance());
+    },
+    input.Progress.Part(0.5, 0.95));
   return std::make_unique<CrouzeixRaviartEvolution>(
-    input.Surface.Operators, edges, std::move(input.Data),
-    [&](PointData data) { return maker.Make(operators, std::move(data), fidelity); },
+    input.Surface.Operators, edges->Mesh, std::move(input.Data),
+    [&](PointData data) { return maker.Make(edges->Operators, std::move(data), fidelity); },
     input.Parallel);
 }
 
