@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What each stage of linear diffusion costs, on icospheres of 10 4^s + 2 vertices. The counter
-// ns/vertex shows how a stage grows; the last benchmarks run the whole filter, whose time minus
-// the core's is what copying in and out costs.
+// What each stage of linear diffusion costs, on one scan in sizes that grow by four. ns/vertex
+// shows how a stage grows; GB/s, of the bytes it cannot do without, is to be held against Triad.
+// The last benchmarks run the whole filter beside the same steps in the core. BenchmarkSolver.cxx
+// has the linear solvers.
 
-#include "Meshes.h"
-
-#include "Assembler.h"
-#include "Coefficients.h"
-#include "LinearSolver.h"
+#include "Heat.h"
+#include "HeatSystem.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -18,228 +16,222 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTable.h"
 
-#include <benchmark/benchmark.h>
-
-#include <map>
+#include <string>
 
 using namespace SurfaceDiffusion;
-using SurfaceDiffusion::Testing::Icosphere;
-using SurfaceDiffusion::Testing::Surface;
+using namespace SurfaceDiffusion::Testing;
 
 namespace
 {
 
-const Surface& Sphere(int subdivisions)
+constexpr int NumberOfSteps = 100; // of whole runs
+
+const Surface& SurfaceOf(const benchmark::State& state)
 {
-  static std::map<int, Surface> spheres;
-  auto found = spheres.find(subdivisions);
-  if (found == spheres.end())
-  {
-    found = spheres.emplace(subdivisions, Icosphere(subdivisions)).first;
-  }
-  return found->second;
+  return SurfaceOfLevel(static_cast<int>(state.range(0)));
 }
 
-/// Everything a time step of dt = number h^2 needs, made once per size.
-struct System
+/// The memory's bandwidth: a = b + s c.
+void Triad(benchmark::State& state)
 {
-  std::shared_ptr<const TriangleMesh> Mesh;
-  std::shared_ptr<const Assembler> Operators;
-  EdgeValues Coefficients;
-  SparseMatrix Matrix;
-
-  System(int subdivisions, double number)
-    : Mesh(std::make_shared<TriangleMesh>(
-        Sphere(subdivisions).Vertices, Sphere(subdivisions).Faces))
-    , Operators(std::make_shared<Assembler>(Mesh))
-    , Coefficients(IsotropicCoefficients(*Mesh))
-    , Matrix(Operators->Pattern())
+  const Eigen::Index n = state.range(0) * 1024 * 1024 / 24;
+  const Vector b = Vector::Constant(n, 1.0), c = Vector::Constant(n, 2.0);
+  Vector a = Vector::Zero(n);
+  double s = 3.0;
+  for (auto _ : state)
   {
-    const double h = this->Mesh->TotalEdgeLength() / this->Mesh->NumberOfEdges();
-    this->Operators->Fill(
-      this->Matrix, this->Mesh->ControlAreas(), number * h * h, this->Coefficients);
+    a.noalias() = b + s * c;
+    benchmark::DoNotOptimize(a.data());
+    s += 1.0;
   }
-
-  Values RightHandSide(Index columns) const
-  {
-    Values b(this->Mesh->NumberOfVertices(), columns);
-    for (Index i = 0; i < b.rows(); ++i)
-    {
-      for (Index k = 0; k < columns; ++k)
-      {
-        b(i, k) = this->Mesh->ControlAreas()[i] * UniformRandom(0, k, i);
-      }
-    }
-    return b;
-  }
-};
-
-void CountPerVertex(benchmark::State& state, double vertices)
-{
-  state.counters["vertices"] = vertices;
-  state.counters["ns/vertex"] = benchmark::Counter(vertices * 1e-9,
-    benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  CountBytes(state, 24.0 * static_cast<double>(n));
 }
 
 void MeshAndOrder(benchmark::State& state)
 {
-  const Surface& sphere = Sphere(static_cast<int>(state.range(0)));
+  const Surface& s = SurfaceOf(state);
   for (auto _ : state)
   {
-    TriangleMesh mesh(sphere.Vertices, sphere.Faces);
+    TriangleMesh mesh(s.Vertices, s.Faces);
     benchmark::DoNotOptimize(mesh.ControlAreas().data());
   }
-  CountPerVertex(state, static_cast<double>(sphere.Vertices.rows()));
+  CountVertices(state, s.NumberOfVertices());
 }
 
 void PatternAndSlots(benchmark::State& state)
 {
-  const System system(static_cast<int>(state.range(0)), 1.0);
+  const HeatSystem system(SurfaceOf(state), 1.0);
   for (auto _ : state)
   {
     Assembler assembler(system.Mesh);
     benchmark::DoNotOptimize(assembler.Pattern().valuePtr());
   }
-  CountPerVertex(state, system.Mesh->NumberOfVertices());
+  CountVertices(state, system.Mesh->NumberOfVertices());
 }
 
+/// K and the areas, once mesh and pattern stand.
 void CoefficientsAndFill(benchmark::State& state)
 {
-  System system(static_cast<int>(state.range(0)), 1.0);
+  HeatSystem system(SurfaceOf(state), 1.0);
   for (auto _ : state)
   {
     const EdgeValues c = IsotropicCoefficients(*system.Mesh);
     system.Operators->Fill(system.Matrix, system.Mesh->ControlAreas(), 1.0, c);
     benchmark::DoNotOptimize(system.Matrix.valuePtr());
   }
-  CountPerVertex(state, system.Mesh->NumberOfVertices());
+  CountVertices(state, system.Mesh->NumberOfVertices());
 }
 
+/// The values of a matrix anew, as for another time step.
 void Refill(benchmark::State& state)
 {
-  System system(static_cast<int>(state.range(0)), 1.0);
+  HeatSystem system(SurfaceOf(state), 1.0);
   for (auto _ : state)
   {
-    system.Operators->Fill(
-      system.Matrix, system.Mesh->ControlAreas(), 1.0, system.Coefficients);
+    system.Operators->Fill(system.Matrix, system.Mesh->ControlAreas(), 1.0, system.Coefficients);
     benchmark::DoNotOptimize(system.Matrix.valuePtr());
   }
-  CountPerVertex(state, system.Mesh->NumberOfVertices());
+  CountVertices(state, system.Mesh->NumberOfVertices());
+  // coefficients; list of corners and slots; areas, diagonal slots; the matrix's values
+  CountBytes(state,
+    24.0 * system.Mesh->NumberOfTriangles() + 36.0 * system.Mesh->NumberOfTriangles() +
+      12.0 * system.Mesh->NumberOfVertices() + 8.0 * static_cast<double>(system.Matrix.nonZeros()));
 }
 
 void Product(benchmark::State& state)
 {
-  const System system(static_cast<int>(state.range(0)), 1.0);
-  const Values x = system.RightHandSide(static_cast<Index>(state.range(1)));
+  const HeatSystem system(SurfaceOf(state), 1.0);
+  const Values x = Noise(*system.Mesh, state.range(1));
   Values y = x;
   for (auto _ : state)
   {
     Multiply(system.Matrix, x, y);
     benchmark::DoNotOptimize(y.data());
   }
-  CountPerVertex(state, system.Mesh->NumberOfVertices());
+  CountVertices(state, system.Mesh->NumberOfVertices());
+  CountBytes(state, BytesOfProduct(system.Matrix, static_cast<double>(x.cols())));
 }
 
-void OrderAndFactorize(benchmark::State& state)
+std::unique_ptr<LinearDiffusion> MakeRun(const Surface& s, double number, Scheme scheme)
 {
-  const System system(static_cast<int>(state.range(0)), 1.0);
+  auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges();
+  SolverTask task;
+  task.NumberOfVertices = mesh.NumberOfVertices();
+  task.DiffusionNumber = number;
+  task.NumberOfSolves = NumberOfSteps * (scheme == Scheme::SDIRK2 ? 2 : 1);
+  const PointData data = PointData::FromValues(Noise(mesh));
+  return MakeHeat(
+    std::move(assembler), data, { number * h * h, 0.0, scheme }, MakeAutomaticSolver(task));
+}
+
+/// A step after the first, of 1 h^2.
+void Step(benchmark::State& state, Scheme scheme)
+{
+  const Surface& s = SurfaceOf(state);
+  const auto heat = MakeRun(s, 1.0, scheme);
+  heat->Advance(Monitor());
   for (auto _ : state)
   {
-    const auto solver = MakeCholeskySolver();
-    solver->SetMatrix(system.Matrix);
+    heat->Advance(Monitor());
   }
-  CountPerVertex(state, system.Mesh->NumberOfVertices());
+  CountVertices(state, s.NumberOfVertices());
 }
 
-void Solve(benchmark::State& state, LinearSolver& solver, double number)
+vtkSmartPointer<vtkPolyData> MakePolyData(const Surface& s)
 {
-  const System system(static_cast<int>(state.range(0)), number);
-  const Values b = system.RightHandSide(static_cast<Index>(state.range(1)));
-  Values x = Values::Zero(b.rows(), b.cols());
-  IterationLimits limits;
-  limits.MaximumNumberOfIterations = 100000;
-  solver.SetLimits(limits);
-  solver.SetMatrix(system.Matrix);
-  int iterations = 0;
-  for (auto _ : state)
-  {
-    x.setZero();
-    iterations = solver.Solve(b, x).Iterations;
-  }
-  CountPerVertex(state, system.Mesh->NumberOfVertices());
-  state.counters["iterations"] = iterations;
-}
-
-void CholeskySolve(benchmark::State& state)
-{
-  Solve(state, *MakeCholeskySolver(), 1.0);
-}
-
-void ConjugateGradients(benchmark::State& state)
-{
-  Solve(state, *MakeConjugateGradientSolver(), static_cast<double>(state.range(2)));
-}
-
-/// 100 steps of the whole filter, from polydata to polydata.
-void HeatFilter100Steps(benchmark::State& state)
-{
-  const Surface& sphere = Sphere(static_cast<int>(state.range(0)));
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(sphere.Vertices.rows());
+  points->SetNumberOfPoints(s.Vertices.rows());
   vtkNew<vtkDoubleArray> values;
   values->SetName("f");
-  values->SetNumberOfTuples(sphere.Vertices.rows());
-  for (Index i = 0; i < sphere.Vertices.rows(); ++i)
+  values->SetNumberOfTuples(s.Vertices.rows());
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
   {
-    points->SetPoint(i, sphere.Vertices.row(i).data());
-    values->SetValue(i, UniformRandom(0, 0, i));
+    points->SetPoint(i, s.Vertices.row(i).data());
+    values->SetValue(i, 2.0 * UniformRandom(7, 0, i) - 1.0);
   }
   vtkNew<vtkCellArray> polys;
-  for (Index t = 0; t < sphere.Faces.rows(); ++t)
+  for (Index t = 0; t < s.NumberOfTriangles(); ++t)
   {
-    const vtkIdType ids[3] = { sphere.Faces(t, 0), sphere.Faces(t, 1), sphere.Faces(t, 2) };
+    const vtkIdType ids[3] = { s.Faces(t, 0), s.Faces(t, 1), s.Faces(t, 2) };
     polys->InsertNextCell(3, ids);
   }
-  vtkNew<vtkPolyData> surface;
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
   surface->SetPoints(points);
   surface->SetPolys(polys);
   surface->GetPointData()->SetScalars(values);
-  double steps = 0.0;
-  double firstStep = 0.0;
+  return surface;
+}
+
+/// From polydata to polydata.
+void Filter100Steps(benchmark::State& state)
+{
+  const Surface& s = SurfaceOf(state);
+  const auto surface = MakePolyData(s);
   for (auto _ : state)
   {
     vtkNew<vtkFVMHeatFilter> filter;
     filter->SetInputData(surface);
-    filter->SetNumberOfTimeSteps(100);
+    filter->SetNumberOfTimeSteps(NumberOfSteps);
     filter->Update();
-    const auto* seconds = vtkDoubleArray::SafeDownCast(
-      vtkTable::SafeDownCast(filter->GetOutputDataObject(1))->GetColumnByName("Seconds"));
-    firstStep = seconds->GetValue(1);
-    steps = 0.0;
-    for (vtkIdType row = 2; row <= 100; ++row)
-    {
-      steps += seconds->GetValue(row);
-    }
   }
-  CountPerVertex(state, static_cast<double>(sphere.Vertices.rows()));
-  state.counters["first_step_s"] = firstStep; // with ordering and factor
-  state.counters["other_99_steps_s"] = steps;
+  CountVertices(state, s.NumberOfVertices());
+}
+
+/// The same from mesh to values.
+void Core100Steps(benchmark::State& state)
+{
+  const Surface& s = SurfaceOf(state);
+  for (auto _ : state)
+  {
+    const auto heat = MakeRun(s, 1.0, Scheme::SDIRK2);
+    Advance(*heat, NumberOfSteps);
+    benchmark::DoNotOptimize(heat->State().data());
+  }
+  CountVertices(state, s.NumberOfVertices());
+}
+
+/// Another time of a run that has been to its end.
+void TimeSeek(benchmark::State& state)
+{
+  const Surface& s = SurfaceOf(state);
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(MakePolyData(s));
+  filter->SetNumberOfTimeSteps(NumberOfSteps);
+  filter->GenerateTimeStepsOn();
+  filter->UpdateTimeStep(NumberOfSteps);
+  int step = 0;
+  for (auto _ : state)
+  {
+    step = (step + 37) % NumberOfSteps;
+    filter->UpdateTimeStep(step);
+  }
+  CountVertices(state, s.NumberOfVertices());
+}
+
+// CPU time of the process: part of the work is done on threads.
+void OnLevels(benchmark::internal::Benchmark* b)
+{
+  b->ArgName("level")->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 }
 
 } // namespace
 
-// 10,242; 40,962; 163,842; 655,362 vertices
-BENCHMARK(MeshAndOrder)->DenseRange(5, 8)->Unit(benchmark::kMillisecond);
-BENCHMARK(PatternAndSlots)->DenseRange(5, 8)->Unit(benchmark::kMillisecond);
-BENCHMARK(CoefficientsAndFill)->DenseRange(5, 8)->Unit(benchmark::kMillisecond);
-BENCHMARK(Refill)->DenseRange(5, 8)->Unit(benchmark::kMillisecond);
-BENCHMARK(Product)->ArgsProduct({ { 5, 6, 7, 8 }, { 1, 3 } })->Unit(benchmark::kMillisecond);
-BENCHMARK(OrderAndFactorize)->DenseRange(5, 8)->Unit(benchmark::kMillisecond);
-BENCHMARK(CholeskySolve)->ArgsProduct({ { 5, 6, 7, 8 }, { 1, 3 } })->Unit(benchmark::kMillisecond);
-BENCHMARK(ConjugateGradients)
-  ->ArgsProduct({ { 5, 6, 7, 8 }, { 1, 3 }, { 1, 100, 10000 } })
-  ->Unit(benchmark::kMillisecond);
-BENCHMARK(HeatFilter100Steps)->DenseRange(6, 8)->Unit(benchmark::kMillisecond);
+BENCHMARK(Triad)->ArgName("MiB")->RangeMultiplier(4)->Range(1, 1024)->MeasureProcessCPUTime();
+BENCHMARK(MeshAndOrder)->Apply(OnLevels);
+BENCHMARK(PatternAndSlots)->Apply(OnLevels);
+BENCHMARK(CoefficientsAndFill)->Apply(OnLevels);
+BENCHMARK(Refill)->Apply(OnLevels);
+BENCHMARK(Product)
+  ->ArgNames({ "level", "columns" })
+  ->ArgsProduct({ { 0, 1, 2, 3 }, { 1, 3 } })
+  ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(Step, BackwardEuler, Scheme::BackwardEuler)->Apply(OnLevels);
+BENCHMARK_CAPTURE(Step, SDIRK2, Scheme::SDIRK2)->Apply(OnLevels);
+BENCHMARK(Core100Steps)->Apply(OnLevels)->Iterations(1);
+BENCHMARK(Filter100Steps)->Apply(OnLevels)->Iterations(1);
+BENCHMARK(TimeSeek)->Apply(OnLevels);

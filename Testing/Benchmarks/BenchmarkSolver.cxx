@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the linear solvers cost in a backward Euler step dt = c h^2 that starts from noise: SetUp
+// makes the factor or the hierarchy, Solve is one solution to 1e-10 for so many columns. The number
+// behind c is ten times c. CompareSolvers.cxx looks at whole runs.
+
+#include "HeatSystem.h"
+
+#include "LinearSolver.h"
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+HeatSystem MakeSystem(const benchmark::State& state)
+{
+  return HeatSystem(
+    SurfaceOfLevel(static_cast<int>(state.range(0))), static_cast<double>(state.range(1)) / 10.0);
+}
+
+void SetUp(benchmark::State& state, SolverMethod method)
+{
+  const HeatSystem system = MakeSystem(state);
+  for (auto _ : state)
+  {
+    const auto solver = MakeSolver(method);
+    solver->SetMatrix(system.Matrix);
+  }
+  CountVertices(state, system.Mesh->NumberOfVertices());
+}
+
+/// The values of the matrix have changed, its pattern has not.
+void SetUpAgain(benchmark::State& state, SolverMethod method)
+{
+  HeatSystem system = MakeSystem(state);
+  const auto solver = MakeSolver(method);
+  solver->SetMatrix(system.Matrix);
+  for (auto _ : state)
+  {
+    system.Matrix *= 1.01;
+    solver->SetMatrix(system.Matrix);
+  }
+  CountVertices(state, system.Mesh->NumberOfVertices());
+}
+
+void Solve(benchmark::State& state, SolverMethod method)
+{
+  const HeatSystem system = MakeSystem(state);
+  const Values u = Noise(*system.Mesh, state.range(2));
+  const Values b = system.RightHandSide(u);
+  Values x = u;
+  const auto solver = MakeSolver(method);
+  solver->SetLimits({ 1e-10, 100000 });
+  solver->SetMatrix(system.Matrix);
+  int iterations = 0;
+  for (auto _ : state)
+  {
+    x = u;
+    iterations = solver->Solve(b, x).Iterations;
+  }
+  CountVertices(state, system.Mesh->NumberOfVertices());
+  state.counters["iterations"] = iterations;
+  if (method == SolverMethod::ConjugateGradient)
+  {
+    // Beside the product: x, r, p and A p read, x and r written; r, the diagonal and p read, p
+    // written.
+    const double n = system.Mesh->NumberOfVertices();
+    const double columns = static_cast<double>(u.cols());
+    CountBytes(
+      state, iterations * (BytesOfProduct(system.Matrix, columns) + (72 * columns + 8) * n));
+  }
+}
+
+void OnGrid(benchmark::internal::Benchmark* b, std::vector<std::int64_t> tenths)
+{
+  b->ArgNames({ "level", "c", "columns" })
+    ->ArgsProduct({ { 0, 1, 2, 3 }, std::move(tenths), { 1, 3 } })
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+}
+
+void OnLevels(benchmark::internal::Benchmark* b)
+{
+  b->ArgNames({ "level", "c" })
+    ->ArgsProduct({ { 0, 1, 2, 3 }, { 1000 } })
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+}
+
+void OnSteps(benchmark::internal::Benchmark* b)
+{
+  OnGrid(b, { 1, 10, 1000, 100000 });
+}
+
+void OnShortAndLongSteps(benchmark::internal::Benchmark* b) // all others take as long as the last
+{
+  OnGrid(b, { 1, 1000 });
+}
+
+} // namespace
+
+BENCHMARK_CAPTURE(SetUp, Direct, SolverMethod::Factorization)->Apply(OnLevels);
+BENCHMARK_CAPTURE(SetUpAgain, Direct, SolverMethod::Factorization)->Apply(OnLevels);
+BENCHMARK_CAPTURE(SetUp, Multigrid, SolverMethod::Multigrid)->Apply(OnLevels);
+BENCHMARK_CAPTURE(Solve, Direct, SolverMethod::Factorization)->Apply(OnShortAndLongSteps);
+BENCHMARK_CAPTURE(Solve, Multigrid, SolverMethod::Multigrid)->Apply(OnSteps);
+BENCHMARK_CAPTURE(Solve, ConjugateGradient, SolverMethod::ConjugateGradient)->Apply(OnSteps);

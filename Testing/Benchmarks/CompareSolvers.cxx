@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// CompareSolvers [<largest level>]: what each solver would take for runs of so many backward Euler
+// steps of c h^2 from noise, and which one Automatic takes. Prints a line of JSON per size, c and
+// number of steps: CPU seconds per method, Automatic's method and its time over the best. Sizes:
+// SurfaceOfLevel(); 2 (178,000 vertices) unless given.
+
+#include "HeatSystem.h"
+
+#include "LinearSolver.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+constexpr SolverMethod Methods[] = { SolverMethod::Factorization, SolverMethod::ConjugateGradient,
+  SolverMethod::Multigrid };
+constexpr const char* Names[] = { "Direct", "ConjugateGradient", "Multigrid" };
+
+double Now() // CPU seconds of all threads
+{
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Seconds of the preparation and of each step: later steps are as dear as the last one measured.
+struct Cost
+{
+  double SetUp = 0.0;
+  std::vector<double> Steps;
+
+  double Run(int steps) const
+  {
+    double seconds = this->SetUp;
+    for (int step = 0; step < steps; ++step)
+    {
+      seconds += this->Steps[std::min<std::size_t>(step, this->Steps.size() - 1)];
+    }
+    return seconds;
+  }
+};
+
+Cost Measure(const HeatSystem& system, SolverMethod method)
+{
+  Cost cost;
+  const auto solver = MakeSolver(method);
+  solver->SetLimits({ 1e-10, 100000 });
+  double start = Now();
+  solver->SetMatrix(system.Matrix);
+  cost.SetUp = Now() - start;
+  Values u = Noise(*system.Mesh), b;
+  for (int step = 0; step < 3; ++step)
+  {
+    start = Now();
+    b = system.RightHandSide(u);
+    solver->Solve(b, u);
+    cost.Steps.push_back(Now() - start);
+  }
+  return cost;
+}
+
+/// The cheaper of two measurements, one by one: other work on the machine only adds.
+Cost Least(const Cost& a, const Cost& b)
+{
+  Cost least = a;
+  least.SetUp = std::min(a.SetUp, b.SetUp);
+  for (std::size_t step = 0; step < least.Steps.size(); ++step)
+  {
+    least.Steps[step] = std::min(a.Steps[step], b.Steps[step]);
+  }
+  return least;
+}
+
+void Compare(HeatSystem& system, double number)
+{
+  system.SetDiffusionNumber(number);
+  Cost costs[3];
+  for (int m = 0; m < 3; ++m)
+  {
+    costs[m] = Measure(system, Methods[m]);
+    if (costs[m].Run(1) < 3.0)
+    {
+      costs[m] = Least(costs[m], Measure(system, Methods[m]));
+    }
+  }
+  for (const int steps : { 1, 3, 10, 30, 100 })
+  {
+    SolverTask task;
+    task.NumberOfVertices = system.Mesh->NumberOfVertices();
+    task.DiffusionNumber = number;
+    task.NumberOfSolves = steps;
+    const int chosen = static_cast<int>(ChooseMethod(task));
+    double seconds[3];
+    for (int m = 0; m < 3; ++m)
+    {
+      seconds[m] = costs[m].Run(steps);
+    }
+    const double best = std::min({ seconds[0], seconds[1], seconds[2] });
+    std::printf(
+      "{\"vertices\": %d, \"c\": %g, \"steps\": %d, ", task.NumberOfVertices, number, steps);
+    for (int m = 0; m < 3; ++m)
+    {
+      std::printf("\"%s\": %.4g, ", Names[m], seconds[m]);
+    }
+    std::printf("\"chosen\": \"%s\", \"ratio\": %.3f}\n", Names[chosen], seconds[chosen] / best);
+  }
+  std::fflush(stdout);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  const int last = argc > 1 ? std::atoi(argv[1]) : 2;
+  for (int level = 0; level <= last; ++level)
+  {
+    HeatSystem system(SurfaceOfLevel(level), 1.0);
+    for (const double number : { 0.1, 1.0, 100.0, 1e4 })
+    {
+      Compare(system, number);
+    }
+  }
+  return 0;
+}

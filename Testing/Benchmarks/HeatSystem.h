@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "MeshFiles.h"
+#include "Meshes.h"
+
+#include "Assembler.h"
+#include "Coefficients.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+/// What the benchmarks of linear diffusion run on.
+namespace SurfaceDiffusion::Testing
+{
+
+/// Every edge halved, `times` times; the surface stays where it is.
+inline Surface Subdivided(Surface s, int times)
+{
+  for (; times > 0; --times)
+  {
+    const Index n = s.NumberOfVertices();
+    std::vector<std::pair<Index, Index>> edges;
+    edges.reserve(3 * static_cast<std::size_t>(s.NumberOfTriangles()));
+    const auto edge = [&](Index t, int a) {
+      return std::minmax({ s.Faces(t, (a + 1) % 3), s.Faces(t, (a + 2) % 3) });
+    };
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        edges.push_back(edge(t, a));
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    Surface finer{ Points(n + edges.size(), 3), Triangles(4 * s.NumberOfTriangles(), 3) };
+    finer.Vertices.topRows(n) = s.Vertices;
+    for (std::size_t e = 0; e < edges.size(); ++e)
+    {
+      finer.Vertices.row(n + static_cast<Index>(e)) =
+        0.5 * (s.Vertices.row(edges[e].first) + s.Vertices.row(edges[e].second));
+    }
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      Index m[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        m[a] = n +
+          static_cast<Index>(
+            std::lower_bound(edges.begin(), edges.end(), edge(t, a)) - edges.begin());
+      }
+      const auto f = s.Faces.row(t);
+      finer.Faces.row(4 * t) << f[0], m[2], m[1];
+      finer.Faces.row(4 * t + 1) << m[2], f[1], m[0];
+      finer.Faces.row(4 * t + 2) << m[1], m[0], f[2];
+      finer.Faces.row(4 * t + 3) << m[0], m[1], m[2];
+    }
+    s = std::move(finer);
+  }
+  return s;
+}
+
+/// One scan in sizes that grow by four. Level 0 to 4: 11,112; 44,460; 177,852; 711,420; 2,845,692
+/// vertices; without mesh files, icospheres of 10,242 to 2,621,442.
+inline const Surface& SurfaceOfLevel(int level)
+{
+  static std::map<int, Surface> surfaces;
+  auto found = surfaces.find(level);
+  if (found == surfaces.end())
+  {
+    const Surface s = !HaveMeshFiles() ? Icosphere(5 + level)
+      : level == 0                     ? Subdivided(ReadMeshFile("elephant"), 1)
+                                       : Subdivided(ReadMeshFile("refined_elephant"), level - 1);
+    found = surfaces.emplace(level, s).first;
+  }
+  return found->second;
+}
+
+/// Everything a backward Euler step needs, dt = number h^2 with the mean edge length h.
+struct HeatSystem
+{
+  std::shared_ptr<const TriangleMesh> Mesh;
+  std::shared_ptr<const Assembler> Operators;
+  EdgeValues Coefficients;
+  SparseMatrix Matrix;
+
+  HeatSystem(const Surface& s, double number)
+    : Mesh(MakeMesh(s))
+    , Operators(std::make_shared<Assembler>(this->Mesh))
+    , Coefficients(IsotropicCoefficients(*this->Mesh))
+    , Matrix(this->Operators->Pattern())
+  {
+    this->SetDiffusionNumber(number);
+  }
+
+  void SetDiffusionNumber(double number)
+  {
+    const double h = this->Mesh->TotalEdgeLength() / this->Mesh->NumberOfEdges();
+    this->Operators->Fill(
+      this->Matrix, this->Mesh->ControlAreas(), number * h * h, this->Coefficients);
+  }
+
+  Values RightHandSide(const Values& u) const
+  {
+    return this->Mesh->ControlAreas().asDiagonal() * u;
+  }
+};
+
+inline void CountVertices(benchmark::State& state, double vertices)
+{
+  state.counters["vertices"] = vertices;
+  state.counters["ns/vertex"] = benchmark::Counter(
+    vertices * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+/// What an iteration has to move to and from memory at the least.
+inline void CountBytes(benchmark::State& state, double bytes)
+{
+  state.counters["bytes"] = bytes;
+  state.counters["GB/s"] =
+    benchmark::Counter(bytes * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// Of a product with `columns` columns: the matrix once, each vector once.
+inline double BytesOfProduct(const SparseMatrix& matrix, double columns)
+{
+  return 12.0 * static_cast<double>(matrix.nonZeros()) +
+    (4.0 + 16.0 * columns) * static_cast<double>(matrix.rows());
+}
+
+} // namespace SurfaceDiffusion::Testing
