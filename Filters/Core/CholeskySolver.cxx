@@ -3,8 +3,7 @@
 #include "LinearSolver.h"
 
 #include "Assembler.h"
-
-#include <Eigen/SparseCholesky>
+#include "SparseFactor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,23 +86,18 @@ public:
   }
 
 private:
-  /// Eigen's decomposition, whose factor can be changed.
-  struct LDLT : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>>
-  {
-    SparseMatrix& L() { return this->m_matrix; }
-  };
-
   struct Factorization
   {
-    static constexpr double Resolved = 1e-14; ///< of a diagonal entry: a few units in its last place
+    /// Of a diagonal entry: a few units in its last place.
+    static constexpr double Resolved = 1e-14;
 
     SparseMatrix Matrix;
-    LDLT Decomposition;
+    std::unique_ptr<SparseFactor> LDL = MakeSparseFactor();
     bool Analyzed = false;
     bool Pruned = false;
+    bool Succeeded = false;
     Vector InverseDiagonal; ///< of the matrix
     Vector InverseD; ///< of the factor
-    std::vector<Index> Columns; ///< where those of L begin in its arrays, and the end
 
     void Compute()
     {
@@ -121,57 +115,52 @@ private:
       const SparseMatrix& matrix = prune ? pruned : this->Matrix;
       if (!this->Analyzed || prune || this->Pruned)
       {
-        this->Decomposition.analyzePattern(matrix);
+        this->LDL->Analyze(matrix);
         this->Analyzed = true;
         this->Pruned = prune;
       }
-      this->Decomposition.factorize(matrix);
+      this->Succeeded = this->LDL->Factorize(matrix, 1.0);
       if (!this->PivotsAbove(Resolved))
       {
         // A mode is lost in the last digits of the diagonal (the mean, at a huge time step): round
         // the diagonal up in these digits, which are wrong by as much, so that its pivot is safe.
-        this->Decomposition.setShift(0.0, 1.0 + Resolved);
-        this->Decomposition.factorize(matrix);
-        this->Decomposition.setShift(0.0, 1.0);
+        this->Succeeded = this->LDL->Factorize(matrix, 1.0 + Resolved);
       }
       this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();
-      this->InverseD = this->Decomposition.vectorD().cwiseInverse();
-      if (this->Decomposition.info() == Eigen::Success)
+      if (this->Succeeded)
       {
+        this->InverseD = this->LDL->D.cwiseInverse();
         this->DropNegligible();
       }
     }
 
     /// Leave out of L what is below the last place of its row. The smaller the time step, the
     /// faster the influence of vertices on each other falls off with distance: at steps of h^2/D
-    /// and less, a third to two thirds of the entries go. The rest moves together in place; the
-    /// next factorisation writes all of L anew.
+    /// and less, a third to two thirds of the entries go. The rest moves together in place.
     void DropNegligible()
     {
       constexpr double lastPlace = 1e-16;
-      SparseMatrix& l = this->Decomposition.L();
-      const Vector d = this->Decomposition.vectorD();
-      Index* const inner = l.innerIndexPtr();
-      double* const values = l.valuePtr();
-      this->Columns.resize(static_cast<std::size_t>(l.cols()) + 1);
+      SparseFactor& l = *this->LDL;
+      const Index n = static_cast<Index>(l.D.size());
       Index kept = 0;
-      for (Index j = 0; j < l.cols(); ++j)
+      for (Index j = 0, begin = 0; j < n; ++j)
       {
-        this->Columns[j] = kept;
-        for (Index slot = l.outerIndexPtr()[j]; slot < l.outerIndexPtr()[j + 1]; ++slot)
+        const Index end = l.Begin[j + 1];
+        for (Index slot = begin; slot < end; ++slot)
         {
-          const Index i = inner[slot];
-          const double value = values[slot];
+          const Index i = l.Rows[slot];
+          const double value = l.Entries[slot];
           // |L_ij| sqrt(D_j), an entry of the Cholesky factor, against sqrt(D_i), its diagonal
-          if (!(value * value * std::abs(d[j]) < lastPlace * lastPlace * std::abs(d[i])))
+          if (!(value * value * std::abs(l.D[j]) < lastPlace * lastPlace * std::abs(l.D[i])))
           {
-            inner[kept] = i;
-            values[kept] = value;
+            l.Rows[kept] = i;
+            l.Entries[kept] = value;
             ++kept;
           }
         }
+        begin = end;
+        l.Begin[j + 1] = kept;
       }
-      this->Columns[l.cols()] = kept;
     }
 
     /// A pivot of a nearly singular matrix may be negative by round-off.
@@ -180,16 +169,14 @@ private:
     /// Whether every pivot is above `bound` times its diagonal entry.
     bool PivotsAbove(double bound) const
     {
-      if (this->Decomposition.info() != Eigen::Success)
+      if (!this->Succeeded)
       {
         return false;
       }
       const Vector diagonal = this->Matrix.diagonal();
-      const Vector pivots = this->Decomposition.vectorD(); // a copy: not for each row anew
-      const auto& place = this->Decomposition.permutationP().indices();
       for (Eigen::Index i = 0; i < diagonal.size(); ++i)
       {
-        if (!(pivots[place[i]] > bound * std::abs(diagonal[i])))
+        if (!(this->LDL->D[this->LDL->Place[i]] > bound * std::abs(diagonal[i])))
         {
           return false;
         }
@@ -235,13 +222,12 @@ private:
   void SubstituteColumns(const Values& b, Values& x)
   {
     const int k = K > 0 ? K : static_cast<int>(b.cols());
-    const auto& decomposition = this->Factor->Decomposition;
-    const auto& lower = decomposition.matrixL().nestedExpression();
+    const SparseFactor& factor = *this->Factor->LDL;
     const Index n = static_cast<Index>(b.rows());
-    const Index* place = decomposition.permutationP().indices().data();
-    const Index* outer = this->Factor->Columns.data();
-    const Index* inner = lower.innerIndexPtr();
-    const double* l = lower.valuePtr();
+    const Index* place = factor.Place;
+    const Index* outer = factor.Begin.data();
+    const Index* inner = factor.Rows;
+    const double* l = factor.Entries;
     const double* inverseD = this->Factor->InverseD.data();
     const auto row = [&](Index i) { return this->W.data() + static_cast<std::ptrdiff_t>(i) * k; };
     for (Index i = 0; i < n; ++i)
