@@ -7,12 +7,12 @@
 // SurfaceOfLevel(); 2 (178,000 vertices) unless given.
 
 #include "HeatSystem.h"
+#include "ProcessTime.h"
 
 #include "LinearSolver.h"
 
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -23,13 +23,6 @@ namespace
 constexpr SolverMethod Methods[] = { SolverMethod::Factorization, SolverMethod::ConjugateGradient,
   SolverMethod::Multigrid };
 constexpr const char* Names[] = { "Direct", "ConjugateGradient", "Multigrid" };
-
-double Now() // CPU seconds of all threads
-{
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Seconds of the preparation and of each step: later steps are as dear as the last one measured.
 struct Cost
@@ -122,7 +115,7 @@ int main(int argc, char** argv)
   const int last = argc > 1 ? std::atoi(argv[1]) : 2;
   for (int level = 0; level <= last; ++level)
   {
-    HeatSystem system(SurfaceOfLevel(level), 1.0);
+    HeatSystem system(SurfaceOfLevel(level));
     for (const double number : { 0.1, 1.0, 100.0, 1e4 })
     {
       Compare(system, number);

@@ -91,11 +91,16 @@ struct HeatSystem
   EdgeValues Coefficients;
   SparseMatrix Matrix;
 
-  HeatSystem(const Surface& s, double number)
+  explicit HeatSystem(const Surface& s) // Matrix is all zero yet
     : Mesh(MakeMesh(s))
     , Operators(std::make_shared<Assembler>(this->Mesh))
     , Coefficients(IsotropicCoefficients(*this->Mesh))
     , Matrix(this->Operators->Pattern())
+  {
+  }
+
+  HeatSystem(const Surface& s, double number)
+    : HeatSystem(s)
   {
     this->SetDiffusionNumber(number);
   }

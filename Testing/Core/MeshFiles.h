@@ -21,10 +21,10 @@ inline bool HaveMeshFiles()
   return std::string(SURFACEDIFFUSION_MESH_DIR) != "";
 }
 
-/// `name`.off as it is on disk; polygons as fans of triangles.
-inline Surface ReadMeshFile(const std::string& name)
+/// An OFF file; polygons as fans of triangles.
+inline Surface ReadOff(const std::string& path)
 {
-  std::ifstream file(std::string(SURFACEDIFFUSION_MESH_DIR) + "/" + name + ".off");
+  std::ifstream file(path);
   std::stringstream text; // without comments
   for (std::string line; std::getline(file, line);)
   {
@@ -56,9 +56,15 @@ inline Surface ReadMeshFile(const std::string& name)
   }
   if (format != "OFF" || !text)
   {
-    throw std::runtime_error("cannot read the mesh " + name);
+    throw std::runtime_error("cannot read the mesh " + path);
   }
   return MakeSurface(vertices, faces);
+}
+
+/// `name`.off as it is on disk.
+inline Surface ReadMeshFile(const std::string& name)
+{
+  return ReadOff(std::string(SURFACEDIFFUSION_MESH_DIR) + "/" + name + ".off");
 }
 
 } // namespace SurfaceDiffusion::Testing
