@@ -89,7 +89,7 @@ private:
     view.itype = CHOLMOD_INT;
     view.xtype = CHOLMOD_REAL;
     view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = 1;
+    view.sorted = 0; // not promised
     view.packed = 1;
     return view;
   }
