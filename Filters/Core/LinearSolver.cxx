@@ -38,13 +38,13 @@ double LinearSolver::ScaleOf(
 
 SolverMethod ChooseMethod(const SolverTask& task)
 {
-  // Fitted to times on one core of scans with 11,000 to 178,000 vertices: seconds at 44,000, up to
+  // Fitted to times on one core of scans with 11,000 to 711,000 vertices: seconds at 44,000, up to
   // one common factor. Travelling once over the surface bounds the iterations of long steps. What
   // iterates runs on all threads: its times are those between one thread and two.
   constexpr double threads = 0.75;
-  // A factor this large takes more than 1 kB per vertex and, on regular meshes, up to ten times as
-  // long as on scans.
-  constexpr Index largestFactor = 500000;
+  // A factor this large takes 1 kB per vertex and, on regular meshes, up to ten times as long as on
+  // scans.
+  constexpr Index largestFactor = 800000;
   const double n = task.NumberOfVertices;
   const double size = n / 44000.0;
   const double digits = std::log(task.Tolerance) / std::log(1e-10);
@@ -53,8 +53,11 @@ SolverMethod ChooseMethod(const SolverTask& task)
     digits * std::min(67.0 * std::pow(c, 0.4) * std::pow(size, 0.1), 6.5 * std::sqrt(n));
   const double cycles = digits * (9.5 + 2.7 * std::log10(c));
 
-  const double direct =
-    0.098 * std::pow(size, 1.5) + task.NumberOfSolves * 0.005 * std::pow(size, 1.3);
+  // In short steps a vertex feels only those near it: the factor has as much per vertex at any
+  // size.
+  const double substitution =
+    std::min(0.0035 * std::pow(size, 1.4), 0.004 * std::pow(c, 0.2) * size);
+  const double direct = 0.098 * std::pow(size, 1.55) + task.NumberOfSolves * substitution;
   const double conjugateGradient = threads * task.NumberOfSolves * iterations * 4.3e-4 * size;
   const double multigrid = threads * (0.03 * size + task.NumberOfSolves * cycles * 3.1e-3 * size);
   const double iterative =
