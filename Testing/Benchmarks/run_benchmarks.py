@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run the benchmarks on one CPU and write what they say into a page.
+
+    run_benchmarks.py BUILD [--peers DIR --peers-python PYTHON --meshes DIR] [--level N] [--peers-level N] [--note TEXT]
+
+BUILD: a build folder with SURFACEDIFFUSION_BUILD_BENCHMARKS. DIR: programs that run other software
+(a run.py with --ours), with a Python that has it; meshes: the folder of elephant.off and
+refined_elephant.off. Level 3 goes to 711,000 vertices. Times are CPU time.
+"""
+
+import argparse
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from datetime import date
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+STAGES = {
+    "MeshAndOrder": "mesh: select, renumber, areas",
+    "PatternAndSlots": "pattern of the matrix",
+    "CoefficientsAndFill": "K and areas",
+    "Refill": "new values",
+    "Product/columns:1": "product, 1 column",
+    "Product/columns:3": "product, 3 columns",
+    "SetUp/Direct": "factor: order and values",
+    "SetUpAgain/Direct": "factor: values anew",
+    "SetUp/Multigrid": "multigrid: hierarchy",
+    "Step/BackwardEuler": "backward Euler step, 1 h²",
+    "Step/SDIRK2": "SDIRK2 step, 1 h²",
+    "Core100Steps": "100 SDIRK2 steps in the core",
+    "Filter100Steps": "the same in the filter",
+    "TimeSeek": "another time of that run",
+}
+
+
+def run(command, **options):
+    print("+", " ".join(command), file=sys.stderr, flush=True)
+    return subprocess.run(command, check=True, text=True, stdout=subprocess.PIPE, **options).stdout
+
+
+def number(value):
+    return "" if value is None else f"{value:.3g}" if value < 1000 else f"{value:.0f}"
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "| --- " * len(head) + "|"]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n\n"
+
+
+def exponent(times):
+    """Slope of log(time) over log(vertices), by least squares."""
+    points = [(math.log(n), math.log(t)) for n, t in times.items()]
+    if len(points) < 2:
+        return None
+    x, y = (sum(p[k] for p in points) / len(points) for k in (0, 1))
+    return sum((p[0] - x) * (p[1] - y) for p in points) / sum((p[0] - x) ** 2 for p in points)
+
+
+class Results:
+    """Rows of the benchmark program: milliseconds per name and number of vertices."""
+
+    def __init__(self, rows):
+        self.times, self.bandwidth, self.triad = {}, {}, {}
+        for row in rows:
+            name = re.sub("/(process_time|iterations:1)", "", row["name"])
+            if name.startswith("Triad"):
+                self.triad[int(name.split(":")[1])] = row["GB/s"]
+                continue
+            name = re.sub("/level:[0-9]+", "", name)
+            n = int(row["vertices"])
+            unit = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[row["time_unit"]]
+            self.times.setdefault(name, {})[n] = row["cpu_time"] * unit
+            if "bytes" in row:
+                passes = max(1, row["iterations"]) if "Gradient" in name else 1  # the solver's
+                self.bandwidth.setdefault(name, {})[n] = (row["GB/s"], row["bytes"] / passes)
+        self.sizes = sorted({n for times in self.times.values() for n in times})
+
+    def share(self, name):
+        """Of the triad's bandwidth at the same size of data, at the largest surface."""
+        if name not in self.bandwidth:
+            return ""
+        speed, size = self.bandwidth[name][max(self.bandwidth[name])]
+        near = min(self.triad, key=lambda mib: abs(math.log(mib * 2**20 / size)))
+        return f"{100 * speed / self.triad[near]:.0f} %"
+
+    def row(self, title, name):
+        times = self.times.get(name, {})
+        slope = exponent(times)
+        return ([title] + [number(times.get(n)) for n in self.sizes]
+                + ["" if slope is None else f"{slope:.2f}", self.share(name)])
+
+
+def stages(results):
+    head = ["ms"] + [f"{n:,}" for n in results.sizes] + ["exponent", "of bandwidth"]
+    rows = []
+    for name, title in STAGES.items():
+        full = next((key for key in results.times if key == name or key.startswith(name + "/c:")), name)
+        rows.append(results.row(title, full))
+    return table(head, rows)
+
+
+def solvers(results):
+    head = ["ms"] + [f"{n:,}" for n in results.sizes] + ["exponent", "of bandwidth"]
+    rows = []
+    for name in results.times:
+        found = re.fullmatch(r"Solve/(\w+)/c:(\d+)/columns:(\d)", name)
+        if found:
+            method, tenths, columns = found.groups()
+            rows.append(results.row(
+                f"{method}, {int(tenths) / 10:g} h², {columns} column{'s' if columns != '1' else ''}",
+                name))
+    return table(head, rows)
+
+
+def choices(rows):
+    steps = sorted({row["steps"] for row in rows})
+    cells = {}
+    for row in rows:
+        cells.setdefault((row["vertices"], row["c"]), {})[row["steps"]] = row
+    letters = {"Direct": "D", "ConjugateGradient": "C", "Multigrid": "M"}
+    head = ["vertices", "Δt/h²"] + [f"{k} steps" for k in steps]
+    body = [[f"{n:,}", f"{c:g}"] + [f"{letters[cell[k]['chosen']]} {cell[k]['ratio']:.2f}"
+            for k in steps] for (n, c), cell in cells.items()]
+    good = sum(row["ratio"] <= 1.3 for row in rows)
+    return table(head, body) + f"Within 1.3 of the best in {good} of {len(rows)} cells.\n\n"
+
+
+def peers(options, program, folder):
+    """Rows of the peers' program, ours among them."""
+    specs = ["elephant.off+1", "refined_elephant.off", "refined_elephant.off+1",
+             "refined_elephant.off+2"][:options.peers_level + 1]
+    run([options.peers_python, os.path.join(options.peers, "run.py"), "--mesh-dir", options.meshes,
+         "--meshes", *specs, "--tasks", "1", "--ours", program, "--out", folder, "--limit", "60",
+         "--peers", *options.names])
+    with open(os.path.join(folder, "task1.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def peers_table(rows, steps):
+    """First results: milliseconds of set-up and solution together, and ours over each."""
+    text = ""
+    for c in steps:
+        first = {}
+        for row in rows:
+            # a factor costs the same for every step
+            direct = row["peer"].startswith("libigl +") and c != row.get("c")
+            if row.get("solve_s") is None or (row.get("c") != c and not direct):
+                continue
+            if direct and any(r.get("peer") == row["peer"] and r.get("mesh") == row["mesh"]
+                              and r.get("c") == c for r in rows):
+                continue
+            seconds = (row.get("setup_s") or 0.0) + row["solve_s"]
+            first.setdefault(row["peer"], {})[row["n"]] = (1e3 * seconds, row)
+        sizes = sorted({n for times in first.values() for n in times})
+        body = []
+        for peer, times in first.items():
+            if not set(times) & set(first["ours"]):
+                continue
+            cells = []
+            for n in sizes:
+                if n not in times:
+                    cells.append("")
+                elif peer == "ours":
+                    cells.append(f"{number(times[n][0])} ({times[n][1]['version']})")
+                else:
+                    ratio = first["ours"][n][0] / times[n][0] if n in first["ours"] else math.nan
+                    cells.append(f"{number(times[n][0])} ({ratio:.2f})")
+            body.append([peer] + cells)
+        text += f"Δt = {c:g} h²:\n\n" + table(["ms"] + [f"{n:,}" for n in sizes], body)
+    return text
+
+
+def machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        model = next((line.split(":")[1].strip() for line in file if "model name" in line), "?")
+    return f"{model}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}, {date.today()}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build")
+    parser.add_argument("--level", type=int, default=3)
+    parser.add_argument("--peers")
+    parser.add_argument("--peers-level", type=int, default=3)
+    parser.add_argument("--peers-python", default=sys.executable)
+    parser.add_argument("--names", nargs="+", help="of the peers to run",
+                        default=["igl_cholmod", "cg_jacobi", "pyamg_sa", "robust_cholmod"])
+    parser.add_argument("--meshes", default=".")
+    parser.add_argument("--note", default="")
+    parser.add_argument("--out", default=os.path.join(HERE, "RESULTS.md"))
+    options = parser.parse_args()
+    os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+    def program(name):
+        return os.path.join(options.build, "bin", name)
+
+    keep = f"MiB|level:[0-{options.level}]"
+    rows = json.loads(run([program("SurfaceDiffusionBenchmarks"), "--benchmark_format=json",
+                           "--benchmark_min_time=0.1", f"--benchmark_filter={keep}"]))["benchmarks"]
+    results = Results(rows)
+    grid = [json.loads(line) for line in
+            run([program("CompareSolvers"), str(options.level)]).splitlines()]
+    page = ("# Measured times\n\nWritten by `run_benchmarks.py`: CPU time on one thread. "
+            f"{machine()}. {options.note}\n\n"
+            "Memory bandwidth (triad, 24 bytes per entry): "
+            + ", ".join(f"{speed:.0f} GB/s at {mib} MiB" for mib, speed in results.triad.items())
+            + ".\n\n## Stages\n\nOne scan, subdivided. The exponent is the slope of log(time) over "
+            "log(vertices). Of bandwidth: the bytes that a stage cannot do without, per time, over "
+            "the triad at this size.\n\n" + stages(results)
+            + "## Solutions to 1e-10 from noise\n\n" + solvers(results)
+            + "## The choice of Automatic\n\nRuns of backward Euler steps: what is chosen (D: "
+            "Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the best.\n\n"
+            + choices(grid))
+    if options.peers:
+        with tempfile.TemporaryDirectory() as folder:
+            compared = peers(options, program("HeatStep"), folder)
+        page += ("## Beside other software\n\nOne step to 1e-8: factor or hierarchy and solution "
+                 "together, without the assembly; in brackets our time over theirs.\n\n"
+                 + peers_table(compared, (1.0, 100.0, 1e4)))
+        assembly = {(r["peer"], r["n"]): r["assembly_s"] for r in compared if r.get("assembly_s")}
+        names = sorted({peer for peer, _ in assembly if peer == "libigl + CHOLMOD"
+                        or peer.startswith("robust")})
+        ours = [results.times["CoefficientsAndFill"], results.times["PatternAndSlots"],
+                results.times["MeshAndOrder"]]
+        body = [["K and areas alone"] + [number(ours[0][n]) for n in results.sizes],
+                ["with mesh, order and pattern"]
+                + [number(sum(times[n] for times in ours)) for n in results.sizes]]
+        body += [[peer] + [number(1e3 * assembly[peer, n]) if (peer, n) in assembly else ""
+                           for n in results.sizes] for peer in names]
+        page += "Assembly:\n\n" + table(["ms"] + [f"{n:,}" for n in results.sizes], body)
+    with open(options.out, "w", encoding="utf-8") as file:
+        file.write(page.rstrip() + "\n")
+
+
+if __name__ == "__main__":
+    main()
