@@ -4,6 +4,7 @@
 
 import os
 import tempfile
+import time
 import unittest
 
 from paraview import servermanager
@@ -57,9 +58,15 @@ class TestComposite(unittest.TestCase):
                     self.assertIsNotNone(data.GetArray(array), "%s of %s" % (array, name))
 
     def test_progress_reaches_the_status_bar_and_abort_the_filter(self):
-        heat = FVMHeatFilter(self.spheres[0], NumberOfTimeSteps=300)
+        heat = FVMHeatFilter(self.spheres[0], NumberOfTimeSteps=20)
         algorithm = heat.GetClientSideObject()
         handler = servermanager.ActiveConnection.Session.GetProgressHandler()
+        # The handler passes on one report per interval: on every machine a report takes longer.
+        interval = handler.GetProgressInterval()
+        self.addCleanup(handler.SetProgressInterval, interval)
+        handler.SetProgressInterval(0.01)
+        slow = algorithm.AddObserver("ProgressEvent", lambda _object, _event: time.sleep(0.02))
+        self.addCleanup(algorithm.RemoveObserver, slow)
         seen = []
 
         def look(_object, _event):
