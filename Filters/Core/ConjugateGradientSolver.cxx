@@ -94,6 +94,7 @@ private:
       this->Scale[c] = this->Sums[k + c] > 0.0 ? this->Sums[k + c] : 1.0;
     }
     this->Rho.assign(k, 0.0);
+    this->Length.assign(k, 0.0);
     this->Turn<K>(n, k);
 
     SolveReport report;
@@ -113,7 +114,7 @@ private:
       ++report.Iterations;
       if (!this->Iterate<K>(n, k, x))
       {
-        report.Converged = false; // the matrix is not positive definite
+        report.Converged = false; // the matrix is not positive definite, or not beyond round-off
         break;
       }
       const double left = this->Residual(k);
@@ -151,7 +152,7 @@ private:
     for (int c = 0; c < k; ++c)
     {
       const bool finished = this->Finished(c);
-      if (!finished && this->Sums[c] <= 0.0)
+      if (!finished && !(this->Sums[c] > ResolvedShare * this->Length[c]))
       {
         return false;
       }
@@ -199,6 +200,8 @@ private:
     {
       this->Beta[c] = this->Rho[c] > 0.0 ? this->Sums[c] / this->Rho[c] : 0.0;
       this->Rho[c] = this->Sums[c];
+      // B r and the last P are orthogonal in B^-1
+      this->Length[c] = this->Sums[c] + this->Beta[c] * this->Beta[c] * this->Length[c];
     }
     ForEach(this->Parallel, n,
       [&](Index i)
@@ -236,7 +239,8 @@ private:
       this->P.setZero(n, k); // what the first direction is turned from
       this->Q.resize(n, k);
       for (std::vector<double>* scalars :
-        { &this->Unit, &this->Square, &this->Rho, &this->Scale, &this->Alpha, &this->Beta })
+        { &this->Unit, &this->Square, &this->Rho, &this->Scale, &this->Alpha, &this->Beta,
+          &this->Length })
       {
         scalars->assign(k, 0.0);
       }
@@ -276,6 +280,7 @@ private:
   Vector InverseDiagonal;
   Values R, P, Q;
   std::vector<double> Unit, Square, Rho, Scale, Alpha, Beta; // one per column
+  std::vector<double> Length; ///< per column, P . B^-1 P
   std::vector<double> Sums, Partial;
 };
 

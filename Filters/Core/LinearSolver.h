@@ -27,6 +27,10 @@ struct IterationLimits
   int MaximumNumberOfIterations = 1000;
 };
 
+/// Of p . diag(A) p: where p . A p is less, it is round-off of A's entries, as on surfaces all of
+/// whose triangles are all but flat, and a step along p could be of any length.
+constexpr double ResolvedShare = 2e-15;
+
 /// Thrown by models where a solver ended at its iteration limit.
 struct NotConverged : std::runtime_error
 {

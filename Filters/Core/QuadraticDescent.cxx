@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "QuadraticDescent.h"
 
+#include "LinearSolver.h"
+
 #include <algorithm>
 
 namespace SurfaceDiffusion
@@ -62,6 +64,7 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
       }
     });
   this->Rho = this->Sums;
+  this->Length = this->Sums;
   for (int iteration = 0; iteration < iterations; ++iteration)
   {
     // q = A p, alpha = rho / p . q
@@ -85,7 +88,9 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
       });
     for (int c = 0; c < k; ++c)
     {
-      this->Factor[c] = this->Sums[c] > 0.0 ? this->Rho[c] / this->Sums[c] : 0.0;
+      // No step where only round-off resists it: it has no bounds.
+      const bool resolved = this->Sums[c] > ResolvedShare * this->Length[c];
+      this->Factor[c] = resolved ? this->Rho[c] / this->Sums[c] : 0.0;
     }
     // x += alpha p, r -= alpha q
     this->SumBlocks(k,
@@ -106,8 +111,10 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
     // p = z + beta p
     for (int c = 0; c < k; ++c)
     {
-      this->Factor[c] = this->Rho[c] > 0.0 ? this->Sums[c] / this->Rho[c] : 0.0;
+      const double beta = this->Rho[c] > 0.0 ? this->Sums[c] / this->Rho[c] : 0.0;
+      this->Factor[c] = beta;
       this->Rho[c] = this->Sums[c];
+      this->Length[c] = this->Sums[c] + beta * beta * this->Length[c]; // z and p are orthogonal
     }
     ForEach(this->Parallel, static_cast<Index>(x.rows()),
       [&](Index i)
@@ -154,6 +161,7 @@ void QuadraticDescent::Resize(Eigen::Index columns)
     this->Product.resize(n, columns);
     this->Factor.resize(columns);
     this->Rho.resize(columns);
+    this->Length.resize(columns);
     this->Sums.resize(columns);
     this->Partial.resize(NumberOfBlocks(static_cast<Index>(n)) * columns);
   }

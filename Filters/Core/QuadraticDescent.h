@@ -44,6 +44,7 @@ private:
   Vector InverseDiagonal;
   Values Direction, Product;
   std::vector<double> Rho, Factor; // one per column
+  std::vector<double> Length; ///< per column, p . diag(A) p
   std::vector<double> Sums, Partial;
 };
 

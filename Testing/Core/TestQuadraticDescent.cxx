@@ -82,3 +82,19 @@ TEST(QuadraticDescent, ColumnsDoNotKnowOfEachOther)
     EXPECT_TRUE(one.X == all.X.col(k));
   }
 }
+
+// Along (1, 1, -1) the entries of this matrix leave nothing but their last digits.
+TEST(QuadraticDescent, TakesNoStepThatOnlyRoundOffBounds)
+{
+  Eigen::Matrix3d dense;
+  dense << 0.25, 0.5, 0.75, 0.5, 1.0, 1.5, 0.75, 1.5, 2.25;
+  SparseMatrix matrix = dense.sparseView();
+  matrix.coeffRef(0, 0) *= 1.0 + 4e-16;
+  QuadraticDescent descent;
+  descent.SetMatrix(matrix);
+  descent.Residual = Values::Zero(3, 1);
+  descent.Residual.col(0) << 0.25, 1.0, -2.25; // the diagonal times that
+  Values x = Values::Zero(3, 1);
+  descent.Improve(x, 4);
+  EXPECT_LT(x.cwiseAbs().maxCoeff(), 1e3);
+}

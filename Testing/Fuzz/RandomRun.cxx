@@ -315,9 +315,11 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   settings.AcrossDiffusivity = bytes.Flip() ? bytes.Size(1.0) : settings.AlongDiffusivity;
   settings.Coupling = bytes.Flip() ? ChannelCoupling::Joint : ChannelCoupling::PerChannel;
   settings.Norm = bytes.Flip() ? FidelityNorm::L1 : FidelityNorm::L2;
-  settings.MaximumNumberOfIterations = 200; // far from the minimum: no more is sure than finite
+  settings.MaximumNumberOfIterations = 200; // may end far from the minimum
+  Promises promises;
+  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
   TotalVariationFlow model(assembler, frames, std::move(data), settings);
-  Run(assembler->Mesh(), model, Promises());
+  Run(assembler->Mesh(), model, promises);
 }
 
 void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)

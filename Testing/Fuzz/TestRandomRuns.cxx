@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
+#include <string>
 #include <vector>
 
 using namespace SurfaceDiffusion::Testing;
@@ -20,5 +22,28 @@ TEST(RandomRuns, KeepWhatTheCorePromises)
       byte = static_cast<std::uint8_t>(random() >> 11);
     }
     EXPECT_NO_THROW(RunFromBytes(bytes.data(), bytes.size())) << "run " << run;
+  }
+}
+
+/// What the guided fuzzer found, in hexadecimal digits.
+TEST(RandomRuns, StayAsTheyWereMended)
+{
+  const std::vector<std::string> found = {
+    // a triangle so flat that minimising total variation took steps without bounds
+    "2c00ffffffff1100000111ff0900ff0000090001000011ff0a009e9e9e9e9e9e9e9e043f0090ff010000f8ff"
+      "ffff3f00000000049b25",
+    // the same of a linear step by conjugate gradients
+    "00120000f9010012002dff2900ff7a5555555555552dff036c2d5bd5031000ff3e57ddffff3d00ff2d00ff2d"
+      "00ffff1affff2f00ff1affff2f00fffffcff",
+  };
+  for (const std::string& digits : found)
+  {
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t i = 0; i < digits.size(); i += 2)
+    {
+      const std::string pair = digits.substr(i, 2);
+      bytes.push_back(static_cast<std::uint8_t>(std::strtoul(pair.c_str(), nullptr, 16)));
+    }
+    EXPECT_NO_THROW(RunFromBytes(bytes.data(), bytes.size())) << digits;
   }
 }
