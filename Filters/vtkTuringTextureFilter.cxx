@@ -6,6 +6,7 @@
 #include "Core/DispersionRelation.h"
 #include "Core/ReactionDiffusion.h"
 #include "Core/TextureColors.h"
+#include "Private/ConvertValue.h"
 #include "Private/InputArrays.h"
 #include "Private/NewArray.h"
 #include "Private/PointArrays.h"
@@ -131,7 +132,7 @@ vtkSmartPointer<vtkDataArray> MakePointArray(const PolyDataSurface& surface,
   {
     const Index v = surface.PointToVertex[i];
     const double elsewhere = source ? source->GetComponent(i, component) : 0.0;
-    array->SetValue(i, static_cast<typename Array::ValueType>(v >= 0 ? values[v] : elsewhere));
+    array->SetValue(i, ConvertValue<typename Array::ValueType>(v >= 0 ? values[v] : elsewhere));
   }
   return array;
 }

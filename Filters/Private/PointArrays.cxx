@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointArrays.h"
 
+#include "ConvertValue.h"
 #include "NewArray.h"
 #include "SMPParallelFor.h"
 
@@ -75,25 +76,6 @@ Values ReadValues(vtkDataArray* array)
       }
     });
   return values;
-}
-
-/// Rounded to the nearest and clamped where T is an integer type, the value itself otherwise; throws
-/// where T cannot hold it.
-template <typename T>
-T Convert(double value)
-{
-  if (std::numeric_limits<T>::is_integer)
-  {
-    const double low = static_cast<double>(std::numeric_limits<T>::lowest());
-    const double high = static_cast<double>(std::numeric_limits<T>::max());
-    return static_cast<T>(std::min(high, std::max(low, std::round(value))));
-  }
-  if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<T>::max()))
-  {
-    throw std::runtime_error("the result has values that are larger than a float can hold; set "
-                             "OutputPrecision to Double");
-  }
-  return static_cast<T>(value);
 }
 
 } // namespace
@@ -250,14 +232,15 @@ vtkSmartPointer<vtkDataArray> WritePointArray(const PolyDataSurface& surface, vt
             const Index v = surface.PointToVertex[i];
             for (int k = 0; k < components; ++k)
             {
-              tuple[k] = v >= 0 && k < dataComponents ? Convert<T>(values(v, k) * unit)
-                                                      : Convert<T>(static_cast<double>(old[k]));
+              tuple[k] = v >= 0 && k < dataComponents
+                ? ConvertValue<T>(values(v, k) * unit)
+                : ConvertValue<T>(static_cast<double>(old[k]));
             }
           });
       };
-      using Dispatch = vtkArrayDispatch::DispatchByArray<
-        vtkTypeList::Create<vtkAOSDataArrayTemplate<double>, vtkAOSDataArrayTemplate<float>,
-          vtkAOSDataArrayTemplate<unsigned char>>>;
+      using Dispatch =
+        vtkArrayDispatch::DispatchByArray<vtkTypeList::Create<vtkAOSDataArrayTemplate<double>,
+          vtkAOSDataArrayTemplate<float>, vtkAOSDataArrayTemplate<unsigned char>>>;
       Dispatch::Execute(result.Get(), write);
     });
   return result;

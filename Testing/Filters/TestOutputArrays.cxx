@@ -5,6 +5,7 @@
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
 #include "vtkFieldData.h"
+#include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
 
@@ -98,6 +99,32 @@ TEST(OutputArrays, PrecisionFollowsTheInputOrIsSet)
     filter->SetOutputPrecisionToDouble();
     filter->Update();
     EXPECT_EQ(Result(filter, result.c_str())->GetDataType(), VTK_DOUBLE) << name;
+  }
+}
+
+TEST(OutputArrays, ValuesThatNoFloatCanHoldAreAnError)
+{
+  auto plane = Grid(6, 5);
+  AddPointArray(plane, "f", 2, [](vtkIdType i, int k) { return 1e60 * (2.0 + Rough(i, k)); });
+  for (vtkSmartPointer<vtkSurfaceDiffusionAlgorithm> filter :
+    { vtkSmartPointer<vtkSurfaceDiffusionAlgorithm>(vtkSmartPointer<vtkFVMHeatFilter>::New()),
+      vtkSmartPointer<vtkSurfaceDiffusionAlgorithm>(
+        vtkSmartPointer<vtkTuringTextureFilter>::New()) })
+  {
+    filter->SetInputData(plane);
+    SetInputArray(filter, 0, "f");
+    filter->SetNumberOfTimeSteps(0);
+    filter->SetOutputPrecisionToSingle();
+    Messages messages(filter);
+    filter->Update();
+    ASSERT_EQ(messages.Errors.size(), 1U);
+    EXPECT_NE(messages.Errors[0].find("OutputPrecision to Double"), std::string::npos);
+    EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
+
+    filter->SetOutputPrecisionToDouble();
+    filter->Update();
+    EXPECT_EQ(messages.Errors.size(), 1U);
+    EXPECT_GT(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
   }
 }
 
