@@ -150,6 +150,12 @@ std::unique_ptr<SurfaceDiffusion::Evolution> vtkFVMHeatFilter::MakeEvolution(
     std::move(input.Data), settings, input.Solver("diffusion", task), input.Parallel);
 }
 
+void vtkFVMHeatFilter::VisitReported(const std::function<void(double&)>& visit)
+{
+  this->Superclass::VisitReported(visit);
+  visit(this->EffectiveFidelityWeight);
+}
+
 void vtkFVMHeatFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

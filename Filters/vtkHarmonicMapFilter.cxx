@@ -437,6 +437,15 @@ void vtkHarmonicMapFilter::WriteResult(
   }
 }
 
+void vtkHarmonicMapFilter::VisitReported(const std::function<void(double&)>& visit)
+{
+  this->Superclass::VisitReported(visit);
+  visit(this->MeanDisplacement);
+  visit(this->MaximumDisplacement);
+  visit(this->VolumeBefore);
+  visit(this->VolumeAfter);
+}
+
 void vtkHarmonicMapFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   const auto onOff = [](bool on) { return on ? "On" : "Off"; };

@@ -186,6 +186,7 @@ protected:
   void CheckProperties(Problems& problems) override;
   bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
+  void VisitReported(const std::function<void(double&)>& visit) override;
   void PrepareData(ModelInput& input) override;
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
   void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;

@@ -398,6 +398,12 @@ void vtkIntrinsicTVFilter::WriteResult(
   }
 }
 
+void vtkIntrinsicTVFilter::VisitReported(const std::function<void(double&)>& visit)
+{
+  this->Superclass::VisitReported(visit);
+  visit(this->EffectiveFidelityWeight);
+}
+
 void vtkIntrinsicTVFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -4,16 +4,19 @@
 
 #include "Private/EnumText.h"
 #include "Private/Execution.h"
+#include "Private/GatheredSurfaces.h"
 #include "Private/InputArrays.h"
 #include "Private/PointArrays.h"
+#include "Private/Processes.h"
+#include "Private/SurfacePieces.h"
 #include "Private/SurfaceRun.h"
 
-#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -42,9 +45,15 @@ vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm()
   this->SetNumberOfOutputPorts(2);
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  this->SetController(vtkMultiProcessController::GetGlobalController());
 }
 
-vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
+vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm()
+{
+  this->SetController(nullptr);
+}
+
+vtkCxxSetObjectMacro(vtkSurfaceDiffusionAlgorithm, Controller, vtkMultiProcessController);
 
 const char* vtkSurfaceDiffusionAlgorithm::GetUnitsAsString()
 {
@@ -127,6 +136,8 @@ void vtkSurfaceDiffusionAlgorithm::CheckProperties(Problems& problems)
     this->MaximumNumberOfIterations, "1 or more", problems);
   Require(
     notNegative(this->MergeTolerance), "MergeTolerance", this->MergeTolerance, finite, problems);
+  Require(notNegative(this->SeamTolerance) || this->SeamTolerance == -1.0, "SeamTolerance",
+    this->SeamTolerance, "finite numbers, 0 or more, or -1: 1e-6 of the bounding box", problems);
   Require(this->CheckpointMemoryLimit >= 0, "CheckpointMemoryLimit", this->CheckpointMemoryLimit,
     "0 or more MiB", problems);
   Require(oneOf(this->Units, 2), "Units", this->Units, "0 Natural, 1 Absolute", problems);
@@ -234,16 +245,9 @@ vtkTypeBool vtkSurfaceDiffusionAlgorithm::ProcessRequest(
 int vtkSurfaceDiffusionAlgorithm::RequestDataObject(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
-  if (!input)
+  if (!MakeOutputObject(inputs, outputs))
   {
     return 0;
-  }
-  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
-  if (!output || !output->IsA(input->GetClassName()) || !input->IsA(output->GetClassName()))
-  {
-    auto made = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
-    outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
   }
   if (!vtkTable::GetData(outputs, 1))
   {
@@ -322,16 +326,37 @@ int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
 int vtkSurfaceDiffusionAlgorithm::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
-  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
-  vtkTable* history = vtkTable::GetData(outputs, 1);
-  history->Initialize();
+  vtkTable::GetData(outputs, 1)->Initialize();
+  const std::vector<SurfacePiece> pieces =
+    CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
+  const Processes processes(this->Controller);
+  Problems problems; // process 0 tells them
+  this->CheckProperties(problems);
+  if (processes.Rank() > 0 && problems.empty())
+  {
+    this->TakeTime(request, outputs);
+  }
+  UpdateOfPieces(this, processes, pieces, this->SeamTolerance, this->Gathered,
+    [&](const std::vector<SurfacePiece>& surfaces)
+    { this->Execute(surfaces, request, outputs); });
+  this->ShareReported();
+  return 1;
+}
 
-  Execution execution(*this, input, output);
+void vtkSurfaceDiffusionAlgorithm::Execute(const std::vector<SurfacePiece>& surfaces,
+  vtkInformation* request, vtkInformationVector* outputs)
+{
+  Execution execution(*this, surfaces);
   if (!execution.Check())
   {
-    return 1;
+    return;
   }
+  execution.Run(this->TakeTime(request, outputs), vtkTable::GetData(outputs, 1));
+}
+
+/// The step that is asked for; its time is that of the outputs.
+int vtkSurfaceDiffusionAlgorithm::TakeTime(vtkInformation* request, vtkInformationVector* outputs)
+{
   int step = this->GetEffectiveNumberOfTimeSteps();
   if (this->GenerateTimeSteps)
   {
@@ -343,14 +368,41 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
     {
       step = this->StepAtTime(info->Get(Pipeline::UPDATE_TIME_STEP()));
     }
-    for (vtkDataObject* data : { output, static_cast<vtkDataObject*>(history) })
+    for (const int p : { 0, 1 })
     {
-      data->GetInformation()->Set(
+      vtkDataObject::GetData(outputs, p)->GetInformation()->Set(
         vtkDataObject::DATA_TIME_STEP(), step * this->GetEffectiveTimeStep());
     }
   }
-  execution.Run(step, history);
-  return 1;
+  return step;
+}
+
+void vtkSurfaceDiffusionAlgorithm::VisitReported(const std::function<void(double&)>& visit)
+{
+  visit(this->TimeUnit);
+  visit(this->MeanEdgeLength);
+  visit(this->ValueRange);
+  visit(this->Residual);
+  for (vtkIdType* count : { &this->NumberOfIterations, &this->NumberOfStepsComputed })
+  {
+    auto number = static_cast<double>(*count);
+    visit(number);
+    *count = static_cast<vtkIdType>(number);
+  }
+}
+
+/// Give all processes the read-only properties of process 0.
+void vtkSurfaceDiffusionAlgorithm::ShareReported()
+{
+  const Processes processes(this->Controller);
+  if (processes.Count() > 1)
+  {
+    std::vector<double> values;
+    this->VisitReported([&](double& value) { values.push_back(value); });
+    processes.Broadcast(values.data(), static_cast<vtkIdType>(values.size()));
+    auto next = values.begin();
+    this->VisitReported([&](double& value) { value = *next++; });
+  }
 }
 
 //------------------------------------------------------------------------------------------------
@@ -376,6 +428,8 @@ void vtkSurfaceDiffusionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "IntrinsicDelaunay: " << (this->IntrinsicDelaunay ? "On" : "Off") << "\n";
   os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
   os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
+  os << indent << "SeamTolerance: " << this->SeamTolerance << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
   os << indent << "OutputPrecision: " << this->GetOutputPrecisionAsString() << "\n";
   os << indent << "CheckpointMemoryLimit: " << this->CheckpointMemoryLimit << "\n";

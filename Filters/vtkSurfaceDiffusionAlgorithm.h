@@ -24,6 +24,18 @@
  * cells take no part. Composite input is one problem with one set of units; each block is a
  * surface of its own.
  *
+ * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with a
+ * piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one piece,
+ * whatever the partition. All processes update together. Points of different pieces are one point
+ * of the surface where they have one global id, if all pieces have global ids; otherwise where they
+ * lie at one place, within SeamTolerance, and at least one of them lies on the edge of its piece.
+ * Points of one piece are never joined (that is what MergeCoincidentPoints does): of several at one
+ * place the k-th goes with the k-th of other pieces. Data are those of the first piece that has the
+ * point. Ghost cells take no part; ghost points get the results of the points that they are copies
+ * of. The surface is solved in process 0, which holds all of it; the history, warnings and errors
+ * are there alone. Random numbers are those of one process where there are global ids; they depend
+ * on the coordinates otherwise.
+ *
  * **Output port 0** is the input with the result as a further point array, made active. Points
  * that no participating triangle uses keep their value. **Output port 1** is a vtkTable, the
  * history: row 0 is the initial state, then one row per step with columns `Step`, `Time`,
@@ -41,6 +53,7 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSurfaceDiffusionModule.h" // for export macro
 
+#include <functional> // for read-only values
 #include <iosfwd> // for the key of a run
 #include <memory> // for the private part
 #include <string> // for messages
@@ -51,10 +64,14 @@ namespace SurfaceDiffusion
 class Evolution;
 class Monitor;
 }
+class GatheredSurfaces;
 class vtkDataArray;
+class vtkMultiProcessController;
 class vtkPolyData;
+class vtkTable;
 struct BlockArrays;
 struct ModelInput;
+struct SurfacePiece;
 struct SurfaceRun;
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDiffusionAlgorithm : public vtkPolyDataAlgorithm
@@ -285,6 +302,25 @@ public:
 
   ///@{
   /**
+   * How far apart points of different pieces may lie that are one point of the surface, in
+   * coordinate units; 0: equal coordinates only; -1 (default): 1e-6 of the diagonal of the bounding
+   * box, which single precision may lose. Not used with global point ids. 0 or more, or -1.
+   */
+  vtkSetMacro(SeamTolerance, double);
+  vtkGetMacro(SeamTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * The processes that hold pieces of the surface. Default: the global controller. Null: this
+   * process's surface is the whole one.
+   */
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  ///@{
+  /**
    * Name of the result. Empty (default): the input array's name with the class's suffix. The
    * input array's own name: it is replaced.
    */
@@ -375,6 +411,9 @@ protected:
   /// Add the result, the current state of run.Path, to the output block.
   virtual void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output);
 
+  /// Visit the read-only properties, which all processes are to have alike. Superclass first.
+  virtual void VisitReported(const std::function<void(double&)>& visit);
+
   /// Helpers of WriteResult().
   std::string FindResultName(const BlockArrays& arrays);
   int FindResultType(const BlockArrays& arrays);
@@ -437,6 +476,7 @@ protected:
   bool IntrinsicDelaunay = false;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
+  double SeamTolerance = -1.0;
   std::string ResultArrayName;
   int OutputPrecision = OUTPUT_PRECISION_INPUT;
   int CheckpointMemoryLimit = 512;
@@ -448,11 +488,19 @@ private:
   class Execution; // one RequestData
   friend class Execution;
 
+  /// RequestData for surfaces each of which is here, in one piece.
+  void Execute(const std::vector<SurfacePiece>& surfaces, vtkInformation* request,
+    vtkInformationVector* outputs);
+  int TakeTime(vtkInformation* request, vtkInformationVector* outputs);
+  void ShareReported();
+
   /// Step of the run that is published last at or before a time.
   int StepAtTime(double time);
   std::vector<double> PublishedTimes();
 
   std::vector<std::unique_ptr<SurfaceRun>> Runs; ///< one per block
+  std::unique_ptr<GatheredSurfaces> Gathered;    ///< of surfaces in pieces
+  vtkMultiProcessController* Controller = nullptr;
   double TimeUnit = 1.0;
   double MeanEdgeLength = 0.0;
   double ValueRange = 0.0;

@@ -4,14 +4,17 @@
 
 #include "Core/DirectionField.h"
 #include "Private/DirectionArrays.h"
+#include "Private/GatheredSurfaces.h"
 #include "Private/InputArrays.h"
 #include "Private/SMPParallelFor.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -24,7 +27,17 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceDirectionFieldFilter);
 
-vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter() = default;
+vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter()
+{
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+}
+
+vtkSurfaceDirectionFieldFilter::~vtkSurfaceDirectionFieldFilter()
+{
+  this->SetController(nullptr);
+}
+
+vtkCxxSetObjectMacro(vtkSurfaceDirectionFieldFilter, Controller, vtkMultiProcessController);
 
 const char* vtkSurfaceDirectionFieldFilter::GetMethodAsString()
 {
@@ -83,6 +96,10 @@ std::vector<std::string> vtkSurfaceDirectionFieldFilter::FindProblems(
   require(std::isfinite(this->Angle), "Angle", this->Angle, "finite numbers");
   require(std::isfinite(this->MergeTolerance) && this->MergeTolerance >= 0.0, "MergeTolerance",
     this->MergeTolerance, "finite numbers, 0 or more");
+  require(std::isfinite(this->SeamTolerance) &&
+      (this->SeamTolerance >= 0.0 || this->SeamTolerance == -1.0),
+    "SeamTolerance", this->SeamTolerance,
+    "finite numbers, 0 or more, or -1: 1e-6 of the bounding box");
   if (this->ResultArrayName.empty())
   {
     problems.emplace_back("ResultArrayName is empty; allowed: any name");
@@ -108,12 +125,50 @@ std::vector<std::string> vtkSurfaceDirectionFieldFilter::FindProblems(
   return problems;
 }
 
+int vtkSurfaceDirectionFieldFilter::FillInputPortInformation(int, vtkInformation* info)
+{
+  // Composite data come as a whole: several of them may be pieces of one surface.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  return 1;
+}
+
+int vtkSurfaceDirectionFieldFilter::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+vtkTypeBool vtkSurfaceDirectionFieldFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  {
+    return MakeOutputObject(inputs, outputs) ? 1 : 0;
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
 int vtkSurfaceDirectionFieldFilter::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkPolyData* const input = vtkPolyData::GetData(inputs[0]);
-  vtkPolyData* const output = vtkPolyData::GetData(outputs);
-  output->ShallowCopy(input);
+  const std::vector<SurfacePiece> pieces =
+    CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
+  UpdateOfPieces(this, Processes(this->Controller), pieces, this->SeamTolerance, this->Gathered,
+    [&](const std::vector<SurfacePiece>& surfaces)
+    {
+      const double count = static_cast<double>(surfaces.size());
+      for (std::size_t s = 0; s < surfaces.size(); ++s)
+      {
+        this->Execute(surfaces[s].Input, surfaces[s].Output, s / count, (s + 1) / count);
+      }
+    });
+  return 1;
+}
+
+void vtkSurfaceDirectionFieldFilter::Execute(
+  vtkPolyData* input, vtkPolyData* output, double begin, double end)
+{
   vtkDataArray* hints = nullptr;
   bool onCells = false;
   const std::vector<std::string> problems = this->FindProblems(input, hints, onCells);
@@ -125,11 +180,18 @@ int vtkSurfaceDirectionFieldFilter::RequestData(
       text += (text.empty() ? "" : "; ") + problem;
     }
     vtkErrorMacro(<< text);
-    return 1;
+    return;
   }
+  double reported = begin;
+  const Monitor::Callback callback = [&](double fraction)
+  {
+    reported = std::max(reported, fraction);
+    this->UpdateProgress(reported);
+    return !this->GetAbortExecute();
+  };
   try
   {
-    this->MakeField(input, hints, onCells, output);
+    this->MakeField(input, hints, onCells, output, Monitor(callback).Part(begin, end));
   }
   catch (const Aborted&)
   {
@@ -143,20 +205,11 @@ int vtkSurfaceDirectionFieldFilter::RequestData(
   {
     vtkErrorMacro(<< error.what());
   }
-  return 1;
 }
 
-void vtkSurfaceDirectionFieldFilter::MakeField(
-  vtkPolyData* input, vtkDataArray* hints, bool onCells, vtkPolyData* output)
+void vtkSurfaceDirectionFieldFilter::MakeField(vtkPolyData* input, vtkDataArray* hints,
+  bool onCells, vtkPolyData* output, const Monitor& monitor)
 {
-  double reported = 0.0;
-  const Monitor::Callback callback = [&](double fraction)
-  {
-    reported = std::max(reported, fraction);
-    this->UpdateProgress(reported);
-    return !this->GetAbortExecute();
-  };
-  const Monitor monitor(callback);
   const ParallelFor& parallel = SMPParallelFor::Instance();
 
   PolyDataSurface::Options options;
@@ -185,7 +238,7 @@ void vtkSurfaceDirectionFieldFilter::MakeField(
   monitor.Report(0.99); // the last chance to abort: from here on the output changes
   output->GetCellData()->AddArray(array);
   output->GetCellData()->SetActiveVectors(this->ResultArrayName.c_str());
-  this->UpdateProgress(1.0);
+  monitor.Report(1.0);
 }
 
 void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)
@@ -198,5 +251,7 @@ void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Angle: " << this->Angle << "\n";
   os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
   os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
+  os << indent << "SeamTolerance: " << this->SeamTolerance << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
 }

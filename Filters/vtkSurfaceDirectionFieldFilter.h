@@ -30,6 +30,9 @@
  * Input array 2 (points or cells, 3 components), for Hints: zero or NaN means no hint there, the
  * length does not matter. Connected components without a hint get zero vectors.
  *
+ * Surfaces in pieces, over processes and partitions, are treated as vtkSurfaceDiffusionAlgorithm
+ * does: the whole is solved in process 0.
+ *
  * Polygons and strips get the main axis of their triangles' directions, vertices and lines zero.
  *
  * @sa vtkTuringTextureFilter vtkFVMHeatFilter vtkIntrinsicTVFilter
@@ -40,10 +43,17 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSurfaceDiffusionModule.h" // for export macro
 
+#include <memory> // for the private part
 #include <string> // for messages
 #include <vector> // for messages
 
+namespace SurfaceDiffusion
+{
+class Monitor;
+}
+class GatheredSurfaces;
 class vtkDataArray;
+class vtkMultiProcessController;
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDirectionFieldFilter : public vtkPolyDataAlgorithm
 {
@@ -139,16 +149,34 @@ public:
 
   ///@{
   /**
+   * Surfaces in pieces, see vtkSurfaceDiffusionAlgorithm: how far apart points of different pieces
+   * may lie that are one point (coordinate units; 0 or more, or -1: 1e-6 of the diagonal of the
+   * bounding box, the default), and the processes that hold the pieces (default: the global
+   * controller; null: this process's surface is the whole one).
+   */
+  vtkSetMacro(SeamTolerance, double);
+  vtkGetMacro(SeamTolerance, double);
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  ///@{
+  /**
    * Name of the result. Default: Direction.
    */
   vtkSetStdStringFromCharMacro(ResultArrayName);
   vtkGetCharFromStdStringMacro(ResultArrayName);
   ///@}
 
+  vtkTypeBool ProcessRequest(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
 protected:
   vtkSurfaceDirectionFieldFilter();
-  ~vtkSurfaceDirectionFieldFilter() override = default;
+  ~vtkSurfaceDirectionFieldFilter() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int Method = METHOD_PRINCIPAL_CURVATURE;
@@ -158,6 +186,7 @@ protected:
   double Angle = 0.0;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
+  double SeamTolerance = -1.0;
   std::string ResultArrayName = "Direction";
 
 private:
@@ -166,7 +195,13 @@ private:
 
   /// What is wrong with properties and arrays, one sentence each.
   std::vector<std::string> FindProblems(vtkPolyData* input, vtkDataArray*& hints, bool& onCells);
-  void MakeField(vtkPolyData* input, vtkDataArray* hints, bool onCells, vtkPolyData* output);
+  /// On a surface that is here in one piece, reporting progress from begin to end.
+  void Execute(vtkPolyData* input, vtkPolyData* output, double begin, double end);
+  void MakeField(vtkPolyData* input, vtkDataArray* hints, bool onCells, vtkPolyData* output,
+    const SurfaceDiffusion::Monitor& monitor);
+
+  std::unique_ptr<GatheredSurfaces> Gathered; ///< of surfaces in pieces
+  vtkMultiProcessController* Controller = nullptr;
 };
 
 #endif

@@ -540,6 +540,14 @@ void vtkTuringTextureFilter::WriteResult(
   points->SetActiveScalars(active.c_str());
 }
 
+void vtkTuringTextureFilter::VisitReported(const std::function<void(double&)>& visit)
+{
+  this->Superclass::VisitReported(visit);
+  visit(this->Wavelength);
+  visit(this->WavelengthGrowthRate);
+  visit(this->DiffusionRateFactor);
+}
+
 void vtkTuringTextureFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -8,12 +8,8 @@
 #include "PointArrays.h"
 #include "SMPParallelFor.h"
 
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkInformation.h"
-#include "vtkInformationDoubleKey.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -72,43 +68,18 @@ PlaneVectors MakeFrames(
 } // namespace
 
 vtkSurfaceDiffusionAlgorithm::Execution::Execution(
-  vtkSurfaceDiffusionAlgorithm& filter, vtkDataObject* input, vtkDataObject* output)
+  vtkSurfaceDiffusionAlgorithm& filter, const std::vector<SurfacePiece>& surfaces)
   : Filter(filter)
 {
-  auto* compositeInput = vtkCompositeDataSet::SafeDownCast(input);
-  auto* compositeOutput = vtkCompositeDataSet::SafeDownCast(output);
-  if (!compositeInput)
+  for (const SurfacePiece& surface : surfaces)
   {
-    output->ShallowCopy(input);
-    this->Collect(input, output);
-    return;
-  }
-  compositeOutput->CopyStructure(compositeInput);
-  compositeOutput->GetFieldData()->ShallowCopy(compositeInput->GetFieldData());
-  output->GetInformation()->CopyEntry(input->GetInformation(), vtkDataObject::DATA_TIME_STEP());
-  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(compositeInput->NewIterator());
-  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-  {
-    vtkDataObject* leaf = iterator->GetCurrentDataObject();
-    auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
-    copy->ShallowCopy(leaf);
-    compositeOutput->SetDataSet(iterator, copy);
-    this->Collect(leaf, copy);
-  }
-}
-
-void vtkSurfaceDiffusionAlgorithm::Execution::Collect(vtkDataObject* input, vtkDataObject* output)
-{
-  auto* data = vtkPolyData::SafeDownCast(input);
-  if (!data)
-  {
-    return;
-  }
-  this->AnyPoint = this->AnyPoint || data->GetNumberOfPoints() > 0;
-  if (data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0)
-  {
-    this->AnyPolygon = true;
-    this->Blocks.push_back({ data, vtkPolyData::SafeDownCast(output), BlockArrays() });
+    vtkPolyData* const data = surface.Input;
+    this->AnyPoint = this->AnyPoint || data->GetNumberOfPoints() > 0;
+    if (data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0)
+    {
+      this->AnyPolygon = true;
+      this->Blocks.push_back({ data, surface.Output, BlockArrays() });
+    }
   }
 }
 

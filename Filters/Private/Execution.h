@@ -5,6 +5,7 @@
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
 #include "Core/Monitor.h"
+#include "SurfacePieces.h"
 #include "SurfaceRun.h"
 
 #include "vtkSmartPointer.h"
@@ -12,15 +13,14 @@
 #include <string>
 #include <vector>
 
-class vtkDataObject;
 class vtkTable;
 
 /// One update of the filter: checks, makes what has changed, moves to the step wanted, writes.
 class vtkSurfaceDiffusionAlgorithm::Execution
 {
 public:
-  /// The output becomes a copy of the input, which it stays until all has succeeded.
-  Execution(vtkSurfaceDiffusionAlgorithm& filter, vtkDataObject* input, vtkDataObject* output);
+  /// The outputs are copies of the inputs, which they stay until all has succeeded.
+  Execution(vtkSurfaceDiffusionAlgorithm& filter, const std::vector<SurfacePiece>& surfaces);
 
   /// False, after error messages, where properties or arrays are wrong.
   bool Check();
@@ -39,7 +39,6 @@ private:
 
   /// Find the arrays, and what is wrong with them and with the properties.
   void FindProblems(Problems& problems);
-  void Collect(vtkDataObject* input, vtkDataObject* output);
   void MakeSurfaces(const SurfaceDiffusion::Monitor& monitor);
   void MeasureUnits();
   void MakeRuns(const SurfaceDiffusion::Monitor& monitor);

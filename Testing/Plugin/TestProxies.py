@@ -103,7 +103,7 @@ class TestProxies(unittest.TestCase):
                 if method.startswith("Set")
             }
             words = {m for m in setters if any(m.startswith(s + "To") for s in setters)}
-            missing = setters - words - set(proxy.ListProperties())
+            missing = setters - words - set(proxy.ListProperties()) - {"Controller"}  # an object
             self.assertEqual(missing, SENSELESS.get(name, set()), name)
 
     def test_entries_of_enums_are_the_words_of_cxx(self):

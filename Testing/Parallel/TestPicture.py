@@ -1,0 +1,44 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture of a surface in pieces is that of the surface in one, whatever the processes."""
+
+import os
+import sys
+
+import pieces
+import surfacediffusion  # noqa: F401: the classes behind the proxies
+from paraview.simple import (
+    ColorBy, CreateRenderView, GetColorTransferFunction, HideScalarBarIfNotNeeded,
+    IntrinsicTVFilter, SaveScreenshot, Show, TrivialProducer,
+)
+from plugin_testing import assert_looks_like
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+controller = vtkMultiProcessController.GetGlobalController()
+rank = controller.GetLocalProcessId()
+source = TrivialProducer()
+source.GetClientSideObject().SetOutput(
+    pieces.split(pieces.make_surface(), controller.GetNumberOfProcesses(), "slabs")[rank])
+denoised = IntrinsicTVFilter(source, NumberOfTimeSteps=20)
+view = CreateRenderView(ViewSize=[300, 300], OrientationAxesVisibility=0, UseLight=0)
+view.CameraPosition = [4, -8, 14]
+view.CameraViewUp = [0, 0, 1]
+display = Show(denoised, view)
+ColorBy(display, ("POINTS", "fTV"))
+bands = GetColorTransferFunction("fTV")
+HideScalarBarIfNotNeeded(bands, view)
+bands.RescaleTransferFunction(-2.0, 2.0)
+bands.NumberOfTableValues = 6
+bands.Discretize = 1
+display.SetScalarBarVisibility(view, False)
+display.InterpolateScalarsBeforeMapping = 1
+if rank == 0:
+    try:
+        assert_looks_like(view, "Pieces")
+    except Exception as error:  # the other processes wait
+        print(error)
+        sys.stdout.flush()
+        os._exit(1)
+else:
+    SaveScreenshot("other processes draw too.png", view, ImageResolution=[300, 300],
+                   OverrideColorPalette="WhiteBackground")

@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "../Filters/FilterTest.h"
+
+#include "vtkFVMHeatFilter.h"
+
+#include "vtkCommunicator.h"
+#include "vtkIdTypeArray.h"
+#include "vtkMPIController.h"
+#include "vtkMultiBlockDataSet.h"
+
+#include <gtest/gtest.h>
+
+using namespace FilterTest;
+
+namespace
+{
+
+int Rank()
+{
+  return vtkMultiProcessController::GetGlobalController()->GetLocalProcessId();
+}
+int Count()
+{
+  return vtkMultiProcessController::GetGlobalController()->GetNumberOfProcesses();
+}
+
+double OfAll(double value, int operation)
+{
+  double all = 0.0;
+  vtkMultiProcessController::GetGlobalController()->AllReduce(&value, &all, 1, operation);
+  return all;
+}
+
+double Data(const double* x)
+{
+  return std::sin(2.0 * x[0]) + (x[1] > 0.4 ? 1.0 : 0.0);
+}
+
+/// A strip of the unit square, columns begin .. end of n, with data; its points are moved by shift.
+vtkSmartPointer<vtkPolyData> Strip(int begin, int end, int n, double shift = 0.0)
+{
+  auto strip = Grid(end - begin + 1, n + 1, 1.0 / n);
+  for (vtkIdType i = 0; i < strip->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    strip->GetPoint(i, x);
+    x[0] = static_cast<double>(begin) / n + x[0] + shift;
+    strip->GetPoints()->SetPoint(i, x);
+  }
+  AddPointArray(strip, "f", 1, [&](vtkIdType i, int) { return Data(strip->GetPoint(i)); });
+  return strip;
+}
+
+vtkSmartPointer<vtkPolyData> Mine(int n, double shift = 0.0)
+{
+  return Strip(n * Rank() / Count(), n * (Rank() + 1) / Count(), n, shift);
+}
+
+vtkSmartPointer<vtkFVMHeatFilter> MakeHeat(vtkDataObject* input)
+{
+  auto heat = vtkSmartPointer<vtkFVMHeatFilter>::New();
+  heat->SetInputData(input);
+  SetInputArray(heat, 0, "f");
+  return heat;
+}
+
+/// The largest difference from a process alone, at points of equal coordinates, over all.
+double LargestDifference(vtkFVMHeatFilter* heat, vtkPolyData* whole)
+{
+  auto alone = MakeHeat(whole);
+  alone->SetController(nullptr);
+  alone->Update();
+  double largest = 0.0;
+  vtkPolyData* const mine = heat->GetOutput();
+  for (vtkIdType i = 0; i < mine->GetNumberOfPoints(); ++i)
+  {
+    const vtkIdType same = whole->FindPoint(mine->GetPoint(i));
+    largest = std::max(
+      largest, std::abs(Result(heat)->GetComponent(i, 0) - Result(alone)->GetComponent(same, 0)));
+  }
+  return OfAll(largest, vtkCommunicator::MAX_OP);
+}
+
+} // namespace
+
+TEST(Pieces, GiveTheAnswerOfTheWhole)
+{
+  const int n = 24;
+  auto heat = MakeHeat(Mine(n));
+  heat->Update();
+  EXPECT_LT(LargestDifference(heat, Strip(0, n, n)), 1e-12);
+  EXPECT_EQ(History(heat)->GetNumberOfRows(), Rank() == 0 ? 11 : 0);
+  const double mean = heat->GetMeanEdgeLength();
+  EXPECT_EQ(OfAll(mean, vtkCommunicator::MAX_OP), mean);
+}
+
+TEST(Pieces, MatchWithinTheToleranceOnly)
+{
+  const int n = 24;
+  const auto whole = Strip(0, n, n);
+  const double shift = 1e-8 * Rank();
+  auto heat = MakeHeat(Mine(n, shift));
+  heat->Update();
+  EXPECT_LT(LargestDifference(heat, whole), 1e-5);
+  heat->SetSeamTolerance(0.0);
+  heat->Update();
+  const double walls = LargestDifference(heat, whole);
+  EXPECT_EQ(walls > 1e-3, Count() > 1) << walls;
+}
+
+TEST(Pieces, AreSewnByIdsWhereTheyHaveThem)
+{
+  // Ids that differ tell that coincident points are none.
+  const int n = 24;
+  auto mine = Mine(n);
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("ids");
+  for (vtkIdType i = 0; i < mine->GetNumberOfPoints(); ++i)
+  {
+    ids->InsertNextValue(10000 * Rank() + i);
+  }
+  mine->GetPointData()->SetGlobalIds(ids);
+  auto heat = MakeHeat(mine);
+  heat->Update();
+  const double walls = LargestDifference(heat, Strip(0, n, n));
+  EXPECT_EQ(walls > 1e-3, Count() > 1) << walls;
+}
+
+TEST(Pieces, OfClosedSurfacesThatTouchStayApart)
+{
+  // A sphere in each process, all touching at (1, 0, 0), which no piece has on its edge.
+  auto sphere = Sphere(3);
+  if (Rank() % 2 == 1)
+  {
+    for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      sphere->GetPoint(i, x);
+      x[0] = 2.0 - x[0];
+      sphere->GetPoints()->SetPoint(i, x);
+    }
+  }
+  if (Rank() > 1)
+  {
+    sphere->Initialize();
+  }
+  AddPointArray(sphere, "f", 1, [&](vtkIdType, int) { return static_cast<double>(Rank()); });
+  auto heat = MakeHeat(sphere);
+  heat->Update();
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    ASSERT_NEAR(Result(heat)->GetComponent(i, 0), Rank(), 1e-12);
+  }
+}
+
+TEST(Pieces, SheetsThatTouchWithinAPieceStayApart)
+{
+  // Two sheets at one place, cut into the same pieces.
+  const int n = 24;
+  auto lower = Mine(n);
+  vtkNew<vtkPolyData> both;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> triangles;
+  const vtkIdType count = lower->GetNumberOfPoints();
+  for (const int sheet : { 0, 1 })
+  {
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      points->InsertNextPoint(lower->GetPoint(i));
+    }
+    vtkNew<vtkIdList> corners;
+    for (vtkIdType c = 0; c < lower->GetNumberOfCells(); ++c)
+    {
+      lower->GetCellPoints(c, corners);
+      triangles->InsertNextCell({ corners->GetId(0) + sheet * count,
+        corners->GetId(1) + sheet * count, corners->GetId(2) + sheet * count });
+    }
+  }
+  both->SetPoints(points);
+  both->SetPolys(triangles);
+  AddPointArray(
+    both, "f", 1, [&](vtkIdType i, int) { return i < count ? Data(points->GetPoint(i)) : 5.0; });
+  auto heat = MakeHeat(both);
+  heat->SetUnitsToAbsolute();
+  heat->SetTimeStep(1e-3);
+  heat->Update();
+  auto alone = MakeHeat(Strip(0, n, n));
+  alone->SetController(nullptr);
+  alone->SetUnitsToAbsolute();
+  alone->SetTimeStep(1e-3);
+  alone->Update();
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const vtkIdType same = alone->GetOutput()->FindPoint(points->GetPoint(i));
+    ASSERT_NEAR(Result(heat)->GetComponent(i, 0), Result(alone)->GetComponent(same, 0), 1e-12);
+    ASSERT_NEAR(Result(heat)->GetComponent(i + count, 0), 5.0, 1e-12);
+  }
+}
+
+TEST(Pieces, BlocksAreSurfacesOfTheirOwnInPieces)
+{
+  // Block 0 is in pieces, block 1 lies in the last process alone, block 2 is nowhere.
+  const int n = 24;
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetNumberOfBlocks(3);
+  blocks->SetBlock(0, Mine(n));
+  const auto other = Strip(0, 10, 10);
+  if (Rank() == Count() - 1)
+  {
+    blocks->SetBlock(1, other);
+  }
+  auto heat = MakeHeat(blocks);
+  heat->Update();
+  vtkNew<vtkMultiBlockDataSet> whole;
+  whole->SetBlock(0, Strip(0, n, n));
+  whole->SetBlock(1, other);
+  auto alone = MakeHeat(whole);
+  alone->SetController(nullptr);
+  alone->Update();
+  for (const unsigned int b : { 0u, 1u })
+  {
+    auto* found = vtkPolyData::SafeDownCast(
+      vtkMultiBlockDataSet::SafeDownCast(heat->GetOutputDataObject(0))->GetBlock(b));
+    auto* expected = vtkPolyData::SafeDownCast(
+      vtkMultiBlockDataSet::SafeDownCast(alone->GetOutputDataObject(0))->GetBlock(b));
+    for (vtkIdType i = 0; found && i < found->GetNumberOfPoints(); ++i)
+    {
+      ASSERT_NEAR(found->GetPointData()->GetArray("fDiffused")->GetComponent(i, 0),
+        expected->GetPointData()
+          ->GetArray("fDiffused")
+          ->GetComponent(expected->FindPoint(found->GetPoint(i)), 0),
+        1e-12);
+    }
+  }
+}
+
+TEST(Pieces, WithoutAControllerAreSurfacesOfTheirOwn)
+{
+  const auto mine = Mine(24);
+  auto heat = MakeHeat(mine);
+  heat->SetController(nullptr);
+  heat->Update();
+  const std::vector<double> areas = ControlAreas(mine);
+  EXPECT_NEAR(Total(areas, Result(heat)), Total(areas, mine->GetPointData()->GetArray("f")), 1e-12);
+  EXPECT_EQ(History(heat)->GetNumberOfRows(), 11);
+}
+
+TEST(Pieces, WhoseArrayIsMissingAreAnErrorToldOnce)
+{
+  auto mine = Mine(24);
+  if (Rank() == Count() - 1)
+  {
+    mine->GetPointData()->RemoveArray("f");
+  }
+  auto heat = MakeHeat(mine);
+  Messages messages(heat);
+  heat->Update();
+  EXPECT_EQ(messages.Errors.size(), Rank() == 0 ? 1u : 0u);
+  EXPECT_EQ(Result(heat), nullptr);
+}
+
+int main(int argc, char** argv)
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  testing::InitGoogleTest(&argc, argv);
+  const int failed = RUN_ALL_TESTS();
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return failed;
+}

@@ -1,0 +1,110 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plugin on a pvserver of two processes gives what it gives here."""
+
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+
+from paraview import servermanager
+from paraview.simple import (
+    D3, Connect, Disconnect, ExtractSurface, FVMHeatFilter, HarmonicMapFilter, IntrinsicTVFilter,
+    LoadPlugin, SurfaceDirectionFieldFilter, TuringTextureFilter, XMLPolyDataReader,
+)
+from plugin_testing import add_array, values, write_sphere
+from vtkmodules.vtkFiltersCore import vtkCleanPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
+
+MPIEXEC = os.environ["SURFACEDIFFUSION_MPIEXEC"]
+PVSERVER = os.environ["SURFACEDIFFUSION_PVSERVER"]
+PLUGIN = os.path.join(os.environ["PV_PLUGIN_PATH"], "SurfaceDiffusion.so")
+OMPI_SETTINGS = ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
+                 "OMPI_MCA_rmaps_base_oversubscribe", "OMPI_MCA_mpi_yield_when_idle")
+
+
+def results(path, distribute):
+    """What each filter makes of the file, by the number of the point or cell."""
+    data = XMLPolyDataReader(FileName=[path])
+    if distribute:
+        data = ExtractSurface(D3(data))
+    heat = FVMHeatFilter(data, InputArray=["POINTS", "noisy"], GenerateTimeSteps=1)
+    heat.UpdatePipeline(4.0)
+    turing = TuringTextureFilter(data, InputArray=["POINTS", "pair"], NumberOfTimeSteps=40)
+    found = {}
+    for name, filter, array in (
+            ("heat at 4", heat, "noisyDiffused"),
+            ("tv", IntrinsicTVFilter(data, InputArray=["POINTS", "noisy"], Tolerance=1e-10), "noisyTV"),
+            ("harmonic", HarmonicMapFilter(data, InputArray=["POINTS", "east"]), "eastHarmonic"),
+            ("turing", turing, "u1"), ("direction", SurfaceDirectionFieldFilter(data), "Direction")):
+        output = servermanager.Fetch(filter)
+        cells = name == "direction"
+        attributes = output.GetCellData() if cells else output.GetPointData()
+        numbers = attributes.GetArray("cell" if cells else "number")
+        result = attributes.GetArray(array)
+        found[name] = {int(numbers.GetTuple1(i)): result.GetTuple(i) for i in range(result.GetNumberOfTuples())}
+    found["history"] = dict(enumerate((value,) for value in values(turing, "Energy", port=1)))
+    return found
+
+
+class TestServer(unittest.TestCase):
+    def setUp(self):
+        # pvpython is an MPI process itself, which mpiexec takes for its parent.
+        environment = {
+            name: value for name, value in os.environ.items()
+            if not name.startswith(("PMIX_", "OMPI_")) or name in OMPI_SETTINGS}
+        environment.pop("PV_PLUGIN_PATH")
+        self.server = subprocess.Popen(
+            [MPIEXEC, "-n", "2", PVSERVER, "--server-port=0"], stdout=subprocess.PIPE, text=True,
+            env=environment)
+        self.addCleanup(self.stop)
+
+    def stop(self):
+        """The server ends by itself when its client has gone."""
+        try:
+            self.server.communicate(timeout=10)
+        except subprocess.TimeoutExpired:
+            self.server.terminate()
+            self.server.communicate()
+
+    def test_two_processes_give_what_one_gives(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = os.path.join(folder.name, "sphere.vtp")
+        write_sphere(path)
+        reader, clean = vtkXMLPolyDataReader(), vtkCleanPolyData()
+        reader.SetFileName(path)
+        clean.SetInputConnection(reader.GetOutputPort())
+        clean.Update()
+        sphere = clean.GetOutput()
+        sphere.GetPointData().RemoveArray("names")
+        add_array(sphere.GetPointData(), "number", range(sphere.GetNumberOfPoints()))
+        add_array(sphere.GetCellData(), "cell", range(sphere.GetNumberOfCells()))
+        writer = vtkXMLPolyDataWriter()
+        writer.SetFileName(path)
+        writer.SetInputData(sphere)
+        writer.SetDataModeToBinary()
+        writer.Write()
+
+        here = results(path, False)
+        port = next(
+            int(match.group(1))
+            for match in (re.search(r"connection\(s\): .*:(\d+)", line) for line in self.server.stdout)
+            if match)
+        self.assertIsNotNone(Connect("localhost", port))
+        self.addCleanup(Disconnect)
+        LoadPlugin(PLUGIN, remote=True, ns=globals())
+        there = results(path, True)
+        for name, expected in here.items():
+            self.assertEqual(sorted(there[name]), sorted(expected), name)
+            worst = max(
+                min(max(abs(a - sign * b) for a, b in zip(there[name][key], row)) for sign in (
+                    (1, -1) if name == "direction" else (1,)))
+                for key, row in expected.items())
+            print("%s: %.1e" % (name, worst))
+            self.assertLess(worst, 1e-6, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
