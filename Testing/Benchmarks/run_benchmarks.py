@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run the benchmarks on one CPU and write what they say into a page.
 
-    run_benchmarks.py BUILD [--peers DIR --peers-python PYTHON --meshes DIR] [--level N] [--peers-level N] [--note TEXT]
+    run_benchmarks.py BUILD [--level N] [--note TEXT]
+                      [--peers DIR --peers-python PYTHON --meshes DIR] [--peers-level N]
 
 BUILD: a build folder with SURFACEDIFFUSION_BUILD_BENCHMARKS. DIR: programs that run other software
 (a run.py with --ours), with a Python that has it; meshes: the folder of elephant.off and
@@ -100,7 +101,8 @@ def stages(results):
     head = ["ms"] + [f"{n:,}" for n in results.sizes] + ["exponent", "of bandwidth"]
     rows = []
     for name, title in STAGES.items():
-        full = next((key for key in results.times if key == name or key.startswith(name + "/c:")), name)
+        full = next((key for key in results.times
+                     if key == name or key.startswith(name + "/c:")), name)
         rows.append(results.row(title, full))
     return table(head, rows)
 
@@ -112,9 +114,8 @@ def solvers(results):
         found = re.fullmatch(r"Solve/(\w+)/c:(\d+)/columns:(\d)", name)
         if found:
             method, tenths, columns = found.groups()
-            rows.append(results.row(
-                f"{method}, {int(tenths) / 10:g} h², {columns} column{'s' if columns != '1' else ''}",
-                name))
+            title = f"{method}, {int(tenths) / 10:g} h², {columns} column"
+            rows.append(results.row(title + ("s" if columns != "1" else ""), name))
     return table(head, rows)
 
 
@@ -124,7 +125,7 @@ def choices(rows):
     for row in rows:
         cells.setdefault((row["vertices"], row["c"]), {})[row["steps"]] = row
     letters = {"Direct": "D", "ConjugateGradient": "C", "Multigrid": "M"}
-    head = ["vertices", "Δt/h²"] + [f"{k} steps" for k in steps]
+    head = ["vertices", "Δt/h²"] + ["1 step" if k == 1 else f"{k} steps" for k in steps]
     body = [[f"{n:,}", f"{c:g}"] + [f"{letters[cell[k]['chosen']]} {cell[k]['ratio']:.2f}"
             for k in steps] for (n, c), cell in cells.items()]
     good = sum(row["ratio"] <= 1.3 for row in rows)
