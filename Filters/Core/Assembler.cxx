@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Assembler.h"
 
+#include "IndexSet.h"
+#include "Product.h"
+
 #include <algorithm>
 
 namespace SurfaceDiffusion
@@ -16,32 +19,57 @@ Assembler::Assembler(
   const auto& begin = m.VertexCornersBegin();
   const auto& corners = m.VertexCorners();
 
-  const auto listRow = [&](Index i, std::vector<Index>& row)
-  {
-    row.assign(1, i);
-    for (Index c = begin[i]; c < begin[i + 1]; ++c)
-    {
-      const Index t = corners[c] / 3;
-      const int a = corners[c] % 3;
-      row.push_back(m.TriangleVertices()(t, (a + 1) % 3));
-      row.push_back(m.TriangleVertices()(t, (a + 2) % 3));
-    }
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-  };
-
+  // Rows are listed once, with slots counted from the start of the row; where rows begin, and so
+  // where slots are in the matrix, is known when all are listed.
   std::vector<Index> outer(n + 1, 0);
+  std::vector<std::vector<Index>> rows(NumberOfBlocks(n)); // one after another, per block
+  this->SlotMap.resize(corners.size());
+  this->DiagonalSlot.resize(n);
   ForEachBlock(parallel, n,
-    [&](Index, Index first, Index last)
+    [&](Index block, Index first, Index last)
     {
-      std::vector<Index> row;
+      IndexSet row;
+      struct Entry
+      {
+        Index Vertex, Number;
+      };
+      std::vector<Entry> sorted;
+      std::vector<Index> slot; // of the numbers that the set gives
+      rows[block].reserve(8 * static_cast<std::size_t>(last - first));
       for (Index i = first; i < last; ++i)
       {
-        listRow(i, row);
-        outer[i + 1] = static_cast<Index>(row.size());
+        row.Clear();
+        row.Insert(i);
+        for (Index c = begin[i]; c < begin[i + 1]; ++c)
+        {
+          const Index t = corners[c] / 3;
+          const int a = corners[c] % 3;
+          this->SlotMap[c] = { row.Insert(m.TriangleVertices()(t, (a + 1) % 3)),
+            row.Insert(m.TriangleVertices()(t, (a + 2) % 3)) };
+        }
+        const auto size = static_cast<Index>(row.Entries().size());
+        sorted.clear();
+        for (Index k = 0; k < size; ++k)
+        {
+          sorted.push_back({ row.Entries()[k], k });
+        }
+        std::sort(sorted.begin(), sorted.end(),
+          [](const Entry& x, const Entry& y) { return x.Vertex < y.Vertex; });
+        slot.resize(size);
+        for (Index k = 0; k < size; ++k)
+        {
+          slot[sorted[k].Number] = k;
+          rows[block].push_back(sorted[k].Vertex);
+        }
+        this->DiagonalSlot[i] = slot[0];
+        for (Index c = begin[i]; c < begin[i + 1]; ++c)
+        {
+          this->SlotMap[c] = { slot[this->SlotMap[c].Next], slot[this->SlotMap[c].Last] };
+        }
+        outer[i + 1] = size;
       }
     });
-  monitor.Report(0.4);
+  monitor.Report(0.7);
   for (Index i = 0; i < n; ++i)
   {
     outer[i + 1] += outer[i];
@@ -51,28 +79,17 @@ Assembler::Assembler(
   this->Empty.resizeNonZeros(outer[n]);
   std::copy(outer.begin(), outer.end(), this->Empty.outerIndexPtr());
   std::fill_n(this->Empty.valuePtr(), outer[n], 0.0);
-  this->SlotMap.resize(corners.size());
-  this->DiagonalSlot.resize(n);
   ForEachBlock(parallel, n,
-    [&](Index, Index first, Index last)
+    [&](Index block, Index first, Index last)
     {
-      std::vector<Index> row;
+      std::copy(rows[block].begin(), rows[block].end(), this->Empty.innerIndexPtr() + outer[first]);
       for (Index i = first; i < last; ++i)
       {
-        listRow(i, row);
-        std::copy(row.begin(), row.end(), this->Empty.innerIndexPtr() + outer[i]);
-        const auto slotOf = [&](Index j)
-        {
-          return outer[i] +
-            static_cast<Index>(std::lower_bound(row.begin(), row.end(), j) - row.begin());
-        };
-        this->DiagonalSlot[i] = slotOf(i);
+        this->DiagonalSlot[i] += outer[i];
         for (Index c = begin[i]; c < begin[i + 1]; ++c)
         {
-          const Index t = corners[c] / 3;
-          const int a = corners[c] % 3;
-          this->SlotMap[c] = { slotOf(m.TriangleVertices()(t, (a + 1) % 3)),
-            slotOf(m.TriangleVertices()(t, (a + 2) % 3)) };
+          this->SlotMap[c].Next += outer[i];
+          this->SlotMap[c].Last += outer[i];
         }
       }
     });
@@ -136,60 +153,21 @@ void Assembler::Constrain(SparseMatrix& matrix, const Flags& fixed, const Values
     });
 }
 
-namespace
-{
-
-/// Columns known to the compiler: the sums stay in registers.
-template <int K>
-void MultiplyColumns(
-  const SparseMatrix& matrix, const Values& x, Values& y, const ParallelFor& parallel)
-{
-  const Index* outer = matrix.outerIndexPtr();
-  const Index* inner = matrix.innerIndexPtr();
-  const double* a = matrix.valuePtr();
-  const double* in = x.data();
-  double* out = y.data();
-  ForEach(parallel, static_cast<Index>(matrix.rows()),
-    [&](Index i)
-    {
-      double sum[K] = {};
-      for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
-      {
-        const double* xj = in + static_cast<std::ptrdiff_t>(inner[slot]) * K;
-        for (int k = 0; k < K; ++k)
-        {
-          sum[k] += a[slot] * xj[k];
-        }
-      }
-      std::copy(sum, sum + K, out + static_cast<std::ptrdiff_t>(i) * K);
-    });
-}
-
-} // namespace
-
 void Multiply(const SparseMatrix& matrix, const Values& x, Values& y, const ParallelFor& parallel)
 {
-  switch (x.cols())
-  {
-    case 1:
-      return MultiplyColumns<1>(matrix, x, y, parallel);
-    case 2:
-      return MultiplyColumns<2>(matrix, x, y, parallel);
-    case 3:
-      return MultiplyColumns<3>(matrix, x, y, parallel);
-    default:
-      break;
-  }
-  const Index* outer = matrix.outerIndexPtr();
-  const Index* inner = matrix.innerIndexPtr();
-  const double* a = matrix.valuePtr();
-  ForEach(parallel, static_cast<Index>(matrix.rows()),
-    [&](Index i)
+  ForEachBlock(parallel, static_cast<Index>(matrix.rows()),
+    [&](Index, Index begin, Index end)
     {
-      y.row(i).setZero();
-      for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+      switch (x.cols())
       {
-        y.row(i) += a[slot] * x.row(inner[slot]);
+        case 1:
+          return MultiplyRows<1>(matrix, x, y, begin, end);
+        case 2:
+          return MultiplyRows<2>(matrix, x, y, begin, end);
+        case 3:
+          return MultiplyRows<3>(matrix, x, y, begin, end);
+        default:
+          return MultiplyRows<0>(matrix, x, y, begin, end);
       }
     });
 }

@@ -4,6 +4,7 @@
 
 #include "Assembler.h"
 #include "Multigrid.h"
+#include "Product.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +77,7 @@ private:
     {
       this->Unit[c] = ScaleOf(b, this->Q, c, this->Parallel);
     }
-    this->SumBlocks(n, k, 2,
+    this->SumBlocks<K>(n, k, 2,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
@@ -94,8 +95,9 @@ private:
       this->Scale[c] = this->Sums[k + c] > 0.0 ? this->Sums[k + c] : 1.0;
     }
     this->Rho.assign(k, 0.0);
+    this->Step.assign(k, 0.0);
     this->Length.assign(k, 0.0);
-    this->Turn<K>(n, k);
+    this->Turn<K>(n, k, x);
 
     SolveReport report;
     double progress = 0.0;
@@ -140,8 +142,9 @@ private:
   bool Iterate(Index n, int columns, Values& x)
   {
     const int k = K > 0 ? K : columns;
-    Multiply(*this->Matrix, this->P, this->Q, this->Parallel);
-    this->SumBlocks(n, k, 1,
+    this->SumBlocks<K>(
+      n, k, 1,
+      [&](Index begin, Index end) { MultiplyRows<K>(*this->Matrix, this->P, this->Q, begin, end); },
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
@@ -158,25 +161,29 @@ private:
       }
       this->Alpha[c] = finished ? 0.0 : this->Rho[c] / this->Sums[c];
     }
-    this->SumBlocks(n, k, 1,
+    this->SumBlocks<K>(n, k, 1,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
         {
-          x(i, c) += this->Alpha[c] * this->Unit[c] * this->P(i, c);
           const double r = this->R(i, c) - this->Alpha[c] * this->Q(i, c);
           this->R(i, c) = r;
           sums[c] += r * this->InverseDiagonal[i] * r;
         }
       });
     std::copy(this->Sums.begin(), this->Sums.begin() + k, this->Square.begin());
-    this->Turn<K>(n, k);
+    for (int c = 0; c < k; ++c)
+    {
+      this->Step[c] = this->Alpha[c] * this->Unit[c];
+    }
+    this->Turn<K>(n, k, x);
     return true;
   }
 
-  /// P = B r + beta P, conjugate to what it was; B is diag(A)^-1 or a multigrid cycle.
+  /// x goes its step along P, which is in the cache here; then P = B r + beta P, conjugate to what
+  /// it was; B is diag(A)^-1 or a multigrid cycle.
   template <int K>
-  void Turn(Index n, int columns)
+  void Turn(Index n, int columns, Values& x)
   {
     const int k = K > 0 ? K : columns;
     std::copy(this->Square.begin(), this->Square.end(), this->Sums.begin());
@@ -187,7 +194,7 @@ private:
         this->Alpha[c] = this->Square[c] > 0.0 ? 1.0 / std::sqrt(this->Square[c]) : 1.0;
       }
       this->Hierarchy->Apply(this->R, this->Alpha, this->Q);
-      this->SumBlocks(n, k, 1,
+      this->SumBlocks<K>(n, k, 1,
         [&](Index i, double* sums)
         {
           for (int c = 0; c < k; ++c)
@@ -210,7 +217,9 @@ private:
         {
           const double z =
             this->Hierarchy ? this->Q(i, c) : this->InverseDiagonal[i] * this->R(i, c);
-          this->P(i, c) = z + this->Beta[c] * this->P(i, c);
+          const double p = this->P(i, c);
+          x(i, c) += this->Step[c] * p;
+          this->P(i, c) = z + this->Beta[c] * p;
         }
       });
   }
@@ -238,9 +247,8 @@ private:
       this->R.resize(n, k);
       this->P.setZero(n, k); // what the first direction is turned from
       this->Q.resize(n, k);
-      for (std::vector<double>* scalars :
-        { &this->Unit, &this->Square, &this->Rho, &this->Scale, &this->Alpha, &this->Beta,
-          &this->Length })
+      for (std::vector<double>* scalars : { &this->Unit, &this->Square, &this->Rho, &this->Scale,
+             &this->Alpha, &this->Step, &this->Beta, &this->Length })
       {
         scalars->assign(k, 0.0);
       }
@@ -249,20 +257,25 @@ private:
     }
   }
 
-  /// Sums = sum over i of what add(i, sums) adds to its `sets` x k sums.
-  template <typename Add>
-  void SumBlocks(Index n, int k, int sets, const Add& add)
+  /// Sums = sum over i of what add(i, sums) adds to its `sets` x k sums, after first(begin, end)
+  /// has run on the rows of the block, which the sums then find in the cache.
+  template <int K, typename First, typename Add>
+  void SumBlocks(Index n, int columns, int sets, const First& first, const Add& add)
   {
-    const int width = sets * k;
+    const int width = sets * (K > 0 ? K : columns);
     ForEachBlock(this->Parallel, n,
       [&](Index block, Index begin, Index end)
       {
-        double* sums = this->Partial.data() + static_cast<std::size_t>(block) * width;
+        first(begin, end);
+        double* partial = this->Partial.data() + static_cast<std::size_t>(block) * width;
+        double registers[K > 0 ? 2 * K : 1] = {};
+        double* sums = K > 0 ? registers : partial;
         std::fill(sums, sums + width, 0.0);
         for (Index i = begin; i < end; ++i)
         {
           add(i, sums);
         }
+        std::copy(sums, sums + width, partial);
       });
     std::fill(this->Sums.begin(), this->Sums.end(), 0.0);
     for (Index block = 0; block < NumberOfBlocks(n); ++block)
@@ -274,12 +287,19 @@ private:
     }
   }
 
+  template <int K, typename Add>
+  void SumBlocks(Index n, int columns, int sets, const Add& add)
+  {
+    this->SumBlocks<K>(
+      n, columns, sets, [](Index, Index) {}, add);
+  }
+
   const ParallelFor& Parallel;
   std::unique_ptr<Multigrid> Hierarchy;
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
   Values R, P, Q;
-  std::vector<double> Unit, Square, Rho, Scale, Alpha, Beta; // one per column
+  std::vector<double> Unit, Square, Rho, Scale, Alpha, Step, Beta; // one per column
   std::vector<double> Length; ///< per column, P . B^-1 P
   std::vector<double> Sums, Partial;
 };

@@ -8,6 +8,16 @@
 namespace SurfaceDiffusion
 {
 
+/// Bits 0, 1, 2, ... of the lower 21 moved to 0, 3, 6, ...
+inline std::uint64_t SpreadBits(std::uint64_t x)
+{
+  x = (x | x << 32) & 0x001F00000000FFFF;
+  x = (x | x << 16) & 0x001F0000FF0000FF;
+  x = (x | x << 8) & 0x100F00F00F00F00F;
+  x = (x | x << 4) & 0x10C30C30C30C30C3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
 /// Position along the three-dimensional Hilbert curve of a point of the unit cube's 2^21 grid.
 /// J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004).
 inline std::uint64_t HilbertPosition(std::array<std::uint32_t, 3> x)
@@ -18,38 +28,24 @@ inline std::uint64_t HilbertPosition(std::array<std::uint32_t, 3> x)
     const std::uint32_t p = q - 1;
     for (auto& xi : x)
     {
-      if (xi & q)
-      {
-        x[0] ^= p; // invert the low bits of the first axis
-      }
-      else
-      {
-        const std::uint32_t t = (x[0] ^ xi) & p; // exchange the low bits with the first axis
-        x[0] ^= t;
-        xi ^= t;
-      }
+      // Invert the low bits of the first axis where the bit is set, exchange them with the first
+      // axis' where it is not. Masks, since no branch predictor knows such bits.
+      const std::uint32_t set = xi & q ? ~0U : 0U;
+      const std::uint32_t t = (x[0] ^ xi) & p & ~set;
+      x[0] ^= t | (p & set);
+      xi ^= t;
     }
   }
   // Gray encode.
   x[1] ^= x[0];
   x[2] ^= x[1];
-  std::uint32_t t = 0;
-  for (std::uint32_t q = 1U << (bits - 1); q > 1; q >>= 1)
+  // Bit k of t: parity of the bits of the last axis above k.
+  std::uint32_t t = x[2] >> 1;
+  for (const int shift : { 1, 2, 4, 8, 16 })
   {
-    if (x[2] & q)
-    {
-      t ^= q - 1;
-    }
+    t ^= t >> shift;
   }
-  std::uint64_t position = 0;
-  for (int bit = bits - 1; bit >= 0; --bit)
-  {
-    for (const auto xi : x)
-    {
-      position = (position << 1) | (((xi ^ t) >> bit) & 1U);
-    }
-  }
-  return position;
+  return SpreadBits(x[0] ^ t) << 2 | SpreadBits(x[1] ^ t) << 1 | SpreadBits(x[2] ^ t);
 }
 
 } // namespace SurfaceDiffusion

@@ -182,8 +182,8 @@ private:
     {
       const auto v = mesh.TriangleVertices().row(t);
       const TriangleMesh::Shape& s = mesh.Shapes()[t];
-      const double l0 = std::hypot(s.X - s.Length, s.Y);
-      const double l1 = std::hypot(s.X, s.Y);
+      const double l0 = s.EdgeLength(0);
+      const double l1 = s.EdgeLength(1);
       this->Triangles[t] = { { v[0], v[1], v[2] }, { l0, l1, s.Length }, {},
         Eigen::Vector3d::Zero() };
       if (!simple)

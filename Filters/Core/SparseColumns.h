@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "IndexSet.h"
 #include "Parallel.h"
 #include "Types.h"
 
@@ -12,60 +13,31 @@
 namespace SurfaceDiffusion
 {
 
-/// A sparse vector to which numbers are added in any order: a small hash table, since what a column
-/// of a mesh's matrix holds is short.
+/// A sparse vector to which numbers are added in any order.
 class SparseColumn
 {
 public:
   void Clear()
   {
-    std::fill(this->Places.begin(), this->Places.end(), Free);
+    this->Rows.Clear();
     this->Entries.clear();
   }
 
   void Add(Index row, double value)
   {
-    const std::size_t place = this->Find(row);
-    if (this->Places[place] != Free)
+    const Index entry = this->Rows.Insert(row);
+    if (entry == static_cast<Index>(this->Entries.size()))
     {
-      this->Entries[this->Places[place]].second += value;
+      this->Entries.emplace_back(row, value);
       return;
     }
-    this->Places[place] = static_cast<Index>(this->Entries.size());
-    this->Entries.emplace_back(row, value);
-    if (2 * this->Entries.size() > this->Places.size())
-    {
-      this->Grow();
-    }
+    this->Entries[entry].second += value;
   }
 
   const std::vector<std::pair<Index, double>>& Numbers() const { return this->Entries; }
 
 private:
-  static constexpr Index Free = -1;
-
-  /// Where `row` is, or belongs.
-  std::size_t Find(Index row) const
-  {
-    const std::size_t mask = this->Places.size() - 1;
-    std::size_t place = static_cast<std::size_t>(row) & mask;
-    while (this->Places[place] != Free && this->Entries[this->Places[place]].first != row)
-    {
-      place = (place + 1) & mask;
-    }
-    return place;
-  }
-
-  void Grow()
-  {
-    this->Places.assign(2 * this->Places.size(), Free);
-    for (std::size_t e = 0; e < this->Entries.size(); ++e)
-    {
-      this->Places[this->Find(this->Entries[e].first)] = static_cast<Index>(e);
-    }
-  }
-
-  std::vector<Index> Places = std::vector<Index>(128, Free); ///< in Entries
+  IndexSet Rows;
   std::vector<std::pair<Index, double>> Entries;
 };
 

@@ -3,6 +3,7 @@
 #include "TriangleMesh.h"
 
 #include "HilbertCurve.h"
+#include "IndexSet.h"
 
 #include <Eigen/Geometry>
 
@@ -18,14 +19,7 @@ namespace
 
 using Row3 = Eigen::RowVector3d;
 
-/// The bounding box of the points that triangles use, and the power of two that scales it to one.
-struct Frame
-{
-  Row3 Centre;
-  double Unit;
-};
-
-Frame BoundingFrame(
+TriangleMesh::Frame BoundingFrame(
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles)
 {
   Row3 low = Row3::Constant(std::numeric_limits<double>::max());
@@ -97,12 +91,12 @@ void Accumulate(std::vector<Index>& count)
 } // namespace
 
 TriangleMesh::TriangleMesh(const Eigen::Ref<const Points>& points,
-  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel,
-  const Monitor& monitor)
+  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel, const Monitor& monitor)
 {
-  this->SelectTriangles(points, triangles, parallel);
+  const Frame frame = BoundingFrame(points, triangles);
+  this->SelectTriangles(points, triangles, frame, parallel);
   monitor.Report(0.2);
-  this->NumberVertices(points, triangles, parallel);
+  this->NumberVertices(points, triangles, frame, parallel);
   monitor.Report(0.6);
   this->ListCorners();
   monitor.Report(0.8);
@@ -128,9 +122,8 @@ TriangleMesh::TriangleMesh(const TriangleMesh& mesh, Triangles corners, std::vec
 }
 
 void TriangleMesh::SelectTriangles(const Eigen::Ref<const Points>& points,
-  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel)
+  const Eigen::Ref<const Triangles>& triangles, const Frame& frame, const ParallelFor& parallel)
 {
-  const Frame frame = BoundingFrame(points, triangles);
   this->Unit = frame.Unit;
   const Index count = static_cast<Index>(triangles.rows());
   std::vector<Shape> shapes(count);
@@ -155,7 +148,7 @@ void TriangleMesh::SelectTriangles(const Eigen::Ref<const Points>& points,
 }
 
 void TriangleMesh::NumberVertices(const Eigen::Ref<const Points>& points,
-  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel)
+  const Eigen::Ref<const Triangles>& triangles, const Frame& frame, const ParallelFor& parallel)
 {
   const Index inputCount = static_cast<Index>(points.rows());
   DisjointSets sets(inputCount);
@@ -191,7 +184,6 @@ void TriangleMesh::NumberVertices(const Eigen::Ref<const Points>& points,
   }
   const Index count = static_cast<Index>(places.size());
   this->Found.IsolatedVertices = inputCount - count;
-  const Frame frame = BoundingFrame(points, triangles);
   ForEach(parallel, count,
     [&](Index i)
     {
@@ -234,15 +226,12 @@ void TriangleMesh::NumberVertices(const Eigen::Ref<const Points>& points,
   // Triangles follow their smallest vertex.
   const Index triangleCount = static_cast<Index>(this->InputTriangles.size());
   std::vector<Index> begin(count + 1, 0);
-  const auto smallest = [&](Index t)
-  {
-    const Index input = this->InputTriangles[t];
-    return std::min({ number[triangles(input, 0)], number[triangles(input, 1)],
-      number[triangles(input, 2)] });
-  };
+  std::vector<Index> smallest(triangleCount);
   for (Index t = 0; t < triangleCount; ++t)
   {
-    ++begin[smallest(t)];
+    const auto corners = triangles.row(this->InputTriangles[t]);
+    smallest[t] = std::min({ number[corners[0]], number[corners[1]], number[corners[2]] });
+    ++begin[smallest[t]];
   }
   Accumulate(begin);
   std::vector<Index> sortedTriangles(triangleCount);
@@ -250,7 +239,7 @@ void TriangleMesh::NumberVertices(const Eigen::Ref<const Points>& points,
   this->Corners.resize(triangleCount, 3);
   for (Index t = 0; t < triangleCount; ++t)
   {
-    const Index place = begin[smallest(t)]++;
+    const Index place = begin[smallest[t]]++;
     sortedTriangles[place] = this->InputTriangles[t];
     sortedShapes[place] = this->TriangleShapes[t];
     for (int a = 0; a < 3; ++a)
@@ -307,50 +296,42 @@ void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
   ForEachBlock(parallel, this->NumberOfVertices(),
     [&](Index block, Index begin, Index end)
     {
-      struct Edge
-      {
-        Index Neighbour;
-        double Length;
-      };
-      std::vector<Edge> edges; // from vertex i to higher numbers, once per triangle
+      IndexSet neighbours; // of vertex i, of higher numbers
+      std::vector<Index> uses;
       Block& result = results[block];
       for (Index i = begin; i < end; ++i)
       {
-        edges.clear();
+        neighbours.Clear();
+        uses.clear();
         for (Index c = this->CornersBegin[i]; c < this->CornersBegin[i + 1]; ++c)
         {
           const Index t = this->CornerList[c] / 3;
           const int a = this->CornerList[c] % 3;
-          const Shape& s = this->TriangleShapes[t];
-          const double length[3] = { std::hypot(s.X - s.Length, s.Y), std::hypot(s.X, s.Y),
-            s.Length }; // of the edge opposite each corner
           for (const int b : { (a + 1) % 3, (a + 2) % 3 })
           {
-            if (this->Corners(t, b) > i)
+            if (this->Corners(t, b) <= i)
             {
-              edges.push_back({ this->Corners(t, b), length[3 - a - b] });
+              continue;
             }
+            const Index edge = neighbours.Insert(this->Corners(t, b));
+            if (edge == static_cast<Index>(uses.size()))
+            {
+              uses.push_back(0);
+              result.Length += this->TriangleShapes[t].EdgeLength(3 - a - b);
+            }
+            ++uses[edge];
           }
         }
-        std::stable_sort(edges.begin(), edges.end(),
-          [](const Edge& x, const Edge& y) { return x.Neighbour < y.Neighbour; });
-        for (std::size_t e = 0; e < edges.size();)
+        result.Edges += static_cast<Index>(uses.size());
+        for (std::size_t edge = 0; edge < uses.size(); ++edge)
         {
-          std::size_t uses = 1;
-          while (e + uses < edges.size() && edges[e + uses].Neighbour == edges[e].Neighbour)
-          {
-            ++uses;
-          }
-          result.Length += edges[e].Length;
-          ++result.Edges;
-          if (uses == 1)
+          if (uses[edge] == 1)
           {
             ++result.BoundaryEdges;
             result.BoundaryVertices.push_back(i);
-            result.BoundaryVertices.push_back(edges[e].Neighbour);
+            result.BoundaryVertices.push_back(neighbours.Entries()[edge]);
           }
-          result.NonManifold += uses > 2;
-          e += uses;
+          result.NonManifold += uses[edge] > 2;
         }
       }
     });

@@ -6,6 +6,7 @@
 #include "Parallel.h"
 #include "Types.h"
 
+#include <cmath>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -33,15 +34,29 @@ public:
     /// IntrinsicDelaunay.h).
     double Weight = 1.0;
     double Area() const { return 0.5 * Length * Y * Weight; }
+    /// Of the edge opposite corner a.
+    double EdgeLength(int a) const
+    {
+      const double x = a == 0 ? X - Length : X;
+      return a == 2 ? Length : std::sqrt(x * x + Y * Y);
+    }
   };
 
   /// What was found, to be told to the user.
   struct Findings
   {
     Index DegenerateTriangles = 0; ///< of zero area (height/longest edge < 1e-15): left out
-    Index IsolatedVertices = 0;    ///< used by no triangle that is left: not in the mesh
-    Index NonManifoldEdges = 0;    ///< shared by three or more triangles: kept
-    Index BoundaryEdges = 0;       ///< used by one triangle
+    Index IsolatedVertices = 0; ///< used by no triangle that is left: not in the mesh
+    Index NonManifoldEdges = 0; ///< shared by three or more triangles: kept
+    Index BoundaryEdges = 0; ///< used by one triangle
+  };
+
+  /// The centre of the box around the points that triangles use, and the power of two that scales
+  /// the box to one.
+  struct Frame
+  {
+    Eigen::RowVector3d Centre;
+    double Unit;
   };
 
   /// points: finite coordinates; triangles: rows of points. Throws Aborted.
@@ -94,9 +109,9 @@ private:
 
   TriangleMesh() = default;
   void SelectTriangles(const Eigen::Ref<const Points>& points,
-    const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel);
+    const Eigen::Ref<const Triangles>& triangles, const Frame& frame, const ParallelFor& parallel);
   void NumberVertices(const Eigen::Ref<const Points>& points,
-    const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel);
+    const Eigen::Ref<const Triangles>& triangles, const Frame& frame, const ParallelFor& parallel);
   void ListCorners();
   void MeasureAreas(const ParallelFor& parallel);
   void MeasureEdges(const ParallelFor& parallel);
