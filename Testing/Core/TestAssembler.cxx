@@ -182,6 +182,29 @@ TEST(Assembler, ConstrainedSystemsHaveTheSolutionWithTheValuesPutIn)
   }
 }
 
+TEST(Assembler, ListsTheManyNeighboursOfAHubOnceAndSorted)
+{
+  constexpr Index spokes = 1000;
+  Surface fan{ Points(spokes + 1, 3), Triangles(spokes, 3) };
+  fan.Vertices.row(spokes).setZero();
+  for (Index i = 0; i < spokes; ++i)
+  {
+    const double angle = 2.0 * Pi * i / spokes;
+    fan.Vertices.row(i) << std::cos(angle), std::sin(angle), 0.0;
+    fan.Faces.row(i) << spokes, i, (i + 1) % spokes;
+  }
+  const auto assembler = MakeAssembler(fan);
+  const SparseMatrix& pattern = assembler->Pattern();
+  EXPECT_EQ(pattern.nonZeros(), spokes + 1 + 2 * 2 * spokes);
+  for (Index i = 0; i <= spokes; ++i)
+  {
+    const Index* row = pattern.innerIndexPtr();
+    EXPECT_TRUE(std::is_sorted(row + pattern.outerIndexPtr()[i],
+      row + pattern.outerIndexPtr()[i + 1], std::less_equal<Index>()));
+  }
+  EXPECT_EQ(assembler->Mesh().NumberOfEdges(), 2 * spokes);
+}
+
 TEST(Assembler, MultiplyGivesEveryColumnTheSameBits)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
