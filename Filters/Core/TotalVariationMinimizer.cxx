@@ -478,6 +478,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::MinimizeColumns(
   const Values& g, const Values& f, Values& u, const Monitor& monitor)
 {
   this->Prepare(u);
+  this->Initial = u;
   Pass<K> pass{ *this, g, f, u };
   pass.Start();
   const double startEnergy = pass.Energy();
@@ -513,6 +514,11 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::MinimizeColumns(
     }
     pass.UpdateResidual();
     this->Descent.Improve(u, InnerIterations);
+  }
+  // On triangles flat beyond what the inner iterations can take it may end far off.
+  if (report.Gap > this->Options.StopTolerance && pass.Energy() > startEnergy)
+  {
+    u = this->Initial;
   }
   monitor.Report(1.0);
   return report;

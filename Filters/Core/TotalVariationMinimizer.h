@@ -67,7 +67,8 @@ public:
     double Gap = 0.0;
   };
 
-  /// u: the start on entry, the minimiser on return. The result depends on the arguments alone.
+  /// u: the start on entry, the minimiser on return, and never of more energy than the start. The
+  /// result depends on the arguments alone.
   Report Minimize(const Values& g, const Values& f, Values& u, const Monitor& monitor = Monitor());
 
   /// int psi(|S grad u|).
@@ -97,6 +98,7 @@ private:
   Values Corners; ///< per triangle corner: what the triangle gives to a vertex
   Values Q, C; ///< per vertex: split value and scaled multiplier of L1 fidelity
   Values RightHandSide, Load;
+  Values Initial; ///< u on entry
   Values Dual; ///< what the multipliers give to each vertex
 };
 

@@ -35,6 +35,9 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // the same of a linear step by conjugate gradients
     "00120000f9010012002dff2900ff7a5555555555552dff036c2d5bd5031000ff3e57ddffff3d00ff2d00ff2d"
       "00ffff1affff2f00ff1affff2f00fffffcff",
+    // a triangle so flat that minimising ended with more energy than it began with
+    "2c00ffffffff110000010009ffff11000009000100006b11ff0a00043f0000010007ff000000000000ff5df2"
+      "d8d8d8d8d8d8d8e6b20061ffffff5b0425",
   };
   for (const std::string& digits : found)
   {
