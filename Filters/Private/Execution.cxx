@@ -146,6 +146,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
     return !this->IsAborted();
   };
   const Monitor monitor(callback);
+  LoopWatch watch([&] { return callback(reported); });
   try
   {
     this->MakeSurfaces(monitor.Part(0.0, 0.15));
@@ -161,6 +162,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
       this->Filter.PrepareResult(*block.Run, monitor.Part(written, written));
     }
     monitor.Report(written); // the last chance to abort: from here on the output changes
+    watch.End();
     for (const Block& block : this->Blocks)
     {
       this->Filter.WriteResult(*block.Run, block.Arrays, block.Output);

@@ -80,11 +80,11 @@ std::vector<vtkIdType> Representatives(vtkPolyData* input, const PolyDataSurface
 
 /// Collects the triangles of the cells that take part.
 ///
-/// Polygons are cut into triangles rather than given a Laplacian of their own (A. Bunge, P. Herholz,
-/// M. Kazhdan, M. Botsch, Computer Graphics Forum 39, 2020). Measured with theirs on spheres of 384
-/// to 6144 quads, even and jittered, the error of a Poisson problem is 0.92 to 1.05 times that of
-/// triangles at 1.3 times the entries, and positive weights off the diagonal are as large: nothing
-/// is gained that a second discretisation of every model would be worth.
+/// Polygons are cut into triangles rather than given a Laplacian of their own (A. Bunge, P.
+/// Herholz, M. Kazhdan, M. Botsch, Computer Graphics Forum 39, 2020). Measured with theirs on
+/// spheres of 384 to 6144 quads, even and jittered, the error of a Poisson problem is 0.92 to 1.05
+/// times that of triangles at 1.3 times the entries, and positive weights off the diagonal are as
+/// large: nothing is gained that a second discretisation of every model would be worth.
 class Triangulator
 {
 public:
@@ -112,8 +112,8 @@ private:
 
   void AddCells(vtkCellArray* cells, vtkIdType firstCell, Adder add)
   {
-    constexpr unsigned char absent = vtkDataSetAttributes::DUPLICATECELL |
-      vtkDataSetAttributes::HIDDENCELL;
+    constexpr unsigned char absent =
+      vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
     const vtkIdType count = cells ? cells->GetNumberOfCells() : 0;
     for (vtkIdType c = 0; c < count; ++c)
     {
@@ -242,6 +242,28 @@ public:
   vtkIdType RepresentativeOf(vtkIdType point) const { return this->Representative[point]; }
 };
 
+/// What takes long to make. It owns all it needs: an abort leaves it to itself.
+struct Made
+{
+  SurfaceDiffusion::Points Points;
+  SurfaceDiffusion::Triangles Triangles;
+  std::shared_ptr<const TriangleMesh> InputMesh, Mesh;
+  std::shared_ptr<const Assembler> Operators;
+
+  void Make(bool delaunay, const Monitor& monitor)
+  {
+    const ParallelFor& parallel = SMPParallelFor::Instance();
+    this->InputMesh = std::make_shared<TriangleMesh>(
+      this->Points, this->Triangles, parallel, monitor.Part(0.0, 0.5));
+    this->Mesh = this->InputMesh;
+    if (delaunay)
+    {
+      this->Mesh = IntrinsicDelaunay(*this->InputMesh, nullptr, parallel, monitor.Part(0.5, 0.6));
+    }
+    this->Operators = std::make_shared<Assembler>(this->Mesh, parallel, monitor.Part(0.6, 1.0));
+  }
+};
+
 /// Points on boundary edges that share their place with another one: a seam nobody sewed.
 vtkIdType CountCoincidentBoundaryPoints(const TriangleMesh& mesh, const Points& points)
 {
@@ -275,8 +297,8 @@ std::string PolyDataSurface::Key(vtkPolyData* input, const Options& options)
   {
     key << ghosts->GetMTime();
   }
-  key << ' ' << options.IntrinsicDelaunay << ' ' << options.MergeCoincidentPoints << ' ' << std::hexfloat << options.MergeTolerance
-      << ' ';
+  key << ' ' << options.IntrinsicDelaunay << ' ' << options.MergeCoincidentPoints << ' '
+      << std::hexfloat << options.MergeTolerance << ' ';
   if (options.Excluded)
   {
     key << options.Excluded->GetMTime();
@@ -295,41 +317,46 @@ void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what)
   }
 }
 
-PolyDataSurface::PolyDataSurface(
-  vtkPolyData* input, const Options& options, const Monitor& monitor)
+PolyDataSurface::PolyDataSurface(vtkPolyData* input, const Options& options, const Monitor& monitor)
 {
   if (input->GetNumberOfPoints() > LargestCount)
   {
     throw std::runtime_error("the input has more points than this library can number");
   }
-  this->Points = ReadPoints(input);
-  const ParallelFor& parallel = SMPParallelFor::Instance();
+  const auto made = std::make_shared<Made>();
+  made->Points = ReadPoints(input);
   monitor.Report(0.1);
-  Triangulator triangulator(input, options, this->Points);
+  Triangulator triangulator(input, options, made->Points);
   if (static_cast<vtkIdType>(triangulator.Triangles.size()) > LargestCount)
   {
     throw std::runtime_error("the input has more triangles than this library can number");
   }
-  this->Triangles.resize(static_cast<Eigen::Index>(triangulator.Triangles.size()), 3);
+  made->Triangles.resize(static_cast<Eigen::Index>(triangulator.Triangles.size()), 3);
   for (std::size_t t = 0; t < triangulator.Triangles.size(); ++t)
   {
     for (int a = 0; a < 3; ++a)
     {
-      this->Triangles(static_cast<Eigen::Index>(t), a) = triangulator.Triangles[t][a];
+      made->Triangles(static_cast<Eigen::Index>(t), a) = triangulator.Triangles[t][a];
     }
   }
   this->TriangleCells = std::move(triangulator.Cells);
   monitor.Report(0.2);
-  this->InputMesh = std::make_shared<TriangleMesh>(
-    this->Points, this->Triangles, parallel, monitor.Part(0.2, 0.6));
-  this->Mesh = this->InputMesh;
-  if (options.IntrinsicDelaunay)
+  constexpr Eigen::Index quick = 5000; // points: not worth a thread
+  if (made->Points.rows() < quick)
   {
-    this->Mesh =
-      IntrinsicDelaunay(*this->InputMesh, nullptr, parallel, monitor.Part(0.6, 0.7));
+    made->Make(options.IntrinsicDelaunay, monitor.Part(0.2, 1.0));
   }
-  this->Operators =
-    std::make_shared<Assembler>(this->Mesh, parallel, monitor.Part(0.7, 1.0));
+  else
+  {
+    RunInBackground([made, delaunay = options.IntrinsicDelaunay]
+      { made->Make(delaunay, Monitor()); },
+      monitor.Part(0.2, 1.0));
+  }
+  this->Points = std::move(made->Points);
+  this->Triangles = std::move(made->Triangles);
+  this->InputMesh = std::move(made->InputMesh);
+  this->Mesh = std::move(made->Mesh);
+  this->Operators = std::move(made->Operators);
 
   this->PointToVertex.assign(this->Points.rows(), -1);
   for (Index v = 0; v < this->Mesh->NumberOfVertices(); ++v)
@@ -347,7 +374,6 @@ PolyDataSurface::PolyDataSurface(
   this->Found.NonManifoldEdges = this->Mesh->GetFindings().NonManifoldEdges;
   if (!options.MergeCoincidentPoints)
   {
-    this->Found.CoincidentBoundaryPoints =
-      CountCoincidentBoundaryPoints(*this->Mesh, this->Points);
+    this->Found.CoincidentBoundaryPoints = CountCoincidentBoundaryPoints(*this->Mesh, this->Points);
   }
 }
