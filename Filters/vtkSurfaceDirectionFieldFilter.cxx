@@ -189,7 +189,7 @@ void vtkSurfaceDirectionFieldFilter::Execute(
     this->UpdateProgress(reported);
     return !this->GetAbortExecute();
   };
-  const LoopWatch watch([&] { return callback(reported); });
+  LoopWatch watch([&] { return callback(reported); });
   try
   {
     this->MakeField(input, hints, onCells, output, Monitor(callback).Part(begin, end));
