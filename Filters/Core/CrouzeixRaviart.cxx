@@ -148,25 +148,27 @@ CrouzeixRaviartEvolution::CrouzeixRaviartEvolution(std::shared_ptr<const Assembl
   , Residue(U.rows(), U.cols())
   , TriangleMeans(this->Operators->Mesh().NumberOfTriangles(), U.cols())
 {
-  for (Index i = 0; i < static_cast<Index>(data.Given.rows()); ++i)
-  {
-    if (data.Missing[i]) // not to be read, even where known neighbours are judged
+  ForEach(parallel, static_cast<Index>(data.Given.rows()),
+    [&](Index i)
     {
-      data.Given.row(i) = this->Start.row(i);
-    }
-  }
+      if (data.Missing[i]) // not to be read, even where known neighbours are judged
+      {
+        data.Given.row(i) = this->Start.row(i);
+      }
+    });
   PointData onEdges;
   onEdges.Given = EdgesFromVertices(*this->Operators, *this->Edges, data.Given, parallel);
   onEdges.Start = EdgesFromVertices(*this->Operators, *this->Edges, this->Start, parallel);
   onEdges.Missing.resize(onEdges.Start.rows());
   onEdges.Fixed.resize(onEdges.Start.rows());
-  for (Eigen::Index e = 0; e < onEdges.Start.rows(); ++e)
-  {
-    const Index i = this->Edges->Ends()[e][0];
-    const Index j = this->Edges->Ends()[e][1];
-    onEdges.Missing[e] = data.Missing[i] || data.Missing[j];
-    onEdges.Fixed[e] = this->Fixed[i] && this->Fixed[j];
-  }
+  ForEach(parallel, static_cast<Index>(onEdges.Start.rows()),
+    [&](Index e)
+    {
+      const Index i = this->Edges->Ends()[e][0];
+      const Index j = this->Edges->Ends()[e][1];
+      onEdges.Missing[e] = data.Missing[i] || data.Missing[j];
+      onEdges.Fixed[e] = this->Fixed[i] && this->Fixed[j];
+    });
   this->StartResidue.resize(this->U.rows(), this->U.cols());
   VerticesFromEdges(
     this->Operators->Mesh(), *this->Edges, onEdges.Start, this->StartResidue, parallel);
