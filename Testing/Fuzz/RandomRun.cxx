@@ -258,8 +258,8 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   promises.Bounds = delaunay && !directed && settings.TimeScheme == Scheme::BackwardEuler &&
     settings.Fidelity == 0.0;
   // What the tolerance of a solver leaves has much energy on flat triangles.
-  promises.Energy = settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed) &&
-    !HasFlatTriangles(mesh);
+  promises.Energy =
+    settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed) && !HasFlatTriangles(mesh);
   LinearDiffusion model(assembler, coefficients, std::move(data), settings, ReadSolver(bytes));
   Run(mesh, model, promises);
 }
@@ -319,7 +319,9 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   settings.Norm = bytes.Flip() ? FidelityNorm::L1 : FidelityNorm::L2;
   settings.MaximumNumberOfIterations = 200; // may end far from the minimum
   Promises promises;
-  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
+  // There the way to the minimum can lead through values so large that the sum drowns.
+  promises.Sum =
+    settings.Fidelity == 0.0 && !Any(data.Fixed) && !HasFlatTriangles(assembler->Mesh());
   TotalVariationFlow model(assembler, frames, std::move(data), settings);
   Run(assembler->Mesh(), model, promises);
 }
