@@ -181,13 +181,16 @@ void Multigrid::Subtract(
     {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
       float* r = level.R.data() + at;
-      float registers[K > 0 ? K : 1] = {};
+      float registers[K > 0 ? K : 1];
       float* sums = K > 0 ? registers : r;
-      std::copy(from.data() + at, from.data() + at + k, sums);
-      AddProduct<K>(level.A, i, x, k, -1.0f, sums);
-      if (K > 0)
+      for (int c = 0; c < k; ++c)
       {
-        std::copy(sums, sums + k, r);
+        sums[c] = from.data()[at + c];
+      }
+      AddProduct<K>(level.A, i, x, k, -1.0f, sums);
+      for (int c = 0; c < k; ++c)
+      {
+        r[c] = sums[c];
       }
       finish(i, at, sums);
     });
@@ -201,12 +204,18 @@ void Multigrid::Product(const Matrix& rows, const Numbers& x, Numbers& y, int co
   ForEach(this->Parallel, static_cast<Index>(rows.cols()),
     [&](Index i)
     {
-      float* sums = y.data() + static_cast<std::ptrdiff_t>(i) * k;
-      if (!add)
+      float* yi = y.data() + static_cast<std::ptrdiff_t>(i) * k;
+      float registers[K > 0 ? K : 1];
+      float* sums = K > 0 ? registers : yi;
+      for (int c = 0; c < k; ++c)
       {
-        std::fill(sums, sums + k, 0.0f);
+        sums[c] = add ? yi[c] : 0.0f;
       }
       AddProduct<K>(rows, i, x, k, 1.0f, sums);
+      for (int c = 0; c < k; ++c)
+      {
+        yi[c] = sums[c];
+      }
     });
 }
 
