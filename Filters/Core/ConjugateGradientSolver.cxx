@@ -3,6 +3,7 @@
 #include "LinearSolver.h"
 
 #include "Assembler.h"
+#include "ColumnSums.h"
 #include "Multigrid.h"
 #include "Product.h"
 
@@ -77,7 +78,7 @@ private:
     {
       this->Unit[c] = ScaleOf(b, this->Q, c, this->Parallel);
     }
-    this->SumBlocks<K>(n, k, 2,
+    this->Sums.Run<K>(this->Parallel, n, k, 2,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
@@ -142,8 +143,8 @@ private:
   bool Iterate(Index n, int columns, Values& x)
   {
     const int k = K > 0 ? K : columns;
-    this->SumBlocks<K>(
-      n, k, 1,
+    this->Sums.Run<K>(
+      this->Parallel, n, k, 1,
       [&](Index begin, Index end) { MultiplyRows<K>(*this->Matrix, this->P, this->Q, begin, end); },
       [&](Index i, double* sums)
       {
@@ -161,7 +162,7 @@ private:
       }
       this->Alpha[c] = finished ? 0.0 : this->Rho[c] / this->Sums[c];
     }
-    this->SumBlocks<K>(n, k, 1,
+    this->Sums.Run<K>(this->Parallel, n, k, 1,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
@@ -171,7 +172,10 @@ private:
           sums[c] += r * this->InverseDiagonal[i] * r;
         }
       });
-    std::copy(this->Sums.begin(), this->Sums.begin() + k, this->Square.begin());
+    for (int c = 0; c < k; ++c)
+    {
+      this->Square[c] = this->Sums[c];
+    }
     for (int c = 0; c < k; ++c)
     {
       this->Step[c] = this->Alpha[c] * this->Unit[c];
@@ -186,7 +190,6 @@ private:
   void Turn(Index n, int columns, Values& x)
   {
     const int k = K > 0 ? K : columns;
-    std::copy(this->Square.begin(), this->Square.end(), this->Sums.begin());
     if (this->Hierarchy)
     {
       for (int c = 0; c < k; ++c)
@@ -194,7 +197,7 @@ private:
         this->Alpha[c] = this->Square[c] > 0.0 ? 1.0 / std::sqrt(this->Square[c]) : 1.0;
       }
       this->Hierarchy->Apply(this->R, this->Alpha, this->Q);
-      this->SumBlocks<K>(n, k, 1,
+      this->Sums.Run<K>(this->Parallel, n, k, 1,
         [&](Index i, double* sums)
         {
           for (int c = 0; c < k; ++c)
@@ -205,10 +208,11 @@ private:
     }
     for (int c = 0; c < k; ++c)
     {
-      this->Beta[c] = this->Rho[c] > 0.0 ? this->Sums[c] / this->Rho[c] : 0.0;
-      this->Rho[c] = this->Sums[c];
+      const double rho = this->Hierarchy ? this->Sums[c] : this->Square[c];
+      this->Beta[c] = this->Rho[c] > 0.0 ? rho / this->Rho[c] : 0.0;
+      this->Rho[c] = rho;
       // B r and the last P are orthogonal in B^-1
-      this->Length[c] = this->Sums[c] + this->Beta[c] * this->Beta[c] * this->Length[c];
+      this->Length[c] = rho + this->Beta[c] * this->Beta[c] * this->Length[c];
     }
     ForEach(this->Parallel, n,
       [&](Index i)
@@ -252,46 +256,8 @@ private:
       {
         scalars->assign(k, 0.0);
       }
-      this->Sums.assign(2 * k, 0.0);
-      this->Partial.assign(static_cast<std::size_t>(NumberOfBlocks(n)) * 2 * k, 0.0);
+      this->Sums.Resize(n, 2 * k);
     }
-  }
-
-  /// Sums = sum over i of what add(i, sums) adds to its `sets` x k sums, after first(begin, end)
-  /// has run on the rows of the block, which the sums then find in the cache.
-  template <int K, typename First, typename Add>
-  void SumBlocks(Index n, int columns, int sets, const First& first, const Add& add)
-  {
-    const int width = sets * (K > 0 ? K : columns);
-    ForEachBlock(this->Parallel, n,
-      [&](Index block, Index begin, Index end)
-      {
-        first(begin, end);
-        double* partial = this->Partial.data() + static_cast<std::size_t>(block) * width;
-        double registers[K > 0 ? 2 * K : 1] = {};
-        double* sums = K > 0 ? registers : partial;
-        std::fill(sums, sums + width, 0.0);
-        for (Index i = begin; i < end; ++i)
-        {
-          add(i, sums);
-        }
-        std::copy(sums, sums + width, partial);
-      });
-    std::fill(this->Sums.begin(), this->Sums.end(), 0.0);
-    for (Index block = 0; block < NumberOfBlocks(n); ++block)
-    {
-      for (int s = 0; s < width; ++s)
-      {
-        this->Sums[s] += this->Partial[static_cast<std::size_t>(block) * width + s];
-      }
-    }
-  }
-
-  template <int K, typename Add>
-  void SumBlocks(Index n, int columns, int sets, const Add& add)
-  {
-    this->SumBlocks<K>(
-      n, columns, sets, [](Index, Index) {}, add);
   }
 
   const ParallelFor& Parallel;
@@ -301,7 +267,7 @@ private:
   Values R, P, Q;
   std::vector<double> Unit, Square, Rho, Scale, Alpha, Step, Beta; // one per column
   std::vector<double> Length; ///< per column, P . B^-1 P
-  std::vector<double> Sums, Partial;
+  ColumnSums Sums;
 };
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "QuadraticDescent.h"
 
 #include "LinearSolver.h"
+#include "Product.h"
 
 #include <algorithm>
 
@@ -44,16 +45,14 @@ template <int K>
 void QuadraticDescent::ImproveColumns(Values& x, int iterations)
 {
   const int k = K > 0 ? K : static_cast<int>(x.cols());
-  const Index* outer = this->Matrix->outerIndexPtr();
-  const Index* inner = this->Matrix->innerIndexPtr();
-  const double* a = this->Matrix->valuePtr();
+  const auto n = static_cast<Index>(x.rows());
   double* r = this->Residual.data();
   double* p = this->Direction.data();
   double* q = this->Product.data();
   double* u = x.data();
 
   // p = z = r / diag(A), rho = r . z
-  this->SumBlocks(k,
+  this->Sums.Run<K>(this->Parallel, n, k, 1,
     [&](Index i, double* sums)
     {
       for (int c = 0; c < k; ++c)
@@ -63,27 +62,20 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
         sums[c] += ri * this->InverseDiagonal[i] * ri;
       }
     });
-  this->Rho = this->Sums;
-  this->Length = this->Sums;
+  this->Rho = this->Sums.Totals();
+  this->Length = this->Rho;
   for (int iteration = 0; iteration < iterations; ++iteration)
   {
     // q = A p, alpha = rho / p . q
-    this->SumBlocks(k,
+    this->Sums.Run<K>(
+      this->Parallel, n, k, 1,
+      [&](Index begin, Index end)
+      { MultiplyRows<K>(*this->Matrix, this->Direction, this->Product, begin, end); },
       [&](Index i, double* sums)
       {
-        double* qi = q + i * k;
-        std::fill(qi, qi + k, 0.0);
-        for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
-        {
-          const double* pj = p + inner[slot] * k;
-          for (int c = 0; c < k; ++c)
-          {
-            qi[c] += a[slot] * pj[c];
-          }
-        }
         for (int c = 0; c < k; ++c)
         {
-          sums[c] += p[i * k + c] * qi[c];
+          sums[c] += p[i * k + c] * q[i * k + c];
         }
       });
     for (int c = 0; c < k; ++c)
@@ -93,7 +85,7 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
       this->Factor[c] = resolved ? this->Rho[c] / this->Sums[c] : 0.0;
     }
     // x += alpha p, r -= alpha q
-    this->SumBlocks(k,
+    this->Sums.Run<K>(this->Parallel, n, k, 1,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
@@ -116,7 +108,7 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
       this->Rho[c] = this->Sums[c];
       this->Length[c] = this->Sums[c] + beta * beta * this->Length[c]; // z and p are orthogonal
     }
-    ForEach(this->Parallel, static_cast<Index>(x.rows()),
+    ForEach(this->Parallel, n,
       [&](Index i)
       {
         for (int c = 0; c < k; ++c)
@@ -124,31 +116,6 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
           p[i * k + c] = this->InverseDiagonal[i] * r[i * k + c] + this->Factor[c] * p[i * k + c];
         }
       });
-  }
-}
-
-/// Sums = sum over the rows of what add(i, sums) adds.
-template <typename Add>
-void QuadraticDescent::SumBlocks(int columns, const Add& add)
-{
-  const Index n = static_cast<Index>(this->InverseDiagonal.size());
-  ForEachBlock(this->Parallel, n,
-    [&](Index block, Index begin, Index end)
-    {
-      double* sums = this->Partial.data() + static_cast<std::size_t>(block) * columns;
-      std::fill(sums, sums + columns, 0.0);
-      for (Index i = begin; i < end; ++i)
-      {
-        add(i, sums);
-      }
-    });
-  std::fill(this->Sums.begin(), this->Sums.end(), 0.0);
-  for (Index block = 0; block < NumberOfBlocks(n); ++block)
-  {
-    for (int c = 0; c < columns; ++c)
-    {
-      this->Sums[c] += this->Partial[static_cast<std::size_t>(block) * columns + c];
-    }
   }
 }
 
@@ -162,8 +129,7 @@ void QuadraticDescent::Resize(Eigen::Index columns)
     this->Factor.resize(columns);
     this->Rho.resize(columns);
     this->Length.resize(columns);
-    this->Sums.resize(columns);
-    this->Partial.resize(NumberOfBlocks(static_cast<Index>(n)) * columns);
+    this->Sums.Resize(static_cast<Index>(n), static_cast<int>(columns));
   }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Parallel.h"
+#include "ColumnSums.h"
 #include "Types.h"
 
 #include <vector>
@@ -35,8 +35,6 @@ public:
 private:
   template <int K>
   void ImproveColumns(Values& x, int iterations);
-  template <typename Add>
-  void SumBlocks(int columns, const Add& add);
   void Resize(Eigen::Index columns);
 
   const ParallelFor& Parallel;
@@ -45,7 +43,7 @@ private:
   Values Direction, Product;
   std::vector<double> Rho, Factor; // one per column
   std::vector<double> Length; ///< per column, p . diag(A) p
-  std::vector<double> Sums, Partial;
+  ColumnSums Sums;
 };
 
 } // namespace SurfaceDiffusion
