@@ -34,10 +34,15 @@ STAGES = {
     "SetUp/Multigrid": "multigrid: hierarchy",
     "Step/BackwardEuler": "backward Euler step, 1 h²",
     "Step/SDIRK2": "SDIRK2 step, 1 h²",
+    "ToAThousandth/BackwardEuler": "backward Euler steps to an error of 1e-3",
+    "ToAThousandth/SDIRK2": "SDIRK2 steps to an error of 1e-3",
     "Core100Steps": "100 SDIRK2 steps in the core",
     "Filter100Steps": "the same in the filter",
     "TimeSeek": "another time of that run",
 }
+MODELS = "MinimizeToGap|LaggedStep/.*:3$|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
+NOTED = {"vertices", "Gap", "Iterations", "iterations", "steps", "time", "step_over_solves",
+         "degrees_before", "degrees_after"}
 
 
 def run(command, **options):
@@ -117,6 +122,17 @@ def solvers(results):
             title = f"{method}, {int(tenths) / 10:g} h², {columns} column"
             rows.append(results.row(title + ("s" if columns != "1" else ""), name))
     return table(head, rows)
+
+
+def models(rows):
+    """The other models' benchmarks, one surface each."""
+    body = []
+    for row in rows:
+        name = re.sub("/(process_time|real_time|iterations:1)", "", row["name"])
+        unit = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[row["time_unit"]]
+        notes = ", ".join(f"{key} {row[key]:.4g}" for key in row if key in NOTED)
+        body.append([name, number(row["cpu_time"] * unit), number(row["real_time"] * unit), notes])
+    return table(["run", "CPU ms", "elapsed ms", ""], body)
 
 
 def choices(rows):
@@ -205,6 +221,8 @@ def main():
     rows = json.loads(run([program("SurfaceDiffusionBenchmarks"), "--benchmark_format=json",
                            "--benchmark_min_time=0.1", f"--benchmark_filter={keep}"]))["benchmarks"]
     results = Results(rows)
+    of_models = json.loads(run([program("SurfaceDiffusionBenchmarks"), "--benchmark_format=json",
+                                "--benchmark_min_time=0.1", "--benchmark_filter=" + MODELS]))
     grid = [json.loads(line) for line in
             run([program("CompareSolvers"), str(options.level)]).splitlines()]
     page = ("# Measured times\n\nWritten by `run_benchmarks.py`: CPU time on one thread. "
@@ -215,6 +233,9 @@ def main():
             "log(vertices). Of bandwidth: the bytes that a stage cannot do without, per time, over "
             "the triad at this size.\n\n" + stages(results)
             + "## Solutions to 1e-10 from noise\n\n" + solvers(results)
+            + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser; LaggedStep: one step of "
+            "the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 vertices, "
+            "textures (Step, Stands) on a scan.\n\n" + models(of_models["benchmarks"])
             + "## The choice of Automatic\n\nRuns of backward Euler steps: what is chosen (D: "
             "Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the best.\n\n"
             + choices(grid))
