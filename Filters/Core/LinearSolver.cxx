@@ -58,8 +58,8 @@ SolverMethod ChooseMethod(const SolverTask& task)
   const double substitution =
     std::min(0.0035 * std::pow(size, 1.4), 0.004 * std::pow(c, 0.2) * size);
   const double direct = 0.098 * std::pow(size, 1.55) + task.NumberOfSolves * substitution;
-  const double conjugateGradient = threads * task.NumberOfSolves * iterations * 3.1e-4 * size;
-  const double multigrid = threads * (0.03 * size + task.NumberOfSolves * cycles * 2.4e-3 * size);
+  const double conjugateGradient = threads * task.NumberOfSolves * iterations * 4.2e-4 * size;
+  const double multigrid = threads * (0.03 * size + task.NumberOfSolves * cycles * 2.7e-3 * size);
   const double iterative =
     task.AllowMultigrid ? std::min(conjugateGradient, multigrid) : conjugateGradient;
   if (direct < iterative && (task.NumberOfVertices <= largestFactor || !task.AllowMultigrid))
