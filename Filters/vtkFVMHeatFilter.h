@@ -113,6 +113,7 @@ protected:
 
   void CheckProperties(Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
+  bool CanBeDistributed() override { return !this->AutomaticFidelity; }
   void VisitReported(const std::function<void(double&)>& visit) override;
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
     ModelInput& input, int steps) override;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
+#include "Private/DistributedSolver.h"
 #include "Private/EnumText.h"
 #include "Private/Execution.h"
 #include "Private/GatheredSurfaces.h"
@@ -37,6 +38,9 @@ constexpr int LargestNumberOfTimeSteps = 1000000000;
 
 /// More published times than this are a mistake: each is a number the whole pipeline carries.
 constexpr double LargestNumberOfPublishedTimes = 1e6;
+
+/// Surfaces of up to this many points are solved faster by one process.
+constexpr double FewPoints = 100000;
 
 } // namespace
 
@@ -336,17 +340,54 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   {
     this->TakeTime(request, outputs);
   }
-  UpdateOfPieces(this, processes, pieces, this->SeamTolerance, this->Gathered,
-    [&](const std::vector<SurfacePiece>& surfaces)
-    { this->Execute(surfaces, request, outputs); });
+  if (processes.Count() > 1 && this->Distributes(processes, pieces))
+  {
+    this->Gathered.reset();
+    vtkNew<vtkPolyData> nothing;
+    vtkNew<vtkPolyData> noResult;
+    const SurfacePiece none{ 0, nothing, noResult };
+    this->Execute({ pieces.empty() ? none : pieces.front() }, &processes, request, outputs);
+  }
+  else
+  {
+    UpdateOfPieces(this, processes, pieces, this->SeamTolerance, this->Gathered,
+      [&](const std::vector<SurfacePiece>& surfaces)
+      { this->Execute(surfaces, nullptr, request, outputs); });
+  }
   this->ShareReported();
   return 1;
 }
 
-void vtkSurfaceDiffusionAlgorithm::Execute(const std::vector<SurfacePiece>& surfaces,
-  vtkInformation* request, vtkInformationVector* outputs)
+bool vtkSurfaceDiffusionAlgorithm::Distributes(
+  const Processes& processes, const std::vector<SurfacePiece>& pieces)
 {
-  Execution execution(*this, surfaces);
+  if (!HasDistributedSolver(processes) || !this->CanBeDistributed() ||
+    this->Solver == SOLVER_DIRECT || this->IntrinsicDelaunay || this->MergeCoincidentPoints)
+  {
+    return false;
+  }
+  std::vector<double> mine; // surface and points of each piece
+  for (const SurfacePiece& piece : pieces)
+  {
+    mine.push_back(piece.Surface);
+    mine.push_back(static_cast<double>(piece.Input->GetNumberOfPoints()));
+  }
+  const std::vector<double> all = processes.GatherAll(mine);
+  bool oneSurface = !processes.Any(pieces.size() > 1);
+  double points = 0.0;
+  for (std::size_t i = 0; i < all.size(); i += 2)
+  {
+    oneSurface = oneSurface && all[i] == all[0];
+    points += all[i + 1];
+  }
+  return oneSurface && points > 0.0 &&
+    (this->Solver != SOLVER_AUTOMATIC || points > FewPoints);
+}
+
+void vtkSurfaceDiffusionAlgorithm::Execute(const std::vector<SurfacePiece>& surfaces,
+  const Processes* processes, vtkInformation* request, vtkInformationVector* outputs)
+{
+  Execution execution(*this, surfaces, processes);
   if (!execution.Check())
   {
     return;

@@ -65,6 +65,7 @@ class Evolution;
 class Monitor;
 }
 class GatheredSurfaces;
+class Processes;
 class vtkDataArray;
 class vtkMultiProcessController;
 class vtkPolyData;
@@ -411,6 +412,9 @@ protected:
   /// Add the result, the current state of run.Path, to the output block.
   virtual void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output);
 
+  /// Whether the model can be solved by processes that have a piece each, with these settings.
+  virtual bool CanBeDistributed() { return false; }
+
   /// Visit the read-only properties, which all processes are to have alike. Superclass first.
   virtual void VisitReported(const std::function<void(double&)>& visit);
 
@@ -489,8 +493,10 @@ private:
   friend class Execution;
 
   /// RequestData for surfaces each of which is here, in one piece.
-  void Execute(const std::vector<SurfacePiece>& surfaces, vtkInformation* request,
-    vtkInformationVector* outputs);
+  void Execute(const std::vector<SurfacePiece>& surfaces, const Processes* processes,
+    vtkInformation* request, vtkInformationVector* outputs);
+  /// Whether each process works on its piece: these are one surface, and it is worth while.
+  bool Distributes(const Processes& processes, const std::vector<SurfacePiece>& pieces);
   int TakeTime(vtkInformation* request, vtkInformationVector* outputs);
   void ShareReported();
 

@@ -25,15 +25,14 @@ public:
   Conservation(const TriangleMesh& mesh, const PointData& data, bool hasFidelity,
     const ParallelFor& parallel = ParallelFor());
 
-  void Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel) const;
+  void Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel);
 
 private:
-  struct Component
-  {
-    Index Begin, End;
-    double Area;
-  };
-  std::vector<Component> Components; ///< those that conserve
+  void Total(const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel);
+
+  std::vector<Index> Components; ///< those that conserve
+  std::vector<double> Areas;
+  Values Totals;                 ///< sum A u, component x column
   Values Targets;                    ///< sum A u at the start, component x column
 };
 
@@ -48,16 +47,14 @@ public:
   Balance(const TriangleMesh& mesh, Vector weights, const Flags& fixed,
     const ParallelFor& parallel = ParallelFor());
 
-  void Restore(const Values& b, Values& x, const ParallelFor& parallel) const;
+  void Restore(
+    const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel);
 
 private:
-  struct Component
-  {
-    Index Begin, End;
-    double Weight;
-  };
-  std::vector<Component> Components; ///< those with no fixed vertex
-  Vector Weights;                    ///< w
+  std::vector<Index> Components; ///< those with no fixed vertex
+  std::vector<double> Sums;      ///< of their weights
+  Vector Weights;                ///< w
+  Values Left;                   ///< sum b - sum w x, component x column
 };
 
 } // namespace SurfaceDiffusion

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -27,9 +28,27 @@ struct Statistics
     this->Low = std::min(this->Low, value);
     this->High = std::max(this->High, value);
   }
+  void SumOverProcesses(const Partition* partition)
+  {
+    if (partition)
+    {
+      double sums[2] = { this->WeightedSum, this->Area };
+      double bounds[2] = { -this->Low, this->High };
+      partition->Sum(sums, 2);
+      partition->Max(bounds, 2);
+      *this = { sums[0], sums[1], -bounds[0], bounds[1] };
+    }
+  }
   bool Empty() const { return !(this->Area > 0.0); }
   double Mean() const { return this->Empty() ? 0.0 : this->WeightedSum / this->Area; }
 };
+
+std::vector<Index> AllComponents(const TriangleMesh& mesh)
+{
+  std::vector<Index> all(mesh.NumberOfComponents());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
 
 } // namespace
 
@@ -37,36 +56,38 @@ void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, st
   const std::vector<std::int64_t>& ids)
 {
   data.Start = data.Given;
-  if (!data.Missing.any())
+  const Partition* const partition = mesh.GetPartition();
+  if (!AnyProcess(partition, data.Missing.any()))
   {
     return;
   }
+  const std::vector<Index> components = AllComponents(mesh);
+  Values known(mesh.NumberOfComponents(), 2); // of a component: weighted sum, area
   for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
   {
     Statistics all;
-    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    for (const Index c : components)
     {
-      if (!data.Missing[i])
-      {
-        all.Add(mesh.ControlAreas()[i], data.Given(i, k));
-      }
-    }
-    const double low = all.Empty() ? 0.0 : all.Low;
-    const double high = all.Empty() ? 0.0 : all.High;
-    for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
-    {
-      const Index begin = mesh.ComponentsBegin()[c];
-      const Index end = mesh.ComponentsBegin()[c + 1];
-      Statistics known;
-      for (Index i = begin; i < end; ++i)
+      Statistics ofComponent;
+      for (Index i = mesh.ComponentsBegin()[c]; i < mesh.ComponentsBegin()[c + 1]; ++i)
       {
         if (!data.Missing[i])
         {
-          known.Add(mesh.ControlAreas()[i], data.Given(i, k));
+          all.Add(mesh.ControlAreas()[i], data.Given(i, k));
+          ofComponent.Add(mesh.ControlAreas()[i], data.Given(i, k));
         }
       }
-      const double mean = known.Empty() ? all.Mean() : known.Mean();
-      for (Index i = begin; i < end; ++i)
+      known(c, 0) = ofComponent.WeightedSum;
+      known(c, 1) = ofComponent.Area;
+    }
+    all.SumOverProcesses(partition);
+    SumComponents(partition, components, known);
+    const double low = all.Empty() ? 0.0 : all.Low;
+    const double high = all.Empty() ? 0.0 : all.High;
+    for (const Index c : components)
+    {
+      const double mean = known(c, 1) > 0.0 ? known(c, 0) / known(c, 1) : all.Mean();
+      for (Index i = mesh.ComponentsBegin()[c]; i < mesh.ComponentsBegin()[c + 1]; ++i)
       {
         if (!data.Missing[i])
         {
@@ -93,7 +114,10 @@ void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, st
 
 void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelity)
 {
-  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  const std::vector<Index> components = AllComponents(mesh);
+  const Eigen::Index columns = data.Start.cols();
+  Values sums(mesh.NumberOfComponents(), columns + 2); // A u, A, what holds
+  for (const Index c : components)
   {
     const Index begin = mesh.ComponentsBegin()[c];
     const Index size = mesh.ComponentsBegin()[c + 1] - begin;
@@ -102,12 +126,20 @@ void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelit
     {
       held = data.Fixed[i] || (fidelity > 0.0 && !data.Missing[i]);
     }
-    if (!held)
+    const auto areas = mesh.ControlAreas().segment(begin, size);
+    sums.row(c).head(columns) = areas.transpose() * data.Start.middleRows(begin, size);
+    sums(c, columns) = areas.sum();
+    sums(c, columns + 1) = held ? 1.0 : 0.0;
+  }
+  SumComponents(mesh.GetPartition(), components, sums);
+  for (const Index c : components)
+  {
+    if (sums(c, columns + 1) == 0.0)
     {
-      const auto areas = mesh.ControlAreas().segment(begin, size);
-      auto start = data.Start.middleRows(begin, size);
-      const Eigen::RowVectorXd mean = (areas.transpose() * start) / areas.sum();
-      start.rowwise() = mean;
+      const Index begin = mesh.ComponentsBegin()[c];
+      const Index size = mesh.ComponentsBegin()[c + 1] - begin;
+      const Eigen::RowVectorXd mean = sums.row(c).head(columns) / sums(c, columns);
+      data.Start.middleRows(begin, size).rowwise() = mean;
       data.Fixed.segment(begin, size) = true;
     }
   }

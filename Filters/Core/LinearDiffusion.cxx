@@ -33,7 +33,7 @@ LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   , Origin(U.cols())
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  const double area = mesh.ControlAreas().sum();
+  const double area = SumOverProcesses(mesh.GetPartition(), mesh.ControlAreas().sum());
   for (Eigen::Index k = 0; k < this->U.cols(); ++k)
   {
     const double mean = Total(mesh, this->U, k, parallel) / area;
@@ -172,7 +172,8 @@ void LinearDiffusion::Solve(StepReport& report, const Monitor& monitor)
   }
   report.Iterations += solve.Iterations;
   report.Residual = std::max(report.Residual, solve.Residual);
-  this->Balanced.Restore(this->RightHandSide, this->U, this->Parallel);
+  this->Balanced.Restore(
+    this->Operators->Mesh(), this->RightHandSide, this->U, this->Parallel);
 }
 
 double LinearDiffusion::Energy() const
@@ -189,7 +190,7 @@ double LinearDiffusion::Energy() const
             (this->U.row(i) - this->Data.Given.row(i)).squaredNorm();
         });
   }
-  return energy;
+  return SumOverProcesses(mesh.GetPartition(), energy);
 }
 
 double DirichletEnergy(const TriangleMesh& mesh, const EdgeValues& coefficients, const Values& u,

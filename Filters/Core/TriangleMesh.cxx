@@ -91,9 +91,11 @@ void Accumulate(std::vector<Index>& count)
 } // namespace
 
 TriangleMesh::TriangleMesh(const Eigen::Ref<const Points>& points,
-  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel, const Monitor& monitor)
+  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel, const Monitor& monitor,
+  double unit)
 {
-  const Frame frame = BoundingFrame(points, triangles);
+  Frame frame = BoundingFrame(points, triangles);
+  frame.Unit = unit > 0.0 ? unit : frame.Unit;
   this->SelectTriangles(points, triangles, frame, parallel);
   monitor.Report(0.2);
   this->NumberVertices(points, triangles, frame, parallel);

@@ -4,9 +4,12 @@
 
 #include "Monitor.h"
 #include "Parallel.h"
+#include "Partition.h"
 #include "Types.h"
 
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -59,9 +62,11 @@ public:
     double Unit;
   };
 
-  /// points: finite coordinates; triangles: rows of points. Throws Aborted.
+  /// points: finite coordinates; triangles: rows of points; unit: LengthUnit(), 0 to have it chosen.
+  /// Throws Aborted.
   TriangleMesh(const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
-    const ParallelFor& parallel = ParallelFor(), const Monitor& monitor = Monitor());
+    const ParallelFor& parallel = ParallelFor(), const Monitor& monitor = Monitor(),
+    double unit = 0.0);
 
   /// The vertices of `mesh` with other triangles, which may have a vertex twice.
   TriangleMesh(const TriangleMesh& mesh, Triangles corners, std::vector<Shape> shapes,
@@ -102,6 +107,13 @@ public:
   /// Vertices of edges that only one triangle uses, ascending.
   const std::vector<Index>& BoundaryVertices() const { return this->Boundary; }
 
+  /// Where this mesh is a process's part of a surface; null where it is the whole.
+  const Partition* GetPartition() const { return this->Processes.get(); }
+  void SetPartition(std::shared_ptr<const Partition> partition)
+  {
+    this->Processes = std::move(partition);
+  }
+
   const Findings& GetFindings() const { return this->Found; }
 
 private:
@@ -129,6 +141,7 @@ private:
   double EdgeLength = 0.0;
   Index Edges = 0;
   Findings Found;
+  std::shared_ptr<const Partition> Processes;
 };
 
 /// Values of the distinct vertices per mesh vertex: rows of `input` picked by InputVertex().

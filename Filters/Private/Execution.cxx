@@ -4,10 +4,13 @@
 
 #include "Core/IntrinsicDelaunay.h"
 #include "DirectionArrays.h"
+#include "DistributedSolver.h"
 #include "NewArray.h"
+#include "PiecePartition.h"
 #include "PointArrays.h"
 #include "SMPParallelFor.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
@@ -19,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <numeric>
 #include <sstream>
 
 using namespace SurfaceDiffusion;
@@ -36,6 +40,24 @@ std::string Join(const std::vector<std::string>& sentences)
     text += (text.empty() ? "" : "; ") + sentence;
   }
   return text;
+}
+
+/// Steps up to this many h^2 are cheapest with conjugate gradients, longer ones with multigrid.
+constexpr double LargestOfJacobi = 10.0;
+
+/// A power of two near the size of the surface that the processes have pieces of.
+double FindLengthUnit(const Processes& processes, vtkPolyData* piece)
+{
+  std::vector<double> bounds(6);
+  piece->GetBounds(bounds.data());
+  bounds = processes.GatherAll(bounds);
+  vtkBoundingBox box;
+  for (std::size_t b = 0; b < bounds.size(); b += 6)
+  {
+    box.AddBounds(&bounds[b]);
+  }
+  const double extent = box.IsValid() ? box.GetMaxLength() : 0.0;
+  return extent > 0.0 && std::isfinite(extent) ? std::exp2(std::ilogb(extent)) : 1.0;
 }
 
 template <typename Array, typename Value>
@@ -68,18 +90,62 @@ PlaneVectors MakeFrames(
 } // namespace
 
 vtkSurfaceDiffusionAlgorithm::Execution::Execution(
-  vtkSurfaceDiffusionAlgorithm& filter, const std::vector<SurfacePiece>& surfaces)
+  vtkSurfaceDiffusionAlgorithm& filter, const std::vector<SurfacePiece>& surfaces,
+  const Processes* processes)
   : Filter(filter)
+  , Group(processes)
 {
   for (const SurfacePiece& surface : surfaces)
   {
     vtkPolyData* const data = surface.Input;
     this->AnyPoint = this->AnyPoint || data->GetNumberOfPoints() > 0;
-    if (data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0)
+    const bool polygons =
+      data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0;
+    this->AnyPolygon = this->AnyPolygon || polygons;
+    if (polygons || this->Group)
     {
-      this->AnyPolygon = true;
       this->Blocks.push_back({ data, surface.Output, BlockArrays() });
     }
+  }
+  this->AnyPoint = this->Any(this->AnyPoint);
+  this->AnyPolygon = this->Any(this->AnyPolygon);
+}
+
+double vtkSurfaceDiffusionAlgorithm::Execution::Sum(double here) const
+{
+  if (!this->Group)
+  {
+    return here;
+  }
+  const std::vector<double> all = this->Group->GatherAll({ here });
+  return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
+template <typename Work>
+void vtkSurfaceDiffusionAlgorithm::Execution::Agree(const Work& work)
+{
+  if (!this->Group)
+  {
+    work();
+    return;
+  }
+  std::string failure;
+  try
+  {
+    work();
+  }
+  catch (const std::bad_alloc&)
+  {
+    failure = NotEnoughMemory;
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  failure = this->Group->FirstMessage(failure);
+  if (!failure.empty())
+  {
+    throw std::runtime_error(failure);
   }
 }
 
@@ -94,14 +160,15 @@ bool vtkSurfaceDiffusionAlgorithm::Execution::Check()
   {
     problems.emplace_back(NotEnoughMemory);
   }
-  if (problems.empty())
-  {
-    return true;
-  }
   std::sort(problems.begin(), problems.end());
   problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
-  vtkErrorWithObjectMacro(&this->Filter, << Join(problems));
-  return false;
+  std::string text = Join(problems);
+  if (this->Group)
+  {
+    text = this->Group->FirstMessage(text);
+  }
+  this->Tell(text);
+  return text.empty();
 }
 
 void vtkSurfaceDiffusionAlgorithm::Execution::FindProblems(Problems& problems)
@@ -120,6 +187,11 @@ void vtkSurfaceDiffusionAlgorithm::Execution::FindProblems(Problems& problems)
   for (Block& block : this->Blocks)
   {
     Problems ofArrays;
+    if (this->Group && block.Input->GetNumberOfPolys() + block.Input->GetNumberOfStrips() == 0)
+    {
+      withData.push_back(block); // with nothing to do but to go along
+      continue;
+    }
     const bool hasData = this->Filter.FindArrays(block.Input, block.Arrays, ofArrays);
     Problems& found = hasData ? problems : ofBlocksWithoutData;
     found.insert(found.end(), ofArrays.begin(), ofArrays.end());
@@ -143,7 +215,8 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
   {
     reported = std::max(reported, fraction);
     this->Filter.UpdateProgress(reported);
-    return !this->IsAborted();
+    this->AbortAsked = this->AbortAsked || this->IsAborted();
+    return this->Group || !this->AbortAsked; // together with the others, or at once
   };
   const Monitor monitor(callback);
   LoopWatch watch([&] { return callback(reported); });
@@ -163,11 +236,23 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
     }
     monitor.Report(written); // the last chance to abort: from here on the output changes
     watch.End();
-    for (const Block& block : this->Blocks)
-    {
-      this->Filter.WriteResult(*block.Run, block.Arrays, block.Output);
-    }
+    this->Agree(
+      [&]
+      {
+        for (const Block& block : this->Blocks)
+        {
+          if (!this->Group || block.Input->GetNumberOfPoints() > 0)
+          {
+            this->Filter.WriteResult(*block.Run, block.Arrays, block.Output);
+          }
+        }
+      });
+    this->FillCopies();
     this->WriteHistory(step, history);
+    if (this->Group && this->Group->Rank() > 0)
+    {
+      history->Initialize(); // the same everywhere: it is told once
+    }
     this->Filter.UpdateProgress(1.0);
     if (this->MadeAnything) // playing time tells nothing anew
     {
@@ -196,7 +281,34 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Fail(const std::string& what, vtkT
   }
   history->Initialize();
   this->Filter.Runs.clear();
-  vtkErrorWithObjectMacro(&this->Filter, << what);
+  this->Tell(what);
+}
+
+/// An error, unless empty. Process 0 speaks for all.
+void vtkSurfaceDiffusionAlgorithm::Execution::Tell(const std::string& what)
+{
+  if (!what.empty() && (!this->Group || this->Group->Rank() == 0))
+  {
+    vtkErrorWithObjectMacro(&this->Filter, << what);
+  }
+}
+
+/// Copies in this process of points that others own get what has been written there.
+void vtkSurfaceDiffusionAlgorithm::Execution::FillCopies()
+{
+  for (const Block& block : this->Blocks)
+  {
+    vtkPointData* const before = block.Input->GetPointData();
+    vtkPointData* const after = block.Output->GetPointData();
+    for (int a = 0; block.Run->Partition && a < after->GetNumberOfArrays(); ++a)
+    {
+      vtkDataArray* const array = after->GetArray(a);
+      if (array && before->GetArray(array->GetName()) != array)
+      {
+        block.Run->Partition->FillCopies(array);
+      }
+    }
+  }
 }
 
 bool vtkSurfaceDiffusionAlgorithm::Execution::IsAborted()
@@ -226,16 +338,52 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurfaces(const Monitor& monito
     options.MergeTolerance = this->Filter.MergeTolerance;
     options.IntrinsicDelaunay = this->Filter.IntrinsicDelaunay;
     options.Excluded = this->Filter.MaskMode == MASK_MODE_EXCLUDE ? block.Arrays.Mask : nullptr;
-    const std::string key = PolyDataSurface::Key(block.Input, options);
-    if (key != block.Run->SurfaceKey || !block.Run->Surface)
+    const std::string key = this->SurfaceKey(block, options);
+    if (this->Any(key != block.Run->SurfaceKey || !block.Run->Surface))
     {
       *block.Run = SurfaceRun(); // frees the old one first
       const double count = static_cast<double>(runs.size());
-      block.Run->Surface = std::make_unique<PolyDataSurface>(
-        block.Input, options, monitor.Part(b / count, (b + 1) / count));
+      this->MakeSurface(block, options, monitor.Part(b / count, (b + 1) / count));
       block.Run->SurfaceKey = key;
       this->MadeAnything = true;
     }
+  }
+}
+
+std::string vtkSurfaceDiffusionAlgorithm::Execution::SurfaceKey(
+  const Block& block, const PolyDataSurface::Options& options) const
+{
+  std::ostringstream key;
+  key << PolyDataSurface::Key(block.Input, options);
+  if (this->Group)
+  {
+    vtkPointData* const points = block.Input->GetPointData();
+    key << " piece " << this->Filter.SeamTolerance;
+    for (vtkAbstractArray* array : { static_cast<vtkAbstractArray*>(points->GetGlobalIds()),
+           points->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) })
+    {
+      key << ' ' << array << ' ' << (array ? array->GetMTime() : 0);
+    }
+  }
+  return key.str();
+}
+
+void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurface(
+  Block& block, PolyDataSurface::Options options, const Monitor& monitor)
+{
+  SurfaceRun& run = *block.Run;
+  if (this->Group)
+  {
+    const std::vector<SurfacePiece> piece = { { 0, block.Input, block.Output } };
+    run.Identity = FindIdentity(*this->Group, piece, this->Filter.SeamTolerance).front();
+    options.LengthUnit = FindLengthUnit(*this->Group, block.Input);
+  }
+  this->Agree(
+    [&] { run.Surface = std::make_unique<PolyDataSurface>(block.Input, options, monitor); });
+  if (this->Group)
+  {
+    run.Partition = std::make_shared<PiecePartition>(*this->Group, *run.Surface, run.Identity);
+    run.Surface->SetPartition(run.Partition);
   }
 }
 
@@ -250,11 +398,20 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MeasureUnits()
     const TriangleMesh& mesh = *block.Run->Surface->Mesh;
     edges += mesh.NumberOfEdges();
     length += mesh.TotalEdgeLength() * mesh.LengthUnit();
+    if (block.Run->Partition)
+    {
+      edges = this->Sum(edges - block.Run->Partition->SharedEdges());
+      length = this->Sum(length - block.Run->Partition->SharedEdgeLength() * mesh.LengthUnit());
+    }
     if (block.Arrays.Data)
     {
       const bool inpaint = this->Filter.MaskMode == MASK_MODE_INPAINT;
       statistics.Add(block.Arrays.Data, inpaint ? block.Arrays.Mask : nullptr, block.Arrays.Fixed);
     }
+  }
+  if (this->Group)
+  {
+    statistics.Join(*this->Group);
   }
   UnitSystem units;
   units.Natural = this->Filter.Units == UNITS_NATURAL;
@@ -302,7 +459,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRuns(const Monitor& monitor)
     {
       key << ' ' << array << ' ' << (array ? array->GetMTime() : 0);
     }
-    if (block.Run->RunKey != key.str() || !block.Run->Path)
+    if (this->Any(block.Run->RunKey != key.str() || !block.Run->Path))
     {
       block.Run->RunKey.clear(); // an abort may leave a path that has none yet
       block.Run->Path.reset();
@@ -313,7 +470,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRuns(const Monitor& monitor)
   }
   const auto hasMissing = [](const Block& block) { return block.Run->HasMissing; };
   if (this->Filter.HoldKnownValues &&
-    std::none_of(this->Blocks.begin(), this->Blocks.end(), hasMissing))
+    !this->Any(std::any_of(this->Blocks.begin(), this->Blocks.end(), hasMissing)))
   {
     throw std::runtime_error("HoldKnownValues is on but nothing is missing, so nothing would "
                              "change; allowed: on with a mask in mode Inpaint or with NaN");
@@ -324,18 +481,22 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
 {
   SurfaceRun& run = *block.Run;
   const ParallelFor& parallel = SMPParallelFor::Instance();
+  PlaneVectors frames;
+  this->Agree([&] { frames = MakeFrames(*run.Surface, block.Arrays, parallel); });
+  std::vector<std::int64_t> ids = ReadVertexIds(*run.Surface, block.Input);
+  for (std::size_t v = 0; run.Partition && v < ids.size(); ++v)
+  {
+    ids[v] = run.Identity.Ids[run.Surface->Mesh->InputVertex()[v]];
+  }
   ModelInput input{ block.Input, block.Arrays, *run.Surface, run.Units, PointData(),
-    MakeFrames(*run.Surface, block.Arrays, parallel), ReadVertexIds(*run.Surface, block.Input),
-    parallel, monitor.Part(0.2, 1.0),
+    std::move(frames), std::move(ids), parallel, monitor.Part(0.2, 1.0),
     [this, &run](const std::string& name, const SolverTask& task)
     { return this->FindSolver(run, name, task); },
     run.Warnings };
   run.Warnings.clear();
-  if (block.Arrays.Data)
+  if (this->Any(block.Arrays.Data))
   {
-    const bool inpaint = this->Filter.MaskMode == MASK_MODE_INPAINT;
-    input.Data = ReadPointData(*run.Surface, block.Arrays.Data,
-      inpaint ? block.Arrays.Mask : nullptr, block.Arrays.Fixed, run.Units.ValueUnit);
+    input.Data = this->ReadData(block);
     this->Filter.PrepareData(input);
     run.HasMissing = input.Data.Missing.any();
     if (this->Filter.HoldKnownValues)
@@ -344,21 +505,84 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
     }
   }
   monitor.Report(0.2);
-  const std::size_t limit = this->Filter.GenerateTimeSteps
-    ? static_cast<std::size_t>(this->Filter.CheckpointMemoryLimit) * 1024 * 1024 /
-      this->Blocks.size()
-    : 0;
   const int steps = this->Filter.GetEffectiveNumberOfTimeSteps();
-  run.Path = std::make_unique<Trajectory>(
-    run.Surface->Mesh, this->Filter.MakeEvolution(input, steps), limit, parallel);
+  std::unique_ptr<Evolution> model = this->Filter.MakeEvolution(input, steps);
+  const std::size_t limit = this->CheckpointMemory(*model);
+  run.Path =
+    std::make_unique<Trajectory>(run.Surface->Mesh, std::move(model), limit, parallel);
   run.Path->Reserve(steps);
   monitor.Report(1.0);
+}
+
+/// The data of the vertices; of those that several processes have, their owner's.
+PointData vtkSurfaceDiffusionAlgorithm::Execution::ReadData(const Block& block)
+{
+  const SurfaceRun& run = *block.Run;
+  vtkDataArray* const mask =
+    this->Filter.MaskMode == MASK_MODE_INPAINT ? block.Arrays.Mask : nullptr;
+  PointData data;
+  this->Agree(
+    [&]
+    {
+      if (block.Arrays.Data)
+      {
+        data = ReadPointData(
+          *run.Surface, block.Arrays.Data, mask, block.Arrays.Fixed, run.Units.ValueUnit);
+      }
+    });
+  if (run.Partition)
+  {
+    double components = static_cast<double>(data.Given.cols());
+    run.Partition->Max(&components, 1);
+    const auto columns = static_cast<Eigen::Index>(components);
+    const Eigen::Index n = run.Surface->Mesh->NumberOfVertices();
+    Values all = Values::Zero(n, columns + 2);
+    if (n > 0)
+    {
+      all << data.Given, data.Missing.cast<double>(), data.Fixed.cast<double>();
+    }
+    run.Partition->TakeFromOwners(all);
+    data.Given = all.leftCols(columns);
+    data.Missing = all.col(columns).array() != 0.0;
+    data.Fixed = all.col(columns + 1).array() != 0.0;
+  }
+  return data;
+}
+
+/// For checkpoints of this block; all processes keep the same ones.
+std::size_t vtkSurfaceDiffusionAlgorithm::Execution::CheckpointMemory(const Evolution& model) const
+{
+  if (!this->Filter.GenerateTimeSteps)
+  {
+    return 0;
+  }
+  const std::size_t limit =
+    static_cast<std::size_t>(this->Filter.CheckpointMemoryLimit) * 1024 * 1024 / this->Blocks.size();
+  if (!this->Group)
+  {
+    return limit;
+  }
+  const std::size_t mine = std::max<std::size_t>(model.CheckpointSize(), 1) * sizeof(double);
+  const std::vector<double> sizes = this->Group->GatherAll({ static_cast<double>(mine) });
+  const auto largest = static_cast<std::size_t>(*std::max_element(sizes.begin(), sizes.end()));
+  return std::max<std::size_t>(limit / largest, 1) * mine;
 }
 
 std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Execution::FindSolver(
   SurfaceRun& run, const std::string& name, SolverTask task)
 {
   task.Tolerance = this->Filter.Tolerance;
+  IterationLimits limits;
+  limits.Tolerance = this->Filter.Tolerance;
+  limits.MaximumNumberOfIterations = this->Filter.MaximumNumberOfIterations;
+  if (run.Partition)
+  {
+    const bool multigrid = this->Filter.Solver == SOLVER_MULTIGRID ||
+      (this->Filter.Solver == SOLVER_AUTOMATIC && task.DiffusionNumber > LargestOfJacobi);
+    std::shared_ptr<LinearSolver> solver = MakeDistributedSolver(run.Partition, multigrid);
+    solver->SetLimits(limits);
+    return solver;
+  }
   const SolverMethod method = this->Filter.Solver == SOLVER_AUTOMATIC
     ? ChooseMethod(task)
     : static_cast<SolverMethod>(this->Filter.Solver - SOLVER_DIRECT);
@@ -379,9 +603,6 @@ std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Execution::FindSolve
     it = it->first.compare(0, prefix.size(), prefix) == 0 ? run.Solvers.erase(it) : std::next(it);
   }
   run.Solvers[key] = solver;
-  IterationLimits limits;
-  limits.Tolerance = this->Filter.Tolerance;
-  limits.MaximumNumberOfIterations = this->Filter.MaximumNumberOfIterations;
   solver->SetLimits(limits);
   return solver;
 }
@@ -410,8 +631,25 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Seek(int step, const Monitor& moni
     const Monitor part = all > 0.0 ? monitor.Part(done / all, (done + size) / all) : monitor;
     done += size;
     const Index before = block.Run->Path->NumberOfAdvances();
+    // Processes have to stop together: they ask each other after each step.
+    const int first = step - static_cast<int>(block.Run->Path->NumberOfStepsTo(step));
+    for (int next = first + 1; this->Group && next < step; ++next)
+    {
+      const double steps = step - first;
+      block.Run->Path->Seek(next, part.Part((next - 1 - first) / steps, (next - first) / steps));
+      this->AbortTogether();
+    }
     block.Run->Path->Seek(step, part);
+    this->AbortTogether();
     this->Filter.NumberOfStepsComputed += block.Run->Path->NumberOfAdvances() - before;
+  }
+}
+
+void vtkSurfaceDiffusionAlgorithm::Execution::AbortTogether()
+{
+  if (this->Group && this->Any(this->AbortAsked))
+  {
+    throw Aborted();
   }
 }
 
@@ -502,6 +740,9 @@ bool vtkSurfaceDiffusionAlgorithm::Execution::MaskChangesNothing() const
       anyMasked = mask->GetComponent(i, 0) != 0.0;
     }
   }
+  anyMask = this->Any(anyMask);
+  anyMasked = this->Any(anyMasked);
+  anyData = this->Any(anyData);
   const bool filling = this->Filter.InitialFill != INITIAL_FILL_INPUT ||
     this->Filter.UsesFidelity() || this->Filter.HoldKnownValues;
   const bool inert = this->Filter.MaskMode == MASK_MODE_INPAINT && !(anyData && filling);
@@ -516,12 +757,17 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Warn()
     const PolyDataSurface::Findings& found = block.Run->Surface->Found;
     sum.DegenerateTriangles += found.DegenerateTriangles;
     sum.UnusedPoints += found.UnusedPoints;
+    if (block.Run->Partition)
+    {
+      sum.UnusedPoints -= block.Run->Partition->NumberOfCopies();
+    }
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
   }
   std::vector<std::string> sentences;
-  const auto tell = [&](vtkIdType count, const char* what)
+  const auto tell = [&](vtkIdType here, const char* what)
   {
+    const auto count = static_cast<vtkIdType>(this->Sum(static_cast<double>(here)));
     if (count > 0)
     {
       sentences.push_back(std::to_string(count) + what);
@@ -547,7 +793,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Warn()
   {
     sentences.emplace_back("the mask changes nothing with these settings");
   }
-  if (!sentences.empty())
+  if (!sentences.empty() && (!this->Group || this->Group->Rank() == 0))
   {
     vtkWarningWithObjectMacro(&this->Filter, << Join(sentences));
   }

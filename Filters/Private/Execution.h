@@ -5,6 +5,7 @@
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
 #include "Core/Monitor.h"
+#include "Processes.h"
 #include "SurfacePieces.h"
 #include "SurfaceRun.h"
 
@@ -20,7 +21,10 @@ class vtkSurfaceDiffusionAlgorithm::Execution
 {
 public:
   /// The outputs are copies of the inputs, which they stay until all has succeeded.
-  Execution(vtkSurfaceDiffusionAlgorithm& filter, const std::vector<SurfacePiece>& surfaces);
+  /// processes: null where the surfaces are whole, otherwise those that have a piece each of the
+  /// one surface; all calls are collective then.
+  Execution(vtkSurfaceDiffusionAlgorithm& filter, const std::vector<SurfacePiece>& surfaces,
+    const Processes* processes = nullptr);
 
   /// False, after error messages, where properties or arrays are wrong.
   bool Check();
@@ -37,14 +41,28 @@ private:
     SurfaceRun* Run = nullptr;
   };
 
+  bool Any(bool here) const { return this->Group ? this->Group->Any(here) : here; }
+  double Sum(double here) const;
+  /// Do what may throw in one process; then it throws in all.
+  template <typename Work>
+  void Agree(const Work& work);
+
   /// Find the arrays, and what is wrong with them and with the properties.
   void FindProblems(Problems& problems);
   void MakeSurfaces(const SurfaceDiffusion::Monitor& monitor);
   void MeasureUnits();
   void MakeRuns(const SurfaceDiffusion::Monitor& monitor);
+  void MakeSurface(
+    Block& block, PolyDataSurface::Options options, const SurfaceDiffusion::Monitor& monitor);
+  SurfaceDiffusion::PointData ReadData(const Block& block);
+  std::size_t CheckpointMemory(const SurfaceDiffusion::Evolution& model) const;
   void MakeRun(Block& block, const SurfaceDiffusion::Monitor& monitor);
   std::shared_ptr<SurfaceDiffusion::LinearSolver> FindSolver(
     SurfaceRun& run, const std::string& name, SurfaceDiffusion::SolverTask task);
+  std::string SurfaceKey(const Block& block, const PolyDataSurface::Options& options) const;
+  void Tell(const std::string& what);
+  void FillCopies();
+  void AbortTogether();
   /// Tell the error and take back what was done.
   void Fail(const std::string& what, vtkTable* history);
   bool IsAborted();
@@ -56,8 +74,10 @@ private:
   void Warn();
 
   vtkSurfaceDiffusionAlgorithm& Filter;
+  const Processes* Group;
   std::vector<Block> Blocks; ///< those that take part
   bool AnyPoint = false;
   bool AnyPolygon = false;
+  bool AbortAsked = false; ///< of a process that has to wait for the others
   bool MadeAnything = false; ///< false where only the time has changed
 };

@@ -171,6 +171,29 @@ void ValueStatistics::Add(vtkDataArray* array, vtkDataArray* mask, vtkDataArray*
   }
 }
 
+void ValueStatistics::Join(const Processes& processes)
+{
+  // Components, magnitude, low and high of each process; one without data has no components.
+  std::vector<double> mine = { static_cast<double>(this->Low.size()), this->Magnitude };
+  mine.insert(mine.end(), this->Low.begin(), this->Low.end());
+  mine.insert(mine.end(), this->High.begin(), this->High.end());
+  const std::vector<double> all = processes.GatherAll(mine);
+  for (std::size_t i = 0; i < all.size();)
+  {
+    const auto components = static_cast<std::size_t>(all[i]);
+    this->Magnitude = std::max(this->Magnitude, all[i + 1]);
+    this->Low.resize(
+      std::max(this->Low.size(), components), std::numeric_limits<double>::infinity());
+    this->High.resize(this->Low.size(), -std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < components; ++k)
+    {
+      this->Low[k] = std::min(this->Low[k], all[i + 2 + k]);
+      this->High[k] = std::max(this->High[k], all[i + 2 + components + k]);
+    }
+    i += 2 + 2 * components;
+  }
+}
+
 double ValueStatistics::Range() const
 {
   double range = 0.0;

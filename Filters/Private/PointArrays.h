@@ -4,6 +4,7 @@
 
 #include "Core/Evolution.h"
 #include "PolyDataSurface.h"
+#include "Processes.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -33,6 +34,7 @@ struct ValueStatistics
   std::vector<double> Low, High;
   double Magnitude = 0.0;
   void Add(vtkDataArray* array, vtkDataArray* mask, vtkDataArray* fixed);
+  void Join(const Processes& processes); ///< with those of other processes
   double Range() const; ///< 1 where nothing differs
 };
 

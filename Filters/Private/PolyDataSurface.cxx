@@ -247,14 +247,15 @@ struct Made
 {
   SurfaceDiffusion::Points Points;
   SurfaceDiffusion::Triangles Triangles;
-  std::shared_ptr<const TriangleMesh> InputMesh, Mesh;
+  std::shared_ptr<TriangleMesh> InputMesh;
+  std::shared_ptr<const TriangleMesh> Mesh;
   std::shared_ptr<const Assembler> Operators;
 
-  void Make(bool delaunay, const Monitor& monitor)
+  void Make(bool delaunay, double lengthUnit, const Monitor& monitor)
   {
     const ParallelFor& parallel = SMPParallelFor::Instance();
     this->InputMesh = std::make_shared<TriangleMesh>(
-      this->Points, this->Triangles, parallel, monitor.Part(0.0, 0.5));
+      this->Points, this->Triangles, parallel, monitor.Part(0.0, 0.5), lengthUnit);
     this->Mesh = this->InputMesh;
     if (delaunay)
     {
@@ -344,12 +345,12 @@ PolyDataSurface::PolyDataSurface(vtkPolyData* input, const Options& options, con
   constexpr Eigen::Index quick = 5000; // points: not worth a thread
   if (made->Points.rows() < quick)
   {
-    made->Make(options.IntrinsicDelaunay, monitor.Part(0.2, 1.0));
+    made->Make(options.IntrinsicDelaunay, options.LengthUnit, monitor.Part(0.2, 1.0));
   }
   else
   {
-    RunInBackground([made, delaunay = options.IntrinsicDelaunay]
-      { made->Make(delaunay, Monitor()); },
+    RunInBackground([made, delaunay = options.IntrinsicDelaunay, unit = options.LengthUnit]
+      { made->Make(delaunay, unit, Monitor()); },
       monitor.Part(0.2, 1.0));
   }
   this->Points = std::move(made->Points);

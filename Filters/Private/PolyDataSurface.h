@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkDataArray;
@@ -26,6 +27,7 @@ struct PolyDataSurface
     bool MergeCoincidentPoints = false;
     double MergeTolerance = 0.0;
     bool IntrinsicDelaunay = false;
+    double LengthUnit = 0.0; ///< of the meshes; 0: chosen by the surface's size
     vtkDataArray* Excluded = nullptr; ///< per point; triangles with a nonzero corner take no part
   };
 
@@ -43,13 +45,19 @@ struct PolyDataSurface
   PolyDataSurface(
     vtkPolyData* input, const Options& options, const SurfaceDiffusion::Monitor& monitor);
 
+  /// Declare this surface a process's part of one. Only without IntrinsicDelaunay.
+  void SetPartition(std::shared_ptr<const SurfaceDiffusion::Partition> partition)
+  {
+    this->InputMesh->SetPartition(std::move(partition));
+  }
+
   /// A text that differs whenever another surface would come out.
   static std::string Key(vtkPolyData* input, const Options& options);
 
   SurfaceDiffusion::Points Points;       ///< per input point
   SurfaceDiffusion::Triangles Triangles; ///< rows of Points; merged points are one of them
   std::vector<vtkIdType> TriangleCells;  ///< the input's cell of each row of Triangles
-  std::shared_ptr<const SurfaceDiffusion::TriangleMesh> InputMesh; ///< of rows of Triangles
+  std::shared_ptr<SurfaceDiffusion::TriangleMesh> InputMesh; ///< of rows of Triangles
   /// What the models work on: InputMesh, or its intrinsic Delaunay triangulation, which has the
   /// same vertices.
   std::shared_ptr<const SurfaceDiffusion::TriangleMesh> Mesh;

@@ -5,6 +5,7 @@
 #include "vtkMultiProcessController.h"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 /// The processes that share a surface; without a controller it is this one alone. All calls but
@@ -53,6 +54,30 @@ public:
       this->Shared->AllReduce(&here, &any, 1, vtkCommunicator::MAX_OP);
     }
     return any != 0;
+  }
+
+  /// The first message that is not empty, for everybody.
+  std::string FirstMessage(const std::string& mine) const
+  {
+    if (!this->Any(!mine.empty()))
+    {
+      return std::string();
+    }
+    std::vector<double> letters(mine.begin(), mine.end());
+    letters.push_back(0.0); // ends it
+    std::string first;
+    for (const double letter : this->GatherAll(letters))
+    {
+      if (letter != 0.0)
+      {
+        first += static_cast<char>(letter);
+      }
+      else if (!first.empty())
+      {
+        break;
+      }
+    }
+    return first;
   }
 
   void Broadcast(double* values, vtkIdType count) const

@@ -6,6 +6,7 @@
 #include "Core/InitialState.h"
 #include "Core/LinearSolver.h"
 #include "Core/Trajectory.h"
+#include "PointIdentity.h"
 #include "PolyDataSurface.h"
 
 #include <cmath>
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+class PiecePartition;
 class vtkDataArray;
 class vtkPolyData;
 
@@ -80,6 +82,8 @@ struct SurfaceRun
 {
   std::string SurfaceKey;
   std::unique_ptr<PolyDataSurface> Surface;
+  std::shared_ptr<const PiecePartition> Partition; ///< null where the surface is whole
+  PointIdentity Identity;                          ///< of a piece's points
   std::map<std::string, std::shared_ptr<SurfaceDiffusion::LinearSolver>> Solvers;
   std::string RunKey;
   bool HasMissing = false;

@@ -159,11 +159,11 @@ TEST(Balance, SolutionsSatisfyTheSumOfTheEquations)
   const Vector weights = mesh->ControlAreas() * 3.0;
   Flags fixed = Flags::Constant(n, false);
   fixed[mesh->ComponentsBegin()[1]] = true; // the second component is left alone
-  const Balance balance(*mesh, weights, fixed);
+  Balance balance(*mesh, weights, fixed);
   const Values b = Noise(*mesh, 2);
   const Values before = Noise(*mesh, 2, 5);
   Values x = before;
-  balance.Restore(b, x, ParallelFor());
+  balance.Restore(*mesh, b, x, ParallelFor());
   const Index first = mesh->ComponentsBegin()[1];
   for (const Eigen::Index k : { 0, 1 })
   {

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/LinearSolver.h"
+#include "PiecePartition.h"
+
+#include <memory>
+
+/// Whether this library was built with an engine for systems that are spread over processes.
+bool HasDistributedSolver(const Processes& processes);
+
+/// Conjugate gradients of hypre on matrices, right-hand sides and solutions as Partition has them,
+/// preconditioned with the diagonal or with BoomerAMG (multigrid). Null without an engine.
+std::unique_ptr<SurfaceDiffusion::LinearSolver> MakeDistributedSolver(
+  std::shared_ptr<const PiecePartition> partition, bool multigrid);

@@ -1,0 +1,335 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PiecePartition.h"
+
+#include "Core/TriangleMesh.h"
+
+#include "vtkDataArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+using namespace SurfaceDiffusion;
+
+namespace
+{
+
+constexpr int ExchangeTag = 7403;
+
+} // namespace
+
+PiecePartition::PiecePartition(
+  const Processes& processes, const PolyDataSurface& surface, const PointIdentity& identity)
+  : Group(processes)
+{
+  this->FindSharedVertices(surface, identity);
+  this->FindComponents(surface, identity);
+  this->FindSharedEdges(surface, identity);
+  this->FindCopies(surface, identity);
+}
+
+void PiecePartition::Sum(double* numbers, Index count) const
+{
+  const std::vector<double> here(numbers, numbers + count);
+  this->Group.Controller()->AllReduce(here.data(), numbers, count, vtkCommunicator::SUM_OP);
+}
+
+void PiecePartition::Max(double* numbers, Index count) const
+{
+  const std::vector<double> here(numbers, numbers + count);
+  this->Group.Controller()->AllReduce(here.data(), numbers, count, vtkCommunicator::MAX_OP);
+}
+
+/// Vertices whose points other processes have as vertices too belong to the first of them.
+void PiecePartition::FindSharedVertices(
+  const PolyDataSurface& surface, const PointIdentity& identity)
+{
+  const TriangleMesh& mesh = *surface.InputMesh;
+  const int rank = this->Group.Rank();
+  // A label of another piece tells that it is shared; one of this piece may be as well: all know
+  // those that another piece refers to.
+  std::vector<double> foreign;
+  for (std::size_t i = 0; i < identity.Labels.size(); ++i)
+  {
+    if (identity.Labels[i] != identity.FirstLabel + static_cast<vtkIdType>(i))
+    {
+      foreign.push_back(static_cast<double>(identity.Labels[i]));
+    }
+  }
+  const std::vector<double> all = this->Group.GatherAll(foreign);
+  const std::set<double> shared(all.begin(), all.end());
+  std::vector<double> mine; // process, label
+  std::map<vtkIdType, Index> vertexOf;
+  for (Index v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    const vtkIdType label = identity.Labels[mesh.InputVertex()[v]];
+    if (shared.count(static_cast<double>(label)) > 0)
+    {
+      mine.push_back(rank);
+      mine.push_back(static_cast<double>(label));
+      vertexOf[label] = v;
+    }
+  }
+  const std::vector<double> having = this->Group.GatherAll(mine);
+  for (std::size_t i = 0; i < having.size(); i += 2)
+  {
+    this->Sharers[static_cast<vtkIdType>(having[i + 1])].push_back(static_cast<int>(having[i]));
+  }
+  this->Owner.assign(mesh.NumberOfVertices(), rank);
+  for (const auto& [label, vertex] : vertexOf)
+  {
+    const std::vector<int>& sharers = this->Sharers[label];
+    this->Owner[vertex] = sharers.front();
+    for (const int other : sharers)
+    {
+      if (other != rank && sharers.front() == rank)
+      {
+        this->Given[other].push_back(vertex);
+      }
+    }
+    if (sharers.front() != rank)
+    {
+      this->Taken[sharers.front()].push_back(vertex);
+    }
+  }
+}
+
+/// Components of the pieces that share a vertex are one.
+void PiecePartition::FindComponents(const PolyDataSurface& surface, const PointIdentity& identity)
+{
+  const TriangleMesh& mesh = *surface.InputMesh;
+  std::vector<double> counts =
+    this->Group.GatherAll({ static_cast<double>(mesh.NumberOfComponents()) });
+  const double first =
+    std::accumulate(counts.begin(), counts.begin() + this->Group.Rank(), 0.0);
+  const double sum = std::accumulate(counts.begin(), counts.end(), 0.0);
+  std::vector<double> mine; // label, component
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    for (Index v = mesh.ComponentsBegin()[c]; v < mesh.ComponentsBegin()[c + 1]; ++v)
+    {
+      const vtkIdType label = identity.Labels[mesh.InputVertex()[v]];
+      const auto sharers = this->Sharers.find(label);
+      if (sharers != this->Sharers.end() && sharers->second.size() > 1)
+      {
+        mine.push_back(static_cast<double>(label));
+        mine.push_back(first + c);
+      }
+    }
+  }
+  const std::vector<double> all = this->Group.GatherAll(mine);
+  std::vector<Index> parent(static_cast<std::size_t>(sum));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto find = [&](Index i)
+  {
+    while (parent[i] != i)
+    {
+      i = parent[i] = parent[parent[i]];
+    }
+    return i;
+  };
+  std::map<double, Index> componentOf;
+  for (std::size_t i = 0; i < all.size(); i += 2)
+  {
+    const auto component = static_cast<Index>(all[i + 1]);
+    const auto known = componentOf.emplace(all[i], component).first;
+    parent[find(component)] = find(known->second);
+  }
+  std::map<Index, Index> numbers;
+  for (Index c = 0; c < static_cast<Index>(parent.size()); ++c)
+  {
+    numbers.emplace(find(c), static_cast<Index>(numbers.size()));
+  }
+  this->Components = static_cast<Index>(numbers.size());
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    this->WholeComponents.push_back(numbers[find(static_cast<Index>(first) + c)]);
+  }
+}
+
+/// Edges along seams are in two processes, and count once.
+void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const PointIdentity& identity)
+{
+  const TriangleMesh& mesh = *surface.InputMesh;
+  const auto labelOf = [&](Index vertex) { return identity.Labels[mesh.InputVertex()[vertex]]; };
+  const auto isShared = [&](Index vertex)
+  {
+    const auto sharers = this->Sharers.find(labelOf(vertex));
+    return sharers != this->Sharers.end() && sharers->second.size() > 1;
+  };
+  std::map<std::pair<vtkIdType, vtkIdType>, double> lengths;
+  const Triangles& corners = mesh.TriangleVertices();
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+    const double length[3] = { std::hypot(shape.X - shape.Length, shape.Y),
+      std::hypot(shape.X, shape.Y), shape.Length };
+    for (int a = 0; a < 3; ++a)
+    {
+      const Index i = corners(t, (a + 1) % 3);
+      const Index j = corners(t, (a + 2) % 3);
+      if (isShared(i) && isShared(j))
+      {
+        lengths[std::minmax(labelOf(i), labelOf(j))] = length[a];
+      }
+    }
+  }
+  std::vector<double> mine; // process, labels
+  for (const auto& edge : lengths)
+  {
+    mine.push_back(this->Group.Rank());
+    mine.push_back(static_cast<double>(edge.first.first));
+    mine.push_back(static_cast<double>(edge.first.second));
+  }
+  const std::vector<double> all = this->Group.GatherAll(mine);
+  for (std::size_t e = 0; e < all.size() && all[e] < this->Group.Rank(); e += 3)
+  {
+    const auto found = lengths.find(
+      { static_cast<vtkIdType>(all[e + 1]), static_cast<vtkIdType>(all[e + 2]) });
+    if (found != lengths.end())
+    {
+      ++this->Edges;
+      this->EdgeLength += found->second;
+      lengths.erase(found);
+    }
+  }
+}
+
+/// Points of no triangle here (those of ghost cells) whose label another piece has.
+void PiecePartition::FindCopies(const PolyDataSurface& surface, const PointIdentity& identity)
+{
+  std::vector<double> mine; // process, label
+  std::vector<vtkIdType> points;
+  const auto count = static_cast<vtkIdType>(identity.Labels.size());
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (surface.PointToVertex[i] < 0 && identity.Labels[i] != identity.FirstLabel + i)
+    {
+      mine.push_back(this->Group.Rank());
+      mine.push_back(static_cast<double>(identity.Labels[i]));
+      points.push_back(i);
+    }
+  }
+  const std::vector<double> all = this->Group.GatherAll(mine);
+  this->CopyCount = static_cast<vtkIdType>(points.size());
+  const std::vector<double> firsts =
+    this->Group.GatherAll({ static_cast<double>(identity.FirstLabel) });
+  std::size_t own = 0;
+  for (std::size_t i = 0; i < all.size(); i += 2)
+  {
+    const auto wanting = static_cast<int>(all[i]);
+    const auto label = static_cast<vtkIdType>(all[i + 1]);
+    if (wanting == this->Group.Rank())
+    {
+      // Pieces without points have the label of the next one: the last that begins there owns it.
+      const auto after = std::upper_bound(firsts.begin(), firsts.end(), all[i + 1]);
+      this->Copies[static_cast<int>(after - firsts.begin()) - 1].push_back(points[own++]);
+    }
+    else if (label >= identity.FirstLabel && label < identity.FirstLabel + count)
+    {
+      this->Originals[wanting].push_back(label - identity.FirstLabel);
+    }
+  }
+}
+
+/// Both send first what the other has room for: the one of lower rank begins.
+void PiecePartition::Exchange(
+  int other, const std::vector<double>& sent, std::vector<double>& received) const
+{
+  vtkMultiProcessController* const controller = this->Group.Controller();
+  for (const bool send : { this->Group.Rank() < other, this->Group.Rank() > other })
+  {
+    if (send && !sent.empty())
+    {
+      controller->Send(sent.data(), static_cast<vtkIdType>(sent.size()), other, ExchangeTag);
+    }
+    else if (!send && !received.empty())
+    {
+      controller->Receive(
+        received.data(), static_cast<vtkIdType>(received.size()), other, ExchangeTag);
+    }
+  }
+}
+
+namespace
+{
+
+/// The processes named in either, ascending.
+template <typename Map>
+std::set<int> Partners(const Map& a, const Map& b)
+{
+  std::set<int> partners;
+  for (const Map* map : { &a, &b })
+  {
+    for (const auto& entry : *map)
+    {
+      partners.insert(entry.first);
+    }
+  }
+  return partners;
+}
+
+template <typename Map>
+const typename Map::mapped_type& At(const Map& map, int process)
+{
+  static const typename Map::mapped_type none;
+  const auto found = map.find(process);
+  return found == map.end() ? none : found->second;
+}
+
+} // namespace
+
+void PiecePartition::TakeFromOwners(Values& values) const
+{
+  const auto columns = static_cast<std::size_t>(values.cols());
+  for (const int other : Partners(this->Given, this->Taken))
+  {
+    std::vector<double> sent;
+    for (const Index v : At(this->Given, other))
+    {
+      const double* const row = values.data() + v * columns;
+      sent.insert(sent.end(), row, row + columns);
+    }
+    const std::vector<Index>& taken = At(this->Taken, other);
+    std::vector<double> received(taken.size() * columns);
+    this->Exchange(other, sent, received);
+    for (std::size_t i = 0; i < taken.size(); ++i)
+    {
+      std::copy_n(received.data() + i * columns, columns, values.data() + taken[i] * columns);
+    }
+  }
+}
+
+void PiecePartition::FillCopies(vtkDataArray* array) const
+{
+  const auto components = static_cast<std::size_t>(array->GetNumberOfComponents());
+  for (const int other : Partners(this->Originals, this->Copies))
+  {
+    std::vector<double> sent;
+    for (const vtkIdType point : At(this->Originals, other))
+    {
+      const double* const tuple = array->GetTuple(point);
+      sent.insert(sent.end(), tuple, tuple + components);
+    }
+    const std::vector<vtkIdType>& copies = At(this->Copies, other);
+    std::vector<double> received(copies.size() * components);
+    this->Exchange(other, sent, received);
+    for (std::size_t i = 0; i < copies.size(); ++i)
+    {
+      array->SetTuple(copies[i], received.data() + i * components);
+    }
+  }
+}
+
+std::int64_t PiecePartition::NumbersSent() const
+{
+  std::int64_t count = 0;
+  for (const auto& given : this->Given)
+  {
+    count += static_cast<std::int64_t>(given.second.size());
+  }
+  return count;
+}
