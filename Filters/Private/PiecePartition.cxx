@@ -198,39 +198,53 @@ void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const Point
   }
 }
 
-/// Points of no triangle here (those of ghost cells) whose label another piece has.
+/// Points of no triangle here (those of ghost cells, and those all of whose triangles here take no
+/// part) that other pieces have: as a vertex, or else the one that they stand for.
 void PiecePartition::FindCopies(const PolyDataSurface& surface, const PointIdentity& identity)
 {
-  std::vector<double> mine; // process, label
-  std::vector<vtkIdType> points;
-  const auto count = static_cast<vtkIdType>(identity.Labels.size());
-  for (vtkIdType i = 0; i < count; ++i)
+  const int rank = this->Group.Rank();
+  const std::vector<double> firsts =
+    this->Group.GatherAll({ static_cast<double>(identity.FirstLabel) });
+  const auto sourceOf = [&](vtkIdType label)
   {
-    if (surface.PointToVertex[i] < 0 && identity.Labels[i] != identity.FirstLabel + i)
+    const auto sharers = this->Sharers.find(label);
+    if (sharers != this->Sharers.end())
     {
-      mine.push_back(this->Group.Rank());
-      mine.push_back(static_cast<double>(identity.Labels[i]));
-      points.push_back(i);
+      return sharers->second.front();
+    }
+    // Pieces without points begin at the label of the next one: the last that begins there has it.
+    const auto after = std::upper_bound(firsts.begin(), firsts.end(), static_cast<double>(label));
+    return static_cast<int>(after - firsts.begin()) - 1;
+  };
+  std::vector<double> mine; // process, label
+  for (std::size_t i = 0; i < identity.Labels.size(); ++i)
+  {
+    const vtkIdType label = identity.Labels[i];
+    if (surface.PointToVertex[i] < 0 && sourceOf(label) != rank)
+    {
+      mine.push_back(rank);
+      mine.push_back(static_cast<double>(label));
+      this->Copies[sourceOf(label)].push_back(static_cast<vtkIdType>(i));
+      ++this->CopyCount;
+    }
+  }
+  std::map<vtkIdType, vtkIdType> pointOf; // of shared labels that are vertices here
+  for (const Index point : surface.InputMesh->InputVertex())
+  {
+    if (this->Sharers.count(identity.Labels[point]) > 0)
+    {
+      pointOf[identity.Labels[point]] = point;
     }
   }
   const std::vector<double> all = this->Group.GatherAll(mine);
-  this->CopyCount = static_cast<vtkIdType>(points.size());
-  const std::vector<double> firsts =
-    this->Group.GatherAll({ static_cast<double>(identity.FirstLabel) });
-  std::size_t own = 0;
   for (std::size_t i = 0; i < all.size(); i += 2)
   {
-    const auto wanting = static_cast<int>(all[i]);
     const auto label = static_cast<vtkIdType>(all[i + 1]);
-    if (wanting == this->Group.Rank())
+    if (sourceOf(label) == rank)
     {
-      // Pieces without points have the label of the next one: the last that begins there owns it.
-      const auto after = std::upper_bound(firsts.begin(), firsts.end(), all[i + 1]);
-      this->Copies[static_cast<int>(after - firsts.begin()) - 1].push_back(points[own++]);
-    }
-    else if (label >= identity.FirstLabel && label < identity.FirstLabel + count)
-    {
-      this->Originals[wanting].push_back(label - identity.FirstLabel);
+      const auto point = pointOf.find(label);
+      this->Originals[static_cast<int>(all[i])].push_back(
+        point != pointOf.end() ? point->second : label - identity.FirstLabel);
     }
   }
 }

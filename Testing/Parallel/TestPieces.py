@@ -27,7 +27,6 @@ LABYRINTH = dict(NumberOfTimeSteps=30)
 # Name, filter, properties, result. Random numbers are those of one process only with global ids.
 CASES = (
     ("heat", FVMHeatFilter, {}, "fDiffused"),
-    ("heat, iterations", FVMHeatFilter, dict(Solver="ConjugateGradient", TimeStep=5), "fDiffused"),
     ("heat, inpainting", FVMHeatFilter,
      dict(InputArray=["POINTS", "f"], MaskArray=["POINTS", "hole"], Mode="SteadyState"), "fDiffused"),
     ("heat, NaN, noise", FVMHeatFilter,
@@ -52,7 +51,14 @@ CASES = (
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
 )
-SEEDED = ("heat, NaN, noise", "turing", "turing, rates")
+# The same again where processes solve together, each with its piece.
+DISTRIBUTED = tuple(
+    ("distributed %s, %s" % (name, solver), make, dict(properties, IntrinsicDelaunay=0, Solver=solver), result)
+    for solver in ("ConjugateGradient", "Multigrid")
+    for name, make, properties, result in CASES if make is FVMHeatFilter
+    if solver == "ConjugateGradient" or name in ("heat", "heat, inpainting"))
+CASES += DISTRIBUTED
+SEEDED = ("heat, NaN, noise", "distributed heat, NaN, noise, ConjugateGradient", "turing", "turing, rates")
 # Solvers stop at 1e-10; stopping rules of minimisers at larger gaps.
 TOLERANCE = {"tv": 1e-6, "tv, colours": 1e-3, "tv, minimum": 1e-3}
 LARGEST = {}
