@@ -398,6 +398,12 @@ void vtkIntrinsicTVFilter::WriteResult(
   }
 }
 
+bool vtkIntrinsicTVFilter::CanBeDistributed()
+{
+  return !this->Minimizes() && !this->AutomaticFidelity &&
+    this->Discretization == DISCRETIZATION_LINEAR;
+}
+
 void vtkIntrinsicTVFilter::VisitReported(const std::function<void(double&)>& visit)
 {
   this->Superclass::VisitReported(visit);

@@ -32,8 +32,13 @@
  * Points of one piece are never joined (that is what MergeCoincidentPoints does): of several at one
  * place the k-th goes with the k-th of other pieces. Data are those of the first piece that has the
  * point. Ghost cells take no part; ghost points get the results of the points that they are copies
- * of. The surface is solved in process 0, which holds all of it; the history, warnings and errors
- * are there alone. Random numbers are those of one process where there are global ids; they depend
+ * of. The history, warnings and errors are those of process 0 alone. Each process solves with its
+ * piece, so that memory and time are divided, where the library was built with hypre, the surface
+ * has one piece per process, the model is linear diffusion (vtkFVMHeatFilter) or nonlinear diffusion
+ * in time steps (vtkIntrinsicTVFilter, FirstOrder, Linear), AutomaticFidelity, IntrinsicDelaunay and
+ * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid (hypre's BoomerAMG), or
+ * Automatic and there are more than 100,000 points. An abort is then obeyed after a step.
+ * Everything else is solved in process 0, which holds the whole surface. Random numbers are those of one process where there are global ids; they depend
  * on the coordinates otherwise.
  *
  * **Output port 0** is the input with the result as a further point array, made active. Points

@@ -55,15 +55,14 @@ std::vector<double> SumEach(
 
 } // namespace
 
-double Total(
-  const TriangleMesh& mesh, const Values& u, Eigen::Index k, const ParallelFor& parallel)
+double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k, const ParallelFor& parallel)
 {
   return SumOverProcesses(
     mesh.GetPartition(), RangeTotal(mesh, u, k, 0, mesh.NumberOfVertices(), parallel));
 }
 
-Conservation::Conservation(const TriangleMesh& mesh, const PointData& data, bool hasFidelity,
-  const ParallelFor& parallel)
+Conservation::Conservation(
+  const TriangleMesh& mesh, const PointData& data, bool hasFidelity, const ParallelFor& parallel)
 {
   this->Components = Select(mesh,
     [&](Index begin, Index end)
@@ -78,8 +77,7 @@ Conservation::Conservation(const TriangleMesh& mesh, const PointData& data, bool
     });
   this->Areas = SumEach(mesh, this->Components,
     [&](Index begin, Index end) {
-      return Sum(
-        parallel, end - begin, [&](Index i) { return mesh.ControlAreas()[begin + i]; });
+      return Sum(parallel, end - begin, [&](Index i) { return mesh.ControlAreas()[begin + i]; });
     });
   this->Totals.resize(static_cast<Eigen::Index>(this->Components.size()), data.Start.cols());
   this->Total(mesh, data.Start, parallel);
@@ -119,8 +117,8 @@ Balance::Balance(
   const TriangleMesh& mesh, Vector weights, const Flags& fixed, const ParallelFor& parallel)
   : Weights(std::move(weights))
 {
-  this->Components = Select(
-    mesh, [&](Index begin, Index end) { return fixed.segment(begin, end - begin).any(); });
+  this->Components =
+    Select(mesh, [&](Index begin, Index end) { return fixed.segment(begin, end - begin).any(); });
   this->Sums = SumEach(mesh, this->Components,
     [&](Index begin, Index end)
     { return Sum(parallel, end - begin, [&](Index i) { return this->Weights[begin + i]; }); });

@@ -32,8 +32,8 @@ private:
 
   std::vector<Index> Components; ///< those that conserve
   std::vector<double> Areas;
-  Values Totals;                 ///< sum A u, component x column
-  Values Targets;                    ///< sum A u at the start, component x column
+  Values Totals; ///< sum A u, component x column
+  Values Targets; ///< sum A u at the start, component x column
 };
 
 /// Makes solutions of (diag(w) + K) x = b satisfy the sum of the equations over each connected
@@ -47,14 +47,13 @@ public:
   Balance(const TriangleMesh& mesh, Vector weights, const Flags& fixed,
     const ParallelFor& parallel = ParallelFor());
 
-  void Restore(
-    const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel);
+  void Restore(const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel);
 
 private:
   std::vector<Index> Components; ///< those with no fixed vertex
-  std::vector<double> Sums;      ///< of their weights
-  Vector Weights;                ///< w
-  Values Left;                   ///< sum b - sum w x, component x column
+  std::vector<double> Sums; ///< of their weights
+  Vector Weights; ///< w
+  Values Left; ///< sum b - sum w x, component x column
 };
 
 } // namespace SurfaceDiffusion

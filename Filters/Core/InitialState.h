@@ -15,8 +15,8 @@ namespace SurfaceDiffusion
 enum class InitialFill
 {
   Input, ///< the damaged values f themselves; the mean where they are NaN
-  Mean,  ///< the area-weighted mean of the known values of the connected component
-  Noise  ///< the paper's f_rd: uniform between the smallest and largest known value
+  Mean, ///< the area-weighted mean of the known values of the connected component
+  Noise ///< the paper's f_rd: uniform between the smallest and largest known value
 };
 
 /// Fill data.Start, and Given where it is NaN, from Given at the missing vertices; Start = Given

@@ -242,7 +242,7 @@ double NonlinearDiffusion::Energy() const
         });
     }
   }
-  return energy;
+  return SumOverProcesses(mesh.GetPartition(), energy);
 }
 
 } // namespace SurfaceDiffusion

@@ -5,8 +5,7 @@
 namespace SurfaceDiffusion
 {
 
-void SumComponents(
-  const Partition* partition, const std::vector<Index>& component, Values& sums)
+void SumComponents(const Partition* partition, const std::vector<Index>& component, Values& sums)
 {
   if (!partition)
   {

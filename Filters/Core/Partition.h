@@ -59,7 +59,6 @@ inline bool AnyProcess(const Partition* partition, bool here)
 }
 
 /// The same for sums over connected components: row r belongs to component[r] of this mesh.
-void SumComponents(
-  const Partition* partition, const std::vector<Index>& component, Values& sums);
+void SumComponents(const Partition* partition, const std::vector<Index>& component, Values& sums);
 
 } // namespace SurfaceDiffusion

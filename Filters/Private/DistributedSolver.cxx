@@ -151,7 +151,7 @@ private:
       HYPRE_BoomerAMGSetTol(this->Multigrid, 0.0);
       HYPRE_BoomerAMGSetMaxIter(this->Multigrid, 1);
       HYPRE_BoomerAMGSetCoarsenType(this->Multigrid, 10); // HMIS
-      HYPRE_BoomerAMGSetRelaxType(this->Multigrid, 6);    // symmetric: as conjugate gradients need
+      HYPRE_BoomerAMGSetRelaxType(this->Multigrid, 6); // symmetric: as conjugate gradients need
       HYPRE_BoomerAMGSetInterpType(this->Multigrid, 6);
       HYPRE_BoomerAMGSetPMaxElmts(this->Multigrid, 4);
       HYPRE_PCGSetPrecond(this->Krylov,
@@ -162,8 +162,7 @@ private:
     {
       HYPRE_PCGSetPrecond(this->Krylov,
         reinterpret_cast<HYPRE_PtrToSolverFcn>(HYPRE_ParCSRDiagScale),
-        reinterpret_cast<HYPRE_PtrToSolverFcn>(HYPRE_ParCSRDiagScaleSetup),
-        AsSolver(this->Matrix));
+        reinterpret_cast<HYPRE_PtrToSolverFcn>(HYPRE_ParCSRDiagScaleSetup), AsSolver(this->Matrix));
     }
     HYPRE_ParCSRPCGSetup(this->Krylov, this->Matrix, this->B.Vector, this->X.Vector);
   }
@@ -272,7 +271,7 @@ private:
   const bool IsMultigrid;
   HYPRE_BigInt First = 0;
   HYPRE_BigInt Last = -1;
-  std::vector<HYPRE_BigInt> Rows;    ///< per vertex
+  std::vector<HYPRE_BigInt> Rows; ///< per vertex
   std::vector<HYPRE_BigInt> OwnRows; ///< per vertex owned
   std::vector<Index> OwnVertices;
   std::vector<double> Numbers;

@@ -89,9 +89,8 @@ PlaneVectors MakeFrames(
 
 } // namespace
 
-vtkSurfaceDiffusionAlgorithm::Execution::Execution(
-  vtkSurfaceDiffusionAlgorithm& filter, const std::vector<SurfacePiece>& surfaces,
-  const Processes* processes)
+vtkSurfaceDiffusionAlgorithm::Execution::Execution(vtkSurfaceDiffusionAlgorithm& filter,
+  const std::vector<SurfacePiece>& surfaces, const Processes* processes)
   : Filter(filter)
   , Group(processes)
 {
@@ -508,8 +507,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
   const int steps = this->Filter.GetEffectiveNumberOfTimeSteps();
   std::unique_ptr<Evolution> model = this->Filter.MakeEvolution(input, steps);
   const std::size_t limit = this->CheckpointMemory(*model);
-  run.Path =
-    std::make_unique<Trajectory>(run.Surface->Mesh, std::move(model), limit, parallel);
+  run.Path = std::make_unique<Trajectory>(run.Surface->Mesh, std::move(model), limit, parallel);
   run.Path->Reserve(steps);
   monitor.Report(1.0);
 }
@@ -556,8 +554,8 @@ std::size_t vtkSurfaceDiffusionAlgorithm::Execution::CheckpointMemory(const Evol
   {
     return 0;
   }
-  const std::size_t limit =
-    static_cast<std::size_t>(this->Filter.CheckpointMemoryLimit) * 1024 * 1024 / this->Blocks.size();
+  const std::size_t limit = static_cast<std::size_t>(this->Filter.CheckpointMemoryLimit) * 1024 *
+    1024 / this->Blocks.size();
   if (!this->Group)
   {
     return limit;
@@ -578,7 +576,8 @@ std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Execution::FindSolve
   if (run.Partition)
   {
     const bool multigrid = this->Filter.Solver == SOLVER_MULTIGRID ||
-      (this->Filter.Solver == SOLVER_AUTOMATIC && task.DiffusionNumber > LargestOfJacobi);
+      (this->Filter.Solver == SOLVER_AUTOMATIC && task.AllowMultigrid &&
+        task.DiffusionNumber > LargestOfJacobi);
     std::shared_ptr<LinearSolver> solver = MakeDistributedSolver(run.Partition, multigrid);
     solver->SetLimits(limits);
     return solver;

@@ -103,8 +103,7 @@ void PiecePartition::FindComponents(const PolyDataSurface& surface, const PointI
   const TriangleMesh& mesh = *surface.InputMesh;
   std::vector<double> counts =
     this->Group.GatherAll({ static_cast<double>(mesh.NumberOfComponents()) });
-  const double first =
-    std::accumulate(counts.begin(), counts.begin() + this->Group.Rank(), 0.0);
+  const double first = std::accumulate(counts.begin(), counts.begin() + this->Group.Rank(), 0.0);
   const double sum = std::accumulate(counts.begin(), counts.end(), 0.0);
   std::vector<double> mine; // label, component
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
@@ -187,8 +186,8 @@ void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const Point
   const std::vector<double> all = this->Group.GatherAll(mine);
   for (std::size_t e = 0; e < all.size() && all[e] < this->Group.Rank(); e += 3)
   {
-    const auto found = lengths.find(
-      { static_cast<vtkIdType>(all[e + 1]), static_cast<vtkIdType>(all[e + 2]) });
+    const auto found =
+      lengths.find({ static_cast<vtkIdType>(all[e + 1]), static_cast<vtkIdType>(all[e + 2]) });
     if (found != lengths.end())
     {
       ++this->Edges;

@@ -20,14 +20,15 @@ public:
   using Index = SurfaceDiffusion::Index;
 
   /// surface: of this process's piece, whose points have this identity. Collective.
-  PiecePartition(const Processes& processes, const PolyDataSurface& surface,
-    const PointIdentity& identity);
+  PiecePartition(
+    const Processes& processes, const PolyDataSurface& surface, const PointIdentity& identity);
 
   void Sum(double* numbers, Index count) const override;
   void Max(double* numbers, Index count) const override;
   void TakeFromOwners(SurfaceDiffusion::Values& values) const override;
 
-  /// Give the points of no cell of the piece's own the values at the points that they are copies of.
+  /// Give the points of no cell of the piece's own the values at the points that they are copies
+  /// of.
   void FillCopies(vtkDataArray* array) const;
 
   const Processes& GetProcesses() const { return this->Group; }
@@ -50,9 +51,9 @@ private:
   void Exchange(int other, const std::vector<double>& sent, std::vector<double>& received) const;
 
   const Processes Group;
-  std::vector<int> Owner;                              ///< per vertex
-  std::map<vtkIdType, std::vector<int>> Sharers;       ///< of each shared point: its processes
-  std::map<int, std::vector<Index>> Given, Taken;      ///< vertices by the other process
+  std::vector<int> Owner; ///< per vertex
+  std::map<vtkIdType, std::vector<int>> Sharers; ///< of each shared point: its processes
+  std::map<int, std::vector<Index>> Given, Taken; ///< vertices by the other process
   std::map<int, std::vector<vtkIdType>> Originals, Copies; ///< points by the other process
   vtkIdType CopyCount = 0;
   Index Edges = 0;

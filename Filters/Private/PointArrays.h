@@ -44,6 +44,5 @@ std::vector<std::int64_t> ReadVertexIds(const PolyDataSurface& surface, vtkPolyD
 
 /// An array of `type` with the shape of `source`, named `name`: values x unit at the points of the
 /// mesh (rounded and clamped for integer types), a copy of the source elsewhere and in alpha.
-vtkSmartPointer<vtkDataArray> WritePointArray(const PolyDataSurface& surface,
-  vtkDataArray* source, const SurfaceDiffusion::Values& values, double unit, int type,
-  const std::string& name);
+vtkSmartPointer<vtkDataArray> WritePointArray(const PolyDataSurface& surface, vtkDataArray* source,
+  const SurfaceDiffusion::Values& values, double unit, int type, const std::string& name);

@@ -39,7 +39,7 @@ CASES = (
     ("heat, FWHM", FVMHeatFilter, dict(FWHM=0.6, IntrinsicDelaunay=1), "fDiffused"),
     ("tv", IntrinsicTVFilter, dict(Tolerance=1e-10), "fTV"),
     ("tv, colours", IntrinsicTVFilter,
-     dict(InputArray=["POINTS", "colors"], OutputPrecision="Double"), "colorsTV"),
+     dict(InputArray=["POINTS", "colors"], OutputPrecision="Double", Tolerance=1e-10), "colorsTV"),
     ("tv, minimum", IntrinsicTVFilter, dict(Mode="SteadyState", StopTolerance=1e-6), "fTV"),
     ("harmonic, normals", HarmonicMapFilter, {}, "NormalsHarmonic"),
     ("harmonic, p = 2", HarmonicMapFilter,
@@ -55,12 +55,16 @@ CASES = (
 DISTRIBUTED = tuple(
     ("distributed %s, %s" % (name, solver), make, dict(properties, IntrinsicDelaunay=0, Solver=solver), result)
     for solver in ("ConjugateGradient", "Multigrid")
-    for name, make, properties, result in CASES if make is FVMHeatFilter
-    if solver == "ConjugateGradient" or name in ("heat", "heat, inpainting"))
+    for name, make, properties, result in CASES
+    if make is FVMHeatFilter and (solver == "ConjugateGradient" or name in ("heat", "heat, inpainting"))
+    or name in ("tv", "tv, colours") and solver == "ConjugateGradient")
 CASES += DISTRIBUTED
 SEEDED = ("heat, NaN, noise", "distributed heat, NaN, noise, ConjugateGradient", "turing", "turing, rates")
 # Solvers stop at 1e-10; stopping rules of minimisers at larger gaps.
-TOLERANCE = {"tv": 1e-6, "tv, colours": 1e-3, "tv, minimum": 1e-3}
+TOLERANCE = {"tv, minimum": 1e-6}
+# For partitions that differ from others in how the points are matched alone
+FEW = ("heat", "heat, region", "tv", "harmonic, normals", "direction, hints",
+       "distributed heat, region, ConjugateGradient", "distributed heat, Multigrid")
 LARGEST = {}
 
 
@@ -150,7 +154,7 @@ class TestPieces(unittest.TestCase):
         self.check("slabs, ids", producer(pieces.split(self.numbered, COUNT, "slabs")[RANK]), True)
 
     def test_slabs_matched_by_place(self):
-        self.check("slabs", producer(pieces.split(self.plain, COUNT, "slabs")[RANK]), False)
+        self.check("slabs", producer(pieces.split(self.plain, COUNT, "slabs")[RANK]), False, FEW)
 
     def test_cells_at_random(self):
         mine = pieces.split(self.plain, COUNT, "random")[RANK]
@@ -167,7 +171,7 @@ class TestPieces(unittest.TestCase):
     def test_redistributed(self):
         """By D3: what RedistributeDataSet sends, Debian 12's expat cannot read."""
         everything = producer(self.plain if RANK == 0 else self.plain.NewInstance())
-        self.check("redistributed", ExtractSurface(D3(everything)), False)
+        self.check("redistributed", ExtractSurface(D3(everything)), False, FEW)
 
     def test_with_ghosts(self):
         mine = pieces.split(self.numbered, COUNT, "slabs")[RANK]

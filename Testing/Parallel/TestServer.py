@@ -63,7 +63,7 @@ class TestServer(unittest.TestCase):
     def stop(self):
         """The server ends by itself when its client has gone."""
         try:
-            self.server.communicate(timeout=10)
+            self.server.communicate(timeout=2)
         except subprocess.TimeoutExpired:
             self.server.terminate()
             self.server.communicate()
