@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/// One step of linear diffusion on a torus in pieces, one per process:
+///
+///     mpiexec -n <processes> ScaleProcesses <vertices of all, or per process with "weak"> [weak]
+///         [<time step in h^2>]
+///
+/// prints, for conjugate gradients with the diagonal and with multigrid (hypre): vertices, seconds
+/// of the first update (identity, assembly, setup, solve) and of a second step alone, iterations,
+/// vertices on seams, bytes sent per iteration by the busiest process, and its memory.
+#include "vtkFVMHeatFilter.h"
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkMPIController.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+namespace
+{
+
+double Seconds()
+{
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
+
+/// Of this process: the most it ever held, MiB.
+double PeakMemory()
+{
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  double kilobytes = 0.0;
+  while (status >> word)
+  {
+    if (word == "VmHWM:")
+    {
+      status >> kilobytes;
+    }
+  }
+  return kilobytes / 1024.0;
+}
+
+/// Columns begin .. end, of `around`, of a torus of `along` points each way; seams included twice.
+vtkSmartPointer<vtkPolyData> Piece(vtkIdType begin, vtkIdType end, vtkIdType around, vtkIdType along)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> data;
+  data->SetName("f");
+  const double turn = 2.0 * std::acos(-1.0);
+  for (vtkIdType i = begin; i <= end; ++i)
+  {
+    for (vtkIdType j = 0; j < along; ++j)
+    {
+      const double a = turn * static_cast<double>(i % around) / static_cast<double>(around);
+      const double b = turn * static_cast<double>(j) / static_cast<double>(along);
+      const double r = 4.0 + std::cos(b);
+      points->InsertNextPoint(r * std::cos(a), r * std::sin(a), std::sin(b));
+      data->InsertNextValue(std::sin(7.0 * a) * std::cos(5.0 * b) + std::sin(91.0 * a + 67.0 * b));
+    }
+  }
+  vtkNew<vtkCellArray> triangles;
+  for (vtkIdType i = 0; i < end - begin; ++i)
+  {
+    for (vtkIdType j = 0; j < along; ++j)
+    {
+      const vtkIdType next = (j + 1) % along;
+      const vtkIdType q[4] = { i * along + j, (i + 1) * along + j, (i + 1) * along + next,
+        i * along + next };
+      triangles->InsertNextCell({ q[0], q[1], q[2] });
+      triangles->InsertNextCell({ q[0], q[2], q[3] });
+    }
+  }
+  auto piece = vtkSmartPointer<vtkPolyData>::New();
+  piece->SetPoints(points);
+  piece->SetPolys(triangles);
+  piece->GetPointData()->SetScalars(data);
+  return piece;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  const int rank = controller->GetLocalProcessId();
+  const int count = controller->GetNumberOfProcesses();
+  const bool weak = argc > 2 && std::string(argv[2]) == "weak";
+  const double all = (argc > 1 ? std::atof(argv[1]) : 1e5) * (weak ? count : 1);
+  const double step = argc > (weak ? 3 : 2) ? std::atof(argv[weak ? 3 : 2]) : 10.0;
+
+  const auto along = static_cast<vtkIdType>(std::sqrt(all / 4.0));
+  const vtkIdType around = 4 * along;
+  const double before = PeakMemory();
+  const auto piece =
+    Piece(around * rank / count, around * (rank + 1) / count, around, along);
+  const double ofInput = PeakMemory();
+  for (const bool multigrid : { false, true })
+  {
+    vtkNew<vtkFVMHeatFilter> heat;
+    heat->SetInputData(piece);
+    heat->SetTimeIntegratorToFirstOrder();
+    heat->SetTimeStep(step);
+    heat->SetGenerateTimeSteps(true);
+    heat->SetNumberOfTimeSteps(2);
+    heat->SetMaximumNumberOfIterations(100000);
+    heat->SetTolerance(1e-8);
+    multigrid ? heat->SetSolverToMultigrid() : heat->SetSolverToConjugateGradient();
+    double seconds[3];
+    int iterations = 0;
+    for (int n = 0; n < 3; ++n)
+    {
+      controller->Barrier();
+      const double start = Seconds();
+      heat->UpdateInformation();
+      heat->UpdateTimeStep(n);
+      controller->Barrier();
+      seconds[n] = Seconds() - start;
+      iterations = static_cast<int>(heat->GetNumberOfIterations());
+    }
+    const double mine[2] = { PeakMemory() - before, ofInput - before };
+    double most[2];
+    controller->AllReduce(mine, most, 2, vtkCommunicator::MAX_OP);
+    if (rank == 0)
+    {
+      std::cout << count << " processes, " << around * along << " vertices, dt " << step << " h^2, "
+                << (multigrid ? "multigrid" : "diagonal") << ": surface " << seconds[0]
+                << " s, first step (setup too) " << seconds[1] << " s, second " << seconds[2]
+                << " s, iterations of both " << iterations << ", on seams "
+                << (count > 1 ? count * along : 0) << " vertices, sent per product "
+                << (count > 1 ? 2 * along * 8 : 0) << " bytes per process, memory " << most[0]
+                << " MiB of which input " << most[1] << "\n";
+    }
+  }
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return EXIT_SUCCESS;
+}
