@@ -39,8 +39,8 @@ constexpr int LargestNumberOfTimeSteps = 1000000000;
 /// More published times than this are a mistake: each is a number the whole pipeline carries.
 constexpr double LargestNumberOfPublishedTimes = 1e6;
 
-/// Surfaces of up to this many points are solved faster by one process.
-constexpr double FewPoints = 100000;
+/// Surfaces of up to this many points one process solves as fast, in less than a GiB.
+constexpr double FewPoints = 1e6;
 
 } // namespace
 

@@ -37,7 +37,7 @@
  * has one piece per process, the model is linear diffusion (vtkFVMHeatFilter) or nonlinear diffusion
  * in time steps (vtkIntrinsicTVFilter, FirstOrder, Linear), AutomaticFidelity, IntrinsicDelaunay and
  * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid (hypre's BoomerAMG), or
- * Automatic and there are more than 100,000 points. An abort is then obeyed after a step.
+ * Automatic and there are more than a million points. An abort is then obeyed after a step.
  * Everything else is solved in process 0, which holds the whole surface. Random numbers are those of one process where there are global ids; they depend
  * on the coordinates otherwise.
  *

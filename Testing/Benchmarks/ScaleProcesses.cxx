@@ -51,15 +51,17 @@ double PeakMemory()
   return kilobytes / 1024.0;
 }
 
-/// Columns begin .. end, of `around`, of a torus of `along` points each way; seams included twice.
-vtkSmartPointer<vtkPolyData> Piece(vtkIdType begin, vtkIdType end, vtkIdType around, vtkIdType along)
+/// Columns begin .. end, of `around`, of a torus of `along` points each; neighbours share the ends.
+vtkSmartPointer<vtkPolyData> Piece(
+  vtkIdType begin, vtkIdType end, vtkIdType around, vtkIdType along)
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkDoubleArray> data;
   data->SetName("f");
   const double turn = 2.0 * std::acos(-1.0);
-  for (vtkIdType i = begin; i <= end; ++i)
+  const bool closed = end - begin == around;
+  for (vtkIdType i = begin; i <= (closed ? end - 1 : end); ++i)
   {
     for (vtkIdType j = 0; j < along; ++j)
     {
@@ -76,7 +78,8 @@ vtkSmartPointer<vtkPolyData> Piece(vtkIdType begin, vtkIdType end, vtkIdType aro
     for (vtkIdType j = 0; j < along; ++j)
     {
       const vtkIdType next = (j + 1) % along;
-      const vtkIdType q[4] = { i * along + j, (i + 1) * along + j, (i + 1) * along + next,
+      const vtkIdType after = closed ? (i + 1) % around : i + 1;
+      const vtkIdType q[4] = { i * along + j, after * along + j, after * along + next,
         i * along + next };
       triangles->InsertNextCell({ q[0], q[1], q[2] });
       triangles->InsertNextCell({ q[0], q[2], q[3] });
@@ -105,8 +108,7 @@ int main(int argc, char** argv)
   const auto along = static_cast<vtkIdType>(std::sqrt(all / 4.0));
   const vtkIdType around = 4 * along;
   const double before = PeakMemory();
-  const auto piece =
-    Piece(around * rank / count, around * (rank + 1) / count, around, along);
+  const auto piece = Piece(around * rank / count, around * (rank + 1) / count, around, along);
   const double ofInput = PeakMemory();
   for (const bool multigrid : { false, true })
   {
@@ -126,7 +128,7 @@ int main(int argc, char** argv)
       controller->Barrier();
       const double start = Seconds();
       heat->UpdateInformation();
-      heat->UpdateTimeStep(n);
+      heat->UpdateTimeStep(n * step);
       controller->Barrier();
       seconds[n] = Seconds() - start;
       iterations = static_cast<int>(heat->GetNumberOfIterations());
