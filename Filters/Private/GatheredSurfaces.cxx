@@ -571,7 +571,7 @@ std::vector<Result> FindResults(vtkPolyData* input, vtkPolyData* output)
 vtkSmartPointer<vtkDataArray> Restrict(
   vtkDataArray* array, const std::vector<vtkIdType>& ofWhole, vtkIdType first, vtkIdType count)
 {
-  const auto part = MakeLike(array, count);
+  auto part = MakeLike(array, count);
   part->Fill(0.0);
   for (std::size_t i = 0; i < ofWhole.size(); ++i)
   {

@@ -323,8 +323,9 @@ void ShareNearPlaces(
     double distance = tolerance * tolerance;
     for (int n = 0; n < 27; ++n)
     {
+      const int shift[3] = { n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1 };
       const auto found = firsts.find(
-        { centre[0], centre[1] + n % 3 - 1, centre[2] + n / 3 % 3 - 1, centre[3] + n / 9 - 1 });
+        { centre[0], centre[1] + shift[0], centre[2] + shift[1], centre[3] + shift[2] });
       if (found == firsts.end())
       {
         continue;
