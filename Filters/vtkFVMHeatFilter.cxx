@@ -117,9 +117,8 @@ std::unique_ptr<SurfaceDiffusion::Evolution> vtkFVMHeatFilter::MakeEvolution(
   const double fastest = std::max(this->AlongDiffusivity, this->AcrossDiffusivity);
   SolverTask task;
   task.NumberOfVertices = mesh.NumberOfVertices();
-  task.DiffusionNumber = fastest * settings.TimeStep / (h * h);
-  task.NumberOfSolves =
-    this->TimeIntegrator == TIME_INTEGRATOR_SECOND_ORDER ? 2.0 * steps : steps;
+  task.DiffusionNumber = fastest * settings.ImplicitStep() / (h * h);
+  task.NumberOfSolves = this->TimeIntegrator == TIME_INTEGRATOR_SECOND_ORDER ? 2.0 * steps : steps;
   if (this->Mode == MODE_STEADY_STATE)
   {
     settings.TimeScheme = LinearDiffusion::Scheme::SteadyState;

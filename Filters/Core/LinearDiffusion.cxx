@@ -9,15 +9,6 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-/// gamma of SDIRK2: both stages share the matrix M + gamma dt K (R. Alexander, SIAM J. Numer.
-/// Anal. 14, 1977).
-const double Gamma = 1.0 - std::sqrt(0.5);
-
-} // namespace
-
 LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   EdgeValues coefficients, PointData data, const Settings& settings,
   std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
@@ -49,34 +40,25 @@ void LinearDiffusion::Restore(const double* checkpoint)
 void LinearDiffusion::Prepare(const Monitor& monitor)
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  double scale = this->Options.TimeStep;
+  double scale = this->Options.ImplicitStep();
   double inertia = 1.0;
-  switch (this->Options.TimeScheme)
+  if (this->Options.TimeScheme == Scheme::SteadyState)
   {
-    case Scheme::BackwardEuler:
-      break;
-    case Scheme::SDIRK2:
-      scale *= Gamma;
-      break;
-    case Scheme::SteadyState:
-      FixFreeComponents(mesh, this->Data, this->Options.Fidelity);
-      scale = 1.0;
-      inertia = 0.0;
-      break;
+    FixFreeComponents(mesh, this->Data, this->Options.Fidelity);
+    scale = 1.0;
+    inertia = 0.0;
   }
   Vector diagonal(mesh.NumberOfVertices());
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     { diagonal[i] = mesh.ControlAreas()[i] * (inertia + scale * this->FidelityAt(i)); });
   this->Matrix = this->Operators->Pattern();
-  this->Operators->Fill(
-    this->Matrix, diagonal, scale, this->Coefficients, nullptr, this->Parallel);
+  this->Operators->Fill(this->Matrix, diagonal, scale, this->Coefficients, nullptr, this->Parallel);
   this->Load = Values::Zero(this->U.rows(), this->U.cols());
   if (this->Data.Fixed.any())
   {
     const Values known = this->Data.Start.rowwise() - this->Origin;
-    this->Operators->Constrain(
-      this->Matrix, this->Data.Fixed, known, this->Load, this->Parallel);
+    this->Operators->Constrain(this->Matrix, this->Data.Fixed, known, this->Load, this->Parallel);
   }
   this->Balanced = Balance(mesh, std::move(diagonal), this->Data.Fixed, this->Parallel);
   this->Solver->SetMatrix(this->Matrix, monitor);
@@ -93,7 +75,8 @@ StepReport LinearDiffusion::Advance(const Monitor& monitor)
   }
   const TriangleMesh& mesh = this->Operators->Mesh();
   // Measured from the mean, so that the errors of a solve go with the contrast, not the offset.
-  ForEach(this->Parallel, mesh.NumberOfVertices(), [&](Index i) { this->U.row(i) -= this->Origin; });
+  ForEach(
+    this->Parallel, mesh.NumberOfVertices(), [&](Index i) { this->U.row(i) -= this->Origin; });
   if (this->Options.TimeScheme == Scheme::SDIRK2)
   {
     this->SDIRK2Step(report, monitor.Part(setup, 1.0));
@@ -145,7 +128,7 @@ void LinearDiffusion::BackwardEulerStep(StepReport& report, const Monitor& monit
 void LinearDiffusion::SDIRK2Step(StepReport& report, const Monitor& monitor)
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  const double dt = Gamma * this->Options.TimeStep;
+  const double dt = this->Options.ImplicitStep();
   this->Previous = this->U;
   const double ratio = (1.0 - Gamma) / Gamma;
   for (const double second : { 0.0, ratio })
