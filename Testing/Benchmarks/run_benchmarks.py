@@ -41,7 +41,7 @@ STAGES = {
     "TimeSeek": "another time of that run",
 }
 MODELS = "MinimizeToGap|LaggedStep/.*:3$|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
-NOTED = {"vertices", "Gap", "Iterations", "iterations", "steps", "time", "step_over_solves",
+NOTED = {"vertices", "Gap", "Iterations", "steps", "time", "step_over_solves",
          "degrees_before", "degrees_after"}
 
 
