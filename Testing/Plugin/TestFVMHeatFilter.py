@@ -109,9 +109,10 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertAlmostEqual(heat.GetPropertyValue("ValueRange"), max(noisy) - min(noisy))
 
     def test_clock_plays_seeks_and_reverses(self):
+        # One solver for all: Automatic depends on the number of steps.
         heat = FVMHeatFilter(
             self.sphere, GenerateTimeSteps=1, NumberOfTimeSteps=6, OutputInterval=2,
-            TimeStep=0.5)
+            TimeStep=0.5, Solver="Direct")
         heat.UpdatePipelineInformation()
         self.assertEqual(list(heat.TimestepValues), [0.0, 1.0, 2.0, 3.0])
         self.addCleanup(ResetSession)  # of the clock
@@ -126,16 +127,17 @@ class TestFVMHeatFilter(unittest.TestCase):
             scene.AnimationTime = time
             frames[time] = values(heat, "noisyDiffused")
             reference = FVMHeatFilter(
-            self.sphere, TimeStep=0.5, NumberOfTimeSteps=int(2 * time))
-            self.assertEqual(frames[time], values(reference, "noisyDiffused"))
-        self.assertEqual(frames[0.0], values(self.sphere, "noisy"))
+                self.sphere, TimeStep=0.5, NumberOfTimeSteps=int(2 * time), Solver="Direct")
+            # No assertEqual: telling two long lists apart takes it minutes.
+            self.assertTrue(frames[time] == values(reference, "noisyDiffused"))
+        self.assertTrue(frames[0.0] == values(self.sphere, "noisy"))
         for move, time in (
             (scene.GoToFirst, 0.0), (scene.Play, 3.0), (scene.GoToPrevious, 2.0),
             (scene.GoToPrevious, 1.0), (scene.GoToNext, 2.0), (scene.GoToLast, 3.0),
         ):
             move()
             self.assertEqual(scene.TimeKeeper.Time, time)
-            self.assertEqual(values(heat, "noisyDiffused"), frames[time])
+            self.assertTrue(values(heat, "noisyDiffused") == frames[time])
 
     def test_filters_behind_follow_the_clock(self):
         heat = FVMHeatFilter(self.sphere, GenerateTimeSteps=1)
@@ -159,7 +161,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertEqual(len(errors), 1, errors)
         self.assertIn(word, errors[0])
         self.assertIsNone(values(heat, "noisyDiffused"))
-        self.assertEqual(values(heat, "noisy"), values(self.sphere, "noisy"))
+        self.assertTrue(values(heat, "noisy") == values(self.sphere, "noisy"))
         for name, value in right.items():
             setattr(heat, name, value)
         self.assertIsNotNone(values(heat, "noisyDiffused"))
@@ -221,7 +223,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         load(self.path(name))
         heat = FindSource("Heat")
         heat.UpdatePipeline(4.0)
-        self.assertEqual(values(heat, "result"), before)
+        self.assertTrue(values(heat, "result") == before)
         self.assertEqual(heat.InitialFill, "Noise")
         self.assertEqual(list(heat.DirectionArray), ["CELLS", "up"])
 
