@@ -120,7 +120,7 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
         values[this->SlotMap[c].Last] -= signs ? (*signs)(t, (a + 1) % 3) * toLast : toLast;
         onDiagonal += toNext + toLast;
       }
-      values[this->DiagonalSlot[i]] += diagonal[i] + onDiagonal; // edges from i to i cancel
+      values[this->DiagonalSlot[i]] += diagonal[i] + onDiagonal;
     });
 }
 
