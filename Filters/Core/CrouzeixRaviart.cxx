@@ -4,6 +4,7 @@
 
 #include "Coefficients.h"
 #include "LinearSolver.h"
+#include "SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +53,8 @@ void SpreadFar(const TriangleMesh& mesh, Values& x, Values& means, const Paralle
 Values Smoothed(const Assembler& operators, const Values& u, const ParallelFor& parallel)
 {
   const Vector diagonal = Vector::Constant(u.rows(), std::sqrt(3.0));
-  SparseMatrix matrix = operators.Pattern();
+  SparseMatrix matrix;
+  TakePattern(operators.Pattern(), matrix, parallel);
   operators.Fill(
     matrix, diagonal, 1.0, IsotropicCoefficients(operators.Mesh(), parallel), nullptr, parallel);
   const auto solver = MakeConjugateGradientSolver(parallel);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HarmonicMap.h"
 
+#include "SparsePattern.h"
 #include "UnitVectors.h"
 
 #include <algorithm>
@@ -20,7 +21,6 @@ HarmonicMap::HarmonicMap(std::shared_ptr<const Assembler> assembler, EdgeValues 
   , Solver(std::move(solver))
   , Parallel(parallel)
   , Tangent(parallel)
-  , Matrix(this->Operators->Pattern())
   , Diagonal(this->Data.Start.rows())
   , Damping(this->Data.Start.rows())
   , Weights(this->Coefficients.rows())
@@ -32,6 +32,7 @@ HarmonicMap::HarmonicMap(std::shared_ptr<const Assembler> assembler, EdgeValues 
   , Step(U.rows(), U.cols())
   , Other(U.rows(), U.cols())
 {
+  TakePattern(this->Operators->Pattern(), this->Matrix, this->Parallel);
   if (this->Options.LineField)
   {
     this->Signs.resize(this->Coefficients.rows(), 3);

@@ -3,6 +3,7 @@
 #include "LinearDiffusion.h"
 
 #include "InitialState.h"
+#include "SparsePattern.h"
 
 #include <cmath>
 
@@ -52,7 +53,7 @@ void LinearDiffusion::Prepare(const Monitor& monitor)
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     { diagonal[i] = mesh.ControlAreas()[i] * (inertia + scale * this->FidelityAt(i)); });
-  this->Matrix = this->Operators->Pattern();
+  TakePattern(this->Operators->Pattern(), this->Matrix, this->Parallel);
   this->Operators->Fill(this->Matrix, diagonal, scale, this->Coefficients, nullptr, this->Parallel);
   this->Load = Values::Zero(this->U.rows(), this->U.cols());
   if (this->Data.Fixed.any())

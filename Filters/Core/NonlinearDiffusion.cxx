@@ -3,6 +3,7 @@
 #include "NonlinearDiffusion.h"
 
 #include "Coefficients.h"
+#include "SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,11 +51,11 @@ NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assemble
   , Solver(std::move(solver))
   , Parallel(parallel)
   , Isotropic(IsotropicCoefficients(this->Operators->Mesh(), parallel))
-  , Matrix(this->Operators->Pattern())
   , Weighted(this->Isotropic.rows(), 3)
   , Diagonal(this->Data.Start.rows())
   , U(this->Data.Start)
 {
+  TakePattern(this->Operators->Pattern(), this->Matrix, parallel);
   if (settings.Norm == FidelityNorm::L2 || settings.Fidelity == 0.0) // L1 does not conserve
   {
     this->Conserved =

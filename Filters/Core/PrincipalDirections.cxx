@@ -4,6 +4,7 @@
 
 #include "Coefficients.h"
 #include "Frames.h"
+#include "SparsePattern.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -50,7 +51,8 @@ void Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& so
   const TriangleMesh& mesh = assembler.Mesh();
   constexpr int steps = 4;
   const double dt = fwhm * fwhm / (16.0 * std::log(2.0)) / steps;
-  SparseMatrix matrix = assembler.Pattern();
+  SparseMatrix matrix;
+  TakePattern(assembler.Pattern(), matrix, parallel);
   assembler.Fill(
     matrix, mesh.ControlAreas(), dt, IsotropicCoefficients(mesh, parallel), nullptr, parallel);
   solver.SetMatrix(matrix, monitor.Part(0.0, 0.5));

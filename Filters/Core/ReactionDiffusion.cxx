@@ -4,6 +4,7 @@
 
 #include "LinearDiffusion.h"
 #include "Random.h"
+#include "SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,7 +100,7 @@ void ReactionDiffusion::Prepare(const Monitor& monitor)
   for (int c = 0; c < 2; ++c)
   {
     SparseMatrix& matrix = this->Matrices[c];
-    matrix = this->Operators->Pattern();
+    TakePattern(this->Operators->Pattern(), matrix, this->Parallel);
     this->Operators->Fill(
       matrix, areas, this->ImplicitTime, this->Chemicals[c].Coefficients, nullptr, this->Parallel);
     if (this->Data.Fixed.any())

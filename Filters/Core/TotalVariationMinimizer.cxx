@@ -3,6 +3,7 @@
 #include "TotalVariationMinimizer.h"
 
 #include "Coefficients.h"
+#include "SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -165,7 +166,7 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
         : 0.0;
       diagonal[i] = area * this->Quadratic[i] + this->ValuePenalty[i];
     });
-  this->Matrix = this->Operators->Pattern();
+  TakePattern(this->Operators->Pattern(), this->Matrix, parallel);
   this->Operators->Fill(this->Matrix, diagonal, 1.0, coefficients, nullptr, parallel);
 }
 

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Parallel.h"
+#include "Types.h"
+
+#include <algorithm>
+
+namespace SurfaceDiffusion
+{
+
+/// Give `matrix` the pattern and leave its values to be filled in. Unlike a copy this is a loop,
+/// for which an abort need not wait: hundreds of MB for a few million unknowns.
+inline void TakePattern(
+  const SparseMatrix& pattern, SparseMatrix& matrix, const ParallelFor& parallel)
+{
+  matrix.resize(pattern.rows(), pattern.cols());
+  matrix.resizeNonZeros(pattern.nonZeros());
+  const Index* outer = pattern.outerIndexPtr();
+  const Index* inner = pattern.innerIndexPtr();
+  ForEachBlock(parallel, static_cast<Index>(pattern.rows()),
+    [&](Index, Index begin, Index end)
+    {
+      std::copy(outer + begin, outer + end, matrix.outerIndexPtr() + begin);
+      std::copy(inner + outer[begin], inner + outer[end], matrix.innerIndexPtr() + outer[begin]);
+    });
+  matrix.outerIndexPtr()[pattern.rows()] = outer[pattern.rows()];
+}
+
+} // namespace SurfaceDiffusion
