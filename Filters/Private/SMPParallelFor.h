@@ -69,12 +69,13 @@ public:
   using Index = SurfaceDiffusion::Index;
   using LoopBody = SurfaceDiffusion::LoopBody;
 
+  /// The std::thread backend starts its threads anew for every loop: shorter ones are faster alone.
+  static constexpr Index Few = 24;
+
   void Run(Index count, LoopBody body) const override
   {
     LoopWatch* const watch = LoopWatch::OfThisThread();
-    // The std::thread backend starts its threads anew for every loop: short loops are faster alone.
-    constexpr Index few = 24;
-    if (count < few)
+    if (count < Few)
     {
       body(0, count);
     }
