@@ -108,19 +108,30 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
     [&](Index i)
     {
       std::fill(values + outer[i], values + outer[i + 1], 0.0);
+      const Index diagonalSlot = this->DiagonalSlot[i];
       double onDiagonal = 0.0;
+      const auto add = [&](Index slot, double coefficient, double sign)
+      {
+        if (slot == diagonalSlot)
+        {
+          // An edge from i to i, as intrinsic triangulations have them, can have a coefficient that
+          // all others would drown in, were it added and taken off again.
+          onDiagonal += (1.0 - sign) * coefficient;
+          return;
+        }
+        values[slot] -= sign * coefficient;
+        onDiagonal += coefficient;
+      };
       for (Index c = begin[i]; c < begin[i + 1]; ++c)
       {
         const Index t = corners[c] / 3;
-        const int a = corners[c] % 3;
+        const int next = (corners[c] + 1) % 3; // 3 t + a: an edge is that opposite the third corner
+        const int last = (corners[c] + 2) % 3;
         const double factor = weights ? scale * weights[t] : scale;
-        const double toNext = factor * coefficients(t, (a + 2) % 3); // edge opposite the last
-        const double toLast = factor * coefficients(t, (a + 1) % 3);
-        values[this->SlotMap[c].Next] -= signs ? (*signs)(t, (a + 2) % 3) * toNext : toNext;
-        values[this->SlotMap[c].Last] -= signs ? (*signs)(t, (a + 1) % 3) * toLast : toLast;
-        onDiagonal += toNext + toLast;
+        add(this->SlotMap[c].Next, factor * coefficients(t, last), signs ? (*signs)(t, last) : 1.0);
+        add(this->SlotMap[c].Last, factor * coefficients(t, next), signs ? (*signs)(t, next) : 1.0);
       }
-      values[this->DiagonalSlot[i]] += diagonal[i] + onDiagonal;
+      values[diagonalSlot] = diagonal[i] + onDiagonal;
     });
 }
 

@@ -7,25 +7,6 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-/// An edge from a vertex to itself, as intrinsic triangulations have them, carries nothing. Its
-/// coefficient can be larger than all others by so much that they drown where it would cancel.
-void LeaveOutLoops(const TriangleMesh& mesh, Index t, EdgeValues& c)
-{
-  const auto v = mesh.TriangleVertices().row(t);
-  for (int a = 0; a < 3; ++a)
-  {
-    if (v[(a + 1) % 3] == v[(a + 2) % 3])
-    {
-      c(t, a) = 0.0;
-    }
-  }
-}
-
-} // namespace
-
 EdgeValues IsotropicCoefficients(const TriangleMesh& mesh, const ParallelFor& parallel)
 {
   EdgeValues c(mesh.NumberOfTriangles(), 3);
@@ -38,7 +19,6 @@ EdgeValues IsotropicCoefficients(const TriangleMesh& mesh, const ParallelFor& pa
       c(t, 0) = half * s.X / s.Y;
       c(t, 1) = half * (s.Length - s.X) / s.Y;
       c(t, 2) = half * (s.Y / s.Length - (s.X / s.Y) * ((s.Length - s.X) / s.Length));
-      LeaveOutLoops(mesh, t, c);
     });
   return c;
 }
@@ -58,7 +38,6 @@ EdgeValues DirectionalCoefficients(const TriangleMesh& mesh,
       c(t, 0) = -area * d1 * d2;
       c(t, 1) = -area * d2 * d0;
       c(t, 2) = -area * d0 * d1;
-      LeaveOutLoops(mesh, t, c);
     });
   return c;
 }

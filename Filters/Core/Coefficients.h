@@ -10,8 +10,7 @@ namespace SurfaceDiffusion
 /// Coefficients of the finite volume scheme, per triangle, from its shape alone. By Theorem 1 (15)
 /// the normal integrates over the part of the boundary of C_i inside a triangle to
 /// -area grad(phi_i); so every coefficient is c_ij = -area grad(phi_i) . D grad(phi_j), symmetric,
-/// and entry (t, a) of an EdgeValues is that of the two corners other than a; 0 where these are one
-/// vertex.
+/// and entry (t, a) of an EdgeValues is that of the two corners other than a.
 
 /// Gradient of the linear function with these corner values, in the triangle's own axes.
 inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double u1, double u2)

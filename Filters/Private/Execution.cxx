@@ -493,6 +493,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
     { return this->FindSolver(run, name, task); },
     run.Warnings };
   run.Warnings.clear();
+  run.HasMissing = false;
   if (this->Any(block.Arrays.Data))
   {
     input.Data = this->ReadData(block);

@@ -154,6 +154,33 @@ TEST(IntrinsicDelaunay, CarriesDirectionsAlong)
     DirichletEnergy(*flipped, c, u), 0.5 * (3.0 * 0.16 + 0.5 * 4.84) * 4.0, 1e-9);
 }
 
+TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
+{
+  // A needle, covered twice: one of its edges becomes one around vertex 1, from 0 to 0.
+  const auto needle = MakeMesh(
+    MakeSurface({ { 0, 0, 0 }, { 1.4e-8, 0, 0 }, { -1, 1, 0 } }, { { 0, 1, 2 } }));
+  const Assembler flipped(IntrinsicDelaunay(*needle, nullptr));
+  const EdgeValues c = IsotropicCoefficients(flipped.Mesh());
+  ASSERT_EQ(c.rows(), 2);
+  ASSERT_GT(c.maxCoeff(), 1e5);
+  Index large;
+  c.rowwise().maxCoeff().maxCoeff(&large);
+  Vector weights(2);
+  weights[large] = 1e4;
+  weights[1 - large] = 1e-8;
+  SparseMatrix k = flipped.Pattern();
+  flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data());
+  for (int i = 0; i < 3; ++i)
+  {
+    const double others = k.col(i).sum() - k.coeff(i, i);
+    EXPECT_NEAR(k.coeff(i, i) / -others, 1.0, 1e-14) << i;
+  }
+  // Where the two ends of such an edge have opposite signs, it has an energy.
+  const EdgeValues opposite = EdgeValues::Constant(2, 3, -1.0);
+  flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data(), ParallelFor(), &opposite);
+  EXPECT_NEAR(k.coeffs().maxCoeff() / (4.0 * 1e4 * c.maxCoeff()), 1.0, 1e-3);
+}
+
 TEST(IntrinsicDelaunay, LeavesADelaunayMeshAlone)
 {
   const auto mesh = MakeMesh(Icosphere(3));

@@ -366,6 +366,20 @@ TEST(TuringTextureFilter, TakesAnInitialState)
     0.001);
 }
 
+TEST(TuringTextureFilter, WhatWasMissingInAnInitialStateIsForgottenWithIt)
+{
+  auto sphere = Sphere(2);
+  AddPointArray(
+    sphere, "state", 2, [](vtkIdType i, int) { return i == 9 ? std::nan("") : 4.0; });
+  const auto filter = MakeFilter(sphere, 2);
+  SetInputArray(filter, 0, "state");
+  filter->HoldKnownValuesOn();
+  filter->Update();
+  ASSERT_NE(Result(filter, "u1"), nullptr);
+  SetInputArray(filter, 0, "");
+  EXPECT_TRUE(Contains(ErrorOf(filter), "HoldKnownValues is on but nothing is missing"));
+}
+
 TEST(TuringTextureFilter, HoldsFixedPoints)
 {
   auto sphere = Sphere(3);

@@ -42,6 +42,10 @@ TEST(RandomRuns, StayAsTheyWereMended)
     "090140000101400001f85b0a40f25de10001ffd4f8f2f83f6d6d6d6d6d7a40300a5de60001ff00000000ff17"
     "f200ffff40ffffffffffffffffffffffd500d4f8303ff230010000fe0000000000000007280afffffff25d"
     "c10400f20130ef030111ffa2fbff0dfff2",
+    // the same of a line field: such an edge may have opposite signs at its ends
+    "090140000101403f000060575757a9a65757820000310a0100ff7fffff26dfffffff002c00000015a24e3161636544"
+    "69a2a2a200090201000060575757a9a65757820000310a0100ff7fffff26dfffffffff05ffaa080cff820000310a01"
+    "00ff7fffff26dfffffffff05ffaa09e104f23001000109ffa2fbff0dfff204045d04aa0e04",
   };
   for (const std::string& digits : found)
   {
