@@ -4,6 +4,7 @@
 
 #include "Core/DirectionField.h"
 #include "Private/DirectionArrays.h"
+#include "Private/EnumText.h"
 #include "Private/GatheredSurfaces.h"
 #include "Private/InputArrays.h"
 #include "Private/SMPParallelFor.h"
@@ -41,32 +42,12 @@ vtkCxxSetObjectMacro(vtkSurfaceDirectionFieldFilter, Controller, vtkMultiProcess
 
 const char* vtkSurfaceDirectionFieldFilter::GetMethodAsString()
 {
-  switch (this->Method)
-  {
-    case METHOD_PRINCIPAL_CURVATURE:
-      return "PrincipalCurvature";
-    case METHOD_CURVATURE_ALIGNED:
-      return "CurvatureAligned";
-    case METHOD_SMOOTH:
-      return "Smooth";
-    case METHOD_HINTS:
-      return "Hints";
-    default:
-      return "Unknown";
-  }
+  return EnumText(this->Method, { "PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints" });
 }
 
 const char* vtkSurfaceDirectionFieldFilter::GetPrincipalDirectionAsString()
 {
-  switch (this->PrincipalDirection)
-  {
-    case PRINCIPAL_DIRECTION_MINIMUM:
-      return "Minimum";
-    case PRINCIPAL_DIRECTION_MAXIMUM:
-      return "Maximum";
-    default:
-      return "Unknown";
-  }
+  return EnumText(this->PrincipalDirection, { "Minimum", "Maximum" });
 }
 
 std::vector<std::string> vtkSurfaceDirectionFieldFilter::FindProblems(

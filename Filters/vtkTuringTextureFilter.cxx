@@ -7,6 +7,7 @@
 #include "Core/ReactionDiffusion.h"
 #include "Core/TextureColors.h"
 #include "Private/ConvertValue.h"
+#include "Private/EnumText.h"
 #include "Private/InputArrays.h"
 #include "Private/NewArray.h"
 #include "Private/PointArrays.h"
@@ -165,15 +166,7 @@ const char* vtkTuringTextureFilter::GetKineticsAsString()
 
 const char* vtkTuringTextureFilter::GetTextureChemicalAsString()
 {
-  switch (this->TextureChemical)
-  {
-    case TEXTURE_CHEMICAL_U1:
-      return "U1";
-    case TEXTURE_CHEMICAL_U2:
-      return "U2";
-    default:
-      return "Unknown";
-  }
+  return EnumText(this->TextureChemical, { "U1", "U2" });
 }
 
 void vtkTuringTextureFilter::UsePaperScheme()

@@ -66,6 +66,17 @@ TEST(VertexFit, ShakenPlaneBecomesFlatWhereItsNormalsSaySo)
   EXPECT_EQ(motion.VolumeBefore, 0.0); // open
 }
 
+TEST(VertexFit, TellsThatItDidNotConverge)
+{
+  const Surface s = Shaken(Strip(20, 20), 0.01);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  Values normals(mesh.NumberOfVertices(), 3);
+  normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+  VertexMotion motion;
+  EXPECT_THROW(
+    FitVerticesToNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }), NotConverged);
+}
+
 TEST(VertexFit, ShakenSphereIsSmoothedAtConstantVolume)
 {
   const Surface clean = Icosphere(4);

@@ -219,6 +219,28 @@ TEST(DirectionFieldFilter, RefusesWhatMakesNoSense)
   vtkNew<vtkPolyData> empty;
   filter->SetInputData(empty);
   EXPECT_NE(ErrorOf(filter).find("the input is empty"), std::string::npos);
+  vtkNew<vtkPolyData> points;
+  points->SetPoints(sphere->GetPoints());
+  filter->SetInputData(points);
+  EXPECT_NE(ErrorOf(filter).find("the input has no polygons"), std::string::npos);
+}
+
+TEST(DirectionFieldFilter, SaysItsChoicesInWords)
+{
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  const char* const methods[] = { "PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints",
+    "Unknown" };
+  for (int method = 0; method < 5; ++method)
+  {
+    filter->SetMethod(method);
+    EXPECT_STREQ(filter->GetMethodAsString(), methods[method]);
+  }
+  const char* const directions[] = { "Minimum", "Maximum", "Unknown" };
+  for (int direction = 0; direction < 3; ++direction)
+  {
+    filter->SetPrincipalDirection(direction);
+    EXPECT_STREQ(filter->GetPrincipalDirectionAsString(), directions[direction]);
+  }
 }
 
 TEST(DirectionFieldFilter, ObeysAnAbort)

@@ -5,6 +5,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkSMPTools.h"
+#include "vtkStripper.h"
 
 #include <gtest/gtest.h>
 
@@ -152,6 +153,32 @@ TEST(HarmonicMapFilter, ComputesNormalsWhereThereAreNone)
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetVectors(), nullptr); // see the class comment
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
   EXPECT_EQ(sphere->GetPointData()->GetNormals(), nullptr);
+}
+
+TEST(HarmonicMapFilter, NormalsOfStripsAreThoseOfTheirTriangles)
+{
+  const auto sphere = Sphere(3);
+  vtkNew<vtkStripper> stripper;
+  stripper->SetInputData(sphere);
+  stripper->Update();
+  ASSERT_GT(stripper->GetOutput()->GetNumberOfStrips(), 0);
+  const auto ofTriangles = MakeFilter(sphere);
+  const auto ofStrips = MakeFilter(stripper->GetOutput());
+  for (vtkHarmonicMapFilter* filter : { ofTriangles.Get(), ofStrips.Get() })
+  {
+    filter->SetNumberOfTimeSteps(0);
+    filter->Update();
+  }
+  EXPECT_LT(LargestDifference(
+              Result(ofStrips, "NormalsHarmonic"), Result(ofTriangles, "NormalsHarmonic")),
+    1e-6);
+}
+
+TEST(HarmonicMapFilter, ACellOfNoPointIsAnErrorBeforeItsNormal)
+{
+  auto sphere = Sphere(1);
+  sphere->GetPolys()->InsertNextCell({ 0, 1, 1000000 });
+  EXPECT_NE(OnlyError(MakeFilter(sphere)).find("point"), std::string::npos);
 }
 
 TEST(HarmonicMapFilter, AnEmptyNameMeansTheNormalsToo)

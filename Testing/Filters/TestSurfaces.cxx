@@ -246,6 +246,20 @@ TEST(Surfaces, MergedPointsWithDifferentDataTakeTheirMeanAndKeepTheSum)
   EXPECT_NEAR(HistoryAt(filter, 10, "Total_0"), 100.0, 1e-10); // 25 x 1 + 25 x 3
 }
 
+TEST(Surfaces, APolygonOnALineIsLeftOutTriangleByTriangle)
+{
+  auto surface = Grid(5, 5);
+  surface->GetPolys()->InsertNextCell({ 0, 1, 2, 3, 4 });
+  AddPlaceData(surface);
+  auto filter = MakeFilter(surface);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Errors.empty());
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("3 triangles of zero area were left out"), std::string::npos)
+    << messages.Warnings[0];
+}
+
 TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInsideOnly)
 {
   const int n = 6;

@@ -203,6 +203,11 @@ TEST(TuringTextureFilter, TellsOnceWhyNoPatternGrows)
   filter->SetDiffusionRate1(0.2);
   filter->SetFeatureSize(0.8);
   EXPECT_TRUE(Contains(WarningOf(filter), "FeatureSize has no effect"));
+
+  filter = MakeFilter(sphere);
+  filter->SetKineticsToBrusselator();
+  filter->SetReactantB(0.5);
+  EXPECT_TRUE(Contains(WarningOf(filter), "neither chemical promotes itself"));
 }
 
 TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
@@ -214,6 +219,9 @@ TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
   const auto cells = MakeArray(VTK_DOUBLE, "rates", sphere->GetNumberOfCells(), 4,
     [](vtkIdType i, int k) { return i == 7 && k == 2 ? -1.0 : 1.0; });
   sphere->GetCellData()->AddArray(cells);
+  const auto across = MakeArray(VTK_DOUBLE, "across", sphere->GetNumberOfCells(), 4,
+    [](vtkIdType, int k) { return k == 1 ? 10.0 : 20.0; });
+  sphere->GetCellData()->AddArray(across);
   using Change = void (*)(vtkTuringTextureFilter*);
   const std::pair<Change, const char*> cases[] = {
     { [](auto* f) { f->SetDiffusionRate1(-1.0); }, "DiffusionRate1 is -1" },
@@ -227,6 +235,7 @@ TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
     { [](auto* f) { f->SetKinetics(6); }, "Kinetics is 6" },
     { [](auto* f) { f->SetGrowthRate(0.0); }, "GrowthRate is 0" },
     { [](auto* f) { f->SetDecayRate(17.0); }, "no steady state" },
+    { [](auto* f) { f->SetDecayRate(17.0), f->AutomaticTimeStepOn(); }, "no steady state" },
     { [](auto* f) { f->SetTextureChemical(2); }, "TextureChemical is 2" },
     { [](auto* f) { f->SetLowColor(0.0, 2.0, 0.0); }, "LowColor is 2" },
     { [](auto* f) { f->SetFidelityWeight(1.0); }, "FidelityWeight is 1" },
@@ -235,6 +244,8 @@ TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
     { [](auto* f) { SetInputArray(f, 0, "f"); }, "InputArray \"f\" has 1 components" },
     { [](auto* f) { SetInputArray(f, 4, "four"); }, "DiffusionRateArray is a point array" },
     { [](auto* f) { SetInputArray(f, 4, "rates", true); }, "DiffusionRateArray is -1 at cell 7" },
+    { [](auto* f) { SetInputArray(f, 4, "across", true); },
+      "DiffusionRateArray has other rates across than along" },
     { [](auto* f) { SetInputArray(f, 3, "f"); }, "FixedArray is set but InputArray" },
   };
   for (const auto& [change, message] : cases)

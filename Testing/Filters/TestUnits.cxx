@@ -5,6 +5,7 @@
 #include "vtkFVMHeatFilter.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
 
 #include <gtest/gtest.h>
 
@@ -138,18 +139,21 @@ TEST(Units, BlocksOfCompositeDataShareLengthAndRange)
   AddPointArray(coarse, "f", 1, [](vtkIdType i, int k) { return 40.0 * Rough(i, k); });
   vtkNew<vtkMultiBlockDataSet> blocks;
   vtkNew<vtkPartitionedDataSet> partitions;
+  vtkNew<vtkPartitionedDataSetCollection> collection;
   vtkNew<vtkMultiBlockDataSet> nested;
   nested->SetBlock(0, coarse);
   blocks->SetBlock(0, fine);
   blocks->SetBlock(2, nested);
   partitions->SetPartition(0, fine);
   partitions->SetPartition(1, coarse);
+  collection->SetPartition(0, 0, fine);
+  collection->SetPartition(1, 0, coarse);
   const auto edges = [](double n) { return 2.0 * n * (n - 1.0) + (n - 1.0) * (n - 1.0); };
   const auto length = [](double n, double s)
   { return s * (2.0 * n * (n - 1.0) + std::sqrt(2.0) * (n - 1.0) * (n - 1.0)); };
   const double h = (length(9.0, 0.5) + length(5.0, 3.0)) / (edges(9.0) + edges(5.0));
   for (vtkDataObject* input :
-    std::initializer_list<vtkDataObject*>{ blocks.Get(), partitions.Get() })
+    std::initializer_list<vtkDataObject*>{ blocks.Get(), partitions.Get(), collection.Get() })
   {
     auto filter = MakeFilter(input);
     SetInputArray(filter, 0, "f");
@@ -167,6 +171,11 @@ TEST(Units, BlocksOfCompositeDataShareLengthAndRange)
       results[0] = vtkPolyData::SafeDownCast(tree->GetBlock(0));
       results[1] = vtkPolyData::SafeDownCast(
         vtkMultiBlockDataSet::SafeDownCast(tree->GetBlock(2))->GetBlock(0));
+    }
+    else if (auto* all = vtkPartitionedDataSetCollection::SafeDownCast(output))
+    {
+      results[0] = vtkPolyData::SafeDownCast(all->GetPartition(0, 0));
+      results[1] = vtkPolyData::SafeDownCast(all->GetPartition(1, 0));
     }
     else
     {
