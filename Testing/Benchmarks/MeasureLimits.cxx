@@ -4,9 +4,11 @@
 // How long an abort can go unanswered and how much memory a run takes, for every filter on a torus
 // of a million vertices (or as many as the first argument says, squared): the longest time between
 // two questions whether to go on, when in the run that was, and the peak of memory per vertex above
-// what the input takes.
+// what the input takes. Where other work runs on the machine, the CPU time between two questions,
+// of all threads together, tells more than the time on the clock.
 
 #include "Meshes.h"
+#include "ProcessTime.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -21,11 +23,13 @@
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkTuringTextureFilter.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <malloc.h>
 #include <string>
 
 using namespace SurfaceDiffusion;
@@ -77,9 +81,11 @@ vtkSmartPointer<vtkPolyData> MakeInput(Index around)
 struct Watch
 {
   Clock::time_point Last = Clock::now();
+  double LastOfProcess = Testing::Now();
   double LastAmount = 0.0;
   double Longest = 0.0;
   double Where = 0.0; ///< progress before the longest
+  double LongestOfProcess = 0.0; ///< in CPU time
 
   void Report(double amount)
   {
@@ -91,7 +97,13 @@ struct Watch
       this->Longest = silence;
       this->Where = this->LastAmount;
     }
+    const double ofProcess = Testing::Now();
+    if (amount < 1.0)
+    {
+      this->LongestOfProcess = std::max(this->LongestOfProcess, ofProcess - this->LastOfProcess);
+    }
     this->Last = now;
+    this->LastOfProcess = ofProcess;
     this->LastAmount = amount;
   }
 };
@@ -105,14 +117,17 @@ void Measure(const char* name, vtkPolyData* input, vtkPolyDataAlgorithm* filter)
     { static_cast<Watch*>(client)->Report(*static_cast<double*>(amount)); });
   filter->AddObserver(vtkCommand::ProgressEvent, command);
   filter->SetInputData(input);
+  malloc_trim(0); // what the last run has freed
   std::ofstream("/proc/self/clear_refs") << 5; // the peak starts anew
   const double before = Memory("VmRSS:");
   const Clock::time_point start = Clock::now();
   watch.Last = start;
+  watch.LastOfProcess = Testing::Now();
   filter->Update();
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  std::printf("%-24s %7.2f s   silent %6.3f s at most, after progress %.3f   %6.0f bytes/vertex\n",
-    name, seconds, watch.Longest, watch.Where,
+  std::printf("%-24s %7.2f s   silent %6.3f s at most (%.3f s of CPU), after progress %.3f   "
+              "%6.0f bytes/vertex\n",
+    name, seconds, watch.Longest, watch.LongestOfProcess, watch.Where,
     (Memory("VmHWM:") - before) / static_cast<double>(input->GetNumberOfPoints()));
   std::fflush(stdout);
 }
