@@ -169,8 +169,8 @@ TEST(HarmonicMapFilter, NormalsOfStripsAreThoseOfTheirTriangles)
     filter->SetNumberOfTimeSteps(0);
     filter->Update();
   }
-  EXPECT_LT(LargestDifference(
-              Result(ofStrips, "NormalsHarmonic"), Result(ofTriangles, "NormalsHarmonic")),
+  EXPECT_LT(
+    LargestDifference(Result(ofStrips, "NormalsHarmonic"), Result(ofTriangles, "NormalsHarmonic")),
     1e-6);
 }
 
