@@ -123,7 +123,7 @@ SparseMatrix SmoothedAggregation(
 
   SparseMatrix restriction =
     CollectColumns(aggregates.Count, static_cast<Index>(matrix.rows()), parallel,
-      [&](Index i, SparseColumn&, SparseColumn& column)
+      [&](Index i, SparseColumn& column)
       {
         if (of[i] == None)
         {
@@ -150,22 +150,28 @@ SparseMatrix SmoothedAggregation(
 SparseMatrix GalerkinProduct(const SparseMatrix& matrix, const SparseMatrix& restriction,
   const SparseMatrix& prolongation, const ParallelFor& parallel)
 {
+  // Two products of short columns are faster than one of long ones: few numbers are told apart by
+  // comparing them.
   const Index coarse = static_cast<Index>(restriction.rows());
+  const SparseMatrix half = CollectColumns(coarse, static_cast<Index>(matrix.rows()), parallel,
+    [&](Index i, SparseColumn& column)
+    {
+      for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
+      {
+        for (SparseMatrix::InnerIterator r(restriction, a.index()); r; ++r)
+        {
+          column.Add(r.index(), a.value() * r.value());
+        }
+      }
+    });
   return CollectColumns(coarse, coarse, parallel,
-    [&](Index c, SparseColumn& product, SparseColumn& column)
+    [&](Index c, SparseColumn& column)
     {
       for (SparseMatrix::InnerIterator p(prolongation, c); p; ++p)
       {
-        for (SparseMatrix::InnerIterator a(matrix, p.index()); a; ++a)
+        for (SparseMatrix::InnerIterator h(half, p.index()); h; ++h)
         {
-          product.Add(a.index(), a.value() * p.value());
-        }
-      }
-      for (const auto& [i, value] : product.Numbers())
-      {
-        for (SparseMatrix::InnerIterator r(restriction, i); r; ++r)
-        {
-          column.Add(r.index(), r.value() * value);
+          column.Add(h.index(), h.value() * p.value());
         }
       }
     });

@@ -29,37 +29,27 @@ Assembler::Assembler(
     [&](Index block, Index first, Index last)
     {
       IndexSet row;
-      struct Entry
-      {
-        Index Vertex, Number;
-      };
-      std::vector<Entry> sorted;
       std::vector<Index> slot; // of the numbers that the set gives
       rows[block].reserve(8 * static_cast<std::size_t>(last - first));
       for (Index i = first; i < last; ++i)
       {
         row.Clear();
         row.Insert(i);
-        for (Index c = begin[i]; c < begin[i + 1]; ++c)
+        for (Index c = begin[i]; c < begin[i + 1]; ++c) // most of these are new,
         {
-          const Index t = corners[c] / 3;
-          const int a = corners[c] % 3;
-          this->SlotMap[c] = { row.Insert(m.TriangleVertices()(t, (a + 1) % 3)),
-            row.Insert(m.TriangleVertices()(t, (a + 2) % 3)) };
+          this->SlotMap[c].Next = row.Insert(m.OtherCorner(corners[c], 1));
         }
-        const auto size = static_cast<Index>(row.Entries().size());
-        sorted.clear();
+        for (Index c = begin[i]; c < begin[i + 1]; ++c) // most of these known
+        {
+          this->SlotMap[c].Last = row.Insert(m.OtherCorner(corners[c], 2));
+        }
+        const Index size = row.Size();
+        row.Rank(slot);
+        const std::size_t start = rows[block].size();
+        rows[block].resize(start + size);
         for (Index k = 0; k < size; ++k)
         {
-          sorted.push_back({ row.Entries()[k], k });
-        }
-        std::sort(sorted.begin(), sorted.end(),
-          [](const Entry& x, const Entry& y) { return x.Vertex < y.Vertex; });
-        slot.resize(size);
-        for (Index k = 0; k < size; ++k)
-        {
-          slot[sorted[k].Number] = k;
-          rows[block].push_back(sorted[k].Vertex);
+          rows[block][start + slot[k]] = row[k];
         }
         this->DiagonalSlot[i] = slot[0];
         for (Index c = begin[i]; c < begin[i + 1]; ++c)

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Types.h"
+
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -18,12 +21,15 @@ inline std::uint64_t SpreadBits(std::uint64_t x)
   return (x | x << 2) & 0x1249249249249249;
 }
 
-/// Position along the three-dimensional Hilbert curve of a point of the unit cube's 2^21 grid.
+/// Per axis of the unit cube: as fine as neighbours in memory need to be near on the surface.
+constexpr int HilbertBits = 12;
+constexpr double HilbertCells = 1 << HilbertBits;
+
+/// Position along the three-dimensional Hilbert curve of a cell, < 2^36.
 /// J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004).
 inline std::uint64_t HilbertPosition(std::array<std::uint32_t, 3> x)
 {
-  constexpr int bits = 21;
-  for (std::uint32_t q = 1U << (bits - 1); q > 1; q >>= 1)
+  for (std::uint32_t q = 1U << (HilbertBits - 1); q > 1; q >>= 1)
   {
     const std::uint32_t p = q - 1;
     for (auto& xi : x)
@@ -46,6 +52,37 @@ inline std::uint64_t HilbertPosition(std::array<std::uint32_t, 3> x)
     t ^= t >> shift;
   }
   return SpreadBits(x[0] ^ t) << 2 | SpreadBits(x[1] ^ t) << 1 | SpreadBits(x[2] ^ t);
+}
+
+struct HilbertPlace
+{
+  std::uint64_t Position;
+  Index Vertex;
+};
+
+/// By position; places that share one keep their order. Sorts by one digit of the position after
+/// the other, from the lowest.
+inline void SortAlongCurve(std::vector<HilbertPlace>& places)
+{
+  constexpr std::uint64_t digit = (1 << HilbertBits) - 1;
+  std::vector<HilbertPlace> sorted(places.size());
+  for (int shift = 0; shift < 3 * HilbertBits; shift += HilbertBits)
+  {
+    std::array<Index, digit + 2> begin = {};
+    for (const HilbertPlace& place : places)
+    {
+      ++begin[(place.Position >> shift & digit) + 1];
+    }
+    for (std::size_t d = 0; d < digit; ++d)
+    {
+      begin[d + 1] += begin[d];
+    }
+    for (const HilbertPlace& place : places)
+    {
+      sorted[begin[place.Position >> shift & digit]++] = place;
+    }
+    places.swap(sorted);
+  }
 }
 
 } // namespace SurfaceDiffusion

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MedialMesh.h"
 
+#include "DisjointSets.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -43,38 +45,6 @@ std::vector<std::array<Index, 2>> ListEdges(const TriangleMesh& mesh)
   return edges;
 }
 
-/// Number the connected components of the medial triangles 0, 1, ... in the order of their first
-/// edge. Triangles that share a vertex but no edge are not connected here.
-std::vector<Index> LabelComponents(const Triangles& corners, Index edgeCount)
-{
-  std::vector<Index> parent(edgeCount);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](Index e)
-  {
-    while (parent[e] != e)
-    {
-      e = parent[e] = parent[parent[e]];
-    }
-    return e;
-  };
-  for (Eigen::Index t = 0; t < corners.rows(); ++t)
-  {
-    for (int a = 1; a < 3; ++a)
-    {
-      const Index e = find(corners(t, 0));
-      const Index f = find(corners(t, a));
-      parent[std::max(e, f)] = std::min(e, f); // so that a root is the first of its component
-    }
-  }
-  std::vector<Index> label(edgeCount);
-  Index count = 0;
-  for (Index e = 0; e < edgeCount; ++e)
-  {
-    label[e] = find(e) == e ? count++ : label[find(e)];
-  }
-  return label;
-}
-
 } // namespace
 
 MedialMesh::MedialMesh(const TriangleMesh& mesh)
@@ -96,8 +66,15 @@ MedialMesh::MedialMesh(const TriangleMesh& mesh)
     }
   }
 
-  // Gather components, keeping the order within each.
-  const std::vector<Index> label = LabelComponents(corners, edgeCount);
+  // Gather components, keeping the order within each. Triangles that share a vertex but no edge are
+  // not connected here.
+  DisjointSets connected(edgeCount);
+  for (Index t = 0; t < triangleCount; ++t)
+  {
+    connected.Join(corners(t, 0), corners(t, 1));
+    connected.Join(corners(t, 0), corners(t, 2));
+  }
+  const std::vector<Index> label = connected.Labels();
   std::vector<Index> order(edgeCount);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(

@@ -7,7 +7,6 @@
 #include "Types.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -20,51 +19,64 @@ public:
   void Clear()
   {
     this->Rows.Clear();
-    this->Entries.clear();
+    this->Numbers.clear();
   }
 
   void Add(Index row, double value)
   {
     const Index entry = this->Rows.Insert(row);
-    if (entry == static_cast<Index>(this->Entries.size()))
+    if (entry == static_cast<Index>(this->Numbers.size()))
     {
-      this->Entries.emplace_back(row, value);
+      this->Numbers.push_back(value);
       return;
     }
-    this->Entries[entry].second += value;
+    this->Numbers[entry] += value;
   }
 
-  const std::vector<std::pair<Index, double>>& Numbers() const { return this->Entries; }
+  /// Put them behind `rows` and `values`, by row; returns how many.
+  Index AppendTo(std::vector<Index>& rows, std::vector<double>& values)
+  {
+    this->Rows.Rank(this->Places);
+    const std::size_t first = rows.size();
+    rows.resize(first + this->Numbers.size());
+    values.resize(first + this->Numbers.size());
+    for (Index k = 0; k < this->Rows.Size(); ++k)
+    {
+      rows[first + this->Places[k]] = this->Rows[k];
+      values[first + this->Places[k]] = this->Numbers[k];
+    }
+    return this->Rows.Size();
+  }
 
 private:
   IndexSet Rows;
-  std::vector<std::pair<Index, double>> Entries;
+  std::vector<double> Numbers;
+  std::vector<Index> Places; ///< in the order of rows
 };
 
-/// The matrix whose column j holds what collect(j, scratch, column) puts there. scratch, for work
-/// on the way, is empty as column is.
+/// The matrix whose column j holds what collect(j, column) adds to it.
 template <typename Collect>
 SparseMatrix CollectColumns(
   Index rows, Index columns, const ParallelFor& parallel, const Collect& collect)
 {
   SparseMatrix matrix(rows, columns);
   Index* outer = matrix.outerIndexPtr();
-  std::vector<std::vector<std::pair<Index, double>>> blocks(NumberOfBlocks(columns));
+  struct Block
+  {
+    std::vector<Index> Rows;
+    std::vector<double> Values;
+  };
+  std::vector<Block> blocks(NumberOfBlocks(columns));
   ForEachBlock(parallel, columns,
     [&](Index block, Index begin, Index end)
     {
-      SparseColumn column, scratch;
-      std::vector<std::pair<Index, double>>& collected = blocks[block];
+      SparseColumn column;
+      Block& collected = blocks[block];
       for (Index j = begin; j < end; ++j)
       {
         column.Clear();
-        scratch.Clear();
-        collect(j, scratch, column);
-        const auto first = static_cast<std::ptrdiff_t>(collected.size());
-        collected.insert(collected.end(), column.Numbers().begin(), column.Numbers().end());
-        std::sort(collected.begin() + first, collected.end(),
-          [](const auto& a, const auto& b) { return a.first < b.first; });
-        outer[j + 1] = static_cast<Index>(column.Numbers().size());
+        collect(j, column);
+        outer[j + 1] = column.AppendTo(collected.Rows, collected.Values);
       }
     });
   for (Index j = 0; j < columns; ++j)
@@ -75,13 +87,10 @@ SparseMatrix CollectColumns(
   ForEachBlock(parallel, columns,
     [&](Index block, Index begin, Index)
     {
-      Index slot = outer[begin];
-      for (const auto& [row, value] : blocks[block])
-      {
-        matrix.innerIndexPtr()[slot] = row;
-        matrix.valuePtr()[slot] = value;
-        ++slot;
-      }
+      const Block& collected = blocks[block];
+      std::copy(
+        collected.Rows.begin(), collected.Rows.end(), matrix.innerIndexPtr() + outer[begin]);
+      std::copy(collected.Values.begin(), collected.Values.end(), matrix.valuePtr() + outer[begin]);
     });
   return matrix;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleMesh.h"
 
+#include "DisjointSets.h"
 #include "HilbertCurve.h"
 #include "IndexSet.h"
 
@@ -9,7 +10,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -53,28 +53,6 @@ TriangleMesh::Shape LayOut(const Row3& p0, const Row3& p1, const Row3& p2)
   }
   return { length, e1.dot(e2) / length, doubleArea / length };
 }
-
-class DisjointSets
-{
-public:
-  explicit DisjointSets(Index count)
-    : Parent(count)
-  {
-    std::iota(this->Parent.begin(), this->Parent.end(), 0);
-  }
-  Index Find(Index i)
-  {
-    while (this->Parent[i] != i)
-    {
-      i = this->Parent[i] = this->Parent[this->Parent[i]];
-    }
-    return i;
-  }
-  void Join(Index i, Index j) { this->Parent[this->Find(i)] = this->Find(j); }
-
-private:
-  std::vector<Index> Parent;
-};
 
 /// Turn counts into begins: count[i] becomes the sum of those before it; one entry longer.
 void Accumulate(std::vector<Index>& count)
@@ -153,33 +131,20 @@ void TriangleMesh::NumberVertices(const Eigen::Ref<const Points>& points,
   const Eigen::Ref<const Triangles>& triangles, const Frame& frame, const ParallelFor& parallel)
 {
   const Index inputCount = static_cast<Index>(points.rows());
-  DisjointSets sets(inputCount);
-  std::vector<char> used(inputCount, 0);
+  const Index triangleCount = static_cast<Index>(this->InputTriangles.size());
+  std::vector<Index> number(inputCount, -1);
   for (const Index t : this->InputTriangles)
   {
     for (int a = 0; a < 3; ++a)
     {
-      used[triangles(t, a)] = 1;
+      number[triangles(t, a)] = 0; // used
     }
-    sets.Join(triangles(t, 0), triangles(t, 1));
-    sets.Join(triangles(t, 1), triangles(t, 2));
   }
-
-  struct Place
-  {
-    std::uint64_t Position;
-    Index Vertex;
-    bool operator<(const Place& other) const
-    {
-      return this->Position != other.Position ? this->Position < other.Position
-                                              : this->Vertex < other.Vertex;
-    }
-  };
-  std::vector<Place> places;
+  std::vector<HilbertPlace> places;
   places.reserve(inputCount);
   for (Index i = 0; i < inputCount; ++i)
   {
-    if (used[i])
+    if (number[i] == 0)
     {
       places.push_back({ 0, i });
     }
@@ -194,46 +159,55 @@ void TriangleMesh::NumberVertices(const Eigen::Ref<const Points>& points,
       {
         const double x = (points(places[i].Vertex, axis) - frame.Centre[axis]) / frame.Unit;
         cell[axis] = static_cast<std::uint32_t>(
-          std::min(2097151.0, std::max(0.0, (0.5 * x + 0.5) * 2097152.0)));
+          std::min(HilbertCells - 1.0, std::max(0.0, (0.5 * x + 0.5) * HilbertCells)));
       }
       places[i].Position = HilbertPosition(cell);
     });
-  std::sort(places.begin(), places.end());
-
-  // Components in the order in which the curve meets them.
-  std::vector<Index> component(inputCount, -1);
-  this->Components.clear();
-  for (const Place& place : places)
+  SortAlongCurve(places);
+  for (Index i = 0; i < count; ++i)
   {
-    Index& id = component[sets.Find(place.Vertex)];
-    if (id < 0)
-    {
-      id = static_cast<Index>(this->Components.size());
-      this->Components.push_back(0);
-    }
-    ++this->Components[id];
+    number[places[i].Vertex] = i;
   }
-  this->Components.push_back(0);
+
+  Triangles corners(triangleCount, 3);
+  DisjointSets connected(count);
+  for (Index t = 0; t < triangleCount; ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      corners(t, a) = number[triangles(this->InputTriangles[t], a)];
+    }
+    connected.Join(corners(t, 0), corners(t, 1));
+    connected.Join(corners(t, 1), corners(t, 2));
+  }
+
+  // Components in the order in which the curve meets them, each along the curve.
+  const std::vector<Index> component = connected.Labels();
+  this->Components.assign(1, 0);
+  for (const Index c : component)
+  {
+    this->Components.resize(std::max<std::size_t>(this->Components.size(), c + 2), 0);
+    ++this->Components[c];
+  }
   Accumulate(this->Components);
   std::vector<Index> next = this->Components;
-  std::vector<Index> number(inputCount, -1);
   this->InputVertices.resize(count);
-  for (const Place& place : places)
+  number.resize(count);
+  for (Index i = 0; i < count; ++i)
   {
-    const Index i = next[component[sets.Find(place.Vertex)]]++;
-    number[place.Vertex] = i;
-    this->InputVertices[i] = place.Vertex;
+    number[i] = next[component[i]]++;
+    this->InputVertices[number[i]] = places[i].Vertex;
   }
 
   // Triangles follow their smallest vertex.
-  const Index triangleCount = static_cast<Index>(this->InputTriangles.size());
   std::vector<Index> begin(count + 1, 0);
-  std::vector<Index> smallest(triangleCount);
   for (Index t = 0; t < triangleCount; ++t)
   {
-    const auto corners = triangles.row(this->InputTriangles[t]);
-    smallest[t] = std::min({ number[corners[0]], number[corners[1]], number[corners[2]] });
-    ++begin[smallest[t]];
+    for (int a = 0; a < 3; ++a)
+    {
+      corners(t, a) = number[corners(t, a)];
+    }
+    ++begin[corners.row(t).minCoeff()];
   }
   Accumulate(begin);
   std::vector<Index> sortedTriangles(triangleCount);
@@ -241,13 +215,10 @@ void TriangleMesh::NumberVertices(const Eigen::Ref<const Points>& points,
   this->Corners.resize(triangleCount, 3);
   for (Index t = 0; t < triangleCount; ++t)
   {
-    const Index place = begin[smallest[t]]++;
+    const Index place = begin[corners.row(t).minCoeff()]++;
     sortedTriangles[place] = this->InputTriangles[t];
     sortedShapes[place] = this->TriangleShapes[t];
-    for (int a = 0; a < 3; ++a)
-    {
-      this->Corners(place, a) = number[triangles(this->InputTriangles[t], a)];
-    }
+    this->Corners.row(place) = corners.row(t);
   }
   this->InputTriangles.swap(sortedTriangles);
   this->TriangleShapes.swap(sortedShapes);
@@ -288,64 +259,81 @@ void TriangleMesh::MeasureAreas(const ParallelFor& parallel)
 
 void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
 {
+  // Half of all perimeters is right where edges have two triangles each; others are added here.
+  this->EdgeLength = Sum(parallel, this->NumberOfTriangles(),
+    [&](Index t)
+    {
+      const Shape& shape = this->TriangleShapes[t];
+      return 0.5 * (shape.Length + shape.EdgeLength(0) + shape.EdgeLength(1));
+    });
   struct Block
   {
     double Length = 0.0;
-    Index Edges = 0, BoundaryEdges = 0, NonManifold = 0;
+    Index Ends = 0, BoundaryEdges = 0, NonManifold = 0;
     std::vector<Index> BoundaryVertices;
   };
   std::vector<Block> results(NumberOfBlocks(this->NumberOfVertices()));
   ForEachBlock(parallel, this->NumberOfVertices(),
     [&](Index block, Index begin, Index end)
     {
-      IndexSet neighbours; // of vertex i, of higher numbers
-      std::vector<Index> uses;
+      struct Edge
+      {
+        Index Uses, Corner; // the last of its triangles' corners at this vertex
+        int Step; // from there to the edge's other end
+      };
+      IndexSet neighbours;
+      std::vector<Edge> edges; // to them
       Block& result = results[block];
       for (Index i = begin; i < end; ++i)
       {
+        const Index first = this->CornersBegin[i];
+        const Index last = this->CornersBegin[i + 1];
         neighbours.Clear();
-        uses.clear();
-        for (Index c = this->CornersBegin[i]; c < this->CornersBegin[i + 1]; ++c)
+        edges.assign(2 * static_cast<std::size_t>(last - first), { 0, 0, 0 });
+        for (const int step : { 1, 2 }) // most of the first are new, most of the second known
         {
-          const Index t = this->CornerList[c] / 3;
-          const int a = this->CornerList[c] % 3;
-          for (const int b : { (a + 1) % 3, (a + 2) % 3 })
+          for (Index c = first; c < last; ++c)
           {
-            if (this->Corners(t, b) <= i)
-            {
-              continue;
-            }
-            const Index edge = neighbours.Insert(this->Corners(t, b));
-            if (edge == static_cast<Index>(uses.size()))
-            {
-              uses.push_back(0);
-              result.Length += this->TriangleShapes[t].EdgeLength(3 - a - b);
-            }
-            ++uses[edge];
+            const Index corner = this->CornerList[c];
+            Edge& edge = edges[neighbours.Insert(this->OtherCorner(corner, step))];
+            ++edge.Uses;
+            edge.Corner = corner;
+            edge.Step = step;
           }
         }
-        result.Edges += static_cast<Index>(uses.size());
-        for (std::size_t edge = 0; edge < uses.size(); ++edge)
+        result.Ends += neighbours.Size();
+        for (Index k = 0; k < neighbours.Size(); ++k)
         {
-          if (uses[edge] == 1)
+          const Edge& edge = edges[k];
+          if (edge.Uses == 2 || neighbours[k] < i)
+          {
+            continue;
+          }
+          const int a = edge.Corner % 3;
+          const int opposite = 3 - a - (a + edge.Step) % 3;
+          result.Length +=
+            (1.0 - 0.5 * edge.Uses) * this->TriangleShapes[edge.Corner / 3].EdgeLength(opposite);
+          if (edge.Uses == 1)
           {
             ++result.BoundaryEdges;
             result.BoundaryVertices.push_back(i);
-            result.BoundaryVertices.push_back(neighbours.Entries()[edge]);
+            result.BoundaryVertices.push_back(neighbours[k]);
           }
-          result.NonManifold += uses[edge] > 2;
+          result.NonManifold += edge.Uses > 2;
         }
       }
     });
+  Index ends = 0;
   for (const Block& result : results)
   {
     this->EdgeLength += result.Length;
-    this->Edges += result.Edges;
+    ends += result.Ends;
     this->Found.BoundaryEdges += result.BoundaryEdges;
     this->Found.NonManifoldEdges += result.NonManifold;
     this->Boundary.insert(
       this->Boundary.end(), result.BoundaryVertices.begin(), result.BoundaryVertices.end());
   }
+  this->Edges = ends / 2;
   std::sort(this->Boundary.begin(), this->Boundary.end());
   this->Boundary.erase(
     std::unique(this->Boundary.begin(), this->Boundary.end()), this->Boundary.end());

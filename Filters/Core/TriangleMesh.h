@@ -62,8 +62,8 @@ public:
     double Unit;
   };
 
-  /// points: finite coordinates; triangles: rows of points; unit: LengthUnit(), 0 to have it chosen.
-  /// Throws Aborted.
+  /// points: finite coordinates; triangles: rows of points; unit: LengthUnit(), 0 to have it
+  /// chosen. Throws Aborted.
   TriangleMesh(const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
     const ParallelFor& parallel = ParallelFor(), const Monitor& monitor = Monitor(),
     double unit = 0.0);
@@ -89,6 +89,12 @@ public:
   /// VertexCorners(): 3 t + a for corner a of triangle t, ascending.
   const std::vector<Index>& VertexCornersBegin() const { return this->CornersBegin; }
   const std::vector<Index>& VertexCorners() const { return this->CornerList; }
+  /// The vertex `step` = 1 or 2 corners on from an entry of VertexCorners(), in its triangle.
+  Index OtherCorner(Index corner, int step) const
+  {
+    constexpr int shift[2][3] = { { 1, 1, -2 }, { 2, -1, -1 } };
+    return this->Corners.data()[corner + shift[step - 1][corner % 3]];
+  }
 
   /// A_i, the area of the control cell of v_i: a third of the triangles around it.
   const Vector& ControlAreas() const { return this->Areas; }

@@ -271,6 +271,7 @@ TEST(IntrinsicTVFilter, NaturalSettingsAreTheAbsoluteOnesInTheirUnits)
     filter->SetFidelityWeight(0.7);
     filter->Update();
     const auto natural = Copy(Result(filter));
+    const double energy = HistoryAt(filter, 1, "Energy");
     const double unit = filter->GetTimeUnit();
     const double h = filter->GetMeanEdgeLength();
     const double range = filter->GetValueRange();
@@ -281,7 +282,14 @@ TEST(IntrinsicTVFilter, NaturalSettingsAreTheAbsoluteOnesInTheirUnits)
     filter->SetFidelityWeight(
       0.7 / unit * (filter->GetFidelityNorm() == Filter::FIDELITY_NORM_L1 ? range : 1.0));
     filter->Update();
-    EXPECT_LT(LargestDifference(natural, Result(filter)), 1e-7);
+    if (filter->GetMode() == Filter::MODE_STEADY_STATE &&
+      filter->GetFidelityNorm() == Filter::FIDELITY_NORM_L1)
+    {
+      // The minimiser is not unique: which one is found depends on the last bits of h.
+      EXPECT_NEAR(HistoryAt(filter, 1, "Energy"), energy, filter->GetStopTolerance() * energy);
+      continue;
+    }
+    EXPECT_LT(LargestDifference(natural, Result(filter)), 1e-7) << "case " << (&set - cases);
   }
 }
 
