@@ -4,6 +4,7 @@
 
 #include "Aggregation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,6 +33,17 @@ SparseMatrix Scaled(const SparseMatrix& matrix, const Vector& scaling, const Par
       }
     });
   return scaled;
+}
+
+/// In single precision, faster than Eigen's cast of a matrix.
+Eigen::SparseMatrix<float, Eigen::ColMajor, Index> Single(const SparseMatrix& matrix)
+{
+  Eigen::SparseMatrix<float, Eigen::ColMajor, Index> single(matrix.rows(), matrix.cols());
+  single.resizeNonZeros(matrix.nonZeros());
+  std::copy_n(matrix.outerIndexPtr(), matrix.cols() + 1, single.outerIndexPtr());
+  std::copy_n(matrix.innerIndexPtr(), matrix.nonZeros(), single.innerIndexPtr());
+  std::copy_n(matrix.valuePtr(), matrix.nonZeros(), single.valuePtr());
+  return single;
 }
 
 /// sums += sign (column i of `matrix`) . x, K columns of x, or k where K is 0.
@@ -93,9 +105,9 @@ Multigrid::Level Multigrid::MakeLevel(const SparseMatrix& matrix, const SparseMa
   const SparseMatrix& prolongation) const
 {
   Level level;
-  level.A = matrix.cast<float>();
-  level.Prolongation = restriction.cast<float>();
-  level.Restriction = prolongation.cast<float>();
+  level.A = Single(matrix);
+  level.Prolongation = Single(restriction);
+  level.Restriction = Single(prolongation);
   level.InverseD.resize(matrix.rows());
   const Index* outer = matrix.outerIndexPtr();
   const double* a = matrix.valuePtr();
