@@ -76,8 +76,15 @@ StepReport LinearDiffusion::Advance(const Monitor& monitor)
   }
   const TriangleMesh& mesh = this->Operators->Mesh();
   // Measured from the mean, so that the errors of a solve go with the contrast, not the offset.
-  ForEach(
-    this->Parallel, mesh.NumberOfVertices(), [&](Index i) { this->U.row(i) -= this->Origin; });
+  const Eigen::Index columns = this->U.cols();
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      for (Eigen::Index k = 0; k < columns; ++k)
+      {
+        this->U(i, k) -= this->Origin[k];
+      }
+    });
   if (this->Options.TimeScheme == Scheme::SDIRK2)
   {
     this->SDIRK2Step(report, monitor.Part(setup, 1.0));
@@ -89,13 +96,10 @@ StepReport LinearDiffusion::Advance(const Monitor& monitor)
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
-      if (this->Data.Fixed[i])
+      for (Eigen::Index k = 0; k < columns; ++k)
       {
-        this->U.row(i) = this->Data.Start.row(i);
-      }
-      else
-      {
-        this->U.row(i) += this->Origin;
+        this->U(i, k) =
+          this->Data.Fixed[i] ? this->Data.Start(i, k) : this->U(i, k) + this->Origin[k];
       }
     });
   this->Conserved.Restore(mesh, this->U, this->Parallel);
@@ -114,10 +118,13 @@ void LinearDiffusion::BackwardEulerStep(StepReport& report, const Monitor& monit
     [&](Index i)
     {
       const double area = this->Data.Fixed[i] ? 0.0 : mesh.ControlAreas()[i];
-      this->RightHandSide.row(i) = area *
-          (inertia * this->U.row(i) +
-            (dt * this->FidelityAt(i)) * (this->Data.Given.row(i) - this->Origin)) +
-        this->Load.row(i);
+      const double source = dt * this->FidelityAt(i);
+      for (Eigen::Index k = 0; k < this->U.cols(); ++k)
+      {
+        this->RightHandSide(i, k) =
+          area * (inertia * this->U(i, k) + source * (this->Data.Given(i, k) - this->Origin[k])) +
+          this->Load(i, k);
+      }
     });
   this->Solve(report, monitor);
 }
@@ -138,10 +145,15 @@ void LinearDiffusion::SDIRK2Step(StepReport& report, const Monitor& monitor)
       [&](Index i)
       {
         const double area = this->Data.Fixed[i] ? 0.0 : mesh.ControlAreas()[i];
-        this->RightHandSide.row(i) = area *
-            (this->Previous.row(i) + second * (this->U.row(i) - this->Previous.row(i)) +
-              (dt * this->FidelityAt(i)) * (this->Data.Given.row(i) - this->Origin)) +
-          this->Load.row(i);
+        const double source = dt * this->FidelityAt(i);
+        for (Eigen::Index k = 0; k < this->U.cols(); ++k)
+        {
+          const double previous = this->Previous(i, k);
+          this->RightHandSide(i, k) = area *
+              (previous + second * (this->U(i, k) - previous) +
+                source * (this->Data.Given(i, k) - this->Origin[k])) +
+            this->Load(i, k);
+        }
       });
     this->Solve(report, second > 0.0 ? monitor.Part(0.5, 1.0) : monitor.Part(0.0, 0.5));
   }
@@ -156,8 +168,7 @@ void LinearDiffusion::Solve(StepReport& report, const Monitor& monitor)
   }
   report.Iterations += solve.Iterations;
   report.Residual = std::max(report.Residual, solve.Residual);
-  this->Balanced.Restore(
-    this->Operators->Mesh(), this->RightHandSide, this->U, this->Parallel);
+  this->Balanced.Restore(this->Operators->Mesh(), this->RightHandSide, this->U, this->Parallel);
 }
 
 double LinearDiffusion::Energy() const
@@ -186,7 +197,15 @@ double DirichletEnergy(const TriangleMesh& mesh, const EdgeValues& coefficients,
       [&](Index t)
       {
         const auto square = [&](int a, int b)
-        { return (u.row(corners(t, a)) - u.row(corners(t, b))).squaredNorm(); };
+        {
+          double sum = 0.0;
+          for (Eigen::Index k = 0; k < u.cols(); ++k)
+          {
+            const double difference = u(corners(t, a), k) - u(corners(t, b), k);
+            sum += difference * difference;
+          }
+          return sum;
+        };
         return coefficients(t, 0) * square(1, 2) + coefficients(t, 1) * square(2, 0) +
           coefficients(t, 2) * square(0, 1);
       });
