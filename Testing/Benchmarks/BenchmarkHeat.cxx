@@ -3,11 +3,12 @@
 //
 // What each stage of linear diffusion costs, on one scan in sizes that grow by four. ns/vertex
 // shows how a stage grows; GB/s, of the bytes it cannot do without, is to be held against Triad.
-// The last benchmarks run the whole filter beside the same steps in the core. BenchmarkSolver.cxx
-// has the linear solvers.
+// The last benchmarks run the whole filter beside the same steps in the core, both with the
+// history. BenchmarkSolver.cxx has the linear solvers.
 
 #include "Heat.h"
 #include "HeatSystem.h"
+#include "Trajectory.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -113,9 +114,9 @@ void Product(benchmark::State& state)
   CountBytes(state, BytesOfProduct(system.Matrix, static_cast<double>(x.cols())));
 }
 
-std::unique_ptr<LinearDiffusion> MakeRun(const Surface& s, double number, Scheme scheme)
+std::unique_ptr<LinearDiffusion> MakeRun(
+  std::shared_ptr<const Assembler> assembler, double number, Scheme scheme)
 {
-  auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
   const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges();
   SolverTask task;
@@ -131,7 +132,7 @@ std::unique_ptr<LinearDiffusion> MakeRun(const Surface& s, double number, Scheme
 void Step(benchmark::State& state, Scheme scheme)
 {
   const Surface& s = SurfaceOf(state);
-  const auto heat = MakeRun(s, 1.0, scheme);
+  const auto heat = MakeRun(MakeAssembler(s), 1.0, scheme);
   heat->Advance(Monitor());
   for (auto _ : state)
   {
@@ -223,15 +224,16 @@ void Filter100Steps(benchmark::State& state)
   CountVertices(state, s.NumberOfVertices());
 }
 
-/// The same from mesh to values.
+/// The same in the core: from points and triangles to values and history.
 void Core100Steps(benchmark::State& state)
 {
   const Surface& s = SurfaceOf(state);
   for (auto _ : state)
   {
-    const auto heat = MakeRun(s, 1.0, Scheme::SDIRK2);
-    Advance(*heat, NumberOfSteps);
-    benchmark::DoNotOptimize(heat->State().data());
+    const auto assembler = MakeAssembler(s);
+    Trajectory run(assembler->SharedMesh(), MakeRun(assembler, 1.0, Scheme::SDIRK2), 0);
+    run.Seek(NumberOfSteps);
+    benchmark::DoNotOptimize(run.State().data());
   }
   CountVertices(state, s.NumberOfVertices());
 }
@@ -260,20 +262,26 @@ void OnLevels(benchmark::internal::Benchmark* b)
   b->ArgName("level")->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 }
 
+void OnAllLevels(benchmark::internal::Benchmark* b) // the last is too large for a factor
+{
+  OnLevels(b);
+  b->Arg(4);
+}
+
 } // namespace
 
 BENCHMARK(Triad)->ArgName("MiB")->RangeMultiplier(4)->Range(1, 1024)->MeasureProcessCPUTime();
-BENCHMARK(MeshAndOrder)->Apply(OnLevels);
-BENCHMARK(PatternAndSlots)->Apply(OnLevels);
-BENCHMARK(CoefficientsAndFill)->Apply(OnLevels);
-BENCHMARK(Refill)->Apply(OnLevels);
+BENCHMARK(MeshAndOrder)->Apply(OnAllLevels);
+BENCHMARK(PatternAndSlots)->Apply(OnAllLevels);
+BENCHMARK(CoefficientsAndFill)->Apply(OnAllLevels);
+BENCHMARK(Refill)->Apply(OnAllLevels);
 BENCHMARK(Product)
   ->ArgNames({ "level", "columns" })
-  ->ArgsProduct({ { 0, 1, 2, 3 }, { 1, 3 } })
+  ->ArgsProduct({ { 0, 1, 2, 3, 4 }, { 1, 3 } })
   ->Unit(benchmark::kMillisecond)
   ->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(Step, BackwardEuler, Scheme::BackwardEuler)->Apply(OnLevels);
-BENCHMARK_CAPTURE(Step, SDIRK2, Scheme::SDIRK2)->Apply(OnLevels);
+BENCHMARK_CAPTURE(Step, BackwardEuler, Scheme::BackwardEuler)->Apply(OnAllLevels);
+BENCHMARK_CAPTURE(Step, SDIRK2, Scheme::SDIRK2)->Apply(OnAllLevels);
 BENCHMARK_CAPTURE(ToAThousandth, BackwardEuler, Scheme::BackwardEuler)->Apply(OnLevels);
 BENCHMARK_CAPTURE(ToAThousandth, SDIRK2, Scheme::SDIRK2)->Apply(OnLevels);
 BENCHMARK(Core100Steps)->Apply(OnLevels)->Iterations(1);

@@ -9,6 +9,9 @@
 
 #include "LinearSolver.h"
 
+#include <string>
+#include <vector>
+
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
@@ -74,37 +77,50 @@ void Solve(benchmark::State& state, SolverMethod method)
   }
 }
 
-void OnGrid(benchmark::internal::Benchmark* b, std::vector<std::int64_t> tenths)
+using Benchmark = benchmark::internal::Benchmark;
+using Numbers = std::vector<std::int64_t>;
+
+Benchmark* OnProcessTime(Benchmark* b, std::vector<std::string> names)
 {
-  b->ArgNames({ "level", "c", "columns" })
-    ->ArgsProduct({ { 0, 1, 2, 3 }, std::move(tenths), { 1, 3 } })
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime();
+  return b->ArgNames(std::move(names))->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 }
 
-void OnLevels(benchmark::internal::Benchmark* b)
+const Numbers Levels = { 0, 1, 2, 3 };
+constexpr std::int64_t Largest = 4; // too large for a factor
+
+void SetUpOnLevels(Benchmark* b)
 {
-  b->ArgNames({ "level", "c" })
-    ->ArgsProduct({ { 0, 1, 2, 3 }, { 1000 } })
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime();
+  OnProcessTime(b, { "level", "c" })->ArgsProduct({ Levels, { 1000 } });
 }
 
-void OnSteps(benchmark::internal::Benchmark* b)
+void SetUpOnAllLevels(Benchmark* b)
 {
-  OnGrid(b, { 1, 10, 1000, 100000 });
+  SetUpOnLevels(b);
+  b->Args({ Largest, 1000 });
 }
 
-void OnShortAndLongSteps(benchmark::internal::Benchmark* b) // all others take as long as the last
+Benchmark* SolveOnLevels(Benchmark* b, Numbers tenths)
 {
-  OnGrid(b, { 1, 1000 });
+  return OnProcessTime(b, { "level", "c", "columns" })
+    ->ArgsProduct({ Levels, std::move(tenths), { 1, 3 } });
+}
+
+void SolveOnShortAndLongSteps(Benchmark* b) // all others take as long as the last
+{
+  SolveOnLevels(b, { 1, 1000 });
+}
+
+void SolveOnAllLevels(Benchmark* b)
+{
+  SolveOnLevels(b, { 1, 10, 1000, 100000 })->ArgsProduct({ { Largest }, { 1, 10, 1000 }, { 1 } });
 }
 
 } // namespace
 
-BENCHMARK_CAPTURE(SetUp, Direct, SolverMethod::Factorization)->Apply(OnLevels);
-BENCHMARK_CAPTURE(SetUpAgain, Direct, SolverMethod::Factorization)->Apply(OnLevels);
-BENCHMARK_CAPTURE(SetUp, Multigrid, SolverMethod::Multigrid)->Apply(OnLevels);
-BENCHMARK_CAPTURE(Solve, Direct, SolverMethod::Factorization)->Apply(OnShortAndLongSteps);
-BENCHMARK_CAPTURE(Solve, Multigrid, SolverMethod::Multigrid)->Apply(OnSteps);
-BENCHMARK_CAPTURE(Solve, ConjugateGradient, SolverMethod::ConjugateGradient)->Apply(OnSteps);
+BENCHMARK_CAPTURE(SetUp, Direct, SolverMethod::Factorization)->Apply(SetUpOnLevels);
+BENCHMARK_CAPTURE(SetUpAgain, Direct, SolverMethod::Factorization)->Apply(SetUpOnLevels);
+BENCHMARK_CAPTURE(SetUp, Multigrid, SolverMethod::Multigrid)->Apply(SetUpOnAllLevels);
+BENCHMARK_CAPTURE(Solve, Direct, SolverMethod::Factorization)->Apply(SolveOnShortAndLongSteps);
+BENCHMARK_CAPTURE(Solve, Multigrid, SolverMethod::Multigrid)->Apply(SolveOnAllLevels);
+BENCHMARK_CAPTURE(Solve, ConjugateGradient, SolverMethod::ConjugateGradient)
+  ->Apply(SolveOnAllLevels);
