@@ -76,23 +76,18 @@ vtkSmartPointer<vtkPolyData> WithModerateCoordinates(vtkPolyData* block)
   return result;
 }
 
-/// A copy in the precision of `type`.
+/// A copy in single precision where `type` is that, otherwise in double.
 vtkSmartPointer<vtkPoints> ConvertPoints(vtkPoints* from, int type)
 {
   const vtkIdType count = from->GetNumberOfPoints();
   auto points = vtkSmartPointer<vtkPoints>::New();
-  switch (type)
+  if (type == VTK_FLOAT)
   {
-    case VTK_DOUBLE:
-      points->SetData(NewArray<vtkDoubleArray>("Points", 3, count));
-      break;
-    case VTK_FLOAT:
-      points->SetData(NewArray<vtkFloatArray>("Points", 3, count));
-      break;
-    default:
-      points->SetDataType(type);
-      points->SetNumberOfPoints(count);
-      break;
+    points->SetData(NewArray<vtkFloatArray>("Points", 3, count));
+  }
+  else
+  {
+    points->SetData(NewArray<vtkDoubleArray>("Points", 3, count));
   }
   for (vtkIdType i = 0; i < count; ++i)
   {

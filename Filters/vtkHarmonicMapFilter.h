@@ -154,7 +154,8 @@ public:
    * On: the points of the output are moved so that its triangles stand upright on the result (mesh
    * denoising): they minimise 1/2 int |grad(N . x)|^2 + 1/(2 r^2) int |x - x_0|^2 with N the
    * result on the triangle and r = 5 mean edge lengths. The input array must be the surface's
-   * normals. See GetVolumeBefore() and what follows. Default: off.
+   * normals. Points in single precision stay so, all others become double. See GetVolumeBefore()
+   * and what follows. Default: off.
    */
   vtkSetMacro(MoveVertices, bool);
   vtkGetMacro(MoveVertices, bool);

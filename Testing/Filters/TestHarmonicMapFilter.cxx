@@ -736,6 +736,25 @@ TEST(HarmonicMapFilter, MovedPointsKeepTheirPrecisionAndMergedOnesStayTogether)
   EXPECT_EQ(filter->GetVolumeBefore(), 0.0); // open
 }
 
+TEST(HarmonicMapFilter, MovedPointsOfIntegersAreRealNumbers)
+{
+  auto grid = Grid(6, 6);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToInt();
+  for (vtkIdType i = 0; i < 36; ++i)
+  {
+    double p[3];
+    grid->GetPoint(i, p);
+    points->InsertNextPoint(10.0 * p[0], 10.0 * p[1], std::round(3.0 * Rough(i, 2)));
+  }
+  grid->SetPoints(points);
+  auto filter = MakeFilter(grid);
+  filter->MoveVerticesOn();
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPoints()->GetDataType(), VTK_DOUBLE);
+  EXPECT_GT(filter->GetMaximumDisplacement(), 1e-3);
+}
+
 // --- Composite data, aborts, errors ---
 
 TEST(HarmonicMapFilter, BlocksAreTreatedAsOneProblem)

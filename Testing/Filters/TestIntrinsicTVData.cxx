@@ -252,3 +252,27 @@ TEST(IntrinsicTVData, AutomaticFidelityLeavesTheNoiseInTheResidual)
   filter->Update();
   EXPECT_LT(LargestDifference(Result(filter), found), 1e-6);
 }
+
+TEST(IntrinsicTVData, AutomaticFidelityKnowsOtherEdgeFunctions)
+{
+  auto sphere = Sphere(3);
+  AddPointArray(sphere, "f", 1,
+    [&](vtkIdType i, int k) { return Cap(sphere->GetPoint(i)) + 0.2 * Rough(i, k); });
+  sphere->GetPointData()->SetActiveScalars("f");
+  const auto areas = ControlAreas(sphere);
+  auto filter = MakeFilter(sphere);
+  filter->SetEdgeFunctionToCharbonnier();
+  filter->SetModeToSteadyState();
+  filter->AutomaticFidelityOn();
+  filter->SetNoiseLevel(0.1);
+  filter->Update();
+  vtkDataArray* f = sphere->GetPointData()->GetArray("f");
+  double square = 0.0;
+  double area = 0.0;
+  for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
+  {
+    area += areas[i];
+    square += areas[i] * std::pow(Result(filter)->GetComponent(i, 0) - f->GetComponent(i, 0), 2);
+  }
+  EXPECT_NEAR(std::sqrt(square / area), 0.1, 0.002);
+}

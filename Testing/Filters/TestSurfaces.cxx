@@ -5,6 +5,7 @@
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFVMHeatFilter.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <gtest/gtest.h>
@@ -244,6 +245,54 @@ TEST(Surfaces, MergedPointsWithDifferentDataTakeTheirMeanAndKeepTheSum)
   EXPECT_EQ(Result(filter)->GetComponent(4, 0), 1.0);
   UpdateAt(filter, 10.0);
   EXPECT_NEAR(HistoryAt(filter, 10, "Total_0"), 100.0, 1e-10); // 25 x 1 + 25 x 3
+}
+
+TEST(Surfaces, PartitionsOfStripsAreOneSurface)
+{
+  const auto part = [](int first)
+  {
+    auto strips = Grid(4, 5);
+    vtkNew<vtkCellArray> cells;
+    for (vtkIdType j = 0; j < 4; ++j)
+    {
+      cells->InsertNextCell(8);
+      for (vtkIdType i = 0; i < 4; ++i) // the diagonals of Grid()
+      {
+        cells->InsertCellPoint(i + 4 * (j + 1));
+        cells->InsertCellPoint(i + 4 * j);
+      }
+    }
+    for (vtkIdType i = 0; i < 20; ++i)
+    {
+      double x[3];
+      strips->GetPoint(i, x);
+      strips->GetPoints()->SetPoint(i, x[0] + first, x[1], x[2]);
+    }
+    strips->SetPolys(nullptr);
+    strips->SetStrips(cells);
+    AddPlaceData(strips);
+    return strips;
+  };
+  vtkNew<vtkPartitionedDataSet> partitions;
+  partitions->SetPartition(0, part(0));
+  partitions->SetPartition(1, part(3));
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputDataObject(partitions);
+  filter->Update();
+  const auto whole = Grid(7, 5);
+  AddPlaceData(whole);
+  const auto reference = MakeFilter(whole);
+  reference->Update();
+  auto* output = vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  for (int p = 0; p < 2; ++p)
+  {
+    vtkDataArray* u = output->GetPartition(p)->GetPointData()->GetArray("fDiffused");
+    for (vtkIdType i = 0; i < 20; ++i)
+    {
+      const vtkIdType there = i % 4 + 3 * p + 7 * (i / 4);
+      EXPECT_NEAR(u->GetComponent(i, 0), Result(reference)->GetComponent(there, 0), 1e-9);
+    }
+  }
 }
 
 TEST(Surfaces, APolygonOnALineIsLeftOutTriangleByTriangle)

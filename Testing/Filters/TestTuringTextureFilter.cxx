@@ -309,6 +309,30 @@ TEST(TuringTextureFilter, ARunEndsWhenThePatternStands)
   EXPECT_TRUE(Identical(Result(filter, "u1"), standing));
 }
 
+TEST(TuringTextureFilter, ABlockThatStandsWaitsForTheOthers)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (unsigned int b = 0; b < 2; ++b)
+  {
+    auto sphere = Sphere(2);
+    AddPointArray(
+      sphere, "state", 2, [&](vtkIdType i, int k) { return 4.0 + 0.5 * b * Rough(i, k); });
+    blocks->SetBlock(b, sphere);
+  }
+  const auto filter = MakeFilter(nullptr, 8);
+  filter->SetInputDataObject(blocks);
+  SetInputArray(filter, 0, "state");
+  filter->SetStopTolerance(1e-6);
+  filter->Update();
+  ASSERT_EQ(History(filter)->GetNumberOfRows(), 9);
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  const auto u1 = [&](unsigned int b)
+  { return vtkPolyData::SafeDownCast(output->GetBlock(b))->GetPointData()->GetArray("u1"); };
+  EXPECT_NEAR(Low(u1(0)), 4.0, 1e-9); // at rest from the start
+  EXPECT_NEAR(High(u1(0)), 4.0, 1e-9);
+  EXPECT_GT(High(u1(1)) - Low(u1(1)), 1e-3);
+}
+
 TEST(TuringTextureFilter, HistoryCountsWhatIsHeldAtZero)
 {
   const auto filter = MakeFilter(Sphere(4), 160);
