@@ -288,7 +288,8 @@ bool vtkTuringTextureFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays,
     }
   };
   tell(arrays.Data && NumberOfDataComponents(arrays.Data) != 2,
-    "InputArray holds colours, whose last component is alpha; allowed: 2 components of a type other "
+    "InputArray holds colours, whose last component is alpha; allowed: 2 components of a type "
+    "other "
     "than unsigned char");
   tell(arrays.Rates && !onCells,
     "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell");
@@ -338,7 +339,7 @@ double vtkTuringTextureFilter::GetEffectiveTimeStep()
 vtkTuringTextureFilter::Rates vtkTuringTextureFilter::MakeRates(const ModelInput& input)
 {
   const TriangleMesh& mesh = *input.Surface.Mesh;
-  UnitSystem units = input.Units;
+  const UnitSystem& units = input.Units;
   const double unit = units.ToCore(1.0, 2.0, 0.0) / (units.Natural ? 1.0 : this->ReactionRate);
   const auto orAlong = [](double across, double along) { return across == -1.0 ? along : across; };
   const double constant[4] = { this->DiffusionRate1,
@@ -347,32 +348,65 @@ vtkTuringTextureFilter::Rates vtkTuringTextureFilter::MakeRates(const ModelInput
   Rates rates;
   for (int c = 0; c < 2; ++c)
   {
-    Vector* const both[2] = { &rates.Along[c], &rates.Across[c] };
-    double* const means[2] = { &rates.MeanAlong[c], &rates.MeanAcross[c] };
-    for (int d = 0; d < 2; ++d)
+    rates.MeanAlong[c] = unit * constant[2 * c];
+    rates.MeanAcross[c] = unit * constant[2 * c + 1];
+    rates.Along[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c]);
+    rates.Across[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c + 1]);
+  }
+  input.Together(
+    [&]
     {
-      *both[d] = Vector::Constant(mesh.NumberOfTriangles(), unit * constant[2 * c + d]);
-      *means[d] = unit * constant[2 * c + d];
-      if (!input.Arrays.Rates)
+      if (input.Arrays.Rates)
       {
-        continue;
+        this->ReadRates(input, rates);
       }
+    });
+  const Partition* const partition = mesh.GetPartition();
+  if (AnyProcess(partition, input.Arrays.Rates))
+  {
+    const auto mean = [&](const Vector& rate)
+    {
       double area = 0.0;
       double sum = 0.0;
       for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
       {
-        const vtkIdType cell = input.Surface.TriangleCells[mesh.InputTriangle()[t]];
-        const double rate = input.Arrays.Rates->GetComponent(cell, 2 * c + d);
-        if (!(std::isfinite(rate) && rate >= 0.0))
-        {
-          throw std::runtime_error("DiffusionRateArray is " + Quantity(rate) + " at cell " +
-            std::to_string(cell) + "; allowed: finite numbers, 0 or more");
-        }
-        (*both[d])[t] = unit * rate;
         area += mesh.Shapes()[t].Area();
-        sum += mesh.Shapes()[t].Area() * unit * rate;
+        sum += mesh.Shapes()[t].Area() * unit * rate[t];
       }
-      *means[d] = area > 0.0 ? sum / area : 0.0;
+      area = SumOverProcesses(partition, area);
+      sum = SumOverProcesses(partition, sum);
+      return area > 0.0 ? sum / area : 0.0;
+    };
+    for (int c = 0; c < 2; ++c)
+    {
+      rates.MeanAlong[c] = mean(rates.Along[c]);
+      rates.MeanAcross[c] = mean(rates.Across[c]);
+    }
+  }
+  for (int c = 0; c < 2; ++c)
+  {
+    rates.Along[c] *= unit;
+    rates.Across[c] *= unit;
+  }
+  return rates;
+}
+
+/// Those of DiffusionRateArray, in its own unit.
+void vtkTuringTextureFilter::ReadRates(const ModelInput& input, Rates& rates)
+{
+  const TriangleMesh& mesh = *input.Surface.Mesh;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const vtkIdType cell = input.Surface.TriangleCells[mesh.InputTriangle()[t]];
+    for (int k = 0; k < 4; ++k)
+    {
+      const double rate = input.Arrays.Rates->GetComponent(cell, k);
+      if (!(std::isfinite(rate) && rate >= 0.0))
+      {
+        throw std::runtime_error("DiffusionRateArray is " + Quantity(rate) + " at cell " +
+          std::to_string(cell) + "; allowed: finite numbers, 0 or more");
+      }
+      (k % 2 == 0 ? rates.Along : rates.Across)[k / 2][t] = rate;
     }
   }
   const bool directed = rates.Along[0] != rates.Across[0] || rates.Along[1] != rates.Across[1];
@@ -382,7 +416,6 @@ vtkTuringTextureFilter::Rates vtkTuringTextureFilter::MakeRates(const ModelInput
                              "DirectionArray is not set; allowed: the same, or an array of "
                              "directions");
   }
-  return rates;
 }
 
 /// Scale the rates to FeatureSize, and tell what stands against a pattern.
@@ -449,7 +482,7 @@ std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& inp
   Reaction reaction; // in units of 1/ReactionRate
   reaction.Terms = &SurfaceDiffusion::GetKinetics(static_cast<KineticsName>(this->Kinetics));
   reaction.Parameters = this->GetKineticsParameters();
-  if (!input.Arrays.Data)
+  if (input.Data.Start.cols() == 0)
   {
     if (!reaction.Terms->SteadyState(reaction.Parameters).allFinite())
     {
@@ -492,9 +525,15 @@ std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& inp
     chemicals[c].Coefficients = AnisotropicCoefficients(
       mesh, isotropic, frames, rates.Along[c], rates.Across[c], input.Parallel);
   }
-  settings.SideBySide = SolveSideBySide(direct);
+  settings.SideBySide = !mesh.GetPartition() && SolveSideBySide(direct);
   return std::make_unique<ReactionDiffusion>(input.Surface.Operators, reaction,
     std::move(chemicals), std::move(input.Data), settings, input.Parallel);
+}
+
+void vtkTuringTextureFilter::PrepareResult(const SurfaceRun& run, const Monitor&)
+{
+  this->ContrastLimits[&run] = SurfaceDiffusion::ContrastLimits(
+    run.Path->State().col(this->TextureChemical), run.Surface->Mesh->GetPartition());
 }
 
 void vtkTuringTextureFilter::WriteResult(
@@ -510,7 +549,8 @@ void vtkTuringTextureFilter::WriteResult(
     const std::string name = this->ResultArrayName + (c == 0 ? "u1" : "u2");
     points->AddArray(MakePointArray(single, *run.Surface, name, u.col(c), arrays.Data, c));
   }
-  const Vector texture = StretchContrast(u.col(this->TextureChemical));
+  const Vector texture =
+    StretchContrast(u.col(this->TextureChemical), this->ContrastLimits.extract(&run).mapped());
   points->AddArray(
     MakePointArray(single, *run.Surface, this->ResultArrayName + "Texture", texture));
   std::string active = this->ResultArrayName + "u1";

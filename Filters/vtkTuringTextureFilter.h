@@ -62,6 +62,7 @@
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
 #include <array> // for parameters
+#include <map> // for what is kept per block
 
 class VTKSURFACEDIFFUSION_EXPORT vtkTuringTextureFilter : public vtkSurfaceDiffusionAlgorithm
 {
@@ -305,7 +306,9 @@ protected:
   void WriteRunKey(std::ostream& key) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
+  void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;
   void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
+  bool CanBeDistributed() override { return true; }
   const char* GetResultSuffix() override { return ""; }
   Dimension GetTimeDimension() override { return { 0.0, 0.0 }; }
   Dimension GetEnergyDimension() override { return { 2.0, 0.0 }; }
@@ -356,7 +359,10 @@ private:
   std::array<double, 3> GetKineticsParameters();
   bool AreRatesDirected();
   Rates MakeRates(const ModelInput& input);
+  void ReadRates(const ModelInput& input, Rates& rates);
   void ChooseFeatureSize(ModelInput& input, Rates& rates);
+
+  std::map<const SurfaceRun*, std::array<double, 2>> ContrastLimits; ///< of this update
 };
 
 #endif

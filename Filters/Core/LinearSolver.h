@@ -53,6 +53,10 @@ public:
   /// std::runtime_error where no finite solution exists.
   virtual SolveReport Solve(const Values& b, Values& x, const Monitor& monitor = Monitor()) = 0;
 
+  /// z is about A^-1 r, and symmetric and linear in r as what preconditions other iterations has to
+  /// be: the solution of a direct method. Of a surface in pieces r is as states are (Partition).
+  virtual void Precondition(const Values& r, Values& z) { this->Solve(r, z); }
+
 protected:
   /// A power of two near the largest of two columns: squares of what is divided by it no double
   /// need fear, and the division is exact.

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Types.h"
+#include "Parallel.h"
 
+#include <array>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -20,12 +21,30 @@ class Partition
 public:
   virtual ~Partition() = default;
 
-  /// Each number becomes its sum, or the largest, over the processes.
+  /// Each number becomes its sum, or the largest, over the processes. Sum() throws Aborted in all
+  /// of them where one of them was asked to stop.
   virtual void Sum(double* numbers, Index count) const = 0;
   virtual void Max(double* numbers, Index count) const = 0;
 
   /// Vertices on seams get the values of the process that owns them.
   virtual void TakeFromOwners(Values& values) const = 0;
+
+  /// Vertices on seams get the sum of what the processes have there, to the same bits everywhere:
+  /// what was summed over the triangles here becomes what it is on the surface. rows: per vertex.
+  virtual void AddOverSeams(double* rows, Index columns) const = 0;
+  void AddOverSeams(Values& values) const
+  {
+    this->AddOverSeams(values.data(), static_cast<Index>(values.cols()));
+  }
+  void AddOverSeams(Vector& values) const { this->AddOverSeams(values.data(), 1); }
+
+  /// Edges, as pairs of vertices here, that other processes have too; the same for them.
+  const std::vector<std::array<Index, 2>>& SeamEdges() const { return this->EdgesOnSeams; }
+  virtual void AddOverSeamEdges(double* ofEdges) const = 0;
+
+  /// Whether this is the one process that counts it.
+  bool Owns(Index vertex) const { return this->OwnedVertices[vertex] != 0; }
+  bool OwnsSeamEdge(Index edge) const { return this->OwnedEdges[edge] != 0; }
 
   bool Any(bool here) const
   {
@@ -42,6 +61,8 @@ public:
 protected:
   Index Components = 0;
   std::vector<Index> WholeComponents;
+  std::vector<std::array<Index, 2>> EdgesOnSeams;
+  std::vector<char> OwnedVertices, OwnedEdges;
 };
 
 /// Sums over the processes; without a partition what is here is the whole.
@@ -58,7 +79,26 @@ inline bool AnyProcess(const Partition* partition, bool here)
   return partition ? partition->Any(here) : here;
 }
 
-/// The same for sums over connected components: row r belongs to component[r] of this mesh.
+/// Sum of f(i) over the vertices of the surface, each counted once; f is called at all that are
+/// here, count of them.
+template <typename F>
+double SumOverVertices(
+  const Partition* partition, const ParallelFor& parallel, Index count, const F& f)
+{
+  if (!partition)
+  {
+    return Sum(parallel, count, f);
+  }
+  const auto ofOwned = [&](Index i)
+  {
+    const double value = f(i);
+    return partition->Owns(i) ? value : 0.0;
+  };
+  return SumOverProcesses(partition, Sum(parallel, count, ofOwned));
+}
+
+/// SumOverProcesses() for sums over connected components: row r belongs to component[r] of this
+/// mesh.
 void SumComponents(const Partition* partition, const std::vector<Index>& component, Values& sums);
 
 } // namespace SurfaceDiffusion

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReactionDiffusion.h"
 
+#include "Conservation.h"
 #include "LinearDiffusion.h"
 #include "Random.h"
 #include "SparsePattern.h"
@@ -24,12 +25,13 @@ const double Delta = 1.0 - 0.5 / Gamma;
 template <typename F>
 double Norm(const TriangleMesh& mesh, const ParallelFor& parallel, const F& f)
 {
-  return std::sqrt(Sum(parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      const double value = f(i);
-      return mesh.ControlAreas()[i] * value * value;
-    }));
+  return std::sqrt(SumOverProcesses(mesh.GetPartition(),
+    Sum(parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double value = f(i);
+        return mesh.ControlAreas()[i] * value * value;
+      })));
 }
 
 } // namespace
@@ -109,6 +111,11 @@ void ReactionDiffusion::Prepare(const Monitor& monitor)
         matrix, this->Data.Fixed, this->New[c], this->Load[c], this->Parallel);
     }
     this->Chemicals[c].Solver->SetMatrix(matrix, monitor.Part(0.5 * c, 0.5 * c + 0.5));
+  }
+  if (const Partition* const partition = this->Operators->Mesh().GetPartition())
+  {
+    this->WholeAreas = areas;
+    partition->AddOverSeams(this->WholeAreas);
   }
   if (this->Options.SideBySide)
   {
@@ -245,28 +252,44 @@ void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
   {
     return;
   }
-  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  const Partition* const partition = this->Operators->Mesh().GetPartition();
+  const Index n = this->Operators->Mesh().NumberOfVertices();
+  const Vector& areas = partition ? this->WholeAreas : this->Operators->Mesh().ControlAreas();
   for (int c = 0; c < 2; ++c)
   {
-    const SparseMatrix& matrix = this->Matrices[c]; // M + ImplicitTime K
-    ForEach(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+    if (partition)
+    {
+      ForEach(this->Parallel, n,
+        [&](Index i)
+        { this->Force[c](i) = u[c](i) <= 0.0 ? this->IntegrateDiffusion(c, u[c], i) : 0.0; });
+      partition->AddOverSeams(this->Force[c]);
+    }
+    ForEach(this->Parallel, n,
       [&](Index i)
       {
         double force = 0.0;
         if (u[c](i) <= 0.0 && !this->Data.Fixed[i])
         {
-          double sum = -this->Load[c](i);
-          for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
-          {
-            sum += a.value() * u[c](a.index());
-          }
-          const double diffusion = (areas[i] * u[c](i) - sum) / (this->ImplicitTime * areas[i]);
+          const double integral =
+            partition ? this->Force[c](i) : this->IntegrateDiffusion(c, u[c], i);
+          const double diffusion = integral / (this->ImplicitTime * areas[i]);
           force = std::max(0.0, -std::max(0.0, diffusion) - f[c](i));
         }
         this->Force[c](i) = force;
         f[c](i) += force;
       });
   }
+}
+
+/// -ImplicitTime (K u)_i, from the matrix M + ImplicitTime K.
+double ReactionDiffusion::IntegrateDiffusion(int chemical, const Values& u, Index i) const
+{
+  double sum = -this->Load[chemical](i);
+  for (SparseMatrix::InnerIterator a(this->Matrices[chemical], i); a; ++a)
+  {
+    sum += a.value() * u(a.index());
+  }
+  return this->Operators->Mesh().ControlAreas()[i] * u(i) - sum;
 }
 
 /// New = the solutions for the right-hand sides.
@@ -292,7 +315,9 @@ void ReactionDiffusion::Solve(StepReport& report, const Monitor& monitor)
   {
     const Solution& solution = this->Solutions[c];
     constexpr double boundless = 1e100;
-    if (solution.Failure && !(this->RightHandSide[c].array().abs() < boundless).all())
+    if (solution.Failure &&
+      AnyProcess(this->Operators->Mesh().GetPartition(),
+        !(this->RightHandSide[c].array().abs() < boundless).all()))
     {
       throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
                                "other parameters of the kinetics, or clamp at zero");
@@ -331,7 +356,8 @@ void ReactionDiffusion::Project(double dt, StepReport& report)
   {
     return;
   }
-  const double held = Sum(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  const double held = SumOverVertices(mesh.GetPartition(), this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       int count = 0;
@@ -367,11 +393,10 @@ void ReactionDiffusion::FinishStep()
   {
     const Values& u = this->New[c];
     const Values& before = this->Old[c];
-    const double area =
-      Sum(this->Parallel, mesh.NumberOfVertices(), [&](Index i) { return mesh.ControlAreas()[i]; });
-    const double mean = Sum(this->Parallel, mesh.NumberOfVertices(),
-                          [&](Index i) { return mesh.ControlAreas()[i] * u(i); }) /
-      area;
+    const double area = SumOverProcesses(mesh.GetPartition(),
+      Sum(
+        this->Parallel, mesh.NumberOfVertices(), [&](Index i) { return mesh.ControlAreas()[i]; }));
+    const double mean = Total(mesh, u, 0, this->Parallel) / area;
     const double pattern = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - mean; });
     const double change = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - before(i); });
     this->Done =
@@ -382,8 +407,9 @@ void ReactionDiffusion::FinishStep()
 double ReactionDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  return DirichletEnergy(mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
-    DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel);
+  return SumOverProcesses(mesh.GetPartition(),
+    DirichletEnergy(mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
+      DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel));
 }
 
 } // namespace SurfaceDiffusion

@@ -65,7 +65,7 @@ public:
     /// mean|), root mean squares over the surface, is at most this for both chemicals: the relative
     /// change per unit time. It is about the growth rate while the pattern grows. 0: never.
     double StopTolerance = 0.0;
-    /// Solve for the two chemicals on two threads. The bits are the same either way.
+    /// Solve for the two chemicals on two threads. The bits are the same either way. Not in pieces.
     bool SideBySide = false;
   };
 
@@ -111,6 +111,7 @@ private:
   void SecondOrderStep(StepReport& report, const Monitor& monitor);
   void React(const Pair& u, Pair& f) const;
   void AddHoldingForce(const Pair& u, Pair& f);
+  double IntegrateDiffusion(int chemical, const Values& u, Index i) const;
   void Solve(StepReport& report, const Monitor& monitor);
   void SolveFor(int chemical, const Monitor& monitor);
   void Project(double dt, StepReport& report);
@@ -124,6 +125,7 @@ private:
   const ParallelFor& Parallel;
   double ImplicitTime; ///< dt times the implicit part of a stage
   std::array<SparseMatrix, 2> Matrices;
+  Vector WholeAreas; ///< of a surface in pieces: the control areas over all of them
   bool Prepared = false;
   bool Done = false;
   Pair Load; ///< what fixed neighbours give to the right-hand side

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace SurfaceDiffusion
 {
@@ -20,17 +22,67 @@ double Percentile(Vector& values, double fraction)
   return *at;
 }
 
+/// Integers in the order of the doubles.
+std::uint64_t OrderOf(double x)
+{
+  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &x, sizeof(bits));
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+double WithOrder(std::uint64_t order)
+{
+  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
+  const std::uint64_t bits = (order & sign) != 0 ? order & ~sign : ~order;
+  double x = 0.0;
+  std::memcpy(&x, &bits, sizeof(x));
+  return x;
+}
+
+/// By bisection: no process need hold the values of the others.
+double WholePercentile(
+  const Eigen::Ref<const Vector>& u, double fraction, const Partition& partition)
+{
+  const auto count = [&](const auto& counts)
+  {
+    return SumOverVertices(&partition, SerialFor(), static_cast<Index>(u.size()),
+      [&](Index i) { return counts(u[i]) ? 1.0 : 0.0; });
+  };
+  const double last = count([](double) { return true; }) - 1.0;
+  const auto rank = static_cast<double>(std::lround(fraction * last));
+  std::uint64_t low = 0;
+  std::uint64_t high = ~low;
+  while (low < high)
+  {
+    const std::uint64_t middle = low + (high - low) / 2;
+    const bool reached = count([&](double x) { return OrderOf(x) <= middle; }) > rank;
+    (reached ? high : low) = reached ? middle : middle + 1;
+  }
+  return WithOrder(low);
+}
+
 } // namespace
 
-Vector StretchContrast(const Eigen::Ref<const Vector>& u)
+std::array<double, 2> ContrastLimits(const Eigen::Ref<const Vector>& u, const Partition* partition)
 {
+  if (partition)
+  {
+    return { WholePercentile(u, 0.01, *partition), WholePercentile(u, 0.99, *partition) };
+  }
   if (u.size() == 0)
   {
-    return u;
+    return { 0.0, 0.0 };
   }
   Vector sorted = u;
   const double low = Percentile(sorted, 0.01);
-  const double high = Percentile(sorted, 0.99);
+  return { low, Percentile(sorted, 0.99) };
+}
+
+Vector StretchContrast(const Eigen::Ref<const Vector>& u, const std::array<double, 2>& limits)
+{
+  const double low = limits[0];
+  const double high = limits[1];
   if (!(high > low))
   {
     return Vector::Constant(u.size(), 0.5);

@@ -61,8 +61,7 @@ void CheckpointStore::Offer(Index step, const Evolution& evolution)
 
 Index CheckpointStore::LatestAtOrBefore(Index step) const
 {
-  return std::min(static_cast<Index>(this->Count) - 1, step / this->StepStride) *
-    this->StepStride;
+  return std::min(static_cast<Index>(this->Count) - 1, step / this->StepStride) * this->StepStride;
 }
 
 const double* CheckpointStore::At(Index step) const
@@ -112,10 +111,14 @@ void Trajectory::Seek(Index step, const Monitor& monitor)
     const Monitor part =
       monitor.Part((this->Current - first) / count, (this->Current + 1 - first) / count);
     const auto start = std::chrono::steady_clock::now();
-    StepReport report;
     try
     {
-      report = this->Model->Advance(part);
+      const StepReport report = this->Model->Advance(part);
+      if (this->Current + 1 == static_cast<Index>(this->History.size()))
+      {
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        this->Record(report, seconds.count());
+      }
     }
     catch (...)
     {
@@ -127,11 +130,6 @@ void Trajectory::Seek(Index step, const Monitor& monitor)
     }
     ++this->Current;
     ++this->Advances;
-    if (this->Current == static_cast<Index>(this->History.size()))
-    {
-      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-      this->Record(report, seconds.count());
-    }
     this->Checkpoints.Offer(this->Current, *this->Model);
     part.Report(1.0);
   }
@@ -139,12 +137,15 @@ void Trajectory::Seek(Index step, const Monitor& monitor)
 
 void Trajectory::Record(const StepReport& report, double seconds)
 {
-  this->History.push_back({ this->Model->Energy(), report.Iterations, report.Residual, seconds,
-    report.Clamped });
-  for (Eigen::Index k = 0; k < this->State().cols(); ++k)
+  const auto columns = static_cast<std::size_t>(this->State().cols());
+  this->Totals.resize(this->History.size() * columns); // an abort may have left some
+  const double energy = this->Model->Energy();
+  for (std::size_t k = 0; k < columns; ++k)
   {
-    this->Totals.push_back(Total(*this->Surface, this->State(), k, this->Parallel));
+    this->Totals.push_back(
+      Total(*this->Surface, this->State(), static_cast<Eigen::Index>(k), this->Parallel));
   }
+  this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped });
 }
 
 } // namespace SurfaceDiffusion

@@ -90,11 +90,23 @@ public:
     SolveReport report;
     for (Eigen::Index k = 0; k < b.cols(); ++k)
     {
-      this->SolveColumn(b, x, k, report);
+      this->SolveColumn(b, x, k, report, monitor.Part(1.0 * k / b.cols(), (k + 1.0) / b.cols()));
       monitor.Report((k + 1.0) / b.cols());
     }
     this->Pieces->TakeFromOwners(x);
     return report;
+  }
+
+  void Precondition(const Values& r, Values& z) override
+  {
+    for (Eigen::Index k = 0; k < r.cols(); ++k)
+    {
+      this->SetOwned(this->R, r, k);
+      HYPRE_ParVectorSetConstantValues(this->Z.Vector, 0.0);
+      this->ApplyPreconditioner(this->R.Vector, this->Z.Vector);
+      this->GetOwned(this->Z, z, k);
+    }
+    this->Pieces->TakeFromOwners(z);
   }
 
 private:
@@ -154,20 +166,65 @@ private:
       HYPRE_BoomerAMGSetRelaxType(this->Multigrid, 6); // symmetric: as conjugate gradients need
       HYPRE_BoomerAMGSetInterpType(this->Multigrid, 6);
       HYPRE_BoomerAMGSetPMaxElmts(this->Multigrid, 4);
-      HYPRE_PCGSetPrecond(this->Krylov,
-        reinterpret_cast<HYPRE_PtrToSolverFcn>(HYPRE_BoomerAMGSolve),
-        reinterpret_cast<HYPRE_PtrToSolverFcn>(HYPRE_BoomerAMGSetup), this->Multigrid);
+      HYPRE_BoomerAMGSetup(this->Multigrid, this->Matrix, this->B.Vector, this->X.Vector);
     }
-    else
+    const auto nothing = [](HYPRE_Solver, HYPRE_Matrix, HYPRE_Vector, HYPRE_Vector)
+    { return HYPRE_Int(0); };
+    const auto precondition = [](HYPRE_Solver self, HYPRE_Matrix, HYPRE_Vector b, HYPRE_Vector x)
     {
-      HYPRE_PCGSetPrecond(this->Krylov,
-        reinterpret_cast<HYPRE_PtrToSolverFcn>(HYPRE_ParCSRDiagScale),
-        reinterpret_cast<HYPRE_PtrToSolverFcn>(HYPRE_ParCSRDiagScaleSetup), AsSolver(this->Matrix));
-    }
+      return reinterpret_cast<HypreSolver*>(self)->Iterate(
+        reinterpret_cast<HYPRE_ParVector>(b), reinterpret_cast<HYPRE_ParVector>(x));
+    };
+    HYPRE_PCGSetPrecond(this->Krylov, precondition, nothing, reinterpret_cast<HYPRE_Solver>(this));
     HYPRE_ParCSRPCGSetup(this->Krylov, this->Matrix, this->B.Vector, this->X.Vector);
   }
 
-  void SolveColumn(const Values& b, Values& x, Eigen::Index k, SolveReport& report)
+  /// What hypre calls in each of its iterations: all processes stop together, or none.
+  HYPRE_Int Iterate(HYPRE_ParVector r, HYPRE_ParVector z)
+  {
+    constexpr int iterationsPerQuestion = 16;
+    if (++this->Iterations % iterationsPerQuestion == 0)
+    {
+      this->Progress.Report(1.0 - 1.0 / (1.0 + 0.01 * this->Iterations)); // how many is unknown
+      this->IsAborted = this->Pieces->IsAborted();
+    }
+    if (this->IsAborted)
+    {
+      return HYPRE_ParVectorSetConstantValues(z, 0.0); // which ends it
+    }
+    return this->ApplyPreconditioner(r, z);
+  }
+
+  HYPRE_Int ApplyPreconditioner(HYPRE_ParVector r, HYPRE_ParVector z)
+  {
+    return this->IsMultigrid ? HYPRE_BoomerAMGSolve(this->Multigrid, this->Matrix, r, z)
+                             : HYPRE_ParCSRDiagScale(AsSolver(this->Matrix), this->Matrix, r, z);
+  }
+
+  void SetOwned(const Column& column, const Values& values, Eigen::Index k)
+  {
+    for (std::size_t i = 0; i < this->OwnVertices.size(); ++i)
+    {
+      this->Numbers[i] = values(this->OwnVertices[i], k);
+    }
+    HYPRE_IJVectorInitialize(column.IJ);
+    HYPRE_IJVectorSetValues(column.IJ, static_cast<HYPRE_Int>(this->OwnRows.size()),
+      this->OwnRows.data(), this->Numbers.data());
+    HYPRE_IJVectorAssemble(column.IJ);
+  }
+
+  void GetOwned(const Column& column, Values& values, Eigen::Index k)
+  {
+    HYPRE_IJVectorGetValues(column.IJ, static_cast<HYPRE_Int>(this->OwnRows.size()),
+      this->OwnRows.data(), this->Numbers.data());
+    for (std::size_t i = 0; i < this->OwnVertices.size(); ++i)
+    {
+      values(this->OwnVertices[i], k) = this->Numbers[i];
+    }
+  }
+
+  void SolveColumn(
+    const Values& b, Values& x, Eigen::Index k, SolveReport& report, const Monitor& monitor)
   {
     for (std::size_t i = 0; i < this->Rows.size(); ++i)
     {
@@ -178,19 +235,14 @@ private:
     HYPRE_IJVectorAddToValues(this->B.IJ, static_cast<HYPRE_Int>(this->Rows.size()),
       this->Rows.data(), this->Numbers.data());
     HYPRE_IJVectorAssemble(this->B.IJ);
-    const auto owned = static_cast<HYPRE_Int>(this->OwnRows.size());
-    for (HYPRE_Int i = 0; i < owned; ++i)
-    {
-      this->Numbers[i] = x(this->OwnVertices[i], k);
-    }
-    HYPRE_IJVectorInitialize(this->X.IJ);
-    HYPRE_IJVectorSetValues(this->X.IJ, owned, this->OwnRows.data(), this->Numbers.data());
-    HYPRE_IJVectorAssemble(this->X.IJ);
+    this->SetOwned(this->X, x, k);
 
     // hypre stops by the norm of its preconditioner: what is asked for is that of the diagonal.
     double tolerance = this->Limits.Tolerance;
     int iterations = 0;
     double residual = this->Residual();
+    this->Progress = monitor;
+    this->Iterations = 0;
     for (int attempt = 0; attempt < 8 && residual > this->Limits.Tolerance; ++attempt)
     {
       HYPRE_PCGSetTol(this->Krylov, tolerance);
@@ -198,6 +250,10 @@ private:
         this->Krylov, std::max(1, this->Limits.MaximumNumberOfIterations - iterations));
       HYPRE_ParCSRPCGSolve(this->Krylov, this->Matrix, this->B.Vector, this->X.Vector);
       HYPRE_ClearAllErrors(); // not to converge is told below
+      if (this->IsAborted)
+      {
+        throw Aborted();
+      }
       HYPRE_Int done = 0;
       HYPRE_PCGGetNumIterations(this->Krylov, &done);
       iterations += done;
@@ -212,11 +268,7 @@ private:
     {
       throw std::runtime_error("the linear system has no finite solution");
     }
-    HYPRE_IJVectorGetValues(this->X.IJ, owned, this->OwnRows.data(), this->Numbers.data());
-    for (HYPRE_Int i = 0; i < owned; ++i)
-    {
-      x(this->OwnVertices[i], k) = this->Numbers[i];
-    }
+    this->GetOwned(this->X, x, k);
     report.Iterations = std::max(report.Iterations, iterations);
     report.Residual = std::max(report.Residual, residual);
     report.Converged = report.Converged && residual <= this->Limits.Tolerance;
@@ -269,6 +321,9 @@ private:
   const std::shared_ptr<const PiecePartition> Pieces;
   const MPI_Comm Comm;
   const bool IsMultigrid;
+  bool IsAborted = false;
+  int Iterations = 0;
+  Monitor Progress; ///< of the column that is solved
   HYPRE_BigInt First = 0;
   HYPRE_BigInt Last = -1;
   std::vector<HYPRE_BigInt> Rows; ///< per vertex

@@ -214,8 +214,8 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
   {
     reported = std::max(reported, fraction);
     this->Filter.UpdateProgress(reported);
-    this->AbortAsked = this->AbortAsked || this->IsAborted();
-    return this->Group || !this->AbortAsked; // together with the others, or at once
+    *this->AbortAsked = *this->AbortAsked || this->IsAborted();
+    return this->Group || !*this->AbortAsked; // together with the others, or at once
   };
   const Monitor monitor(callback);
   LoopWatch watch([&] { return callback(reported); });
@@ -233,7 +233,11 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Run(int step, vtkTable* history)
     {
       this->Filter.PrepareResult(*block.Run, monitor.Part(written, written));
     }
-    monitor.Report(written); // the last chance to abort: from here on the output changes
+    monitor.Report(written);
+    if (this->Group && this->Any(*this->AbortAsked))
+    {
+      throw Aborted(); // the last chance: from here on the output changes
+    }
     watch.End();
     this->Agree(
       [&]
@@ -345,6 +349,10 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurfaces(const Monitor& monito
       this->MakeSurface(block, options, monitor.Part(b / count, (b + 1) / count));
       block.Run->SurfaceKey = key;
       this->MadeAnything = true;
+    }
+    if (block.Run->Partition)
+    {
+      block.Run->Partition->ObeyAbort(this->AbortAsked);
     }
   }
 }
@@ -491,7 +499,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeRun(Block& block, const Monito
     std::move(frames), std::move(ids), parallel, monitor.Part(0.2, 1.0),
     [this, &run](const std::string& name, const SolverTask& task)
     { return this->FindSolver(run, name, task); },
-    run.Warnings };
+    [this](const std::function<void()>& work) { this->Agree(work); }, run.Warnings };
   run.Warnings.clear();
   run.HasMissing = false;
   if (this->Any(block.Arrays.Data))
@@ -631,25 +639,8 @@ void vtkSurfaceDiffusionAlgorithm::Execution::Seek(int step, const Monitor& moni
     const Monitor part = all > 0.0 ? monitor.Part(done / all, (done + size) / all) : monitor;
     done += size;
     const Index before = block.Run->Path->NumberOfAdvances();
-    // Processes have to stop together: they ask each other after each step.
-    const int first = step - static_cast<int>(block.Run->Path->NumberOfStepsTo(step));
-    for (int next = first + 1; this->Group && next < step; ++next)
-    {
-      const double steps = step - first;
-      block.Run->Path->Seek(next, part.Part((next - 1 - first) / steps, (next - first) / steps));
-      this->AbortTogether();
-    }
     block.Run->Path->Seek(step, part);
-    this->AbortTogether();
     this->Filter.NumberOfStepsComputed += block.Run->Path->NumberOfAdvances() - before;
-  }
-}
-
-void vtkSurfaceDiffusionAlgorithm::Execution::AbortTogether()
-{
-  if (this->Group && this->Any(this->AbortAsked))
-  {
-    throw Aborted();
   }
 }
 

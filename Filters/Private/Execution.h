@@ -11,6 +11,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,6 @@ private:
   std::string SurfaceKey(const Block& block, const PolyDataSurface::Options& options) const;
   void Tell(const std::string& what);
   void FillCopies();
-  void AbortTogether();
   /// Tell the error and take back what was done.
   void Fail(const std::string& what, vtkTable* history);
   bool IsAborted();
@@ -78,6 +78,7 @@ private:
   std::vector<Block> Blocks; ///< those that take part
   bool AnyPoint = false;
   bool AnyPolygon = false;
-  bool AbortAsked = false; ///< of a process that has to wait for the others
+  /// Of a process that has to stop together with the others.
+  const std::shared_ptr<bool> AbortAsked = std::make_shared<bool>(false);
   bool MadeAnything = false; ///< false where only the time has changed
 };

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PiecePartition.h"
 
+#include "Core/Monitor.h"
 #include "Core/TriangleMesh.h"
 
 #include "vtkDataArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -33,8 +35,16 @@ PiecePartition::PiecePartition(
 
 void PiecePartition::Sum(double* numbers, Index count) const
 {
-  const std::vector<double> here(numbers, numbers + count);
-  this->Group.Controller()->AllReduce(here.data(), numbers, count, vtkCommunicator::SUM_OP);
+  std::vector<double> here(numbers, numbers + count);
+  here.push_back(this->AbortAsked && *this->AbortAsked ? 1.0 : 0.0);
+  std::vector<double> all(here.size());
+  this->Group.Controller()->AllReduce(
+    here.data(), all.data(), static_cast<vtkIdType>(all.size()), vtkCommunicator::SUM_OP);
+  if (all.back() > 0.0)
+  {
+    throw Aborted();
+  }
+  std::copy_n(all.begin(), count, numbers);
 }
 
 void PiecePartition::Max(double* numbers, Index count) const
@@ -48,7 +58,6 @@ void PiecePartition::FindSharedVertices(
   const PolyDataSurface& surface, const PointIdentity& identity)
 {
   const TriangleMesh& mesh = *surface.InputMesh;
-  const int rank = this->Group.Rank();
   // A label of another piece tells that it is shared; one of this piece may be as well: all know
   // those that another piece refers to.
   std::vector<double> foreign;
@@ -68,7 +77,7 @@ void PiecePartition::FindSharedVertices(
     const vtkIdType label = identity.Labels[mesh.InputVertex()[v]];
     if (shared.count(static_cast<double>(label)) > 0)
     {
-      mine.push_back(rank);
+      mine.push_back(this->Group.Rank());
       mine.push_back(static_cast<double>(label));
       vertexOf[label] = v;
     }
@@ -78,23 +87,27 @@ void PiecePartition::FindSharedVertices(
   {
     this->Sharers[static_cast<vtkIdType>(having[i + 1])].push_back(static_cast<int>(having[i]));
   }
-  this->Owner.assign(mesh.NumberOfVertices(), rank);
+  this->OwnedVertices.assign(mesh.NumberOfVertices(), true);
   for (const auto& [label, vertex] : vertexOf)
   {
-    const std::vector<int>& sharers = this->Sharers[label];
-    this->Owner[vertex] = sharers.front();
-    for (const int other : sharers)
-    {
-      if (other != rank && sharers.front() == rank)
-      {
-        this->Given[other].push_back(vertex);
-      }
-    }
-    if (sharers.front() != rank)
-    {
-      this->Taken[sharers.front()].push_back(vertex);
-    }
+    this->OwnedVertices[vertex] = this->Join(this->OfVertices, vertex, this->Sharers[label]);
   }
+}
+
+/// The first of the sharers owns the item; returns whether that is this process.
+bool PiecePartition::Join(Seams& seams, Index item, const std::vector<int>& sharers) const
+{
+  const int owner = sharers.front();
+  if (owner != this->Group.Rank())
+  {
+    seams.Taken[owner].push_back(item);
+    return false;
+  }
+  for (std::size_t s = 1; s < sharers.size(); ++s)
+  {
+    seams.Given[sharers[s]].push_back(item);
+  }
+  return true;
 }
 
 /// Components of the pieces that share a vertex are one.
@@ -159,7 +172,13 @@ void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const Point
     const auto sharers = this->Sharers.find(labelOf(vertex));
     return sharers != this->Sharers.end() && sharers->second.size() > 1;
   };
-  std::map<std::pair<vtkIdType, vtkIdType>, double> lengths;
+  using Ends = std::pair<vtkIdType, vtkIdType>; // labels
+  struct Edge
+  {
+    std::array<Index, 2> Vertices;
+    double Length;
+  };
+  std::map<Ends, Edge> edges;
   const Triangles& corners = mesh.TriangleVertices();
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
@@ -172,27 +191,38 @@ void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const Point
       const Index j = corners(t, (a + 2) % 3);
       if (isShared(i) && isShared(j))
       {
-        lengths[std::minmax(labelOf(i), labelOf(j))] = length[a];
+        edges[std::minmax(labelOf(i), labelOf(j))] = { { i, j }, length[a] };
       }
     }
   }
   std::vector<double> mine; // process, labels
-  for (const auto& edge : lengths)
+  for (const auto& edge : edges)
   {
     mine.push_back(this->Group.Rank());
     mine.push_back(static_cast<double>(edge.first.first));
     mine.push_back(static_cast<double>(edge.first.second));
   }
   const std::vector<double> all = this->Group.GatherAll(mine);
-  for (std::size_t e = 0; e < all.size() && all[e] < this->Group.Rank(); e += 3)
+  std::map<Ends, std::vector<int>> sharers;
+  for (std::size_t e = 0; e < all.size(); e += 3)
   {
-    const auto found =
-      lengths.find({ static_cast<vtkIdType>(all[e + 1]), static_cast<vtkIdType>(all[e + 2]) });
-    if (found != lengths.end())
+    const Ends ends(static_cast<vtkIdType>(all[e + 1]), static_cast<vtkIdType>(all[e + 2]));
+    if (edges.count(ends) > 0)
     {
-      ++this->Edges;
-      this->EdgeLength += found->second;
-      lengths.erase(found);
+      sharers[ends].push_back(static_cast<int>(all[e]));
+    }
+  }
+  for (const auto& [ends, edge] : edges)
+  {
+    const std::vector<int>& processes = sharers[ends];
+    if (processes.size() > 1)
+    {
+      const auto number = static_cast<Index>(this->EdgesOnSeams.size());
+      const bool owned = this->Join(this->OfEdges, number, processes);
+      this->EdgesOnSeams.push_back(edge.Vertices);
+      this->OwnedEdges.push_back(owned);
+      this->Edges += owned ? 0 : 1;
+      this->EdgeLength += owned ? 0.0 : edge.Length;
     }
   }
 }
@@ -297,23 +327,64 @@ const typename Map::mapped_type& At(const Map& map, int process)
 
 void PiecePartition::TakeFromOwners(Values& values) const
 {
-  const auto columns = static_cast<std::size_t>(values.cols());
-  for (const int other : Partners(this->Given, this->Taken))
+  this->Take(this->OfVertices, values.data(), static_cast<Index>(values.cols()));
+}
+
+void PiecePartition::AddOverSeams(double* rows, Index columns) const
+{
+  this->Add(this->OfVertices, rows, columns);
+}
+
+void PiecePartition::AddOverSeamEdges(double* ofEdges) const
+{
+  this->Add(this->OfEdges, ofEdges, 1);
+}
+
+namespace
+{
+
+std::vector<double> Rows(const std::vector<Index>& items, const double* rows, std::size_t columns)
+{
+  std::vector<double> picked;
+  picked.reserve(items.size() * columns);
+  for (const Index item : items)
   {
-    std::vector<double> sent;
-    for (const Index v : At(this->Given, other))
-    {
-      const double* const row = values.data() + v * columns;
-      sent.insert(sent.end(), row, row + columns);
-    }
-    const std::vector<Index>& taken = At(this->Taken, other);
+    picked.insert(picked.end(), rows + item * columns, rows + (item + 1) * columns);
+  }
+  return picked;
+}
+
+} // namespace
+
+void PiecePartition::Take(const Seams& seams, double* rows, Index columns) const
+{
+  for (const int other : Partners(seams.Given, seams.Taken))
+  {
+    const std::vector<Index>& taken = At(seams.Taken, other);
     std::vector<double> received(taken.size() * columns);
-    this->Exchange(other, sent, received);
+    this->Exchange(other, Rows(At(seams.Given, other), rows, columns), received);
     for (std::size_t i = 0; i < taken.size(); ++i)
     {
-      std::copy_n(received.data() + i * columns, columns, values.data() + taken[i] * columns);
+      std::copy_n(received.data() + i * columns, columns,
+        rows + static_cast<std::size_t>(taken[i]) * columns);
     }
   }
+}
+
+/// Owners add up, in the order of processes, and tell the sums.
+void PiecePartition::Add(const Seams& seams, double* rows, Index columns) const
+{
+  for (const int other : Partners(seams.Given, seams.Taken))
+  {
+    const std::vector<Index>& given = At(seams.Given, other);
+    std::vector<double> received(given.size() * columns);
+    this->Exchange(other, Rows(At(seams.Taken, other), rows, columns), received);
+    for (std::size_t i = 0; i < received.size(); ++i)
+    {
+      rows[static_cast<std::size_t>(given[i / columns]) * columns + i % columns] += received[i];
+    }
+  }
+  this->Take(seams, rows, columns);
 }
 
 void PiecePartition::FillCopies(vtkDataArray* array) const
@@ -335,14 +406,4 @@ void PiecePartition::FillCopies(vtkDataArray* array) const
       array->SetTuple(copies[i], received.data() + i * components);
     }
   }
-}
-
-std::int64_t PiecePartition::NumbersSent() const
-{
-  std::int64_t count = 0;
-  for (const auto& given : this->Given)
-  {
-    count += static_cast<std::int64_t>(given.second.size());
-  }
-  return count;
 }

@@ -7,8 +7,9 @@
 #include "PolyDataSurface.h"
 #include "Processes.h"
 
-#include <cstdint>
 #include <map>
+#include <memory>
+#include <utility>
 #include <vector>
 
 class vtkDataArray;
@@ -26,13 +27,20 @@ public:
   void Sum(double* numbers, Index count) const override;
   void Max(double* numbers, Index count) const override;
   void TakeFromOwners(SurfaceDiffusion::Values& values) const override;
+  using Partition::AddOverSeams;
+  void AddOverSeams(double* rows, Index columns) const override;
+  void AddOverSeamEdges(double* ofEdges) const override;
+
+  /// asked: whether this process is to stop. Sum() obeys it in all processes together.
+  void ObeyAbort(std::shared_ptr<const bool> asked) { this->AbortAsked = std::move(asked); }
+  /// Whether one of the processes is to stop.
+  bool IsAborted() const { return this->Any(this->AbortAsked && *this->AbortAsked); }
 
   /// Give the points of no cell of the piece's own the values at the points that they are copies
   /// of.
   void FillCopies(vtkDataArray* array) const;
 
   const Processes& GetProcesses() const { return this->Group; }
-  bool Owns(Index vertex) const { return this->Owner[vertex] == this->Group.Rank(); }
 
   vtkIdType NumberOfCopies() const { return this->CopyCount; }
 
@@ -40,22 +48,29 @@ public:
   Index SharedEdges() const { return this->Edges; }
   double SharedEdgeLength() const { return this->EdgeLength; }
 
-  /// Numbers sent to other processes in one TakeFromOwners() of one column.
-  std::int64_t NumbersSent() const;
-
 private:
+  /// Vertices, or edges, on seams by the other process: those that it gets the values of from here,
+  /// and those that it gives to this one.
+  struct Seams
+  {
+    std::map<int, std::vector<Index>> Given, Taken;
+  };
+
   void FindSharedVertices(const PolyDataSurface& surface, const PointIdentity& identity);
   void FindComponents(const PolyDataSurface& surface, const PointIdentity& identity);
   void FindSharedEdges(const PolyDataSurface& surface, const PointIdentity& identity);
   void FindCopies(const PolyDataSurface& surface, const PointIdentity& identity);
+  bool Join(Seams& seams, Index item, const std::vector<int>& sharers) const;
+  void Take(const Seams& seams, double* rows, Index columns) const;
+  void Add(const Seams& seams, double* rows, Index columns) const;
   void Exchange(int other, const std::vector<double>& sent, std::vector<double>& received) const;
 
   const Processes Group;
-  std::vector<int> Owner; ///< per vertex
   std::map<vtkIdType, std::vector<int>> Sharers; ///< of each shared point: its processes
-  std::map<int, std::vector<Index>> Given, Taken; ///< vertices by the other process
+  Seams OfVertices, OfEdges;
   std::map<int, std::vector<vtkIdType>> Originals, Copies; ///< points by the other process
   vtkIdType CopyCount = 0;
   Index Edges = 0;
   double EdgeLength = 0.0;
+  std::shared_ptr<const bool> AbortAsked;
 };

@@ -24,8 +24,8 @@ class vtkPolyData;
 /// The input arrays of one block, resolved and checked.
 struct BlockArrays
 {
-  vtkDataArray* Data = nullptr;      ///< index 0
-  vtkDataArray* Mask = nullptr;      ///< index 1
+  vtkDataArray* Data = nullptr; ///< index 0
+  vtkDataArray* Mask = nullptr; ///< index 1
   vtkDataArray* Direction = nullptr; ///< index 2
   bool DirectionOnCells = false;
   vtkDataArray* Fixed = nullptr; ///< index 3
@@ -38,9 +38,9 @@ struct UnitSystem
 {
   bool Natural = true;
   double MeanEdgeLength = 1.0; ///< h, in coordinate units
-  double ValueRange = 1.0;     ///< R, in the array's units
-  double LengthUnit = 1.0;     ///< of the core's mesh, in coordinate units
-  double ValueUnit = 1.0;      ///< of the core's values, in the array's units
+  double ValueRange = 1.0; ///< R, in the array's units
+  double LengthUnit = 1.0; ///< of the core's mesh, in coordinate units
+  double ValueUnit = 1.0; ///< of the core's values, in the array's units
 
   /// A user's quantity of dimension length^lengthPower value^valuePower in the core's units.
   double ToCore(double quantity, double lengthPower, double valuePower) const
@@ -64,9 +64,9 @@ struct ModelInput
   const BlockArrays& Arrays;
   const PolyDataSurface& Surface;
   UnitSystem Units;
-  SurfaceDiffusion::PointData Data;       ///< in ValueUnit
-  SurfaceDiffusion::PlaneVectors Frames;  ///< one row per triangle; no row without a direction
-  std::vector<std::int64_t> Ids;          ///< per vertex, for random numbers
+  SurfaceDiffusion::PointData Data; ///< in ValueUnit
+  SurfaceDiffusion::PlaneVectors Frames; ///< one row per triangle; no row without a direction
+  std::vector<std::int64_t> Ids; ///< per vertex, for random numbers
   const SurfaceDiffusion::ParallelFor& Parallel;
   SurfaceDiffusion::Monitor Progress;
   /// The solver the filter's properties ask for, kept from run to run under this name, so that an
@@ -74,6 +74,8 @@ struct ModelInput
   std::function<std::shared_ptr<SurfaceDiffusion::LinearSolver>(
     const std::string& name, const SurfaceDiffusion::SolverTask& task)>
     Solver;
+  /// Do what may throw in one process and calls no other; then it throws in all.
+  std::function<void(const std::function<void()>&)> Together;
   std::vector<std::string>& Warnings; ///< told to the user when all is done, once
 };
 
@@ -82,8 +84,8 @@ struct SurfaceRun
 {
   std::string SurfaceKey;
   std::unique_ptr<PolyDataSurface> Surface;
-  std::shared_ptr<const PiecePartition> Partition; ///< null where the surface is whole
-  PointIdentity Identity;                          ///< of a piece's points
+  std::shared_ptr<PiecePartition> Partition; ///< null where the surface is whole
+  PointIdentity Identity; ///< of a piece's points
   std::map<std::string, std::shared_ptr<SurfaceDiffusion::LinearSolver>> Solvers;
   std::string RunKey;
   bool HasMissing = false;

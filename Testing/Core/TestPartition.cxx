@@ -4,6 +4,7 @@
 #include "InitialState.h"
 #include "Meshes.h"
 #include "Partition.h"
+#include "TextureColors.h"
 
 #include <gtest/gtest.h>
 
@@ -17,10 +18,12 @@ namespace
 class Twin : public Partition
 {
 public:
-  Twin()
+  explicit Twin(Index vertices)
   {
     this->Components = 2;
     this->WholeComponents = { 0, 0, 1 };
+    this->OwnedVertices.assign(vertices, true);
+    this->OwnedVertices[0] = false; // the other counts it
   }
   void Sum(double* numbers, Index count) const override
   {
@@ -31,6 +34,8 @@ public:
   }
   void Max(double*, Index) const override {}
   void TakeFromOwners(Values&) const override {}
+  void AddOverSeams(double*, Index) const override {}
+  void AddOverSeamEdges(double*) const override {}
 };
 
 std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces)
@@ -39,7 +44,7 @@ std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces)
   auto mesh = std::make_shared<TriangleMesh>(spheres.Vertices, spheres.Faces);
   if (inPieces)
   {
-    mesh->SetPartition(std::make_shared<Twin>());
+    mesh->SetPartition(std::make_shared<Twin>(mesh->NumberOfVertices()));
   }
   return mesh;
 }
@@ -51,6 +56,24 @@ TEST(Partition, TotalsAreThoseOfAllProcesses)
   const auto mesh = ThreeSpheres(true);
   const Values u = Noise(*mesh, 2);
   EXPECT_NEAR(Total(*mesh, u, 1), 2.0 * mesh->ControlAreas().dot(u.col(1)), 1e-13);
+}
+
+TEST(Partition, VerticesOnSeamsCountOnce)
+{
+  const Twin twin(5);
+  const auto one = [](Index) { return 1.0; };
+  EXPECT_EQ(SumOverVertices(&twin, SerialFor(), 5, one), 8.0);
+  EXPECT_EQ(SumOverVertices(nullptr, SerialFor(), 5, one), 5.0);
+}
+
+TEST(Partition, PercentilesAreThoseOfAllProcesses)
+{
+  Vector here = Vector::Random(201);
+  here[0] = 5.0; // not owned
+  Vector all(400);
+  all << here.tail(200), here.tail(200);
+  const Twin twin(201);
+  EXPECT_EQ(ContrastLimits(here, &twin), ContrastLimits(all));
 }
 
 TEST(Partition, ComponentsThatMeetElsewhereAreFilledWithOneMean)

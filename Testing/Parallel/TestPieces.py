@@ -59,9 +59,10 @@ DISTRIBUTED = tuple(
     for solver in ("ConjugateGradient", "Multigrid")
     for name, make, properties, result in CASES
     if make is FVMHeatFilter and (solver == "ConjugateGradient" or name in ("heat", "heat, inpainting"))
-    or name in ("tv", "tv, colours") and solver == "ConjugateGradient")
+    or name in ("tv", "tv, colours") and solver == "ConjugateGradient"
+    or make is TuringTextureFilter and (solver == "ConjugateGradient" or name == "turing"))
 CASES += DISTRIBUTED
-SEEDED = ("heat, NaN, noise", "distributed heat, NaN, noise, ConjugateGradient", "turing", "turing, rates")
+SEEDED = tuple(name for name, *_ in CASES if "noise" in name or "turing" in name)
 # Solvers stop at 1e-10; stopping rules of minimisers at larger gaps.
 TOLERANCE = {"tv, minimum": 1e-6}
 # For partitions that differ from others in how the points are matched alone
