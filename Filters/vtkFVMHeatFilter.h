@@ -113,7 +113,10 @@ protected:
 
   void CheckProperties(Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
-  bool CanBeDistributed() override { return !this->AutomaticFidelity; }
+  bool CanBeDistributed(const std::vector<SurfacePiece>&) override
+  {
+    return !this->AutomaticFidelity;
+  }
   void VisitReported(const std::function<void(double&)>& visit) override;
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
     ModelInput& input, int steps) override;

@@ -10,6 +10,7 @@
 #include "Private/NewArray.h"
 #include "Private/PointArrays.h"
 #include "Private/SMPParallelFor.h"
+#include "Private/SurfacePieces.h"
 #include "Private/SurfaceRun.h"
 
 #include "vtkBoundingBox.h"
@@ -29,6 +30,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ostream>
 #include <stdexcept>
 #include <vector>
@@ -170,6 +172,26 @@ vtkSmartPointer<vtkDataArray> ComputeNormals(vtkPolyData* block)
   return array;
 }
 
+/// Whether a tuple has no direction.
+bool HasZeroOrNaN(vtkDataArray* vectors)
+{
+  std::vector<double> tuple(vectors->GetNumberOfComponents());
+  for (vtkIdType i = 0; i < vectors->GetNumberOfTuples(); ++i)
+  {
+    vectors->GetTuple(i, tuple.data());
+    double sum = 0.0;
+    for (const double x : tuple)
+    {
+      sum += std::abs(x);
+    }
+    if (!(sum > 0.0))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 vtkHarmonicMapFilter::vtkHarmonicMapFilter()
@@ -253,18 +275,24 @@ bool vtkHarmonicMapFilter::IsNormals(vtkDataArray* array, vtkPolyData* block) co
       [&](const auto& computed) { return computed.second.Array == array; });
 }
 
-bool vtkHarmonicMapFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems)
+/// Whether no array is asked for by its name or as another attribute.
+bool vtkHarmonicMapFilter::AsksForNormals()
 {
-  // Where nothing else is asked for, the block is read as if it had normals in any case.
-  vtkNew<vtkPolyData> withNormals;
-  withNormals->ShallowCopy(block);
   vtkInformation* asked = this->GetInputArrayInformation(0);
   const char* name =
     asked->Has(vtkDataObject::FIELD_NAME()) ? asked->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   const bool byName = name && *name;
   const bool byOtherAttribute = !name && asked->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) &&
     asked->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) != vtkDataSetAttributes::NORMALS;
-  if (!byName && !byOtherAttribute)
+  return !byName && !byOtherAttribute;
+}
+
+bool vtkHarmonicMapFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems)
+{
+  // Where nothing else is asked for, the block is read as if it had normals in any case.
+  vtkNew<vtkPolyData> withNormals;
+  withNormals->ShallowCopy(block);
+  if (this->AsksForNormals())
   {
     vtkDataArray* const normals = this->FindNormals(block);
     withNormals->GetPointData()->SetNormals(normals);
@@ -289,6 +317,32 @@ bool vtkHarmonicMapFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays, P
   return true;
 }
 
+/// Not where vertices move, where normals are to be computed, and where lines are missing, whose start
+/// depends on the order of their neighbours.
+bool vtkHarmonicMapFilter::CanBeDistributed(const std::vector<SurfacePiece>& pieces)
+{
+  for (const SurfacePiece& piece : pieces)
+  {
+    vtkPolyData* const block = piece.Input;
+    if (block->GetNumberOfPoints() == 0)
+    {
+      continue;
+    }
+    if (this->AsksForNormals() && !block->GetPointData()->GetNormals())
+    {
+      return false;
+    }
+    BlockArrays arrays;
+    Problems told; // later
+    if (this->LineField && this->FindArrays(block, arrays, told) &&
+      (arrays.Mask || HasZeroOrNaN(arrays.Data)))
+    {
+      return false;
+    }
+  }
+  return !this->MoveVertices;
+}
+
 //------------------------------------------------------------------------------------------------
 void vtkHarmonicMapFilter::WriteRunKey(std::ostream& key)
 {
@@ -302,7 +356,8 @@ void vtkHarmonicMapFilter::PrepareData(ModelInput& input)
   using namespace SurfaceDiffusion;
   PrepareUnitVectors(*input.Surface.Mesh, input.Data, this->LineField,
     static_cast<SurfaceDiffusion::InitialFill>(this->InitialFill), this->RandomSeed, input.Ids);
-  if ((input.Data.Fixed && input.Data.Missing).any())
+  if (AnyProcess(
+        input.Surface.Mesh->GetPartition(), (input.Data.Fixed && input.Data.Missing).any()))
   {
     throw std::runtime_error("InputArray has a vector of length zero where FixedArray holds it; "
                              "fixed vectors must have a direction");
@@ -349,6 +404,10 @@ std::unique_ptr<SurfaceDiffusion::Evolution> vtkHarmonicMapFilter::MakeEvolution
     case SOLVER_CONJUGATE_GRADIENT:
       settings.Method = HarmonicMap::Preconditioner::Jacobi;
       break;
+    case SOLVER_MULTIGRID:
+      settings.Method = mesh.GetPartition() ? HarmonicMap::Preconditioner::Factor
+                                            : HarmonicMap::Preconditioner::Automatic;
+      break;
     default:
       settings.Method = HarmonicMap::Preconditioner::Automatic;
       break;
@@ -356,6 +415,10 @@ std::unique_ptr<SurfaceDiffusion::Evolution> vtkHarmonicMapFilter::MakeEvolution
   if (this->Scheme != SCHEME_EXPLICIT_REACTION)
   {
     task.NumberOfSolves = 1e9; // a factor in any case: the model knows when to use it
+    if (mesh.GetPartition())
+    {
+      task.DiffusionNumber = std::numeric_limits<double>::infinity(); // or multigrid
+    }
   }
   return std::make_unique<HarmonicMap>(input.Surface.Operators, std::move(coefficients),
     std::move(input.Data), settings, input.Solver("harmonic", task), input.Parallel);

@@ -192,6 +192,7 @@ protected:
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
   void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;
   void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
+  bool CanBeDistributed(const std::vector<SurfacePiece>& pieces) override;
   const char* GetResultSuffix() override { return "Harmonic"; }
   Dimension GetTimeDimension() override { return { this->Exponent, 0.0 }; }
   Dimension GetEnergyDimension() override { return { 2.0 - this->Exponent, 0.0 }; }
@@ -215,6 +216,7 @@ private:
   vtkHarmonicMapFilter(const vtkHarmonicMapFilter&) = delete;
   void operator=(const vtkHarmonicMapFilter&) = delete;
 
+  bool AsksForNormals();
   vtkDataArray* FindNormals(vtkPolyData* block);
   bool IsNormals(vtkDataArray* array, vtkPolyData* block) const;
 

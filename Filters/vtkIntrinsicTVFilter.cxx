@@ -398,7 +398,7 @@ void vtkIntrinsicTVFilter::WriteResult(
   }
 }
 
-bool vtkIntrinsicTVFilter::CanBeDistributed()
+bool vtkIntrinsicTVFilter::CanBeDistributed(const std::vector<SurfacePiece>&)
 {
   return !this->Minimizes() && !this->AutomaticFidelity &&
     this->Discretization == DISCRETIZATION_LINEAR;

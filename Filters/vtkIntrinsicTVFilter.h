@@ -317,7 +317,7 @@ protected:
   void CheckProperties(Problems& problems) override;
   bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
-  bool CanBeDistributed() override;
+  bool CanBeDistributed(const std::vector<SurfacePiece>&) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
   void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;

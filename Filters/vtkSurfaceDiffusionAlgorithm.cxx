@@ -361,8 +361,9 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
 bool vtkSurfaceDiffusionAlgorithm::Distributes(
   const Processes& processes, const std::vector<SurfacePiece>& pieces)
 {
-  if (!HasDistributedSolver(processes) || !this->CanBeDistributed() ||
-    this->Solver == SOLVER_DIRECT || this->IntrinsicDelaunay || this->MergeCoincidentPoints)
+  if (!HasDistributedSolver(processes) || this->Solver == SOLVER_DIRECT ||
+    this->IntrinsicDelaunay || this->MergeCoincidentPoints ||
+    processes.Any(!this->CanBeDistributed(pieces)))
   {
     return false;
   }

@@ -417,8 +417,9 @@ protected:
   /// Add the result, the current state of run.Path, to the output block.
   virtual void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output);
 
-  /// Whether the model can be solved by processes that have a piece each, with these settings.
-  virtual bool CanBeDistributed() { return false; }
+  /// Whether the model can be solved by processes that have a piece each, with these settings and,
+  /// as far as this process can tell, on these pieces.
+  virtual bool CanBeDistributed(const std::vector<SurfacePiece>&) { return false; }
 
   /// Visit the read-only properties, which all processes are to have alike. Superclass first.
   virtual void VisitReported(const std::function<void(double&)>& visit);

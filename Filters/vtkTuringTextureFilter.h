@@ -308,7 +308,7 @@ protected:
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
   void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;
   void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
-  bool CanBeDistributed() override { return true; }
+  bool CanBeDistributed(const std::vector<SurfacePiece>&) override { return true; }
   const char* GetResultSuffix() override { return ""; }
   Dimension GetTimeDimension() override { return { 0.0, 0.0 }; }
   Dimension GetEnergyDimension() override { return { 2.0, 0.0 }; }

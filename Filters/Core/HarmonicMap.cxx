@@ -148,6 +148,11 @@ double HarmonicMap::EnergyDensity(double square) const
 
 double HarmonicMap::Energy() const
 {
+  return SumOverProcesses(this->Operators->Mesh().GetPartition(), this->EnergyHere());
+}
+
+double HarmonicMap::EnergyHere() const
+{
   const TriangleMesh& mesh = this->Operators->Mesh();
   double energy = this->Options.LargestDiffusivity *
     Sum(this->Parallel, mesh.NumberOfTriangles(),
@@ -170,11 +175,12 @@ double HarmonicMap::Energy() const
 double HarmonicMap::Objective() const
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  return this->Energy() +
+  const double here = this->EnergyHere() +
     Sum(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i)
       { return mesh.ControlAreas()[i] * (this->U.row(i) - this->Anchor.row(i)).squaredNorm(); }) /
-    (2.0 * this->Options.TimeStep);
+      (2.0 * this->Options.TimeStep);
+  return SumOverProcesses(mesh.GetPartition(), here);
 }
 
 /// The matrix (1 + lambda dt 1_D) M + dt K(g) with g, and the signs of lines, at u.
@@ -345,6 +351,7 @@ void HarmonicMap::FindDamping()
   const Index* outer = this->Matrix.outerIndexPtr();
   const Index* inner = this->Matrix.innerIndexPtr();
   const double* a = this->Matrix.valuePtr();
+  const Partition* const partition = this->Operators->Mesh().GetPartition();
   ForEach(this->Parallel, static_cast<Index>(this->Matrix.rows()),
     [&](Index i)
     {
@@ -353,8 +360,44 @@ void HarmonicMap::FindDamping()
       {
         excess += inner[slot] == i ? -a[slot] : std::abs(a[slot]);
       }
-      this->Damping[i] = std::max(excess, 0.0);
+      this->Damping[i] = partition ? excess : std::max(excess, 0.0);
     });
+  if (partition)
+  {
+    this->JoinDamping(*partition);
+  }
+}
+
+/// From what the triangles here give: where an edge lies on a seam, it is the size of the sum over
+/// the processes that counts, and once.
+void HarmonicMap::JoinDamping(const Partition& partition)
+{
+  const std::vector<std::array<Index, 2>>& edges = partition.SeamEdges();
+  this->SeamCoefficients.resize(edges.size());
+  const auto add = [&](std::size_t edge, double sign)
+  {
+    for (const Index i : edges[edge])
+    {
+      this->Damping[i] += sign * std::abs(this->SeamCoefficients[edge]);
+    }
+  };
+  for (std::size_t e = 0; e < edges.size(); ++e)
+  {
+    this->SeamCoefficients[e] = this->Matrix.coeff(edges[e][0], edges[e][1]);
+    add(e, -1.0);
+  }
+  partition.AddOverSeamEdges(this->SeamCoefficients.data());
+  for (std::size_t e = 0; e < edges.size(); ++e)
+  {
+    if (partition.OwnsSeamEdge(static_cast<Index>(e)))
+    {
+      add(e, 1.0);
+    }
+  }
+  partition.AddOverSeams(this->Damping);
+  ForEach(this->Parallel, static_cast<Index>(this->Damping.size()),
+    [&](Index i)
+    { this->Damping[i] = partition.Owns(i) ? std::max(this->Damping[i], 0.0) : 0.0; });
 }
 
 SolveReport HarmonicMap::SolveInTangentSpaces(const Monitor& monitor)
@@ -388,7 +431,7 @@ SolveReport HarmonicMap::TrySolve(bool factor, Values& step, const Monitor& moni
     this->Solver->SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
   }
   const TangentSystem system{ this->Matrix, this->Previous, this->Data.Fixed, this->RightHandSide,
-    this->Diagonal };
+    this->Diagonal, this->Operators->Mesh().GetPartition() };
   return this->Tangent.Solve(system, step, factor ? this->Solver.get() : nullptr,
     this->Options.Limits, factor ? monitor.Part(0.5, 1.0) : monitor);
 }

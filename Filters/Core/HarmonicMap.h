@@ -8,6 +8,7 @@
 #include "TangentSolver.h"
 
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -64,8 +65,8 @@ public:
   };
 
   /// What speeds up the conjugate gradients of the tangent spaces. Factor is the factorised matrix
-  /// that does not know the tangent spaces: good on smooth maps at large steps, while on noise
-  /// Jacobi is never far behind. One that does not converge is followed by the other, and where
+  /// (of a surface in pieces a multigrid cycle) that does not know the tangent spaces: good on
+  /// smooth maps at large steps, while on noise Jacobi is never far behind. One that does not converge is followed by the other, and where
   /// neither does, the step is as exact as the report says; Jacobi alone throws NotConverged.
   enum class Preconditioner
   {
@@ -112,8 +113,10 @@ private:
   SolveReport SolveInTangentSpaces(const Monitor& monitor);
   SolveReport TrySolve(bool factor, Values& step, const Monitor& monitor);
   void FindDamping();
+  void JoinDamping(const Partition& partition);
   void ProjectToSphere();
   double Objective() const;
+  double EnergyHere() const;
   double GradientSquare(Index t, double* signs) const;
   double Weight(double square) const;
   double EnergyDensity(double square) const;
@@ -133,7 +136,8 @@ private:
   TangentSolver Tangent;
   SparseMatrix Matrix;
   Vector Diagonal; ///< (1 + lambda dt 1_D) M
-  Vector Damping; ///< D, times dt
+  Vector Damping; ///< D, times dt; on seams in one process alone
+  std::vector<double> SeamCoefficients; ///< off the diagonal, of edges on seams
   Vector Weights, Squares; ///< g and |grad u|^2 per triangle
   EdgeValues Signs; ///< of line fields
   Values Load; ///< what fixed neighbours give to the right-hand side

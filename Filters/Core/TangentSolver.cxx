@@ -70,17 +70,27 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   this->Q.resize(b.rows(), b.cols());
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
+  const auto diagonal = [&](Index i)
+  { return matrix.valuePtr()[std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner]; };
+  const Partition* const partition = system.Partition;
+  if (partition)
+  {
+    this->Diagonals.resize(n, 2);
+    ForEach(this->Parallel, n,
+      [&](Index i) { this->Diagonals.row(i) << diagonal(i), system.Inertia[i]; });
+    partition->AddOverSeams(this->Diagonals);
+    partition->AddOverSeams(this->R);
+  }
 
   // Measured as in LinearSolver: in the norm of diag(A)^-1, whatever preconditions.
-  const double scale = Sum(this->Parallel, n,
+  const double scale = SumOverVertices(partition, this->Parallel, n,
     [&](Index i)
     {
-      const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
-      this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[slot];
-      const double inertia = system.Inertia[i];
+      this->InverseDiagonal[i] = 1.0 / (partition ? this->Diagonals(i, 0) : diagonal(i));
+      const double inertia = partition ? this->Diagonals(i, 1) : system.Inertia[i];
       return inertia * inertia * this->InverseDiagonal[i] * Row<K>(system.U, i).squaredNorm();
     });
-  const double start = Sum(this->Parallel, n,
+  const double start = SumOverVertices(partition, this->Parallel, n,
     [&](Index i)
     {
       Project<K>(system, i, this->R);
@@ -109,7 +119,11 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
     ForEach(this->Parallel, n,
       [&](Index i) { Row<K>(this->P, i) = Row<K>(this->Z, i) + beta * Row<K>(this->P, i); });
     Multiply(matrix, this->P, this->Q, this->Parallel);
-    const double curvature = Sum(this->Parallel, n,
+    if (partition)
+    {
+      partition->AddOverSeams(this->Q);
+    }
+    const double curvature = SumOverVertices(partition, this->Parallel, n,
       [&](Index i)
       {
         Project<K>(system, i, this->Q);
@@ -121,7 +135,7 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
       break;
     }
     const double alpha = rho / curvature;
-    left = Sum(this->Parallel, n,
+    left = SumOverVertices(partition, this->Parallel, n,
       [&](Index i)
       {
         auto r = Row<K>(this->R, i);
@@ -146,9 +160,9 @@ double TangentSolver::Precondition(const TangentSystem& system, LinearSolver* pr
 {
   if (preconditioner)
   {
-    preconditioner->Solve(this->R, this->Z);
+    preconditioner->Precondition(this->R, this->Z);
   }
-  return Sum(this->Parallel, static_cast<Index>(this->R.rows()),
+  return SumOverVertices(system.Partition, this->Parallel, static_cast<Index>(this->R.rows()),
     [&](Index i)
     {
       if (preconditioner)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "LinearSolver.h"
+#include "Partition.h"
 
 namespace SurfaceDiffusion
 {
@@ -17,6 +18,8 @@ struct TangentSystem
   const Flags& Fixed;
   const Values& B;
   const Vector& Inertia; ///< the part of diag(A) that multiplies u itself in a time step
+  /// Of a surface in pieces, whose Matrix, B and Inertia are those of the triangles here.
+  const SurfaceDiffusion::Partition* Partition = nullptr;
 };
 
 /// Solves such systems by conjugate gradients from x = 0, with one recurrence for all columns,
@@ -30,8 +33,8 @@ public:
   {
   }
 
-  /// preconditioner: a direct solver that has taken a matrix near A; none: the diagonal of A
-  /// (Jacobi). The residual is in the norm of LinearSolver, relative to the larger of P b and
+  /// preconditioner: a solver that has taken a matrix near A; none: the diagonal of A (Jacobi).
+  The residual is in the norm of LinearSolver, relative to the larger of P b and
   /// Inertia u: to what the right-hand side would be if x were the whole of u.
   SolveReport Solve(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
     const IterationLimits& limits, const Monitor& monitor = Monitor());
@@ -45,6 +48,7 @@ private:
 
   const ParallelFor& Parallel;
   Vector InverseDiagonal;
+  Values Diagonals; ///< per vertex of the diagonal of A and the inertia
   Values R, Z, P, Q;
 };
 

@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 
 #include <limits>
+#include <numeric>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -16,31 +18,45 @@ namespace
 /// the normals of a closed surface with a hole points away from the hole.
 constexpr double Undecided = 0.5;
 
-/// The direction that prevails among the known vectors of the vertices begin .. end; zero where
-/// there is none.
-Eigen::RowVectorXd PrevailingDirection(
-  const TriangleMesh& mesh, const PointData& data, bool lineField, Index begin, Index end)
+/// Sums over the known vectors of each component of the surface: area, A u, and of lines A u u^T.
+Values SumKnown(const TriangleMesh& mesh, const PointData& data, bool lineField)
 {
   const Eigen::Index m = data.Given.cols();
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(m);
-  Eigen::MatrixXd tensor = Eigen::MatrixXd::Zero(m, m);
-  double area = 0.0;
-  for (Index i = begin; i < end; ++i)
+  Values sums = Values::Zero(mesh.NumberOfComponents(), 1 + m + (lineField ? m * m : 0));
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
-    if (!data.Missing[i])
+    for (Index i = mesh.ComponentsBegin()[c]; i < mesh.ComponentsBegin()[c + 1]; ++i)
     {
+      if (data.Missing[i])
+      {
+        continue;
+      }
       const auto u = data.Given.row(i);
-      area += mesh.ControlAreas()[i];
-      sum += mesh.ControlAreas()[i] * u;
+      sums(c, 0) += mesh.ControlAreas()[i];
+      sums.row(c).segment(1, m) += mesh.ControlAreas()[i] * u;
       if (lineField)
       {
-        tensor += mesh.ControlAreas()[i] * (u.transpose() * u);
+        Eigen::Map<Eigen::MatrixXd>(&sums(c, 1 + m), m, m) +=
+          mesh.ControlAreas()[i] * (u.transpose() * u);
       }
     }
   }
+  std::vector<Index> all(mesh.NumberOfComponents());
+  std::iota(all.begin(), all.end(), 0);
+  SumComponents(mesh.GetPartition(), all, sums);
+  return sums;
+}
+
+/// The direction that prevails, from a component's row of SumKnown(); zero where there is none.
+Eigen::RowVectorXd PrevailingDirection(
+  const Eigen::Ref<const Eigen::RowVectorXd>& sums, Eigen::Index m, bool lineField)
+{
+  const double area = sums[0];
+  Eigen::RowVectorXd sum = sums.segment(1, m);
   if (lineField && area > 0.0)
   {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(tensor);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(
+      Eigen::Map<const Eigen::MatrixXd>(sums.data() + 1 + m, m, m));
     const bool decided = axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > Undecided * area;
     sum = decided ? Eigen::RowVectorXd(axes.eigenvectors().col(m - 1).transpose())
                   : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(m));
@@ -50,6 +66,26 @@ Eigen::RowVectorXd PrevailingDirection(
     sum.setZero();
   }
   Normalize(sum);
+  return sum;
+}
+
+/// Of those neighbours of vertex i that have a direction.
+Eigen::RowVectorXd SumOfNeighbours(
+  const TriangleMesh& mesh, const Values& u, const Flags& known, bool lineField, Index i)
+{
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(u.cols());
+  for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
+  {
+    const Index corner = mesh.VertexCorners()[c];
+    for (const int step : { 1, 2 })
+    {
+      const Index j = mesh.TriangleVertices()(corner / 3, (corner % 3 + step) % 3);
+      if (known[j])
+      {
+        sum += (lineField && sum.dot(u.row(j)) < 0.0 ? -1.0 : 1.0) * u.row(j);
+      }
+    }
+  }
   return sum;
 }
 
@@ -72,19 +108,7 @@ void SpreadInwards(
     std::vector<Index> left;
     for (const Index i : open)
     {
-      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(u.cols());
-      for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
-      {
-        const Index corner = mesh.VertexCorners()[c];
-        for (const int step : { 1, 2 })
-        {
-          const Index j = mesh.TriangleVertices()(corner / 3, (corner % 3 + step) % 3);
-          if (known[j])
-          {
-            sum += (lineField && sum.dot(u.row(j)) < 0.0 ? -1.0 : 1.0) * u.row(j);
-          }
-        }
-      }
+      Eigen::RowVectorXd sum = SumOfNeighbours(mesh, u, known, lineField, i);
       if (Normalize(sum))
       {
         u.row(i) = sum;
@@ -109,6 +133,48 @@ void SpreadInwards(
   }
 }
 
+/// The same for vectors on a surface in pieces, all components at once. (Of lines the signs in a sum
+/// depend on its order.)
+void SpreadInwards(
+  const Partition& partition, const TriangleMesh& mesh, Values& u, Flags& known)
+{
+  Values sums(u.rows(), u.cols());
+  Flags reached(u.rows());
+  while (partition.Any(!known.all()))
+  {
+    sums.setZero();
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      if (!known[i])
+      {
+        sums.row(i) = SumOfNeighbours(mesh, u, known, false, i);
+      }
+    }
+    partition.AddOverSeams(sums);
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      reached[i] = !known[i] && Normalize(sums.row(i));
+    }
+    const bool stuck = !partition.Any(reached.any());
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      if (reached[i])
+      {
+        u.row(i) = sums.row(i);
+      }
+      else if (stuck && !known[i])
+      {
+        u.row(i) = Eigen::RowVectorXd::Unit(u.cols(), 0);
+      }
+    }
+    known = known || reached;
+    if (stuck)
+    {
+      known.setConstant(true);
+    }
+  }
+}
+
 } // namespace
 
 void PrepareUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField, InitialFill fill,
@@ -124,16 +190,19 @@ void PrepareUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineFiel
   }
   const Flags undirected = data.Given.array().isNaN().rowwise().any();
   FillMissing(mesh, data, fill, seed, ids);
-  if (!data.Missing.any())
+  const Partition* const partition = mesh.GetPartition();
+  if (!AnyProcess(partition, data.Missing.any()))
   {
     return;
   }
   Flags known = !data.Missing;
+  const Values sums = SumKnown(mesh, data, lineField);
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
     const Index begin = mesh.ComponentsBegin()[c];
     const Index end = mesh.ComponentsBegin()[c + 1];
-    const Eigen::RowVectorXd mean = PrevailingDirection(mesh, data, lineField, begin, end);
+    const Eigen::RowVectorXd mean =
+      PrevailingDirection(sums.row(c), data.Given.cols(), lineField);
     for (Index i = begin; i < end; ++i)
     {
       const bool directed = fill == InitialFill::Input && !undirected[i]; // a unit vector already
@@ -148,7 +217,14 @@ void PrepareUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineFiel
       }
       known[i] = Normalize(data.Start.row(i));
     }
-    SpreadInwards(mesh, data.Start, known, lineField, begin, end);
+    if (!partition)
+    {
+      SpreadInwards(mesh, data.Start, known, lineField, begin, end);
+    }
+  }
+  if (partition)
+  {
+    SpreadInwards(*partition, mesh, data.Start, known);
   }
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
