@@ -7,6 +7,7 @@
 #include "Core/NonlinearDiffusion.h"
 #include "Core/TotalVariationFlow.h"
 #include "Private/EnumText.h"
+#include "Private/PiecePartition.h"
 #include "Private/SMPParallelFor.h"
 #include "Private/SurfaceRun.h"
 
@@ -377,20 +378,15 @@ std::unique_ptr<Evolution> vtkIntrinsicTVFilter::MakeEvolution(ModelInput& input
     input.Parallel);
 }
 
-void vtkIntrinsicTVFilter::WriteResult(
-  const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output)
+void vtkIntrinsicTVFilter::PrepareResult(const SurfaceRun& run, const Monitor&)
 {
-  this->Superclass::WriteResult(run, arrays, output);
-  if (!this->Minimizes())
-  {
-    return;
-  }
   double gap = 0.0;
   for (const StepRecord& record : run.Path->Records())
   {
     gap = std::max(gap, record.Residual);
   }
-  if (gap > this->StopTolerance)
+  const bool speaks = !run.Partition || run.Partition->GetProcesses().Rank() == 0;
+  if (this->Minimizes() && gap > this->StopTolerance && speaks)
   {
     vtkWarningMacro(<< "the minimisation ended at its largest number of iterations with a relative "
                        "duality gap of "
@@ -400,8 +396,7 @@ void vtkIntrinsicTVFilter::WriteResult(
 
 bool vtkIntrinsicTVFilter::CanBeDistributed(const std::vector<SurfacePiece>&)
 {
-  return !this->Minimizes() && !this->AutomaticFidelity &&
-    this->Discretization == DISCRETIZATION_LINEAR;
+  return !this->AutomaticFidelity && this->Discretization == DISCRETIZATION_LINEAR;
 }
 
 void vtkIntrinsicTVFilter::VisitReported(const std::function<void(double&)>& visit)

@@ -320,7 +320,7 @@ protected:
   bool CanBeDistributed(const std::vector<SurfacePiece>&) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
-  void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
+  void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;
   const char* GetResultSuffix() override { return "TV"; }
   Dimension GetTimeDimension() override;
   Dimension GetEnergyDimension() override;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Parallel.h"
+#include "Partition.h"
 
 #include <algorithm>
 #include <vector>
@@ -58,6 +58,15 @@ public:
   {
     this->Run<K>(
       parallel, rows, columns, sets, [](Index, Index) {}, add);
+  }
+
+  /// The totals become those over the processes; without a partition they are.
+  void SumOverProcesses(const Partition* partition)
+  {
+    if (partition)
+    {
+      partition->Sum(this->Total.data(), static_cast<Index>(this->Total.size()));
+    }
   }
 
   double operator[](std::size_t sum) const { return this->Total[sum]; }

@@ -10,9 +10,10 @@
 namespace SurfaceDiffusion
 {
 
-void QuadraticDescent::SetMatrix(const SparseMatrix& matrix)
+void QuadraticDescent::SetMatrix(const SparseMatrix& matrix, const Partition* partition)
 {
   this->Matrix = &matrix;
+  this->Pieces = partition;
   this->InverseDiagonal.resize(matrix.rows());
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
@@ -20,7 +21,21 @@ void QuadraticDescent::SetMatrix(const SparseMatrix& matrix)
     [&](Index i)
     {
       const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
-      this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[slot];
+      this->InverseDiagonal[i] = matrix.valuePtr()[slot];
+    });
+  if (partition)
+  {
+    partition->AddOverSeams(this->InverseDiagonal);
+    this->CountedOnce.resize(matrix.rows());
+  }
+  ForEach(this->Parallel, static_cast<Index>(matrix.rows()),
+    [&](Index i)
+    {
+      this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i];
+      if (partition)
+      {
+        this->CountedOnce[i] = partition->Owns(i) ? this->InverseDiagonal[i] : 0.0;
+      }
     });
 }
 
@@ -50,6 +65,8 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
   double* p = this->Direction.data();
   double* q = this->Product.data();
   double* u = x.data();
+  const double* const weight =
+    this->Pieces ? this->CountedOnce.data() : this->InverseDiagonal.data();
 
   // p = z = r / diag(A), rho = r . z
   this->Sums.Run<K>(this->Parallel, n, k, 1,
@@ -59,9 +76,10 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
       {
         const double ri = r[i * k + c];
         p[i * k + c] = this->InverseDiagonal[i] * ri;
-        sums[c] += ri * this->InverseDiagonal[i] * ri;
+        sums[c] += ri * weight[i] * ri;
       }
     });
+  this->Sums.SumOverProcesses(this->Pieces);
   this->Rho = this->Sums.Totals();
   this->Length = this->Rho;
   for (int iteration = 0; iteration < iterations; ++iteration)
@@ -78,6 +96,11 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
           sums[c] += p[i * k + c] * q[i * k + c];
         }
       });
+    this->Sums.SumOverProcesses(this->Pieces);
+    if (this->Pieces)
+    {
+      this->Pieces->AddOverSeams(this->Product);
+    }
     for (int c = 0; c < k; ++c)
     {
       // No step where only round-off resists it: it has no bounds.
@@ -93,9 +116,10 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
           u[i * k + c] += this->Factor[c] * p[i * k + c];
           const double ri = r[i * k + c] - this->Factor[c] * q[i * k + c];
           r[i * k + c] = ri;
-          sums[c] += ri * this->InverseDiagonal[i] * ri;
+          sums[c] += ri * weight[i] * ri;
         }
       });
+    this->Sums.SumOverProcesses(this->Pieces);
     if (iteration + 1 == iterations)
     {
       break;

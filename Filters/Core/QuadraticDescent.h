@@ -23,10 +23,11 @@ public:
   }
 
   /// matrix: symmetric positive (semi)definite, with a positive diagonal; must stay as it is.
-  void SetMatrix(const SparseMatrix& matrix);
+  /// partition: of a surface in pieces, whose matrix is that of the triangles here.
+  void SetMatrix(const SparseMatrix& matrix, const Partition* partition = nullptr);
 
   /// The residual b - A x, n x k: to be set before the first call of Improve, and to be changed by
-  /// what b changes by before the next.
+  /// what b changes by before the next. As x, it is the same wherever a vertex is.
   Values Residual;
 
   /// `iterations` iterations, each column with its own step lengths.
@@ -39,7 +40,9 @@ private:
 
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
+  const Partition* Pieces = nullptr;
   Vector InverseDiagonal;
+  Vector CountedOnce; ///< of pieces: InverseDiagonal where this process owns the vertex, or 0
   Values Direction, Product;
   std::vector<double> Rho, Factor; // one per column
   std::vector<double> Length; ///< per column, p . diag(A) p

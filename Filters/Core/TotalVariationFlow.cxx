@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -14,13 +15,22 @@ namespace
 {
 
 /// The largest max - min over the columns; 1 for constants and where there are no values.
-double ValueRange(const Values& u)
+double ValueRange(const Values& u, const Partition* partition)
 {
-  if (u.size() == 0)
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  Eigen::RowVectorXd high = Eigen::RowVectorXd::Constant(u.cols(), none);
+  Eigen::RowVectorXd minusLow = high;
+  if (u.rows() > 0)
   {
-    return 1.0;
+    high = u.colwise().maxCoeff();
+    minusLow = -u.colwise().minCoeff();
   }
-  const double range = (u.colwise().maxCoeff() - u.colwise().minCoeff()).maxCoeff();
+  if (partition)
+  {
+    partition->Max(high.data(), static_cast<Index>(u.cols()));
+    partition->Max(minusLow.data(), static_cast<Index>(u.cols()));
+  }
+  const double range = u.cols() > 0 ? (high + minusLow).maxCoeff() : 0.0;
   return range > 0.0 ? range : 1.0;
 }
 
@@ -74,7 +84,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   TotalVariationMinimizer::Settings minimizer;
   minimizer.Function = settings.Function;
   minimizer.Coupling = settings.Coupling;
-  minimizer.Range = ValueRange(this->Data.Start);
+  minimizer.Range = ValueRange(this->Data.Start, mesh.GetPartition());
   minimizer.StopTolerance = settings.StopTolerance;
   minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
   this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Operators, std::move(gradients),
@@ -128,7 +138,7 @@ double TotalVariationFlow::Energy() const
   if (this->Options.Fidelity > 0.0)
   {
     const bool joint = this->Options.Coupling == ChannelCoupling::Joint;
-    energy += Sum(this->Parallel, mesh.NumberOfVertices(),
+    const double here = Sum(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i)
       {
         const auto distance = this->U.row(i) - this->Data.Given.row(i);
@@ -137,6 +147,7 @@ double TotalVariationFlow::Energy() const
                                                                       : distance.lpNorm<1>();
         return mesh.ControlAreas()[i] * this->FidelityAt(i) * density;
       });
+    energy += SumOverProcesses(mesh.GetPartition(), here);
   }
   return energy;
 }

@@ -21,8 +21,8 @@ constexpr int IterationsPerCheck = 10;
 /// The penalty on S grad u - p, in units of g at the steepest gradient of one Range on the
 /// triangle: small triangles and slivers then have no larger share in the equations than others. It
 /// moves work between finding edges and settling values and changes no result. Measured with the
-/// factor sqrt(triangles per unknown) on meshes and medial meshes: 14 to 28 is best for noise to a gap
-/// of 1e-3, 28 to 50 to 1e-5, the more so the more vertices.
+/// factor sqrt(triangles per unknown) on meshes and medial meshes: 14 to 28 is best for noise to a
+/// gap of 1e-3, 28 to 50 to 1e-5, the more so the more vertices.
 constexpr double Penalty = 28.0;
 
 /// The penalty on u - f - q in the same units: 1 to 10 is best. Very large nu need some more.
@@ -133,11 +133,19 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   , Descent(parallel)
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
+  const Partition* const partition = mesh.GetPartition();
+  if (partition)
+  {
+    this->WholeAreas = mesh.ControlAreas();
+    partition->AddOverSeams(this->WholeAreas);
+  }
+  this->NumberOfVertices =
+    SumOverVertices(partition, parallel, mesh.NumberOfVertices(), [](Index) { return 1.0; });
   this->GradientPenalty.resize(mesh.NumberOfTriangles());
   this->ValuePenalty.resize(mesh.NumberOfVertices());
   const EdgeFunction function = WithoutBeta(settings.Function);
   const double perUnknown =
-    std::sqrt(static_cast<double>(mesh.NumberOfTriangles()) / mesh.NumberOfVertices());
+    std::sqrt(SumOverProcesses(partition, mesh.NumberOfTriangles()) / this->NumberOfVertices);
   EdgeValues coefficients(mesh.NumberOfTriangles(), 3);
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
@@ -158,13 +166,14 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   ForEach(parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
-      const double area = mesh.ControlAreas()[i];
+      const double area = this->Areas()[i];
       const double nu = this->Absolute[i] * area;
       this->ValuePenalty[i] = nu > 0.0
         ? ValuePenaltyOfGradients * function(settings.Range * settings.Range / area) +
           ValuePenaltyOfFidelity * nu / settings.Range
         : 0.0;
-      diagonal[i] = area * this->Quadratic[i] + this->ValuePenalty[i];
+      const bool counts = !partition || partition->Owns(i);
+      diagonal[i] = counts ? area * this->Quadratic[i] + this->ValuePenalty[i] : 0.0;
     });
   TakePattern(this->Operators->Pattern(), this->Matrix, parallel);
   this->Operators->Fill(this->Matrix, diagonal, 1.0, coefficients, nullptr, parallel);
@@ -196,6 +205,7 @@ struct TotalVariationMinimizer::Pass
   const Values& U;
   const int Columns = K > 0 ? K : static_cast<int>(U.cols());
   const TriangleMesh& Mesh = Self.Operators->Mesh();
+  const Partition* const Pieces = Mesh.GetPartition();
   const bool Joint = Self.Options.Coupling == ChannelCoupling::Joint;
   const bool HasAbsolute = (Self.Absolute.array() > 0.0).any();
 
@@ -306,7 +316,7 @@ struct TotalVariationMinimizer::Pass
     ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
       [&](Index i)
       {
-        const double nu = this->Self.Absolute[i] * this->Mesh.ControlAreas()[i];
+        const double nu = this->Self.Absolute[i] * this->Self.Areas()[i];
         if (nu == 0.0)
         {
           return;
@@ -329,8 +339,18 @@ struct TotalVariationMinimizer::Pass
   /// The change of the right-hand side goes into the residual.
   void UpdateResidual()
   {
-    const auto& begin = this->Mesh.VertexCornersBegin();
-    const auto& corners = this->Mesh.VertexCorners();
+    if (this->Pieces)
+    {
+      ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
+        [&](Index i)
+        {
+          for (int k = 0; k < this->Count(); ++k)
+          {
+            this->Self.Dual(i, k) = this->AddCorners(0.0, i, k);
+          }
+        });
+      this->Pieces->AddOverSeams(this->Self.Dual);
+    }
     ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
       [&](Index i)
       {
@@ -338,8 +358,7 @@ struct TotalVariationMinimizer::Pass
         {
           return;
         }
-        const double area = this->Mesh.ControlAreas()[i];
-        const double mu = area * this->Self.Quadratic[i];
+        const double mu = this->Self.Areas()[i] * this->Self.Quadratic[i];
         const double rho = this->Self.ValuePenalty[i];
         double* side = &this->Self.RightHandSide(i, 0);
         double* residual = &this->Self.Descent.Residual(i, 0);
@@ -350,14 +369,22 @@ struct TotalVariationMinimizer::Pass
           {
             sum += rho * (this->F(i, k) + this->Self.Q(i, k) - this->Self.C(i, k));
           }
-          for (Index c = begin[i]; c < begin[i + 1]; ++c)
-          {
-            sum += this->Self.Corners(corners[c], k);
-          }
+          sum = this->Pieces ? sum + this->Self.Dual(i, k) : this->AddCorners(sum, i, k);
           residual[k] += sum - side[k];
           side[k] = sum;
         }
       });
+  }
+
+  /// sum and what the triangles here give to vertex i.
+  double AddCorners(double sum, Index i, int k) const
+  {
+    const auto& begin = this->Mesh.VertexCornersBegin();
+    for (Index c = begin[i]; c < begin[i + 1]; ++c)
+    {
+      sum += this->Self.Corners(this->Mesh.VertexCorners()[c], k);
+    }
+    return sum;
   }
 
   double Energy() const
@@ -378,7 +405,7 @@ struct TotalVariationMinimizer::Pass
         }
         return this->Mesh.ControlAreas()[i] * density;
       });
-    return this->Self.GradientEnergy(this->U) + atVertices;
+    return this->Self.GradientEnergy(this->U) + SumOverProcesses(this->Pieces, atVertices);
   }
 
   /// The dual function at y = r b: the minimum over u of int (y . S grad u - psi*(y)) and the
@@ -401,19 +428,33 @@ struct TotalVariationMinimizer::Pass
           });
         return area * density;
       });
-    const double atVertices = Sum(this->Self.Parallel, this->Mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        double value = 0.0;
-        this->ForEachNorm([&](int first, int last) { value += this->DualAt(i, first, last); });
-        return value;
-      });
-    return atVertices - conjugate;
+    if (this->Pieces)
+    {
+      ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
+        [&](Index i) { this->GatherDual(i, 0, this->Count()); });
+      this->Pieces->AddOverSeams(this->Self.Dual);
+    }
+    const double atVertices =
+      SumOverVertices(this->Pieces, this->Self.Parallel, this->Mesh.NumberOfVertices(),
+        [&](Index i)
+        {
+          double value = 0.0;
+          this->ForEachNorm(
+            [&](int first, int last)
+            {
+              if (!this->Pieces)
+              {
+                this->GatherDual(i, first, last);
+              }
+              value += this->DualAt(i, first, last);
+            });
+          return value;
+        });
+    return atVertices - SumOverProcesses(this->Pieces, conjugate);
   }
 
-  /// What vertex i adds to the dual function: the minimum over u_i of d . u_i + mu A/2 |u_i - g|^2
-  /// + nu A |u_i - f|, d = sum over the corners at i of area (S grad phi_i) . y.
-  double DualAt(Index i, int first, int last) const
+  /// d = sum over the corners at i of area (S grad phi_i) . y.
+  void GatherDual(Index i, int first, int last) const
   {
     const auto& begin = this->Mesh.VertexCornersBegin();
     const auto& corners = this->Mesh.VertexCorners();
@@ -434,8 +475,15 @@ struct TotalVariationMinimizer::Pass
         d[k] += v[0] * b[2 * k] + v[1] * b[2 * k + 1];
       }
     }
-    const double mu = this->Mesh.ControlAreas()[i] * this->Self.Quadratic[i];
-    const double nu = this->Mesh.ControlAreas()[i] * this->Self.Absolute[i];
+  }
+
+  /// What vertex i adds to the dual function: the minimum over u_i of d . u_i + mu A/2 |u_i - g|^2
+  /// + nu A |u_i - f|.
+  double DualAt(Index i, int first, int last) const
+  {
+    const double* d = &this->Self.Dual(i, 0);
+    const double mu = this->Self.Areas()[i] * this->Self.Quadratic[i];
+    const double nu = this->Self.Areas()[i] * this->Self.Absolute[i];
     const bool fixed = this->Self.Fixed[i];
     const double range = this->Self.Options.Range * std::sqrt(static_cast<double>(last - first));
     double squared = 0.0; // of d, or of u_i - f without the pull of nu
@@ -547,23 +595,28 @@ void TotalVariationMinimizer::Prepare(const Values& u)
     {
       this->Operators->Constrain(this->Matrix, this->Fixed, u, this->Load, this->Parallel);
     }
-    this->Descent.SetMatrix(this->Matrix);
+    this->Descent.SetMatrix(this->Matrix, this->Operators->Mesh().GetPartition());
   }
   this->RightHandSide.setZero();
   Multiply(this->Matrix, u, this->Descent.Residual, this->Parallel);
   this->Descent.Residual = this->Load - this->Descent.Residual;
+  if (const Partition* const partition = this->Operators->Mesh().GetPartition())
+  {
+    partition->AddOverSeams(this->Descent.Residual);
+  }
 }
 
 double TotalVariationMinimizer::NoiseEnergy() const
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
-  if (mesh.NumberOfVertices() == 0)
+  if (this->NumberOfVertices == 0.0)
   {
     return 0.0;
   }
+  const TriangleMesh& mesh = this->Operators->Mesh();
   const EdgeFunction exact = WithoutBeta(this->Options.Function);
-  const double squared = this->Options.Range * this->Options.Range / mesh.ControlAreas().mean();
-  return mesh.ControlAreas().sum() * exact.Potential(squared);
+  const double area = SumOverProcesses(mesh.GetPartition(), mesh.ControlAreas().sum());
+  const double ofOne = area / this->NumberOfVertices;
+  return area * exact.Potential(this->Options.Range * this->Options.Range / ofOne);
 }
 
 double TotalVariationMinimizer::GradientEnergy(const Values& u) const
@@ -572,7 +625,7 @@ double TotalVariationMinimizer::GradientEnergy(const Values& u) const
   const Triangles& vertices = mesh.TriangleVertices();
   const bool joint = this->Options.Coupling == ChannelCoupling::Joint;
   const EdgeFunction exact = WithoutBeta(this->Options.Function);
-  return Sum(this->Parallel, mesh.NumberOfTriangles(),
+  const double here = Sum(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
       const GradientMap& map = this->Gradients[t];
@@ -592,6 +645,7 @@ double TotalVariationMinimizer::GradientEnergy(const Values& u) const
       }
       return mesh.Shapes()[t].Area() * density;
     });
+  return SumOverProcesses(mesh.GetPartition(), here);
 }
 
 } // namespace SurfaceDiffusion

@@ -78,6 +78,11 @@ private:
   template <int K>
   struct Pass;
 
+  /// Of control cells over all pieces of the surface.
+  const Vector& Areas() const
+  {
+    return this->WholeAreas.size() > 0 ? this->WholeAreas : this->Operators->Mesh().ControlAreas();
+  }
   /// int psi for gradients of one Range per vertex spacing.
   double NoiseEnergy() const;
   void Prepare(const Values& u);
@@ -90,6 +95,8 @@ private:
   Flags Fixed;
   Settings Options;
   const ParallelFor& Parallel;
+  Vector WholeAreas; ///< where the surface is in pieces
+  double NumberOfVertices; ///< of the surface
   Vector GradientPenalty; ///< r per triangle, times its area
   Vector ValuePenalty; ///< rho per vertex, times its area
   SparseMatrix Matrix;
@@ -99,7 +106,7 @@ private:
   Values Q, C; ///< per vertex: split value and scaled multiplier of L1 fidelity
   Values RightHandSide, Load;
   Values Initial; ///< u on entry
-  Values Dual; ///< what the multipliers give to each vertex
+  Values Dual; ///< what the multipliers give to each vertex; of pieces also what corners give
 };
 
 } // namespace SurfaceDiffusion
