@@ -50,6 +50,7 @@ vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm()
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
   this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->HasWholeSurface = false; // unless told so
 }
 
 vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm()
@@ -57,7 +58,15 @@ vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm()
   this->SetController(nullptr);
 }
 
-vtkCxxSetObjectMacro(vtkSurfaceDiffusionAlgorithm, Controller, vtkMultiProcessController);
+void vtkSurfaceDiffusionAlgorithm::SetController(vtkMultiProcessController* controller)
+{
+  if (this->HasWholeSurface != !controller)
+  {
+    this->HasWholeSurface = !controller;
+    this->Modified();
+  }
+  vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
+}
 
 const char* vtkSurfaceDiffusionAlgorithm::GetUnitsAsString()
 {
@@ -333,6 +342,10 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   vtkTable::GetData(outputs, 1)->Initialize();
   const std::vector<SurfacePiece> pieces =
     CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
+  if (IsLonePiece(this, inputs, this->Controller, this->HasWholeSurface))
+  {
+    return 1;
+  }
   const Processes processes(this->Controller);
   Problems problems; // process 0 tells them
   this->CheckProperties(problems);

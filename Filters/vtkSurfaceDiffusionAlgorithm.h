@@ -15,31 +15,38 @@
  *
  * | idx | association | meaning |
  * | --- | --- | --- |
- * | 0 | points | the data f: any numeric type and number of components. Unsigned chars are colours; with 2 or 4 components the last is alpha and carried over. Default: the active scalars |
- * | 1 | points | mask, one component: nonzero is missing or excluded, see MaskMode. A point is missing too where any component of f is NaN |
- * | 2 | points or cells | direction e1, three components: projected into each triangle and normalised, e2 = n x e1. The sign does not matter. Zero or NaN: isotropic there with the geometric mean of the two diffusivities |
- * | 3 | points | nonzero: the value is held fixed (Dirichlet). Fixed beats missing |
+ * | 0 | points | the data f: any numeric type and number of components. Unsigned chars are colours;
+ * with 2 or 4 components the last is alpha and carried over. Default: the active scalars | | 1 |
+ * points | mask, one component: nonzero is missing or excluded, see MaskMode. A point is missing
+ * too where any component of f is NaN | | 2 | points or cells | direction e1, three components:
+ * projected into each triangle and normalised, e2 = n x e1. The sign does not matter. Zero or NaN:
+ * isotropic there with the geometric mean of the two diffusivities | | 3 | points | nonzero: the
+ * value is held fixed (Dirichlet). Fixed beats missing |
  *
  * Polygons and strips are triangulated inside; vertices and lines pass through; ghost and hidden
  * cells take no part. Composite input is one problem with one set of units; each block is a
  * surface of its own.
  *
- * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with a
- * piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one piece,
- * whatever the partition. All processes update together. Points of different pieces are one point
- * of the surface where they have one global id, if all pieces have global ids; otherwise where they
- * lie at one place, within SeamTolerance, and at least one of them lies on the edge of its piece.
- * Points of one piece are never joined (that is what MergeCoincidentPoints does): of several at one
- * place the k-th goes with the k-th of other pieces. Data are those of the first piece that has the
- * point. Ghost cells take no part; ghost points get the results of the points that they are copies
- * of. The history, warnings and errors are those of process 0 alone. Each process solves with its
- * piece, so that memory and time are divided, where the library was built with hypre, the surface
- * has one piece per process, the model is linear diffusion (vtkFVMHeatFilter) or nonlinear diffusion
- * in time steps (vtkIntrinsicTVFilter, FirstOrder, Linear), AutomaticFidelity, IntrinsicDelaunay and
- * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid (hypre's BoomerAMG), or
- * Automatic and there are more than a million points. An abort is then obeyed after a step.
- * Everything else is solved in process 0, which holds the whole surface. Random numbers are those of one process where there are global ids; they depend
- * on the coordinates otherwise.
+ * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with
+ * a piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one
+ * piece, whatever the partition. All processes update together. Points of different pieces are one
+ * point of the surface where they have one global id, if all pieces have global ids; otherwise
+ * where they lie at one place, within SeamTolerance, and at least one of them lies on the edge of
+ * its piece. Points of one piece are never joined (that is what MergeCoincidentPoints does): of
+ * several at one place the k-th goes with the k-th of other pieces. Data are those of the first
+ * piece that has the point. Ghost cells take no part; ghost points get the results of the points
+ * that they are copies of. The history, warnings and errors are those of process 0 alone. Random
+ * numbers are those of one process where there are global ids; they depend on the coordinates
+ * otherwise.
+ *
+ * Each process solves with its piece, so that memory and time are divided, where the library was
+ * built with hypre, the surface has one piece per process, IntrinsicDelaunay and
+ * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid (hypre's BoomerAMG),
+ * or Automatic and there are more than a million points. An abort is then obeyed by all of them
+ * within a few iterations. Solved in process 0, which then holds the whole surface, are also:
+ * AutomaticFidelity; of vtkIntrinsicTVFilter Discretization CrouzeixRaviart; of
+ * vtkHarmonicMapFilter MoveVertices, normals that it has to compute, and lines some of which are
+ * missing; and vtkSurfaceDirectionFieldFilter.
  *
  * **Output port 0** is the input with the result as a further point array, made active. Points
  * that no participating triangle uses keep their value. **Output port 1** is a vtkTable, the
@@ -318,8 +325,10 @@ public:
 
   ///@{
   /**
-   * The processes that hold pieces of the surface. Default: the global controller. Null: this
-   * process's surface is the whole one.
+   * The processes that hold pieces of the surface. Default: the global controller. Null, set
+   * by SetController(): this process's surface is the whole one. Without that, where the pipeline
+   * is asked for one of several pieces and there is no other process to join it with (no MPI, or no
+   * controller of it), update is an error.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
@@ -513,6 +522,7 @@ private:
   std::vector<std::unique_ptr<SurfaceRun>> Runs; ///< one per block
   std::unique_ptr<GatheredSurfaces> Gathered;    ///< of surfaces in pieces
   vtkMultiProcessController* Controller = nullptr;
+  bool HasWholeSurface = false; ///< as null for Controller says
   double TimeUnit = 1.0;
   double MeanEdgeLength = 0.0;
   double ValueRange = 0.0;

@@ -31,6 +31,7 @@ vtkStandardNewMacro(vtkSurfaceDirectionFieldFilter);
 vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter()
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->HasWholeSurface = false; // unless told so
 }
 
 vtkSurfaceDirectionFieldFilter::~vtkSurfaceDirectionFieldFilter()
@@ -38,7 +39,15 @@ vtkSurfaceDirectionFieldFilter::~vtkSurfaceDirectionFieldFilter()
   this->SetController(nullptr);
 }
 
-vtkCxxSetObjectMacro(vtkSurfaceDirectionFieldFilter, Controller, vtkMultiProcessController);
+void vtkSurfaceDirectionFieldFilter::SetController(vtkMultiProcessController* controller)
+{
+  if (this->HasWholeSurface != !controller)
+  {
+    this->HasWholeSurface = !controller;
+    this->Modified();
+  }
+  vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
+}
 
 const char* vtkSurfaceDirectionFieldFilter::GetMethodAsString()
 {
@@ -135,6 +144,10 @@ int vtkSurfaceDirectionFieldFilter::RequestData(
 {
   const std::vector<SurfacePiece> pieces =
     CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
+  if (IsLonePiece(this, inputs, this->Controller, this->HasWholeSurface))
+  {
+    return 1;
+  }
   UpdateOfPieces(this, Processes(this->Controller), pieces, this->SeamTolerance, this->Gathered,
     [&](const std::vector<SurfacePiece>& surfaces)
     {

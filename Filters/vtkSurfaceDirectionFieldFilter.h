@@ -202,6 +202,7 @@ private:
 
   std::unique_ptr<GatheredSurfaces> Gathered; ///< of surfaces in pieces
   vtkMultiProcessController* Controller = nullptr;
+  bool HasWholeSurface = false; ///< as null for Controller says
 };
 
 #endif

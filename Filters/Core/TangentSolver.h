@@ -33,9 +33,9 @@ public:
   {
   }
 
-  /// preconditioner: a solver that has taken a matrix near A; none: the diagonal of A (Jacobi).
-  The residual is in the norm of LinearSolver, relative to the larger of P b and
-  /// Inertia u: to what the right-hand side would be if x were the whole of u.
+  /// preconditioner: a solver that has taken a matrix near A; none: the diagonal of A (Jacobi). The
+  /// residual is in the norm of LinearSolver, relative to the larger of P b and Inertia u: to what
+  /// the right-hand side would be if x were the whole of u.
   SolveReport Solve(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
     const IterationLimits& limits, const Monitor& monitor = Monitor());
 

@@ -243,6 +243,7 @@ private:
     double residual = this->Residual();
     this->Progress = monitor;
     this->Iterations = 0;
+    this->IsAborted = false;
     for (int attempt = 0; attempt < 8 && residual > this->Limits.Tolerance; ++attempt)
     {
       HYPRE_PCGSetTol(this->Krylov, tolerance);

@@ -186,7 +186,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::FindProblems(Problems& problems)
   for (Block& block : this->Blocks)
   {
     Problems ofArrays;
-    if (this->Group && block.Input->GetNumberOfPolys() + block.Input->GetNumberOfStrips() == 0)
+    if (this->Group && block.Input->GetNumberOfPoints() == 0)
     {
       withData.push_back(block); // with nothing to do but to go along
       continue;

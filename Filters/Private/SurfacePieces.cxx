@@ -2,17 +2,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfacePieces.h"
 
+#include "Processes.h"
+
+#include "vtkAlgorithm.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <set>
@@ -112,6 +117,26 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
     ++number;
   }
   return pieces;
+}
+
+bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
+  vtkMultiProcessController* controller, bool whole)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* const input = inputs[0]->GetInformationObject(0);
+  const bool several = input && input->Has(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST()) &&
+    input->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()) &&
+    input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  if (whole || !several || Processes(controller).Count() > 1)
+  {
+    return false;
+  }
+  vtkErrorWithObjectMacro(filter,
+    "the input is one of " << input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())
+                           << " pieces, and Controller knows no process that has the others; "
+                              "allowed: a controller of all of them, or null where each piece is a "
+                              "surface of its own");
+  return true;
 }
 
 bool HasPoints(const std::vector<SurfacePiece>& pieces)

@@ -4,9 +4,11 @@
 
 #include <vector>
 
+class vtkAlgorithm;
 class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
+class vtkMultiProcessController;
 class vtkPolyData;
 
 /// A vtkPolyData of the input, and its copy in the output.
@@ -25,6 +27,11 @@ bool MakeOutputObject(vtkInformationVector** inputs, vtkInformationVector* outpu
 /// of multi-block data and members of collections are surfaces of their own, the partitions of a
 /// vtkPartitionedDataSet and the pieces of a vtkMultiPieceDataSet are pieces of one.
 std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* output);
+
+/// Whether the input is one of several pieces of which this process can see no other; tells the
+/// error then. whole: the user says that each is a surface.
+bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
+  vtkMultiProcessController* controller, bool whole);
 
 bool HasPoints(const std::vector<SurfacePiece>& pieces);
 

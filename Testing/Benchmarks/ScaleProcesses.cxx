@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// One step of linear diffusion on a torus in pieces, one per process:
+/// Two steps on a torus in pieces, one per process:
 ///
 ///     mpiexec -n <processes> ScaleProcesses <vertices of all, or per process with "weak"> [weak]
-///         [<time step in h^2>]
+///         [<time step in its natural unit> [heat | turing | harmonic | tv | minimum]]
 ///
-/// prints, for conjugate gradients with the diagonal and with multigrid (hypre): vertices, seconds
-/// of the first update (identity, assembly, setup, solve) and of a second step alone, iterations,
-/// vertices on seams, bytes sent per iteration by the busiest process, and its memory.
+/// prints, for conjugate gradients with the diagonal and, where it is a choice, with multigrid
+/// (hypre): vertices, seconds of the first update (identity, assembly, setup, solve) and of a
+/// second step alone, iterations, vertices on seams, bytes sent per product by the busiest process,
+/// and its memory. minimum: total variation in steps solved in full.
 #include "vtkFVMHeatFilter.h"
+#include "vtkHarmonicMapFilter.h"
+#include "vtkIntrinsicTVFilter.h"
+#include "vtkTuringTextureFilter.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -59,6 +63,9 @@ vtkSmartPointer<vtkPolyData> Piece(
   points->SetDataTypeToDouble();
   vtkNew<vtkDoubleArray> data;
   data->SetName("f");
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetName("v");
+  vectors->SetNumberOfComponents(3);
   const double turn = 2.0 * std::acos(-1.0);
   const bool closed = end - begin == around;
   for (vtkIdType i = begin; i <= (closed ? end - 1 : end); ++i)
@@ -69,7 +76,9 @@ vtkSmartPointer<vtkPolyData> Piece(
       const double b = turn * static_cast<double>(j) / static_cast<double>(along);
       const double r = 4.0 + std::cos(b);
       points->InsertNextPoint(r * std::cos(a), r * std::sin(a), std::sin(b));
-      data->InsertNextValue(std::sin(7.0 * a) * std::cos(5.0 * b) + std::sin(91.0 * a + 67.0 * b));
+      const double noise = std::sin(91.0 * a + 67.0 * b);
+      data->InsertNextValue(std::sin(7.0 * a) * std::cos(5.0 * b) + noise);
+      vectors->InsertNextTuple3(std::cos(a) + noise, std::sin(a), std::sin(b) + noise);
     }
   }
   vtkNew<vtkCellArray> triangles;
@@ -89,7 +98,34 @@ vtkSmartPointer<vtkPolyData> Piece(
   piece->SetPoints(points);
   piece->SetPolys(triangles);
   piece->GetPointData()->SetScalars(data);
+  piece->GetPointData()->AddArray(vectors);
   return piece;
+}
+
+using Filter = vtkSmartPointer<vtkSurfaceDiffusionAlgorithm>;
+
+Filter MakeFilter(const std::string& model)
+{
+  if (model == "turing")
+  {
+    return vtkSmartPointer<vtkTuringTextureFilter>::New();
+  }
+  if (model == "harmonic")
+  {
+    const auto map = vtkSmartPointer<vtkHarmonicMapFilter>::New();
+    map->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "v");
+    return map;
+  }
+  if (model == "tv" || model == "minimum")
+  {
+    const auto tv = vtkSmartPointer<vtkIntrinsicTVFilter>::New();
+    tv->SetTimeIntegrator(model == "tv" ? vtkSurfaceDiffusionAlgorithm::TIME_INTEGRATOR_FIRST_ORDER
+                                        : vtkSurfaceDiffusionAlgorithm::TIME_INTEGRATOR_IMPLICIT);
+    return tv;
+  }
+  const auto heat = vtkSmartPointer<vtkFVMHeatFilter>::New();
+  heat->SetTimeIntegratorToFirstOrder();
+  return heat;
 }
 
 } // namespace
@@ -103,7 +139,9 @@ int main(int argc, char** argv)
   const int count = controller->GetNumberOfProcesses();
   const bool weak = argc > 2 && std::string(argv[2]) == "weak";
   const double all = (argc > 1 ? std::atof(argv[1]) : 1e5) * (weak ? count : 1);
-  const double step = argc > (weak ? 3 : 2) ? std::atof(argv[weak ? 3 : 2]) : 10.0;
+  const int next = weak ? 3 : 2;
+  const double step = argc > next ? std::atof(argv[next]) : 10.0;
+  const std::string model = argc > next + 1 ? argv[next + 1] : "heat";
 
   const auto along = static_cast<vtkIdType>(std::sqrt(all / 4.0));
   const vtkIdType around = 4 * along;
@@ -112,36 +150,39 @@ int main(int argc, char** argv)
   const double ofInput = PeakMemory();
   for (const bool multigrid : { false, true })
   {
-    vtkNew<vtkFVMHeatFilter> heat;
-    heat->SetInputData(piece);
-    heat->SetTimeIntegratorToFirstOrder();
-    heat->SetTimeStep(step);
-    heat->SetGenerateTimeSteps(true);
-    heat->SetNumberOfTimeSteps(2);
-    heat->SetMaximumNumberOfIterations(100000);
-    heat->SetTolerance(1e-8);
-    multigrid ? heat->SetSolverToMultigrid() : heat->SetSolverToConjugateGradient();
+    if (multigrid && (model == "tv" || model == "minimum"))
+    {
+      continue;
+    }
+    const Filter filter = MakeFilter(model);
+    filter->SetInputData(piece);
+    filter->SetTimeStep(step);
+    filter->SetGenerateTimeSteps(true);
+    filter->SetNumberOfTimeSteps(2);
+    filter->SetMaximumNumberOfIterations(100000);
+    filter->SetTolerance(1e-8);
+    multigrid ? filter->SetSolverToMultigrid() : filter->SetSolverToConjugateGradient();
     double seconds[3];
     int iterations = 0;
     for (int n = 0; n < 3; ++n)
     {
       controller->Barrier();
       const double start = Seconds();
-      heat->UpdateInformation();
-      heat->UpdateTimeStep(n * step);
+      filter->UpdateInformation();
+      filter->UpdateTimeStep(n * step);
       controller->Barrier();
       seconds[n] = Seconds() - start;
-      iterations = static_cast<int>(heat->GetNumberOfIterations());
+      iterations = static_cast<int>(filter->GetNumberOfIterations());
     }
     const double mine[2] = { PeakMemory() - before, ofInput - before };
     double most[2];
     controller->AllReduce(mine, most, 2, vtkCommunicator::MAX_OP);
     if (rank == 0)
     {
-      std::cout << count << " processes, " << around * along << " vertices, dt " << step << " h^2, "
-                << (multigrid ? "multigrid" : "diagonal") << ": surface " << seconds[0]
-                << " s, first step (setup too) " << seconds[1] << " s, second " << seconds[2]
-                << " s, iterations of both " << iterations << ", on seams "
+      std::cout << count << " processes, " << around * along << " vertices, " << model << ", dt "
+                << step << ", " << (multigrid ? "multigrid" : "diagonal") << ": surface "
+                << seconds[0] << " s, first step (setup too) " << seconds[1] << " s, second "
+                << seconds[2] << " s, iterations of both " << iterations << ", on seams "
                 << (count > 1 ? count * along : 0) << " vertices, sent per product "
                 << (count > 1 ? 2 * along * 8 : 0) << " bytes per process, memory " << most[0]
                 << " MiB of which input " << most[1] << "\n";

@@ -1,63 +1,18 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../Filters/FilterTest.h"
+#include "Pieces.h"
 
 #include "vtkFVMHeatFilter.h"
 
-#include "vtkCommunicator.h"
-#include "vtkIdTypeArray.h"
 #include "vtkMPIController.h"
 #include "vtkMultiBlockDataSet.h"
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
-using namespace FilterTest;
+using namespace Pieces;
 
 namespace
 {
-
-int Rank()
-{
-  return vtkMultiProcessController::GetGlobalController()->GetLocalProcessId();
-}
-int Count()
-{
-  return vtkMultiProcessController::GetGlobalController()->GetNumberOfProcesses();
-}
-
-double OfAll(double value, int operation)
-{
-  double all = 0.0;
-  vtkMultiProcessController::GetGlobalController()->AllReduce(&value, &all, 1, operation);
-  return all;
-}
-
-double Data(const double* x)
-{
-  return std::sin(2.0 * x[0]) + (x[1] > 0.4 ? 1.0 : 0.0);
-}
-
-/// A strip of the unit square, columns begin .. end of n, with data; its points are moved by shift.
-vtkSmartPointer<vtkPolyData> Strip(int begin, int end, int n, double shift = 0.0)
-{
-  auto strip = Grid(end - begin + 1, n + 1, 1.0 / n);
-  for (vtkIdType i = 0; i < strip->GetNumberOfPoints(); ++i)
-  {
-    double x[3];
-    strip->GetPoint(i, x);
-    x[0] = static_cast<double>(begin) / n + x[0] + shift;
-    strip->GetPoints()->SetPoint(i, x);
-  }
-  AddPointArray(strip, "f", 1, [&](vtkIdType i, int) { return Data(strip->GetPoint(i)); });
-  return strip;
-}
-
-vtkSmartPointer<vtkPolyData> Mine(int n, double shift = 0.0)
-{
-  return Strip(n * Rank() / Count(), n * (Rank() + 1) / Count(), n, shift);
-}
 
 vtkSmartPointer<vtkFVMHeatFilter> MakeHeat(vtkDataObject* input)
 {
@@ -262,84 +217,6 @@ TEST(Pieces, WhoseArrayIsMissingAreAnErrorToldOnce)
   heat->Update();
   EXPECT_EQ(messages.Errors.size(), Rank() == 0 ? 1u : 0u);
   EXPECT_EQ(Result(heat), nullptr);
-}
-
-//------------------------------------------------------------------------------------------------
-// Where each process solves with its piece: with hypre, unless Solver is Direct.
-
-TEST(PiecesTogether, KeepTheTotal)
-{
-  auto heat = MakeHeat(Mine(24));
-  heat->SetSolverToMultigrid();
-  heat->SetTimeStep(50.0);
-  heat->Update();
-  EXPECT_LT(heat->GetResidual(), 1e-10);
-  if (Rank() == 0)
-  {
-    for (int row = 1; row < 11; ++row)
-    {
-      EXPECT_NEAR(HistoryAt(heat, row, "Total_0"), HistoryAt(heat, 0, "Total_0"), 1e-13);
-    }
-  }
-}
-
-TEST(PiecesTogether, SeekInTime)
-{
-  const auto mine = Mine(24);
-  auto heat = MakeHeat(mine);
-  heat->SetSolverToConjugateGradient();
-  heat->SetGenerateTimeSteps(true);
-  std::vector<vtkIdType> computed;
-  for (const double time : { 7.0, 3.0, 10.0 })
-  {
-    UpdateAt(heat, time);
-    computed.push_back(heat->GetNumberOfStepsComputed());
-    auto direct = MakeHeat(mine);
-    direct->SetSolverToConjugateGradient();
-    direct->SetNumberOfTimeSteps(static_cast<int>(time));
-    direct->Update();
-    EXPECT_EQ(LargestDifference(Result(heat), Result(direct)), 0.0) << time;
-  }
-  EXPECT_EQ(computed, (std::vector<vtkIdType>{ 7, 7, 10 }));
-}
-
-TEST(PiecesTogether, TellWhatIsWrongInOneOfThemOnce)
-{
-  auto mine = Mine(24);
-  if (Rank() == Count() - 1)
-  {
-    mine->GetPointData()->GetArray("f")->SetComponent(
-      30, 0, std::numeric_limits<double>::infinity());
-  }
-  auto heat = MakeHeat(mine);
-  heat->SetSolverToConjugateGradient();
-  Messages messages(heat);
-  heat->Update();
-  EXPECT_EQ(messages.Errors.size(), Rank() == 0 ? 1u : 0u);
-  EXPECT_EQ(Result(heat), nullptr);
-}
-
-TEST(PiecesTogether, StopWhereOneOfThemIsAborted)
-{
-  auto heat = MakeHeat(Mine(24));
-  heat->SetSolverToConjugateGradient();
-  heat->SetNumberOfTimeSteps(50);
-  const unsigned long tag = Listen(heat,
-    [&](double progress)
-    {
-      if (Rank() == Count() - 1 && progress > 0.5)
-      {
-        heat->SetAbortExecute(1);
-      }
-    });
-  heat->Update();
-  EXPECT_EQ(Result(heat), nullptr);
-  EXPECT_LT(heat->GetNumberOfStepsComputed(), 45);
-  heat->RemoveObserver(tag);
-  heat->SetAbortExecute(0);
-  heat->Modified();
-  heat->Update();
-  EXPECT_LT(LargestDifference(heat, Strip(0, 24, 24)), 1e-8);
 }
 
 int main(int argc, char** argv)
