@@ -4,6 +4,7 @@
 
 #include "vtkFVMHeatFilter.h"
 #include "vtkSMPTools.h"
+#include "vtkSphereSource.h"
 
 #include <gtest/gtest.h>
 
@@ -407,4 +408,22 @@ TEST(Updates, TheFactorIsUsedAgainWhereTheMatrixStays)
     without = std::min(without, HistoryAt(filter, 1, "Seconds"));
   }
   EXPECT_LT(without, 0.5 * withFactor);
+}
+
+TEST(Updates, OneOfSeveralPiecesIsAnErrorUnlessItIsSaidToBeWhole)
+{
+  vtkNew<vtkSphereSource> source;
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  SetInputArray(filter, 0, "Normals");
+  Messages messages(filter);
+  filter->UpdatePiece(0, 1, 0);
+  EXPECT_TRUE(messages.Errors.empty());
+  filter->UpdatePiece(0, 2, 0);
+  EXPECT_EQ(messages.Errors.size(), 1u);
+  EXPECT_EQ(Result(filter, "NormalsDiffused"), nullptr);
+  filter->SetController(nullptr);
+  filter->UpdatePiece(0, 2, 0);
+  EXPECT_EQ(messages.Errors.size(), 1u);
+  EXPECT_NE(Result(filter, "NormalsDiffused"), nullptr);
 }
