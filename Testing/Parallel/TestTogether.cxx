@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
 
 using namespace Pieces;
 
@@ -339,6 +340,55 @@ TEST_P(Together, StopWithinAStepWhereOneOfThemIsAborted)
   anew->SetInputData(WithData(Mine(N)));
   anew->Update();
   EXPECT_TRUE(Identical(Result(filter, GetParam().Result), Result(anew, GetParam().Result)));
+}
+
+/// Columns begin .. end of a small grid of needles; found by search, see below.
+vtkSmartPointer<vtkPolyData> Needles(int begin, int end)
+{
+  constexpr int n = 4;
+  std::mt19937 generator(328);
+  double random[(n + 1) * (n + 1)][4];
+  for (auto& ofPoint : random)
+  {
+    for (double& number : ofPoint)
+    {
+      number = generator() / 2147483648.0 - 1.0;
+    }
+  }
+  auto needles = Strip(begin, end, n);
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("ids");
+  for (vtkIdType i = 0; i < needles->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    needles->GetPoint(i, x);
+    const auto id = static_cast<int>(std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
+    ids->InsertNextValue(id);
+    needles->GetPoints()->SetPoint(
+      i, x[0] + 0.11 * random[id][0], 0.1 * (x[1] + 0.11 * random[id][1]), 0.0);
+  }
+  needles->GetPointData()->SetGlobalIds(ids);
+  AddPointArray(
+    needles, "v", 2, [&](vtkIdType i, int k) { return random[ids->GetValue(i)][2 + k]; });
+  return needles;
+}
+
+TEST(PiecesTogether, DampStepsThatWouldRaiseTheEnergyAsTheWholeDoes)
+{
+  const auto make = [](vtkPolyData* needles)
+  {
+    auto map = Make<vtkHarmonicMapFilter>("v", 8);
+    map->SetExponent(2.0);
+    map->SetTimeStep(1e4);
+    map->SetInputData(needles);
+    return map;
+  };
+  const auto together = make(Needles(4 * Rank() / Count(), 4 * (Rank() + 1) / Count()));
+  together->Update();
+  const auto alone = make(Needles(0, 4));
+  alone->SetController(nullptr);
+  alone->Update();
+  EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "vHarmonic"), 1e-9);
 }
 
 TEST(PiecesTogether, KeepTheTotal)
