@@ -335,7 +335,7 @@ bool vtkHarmonicMapFilter::CanBeDistributed(const std::vector<SurfacePiece>& pie
     BlockArrays arrays;
     Problems told; // later
     if (this->LineField && this->FindArrays(block, arrays, told) &&
-      (arrays.Mask || HasZeroOrNaN(arrays.Data)))
+      ((arrays.Mask && this->MaskMode == MASK_MODE_INPAINT) || HasZeroOrNaN(arrays.Data)))
     {
       return false;
     }

@@ -183,7 +183,9 @@ class TestPieces(unittest.TestCase):
 
     def test_an_empty_piece(self):
         mine = pieces.split(self.numbered, COUNT, "empty")[RANK]
-        self.check("empty piece", producer(mine), True, ("heat", "tv", "turing", "direction"))
+        names = ("turing", "harmonic, p = 2", "harmonic, inpainting", "tv, minimum")
+        self.check("empty piece", producer(mine), True, ("heat", "tv", "turing", "direction") + tuple(
+            "distributed %s, ConjugateGradient" % name for name in names))
 
     def test_all_in_the_last_process(self):
         mine = pieces.split(self.numbered, COUNT, "last")[RANK]
