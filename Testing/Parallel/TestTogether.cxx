@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where each process solves with its piece, with hypre: without it these are gathered.
+/// Where each process solves with its piece, with hypre.
 #include "Pieces.h"
 
 #include "vtkFVMHeatFilter.h"
