@@ -317,8 +317,8 @@ bool vtkHarmonicMapFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays, P
   return true;
 }
 
-/// Not where vertices move, where normals are to be computed, and where lines are missing, whose start
-/// depends on the order of their neighbours.
+/// Not where vertices move, where normals are to be computed, and where lines are missing, whose
+/// start depends on the order of their neighbours.
 bool vtkHarmonicMapFilter::CanBeDistributed(const std::vector<SurfacePiece>& pieces)
 {
   for (const SurfacePiece& piece : pieces)

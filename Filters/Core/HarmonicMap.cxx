@@ -396,8 +396,7 @@ void HarmonicMap::JoinDamping(const Partition& partition)
   }
   partition.AddOverSeams(this->Damping);
   ForEach(this->Parallel, static_cast<Index>(this->Damping.size()),
-    [&](Index i)
-    { this->Damping[i] = partition.Owns(i) ? std::max(this->Damping[i], 0.0) : 0.0; });
+    [&](Index i) { this->Damping[i] = partition.Owns(i) ? std::max(this->Damping[i], 0.0) : 0.0; });
 }
 
 SolveReport HarmonicMap::SolveInTangentSpaces(const Monitor& monitor)

@@ -66,8 +66,9 @@ public:
 
   /// What speeds up the conjugate gradients of the tangent spaces. Factor is the factorised matrix
   /// (of a surface in pieces a multigrid cycle) that does not know the tangent spaces: good on
-  /// smooth maps at large steps, while on noise Jacobi is never far behind. One that does not converge is followed by the other, and where
-  /// neither does, the step is as exact as the report says; Jacobi alone throws NotConverged.
+  /// smooth maps at large steps, while on noise Jacobi is never far behind. One that does not
+  /// converge is followed by the other, and where neither does, the step is as exact as the report
+  /// says; Jacobi alone throws NotConverged.
   enum class Preconditioner
   {
     Automatic, ///< Jacobi first

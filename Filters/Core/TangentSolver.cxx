@@ -70,8 +70,9 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   this->Q.resize(b.rows(), b.cols());
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
-  const auto diagonal = [&](Index i)
-  { return matrix.valuePtr()[std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner]; };
+  const auto diagonal = [&](Index i) {
+    return matrix.valuePtr()[std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner];
+  };
   const Partition* const partition = system.Partition;
   if (partition)
   {

@@ -133,10 +133,9 @@ void SpreadInwards(
   }
 }
 
-/// The same for vectors on a surface in pieces, all components at once. (Of lines the signs in a sum
-/// depend on its order.)
-void SpreadInwards(
-  const Partition& partition, const TriangleMesh& mesh, Values& u, Flags& known)
+/// The same for vectors on a surface in pieces, all components at once. (Of lines the signs in a
+/// sum depend on its order.)
+void SpreadInwards(const Partition& partition, const TriangleMesh& mesh, Values& u, Flags& known)
 {
   Values sums(u.rows(), u.cols());
   Flags reached(u.rows());
@@ -201,8 +200,7 @@ void PrepareUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineFiel
   {
     const Index begin = mesh.ComponentsBegin()[c];
     const Index end = mesh.ComponentsBegin()[c + 1];
-    const Eigen::RowVectorXd mean =
-      PrevailingDirection(sums.row(c), data.Given.cols(), lineField);
+    const Eigen::RowVectorXd mean = PrevailingDirection(sums.row(c), data.Given.cols(), lineField);
     for (Index i = begin; i < end; ++i)
     {
       const bool directed = fill == InitialFill::Input && !undirected[i]; // a unit vector already

@@ -38,8 +38,8 @@ bool Normalize(Row&& row)
 ///   the normals of a closed surface) the rim of the hole spreads inwards instead;
 /// - Input: the vectors themselves, Mean where they have no direction;
 /// - Noise: random directions, each component uniform between the smallest and largest known value.
-/// A component without any known vector takes e_1. ids: one per vertex, for the random numbers. Of a
-/// surface in pieces: lines only where none is missing.
+/// A component without any known vector takes e_1. ids: one per vertex, for the random numbers. Of
+/// a surface in pieces: lines only where none is missing.
 void PrepareUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField, InitialFill fill,
   std::int64_t seed, const std::vector<std::int64_t>& ids);
 
