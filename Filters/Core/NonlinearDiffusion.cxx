@@ -108,12 +108,12 @@ void NonlinearDiffusion::AdvanceColumns(
     });
   this->Operators->Fill(
     this->Matrix, this->Diagonal, this->Options.TimeStep, this->Weighted, nullptr, this->Parallel);
+  this->FillChange(first, last);
   if (this->Data.Fixed.any())
   {
     this->Operators->Constrain(
       this->Matrix, this->Data.Fixed, this->NoValues, this->NoLoad, this->Parallel);
   }
-  this->FillChange(first, last);
   this->Solver->SetMatrix(this->Matrix, monitor.Part(0.0, 0.5));
   this->Change.setZero();
   const SolveReport solve =
@@ -125,7 +125,13 @@ void NonlinearDiffusion::AdvanceColumns(
   report.Iterations += solve.Iterations;
   report.Residual = std::max(report.Residual, solve.Residual);
   ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i) { this->U.row(i).segment(first, last - first) += this->Change.row(i); });
+    [&](Index i)
+    {
+      for (Eigen::Index k = first; k < last; ++k)
+      {
+        this->U(i, k) += this->Change(i, k - first);
+      }
+    });
 }
 
 /// g1 c1 + g2 c2 of (12) on each triangle, g1 and g2 at the old |grad u|.
@@ -153,33 +159,28 @@ void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
     });
 }
 
-/// dt (-K(u_old) u_old + lambda M 1_D (f - u_old)), from differences along edges.
+/// dt (-K(u_old) u_old + lambda M 1_D (f - u_old)), from differences along edges; off the diagonal
+/// the matrix is dt K.
 void NonlinearDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  const Triangles& vertices = mesh.TriangleVertices();
+  const Index* outer = this->Matrix.outerIndexPtr();
+  const Index* inner = this->Matrix.innerIndexPtr();
+  const double* a = this->Matrix.valuePtr();
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
-      if (this->Data.Fixed[i])
-      {
-        this->RightHandSide.row(i).setZero();
-        return;
-      }
-      const double lambda = mesh.ControlAreas()[i] * this->FidelityAt(i, first, last);
+      const double lambda =
+        this->Options.TimeStep * mesh.ControlAreas()[i] * this->FidelityAt(i, first, last);
       for (Eigen::Index k = first; k < last; ++k)
       {
         const double u = this->U(i, k);
-        double flux = lambda > 0.0 ? lambda * (this->Data.Given(i, k) - u) : 0.0;
-        for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
+        double change = lambda > 0.0 ? lambda * (this->Data.Given(i, k) - u) : 0.0;
+        for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
         {
-          const Index t = mesh.VertexCorners()[c] / 3;
-          const int next = (mesh.VertexCorners()[c] + 1) % 3;
-          const int last2 = (mesh.VertexCorners()[c] + 2) % 3;
-          flux += this->Weighted(t, last2) * (this->U(vertices(t, next), k) - u) +
-            this->Weighted(t, next) * (this->U(vertices(t, last2), k) - u);
+          change -= a[slot] * (this->U(inner[slot], k) - u);
         }
-        this->RightHandSide(i, k - first) = this->Options.TimeStep * flux;
+        this->RightHandSide(i, k - first) = this->Data.Fixed[i] ? 0.0 : change;
       }
     });
 }
