@@ -88,6 +88,8 @@ public:
 private:
   struct Factorization
   {
+    static constexpr int WidestPanel = 4;
+
     /// Of a diagonal entry: a few units in its last place.
     static constexpr double Resolved = 1e-14;
 
@@ -98,6 +100,7 @@ private:
     bool Succeeded = false;
     Vector InverseDiagonal; ///< of the matrix
     Vector InverseD; ///< of the factor
+    std::vector<Index> Panels; ///< first columns, and the end
 
     void Compute()
     {
@@ -131,7 +134,37 @@ private:
       {
         this->InverseD = this->LDL->D.cwiseInverse();
         this->DropNegligible();
+        this->FindPanels();
       }
+    }
+
+    /// Columns that follow each other, each of which has the rows of the next one and the next one
+    /// itself: substitution takes them together, so that it reads rows once and numbers of the
+    /// right-hand side once.
+    void FindPanels()
+    {
+      const SparseFactor& l = *this->LDL;
+      const Index n = static_cast<Index>(l.D.size());
+      const auto nested = [&](Index j) // the columns j and j + 1
+      {
+        const Index begin = l.Begin[j];
+        const Index next = l.Begin[j + 1];
+        return next > begin && l.Rows[begin] == j + 1 &&
+          next - begin - 1 == l.Begin[j + 2] - next &&
+          std::equal(l.Rows + begin + 1, l.Rows + next, l.Rows + next);
+      };
+      this->Panels.clear();
+      for (Index j = 0; j < n;)
+      {
+        this->Panels.push_back(j);
+        Index width = 1;
+        while (width < WidestPanel && j + width < n && nested(j + width - 1))
+        {
+          ++width;
+        }
+        j += width;
+      }
+      this->Panels.push_back(n);
     }
 
     /// Leave out of L what is below the last place of its row. The smaller the time step, the
@@ -199,6 +232,28 @@ private:
     }
   };
 
+  /// Columns j .. j + Width - 1 of L, as FindPanels() puts them together.
+  template <int Width>
+  struct Panel
+  {
+    Panel(const SparseFactor& l, Index j)
+    {
+      for (int a = 0; a < Width; ++a)
+      {
+        this->Below[a] = l.Entries + l.Begin[j + a] + (Width - 1 - a);
+      }
+      const Index last = j + Width - 1;
+      this->Rows = l.Rows + l.Begin[last];
+      this->Count = l.Begin[last + 1] - l.Begin[last];
+    }
+    /// Row j + b of column j + a.
+    double Within(int a, int b) const { return this->Below[a][b - Width]; }
+
+    const double* Below[Width]; ///< entries in the rows that all have
+    const Index* Rows; ///< these rows
+    Index Count; ///< and their number
+  };
+
   /// x = P^T L^-T D^-1 L^-1 P b
   void Substitute(const Values& b, Values& x)
   {
@@ -222,54 +277,143 @@ private:
   void SubstituteColumns(const Values& b, Values& x)
   {
     const int k = K > 0 ? K : static_cast<int>(b.cols());
-    const SparseFactor& factor = *this->Factor->LDL;
     const Index n = static_cast<Index>(b.rows());
-    const Index* place = factor.Place;
-    const Index* outer = factor.Begin.data();
-    const Index* inner = factor.Rows;
-    const double* l = factor.Entries;
-    const double* inverseD = this->Factor->InverseD.data();
-    const auto row = [&](Index i) { return this->W.data() + static_cast<std::ptrdiff_t>(i) * k; };
+    const Index* place = this->Factor->LDL->Place;
     for (Index i = 0; i < n; ++i)
     {
       for (int c = 0; c < k; ++c)
       {
-        row(place[i])[c] = b(i, c);
+        this->Row(place[i], k)[c] = b(i, c);
       }
     }
-    for (Index j = 0; j < n; ++j)
+    const std::vector<Index>& panels = this->Factor->Panels;
+    for (std::size_t p = 0; p + 1 < panels.size(); ++p)
     {
-      const double* wj = row(j);
-      for (Index slot = outer[j]; slot < outer[j + 1]; ++slot)
+      switch (panels[p + 1] - panels[p])
       {
-        double* wi = row(inner[slot]);
-        for (int c = 0; c < k; ++c)
-        {
-          wi[c] -= l[slot] * wj[c];
-        }
+        case 1:
+          this->Forward<K, 1>(panels[p], k);
+          break;
+        case 2:
+          this->Forward<K, 2>(panels[p], k);
+          break;
+        case 3:
+          this->Forward<K, 3>(panels[p], k);
+          break;
+        default:
+          this->Forward<K, Factorization::WidestPanel>(panels[p], k);
+          break;
       }
     }
-    for (Index j = n - 1; j >= 0; --j)
+    for (std::size_t p = panels.size() - 1; p > 0; --p)
     {
-      double* wj = row(j);
-      for (int c = 0; c < k; ++c)
+      switch (panels[p] - panels[p - 1])
       {
-        wj[c] *= inverseD[j];
-      }
-      for (Index slot = outer[j]; slot < outer[j + 1]; ++slot)
-      {
-        const double* wi = row(inner[slot]);
-        for (int c = 0; c < k; ++c)
-        {
-          wj[c] -= l[slot] * wi[c];
-        }
+        case 1:
+          this->Backward<K, 1>(panels[p - 1], k);
+          break;
+        case 2:
+          this->Backward<K, 2>(panels[p - 1], k);
+          break;
+        case 3:
+          this->Backward<K, 3>(panels[p - 1], k);
+          break;
+        default:
+          this->Backward<K, Factorization::WidestPanel>(panels[p - 1], k);
+          break;
       }
     }
     for (Index i = 0; i < n; ++i)
     {
       for (int c = 0; c < k; ++c)
       {
-        x(i, c) = row(place[i])[c];
+        x(i, c) = this->Row(place[i], k)[c];
+      }
+    }
+  }
+
+  double* Row(Index i, int columns)
+  {
+    return this->W.data() + static_cast<std::ptrdiff_t>(i) * columns;
+  }
+
+  /// W = L^-1 W, its part for the columns j .. j + Width - 1 of L.
+  template <int K, int Width>
+  void Forward(Index j, int columns)
+  {
+    const int k = K > 0 ? K : columns;
+    const Panel<Width> panel(*this->Factor->LDL, j);
+    double* w = this->Row(j, k);
+    for (int a = 0; a < Width; ++a)
+    {
+      for (int b = a + 1; b < Width; ++b)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          w[b * k + c] -= panel.Within(a, b) * w[a * k + c];
+        }
+      }
+    }
+    double registers[K > 0 ? Width * K : 1];
+    if (K > 0)
+    {
+      std::copy_n(w, Width * k, registers);
+      w = registers;
+    }
+    for (Index s = 0; s < panel.Count; ++s)
+    {
+      double* wi = this->Row(panel.Rows[s], k);
+      for (int c = 0; c < k; ++c)
+      {
+        double sum = wi[c];
+        for (int a = 0; a < Width; ++a)
+        {
+          sum -= panel.Below[a][s] * w[a * k + c];
+        }
+        wi[c] = sum;
+      }
+    }
+  }
+
+  /// W = L^-T D^-1 W, its rows j .. j + Width - 1, of which D^-1 is applied here.
+  template <int K, int Width>
+  void Backward(Index j, int columns)
+  {
+    const int k = K > 0 ? K : columns;
+    const Panel<Width> panel(*this->Factor->LDL, j);
+    double* result = this->Row(j, k);
+    double registers[K > 0 ? Width * K : 1];
+    double* w = K > 0 ? registers : result;
+    for (int a = 0; a < Width; ++a)
+    {
+      for (int c = 0; c < k; ++c)
+      {
+        w[a * k + c] = this->Factor->InverseD[j + a] * result[a * k + c];
+      }
+    }
+    for (Index s = 0; s < panel.Count; ++s)
+    {
+      const double* wi = this->Row(panel.Rows[s], k);
+      for (int a = 0; a < Width; ++a)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          w[a * k + c] -= panel.Below[a][s] * wi[c];
+        }
+      }
+    }
+    for (int a = Width - 1; a >= 0; --a)
+    {
+      for (int b = a + 1; b < Width; ++b)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          w[a * k + c] -= panel.Within(a, b) * w[b * k + c];
+        }
+      }
+      for (int c = 0; c < k; ++c)
+      {
+        result[a * k + c] = w[a * k + c];
       }
     }
   }
