@@ -10,7 +10,7 @@ TEST(TextureColors, ContrastIsThatOfAllButTheFewMostExtreme)
 {
   Vector u = Vector::LinSpaced(1001, 2.0, 3.0);
   u[1000] = 1e6;
-  const Vector stretched = StretchContrast(u);
+  const Vector stretched = StretchContrast(u, ContrastLimits(u));
   EXPECT_EQ(stretched.minCoeff(), 0.0);
   EXPECT_EQ(stretched.maxCoeff(), 1.0);
   EXPECT_NEAR(stretched[500], 0.5, 1e-2);
@@ -18,7 +18,8 @@ TEST(TextureColors, ContrastIsThatOfAllButTheFewMostExtreme)
 
 TEST(TextureColors, AConstantIsHalfWay)
 {
-  EXPECT_TRUE((StretchContrast(Vector::Constant(7, 3.0)).array() == 0.5).all());
+  const Vector u = Vector::Constant(7, 3.0);
+  EXPECT_TRUE((StretchContrast(u, ContrastLimits(u)).array() == 0.5).all());
 }
 
 TEST(TextureColors, MixesEachComponent)
