@@ -59,7 +59,7 @@ SolverMethod ChooseMethod(const SolverTask& task)
     std::min(0.0027 * std::pow(size, 1.4), 0.004 * std::pow(c, 0.2) * size);
   const double direct = 0.112 * std::pow(size, 1.5) + task.NumberOfSolves * substitution;
   const double conjugateGradient = threads * task.NumberOfSolves * iterations * 4.2e-4 * size;
-  const double multigrid = threads * (0.03 * size + task.NumberOfSolves * cycles * 2.7e-3 * size);
+  const double multigrid = threads * (0.036 * size + task.NumberOfSolves * cycles * 2.9e-3 * size);
   const double iterative =
     task.AllowMultigrid ? std::min(conjugateGradient, multigrid) : conjugateGradient;
   if (direct < iterative && (task.NumberOfVertices <= largestFactor || !task.AllowMultigrid))
