@@ -118,8 +118,7 @@ protected:
     return !this->AutomaticFidelity;
   }
   void VisitReported(const std::function<void(double&)>& visit) override;
-  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
-    ModelInput& input, int steps) override;
+  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
   const char* GetResultSuffix() override { return "Diffused"; }
   Dimension GetTimeDimension() override { return { 2.0, 0.0 }; }
   Dimension GetEnergyDimension() override { return { 0.0, 2.0 }; }

@@ -132,8 +132,8 @@ void vtkSurfaceDiffusionAlgorithm::CheckProperties(Problems& problems)
   Require(this->OutputInterval >= 1, "OutputInterval", this->OutputInterval, "1 or more", problems);
   if (this->GenerateTimeSteps && this->OutputInterval >= 1)
   {
-    const double times = std::ceil(static_cast<double>(this->GetEffectiveNumberOfTimeSteps()) /
-      this->OutputInterval);
+    const double times =
+      std::ceil(static_cast<double>(this->GetEffectiveNumberOfTimeSteps()) / this->OutputInterval);
     Require(times <= LargestNumberOfPublishedTimes, "NumberOfTimeSteps / OutputInterval", times,
       "up to 1000000 published times; raise OutputInterval", problems);
   }
@@ -155,8 +155,8 @@ void vtkSurfaceDiffusionAlgorithm::CheckProperties(Problems& problems)
     "0 or more MiB", problems);
   Require(oneOf(this->Units, 2), "Units", this->Units, "0 Natural, 1 Absolute", problems);
   Require(oneOf(this->MaskMode, 2), "MaskMode", this->MaskMode, "0 Inpaint, 1 Exclude", problems);
-  Require(oneOf(this->InitialFill, 3), "InitialFill", this->InitialFill,
-    "0 Input, 1 Mean, 2 Noise", problems);
+  Require(oneOf(this->InitialFill, 3), "InitialFill", this->InitialFill, "0 Input, 1 Mean, 2 Noise",
+    problems);
   Require(oneOf(this->Solver, 4), "Solver", this->Solver,
     "0 Automatic, 1 Direct, 2 ConjugateGradient, 3 Multigrid", problems);
   Require(oneOf(this->OutputPrecision, 3), "OutputPrecision", this->OutputPrecision,
@@ -289,8 +289,8 @@ int vtkSurfaceDiffusionAlgorithm::StepAtTime(double time)
   const double slack = 1e-9 * this->GetEffectiveTimeStep();
   const auto after = std::upper_bound(times.begin(), times.end(), time + slack);
   const auto index = static_cast<vtkIdType>(std::max<std::ptrdiff_t>(after - times.begin() - 1, 0));
-  return static_cast<int>(std::min<vtkIdType>(
-    index * this->OutputInterval, this->GetEffectiveNumberOfTimeSteps()));
+  return static_cast<int>(
+    std::min<vtkIdType>(index * this->OutputInterval, this->GetEffectiveNumberOfTimeSteps()));
 }
 
 int vtkSurfaceDiffusionAlgorithm::RequestInformation(
@@ -394,8 +394,7 @@ bool vtkSurfaceDiffusionAlgorithm::Distributes(
     oneSurface = oneSurface && all[i] == all[0];
     points += all[i + 1];
   }
-  return oneSurface && points > 0.0 &&
-    (this->Solver != SOLVER_AUTOMATIC || points > FewPoints);
+  return oneSurface && points > 0.0 && (this->Solver != SOLVER_AUTOMATIC || points > FewPoints);
 }
 
 void vtkSurfaceDiffusionAlgorithm::Execute(const std::vector<SurfacePiece>& surfaces,
@@ -425,8 +424,9 @@ int vtkSurfaceDiffusionAlgorithm::TakeTime(vtkInformation* request, vtkInformati
     }
     for (const int p : { 0, 1 })
     {
-      vtkDataObject::GetData(outputs, p)->GetInformation()->Set(
-        vtkDataObject::DATA_TIME_STEP(), step * this->GetEffectiveTimeStep());
+      vtkDataObject::GetData(outputs, p)
+        ->GetInformation()
+        ->Set(vtkDataObject::DATA_TIME_STEP(), step * this->GetEffectiveTimeStep());
     }
   }
   return step;

@@ -263,9 +263,10 @@ public:
   ///@{
   /**
    * How linear systems are solved. Direct: sparse Cholesky factorisation, kept while the matrix
-   * stays. ConjugateGradient: with Jacobi preconditioner, the paper's. Multigrid: conjugate gradients
-   * with smoothed aggregation, whose iterations hardly grow with size and time step. Automatic
-   * (default): the fastest of them for the size, the step and the number of steps, by measurement.
+   * stays. ConjugateGradient: with Jacobi preconditioner, the paper's. Multigrid: conjugate
+   * gradients with smoothed aggregation, whose iterations hardly grow with size and time step.
+   * Automatic (default): the fastest of them for the size, the step and the number of steps, by
+   * measurement.
    */
   vtkSetMacro(Solver, int);
   vtkGetMacro(Solver, int);
@@ -279,8 +280,8 @@ public:
   ///@{
   /**
    * Where iterative solvers stop: relative residual, in the norm of the inverse diagonal. In
-   * (0, 1). Default: 1e-10, in vtkIntrinsicTVFilter 1e-3. And the most iterations, 1 or more, default 1000: not to converge in
-   * them is an error.
+   * (0, 1). Default: 1e-10, in vtkIntrinsicTVFilter 1e-3. And the most iterations, 1 or more,
+   * default 1000: not to converge in them is an error.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
@@ -374,8 +375,8 @@ public:
   ///@}
 
   /**
-   * Set what the paper does: FirstOrder, IntrinsicDelaunay off, MaskMode Inpaint, HoldKnownValues off, InitialFill Input,
-   * and what subclasses add. Units, times, weights and the solver stay.
+   * Set what the paper does: FirstOrder, IntrinsicDelaunay off, MaskMode Inpaint, HoldKnownValues
+   * off, InitialFill Input, and what subclasses add. Units, times, weights and the solver stay.
    */
   virtual void UsePaperScheme();
 
@@ -464,13 +465,10 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestUpdateExtent(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  virtual int RequestDataObject(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector*);
+  virtual int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
 
   /// A helper of CheckProperties(): the sentence where `holds` is false.
   static void Require(
@@ -520,7 +518,7 @@ private:
   std::vector<double> PublishedTimes();
 
   std::vector<std::unique_ptr<SurfaceRun>> Runs; ///< one per block
-  std::unique_ptr<GatheredSurfaces> Gathered;    ///< of surfaces in pieces
+  std::unique_ptr<GatheredSurfaces> Gathered; ///< of surfaces in pieces
   vtkMultiProcessController* Controller = nullptr;
   bool HasWholeSurface = false; ///< as null for Controller says
   double TimeUnit = 1.0;

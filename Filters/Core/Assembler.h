@@ -50,7 +50,7 @@ private:
   {
     Index Next, Last; ///< where a corner's row keeps the triangle's next and last vertex
   };
-  std::vector<Slots> SlotMap;      ///< in the order of TriangleMesh::VertexCorners()
+  std::vector<Slots> SlotMap; ///< in the order of TriangleMesh::VertexCorners()
   std::vector<Index> DiagonalSlot; ///< per row
 };
 

@@ -16,10 +16,10 @@ namespace SurfaceDiffusion
 /// filled in Start, and Given there is not read.
 struct PointData
 {
-  Values Given;  ///< f, n x k
-  Values Start;  ///< u at t = 0, n x k
+  Values Given; ///< f, n x k
+  Values Start; ///< u at t = 0, n x k
   Flags Missing; ///< the paper's D: no fidelity there
-  Flags Fixed;   ///< Dirichlet: keeps its Start
+  Flags Fixed; ///< Dirichlet: keeps its Start
 
   /// All of f known and free.
   static PointData FromValues(Values f)
@@ -35,9 +35,9 @@ struct PointData
 
 struct StepReport
 {
-  int Iterations = 0;    ///< of linear (or outer) iterations in the step
+  int Iterations = 0; ///< of linear (or outer) iterations in the step
   double Residual = 0.0; ///< largest relative residual of its solves
-  Index Clamped = 0;     ///< values that had to be clamped (reaction-diffusion)
+  Index Clamped = 0; ///< values that had to be clamped (reaction-diffusion)
 };
 
 /// A model on one surface with its data: a state that moves step by step in time. What a later

@@ -32,7 +32,7 @@ struct Triangle
 {
   std::array<Index, 3> Vertices;
   std::array<double, 3> Lengths; ///< of the sides
-  std::array<Index, 3> Twins;    ///< the side on the other side of each side
+  std::array<Index, 3> Twins; ///< the side on the other side of each side
   /// Area times the average of d d^T in axes with corner 0 at the origin and corner 1 on the first
   /// one: xx, xy, yy.
   Eigen::Vector3d Tensor;
@@ -45,8 +45,8 @@ Vec2 Apex(double a, double b, double c)
   // Kahan's stable product for needles: 16 area^2 from sorted lengths.
   std::array<double, 3> s{ a, b, c };
   std::sort(s.begin(), s.end());
-  const double squared = (s[2] + (s[1] + s[0])) * (s[0] - (s[2] - s[1])) *
-    (s[0] + (s[2] - s[1])) * (s[2] + (s[1] - s[0]));
+  const double squared = (s[2] + (s[1] + s[0])) * (s[0] - (s[2] - s[1])) * (s[0] + (s[2] - s[1])) *
+    (s[2] + (s[1] - s[0]));
   return { x, 0.5 * std::sqrt(std::max(squared, 0.0)) / c };
 }
 
@@ -320,8 +320,8 @@ private:
     return l[2] * Apex(l[0], l[1], l[2])[1] > flat * longest * longest;
   }
 
-  /// Replace the edge PQ of triangles A P Q and B Q P by the edge AB; false, and nothing done, where
-  /// that makes a flat triangle.
+  /// Replace the edge PQ of triangles A P Q and B Q P by the edge AB; false, and nothing done,
+  /// where that makes a flat triangle.
   bool Flip(Index side)
   {
     const Index twin = this->At(side).Twins[side % 3];

@@ -33,8 +33,7 @@ double EstimateNoiseLevel(const Assembler& assembler, const PointData& data)
       if (known)
       {
         const double mean = (sum - data.Given(i, k)) / valence;
-        deviations.push_back(
-          std::abs(data.Given(i, k) - mean) / std::sqrt(1.0 + 1.0 / valence));
+        deviations.push_back(std::abs(data.Given(i, k) - mean) / std::sqrt(1.0 + 1.0 / valence));
       }
     }
     if (!deviations.empty())

@@ -20,8 +20,7 @@ public:
     typename = std::enable_if_t<!std::is_same<std::decay_t<F>, LoopBody>::value>>
   LoopBody(const F& f) // NOLINT(google-explicit-constructor): call sites pass lambdas
     : Callable(&f)
-    , Call([](const void* c, Index begin, Index end)
-        { (*static_cast<const F*>(c))(begin, end); })
+    , Call([](const void* c, Index begin, Index end) { (*static_cast<const F*>(c))(begin, end); })
   {
   }
   void operator()(Index begin, Index end) const { this->Call(this->Callable, begin, end); }

@@ -20,8 +20,8 @@ inline std::uint64_t MixBits(std::uint64_t z)
 /// everywhere, on any number of threads or processes.
 inline double UniformRandom(std::int64_t seed, std::int64_t component, std::int64_t id)
 {
-  const std::uint64_t bits = MixBits(MixBits(MixBits(static_cast<std::uint64_t>(seed)) ^
-                                       static_cast<std::uint64_t>(component)) ^
+  const std::uint64_t bits = MixBits(
+    MixBits(MixBits(static_cast<std::uint64_t>(seed)) ^ static_cast<std::uint64_t>(component)) ^
     static_cast<std::uint64_t>(id));
   return static_cast<double>(bits >> 11) * 0x1.0p-53;
 }

@@ -106,8 +106,8 @@ vtkDataArray* InputArrays::FindAs(
     onCells ? this->Block->GetNumberOfCells() : this->Block->GetNumberOfPoints();
   if (array->GetNumberOfTuples() != tuples)
   {
-    return tell("has " + std::to_string(array->GetNumberOfTuples()) + " tuples; allowed: " +
-      std::to_string(tuples) + ", one per " + (onCells ? "cell" : "point"));
+    return tell("has " + std::to_string(array->GetNumberOfTuples()) +
+      " tuples; allowed: " + std::to_string(tuples) + ", one per " + (onCells ? "cell" : "point"));
   }
   const int size = array->GetNumberOfComponents();
   if (components == AnyNumberOfComponents ? size < 1 : size != components)

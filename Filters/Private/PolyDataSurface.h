@@ -54,9 +54,9 @@ struct PolyDataSurface
   /// A text that differs whenever another surface would come out.
   static std::string Key(vtkPolyData* input, const Options& options);
 
-  SurfaceDiffusion::Points Points;       ///< per input point
+  SurfaceDiffusion::Points Points; ///< per input point
   SurfaceDiffusion::Triangles Triangles; ///< rows of Points; merged points are one of them
-  std::vector<vtkIdType> TriangleCells;  ///< the input's cell of each row of Triangles
+  std::vector<vtkIdType> TriangleCells; ///< the input's cell of each row of Triangles
   std::shared_ptr<SurfaceDiffusion::TriangleMesh> InputMesh; ///< of rows of Triangles
   /// What the models work on: InputMesh, or its intrinsic Delaunay triangulation, which has the
   /// same vertices.

@@ -43,10 +43,13 @@ Surface BadInside()
 std::vector<std::pair<const char*, Surface>> BadSurfaces()
 {
   return { { "pressed sphere", Pressed(Icosphere(3), 0.05) },
-    { "slanted plate", Slanted(Plate(12, 1.0), 6.0) }, { "Moebius band", Pressed(Moebius(24, 4), 0.1) },
-    { "flat tetrahedron", Slanted(Tetrahedron(), 5.0) }, { "pressed torus", Pressed(Torus(24, 12), 0.05) },
+    { "slanted plate", Slanted(Plate(12, 1.0), 6.0) },
+    { "Moebius band", Pressed(Moebius(24, 4), 0.1) },
+    { "flat tetrahedron", Slanted(Tetrahedron(), 5.0) },
+    { "pressed torus", Pressed(Torus(24, 12), 0.05) },
     { "twisted fins", Slanted(ThreeFins(6), 4.0) },
-    { "one triangle", MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 0.01, 0 } }, { { 0, 1, 2 } }) } };
+    { "one triangle",
+      MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 0.01, 0 } }, { { 0, 1, 2 } }) } };
 }
 
 SparseMatrix Stiffness(const Assembler& assembler)
@@ -108,8 +111,8 @@ TEST(IntrinsicDelaunay, BackwardEulerKeepsTheBoundsAtAnyStep)
     spike(spike.rows() / 2, 0) = 1.0;
     for (const double dt : { 1e-6, 1e-3, 1.0, 1e3 })
     {
-      const Values u = Diffuse(
-        flipped, PointData::FromValues(spike), dt, 1, 0.0, Scheme::BackwardEuler);
+      const Values u =
+        Diffuse(flipped, PointData::FromValues(spike), dt, 1, 0.0, Scheme::BackwardEuler);
       EXPECT_GE(u.minCoeff(), -1e-12) << name << ", time step " << dt;
       EXPECT_LE(u.maxCoeff(), 1.0 + 1e-12) << name << ", time step " << dt;
     }
@@ -121,8 +124,8 @@ TEST(IntrinsicDelaunay, WithoutItTheSamePlateOvershoots)
   const auto plain = MakeAssembler(Slanted(Plate(12, 1.0), 6.0));
   Values spike = Values::Zero(plain->Mesh().NumberOfVertices(), 1);
   spike(spike.rows() / 2, 0) = 1.0;
-  const Values u = Diffuse(
-    plain, PointData::FromValues(spike), 1e-3, 1, 0.0, Scheme::BackwardEuler);
+  const Values u =
+    Diffuse(plain, PointData::FromValues(spike), 1e-3, 1, 0.0, Scheme::BackwardEuler);
   EXPECT_LT(u.minCoeff(), -1e-4);
 }
 
@@ -133,8 +136,7 @@ TEST(IntrinsicDelaunay, EnergyOfALinearFunctionIsExactOnAPlane)
   const Surface plate = BadInside();
   const auto flipped = IntrinsicDelaunay(*MakeMesh(plate), nullptr);
   const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
-  EXPECT_NEAR(
-    DirichletEnergy(*flipped, IsotropicCoefficients(*flipped), u), 0.5 * 5.0 * 4.0, 1e-9);
+  EXPECT_NEAR(DirichletEnergy(*flipped, IsotropicCoefficients(*flipped), u), 0.5 * 5.0 * 4.0, 1e-9);
 }
 
 TEST(IntrinsicDelaunay, CarriesDirectionsAlong)
@@ -142,23 +144,22 @@ TEST(IntrinsicDelaunay, CarriesDirectionsAlong)
   const Surface plate = BadInside();
   const auto mesh = MakeMesh(plate);
   const Eigen::RowVector3d direction(0.6, 0.8, 0.0);
-  PlaneVectors frames = FramesFromTriangleVectors(*mesh, plate.Vertices, plate.Faces,
-    direction.replicate(plate.Faces.rows(), 1));
+  PlaneVectors frames = FramesFromTriangleVectors(
+    *mesh, plate.Vertices, plate.Faces, direction.replicate(plate.Faces.rows(), 1));
   const auto flipped = IntrinsicDelaunay(*mesh, &frames);
   ASSERT_EQ(frames.rows(), flipped->NumberOfTriangles());
   const EdgeValues c =
     AnisotropicCoefficients(*flipped, IsotropicCoefficients(*flipped), frames, 3.0, 0.5);
   const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
   // grad u . e1 = 0.4, grad u . e2 = -2.2
-  EXPECT_NEAR(
-    DirichletEnergy(*flipped, c, u), 0.5 * (3.0 * 0.16 + 0.5 * 4.84) * 4.0, 1e-9);
+  EXPECT_NEAR(DirichletEnergy(*flipped, c, u), 0.5 * (3.0 * 0.16 + 0.5 * 4.84) * 4.0, 1e-9);
 }
 
 TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
 {
   // A needle, covered twice: one of its edges becomes one around vertex 1, from 0 to 0.
-  const auto needle = MakeMesh(
-    MakeSurface({ { 0, 0, 0 }, { 1.4e-8, 0, 0 }, { -1, 1, 0 } }, { { 0, 1, 2 } }));
+  const auto needle =
+    MakeMesh(MakeSurface({ { 0, 0, 0 }, { 1.4e-8, 0, 0 }, { -1, 1, 0 } }, { { 0, 1, 2 } }));
   const Assembler flipped(IntrinsicDelaunay(*needle, nullptr));
   const EdgeValues c = IsotropicCoefficients(flipped.Mesh());
   ASSERT_EQ(c.rows(), 2);
@@ -186,6 +187,5 @@ TEST(IntrinsicDelaunay, LeavesADelaunayMeshAlone)
   const auto mesh = MakeMesh(Icosphere(3));
   const auto flipped = IntrinsicDelaunay(*mesh, nullptr);
   EXPECT_EQ(flipped->NumberOfTriangles(), mesh->NumberOfTriangles());
-  EXPECT_NEAR(
-    (Stiffness(Assembler(flipped)) - Stiffness(Assembler(mesh))).norm(), 0.0, 1e-11);
+  EXPECT_NEAR((Stiffness(Assembler(flipped)) - Stiffness(Assembler(mesh))).norm(), 0.0, 1e-11);
 }

@@ -274,9 +274,8 @@ TEST(HeatFilter, FixedPointsKeepTheirValueWhileOthersChange)
   AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i % 5 == 0 ? -2.0 : 0.0; });
   auto filter = MakeFilter(sphere);
   SetInputArray(filter, 3, "fixed");
-  for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
-      vtkFVMHeatFilter::SOLVER_MULTIGRID })
+  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     for (const double fidelity : { 0.0, 1.0 })
     {
@@ -341,9 +340,8 @@ TEST(HeatFilter, ComponentsTogetherEqualComponentsAlone)
     AddPointArray(sphere, ("f" + std::to_string(k)).c_str(), 1,
       [&](vtkIdType i, int) { return f->GetComponent(i, k); });
   }
-  for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
-      vtkFVMHeatFilter::SOLVER_MULTIGRID })
+  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     auto together = MakeFilter(sphere);
     together->SetSolver(solver);

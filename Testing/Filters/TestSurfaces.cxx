@@ -82,9 +82,8 @@ TEST(Surfaces, WhatIsWrongIsHandledAndToldInOneWarningWithCounts)
   AddPointArray(surface, "f", 2, Rough);
   const std::vector<double> areas = ControlAreas(surface);
   vtkDataArray* f = surface->GetPointData()->GetArray("f");
-  for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
-      vtkFVMHeatFilter::SOLVER_MULTIGRID })
+  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     auto filter = MakeFilter(surface);
     SetInputArray(filter, 0, "f");

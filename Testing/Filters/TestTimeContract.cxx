@@ -228,9 +228,8 @@ TEST(TimeContract, OrderOfTheRequestsDoesNotMatter)
 {
   auto sphere = Sphere(3);
   AddRough(sphere);
-  for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
-      vtkFVMHeatFilter::SOLVER_MULTIGRID })
+  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     auto through = MakeFilter(sphere);
     auto jumping = MakeFilter(sphere);

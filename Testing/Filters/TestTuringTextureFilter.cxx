@@ -404,8 +404,7 @@ TEST(TuringTextureFilter, TakesAnInitialState)
 TEST(TuringTextureFilter, WhatWasMissingInAnInitialStateIsForgottenWithIt)
 {
   auto sphere = Sphere(2);
-  AddPointArray(
-    sphere, "state", 2, [](vtkIdType i, int) { return i == 9 ? std::nan("") : 4.0; });
+  AddPointArray(sphere, "state", 2, [](vtkIdType i, int) { return i == 9 ? std::nan("") : 4.0; });
   const auto filter = MakeFilter(sphere, 2);
   SetInputArray(filter, 0, "state");
   filter->HoldKnownValuesOn();

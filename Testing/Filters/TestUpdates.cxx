@@ -72,9 +72,8 @@ TEST(Updates, ReportProgressEvenly)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
-  for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
-      vtkFVMHeatFilter::SOLVER_MULTIGRID })
+  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     for (const int steps : { 0, 1, 2, 10, 200 })
     {
@@ -118,9 +117,8 @@ TEST(Updates, ObeyAnAbortAndWorkAgainAfterwards)
 {
   auto sphere = Sphere(4);
   vtkDataArray* f = AddRough(sphere);
-  for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
-      vtkFVMHeatFilter::SOLVER_MULTIGRID })
+  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     auto reference = MakeFilter(sphere);
     reference->SetSolver(solver);
@@ -308,9 +306,8 @@ TEST(Updates, ResultsDoNotDependOnTheNumberOfThreads)
   AddRough(sphere, 3);
   AddPointArray(sphere, "e1", 3, Rough);
   AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 11 == 0; });
-  for (const int solver :
-    { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT,
-      vtkFVMHeatFilter::SOLVER_MULTIGRID })
+  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
+         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     vtkSmartPointer<vtkDataArray> first;
     std::vector<double> history;
