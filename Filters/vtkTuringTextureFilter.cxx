@@ -289,8 +289,7 @@ bool vtkTuringTextureFilter::FindArrays(vtkPolyData* block, BlockArrays& arrays,
   };
   tell(arrays.Data && NumberOfDataComponents(arrays.Data) != 2,
     "InputArray holds colours, whose last component is alpha; allowed: 2 components of a type "
-    "other "
-    "than unsigned char");
+    "other than unsigned char");
   tell(arrays.Rates && !onCells,
     "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell");
   tell(arrays.Rates && this->IntrinsicDelaunay,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -254,6 +255,23 @@ private:
     Index Count; ///< and their number
   };
 
+  /// work(width), with the width of a panel as a number known to the compiler.
+  template <typename Work>
+  static void WithWidth(Index width, const Work& work)
+  {
+    switch (width)
+    {
+      case 1:
+        return work(std::integral_constant<int, 1>());
+      case 2:
+        return work(std::integral_constant<int, 2>());
+      case 3:
+        return work(std::integral_constant<int, 3>());
+      default:
+        return work(std::integral_constant<int, Factorization::WidestPanel>());
+    }
+  }
+
   /// x = P^T L^-T D^-1 L^-1 P b
   void Substitute(const Values& b, Values& x)
   {
@@ -289,39 +307,13 @@ private:
     const std::vector<Index>& panels = this->Factor->Panels;
     for (std::size_t p = 0; p + 1 < panels.size(); ++p)
     {
-      switch (panels[p + 1] - panels[p])
-      {
-        case 1:
-          this->Forward<K, 1>(panels[p], k);
-          break;
-        case 2:
-          this->Forward<K, 2>(panels[p], k);
-          break;
-        case 3:
-          this->Forward<K, 3>(panels[p], k);
-          break;
-        default:
-          this->Forward<K, Factorization::WidestPanel>(panels[p], k);
-          break;
-      }
+      WithWidth(panels[p + 1] - panels[p],
+        [&](auto width) { this->Forward<K, decltype(width)::value>(panels[p], k); });
     }
     for (std::size_t p = panels.size() - 1; p > 0; --p)
     {
-      switch (panels[p] - panels[p - 1])
-      {
-        case 1:
-          this->Backward<K, 1>(panels[p - 1], k);
-          break;
-        case 2:
-          this->Backward<K, 2>(panels[p - 1], k);
-          break;
-        case 3:
-          this->Backward<K, 3>(panels[p - 1], k);
-          break;
-        default:
-          this->Backward<K, Factorization::WidestPanel>(panels[p - 1], k);
-          break;
-      }
+      WithWidth(panels[p] - panels[p - 1],
+        [&](auto width) { this->Backward<K, decltype(width)::value>(panels[p - 1], k); });
     }
     for (Index i = 0; i < n; ++i)
     {

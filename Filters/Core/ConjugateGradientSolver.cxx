@@ -6,6 +6,7 @@
 #include "ColumnSums.h"
 #include "Multigrid.h"
 #include "Product.h"
+#include "SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,18 +33,8 @@ public:
     this->Matrix = &matrix;
     const Index n = static_cast<Index>(matrix.rows());
     this->InverseDiagonal.resize(n);
-    const Index* outer = matrix.outerIndexPtr();
-    const Index* inner = matrix.innerIndexPtr();
     ForEach(this->Parallel, n,
-      [&](Index i)
-      {
-        Index below = 0; // counted rather than searched: branches that no one can predict cost more
-        for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
-        {
-          below += inner[slot] < i;
-        }
-        this->InverseDiagonal[i] = 1.0 / matrix.valuePtr()[outer[i] + below];
-      });
+      [&](Index i) { this->InverseDiagonal[i] = 1.0 / DiagonalEntry(matrix, i); });
     if (this->Hierarchy)
     {
       this->Hierarchy->SetMatrix(matrix, monitor);

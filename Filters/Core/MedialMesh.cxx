@@ -25,13 +25,12 @@ std::vector<std::array<Index, 2>> ListEdges(const TriangleMesh& mesh)
     ends.clear();
     for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
     {
-      const Index t = mesh.VertexCorners()[c] / 3;
-      const int a = mesh.VertexCorners()[c] % 3;
-      for (const int b : { (a + 1) % 3, (a + 2) % 3 })
+      for (const int step : { 1, 2 })
       {
-        if (mesh.TriangleVertices()(t, b) >= i)
+        const Index j = mesh.OtherCorner(mesh.VertexCorners()[c], step);
+        if (j >= i)
         {
-          ends.push_back(mesh.TriangleVertices()(t, b));
+          ends.push_back(j);
         }
       }
     }

@@ -4,6 +4,7 @@
 
 #include "LinearSolver.h"
 #include "Product.h"
+#include "SparsePattern.h"
 
 #include <algorithm>
 
@@ -15,14 +16,8 @@ void QuadraticDescent::SetMatrix(const SparseMatrix& matrix, const Partition* pa
   this->Matrix = &matrix;
   this->Pieces = partition;
   this->InverseDiagonal.resize(matrix.rows());
-  const Index* outer = matrix.outerIndexPtr();
-  const Index* inner = matrix.innerIndexPtr();
   ForEach(this->Parallel, static_cast<Index>(matrix.rows()),
-    [&](Index i)
-    {
-      const auto slot = std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner;
-      this->InverseDiagonal[i] = matrix.valuePtr()[slot];
-    });
+    [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
   if (partition)
   {
     partition->AddOverSeams(this->InverseDiagonal);

@@ -28,4 +28,18 @@ inline void TakePattern(
   matrix.outerIndexPtr()[pattern.rows()] = outer[pattern.rows()];
 }
 
+/// Entry (i, i) of a symmetric matrix that has it. Those before it are counted rather than
+/// searched: in short rows branches that no one can predict cost more.
+inline double DiagonalEntry(const SparseMatrix& matrix, Index i)
+{
+  const Index* inner = matrix.innerIndexPtr();
+  const Index begin = matrix.outerIndexPtr()[i];
+  Index below = 0;
+  for (Index slot = begin; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
+  {
+    below += inner[slot] < i;
+  }
+  return matrix.valuePtr()[begin + below];
+}
+
 } // namespace SurfaceDiffusion

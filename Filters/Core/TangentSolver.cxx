@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TangentSolver.h"
 
+#include "SparsePattern.h"
+
 #include "Assembler.h"
 
 #include <algorithm>
@@ -68,17 +70,12 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   this->Z.resize(b.rows(), b.cols());
   this->P.setZero(b.rows(), b.cols());
   this->Q.resize(b.rows(), b.cols());
-  const Index* outer = matrix.outerIndexPtr();
-  const Index* inner = matrix.innerIndexPtr();
-  const auto diagonal = [&](Index i) {
-    return matrix.valuePtr()[std::lower_bound(inner + outer[i], inner + outer[i + 1], i) - inner];
-  };
   const Partition* const partition = system.Partition;
   if (partition)
   {
     this->Diagonals.resize(n, 2);
     ForEach(this->Parallel, n,
-      [&](Index i) { this->Diagonals.row(i) << diagonal(i), system.Inertia[i]; });
+      [&](Index i) { this->Diagonals.row(i) << DiagonalEntry(matrix, i), system.Inertia[i]; });
     partition->AddOverSeams(this->Diagonals);
     partition->AddOverSeams(this->R);
   }
@@ -87,7 +84,8 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   const double scale = SumOverVertices(partition, this->Parallel, n,
     [&](Index i)
     {
-      this->InverseDiagonal[i] = 1.0 / (partition ? this->Diagonals(i, 0) : diagonal(i));
+      this->InverseDiagonal[i] =
+        1.0 / (partition ? this->Diagonals(i, 0) : DiagonalEntry(matrix, i));
       const double inertia = partition ? this->Diagonals(i, 1) : system.Inertia[i];
       return inertia * inertia * this->InverseDiagonal[i] * Row<K>(system.U, i).squaredNorm();
     });

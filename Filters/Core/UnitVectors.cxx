@@ -79,7 +79,7 @@ Eigen::RowVectorXd SumOfNeighbours(
     const Index corner = mesh.VertexCorners()[c];
     for (const int step : { 1, 2 })
     {
-      const Index j = mesh.TriangleVertices()(corner / 3, (corner % 3 + step) % 3);
+      const Index j = mesh.OtherCorner(corner, step);
       if (known[j])
       {
         sum += (lineField && sum.dot(u.row(j)) < 0.0 ? -1.0 : 1.0) * u.row(j);

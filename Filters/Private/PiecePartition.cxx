@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PiecePartition.h"
 
+#include "Core/DisjointSets.h"
 #include "Core/Monitor.h"
 #include "Core/TriangleMesh.h"
 
@@ -9,7 +10,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -133,33 +134,18 @@ void PiecePartition::FindComponents(const PolyDataSurface& surface, const PointI
     }
   }
   const std::vector<double> all = this->Group.GatherAll(mine);
-  std::vector<Index> parent(static_cast<std::size_t>(sum));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](Index i)
-  {
-    while (parent[i] != i)
-    {
-      i = parent[i] = parent[parent[i]];
-    }
-    return i;
-  };
+  DisjointSets connected(static_cast<Index>(sum));
   std::map<double, Index> componentOf;
   for (std::size_t i = 0; i < all.size(); i += 2)
   {
     const auto component = static_cast<Index>(all[i + 1]);
     const auto known = componentOf.emplace(all[i], component).first;
-    parent[find(component)] = find(known->second);
+    connected.Join(component, known->second);
   }
-  std::map<Index, Index> numbers;
-  for (Index c = 0; c < static_cast<Index>(parent.size()); ++c)
-  {
-    numbers.emplace(find(c), static_cast<Index>(numbers.size()));
-  }
-  this->Components = static_cast<Index>(numbers.size());
-  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
-  {
-    this->WholeComponents.push_back(numbers[find(static_cast<Index>(first) + c)]);
-  }
+  const std::vector<Index> numbers = connected.Labels();
+  this->Components = numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1;
+  const auto own = numbers.begin() + static_cast<std::ptrdiff_t>(first);
+  this->WholeComponents.assign(own, own + mesh.NumberOfComponents());
 }
 
 /// Edges along seams are in two processes, and count once.
@@ -182,16 +168,13 @@ void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const Point
   const Triangles& corners = mesh.TriangleVertices();
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const TriangleMesh::Shape& shape = mesh.Shapes()[t];
-    const double length[3] = { std::hypot(shape.X - shape.Length, shape.Y),
-      std::hypot(shape.X, shape.Y), shape.Length };
     for (int a = 0; a < 3; ++a)
     {
       const Index i = corners(t, (a + 1) % 3);
       const Index j = corners(t, (a + 2) % 3);
       if (isShared(i) && isShared(j))
       {
-        edges[std::minmax(labelOf(i), labelOf(j))] = { { i, j }, length[a] };
+        edges[std::minmax(labelOf(i), labelOf(j))] = { { i, j }, mesh.Shapes()[t].EdgeLength(a) };
       }
     }
   }
@@ -340,70 +323,55 @@ void PiecePartition::AddOverSeamEdges(double* ofEdges) const
   this->Add(this->OfEdges, ofEdges, 1);
 }
 
-namespace
+/// `columns` numbers of every item named in `given` go to the process that it is named for:
+/// read(item, numbers) here, write(item, numbers) there, where it is in `taken`.
+template <typename Items, typename Read, typename Write>
+void PiecePartition::Pass(const Items& given, const Items& taken, std::size_t columns,
+  const Read& read, const Write& write) const
 {
-
-std::vector<double> Rows(const std::vector<Index>& items, const double* rows, std::size_t columns)
-{
-  std::vector<double> picked;
-  picked.reserve(items.size() * columns);
-  for (const Index item : items)
+  for (const int other : Partners(given, taken))
   {
-    picked.insert(picked.end(), rows + item * columns, rows + (item + 1) * columns);
+    const auto& out = At(given, other);
+    const auto& in = At(taken, other);
+    std::vector<double> sent(out.size() * columns);
+    std::vector<double> received(in.size() * columns);
+    for (std::size_t i = 0; i < out.size(); ++i)
+    {
+      read(out[i], sent.data() + i * columns);
+    }
+    this->Exchange(other, sent, received);
+    for (std::size_t i = 0; i < in.size(); ++i)
+    {
+      write(in[i], received.data() + i * columns);
+    }
   }
-  return picked;
 }
-
-} // namespace
 
 void PiecePartition::Take(const Seams& seams, double* rows, Index columns) const
 {
-  for (const int other : Partners(seams.Given, seams.Taken))
-  {
-    const std::vector<Index>& taken = At(seams.Taken, other);
-    std::vector<double> received(taken.size() * columns);
-    this->Exchange(other, Rows(At(seams.Given, other), rows, columns), received);
-    for (std::size_t i = 0; i < taken.size(); ++i)
-    {
-      std::copy_n(received.data() + i * columns, columns,
-        rows + static_cast<std::size_t>(taken[i]) * columns);
-    }
-  }
+  const auto row = [&](Index item) { return rows + static_cast<std::ptrdiff_t>(item) * columns; };
+  this->Pass(
+    seams.Given, seams.Taken, columns,
+    [&](Index item, double* numbers) { std::copy_n(row(item), columns, numbers); },
+    [&](Index item, const double* numbers) { std::copy_n(numbers, columns, row(item)); });
 }
 
 /// Owners add up, in the order of processes, and tell the sums.
 void PiecePartition::Add(const Seams& seams, double* rows, Index columns) const
 {
-  for (const int other : Partners(seams.Given, seams.Taken))
-  {
-    const std::vector<Index>& given = At(seams.Given, other);
-    std::vector<double> received(given.size() * columns);
-    this->Exchange(other, Rows(At(seams.Taken, other), rows, columns), received);
-    for (std::size_t i = 0; i < received.size(); ++i)
-    {
-      rows[static_cast<std::size_t>(given[i / columns]) * columns + i % columns] += received[i];
-    }
-  }
+  const auto row = [&](Index item) { return rows + static_cast<std::ptrdiff_t>(item) * columns; };
+  this->Pass(
+    seams.Taken, seams.Given, columns,
+    [&](Index item, double* numbers) { std::copy_n(row(item), columns, numbers); },
+    [&](Index item, const double* numbers)
+    { std::transform(numbers, numbers + columns, row(item), row(item), std::plus<double>()); });
   this->Take(seams, rows, columns);
 }
 
 void PiecePartition::FillCopies(vtkDataArray* array) const
 {
-  const auto components = static_cast<std::size_t>(array->GetNumberOfComponents());
-  for (const int other : Partners(this->Originals, this->Copies))
-  {
-    std::vector<double> sent;
-    for (const vtkIdType point : At(this->Originals, other))
-    {
-      const double* const tuple = array->GetTuple(point);
-      sent.insert(sent.end(), tuple, tuple + components);
-    }
-    const std::vector<vtkIdType>& copies = At(this->Copies, other);
-    std::vector<double> received(copies.size() * components);
-    this->Exchange(other, sent, received);
-    for (std::size_t i = 0; i < copies.size(); ++i)
-    {
-      array->SetTuple(copies[i], received.data() + i * components);
-    }
-  }
+  this->Pass(
+    this->Originals, this->Copies, static_cast<std::size_t>(array->GetNumberOfComponents()),
+    [&](vtkIdType point, double* tuple) { array->GetTuple(point, tuple); },
+    [&](vtkIdType point, const double* tuple) { array->SetTuple(point, tuple); });
 }

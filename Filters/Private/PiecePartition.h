@@ -61,6 +61,9 @@ private:
   void FindSharedEdges(const PolyDataSurface& surface, const PointIdentity& identity);
   void FindCopies(const PolyDataSurface& surface, const PointIdentity& identity);
   bool Join(Seams& seams, Index item, const std::vector<int>& sharers) const;
+  template <typename Items, typename Read, typename Write>
+  void Pass(const Items& given, const Items& taken, std::size_t columns, const Read& read,
+    const Write& write) const;
   void Take(const Seams& seams, double* rows, Index columns) const;
   void Add(const Seams& seams, double* rows, Index columns) const;
   void Exchange(int other, const std::vector<double>& sent, std::vector<double>& received) const;
