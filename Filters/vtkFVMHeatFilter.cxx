@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFVMHeatFilter.h"
 
-#include "Core/Coefficients.h"
-#include "Core/LinearDiffusion.h"
-#include "Core/NoiseLevel.h"
-#include "Private/EnumText.h"
-#include "Private/SurfaceRun.h"
+#include "Conversion/EnumText.h"
+#include "Conversion/SurfaceRun.h"
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Models/NoiseLevel.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include "vtkObjectFactory.h"
 
@@ -15,6 +15,8 @@
 #include <ostream>
 
 using SurfaceDiffusion::LinearDiffusion;
+
+using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkFVMHeatFilter);
 
@@ -92,17 +94,15 @@ bool vtkFVMHeatFilter::GetTimeIsAbsolute()
   return this->FWHM > 0.0 || this->Superclass::GetTimeIsAbsolute();
 }
 
-std::unique_ptr<SurfaceDiffusion::Evolution> vtkFVMHeatFilter::MakeEvolution(
-  ModelInput& input, int steps)
+std::unique_ptr<SurfaceDiffusion::Model> vtkFVMHeatFilter::MakeModel(ModelInput& input, int steps)
 {
-  using namespace SurfaceDiffusion;
   const TriangleMesh& mesh = *input.Surface.Mesh;
-  const EdgeValues isotropic = IsotropicCoefficients(mesh, input.Parallel);
+  const CornerWeights isotropic = CotanWeights(mesh, input.Parallel);
   const bool directed = this->AlongDiffusivity != this->AcrossDiffusivity;
-  const EdgeValues coefficients = directed
-    ? AnisotropicCoefficients(mesh, isotropic, input.Frames, this->AlongDiffusivity,
+  const CornerWeights coefficients = directed
+    ? AnisotropicWeights(mesh, isotropic, input.Frames, this->AlongDiffusivity,
         this->AcrossDiffusivity, input.Parallel)
-    : EdgeValues(this->AlongDiffusivity * isotropic);
+    : CornerWeights(this->AlongDiffusivity * isotropic);
 
   UnitSystem timeUnits = input.Units;
   timeUnits.Natural = !this->GetTimeIsAbsolute();
@@ -139,7 +139,7 @@ std::unique_ptr<SurfaceDiffusion::Evolution> vtkFVMHeatFilter::MakeEvolution(
       steady.TimeScheme = LinearDiffusion::Scheme::SteadyState;
       LinearDiffusion model(
         input.Surface.Operators, coefficients, input.Data, steady, solver, input.Parallel);
-      model.Advance(input.Progress.Part(0.5, 0.5));
+      model.Advance(input.Monitor.Part(0.5, 0.5));
       return Discrepancy(mesh, input.Data, model.State());
     };
     settings.Fidelity = FindFidelityByDiscrepancy(discrepancy, noise, 1.0 / (h * h));

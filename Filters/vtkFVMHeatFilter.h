@@ -113,12 +113,13 @@ protected:
 
   void CheckProperties(Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
-  bool CanBeDistributed(const std::vector<SurfacePiece>&) override
+  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>&) override
   {
     return !this->AutomaticFidelity;
   }
   void VisitReported(const std::function<void(double&)>& visit) override;
-  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
+  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
+    SurfaceDiffusion::ModelInput& input, int steps) override;
   const char* GetResultSuffix() override { return "Diffused"; }
   Dimension GetTimeDimension() override { return { 2.0, 0.0 }; }
   Dimension GetEnergyDimension() override { return { 0.0, 2.0 }; }

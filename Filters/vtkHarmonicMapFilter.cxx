@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkHarmonicMapFilter.h"
 
-#include "Core/Coefficients.h"
-#include "Core/HarmonicMap.h"
-#include "Core/UnitVectors.h"
-#include "Core/VertexFit.h"
-#include "Private/EnumText.h"
-#include "Private/NewArray.h"
-#include "Private/PointArrays.h"
-#include "Private/SMPParallelFor.h"
-#include "Private/SurfacePieces.h"
-#include "Private/SurfaceRun.h"
+#include "Conversion/EnumText.h"
+#include "Conversion/NewArray.h"
+#include "Conversion/PointArrays.h"
+#include "Conversion/SMPParallelFor.h"
+#include "Conversion/SurfaceRun.h"
+#include "Core/Geometry/VertexUpdating.h"
+#include "Core/Models/HarmonicMap.h"
+#include "Core/Models/UnitVectors.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Distributed/SurfacePieces.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCellArray.h"
@@ -35,7 +35,7 @@
 #include <stdexcept>
 #include <vector>
 
-using SurfaceDiffusion::HarmonicMap;
+using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkHarmonicMapFilter);
 
@@ -353,8 +353,7 @@ void vtkHarmonicMapFilter::WriteRunKey(std::ostream& key)
 
 void vtkHarmonicMapFilter::PrepareData(ModelInput& input)
 {
-  using namespace SurfaceDiffusion;
-  PrepareUnitVectors(*input.Surface.Mesh, input.Data, this->LineField,
+  FillMissingUnitVectors(*input.Surface.Mesh, input.Data, this->LineField,
     static_cast<SurfaceDiffusion::InitialFill>(this->InitialFill), this->RandomSeed, input.Ids);
   if (AnyProcess(
         input.Surface.Mesh->GetPartition(), (input.Data.Fixed && input.Data.Missing).any()))
@@ -364,17 +363,16 @@ void vtkHarmonicMapFilter::PrepareData(ModelInput& input)
   }
 }
 
-std::unique_ptr<SurfaceDiffusion::Evolution> vtkHarmonicMapFilter::MakeEvolution(
+std::unique_ptr<SurfaceDiffusion::Model> vtkHarmonicMapFilter::MakeModel(
   ModelInput& input, int steps)
 {
-  using namespace SurfaceDiffusion;
   const TriangleMesh& mesh = *input.Surface.Mesh;
-  const EdgeValues isotropic = IsotropicCoefficients(mesh, input.Parallel);
+  const CornerWeights isotropic = CotanWeights(mesh, input.Parallel);
   const bool directed = this->AlongDiffusivity != this->AcrossDiffusivity;
-  EdgeValues coefficients = directed
-    ? AnisotropicCoefficients(mesh, isotropic, input.Frames, this->AlongDiffusivity,
+  CornerWeights coefficients = directed
+    ? AnisotropicWeights(mesh, isotropic, input.Frames, this->AlongDiffusivity,
         this->AcrossDiffusivity, input.Parallel)
-    : EdgeValues(this->AlongDiffusivity * isotropic);
+    : CornerWeights(this->AlongDiffusivity * isotropic);
   const double fastest = std::max(this->AlongDiffusivity, this->AcrossDiffusivity);
 
   const double p = this->Exponent;
@@ -426,9 +424,8 @@ std::unique_ptr<SurfaceDiffusion::Evolution> vtkHarmonicMapFilter::MakeEvolution
 
 //------------------------------------------------------------------------------------------------
 void vtkHarmonicMapFilter::PrepareResult(
-  const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor)
+  const SurfaceRun& run, const SurfaceDiffusion::ProgressMonitor& progress)
 {
-  using namespace SurfaceDiffusion;
   if (!this->MoveVertices)
   {
     return;
@@ -439,8 +436,8 @@ void vtkHarmonicMapFilter::PrepareResult(
   limits.Tolerance = this->Tolerance;
   limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   VertexMotion motion;
-  const Points moved = FitVerticesToNormals(mesh, surface.Points, run.Path->State(),
-    FitRange * run.Units.MeanEdgeLength, motion, limits, SMPParallelFor::Instance(), monitor);
+  const Points moved = UpdateVerticesFromNormals(mesh, surface.Points, run.Path->State(),
+    FitRange * run.Units.MeanEdgeLength, motion, limits, SMPParallelFor::Instance(), progress);
 
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetData(NewArray<vtkDoubleArray>("Points", 3, surface.Points.rows()));
@@ -468,7 +465,6 @@ void vtkHarmonicMapFilter::PrepareResult(
 void vtkHarmonicMapFilter::WriteResult(
   const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output)
 {
-  using namespace SurfaceDiffusion;
   vtkPointData* data = output->GetPointData();
   const bool isNormals = this->IsNormals(arrays.Data, output);
   const bool isColour = arrays.Data->GetDataType() == VTK_UNSIGNED_CHAR;

@@ -185,14 +185,18 @@ protected:
   ~vtkHarmonicMapFilter() override;
 
   void CheckProperties(Problems& problems) override;
-  bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
+  bool FindArrays(
+    vtkPolyData* block, SurfaceDiffusion::BlockArrays& arrays, Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
-  void PrepareData(ModelInput& input) override;
-  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
-  void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;
-  void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
-  bool CanBeDistributed(const std::vector<SurfacePiece>& pieces) override;
+  void PrepareData(SurfaceDiffusion::ModelInput& input) override;
+  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
+    SurfaceDiffusion::ModelInput& input, int steps) override;
+  void PrepareResult(const SurfaceDiffusion::SurfaceRun& run,
+    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  void WriteResult(const SurfaceDiffusion::SurfaceRun& run,
+    const SurfaceDiffusion::BlockArrays& arrays, vtkPolyData* output) override;
+  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>& pieces) override;
   const char* GetResultSuffix() override { return "Harmonic"; }
   Dimension GetTimeDimension() override { return { this->Exponent, 0.0 }; }
   Dimension GetEnergyDimension() override { return { 2.0 - this->Exponent, 0.0 }; }
@@ -227,7 +231,8 @@ private:
     bool Used = false; ///< in this update
   };
   std::map<std::string, ComputedNormals> Computed;
-  std::map<const SurfaceRun*, vtkSmartPointer<vtkPoints>> MovedPoints; ///< in this update
+  std::map<const SurfaceDiffusion::SurfaceRun*, vtkSmartPointer<vtkPoints>>
+    MovedPoints; ///< in this update
   double MovedArea = 0.0; ///< of the blocks moved so far in this update
 };
 

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIntrinsicTVFilter.h"
 
-#include "Core/CrouzeixRaviart.h"
-#include "Core/NoiseLevel.h"
-#include "Core/NonlinearDiffusion.h"
-#include "Core/TotalVariationFlow.h"
-#include "Private/EnumText.h"
-#include "Private/PiecePartition.h"
-#include "Private/SMPParallelFor.h"
-#include "Private/SurfaceRun.h"
+#include "Conversion/EnumText.h"
+#include "Conversion/SMPParallelFor.h"
+#include "Conversion/SurfaceRun.h"
+#include "Core/Models/CrouzeixRaviart.h"
+#include "Core/Models/NoiseLevel.h"
+#include "Core/Models/NonlinearDiffusion.h"
+#include "Core/Models/TotalVariationFlow.h"
+#include "Distributed/PiecePartition.h"
 
 #include "vtkObjectFactory.h"
 
@@ -230,7 +230,7 @@ public:
     {
       const auto model =
         this->MakeMinimizing(this->Input.Surface.Operators, data, fidelity, true, SearchTolerance);
-      model->Advance(this->Input.Progress.Part(0.5, 0.5));
+      model->Advance(this->Input.Monitor.Part(0.5, 0.5));
       return Discrepancy(*this->Input.Surface.Mesh, data, model->State());
     };
     const double h = this->MeanEdgeLength();
@@ -241,7 +241,7 @@ public:
   }
 
   /// The model that the properties ask for, on the mesh of the operators.
-  std::unique_ptr<Evolution> Make(
+  std::unique_ptr<Model> Make(
     std::shared_ptr<const Assembler> operators, PointData data, double fidelity) const
   {
     return this->Filter.Minimizes()
@@ -251,8 +251,8 @@ public:
   }
 
 private:
-  std::unique_ptr<Evolution> MakeMinimizing(std::shared_ptr<const Assembler> operators,
-    PointData data, double fidelity, bool steady, double tolerance) const
+  std::unique_ptr<Model> MakeMinimizing(std::shared_ptr<const Assembler> operators, PointData data,
+    double fidelity, bool steady, double tolerance) const
   {
     TotalVariationFlow::Settings settings;
     settings.SteadyState = steady;
@@ -268,7 +268,7 @@ private:
       std::move(operators), this->Frames(), std::move(data), settings, this->Input.Parallel);
   }
 
-  std::unique_ptr<Evolution> MakeLagged(
+  std::unique_ptr<Model> MakeLagged(
     std::shared_ptr<const Assembler> operators, PointData data, double fidelity) const
   {
     NonlinearDiffusion::Settings settings;
@@ -313,11 +313,11 @@ private:
   }
 
   /// e1 where g1 and g2 differ, no row otherwise.
-  PlaneVectors Frames() const
+  TangentVectors Frames() const
   {
     const bool directed = this->Filter.AlongDiffusivity != this->Filter.AcrossDiffusivity ||
       this->Filter.AcrossEdgeFunction != ACROSS_EDGE_FUNCTION_SAME;
-    return directed ? this->Input.Frames : PlaneVectors(0, 2);
+    return directed ? this->Input.Frames : TangentVectors(0, 2);
   }
 
   static bool IsTotalVariation(int kind) { return kind == EDGE_FUNCTION_TOTAL_VARIATION; }
@@ -343,7 +343,7 @@ private:
   const Dimension Time;
 };
 
-std::unique_ptr<Evolution> vtkIntrinsicTVFilter::MakeEvolution(ModelInput& input, int)
+std::unique_ptr<Model> vtkIntrinsicTVFilter::MakeModel(ModelInput& input, int)
 {
   const ModelMaker maker(*this, input, this->GetTimeDimension());
   double fidelity = this->FidelityWeight * maker.FidelityUnit();
@@ -371,14 +371,14 @@ std::unique_ptr<Evolution> vtkIntrinsicTVFilter::MakeEvolution(ModelInput& input
       edges->Operators =
         std::make_shared<Assembler>(edges->Mesh->Edges(), SMPParallelFor::Instance());
     },
-    input.Progress.Part(0.5, 0.95));
-  return std::make_unique<CrouzeixRaviartEvolution>(
+    input.Monitor.Part(0.5, 0.95));
+  return std::make_unique<CrouzeixRaviartModel>(
     input.Surface.Operators, edges->Mesh, std::move(input.Data),
     [&](PointData data) { return maker.Make(edges->Operators, std::move(data), fidelity); },
     input.Parallel);
 }
 
-void vtkIntrinsicTVFilter::PrepareResult(const SurfaceRun& run, const Monitor&)
+void vtkIntrinsicTVFilter::PrepareResult(const SurfaceRun& run, const ProgressMonitor&)
 {
   double gap = 0.0;
   for (const StepRecord& record : run.Path->Records())

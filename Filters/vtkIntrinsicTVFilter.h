@@ -315,12 +315,15 @@ protected:
   ~vtkIntrinsicTVFilter() override = default;
 
   void CheckProperties(Problems& problems) override;
-  bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
+  bool FindArrays(
+    vtkPolyData* block, SurfaceDiffusion::BlockArrays& arrays, Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
-  bool CanBeDistributed(const std::vector<SurfacePiece>&) override;
+  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>&) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
-  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
-  void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;
+  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
+    SurfaceDiffusion::ModelInput& input, int steps) override;
+  void PrepareResult(const SurfaceDiffusion::SurfaceRun& run,
+    const SurfaceDiffusion::ProgressMonitor& progress) override;
   const char* GetResultSuffix() override { return "TV"; }
   Dimension GetTimeDimension() override;
   Dimension GetEnergyDimension() override;

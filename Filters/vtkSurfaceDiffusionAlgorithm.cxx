@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
-#include "Private/DistributedSolver.h"
-#include "Private/EnumText.h"
-#include "Private/Execution.h"
-#include "Private/GatheredSurfaces.h"
-#include "Private/InputArrays.h"
-#include "Private/PointArrays.h"
-#include "Private/Processes.h"
-#include "Private/SurfacePieces.h"
-#include "Private/SurfaceRun.h"
+#include "Conversion/EnumText.h"
+#include "Conversion/Execution.h"
+#include "Conversion/InputArrays.h"
+#include "Conversion/PointArrays.h"
+#include "Conversion/SurfaceRun.h"
+#include "Distributed/DistributedSolver.h"
+#include "Distributed/GatheredSurfaces.h"
+#include "Distributed/Processes.h"
+#include "Distributed/SurfacePieces.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -27,6 +27,8 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+
+using namespace SurfaceDiffusion;
 
 namespace
 {

@@ -73,19 +73,19 @@
 
 namespace SurfaceDiffusion
 {
-class Evolution;
-class Monitor;
-}
 class GatheredSurfaces;
+class Model;
 class Processes;
-class vtkDataArray;
-class vtkMultiProcessController;
-class vtkPolyData;
-class vtkTable;
+class ProgressMonitor;
 struct BlockArrays;
 struct ModelInput;
 struct SurfacePiece;
 struct SurfaceRun;
+}
+class vtkDataArray;
+class vtkMultiProcessController;
+class vtkPolyData;
+class vtkTable;
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDiffusionAlgorithm : public vtkPolyDataAlgorithm
 {
@@ -408,35 +408,43 @@ protected:
   virtual void CheckProperties(Problems& problems);
 
   /// Find and check the arrays of a block. False: the block has no data and passes through.
-  virtual bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems);
+  virtual bool FindArrays(
+    vtkPolyData* block, SurfaceDiffusion::BlockArrays& arrays, Problems& problems);
 
   /// Write everything of the class that a run's numbers depend on. Superclass first.
   virtual void WriteRunKey(std::ostream& key);
 
   /// Fill in what is missing in input.Data, before values are held and the model is made.
-  virtual void PrepareData(ModelInput& input);
+  virtual void PrepareData(SurfaceDiffusion::ModelInput& input);
 
   /// Make the model. `steps` is how many are planned.
-  virtual std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(
-    ModelInput& input, int steps) = 0;
+  virtual std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
+    SurfaceDiffusion::ModelInput& input, int steps) = 0;
 
   /// Work on the current state of run.Path that may take long or fail. It comes before anything is
   /// written to any block.
-  virtual void PrepareResult(const SurfaceRun&, const SurfaceDiffusion::Monitor&) {}
+  virtual void PrepareResult(
+    const SurfaceDiffusion::SurfaceRun&, const SurfaceDiffusion::ProgressMonitor&)
+  {
+  }
 
   /// Add the result, the current state of run.Path, to the output block.
-  virtual void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output);
+  virtual void WriteResult(const SurfaceDiffusion::SurfaceRun& run,
+    const SurfaceDiffusion::BlockArrays& arrays, vtkPolyData* output);
 
   /// Whether the model can be solved by processes that have a piece each, with these settings and,
   /// as far as this process can tell, on these pieces.
-  virtual bool CanBeDistributed(const std::vector<SurfacePiece>&) { return false; }
+  virtual bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>&)
+  {
+    return false;
+  }
 
   /// Visit the read-only properties, which all processes are to have alike. Superclass first.
   virtual void VisitReported(const std::function<void(double&)>& visit);
 
   /// Helpers of WriteResult().
-  std::string FindResultName(const BlockArrays& arrays);
-  int FindResultType(const BlockArrays& arrays);
+  std::string FindResultName(const SurfaceDiffusion::BlockArrays& arrays);
+  int FindResultType(const SurfaceDiffusion::BlockArrays& arrays);
 
   /// What is added to the input array's name.
   virtual const char* GetResultSuffix() = 0;
@@ -506,10 +514,12 @@ private:
   friend class Execution;
 
   /// RequestData for surfaces each of which is here, in one piece.
-  void Execute(const std::vector<SurfacePiece>& surfaces, const Processes* processes,
-    vtkInformation* request, vtkInformationVector* outputs);
+  void Execute(const std::vector<SurfaceDiffusion::SurfacePiece>& surfaces,
+    const SurfaceDiffusion::Processes* processes, vtkInformation* request,
+    vtkInformationVector* outputs);
   /// Whether each process works on its piece: these are one surface, and it is worth while.
-  bool Distributes(const Processes& processes, const std::vector<SurfacePiece>& pieces);
+  bool Distributes(const SurfaceDiffusion::Processes& processes,
+    const std::vector<SurfaceDiffusion::SurfacePiece>& pieces);
   int TakeTime(vtkInformation* request, vtkInformationVector* outputs);
   void ShareReported();
 
@@ -517,8 +527,8 @@ private:
   int StepAtTime(double time);
   std::vector<double> PublishedTimes();
 
-  std::vector<std::unique_ptr<SurfaceRun>> Runs; ///< one per block
-  std::unique_ptr<GatheredSurfaces> Gathered; ///< of surfaces in pieces
+  std::vector<std::unique_ptr<SurfaceDiffusion::SurfaceRun>> Runs; ///< one per block
+  std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered; ///< of surfaces in pieces
   vtkMultiProcessController* Controller = nullptr;
   bool HasWholeSurface = false; ///< as null for Controller says
   double TimeUnit = 1.0;

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDirectionFieldFilter.h"
 
-#include "Core/DirectionField.h"
-#include "Private/DirectionArrays.h"
-#include "Private/EnumText.h"
-#include "Private/GatheredSurfaces.h"
-#include "Private/InputArrays.h"
-#include "Private/SMPParallelFor.h"
+#include "Conversion/DirectionArrays.h"
+#include "Conversion/EnumText.h"
+#include "Conversion/InputArrays.h"
+#include "Conversion/SMPParallelFor.h"
+#include "Core/Geometry/DirectionField.h"
+#include "Distributed/GatheredSurfaces.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -177,7 +177,7 @@ void vtkSurfaceDirectionFieldFilter::Execute(
     return;
   }
   double reported = begin;
-  const Monitor::Callback callback = [&](double fraction)
+  const ProgressMonitor::Callback callback = [&](double fraction)
   {
     reported = std::max(reported, fraction);
     this->UpdateProgress(reported);
@@ -186,7 +186,7 @@ void vtkSurfaceDirectionFieldFilter::Execute(
   LoopWatch watch([&] { return callback(reported); });
   try
   {
-    this->MakeField(input, hints, onCells, output, Monitor(callback).Part(begin, end));
+    this->MakeField(input, hints, onCells, output, ProgressMonitor(callback).Part(begin, end));
   }
   catch (const Aborted&)
   {
@@ -203,14 +203,14 @@ void vtkSurfaceDirectionFieldFilter::Execute(
 }
 
 void vtkSurfaceDirectionFieldFilter::MakeField(vtkPolyData* input, vtkDataArray* hints,
-  bool onCells, vtkPolyData* output, const Monitor& monitor)
+  bool onCells, vtkPolyData* output, const ProgressMonitor& progress)
 {
   const ParallelFor& parallel = SMPParallelFor::Instance();
 
   PolyDataSurface::Options options;
   options.MergeCoincidentPoints = this->MergeCoincidentPoints;
   options.MergeTolerance = this->MergeTolerance;
-  const PolyDataSurface surface(input, options, monitor.Part(0.0, 0.1));
+  const PolyDataSurface surface(input, options, progress.Part(0.0, 0.1));
   const TriangleMesh& mesh = *surface.Mesh;
   if (surface.Found.DegenerateTriangles > 0)
   {
@@ -225,15 +225,15 @@ void vtkSurfaceDirectionFieldFilter::MakeField(vtkPolyData* input, vtkDataArray*
     this->SmoothingLength == -1.0 ? 4.0 * h : this->SmoothingLength / mesh.LengthUnit();
   settings.HintWeight = this->HintWeight / (h * h);
   settings.Angle = vtkMath::RadiansFromDegrees(this->Angle);
-  const PlaneVectors given =
-    hints ? ReadFrames(surface, hints, onCells, parallel) : PlaneVectors(0, 2);
-  const PlaneVectors frames = MakeDirectionField(*surface.Operators, surface.Points,
-    surface.Triangles, given, settings, parallel, monitor.Part(0.1, 0.95));
+  const TangentVectors given =
+    hints ? ReadFrames(surface, hints, onCells, parallel) : TangentVectors(0, 2);
+  const TangentVectors frames = MakeDirectionField(*surface.Operators, surface.Points,
+    surface.Triangles, given, settings, parallel, progress.Part(0.1, 0.95));
   const auto array = WriteFrames(surface, input, frames, this->ResultArrayName, parallel);
-  monitor.Report(0.99); // the last chance to abort: from here on the output changes
+  progress.Report(0.99); // the last chance to abort: from here on the output changes
   output->GetCellData()->AddArray(array);
   output->GetCellData()->SetActiveVectors(this->ResultArrayName.c_str());
-  monitor.Report(1.0);
+  progress.Report(1.0);
 }
 
 void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)

@@ -49,9 +49,9 @@
 
 namespace SurfaceDiffusion
 {
-class Monitor;
-}
 class GatheredSurfaces;
+class ProgressMonitor;
+}
 class vtkDataArray;
 class vtkMultiProcessController;
 
@@ -198,9 +198,9 @@ private:
   /// On a surface that is here in one piece, reporting progress from begin to end.
   void Execute(vtkPolyData* input, vtkPolyData* output, double begin, double end);
   void MakeField(vtkPolyData* input, vtkDataArray* hints, bool onCells, vtkPolyData* output,
-    const SurfaceDiffusion::Monitor& monitor);
+    const SurfaceDiffusion::ProgressMonitor& progress);
 
-  std::unique_ptr<GatheredSurfaces> Gathered; ///< of surfaces in pieces
+  std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered; ///< of surfaces in pieces
   vtkMultiProcessController* Controller = nullptr;
   bool HasWholeSurface = false; ///< as null for Controller says
 };

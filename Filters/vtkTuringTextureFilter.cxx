@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTuringTextureFilter.h"
 
-#include "Core/Coefficients.h"
-#include "Core/DispersionRelation.h"
-#include "Core/ReactionDiffusion.h"
-#include "Core/TextureColors.h"
-#include "Private/ConvertValue.h"
-#include "Private/EnumText.h"
-#include "Private/InputArrays.h"
-#include "Private/NewArray.h"
-#include "Private/PointArrays.h"
-#include "Private/SurfaceRun.h"
+#include "Conversion/ConvertValue.h"
+#include "Conversion/EnumText.h"
+#include "Conversion/InputArrays.h"
+#include "Conversion/NewArray.h"
+#include "Conversion/PointArrays.h"
+#include "Conversion/SurfaceRun.h"
+#include "Core/Models/DispersionRelation.h"
+#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/TextureColors.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -472,7 +472,7 @@ void vtkTuringTextureFilter::ChooseFeatureSize(ModelInput& input, Rates& rates)
   }
 }
 
-std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& input, int steps)
+std::unique_ptr<Model> vtkTuringTextureFilter::MakeModel(ModelInput& input, int steps)
 {
   const TriangleMesh& mesh = *input.Surface.Mesh;
   Rates rates = this->MakeRates(input);
@@ -503,10 +503,10 @@ std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& inp
   settings.StopTolerance = this->StopTolerance / (absolute ? this->ReactionRate : 1.0);
 
   const double h = input.Units.MeanEdgeLength / input.Units.LengthUnit;
-  const EdgeValues isotropic = IsotropicCoefficients(mesh, input.Parallel);
-  const PlaneVectors frames = input.Frames.rows() > 0
+  const CornerWeights isotropic = CotanWeights(mesh, input.Parallel);
+  const TangentVectors frames = input.Frames.rows() > 0
     ? input.Frames
-    : PlaneVectors(PlaneVectors::Zero(mesh.NumberOfTriangles(), 2));
+    : TangentVectors(TangentVectors::Zero(mesh.NumberOfTriangles(), 2));
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
   bool direct = true;
   for (int c = 0; c < 2; ++c)
@@ -521,15 +521,15 @@ std::unique_ptr<Evolution> vtkTuringTextureFilter::MakeEvolution(ModelInput& inp
       (this->Solver == SOLVER_DIRECT ||
         (this->Solver == SOLVER_AUTOMATIC && PreferFactorization(task)));
     chemicals[c].Solver = input.Solver(c == 0 ? "u1" : "u2", task);
-    chemicals[c].Coefficients = AnisotropicCoefficients(
-      mesh, isotropic, frames, rates.Along[c], rates.Across[c], input.Parallel);
+    chemicals[c].Coefficients =
+      AnisotropicWeights(mesh, isotropic, frames, rates.Along[c], rates.Across[c], input.Parallel);
   }
   settings.SideBySide = !mesh.GetPartition() && SolveSideBySide(direct);
   return std::make_unique<ReactionDiffusion>(input.Surface.Operators, reaction,
     std::move(chemicals), std::move(input.Data), settings, input.Parallel);
 }
 
-void vtkTuringTextureFilter::PrepareResult(const SurfaceRun& run, const Monitor&)
+void vtkTuringTextureFilter::PrepareResult(const SurfaceRun& run, const ProgressMonitor&)
 {
   this->ContrastLimits[&run] = SurfaceDiffusion::ContrastLimits(
     run.Path->State().col(this->TextureChemical), run.Surface->Mesh->GetPartition());

@@ -302,13 +302,20 @@ protected:
   ~vtkTuringTextureFilter() override = default;
 
   void CheckProperties(Problems& problems) override;
-  bool FindArrays(vtkPolyData* block, BlockArrays& arrays, Problems& problems) override;
+  bool FindArrays(
+    vtkPolyData* block, SurfaceDiffusion::BlockArrays& arrays, Problems& problems) override;
   void WriteRunKey(std::ostream& key) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
-  std::unique_ptr<SurfaceDiffusion::Evolution> MakeEvolution(ModelInput& input, int steps) override;
-  void PrepareResult(const SurfaceRun& run, const SurfaceDiffusion::Monitor& monitor) override;
-  void WriteResult(const SurfaceRun& run, const BlockArrays& arrays, vtkPolyData* output) override;
-  bool CanBeDistributed(const std::vector<SurfacePiece>&) override { return true; }
+  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
+    SurfaceDiffusion::ModelInput& input, int steps) override;
+  void PrepareResult(const SurfaceDiffusion::SurfaceRun& run,
+    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  void WriteResult(const SurfaceDiffusion::SurfaceRun& run,
+    const SurfaceDiffusion::BlockArrays& arrays, vtkPolyData* output) override;
+  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>&) override
+  {
+    return true;
+  }
   const char* GetResultSuffix() override { return ""; }
   Dimension GetTimeDimension() override { return { 0.0, 0.0 }; }
   Dimension GetEnergyDimension() override { return { 2.0, 0.0 }; }
@@ -358,11 +365,12 @@ private:
   /// Of the kinetics chosen, in the order of the core's list.
   std::array<double, 3> GetKineticsParameters();
   bool AreRatesDirected();
-  Rates MakeRates(const ModelInput& input);
-  void ReadRates(const ModelInput& input, Rates& rates);
-  void ChooseFeatureSize(ModelInput& input, Rates& rates);
+  Rates MakeRates(const SurfaceDiffusion::ModelInput& input);
+  void ReadRates(const SurfaceDiffusion::ModelInput& input, Rates& rates);
+  void ChooseFeatureSize(SurfaceDiffusion::ModelInput& input, Rates& rates);
 
-  std::map<const SurfaceRun*, std::array<double, 2>> ContrastLimits; ///< of this update
+  std::map<const SurfaceDiffusion::SurfaceRun*, std::array<double, 2>>
+    ContrastLimits; ///< of this update
 };
 
 #endif

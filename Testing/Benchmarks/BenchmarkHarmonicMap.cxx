@@ -8,7 +8,7 @@
 #include "HarmonicMaps.h"
 #include "Meshes.h"
 
-#include "VertexFit.h"
+#include "Core/Geometry/VertexUpdating.h"
 
 #include <benchmark/benchmark.h>
 
@@ -67,7 +67,7 @@ void TenSteps(benchmark::State& state)
     int iterations = 0;
     for (int step = 0; step < 10; ++step)
     {
-      iterations += map->Advance(Monitor()).Iterations;
+      iterations += map->Advance(ProgressMonitor()).Iterations;
     }
     state.counters["iterations"] = iterations;
     state.counters["degrees_before"] = normals.MeanAngle(normals.Noisy);
@@ -93,7 +93,7 @@ void FitVertices(benchmark::State& state)
   {
     VertexMotion motion;
     benchmark::DoNotOptimize(
-      FitVerticesToNormals(mesh, shaken, normals.Clean, 5.0 * h, motion).data());
+      UpdateVerticesFromNormals(mesh, shaken, normals.Clean, 5.0 * h, motion).data());
     state.counters["volume_after"] = motion.VolumeAfter / (4.0 / 3.0 * Pi);
   }
 }

@@ -6,9 +6,9 @@
 // The last benchmarks run the whole filter beside the same steps in the core, both with the
 // history. BenchmarkSolver.cxx has the linear solvers.
 
+#include "Core/Models/Trajectory.h"
 #include "Heat.h"
 #include "HeatSystem.h"
-#include "Trajectory.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -77,7 +77,7 @@ void CoefficientsAndFill(benchmark::State& state)
   HeatSystem system(SurfaceOf(state), 1.0);
   for (auto _ : state)
   {
-    const EdgeValues c = IsotropicCoefficients(*system.Mesh);
+    const CornerWeights c = CotanWeights(*system.Mesh);
     system.Operators->Fill(system.Matrix, system.Mesh->ControlAreas(), 1.0, c);
     benchmark::DoNotOptimize(system.Matrix.valuePtr());
   }
@@ -133,10 +133,10 @@ void Step(benchmark::State& state, Scheme scheme)
 {
   const Surface& s = SurfaceOf(state);
   const auto heat = MakeRun(MakeAssembler(s), 1.0, scheme);
-  heat->Advance(Monitor());
+  heat->Advance(ProgressMonitor());
   for (auto _ : state)
   {
-    heat->Advance(Monitor());
+    heat->Advance(ProgressMonitor());
   }
   CountVertices(state, s.NumberOfVertices());
 }

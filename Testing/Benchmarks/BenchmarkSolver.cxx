@@ -7,7 +7,7 @@
 
 #include "HeatSystem.h"
 
-#include "LinearSolver.h"
+#include "Core/Solvers/LinearSolver.h"
 
 #include <string>
 #include <vector>

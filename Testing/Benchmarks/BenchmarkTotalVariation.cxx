@@ -8,11 +8,11 @@
 
 #include "Meshes.h"
 
-#include "Assembler.h"
-#include "Coefficients.h"
-#include "LinearDiffusion.h"
-#include "NonlinearDiffusion.h"
-#include "TotalVariationFlow.h"
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Models/NonlinearDiffusion.h"
+#include "Core/Models/TotalVariationFlow.h"
+#include "Core/Operators/Assembler.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include <benchmark/benchmark.h>
 
@@ -69,8 +69,8 @@ void MinimizeToGap(benchmark::State& state)
   StepReport report;
   for (auto _ : state)
   {
-    TotalVariationFlow flow(pattern.Operators, PlaneVectors(), pattern.Data, settings);
-    report = flow.Advance(Monitor());
+    TotalVariationFlow flow(pattern.Operators, TangentVectors(), pattern.Data, settings);
+    report = flow.Advance(ProgressMonitor());
   }
   state.counters["Gap"] = report.Residual;
   state.counters["Iterations"] = report.Iterations;
@@ -93,15 +93,15 @@ void LaggedStep(benchmark::State& state)
     direct ? MakeCholeskySolver() : MakeConjugateGradientSolver();
   solver->SetLimits(
     { direct ? 1e-10 : std::pow(10.0, -static_cast<double>(state.range(1))), 5000 });
-  NonlinearDiffusion model(pattern.Operators, PlaneVectors(), pattern.Data, settings, solver);
+  NonlinearDiffusion model(pattern.Operators, TangentVectors(), pattern.Data, settings, solver);
   for (int step = 0; step < 5; ++step)
   {
-    model.Advance(Monitor());
+    model.Advance(ProgressMonitor());
   }
   StepReport report;
   for (auto _ : state)
   {
-    report = model.Advance(Monitor());
+    report = model.Advance(ProgressMonitor());
   }
   state.counters["Iterations"] = report.Iterations;
 }
@@ -118,9 +118,9 @@ void HeatStepWithANewFactor(benchmark::State& state)
   settings.TimeScheme = LinearDiffusion::Scheme::BackwardEuler;
   for (auto _ : state)
   {
-    LinearDiffusion heat(pattern.Operators, IsotropicCoefficients(pattern.Operators->Mesh()),
-      pattern.Data, settings, MakeCholeskySolver());
-    heat.Advance(Monitor());
+    LinearDiffusion heat(pattern.Operators, CotanWeights(pattern.Operators->Mesh()), pattern.Data,
+      settings, MakeCholeskySolver());
+    heat.Advance(ProgressMonitor());
   }
 }
 BENCHMARK(HeatStepWithANewFactor)->ArgName("s")->Arg(6)->Arg(7)->Unit(benchmark::kMillisecond);

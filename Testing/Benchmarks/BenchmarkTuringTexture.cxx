@@ -11,8 +11,8 @@
 #include "MeshFiles.h"
 #include "Meshes.h"
 
-#include "Coefficients.h"
-#include "ReactionDiffusion.h"
+#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include <benchmark/benchmark.h>
 
@@ -64,7 +64,7 @@ Surface Refined(const Surface& s)
 struct Texture
 {
   std::shared_ptr<const Assembler> Operators;
-  EdgeValues Coefficients;
+  CornerWeights Coefficients;
   double Square; ///< of the mean edge length
 
   Texture(int mesh, int subdivisions)
@@ -76,7 +76,7 @@ struct Texture
     }
     this->Operators = MakeAssembler(s);
     const TriangleMesh& surface = this->Operators->Mesh();
-    this->Coefficients = IsotropicCoefficients(surface);
+    this->Coefficients = CotanWeights(surface);
     this->Square = std::pow(surface.TotalEdgeLength() / surface.NumberOfEdges(), 2);
   }
 
@@ -121,14 +121,14 @@ public:
     : Inner(std::move(solver))
   {
   }
-  void SetMatrix(const SparseMatrix& matrix, const Monitor& monitor) override
+  void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress) override
   {
-    this->Inner->SetMatrix(matrix, monitor);
+    this->Inner->SetMatrix(matrix, progress);
   }
-  SolveReport Solve(const Values& b, Values& x, const Monitor& monitor) override
+  SolveReport Solve(const Values& b, Values& x, const ProgressMonitor& progress) override
   {
     const auto start = std::chrono::steady_clock::now();
-    const SolveReport report = this->Inner->Solve(b, x, monitor);
+    const SolveReport report = this->Inner->Solve(b, x, progress);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     this->Seconds += seconds.count();
     this->Iterations += report.Iterations;
@@ -171,7 +171,7 @@ void Step(benchmark::State& state)
   const auto model = texture.MakeModel(settings, { solvers[0], solvers[1] });
   for (int step = 0; step < 48; ++step) // until the pattern has appeared
   {
-    model->Advance(Monitor());
+    model->Advance(ProgressMonitor());
   }
   solvers[0]->Seconds = solvers[1]->Seconds = 0.0;
   solvers[0]->Iterations = solvers[1]->Iterations = 0;
@@ -179,7 +179,7 @@ void Step(benchmark::State& state)
   const auto start = std::chrono::steady_clock::now();
   for (auto _ : state)
   {
-    model->Advance(Monitor());
+    model->Advance(ProgressMonitor());
     ++steps;
   }
   const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
@@ -208,7 +208,7 @@ void Stands(benchmark::State& state)
     const auto model = texture.MakeModel(settings, { MakeCholeskySolver(), MakeCholeskySolver() });
     for (steps = 0.0; !model->Finished() && steps < 1e4; ++steps)
     {
-      model->Advance(Monitor());
+      model->Advance(ProgressMonitor());
     }
   }
   const double time = steps * settings.TimeStep;

@@ -9,7 +9,7 @@
 #include "HeatSystem.h"
 #include "ProcessTime.h"
 
-#include "LinearSolver.h"
+#include "Core/Solvers/LinearSolver.h"
 
 #include <cstdio>
 #include <cstdlib>

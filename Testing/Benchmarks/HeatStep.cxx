@@ -12,7 +12,7 @@
 #include "HeatSystem.h"
 #include "ProcessTime.h"
 
-#include "LinearSolver.h"
+#include "Core/Solvers/LinearSolver.h"
 
 #include <cstdio>
 #include <exception>

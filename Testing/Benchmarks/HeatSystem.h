@@ -5,8 +5,8 @@
 #include "MeshFiles.h"
 #include "Meshes.h"
 
-#include "Assembler.h"
-#include "Coefficients.h"
+#include "Core/Operators/Assembler.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include <benchmark/benchmark.h>
 
@@ -88,13 +88,13 @@ struct HeatSystem
 {
   std::shared_ptr<const TriangleMesh> Mesh;
   std::shared_ptr<const Assembler> Operators;
-  EdgeValues Coefficients;
+  CornerWeights Coefficients;
   SparseMatrix Matrix;
 
   explicit HeatSystem(const Surface& s) // Matrix is all zero yet
     : Mesh(MakeMesh(s))
     , Operators(std::make_shared<Assembler>(this->Mesh))
-    , Coefficients(IsotropicCoefficients(*this->Mesh))
+    , Coefficients(CotanWeights(*this->Mesh))
     , Matrix(this->Operators->Pattern())
   {
   }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Coefficients.h"
-#include "HarmonicMap.h"
+#include "Core/Models/HarmonicMap.h"
+#include "Core/Operators/CotanWeights.h"
 #include "Meshes.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ inline std::unique_ptr<HarmonicMap> MakeMap(std::shared_ptr<const Assembler> ass
   std::shared_ptr<LinearSolver> solver = MakeCholeskySolver(),
   const ParallelFor& parallel = SerialFor())
 {
-  EdgeValues coefficients = IsotropicCoefficients(assembler->Mesh(), parallel);
+  CornerWeights coefficients = CotanWeights(assembler->Mesh(), parallel);
   return std::make_unique<HarmonicMap>(std::move(assembler), std::move(coefficients),
     std::move(data), settings, std::move(solver), parallel);
 }

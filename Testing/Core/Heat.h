@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Coefficients.h"
-#include "LinearDiffusion.h"
-#include "LinearSolver.h"
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/LinearSolver.h"
 
 #include <memory>
 #include <utility>
@@ -28,16 +28,16 @@ inline std::unique_ptr<LinearDiffusion> MakeHeat(std::shared_ptr<const Assembler
   std::shared_ptr<LinearSolver> solver = MakeCholeskySolver(),
   const ParallelFor& parallel = SerialFor())
 {
-  EdgeValues coefficients = IsotropicCoefficients(assembler->Mesh(), parallel);
+  CornerWeights coefficients = CotanWeights(assembler->Mesh(), parallel);
   return std::make_unique<LinearDiffusion>(std::move(assembler), std::move(coefficients),
     std::move(data), settings, std::move(solver), parallel);
 }
 
-inline void Advance(Evolution& evolution, int steps)
+inline void Advance(Model& evolution, int steps)
 {
   for (int step = 0; step < steps; ++step)
   {
-    evolution.Advance(Monitor());
+    evolution.Advance(ProgressMonitor());
   }
 }
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Assembler.h"
-#include "Random.h"
-#include "TriangleMesh.h"
+#include "Core/Foundation/Random.h"
+#include "Core/Operators/Assembler.h"
+#include "Core/Surface/TriangleMesh.h"
 
 #include <Eigen/Geometry>
 

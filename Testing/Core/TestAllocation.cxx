@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
+#include "Core/Models/Trajectory.h"
 #include "Heat.h"
 #include "Meshes.h"
-#include "Trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -61,12 +61,12 @@ long AllocationsInLaterSteps(int columns, Scheme scheme, bool masked)
     MakeHeat(assembler, std::move(data), HeatSettings(mesh, 1e-3, 1.0, scheme),
       MakeConjugateGradientSolver()),
     std::size_t(1) << 28);
-  const Monitor::Callback go = [](double) { return true; };
+  const ProgressMonitor::Callback go = [](double) { return true; };
   trajectory.Reserve(12);
-  trajectory.Seek(1, Monitor(go));
+  trajectory.Seek(1, ProgressMonitor(go));
   const long before = NumberOfAllocations();
-  trajectory.Seek(12, Monitor(go));
-  trajectory.Seek(3, Monitor(go));
+  trajectory.Seek(12, ProgressMonitor(go));
+  trajectory.Seek(3, ProgressMonitor(go));
   return NumberOfAllocations() - before;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Frames.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
 #include "Meshes.h"
 
@@ -20,8 +20,8 @@ Values DiffuseAlong(const Surface& s, const Points& directions, double g1, doubl
 {
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
-  const PlaneVectors frames = FramesFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
-  const EdgeValues c = AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), frames, g1, g2);
+  const TangentVectors frames = FramesFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
+  const CornerWeights c = AnisotropicWeights(mesh, CotanWeights(mesh), frames, g1, g2);
   LinearDiffusion heat(assembler, c, PointData::FromValues(start), HeatSettings(mesh, time / steps),
     MakeCholeskySolver());
   Advance(heat, steps);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Coefficients.h"
-#include "LinearDiffusion.h"
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/CotanWeights.h"
 #include "Meshes.h"
 
 #include <Eigen/Eigenvalues>
@@ -23,8 +23,7 @@ SparseMatrix WeightedMatrix(const Assembler& assembler, double diagonal, double 
     weights[t] = 0.1 + UniformRandom(3, 0, mesh.InputTriangle()[t]);
   }
   SparseMatrix matrix = assembler.Pattern();
-  assembler.Fill(
-    matrix, diagonal * mesh.ControlAreas(), scale, IsotropicCoefficients(mesh), weights.data());
+  assembler.Fill(matrix, diagonal * mesh.ControlAreas(), scale, CotanWeights(mesh), weights.data());
   return matrix;
 }
 
@@ -76,7 +75,7 @@ TEST(Assembler, EntriesAreHalfTheSumOfOppositeCotangents)
     { { -1, 0, 0 }, { 1, 0, 0 }, { 0, h, 0 }, { 0, -h, 0 } }, { { 0, 1, 2 }, { 1, 0, 3 } }));
   const TriangleMesh& mesh = assembler->Mesh();
   SparseMatrix k = assembler->Pattern();
-  assembler->Fill(k, Vector::Zero(4), 1.0, IsotropicCoefficients(mesh));
+  assembler->Fill(k, Vector::Zero(4), 1.0, CotanWeights(mesh));
   std::vector<Index> number(4);
   for (Index i = 0; i < 4; ++i)
   {
@@ -94,7 +93,7 @@ TEST(Assembler, StiffnessMatrixAndDirichletEnergyAgree)
   for (const Surface& s : Surfaces())
   {
     const auto assembler = MakeAssembler(s);
-    const EdgeValues c = IsotropicCoefficients(assembler->Mesh());
+    const CornerWeights c = CotanWeights(assembler->Mesh());
     SparseMatrix k = assembler->Pattern();
     assembler->Fill(k, Vector::Zero(k.rows()), 1.0, c);
     const Values u = Noise(assembler->Mesh(), 2);
@@ -110,7 +109,7 @@ TEST(Assembler, LinearFunctionsAreHarmonicInside)
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
   SparseMatrix k = assembler->Pattern();
-  assembler->Fill(k, Vector::Zero(k.rows()), 1.0, IsotropicCoefficients(mesh));
+  assembler->Fill(k, Vector::Zero(k.rows()), 1.0, CotanWeights(mesh));
   const Values u =
     Sample(mesh, s, [](const Eigen::RowVector3d& p) { return 2.0 * p[0] - 3.0 * p[1] + p[2]; });
   const Values flux = k * u;
@@ -140,8 +139,8 @@ TEST(Assembler, FillingAgainReplacesAllValues)
   {
     weights[t] = 0.1 + UniformRandom(3, 0, assembler->Mesh().InputTriangle()[t]);
   }
-  assembler->Fill(matrix, assembler->Mesh().ControlAreas(), 2.0,
-    IsotropicCoefficients(assembler->Mesh()), weights.data());
+  assembler->Fill(
+    matrix, assembler->Mesh().ControlAreas(), 2.0, CotanWeights(assembler->Mesh()), weights.data());
   EXPECT_EQ(Eigen::MatrixXd(matrix), Eigen::MatrixXd(fresh));
 }
 
@@ -235,6 +234,6 @@ TEST(Assembler, TakesAnEmptyMesh)
 TEST(Assembler, StopsWhenAsked)
 {
   const auto mesh = MakeMesh(Icosphere(2));
-  const Monitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(Assembler(mesh, ParallelFor(), Monitor(stop)), Aborted);
+  const ProgressMonitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(Assembler(mesh, ParallelFor(), ProgressMonitor(stop)), Aborted);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Coefficients.h"
+#include "Core/Operators/CotanWeights.h"
 #include "Meshes.h"
 
 #include <gtest/gtest.h>
@@ -95,7 +95,7 @@ TEST(Coefficients, IsotropicOnesAreHalfTheCotangents) // (10)
   for (const Surface& s : Shapes)
   {
     const auto mesh = MakeMesh(s);
-    const EdgeValues c = IsotropicCoefficients(*mesh);
+    const CornerWeights c = CotanWeights(*mesh);
     const std::array<double, 3> angle = Angles(mesh->Shapes()[0]);
     for (int k = 0; k < 3; ++k)
     {
@@ -116,11 +116,11 @@ TEST(Coefficients, DirectionalOnesAreThePapersClosedForms)
     const std::array<double, 3> angle = Angles(shape);
     for (const double direction : { 0.0, 0.3, 1.2, 2.0, 2.9, -1.0 })
     {
-      PlaneVectors frame(1, 2);
+      TangentVectors frame(1, 2);
       frame << std::cos(direction), std::sin(direction);
-      const EdgeValues c1 = DirectionalCoefficients(*mesh, frame);
-      const EdgeValues c2 = IsotropicCoefficients(*mesh) - c1;
-      const double scale = IsotropicCoefficients(*mesh).cwiseAbs().maxCoeff();
+      const CornerWeights c1 = DirectionalWeights(*mesh, frame);
+      const CornerWeights c2 = CotanWeights(*mesh) - c1;
+      const double scale = CotanWeights(*mesh).cwiseAbs().maxCoeff();
       for (int i = 0; i < 3; ++i) // whichever corner is called i
       {
         const int j = (i + 1) % 3;
@@ -144,41 +144,41 @@ TEST(Coefficients, DirectionalOnesAreThePapersClosedForms)
 TEST(Coefficients, DirectionsAtRightAnglesAddUpToIsotropic)
 {
   const auto mesh = MakeMesh(Icosphere(2));
-  PlaneVectors e1(mesh->NumberOfTriangles(), 2);
+  TangentVectors e1(mesh->NumberOfTriangles(), 2);
   for (Index t = 0; t < mesh->NumberOfTriangles(); ++t)
   {
     e1.row(t) << std::cos(t), std::sin(t);
   }
-  PlaneVectors e2(e1.rows(), 2);
+  TangentVectors e2(e1.rows(), 2);
   e2 << -e1.col(1), e1.col(0);
-  const EdgeValues sum = DirectionalCoefficients(*mesh, e1) + DirectionalCoefficients(*mesh, e2);
-  EXPECT_LT((sum - IsotropicCoefficients(*mesh)).cwiseAbs().maxCoeff(), 1e-14);
+  const CornerWeights sum = DirectionalWeights(*mesh, e1) + DirectionalWeights(*mesh, e2);
+  EXPECT_LT((sum - CotanWeights(*mesh)).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(Coefficients, SignOfTheDirectionDoesNotMatter)
 {
   const auto mesh = MakeMesh(Icosphere(1));
-  const PlaneVectors e1 = PlaneVectors::Constant(mesh->NumberOfTriangles(), 2, std::sqrt(0.5));
-  EXPECT_EQ(DirectionalCoefficients(*mesh, e1), DirectionalCoefficients(*mesh, -e1));
+  const TangentVectors e1 = TangentVectors::Constant(mesh->NumberOfTriangles(), 2, std::sqrt(0.5));
+  EXPECT_EQ(DirectionalWeights(*mesh, e1), DirectionalWeights(*mesh, -e1));
 }
 
 TEST(Coefficients, EqualDiffusivitiesAreIsotropicWhateverTheDirection)
 {
   const auto mesh = MakeMesh(Icosphere(2));
-  PlaneVectors e1 = PlaneVectors::Zero(mesh->NumberOfTriangles(), 2);
+  TangentVectors e1 = TangentVectors::Zero(mesh->NumberOfTriangles(), 2);
   e1.col(1).setOnes();
-  const EdgeValues c = IsotropicCoefficients(*mesh);
-  const EdgeValues a = AnisotropicCoefficients(*mesh, c, e1, 2.5, 2.5);
+  const CornerWeights c = CotanWeights(*mesh);
+  const CornerWeights a = AnisotropicWeights(*mesh, c, e1, 2.5, 2.5);
   EXPECT_LT((a - 2.5 * c).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(Coefficients, WithoutADirectionTheGeometricMeanActs)
 {
   const auto mesh = MakeMesh(Icosphere(1));
-  const PlaneVectors none = PlaneVectors::Zero(mesh->NumberOfTriangles(), 2);
-  const EdgeValues c = IsotropicCoefficients(*mesh);
-  EXPECT_EQ(AnisotropicCoefficients(*mesh, c, none, 4.0, 9.0), EdgeValues(6.0 * c));
-  EXPECT_EQ(AnisotropicCoefficients(*mesh, c, none, 4.0, 0.0), EdgeValues(0.0 * c));
+  const TangentVectors none = TangentVectors::Zero(mesh->NumberOfTriangles(), 2);
+  const CornerWeights c = CotanWeights(*mesh);
+  EXPECT_EQ(AnisotropicWeights(*mesh, c, none, 4.0, 9.0), CornerWeights(6.0 * c));
+  EXPECT_EQ(AnisotropicWeights(*mesh, c, none, 4.0, 0.0), CornerWeights(0.0 * c));
 }
 
 TEST(Coefficients, DiffusionAlongADirectionDoesNotSeeGradientsAcross)
@@ -187,7 +187,7 @@ TEST(Coefficients, DiffusionAlongADirectionDoesNotSeeGradientsAcross)
   const Surface s = Jittered(Strip(6, 6), 0.04, 0, 1, 0, 1);
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
-  PlaneVectors e1(mesh.NumberOfTriangles(), 2);
+  TangentVectors e1(mesh.NumberOfTriangles(), 2);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const Eigen::RowVector3d edge = s.Vertices.row(s.Faces(mesh.InputTriangle()[t], 1)) -
@@ -195,7 +195,7 @@ TEST(Coefficients, DiffusionAlongADirectionDoesNotSeeGradientsAcross)
     e1.row(t) << edge[0] / edge.norm(), -edge[1] / edge.norm(); // the x axis, seen from the edge
   }
   SparseMatrix k = assembler->Pattern();
-  assembler->Fill(k, Vector::Zero(mesh.NumberOfVertices()), 1.0, DirectionalCoefficients(mesh, e1));
+  assembler->Fill(k, Vector::Zero(mesh.NumberOfVertices()), 1.0, DirectionalWeights(mesh, e1));
   const Values y = Sample(mesh, s, [](const Eigen::RowVector3d& p) { return p[1]; });
   EXPECT_LT((k * y).cwiseAbs().maxCoeff(), 1e-14);
   const Values x = Sample(mesh, s, [](const Eigen::RowVector3d& p) { return p[0]; });

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Conservation.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"
 
@@ -74,7 +74,7 @@ TEST_P(WithSolver, SumIsKeptOnEveryComponentByEveryScheme)
           HeatSettings(mesh, 0.05, lambda, scheme), GetParam().Make());
         for (int step = 0; step < 20; ++step)
         {
-          heat->Advance(Monitor());
+          heat->Advance(ProgressMonitor());
           EXPECT_LT(Drift(mesh, start, heat->State()), 1e-12);
         }
       }
@@ -114,14 +114,14 @@ TEST_P(WithSolver, InpaintingWithoutFidelityKeepsTheSum)
   EXPECT_LT(Drift(assembler->Mesh(), data.Start, heat->State()), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Conservation, WithSolver,
+INSTANTIATE_TEST_SUITE_P(TotalCorrection, WithSolver,
   ::testing::Values(Kind{ "Cholesky", [] { return MakeCholeskySolver(); } },
     Kind{ "ConjugateGradient", [] { return MakeConjugateGradientSolver(); } },
     Kind{ "LooseConjugateGradient", LooseConjugateGradients }),
   [](const auto& parameter) { return parameter.param.Name; });
 
 // What does not conserve must not be forced to: the sum follows the exact solution.
-TEST(Conservation, FidelityToOtherDataMovesTheSum)
+TEST(TotalCorrection, FidelityToOtherDataMovesTheSum)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
   const TriangleMesh& mesh = assembler->Mesh();
@@ -134,7 +134,7 @@ TEST(Conservation, FidelityToOtherDataMovesTheSum)
   EXPECT_LT((u.array() - expected).abs().maxCoeff(), 1e-5);
 }
 
-TEST(Conservation, MaskedFidelityMovesTheSumTowardsTheKnownValues)
+TEST(TotalCorrection, MaskedFidelityMovesTheSumTowardsTheKnownValues)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
   const TriangleMesh& mesh = assembler->Mesh();
@@ -145,21 +145,21 @@ TEST(Conservation, MaskedFidelityMovesTheSumTowardsTheKnownValues)
   EXPECT_LT((u.array() - 1.0).abs().maxCoeff(), 1e-9);
 }
 
-TEST(Conservation, TotalIsTheWeightedSum)
+TEST(TotalCorrection, TotalIsTheWeightedSum)
 {
   const auto mesh = MakeMesh(Icosphere(2));
   const Values u = Noise(*mesh, 2);
   EXPECT_NEAR(Total(*mesh, u, 1), mesh->ControlAreas().dot(u.col(1)), 1e-14);
 }
 
-TEST(Balance, SolutionsSatisfyTheSumOfTheEquations)
+TEST(MeanCorrection, SolutionsSatisfyTheSumOfTheEquations)
 {
   const auto mesh = MakeMesh(Joined(Disk(3), Icosphere(1)));
   const Index n = mesh->NumberOfVertices();
   const Vector weights = mesh->ControlAreas() * 3.0;
   Flags fixed = Flags::Constant(n, false);
   fixed[mesh->ComponentsBegin()[1]] = true; // the second component is left alone
-  Balance balance(*mesh, weights, fixed);
+  MeanCorrection balance(*mesh, weights, fixed);
   const Values b = Noise(*mesh, 2);
   const Values before = Noise(*mesh, 2, 5);
   Values x = before;

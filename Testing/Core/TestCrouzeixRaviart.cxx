@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Conservation.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "ThreadedFor.h"
 #include "TotalVariation.h"
 
@@ -99,7 +99,7 @@ TEST(CrouzeixRaviart, CapFlowsToHalfAPercentOnAnyTurnOfTheMesh)
     const TriangleMesh& mesh = assembler->Mesh();
     const PointData data = PointData::FromValues(Cap(mesh, s, angle));
     const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, time));
-    flow->Advance(Monitor());
+    flow->Advance(ProgressMonitor());
     const Plateaus plateaus = MeasurePlateaus(mesh, s, flow->State(), angle);
     EXPECT_LT(PlateauError(plateaus, ExactPlateaus(angle, time)), 0.005) << turn;
     const double jump = plateaus.Inside - plateaus.Outside;
@@ -116,7 +116,7 @@ TEST(CrouzeixRaviart, NoiseDoesNotComeBack)
   const TriangleMesh& mesh = assembler->Mesh();
   const PointData data = PointData::FromValues(0.3 * Noise(mesh));
   const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.05));
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   EXPECT_LT(RootMeanSquare(mesh, flow->State()), 0.03 * RootMeanSquare(mesh, data.Start));
 }
 
@@ -127,7 +127,7 @@ TEST(CrouzeixRaviart, ConstantsStay)
   const auto constant =
     MakeOnEdges(assembler, PointData::FromValues(Values::Constant(mesh.NumberOfVertices(), 2, 7.0)),
       ExactSettings(mesh, 0.1, 1.0));
-  constant->Advance(Monitor());
+  constant->Advance(ProgressMonitor());
   EXPECT_LT((constant->State().array() - 7.0).abs().maxCoeff(), 1e-14);
 }
 
@@ -141,18 +141,18 @@ TEST(CrouzeixRaviart, StartsFromThePointDataThemselvesAndRestoresEveryBit)
   EXPECT_TRUE(flow->State() == data.Start);
   std::vector<double> first(flow->CheckpointSize()), second(flow->CheckpointSize());
   flow->Save(first.data());
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   const Values one = flow->State();
   flow->Save(second.data());
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   const Values two = flow->State();
   flow->Restore(first.data());
   EXPECT_TRUE(flow->State() == data.Start);
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   EXPECT_TRUE(flow->State() == one);
   flow->Restore(second.data());
   EXPECT_TRUE(flow->State() == one);
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   EXPECT_TRUE(flow->State() == two);
 }
 
@@ -165,7 +165,7 @@ TEST(CrouzeixRaviart, ThreadsDoNotChangeABit)
   const auto run = [&](const ParallelFor& parallel)
   {
     const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.01, 0.0, 1e-2), parallel);
-    flow->Advance(Monitor());
+    flow->Advance(ProgressMonitor());
     return flow->State();
   };
   const ThreadedFor parallel(3);
@@ -195,7 +195,7 @@ TEST(CrouzeixRaviart, FixedAndMissingVerticesAreHonoured)
   const auto run = [&](const PointData& input)
   {
     const auto flow = MakeOnEdges(assembler, input, ExactSettings(mesh, 0.0, 2.0));
-    flow->Advance(Monitor());
+    flow->Advance(ProgressMonitor());
     return flow->State();
   };
   const Values u = run(data);

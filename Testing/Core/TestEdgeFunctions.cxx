@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "EdgeFunctions.h"
+#include "Core/Models/EdgeFunctions.h"
 
 #include <gtest/gtest.h>
 

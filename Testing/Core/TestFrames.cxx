@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Frames.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ const double NotANumber = std::numeric_limits<double>::quiet_NaN();
 
 /// A frame as a vector in space.
 Eigen::RowVector3d InSpace(
-  const TriangleMesh& mesh, const Surface& s, const PlaneVectors& frames, Index t)
+  const TriangleMesh& mesh, const Surface& s, const TangentVectors& frames, Index t)
 {
   const auto corner = [&](int a) -> Eigen::RowVector3d
   { return s.Vertices.row(mesh.InputVertex()[mesh.TriangleVertices()(t, a)]); };
@@ -29,7 +29,7 @@ Eigen::RowVector3d InSpace(
 }
 
 /// Whether both hold the same lines: the sign of a frame means nothing.
-void ExpectSameLines(const PlaneVectors& a, const PlaneVectors& b)
+void ExpectSameLines(const TangentVectors& a, const TangentVectors& b)
 {
   ASSERT_EQ(a.rows(), b.rows());
   for (Eigen::Index t = 0; t < a.rows(); ++t)
@@ -52,7 +52,7 @@ TEST(Frames, TriangleVectorsAreProjectedAndNormalised)
   const auto mesh = MakeMesh(s);
   const Eigen::RowVector3d d(0.2, -3.0, 1.0);
   const Points vectors = d.replicate(s.NumberOfTriangles(), 1);
-  const PlaneVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, vectors);
+  const TangentVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, vectors);
   for (Index t = 0; t < mesh->NumberOfTriangles(); ++t)
   {
     const Eigen::RowVector3d n = NormalOf(s, mesh->InputTriangle()[t]);
@@ -71,7 +71,7 @@ TEST(Frames, OppositePointVectorsAgree)
   {
     vectors.row(i) = (i % 2 == 0 ? 1.0 : -0.1) * Eigen::RowVector3d(1.0, 2.0, 0.0);
   }
-  const PlaneVectors frames = FramesFromPointVectors(*mesh, s.Vertices, s.Faces, vectors);
+  const TangentVectors frames = FramesFromPointVectors(*mesh, s.Vertices, s.Faces, vectors);
   const Eigen::RowVector3d expected = Eigen::RowVector3d(1.0, 2.0, 0.0).normalized();
   for (Index t = 0; t < mesh->NumberOfTriangles(); ++t)
   {
@@ -85,7 +85,7 @@ TEST(Frames, NoDirectionWhereTheVectorSaysNothing)
   const auto mesh = MakeMesh(s);
   Points vectors(6, 3);
   vectors << 0, 0, 0, NotANumber, 1, 0, Infinity, 0, 0, 0, 0, 5, 0, 0, -1e200, 1, 0, 0;
-  const PlaneVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, vectors);
+  const TangentVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, vectors);
   for (Index t = 0; t < 6; ++t)
   {
     EXPECT_NEAR(frames.row(t).norm(), mesh->InputTriangle()[t] == 5 ? 1.0 : 0.0, 1e-15);
@@ -107,7 +107,7 @@ TEST(Frames, SizeOfTheVectorsAndOfTheSurfaceDoesNotMatter)
   const Surface s = Icosphere(1);
   const auto mesh = MakeMesh(s);
   const Points vectors = Eigen::RowVector3d(0.3, 0.1, -0.8).replicate(s.NumberOfTriangles(), 1);
-  const PlaneVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, vectors);
+  const TangentVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, vectors);
   for (const double size : { 1e-300, 1e-150, 1e150, 1e300 })
   {
     ExpectSameLines(FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, size * vectors), frames);

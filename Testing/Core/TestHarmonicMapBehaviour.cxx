@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
+#include "Core/Models/UnitVectors.h"
 #include "HarmonicMaps.h"
 #include "Heat.h"
 #include "ThreadedFor.h"
-#include "UnitVectors.h"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ PointData Hedgehog(const TriangleMesh& mesh, const Surface& s, double turns)
     f.row(i) *= x.norm() > 0.0 ? 1.0 : 0.0;
   }
   PointData data = PointData::FromValues(f);
-  PrepareUnitVectors(mesh, data, turns != std::round(turns), InitialFill::Mean, 0,
+  FillMissingUnitVectors(mesh, data, turns != std::round(turns), InitialFill::Mean, 0,
     std::vector<std::int64_t>(mesh.NumberOfVertices(), 0));
   return data;
 }
@@ -142,7 +142,7 @@ TEST(HarmonicMap, JacobiAloneTellsThatItDidNotConverge)
   settings.Limits.MaximumNumberOfIterations = 3;
   settings.Method = HarmonicMap::Preconditioner::Jacobi;
   const auto map = MakeMap(assembler, PointData::FromValues(RandomUnitVectors(mesh, 3)), settings);
-  EXPECT_THROW(map->Advance(Monitor()), NotConverged);
+  EXPECT_THROW(map->Advance(ProgressMonitor()), NotConverged);
 }
 
 // An unfinished solution is a step downhill too: the proof does not need the solver's tolerance.
@@ -156,7 +156,7 @@ TEST(HarmonicMap, EnergyFallsWithUnfinishedSolutions)
   for (int k = 0; k < 5; ++k)
   {
     const double energy = map->Energy();
-    const StepReport report = map->Advance(Monitor());
+    const StepReport report = map->Advance(ProgressMonitor());
     EXPECT_LT(map->Energy(), energy);
     EXPECT_GT(report.Residual, settings.Limits.Tolerance); // and it is told
   }
@@ -211,7 +211,7 @@ TEST(HarmonicMap, HolesFillWithTheStraightPathBetweenTheirRims)
       data.Given.row(i).setZero();
     }
   }
-  PrepareUnitVectors(
+  FillMissingUnitVectors(
     mesh, data, false, InitialFill::Mean, 0, std::vector<std::int64_t>(mesh.NumberOfVertices(), 0));
   for (const MapScheme scheme : { MapScheme::TangentPlane, MapScheme::MinimizingMovement })
   {
@@ -299,7 +299,7 @@ TEST(HarmonicMap, StepsAfterTheFirstAllocateNothing)
 {
   const auto assembler = MakeAssembler(Icosphere(4)); // two blocks
   const TriangleMesh& mesh = assembler->Mesh();
-  const Monitor::Callback go = [](double) { return true; };
+  const ProgressMonitor::Callback go = [](double) { return true; };
   for (const Eigen::Index m : { 2, 3, 5 })
   {
     for (const MapScheme scheme : AllSchemes)
@@ -313,10 +313,10 @@ TEST(HarmonicMap, StepsAfterTheFirstAllocateNothing)
         settings.Fidelity = 1.0;
         settings.LineField = lineField;
         const auto map = MakeMap(assembler, data, settings, MakeConjugateGradientSolver());
-        map->Advance(Monitor(go));
+        map->Advance(ProgressMonitor(go));
         const long before = NumberOfAllocations();
-        map->Advance(Monitor(go));
-        map->Advance(Monitor(go));
+        map->Advance(ProgressMonitor(go));
+        map->Advance(ProgressMonitor(go));
         map->Energy();
         EXPECT_EQ(NumberOfAllocations() - before, 0)
           << m << " components, scheme " << static_cast<int>(scheme);

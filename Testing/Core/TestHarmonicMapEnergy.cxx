@@ -35,7 +35,7 @@ void ExpectFallingEnergy(std::shared_ptr<const Assembler> assembler, const Point
     const double start = energy;
     for (int k = 0; k < 2; ++k)
     {
-      map->Advance(Monitor());
+      map->Advance(ProgressMonitor());
       const double next = map->Energy();
       EXPECT_LE(next, energy) << "p = " << exponent << ", step " << step << ", number " << k;
       energy = next;
@@ -99,7 +99,7 @@ TEST(HarmonicMapEnergy, FallsWhereTheStepWithoutDampingWouldRaiseIt)
   for (int k = 0; k < 8; ++k)
   {
     const double energy = map->Energy();
-    map->Advance(Monitor());
+    map->Advance(ProgressMonitor());
     EXPECT_LT(map->Energy(), energy) << "step " << k;
   }
 }
@@ -141,13 +141,12 @@ TEST(HarmonicMapEnergy, NeverGrowsWithAnisotropicDiffusion)
   const Surface s = Needles(10, 0.2, 5);
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
-  PlaneVectors frames(mesh.NumberOfTriangles(), 2);
+  TangentVectors frames(mesh.NumberOfTriangles(), 2);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     frames.row(t) << std::cos(0.7 * t), std::sin(0.7 * t);
   }
-  const EdgeValues coefficients =
-    AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), frames, 5.0, 0.1);
+  const CornerWeights coefficients = AnisotropicWeights(mesh, CotanWeights(mesh), frames, 5.0, 0.1);
   for (double step = 1e-4; step < 2e4; step *= 10.0)
   {
     HarmonicMap::Settings settings;
@@ -158,7 +157,7 @@ TEST(HarmonicMapEnergy, NeverGrowsWithAnisotropicDiffusion)
     double energy = map.Energy();
     for (int k = 0; k < 3; ++k)
     {
-      map.Advance(Monitor());
+      map.Advance(ProgressMonitor());
       EXPECT_LT(map.Energy(), energy);
       energy = map.Energy();
     }
@@ -216,7 +215,7 @@ TEST(HarmonicMapEnergy, OfThePapersSplittingCanGrow)
     double energy = map->Energy();
     for (int k = 0; k < 20; ++k)
     {
-      map->Advance(Monitor());
+      map->Advance(ProgressMonitor());
       grew = grew || map->Energy() > 1.001 * energy;
       energy = map->Energy();
       EXPECT_LT(LargestLengthError(map->State()), 1e-12);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "InitialState.h"
+#include "Core/Models/InitialState.h"
 #include "Meshes.h"
 
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 #include "Heat.h"
 #include "Meshes.h"
 
-#include "Coefficients.h"
-#include "Frames.h"
-#include "IntrinsicDelaunay.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
+#include "Core/Surface/TangentVectors.h"
 
 #include <gtest/gtest.h>
 
@@ -55,8 +55,8 @@ std::vector<std::pair<const char*, Surface>> BadSurfaces()
 SparseMatrix Stiffness(const Assembler& assembler)
 {
   SparseMatrix k = assembler.Pattern();
-  assembler.Fill(k, Vector::Zero(assembler.Mesh().NumberOfVertices()), 1.0,
-    IsotropicCoefficients(assembler.Mesh()));
+  assembler.Fill(
+    k, Vector::Zero(assembler.Mesh().NumberOfVertices()), 1.0, CotanWeights(assembler.Mesh()));
   return k;
 }
 
@@ -136,7 +136,7 @@ TEST(IntrinsicDelaunay, EnergyOfALinearFunctionIsExactOnAPlane)
   const Surface plate = BadInside();
   const auto flipped = IntrinsicDelaunay(*MakeMesh(plate), nullptr);
   const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
-  EXPECT_NEAR(DirichletEnergy(*flipped, IsotropicCoefficients(*flipped), u), 0.5 * 5.0 * 4.0, 1e-9);
+  EXPECT_NEAR(DirichletEnergy(*flipped, CotanWeights(*flipped), u), 0.5 * 5.0 * 4.0, 1e-9);
 }
 
 TEST(IntrinsicDelaunay, CarriesDirectionsAlong)
@@ -144,12 +144,11 @@ TEST(IntrinsicDelaunay, CarriesDirectionsAlong)
   const Surface plate = BadInside();
   const auto mesh = MakeMesh(plate);
   const Eigen::RowVector3d direction(0.6, 0.8, 0.0);
-  PlaneVectors frames = FramesFromTriangleVectors(
+  TangentVectors frames = FramesFromTriangleVectors(
     *mesh, plate.Vertices, plate.Faces, direction.replicate(plate.Faces.rows(), 1));
   const auto flipped = IntrinsicDelaunay(*mesh, &frames);
   ASSERT_EQ(frames.rows(), flipped->NumberOfTriangles());
-  const EdgeValues c =
-    AnisotropicCoefficients(*flipped, IsotropicCoefficients(*flipped), frames, 3.0, 0.5);
+  const CornerWeights c = AnisotropicWeights(*flipped, CotanWeights(*flipped), frames, 3.0, 0.5);
   const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
   // grad u . e1 = 0.4, grad u . e2 = -2.2
   EXPECT_NEAR(DirichletEnergy(*flipped, c, u), 0.5 * (3.0 * 0.16 + 0.5 * 4.84) * 4.0, 1e-9);
@@ -161,7 +160,7 @@ TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
   const auto needle =
     MakeMesh(MakeSurface({ { 0, 0, 0 }, { 1.4e-8, 0, 0 }, { -1, 1, 0 } }, { { 0, 1, 2 } }));
   const Assembler flipped(IntrinsicDelaunay(*needle, nullptr));
-  const EdgeValues c = IsotropicCoefficients(flipped.Mesh());
+  const CornerWeights c = CotanWeights(flipped.Mesh());
   ASSERT_EQ(c.rows(), 2);
   ASSERT_GT(c.maxCoeff(), 1e5);
   Index large;
@@ -177,7 +176,7 @@ TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
     EXPECT_NEAR(k.coeff(i, i) / -others, 1.0, 1e-14) << i;
   }
   // Where the two ends of such an edge have opposite signs, it has an energy.
-  const EdgeValues opposite = EdgeValues::Constant(2, 3, -1.0);
+  const CornerWeights opposite = CornerWeights::Constant(2, 3, -1.0);
   flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data(), ParallelFor(), &opposite);
   EXPECT_NEAR(k.coeffs().maxCoeff() / (4.0 * 1e4 * c.maxCoeff()), 1.0, 1e-3);
 }

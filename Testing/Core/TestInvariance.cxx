@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Frames.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
 #include "Meshes.h"
 #include "ThreadedFor.h"
@@ -32,10 +32,10 @@ Values RunModel(const Surface& s, const Values& values, std::shared_ptr<LinearSo
   {
     directions.row(i) = Eigen::RowVector3d(s.Vertices.row(i)).cross(Eigen::RowVector3d(1, 2, 3));
   }
-  const PlaneVectors frames =
+  const TangentVectors frames =
     FramesFromPointVectors(*mesh, s.Vertices, s.Faces, directions, parallel);
-  const EdgeValues c = AnisotropicCoefficients(
-    *mesh, IsotropicCoefficients(*mesh, parallel), frames, 1.0, 0.3, parallel);
+  const CornerWeights c =
+    AnisotropicWeights(*mesh, CotanWeights(*mesh, parallel), frames, 1.0, 0.3, parallel);
   LinearDiffusion heat(assembler, c, std::move(data), HeatSettings(*mesh, 0.002, 10.0, scheme),
     std::move(solver), parallel);
   Advance(heat, 3);
@@ -96,9 +96,8 @@ TEST(Invariance, ThreadsDoNotChangeTheMeshOrTheMatrix)
   const Assembler threaded(mesh, parallel);
   SparseMatrix a = serial.Pattern();
   SparseMatrix b = threaded.Pattern();
-  serial.Fill(a, serialMesh->ControlAreas(), 0.1, IsotropicCoefficients(*serialMesh));
-  threaded.Fill(
-    b, mesh->ControlAreas(), 0.1, IsotropicCoefficients(*mesh, parallel), nullptr, parallel);
+  serial.Fill(a, serialMesh->ControlAreas(), 0.1, CotanWeights(*serialMesh));
+  threaded.Fill(b, mesh->ControlAreas(), 0.1, CotanWeights(*mesh, parallel), nullptr, parallel);
   ASSERT_EQ(a.nonZeros(), b.nonZeros());
   EXPECT_TRUE(std::equal(a.valuePtr(), a.valuePtr() + a.nonZeros(), b.valuePtr()));
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Conservation.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"
 
@@ -406,7 +406,7 @@ TEST(LinearDiffusion, EnergyNeverGrows)
       for (int step = 0; step < 10; ++step)
       {
         const double before = heat->Energy();
-        heat->Advance(Monitor());
+        heat->Advance(ProgressMonitor());
         EXPECT_LE(heat->Energy(), before * (1.0 + 1e-13));
       }
     }

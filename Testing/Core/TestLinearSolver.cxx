@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Coefficients.h"
-#include "LinearSolver.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/LinearSolver.h"
 #include "Meshes.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,7 @@ namespace
 SparseMatrix HeatMatrix(const Assembler& assembler, double timeStep)
 {
   SparseMatrix matrix = assembler.Pattern();
-  assembler.Fill(
-    matrix, assembler.Mesh().ControlAreas(), timeStep, IsotropicCoefficients(assembler.Mesh()));
+  assembler.Fill(matrix, assembler.Mesh().ControlAreas(), timeStep, CotanWeights(assembler.Mesh()));
   return matrix;
 }
 
@@ -148,7 +147,7 @@ TEST_P(AnySolver, DoesNotPassOffAnIndefiniteMatrixAsSolved)
   const auto assembler = MakeAssembler(Icosphere(2));
   SparseMatrix matrix = assembler->Pattern();
   assembler->Fill(
-    matrix, -0.5 * assembler->Mesh().ControlAreas(), 1.0, IsotropicCoefficients(assembler->Mesh()));
+    matrix, -0.5 * assembler->Mesh().ControlAreas(), 1.0, CotanWeights(assembler->Mesh()));
   bool solved = false;
   try
   {
@@ -181,11 +180,11 @@ TEST_P(AnySolver, StopsWhenAskedAndWorksAfterwards)
   const Values exact = Noise(assembler->Mesh());
   const Values b = matrix * exact;
   Values x = Values::Zero(exact.rows(), 1);
-  const Monitor::Callback stop = [](double) { return false; };
+  const ProgressMonitor::Callback stop = [](double) { return false; };
   EXPECT_THROW(
     {
-      this->Solver->SetMatrix(matrix, Monitor(stop));
-      this->Solver->Solve(b, x, Monitor(stop));
+      this->Solver->SetMatrix(matrix, ProgressMonitor(stop));
+      this->Solver->Solve(b, x, ProgressMonitor(stop));
     },
     Aborted);
   this->Solver->SetMatrix(matrix);
@@ -199,15 +198,15 @@ TEST_P(AnySolver, ReportsProgressUpwards)
   const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
   double last = 0.0;
   bool upwards = true;
-  const Monitor::Callback watch = [&](double fraction)
+  const ProgressMonitor::Callback watch = [&](double fraction)
   {
     upwards = upwards && fraction >= last;
     last = fraction;
     return true;
   };
-  this->Solver->SetMatrix(matrix, Monitor(watch).Part(0.0, 0.5));
+  this->Solver->SetMatrix(matrix, ProgressMonitor(watch).Part(0.0, 0.5));
   Values x = Values::Zero(matrix.rows(), 1);
-  this->Solver->Solve(matrix * Noise(assembler->Mesh()), x, Monitor(watch).Part(0.5, 1.0));
+  this->Solver->Solve(matrix * Noise(assembler->Mesh()), x, ProgressMonitor(watch).Part(0.5, 1.0));
   EXPECT_TRUE(upwards);
   EXPECT_EQ(last, 1.0);
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Coefficients.h"
-#include "IntrinsicDelaunay.h"
-#include "MedialMesh.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
+#include "Core/Surface/MedialMesh.h"
 #include "Meshes.h"
 
 #include <gtest/gtest.h>

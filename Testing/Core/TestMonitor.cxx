@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Monitor.h"
+#include "Core/Foundation/ProgressMonitor.h"
 
 #include <gtest/gtest.h>
 
@@ -13,39 +13,39 @@
 
 using namespace SurfaceDiffusion;
 
-TEST(Monitor, WithoutACallbackItIsSilent)
+TEST(ProgressMonitor, WithoutACallbackItIsSilent)
 {
-  EXPECT_NO_THROW(Monitor().Report(0.5));
-  EXPECT_NO_THROW(Monitor().Part(0.2, 0.4).Report(1.0));
+  EXPECT_NO_THROW(ProgressMonitor().Report(0.5));
+  EXPECT_NO_THROW(ProgressMonitor().Part(0.2, 0.4).Report(1.0));
 }
 
-TEST(Monitor, PartsFillTheirShare)
+TEST(ProgressMonitor, PartsFillTheirShare)
 {
   double last = -1.0;
-  const Monitor::Callback watch = [&](double fraction)
+  const ProgressMonitor::Callback watch = [&](double fraction)
   {
     last = fraction;
     return true;
   };
-  const Monitor monitor(watch);
-  monitor.Report(0.25);
+  const ProgressMonitor progress(watch);
+  progress.Report(0.25);
   EXPECT_EQ(last, 0.25);
-  monitor.Part(0.5, 1.0).Report(0.5);
+  progress.Part(0.5, 1.0).Report(0.5);
   EXPECT_EQ(last, 0.75);
-  monitor.Part(0.5, 1.0).Part(0.5, 1.0).Report(0.5);
+  progress.Part(0.5, 1.0).Part(0.5, 1.0).Report(0.5);
   EXPECT_EQ(last, 0.875);
 }
 
-TEST(Monitor, ThrowsWhenTheCallbackSaysStop)
+TEST(ProgressMonitor, ThrowsWhenTheCallbackSaysStop)
 {
-  const Monitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(Monitor(stop).Part(0.0, 0.5).Report(0.1), Aborted);
+  const ProgressMonitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(ProgressMonitor(stop).Part(0.0, 0.5).Report(0.1), Aborted);
 }
 
-TEST(Monitor, WorkInTheBackgroundReportsUpwards)
+TEST(ProgressMonitor, WorkInTheBackgroundReportsUpwards)
 {
   std::vector<double> reports;
-  const Monitor::Callback watch = [&](double fraction)
+  const ProgressMonitor::Callback watch = [&](double fraction)
   {
     reports.push_back(fraction);
     return true;
@@ -57,7 +57,7 @@ TEST(Monitor, WorkInTheBackgroundReportsUpwards)
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
       done = true;
     },
-    Monitor(watch));
+    ProgressMonitor(watch));
   EXPECT_TRUE(done);
   ASSERT_GE(reports.size(), 3u);
   EXPECT_EQ(reports.back(), 1.0);
@@ -67,9 +67,9 @@ TEST(Monitor, WorkInTheBackgroundReportsUpwards)
   }
 }
 
-TEST(Monitor, WorkInTheBackgroundIsLeftAloneByAnAbort)
+TEST(ProgressMonitor, WorkInTheBackgroundIsLeftAloneByAnAbort)
 {
-  const Monitor::Callback stop = [](double) { return false; };
+  const ProgressMonitor::Callback stop = [](double) { return false; };
   const auto done = std::make_shared<std::atomic<bool>>(false);
   const auto go = std::make_shared<std::atomic<bool>>(false);
   EXPECT_THROW(RunInBackground(
@@ -81,7 +81,7 @@ TEST(Monitor, WorkInTheBackgroundIsLeftAloneByAnAbort)
                    }
                    *done = true;
                  },
-                 Monitor(stop)),
+                 ProgressMonitor(stop)),
     Aborted); // returns although the task cannot end yet
   EXPECT_FALSE(*done);
   *go = true;
@@ -91,8 +91,8 @@ TEST(Monitor, WorkInTheBackgroundIsLeftAloneByAnAbort)
   }
 }
 
-TEST(Monitor, AnExceptionInTheBackgroundIsPassedOn)
+TEST(ProgressMonitor, AnExceptionInTheBackgroundIsPassedOn)
 {
   EXPECT_THROW(
-    RunInBackground([] { throw std::runtime_error("no"); }, Monitor()), std::runtime_error);
+    RunInBackground([] { throw std::runtime_error("no"); }, ProgressMonitor()), std::runtime_error);
 }

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Aggregation.h"
 #include "Allocations.h"
-#include "Coefficients.h"
-#include "LinearSolver.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/Aggregation.h"
+#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/Multigrid.h"
 #include "MeshFiles.h"
 #include "Meshes.h"
-#include "Multigrid.h"
 #include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace
 {
 
 /// M + c h^2 K
-SparseMatrix HeatMatrix(const Assembler& assembler, double c, const EdgeValues& coefficients)
+SparseMatrix HeatMatrix(const Assembler& assembler, double c, const CornerWeights& coefficients)
 {
   const TriangleMesh& mesh = assembler.Mesh();
   const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges();
@@ -31,7 +31,7 @@ SparseMatrix HeatMatrix(const Assembler& assembler, double c, const EdgeValues& 
 
 SparseMatrix HeatMatrix(const Assembler& assembler, double c)
 {
-  return HeatMatrix(assembler, c, IsotropicCoefficients(assembler.Mesh()));
+  return HeatMatrix(assembler, c, CotanWeights(assembler.Mesh()));
 }
 
 int IterationsOf(const SparseMatrix& matrix, const Values& exact)
@@ -67,15 +67,15 @@ TEST(Multigrid, FollowsStrongCoefficients)
   // 100:1 along one direction of a strip, where isotropic coarsening would stall.
   const auto assembler = MakeAssembler(Strip(100, 100));
   const TriangleMesh& mesh = assembler->Mesh();
-  PlaneVectors frames(mesh.NumberOfTriangles(), 2);
+  TangentVectors frames(mesh.NumberOfTriangles(), 2);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     frames.row(t) << 1.0, 0.0; // some edge of each
   }
   const Vector along = Vector::Constant(mesh.NumberOfTriangles(), 100.0);
   const Vector across = Vector::Ones(mesh.NumberOfTriangles());
-  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0,
-    AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), frames, along, across));
+  const SparseMatrix matrix = HeatMatrix(
+    *assembler, 100.0, AnisotropicWeights(mesh, CotanWeights(mesh), frames, along, across));
   EXPECT_LE(IterationsOf(matrix, Noise(mesh)), 60);
 }
 

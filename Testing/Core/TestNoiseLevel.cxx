@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/NoiseLevel.h"
 #include "Heat.h"
 #include "Meshes.h"
-#include "NoiseLevel.h"
 
 #include <gtest/gtest.h>
 

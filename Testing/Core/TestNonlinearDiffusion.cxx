@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Coefficients.h"
-#include "Conservation.h"
-#include "Frames.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/MeanCorrection.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
 #include "ThreadedFor.h"
 #include "TotalVariation.h"
@@ -33,7 +33,7 @@ PointData ColourNoise(const TriangleMesh& mesh, Eigen::Index columns)
 }
 
 /// Frames from a fixed vector.
-PlaneVectors SkewFrames(const TriangleMesh& mesh, const Surface& s)
+TangentVectors SkewFrames(const TriangleMesh& mesh, const Surface& s)
 {
   const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
   return FramesFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
@@ -101,7 +101,7 @@ TEST(NonlinearDiffusion, StepSolvesEquation11WithFidelityAndMask)
       settings.Along = settings.Across = { kind, 1e-4, 2.0 };
       settings.Coupling = coupling;
       const auto model = MakeLagged(assembler, data, settings);
-      model->Advance(Monitor());
+      model->Advance(ProgressMonitor());
 
       const Eigen::Index columns = coupling == ChannelCoupling::Joint ? 3 : 1;
       for (Eigen::Index first = 0; first < 3; first += columns)
@@ -141,7 +141,7 @@ TEST(NonlinearDiffusion, StepSolvesEquation14WithFunctionsOfTheirOwn)
   settings.AcrossDiffusivity = 0.1;
   const PointData data = ColourNoise(mesh, 2);
   NonlinearDiffusion model(assembler, SkewFrames(mesh, s), data, settings, MakeCholeskySolver());
-  model.Advance(Monitor());
+  model.Advance(ProgressMonitor());
 
   Eigen::MatrixXd a = 0.2 *
     DenseStiffness(mesh, s, data.Start,
@@ -167,12 +167,12 @@ TEST(NonlinearDiffusion, WithoutDirectionTheGeometricMeanActs)
   settings.TimeStep = 0.2;
   settings.AlongDiffusivity = 9.0;
   const PointData data = ColourNoise(assembler->Mesh(), 1);
-  NonlinearDiffusion undirected(
-    assembler, PlaneVectors::Zero(s.NumberOfTriangles(), 2), data, settings, MakeCholeskySolver());
-  undirected.Advance(Monitor());
+  NonlinearDiffusion undirected(assembler, TangentVectors::Zero(s.NumberOfTriangles(), 2), data,
+    settings, MakeCholeskySolver());
+  undirected.Advance(ProgressMonitor());
   settings.AlongDiffusivity = 3.0;
   const auto mean = MakeLagged(assembler, data, settings);
-  mean->Advance(Monitor());
+  mean->Advance(ProgressMonitor());
   EXPECT_LT((undirected.State() - mean->State()).cwiseAbs().maxCoeff(), 1e-13);
 }
 
@@ -311,7 +311,7 @@ TEST(NonlinearDiffusion, EnergyFalls)
       double energy = model->Energy();
       for (int step = 0; step < 10; ++step)
       {
-        model->Advance(Monitor());
+        model->Advance(ProgressMonitor());
         EXPECT_LT(model->Energy(), energy) << static_cast<int>(kind);
         energy = model->Energy();
       }

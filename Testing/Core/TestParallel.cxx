@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel.h"
-#include "Random.h"
+#include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/Random.h"
 #include "ThreadedFor.h"
 
 #include <gtest/gtest.h>

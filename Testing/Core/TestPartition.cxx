@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Conservation.h"
-#include "InitialState.h"
+#include "Core/Foundation/Partition.h"
+#include "Core/Models/InitialState.h"
+#include "Core/Models/TextureColors.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "Meshes.h"
-#include "Partition.h"
-#include "TextureColors.h"
 
 #include <gtest/gtest.h>
 
@@ -98,7 +98,7 @@ TEST(Partition, ComponentsThatMeetElsewhereConserveTheirSumTogether)
   {
     const auto mesh = ThreeSpheres(inPieces);
     const PointData data = PointData::FromValues(Noise(*mesh, 1));
-    Conservation conserved(*mesh, data, false);
+    TotalCorrection conserved(*mesh, data, false);
     Values u = data.Start;
     const Index second = mesh->ComponentsBegin()[1];
     u.topRows(second).array() += 1.0; // a third of the surface, half of the first two components

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Frames.h"
+#include "Core/Geometry/PrincipalDirections.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
-#include "PrincipalDirections.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Coefficients.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/QuadraticDescent.h"
 #include "Meshes.h"
-#include "QuadraticDescent.h"
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,7 @@ struct System
     : B(Noise(Mesh, columns))
     , X(Values::Zero(Mesh.NumberOfVertices(), columns))
   {
-    this->Operators->Fill(
-      this->Matrix, this->Mesh.ControlAreas(), 0.05, IsotropicCoefficients(this->Mesh));
+    this->Operators->Fill(this->Matrix, this->Mesh.ControlAreas(), 0.05, CotanWeights(this->Mesh));
     this->Descent.SetMatrix(this->Matrix);
     this->Descent.Residual = this->B;
   }

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Coefficients.h"
-#include "DispersionRelation.h"
-#include "Frames.h"
+#include "Core/Models/DispersionRelation.h"
+#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
-#include "ReactionDiffusion.h"
 #include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ std::unique_ptr<ReactionDiffusion> MakeModel(std::shared_ptr<const Assembler> as
   const Reaction& reaction = Reaction(), const ParallelFor& parallel = SerialFor(),
   bool direct = true)
 {
-  const EdgeValues c = IsotropicCoefficients(assembler->Mesh());
+  const CornerWeights c = CotanWeights(assembler->Mesh());
   const auto solver = [&]() -> std::shared_ptr<LinearSolver>
   { return direct ? MakeCholeskySolver(parallel) : MakeConjugateGradientSolver(parallel); };
   return std::make_unique<ReactionDiffusion>(std::move(assembler), reaction,
@@ -48,11 +48,11 @@ std::unique_ptr<ReactionDiffusion> MakeModel(std::shared_ptr<const Assembler> as
     std::move(data), settings, parallel);
 }
 
-void Advance(Evolution& evolution, int steps)
+void Advance(Model& evolution, int steps)
 {
   for (int step = 0; step < steps; ++step)
   {
-    evolution.Advance(Monitor());
+    evolution.Advance(ProgressMonitor());
   }
 }
 
@@ -230,7 +230,7 @@ TEST(ReactionDiffusion, OrderInTimeHoldsWhereConcentrationsAreHeldAtZero)
     const int steps = static_cast<int>(std::lround(time / dt));
     for (int step = 0; step < steps; ++step)
     {
-      held = model->Advance(Monitor()).Clamped;
+      held = model->Advance(ProgressMonitor()).Clamped;
     }
     return Values(model->State());
   };
@@ -278,7 +278,7 @@ TEST(ReactionDiffusion, TuringRunsAwayBelowZeroUnlessHeld)
     Index clamped = 0;
     for (int step = 0; step < 160 && raw->State().minCoeff() >= 0.0; ++step)
     {
-      clamped += raw->Advance(Monitor()).Clamped;
+      clamped += raw->Advance(ProgressMonitor()).Clamped;
     }
     EXPECT_LT(raw->State().minCoeff(), 0.0);
     EXPECT_EQ(clamped, 0);
@@ -335,14 +335,14 @@ double ShareAcross(bool axial, const std::array<double, 2>& anisotropy)
     vectors.row(i) =
       axial ? Eigen::RowVector3d(0.0, 0.0, 1.0) : Eigen::RowVector3d(-p[1], p[0], 0.0);
   }
-  const PlaneVectors frames = FramesFromPointVectors(mesh, s.Vertices, s.Faces, vectors);
+  const TangentVectors frames = FramesFromPointVectors(mesh, s.Vertices, s.Faces, vectors);
   const double square = MeanEdge(mesh) * MeanEdge(mesh);
   const double rates[2] = { 21.0 * square, 2.6 * square };
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
   for (int c = 0; c < 2; ++c)
   {
-    chemicals[c].Coefficients = AnisotropicCoefficients(
-      mesh, IsotropicCoefficients(mesh), frames, anisotropy[c] * rates[c], rates[c]);
+    chemicals[c].Coefficients =
+      AnisotropicWeights(mesh, CotanWeights(mesh), frames, anisotropy[c] * rates[c], rates[c]);
     chemicals[c].Solver = MakeCholeskySolver();
   }
   ReactionDiffusion model(assembler, Reaction(), chemicals,
@@ -393,20 +393,20 @@ TEST(ReactionDiffusion, RatesPerTriangleGiveSpotsOfTwoSizes)
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
   const double square = MeanEdge(mesh) * MeanEdge(mesh);
-  const EdgeValues isotropic = IsotropicCoefficients(mesh);
+  const CornerWeights isotropic = CotanWeights(mesh);
   Vector factor(mesh.NumberOfTriangles());
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const Index vertex = mesh.InputVertex()[mesh.TriangleVertices()(t, 0)];
     factor[t] = s.Vertices(vertex, 0) > length ? 4.0 : 1.0;
   }
-  const PlaneVectors none = PlaneVectors::Zero(mesh.NumberOfTriangles(), 2);
+  const TangentVectors none = TangentVectors::Zero(mesh.NumberOfTriangles(), 2);
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
   const double rates[2] = { 21.0 * square, 2.6 * square };
   for (int c = 0; c < 2; ++c)
   {
     const Vector g = rates[c] * factor;
-    chemicals[c].Coefficients = AnisotropicCoefficients(mesh, isotropic, none, g, g);
+    chemicals[c].Coefficients = AnisotropicWeights(mesh, isotropic, none, g, g);
     chemicals[c].Solver = MakeCholeskySolver();
   }
   ReactionDiffusion model(assembler, Reaction(), chemicals,
@@ -601,7 +601,7 @@ TEST(ReactionDiffusion, StopsWhenThePatternStands)
   int steps = 0;
   while (!model->Finished() && steps < 2000)
   {
-    model->Advance(Monitor());
+    model->Advance(ProgressMonitor());
     ++steps;
   }
   std::printf("stands after %d steps\n", steps);

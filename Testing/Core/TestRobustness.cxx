@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Conservation.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"
 
@@ -285,7 +285,7 @@ TEST(Robustness, ModelsReportASolverThatDoesNotConverge)
   solver->SetLimits({ 1e-10, 3 });
   const auto heat = MakeHeat(assembler, PointData::FromValues(Noise(assembler->Mesh())),
     HeatSettings(assembler->Mesh(), 1.0), solver);
-  EXPECT_THROW(heat->Advance(Monitor()), NotConverged);
+  EXPECT_THROW(heat->Advance(ProgressMonitor()), NotConverged);
 }
 
 TEST(Robustness, DirectionsWithoutDiffusionAcrossStayFinite)
@@ -293,9 +293,9 @@ TEST(Robustness, DirectionsWithoutDiffusionAcrossStayFinite)
   const Surface s = Cylinder(24, 12);
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
-  PlaneVectors e1 = PlaneVectors::Zero(mesh.NumberOfTriangles(), 2);
+  TangentVectors e1 = TangentVectors::Zero(mesh.NumberOfTriangles(), 2);
   e1.col(0).setOnes();
-  const EdgeValues c = AnisotropicCoefficients(mesh, IsotropicCoefficients(mesh), e1, 1.0, 0.0);
+  const CornerWeights c = AnisotropicWeights(mesh, CotanWeights(mesh), e1, 1.0, 0.0);
   const Values start = Noise(mesh);
   LinearDiffusion heat(assembler, c, PointData::FromValues(start),
     HeatSettings(mesh, 0.1, 0.0, Scheme::BackwardEuler), MakeCholeskySolver());

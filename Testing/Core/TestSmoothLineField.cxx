@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Frames.h"
+#include "Core/Geometry/SmoothLineField.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
-#include "SmoothLineField.h"
 
 #include <gtest/gtest.h>
 
@@ -29,10 +29,10 @@ Field Smoothest(const Surface& s, const Eigen::RowVector3d& axis = Eigen::RowVec
   field.Mesh = MakeMesh(s);
   const LineFieldOperator lines(field.Mesh);
   const Points along = axis.replicate(s.NumberOfTriangles(), 1);
-  const PlaneVectors start = FramesFromTriangleVectors(*field.Mesh, s.Vertices, s.Faces, along);
+  const TangentVectors start = FramesFromTriangleVectors(*field.Mesh, s.Vertices, s.Faces, along);
   const auto solver = MakeCholeskySolver();
-  const PlaneVectors frames = SmoothestLineField(lines, start,
-    Vector::Ones(field.Mesh->NumberOfTriangles()), *solver, Monitor(), &field.Eigenvalue);
+  const TangentVectors frames = SmoothestLineField(lines, start,
+    Vector::Ones(field.Mesh->NumberOfTriangles()), *solver, ProgressMonitor(), &field.Eigenvalue);
   field.Eigenvalue /= field.Mesh->LengthUnit() * field.Mesh->LengthUnit();
   field.Vectors = VectorsFromFrames(*field.Mesh, s.Vertices, s.Faces, frames);
   return field;
@@ -142,7 +142,7 @@ TEST(SmoothLineField, HintsAreJoinedByAHarmonicField)
   }
   const LineFieldOperator lines(mesh);
   const auto solver = MakeCholeskySolver();
-  const PlaneVectors frames =
+  const TangentVectors frames =
     LineFieldFromHints(lines, FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, hints),
       Vector::Constant(mesh->NumberOfTriangles(), 1e8), *solver);
   const Points vectors = VectorsFromFrames(*mesh, s.Vertices, s.Faces, frames);
@@ -163,7 +163,7 @@ TEST(SmoothLineField, ComponentsWithoutHintsGetNone)
   hints.row(0) << 1.0, 2.0, 0.0;
   const LineFieldOperator lines(mesh);
   const auto solver = MakeCholeskySolver();
-  const PlaneVectors frames =
+  const TangentVectors frames =
     LineFieldFromHints(lines, FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, hints),
       Vector::Ones(mesh->NumberOfTriangles()), *solver);
   const Points vectors = VectorsFromFrames(*mesh, s.Vertices, s.Faces, frames);

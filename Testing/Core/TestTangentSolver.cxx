@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TangentSolver.h"
+#include "Core/Solvers/TangentSolver.h"
 
 #include <gtest/gtest.h>
 

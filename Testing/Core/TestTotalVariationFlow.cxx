@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Conservation.h"
-#include "Frames.h"
+#include "Core/Operators/MeanCorrection.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
 #include "ThreadedFor.h"
 #include "TotalVariation.h"
@@ -54,7 +54,7 @@ TEST(TotalVariationFlow, SteadyCapLosesHeightByTheFidelity)
 {
   const CapProblem cap;
   const auto flow = MakeExact(cap.Operators, cap.Data, ExactSettings(cap.Mesh, 0.0, 5.0));
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   EXPECT_LT(PlateauError(cap.Measure(flow->State()), ExactPlateaus(CapAngle, 0.2)), 0.05);
   EXPECT_NEAR(Total(cap.Mesh, flow->State(), 0), Total(cap.Mesh, cap.Data.Start, 0), 1e-12);
 }
@@ -64,7 +64,7 @@ TEST(TotalVariationFlow, CapMeetsItsSurroundingsAtTheMean)
   // T = a/2 sin(theta0) = 0.433.
   const CapProblem cap;
   const auto flow = MakeExact(cap.Operators, cap.Data, ExactSettings(cap.Mesh, 0.5));
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   const double mean = Total(cap.Mesh, cap.Data.Start, 0) / cap.Mesh.ControlAreas().sum();
   EXPECT_LT((flow->State().array() - mean).abs().maxCoeff(), 5e-3);
 }
@@ -78,7 +78,7 @@ TEST(TotalVariationFlow, WithL1TheCapVanishesBelowItsPerimeterOverItsAreaAndOnly
     auto settings = ExactSettings(cap.Mesh, 0.0, factor * critical);
     settings.Norm = FidelityNorm::L1;
     const auto flow = MakeExact(cap.Operators, cap.Data, settings);
-    flow->Advance(Monitor());
+    flow->Advance(ProgressMonitor());
     const Plateaus plateaus = cap.Measure(flow->State());
     EXPECT_NEAR(plateaus.Inside, factor > 1.0 ? 1.0 : 0.0, 0.01) << factor;
     EXPECT_NEAR(plateaus.Outside, 0.0, 0.01) << factor;
@@ -95,7 +95,7 @@ TEST(TotalVariationFlow, TimeStepsWithL1EndAtItsSteadyState)
   auto settings = ExactSettings(cap.Mesh, 0.0, 20.0, 1e-5);
   settings.Norm = FidelityNorm::L1;
   const auto steady = MakeExact(cap.Operators, cap.Data, settings);
-  steady->Advance(Monitor());
+  steady->Advance(ProgressMonitor());
   settings.SteadyState = false;
   settings.TimeStep = 0.2;
   const auto flow = MakeExact(cap.Operators, cap.Data, settings);
@@ -116,7 +116,7 @@ TEST(TotalVariationFlow, GapOfADiskInADiskClosesAtTheExactRate)
   const double time = 0.05;
   const auto flow =
     MakeExact(assembler, PointData::FromValues(u), ExactSettings(mesh, time, 0.0, 1e-5));
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   double inside = 0.0, outside = 0.0;
   int insideCount = 0, outsideCount = 0;
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
@@ -149,7 +149,7 @@ TEST(TotalVariationFlow, CharbonnierMinimiserStaysUnderTheLaggedScheme)
   settings.Function = function;
   settings.AlongDiffusivity = settings.AcrossDiffusivity = 3.0;
   const auto steady = MakeExact(assembler, data, settings);
-  steady->Advance(Monitor());
+  steady->Advance(ProgressMonitor());
 
   NonlinearDiffusion::Settings lagged;
   lagged.TimeStep = 100.0;
@@ -160,7 +160,7 @@ TEST(TotalVariationFlow, CharbonnierMinimiserStaysUnderTheLaggedScheme)
   start.Start = steady->State();
   const auto model = MakeLagged(assembler, start, lagged);
   EXPECT_NEAR(model->Energy(), steady->Energy(), 1e-9 * steady->Energy());
-  model->Advance(Monitor());
+  model->Advance(ProgressMonitor());
   EXPECT_LT((model->State() - steady->State()).cwiseAbs().maxCoeff(), 1e-3);
 }
 
@@ -184,8 +184,8 @@ TEST(TotalVariationFlow, ConstantFunctionIsLinearDiffusion)
       assembler, data, { 0.01, 5.0, steady ? Scheme::SteadyState : Scheme::BackwardEuler });
     for (int step = 0; step < 2; ++step)
     {
-      EXPECT_LE(flow->Advance(Monitor()).Residual, 1e-10);
-      heat->Advance(Monitor());
+      EXPECT_LE(flow->Advance(ProgressMonitor()).Residual, 1e-10);
+      heat->Advance(ProgressMonitor());
     }
     EXPECT_LT((flow->State() - heat->State()).cwiseAbs().maxCoeff(), 1e-3) << steady;
     EXPECT_NEAR(flow->Energy(), heat->Energy(), 1e-5 * heat->Energy());
@@ -215,7 +215,7 @@ TEST(TotalVariationFlow, StripesFallAtTheDiffusivityAcrossThem)
   const TriangleMesh& mesh = assembler->Mesh();
   const Values u =
     Sample(mesh, s, [](const Eigen::RowVector3d& x) { return x[0] < 2.05 ? 1.0 : 0.0; });
-  PlaneVectors frames(mesh.NumberOfTriangles(), 2);
+  TangentVectors frames(mesh.NumberOfTriangles(), 2);
   const Points x = Eigen::RowVector3d(1.0, 0.0, 0.0).replicate(s.NumberOfTriangles(), 1);
   frames = FramesFromTriangleVectors(mesh, s.Vertices, s.Faces, x);
   for (const double along : { 1.0, 3.0 })
@@ -224,7 +224,7 @@ TEST(TotalVariationFlow, StripesFallAtTheDiffusivityAcrossThem)
     settings.AlongDiffusivity = along;
     settings.AcrossDiffusivity = 0.2;
     TotalVariationFlow flow(assembler, frames, PointData::FromValues(u), settings);
-    flow.Advance(Monitor());
+    flow.Advance(ProgressMonitor());
     // The left part, 2 long, loses `along` per time and length of its edge.
     double left = 0.0;
     int count = 0;
@@ -254,7 +254,7 @@ TEST(TotalVariationFlow, MissingDataAreNotReadAndFilled)
     }
   }
   const auto flow = MakeExact(cap.Operators, cap.Data, ExactSettings(cap.Mesh, 0.0, 100.0));
-  flow->Advance(Monitor());
+  flow->Advance(ProgressMonitor());
   EXPECT_LT(PlateauError(cap.Measure(flow->State()), ExactPlateaus(CapAngle, 0.01)), 0.2);
   EXPECT_GT(flow->State().minCoeff(), -0.01);
   EXPECT_LT(flow->State().maxCoeff(), 1.01);
@@ -271,7 +271,7 @@ TEST(TotalVariationFlow, FixedVerticesKeepTheirValues)
   for (const double timeStep : { 0.0, 0.1 })
   {
     const auto flow = MakeExact(cap.Operators, cap.Data, ExactSettings(cap.Mesh, timeStep, 1.0));
-    flow->Advance(Monitor());
+    flow->Advance(ProgressMonitor());
     for (Index i = 0; i < cap.Mesh.NumberOfVertices(); i += 3)
     {
       EXPECT_EQ(flow->State()(i, 0), cap.Data.Start(i, 0));
@@ -286,7 +286,7 @@ TEST(TotalVariationFlow, SteadyStateOfWhatNothingHoldsIsTheMean)
   const TriangleMesh& mesh = assembler->Mesh();
   const PointData data = PointData::FromValues(Noise(mesh, 2));
   const auto flow = MakeExact(assembler, data, ExactSettings(mesh, 0.0));
-  const auto report = flow->Advance(Monitor());
+  const auto report = flow->Advance(ProgressMonitor());
   EXPECT_LE(report.Residual, 1e-4);
   for (Index c = 0; c < 2; ++c)
   {
@@ -312,7 +312,7 @@ TEST(TotalVariationFlow, ConstantsStayAndNeedNoIteration)
       auto settings = ExactSettings(mesh, timeStep, 1.0);
       settings.Norm = norm;
       const auto flow = MakeExact(assembler, PointData::FromValues(constant), settings);
-      EXPECT_EQ(flow->Advance(Monitor()).Iterations, 0);
+      EXPECT_EQ(flow->Advance(ProgressMonitor()).Iterations, 0);
       EXPECT_LT((flow->State() - constant).cwiseAbs().maxCoeff(), 1e-15);
     }
   }
@@ -332,7 +332,7 @@ TEST(TotalVariationFlow, NeverBlowsUp)
         auto settings = ExactSettings(mesh, step, fidelity, 1e-3);
         settings.Norm = norm;
         const auto flow = MakeExact(assembler, data, settings);
-        const StepReport report = flow->Advance(Monitor());
+        const StepReport report = flow->Advance(ProgressMonitor());
         EXPECT_LE(report.Residual, 1e-3) << step << ' ' << fidelity;
         EXPECT_LT(report.Iterations, 2000) << step << ' ' << fidelity;
         EXPECT_LE(flow->State().cwiseAbs().maxCoeff(), 1.01) << step << ' ' << fidelity;
@@ -369,7 +369,7 @@ TEST(TotalVariationFlow, ThreadsDoNotChangeABit)
       auto settings = ExactSettings(mesh, 0.0, 100.0, 1e-2);
       settings.Norm = norm;
       const auto flow = MakeExact(assembler, data, settings, loop);
-      flow->Advance(Monitor());
+      flow->Advance(ProgressMonitor());
       Values u = flow->State();
       u(0, 0) += flow->Energy();
       return u;
@@ -403,13 +403,13 @@ TEST(TotalVariationFlow, StepsAfterTheFirstNeedNoMemory)
         lagged.Norm = norm;
         const auto solver = std::shared_ptr<LinearSolver>(MakeConjugateGradientSolver());
         solver->SetLimits({ 1e-2, 1000 });
-        const std::unique_ptr<Evolution> models[] = { MakeExact(assembler, data, exact),
+        const std::unique_ptr<Model> models[] = { MakeExact(assembler, data, exact),
           MakeOnEdges(assembler, data, exact), MakeLagged(assembler, data, lagged, solver) };
         for (const auto& model : models)
         {
-          model->Advance(Monitor());
+          model->Advance(ProgressMonitor());
           const long before = NumberOfAllocations();
-          model->Advance(Monitor());
+          model->Advance(ProgressMonitor());
           EXPECT_GT(model->Energy(), 0.0);
           EXPECT_EQ(NumberOfAllocations(), before) << columns << " columns";
         }

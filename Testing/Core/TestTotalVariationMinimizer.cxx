@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Coefficients.h"
-#include "Frames.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Surface/TangentVectors.h"
 #include "TotalVariation.h"
 
 #include <gtest/gtest.h>
@@ -129,11 +129,10 @@ TEST(TotalVariationMinimizer, StretchedGradientsGiveTheAnisotropicCoefficients)
   const Surface s = Icosphere(2);
   const auto mesh = MakeMesh(s);
   const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
-  PlaneVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, directions);
+  TangentVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, directions);
   frames.topRows(10).setZero();
   const auto maps = StretchedGradients(*mesh, frames, std::sqrt(2.0), std::sqrt(0.3), SerialFor());
-  const EdgeValues c =
-    AnisotropicCoefficients(*mesh, IsotropicCoefficients(*mesh), frames, 2.0, 0.3);
+  const CornerWeights c = AnisotropicWeights(*mesh, CotanWeights(*mesh), frames, 2.0, 0.3);
   for (Index t = 0; t < mesh->NumberOfTriangles(); ++t)
   {
     EXPECT_NEAR(c(t, 0), -mesh->Shapes()[t].Area() * maps[t].First.dot(maps[t].Second), 1e-13);
@@ -167,14 +166,14 @@ TEST(TotalVariationMinimizer, AbortsWithinAnIteration)
     Vector::Constant(n, 10.0), Vector::Zero(n), problem.Fixed, problem.Settings);
   int calls = 0;
   double last = 0.0;
-  const Monitor::Callback stop = [&](double progress)
+  const ProgressMonitor::Callback stop = [&](double progress)
   {
     EXPECT_GE(progress, last);
     last = progress;
     return ++calls < 7;
   };
   Values u = problem.Data;
-  EXPECT_THROW(minimizer.Minimize(problem.Data, problem.Data, u, Monitor(stop)), Aborted);
+  EXPECT_THROW(minimizer.Minimize(problem.Data, problem.Data, u, ProgressMonitor(stop)), Aborted);
   EXPECT_EQ(calls, 7);
 }
 

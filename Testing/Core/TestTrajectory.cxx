@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Conservation.h"
+#include "Core/Models/Trajectory.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"
-#include "Trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -26,14 +26,14 @@ std::unique_ptr<Trajectory> MakeTrajectory(std::shared_ptr<const Assembler> asse
 }
 
 /// Counts its steps, and costs nothing.
-class Counter : public Evolution
+class Counter : public Model
 {
 public:
   const Values& State() const override { return this->U; }
-  StepReport Advance(const Monitor& monitor) override
+  StepReport Advance(const ProgressMonitor& progress) override
   {
-    this->U(0, 0) = -1.0; // half a step on, when the monitor throws
-    monitor.Report(0.5);
+    this->U(0, 0) = -1.0; // half a step on, when the progress throws
+    progress.Report(0.5);
     this->U(0, 0) = ++this->Step;
     return StepReport();
   }
@@ -154,8 +154,8 @@ TEST(Trajectory, AnAbortLeavesItUsable)
   const auto assembler = MakeAssembler(Icosphere(2));
   const auto trajectory = MakeTrajectory(assembler, Plenty);
   int calls = 0;
-  const Monitor::Callback stopLater = [&](double) { return ++calls < 30; };
-  EXPECT_THROW(trajectory->Seek(100, Monitor(stopLater)), Aborted);
+  const ProgressMonitor::Callback stopLater = [&](double) { return ++calls < 30; };
+  EXPECT_THROW(trajectory->Seek(100, ProgressMonitor(stopLater)), Aborted);
   EXPECT_LT(trajectory->Step(), 100);
   const auto undisturbed = MakeTrajectory(assembler, Plenty);
   for (const Index step : { trajectory->Step(), 2, 20 })
@@ -170,8 +170,8 @@ TEST(Trajectory, AnAbortInsideAStepGoesBackToAKnownState)
 {
   Trajectory trajectory(NoMesh(), std::make_unique<Counter>(), Plenty);
   trajectory.Seek(3);
-  const Monitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(trajectory.Seek(9, Monitor(stop)), Aborted);
+  const ProgressMonitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(trajectory.Seek(9, ProgressMonitor(stop)), Aborted);
   EXPECT_EQ(trajectory.Step(), 3);
   EXPECT_EQ(trajectory.State()(0, 0), 3.0);
 }
@@ -180,8 +180,8 @@ TEST(Trajectory, AnAbortBetweenCheckpointsGoesBackToOne)
 {
   Trajectory trajectory(NoMesh(), std::make_unique<Counter>(), 4 * sizeof(double));
   trajectory.Seek(11); // kept: 0, 4, 8
-  const Monitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(trajectory.Seek(15, Monitor(stop)), Aborted);
+  const ProgressMonitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(trajectory.Seek(15, ProgressMonitor(stop)), Aborted);
   EXPECT_EQ(trajectory.State()(0, 0), trajectory.Step());
   trajectory.Seek(15);
   EXPECT_EQ(trajectory.State()(0, 0), 15.0);
@@ -205,12 +205,12 @@ TEST(Trajectory, ProgressRisesEvenlyOverTheSteps)
 {
   Trajectory trajectory(NoMesh(), std::make_unique<Counter>(), Plenty);
   std::vector<double> reports{ 0.0 };
-  const Monitor::Callback watch = [&](double fraction)
+  const ProgressMonitor::Callback watch = [&](double fraction)
   {
     reports.push_back(fraction);
     return true;
   };
-  trajectory.Seek(20, Monitor(watch));
+  trajectory.Seek(20, ProgressMonitor(watch));
   EXPECT_GE(reports.size(), 10u);
   EXPECT_NEAR(reports.back(), 1.0, 1e-15);
   for (std::size_t i = 1; i < reports.size(); ++i)

@@ -277,6 +277,6 @@ TEST(TriangleMesh, GatherVerticesPicksTheInputRows)
 TEST(TriangleMesh, StopsWhenAsked)
 {
   const Surface s = Icosphere(2);
-  const Monitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(TriangleMesh(s.Vertices, s.Faces, ParallelFor(), Monitor(stop)), Aborted);
+  const ProgressMonitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(TriangleMesh(s.Vertices, s.Faces, ParallelFor(), ProgressMonitor(stop)), Aborted);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/UnitVectors.h"
 #include "HarmonicMaps.h"
-#include "UnitVectors.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST(UnitVectors, VectorsOfAnySizeAreNormalised)
   Values f(4, 3);
   f << 3e-200, 4e-200, 0.0, 3e200, 0.0, 4e200, 0.0, -2.0, 0.0, 5e-324, 0.0, 0.0;
   auto data = PointData::FromValues(f);
-  PrepareUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
+  FillMissingUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
   EXPECT_FALSE(data.Missing.any());
   Values expected(4, 3);
   expected << 0.6, 0.8, 0.0, 0.6, 0.0, 0.8, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0;
@@ -47,7 +47,7 @@ TEST(UnitVectors, ZeroAndNaNAreMissingAndTakeTheMeanDirection)
   f.row(3).setZero();
   f.row(7) << 1.0, NaN, 0.0;
   auto data = PointData::FromValues(f);
-  PrepareUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
+  FillMissingUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
   EXPECT_EQ(data.Missing.count(), 2);
   EXPECT_TRUE(data.Missing[3] && data.Missing[7]);
   EXPECT_TRUE(data.Given.allFinite());
@@ -72,7 +72,7 @@ TEST(UnitVectors, WhereNoDirectionPrevailsTheRimSpreadsInwards)
     }
   }
   auto data = PointData::FromValues(f);
-  PrepareUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
+  FillMissingUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
   EXPECT_GT(data.Missing.count(), 20);
   for (Index i = 0; i < mesh->NumberOfVertices(); ++i)
   {
@@ -91,7 +91,7 @@ TEST(UnitVectors, OppositeLinesDoNotCancel)
   }
   f.row(5).setZero();
   auto data = PointData::FromValues(f);
-  PrepareUnitVectors(*mesh, data, true, InitialFill::Mean, 0, Ids(*mesh));
+  FillMissingUnitVectors(*mesh, data, true, InitialFill::Mean, 0, Ids(*mesh));
   EXPECT_NEAR(std::abs(data.Start.row(5).dot(Eigen::RowVector2d(0.6, 0.8))), 1.0, 1e-12);
 }
 
@@ -103,7 +103,7 @@ TEST(UnitVectors, ComponentsWithoutKnownVectorsStillGetAUnitVector)
   Values f = Values::Zero(mesh->NumberOfVertices(), 4);
   f.topRows(mesh->ComponentsBegin()[1]).col(2).setConstant(1.0);
   auto data = PointData::FromValues(f);
-  PrepareUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
+  FillMissingUnitVectors(*mesh, data, false, InitialFill::Mean, 0, Ids(*mesh));
   EXPECT_LT(LargestLengthError(data.Start), 1e-15);
   EXPECT_TRUE(data.Given.allFinite());
 }
@@ -119,9 +119,9 @@ TEST(UnitVectors, NoiseAndInputFillAsTheySay)
   }
   data.Given.row(0).setConstant(NaN);
   auto noise = data;
-  PrepareUnitVectors(*mesh, noise, false, InitialFill::Noise, 1, Ids(*mesh));
+  FillMissingUnitVectors(*mesh, noise, false, InitialFill::Noise, 1, Ids(*mesh));
   auto input = data;
-  PrepareUnitVectors(*mesh, input, false, InitialFill::Input, 1, Ids(*mesh));
+  FillMissingUnitVectors(*mesh, input, false, InitialFill::Input, 1, Ids(*mesh));
   Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
   for (Index i = 0; i < mesh->NumberOfVertices(); i += 2)
   {

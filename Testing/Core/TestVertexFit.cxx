@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/VertexUpdating.h"
 #include "HarmonicMaps.h"
-#include "VertexFit.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(VertexFit, ShakenPlaneBecomesFlatWhereItsNormalsSaySo)
   normals.rowwise() = FaceNormal(flat, 0);
   VertexMotion motion;
   Surface fitted = s;
-  fitted.Vertices = FitVerticesToNormals(mesh, s.Vertices, normals, 10.0, motion);
+  fitted.Vertices = UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion);
   EXPECT_GT(MeanAngle(s, flat), 5.0);
   EXPECT_LT(MeanAngle(fitted, flat), 1e-2);
   // Nothing moves along the plane, and the mean plane stays.
@@ -74,7 +74,7 @@ TEST(VertexFit, TellsThatItDidNotConverge)
   normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
   VertexMotion motion;
   EXPECT_THROW(
-    FitVerticesToNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }), NotConverged);
+    UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }), NotConverged);
 }
 
 TEST(VertexFit, ShakenSphereIsSmoothedAtConstantVolume)
@@ -85,7 +85,7 @@ TEST(VertexFit, ShakenSphereIsSmoothedAtConstantVolume)
   const Values normals = SampleUnit(mesh, clean, 3, [](const Eigen::RowVector3d& x) { return x; });
   VertexMotion motion;
   Surface fitted = s;
-  fitted.Vertices = FitVerticesToNormals(
+  fitted.Vertices = UpdateVerticesFromNormals(
     mesh, s.Vertices, normals, 5.0 * MeanEdge(mesh) * mesh.LengthUnit(), motion);
   std::printf("angle %.2f -> %.2f degrees, volume %.4f -> %.4f, moved %.4f (mean), %.4f (most)\n",
     MeanAngle(s, clean), MeanAngle(fitted, clean), motion.VolumeBefore, motion.VolumeAfter,
@@ -112,7 +112,7 @@ TEST(VertexFit, DoesNotDependOnPlaceSizeOrOrientation)
     const Values normals = SampleUnit(mesh, surface, 3,
       [&](const Eigen::RowVector3d& x) { return Eigen::RowVector3d(x - centre); });
     VertexMotion motion;
-    return FitVerticesToNormals(mesh, surface.Vertices, normals, 0.7 * scale, motion);
+    return UpdateVerticesFromNormals(mesh, surface.Vertices, normals, 0.7 * scale, motion);
   };
   const Eigen::RowVector3d origin = Eigen::RowVector3d::Zero();
   const Eigen::RowVector3d away(300.0, -200.0, 50.0);

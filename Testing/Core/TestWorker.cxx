@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Worker.h"
+#include "Core/Foundation/Worker.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Parallel.h"
+#include "Core/Foundation/Parallel.h"
 
 #include <atomic>
 #include <thread>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CrouzeixRaviart.h"
+#include "Core/Models/CrouzeixRaviart.h"
+#include "Core/Models/NonlinearDiffusion.h"
+#include "Core/Models/TotalVariationFlow.h"
 #include "Meshes.h"
-#include "NonlinearDiffusion.h"
-#include "TotalVariationFlow.h"
 
 #include <cmath>
 #include <memory>
@@ -38,7 +38,7 @@ inline std::unique_ptr<NonlinearDiffusion> MakeLagged(std::shared_ptr<const Asse
   const ParallelFor& parallel = SerialFor())
 {
   return std::make_unique<NonlinearDiffusion>(
-    std::move(assembler), PlaneVectors(), std::move(data), settings, std::move(solver), parallel);
+    std::move(assembler), TangentVectors(), std::move(data), settings, std::move(solver), parallel);
 }
 
 /// Settings of TotalVariationFlow with times and weights in coordinate units; steady without a time
@@ -59,17 +59,17 @@ inline std::unique_ptr<TotalVariationFlow> MakeExact(std::shared_ptr<const Assem
   const ParallelFor& parallel = SerialFor())
 {
   return std::make_unique<TotalVariationFlow>(
-    std::move(assembler), PlaneVectors(), std::move(data), settings, parallel);
+    std::move(assembler), TangentVectors(), std::move(data), settings, parallel);
 }
 
 /// The exact flow on edges, started from point data.
-inline std::unique_ptr<Evolution> MakeOnEdges(std::shared_ptr<const Assembler> assembler,
+inline std::unique_ptr<Model> MakeOnEdges(std::shared_ptr<const Assembler> assembler,
   PointData data, const TotalVariationFlow::Settings& settings,
   const ParallelFor& parallel = SerialFor())
 {
   const auto edges = std::make_shared<MedialMesh>(assembler->Mesh());
   const auto onEdges = std::make_shared<Assembler>(edges->Edges(), parallel);
-  return std::make_unique<CrouzeixRaviartEvolution>(
+  return std::make_unique<CrouzeixRaviartModel>(
     std::move(assembler), edges, std::move(data),
     [&](PointData edgeData) { return MakeExact(onEdges, std::move(edgeData), settings, parallel); },
     parallel);

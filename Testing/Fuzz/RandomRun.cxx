@@ -2,20 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RandomRun.h"
 
-#include "Coefficients.h"
-#include "Conservation.h"
-#include "CrouzeixRaviart.h"
-#include "DirectionField.h"
-#include "Frames.h"
-#include "HarmonicMap.h"
-#include "InitialState.h"
-#include "IntrinsicDelaunay.h"
-#include "LinearDiffusion.h"
-#include "MedialMesh.h"
-#include "NonlinearDiffusion.h"
-#include "ReactionDiffusion.h"
-#include "TotalVariationFlow.h"
-#include "UnitVectors.h"
+#include "Core/Geometry/DirectionField.h"
+#include "Core/Models/CrouzeixRaviart.h"
+#include "Core/Models/HarmonicMap.h"
+#include "Core/Models/InitialState.h"
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Models/NonlinearDiffusion.h"
+#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/TotalVariationFlow.h"
+#include "Core/Models/UnitVectors.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/MeanCorrection.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
+#include "Core/Surface/MedialMesh.h"
+#include "Core/Surface/TangentVectors.h"
 
 #include <array>
 #include <cmath>
@@ -164,11 +164,11 @@ struct Promises
 /// Cotangents that large leave no digit of what they are added to.
 bool HasFlatTriangles(const TriangleMesh& mesh)
 {
-  const EdgeValues c = IsotropicCoefficients(mesh);
+  const CornerWeights c = CotanWeights(mesh);
   return c.size() > 0 && c.cwiseAbs().maxCoeff() > 1e8;
 }
 
-void CheckState(const TriangleMesh& mesh, const Evolution& model, const Values& start,
+void CheckState(const TriangleMesh& mesh, const Model& model, const Values& start,
   double energyBefore, double energyAtStart, const Promises& promises)
 {
   const Values& u = model.State();
@@ -199,7 +199,7 @@ void CheckState(const TriangleMesh& mesh, const Evolution& model, const Values& 
 }
 
 /// Three steps, and the last once more from the state before it.
-void Run(const TriangleMesh& mesh, Evolution& model, const Promises& promises)
+void Run(const TriangleMesh& mesh, Model& model, const Promises& promises)
 {
   const Values start = model.State();
   const double energy = model.Energy();
@@ -212,12 +212,12 @@ void Run(const TriangleMesh& mesh, Evolution& model, const Promises& promises)
       const double before = model.Energy();
       checkpoint.resize(model.CheckpointSize());
       model.Save(checkpoint.data());
-      model.Advance(Monitor());
+      model.Advance(ProgressMonitor());
       CheckState(mesh, model, start, before, energy, promises);
     }
     const Values last = model.State();
     model.Restore(checkpoint.data());
-    model.Advance(Monitor());
+    model.Advance(ProgressMonitor());
     Require(model.State() == last, "a restored state goes on differently");
   }
   catch (const NotConverged&)
@@ -236,7 +236,7 @@ bool Any(const Flags& flags)
 }
 
 void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
-  const PlaneVectors& frames, bool delaunay)
+  const TangentVectors& frames, bool delaunay)
 {
   const TriangleMesh& mesh = assembler->Mesh();
   using Scheme = LinearDiffusion::Scheme;
@@ -244,12 +244,12 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   settings.TimeStep = bytes.Size(8.0);
   settings.Fidelity = bytes.Flip() ? bytes.Size(6.0) : 0.0;
   settings.TimeScheme = static_cast<Scheme>(bytes.Below(3));
-  EdgeValues coefficients = IsotropicCoefficients(mesh);
+  CornerWeights coefficients = CotanWeights(mesh);
   const bool directed = bytes.Flip();
   const double across = bytes.Flip(4) ? 0.0 : bytes.Size(3.0);
   if (directed)
   {
-    coefficients = AnisotropicCoefficients(mesh, coefficients, frames, bytes.Size(3.0), across);
+    coefficients = AnisotropicWeights(mesh, coefficients, frames, bytes.Size(3.0), across);
   }
   Promises promises;
   // Where nothing flows across, many steady states are equally good.
@@ -265,7 +265,7 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
 }
 
 void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
-  const PlaneVectors& frames)
+  const TangentVectors& frames)
 {
   NonlinearDiffusion::Settings settings;
   settings.TimeStep = bytes.Size(6.0);
@@ -287,13 +287,13 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
     {
       return; // its start has a system of its own
     }
-    CrouzeixRaviartEvolution model(assembler, edges, std::move(data),
+    CrouzeixRaviartModel model(assembler, edges, std::move(data),
       [&](PointData ofEdges)
       {
         settings.Across = settings.Along;
         settings.AcrossDiffusivity = settings.AlongDiffusivity;
         return std::make_unique<NonlinearDiffusion>(
-          operators, PlaneVectors(0, 2), std::move(ofEdges), settings, ReadSolver(bytes));
+          operators, TangentVectors(0, 2), std::move(ofEdges), settings, ReadSolver(bytes));
       });
     Run(mesh, model, promises);
     return;
@@ -303,7 +303,7 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
 }
 
 void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
-  const PlaneVectors& frames)
+  const TangentVectors& frames)
 {
   TotalVariationFlow::Settings settings;
   settings.SteadyState = bytes.Flip();
@@ -342,13 +342,13 @@ void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
   {
     data.Given = data.Given.replicate(1, 2).eval();
   }
-  PrepareUnitVectors(
+  FillMissingUnitVectors(
     mesh, data, settings.LineField, static_cast<InitialFill>(bytes.Below(3)), 1, Ids(mesh));
   const bool paper = settings.TimeScheme == HarmonicMap::Scheme::ExplicitReaction;
   Promises promises;
   promises.Length = true;
   promises.Energy = !paper;
-  HarmonicMap model(assembler, IsotropicCoefficients(mesh), std::move(data), settings,
+  HarmonicMap model(assembler, CotanWeights(mesh), std::move(data), settings,
     paper ? ReadSolver(bytes) : MakeCholeskySolver());
   Run(mesh, model, promises);
 }
@@ -372,7 +372,7 @@ void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
   for (auto& chemical : chemicals)
   {
-    chemical.Coefficients = bytes.Size(4.0) * IsotropicCoefficients(mesh);
+    chemical.Coefficients = bytes.Size(4.0) * CotanWeights(mesh);
     chemical.Solver = ReadSolver(bytes);
   }
   ReactionDiffusion model(assembler, reaction, chemicals, std::move(data), settings);
@@ -380,7 +380,7 @@ void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
 }
 
 void RunDirections(Bytes& bytes, const Assembler& assembler, const Points& points,
-  const Triangles& triangles, const PlaneVectors& frames)
+  const Triangles& triangles, const TangentVectors& frames)
 {
   DirectionSettings settings;
   settings.Method = static_cast<DirectionMethod>(bytes.Below(4));
@@ -392,8 +392,8 @@ void RunDirections(Bytes& bytes, const Assembler& assembler, const Points& point
   {
     return;
   }
-  const PlaneVectors field = MakeDirectionField(assembler, points, triangles,
-    settings.Method == DirectionMethod::Hints ? frames : PlaneVectors(0, 2), settings);
+  const TangentVectors field = MakeDirectionField(assembler, points, triangles,
+    settings.Method == DirectionMethod::Hints ? frames : TangentVectors(0, 2), settings);
   Require(field.rows() == assembler.Mesh().NumberOfTriangles(), "a triangle has no direction");
   for (const auto& d : field.rowwise())
   {
@@ -415,7 +415,7 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   {
     vectors.row(i) << bytes.Short(), bytes.Short(), bytes.Short();
   }
-  PlaneVectors frames = FramesFromPointVectors(*original, points, triangles, vectors);
+  TangentVectors frames = FramesFromPointVectors(*original, points, triangles, vectors);
   if (model == 5)
   {
     RunDirections(bytes, Assembler(original), points, triangles, frames);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Private/SMPParallelFor.h"
+#include "Conversion/SMPParallelFor.h"
 
 #include <gtest/gtest.h>
 

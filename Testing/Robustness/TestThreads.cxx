@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "AllFilters.h"
-#include "Private/SMPParallelFor.h"
+#include "Conversion/SMPParallelFor.h"
 
 #include "vtkSMPTools.h"
 

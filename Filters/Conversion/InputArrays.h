@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataArray;
+class vtkPolyData;
+
+namespace SurfaceDiffusion
+{
+
+/// Finds the arrays that SetInputArrayToProcess() chose on one block, and says what is wrong.
+class InputArrays
+{
+public:
+  static constexpr int AnyNumberOfComponents = 0;
+
+  InputArrays(vtkAlgorithm* filter, vtkPolyData* block, std::vector<std::string>& problems);
+
+  /// The array at `index`, called `property` in messages; null where it is not set, and, with a
+  /// problem told, where it is absent or unfit. onCells says where it was found.
+  vtkDataArray* Find(int index, const char* property, int components, bool& onCells) const;
+
+  /// The same where only point data are allowed.
+  vtkDataArray* FindOnPoints(int index, const char* property, int components) const;
+
+private:
+  vtkDataArray* FindAs(
+    int index, const char* property, int components, bool allowCells, bool& onCells) const;
+
+  vtkAlgorithm* Filter;
+  vtkPolyData* Block;
+  std::vector<std::string>& Problems;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/ProgressMonitor.h"
+
+#include "vtkSMPTools.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <mutex>
+
+namespace SurfaceDiffusion
+{
+
+/// While it lives, the loops of its thread ask every 50 ms whether to go on, and throw Aborted,
+/// once, where not: no stage of the core that consists of loops lets an abort wait, whenever it
+/// reports.
+class LoopWatch
+{
+public:
+  explicit LoopWatch(std::function<bool()> goOn)
+    : GoOn(std::move(goOn))
+    , Outer(Current)
+  {
+    Current = this;
+  }
+  ~LoopWatch() { Current = this->Outer; }
+  LoopWatch(const LoopWatch&) = delete;
+  LoopWatch& operator=(const LoopWatch&) = delete;
+
+  /// Ask no more.
+  void End() { this->Ended = true; }
+
+  /// The watch of this thread; null for none.
+  static LoopWatch* OfThisThread() { return Current; }
+
+  void Ask()
+  {
+    const Clock::time_point now = Clock::now();
+    if (this->Ended || now - this->Last < std::chrono::milliseconds(50))
+    {
+      return;
+    }
+    this->Last = now;
+    if (!this->GoOn())
+    {
+      this->End(); // what tidies up may run loops
+      throw Aborted();
+    }
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+
+  static inline thread_local LoopWatch* Current = nullptr;
+
+  std::function<bool()> GoOn;
+  LoopWatch* Outer;
+  Clock::time_point Last = Clock::now();
+  bool Ended = false;
+};
+
+/// The core's loops on VTK's threads.
+class SMPParallelFor : public ParallelFor
+{
+public:
+  /// The std::thread backend starts its threads anew for every loop: shorter ones are faster alone.
+  static constexpr Index Few = 24;
+
+  void Run(Index count, LoopBody body) const override
+  {
+    LoopWatch* const watch = LoopWatch::OfThisThread();
+    if (count < Few)
+    {
+      body(0, count);
+    }
+    else
+    {
+      RunOnThreads(count, body, watch);
+    }
+    if (watch)
+    {
+      watch->Ask();
+    }
+  }
+
+  /// The core keeps references: one object for all.
+  static const SMPParallelFor& Instance()
+  {
+    static const SMPParallelFor instance;
+    return instance;
+  }
+
+private:
+  static void RunOnThreads(Index count, LoopBody body, LoopWatch* watch)
+  {
+    // An exception that left a thread of VTK's would end the program (want of memory).
+    std::exception_ptr failure;
+    std::mutex ofFailure;
+    std::atomic<bool> failed{ false };
+    const auto loop = [&](vtkIdType begin, vtkIdType end)
+    {
+      try
+      {
+        constexpr vtkIdType piece = 16; // blocks between two questions
+        for (vtkIdType first = begin; first < end && !failed; first += piece)
+        {
+          const vtkIdType last = std::min(end, first + piece);
+          body(static_cast<Index>(first), static_cast<Index>(last));
+          if (watch && watch == LoopWatch::OfThisThread())
+          {
+            watch->Ask();
+          }
+        }
+      }
+      catch (...)
+      {
+        const std::lock_guard<std::mutex> lock(ofFailure);
+        failure = std::current_exception();
+        failed = true;
+      }
+    };
+    vtkSMPTools::For(0, count, loop);
+    if (failure)
+    {
+      std::rethrow_exception(failure);
+    }
+  }
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Partition.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Sums over the rows of several columns, in the fixed order of blocks; no time step allocates.
+class ColumnSums
+{
+public:
+  /// Make room for `width` sums over `rows` rows.
+  void Resize(Index rows, int width)
+  {
+    this->Total.assign(width, 0.0);
+    this->Partial.assign(static_cast<std::size_t>(NumberOfBlocks(rows)) * width, 0.0);
+  }
+
+  /// Sum what add(i, sums) adds to `sets` x K sums, or sets x columns where K is 0; sets <= 2.
+  /// first(begin, end) runs on the rows of a block before, and the sums find in the cache what it
+  /// made.
+  template <int K, typename First, typename Add>
+  void Run(const ParallelFor& parallel, Index rows, int columns, int sets, const First& first,
+    const Add& add)
+  {
+    const int width = sets * (K > 0 ? K : columns);
+    ForEachBlock(parallel, rows,
+      [&](Index block, Index begin, Index end)
+      {
+        first(begin, end);
+        double* partial = this->Partial.data() + static_cast<std::size_t>(block) * width;
+        double registers[K > 0 ? 2 * K : 1];
+        double* sums = K > 0 ? registers : partial;
+        std::fill(sums, sums + width, 0.0);
+        for (Index i = begin; i < end; ++i)
+        {
+          add(i, sums);
+        }
+        std::copy(sums, sums + width, partial);
+      });
+    std::fill(this->Total.begin(), this->Total.end(), 0.0);
+    for (Index block = 0; block < NumberOfBlocks(rows); ++block)
+    {
+      for (int s = 0; s < width; ++s)
+      {
+        this->Total[s] += this->Partial[static_cast<std::size_t>(block) * width + s];
+      }
+    }
+  }
+
+  template <int K, typename Add>
+  void Run(const ParallelFor& parallel, Index rows, int columns, int sets, const Add& add)
+  {
+    this->Run<K>(
+      parallel, rows, columns, sets, [](Index, Index) {}, add);
+  }
+
+  /// The totals become those over the processes; without a partition they are.
+  void SumOverProcesses(const Partition* partition)
+  {
+    if (partition)
+    {
+      partition->Sum(this->Total.data(), static_cast<Index>(this->Total.size()));
+    }
+  }
+
+  double operator[](std::size_t sum) const { return this->Total[sum]; }
+  const std::vector<double>& Totals() const { return this->Total; }
+
+private:
+  std::vector<double> Total, Partial;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Types.h"
+
+#include <algorithm>
+#include <atomic>
+#include <type_traits>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+/// A reference to a callable, made without allocating: it must not outlive the callable.
+class LoopBody
+{
+public:
+  template <typename F,
+    typename = std::enable_if_t<!std::is_same<std::decay_t<F>, LoopBody>::value>>
+  LoopBody(const F& f) // NOLINT(google-explicit-constructor): call sites pass lambdas
+    : Callable(&f)
+    , Call([](const void* c, Index begin, Index end) { (*static_cast<const F*>(c))(begin, end); })
+  {
+  }
+  void operator()(Index begin, Index end) const { this->Call(this->Callable, begin, end); }
+
+private:
+  const void* Callable;
+  void (*Call)(const void*, Index, Index);
+};
+
+/// The loop the core runs on. The default is serial; the filters give one that calls vtkSMPTools.
+class ParallelFor
+{
+public:
+  virtual ~ParallelFor() = default;
+
+  /// Call body(begin, end) on pieces that cover [0, count) once, in any order, on any thread.
+  virtual void Run(Index count, LoopBody body) const { body(0, count); }
+};
+
+/// The serial loop, as the default of all that keeps a reference: a temporary would be gone.
+inline const ParallelFor& SerialFor()
+{
+  static const ParallelFor serial;
+  return serial;
+}
+
+/// Rows per block. Loops and sums are cut into these blocks whatever the number of threads, so
+/// that no bit of a result depends on it.
+constexpr Index BlockSize = 2048;
+
+inline Index NumberOfBlocks(Index count)
+{
+  return (count + BlockSize - 1) / BlockSize;
+}
+
+/// Call body(block, begin, end) for every block of [0, count).
+template <typename Body>
+void ForEachBlock(const ParallelFor& parallel, Index count, const Body& body)
+{
+  const auto blocks = [&](Index first, Index last)
+  {
+    for (Index block = first; block < last; ++block)
+    {
+      body(block, block * BlockSize, std::min(count, (block + 1) * BlockSize));
+    }
+  };
+  const Index numberOfBlocks = NumberOfBlocks(count);
+  if (numberOfBlocks <= 2) // waking threads costs more than such a loop
+  {
+    blocks(0, numberOfBlocks);
+    return;
+  }
+  parallel.Run(numberOfBlocks, blocks);
+}
+
+/// Call body(i) for every i of [0, count).
+template <typename Body>
+void ForEach(const ParallelFor& parallel, Index count, const Body& body)
+{
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        body(i);
+      }
+    });
+}
+
+/// Largest of f(i) >= 0 over [0, count); 0 for none.
+template <typename F>
+double Max(const ParallelFor& parallel, Index count, const F& f)
+{
+  std::atomic<double> largest{ 0.0 };
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      double ofBlock = 0.0;
+      for (Index i = begin; i < end; ++i)
+      {
+        ofBlock = std::max(ofBlock, f(i));
+      }
+      double known = largest;
+      while (ofBlock > known && !largest.compare_exchange_weak(known, ofBlock))
+      {
+      }
+    });
+  return largest;
+}
+
+/// Sum of f(i) over [0, count), block by block.
+template <typename F>
+double Sum(const ParallelFor& parallel, Index count, const F& f)
+{
+  // A fixed number of partial sums on the stack keeps time steps free of allocations.
+  constexpr Index width = 1024;
+  double total = 0.0;
+  for (Index first = 0; first < count; first += width * BlockSize)
+  {
+    double partial[width];
+    const Index chunk = std::min(count - first, width * BlockSize);
+    ForEachBlock(parallel, chunk,
+      [&](Index block, Index begin, Index end)
+      {
+        double sum = 0.0;
+        for (Index i = begin; i < end; ++i)
+        {
+          sum += f(first + i);
+        }
+        partial[block] = sum;
+      });
+    for (Index block = 0; block < NumberOfBlocks(chunk); ++block)
+    {
+      total += partial[block];
+    }
+  }
+  return total;
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <exception>
+#include <functional>
+
+namespace SurfaceDiffusion
+{
+
+/// Thrown where the user asked to stop.
+struct Aborted : std::exception
+{
+  const char* what() const noexcept override { return "aborted"; }
+};
+
+/// Carries progress out of long work and the wish to stop into it. Copies are cheap and share the
+/// callback; Part() makes one for a piece of the work, whose reports fill only that piece's share.
+class ProgressMonitor
+{
+public:
+  /// Called with the fraction done in [0, 1]; returns false to stop.
+  using Callback = std::function<bool(double)>;
+
+  ProgressMonitor() = default;
+  /// callback must outlive the progress and its parts.
+  explicit ProgressMonitor(const Callback& callback)
+    : Call(&callback)
+  {
+  }
+
+  /// Tell that `fraction` of this progress's work is done. Throws Aborted.
+  void Report(double fraction) const
+  {
+    if (this->Call && !(*this->Call)(this->Begin + fraction * (this->End - this->Begin)))
+    {
+      throw Aborted();
+    }
+  }
+
+  /// The progress of the part [begin, end] of this one's work.
+  ProgressMonitor Part(double begin, double end) const
+  {
+    ProgressMonitor part = *this;
+    part.Begin = this->Begin + begin * (this->End - this->Begin);
+    part.End = this->Begin + end * (this->End - this->Begin);
+    return part;
+  }
+
+private:
+  const Callback* Call = nullptr;
+  double Begin = 0.0;
+  double End = 1.0;
+};
+
+/// Run `task` on another thread and keep `progress` informed meanwhile. When the progress throws
+/// Aborted the task runs on alone and its result is dropped: it must own all that it touches. An
+/// exception of the task is passed on.
+void RunInBackground(std::function<void()> task, const ProgressMonitor& progress);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,415 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/ReactionDiffusion.h"
+
+#include "Core/Foundation/Random.h"
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/MeanCorrection.h"
+#include "Core/Operators/SparsePattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+// ARS(2,2,2).
+const double Gamma = 1.0 - std::sqrt(0.5);
+const double Delta = 1.0 - 0.5 / Gamma;
+
+/// Root mean square of f(i), a value per vertex, over the surface; not divided by the area.
+template <typename F>
+double Norm(const TriangleMesh& mesh, const ParallelFor& parallel, const F& f)
+{
+  return std::sqrt(SumOverProcesses(mesh.GetPartition(),
+    Sum(parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double value = f(i);
+        return mesh.ControlAreas()[i] * value * value;
+      })));
+}
+
+} // namespace
+
+Values NoisySteadyState(
+  const Reaction& reaction, double noise, std::int64_t seed, const std::vector<std::int64_t>& ids)
+{
+  const Eigen::Vector2d steady = reaction.Terms->SteadyState(reaction.Parameters);
+  Values u(static_cast<Eigen::Index>(ids.size()), 2);
+  for (Eigen::Index i = 0; i < u.rows(); ++i)
+  {
+    for (Eigen::Index k = 0; k < 2; ++k)
+    {
+      const double random = 2.0 * UniformRandom(seed, k, ids[static_cast<std::size_t>(i)]) - 1.0;
+      const double size = reaction.Terms->NonNegative ? steady[k] : 1.0;
+      u(i, k) = steady[k] + size * noise * random;
+    }
+  }
+  return u;
+}
+
+ReactionDiffusion::ReactionDiffusion(std::shared_ptr<const Assembler> assembler,
+  const Reaction& reaction, std::array<Chemical, 2> chemicals, PointData data,
+  const Settings& settings, const ParallelFor& parallel)
+  : Operators(std::move(assembler))
+  , Terms(reaction)
+  , Chemicals(std::move(chemicals))
+  , Data(std::move(data))
+  , Options(settings)
+  , Parallel(parallel)
+  , ImplicitTime(settings.TimeStep * (settings.TimeScheme == Scheme::SecondOrder ? Gamma : 1.0))
+  , U(this->Data.Start)
+{
+  for (int c = 0; c < 2; ++c)
+  {
+    this->New[c] = this->U.col(c);
+    for (Pair* pair : { &this->Old, &this->Rates, &this->Force, &this->Explicit,
+           &this->RightHandSide, &this->Load })
+    {
+      (*pair)[c] = Values::Zero(this->U.rows(), 1);
+    }
+  }
+}
+
+std::size_t ReactionDiffusion::CheckpointSize() const
+{
+  return static_cast<std::size_t>(this->U.size()) + 1;
+}
+
+void ReactionDiffusion::Save(double* checkpoint) const
+{
+  *std::copy(this->U.data(), this->U.data() + this->U.size(), checkpoint) = this->Done ? 1.0 : 0.0;
+}
+
+void ReactionDiffusion::Restore(const double* checkpoint)
+{
+  std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
+  this->Done = checkpoint[this->U.size()] != 0.0;
+  for (int c = 0; c < 2; ++c)
+  {
+    this->New[c] = this->U.col(c);
+  }
+}
+
+void ReactionDiffusion::Prepare(const ProgressMonitor& progress)
+{
+  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  for (int c = 0; c < 2; ++c)
+  {
+    SparseMatrix& matrix = this->Matrices[c];
+    TakePattern(this->Operators->Pattern(), matrix, this->Parallel);
+    this->Operators->Fill(
+      matrix, areas, this->ImplicitTime, this->Chemicals[c].Coefficients, nullptr, this->Parallel);
+    if (this->Data.Fixed.any())
+    {
+      this->Operators->Constrain(
+        matrix, this->Data.Fixed, this->New[c], this->Load[c], this->Parallel);
+    }
+    this->Chemicals[c].Solver->SetMatrix(matrix, progress.Part(0.5 * c, 0.5 * c + 0.5));
+  }
+  if (const Partition* const partition = this->Operators->Mesh().GetPartition())
+  {
+    this->WholeAreas = areas;
+    partition->AddOverSeams(this->WholeAreas);
+  }
+  if (this->Options.SideBySide)
+  {
+    this->Second =
+      std::make_unique<Worker>([this] { this->SolveFor(1, ProgressMonitor(this->FirstGoesOn)); });
+  }
+  this->Prepared = true;
+}
+
+StepReport ReactionDiffusion::Advance(const ProgressMonitor& progress)
+{
+  StepReport report;
+  if (this->Done)
+  {
+    return report;
+  }
+  const double setup = this->Prepared ? 0.0 : 0.5;
+  if (!this->Prepared)
+  {
+    this->Prepare(progress.Part(0.0, setup));
+  }
+  for (int c = 0; c < 2; ++c)
+  {
+    this->Old[c] = this->New[c];
+  }
+  if (this->Options.TimeScheme == Scheme::SecondOrder)
+  {
+    this->SecondOrderStep(report, progress.Part(setup, 1.0));
+  }
+  else
+  {
+    this->FirstOrderStep(report, progress.Part(setup, 1.0));
+  }
+  this->FinishStep();
+  return report;
+}
+
+/// (22) with (8), (23) with (14), both chemicals from the old level:
+/// (M + dt K_k) u_k,new = M (u_k + dt F_k(u1, u2)).
+void ReactionDiffusion::FirstOrderStep(StepReport& report, const ProgressMonitor& progress)
+{
+  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  const double dt = this->Options.TimeStep;
+  this->React(this->Old, this->Rates);
+  ForEach(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+    [&](Index i)
+    {
+      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      for (int c = 0; c < 2; ++c)
+      {
+        this->RightHandSide[c](i) =
+          area * (this->Old[c](i) + dt * this->Rates[c](i)) + this->Load[c](i);
+      }
+    });
+  this->Solve(report, progress);
+  this->Project(0.0, report);
+}
+
+/// With f = F + l, per chemical,
+///   (M + g dt K) y = M (u + g dt f(u)),   g = gamma,
+///   (M + g dt K) u_new = M (u + dt (d f(u) + (1 - d) f(y))) - (1 - g) dt K y,   d = delta,
+/// where the first stage gives dt K y = M ((u - y)/g + dt f(u)): no product with K is needed.
+void ReactionDiffusion::SecondOrderStep(StepReport& report, const ProgressMonitor& progress)
+{
+  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  const Index n = this->Operators->Mesh().NumberOfVertices();
+  const double dt = this->Options.TimeStep;
+
+  this->React(this->Old, this->Rates);
+  this->AddHoldingForce(this->Old, this->Rates);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      for (int c = 0; c < 2; ++c)
+      {
+        this->RightHandSide[c](i) =
+          area * (this->Old[c](i) + Gamma * dt * this->Rates[c](i)) + this->Load[c](i);
+      }
+    });
+  this->Solve(report, progress.Part(0.0, 0.5));
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      for (int c = 0; c < 2; ++c)
+      {
+        const double u = this->Old[c](i);
+        this->Explicit[c](i) = u + (1.0 - Gamma) / Gamma * (this->New[c](i) - u) +
+          dt * (Delta - 1.0 + Gamma) * this->Rates[c](i);
+      }
+    });
+  StepReport stage;
+  this->Project(Gamma * dt, stage);
+
+  this->React(this->New, this->Rates);
+  this->AddHoldingForce(this->New, this->Rates);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      for (int c = 0; c < 2; ++c)
+      {
+        this->RightHandSide[c](i) =
+          area * (this->Explicit[c](i) + (1.0 - Delta) * dt * this->Rates[c](i)) + this->Load[c](i);
+        // Where an iterative solver starts: the straight line through u and y.
+        this->New[c](i) = this->Old[c](i) + (this->New[c](i) - this->Old[c](i)) / Gamma;
+      }
+    });
+  this->Solve(report, progress.Part(0.5, 1.0));
+  this->Project(dt, report);
+}
+
+/// f = (F, G) at u.
+void ReactionDiffusion::React(const Pair& u, Pair& f) const
+{
+  ForEachBlock(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+    [&](Index, Index begin, Index end)
+    {
+      this->Terms.Terms->React(this->Terms.Parameters, end - begin, u[0].data() + begin,
+        u[1].data() + begin, f[0].data() + begin, f[1].data() + begin);
+      for (Values& rates : f)
+      {
+        rates.middleRows(begin, end - begin) *= this->Terms.Rate;
+      }
+    });
+}
+
+/// Force = l where u = 0, else 0: what holds u there against f and the diffusion -(K u)_i / A_i;
+/// f += l. From neighbours of 0 and more diffusion only brings, except through the negative weights
+/// of obtuse triangles, which without the inner bound would shake slivers.
+void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
+{
+  if (!this->Options.KeepNonNegative)
+  {
+    return;
+  }
+  const Partition* const partition = this->Operators->Mesh().GetPartition();
+  const Index n = this->Operators->Mesh().NumberOfVertices();
+  const Vector& areas = partition ? this->WholeAreas : this->Operators->Mesh().ControlAreas();
+  for (int c = 0; c < 2; ++c)
+  {
+    if (partition)
+    {
+      ForEach(this->Parallel, n,
+        [&](Index i)
+        { this->Force[c](i) = u[c](i) <= 0.0 ? this->IntegrateDiffusion(c, u[c], i) : 0.0; });
+      partition->AddOverSeams(this->Force[c]);
+    }
+    ForEach(this->Parallel, n,
+      [&](Index i)
+      {
+        double force = 0.0;
+        if (u[c](i) <= 0.0 && !this->Data.Fixed[i])
+        {
+          const double integral =
+            partition ? this->Force[c](i) : this->IntegrateDiffusion(c, u[c], i);
+          const double diffusion = integral / (this->ImplicitTime * areas[i]);
+          force = std::max(0.0, -std::max(0.0, diffusion) - f[c](i));
+        }
+        this->Force[c](i) = force;
+        f[c](i) += force;
+      });
+  }
+}
+
+/// -ImplicitTime (K u)_i, from the matrix M + ImplicitTime K.
+double ReactionDiffusion::IntegrateDiffusion(int chemical, const Values& u, Index i) const
+{
+  double sum = -this->Load[chemical](i);
+  for (SparseMatrix::InnerIterator a(this->Matrices[chemical], i); a; ++a)
+  {
+    sum += a.value() * u(a.index());
+  }
+  return this->Operators->Mesh().ControlAreas()[i] * u(i) - sum;
+}
+
+/// New = the solutions for the right-hand sides.
+void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)
+{
+  if (this->Second)
+  {
+    this->FirstFailed = false;
+    this->Second->Start();
+    this->SolveFor(0, progress);
+    this->FirstFailed = this->Solutions[0].Failure != nullptr; // an abort: the second ends too
+    this->Second->Wait();
+  }
+  else
+  {
+    this->SolveFor(0, progress.Part(0.0, 0.5));
+    if (!this->Solutions[0].Failure)
+    {
+      this->SolveFor(1, progress.Part(0.5, 1.0));
+    }
+  }
+  for (int c = 0; c < 2; ++c)
+  {
+    const Solution& solution = this->Solutions[c];
+    constexpr double boundless = 1e100;
+    if (solution.Failure &&
+      AnyProcess(this->Operators->Mesh().GetPartition(),
+        !(this->RightHandSide[c].array().abs() < boundless).all()))
+    {
+      throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
+                               "other parameters of the kinetics, or clamp at zero");
+    }
+    if (solution.Failure)
+    {
+      std::rethrow_exception(solution.Failure);
+    }
+    if (!solution.Report.Converged)
+    {
+      throw NotConverged(solution.Report);
+    }
+    report.Iterations += solution.Report.Iterations;
+    report.Residual = std::max(report.Residual, solution.Report.Residual);
+  }
+}
+
+void ReactionDiffusion::SolveFor(int c, const ProgressMonitor& progress)
+{
+  this->Solutions[c] = Solution();
+  try
+  {
+    this->Solutions[c].Report =
+      this->Chemicals[c].Solver->Solve(this->RightHandSide[c], this->New[c], progress);
+  }
+  catch (...)
+  {
+    this->Solutions[c].Failure = std::current_exception();
+  }
+}
+
+/// The solve had `dt` Force in it. Take it back, u - dt l, and hold at zero what falls below.
+void ReactionDiffusion::Project(double dt, StepReport& report)
+{
+  if (!this->Options.KeepNonNegative)
+  {
+    return;
+  }
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  const double held = SumOverVertices(mesh.GetPartition(), this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      int count = 0;
+      for (int c = 0; c < 2; ++c)
+      {
+        const double u = this->New[c](i) - dt * this->Force[c](i);
+        const bool below = u < 0.0 && !this->Data.Fixed[i];
+        this->New[c](i) = below ? 0.0 : u;
+        count += below;
+      }
+      return static_cast<double>(count);
+    });
+  report.Clamped += static_cast<Index>(held);
+}
+
+void ReactionDiffusion::FinishStep()
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      for (int c = 0; c < 2; ++c)
+      {
+        this->U(i, c) = this->New[c](i);
+      }
+    });
+  if (!(this->Options.StopTolerance > 0.0))
+  {
+    return;
+  }
+  this->Done = true;
+  for (int c = 0; c < 2; ++c)
+  {
+    const Values& u = this->New[c];
+    const Values& before = this->Old[c];
+    const double area = SumOverProcesses(mesh.GetPartition(),
+      Sum(
+        this->Parallel, mesh.NumberOfVertices(), [&](Index i) { return mesh.ControlAreas()[i]; }));
+    const double mean = Total(mesh, u, 0, this->Parallel) / area;
+    const double pattern = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - mean; });
+    const double change = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - before(i); });
+    this->Done =
+      this->Done && change <= this->Options.StopTolerance * this->Options.TimeStep * pattern;
+  }
+}
+
+double ReactionDiffusion::Energy() const
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  return SumOverProcesses(mesh.GetPartition(),
+    DirichletEnergy(mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
+      DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel));
+}
+
+} // namespace SurfaceDiffusion

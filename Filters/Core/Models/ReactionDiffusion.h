@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Worker.h"
+#include "Core/Models/Kinetics.h"
+#include "Core/Models/Model.h"
+#include "Core/Operators/Assembler.h"
+#include "Core/Solvers/LinearSolver.h"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// F and G of (22) with a reaction rate s.
+struct Reaction
+{
+  const Kinetics* Terms = &GetKinetics(KineticsName::Turing);
+  KineticsParameters Parameters = Terms->Defaults();
+  double Rate = 1.0; ///< s, in 1/time
+};
+
+/// The steady state with uniform relative noise of half width `noise`, the same for a seed on any
+/// machine: u_k = u*_k (1 + noise (2 r - 1)) with r in [0, 1) from seed, k and id; for kinetics of
+/// either sign u_k = u*_k + noise (2 r - 1). ids: one per vertex.
+Values NoisySteadyState(
+  const Reaction& reaction, double noise, std::int64_t seed, const std::vector<std::int64_t>& ids);
+
+/// (22), (23): two chemicals that react and diffuse,
+///   u1_t = div(D1 grad u1) + F(u1, u2),  u2_t = div(D2 grad u2) + G(u1, u2),
+/// with tensors D1, D2 that may be anisotropic and differ from triangle to triangle. Diffusion is
+/// implicit, with one matrix per chemical for all steps, the reaction is explicit, both chemicals
+/// step together. Fixed vertices keep their start; fidelity does not apply.
+///
+/// Concentrations stay >= 0: (24) as printed runs away as soon as u2 < 0, since its decay mu acts
+/// even where nothing is left. With bounds the equations hold where u > 0, and where u = 0 a force
+/// l >= 0 holds u up against what the reaction takes away (an obstacle problem).
+class ReactionDiffusion : public Model
+{
+public:
+  enum class Scheme
+  {
+    /// Backward Euler, explicit reaction; negative values are set to 0 after the step. First order.
+    FirstOrder,
+    /// ARS(2,2,2) (Ascher, Ruuth, Spiteri, Appl. Numer. Math. 25, 1997): two stages with one
+    /// matrix, L-stable diffusion. l, known from the state, enters the stages like a reaction, and
+    /// each stage's own share of it is corrected after its solve (operator splitting; Ikonen,
+    /// Toivanen, Appl. Math. Lett. 17, 2004). Second order with bounds too, where clamping alone
+    /// would be first order.
+    SecondOrder
+  };
+
+  struct Settings
+  {
+    double TimeStep = 1.0 / 16.0;
+    Scheme TimeScheme = Scheme::SecondOrder;
+    bool KeepNonNegative = true;
+    /// The pattern stands, and steps change nothing any more, once |u_new - u| / (dt |u_new - its
+    /// mean|), root mean squares over the surface, is at most this for both chemicals: the relative
+    /// change per unit time. It is about the growth rate while the pattern grows. 0: never.
+    double StopTolerance = 0.0;
+    /// Solve for the two chemicals on two threads. The bits are the same either way. Not in pieces.
+    bool SideBySide = false;
+  };
+
+  /// How one chemical diffuses: coefficients with its rates in them (LengthUnit()^2/time), and the
+  /// solver of its matrix, kept by the caller from run to run.
+  struct Chemical
+  {
+    CornerWeights Coefficients;
+    std::shared_ptr<LinearSolver> Solver;
+  };
+
+  /// data.Start: u1, u2 at t = 0.
+  ReactionDiffusion(std::shared_ptr<const Assembler> assembler, const Reaction& reaction,
+    std::array<Chemical, 2> chemicals, PointData data, const Settings& settings,
+    const ParallelFor& parallel = SerialFor());
+
+  const Values& State() const override { return this->U; }
+  StepReport Advance(const ProgressMonitor& progress) override;
+
+  /// The pattern stands by StopTolerance.
+  bool Finished() const override { return this->Done; }
+
+  /// 1/2 int D1 grad u1 . grad u1 + D2 grad u2 . grad u2, in value^2 LengthUnit()^2/time: how much
+  /// pattern there is. Reaction-diffusion has no energy that must fall.
+  double Energy() const override;
+
+  /// The state and whether it is finished.
+  std::size_t CheckpointSize() const override;
+  void Save(double* checkpoint) const override;
+  void Restore(const double* checkpoint) override;
+
+private:
+  using Pair = std::array<Values, 2>; ///< one column per chemical
+
+  struct Solution
+  {
+    SolveReport Report;
+    std::exception_ptr Failure;
+  };
+
+  void Prepare(const ProgressMonitor& progress);
+  void FirstOrderStep(StepReport& report, const ProgressMonitor& progress);
+  void SecondOrderStep(StepReport& report, const ProgressMonitor& progress);
+  void React(const Pair& u, Pair& f) const;
+  void AddHoldingForce(const Pair& u, Pair& f);
+  double IntegrateDiffusion(int chemical, const Values& u, Index i) const;
+  void Solve(StepReport& report, const ProgressMonitor& progress);
+  void SolveFor(int chemical, const ProgressMonitor& progress);
+  void Project(double dt, StepReport& report);
+  void FinishStep();
+
+  std::shared_ptr<const Assembler> Operators;
+  Reaction Terms;
+  std::array<Chemical, 2> Chemicals;
+  PointData Data;
+  Settings Options;
+  const ParallelFor& Parallel;
+  double ImplicitTime; ///< dt times the implicit part of a stage
+  std::array<SparseMatrix, 2> Matrices;
+  Vector WholeAreas; ///< of a surface in pieces: the control areas over all of them
+  bool Prepared = false;
+  bool Done = false;
+  Pair Load; ///< what fixed neighbours give to the right-hand side
+  Values U;
+  Pair Old, New, Rates, Force, Explicit, RightHandSide;
+  std::array<Solution, 2> Solutions;
+  std::atomic<bool> FirstFailed{ false };
+  const ProgressMonitor::Callback FirstGoesOn = [this](double) { return !this->FirstFailed; };
+  std::unique_ptr<Worker> Second; ///< solves for u2; last: it uses the others
+};
+
+} // namespace SurfaceDiffusion

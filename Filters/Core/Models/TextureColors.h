@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Partition.h"
+
+#include <array>
+
+namespace SurfaceDiffusion
+{
+
+/// n x 3 colours, red, green and blue from 0 to 255.
+using Colors = Eigen::Matrix<unsigned char, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// The 1st and 99th percentile of u over the vertices of the surface, so that no single vertex sets
+/// the contrast. partition: null where all of them are here.
+std::array<double, 2> ContrastLimits(
+  const Eigen::Ref<const Vector>& u, const Partition* partition = nullptr);
+
+/// u stretched to [0, 1] between the limits; 1/2 where these are the same.
+Vector StretchContrast(const Eigen::Ref<const Vector>& u, const std::array<double, 2>& limits);
+
+/// Mixtures of two colours with components in [0, 1]: `low` for 0, `high` for 1.
+Colors MixColors(const Eigen::Ref<const Vector>& shares, const std::array<double, 3>& low,
+  const std::array<double, 3>& high);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/TotalVariationFlow.h"
+
+#include "Core/Models/InitialState.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// The largest max - min over the columns; 1 for constants and where there are no values.
+double ValueRange(const Values& u, const Partition* partition)
+{
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  Eigen::RowVectorXd high = Eigen::RowVectorXd::Constant(u.cols(), none);
+  Eigen::RowVectorXd minusLow = high;
+  if (u.rows() > 0)
+  {
+    high = u.colwise().maxCoeff();
+    minusLow = -u.colwise().minCoeff();
+  }
+  if (partition)
+  {
+    partition->Max(high.data(), static_cast<Index>(u.cols()));
+    partition->Max(minusLow.data(), static_cast<Index>(u.cols()));
+  }
+  const double range = u.cols() > 0 ? (high + minusLow).maxCoeff() : 0.0;
+  return range > 0.0 ? range : 1.0;
+}
+
+} // namespace
+
+TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assembler,
+  const TangentVectors& frames, PointData data, const Settings& settings,
+  const ParallelFor& parallel)
+  : Operators(std::move(assembler))
+  , Data(std::move(data))
+  , Options(settings)
+  , Parallel(parallel)
+  , Diffusivity(std::max(settings.AlongDiffusivity, settings.AcrossDiffusivity))
+  , U(this->Data.Start)
+  , Target(this->Data.Given)
+{
+  if (settings.Norm == FidelityNorm::L2 || settings.Fidelity == 0.0) // L1 does not conserve
+  {
+    this->Conserved =
+      TotalCorrection(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel);
+  }
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  if (settings.SteadyState)
+  {
+    FixFreeComponents(mesh, this->Data, settings.Fidelity);
+  }
+
+  double along = settings.AlongDiffusivity / this->Diffusivity;
+  double across = settings.AcrossDiffusivity / this->Diffusivity;
+  if (settings.Function.Kind != EdgeFunctionKind::TotalVariation)
+  {
+    along = std::sqrt(along);
+    across = std::sqrt(across);
+  }
+  std::vector<GradientMap> gradients = frames.rows() > 0
+    ? StretchedGradients(mesh, frames, along, across, parallel)
+    : PlainGradients(mesh, parallel);
+
+  // The minimiser's energy is E over Diffusivity, the step's term with it.
+  const Index n = mesh.NumberOfVertices();
+  const double inertia = settings.SteadyState ? 0.0 : 1.0 / (settings.TimeStep * this->Diffusivity);
+  Vector quadratic(n);
+  Vector absolute(n);
+  ForEach(parallel, n,
+    [&](Index i)
+    {
+      const double fidelity = this->FidelityAt(i) / this->Diffusivity;
+      const bool squared = settings.Norm == FidelityNorm::L2;
+      quadratic[i] = inertia + (squared ? fidelity : 0.0);
+      absolute[i] = squared ? 0.0 : fidelity;
+    });
+  TotalVariationMinimizer::Settings minimizer;
+  minimizer.Function = settings.Function;
+  minimizer.Coupling = settings.Coupling;
+  minimizer.Range = ValueRange(this->Data.Start, mesh.GetPartition());
+  minimizer.StopTolerance = settings.StopTolerance;
+  minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
+  this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Operators, std::move(gradients),
+    std::move(quadratic), std::move(absolute), this->Data.Fixed, minimizer, parallel);
+}
+
+void TotalVariationFlow::Restore(const double* checkpoint)
+{
+  std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
+}
+
+StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  if (this->Options.SteadyState)
+  {
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        if (this->Data.Fixed[i])
+        {
+          this->U.row(i) = this->Data.Start.row(i);
+        }
+      });
+  }
+  else
+  {
+    // lambda/2 |u - f|^2 + |u - u_old|^2/(2 dt) has its minimum at their weighted mean.
+    const bool squared = this->Options.Norm == FidelityNorm::L2;
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double pull = squared ? this->Options.TimeStep * this->FidelityAt(i) : 0.0;
+        this->Target.row(i) =
+          this->U.row(i) + (pull / (1.0 + pull)) * (this->Data.Given.row(i) - this->U.row(i));
+      });
+  }
+  const TotalVariationMinimizer::Report result =
+    this->Minimizer->Minimize(this->Target, this->Data.Given, this->U, progress);
+  this->Conserved.Restore(mesh, this->U, this->Parallel);
+  StepReport report;
+  report.Iterations = result.Iterations;
+  report.Residual = result.Gap;
+  return report;
+}
+
+double TotalVariationFlow::Energy() const
+{
+  const TriangleMesh& mesh = this->Operators->Mesh();
+  double energy = this->Diffusivity * this->Minimizer->GradientEnergy(this->U);
+  if (this->Options.Fidelity > 0.0)
+  {
+    const bool joint = this->Options.Coupling == ChannelCoupling::Joint;
+    const double here = Sum(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const auto distance = this->U.row(i) - this->Data.Given.row(i);
+        const double density = this->Options.Norm == FidelityNorm::L2 ? 0.5 * distance.squaredNorm()
+          : joint                                                     ? distance.norm()
+                                                                      : distance.lpNorm<1>();
+        return mesh.ControlAreas()[i] * this->FidelityAt(i) * density;
+      });
+    energy += SumOverProcesses(mesh.GetPartition(), here);
+  }
+  return energy;
+}
+
+} // namespace SurfaceDiffusion

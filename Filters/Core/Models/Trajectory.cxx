@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Trajectory.h"
+
+#include "Core/Operators/MeanCorrection.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace SurfaceDiffusion
+{
+
+CheckpointStore::CheckpointStore(std::size_t size, std::size_t limit)
+  : Size(std::max<std::size_t>(size, 1))
+  , Limit(std::max<std::size_t>(limit / (this->Size * sizeof(double)), 1))
+{
+}
+
+void CheckpointStore::Reserve(Index steps)
+{
+  const std::size_t capacity = std::min(this->Limit, static_cast<std::size_t>(steps) + 1);
+  if (capacity > this->Capacity)
+  {
+    std::unique_ptr<double[]> memory(new double[capacity * this->Size]);
+    std::copy(this->Memory.get(), this->Memory.get() + this->Count * this->Size, memory.get());
+    this->Memory = std::move(memory);
+    this->Capacity = capacity;
+  }
+}
+
+void CheckpointStore::Offer(Index step, const Model& evolution)
+{
+  if (step != static_cast<Index>(this->Count) * this->StepStride)
+  {
+    return; // kept already, or between two that are kept
+  }
+  while (this->Count == this->Capacity)
+  {
+    if (this->Capacity < this->Limit)
+    {
+      this->Reserve(step);
+      break;
+    }
+    if (this->Capacity == 1)
+    {
+      return;
+    }
+    this->Count = (this->Count + 1) / 2;
+    for (std::size_t slot = 1; slot < this->Count; ++slot)
+    {
+      std::copy(this->Slot(2 * slot), this->Slot(2 * slot) + this->Size, this->Slot(slot));
+    }
+    this->StepStride *= 2;
+    if (step != static_cast<Index>(this->Count) * this->StepStride)
+    {
+      return;
+    }
+  }
+  evolution.Save(this->Slot(this->Count++));
+}
+
+Index CheckpointStore::LatestAtOrBefore(Index step) const
+{
+  return std::min(static_cast<Index>(this->Count) - 1, step / this->StepStride) * this->StepStride;
+}
+
+const double* CheckpointStore::At(Index step) const
+{
+  return this->Memory.get() + static_cast<std::size_t>(step / this->StepStride) * this->Size;
+}
+
+Trajectory::Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> evolution,
+  std::size_t memoryLimit, const ParallelFor& parallel)
+  : Surface(std::move(mesh))
+  , Stepper(std::move(evolution))
+  , Parallel(parallel)
+  , Checkpoints(this->Stepper->CheckpointSize(), memoryLimit)
+{
+  this->Checkpoints.Reserve(0);
+  this->Checkpoints.Offer(0, *this->Stepper);
+  this->Record(StepReport(), 0.0);
+}
+
+void Trajectory::Reserve(Index steps)
+{
+  this->Checkpoints.Reserve(steps);
+  // A run of unknown or enormous length grows its history as it goes.
+  const std::size_t rows = static_cast<std::size_t>(std::min(steps, Index(1000000))) + 1;
+  this->History.reserve(rows);
+  this->Totals.reserve(rows * static_cast<std::size_t>(this->State().cols()));
+}
+
+Index Trajectory::NumberOfStepsTo(Index step) const
+{
+  const Index kept = this->Checkpoints.LatestAtOrBefore(step);
+  return step - (this->Current > step ? kept : std::max(kept, this->Current));
+}
+
+void Trajectory::Seek(Index step, const ProgressMonitor& progress)
+{
+  const Index from = step - this->NumberOfStepsTo(step);
+  if (this->Current != from)
+  {
+    this->Stepper->Restore(this->Checkpoints.At(from));
+    this->Current = from;
+  }
+  const Index first = this->Current;
+  const double count = std::max(1, step - first);
+  while (this->Current < step && !this->Stepper->Finished())
+  {
+    const ProgressMonitor part =
+      progress.Part((this->Current - first) / count, (this->Current + 1 - first) / count);
+    const auto start = std::chrono::steady_clock::now();
+    try
+    {
+      const StepReport report = this->Stepper->Advance(part);
+      if (this->Current + 1 == static_cast<Index>(this->History.size()))
+      {
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        this->Record(report, seconds.count());
+      }
+    }
+    catch (...)
+    {
+      // The state may be half a step on: go back to one that is known.
+      const Index safe = this->Checkpoints.LatestAtOrBefore(this->Current);
+      this->Stepper->Restore(this->Checkpoints.At(safe));
+      this->Current = safe;
+      throw;
+    }
+    ++this->Current;
+    ++this->Advances;
+    this->Checkpoints.Offer(this->Current, *this->Stepper);
+    part.Report(1.0);
+  }
+}
+
+void Trajectory::Record(const StepReport& report, double seconds)
+{
+  const auto columns = static_cast<std::size_t>(this->State().cols());
+  this->Totals.resize(this->History.size() * columns); // an abort may have left some
+  const double energy = this->Stepper->Energy();
+  for (std::size_t k = 0; k < columns; ++k)
+  {
+    this->Totals.push_back(
+      Total(*this->Surface, this->State(), static_cast<Eigen::Index>(k), this->Parallel));
+  }
+  this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped });
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/UnitVectors.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// A mean shorter than this tells little about where the vectors point, and can mislead: that of
+/// the normals of a closed surface with a hole points away from the hole.
+constexpr double Undecided = 0.5;
+
+/// Sums over the known vectors of each component of the surface: area, A u, and of lines A u u^T.
+Values SumKnown(const TriangleMesh& mesh, const PointData& data, bool lineField)
+{
+  const Eigen::Index m = data.Given.cols();
+  Values sums = Values::Zero(mesh.NumberOfComponents(), 1 + m + (lineField ? m * m : 0));
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    for (Index i = mesh.ComponentsBegin()[c]; i < mesh.ComponentsBegin()[c + 1]; ++i)
+    {
+      if (data.Missing[i])
+      {
+        continue;
+      }
+      const auto u = data.Given.row(i);
+      sums(c, 0) += mesh.ControlAreas()[i];
+      sums.row(c).segment(1, m) += mesh.ControlAreas()[i] * u;
+      if (lineField)
+      {
+        Eigen::Map<Eigen::MatrixXd>(&sums(c, 1 + m), m, m) +=
+          mesh.ControlAreas()[i] * (u.transpose() * u);
+      }
+    }
+  }
+  std::vector<Index> all(mesh.NumberOfComponents());
+  std::iota(all.begin(), all.end(), 0);
+  SumComponents(mesh.GetPartition(), all, sums);
+  return sums;
+}
+
+/// The direction that prevails, from a component's row of SumKnown(); zero where there is none.
+Eigen::RowVectorXd PrevailingDirection(
+  const Eigen::Ref<const Eigen::RowVectorXd>& sums, Eigen::Index m, bool lineField)
+{
+  const double area = sums[0];
+  Eigen::RowVectorXd sum = sums.segment(1, m);
+  if (lineField && area > 0.0)
+  {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(
+      Eigen::Map<const Eigen::MatrixXd>(sums.data() + 1 + m, m, m));
+    const bool decided = axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > Undecided * area;
+    sum = decided ? Eigen::RowVectorXd(axes.eigenvectors().col(m - 1).transpose())
+                  : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(m));
+  }
+  else if (!(sum.norm() > Undecided * area))
+  {
+    sum.setZero();
+  }
+  Normalize(sum);
+  return sum;
+}
+
+/// Of those neighbours of vertex i that have a direction.
+Eigen::RowVectorXd SumOfNeighbours(
+  const TriangleMesh& mesh, const Values& u, const Flags& known, bool lineField, Index i)
+{
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(u.cols());
+  for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
+  {
+    const Index corner = mesh.VertexCorners()[c];
+    for (const int step : { 1, 2 })
+    {
+      const Index j = mesh.OtherCorner(corner, step);
+      if (known[j])
+      {
+        sum += (lineField && sum.dot(u.row(j)) < 0.0 ? -1.0 : 1.0) * u.row(j);
+      }
+    }
+  }
+  return sum;
+}
+
+/// Give every vertex of begin .. end that has no direction yet the sum of its neighbours' that
+/// have one, ring by ring from the rim inwards; e_1 where nothing is known.
+void SpreadInwards(
+  const TriangleMesh& mesh, Values& u, Flags& known, bool lineField, Index begin, Index end)
+{
+  std::vector<Index> ring, open;
+  for (Index i = begin; i < end; ++i)
+  {
+    if (!known[i])
+    {
+      open.push_back(i);
+    }
+  }
+  while (!open.empty())
+  {
+    ring.clear();
+    std::vector<Index> left;
+    for (const Index i : open)
+    {
+      Eigen::RowVectorXd sum = SumOfNeighbours(mesh, u, known, lineField, i);
+      if (Normalize(sum))
+      {
+        u.row(i) = sum;
+        ring.push_back(i);
+      }
+      else
+      {
+        left.push_back(i);
+      }
+    }
+    if (ring.empty()) // nothing known, or neighbours that cancel exactly
+    {
+      u.row(left.back()) = Eigen::RowVectorXd::Unit(u.cols(), 0);
+      ring.push_back(left.back());
+      left.pop_back();
+    }
+    for (const Index i : ring)
+    {
+      known[i] = true;
+    }
+    open.swap(left);
+  }
+}
+
+/// The same for vectors on a surface in pieces, all components at once. (Of lines the signs in a
+/// sum depend on its order.)
+void SpreadInwards(const Partition& partition, const TriangleMesh& mesh, Values& u, Flags& known)
+{
+  Values sums(u.rows(), u.cols());
+  Flags reached(u.rows());
+  while (partition.Any(!known.all()))
+  {
+    sums.setZero();
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      if (!known[i])
+      {
+        sums.row(i) = SumOfNeighbours(mesh, u, known, false, i);
+      }
+    }
+    partition.AddOverSeams(sums);
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      reached[i] = !known[i] && Normalize(sums.row(i));
+    }
+    const bool stuck = !partition.Any(reached.any());
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      if (reached[i])
+      {
+        u.row(i) = sums.row(i);
+      }
+      else if (stuck && !known[i])
+      {
+        u.row(i) = Eigen::RowVectorXd::Unit(u.cols(), 0);
+      }
+    }
+    known = known || reached;
+    if (stuck)
+    {
+      known.setConstant(true);
+    }
+  }
+}
+
+} // namespace
+
+void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField,
+  InitialFill fill, std::int64_t seed, const std::vector<std::int64_t>& ids)
+{
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    if (!Normalize(data.Given.row(i)))
+    {
+      data.Given.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      data.Missing[i] = true;
+    }
+  }
+  const Flags undirected = data.Given.array().isNaN().rowwise().any();
+  FillMissing(mesh, data, fill, seed, ids);
+  const Partition* const partition = mesh.GetPartition();
+  if (!AnyProcess(partition, data.Missing.any()))
+  {
+    return;
+  }
+  Flags known = !data.Missing;
+  const Values sums = SumKnown(mesh, data, lineField);
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const Index begin = mesh.ComponentsBegin()[c];
+    const Index end = mesh.ComponentsBegin()[c + 1];
+    const Eigen::RowVectorXd mean = PrevailingDirection(sums.row(c), data.Given.cols(), lineField);
+    for (Index i = begin; i < end; ++i)
+    {
+      const bool directed = fill == InitialFill::Input && !undirected[i]; // a unit vector already
+      if (!data.Missing[i] || directed)
+      {
+        known[i] = true;
+        continue;
+      }
+      if (fill != InitialFill::Noise)
+      {
+        data.Start.row(i) = mean;
+      }
+      known[i] = Normalize(data.Start.row(i));
+    }
+    if (!partition)
+    {
+      SpreadInwards(mesh, data.Start, known, lineField, begin, end);
+    }
+  }
+  if (partition)
+  {
+    SpreadInwards(*partition, mesh, data.Start, known);
+  }
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    if (undirected[i])
+    {
+      data.Given.row(i) = data.Start.row(i); // never read as data, but finite
+    }
+  }
+}
+
+} // namespace SurfaceDiffusion

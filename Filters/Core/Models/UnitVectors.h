@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/InitialState.h"
+#include "Core/Models/Model.h"
+#include "Core/Surface/TriangleMesh.h"
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Maps into the unit sphere S^(m-1): one unit vector of m >= 2 components per vertex, a row of a
+/// Values. Line fields are such maps with u and -u taken as the same.
+
+/// Bring a row to length one, whatever its size; false (and unchanged) where it is zero or not
+/// finite: no direction.
+template <typename Row>
+bool Normalize(Row&& row)
+{
+  const double size = row.cwiseAbs().maxCoeff();
+  if (!(size > 0.0) || !std::isfinite(size) || row.hasNaN())
+  {
+    return false;
+  }
+  row /= size; // no overflow or underflow in the squares
+  row /= row.norm();
+  return true;
+}
+
+/// Make the data of a harmonic map from vectors of any length: Given is normalised where it is
+/// known; vectors without a direction (zero or NaN) become missing, and Start is filled there:
+/// - Mean: the normalised mean of the known vectors of the connected component (of lines: the main
+///   axis of the sum of u u^T). Where no direction prevails (the mean is shorter than 1/2, as of
+///   the normals of a closed surface) the rim of the hole spreads inwards instead;
+/// - Input: the vectors themselves, Mean where they have no direction;
+/// - Noise: random directions, each component uniform between the smallest and largest known value.
+/// A component without any known vector takes e_1. ids: one per vertex, for the random numbers. Of
+/// a surface in pieces: lines only where none is missing.
+void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField,
+  InitialFill fill, std::int64_t seed, const std::vector<std::int64_t>& ids);
+
+} // namespace SurfaceDiffusion

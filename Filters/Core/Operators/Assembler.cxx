@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Operators/Assembler.h"
+
+#include "Core/Foundation/IndexSet.h"
+#include "Core/Operators/SparseProduct.h"
+
+#include <algorithm>
+
+namespace SurfaceDiffusion
+{
+
+Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
+  : Surface(std::move(mesh))
+{
+  const TriangleMesh& m = *this->Surface;
+  const Index n = m.NumberOfVertices();
+  const auto& begin = m.VertexCornersBegin();
+  const auto& corners = m.VertexCorners();
+
+  // Rows are listed once, with slots counted from the start of the row; where rows begin, and so
+  // where slots are in the matrix, is known when all are listed.
+  std::vector<Index> outer(n + 1, 0);
+  std::vector<std::vector<Index>> rows(NumberOfBlocks(n)); // one after another, per block
+  this->SlotMap.resize(corners.size());
+  this->DiagonalSlot.resize(n);
+  ForEachBlock(parallel, n,
+    [&](Index block, Index first, Index last)
+    {
+      IndexSet row;
+      std::vector<Index> slot; // of the numbers that the set gives
+      rows[block].reserve(8 * static_cast<std::size_t>(last - first));
+      for (Index i = first; i < last; ++i)
+      {
+        row.Clear();
+        row.Insert(i);
+        for (Index c = begin[i]; c < begin[i + 1]; ++c) // most of these are new,
+        {
+          this->SlotMap[c].Next = row.Insert(m.OtherCorner(corners[c], 1));
+        }
+        for (Index c = begin[i]; c < begin[i + 1]; ++c) // most of these known
+        {
+          this->SlotMap[c].Last = row.Insert(m.OtherCorner(corners[c], 2));
+        }
+        const Index size = row.Size();
+        row.Rank(slot);
+        const std::size_t start = rows[block].size();
+        rows[block].resize(start + size);
+        for (Index k = 0; k < size; ++k)
+        {
+          rows[block][start + slot[k]] = row[k];
+        }
+        this->DiagonalSlot[i] = slot[0];
+        for (Index c = begin[i]; c < begin[i + 1]; ++c)
+        {
+          this->SlotMap[c] = { slot[this->SlotMap[c].Next], slot[this->SlotMap[c].Last] };
+        }
+        outer[i + 1] = size;
+      }
+    });
+  progress.Report(0.7);
+  for (Index i = 0; i < n; ++i)
+  {
+    outer[i + 1] += outer[i];
+  }
+
+  this->Empty.resize(n, n);
+  this->Empty.resizeNonZeros(outer[n]);
+  std::copy(outer.begin(), outer.end(), this->Empty.outerIndexPtr());
+  std::fill_n(this->Empty.valuePtr(), outer[n], 0.0);
+  ForEachBlock(parallel, n,
+    [&](Index block, Index first, Index last)
+    {
+      std::copy(rows[block].begin(), rows[block].end(), this->Empty.innerIndexPtr() + outer[first]);
+      for (Index i = first; i < last; ++i)
+      {
+        this->DiagonalSlot[i] += outer[i];
+        for (Index c = begin[i]; c < begin[i + 1]; ++c)
+        {
+          this->SlotMap[c].Next += outer[i];
+          this->SlotMap[c].Last += outer[i];
+        }
+      }
+    });
+  progress.Report(1.0);
+}
+
+void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diagonal, double scale,
+  const CornerWeights& coefficients, const double* weights, const ParallelFor& parallel,
+  const CornerWeights* signs) const
+{
+  const auto& begin = this->Surface->VertexCornersBegin();
+  const auto& corners = this->Surface->VertexCorners();
+  const Index* outer = matrix.outerIndexPtr();
+  double* values = matrix.valuePtr();
+  ForEach(parallel, this->Surface->NumberOfVertices(),
+    [&](Index i)
+    {
+      std::fill(values + outer[i], values + outer[i + 1], 0.0);
+      const Index diagonalSlot = this->DiagonalSlot[i];
+      double onDiagonal = 0.0;
+      const auto add = [&](Index slot, double coefficient, double sign)
+      {
+        if (slot == diagonalSlot)
+        {
+          // An edge from i to i, as intrinsic triangulations have them, can have a coefficient that
+          // all others would drown in, were it added and taken off again.
+          onDiagonal += (1.0 - sign) * coefficient;
+          return;
+        }
+        values[slot] -= sign * coefficient;
+        onDiagonal += coefficient;
+      };
+      for (Index c = begin[i]; c < begin[i + 1]; ++c)
+      {
+        const Index t = corners[c] / 3;
+        const int next = (corners[c] + 1) % 3; // 3 t + a: an edge is that opposite the third corner
+        const int last = (corners[c] + 2) % 3;
+        const double factor = weights ? scale * weights[t] : scale;
+        add(this->SlotMap[c].Next, factor * coefficients(t, last), signs ? (*signs)(t, last) : 1.0);
+        add(this->SlotMap[c].Last, factor * coefficients(t, next), signs ? (*signs)(t, next) : 1.0);
+      }
+      values[diagonalSlot] = diagonal[i] + onDiagonal;
+    });
+}
+
+void Assembler::Constrain(SparseMatrix& matrix, const Flags& fixed, const Values& values,
+  Values& load, const ParallelFor& parallel) const
+{
+  const Index* outer = matrix.outerIndexPtr();
+  const Index* inner = matrix.innerIndexPtr();
+  double* a = matrix.valuePtr();
+  ForEach(parallel, this->Surface->NumberOfVertices(),
+    [&](Index i)
+    {
+      load.row(i).setZero();
+      if (fixed[i])
+      {
+        load.row(i) = a[this->DiagonalSlot[i]] * values.row(i);
+      }
+      for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+      {
+        const Index j = inner[slot];
+        if (j != i && (fixed[i] || fixed[j]))
+        {
+          if (!fixed[i])
+          {
+            load.row(i) -= a[slot] * values.row(j);
+          }
+          a[slot] = 0.0;
+        }
+      }
+    });
+}
+
+void Multiply(const SparseMatrix& matrix, const Values& x, Values& y, const ParallelFor& parallel)
+{
+  ForEachBlock(parallel, static_cast<Index>(matrix.rows()),
+    [&](Index, Index begin, Index end)
+    {
+      switch (x.cols())
+      {
+        case 1:
+          return MultiplyRows<1>(matrix, x, y, begin, end);
+        case 2:
+          return MultiplyRows<2>(matrix, x, y, begin, end);
+        case 3:
+          return MultiplyRows<3>(matrix, x, y, begin, end);
+        default:
+          return MultiplyRows<0>(matrix, x, y, begin, end);
+      }
+    });
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Solvers/Multigrid.h"
+
+#include "Core/Solvers/Aggregation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr Index SmallEnough = 500; // vertices, to be solved directly
+constexpr double WorthALevel = 0.8; // of the vertices left, or fewer
+
+/// matrix scaled to unit diagonal, from both sides.
+SparseMatrix Scaled(const SparseMatrix& matrix, const Vector& scaling, const ParallelFor& parallel)
+{
+  SparseMatrix scaled = matrix;
+  const Index* outer = scaled.outerIndexPtr();
+  const Index* inner = scaled.innerIndexPtr();
+  double* a = scaled.valuePtr();
+  ForEach(parallel, static_cast<Index>(scaled.rows()),
+    [&](Index i)
+    {
+      for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+      {
+        a[slot] *= scaling[i] * scaling[inner[slot]];
+      }
+    });
+  return scaled;
+}
+
+/// In single precision, faster than Eigen's cast of a matrix.
+Eigen::SparseMatrix<float, Eigen::ColMajor, Index> Single(const SparseMatrix& matrix)
+{
+  Eigen::SparseMatrix<float, Eigen::ColMajor, Index> single(matrix.rows(), matrix.cols());
+  single.resizeNonZeros(matrix.nonZeros());
+  std::copy_n(matrix.outerIndexPtr(), matrix.cols() + 1, single.outerIndexPtr());
+  std::copy_n(matrix.innerIndexPtr(), matrix.nonZeros(), single.innerIndexPtr());
+  std::copy_n(matrix.valuePtr(), matrix.nonZeros(), single.valuePtr());
+  return single;
+}
+
+/// sums += sign (column i of `matrix`) . x, K columns of x, or k where K is 0.
+template <int K, typename Matrix, typename Numbers>
+void AddProduct(
+  const Matrix& matrix, Index i, const Numbers& x, int columns, float sign, float* sums)
+{
+  const int k = K > 0 ? K : columns;
+  const Index* outer = matrix.outerIndexPtr();
+  const Index* inner = matrix.innerIndexPtr();
+  const float* a = matrix.valuePtr();
+  for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+  {
+    const float* xj = x.data() + static_cast<std::ptrdiff_t>(inner[slot]) * k;
+    for (int c = 0; c < k; ++c)
+    {
+      sums[c] += sign * a[slot] * xj[c];
+    }
+  }
+}
+
+} // namespace
+
+Multigrid::Multigrid(const ParallelFor& parallel)
+  : Parallel(parallel)
+{
+}
+
+void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress)
+{
+  this->Levels.clear();
+  this->Columns = -1;
+  Vector kernel = matrix.diagonal().cwiseSqrt();
+  this->Scaling = kernel.cwiseInverse();
+  SparseMatrix current = Scaled(matrix, this->Scaling, this->Parallel);
+  double strength = 0.08; // as in the paper
+  double fraction = 0.0;
+  while (current.rows() > SmallEnough)
+  {
+    const SparseMatrix restriction = SmoothedAggregation(current, strength, kernel, this->Parallel);
+    if (restriction.rows() > WorthALevel * static_cast<double>(current.rows()))
+    {
+      break;
+    }
+    const SparseMatrix prolongation = restriction.transpose();
+    this->Levels.push_back(this->MakeLevel(current, restriction, prolongation));
+    current = GalerkinProduct(current, restriction, prolongation, this->Parallel);
+    strength *= 0.5;
+    fraction = 0.5 * (fraction + 1.0);
+    progress.Report(fraction);
+  }
+  this->CoarsestMatrix = std::move(current);
+  this->Coarsest = MakeCholeskySolver();
+  this->Coarsest->SetLimits({ std::numeric_limits<double>::infinity(), 0 }); // no refinement
+  this->Coarsest->SetMatrix(this->CoarsestMatrix, progress.Part(fraction, 1.0));
+}
+
+Multigrid::Level Multigrid::MakeLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
+  const SparseMatrix& prolongation) const
+{
+  Level level;
+  level.A = Single(matrix);
+  level.Prolongation = Single(restriction);
+  level.Restriction = Single(prolongation);
+  level.InverseD.resize(matrix.rows());
+  const Index* outer = matrix.outerIndexPtr();
+  const double* a = matrix.valuePtr();
+  ForEach(this->Parallel, static_cast<Index>(matrix.rows()),
+    [&](Index i)
+    {
+      double sum = 0.0;
+      for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+      {
+        sum += std::abs(a[slot]);
+      }
+      level.InverseD[i] = static_cast<float>(1.0 / sum);
+    });
+  return level;
+}
+
+void Multigrid::Resize(int columns)
+{
+  if (this->Columns == columns)
+  {
+    return;
+  }
+  this->Columns = columns;
+  for (Level& level : this->Levels)
+  {
+    for (Numbers* work : { &level.B, &level.X, &level.R, &level.D, &level.E })
+    {
+      work->resize(level.A.rows(), columns);
+    }
+  }
+  this->CoarsestB.resize(this->CoarsestMatrix.rows(), columns);
+  this->CoarsestX.resize(this->CoarsestMatrix.rows(), columns);
+  this->CoarsestNumbers.resize(this->CoarsestMatrix.rows(), columns);
+}
+
+void Multigrid::Apply(const Values& r, const std::vector<double>& scale, Values& z)
+{
+  const int k = static_cast<int>(r.cols());
+  this->Resize(k);
+  Numbers& b = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().B;
+  ForEach(this->Parallel, static_cast<Index>(r.rows()),
+    [&](Index i)
+    {
+      for (int c = 0; c < k; ++c)
+      {
+        b(i, c) = static_cast<float>(this->Scaling[i] * scale[c] * r(i, c));
+      }
+    });
+  switch (k)
+  {
+    case 1:
+      this->Cycle<1>(0, k);
+      break;
+    case 2:
+      this->Cycle<2>(0, k);
+      break;
+    case 3:
+      this->Cycle<3>(0, k);
+      break;
+    default:
+      this->Cycle<0>(0, k);
+      break;
+  }
+  const Numbers& x = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().X;
+  ForEach(this->Parallel, static_cast<Index>(r.rows()),
+    [&](Index i)
+    {
+      for (int c = 0; c < k; ++c)
+      {
+        z(i, c) = this->Scaling[i] / scale[c] * x(i, c);
+      }
+    });
+}
+
+/// R = from - A x, and finish(i, first number of row i, R of row i) in the same pass.
+template <int K, typename Finish>
+void Multigrid::Subtract(
+  Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)
+{
+  const int k = K > 0 ? K : columns;
+  ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
+    [&](Index i)
+    {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
+      float* r = level.R.data() + at;
+      float registers[K > 0 ? K : 1];
+      float* sums = K > 0 ? registers : r;
+      for (int c = 0; c < k; ++c)
+      {
+        sums[c] = from.data()[at + c];
+      }
+      AddProduct<K>(level.A, i, x, k, -1.0f, sums);
+      for (int c = 0; c < k; ++c)
+      {
+        r[c] = sums[c];
+      }
+      finish(i, at, sums);
+    });
+}
+
+/// y = or y += (the columns of `rows`) . x
+template <int K>
+void Multigrid::Product(const Matrix& rows, const Numbers& x, Numbers& y, int columns, bool add)
+{
+  const int k = K > 0 ? K : columns;
+  ForEach(this->Parallel, static_cast<Index>(rows.cols()),
+    [&](Index i)
+    {
+      float* yi = y.data() + static_cast<std::ptrdiff_t>(i) * k;
+      float registers[K > 0 ? K : 1];
+      float* sums = K > 0 ? registers : yi;
+      for (int c = 0; c < k; ++c)
+      {
+        sums[c] = add ? yi[c] : 0.0f;
+      }
+      AddProduct<K>(rows, i, x, k, 1.0f, sums);
+      for (int c = 0; c < k; ++c)
+      {
+        yi[c] = sums[c];
+      }
+    });
+}
+
+/// X = B_level B, symmetric: the smoother from zero, the coarser levels, the smoother again. With
+/// residuals r, the terms of the smoother are d = 4/3 D^-1 r and d' = 1/5 d + 12/5 D^-1 r'.
+template <int K>
+void Multigrid::Cycle(std::size_t number, int columns)
+{
+  if (number == this->Levels.size())
+  {
+    this->CoarsestB = this->CoarsestNumbers.cast<double>();
+    this->Coarsest->Solve(this->CoarsestB, this->CoarsestX);
+    this->CoarsestNumbers = this->CoarsestX.cast<float>();
+    return;
+  }
+  const int k = K > 0 ? K : columns;
+  Level& level = this->Levels[number];
+  const auto first = [&](Index i, std::ptrdiff_t at, const float* r)
+  {
+    for (int c = 0; c < k; ++c)
+    {
+      level.D.data()[at + c] = 4.0f / 3.0f * level.InverseD[i] * r[c];
+    }
+  };
+  const auto second = [&](Index i, std::ptrdiff_t at, const float* r, int c)
+  { return 0.2f * level.D.data()[at + c] + 2.4f * level.InverseD[i] * r[c]; };
+
+  ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
+    [&](Index i)
+    {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
+      first(i, at, level.B.data() + at);
+    });
+  this->Subtract<K>(level, level.B, level.D, columns,
+    [&](Index i, std::ptrdiff_t at, const float* r)
+    {
+      for (int c = 0; c < k; ++c)
+      {
+        const float e = second(i, at, r, c);
+        level.E.data()[at + c] = e;
+        level.X.data()[at + c] = level.D.data()[at + c] + e;
+      }
+    });
+  this->Subtract<K>(level, level.R, level.E, columns, [](Index, std::ptrdiff_t, const float*) {});
+
+  const bool last = number + 1 == this->Levels.size();
+  this->Product<K>(level.Restriction, level.R,
+    last ? this->CoarsestNumbers : this->Levels[number + 1].B, columns, false);
+  this->Cycle<K>(number + 1, columns);
+  this->Product<K>(level.Prolongation, last ? this->CoarsestNumbers : this->Levels[number + 1].X,
+    level.X, columns, true);
+
+  this->Subtract<K>(level, level.B, level.X, columns, first);
+  this->Subtract<K>(level, level.R, level.D, columns,
+    [&](Index i, std::ptrdiff_t at, const float* r)
+    {
+      for (int c = 0; c < k; ++c)
+      {
+        level.X.data()[at + c] += level.D.data()[at + c] + second(i, at, r, c);
+      }
+    });
+}
+
+} // namespace SurfaceDiffusion

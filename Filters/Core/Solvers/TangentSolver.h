@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Partition.h"
+#include "Core/Solvers/LinearSolver.h"
+
+namespace SurfaceDiffusion
+{
+
+/// P A P x = P b for symmetric positive definite A, where P takes each row x_i to its part
+/// orthogonal to u_i, and to 0 at fixed vertices: the linear system of a step whose unknowns lie in
+/// the tangent spaces of the sphere.
+struct TangentSystem
+{
+  const SparseMatrix& Matrix;
+  const Values& U; ///< n x m, no row zero
+  const Flags& Fixed;
+  const Values& B;
+  const Vector& Inertia; ///< the part of diag(A) that multiplies u itself in a time step
+  /// Of a surface in pieces, whose Matrix, B and Inertia are those of the triangles here.
+  const SurfaceDiffusion::Partition* Partition = nullptr;
+};
+
+/// Solves such systems by conjugate gradients from x = 0, with one recurrence for all columns,
+/// which P couples. Every iterate has a smaller 1/2 x.Ax - b.x than the one before: a step that
+/// uses an unfinished x still goes downhill.
+class TangentSolver
+{
+public:
+  explicit TangentSolver(const ParallelFor& parallel = SerialFor())
+    : Parallel(parallel)
+  {
+  }
+
+  /// preconditioner: a solver that has taken a matrix near A; none: the diagonal of A (Jacobi). The
+  /// residual is in the norm of LinearSolver, relative to the larger of P b and Inertia u: to what
+  /// the right-hand side would be if x were the whole of u.
+  SolveReport Solve(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
+    const IterationLimits& limits, const ProgressMonitor& progress = ProgressMonitor());
+
+private:
+  template <int K>
+  SolveReport SolveColumns(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
+    const IterationLimits& limits, const ProgressMonitor& progress);
+  template <int K>
+  double Precondition(const TangentSystem& system, LinearSolver* preconditioner);
+
+  const ParallelFor& Parallel;
+  Vector InverseDiagonal;
+  Values Diagonals; ///< per vertex of the diagonal of A and the inertia
+  Values R, Z, P, Q;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Types.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Bits 0, 1, 2, ... of the lower 21 moved to 0, 3, 6, ...
+inline std::uint64_t SpreadBits(std::uint64_t x)
+{
+  x = (x | x << 32) & 0x001F00000000FFFF;
+  x = (x | x << 16) & 0x001F0000FF0000FF;
+  x = (x | x << 8) & 0x100F00F00F00F00F;
+  x = (x | x << 4) & 0x10C30C30C30C30C3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+/// Per axis of the unit cube: as fine as neighbours in memory need to be near on the surface.
+constexpr int HilbertBits = 12;
+constexpr double HilbertCells = 1 << HilbertBits;
+
+/// Position along the three-dimensional Hilbert curve of a cell, < 2^36.
+/// J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004).
+inline std::uint64_t HilbertPosition(std::array<std::uint32_t, 3> x)
+{
+  for (std::uint32_t q = 1U << (HilbertBits - 1); q > 1; q >>= 1)
+  {
+    const std::uint32_t p = q - 1;
+    for (auto& xi : x)
+    {
+      // Invert the low bits of the first axis where the bit is set, exchange them with the first
+      // axis' where it is not. Masks, since no branch predictor knows such bits.
+      const std::uint32_t set = xi & q ? ~0U : 0U;
+      const std::uint32_t t = (x[0] ^ xi) & p & ~set;
+      x[0] ^= t | (p & set);
+      xi ^= t;
+    }
+  }
+  // Gray encode.
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  // Bit k of t: parity of the bits of the last axis above k.
+  std::uint32_t t = x[2] >> 1;
+  for (const int shift : { 1, 2, 4, 8, 16 })
+  {
+    t ^= t >> shift;
+  }
+  return SpreadBits(x[0] ^ t) << 2 | SpreadBits(x[1] ^ t) << 1 | SpreadBits(x[2] ^ t);
+}
+
+struct HilbertPlace
+{
+  std::uint64_t Position;
+  Index Vertex;
+};
+
+/// By position; places that share one keep their order. Sorts by one digit of the position after
+/// the other, from the lowest.
+inline void SortAlongCurve(std::vector<HilbertPlace>& places)
+{
+  constexpr std::uint64_t digit = (1 << HilbertBits) - 1;
+  std::vector<HilbertPlace> sorted(places.size());
+  for (int shift = 0; shift < 3 * HilbertBits; shift += HilbertBits)
+  {
+    std::array<Index, digit + 2> begin = {};
+    for (const HilbertPlace& place : places)
+    {
+      ++begin[(place.Position >> shift & digit) + 1];
+    }
+    for (std::size_t d = 0; d < digit; ++d)
+    {
+      begin[d + 1] += begin[d];
+    }
+    for (const HilbertPlace& place : places)
+    {
+      sorted[begin[place.Position >> shift & digit]++] = place;
+    }
+    places.swap(sorted);
+  }
+}
+
+} // namespace SurfaceDiffusion

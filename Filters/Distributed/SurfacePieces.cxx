@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/SurfacePieces.h"
+
+#include "Distributed/Processes.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
+#include "vtkInformationIntegerKey.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <set>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// Appends the number of the surface of each leaf that is there, in the order of iterators. An
+/// absent block counts: other processes may have it.
+void NumberSurfaces(vtkDataObject* data, int& surfaces, std::vector<int>& ofLeaves)
+{
+  if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
+  {
+    for (unsigned int b = 0; b < blocks->GetNumberOfBlocks(); ++b)
+    {
+      NumberSurfaces(blocks->GetBlock(b), surfaces, ofLeaves);
+    }
+    return;
+  }
+  if (auto* members = vtkPartitionedDataSetCollection::SafeDownCast(data))
+  {
+    for (unsigned int m = 0; m < members->GetNumberOfPartitionedDataSets(); ++m)
+    {
+      NumberSurfaces(members->GetPartitionedDataSet(m), surfaces, ofLeaves);
+    }
+    return;
+  }
+  if (auto* partitions = vtkPartitionedDataSet::SafeDownCast(data)) // vtkMultiPieceDataSet is one
+  {
+    for (unsigned int p = 0; p < partitions->GetNumberOfPartitions(); ++p)
+    {
+      if (partitions->GetPartitionAsDataObject(p))
+      {
+        ofLeaves.push_back(surfaces);
+      }
+    }
+  }
+  else if (data)
+  {
+    ofLeaves.push_back(surfaces);
+  }
+  ++surfaces;
+}
+
+} // namespace
+
+bool MakeOutputObject(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+  if (!input)
+  {
+    return false;
+  }
+  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
+  if (!output || !output->IsA(input->GetClassName()) || !input->IsA(output->GetClassName()))
+  {
+    auto made = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
+    outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
+  }
+  return true;
+}
+
+std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* output)
+{
+  std::vector<SurfacePiece> pieces;
+  const auto add = [&](int surface, vtkDataObject* from, vtkDataObject* to)
+  {
+    if (auto* data = vtkPolyData::SafeDownCast(from))
+    {
+      pieces.push_back({ surface, data, vtkPolyData::SafeDownCast(to) });
+    }
+  };
+  auto* compositeInput = vtkCompositeDataSet::SafeDownCast(input);
+  auto* compositeOutput = vtkCompositeDataSet::SafeDownCast(output);
+  if (!compositeInput)
+  {
+    output->ShallowCopy(input);
+    add(0, input, output);
+    return pieces;
+  }
+  compositeOutput->CopyStructure(compositeInput);
+  compositeOutput->GetFieldData()->ShallowCopy(compositeInput->GetFieldData());
+  output->GetInformation()->CopyEntry(input->GetInformation(), vtkDataObject::DATA_TIME_STEP());
+  int surfaces = 0;
+  std::vector<int> ofLeaves;
+  NumberSurfaces(input, surfaces, ofLeaves);
+  std::size_t number = 0;
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(compositeInput->NewIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    vtkDataObject* leaf = iterator->GetCurrentDataObject();
+    auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
+    copy->ShallowCopy(leaf);
+    compositeOutput->SetDataSet(iterator, copy);
+    // Other kinds of composite data (grids of several levels) hold no polydata.
+    add(number < ofLeaves.size() ? ofLeaves[number] : 0, leaf, copy);
+    ++number;
+  }
+  return pieces;
+}
+
+bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
+  vtkMultiProcessController* controller, bool whole)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* const input = inputs[0]->GetInformationObject(0);
+  const bool several = input && input->Has(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST()) &&
+    input->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()) &&
+    input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  if (whole || !several || Processes(controller).Count() > 1)
+  {
+    return false;
+  }
+  vtkErrorWithObjectMacro(filter,
+    "the input is one of " << input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())
+                           << " pieces, and Controller knows no process that has the others; "
+                              "allowed: a controller of all of them, or null where each piece is a "
+                              "surface of its own");
+  return true;
+}
+
+bool HasPoints(const std::vector<SurfacePiece>& pieces)
+{
+  return std::any_of(pieces.begin(), pieces.end(),
+    [](const SurfacePiece& piece) { return piece.Input->GetNumberOfPoints() > 0; });
+}
+
+bool HasSurfaceInPieces(const std::vector<SurfacePiece>& pieces)
+{
+  std::set<int> found;
+  for (const SurfacePiece& piece : pieces)
+  {
+    if (piece.Input->GetNumberOfPoints() > 0 && !found.insert(piece.Surface).second)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace SurfaceDiffusion
