@@ -355,8 +355,7 @@ void vtkHarmonicMapFilter::PrepareData(ModelInput& input)
 {
   FillMissingUnitVectors(*input.Surface.Mesh, input.Data, this->LineField,
     static_cast<SurfaceDiffusion::InitialFill>(this->InitialFill), this->RandomSeed, input.Ids);
-  if (AnyProcess(
-        input.Surface.Mesh->GetPartition(), (input.Data.Fixed && input.Data.Missing).any()))
+  if (input.Surface.Mesh->GetReduction().Any((input.Data.Fixed && input.Data.Missing).any()))
   {
     throw std::runtime_error("InputArray has a vector of length zero where FixedArray holds it; "
                              "fixed vectors must have a direction");
@@ -403,8 +402,8 @@ std::unique_ptr<SurfaceDiffusion::Model> vtkHarmonicMapFilter::MakeModel(
       settings.Method = HarmonicMap::Preconditioner::Jacobi;
       break;
     case SOLVER_MULTIGRID:
-      settings.Method = mesh.GetPartition() ? HarmonicMap::Preconditioner::Factor
-                                            : HarmonicMap::Preconditioner::Automatic;
+      settings.Method = mesh.GetReduction().IsSerial() ? HarmonicMap::Preconditioner::Automatic
+                                                       : HarmonicMap::Preconditioner::Factor;
       break;
     default:
       settings.Method = HarmonicMap::Preconditioner::Automatic;
@@ -413,7 +412,7 @@ std::unique_ptr<SurfaceDiffusion::Model> vtkHarmonicMapFilter::MakeModel(
   if (this->Scheme != SCHEME_EXPLICIT_REACTION)
   {
     task.NumberOfSolves = 1e9; // a factor in any case: the model knows when to use it
-    if (mesh.GetPartition())
+    if (!mesh.GetReduction().IsSerial())
     {
       task.DiffusionNumber = std::numeric_limits<double>::infinity(); // or multigrid
     }

@@ -360,8 +360,8 @@ vtkTuringTextureFilter::Rates vtkTuringTextureFilter::MakeRates(const ModelInput
         this->ReadRates(input, rates);
       }
     });
-  const Partition* const partition = mesh.GetPartition();
-  if (AnyProcess(partition, input.Arrays.Rates))
+  const Reduction& reduction = mesh.GetReduction();
+  if (reduction.Any(input.Arrays.Rates))
   {
     const auto mean = [&](const Vector& rate)
     {
@@ -372,8 +372,8 @@ vtkTuringTextureFilter::Rates vtkTuringTextureFilter::MakeRates(const ModelInput
         area += mesh.Shapes()[t].Area();
         sum += mesh.Shapes()[t].Area() * unit * rate[t];
       }
-      area = SumOverProcesses(partition, area);
-      sum = SumOverProcesses(partition, sum);
+      area = reduction.Sum(area);
+      sum = reduction.Sum(sum);
       return area > 0.0 ? sum / area : 0.0;
     };
     for (int c = 0; c < 2; ++c)
@@ -524,7 +524,7 @@ std::unique_ptr<Model> vtkTuringTextureFilter::MakeModel(ModelInput& input, int 
     chemicals[c].Coefficients =
       AnisotropicWeights(mesh, isotropic, frames, rates.Along[c], rates.Across[c], input.Parallel);
   }
-  settings.SideBySide = !mesh.GetPartition() && SolveSideBySide(direct);
+  settings.SideBySide = mesh.GetReduction().IsSerial() && SolveSideBySide(direct);
   return std::make_unique<ReactionDiffusion>(input.Surface.Operators, reaction,
     std::move(chemicals), std::move(input.Data), settings, input.Parallel);
 }
@@ -532,7 +532,7 @@ std::unique_ptr<Model> vtkTuringTextureFilter::MakeModel(ModelInput& input, int 
 void vtkTuringTextureFilter::PrepareResult(const SurfaceRun& run, const ProgressMonitor&)
 {
   this->ContrastLimits[&run] = SurfaceDiffusion::ContrastLimits(
-    run.Path->State().col(this->TextureChemical), run.Surface->Mesh->GetPartition());
+    run.Path->State().col(this->TextureChemical), run.Surface->Mesh->GetReduction());
 }
 
 void vtkTuringTextureFilter::WriteResult(

@@ -390,7 +390,7 @@ void vtkSurfaceDiffusionAlgorithm::Execution::MakeSurface(
   if (this->Group)
   {
     run.Partition = std::make_shared<PiecePartition>(*this->Group, *run.Surface, run.Identity);
-    run.Surface->SetPartition(run.Partition);
+    run.Surface->SetReduction(run.Partition);
   }
 }
 
@@ -548,7 +548,7 @@ PointData vtkSurfaceDiffusionAlgorithm::Execution::ReadData(const Block& block)
     {
       all << data.Given, data.Missing.cast<double>(), data.Fixed.cast<double>();
     }
-    run.Partition->TakeFromOwners(all);
+    run.Partition->UpdateFromOwners(all);
     data.Given = all.leftCols(columns);
     data.Missing = all.col(columns).array() != 0.0;
     data.Fixed = all.col(columns + 1).array() != 0.0;

@@ -48,9 +48,9 @@ struct PolyDataSurface
   PolyDataSurface(vtkPolyData* input, const Options& options, const ProgressMonitor& progress);
 
   /// Declare this surface a process's part of one. Only without IntrinsicDelaunay.
-  void SetPartition(std::shared_ptr<const Partition> partition)
+  void SetReduction(std::shared_ptr<const Reduction> reduction)
   {
-    this->InputMesh->SetPartition(std::move(partition));
+    this->InputMesh->SetReduction(std::move(reduction));
   }
 
   /// A text that differs whenever another surface would come out.

@@ -148,7 +148,7 @@ double HarmonicMap::EnergyDensity(double square) const
 
 double HarmonicMap::Energy() const
 {
-  return SumOverProcesses(this->Operators->Mesh().GetPartition(), this->EnergyHere());
+  return this->Operators->Mesh().GetReduction().Sum(this->EnergyHere());
 }
 
 double HarmonicMap::EnergyHere() const
@@ -180,7 +180,7 @@ double HarmonicMap::Objective() const
       [&](Index i)
       { return mesh.ControlAreas()[i] * (this->U.row(i) - this->Anchor.row(i)).squaredNorm(); }) /
       (2.0 * this->Options.TimeStep);
-  return SumOverProcesses(mesh.GetPartition(), here);
+  return mesh.GetReduction().Sum(here);
 }
 
 /// The matrix (1 + lambda dt 1_D) M + dt K(g) with g, and the signs of lines, at u.
@@ -345,13 +345,14 @@ double HarmonicMap::Descend(double objective, StepReport& report, const Progress
   return objective;
 }
 
-/// D of the class comment, times dt.
+/// D of the class comment, times dt. An edge on an interface counts once, with the absolute value
+/// of its accumulated entry.
 void HarmonicMap::FindDamping()
 {
+  const Reduction& reduction = this->Operators->Mesh().GetReduction();
   const Index* outer = this->Matrix.outerIndexPtr();
   const Index* inner = this->Matrix.innerIndexPtr();
   const double* a = this->Matrix.valuePtr();
-  const Partition* const partition = this->Operators->Mesh().GetPartition();
   ForEach(this->Parallel, static_cast<Index>(this->Matrix.rows()),
     [&](Index i)
     {
@@ -360,43 +361,33 @@ void HarmonicMap::FindDamping()
       {
         excess += inner[slot] == i ? -a[slot] : std::abs(a[slot]);
       }
-      this->Damping[i] = partition ? excess : std::max(excess, 0.0);
+      this->Damping[i] = excess;
     });
-  if (partition)
-  {
-    this->JoinDamping(*partition);
-  }
-}
-
-/// From what the triangles here give: where an edge lies on a seam, it is the size of the sum over
-/// the processes that counts, and once.
-void HarmonicMap::JoinDamping(const Partition& partition)
-{
-  const std::vector<std::array<Index, 2>>& edges = partition.SeamEdges();
-  this->SeamCoefficients.resize(edges.size());
+  const std::vector<std::array<Index, 2>>& edges = reduction.InterfaceEdges();
+  this->InterfaceEntries.resize(edges.size());
   const auto add = [&](std::size_t edge, double sign)
   {
     for (const Index i : edges[edge])
     {
-      this->Damping[i] += sign * std::abs(this->SeamCoefficients[edge]);
+      this->Damping[i] += sign * std::abs(this->InterfaceEntries[edge]);
     }
   };
   for (std::size_t e = 0; e < edges.size(); ++e)
   {
-    this->SeamCoefficients[e] = this->Matrix.coeff(edges[e][0], edges[e][1]);
+    this->InterfaceEntries[e] = this->Matrix.coeff(edges[e][0], edges[e][1]);
     add(e, -1.0);
   }
-  partition.AddOverSeamEdges(this->SeamCoefficients.data());
+  reduction.AccumulateInterfaceEdges(this->InterfaceEntries.data());
   for (std::size_t e = 0; e < edges.size(); ++e)
   {
-    if (partition.OwnsSeamEdge(static_cast<Index>(e)))
+    if (reduction.OwnsInterfaceEdge(static_cast<Index>(e)))
     {
       add(e, 1.0);
     }
   }
-  partition.AddOverSeams(this->Damping);
+  reduction.Accumulate(this->Damping);
   ForEach(this->Parallel, static_cast<Index>(this->Damping.size()),
-    [&](Index i) { this->Damping[i] = partition.Owns(i) ? std::max(this->Damping[i], 0.0) : 0.0; });
+    [&](Index i) { this->Damping[i] = reduction.Owns(i) ? std::max(this->Damping[i], 0.0) : 0.0; });
 }
 
 SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
@@ -430,7 +421,7 @@ SolveReport HarmonicMap::TrySolve(bool factor, Values& step, const ProgressMonit
     this->Solver->SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
   }
   const TangentSystem system{ this->Matrix, this->Previous, this->Data.Fixed, this->RightHandSide,
-    this->Diagonal, this->Operators->Mesh().GetPartition() };
+    this->Diagonal, this->Operators->Mesh().GetReduction() };
   return this->Tangent.Solve(system, step, factor ? this->Solver.get() : nullptr,
     this->Options.Limits, factor ? progress.Part(0.5, 1.0) : progress);
 }

@@ -114,7 +114,6 @@ private:
   SolveReport SolveInTangentSpaces(const ProgressMonitor& progress);
   SolveReport TrySolve(bool factor, Values& step, const ProgressMonitor& progress);
   void FindDamping();
-  void JoinDamping(const Partition& partition);
   void ProjectToSphere();
   double Objective() const;
   double EnergyHere() const;
@@ -137,8 +136,8 @@ private:
   TangentSolver Tangent;
   SparseMatrix Matrix;
   Vector Diagonal; ///< (1 + lambda dt 1_D) M
-  Vector Damping; ///< D, times dt; on seams in one process alone
-  std::vector<double> SeamCoefficients; ///< off the diagonal, of edges on seams
+  Vector Damping; ///< D, times dt; of an interface vertex in its owner only
+  std::vector<double> InterfaceEntries; ///< matrix entries of the edges on interfaces
   Vector Weights, Squares; ///< g and |grad u|^2 per triangle
   CornerWeights Signs; ///< of line fields
   Values Load; ///< what fixed neighbours give to the right-hand side

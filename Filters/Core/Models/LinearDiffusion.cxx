@@ -25,7 +25,7 @@ LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   , Origin(U.cols())
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  const double area = SumOverProcesses(mesh.GetPartition(), mesh.ControlAreas().sum());
+  const double area = mesh.GetReduction().Sum(mesh.ControlAreas().sum());
   for (Eigen::Index k = 0; k < this->U.cols(); ++k)
   {
     const double mean = Total(mesh, this->U, k, parallel) / area;
@@ -185,7 +185,7 @@ double LinearDiffusion::Energy() const
             (this->U.row(i) - this->Data.Given.row(i)).squaredNorm();
         });
   }
-  return SumOverProcesses(mesh.GetPartition(), energy);
+  return mesh.GetReduction().Sum(energy);
 }
 
 double DirichletEnergy(const TriangleMesh& mesh, const CornerWeights& coefficients, const Values& u,

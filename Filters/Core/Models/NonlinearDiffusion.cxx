@@ -244,7 +244,7 @@ double NonlinearDiffusion::Energy() const
         });
     }
   }
-  return SumOverProcesses(mesh.GetPartition(), energy);
+  return mesh.GetReduction().Sum(energy);
 }
 
 } // namespace SurfaceDiffusion

@@ -25,13 +25,12 @@ const double Delta = 1.0 - 0.5 / Gamma;
 template <typename F>
 double Norm(const TriangleMesh& mesh, const ParallelFor& parallel, const F& f)
 {
-  return std::sqrt(SumOverProcesses(mesh.GetPartition(),
-    Sum(parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        const double value = f(i);
-        return mesh.ControlAreas()[i] * value * value;
-      })));
+  return std::sqrt(mesh.GetReduction().Sum(Sum(parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      const double value = f(i);
+      return mesh.ControlAreas()[i] * value * value;
+    })));
 }
 
 } // namespace
@@ -63,6 +62,8 @@ ReactionDiffusion::ReactionDiffusion(std::shared_ptr<const Assembler> assembler,
   , Options(settings)
   , Parallel(parallel)
   , ImplicitTime(settings.TimeStep * (settings.TimeScheme == Scheme::SecondOrder ? Gamma : 1.0))
+  , Areas(this->Operators->Mesh().GetReduction().Accumulated(
+      this->Operators->Mesh().ControlAreas(), this->AccumulatedAreas))
   , U(this->Data.Start)
 {
   for (int c = 0; c < 2; ++c)
@@ -111,11 +112,6 @@ void ReactionDiffusion::Prepare(const ProgressMonitor& progress)
         matrix, this->Data.Fixed, this->New[c], this->Load[c], this->Parallel);
     }
     this->Chemicals[c].Solver->SetMatrix(matrix, progress.Part(0.5 * c, 0.5 * c + 0.5));
-  }
-  if (const Partition* const partition = this->Operators->Mesh().GetPartition())
-  {
-    this->WholeAreas = areas;
-    partition->AddOverSeams(this->WholeAreas);
   }
   if (this->Options.SideBySide)
   {
@@ -252,27 +248,19 @@ void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
   {
     return;
   }
-  const Partition* const partition = this->Operators->Mesh().GetPartition();
-  const Index n = this->Operators->Mesh().NumberOfVertices();
-  const Vector& areas = partition ? this->WholeAreas : this->Operators->Mesh().ControlAreas();
+  const Reduction& reduction = this->Operators->Mesh().GetReduction();
   for (int c = 0; c < 2; ++c)
   {
-    if (partition)
-    {
-      ForEach(this->Parallel, n,
-        [&](Index i)
-        { this->Force[c](i) = u[c](i) <= 0.0 ? this->IntegrateDiffusion(c, u[c], i) : 0.0; });
-      partition->AddOverSeams(this->Force[c]);
-    }
-    ForEach(this->Parallel, n,
+    reduction.AccumulateEach(
+      this->Parallel, this->Force[c],
+      [&](Index i)
+      { this->Force[c](i) = u[c](i) <= 0.0 ? this->IntegrateDiffusion(c, u[c], i) : 0.0; },
       [&](Index i)
       {
         double force = 0.0;
         if (u[c](i) <= 0.0 && !this->Data.Fixed[i])
         {
-          const double integral =
-            partition ? this->Force[c](i) : this->IntegrateDiffusion(c, u[c], i);
-          const double diffusion = integral / (this->ImplicitTime * areas[i]);
+          const double diffusion = this->Force[c](i) / (this->ImplicitTime * this->Areas[i]);
           force = std::max(0.0, -std::max(0.0, diffusion) - f[c](i));
         }
         this->Force[c](i) = force;
@@ -316,7 +304,7 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
     const Solution& solution = this->Solutions[c];
     constexpr double boundless = 1e100;
     if (solution.Failure &&
-      AnyProcess(this->Operators->Mesh().GetPartition(),
+      this->Operators->Mesh().GetReduction().Any(
         !(this->RightHandSide[c].array().abs() < boundless).all()))
     {
       throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
@@ -357,7 +345,7 @@ void ReactionDiffusion::Project(double dt, StepReport& report)
     return;
   }
   const TriangleMesh& mesh = this->Operators->Mesh();
-  const double held = SumOverVertices(mesh.GetPartition(), this->Parallel, mesh.NumberOfVertices(),
+  const double held = mesh.GetReduction().SumOverVertices(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       int count = 0;
@@ -393,9 +381,8 @@ void ReactionDiffusion::FinishStep()
   {
     const Values& u = this->New[c];
     const Values& before = this->Old[c];
-    const double area = SumOverProcesses(mesh.GetPartition(),
-      Sum(
-        this->Parallel, mesh.NumberOfVertices(), [&](Index i) { return mesh.ControlAreas()[i]; }));
+    const double area = mesh.GetReduction().Sum(Sum(
+      this->Parallel, mesh.NumberOfVertices(), [&](Index i) { return mesh.ControlAreas()[i]; }));
     const double mean = Total(mesh, u, 0, this->Parallel) / area;
     const double pattern = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - mean; });
     const double change = Norm(mesh, this->Parallel, [&](Index i) { return u(i) - before(i); });
@@ -407,9 +394,9 @@ void ReactionDiffusion::FinishStep()
 double ReactionDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  return SumOverProcesses(mesh.GetPartition(),
+  return mesh.GetReduction().Sum(
     DirichletEnergy(mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
-      DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel));
+    DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel));
 }
 
 } // namespace SurfaceDiffusion

@@ -125,7 +125,8 @@ private:
   const ParallelFor& Parallel;
   double ImplicitTime; ///< dt times the implicit part of a stage
   std::array<SparseMatrix, 2> Matrices;
-  Vector WholeAreas; ///< of a surface in pieces: the control areas over all of them
+  Vector AccumulatedAreas;
+  const Vector& Areas; ///< of the control cells, consistent
   bool Prepared = false;
   bool Done = false;
   Pair Load; ///< what fixed neighbours give to the right-hand side

@@ -15,7 +15,7 @@ namespace
 {
 
 /// The largest max - min over the columns; 1 for constants and where there are no values.
-double ValueRange(const Values& u, const Partition* partition)
+double ValueRange(const Values& u, const Reduction& reduction)
 {
   constexpr double none = -std::numeric_limits<double>::infinity();
   Eigen::RowVectorXd high = Eigen::RowVectorXd::Constant(u.cols(), none);
@@ -25,11 +25,8 @@ double ValueRange(const Values& u, const Partition* partition)
     high = u.colwise().maxCoeff();
     minusLow = -u.colwise().minCoeff();
   }
-  if (partition)
-  {
-    partition->Max(high.data(), static_cast<Index>(u.cols()));
-    partition->Max(minusLow.data(), static_cast<Index>(u.cols()));
-  }
+  reduction.Max(high.data(), static_cast<Index>(u.cols()));
+  reduction.Max(minusLow.data(), static_cast<Index>(u.cols()));
   const double range = u.cols() > 0 ? (high + minusLow).maxCoeff() : 0.0;
   return range > 0.0 ? range : 1.0;
 }
@@ -85,7 +82,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   TotalVariationMinimizer::Settings minimizer;
   minimizer.Function = settings.Function;
   minimizer.Coupling = settings.Coupling;
-  minimizer.Range = ValueRange(this->Data.Start, mesh.GetPartition());
+  minimizer.Range = ValueRange(this->Data.Start, mesh.GetReduction());
   minimizer.StopTolerance = settings.StopTolerance;
   minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
   this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Operators, std::move(gradients),
@@ -148,7 +145,7 @@ double TotalVariationFlow::Energy() const
                                                                       : distance.lpNorm<1>();
         return mesh.ControlAreas()[i] * this->FidelityAt(i) * density;
       });
-    energy += SumOverProcesses(mesh.GetPartition(), here);
+    energy += mesh.GetReduction().Sum(here);
   }
   return energy;
 }

@@ -130,22 +130,19 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   , Fixed(std::move(fixed))
   , Options(settings)
   , Parallel(parallel)
+  , Areas(this->Operators->Mesh().GetReduction().Accumulated(
+      this->Operators->Mesh().ControlAreas(), this->AccumulatedAreas))
   , Descent(parallel)
 {
   const TriangleMesh& mesh = this->Operators->Mesh();
-  const Partition* const partition = mesh.GetPartition();
-  if (partition)
-  {
-    this->WholeAreas = mesh.ControlAreas();
-    partition->AddOverSeams(this->WholeAreas);
-  }
+  const Reduction& reduction = mesh.GetReduction();
   this->NumberOfVertices =
-    SumOverVertices(partition, parallel, mesh.NumberOfVertices(), [](Index) { return 1.0; });
+    reduction.SumOverVertices(parallel, mesh.NumberOfVertices(), [](Index) { return 1.0; });
   this->GradientPenalty.resize(mesh.NumberOfTriangles());
   this->ValuePenalty.resize(mesh.NumberOfVertices());
   const EdgeFunction function = WithoutBeta(settings.Function);
   const double perUnknown =
-    std::sqrt(SumOverProcesses(partition, mesh.NumberOfTriangles()) / this->NumberOfVertices);
+    std::sqrt(reduction.Sum(mesh.NumberOfTriangles()) / this->NumberOfVertices);
   CornerWeights coefficients(mesh.NumberOfTriangles(), 3);
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
@@ -166,14 +163,13 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   ForEach(parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
-      const double area = this->Areas()[i];
+      const double area = this->Areas[i];
       const double nu = this->Absolute[i] * area;
       this->ValuePenalty[i] = nu > 0.0
         ? ValuePenaltyOfGradients * function(settings.Range * settings.Range / area) +
           ValuePenaltyOfFidelity * nu / settings.Range
         : 0.0;
-      const bool counts = !partition || partition->Owns(i);
-      diagonal[i] = counts ? area * this->Quadratic[i] + this->ValuePenalty[i] : 0.0;
+      diagonal[i] = reduction.Owns(i) ? area * this->Quadratic[i] + this->ValuePenalty[i] : 0.0;
     });
   TakePattern(this->Operators->Pattern(), this->Matrix, parallel);
   this->Operators->Fill(this->Matrix, diagonal, 1.0, coefficients, nullptr, parallel);
@@ -205,7 +201,7 @@ struct TotalVariationMinimizer::Pass
   const Values& U;
   const int Columns = K > 0 ? K : static_cast<int>(U.cols());
   const TriangleMesh& Mesh = Self.Operators->Mesh();
-  const Partition* const Pieces = Mesh.GetPartition();
+  const Reduction& OverProcesses = Mesh.GetReduction();
   const bool Joint = Self.Options.Coupling == ChannelCoupling::Joint;
   const bool HasAbsolute = (Self.Absolute.array() > 0.0).any();
 
@@ -316,7 +312,7 @@ struct TotalVariationMinimizer::Pass
     ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
       [&](Index i)
       {
-        const double nu = this->Self.Absolute[i] * this->Self.Areas()[i];
+        const double nu = this->Self.Absolute[i] * this->Self.Areas[i];
         if (nu == 0.0)
         {
           return;
@@ -339,26 +335,15 @@ struct TotalVariationMinimizer::Pass
   /// The change of the right-hand side goes into the residual.
   void UpdateResidual()
   {
-    if (this->Pieces)
-    {
-      ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
-        [&](Index i)
-        {
-          for (int k = 0; k < this->Count(); ++k)
-          {
-            this->Self.Dual(i, k) = this->AddCorners(0.0, i, k);
-          }
-        });
-      this->Pieces->AddOverSeams(this->Self.Dual);
-    }
-    ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
+    this->OverProcesses.AccumulateEach(
+      this->Self.Parallel, this->Self.Dual, [&](Index i) { this->AddCorners(i); },
       [&](Index i)
       {
         if (this->Self.Fixed[i])
         {
           return;
         }
-        const double mu = this->Self.Areas()[i] * this->Self.Quadratic[i];
+        const double mu = this->Self.Areas[i] * this->Self.Quadratic[i];
         const double rho = this->Self.ValuePenalty[i];
         double* side = &this->Self.RightHandSide(i, 0);
         double* residual = &this->Self.Descent.Residual(i, 0);
@@ -369,22 +354,26 @@ struct TotalVariationMinimizer::Pass
           {
             sum += rho * (this->F(i, k) + this->Self.Q(i, k) - this->Self.C(i, k));
           }
-          sum = this->Pieces ? sum + this->Self.Dual(i, k) : this->AddCorners(sum, i, k);
+          sum += this->Self.Dual(i, k);
           residual[k] += sum - side[k];
           side[k] = sum;
         }
       });
   }
 
-  /// sum and what the triangles here give to vertex i.
-  double AddCorners(double sum, Index i, int k) const
+  /// Dual = the sum of what the triangles give to vertex i.
+  void AddCorners(Index i) const
   {
     const auto& begin = this->Mesh.VertexCornersBegin();
-    for (Index c = begin[i]; c < begin[i + 1]; ++c)
+    for (int k = 0; k < this->Count(); ++k)
     {
-      sum += this->Self.Corners(this->Mesh.VertexCorners()[c], k);
+      double sum = 0.0;
+      for (Index c = begin[i]; c < begin[i + 1]; ++c)
+      {
+        sum += this->Self.Corners(this->Mesh.VertexCorners()[c], k);
+      }
+      this->Self.Dual(i, k) = sum;
     }
-    return sum;
   }
 
   double Energy() const
@@ -405,7 +394,7 @@ struct TotalVariationMinimizer::Pass
         }
         return this->Mesh.ControlAreas()[i] * density;
       });
-    return this->Self.GradientEnergy(this->U) + SumOverProcesses(this->Pieces, atVertices);
+    return this->Self.GradientEnergy(this->U) + this->OverProcesses.Sum(atVertices);
   }
 
   /// The dual function at y = r b: the minimum over u of int (y . S grad u - psi*(y)) and the
@@ -428,38 +417,27 @@ struct TotalVariationMinimizer::Pass
           });
         return area * density;
       });
-    if (this->Pieces)
-    {
-      ForEach(this->Self.Parallel, this->Mesh.NumberOfVertices(),
-        [&](Index i) { this->GatherDual(i, 0, this->Count()); });
-      this->Pieces->AddOverSeams(this->Self.Dual);
-    }
+    ForEach(
+      this->Self.Parallel, this->Mesh.NumberOfVertices(), [&](Index i) { this->GatherDual(i); });
+    this->OverProcesses.Accumulate(this->Self.Dual);
     const double atVertices =
-      SumOverVertices(this->Pieces, this->Self.Parallel, this->Mesh.NumberOfVertices(),
+      this->OverProcesses.SumOverVertices(this->Self.Parallel, this->Mesh.NumberOfVertices(),
         [&](Index i)
         {
           double value = 0.0;
-          this->ForEachNorm(
-            [&](int first, int last)
-            {
-              if (!this->Pieces)
-              {
-                this->GatherDual(i, first, last);
-              }
-              value += this->DualAt(i, first, last);
-            });
+          this->ForEachNorm([&](int first, int last) { value += this->DualAt(i, first, last); });
           return value;
         });
-    return atVertices - SumOverProcesses(this->Pieces, conjugate);
+    return atVertices - this->OverProcesses.Sum(conjugate);
   }
 
   /// d = sum over the corners at i of area (S grad phi_i) . y.
-  void GatherDual(Index i, int first, int last) const
+  void GatherDual(Index i) const
   {
     const auto& begin = this->Mesh.VertexCornersBegin();
     const auto& corners = this->Mesh.VertexCorners();
     double* d = &this->Self.Dual(i, 0);
-    std::fill(d + first, d + last, 0.0);
+    std::fill(d, d + this->Count(), 0.0);
     for (Index c = begin[i]; c < begin[i + 1]; ++c)
     {
       const Index t = corners[c] / 3;
@@ -470,7 +448,7 @@ struct TotalVariationMinimizer::Pass
             : a == 2 ? map.Second
                      : Eigen::Vector2d(-map.First - map.Second));
       const double* b = &this->Self.B(t, 0);
-      for (int k = first; k < last; ++k)
+      for (int k = 0; k < this->Count(); ++k)
       {
         d[k] += v[0] * b[2 * k] + v[1] * b[2 * k + 1];
       }
@@ -482,8 +460,8 @@ struct TotalVariationMinimizer::Pass
   double DualAt(Index i, int first, int last) const
   {
     const double* d = &this->Self.Dual(i, 0);
-    const double mu = this->Self.Areas()[i] * this->Self.Quadratic[i];
-    const double nu = this->Self.Areas()[i] * this->Self.Absolute[i];
+    const double mu = this->Self.Areas[i] * this->Self.Quadratic[i];
+    const double nu = this->Self.Areas[i] * this->Self.Absolute[i];
     const bool fixed = this->Self.Fixed[i];
     const double range = this->Self.Options.Range * std::sqrt(static_cast<double>(last - first));
     double squared = 0.0; // of d, or of u_i - f without the pull of nu
@@ -595,15 +573,12 @@ void TotalVariationMinimizer::Prepare(const Values& u)
     {
       this->Operators->Constrain(this->Matrix, this->Fixed, u, this->Load, this->Parallel);
     }
-    this->Descent.SetMatrix(this->Matrix, this->Operators->Mesh().GetPartition());
+    this->Descent.SetMatrix(this->Matrix, this->Operators->Mesh().GetReduction());
   }
   this->RightHandSide.setZero();
   Multiply(this->Matrix, u, this->Descent.Residual, this->Parallel);
   this->Descent.Residual = this->Load - this->Descent.Residual;
-  if (const Partition* const partition = this->Operators->Mesh().GetPartition())
-  {
-    partition->AddOverSeams(this->Descent.Residual);
-  }
+  this->Operators->Mesh().GetReduction().Accumulate(this->Descent.Residual);
 }
 
 double TotalVariationMinimizer::NoiseEnergy() const
@@ -614,7 +589,7 @@ double TotalVariationMinimizer::NoiseEnergy() const
   }
   const TriangleMesh& mesh = this->Operators->Mesh();
   const EdgeFunction exact = WithoutBeta(this->Options.Function);
-  const double area = SumOverProcesses(mesh.GetPartition(), mesh.ControlAreas().sum());
+  const double area = mesh.GetReduction().Sum(mesh.ControlAreas().sum());
   const double ofOne = area / this->NumberOfVertices;
   return area * exact.Potential(this->Options.Range * this->Options.Range / ofOne);
 }
@@ -645,7 +620,7 @@ double TotalVariationMinimizer::GradientEnergy(const Values& u) const
       }
       return mesh.Shapes()[t].Area() * density;
     });
-  return SumOverProcesses(mesh.GetPartition(), here);
+  return mesh.GetReduction().Sum(here);
 }
 
 } // namespace SurfaceDiffusion

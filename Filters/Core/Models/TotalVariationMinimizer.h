@@ -79,11 +79,6 @@ private:
   template <int K>
   struct Pass;
 
-  /// Of control cells over all pieces of the surface.
-  const Vector& Areas() const
-  {
-    return this->WholeAreas.size() > 0 ? this->WholeAreas : this->Operators->Mesh().ControlAreas();
-  }
   /// int psi for gradients of one Range per vertex spacing.
   double NoiseEnergy() const;
   void Prepare(const Values& u);
@@ -97,7 +92,8 @@ private:
   Flags Fixed;
   Settings Options;
   const ParallelFor& Parallel;
-  Vector WholeAreas; ///< where the surface is in pieces
+  Vector AccumulatedAreas;
+  const Vector& Areas; ///< of the control cells, consistent
   double NumberOfVertices; ///< of the surface
   Vector GradientPenalty; ///< r per triangle, times its area
   Vector ValuePenalty; ///< rho per vertex, times its area
@@ -108,7 +104,7 @@ private:
   Values Q, C; ///< per vertex: split value and scaled multiplier of L1 fidelity
   Values RightHandSide, Load;
   Values Initial; ///< u on entry
-  Values Dual; ///< what the multipliers give to each vertex; of pieces also what corners give
+  Values Dual; ///< what the multipliers, or the corners, give to each vertex
 };
 
 } // namespace SurfaceDiffusion

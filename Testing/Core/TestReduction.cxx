@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Foundation/Partition.h"
+#include "Core/Foundation/Reduction.h"
 #include "Core/Models/InitialState.h"
 #include "Core/Models/TextureColors.h"
 #include "Core/Operators/MeanCorrection.h"
@@ -15,16 +15,18 @@ namespace
 {
 
 /// As if another process had just the same, and elsewhere joined the first two components.
-class Twin : public Partition
+class Twin : public Reduction
 {
 public:
   explicit Twin(Index vertices)
+    : Reduction(Reduction::Kind::Distributed)
   {
-    this->Components = 2;
-    this->WholeComponents = { 0, 0, 1 };
+    this->NumberOfComponents = 2;
+    this->SurfaceComponent = { 0, 0, 1 };
     this->OwnedVertices.assign(vertices, true);
     this->OwnedVertices[0] = false; // the other counts it
   }
+  using Reduction::Sum;
   void Sum(double* numbers, Index count) const override
   {
     for (Index i = 0; i < count; ++i)
@@ -33,9 +35,10 @@ public:
     }
   }
   void Max(double*, Index) const override {}
-  void TakeFromOwners(Values&) const override {}
-  void AddOverSeams(double*, Index) const override {}
-  void AddOverSeamEdges(double*) const override {}
+  void UpdateFromOwners(Values&) const override {}
+  using Reduction::Accumulate;
+  void Accumulate(double*, Index) const override {}
+  void AccumulateInterfaceEdges(double*) const override {}
 };
 
 std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces)
@@ -44,39 +47,39 @@ std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces)
   auto mesh = std::make_shared<TriangleMesh>(spheres.Vertices, spheres.Faces);
   if (inPieces)
   {
-    mesh->SetPartition(std::make_shared<Twin>(mesh->NumberOfVertices()));
+    mesh->SetReduction(std::make_shared<Twin>(mesh->NumberOfVertices()));
   }
   return mesh;
 }
 
 } // namespace
 
-TEST(Partition, TotalsAreThoseOfAllProcesses)
+TEST(Reduction, TotalsAreThoseOfAllProcesses)
 {
   const auto mesh = ThreeSpheres(true);
   const Values u = Noise(*mesh, 2);
   EXPECT_NEAR(Total(*mesh, u, 1), 2.0 * mesh->ControlAreas().dot(u.col(1)), 1e-13);
 }
 
-TEST(Partition, VerticesOnSeamsCountOnce)
+TEST(Reduction, VerticesOnInterfacesCountOnce)
 {
   const Twin twin(5);
   const auto one = [](Index) { return 1.0; };
-  EXPECT_EQ(SumOverVertices(&twin, SerialFor(), 5, one), 8.0);
-  EXPECT_EQ(SumOverVertices(nullptr, SerialFor(), 5, one), 5.0);
+  EXPECT_EQ(twin.SumOverVertices(SerialFor(), 5, one), 8.0);
+  EXPECT_EQ(Reduction::Serial().SumOverVertices(SerialFor(), 5, one), 5.0);
 }
 
-TEST(Partition, PercentilesAreThoseOfAllProcesses)
+TEST(Reduction, PercentilesAreThoseOfAllProcesses)
 {
   Vector here = Vector::Random(201);
   here[0] = 5.0; // not owned
   Vector all(400);
   all << here.tail(200), here.tail(200);
   const Twin twin(201);
-  EXPECT_EQ(ContrastLimits(here, &twin), ContrastLimits(all));
+  EXPECT_EQ(ContrastLimits(here, twin), ContrastLimits(all));
 }
 
-TEST(Partition, ComponentsThatMeetElsewhereAreFilledWithOneMean)
+TEST(Reduction, ComponentsThatMeetElsewhereAreFilledWithOneMean)
 {
   for (const bool inPieces : { false, true })
   {
@@ -92,7 +95,7 @@ TEST(Partition, ComponentsThatMeetElsewhereAreFilledWithOneMean)
   }
 }
 
-TEST(Partition, ComponentsThatMeetElsewhereConserveTheirSumTogether)
+TEST(Reduction, ComponentsThatMeetElsewhereConserveTheirSumTogether)
 {
   for (const bool inPieces : { false, true })
   {
