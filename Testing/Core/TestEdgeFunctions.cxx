@@ -125,7 +125,7 @@ TEST(EdgeFunctions, HaveTheConjugateOfTheirPotential)
   }
 }
 
-TEST(EdgeFunctions, AreOneWhereNothingChanges)
+TEST(EdgeFunctions, AreOneForConstants)
 {
   for (const Kind kind : AllKinds)
   {
