@@ -83,7 +83,7 @@ std::pair<double, double> CapErrors(MapScheme scheme, double time, int steps)
 
 TEST(HarmonicMap, GreatCircleObeysTheTotalVariationFlowForExponentOne)
 {
-  // What is left is the error of P1 elements at a jump that cuts across triangles, measured for
+  // The rest is the error of P1 elements at a jump that cuts across triangles, measured for
   // total variation itself at -2 % / +4 % with 100 lagged steps, -1.3 % / +2.4 % without lag.
   const double time = 0.04;
   const auto lagged = CapErrors(MapScheme::TangentPlane, time, 40);
@@ -202,7 +202,7 @@ TEST(HarmonicMap, PerturbedGreatCircleDecaysAtTheRateOfItsExponent)
   }
 }
 
-// What the paper's splitting does, known from its equations.
+// The behaviour of the paper's splitting, known from its equations.
 
 TEST(HarmonicMap, ExplicitReactionSolvesThePrintedEquations)
 {

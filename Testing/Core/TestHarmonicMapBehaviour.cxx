@@ -158,7 +158,7 @@ TEST(HarmonicMap, EnergyFallsWithUnfinishedSolutions)
     const double energy = map->Energy();
     const StepReport report = map->Advance(ProgressMonitor());
     EXPECT_LT(map->Energy(), energy);
-    EXPECT_GT(report.Residual, settings.Limits.Tolerance); // and it is told
+    EXPECT_GT(report.Residual, settings.Limits.Tolerance); // and the report says so
   }
 }
 

@@ -164,7 +164,7 @@ TEST(InitialState, NoiseDependsOnSeedComponentAndIdAlone)
       PointData::FromValues(Sample(*mesh, s, [](const Eigen::RowVector3d&) { return 0.0; }));
     data.Given.conservativeResize(Eigen::NoChange, 2);
     data.Given.col(1).setZero();
-    // One vertex tells the range: the first of the input.
+    // One known vertex determines the range: the first of the input.
     data.Missing.fill(true);
     for (Index i = 0; i < mesh->NumberOfVertices(); ++i)
     {

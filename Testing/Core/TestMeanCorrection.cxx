@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(TotalCorrection, WithSolver,
     Kind{ "LooseConjugateGradient", LooseConjugateGradients }),
   [](const auto& parameter) { return parameter.param.Name; });
 
-// What does not conserve must not be forced to: the sum follows the exact solution.
+// Models that do not conserve the total must not be forced to: it follows the exact solution.
 TEST(TotalCorrection, FidelityToOtherDataMovesTheSum)
 {
   const auto assembler = MakeAssembler(Icosphere(2));

@@ -365,7 +365,7 @@ TEST(NonlinearDiffusion, L1FidelityReplacesImpulsesAndLeavesTheRest)
   const Plateaus plateaus = MeasurePlateaus(mesh, s, model->State(), 1.0);
   EXPECT_NEAR(plateaus.Inside, 1.0, 1e-3); // L2 fidelity would lose contrast
   EXPECT_NEAR(plateaus.Outside, 0.0, 1e-3);
-  EXPECT_LT(RootMeanSquare(mesh, model->State() - clean), // what is left lies at the edge
+  EXPECT_LT(RootMeanSquare(mesh, model->State() - clean), // the rest is at the edge
     0.25 * RootMeanSquare(mesh, noisy - clean));
 }
 

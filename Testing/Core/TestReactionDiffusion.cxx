@@ -213,7 +213,7 @@ TEST(ReactionDiffusion, SteadyStateStays)
 }
 
 // With concentrations held at zero over a part of the surface: plain clamping would be of first
-// order whatever the scheme.
+// order with both schemes.
 TEST(ReactionDiffusion, OrderInTimeHoldsWithConcentrationsHeldAtZero)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
@@ -234,7 +234,7 @@ TEST(ReactionDiffusion, OrderInTimeHoldsWithConcentrationsHeldAtZero)
     }
     return Values(model->State());
   };
-  // Noise itself has no order: start from where the pattern appears.
+  // Noise itself has no order: the start is a pattern that has begun to appear.
   const Values start =
     run(NoisySteadyState(Reaction(), 0.1, 0, Ids(mesh)), 3.0, 1.0 / 64.0, Scheme::SecondOrder);
   const double time = 5.0;
@@ -321,7 +321,7 @@ namespace
 {
 
 /// The share of int |grad u1|^2 that is across e1, on a cylinder with e1 along its axis or around:
-/// 1/2 where the pattern has no direction, 1 for stripes along e1. anisotropy: rate along e1 over
+/// 1/2 for a pattern without a direction, 1 for stripes along e1. anisotropy: rate along e1 over
 /// rate across, per chemical.
 double ShareAcross(bool axial, const std::array<double, 2>& anisotropy)
 {

@@ -126,10 +126,10 @@ MeanCorrection::MeanCorrection(
 void MeanCorrection::Restore(
   const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel)
 {
-  this->Left.resize(static_cast<Eigen::Index>(this->Components.size()), x.cols());
+  this->Residuals.resize(static_cast<Eigen::Index>(this->Components.size()), x.cols());
   const auto forEach = [&](const auto& body)
   {
-    for (Eigen::Index c = 0; c < this->Left.rows(); ++c)
+    for (Eigen::Index c = 0; c < this->Residuals.rows(); ++c)
     {
       const Index begin = mesh.ComponentsBegin()[this->Components[c]];
       for (Eigen::Index k = 0; k < x.cols(); ++k)
@@ -141,14 +141,14 @@ void MeanCorrection::Restore(
   forEach(
     [&](Eigen::Index c, Eigen::Index k, Index begin, Index count)
     {
-      this->Left(c, k) = Sum(parallel, count,
+      this->Residuals(c, k) = Sum(parallel, count,
         [&](Index i) { return b(begin + i, k) - this->Weights[begin + i] * x(begin + i, k); });
     });
-  mesh.GetReduction().SumComponents(this->Components, this->Left);
+  mesh.GetReduction().SumComponents(this->Components, this->Residuals);
   forEach(
     [&](Eigen::Index c, Eigen::Index k, Index begin, Index count)
     {
-      const double shift = this->Left(c, k) / this->Sums[c];
+      const double shift = this->Residuals(c, k) / this->Sums[c];
       ForEach(parallel, count, [&](Index i) { x(begin + i, k) += shift; });
     });
 }

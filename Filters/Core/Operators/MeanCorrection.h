@@ -55,7 +55,7 @@ private:
   std::vector<Index> Components; ///< those with no fixed vertex
   std::vector<double> Sums; ///< of their weights
   Vector Weights; ///< w
-  Values Left; ///< sum b - sum w x, component x column
+  Values Residuals; ///< sum b - sum w x, component x column
 };
 
 } // namespace SurfaceDiffusion
