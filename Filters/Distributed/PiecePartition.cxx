@@ -26,7 +26,7 @@ constexpr int ExchangeTag = 7403;
 } // namespace
 
 PiecePartition::PiecePartition(
-  const Processes& processes, const PolyDataSurface& surface, const PointIdentity& identity)
+  const Processes& processes, const Surface& surface, const PointIdentity& identity)
   : Group(processes)
 {
   this->FindSharedVertices(surface, identity);
@@ -56,10 +56,9 @@ void PiecePartition::Max(double* numbers, Index count) const
 }
 
 /// Vertices whose points other processes have as vertices too belong to the first of them.
-void PiecePartition::FindSharedVertices(
-  const PolyDataSurface& surface, const PointIdentity& identity)
+void PiecePartition::FindSharedVertices(const Surface& surface, const PointIdentity& identity)
 {
-  const TriangleMesh& mesh = *surface.InputMesh;
+  const TriangleMesh& mesh = surface.InputMesh();
   // A label of another piece tells that it is shared; one of this piece may be as well: all know
   // those that another piece refers to.
   std::vector<double> foreign;
@@ -113,9 +112,9 @@ bool PiecePartition::Join(Seams& seams, Index item, const std::vector<int>& shar
 }
 
 /// Components of the pieces that share a vertex are one.
-void PiecePartition::FindComponents(const PolyDataSurface& surface, const PointIdentity& identity)
+void PiecePartition::FindComponents(const Surface& surface, const PointIdentity& identity)
 {
-  const TriangleMesh& mesh = *surface.InputMesh;
+  const TriangleMesh& mesh = surface.InputMesh();
   std::vector<double> counts =
     this->Group.GatherAll({ static_cast<double>(mesh.NumberOfComponents()) });
   const double first = std::accumulate(counts.begin(), counts.begin() + this->Group.Rank(), 0.0);
@@ -150,9 +149,9 @@ void PiecePartition::FindComponents(const PolyDataSurface& surface, const PointI
 }
 
 /// Edges along seams are in two processes, and count once.
-void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const PointIdentity& identity)
+void PiecePartition::FindSharedEdges(const Surface& surface, const PointIdentity& identity)
 {
-  const TriangleMesh& mesh = *surface.InputMesh;
+  const TriangleMesh& mesh = surface.InputMesh();
   const auto labelOf = [&](Index vertex) { return identity.Labels[mesh.InputVertex()[vertex]]; };
   const auto isShared = [&](Index vertex)
   {
@@ -213,7 +212,7 @@ void PiecePartition::FindSharedEdges(const PolyDataSurface& surface, const Point
 
 /// Points of no triangle here (those of ghost cells, and those all of whose triangles here take no
 /// part) that other pieces have: as a vertex, or else the one that they stand for.
-void PiecePartition::FindCopies(const PolyDataSurface& surface, const PointIdentity& identity)
+void PiecePartition::FindCopies(const Surface& surface, const PointIdentity& identity)
 {
   const int rank = this->Group.Rank();
   const std::vector<double> firsts =
@@ -233,7 +232,7 @@ void PiecePartition::FindCopies(const PolyDataSurface& surface, const PointIdent
   for (std::size_t i = 0; i < identity.Labels.size(); ++i)
   {
     const vtkIdType label = identity.Labels[i];
-    if (surface.PointToVertex[i] < 0 && sourceOf(label) != rank)
+    if (surface.VertexOf(static_cast<Index>(i)) < 0 && sourceOf(label) != rank)
     {
       mine.push_back(rank);
       mine.push_back(static_cast<double>(label));
@@ -242,7 +241,7 @@ void PiecePartition::FindCopies(const PolyDataSurface& surface, const PointIdent
     }
   }
   std::map<vtkIdType, vtkIdType> pointOf; // of shared labels that are vertices here
-  for (const Index point : surface.InputMesh->InputVertex())
+  for (const Index point : surface.InputMesh().InputVertex())
   {
     if (this->Sharers.count(identity.Labels[point]) > 0)
     {

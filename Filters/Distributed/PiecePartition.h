@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Conversion/PolyDataSurface.h"
 #include "Core/Foundation/Partition.h"
 #include "Distributed/PointIdentity.h"
 #include "Distributed/Processes.h"
+#include "Run/Surface.h"
 
 #include <map>
 #include <memory>
@@ -22,8 +22,7 @@ class PiecePartition : public Partition
 {
 public:
   /// surface: of this process's piece, whose points have this identity. Collective.
-  PiecePartition(
-    const Processes& processes, const PolyDataSurface& surface, const PointIdentity& identity);
+  PiecePartition(const Processes& processes, const Surface& surface, const PointIdentity& identity);
 
   void Sum(double* numbers, Index count) const override;
   void Max(double* numbers, Index count) const override;
@@ -57,10 +56,10 @@ private:
     std::map<int, std::vector<Index>> Given, Taken;
   };
 
-  void FindSharedVertices(const PolyDataSurface& surface, const PointIdentity& identity);
-  void FindComponents(const PolyDataSurface& surface, const PointIdentity& identity);
-  void FindSharedEdges(const PolyDataSurface& surface, const PointIdentity& identity);
-  void FindCopies(const PolyDataSurface& surface, const PointIdentity& identity);
+  void FindSharedVertices(const Surface& surface, const PointIdentity& identity);
+  void FindComponents(const Surface& surface, const PointIdentity& identity);
+  void FindSharedEdges(const Surface& surface, const PointIdentity& identity);
+  void FindCopies(const Surface& surface, const PointIdentity& identity);
   bool Join(Seams& seams, Index item, const std::vector<int>& sharers) const;
   template <typename Items, typename Read, typename Write>
   void Pass(const Items& given, const Items& taken, std::size_t columns, const Read& read,

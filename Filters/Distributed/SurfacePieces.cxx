@@ -142,6 +142,25 @@ bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
   return true;
 }
 
+PieceSummary SummarizePieces(const Processes& processes, const std::vector<SurfacePiece>& pieces)
+{
+  std::vector<double> mine; // surface and points of each piece
+  for (const SurfacePiece& piece : pieces)
+  {
+    mine.push_back(piece.Surface);
+    mine.push_back(static_cast<double>(piece.Input->GetNumberOfPoints()));
+  }
+  const std::vector<double> all = processes.GatherAll(mine);
+  PieceSummary summary;
+  summary.OneSurface = !processes.Any(pieces.size() > 1);
+  for (std::size_t i = 0; i < all.size(); i += 2)
+  {
+    summary.OneSurface = summary.OneSurface && all[i] == all[0];
+    summary.NumberOfPoints += all[i + 1];
+  }
+  return summary;
+}
+
 bool HasPoints(const std::vector<SurfacePiece>& pieces)
 {
   return std::any_of(pieces.begin(), pieces.end(),

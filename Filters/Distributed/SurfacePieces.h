@@ -14,6 +14,8 @@ class vtkPolyData;
 namespace SurfaceDiffusion
 {
 
+class Processes;
+
 /// A vtkPolyData of the input, and its copy in the output.
 struct SurfacePiece
 {
@@ -35,6 +37,16 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
 /// error then. whole: the user says that each is a surface.
 bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
   vtkMultiProcessController* controller, bool whole);
+
+/// The pieces of all processes together.
+struct PieceSummary
+{
+  bool OneSurface = true; ///< all belong to one surface, and no process has several
+  double NumberOfPoints = 0.0;
+};
+
+/// Collective.
+PieceSummary SummarizePieces(const Processes& processes, const std::vector<SurfacePiece>& pieces);
 
 bool HasPoints(const std::vector<SurfacePiece>& pieces);
 

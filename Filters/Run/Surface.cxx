@@ -55,15 +55,7 @@ void CheckArrays(const SurfaceArrays& arrays)
   {
     throw std::runtime_error("the input has more triangles than this library can number");
   }
-  for (Eigen::Index i = 0; i < arrays.Points.rows(); ++i)
-  {
-    if (!arrays.Points.row(i).allFinite())
-    {
-      std::ostringstream text;
-      text << "point " << i << " of the input has coordinates that are not finite";
-      throw std::runtime_error(text.str());
-    }
-  }
+  RequireFiniteCoordinates(arrays.Points);
   for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
   {
     for (int a = 0; a < 3; ++a)
@@ -81,6 +73,19 @@ void CheckArrays(const SurfaceArrays& arrays)
 }
 
 } // namespace
+
+void RequireFiniteCoordinates(const Points& points)
+{
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+  {
+    if (!points.row(i).allFinite())
+    {
+      std::ostringstream text;
+      text << "point " << i << " of the input has coordinates that are not finite";
+      throw std::runtime_error(text.str());
+    }
+  }
+}
 
 Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const ParallelFor& parallel,
   const ProgressMonitor& progress)

@@ -19,6 +19,9 @@ struct SurfaceArrays
   std::vector<char> Excluded; ///< per point: triangles with a nonzero corner do not take part
 };
 
+/// Throws std::runtime_error if a coordinate is not finite.
+void RequireFiniteCoordinates(const Points& points);
+
 struct SurfaceOptions
 {
   bool MergeCoincidentPoints = false;
