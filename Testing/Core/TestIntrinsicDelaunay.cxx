@@ -177,7 +177,7 @@ TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
   }
   // Where the two ends of such an edge have opposite signs, it has an energy.
   const CornerWeights opposite = CornerWeights::Constant(2, 3, -1.0);
-  flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data(), ParallelFor(), &opposite);
+  flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data(), SerialFor(), &opposite);
   EXPECT_NEAR(k.coeffs().maxCoeff() / (4.0 * 1e4 * c.maxCoeff()), 1.0, 1e-3);
 }
 

@@ -278,5 +278,5 @@ TEST(TriangleMesh, StopsWhenAsked)
 {
   const Surface s = Icosphere(2);
   const ProgressMonitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(TriangleMesh(s.Vertices, s.Faces, ParallelFor(), ProgressMonitor(stop)), Aborted);
+  EXPECT_THROW(TriangleMesh(s.Vertices, s.Faces, SerialFor(), ProgressMonitor(stop)), Aborted);
 }

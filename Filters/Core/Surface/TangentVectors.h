@@ -20,13 +20,13 @@ Eigen::RowVector2d MainAxis(double xx, double xy, double yy);
 /// From one vector per input triangle: its projection into the triangle, normalised.
 TangentVectors FramesFromTriangleVectors(const TriangleMesh& mesh,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
-  const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel = ParallelFor());
+  const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel = SerialFor());
 
 /// From one vector per input point: the main axis of the sum of d d^T over the corners, so that
 /// opposite vectors agree instead of cancelling.
 TangentVectors FramesFromPointVectors(const TriangleMesh& mesh,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
-  const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel = ParallelFor());
+  const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel = SerialFor());
 
 /// The way back: one vector in space per input triangle, zero for those that are not in the mesh.
 Points VectorsFromFrames(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,

@@ -65,7 +65,7 @@ public:
   /// points: finite coordinates; triangles: rows of points; unit: LengthUnit(), 0 to have it
   /// chosen. Throws Aborted.
   TriangleMesh(const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
-    const ParallelFor& parallel = ParallelFor(),
+    const ParallelFor& parallel = SerialFor(),
     const ProgressMonitor& progress = ProgressMonitor(), double unit = 0.0);
 
   /// The vertices of `mesh` with other triangles, which may have a vertex twice.
