@@ -46,7 +46,7 @@ TangentVectors ReadFrames(
   const Points vectors = ReadDirections(array);
   if (!onCells)
   {
-    return FramesFromPointVectors(
+    return TangentVectorsFromPointVectors(
       *surface.InputMesh, surface.Points, surface.Triangles, vectors, parallel);
   }
   Points ofTriangles(surface.Triangles.rows(), 3);
@@ -54,7 +54,7 @@ TangentVectors ReadFrames(
   {
     ofTriangles.row(t) = vectors.row(surface.TriangleCells[t]);
   }
-  return FramesFromTriangleVectors(
+  return TangentVectorsFromTriangleVectors(
     *surface.InputMesh, surface.Points, surface.Triangles, ofTriangles, parallel);
 }
 
@@ -62,8 +62,7 @@ vtkSmartPointer<vtkDataArray> WriteFrames(const PolyDataSurface& surface, vtkPol
   const TangentVectors& frames, const std::string& name, const ParallelFor& parallel)
 {
   const TriangleMesh& mesh = *surface.InputMesh;
-  const Points vectors =
-    VectorsFromFrames(mesh, surface.Points, surface.Triangles, frames, parallel);
+  const Points vectors = VectorsInSpace(mesh, surface.Points, surface.Triangles, frames, parallel);
   auto array = NewArray<vtkDoubleArray>(name, 3, input->GetNumberOfCells());
   array->Fill(0.0);
 

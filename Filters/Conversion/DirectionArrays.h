@@ -11,8 +11,8 @@
 namespace SurfaceDiffusion
 {
 
-/// Conversions between arrays of directions in space and frames (see Core/Frames.h) of the
-/// triangles of surface.InputMesh.
+/// Conversions between arrays of directions in space and frames (see Core/Surface/TangentVectors.h)
+/// of the triangles of surface.InputMesh.
 
 /// From an array of three components on points or cells. Throws std::runtime_error, with the
 /// property's name, on infinite values.

@@ -6,7 +6,6 @@
 #include "Conversion/NewArray.h"
 #include "Conversion/PointArrays.h"
 #include "Conversion/SMPParallelFor.h"
-#include "Core/Surface/IntrinsicDelaunay.h"
 #include "Distributed/DistributedSolver.h"
 #include "Distributed/PiecePartition.h"
 
@@ -80,11 +79,7 @@ TangentVectors MakeFrames(
     return TangentVectors(0, 2);
   }
   TangentVectors frames = ReadFrames(surface, arrays.Direction, arrays.DirectionOnCells, parallel);
-  if (surface.Mesh != surface.InputMesh)
-  {
-    IntrinsicDelaunay(*surface.InputMesh, &frames, parallel); // the same flips again
-  }
-  return frames;
+  return surface.Delaunay ? surface.Delaunay->Transport(frames) : frames;
 }
 
 } // namespace

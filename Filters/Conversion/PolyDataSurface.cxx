@@ -3,7 +3,6 @@
 #include "Conversion/PolyDataSurface.h"
 
 #include "Conversion/SMPParallelFor.h"
-#include "Core/Surface/IntrinsicDelaunay.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -249,6 +248,7 @@ struct Made
   SurfaceDiffusion::Points Points;
   SurfaceDiffusion::Triangles Triangles;
   std::shared_ptr<TriangleMesh> InputMesh;
+  std::shared_ptr<const IntrinsicDelaunay> Delaunay;
   std::shared_ptr<const TriangleMesh> Mesh;
   std::shared_ptr<const Assembler> Operators;
 
@@ -260,7 +260,9 @@ struct Made
     this->Mesh = this->InputMesh;
     if (delaunay)
     {
-      this->Mesh = IntrinsicDelaunay(*this->InputMesh, nullptr, parallel, progress.Part(0.5, 0.6));
+      this->Delaunay =
+        std::make_shared<IntrinsicDelaunay>(this->InputMesh, parallel, progress.Part(0.5, 0.6));
+      this->Mesh = this->Delaunay->Mesh();
     }
     this->Operators = std::make_shared<Assembler>(this->Mesh, parallel, progress.Part(0.6, 1.0));
   }
@@ -358,6 +360,7 @@ PolyDataSurface::PolyDataSurface(
   this->Points = std::move(made->Points);
   this->Triangles = std::move(made->Triangles);
   this->InputMesh = std::move(made->InputMesh);
+  this->Delaunay = std::move(made->Delaunay);
   this->Mesh = std::move(made->Mesh);
   this->Operators = std::move(made->Operators);
 
@@ -373,8 +376,8 @@ PolyDataSurface::PolyDataSurface(
     const bool excluded = options.Excluded && options.Excluded->GetComponent(i, 0) != 0.0;
     this->Found.UnusedPoints += vertex < 0 && !excluded;
   }
-  this->Found.DegenerateTriangles = this->Mesh->GetFindings().DegenerateTriangles;
-  this->Found.NonManifoldEdges = this->Mesh->GetFindings().NonManifoldEdges;
+  this->Found.DegenerateTriangles = this->Mesh->Diagnostics().DegenerateTriangles;
+  this->Found.NonManifoldEdges = this->Mesh->Diagnostics().NonManifoldEdges;
   if (!options.MergeCoincidentPoints)
   {
     this->Found.CoincidentBoundaryPoints = CountCoincidentBoundaryPoints(*this->Mesh, this->Points);

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
 
 #include "vtkType.h"
 
@@ -60,8 +61,8 @@ struct PolyDataSurface
   SurfaceDiffusion::Triangles Triangles; ///< rows of Points; merged points are one of them
   std::vector<vtkIdType> TriangleCells; ///< the input's cell of each row of Triangles
   std::shared_ptr<TriangleMesh> InputMesh; ///< of rows of Triangles
-  /// What the models work on: InputMesh, or its intrinsic Delaunay triangulation, which has the
-  /// same vertices.
+  std::shared_ptr<const SurfaceDiffusion::IntrinsicDelaunay> Delaunay; ///< null if not asked for
+  /// What the models work on: InputMesh, or Delaunay->Mesh(), which has the same vertices.
   std::shared_ptr<const TriangleMesh> Mesh;
   std::shared_ptr<const Assembler> Operators;
   std::vector<Index> PointToVertex; ///< -1 where a point takes no part

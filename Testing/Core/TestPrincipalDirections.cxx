@@ -30,7 +30,7 @@ Result Find(const Surface& s, double fwhm = 0.0)
   const auto solver = MakeCholeskySolver();
   const PrincipalDirections found = FindPrincipalDirections(
     *result.Operators, s.Vertices, s.Faces, fwhm / mesh.LengthUnit(), *solver);
-  result.Directions = VectorsFromFrames(mesh, s.Vertices, s.Faces, found.LeastBent);
+  result.Directions = VectorsInSpace(mesh, s.Vertices, s.Faces, found.LeastBent);
   result.Strength = found.Strength / mesh.LengthUnit();
   return result;
 }

@@ -9,7 +9,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The fields of directions that the filters offer, per triangle (see Frames.h).
+/// The fields of directions that the filters offer, per triangle (see TangentVectors.h).
 enum class DirectionMethod
 {
   PrincipalCurvature, ///< the direction in which the surface bends least
