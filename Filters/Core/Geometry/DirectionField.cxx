@@ -14,19 +14,18 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// A solver for systems whose solutions vary over the whole surface.
+/// A solver for systems with modes as long as the surface.
 std::unique_ptr<LinearSolver> MakeSolverFor(
   Eigen::Index size, double solves, bool allowMultigrid, const ParallelFor& parallel)
 {
-  constexpr double diffusionNumber = 1e4; // (length / edge length)^2 of such solutions
   SolverTask task;
   task.NumberOfVertices = static_cast<Index>(size);
-  task.DiffusionNumber = diffusionNumber;
+  task.DiffusionNumber = 1e4;
   task.NumberOfSolves = solves;
   task.AllowMultigrid = allowMultigrid;
   std::unique_ptr<LinearSolver> solver = MakeAutomaticSolver(task, parallel);
   IterationLimits limits;
-  limits.Tolerance = 1e-8; // finer differences of directions are invisible
+  limits.Tolerance = 1e-8; // of directions more can't be seen
   limits.MaximumNumberOfIterations = 20000;
   solver->SetLimits(limits);
   return solver;
