@@ -78,7 +78,14 @@ std::vector<vtkIdType> Representatives(vtkPolyData* input, const PolyDataSurface
   return representative;
 }
 
-/// Collects the triangles of the cells that take part.
+/// The triangles of the cells that are not excluded and not ghosts, each with its cell.
+///
+/// vtkTriangleFilter cuts most polygons alike: quads along the shorter diagonal that lies inside,
+/// others by the same ear cutting of vtkPolygon, and an array of cell ids would give the cells. But
+/// it silently drops polygons that ear cutting refuses, which leaves holes (VTK 9.2): all that
+/// cross themselves, valid ones of size 1e-150 or 1e150, and half of a quad that has a point twice.
+/// It also takes 60 times as long for quads and 7 times as long for triangles (7.5 s against 0.12 s
+/// for a million quads).
 ///
 /// Polygons are cut into triangles rather than given a Laplacian of their own (A. Bunge, P.
 /// Herholz, M. Kazhdan, M. Botsch, Computer Graphics Forum 39, 2020). Measured with theirs on
@@ -180,7 +187,7 @@ private:
     }
   }
 
-  /// Cut along the shorter diagonal that lies inside, whatever corner the numbering starts at.
+  /// Cut along the shorter diagonal that lies inside, at whichever corner the numbering starts.
   void AddQuad(vtkIdType cell, const vtkIdType* ids)
   {
     using Row3 = Eigen::RowVector3d;
