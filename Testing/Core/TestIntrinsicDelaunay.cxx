@@ -15,21 +15,21 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-/// Pressed flat along x, which makes most angles bad.
+/// Flattened along x, so that most angles are far from those of a Delaunay triangulation.
 Surface Pressed(Surface s, double factor)
 {
   s.Vertices.col(0) *= factor;
   return s;
 }
 
-/// Slanted within the plane: the same, and the boundary has obtuse angles opposite it.
+/// Sheared within the plane, so that angles opposite the boundary are obtuse too.
 Surface Slanted(Surface s, double slope)
 {
   s.Vertices.col(0) += slope * s.Vertices.col(1);
   return s;
 }
 
-/// The square [-1, 1]^2 with bad angles inside and good ones at its boundary.
+/// The square [-1, 1]^2 with obtuse angles inside and none opposite its boundary.
 Surface BadInside()
 {
   Surface s = Plate(12, 1.0);
@@ -106,7 +106,7 @@ TEST(IntrinsicDelaunay, BackwardEulerKeepsTheBoundsAtAnyStep)
   {
     const auto flipped =
       std::make_shared<const Assembler>(IntrinsicDelaunay(MakeMesh(surface)).Mesh());
-    // One vertex at 1, the others at 0: what overshoots anywhere shows here.
+    // One vertex at 1, the others at 0: an overshoot anywhere leaves the bounds.
     Values spike = Values::Zero(flipped->Mesh().NumberOfVertices(), 1);
     spike(spike.rows() / 2, 0) = 1.0;
     for (const double dt : { 1e-6, 1e-3, 1.0, 1e3 })
@@ -131,8 +131,8 @@ TEST(IntrinsicDelaunay, WithoutItTheSamePlateOvershoots)
 
 TEST(IntrinsicDelaunay, EnergyOfALinearFunctionIsExactOnAPlane)
 {
-  // Any triangulation of a plane has it right, on one sheet and on two, while no edge is flipped
-  // over the boundary.
+  // It is exact on any triangulation of a plane, on one sheet and on two, as long as no edge is
+  // flipped over the boundary.
   const Surface plate = BadInside();
   const auto flipped = IntrinsicDelaunay(MakeMesh(plate)).Mesh();
   const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
@@ -221,7 +221,7 @@ TEST(IntrinsicDelaunay, TransportLeavesTrianglesWithoutDirectionAlone)
   EXPECT_TRUE(delaunay.Transport(TangentVectors::Zero(mesh->NumberOfTriangles(), 2)).isZero(0.0));
 }
 
-TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
+TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDoNotDrownOthers)
 {
   // A needle, covered twice: one of its edges becomes one around vertex 1, from 0 to 0.
   const auto needle =

@@ -79,7 +79,7 @@ TEST(MedialMesh, TrianglesThatTouchAtAPointOnlyAreApart)
   }
 }
 
-TEST(MedialMesh, CoversIntrinsicTriangulations)
+TEST(MedialMesh, ExistsOnIntrinsicTriangulations)
 {
   // A closed fan of slivers: flips give triangles that have a vertex twice or share two edges.
   for (const Surface& s : { Tetrahedron(), Cylinder(4, 2, 0.05, 2.0), Strip(12, 1, 1.0, 0.01) })

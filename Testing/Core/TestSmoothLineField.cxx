@@ -22,7 +22,7 @@ struct Field
   double Eigenvalue; ///< in coordinate units
 };
 
-/// The smoothest field, started from the lines along `axis` (zero: from nothing).
+/// The smoothest field, started from the lines along `axis` (zero: from noise).
 Field Smoothest(const Surface& s, const Eigen::RowVector3d& axis = Eigen::RowVector3d::Zero())
 {
   Field field;
@@ -39,7 +39,7 @@ Field Smoothest(const Surface& s, const Eigen::RowVector3d& axis = Eigen::RowVec
   return field;
 }
 
-/// Every third triangle the other way round.
+/// Every third triangle with the opposite orientation.
 Surface PartlyFlipped(Surface s)
 {
   for (Index t = 0; t < s.NumberOfTriangles(); t += 3)
@@ -120,7 +120,7 @@ TEST(SmoothLineField, AnySurfaceGetsUnitTangents)
 
 TEST(SmoothLineField, HintsAreJoinedByAHarmonicField)
 {
-  // z = exp(2 i angle) goes straight from 1 (angle 0) to i (45 degrees).
+  // z = exp(2 i angle) is linear from 1 (angle 0) to i (45 degrees).
   const Surface s = Strip(40, 10, 4.0);
   const auto mesh = MakeMesh(s);
   Points hints = Points::Zero(s.NumberOfTriangles(), 3);

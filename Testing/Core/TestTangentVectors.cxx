@@ -28,7 +28,7 @@ Eigen::RowVector3d InSpace(
   return lines(t, 0) * x + lines(t, 1) * y;
 }
 
-/// Whether both hold the same lines: the sign of a tangent vector means nothing.
+/// Whether both hold the same lines: the sign of a tangent vector does not matter.
 void ExpectSameLines(const TangentVectors& a, const TangentVectors& b)
 {
   ASSERT_EQ(a.rows(), b.rows());
@@ -80,7 +80,7 @@ TEST(TangentVectors, OppositePointVectorsAgree)
   }
 }
 
-TEST(TangentVectors, NoDirectionWhereTheVectorSaysNothing)
+TEST(TangentVectors, NormalZeroAndInfiniteVectorsGiveNoDirection)
 {
   const Surface s = Strip(1, 3);
   const auto mesh = MakeMesh(s);

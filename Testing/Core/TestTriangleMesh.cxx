@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(TriangleMesh, AnySurface,
     AnySurface::ParamType{ "Several", Joined(Icosphere(1), Flipped(Disk(3))) }),
   NameOf);
 
-TEST(TriangleMesh, CountsEdgesAndWhatIsOddAboutThem)
+TEST(TriangleMesh, CountsBoundaryAndNonManifoldEdges)
 {
   const auto closed = MakeMesh(Torus(20, 10));
   EXPECT_EQ(closed->NumberOfVertices() - closed->NumberOfEdges() + closed->NumberOfTriangles(), 0);

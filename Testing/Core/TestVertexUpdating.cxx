@@ -58,7 +58,7 @@ TEST(VertexUpdating, NoisyPlaneWithExactNormalsBecomesFlat)
   fitted.Vertices = UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion);
   EXPECT_GT(MeanAngle(s, flat), 5.0);
   EXPECT_LT(MeanAngle(fitted, flat), 1e-2);
-  // Nothing moves along the plane, and the mean plane stays.
+  // No vertex moves along the plane, and the mean plane stays.
   const Points moved = fitted.Vertices - s.Vertices;
   const Eigen::Vector3d normal = normals.row(0).transpose();
   EXPECT_LT((moved - (moved * normal) * normal.transpose()).cwiseAbs().maxCoeff(), 1e-12);

@@ -28,7 +28,7 @@ struct DirectionSettings
 };
 
 /// hints: tangent vectors for DirectionMethod::Hints, a zero row for a triangle without hint.
-/// points, triangles: what the mesh was made from. Throws Aborted, NotConverged.
+/// points, triangles: the input of the mesh. Throws Aborted, NotConverged.
 TangentVectors MakeDirectionField(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
   const Eigen::Ref<const TangentVectors>& hints, const DirectionSettings& settings,

@@ -21,8 +21,8 @@ struct PrincipalDirections
 /// From the shape operator, the derivative of the surface normal, on each triangle. The normal at a
 /// vertex is the main axis of the area-weighted mean of n n^T around it, which needs no
 /// orientation. Before, n n^T is smoothed by the heat equation (8) over `fwhm`, the full width at
-/// half maximum of the Gaussian in LengthUnit(); 0: no smoothing. points, triangles: what the mesh
-/// was made from. Throws Aborted, NotConverged.
+/// half maximum of the Gaussian in LengthUnit(); 0: no smoothing. points, triangles: the input of
+/// the mesh. Throws Aborted, NotConverged.
 PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles, double fwhm,
   LinearSolver& solver, const ParallelFor& parallel = SerialFor(),

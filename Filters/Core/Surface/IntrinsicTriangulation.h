@@ -39,7 +39,7 @@ public:
   /// Whether the cotangents opposite the edge have a nonnegative sum, up to round-off.
   bool IsDelaunay(Index side) const;
 
-  /// A flip, with what is needed to carry tangent vectors over it. Angles are in radians from the
+  /// A flip, with the rotations that carry tangent vectors over it. Angles are in radians from the
   /// first axis of a triangle.
   struct EdgeFlip
   {

@@ -19,8 +19,8 @@ namespace
 /// Sums over the edges whose smaller vertex is in a block of vertices.
 struct EdgeSums
 {
-  /// Sum of (1 - uses/2) length: what half of all perimeters lacks where edges have not two
-  /// triangles each.
+  /// Sum of (1 - uses/2) length, which corrects half of all perimeters at edges that do not have
+  /// two triangles.
   double LengthCorrection = 0.0;
   Index EdgeEnds = 0; ///< counted at both vertices of an edge
   Index BoundaryEdges = 0;

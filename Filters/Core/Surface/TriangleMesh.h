@@ -15,7 +15,7 @@
 namespace SurfaceDiffusion
 {
 
-/// Counts of what may be unintended in a surface.
+/// Counts of defects and other features of a surface that may be unintended.
 struct MeshDiagnostics
 {
   Index DegenerateTriangles = 0; ///< of zero area (height/longest edge < 1e-15): left out
