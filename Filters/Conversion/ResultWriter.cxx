@@ -133,7 +133,7 @@ vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
 {
   const TriangleMesh& mesh = surface.InputMesh();
   const Points vectors =
-    VectorsFromFrames(mesh, surface.Points(), surface.Triangles(), directions, parallel);
+    VectorsInSpace(mesh, surface.Points(), surface.Triangles(), directions, parallel);
   auto array = NewArray<vtkDoubleArray>(name, 3, input->GetNumberOfCells());
   array->Fill(0.0);
 

@@ -40,7 +40,14 @@ Points ReadPoints(vtkPolyData* input)
   return points;
 }
 
-/// Collects the triangles of the participating cells.
+/// The triangles of the cells that are not excluded and not ghosts, each with its cell.
+///
+/// vtkTriangleFilter cuts most polygons alike: quads along the shorter diagonal that lies inside,
+/// others by the same ear cutting of vtkPolygon, and an array of cell ids would give the cells. But
+/// it silently drops polygons that ear cutting refuses, which leaves holes (VTK 9.2): all that
+/// cross themselves, valid ones of size 1e-150 or 1e150, and half of a quad that has a point twice.
+/// It also takes 60 times as long for quads and 7 times as long for triangles (7.5 s against 0.12 s
+/// for a million quads).
 ///
 /// Polygons are cut into triangles rather than given a Laplacian of their own (A. Bunge, P.
 /// Herholz, M. Kazhdan, M. Botsch, Computer Graphics Forum 39, 2020). Measured with theirs on

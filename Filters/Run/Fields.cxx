@@ -169,9 +169,8 @@ TangentVectors MakeDirections(
   if (!fields.DirectionsOnTriangles)
   {
     return TransportToMesh(surface,
-      FramesFromPointVectors(
-        surface.InputMesh(), surface.Points(), surface.Triangles(), fields.Directions, parallel),
-      parallel);
+      TangentVectorsFromPointVectors(
+        surface.InputMesh(), surface.Points(), surface.Triangles(), fields.Directions, parallel));
   }
   SurfaceDiffusion::Points ofTriangles(surface.Triangles().rows(), 3);
   for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
@@ -179,9 +178,8 @@ TangentVectors MakeDirections(
     ofTriangles.row(t) = fields.Directions.row(surface.InputTriangle(static_cast<Index>(t)));
   }
   return TransportToMesh(surface,
-    FramesFromTriangleVectors(
-      surface.InputMesh(), surface.Points(), surface.Triangles(), ofTriangles, parallel),
-    parallel);
+    TangentVectorsFromTriangleVectors(
+      surface.InputMesh(), surface.Points(), surface.Triangles(), ofTriangles, parallel));
 }
 
 std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields)

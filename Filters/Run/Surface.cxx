@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Surface.h"
 
-#include "Core/Surface/IntrinsicDelaunay.h"
 #include "Core/Surface/MergePoints.h"
 
 #include <algorithm>
@@ -28,6 +27,7 @@ struct Construction
   Points Coordinates;
   Triangles Corners;
   std::shared_ptr<TriangleMesh> Input;
+  std::shared_ptr<const IntrinsicDelaunay> Delaunay;
   std::shared_ptr<const TriangleMesh> Working;
   std::shared_ptr<const Assembler> Operators;
 
@@ -39,7 +39,9 @@ struct Construction
     this->Working = this->Input;
     if (options.IntrinsicDelaunay)
     {
-      this->Working = IntrinsicDelaunay(*this->Input, nullptr, parallel, progress.Part(0.5, 0.6));
+      this->Delaunay =
+        std::make_shared<IntrinsicDelaunay>(this->Input, parallel, progress.Part(0.5, 0.6));
+      this->Working = this->Delaunay->Mesh();
     }
     this->Operators = std::make_shared<Assembler>(this->Working, parallel, progress.Part(0.6, 1.0));
   }
@@ -96,8 +98,8 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   progress.Report(0.1);
   this->Build(options, parallel, progress.Part(0.1, 1.0));
   this->FindVertices();
-  this->Found.DegenerateTriangles = this->Working->GetFindings().DegenerateTriangles;
-  this->Found.NonManifoldEdges = this->Working->GetFindings().NonManifoldEdges;
+  this->Found.DegenerateTriangles = this->Working->Diagnostics().DegenerateTriangles;
+  this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
   if (!options.MergeCoincidentPoints)
   {
     this->Found.CoincidentBoundaryPoints = this->CountCoincidentBoundaryPoints();
@@ -155,6 +157,7 @@ void Surface::Build(
   this->Arrays.Points.swap(construction->Coordinates);
   this->Arrays.Triangles.swap(construction->Corners);
   this->Input = std::move(construction->Input);
+  this->Flipped = std::move(construction->Delaunay);
   this->Working = std::move(construction->Working);
   this->Operators = std::move(construction->Operators);
 }
@@ -198,14 +201,9 @@ Index Surface::CountCoincidentBoundaryPoints() const
   return count;
 }
 
-TangentVectors TransportToMesh(
-  const Surface& surface, TangentVectors vectors, const ParallelFor& parallel)
+TangentVectors TransportToMesh(const Surface& surface, TangentVectors vectors)
 {
-  if (surface.IsIntrinsicDelaunay())
-  {
-    IntrinsicDelaunay(surface.InputMesh(), &vectors, parallel);
-  }
-  return vectors;
+  return surface.Delaunay() ? surface.Delaunay()->Transport(vectors) : vectors;
 }
 
 } // namespace SurfaceDiffusion

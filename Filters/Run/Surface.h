@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
 
 #include <memory>
 #include <vector>
@@ -68,7 +69,8 @@ public:
   /// the same vertices.
   const TriangleMesh& Mesh() const { return *this->Working; }
   std::shared_ptr<const TriangleMesh> SharedMesh() const { return this->Working; }
-  bool IsIntrinsicDelaunay() const { return this->Working != this->Input; }
+  /// Null if models work on InputMesh().
+  const IntrinsicDelaunay* Delaunay() const { return this->Flipped.get(); }
   std::shared_ptr<const Assembler> SharedAssembler() const { return this->Operators; }
 
   /// The vertex of an input point; -1 if no participating triangle uses the point.
@@ -87,6 +89,7 @@ private:
   std::vector<Index> Representative; ///< per point; empty if every point represents itself
   std::vector<Index> TriangleRows;
   std::shared_ptr<TriangleMesh> Input;
+  std::shared_ptr<const IntrinsicDelaunay> Flipped;
   std::shared_ptr<const TriangleMesh> Working;
   std::shared_ptr<const Assembler> Operators;
   std::vector<Index> Vertices;
@@ -94,7 +97,6 @@ private:
 };
 
 /// e1 per triangle of Mesh(), from tangent vectors of InputMesh().
-TangentVectors TransportToMesh(
-  const Surface& surface, TangentVectors vectors, const ParallelFor& parallel);
+TangentVectors TransportToMesh(const Surface& surface, TangentVectors vectors);
 
 } // namespace SurfaceDiffusion

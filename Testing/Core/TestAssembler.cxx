@@ -235,5 +235,5 @@ TEST(Assembler, StopsWhenAsked)
 {
   const auto mesh = MakeMesh(Icosphere(2));
   const ProgressMonitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(Assembler(mesh, ParallelFor(), ProgressMonitor(stop)), Aborted);
+  EXPECT_THROW(Assembler(mesh, SerialFor(), ProgressMonitor(stop)), Aborted);
 }

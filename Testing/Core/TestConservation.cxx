@@ -163,7 +163,7 @@ TEST(MeanCorrection, SolutionsSatisfyTheSumOfTheEquations)
   const Values b = Noise(*mesh, 2);
   const Values before = Noise(*mesh, 2, 5);
   Values x = before;
-  balance.Restore(*mesh, b, x, ParallelFor());
+  balance.Restore(*mesh, b, x, SerialFor());
   const Index first = mesh->ComponentsBegin()[1];
   for (const Eigen::Index k : { 0, 1 })
   {

@@ -79,6 +79,6 @@ private:
 /// int over the surface of c-weighted |grad u|^2 / 2: sum over triangles and edges of
 /// c_ij (u_i - u_j)^2 / 2.
 double DirichletEnergy(const TriangleMesh& mesh, const CornerWeights& coefficients, const Values& u,
-  const ParallelFor& parallel = ParallelFor());
+  const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

@@ -3,35 +3,13 @@
 #pragma once
 
 #include "Core/Foundation/ProgressMonitor.h"
-#include "Core/Foundation/Types.h"
+#include "Core/Surface/PointData.h"
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 
 namespace SurfaceDiffusion
 {
-
-/// The data of a model, per vertex of the mesh. Everything is finite: what is missing has been
-/// filled in Start, and Given there is not read.
-struct PointData
-{
-  Values Given; ///< f, n x k
-  Values Start; ///< u at t = 0, n x k
-  Flags Missing; ///< the paper's D: no fidelity there
-  Flags Fixed; ///< Dirichlet: keeps its Start
-
-  /// All of f known and free.
-  static PointData FromValues(Values f)
-  {
-    PointData data;
-    data.Missing = Flags::Constant(f.rows(), false);
-    data.Fixed = data.Missing;
-    data.Start = f;
-    data.Given = std::move(f);
-    return data;
-  }
-};
 
 struct StepReport
 {

@@ -40,7 +40,7 @@ public:
     double FidelityRounding = 1e-3; ///< delta of L1, in units of the values, > 0
   };
 
-  /// frames: e1 per triangle (see Frames.h), without rows where g1 = g2. Triangles without a
+  /// frames: e1 per triangle (see TangentVectors.h), without rows where g1 = g2. Triangles without a
   /// direction have sqrt(g1 g2). solver: kept by the caller, so that an ordering is used again.
   NonlinearDiffusion(std::shared_ptr<const Assembler> assembler, TangentVectors frames,
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,

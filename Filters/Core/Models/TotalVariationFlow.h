@@ -41,7 +41,7 @@ public:
     int MaximumNumberOfIterations = 10000;
   };
 
-  /// frames: e1 per triangle (see Frames.h), without rows where g1 = g2.
+  /// frames: e1 per triangle (see TangentVectors.h), without rows where g1 = g2.
   TotalVariationFlow(std::shared_ptr<const Assembler> assembler, const TangentVectors& frames,
     PointData data, const Settings& settings, const ParallelFor& parallel = SerialFor());
 

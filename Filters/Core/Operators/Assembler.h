@@ -19,7 +19,7 @@ class Assembler
 {
 public:
   explicit Assembler(std::shared_ptr<const TriangleMesh> mesh,
-    const ParallelFor& parallel = ParallelFor(),
+    const ParallelFor& parallel = SerialFor(),
     const ProgressMonitor& progress = ProgressMonitor());
 
   const TriangleMesh& Mesh() const { return *this->Surface; }
@@ -35,14 +35,14 @@ public:
   /// to the sign: the rows of K then give sum of c_ij (u_i - sign_ij u_j).
   void Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diagonal, double scale,
     const CornerWeights& coefficients, const double* weights = nullptr,
-    const ParallelFor& parallel = ParallelFor(), const CornerWeights* signs = nullptr) const;
+    const ParallelFor& parallel = SerialFor(), const CornerWeights* signs = nullptr) const;
 
   /// Make `fixed` vertices known: their rows keep only the diagonal and their columns are taken
   /// out. load is what this adds to the right-hand side: -sum over fixed j of a_ij values_j in free
   /// rows, and in fixed rows a_ii values_i, which stands alone there. The matrix stays symmetric
   /// positive definite. load: n x k.
   void Constrain(SparseMatrix& matrix, const Flags& fixed, const Values& values, Values& load,
-    const ParallelFor& parallel = ParallelFor()) const;
+    const ParallelFor& parallel = SerialFor()) const;
 
 private:
   std::shared_ptr<const TriangleMesh> Surface;
@@ -57,6 +57,6 @@ private:
 
 /// y = matrix x for all columns of x at once. y must not be x.
 void Multiply(const SparseMatrix& matrix, const Values& x, Values& y,
-  const ParallelFor& parallel = ParallelFor());
+  const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

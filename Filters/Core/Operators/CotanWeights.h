@@ -20,12 +20,12 @@ inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double 
 }
 
 /// (10) c_ij = 1/2 cot(angle at v_k): D = 1.
-CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = ParallelFor());
+CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
 /// (13) c1_ij = -area (grad(phi_i) . e1)(grad(phi_j) . e1): D = e1 e1^T. Zero where the frame is
 /// zero. Those of e2 are c2 = c - c1.
 CornerWeights DirectionalWeights(const TriangleMesh& mesh,
-  const Eigen::Ref<const TangentVectors>& frames, const ParallelFor& parallel = ParallelFor());
+  const Eigen::Ref<const TangentVectors>& frames, const ParallelFor& parallel = SerialFor());
 
 /// (12) g1 c1 + g2 c2 with constant g1, g2 >= 0; sqrt(g1 g2) c where the frame is zero.
 CornerWeights AnisotropicWeights(const TriangleMesh& mesh, const CornerWeights& isotropic,

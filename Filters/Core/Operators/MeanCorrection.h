@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/Parallel.h"
-#include "Core/Models/Model.h"
+#include "Core/Surface/PointData.h"
 #include "Core/Surface/TriangleMesh.h"
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 
 /// Sum over the surface of A_i u_i for column k.
 double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k,
-  const ParallelFor& parallel = ParallelFor());
+  const ParallelFor& parallel = SerialFor());
 
 /// Keeps sum A u to round-off, whatever tolerance the solver has: what a solve leaves over on a
 /// connected component is spread over it evenly. Acts on the components that conserve the sum: no
@@ -23,7 +23,7 @@ class TotalCorrection
 public:
   TotalCorrection() = default;
   TotalCorrection(const TriangleMesh& mesh, const PointData& data, bool hasFidelity,
-    const ParallelFor& parallel = ParallelFor());
+    const ParallelFor& parallel = SerialFor());
 
   void Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel);
 
@@ -45,7 +45,7 @@ class MeanCorrection
 public:
   MeanCorrection() = default;
   MeanCorrection(const TriangleMesh& mesh, Vector weights, const Flags& fixed,
-    const ParallelFor& parallel = ParallelFor());
+    const ParallelFor& parallel = SerialFor());
 
   void Restore(const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel);
 

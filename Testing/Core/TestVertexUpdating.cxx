@@ -32,7 +32,7 @@ double MeanAngle(const Surface& a, const Surface& b)
   return sum / a.NumberOfTriangles() * 180.0 / Pi;
 }
 
-Surface Shaken(Surface s, double amount)
+Surface Noisy(Surface s, double amount)
 {
   for (Index i = 0; i < s.NumberOfVertices(); ++i)
   {
@@ -46,10 +46,10 @@ Surface Shaken(Surface s, double amount)
 
 } // namespace
 
-TEST(VertexFit, ShakenPlaneBecomesFlatWhereItsNormalsSaySo)
+TEST(VertexUpdating, NoisyPlaneWithExactNormalsBecomesFlat)
 {
   const Surface flat = Rotated(Strip(20, 20));
-  const Surface s = Shaken(flat, 0.01);
+  const Surface s = Noisy(flat, 0.01);
   const TriangleMesh mesh(s.Vertices, s.Faces);
   Values normals(mesh.NumberOfVertices(), 3);
   normals.rowwise() = FaceNormal(flat, 0);
@@ -58,7 +58,7 @@ TEST(VertexFit, ShakenPlaneBecomesFlatWhereItsNormalsSaySo)
   fitted.Vertices = UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion);
   EXPECT_GT(MeanAngle(s, flat), 5.0);
   EXPECT_LT(MeanAngle(fitted, flat), 1e-2);
-  // Nothing moves along the plane, and the mean plane stays.
+  // No vertex moves along the plane, and the mean plane stays.
   const Points moved = fitted.Vertices - s.Vertices;
   const Eigen::Vector3d normal = normals.row(0).transpose();
   EXPECT_LT((moved - (moved * normal) * normal.transpose()).cwiseAbs().maxCoeff(), 1e-12);
@@ -66,9 +66,9 @@ TEST(VertexFit, ShakenPlaneBecomesFlatWhereItsNormalsSaySo)
   EXPECT_EQ(motion.VolumeBefore, 0.0); // open
 }
 
-TEST(VertexFit, TellsThatItDidNotConverge)
+TEST(VertexUpdating, ReportsThatItDidNotConverge)
 {
-  const Surface s = Shaken(Strip(20, 20), 0.01);
+  const Surface s = Noisy(Strip(20, 20), 0.01);
   const TriangleMesh mesh(s.Vertices, s.Faces);
   Values normals(mesh.NumberOfVertices(), 3);
   normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
@@ -77,10 +77,10 @@ TEST(VertexFit, TellsThatItDidNotConverge)
     UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }), NotConverged);
 }
 
-TEST(VertexFit, ShakenSphereIsSmoothedAtConstantVolume)
+TEST(VertexUpdating, NoisySphereIsSmoothedAtConstantVolume)
 {
   const Surface clean = Icosphere(4);
-  const Surface s = Shaken(clean, 0.02);
+  const Surface s = Noisy(clean, 0.02);
   const TriangleMesh mesh(s.Vertices, s.Faces);
   const Values normals = SampleUnit(mesh, clean, 3, [](const Eigen::RowVector3d& x) { return x; });
   VertexMotion motion;
@@ -103,9 +103,9 @@ TEST(VertexFit, ShakenSphereIsSmoothedAtConstantVolume)
   EXPECT_NEAR(motion.MaximumDisplacement, largest, 1e-15);
 }
 
-TEST(VertexFit, DoesNotDependOnPlaceSizeOrOrientation)
+TEST(VertexUpdating, DoesNotDependOnPlaceSizeOrOrientation)
 {
-  const Surface s = Shaken(Icosphere(2), 0.03);
+  const Surface s = Noisy(Icosphere(2), 0.03);
   const auto fit = [](const Surface& surface, double scale, const Eigen::RowVector3d& centre)
   {
     const TriangleMesh mesh(surface.Vertices, surface.Faces);
