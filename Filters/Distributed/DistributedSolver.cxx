@@ -98,7 +98,7 @@ public:
       this->SolveColumn(b, x, k, report, progress.Part(1.0 * k / b.cols(), (k + 1.0) / b.cols()));
       progress.Report((k + 1.0) / b.cols());
     }
-    this->Pieces->TakeFromOwners(x);
+    this->Pieces->UpdateFromOwners(x);
     return report;
   }
 
@@ -111,7 +111,7 @@ public:
       this->ApplyPreconditioner(this->R.Vector, this->Z.Vector);
       this->GetOwned(this->Z, z, k);
     }
-    this->Pieces->TakeFromOwners(z);
+    this->Pieces->UpdateFromOwners(z);
   }
 
 private:
@@ -143,7 +143,7 @@ private:
     {
       numbers(i, 0) = this->Pieces->Owns(i) ? static_cast<double>(next++) : -1.0;
     }
-    this->Pieces->TakeFromOwners(numbers);
+    this->Pieces->UpdateFromOwners(numbers);
     this->Rows.resize(n);
     this->OwnRows.clear();
     this->OwnVertices.clear();

@@ -49,7 +49,7 @@ void PieceDecomposition::Attach(Surface& surface, SolverStore& solvers)
 {
   this->Partition = std::make_shared<PiecePartition>(this->Members, surface, this->Identity);
   this->Partition->ObeyAbort(this->AbortRequested);
-  surface.SetPartition(this->Partition);
+  surface.SetReduction(this->Partition);
   solvers.SetDistributedFactory([partition = this->Partition](bool multigrid)
     { return MakeDistributedSolver(partition, multigrid); });
 }

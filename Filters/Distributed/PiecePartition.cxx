@@ -27,7 +27,8 @@ constexpr int ExchangeTag = 7403;
 
 PiecePartition::PiecePartition(
   const Processes& processes, const Surface& surface, const PointIdentity& identity)
-  : Group(processes)
+  : Reduction(Reduction::Kind::Distributed)
+  , Group(processes)
 {
   this->FindSharedVertices(surface, identity);
   this->FindComponents(surface, identity);
@@ -143,9 +144,10 @@ void PiecePartition::FindComponents(const Surface& surface, const PointIdentity&
     connected.Join(component, known->second);
   }
   const std::vector<Index> numbers = connected.Labels();
-  this->Components = numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1;
+  this->NumberOfComponents =
+    numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1;
   const auto own = numbers.begin() + static_cast<std::ptrdiff_t>(first);
-  this->WholeComponents.assign(own, own + mesh.NumberOfComponents());
+  this->SurfaceComponent.assign(own, own + mesh.NumberOfComponents());
 }
 
 /// Edges along seams are in two processes, and count once.
@@ -200,9 +202,9 @@ void PiecePartition::FindSharedEdges(const Surface& surface, const PointIdentity
     const std::vector<int>& processes = sharers[ends];
     if (processes.size() > 1)
     {
-      const auto number = static_cast<Index>(this->EdgesOnSeams.size());
+      const auto number = static_cast<Index>(this->EdgesOnInterface.size());
       const bool owned = this->Join(this->OfEdges, number, processes);
-      this->EdgesOnSeams.push_back(edge.Vertices);
+      this->EdgesOnInterface.push_back(edge.Vertices);
       this->OwnedEdges.push_back(owned);
       this->Edges += owned ? 0 : 1;
       this->EdgeLength += owned ? 0.0 : edge.Length;
@@ -308,17 +310,17 @@ const typename Map::mapped_type& At(const Map& map, int process)
 
 } // namespace
 
-void PiecePartition::TakeFromOwners(Values& values) const
+void PiecePartition::UpdateFromOwners(Values& values) const
 {
   this->Take(this->OfVertices, values.data(), static_cast<Index>(values.cols()));
 }
 
-void PiecePartition::AddOverSeams(double* rows, Index columns) const
+void PiecePartition::Accumulate(double* rows, Index columns) const
 {
   this->Add(this->OfVertices, rows, columns);
 }
 
-void PiecePartition::AddOverSeamEdges(double* ofEdges) const
+void PiecePartition::AccumulateInterfaceEdges(double* ofEdges) const
 {
   this->Add(this->OfEdges, ofEdges, 1);
 }

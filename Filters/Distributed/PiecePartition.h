@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Partition.h"
+#include "Core/Foundation/Reduction.h"
 #include "Distributed/PointIdentity.h"
 #include "Distributed/Processes.h"
 #include "Run/Surface.h"
@@ -18,18 +18,19 @@ namespace SurfaceDiffusion
 {
 
 /// A surface each process has one piece of.
-class PiecePartition : public Partition
+class PiecePartition : public Reduction
 {
 public:
   /// surface: of this process's piece, whose points have this identity. Collective.
   PiecePartition(const Processes& processes, const Surface& surface, const PointIdentity& identity);
 
+  using Reduction::Sum;
   void Sum(double* numbers, Index count) const override;
   void Max(double* numbers, Index count) const override;
-  void TakeFromOwners(Values& values) const override;
-  using Partition::AddOverSeams;
-  void AddOverSeams(double* rows, Index columns) const override;
-  void AddOverSeamEdges(double* ofEdges) const override;
+  void UpdateFromOwners(Values& values) const override;
+  using Reduction::Accumulate;
+  void Accumulate(double* rows, Index columns) const override;
+  void AccumulateInterfaceEdges(double* ofEdges) const override;
 
   /// asked: whether this process is to stop. Sum() obeys it in all processes together.
   void ObeyAbort(std::shared_ptr<const bool> asked) { this->AbortAsked = std::move(asked); }

@@ -71,7 +71,7 @@ ModelTraits HarmonicMapSettings::DescribeModel() const
 
 SolverTask HarmonicMapSettings::MakeTask(const ModelInputs& inputs, double timeStep) const
 {
-  const bool distributed = inputs.Surface.Mesh().GetPartition() != nullptr;
+  const bool distributed = !inputs.Surface.Mesh().GetReduction().IsSerial();
   SolverTask task;
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
   task.DiffusionNumber =
@@ -114,7 +114,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   settings.LargestDiffusivity = fastest > 0.0 ? fastest : 1.0;
   settings.Limits.Tolerance = this->Tolerance;
   settings.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
-  const bool distributed = inputs.Surface.Mesh().GetPartition() != nullptr;
+  const bool distributed = !inputs.Surface.Mesh().GetReduction().IsSerial();
   if (this->Solver == SolverChoice::Direct ||
     (this->Solver == SolverChoice::Multigrid && distributed))
   {

@@ -210,10 +210,11 @@ PointData Run::MakeData(
         data = MakePointData(*block.Surface, fields, inpaint, block.Units.ValueUnit);
       }
     });
-  if (const Partition* const partition = block.Surface->Mesh().GetPartition())
+  const Reduction& reduction = block.Surface->Mesh().GetReduction();
+  if (!reduction.IsSerial())
   {
     double components = static_cast<double>(data.Given.cols());
-    partition->Max(&components, 1);
+    reduction.Max(&components, 1);
     const auto columns = static_cast<Eigen::Index>(components);
     const Eigen::Index n = block.Surface->Mesh().NumberOfVertices();
     Values all = Values::Zero(n, columns + 2);
@@ -221,7 +222,7 @@ PointData Run::MakeData(
     {
       all << data.Given, data.Missing.cast<double>(), data.Fixed.cast<double>();
     }
-    partition->TakeFromOwners(all);
+    reduction.UpdateFromOwners(all);
     data.Given = all.leftCols(columns);
     data.Missing = all.col(columns).array() != 0.0;
     data.Fixed = all.col(columns + 1).array() != 0.0;

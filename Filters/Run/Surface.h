@@ -50,9 +50,9 @@ public:
     const ProgressMonitor& progress);
 
   /// Declare this surface one process's part of a larger one. Only without IntrinsicDelaunay.
-  void SetPartition(std::shared_ptr<const Partition> partition)
+  void SetReduction(std::shared_ptr<const Reduction> reduction)
   {
-    this->Input->SetPartition(std::move(partition));
+    this->Input->SetReduction(std::move(reduction));
   }
 
   /// Per input point.

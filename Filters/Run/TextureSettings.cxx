@@ -93,8 +93,8 @@ double MeanOverSurface(const TriangleMesh& mesh, const Vector& rate)
     area += mesh.Shapes()[t].Area();
     sum += mesh.Shapes()[t].Area() * rate[t];
   }
-  area = SumOverProcesses(mesh.GetPartition(), area);
-  sum = SumOverProcesses(mesh.GetPartition(), sum);
+  area = mesh.GetReduction().Sum(area);
+  sum = mesh.GetReduction().Sum(sum);
   return area > 0.0 ? sum / area : 0.0;
 }
 
@@ -453,7 +453,7 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
 void TextureSettings::Finish(const RunState& state, RunResult& result) const
 {
   result.ContrastLimits = ContrastLimits(
-    state.Path.State().col(this->TextureChemical), state.Surface.Mesh().GetPartition());
+    state.Path.State().col(this->TextureChemical), state.Surface.Mesh().GetReduction());
 }
 
 } // namespace SurfaceDiffusion

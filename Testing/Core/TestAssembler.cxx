@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/Assembler.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/DirichletEnergy.h"
 #include "Meshes.h"
 
 #include <Eigen/Eigenvalues>

@@ -4,6 +4,7 @@
 #include "Meshes.h"
 
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/DirichletEnergy.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 #include "Core/Surface/TangentVectors.h"
 

@@ -214,7 +214,7 @@ TEST(ReactionDiffusion, SteadyStateStays)
 
 // With concentrations held at zero over a part of the surface: plain clamping would be of first
 // order whatever the scheme.
-TEST(ReactionDiffusion, OrderInTimeHoldsWhereConcentrationsAreHeldAtZero)
+TEST(ReactionDiffusion, OrderInTimeHoldsWithConcentrationsHeldAtZero)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
   const TriangleMesh& mesh = assembler->Mesh();
@@ -285,7 +285,7 @@ TEST(ReactionDiffusion, TuringRunsAwayBelowZeroUnlessHeld)
   }
 }
 
-TEST(ReactionDiffusion, SliversDoNotShakeWhatIsHeldAtZero)
+TEST(ReactionDiffusion, ConcentrationsHeldAtZeroDoNotOscillateOnSlivers)
 {
   // Sheared until the angles are between 0.3 and 179 degrees: half of the weights are negative.
   Surface s = Strip(30, 30);
@@ -300,7 +300,7 @@ TEST(ReactionDiffusion, SliversDoNotShakeWhatIsHeldAtZero)
   EXPECT_GE(model->State().minCoeff(), 0.0);
 }
 
-TEST(ReactionDiffusion, BlowUpIsToldNotPassedOn)
+TEST(ReactionDiffusion, BlowUpIsAnError)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
   Settings settings;
@@ -592,7 +592,7 @@ TEST(ReactionDiffusion, StepsAfterTheFirstAllocateNothing)
   }
 }
 
-TEST(ReactionDiffusion, StopsWhenThePatternStands)
+TEST(ReactionDiffusion, StopsOnceThePatternIsStationary)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
   Settings settings;

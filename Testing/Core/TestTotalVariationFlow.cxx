@@ -280,7 +280,7 @@ TEST(TotalVariationFlow, FixedVerticesKeepTheirValues)
   }
 }
 
-TEST(TotalVariationFlow, SteadyStateOfWhatNothingHoldsIsTheMean)
+TEST(TotalVariationFlow, SteadyStateWithoutConditionsIsTheMean)
 {
   const auto assembler = MakeAssembler(Joined(Disk(5), Icosphere(2)));
   const TriangleMesh& mesh = assembler->Mesh();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Partition.h"
+#include "Core/Foundation/Reduction.h"
 
 #include <algorithm>
 #include <vector>
@@ -60,13 +60,10 @@ public:
       parallel, rows, columns, sets, [](Index, Index) {}, add);
   }
 
-  /// The totals become those over the processes; without a partition they are.
-  void SumOverProcesses(const Partition* partition)
+  /// The totals become those over the processes.
+  void Reduce(const Reduction& reduction)
   {
-    if (partition)
-    {
-      partition->Sum(this->Total.data(), static_cast<Index>(this->Total.size()));
-    }
+    reduction.Sum(this->Total.data(), static_cast<Index>(this->Total.size()));
   }
 
   double operator[](std::size_t sum) const { return this->Total[sum]; }

@@ -28,16 +28,13 @@ struct Statistics
     this->Low = std::min(this->Low, value);
     this->High = std::max(this->High, value);
   }
-  void SumOverProcesses(const Partition* partition)
+  void Reduce(const Reduction& reduction)
   {
-    if (partition)
-    {
-      double sums[2] = { this->WeightedSum, this->Area };
-      double bounds[2] = { -this->Low, this->High };
-      partition->Sum(sums, 2);
-      partition->Max(bounds, 2);
-      *this = { sums[0], sums[1], -bounds[0], bounds[1] };
-    }
+    double sums[2] = { this->WeightedSum, this->Area };
+    double bounds[2] = { -this->Low, this->High };
+    reduction.Sum(sums, 2);
+    reduction.Max(bounds, 2);
+    *this = { sums[0], sums[1], -bounds[0], bounds[1] };
   }
   bool Empty() const { return !(this->Area > 0.0); }
   double Mean() const { return this->Empty() ? 0.0 : this->WeightedSum / this->Area; }
@@ -56,8 +53,8 @@ void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, st
   const std::vector<std::int64_t>& ids)
 {
   data.Start = data.Given;
-  const Partition* const partition = mesh.GetPartition();
-  if (!AnyProcess(partition, data.Missing.any()))
+  const Reduction& reduction = mesh.GetReduction();
+  if (!reduction.Any(data.Missing.any()))
   {
     return;
   }
@@ -80,8 +77,8 @@ void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, st
       known(c, 0) = ofComponent.WeightedSum;
       known(c, 1) = ofComponent.Area;
     }
-    all.SumOverProcesses(partition);
-    SumComponents(partition, components, known);
+    all.Reduce(reduction);
+    reduction.SumComponents(components, known);
     const double low = all.Empty() ? 0.0 : all.Low;
     const double high = all.Empty() ? 0.0 : all.High;
     for (const Index c : components)
@@ -116,22 +113,22 @@ void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelit
 {
   const std::vector<Index> components = AllComponents(mesh);
   const Eigen::Index columns = data.Start.cols();
-  Values sums(mesh.NumberOfComponents(), columns + 2); // A u, A, what holds
+  Values sums(mesh.NumberOfComponents(), columns + 2); // A u, A, whether bound
   for (const Index c : components)
   {
     const Index begin = mesh.ComponentsBegin()[c];
     const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    bool held = false;
-    for (Index i = begin; i < begin + size && !held; ++i)
+    bool bound = false;
+    for (Index i = begin; i < begin + size && !bound; ++i)
     {
-      held = data.Fixed[i] || (fidelity > 0.0 && !data.Missing[i]);
+      bound = data.Fixed[i] || (fidelity > 0.0 && !data.Missing[i]);
     }
     const auto areas = mesh.ControlAreas().segment(begin, size);
     sums.row(c).head(columns) = areas.transpose() * data.Start.middleRows(begin, size);
     sums(c, columns) = areas.sum();
-    sums(c, columns + 1) = held ? 1.0 : 0.0;
+    sums(c, columns + 1) = bound ? 1.0 : 0.0;
   }
-  SumComponents(mesh.GetPartition(), components, sums);
+  mesh.GetReduction().SumComponents(components, sums);
   for (const Index c : components)
   {
     if (sums(c, columns + 1) == 0.0)

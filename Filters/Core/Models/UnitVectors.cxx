@@ -14,9 +14,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// A mean shorter than this tells little about where the vectors point, and can mislead: that of
-/// the normals of a closed surface with a hole points away from the hole.
-constexpr double Undecided = 0.5;
+/// A mean shorter than this says little about the direction of the vectors, and can mislead: that
+/// of the normals of a closed surface with a hole points away from the hole.
+constexpr double MinimumMeanLength = 0.5;
 
 /// Sums over the known vectors of each component of the surface: area, A u, and of lines A u u^T.
 Values SumKnown(const TriangleMesh& mesh, const PointData& data, bool lineField)
@@ -43,11 +43,11 @@ Values SumKnown(const TriangleMesh& mesh, const PointData& data, bool lineField)
   }
   std::vector<Index> all(mesh.NumberOfComponents());
   std::iota(all.begin(), all.end(), 0);
-  SumComponents(mesh.GetPartition(), all, sums);
+  mesh.GetReduction().SumComponents(all, sums);
   return sums;
 }
 
-/// The direction that prevails, from a component's row of SumKnown(); zero where there is none.
+/// The direction that prevails, from a component's row of SumKnown(); zero if there is none.
 Eigen::RowVectorXd PrevailingDirection(
   const Eigen::Ref<const Eigen::RowVectorXd>& sums, Eigen::Index m, bool lineField)
 {
@@ -57,11 +57,12 @@ Eigen::RowVectorXd PrevailingDirection(
   {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(
       Eigen::Map<const Eigen::MatrixXd>(sums.data() + 1 + m, m, m));
-    const bool decided = axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > Undecided * area;
+    const bool decided =
+      axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > MinimumMeanLength * area;
     sum = decided ? Eigen::RowVectorXd(axes.eigenvectors().col(m - 1).transpose())
                   : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(m));
   }
-  else if (!(sum.norm() > Undecided * area))
+  else if (!(sum.norm() > MinimumMeanLength * area))
   {
     sum.setZero();
   }
@@ -89,87 +90,52 @@ Eigen::RowVectorXd SumOfNeighbours(
   return sum;
 }
 
-/// Give every vertex of begin .. end that has no direction yet the sum of its neighbours' that
-/// have one, ring by ring from the rim inwards; e_1 where nothing is known.
-void SpreadInwards(
-  const TriangleMesh& mesh, Values& u, Flags& known, bool lineField, Index begin, Index end)
+/// Give every vertex without a direction the sum of those of its neighbours, ring by ring from the
+/// rim inwards; e_1 if nothing is known or neighbours cancel exactly. (The sum of lines
+/// depends on its order: only the serial reduction takes them.)
+void SpreadInwards(const TriangleMesh& mesh, Values& u, Flags& known, bool lineField)
 {
-  std::vector<Index> ring, open;
-  for (Index i = begin; i < end; ++i)
+  const Reduction& reduction = mesh.GetReduction();
+  std::vector<Index> open, left;
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
     if (!known[i])
     {
       open.push_back(i);
     }
   }
-  while (!open.empty())
+  Values sums = Values::Zero(u.rows(), u.cols());
+  while (reduction.Any(!open.empty()))
   {
-    ring.clear();
-    std::vector<Index> left;
     for (const Index i : open)
     {
-      Eigen::RowVectorXd sum = SumOfNeighbours(mesh, u, known, lineField, i);
-      if (Normalize(sum))
+      sums.row(i) = SumOfNeighbours(mesh, u, known, lineField, i);
+    }
+    reduction.Accumulate(sums);
+    left.clear();
+    for (const Index i : open)
+    {
+      known[i] = Normalize(sums.row(i));
+      if (known[i])
       {
-        u.row(i) = sum;
-        ring.push_back(i);
+        u.row(i) = sums.row(i);
       }
       else
       {
         left.push_back(i);
       }
+      sums.row(i).setZero();
     }
-    if (ring.empty()) // nothing known, or neighbours that cancel exactly
+    const bool stuck = !reduction.Any(left.size() < open.size());
+    for (std::size_t i = 0; stuck && i < left.size(); ++i)
     {
-      u.row(left.back()) = Eigen::RowVectorXd::Unit(u.cols(), 0);
-      ring.push_back(left.back());
-      left.pop_back();
-    }
-    for (const Index i : ring)
-    {
-      known[i] = true;
+      known[left[i]] = true;
+      u.row(left[i]) = Eigen::RowVectorXd::Unit(u.cols(), 0);
     }
     open.swap(left);
-  }
-}
-
-/// The same for vectors on a surface in pieces, all components at once. (Of lines the signs in a
-/// sum depend on its order.)
-void SpreadInwards(const Partition& partition, const TriangleMesh& mesh, Values& u, Flags& known)
-{
-  Values sums(u.rows(), u.cols());
-  Flags reached(u.rows());
-  while (partition.Any(!known.all()))
-  {
-    sums.setZero();
-    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-    {
-      if (!known[i])
-      {
-        sums.row(i) = SumOfNeighbours(mesh, u, known, false, i);
-      }
-    }
-    partition.AddOverSeams(sums);
-    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-    {
-      reached[i] = !known[i] && Normalize(sums.row(i));
-    }
-    const bool stuck = !partition.Any(reached.any());
-    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-    {
-      if (reached[i])
-      {
-        u.row(i) = sums.row(i);
-      }
-      else if (stuck && !known[i])
-      {
-        u.row(i) = Eigen::RowVectorXd::Unit(u.cols(), 0);
-      }
-    }
-    known = known || reached;
     if (stuck)
     {
-      known.setConstant(true);
+      open.clear();
     }
   }
 }
@@ -189,8 +155,7 @@ void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool line
   }
   const Flags undirected = data.Given.array().isNaN().rowwise().any();
   FillMissing(mesh, data, fill, seed, ids);
-  const Partition* const partition = mesh.GetPartition();
-  if (!AnyProcess(partition, data.Missing.any()))
+  if (!mesh.GetReduction().Any(data.Missing.any()))
   {
     return;
   }
@@ -215,15 +180,8 @@ void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool line
       }
       known[i] = Normalize(data.Start.row(i));
     }
-    if (!partition)
-    {
-      SpreadInwards(mesh, data.Start, known, lineField, begin, end);
-    }
   }
-  if (partition)
-  {
-    SpreadInwards(*partition, mesh, data.Start, known);
-  }
+  SpreadInwards(mesh, data.Start, known, lineField);
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
     if (undirected[i])

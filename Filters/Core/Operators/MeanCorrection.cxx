@@ -32,7 +32,7 @@ std::vector<Index> Select(const TriangleMesh& mesh, const Refuses& refuses)
     const Index end = mesh.ComponentsBegin()[c + 1];
     refusals(c, 0) = refuses(begin, end) ? 1.0 : 0.0;
   }
-  SumComponents(mesh.GetPartition(), all, refusals);
+  mesh.GetReduction().SumComponents(all, refusals);
   all.erase(std::remove_if(all.begin(), all.end(), [&](Index c) { return refusals(c, 0) > 0.0; }),
     all.end());
   return all;
@@ -49,7 +49,7 @@ std::vector<double> SumEach(
     sums(static_cast<Eigen::Index>(c), 0) =
       sum(mesh.ComponentsBegin()[components[c]], mesh.ComponentsBegin()[components[c] + 1]);
   }
-  SumComponents(mesh.GetPartition(), components, sums);
+  mesh.GetReduction().SumComponents(components, sums);
   return std::vector<double>(sums.data(), sums.data() + sums.size());
 }
 
@@ -57,8 +57,7 @@ std::vector<double> SumEach(
 
 double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k, const ParallelFor& parallel)
 {
-  return SumOverProcesses(
-    mesh.GetPartition(), RangeTotal(mesh, u, k, 0, mesh.NumberOfVertices(), parallel));
+  return mesh.GetReduction().Sum(RangeTotal(mesh, u, k, 0, mesh.NumberOfVertices(), parallel));
 }
 
 TotalCorrection::TotalCorrection(
@@ -95,7 +94,7 @@ void TotalCorrection::Total(const TriangleMesh& mesh, const Values& u, const Par
         mesh.ComponentsBegin()[component + 1], parallel);
     }
   }
-  SumComponents(mesh.GetPartition(), this->Components, this->Totals);
+  mesh.GetReduction().SumComponents(this->Components, this->Totals);
 }
 
 void TotalCorrection::Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel)
@@ -145,7 +144,7 @@ void MeanCorrection::Restore(
       this->Left(c, k) = Sum(parallel, count,
         [&](Index i) { return b(begin + i, k) - this->Weights[begin + i] * x(begin + i, k); });
     });
-  SumComponents(mesh.GetPartition(), this->Components, this->Left);
+  mesh.GetReduction().SumComponents(this->Components, this->Left);
   forEach(
     [&](Eigen::Index c, Eigen::Index k, Index begin, Index count)
     {

@@ -15,9 +15,10 @@ namespace SurfaceDiffusion
 double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k,
   const ParallelFor& parallel = SerialFor());
 
-/// Keeps sum A u to round-off, whatever tolerance the solver has: what a solve leaves over on a
-/// connected component is spread over it evenly. Acts on the components that conserve the sum: no
-/// fixed vertex, and no fidelity or one to the start itself (nothing missing, start = f).
+/// Conserves the total sum A u to round-off, independently of the tolerance of the solver: the
+/// error that a solve makes on a connected component is spread over it evenly. Acts on the
+/// components that conserve the total: no fixed vertex, and no fidelity or one to the start itself
+/// (nothing missing, start = f).
 class TotalCorrection
 {
 public:
@@ -36,10 +37,11 @@ private:
   Values Targets; ///< sum A u at the start, component x column
 };
 
-/// Makes solutions of (diag(w) + K) x = b satisfy the sum of the equations over each connected
-/// component without fixed vertices: sum w x = sum b, whatever K is, since its columns sum to zero.
-/// Where w is small against K (long steps, weak fidelity) the matrix tells the mean of x from
-/// nothing but the last digits of its diagonal; this sum tells it exactly.
+/// Corrects the mean of a solution of (diag(w) + K) x = b, K a stiffness matrix: makes it satisfy
+/// the sum of the equations over each connected component without fixed vertices, sum w x = sum b,
+/// in which K vanishes since its columns sum to zero. If w is small against K (long steps, weak
+/// fidelity), the mean of x depends on the last digits of the diagonal of the matrix only; this sum
+/// determines it exactly.
 class MeanCorrection
 {
 public:

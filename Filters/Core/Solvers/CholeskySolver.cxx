@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/LinearSolver.h"
 
+#include "Core/Foundation/Columns.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Solvers/SparseFactor.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -32,17 +32,17 @@ public:
     {
       return;
     }
-    if (this->Factor && this->Factor->Holds(matrix))
+    if (this->Factor && this->Factor->HasValuesOf(matrix))
     {
       return;
     }
     // A factorisation cannot be stopped: it runs on data of its own, and is dropped after an abort.
-    std::shared_ptr<Factorization> factor = std::move(this->Factor);
-    if (!factor || !factor->HoldsPatternOf(matrix))
+    std::shared_ptr<SparseFactor> factor = std::move(this->Factor);
+    if (!factor || !factor->HasPatternOf(matrix))
     {
-      factor = std::make_shared<Factorization>();
+      factor = std::make_shared<SparseFactor>();
     }
-    factor->Matrix = matrix;
+    factor->SetMatrix(matrix);
     constexpr Eigen::Index quick = 5000; // vertices: not worth a thread
     if (matrix.rows() < quick)
     {
@@ -86,154 +86,10 @@ public:
     return report;
   }
 
+  void Precondition(const Values& r, Values& z) override { this->Substitute(r, z); }
+
 private:
-  struct Factorization
-  {
-    static constexpr int WidestPanel = 4;
-
-    /// Of a diagonal entry: a few units in its last place.
-    static constexpr double Resolved = 1e-14;
-
-    SparseMatrix Matrix;
-    std::unique_ptr<SparseFactor> LDL = MakeSparseFactor();
-    bool Analyzed = false;
-    bool Pruned = false;
-    bool Succeeded = false;
-    Vector InverseDiagonal; ///< of the matrix
-    Vector InverseD; ///< of the factor
-    std::vector<Index> Panels; ///< first columns, and the end
-
-    void Compute()
-    {
-      // Held vertices leave zeros behind (and right angles too): without them the factor is that of
-      // the free vertices alone.
-      SparseMatrix pruned;
-      const double* values = this->Matrix.valuePtr();
-      const auto zeros = std::count(values, values + this->Matrix.nonZeros(), 0.0);
-      const bool prune = zeros > this->Matrix.nonZeros() / 20;
-      if (prune)
-      {
-        pruned = this->Matrix;
-        pruned.prune([](Index, Index, double value) { return value != 0.0; });
-      }
-      const SparseMatrix& matrix = prune ? pruned : this->Matrix;
-      if (!this->Analyzed || prune || this->Pruned)
-      {
-        this->LDL->Analyze(matrix);
-        this->Analyzed = true;
-        this->Pruned = prune;
-      }
-      this->Succeeded = this->LDL->Factorize(matrix, 1.0);
-      if (!this->PivotsAbove(Resolved))
-      {
-        // A mode is lost in the last digits of the diagonal (the mean, at a huge time step): round
-        // the diagonal up in these digits, which are wrong by as much, so that its pivot is safe.
-        this->Succeeded = this->LDL->Factorize(matrix, 1.0 + Resolved);
-      }
-      this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();
-      if (this->Succeeded)
-      {
-        this->InverseD = this->LDL->D.cwiseInverse();
-        this->DropNegligible();
-        this->FindPanels();
-      }
-    }
-
-    /// Columns that follow each other, each of which has the rows of the next one and the next one
-    /// itself: substitution takes them together, so that it reads rows once and numbers of the
-    /// right-hand side once.
-    void FindPanels()
-    {
-      const SparseFactor& l = *this->LDL;
-      const Index n = static_cast<Index>(l.D.size());
-      const auto nested = [&](Index j) // the columns j and j + 1
-      {
-        const Index begin = l.Begin[j];
-        const Index next = l.Begin[j + 1];
-        return next > begin && l.Rows[begin] == j + 1 &&
-          next - begin - 1 == l.Begin[j + 2] - next &&
-          std::equal(l.Rows + begin + 1, l.Rows + next, l.Rows + next);
-      };
-      this->Panels.clear();
-      for (Index j = 0; j < n;)
-      {
-        this->Panels.push_back(j);
-        Index width = 1;
-        while (width < WidestPanel && j + width < n && nested(j + width - 1))
-        {
-          ++width;
-        }
-        j += width;
-      }
-      this->Panels.push_back(n);
-    }
-
-    /// Leave out of L what is below the last place of its row. The smaller the time step, the
-    /// faster the influence of vertices on each other falls off with distance: at steps of h^2/D
-    /// and less, a third to two thirds of the entries go. The rest moves together in place.
-    void DropNegligible()
-    {
-      constexpr double lastPlace = 1e-16;
-      SparseFactor& l = *this->LDL;
-      const Index n = static_cast<Index>(l.D.size());
-      Index kept = 0;
-      for (Index j = 0, begin = 0; j < n; ++j)
-      {
-        const Index end = l.Begin[j + 1];
-        for (Index slot = begin; slot < end; ++slot)
-        {
-          const Index i = l.Rows[slot];
-          const double value = l.Entries[slot];
-          // |L_ij| sqrt(D_j), an entry of the Cholesky factor, against sqrt(D_i), its diagonal
-          if (!(value * value * std::abs(l.D[j]) < lastPlace * lastPlace * std::abs(l.D[i])))
-          {
-            l.Rows[kept] = i;
-            l.Entries[kept] = value;
-            ++kept;
-          }
-        }
-        begin = end;
-        l.Begin[j + 1] = kept;
-      }
-    }
-
-    /// A pivot of a nearly singular matrix may be negative by round-off.
-    bool IsPositive() const { return this->PivotsAbove(-1e-10); }
-
-    /// Whether every pivot is above `bound` times its diagonal entry.
-    bool PivotsAbove(double bound) const
-    {
-      if (!this->Succeeded)
-      {
-        return false;
-      }
-      const Vector diagonal = this->Matrix.diagonal();
-      for (Eigen::Index i = 0; i < diagonal.size(); ++i)
-      {
-        if (!(this->LDL->D[this->LDL->Place[i]] > bound * std::abs(diagonal[i])))
-        {
-          return false;
-        }
-      }
-      return true;
-    }
-    bool HoldsPatternOf(const SparseMatrix& matrix) const
-    {
-      return this->Matrix.rows() == matrix.rows() && this->Matrix.nonZeros() == matrix.nonZeros() &&
-        std::equal(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.rows(),
-          this->Matrix.outerIndexPtr()) &&
-        std::equal(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros(),
-          this->Matrix.innerIndexPtr());
-    }
-    bool Holds(const SparseMatrix& matrix) const
-    {
-      return this->HoldsPatternOf(matrix) &&
-        std::equal(
-          matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), this->Matrix.valuePtr());
-    }
-  };
-
-  /// Columns j .. j + Width - 1 of L, as FindPanels() puts them together.
+  /// Columns j .. j + Width - 1 of L, a panel of the factor.
   template <int Width>
   struct Panel
   {
@@ -257,19 +113,16 @@ private:
 
   /// work(width), with the width of a panel as a number known to the compiler.
   template <typename Work>
-  static void WithWidth(Index width, const Work& work)
+  static void ForWidth(Index width, const Work& work)
   {
-    switch (width)
-    {
-      case 1:
-        return work(std::integral_constant<int, 1>());
-      case 2:
-        return work(std::integral_constant<int, 2>());
-      case 3:
-        return work(std::integral_constant<int, 3>());
-      default:
-        return work(std::integral_constant<int, Factorization::WidestPanel>());
-    }
+    ForNumber<SparseFactor::WidestPanel>(width,
+      [&](auto number)
+      {
+        if constexpr (decltype(number)::value > 0)
+        {
+          work(number);
+        }
+      });
   }
 
   /// x = P^T L^-T D^-1 L^-1 P b
@@ -277,26 +130,16 @@ private:
   {
     x.resize(b.rows(), b.cols());
     this->W.resize(b.rows(), b.cols());
-    switch (b.cols())
-    {
-      case 1:
-        return this->SubstituteColumns<1>(b, x);
-      case 2:
-        return this->SubstituteColumns<2>(b, x);
-      case 3:
-        return this->SubstituteColumns<3>(b, x);
-      default:
-        return this->SubstituteColumns<0>(b, x);
-    }
+    ForColumns(b.cols(), [&](auto k) { this->SubstituteColumns<decltype(k)::value>(b, x); });
   }
 
-  /// K columns, or as many as b has where K is 0, in one pass over the factor.
+  /// K columns, or any number of them if K is 0, in one pass over the factor.
   template <int K>
   void SubstituteColumns(const Values& b, Values& x)
   {
-    const int k = K > 0 ? K : static_cast<int>(b.cols());
+    const int k = ColumnCount<K>(b.cols());
     const Index n = static_cast<Index>(b.rows());
-    const Index* place = this->Factor->LDL->Place;
+    const Index* place = this->Factor->Place;
     for (Index i = 0; i < n; ++i)
     {
       for (int c = 0; c < k; ++c)
@@ -307,12 +150,12 @@ private:
     const std::vector<Index>& panels = this->Factor->Panels;
     for (std::size_t p = 0; p + 1 < panels.size(); ++p)
     {
-      WithWidth(panels[p + 1] - panels[p],
+      ForWidth(panels[p + 1] - panels[p],
         [&](auto width) { this->Forward<K, decltype(width)::value>(panels[p], k); });
     }
     for (std::size_t p = panels.size() - 1; p > 0; --p)
     {
-      WithWidth(panels[p] - panels[p - 1],
+      ForWidth(panels[p] - panels[p - 1],
         [&](auto width) { this->Backward<K, decltype(width)::value>(panels[p - 1], k); });
     }
     for (Index i = 0; i < n; ++i)
@@ -333,8 +176,8 @@ private:
   template <int K, int Width>
   void Forward(Index j, int columns)
   {
-    const int k = K > 0 ? K : columns;
-    const Panel<Width> panel(*this->Factor->LDL, j);
+    const int k = ColumnCount<K>(columns);
+    const Panel<Width> panel(*this->Factor, j);
     double* w = this->Row(j, k);
     for (int a = 0; a < Width; ++a)
     {
@@ -346,11 +189,12 @@ private:
         }
       }
     }
-    double registers[K > 0 ? Width * K : 1];
+    ColumnRegisters<double, K, Width> registers;
     if (K > 0)
     {
-      std::copy_n(w, Width * k, registers);
-      w = registers;
+      double* const fast = registers.Or(w);
+      std::copy_n(w, Width * k, fast);
+      w = fast;
     }
     for (Index s = 0; s < panel.Count; ++s)
     {
@@ -371,11 +215,11 @@ private:
   template <int K, int Width>
   void Backward(Index j, int columns)
   {
-    const int k = K > 0 ? K : columns;
-    const Panel<Width> panel(*this->Factor->LDL, j);
+    const int k = ColumnCount<K>(columns);
+    const Panel<Width> panel(*this->Factor, j);
     double* result = this->Row(j, k);
-    double registers[K > 0 ? Width * K : 1];
-    double* w = K > 0 ? registers : result;
+    ColumnRegisters<double, K, Width> registers;
+    double* w = registers.Or(result);
     for (int a = 0; a < Width; ++a)
     {
       for (int c = 0; c < k; ++c)
@@ -441,7 +285,7 @@ private:
 
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
-  std::shared_ptr<Factorization> Factor;
+  std::shared_ptr<SparseFactor> Factor;
   Values R, Correction;
   Values W; ///< in the order of the factor
 };

@@ -56,7 +56,7 @@ public:
     const Values& b, Values& x, const ProgressMonitor& progress = ProgressMonitor()) = 0;
 
   /// z is about A^-1 r, and symmetric and linear in r as what preconditions other iterations has to
-  /// be: the solution of a direct method. Of a surface in pieces r is as states are (Partition).
+  /// be: the solution of a direct method. Over several processes r is consistent.
   virtual void Precondition(const Values& r, Values& z) { this->Solve(r, z); }
 
 protected:

@@ -11,27 +11,17 @@
 namespace SurfaceDiffusion
 {
 
-void QuadraticDescent::SetMatrix(const SparseMatrix& matrix, const Partition* partition)
+void QuadraticDescent::SetMatrix(const SparseMatrix& matrix, const Reduction& reduction)
 {
   this->Matrix = &matrix;
-  this->Pieces = partition;
+  this->OverProcesses = &reduction;
   this->InverseDiagonal.resize(matrix.rows());
   ForEach(this->Parallel, static_cast<Index>(matrix.rows()),
     [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
-  if (partition)
-  {
-    partition->AddOverSeams(this->InverseDiagonal);
-    this->CountedOnce.resize(matrix.rows());
-  }
+  reduction.Accumulate(this->InverseDiagonal);
   ForEach(this->Parallel, static_cast<Index>(matrix.rows()),
-    [&](Index i)
-    {
-      this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i];
-      if (partition)
-      {
-        this->CountedOnce[i] = partition->Owns(i) ? this->InverseDiagonal[i] : 0.0;
-      }
-    });
+    [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
+  this->Weight = reduction.OwnedPart(this->InverseDiagonal, this->OwnedInverse).data();
 }
 
 void QuadraticDescent::Improve(Values& x, int iterations)
@@ -60,8 +50,7 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
   double* p = this->Direction.data();
   double* q = this->Product.data();
   double* u = x.data();
-  const double* const weight =
-    this->Pieces ? this->CountedOnce.data() : this->InverseDiagonal.data();
+  const double* const weight = this->Weight;
 
   // p = z = r / diag(A), rho = r . z
   this->Sums.Run<K>(this->Parallel, n, k, 1,
@@ -74,7 +63,7 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
         sums[c] += ri * weight[i] * ri;
       }
     });
-  this->Sums.SumOverProcesses(this->Pieces);
+  this->Sums.Reduce(*this->OverProcesses);
   this->Rho = this->Sums.Totals();
   this->Length = this->Rho;
   for (int iteration = 0; iteration < iterations; ++iteration)
@@ -91,11 +80,8 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
           sums[c] += p[i * k + c] * q[i * k + c];
         }
       });
-    this->Sums.SumOverProcesses(this->Pieces);
-    if (this->Pieces)
-    {
-      this->Pieces->AddOverSeams(this->Product);
-    }
+    this->Sums.Reduce(*this->OverProcesses);
+    this->OverProcesses->Accumulate(this->Product);
     for (int c = 0; c < k; ++c)
     {
       // No step where only round-off resists it: it has no bounds.
@@ -114,7 +100,7 @@ void QuadraticDescent::ImproveColumns(Values& x, int iterations)
           sums[c] += ri * weight[i] * ri;
         }
       });
-    this->Sums.SumOverProcesses(this->Pieces);
+    this->Sums.Reduce(*this->OverProcesses);
     if (iteration + 1 == iterations)
     {
       break;

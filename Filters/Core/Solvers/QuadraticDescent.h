@@ -23,11 +23,11 @@ public:
   }
 
   /// matrix: symmetric positive (semi)definite, with a positive diagonal; must stay as it is.
-  /// partition: of a surface in pieces, whose matrix is that of the triangles here.
-  void SetMatrix(const SparseMatrix& matrix, const Partition* partition = nullptr);
+  /// Over several processes it is accumulated.
+  void SetMatrix(const SparseMatrix& matrix, const Reduction& reduction = Reduction::Serial());
 
   /// The residual b - A x, n x k: to be set before the first call of Improve, and to be changed by
-  /// what b changes by before the next. As x, it is the same wherever a vertex is.
+  /// what b changes by before the next. It is consistent, as x is.
   Values Residual;
 
   /// `iterations` iterations, each column with its own step lengths.
@@ -40,9 +40,10 @@ private:
 
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
-  const Partition* Pieces = nullptr;
+  const Reduction* OverProcesses = &Reduction::Serial();
   Vector InverseDiagonal;
-  Vector CountedOnce; ///< of pieces: InverseDiagonal where this process owns the vertex, or 0
+  Vector OwnedInverse; ///< see Reduction::OwnedPart
+  const double* Weight = nullptr; ///< of products of residuals
   Values Direction, Product;
   std::vector<double> Rho, Factor; // one per column
   std::vector<double> Length; ///< per column, p . diag(A) p

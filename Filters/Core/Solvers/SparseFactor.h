@@ -10,28 +10,65 @@
 namespace SurfaceDiffusion
 {
 
-/// P A P^T = L D L^T with unit lower triangular L, by a library: Eigen, or CHOLMOD where the build
-/// has SURFACEDIFFUSION_USE_CHOLMOD. What is done with a factor is CholeskySolver's.
+/// P A P^T = L D L^T for a symmetric positive definite matrix A, with a unit lower triangular
+/// matrix L, a diagonal matrix D and the permutation P of the approximate minimum degree ordering
+/// (Eigen::SimplicialLDLT). It differs from the plain factorisation in three ways:
+/// - Zeros that A stores are left out if they are more than 5 %: Dirichlet conditions leave them
+///   behind. The factor is then that of the free vertices alone.
+/// - Regularisation: if a pivot is not above 1e-14 of its diagonal entry, A is factorised again
+///   with its diagonal times 1 + 1e-14. At huge time steps the mean is lost in the last digits of
+///   the diagonal, and this rounds the diagonal up in these digits.
+/// - Entries of L are left out if |L_ij| sqrt(D_j) < 1e-16 sqrt(D_i), which is below the last place
+///   of row i of the Cholesky factor.
 class SparseFactor
 {
 public:
-  virtual ~SparseFactor() = default;
+  static constexpr int WidestPanel = 4;
 
-  /// Find an ordering for matrices of this pattern.
-  virtual void Analyze(const SparseMatrix& matrix) = 0;
+  SparseFactor();
+  ~SparseFactor();
+  SparseFactor(const SparseFactor&) = delete;
+  SparseFactor& operator=(const SparseFactor&) = delete;
 
-  /// Factorise the matrix with its diagonal times `diagonal`; false where that broke down.
-  virtual bool Factorize(const SparseMatrix& matrix, double diagonal) = 0;
+  /// Take a copy of the matrix. The ordering is kept from the matrix before, which must have had
+  /// the same pattern.
+  void SetMatrix(const SparseMatrix& matrix) { this->Matrix = matrix; }
+  bool HasPatternOf(const SparseMatrix& matrix) const;
+  bool HasValuesOf(const SparseMatrix& matrix) const;
 
-  const Index* Place = nullptr; ///< where vertex i stands in the order of L
-  Vector D;
-  /// Column j of L below the diagonal is Rows[slot], Entries[slot] for slot in Begin[j] .. [j + 1].
-  /// May be changed: the next factorisation writes all of it anew.
+  void Compute();
+
+  /// Whether Compute() succeeded with all pivots above -1e-10 of their diagonal entries: a pivot of
+  /// a nearly singular matrix may be negative by round-off.
+  bool IsPositive() const { return this->HasPivotsAbove(-1e-10); }
+
+  const Index* Place = nullptr; ///< per row of A, its row of L
+  Vector InverseDiagonal; ///< of A
+  Vector InverseD;
+  /// Column j of L below the diagonal has the entries Entries[slot] in the rows Rows[slot], for
+  /// slot from Begin[j] to Begin[j + 1].
   std::vector<Index> Begin;
   Index* Rows = nullptr;
   double* Entries = nullptr;
-};
+  /// First columns of panels, and the number of columns at the end. A panel is up to WidestPanel
+  /// columns that follow each other, each of which has the rows of the next one and the next one
+  /// itself: substitution reads their rows, and the right-hand side in these rows, once for all.
+  std::vector<Index> Panels;
 
-std::unique_ptr<SparseFactor> MakeSparseFactor();
+private:
+  struct Decomposition;
+
+  bool Factorize(const SparseMatrix& matrix, double diagonalFactor);
+  bool HasPivotsAbove(double bound) const;
+  void DropNegligible();
+  void FindPanels();
+
+  SparseMatrix Matrix;
+  std::unique_ptr<Decomposition> LDL;
+  Vector D;
+  bool IsAnalyzed = false;
+  bool IsPruned = false;
+  bool Succeeded = false;
+};
 
 } // namespace SurfaceDiffusion

@@ -70,26 +70,20 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   this->Z.resize(b.rows(), b.cols());
   this->P.setZero(b.rows(), b.cols());
   this->Q.resize(b.rows(), b.cols());
-  const Partition* const partition = system.Partition;
-  if (partition)
-  {
-    this->Diagonals.resize(n, 2);
-    ForEach(this->Parallel, n,
-      [&](Index i) { this->Diagonals.row(i) << DiagonalEntry(matrix, i), system.Inertia[i]; });
-    partition->AddOverSeams(this->Diagonals);
-    partition->AddOverSeams(this->R);
-  }
+  const Reduction& reduction = system.Reduction;
+  const Vector& inertia = reduction.Accumulated(system.Inertia, this->Inertia);
+  ForEach(this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
+  reduction.Accumulate(this->InverseDiagonal);
+  reduction.Accumulate(this->R);
 
   // Measured as in LinearSolver: in the norm of diag(A)^-1, whatever preconditions.
-  const double scale = SumOverVertices(partition, this->Parallel, n,
+  const double scale = reduction.SumOverVertices(this->Parallel, n,
     [&](Index i)
     {
-      this->InverseDiagonal[i] =
-        1.0 / (partition ? this->Diagonals(i, 0) : DiagonalEntry(matrix, i));
-      const double inertia = partition ? this->Diagonals(i, 1) : system.Inertia[i];
-      return inertia * inertia * this->InverseDiagonal[i] * Row<K>(system.U, i).squaredNorm();
+      this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i];
+      return inertia[i] * inertia[i] * this->InverseDiagonal[i] * Row<K>(system.U, i).squaredNorm();
     });
-  const double start = SumOverVertices(partition, this->Parallel, n,
+  const double start = reduction.SumOverVertices(this->Parallel, n,
     [&](Index i)
     {
       Project<K>(system, i, this->R);
@@ -118,11 +112,8 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
     ForEach(this->Parallel, n,
       [&](Index i) { Row<K>(this->P, i) = Row<K>(this->Z, i) + beta * Row<K>(this->P, i); });
     Multiply(matrix, this->P, this->Q, this->Parallel);
-    if (partition)
-    {
-      partition->AddOverSeams(this->Q);
-    }
-    const double curvature = SumOverVertices(partition, this->Parallel, n,
+    reduction.Accumulate(this->Q);
+    const double curvature = reduction.SumOverVertices(this->Parallel, n,
       [&](Index i)
       {
         Project<K>(system, i, this->Q);
@@ -134,7 +125,7 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
       break;
     }
     const double alpha = rho / curvature;
-    left = SumOverVertices(partition, this->Parallel, n,
+    left = reduction.SumOverVertices(this->Parallel, n,
       [&](Index i)
       {
         auto r = Row<K>(this->R, i);
@@ -161,7 +152,7 @@ double TangentSolver::Precondition(const TangentSystem& system, LinearSolver* pr
   {
     preconditioner->Precondition(this->R, this->Z);
   }
-  return SumOverVertices(system.Partition, this->Parallel, static_cast<Index>(this->R.rows()),
+  return system.Reduction.SumOverVertices(this->Parallel, static_cast<Index>(this->R.rows()),
     [&](Index i)
     {
       if (preconditioner)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Partition.h"
+#include "Core/Foundation/Reduction.h"
 #include "Core/Solvers/LinearSolver.h"
 
 namespace SurfaceDiffusion
@@ -18,8 +18,8 @@ struct TangentSystem
   const Flags& Fixed;
   const Values& B;
   const Vector& Inertia; ///< the part of diag(A) that multiplies u itself in a time step
-  /// Of a surface in pieces, whose Matrix, B and Inertia are those of the triangles here.
-  const SurfaceDiffusion::Partition* Partition = nullptr;
+  /// Matrix, B and Inertia are accumulated, U is consistent.
+  const SurfaceDiffusion::Reduction& Reduction = SurfaceDiffusion::Reduction::Serial();
 };
 
 /// Solves such systems by conjugate gradients from x = 0, with one recurrence for all columns,
@@ -47,8 +47,7 @@ private:
   double Precondition(const TangentSystem& system, LinearSolver* preconditioner);
 
   const ParallelFor& Parallel;
-  Vector InverseDiagonal;
-  Values Diagonals; ///< per vertex of the diagonal of A and the inertia
+  Vector InverseDiagonal, Inertia;
   Values R, Z, P, Q;
 };
 

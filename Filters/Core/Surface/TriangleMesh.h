@@ -3,8 +3,8 @@
 #pragma once
 
 #include "Core/Foundation/Parallel.h"
-#include "Core/Foundation/Partition.h"
 #include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/Types.h"
 
 #include <cmath>
@@ -130,11 +130,14 @@ public:
   /// Vertices of edges that only one triangle uses, ascending.
   const std::vector<Index>& BoundaryVertices() const { return this->Given.BoundaryVertices; }
 
-  /// Where this mesh is a process's part of a surface; null where it is the whole.
-  const Partition* GetPartition() const { return this->Processes.get(); }
-  void SetPartition(std::shared_ptr<const Partition> partition)
+  /// Over the processes that the surface is decomposed over; serial if this mesh is the whole.
+  const Reduction& GetReduction() const
   {
-    this->Processes = std::move(partition);
+    return this->OverProcesses ? *this->OverProcesses : Reduction::Serial();
+  }
+  void SetReduction(std::shared_ptr<const Reduction> reduction)
+  {
+    this->OverProcesses = std::move(reduction);
   }
 
   const MeshDiagnostics& Diagnostics() const { return this->Given.Diagnostics; }
@@ -148,7 +151,7 @@ private:
   std::vector<Index> CornersBegin;
   std::vector<Index> CornerList;
   Vector Areas;
-  std::shared_ptr<const Partition> Processes;
+  std::shared_ptr<const Reduction> OverProcesses;
 };
 
 /// The rows of `input`, one per input point, of the mesh vertices.

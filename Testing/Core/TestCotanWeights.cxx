@@ -51,7 +51,7 @@ void ExpectClose(double value, double expected, double scale)
 
 } // namespace
 
-TEST(Coefficients, GradientOfALinearFunctionIsExact)
+TEST(CotanWeights, GradientOfALinearFunctionIsExact)
 {
   for (const Surface& s : Shapes)
   {
@@ -65,7 +65,7 @@ TEST(Coefficients, GradientOfALinearFunctionIsExact)
 
 // Theorem 1 (15): the normal integrates over the part of the boundary of C_i in a triangle, edge
 // midpoint - barycentre - edge midpoint, to half the opposite edge turned by 90 degrees.
-TEST(Coefficients, NormalsIntegrateToHalfTheOppositeEdgeTurned)
+TEST(CotanWeights, NormalsIntegrateToHalfTheOppositeEdgeTurned)
 {
   for (const Surface& s : Shapes)
   {
@@ -90,7 +90,7 @@ TEST(Coefficients, NormalsIntegrateToHalfTheOppositeEdgeTurned)
   }
 }
 
-TEST(Coefficients, IsotropicOnesAreHalfTheCotangents) // (10)
+TEST(CotanWeights, AreHalfTheCotangents) // (10)
 {
   for (const Surface& s : Shapes)
   {
@@ -107,7 +107,7 @@ TEST(Coefficients, IsotropicOnesAreHalfTheCotangents) // (10)
 
 // The paper's closed forms below (13), with I, J, K the angles at the corners i, j, k and theta the
 // angle from grad(phi_j) to e1 in the sense i -> j -> k.
-TEST(Coefficients, DirectionalOnesAreThePapersClosedForms)
+TEST(CotanWeights, DirectionalWeightsAreThePapersClosedForms)
 {
   for (const Surface& s : Shapes)
   {
@@ -141,7 +141,7 @@ TEST(Coefficients, DirectionalOnesAreThePapersClosedForms)
   }
 }
 
-TEST(Coefficients, DirectionsAtRightAnglesAddUpToIsotropic)
+TEST(CotanWeights, DirectionsAtRightAnglesAddUpToIsotropic)
 {
   const auto mesh = MakeMesh(Icosphere(2));
   TangentVectors e1(mesh->NumberOfTriangles(), 2);
@@ -155,14 +155,14 @@ TEST(Coefficients, DirectionsAtRightAnglesAddUpToIsotropic)
   EXPECT_LT((sum - CotanWeights(*mesh)).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(Coefficients, SignOfTheDirectionDoesNotMatter)
+TEST(CotanWeights, SignOfTheDirectionDoesNotMatter)
 {
   const auto mesh = MakeMesh(Icosphere(1));
   const TangentVectors e1 = TangentVectors::Constant(mesh->NumberOfTriangles(), 2, std::sqrt(0.5));
   EXPECT_EQ(DirectionalWeights(*mesh, e1), DirectionalWeights(*mesh, -e1));
 }
 
-TEST(Coefficients, EqualDiffusivitiesAreIsotropicWhateverTheDirection)
+TEST(CotanWeights, EqualDiffusivitiesAreIsotropicForAnyDirection)
 {
   const auto mesh = MakeMesh(Icosphere(2));
   TangentVectors e1 = TangentVectors::Zero(mesh->NumberOfTriangles(), 2);
@@ -172,7 +172,7 @@ TEST(Coefficients, EqualDiffusivitiesAreIsotropicWhateverTheDirection)
   EXPECT_LT((a - 2.5 * c).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(Coefficients, WithoutADirectionTheGeometricMeanActs)
+TEST(CotanWeights, WithoutADirectionTheGeometricMeanActs)
 {
   const auto mesh = MakeMesh(Icosphere(1));
   const TangentVectors none = TangentVectors::Zero(mesh->NumberOfTriangles(), 2);
@@ -181,7 +181,7 @@ TEST(Coefficients, WithoutADirectionTheGeometricMeanActs)
   EXPECT_EQ(AnisotropicWeights(*mesh, c, none, 4.0, 0.0), CornerWeights(0.0 * c));
 }
 
-TEST(Coefficients, DiffusionAlongADirectionDoesNotSeeGradientsAcross)
+TEST(CotanWeights, DiffusionAlongADirectionDoesNotSeeGradientsAcross)
 {
   // u = y with e1 = x: the flux c1 u vanishes at every vertex.
   const Surface s = Jittered(Strip(6, 6), 0.04, 0, 1, 0, 1);

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Foundation/Reduction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// Integers in the order of the doubles.
+std::uint64_t OrderOf(double x)
+{
+  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &x, sizeof(bits));
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+double WithOrder(std::uint64_t order)
+{
+  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
+  const std::uint64_t bits = (order & sign) != 0 ? order & ~sign : ~order;
+  double x = 0.0;
+  std::memcpy(&x, &bits, sizeof(x));
+  return x;
+}
+
+/// By bisection: no process needs the values of the others.
+double DistributedQuantile(
+  const Reduction& reduction, const Eigen::Ref<const Vector>& values, double fraction)
+{
+  const auto count = [&](const auto& counts)
+  {
+    return reduction.SumOverVertices(SerialFor(), static_cast<Index>(values.size()),
+      [&](Index i) { return counts(values[i]) ? 1.0 : 0.0; });
+  };
+  const double all = count([](double) { return true; });
+  if (all == 0.0)
+  {
+    return 0.0;
+  }
+  const auto rank = static_cast<double>(std::lround(fraction * (all - 1.0)));
+  std::uint64_t low = 0;
+  std::uint64_t high = ~low;
+  while (low < high)
+  {
+    const std::uint64_t middle = low + (high - low) / 2;
+    const bool reached = count([&](double x) { return OrderOf(x) <= middle; }) > rank;
+    (reached ? high : low) = reached ? middle : middle + 1;
+  }
+  return WithOrder(low);
+}
+
+} // namespace
+
+const Reduction& Reduction::Serial()
+{
+  static const Reduction serial;
+  return serial;
+}
+
+double Reduction::Quantile(const Eigen::Ref<const Vector>& values, double fraction) const
+{
+  if (!this->IsSerial())
+  {
+    return DistributedQuantile(*this, values, fraction);
+  }
+  if (values.size() == 0)
+  {
+    return 0.0;
+  }
+  Vector sorted = values;
+  double* const begin = sorted.data();
+  double* const at = begin + std::lround(fraction * static_cast<double>(sorted.size() - 1));
+  std::nth_element(begin, at, begin + sorted.size());
+  return *at;
+}
+
+const Vector& Reduction::Accumulated(const Vector& values, Vector& storage) const
+{
+  if (this->IsSerial())
+  {
+    return values;
+  }
+  storage = values;
+  this->Accumulate(storage);
+  return storage;
+}
+
+const Vector& Reduction::OwnedPart(const Vector& values, Vector& storage) const
+{
+  if (this->IsSerial())
+  {
+    return values;
+  }
+  storage = values;
+  for (Eigen::Index i = 0; i < storage.size(); ++i)
+  {
+    storage[i] = this->Owns(static_cast<Index>(i)) ? storage[i] : 0.0;
+  }
+  return storage;
+}
+
+void Reduction::SumComponents(const std::vector<Index>& components, Values& sums) const
+{
+  if (this->IsSerial())
+  {
+    return;
+  }
+  Values all = Values::Zero(this->NumberOfComponents, sums.cols());
+  for (std::size_t r = 0; r < components.size(); ++r)
+  {
+    all.row(this->SurfaceComponent[components[r]]) += sums.row(static_cast<Eigen::Index>(r));
+  }
+  this->Sum(all.data(), static_cast<Index>(all.size()));
+  for (std::size_t r = 0; r < components.size(); ++r)
+  {
+    sums.row(static_cast<Eigen::Index>(r)) = all.row(this->SurfaceComponent[components[r]]);
+  }
+}
+
+} // namespace SurfaceDiffusion

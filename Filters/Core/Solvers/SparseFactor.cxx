@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Solvers/SparseFactor.h"
+
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+/// Eigen's decomposition, with its factor open to changes.
+struct SparseFactor::Decomposition
+  : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>>
+{
+  SparseMatrix& L() { return this->m_matrix; }
+};
+
+SparseFactor::SparseFactor()
+  : LDL(std::make_unique<Decomposition>())
+{
+}
+
+SparseFactor::~SparseFactor() = default;
+
+bool SparseFactor::HasPatternOf(const SparseMatrix& matrix) const
+{
+  return this->Matrix.rows() == matrix.rows() && this->Matrix.nonZeros() == matrix.nonZeros() &&
+    std::equal(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.rows(),
+      this->Matrix.outerIndexPtr()) &&
+    std::equal(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros(),
+      this->Matrix.innerIndexPtr());
+}
+
+bool SparseFactor::HasValuesOf(const SparseMatrix& matrix) const
+{
+  return this->HasPatternOf(matrix) &&
+    std::equal(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), this->Matrix.valuePtr());
+}
+
+void SparseFactor::Compute()
+{
+  constexpr double resolved = 1e-14;
+  SparseMatrix pruned;
+  const double* values = this->Matrix.valuePtr();
+  const auto zeros = std::count(values, values + this->Matrix.nonZeros(), 0.0);
+  const bool prune = zeros > this->Matrix.nonZeros() / 20;
+  if (prune)
+  {
+    pruned = this->Matrix;
+    pruned.prune([](Index, Index, double value) { return value != 0.0; });
+  }
+  const SparseMatrix& matrix = prune ? pruned : this->Matrix;
+  if (!this->IsAnalyzed || prune || this->IsPruned)
+  {
+    this->LDL->analyzePattern(matrix);
+    this->IsAnalyzed = true;
+    this->IsPruned = prune;
+  }
+  this->Succeeded = this->Factorize(matrix, 1.0);
+  if (!this->HasPivotsAbove(resolved))
+  {
+    this->Succeeded = this->Factorize(matrix, 1.0 + resolved);
+  }
+  this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();
+  if (this->Succeeded)
+  {
+    this->InverseD = this->D.cwiseInverse();
+    this->DropNegligible();
+    this->FindPanels();
+  }
+}
+
+/// With the diagonal of the matrix times `diagonalFactor`; false if the factorisation broke down.
+bool SparseFactor::Factorize(const SparseMatrix& matrix, double diagonalFactor)
+{
+  this->LDL->setShift(0.0, diagonalFactor);
+  this->LDL->factorize(matrix);
+  if (this->LDL->info() != Eigen::Success)
+  {
+    return false;
+  }
+  SparseMatrix& l = this->LDL->L();
+  this->Place = this->LDL->permutationP().indices().data();
+  this->D = this->LDL->vectorD();
+  this->Begin.assign(l.outerIndexPtr(), l.outerIndexPtr() + l.cols() + 1);
+  this->Rows = l.innerIndexPtr();
+  this->Entries = l.valuePtr();
+  return true;
+}
+
+/// Whether every pivot is above `bound` times its diagonal entry.
+bool SparseFactor::HasPivotsAbove(double bound) const
+{
+  if (!this->Succeeded)
+  {
+    return false;
+  }
+  const Vector diagonal = this->Matrix.diagonal();
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i)
+  {
+    if (!(this->D[this->Place[i]] > bound * std::abs(diagonal[i])))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The smaller the time step, the faster the influence of vertices on each other falls off with
+/// distance: at steps of h^2/D and less, a third to two thirds of the entries are negligible. The
+/// others move together in place.
+void SparseFactor::DropNegligible()
+{
+  constexpr double lastPlace = 1e-16;
+  const auto n = static_cast<Index>(this->D.size());
+  Index kept = 0;
+  for (Index j = 0, begin = 0; j < n; ++j)
+  {
+    const Index end = this->Begin[j + 1];
+    for (Index slot = begin; slot < end; ++slot)
+    {
+      const Index i = this->Rows[slot];
+      const double value = this->Entries[slot];
+      if (!(value * value * std::abs(this->D[j]) < lastPlace * lastPlace * std::abs(this->D[i])))
+      {
+        this->Rows[kept] = i;
+        this->Entries[kept] = value;
+        ++kept;
+      }
+    }
+    begin = end;
+    this->Begin[j + 1] = kept;
+  }
+}
+
+void SparseFactor::FindPanels()
+{
+  const auto n = static_cast<Index>(this->D.size());
+  const auto nested = [&](Index j) // the columns j and j + 1
+  {
+    const Index begin = this->Begin[j];
+    const Index next = this->Begin[j + 1];
+    return next > begin && this->Rows[begin] == j + 1 &&
+      next - begin - 1 == this->Begin[j + 2] - next &&
+      std::equal(this->Rows + begin + 1, this->Rows + next, this->Rows + next);
+  };
+  this->Panels.clear();
+  for (Index j = 0; j < n;)
+  {
+    this->Panels.push_back(j);
+    Index width = 1;
+    while (width < WidestPanel && j + width < n && nested(j + width - 1))
+    {
+      ++width;
+    }
+    j += width;
+  }
+  this->Panels.push_back(n);
+}
+
+} // namespace SurfaceDiffusion
