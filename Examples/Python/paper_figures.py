@@ -243,7 +243,7 @@ def steps_to_result(model):
     return counts
 
 
-# ---- rows of the figures: each prints its numbers and returns whether TV wins, and pictures -------
+# ---- rows of the figures: each prints its numbers and returns whether TV wins, and pictures ------
 
 def denoise(surface, example):
     linear = solve_best(linear_model(surface), 0.2)
