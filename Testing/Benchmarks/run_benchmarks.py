@@ -234,8 +234,8 @@ def main():
             "log(time) over log(vertices). Of bandwidth: the minimum memory traffic of a stage per "
             "time, relative to the triad on data of the same size.\n\n" + stages(results)
             + "## Linear solves from noise to a residual of 1e-10\n\n" + solvers(results)
-            + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser; LaggedStep: one step "
-            "of the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 "
+            + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser; LaggedStep: one "
+            "step of the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 "
             "vertices, textures (Step: one step, Stands: until the pattern is stationary) on a "
             "scanned surface.\n\n" + models(of_models["benchmarks"])
             + "## The solver that Automatic selects\n\nRuns of backward Euler steps: the selected "
@@ -246,8 +246,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             compared = peers(options, program("HeatStep"), folder)
         page += ("## Comparison with other software\n\nOne step to a residual of 1e-8: set-up "
-                 "(factorisation or multigrid hierarchy) and solution together, without the assembly. "
-                 "In brackets: our time over theirs.\n\n"
+                 "(factorisation or multigrid hierarchy) and solution together, without the "
+                 "assembly. In brackets: our time over theirs.\n\n"
                  + peers_table(compared, (1.0, 100.0, 1e4)))
         assembly = {(r["peer"], r["n"]): r["assembly_s"] for r in compared if r.get("assembly_s")}
         names = sorted({peer for peer, _ in assembly if peer == "libigl + CHOLMOD"
