@@ -111,18 +111,18 @@ def main():
         print(f"{Path(file).stem}: {surface.GetNumberOfPoints()} vertices, noise in the normals")
         noisy = clean + random.normal(0, 0.2, clean.shape)
         noisy /= np.linalg.norm(noisy, axis=1, keepdims=True)
-        shaken = with_arrays(surface, Normals=noisy)
-        shaken.GetPointData().SetActiveNormals("Normals")
-        compare(shaken, clean, averaged, "vtkAttributeSmoothingFilter")
+        noisy_surface = with_arrays(surface, Normals=noisy)
+        noisy_surface.GetPointData().SetActiveNormals("Normals")
+        compare(noisy_surface, clean, averaged, "vtkAttributeSmoothingFilter")
 
         print(f"{Path(file).stem}: noise in the points")
         corners = points_of(surface)[triangles_of(surface)]
         edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean()
         moved = make_surface(points_of(surface) + random.normal(0, 0.1 * edge, clean.shape),
                              triangles_of(surface))
-        shaken = with_arrays(moved, Normals=normals_of(moved))
-        shaken.GetPointData().SetActiveNormals("Normals")
-        compare(shaken, clean, of_smoothed_mesh, "vtkPolyDataNormals of a smoothed mesh")
+        noisy_surface = with_arrays(moved, Normals=normals_of(moved))
+        noisy_surface.GetPointData().SetActiveNormals("Normals")
+        compare(noisy_surface, clean, of_smoothed_mesh, "vtkPolyDataNormals of a smoothed mesh")
 
 
 if __name__ == "__main__":

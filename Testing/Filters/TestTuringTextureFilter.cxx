@@ -294,7 +294,7 @@ TEST(TuringTextureFilter, ARunEndsWhenThePatternIsStationary)
   filter->SetStopTolerance(0.05);
   filter->Update();
   const vtkIdType rows = History(filter)->GetNumberOfRows();
-  std::printf("stands after %d steps\n", static_cast<int>(rows - 1));
+  std::printf("stationary after %d steps\n", static_cast<int>(rows - 1));
   EXPECT_GT(rows, 50);
   EXPECT_LT(rows, 1200);
   const auto standing = Copy(Result(filter, "u1"));

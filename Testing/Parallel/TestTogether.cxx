@@ -99,7 +99,7 @@ AnyFilter TuringFirstOrder()
   return turing;
 }
 
-AnyFilter TuringUntilItStands()
+AnyFilter TuringUntilStationary()
 {
   auto turing = Make<vtkTuringTextureFilter>("", 300);
   turing->SetStopTolerance(0.3);
@@ -305,7 +305,7 @@ TEST_P(Together, SeekInTime)
 INSTANTIATE_TEST_SUITE_P(Pieces, Together,
   testing::Values(Case{ "heat", "fDiffused", Heat }, Case{ "turing", "u1", Turing },
     Case{ "turing, first order", "Texture", TuringFirstOrder },
-    Case{ "turing until it stands", "u2", TuringUntilItStands, 1e-7 },
+    Case{ "turing until stationary", "u2", TuringUntilStationary, 1e-7 },
     Case{ "turing, multigrid", "u1", TuringMultigrid }, Case{ "harmonic", "vHarmonic", Harmonic },
     Case{ "harmonic, long steps", "vHarmonic", HarmonicLongSteps },
     Case{ "harmonic, multigrid", "vHarmonic", HarmonicMultigrid },
@@ -337,10 +337,10 @@ TEST_P(Together, StopWithinAStepIfOneOfThemIsAborted)
   filter->SetAbortExecute(0);
   filter->Modified();
   filter->Update();
-  auto anew = GetParam().Make();
-  anew->SetInputData(WithData(Mine(N)));
-  anew->Update();
-  EXPECT_TRUE(Identical(Result(filter, GetParam().Result), Result(anew, GetParam().Result)));
+  auto fresh = GetParam().Make();
+  fresh->SetInputData(WithData(Mine(N)));
+  fresh->Update();
+  EXPECT_TRUE(Identical(Result(filter, GetParam().Result), Result(fresh, GetParam().Result)));
 }
 
 /// Columns begin .. end of a small grid of needle triangles, which was found by search, see below.
