@@ -22,7 +22,8 @@ vtkSmartPointer<vtkFVMHeatFilter> MakeHeat(vtkDataObject* input)
   return heat;
 }
 
-/// The largest difference from a process alone, at points of equal coordinates, over all.
+/// The largest difference from the result of a single process, at points of equal coordinates, over
+/// all processes.
 double LargestDifference(vtkFVMHeatFilter* heat, vtkPolyData* whole)
 {
   auto alone = MakeHeat(whole);
@@ -42,7 +43,7 @@ double LargestDifference(vtkFVMHeatFilter* heat, vtkPolyData* whole)
 
 } // namespace
 
-TEST(Pieces, GiveTheAnswerOfTheWhole)
+TEST(Pieces, GiveTheResultOfTheWholeSurface)
 {
   const int n = 24;
   auto heat = MakeHeat(Mine(n));
@@ -67,9 +68,9 @@ TEST(Pieces, MatchWithinTheToleranceOnly)
   EXPECT_EQ(walls > 1e-3, Count() > 1) << walls;
 }
 
-TEST(Pieces, AreSewnByIdsWhereTheyHaveThem)
+TEST(Pieces, AreMatchedByGlobalIdsIfTheyHaveThem)
 {
-  // Ids that differ tell that coincident points are none.
+  // Coincident points with different ids are different points.
   const int n = 24;
   auto mine = Mine(n);
   vtkNew<vtkIdTypeArray> ids;
@@ -114,7 +115,7 @@ TEST(Pieces, OfClosedSurfacesThatTouchStayApart)
 
 TEST(Pieces, SheetsThatTouchWithinAPieceStayApart)
 {
-  // Two sheets at one place, cut into the same pieces.
+  // Two coincident sheets, divided into the same pieces.
   const int n = 24;
   auto lower = Mine(n);
   vtkNew<vtkPolyData> both;
@@ -157,9 +158,9 @@ TEST(Pieces, SheetsThatTouchWithinAPieceStayApart)
   }
 }
 
-TEST(Pieces, BlocksAreSurfacesOfTheirOwnInPieces)
+TEST(Pieces, OfBlocksAreSeparateSurfaces)
 {
-  // Block 0 is in pieces, block 1 lies in the last process alone, block 2 is nowhere.
+  // Block 0 is divided into pieces, block 1 is in the last process only, block 2 is in none.
   const int n = 24;
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetNumberOfBlocks(3);
@@ -194,7 +195,7 @@ TEST(Pieces, BlocksAreSurfacesOfTheirOwnInPieces)
   }
 }
 
-TEST(Pieces, WithoutAControllerAreSurfacesOfTheirOwn)
+TEST(Pieces, WithoutAControllerAreSeparateSurfaces)
 {
   const auto mine = Mine(24);
   auto heat = MakeHeat(mine);
@@ -205,7 +206,7 @@ TEST(Pieces, WithoutAControllerAreSurfacesOfTheirOwn)
   EXPECT_EQ(History(heat)->GetNumberOfRows(), 11);
 }
 
-TEST(Pieces, WhoseArrayIsMissingAreAnErrorToldOnce)
+TEST(Pieces, WithoutTheArrayAreOneError)
 {
   auto mine = Mine(24);
   if (Rank() == Count() - 1)
