@@ -26,17 +26,22 @@ constexpr double SearchTolerance = 1e-3;
 /// The gradient at which the diffusivity is judged for the choice of a solver, in R/h.
 constexpr double TypicalGradient = 0.01;
 
-const std::vector<const char*>& WordsOfEdgeFunctions()
+std::vector<const char*> WordsOfEdgeFunctions()
 {
-  static const std::vector<const char*> words = { "TotalVariation", "PeronaMalikExponential",
-    "PeronaMalikRational", "Charbonnier", "Weickert", "Constant" };
+  std::vector<const char*> words;
+  for (int kind = 0; kind < NumberOfEdgeFunctions; ++kind)
+  {
+    words.push_back(GetEdgeFunction(static_cast<EdgeFunctionKind>(kind)).Name);
+  }
   return words;
 }
 
-bool IsConvex(EdgeFunctionKind kind)
+/// Those of TotalVariation for numbers that are no edge-stopping function, which Check() reports.
+EdgeFunctionProperties PropertiesOf(EdgeFunctionKind kind)
 {
-  return kind == EdgeFunctionKind::TotalVariation || kind == EdgeFunctionKind::Charbonnier ||
-    kind == EdgeFunctionKind::Constant;
+  const int number = static_cast<int>(kind);
+  const bool known = number >= 0 && number < NumberOfEdgeFunctions;
+  return GetEdgeFunction(known ? kind : EdgeFunctionKind::TotalVariation);
 }
 
 /// Makes the models that the settings ask for.
@@ -62,8 +67,8 @@ public:
   double FindFidelityWeight() const
   {
     const double h = this->Units.CoreEdgeLength();
-    const bool tv = this->Options.EdgeFunction == EdgeFunctionKind::TotalVariation;
-    const double start = tv ? 1.0 / (h * this->Units.CoreValueRange()) : 1.0 / (h * h);
+    const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
+    const double start = 1.0 / (h * (dimensionless ? h : this->Units.CoreValueRange()));
     return FindFidelity(this->Inputs, this->Options.NoiseLevel, start,
       [&](double fidelity)
       {
@@ -116,7 +121,7 @@ private:
       settings.Across = this->MakeEdgeFunction(across);
       // In natural units g2 is a formula in x/h and u/R, independent of the dimension of time.
       const auto power = [](EdgeFunctionKind kind)
-      { return kind == EdgeFunctionKind::TotalVariation ? 1.0 : 0.0; };
+      { return GetEdgeFunction(kind).Dimensionless ? 0.0 : 1.0; };
       const double difference = power(this->Options.EdgeFunction) - power(across);
       settings.AcrossDiffusivity *= this->Units.ToCore(1.0, difference, -difference);
     }
@@ -169,8 +174,8 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
     this->Mode, { "TimeSteps", "SteadyState" });
   visitor.Choice({ "EdgeFunction", "", "The edge-stopping function g." }, this->EdgeFunction,
     WordsOfEdgeFunctions());
-  std::vector<const char*> across = { "Same" };
-  across.insert(across.end(), WordsOfEdgeFunctions().begin(), WordsOfEdgeFunctions().end());
+  std::vector<const char*> across = WordsOfEdgeFunctions();
+  across.insert(across.begin(), "Same");
   visitor.Choice({ "AcrossEdgeFunction", "", "The edge-stopping function across the direction." },
     this->AcrossEdgeFunction, across, {});
   visitor.Number({ "Beta", "(R/h)^2", "beta of TotalVariation, a rounding of |grad u|." },
@@ -226,11 +231,12 @@ void TotalVariationSettings::RequireConvexEnergy(const char* purpose, Problems& 
 {
   const std::string with = std::string(" together with ") + purpose;
   std::vector<bool> convex;
-  for (std::size_t kind = 0; kind < WordsOfEdgeFunctions().size(); ++kind)
+  for (int kind = 0; kind < NumberOfEdgeFunctions; ++kind)
   {
-    convex.push_back(IsConvex(static_cast<EdgeFunctionKind>(kind)));
+    convex.push_back(GetEdgeFunction(static_cast<EdgeFunctionKind>(kind)).Convex);
   }
-  Require(IsConvex(this->EdgeFunction), "EdgeFunction", static_cast<double>(this->EdgeFunction),
+  Require(PropertiesOf(this->EdgeFunction).Convex, "EdgeFunction",
+    static_cast<double>(this->EdgeFunction),
     (ListChoices(WordsOfEdgeFunctions(), convex) + with).c_str(), problems);
   Require(this->AcrossEdgeFunction == 0, "AcrossEdgeFunction", this->AcrossEdgeFunction,
     ("0 Same" + with).c_str(), problems);
@@ -240,14 +246,14 @@ void TotalVariationSettings::RequireConvexEnergy(const char* purpose, Problems& 
 
 ModelTraits TotalVariationSettings::DescribeModel() const
 {
-  const bool tv = this->EdgeFunction == EdgeFunctionKind::TotalVariation;
+  const bool dimensionless = PropertiesOf(this->EdgeFunction).Dimensionless;
   ModelTraits traits;
   traits.NumberOfSteps =
     this->Mode == TotalVariationMode::SteadyState ? 1 : this->NumberOfTimeSteps;
   traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = this->IsAbsolute();
-  traits.Time = tv ? Dimension{ 1.0, 1.0 } : Dimension{ 2.0, 0.0 };
-  traits.Energy = tv ? Dimension{ 1.0, 1.0 } : Dimension{ 0.0, 2.0 };
+  traits.Time = dimensionless ? Dimension{ 2.0, 0.0 } : Dimension{ 1.0, 1.0 };
+  traits.Energy = dimensionless ? Dimension{ 0.0, 2.0 } : Dimension{ 1.0, 1.0 };
   traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
   traits.CanBeDistributed =
     !this->AutomaticFidelity && this->Discretization == SurfaceDiffusion::Discretization::Linear;
@@ -295,8 +301,9 @@ void TotalVariationSettings::Finish(const RunState& state, RunResult& result) co
   {
     gap = std::max(gap, record.Residual);
   }
-  if (this->Minimizes() && gap > this->StopTolerance)
+  if (this->Minimizes() && gap > this->StopTolerance && !result.HasUnfinishedMinimum)
   {
+    result.HasUnfinishedMinimum = true; // reported once, not at every requested time
     std::ostringstream text;
     text << "the minimisation ended at its largest number of iterations with a relative duality "
          << "gap of " << gap << ", above StopTolerance";

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/ChannelNorms.h"
 #include "Core/Models/EdgeFunctions.h"
+#include "Core/Models/Fidelity.h"
 #include "Run/RunSettings.h"
 
 namespace SurfaceDiffusion
