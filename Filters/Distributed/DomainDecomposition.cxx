@@ -369,7 +369,7 @@ void DomainDecomposition::UpdateItems(const Interface& items, T* rows, Index col
     [&](Index item, const T* numbers) { std::copy_n(numbers, columns, row(item)); });
 }
 
-/// Owners add what the other processes have, ordered by rank, and send the sums back.
+/// Owners add the values of the other processes, ordered by rank, and send the sums back.
 void DomainDecomposition::AccumulateItems(const Interface& items, double* rows, Index columns) const
 {
   const auto row = [&](Index item) { return rows + static_cast<std::ptrdiff_t>(item) * columns; };

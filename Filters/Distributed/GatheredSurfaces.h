@@ -32,8 +32,8 @@ public:
   /// Process 0: the surfaces, each with an output that is a shallow copy of it. Elsewhere none.
   std::vector<SurfacePiece> MakeOutputs();
 
-  /// Adds what process 0 has added to the outputs of MakeOutputs(), arrays and moved points, to the
-  /// outputs of all pieces. Collective.
+  /// Adds the arrays and moved points that process 0 has added to the outputs of MakeOutputs() to
+  /// the outputs of all pieces. Collective.
   void ScatterResults(const Processes& processes, const std::vector<SurfacePiece>& pieces);
 
 private:

@@ -43,7 +43,7 @@ vtkSmartPointer<Array> MakeSimilarArray(Array* array, vtkIdType count)
   return made;
 }
 
-/// The state of everything that PackPiece() reads, so that == tells if it would make the same.
+/// The state of everything that PackPiece() reads: if two are equal, it would make the same.
 struct PieceVersion
 {
   PieceVersion(vtkAlgorithm* filter, const SurfacePiece& piece);

@@ -30,7 +30,7 @@ struct PieceResult
   int Attribute = -1; ///< the active attribute that the array is; -1: none
 };
 
-/// What output has and input has not.
+/// The arrays and points of output that are not those of input.
 std::vector<PieceResult> FindResults(vtkPolyData* input, vtkPolyData* output);
 
 /// The tuples of a surface's results that belong to a piece; zero at cells without a result.
