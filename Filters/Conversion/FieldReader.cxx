@@ -4,6 +4,7 @@
 
 #include "Conversion/SurfaceReader.h"
 #include "Conversion/TupleRange.h"
+#include "Distributed/InterfacePoints.h"
 
 #include "vtkDataArray.h"
 #include "vtkPolyData.h"
@@ -156,9 +157,10 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
   }
   if (arrays.GlobalIds)
   {
-    for (vtkIdType i = 0; i < arrays.GlobalIds->GetNumberOfTuples(); ++i)
+    const auto ids = AsIdTypeArray(arrays.GlobalIds);
+    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
     {
-      fields.Ids.push_back(static_cast<std::int64_t>(arrays.GlobalIds->GetComponent(i, 0)));
+      fields.Ids.push_back(ids->GetValue(i));
     }
   }
   return fields;

@@ -47,11 +47,11 @@ double PieceDecomposition::FindLengthUnit()
 
 void PieceDecomposition::Attach(Surface& surface, SolverStore& solvers)
 {
-  this->Partition = std::make_shared<PiecePartition>(this->Members, surface, this->Identity);
-  this->Partition->ObeyAbort(this->AbortRequested);
-  surface.SetReduction(this->Partition);
-  solvers.SetDistributedFactory([partition = this->Partition](bool multigrid)
-    { return MakeDistributedSolver(partition, multigrid); });
+  this->Domain = std::make_shared<DomainDecomposition>(this->Members, surface, this->Identity);
+  this->Domain->ObeyAbort(this->AbortRequested);
+  surface.SetReduction(this->Domain);
+  solvers.SetDistributedFactory(
+    [domain = this->Domain](bool multigrid) { return MakeDistributedSolver(domain, multigrid); });
 }
 
 void PieceDecomposition::UpdateCopies(
@@ -62,7 +62,7 @@ void PieceDecomposition::UpdateCopies(
     vtkDataArray* const array = after->GetArray(a);
     if (array && before->GetArray(array->GetName()) != array)
     {
-      this->Partition->FillCopies(array);
+      this->Domain->FillCopies(array);
     }
   }
 }

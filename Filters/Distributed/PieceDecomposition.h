@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Distributed/PiecePartition.h"
+#include "Distributed/DomainDecomposition.h"
 #include "Distributed/PointIdentity.h"
 #include "Distributed/Processes.h"
 #include "Run/Run.h"
@@ -31,11 +31,11 @@ public:
 
   double FindLengthUnit() override;
   void Attach(Surface& surface, SolverStore& solvers) override;
-  double NumberOfSharedEdges() const override { return this->Partition->SharedEdges(); }
-  double SharedEdgeLength() const override { return this->Partition->SharedEdgeLength(); }
+  double NumberOfSharedEdges() const override { return this->Domain->SharedEdges(); }
+  double SharedEdgeLength() const override { return this->Domain->SharedEdgeLength(); }
   Index NumberOfCopies() const override
   {
-    return static_cast<Index>(this->Partition->NumberOfCopies());
+    return static_cast<Index>(this->Domain->NumberOfCopies());
   }
 
   /// Per point a number that does not depend on the decomposition.
@@ -51,7 +51,7 @@ private:
   vtkPolyData* Piece = nullptr;
   double Tolerance = -1.0;
   PointIdentity Identity;
-  std::shared_ptr<PiecePartition> Partition;
+  std::shared_ptr<DomainDecomposition> Domain;
 };
 
 } // namespace SurfaceDiffusion

@@ -86,6 +86,56 @@ TEST(Pieces, AreMatchedByGlobalIdsIfTheyHaveThem)
   EXPECT_EQ(walls > 1e-3, Count() > 1) << walls;
 }
 
+TEST(Pieces, AreMatchedByGlobalIdsThatNoDoubleHolds)
+{
+  // Above 2^53 doubles are further apart than neighbouring ids.
+  const int n = 24;
+  for (const vtkIdType first : { (vtkIdType(1) << 53) + 1, vtkIdType(1) << 62 })
+  {
+    auto mine = Mine(n);
+    vtkNew<vtkIdTypeArray> ids;
+    ids->SetName("ids");
+    for (vtkIdType i = 0; i < mine->GetNumberOfPoints(); ++i)
+    {
+      const double* const x = mine->GetPoint(i);
+      ids->InsertNextValue(first + std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
+    }
+    mine->GetPointData()->SetGlobalIds(ids);
+    for (const int solver :
+      { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+    {
+      auto heat = MakeHeat(mine);
+      heat->SetSolver(solver);
+      heat->SetTolerance(1e-12);
+      heat->Update();
+      EXPECT_LT(LargestDifference(heat, Strip(0, n, n)), 1e-9) << first << ' ' << solver;
+    }
+  }
+}
+
+TEST(Pieces, GiveTheSameBitsForAnyPartition)
+{
+  // Strips, and all in one process. A power of two, so that coordinates have the same bits too.
+  const int n = 32;
+  auto strips = MakeHeat(Mine(n));
+  strips->SetSolverToDirect();
+  strips->Update();
+  for (int owner = 1; owner < Count(); ++owner)
+  {
+    const auto whole = Strip(0, n, n);
+    vtkNew<vtkPolyData> none;
+    auto heat = MakeHeat(Rank() == owner ? whole.Get() : none.Get());
+    heat->SetSolverToDirect();
+    heat->Update();
+    vtkPolyData* const mine = strips->GetOutput();
+    for (vtkIdType i = 0; Rank() == owner && i < mine->GetNumberOfPoints(); ++i)
+    {
+      ASSERT_EQ(Result(strips)->GetComponent(i, 0),
+        Result(heat)->GetComponent(whole->FindPoint(mine->GetPoint(i)), 0));
+    }
+  }
+}
+
 TEST(Pieces, OfClosedSurfacesThatTouchStayApart)
 {
   // A sphere in each process, all touching at (1, 0, 0), which no piece has on its edge.
