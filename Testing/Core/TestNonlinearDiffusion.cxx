@@ -36,7 +36,7 @@ PointData ColourNoise(const TriangleMesh& mesh, Eigen::Index columns)
 TangentVectors SkewFrames(const TriangleMesh& mesh, const Surface& s)
 {
   const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
-  return FramesFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
+  return TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
 }
 
 /// The matrix K(u) of (14) written out: entries sum of area grad(phi_i) . D grad(phi_j), the

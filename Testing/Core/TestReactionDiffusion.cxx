@@ -335,7 +335,7 @@ double ShareAcross(bool axial, const std::array<double, 2>& anisotropy)
     vectors.row(i) =
       axial ? Eigen::RowVector3d(0.0, 0.0, 1.0) : Eigen::RowVector3d(-p[1], p[0], 0.0);
   }
-  const TangentVectors frames = FramesFromPointVectors(mesh, s.Vertices, s.Faces, vectors);
+  const TangentVectors frames = TangentVectorsFromPointVectors(mesh, s.Vertices, s.Faces, vectors);
   const double square = MeanEdge(mesh) * MeanEdge(mesh);
   const double rates[2] = { 21.0 * square, 2.6 * square };
   std::array<ReactionDiffusion::Chemical, 2> chemicals;

@@ -415,7 +415,7 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   {
     vectors.row(i) << bytes.Short(), bytes.Short(), bytes.Short();
   }
-  TangentVectors frames = FramesFromPointVectors(*original, points, triangles, vectors);
+  TangentVectors frames = TangentVectorsFromPointVectors(*original, points, triangles, vectors);
   if (model == 5)
   {
     RunDirections(bytes, Assembler(original), points, triangles, frames);
@@ -425,7 +425,9 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   std::shared_ptr<const TriangleMesh> mesh = original;
   if (delaunay)
   {
-    mesh = IntrinsicDelaunay(*original, &frames);
+    const IntrinsicDelaunay triangulation(original);
+    frames = triangulation.Transport(frames);
+    mesh = triangulation.Mesh();
   }
   const auto assembler = std::make_shared<const Assembler>(mesh);
   if (model == 4)

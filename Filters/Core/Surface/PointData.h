@@ -9,8 +9,9 @@
 namespace SurfaceDiffusion
 {
 
-/// The data of a model on the vertices of a surface, all finite: values, initial state and Dirichlet
-/// conditions. Missing values have been filled in Start; Given is not read at those vertices.
+/// The data of a model on the vertices of a surface, all finite: values, initial state and
+/// Dirichlet conditions. Missing values have been filled in Start; Given is not read at those
+/// vertices.
 struct PointData
 {
   Values Given; ///< f, n x k
