@@ -1,4 +1,4 @@
-# What needs VTK: the module with the filters, the Python package, and ParaView's plugin.
+# The parts that need VTK: the module with the filters, the Python package and ParaView's plugin.
 
 # Dependencies. VTK's components are named because each one brings further packages in.
 if (NOT SURFACEDIFFUSION_HOST STREQUAL "VTK")
@@ -47,7 +47,7 @@ cmake_dependent_option(SURFACEDIFFUSION_BUILD_PLUGIN "Build the ParaView plugin"
 message(STATUS "SurfaceDiffusion: VTK ${VTK_VERSION}, "
   "ParaView ${ParaView_VERSION}, plugin ${SURFACEDIFFUSION_BUILD_PLUGIN}, hypre ${use_hypre}")
 
-# The Python package's place
+# Installation folder of the Python package
 if (SURFACEDIFFUSION_WRAP_PYTHON)
   vtk_module_python_default_destination(python_destination)
 endif ()
@@ -92,11 +92,11 @@ if (SURFACEDIFFUSION_WRAP_PYTHON)
   configure_file(Python/pyvista.py "${python_dir}/pyvista.py" COPYONLY)
   set(python_files "${python_dir}/__init__.py" "${python_dir}/pyvista.py")
 
-  # Types and documentation for editors, where this VTK has the generator. It loads the module,
-  # which sanitizers do not allow here.
+  # Types and documentation for editors, if this VTK has the generator. The generator loads the
+  # module, which sanitizers do not allow.
   set(python ${Python3_EXECUTABLE})
   if (SKBUILD)
-    list(APPEND python -I) # pip hides installed packages otherwise, VTK's among them
+    list(APPEND python -I) # otherwise pip hides installed packages, among them VTK's
   endif ()
   execute_process(
     COMMAND ${python} -c "import vtkmodules.generate_pyi"

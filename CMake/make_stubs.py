@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Write surfacediffusion/vtkSurfaceDiffusion.pyi for editors, which cannot read a compiled module: the
-types from VTK's own generator, and the documentation of the headers.
+"""Write surfacediffusion/vtkSurfaceDiffusion.pyi for editors, which cannot read a compiled module:
+the types from VTK's own generator, and the documentation of the headers.
 
     make_stubs.py <folder of the package>
 """

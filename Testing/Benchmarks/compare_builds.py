@@ -6,11 +6,11 @@
     compare_builds.py OLD NEW [--seconds S] [--level N] [--filter REGEX] [--limit PERCENT]
                       [--rename OLD=NEW ...] [--out FILE]
 
-OLD and NEW are build folders with SURFACEDIFFUSION_BUILD_BENCHMARKS. Every row (one benchmark at one
-size) is measured alternately in the old and in the new build, each time in a process of its own on
-one CPU; its time is the minimum, of CPU time if the row has it. Rounds over all rows repeat until
-the time is used. Half of it is kept for the rows that differ by more than the limit: a difference
-that is noise disappears with more measurements, one that is real stays.
+OLD and NEW are build folders with SURFACEDIFFUSION_BUILD_BENCHMARKS. Every row (a benchmark at a
+size) is measured alternately in the old and in the new build, each time in a new process on one
+CPU. Its time is the minimum (CPU time, or real time for rows that measure it). Half of the total
+time is for rounds over all rows, the other half for more measurements of the rows that differ by
+more than the limit: with these, differences that are only noise disappear.
 
 --level 1 (the default) takes surfaces of up to 41,000 vertices. The exit code is 1 if a row of the
 new build is slower by more than the limit.

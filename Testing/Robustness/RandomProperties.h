@@ -57,7 +57,7 @@ inline bool SameValue(const double* a, const double* b)
   return std::equal(a, a + 3, b);
 }
 
-/// Of the class F: draws the values with the expression `value`, which may use `dice`.
+/// A property of the class F. The expression `value` draws a random value and may use `dice`.
 #define RANDOM_PROPERTY(F, name, value)                                                            \
   RandomProperty                                                                                   \
   {                                                                                                \
@@ -70,7 +70,7 @@ inline bool SameValue(const double* a, const double* b)
     { return SameValue(static_cast<F*>(a)->Get##name(), static_cast<F*>(b)->Get##name()); }        \
   }
 
-/// Positive, seldom negative, which most properties refuse.
+/// A positive number, rarely a negative one, which most properties do not allow.
 inline double Positive(Dice& dice)
 {
   return dice.Flip(24) ? -0.5 : dice.Logarithmic(1e-3, 1e3);
@@ -79,12 +79,12 @@ inline double ZeroOrPositive(Dice& dice, int zeroOneIn = 2)
 {
   return dice.Flip(zeroOneIn) ? 0.0 : Positive(dice);
 }
-/// A choice of an enum with `count` entries, seldom one more.
+/// An entry of an enum with `count` entries, rarely the number after the last.
 inline int Choice(Dice& dice, int count)
 {
   return dice.Below(dice.Flip(24) ? count + 1 : count);
 }
-/// A value not far from a default that makes a pattern.
+/// A value close to a default, so that textures still form.
 inline double Near(Dice& dice, double value)
 {
   return value * (0.75 + 0.5 * dice.Unit());
@@ -109,13 +109,13 @@ struct Color : std::array<double, 3>
 
 using List = std::vector<RandomProperty>;
 
-/// Of every filter.
+/// The properties of every filter.
 template <typename F>
 List OfSurface()
 {
   return {
     RANDOM_PROPERTY(F, MergeCoincidentPoints, dice.Flip()),
-    // A tolerance far beyond the size of the surface takes VTK's point locator for ever.
+    // With a tolerance far beyond the size of the surface VTK's point locator does not return.
     RANDOM_PROPERTY(F, MergeTolerance, dice.Flip() ? 0.0 : dice.Logarithmic(1e-9, 0.1)),
     RANDOM_PROPERTY(F, SeamTolerance, dice.Flip() ? -1.0 : ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, Controller, Controller(dice)),
@@ -123,8 +123,8 @@ List OfSurface()
   };
 }
 
-/// Of filters that take time steps; the fidelity and the diffusivities are the only value allowed
-/// by filters that have no use for them.
+/// The properties of filters with time steps. A filter that does not use the data allows one value
+/// of the fidelity and of the diffusivities.
 template <typename F>
 List OfDiffusion(int timeIntegrators, bool usesData)
 {
@@ -160,7 +160,7 @@ List OfDiffusion(int timeIntegrators, bool usesData)
     list.push_back(RANDOM_PROPERTY(F, AlongDiffusivity, fromData(dice, 1.0)));
     list.push_back(RANDOM_PROPERTY(F, AcrossDiffusivity, fromData(dice, 1.0)));
   }
-  // Bit i of timeIntegrators: whether the class has integrator i.
+  // Bit i of timeIntegrators is set if the class has integrator i.
   list.push_back(RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)));
   list.back().Set = [timeIntegrators](vtkPolyDataAlgorithm* filter, Dice& dice)
   {

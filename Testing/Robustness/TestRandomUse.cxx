@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Filters used at random: arrays of any type and content, every property with values right and
-// wrong, inputs and properties changed between updates, times requested in any order. After any
-// such sequence a filter gives the bits that a new one with the same settings gives, or the same
-// errors and the unchanged input. A property that is missing in what a filter compares to know
-// whether its results are still valid shows here.
-// SURFACEDIFFUSION_LONG=n in the environment makes it the n-th of many times as many uses.
+// Random use of the filters: arrays of any type and content, allowed and other values of every
+// property, inputs and properties that change between updates, times requested in any order. After
+// any such sequence a filter gives the same bits as a new one with the same settings, or the same
+// errors and the unchanged input. A filter that keeps an old result although a property has changed
+// fails here.
+// SURFACEDIFFUSION_LONG=n in the environment selects the n-th of many sets of many more uses.
 
 #include "AllFilters.h"
 #include "BadMeshes.h"
@@ -139,7 +139,7 @@ std::string DifferentArrays(vtkFieldData* a, vtkFieldData* b)
   return different;
 }
 
-/// What differs between the surfaces, their data and the histories.
+/// The names of the differences between surfaces, data and histories; empty if there are none.
 std::string Difference(vtkPolyDataAlgorithm* a, vtkPolyDataAlgorithm* b)
 {
   vtkPolyData* const x = a->GetOutput();
@@ -169,7 +169,7 @@ bool IsFinite(vtkDataArray* array, vtkIdType point)
   return finite;
 }
 
-/// Whether what the filter has added is finite; points that no triangle uses keep even a NaN.
+/// Whether the added arrays are finite; unused points keep their value, even NaN.
 bool AddedIsFinite(vtkPolyData* output, vtkPolyData* input)
 {
   vtkDataArray* given = input->GetPointData()->GetArray("f");
@@ -197,8 +197,8 @@ std::vector<std::string> Sentences(const Messages& messages)
   return sentences;
 }
 
-/// Updates a filter of the class many times. `focus` is the property that is changed in any case,
-/// alone, between two updates.
+/// Updates a filter of one class many times. Before every second update, one property is changed
+/// alone: each seed has its own.
 void UseAtRandom(const std::vector<FilterClass>& classes, unsigned int seed)
 {
   Dice dice(seed);
@@ -242,7 +242,7 @@ void UseAtRandom(const std::vector<FilterClass>& classes, unsigned int seed)
     }
     if (!messages.Errors.empty())
     {
-      filter->Modified(); // or the error is not reported again if nothing has changed
+      filter->Modified(); // the pipeline does not repeat an update that only gave errors
       messages.Errors.clear();
     }
     const auto twin = Twin(kind, filter);
@@ -258,7 +258,7 @@ void UseAtRandom(const std::vector<FilterClass>& classes, unsigned int seed)
     ASSERT_EQ(Difference(filter, twin), "") << name;
     ASSERT_TRUE(!messages.Errors.empty() || AddedIsFinite(filter->GetOutput(), surface)) << name;
     ASSERT_TRUE(messages.Errors.empty() || IsUnchanged(filter, surface)) << messages.Errors[0];
-    // What is refused hides what is computed: most of it does not stay.
+    // After an error about half of the properties return to their defaults, to make results likely.
     for (const RandomProperty& property : kind.Properties)
     {
       if (!messages.Errors.empty() && dice.Flip())
@@ -283,8 +283,8 @@ std::string ReadCode(const std::filesystem::path& header)
   return code;
 }
 
-/// The names X of all SetX() that a class of the library and its superclasses in the library have,
-/// without the forms SetXToY(): as their headers have them.
+/// The names X of all methods SetX() in the headers of a class and of its superclasses in this
+/// library, without the methods SetXToY().
 std::set<std::string> SettableInHeaders(const std::string& className)
 {
   const std::filesystem::path folder = SURFACEDIFFUSION_FILTERS_DIR;
