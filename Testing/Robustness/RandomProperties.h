@@ -123,13 +123,11 @@ List OfSurface()
   };
 }
 
-/// The properties of filters with time steps. A filter that does not use the data allows one value
-/// of the fidelity and of the diffusivities.
+/// The properties of filters with time steps. Bit i of timeIntegrators is set if the class has
+/// integrator i.
 template <typename F>
-List OfDiffusion(int timeIntegrators, bool usesData)
+List OfDiffusion(int timeIntegrators)
 {
-  static const auto fromData = [](Dice& dice, double unused)
-  { return dice.Flip(24) ? Positive(dice) : unused; };
   List list{
     RANDOM_PROPERTY(F, TimeStep, Positive(dice)),
     RANDOM_PROPERTY(F, NumberOfTimeSteps, dice.Below(6) - (dice.Flip(24) ? 7 : 0)),
@@ -137,8 +135,6 @@ List OfDiffusion(int timeIntegrators, bool usesData)
     RANDOM_PROPERTY(F, GenerateTimeSteps, !dice.Flip(3)),
     RANDOM_PROPERTY(F, OutputInterval, 1 + dice.Below(3)),
     RANDOM_PROPERTY(F, MaskMode, Choice(dice, 2)),
-    RANDOM_PROPERTY(F, InitialFill, Choice(dice, 3)),
-    RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
     RANDOM_PROPERTY(F, RandomSeed, dice.Below(5)),
     RANDOM_PROPERTY(F, Solver, Choice(dice, 4)),
     RANDOM_PROPERTY(F, Tolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-12, 0.5)),
@@ -147,27 +143,32 @@ List OfDiffusion(int timeIntegrators, bool usesData)
     RANDOM_PROPERTY(F, IntrinsicDelaunay, dice.Flip()),
     RANDOM_PROPERTY(F, OutputPrecision, Choice(dice, 3)),
     RANDOM_PROPERTY(F, CheckpointMemoryLimit, dice.Below(2)),
+    RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)),
   };
-  if (usesData)
-  {
-    list.push_back(RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)));
-    list.push_back(RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)));
-    list.push_back(RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)));
-  }
-  else
-  {
-    list.push_back(RANDOM_PROPERTY(F, FidelityWeight, fromData(dice, 0.0)));
-    list.push_back(RANDOM_PROPERTY(F, AlongDiffusivity, fromData(dice, 1.0)));
-    list.push_back(RANDOM_PROPERTY(F, AcrossDiffusivity, fromData(dice, 1.0)));
-  }
-  // Bit i of timeIntegrators is set if the class has integrator i.
-  list.push_back(RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)));
   list.back().Set = [timeIntegrators](vtkPolyDataAlgorithm* filter, Dice& dice)
   {
     const int choice = Choice(dice, 3);
     const bool has = timeIntegrators >> choice & 1;
     static_cast<F*>(filter)->SetTimeIntegrator(has || dice.Flip(12) ? choice : 0);
   };
+  return list;
+}
+
+/// The properties of filters with time steps that diffuse an input array.
+template <typename F>
+List OfDataDiffusion(int timeIntegrators)
+{
+  List list = OfDiffusion<F>(timeIntegrators);
+  for (const RandomProperty& property : {
+         RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)),
+         RANDOM_PROPERTY(F, InitialFill, Choice(dice, 3)),
+         RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
+         RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
+         RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
+       })
+  {
+    list.push_back(property);
+  }
   return list;
 }
 
@@ -288,11 +289,11 @@ inline std::vector<FilterClass> AllFilterClasses()
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   return {
-    MakeClass<Heat>({ OfSurface<Heat>(), OfDiffusion<Heat>(0b011, true), OfHeat() }),
-    MakeClass<TV>({ OfSurface<TV>(), OfDiffusion<TV>(0b101, true), OfTotalVariation() }),
+    MakeClass<Heat>({ OfSurface<Heat>(), OfDataDiffusion<Heat>(0b011), OfHeat() }),
+    MakeClass<TV>({ OfSurface<TV>(), OfDataDiffusion<TV>(0b101), OfTotalVariation() }),
     MakeClass<Harmonic>(
-      { OfSurface<Harmonic>(), OfDiffusion<Harmonic>(0b001, true), OfHarmonicMap() }),
-    MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011, false), OfTexture() }),
+      { OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(0b001), OfHarmonicMap() }),
+    MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
   };
 }
