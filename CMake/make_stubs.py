@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes surfacediffusion/vtkSurfaceDiffusion.pyi: the types of VTK's own generator, and the
-documentation of the headers, for editors, which cannot look into a compiled module.
+"""Write surfacediffusion/vtkSurfaceDiffusion.pyi for editors, which cannot read a compiled module:
+the types from VTK's own generator, and the documentation of the headers.
 
     make_stubs.py <folder of the package>
 """
@@ -21,7 +21,8 @@ generate_pyi.main(["generate_pyi", "-p", "surfacediffusion", "-o", str(folder), 
 
 
 def documentation(thing, indent):
-    """A docstring, or nothing. The first lines of a method's are its signatures in C++ and Python."""
+    """The lines of a docstring, if there is one. A method's begins with its signatures in C++ and
+    Python, which are left out."""
     text = inspect.getdoc(thing) or ""
     if not inspect.isclass(thing):
         text = text.partition("\n\n")[2]

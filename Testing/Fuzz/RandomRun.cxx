@@ -31,15 +31,15 @@ namespace SurfaceDiffusion::Testing
 namespace
 {
 
-void Require(bool holds, const char* what)
+void Require(bool holds, const char* violated)
 {
   if (!holds)
   {
-    throw std::logic_error(what);
+    throw std::logic_error(violated);
   }
 }
 
-/// Numbers from bytes; zeros after the last of them.
+/// Reads numbers from bytes, and zeros after the last byte.
 class Bytes
 {
 public:
@@ -50,7 +50,7 @@ public:
   }
   int Below(int limit) { return this->Byte() % limit; }
   bool Flip(int oneIn = 2) { return this->Below(oneIn) == 1; }
-  /// In [-1, 1], few values of them, so that many are equal.
+  /// One of a few values in [-1, 1], so that many are equal.
   double Short() { return (this->Byte() - 128) / 128.0; }
   /// A positive number of any size between 10^-span and 10^span.
   double Size(double span) { return std::pow(10.0, span * this->Short()); }
@@ -73,7 +73,7 @@ Points ReadPoints(Bytes& bytes)
   for (int i = 0; i < count; ++i)
   {
     points.row(i) << bytes.Below(5), bytes.Below(5), flat ? 0 : bytes.Below(3);
-    if (bytes.Flip(3)) // near one that is there already: needles and slivers
+    if (bytes.Flip(3)) // near an earlier point: needles and slivers
     {
       points.row(i) = points.row(bytes.Below(i + 1));
       points(i, bytes.Below(3)) += bytes.Short() * std::min(unevenness, 1.0);
@@ -89,7 +89,7 @@ Triangles ReadTriangles(Bytes& bytes, int points)
   for (int t = 0; t < count; ++t)
   {
     const int a = bytes.Below(points);
-    // Mostly among neighbours, so that triangles share edges.
+    // Mostly neighbouring vertices, so that triangles share edges.
     triangles.row(t) << a, (a + 1 + bytes.Below(3)) % points, bytes.Below(points);
   }
   return triangles;
@@ -151,7 +151,7 @@ EdgeFunction ReadEdgeFunction(Bytes& bytes)
   return function;
 }
 
-/// What a run must keep beyond being finite.
+/// The invariants of a model. All its states must be finite in any case.
 struct Promises
 {
   bool Sum = false; ///< of A u
@@ -161,7 +161,7 @@ struct Promises
   bool Solution = true; ///< the systems have one
 };
 
-/// Cotangents that large leave no digit of what they are added to.
+/// Cotangents so large that nothing is left of the numbers to which they are added.
 bool HasFlatTriangles(const TriangleMesh& mesh)
 {
   const CornerWeights c = CotanWeights(mesh);
@@ -175,7 +175,7 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
   Require(u.allFinite(), "a state is not finite");
   const double energy = model.Energy();
   Require(std::isfinite(energy) || !promises.Energy, "an energy is not finite");
-  // Round-off of a constant has energy too.
+  // Even a constant has energy, by round-off.
   const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0.0;
   const double roundOff = 1e-9 * energyAtStart + 1e-26 * largest * largest;
   Require(!promises.Energy || energy <= energyBefore + roundOff, "an energy grows");
@@ -198,7 +198,7 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
     "a vector is not one long");
 }
 
-/// Three steps, and the last once more from the state before it.
+/// Three steps, of which the last is repeated from the saved state.
 void Run(const TriangleMesh& mesh, Model& model, const Promises& promises)
 {
   const Values start = model.State();
@@ -252,12 +252,12 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
     coefficients = AnisotropicWeights(mesh, coefficients, frames, bytes.Size(3.0), across);
   }
   Promises promises;
-  // Where nothing flows across, many steady states are equally good.
+  // If one of the diffusivities is 0, there are many steady states.
   promises.Solution = !(directed && across == 0.0 && settings.TimeScheme == Scheme::SteadyState);
   promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
   promises.Bounds = delaunay && !directed && settings.TimeScheme == Scheme::BackwardEuler &&
     settings.Fidelity == 0.0;
-  // What the tolerance of a solver leaves has much energy on flat triangles.
+  // On flat triangles the remaining error of a solver has much energy.
   promises.Energy =
     settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed) && !HasFlatTriangles(mesh);
   LinearDiffusion model(assembler, coefficients, std::move(data), settings, ReadSolver(bytes));
@@ -285,7 +285,7 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
     const auto operators = std::make_shared<const Assembler>(edges->Edges());
     if (HasFlatTriangles(mesh))
     {
-      return; // its start has a system of its own
+      return; // its start solves another system
     }
     CrouzeixRaviartModel model(assembler, edges, std::move(data),
       [&](PointData ofEdges)
@@ -319,7 +319,7 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   settings.Norm = bytes.Flip() ? FidelityNorm::L1 : FidelityNorm::L2;
   settings.MaximumNumberOfIterations = 200; // may end far from the minimum
   Promises promises;
-  // There the way to the minimum can lead through values so large that the sum drowns.
+  // The minimisation can then pass through values so large that the sum is lost in round-off.
   promises.Sum =
     settings.Fidelity == 0.0 && !Any(data.Fixed) && !HasFlatTriangles(assembler->Mesh());
   TotalVariationFlow model(assembler, frames, std::move(data), settings);

@@ -8,11 +8,11 @@
 namespace SurfaceDiffusion::Testing
 {
 
-/// Reads a surface, data and a model with its settings from the bytes, any bytes, and runs it for
-/// a few steps. Throws std::logic_error where something the core promises does not hold: states
-/// are finite, sums kept, bounds kept where they must be, energies do not grow, a restored state
-/// goes on with the same bits, and the only failure is of an iteration that does not converge, of
-/// a reaction without bounds, and of triangles so flat that round-off takes their matrix apart.
+/// Reads a surface, data and a model with its settings from any bytes and runs a few steps. Throws
+/// std::logic_error if the core breaks a promise: states are finite, integrals are conserved,
+/// bounds hold if the scheme has them, energies do not grow, and a restored state continues with
+/// the same bits. The only failures allowed are an iteration that does not converge, an unbounded
+/// reaction, and triangles so flat that round-off makes the matrix indefinite.
 void RunFromBytes(const std::uint8_t* bytes, std::size_t count);
 
 } // namespace SurfaceDiffusion::Testing

@@ -13,7 +13,7 @@ using namespace SurfaceDiffusion::Testing;
 
 TEST(RandomRuns, KeepWhatTheCorePromises)
 {
-  std::mt19937 random(2026); // the same numbers everywhere
+  std::mt19937 random(2026); // the same numbers on every platform
   for (int run = 0; run < 1500; ++run)
   {
     std::vector<std::uint8_t> bytes(40 + random() % 360);
@@ -25,24 +25,24 @@ TEST(RandomRuns, KeepWhatTheCorePromises)
   }
 }
 
-/// What the guided fuzzer found, in hexadecimal digits.
+/// Inputs on which the guided fuzzer found defects, in hexadecimal digits.
 TEST(RandomRuns, StayAsTheyWereMended)
 {
   const std::vector<std::string> found = {
     // a triangle so flat that minimising total variation took steps without bounds
     "2c00ffffffff1100000111ff0900ff0000090001000011ff0a009e9e9e9e9e9e9e9e043f0090ff010000f8ff"
     "ffff3f00000000049b25",
-    // the same of a linear step by conjugate gradients
+    // the same in a linear step by conjugate gradients
     "00120000f9010012002dff2900ff7a5555555555552dff036c2d5bd5031000ff3e57ddffff3d00ff2d00ff2d"
     "00ffff1affff2f00ff1affff2f00fffffcff",
-    // a triangle so flat that minimising ended with more energy than it began with
+    // a triangle so flat that the minimiser had more energy than the start
     "2c00ffffffff110000010009ffff11000009000100006b11ff0a00043f0000010007ff000000000000ff5df2"
     "d8d8d8d8d8d8d8e6b20061ffffff5b0425",
-    // an edge from a vertex to itself whose coefficient outweighs all others, but cancels
+    // an edge from a vertex to itself whose weight exceeds all others but cancels
     "090140000101400001f85b0a40f25de10001ffd4f8f2f83f6d6d6d6d6d7a40300a5de60001ff00000000ff17"
     "f200ffff40ffffffffffffffffffffffd500d4f8303ff230010000fe0000000000000007280afffffff25d"
     "c10400f20130ef030111ffa2fbff0dfff2",
-    // the same of a line field: such an edge may have opposite signs at its ends
+    // the same for a line field, in which such an edge may have opposite signs at its ends
     "090140000101403f000060575757a9a65757820000310a0100ff7fffff26dfffffff002c00000015a24e3161636544"
     "69a2a2a200090201000060575757a9a65757820000310a0100ff7fffff26dfffffffff05ffaa080cff820000310a01"
     "00ff7fffff26dfffffffff05ffaa09e104f23001000109ffa2fbff0dfff204045d04aa0e04",

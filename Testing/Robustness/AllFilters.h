@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-/// What holds for every filter is tested on all of them alike.
+/// The filters for tests of properties that all of them have.
 namespace FilterTest
 {
 
@@ -44,7 +44,7 @@ FilterKind MakeKind(
     result };
 }
 
-/// Every filter, and those of its models that take ways of their own through the code.
+/// Every filter, also with the settings that select other algorithms.
 inline std::vector<FilterKind> AllFilters()
 {
   using Heat = vtkFVMHeatFilter;
@@ -109,7 +109,7 @@ inline void PrintTo(const FilterKind& kind, std::ostream* os)
   *os << kind.Name;
 }
 
-/// What the filter has added, of points or of cells; null where it has added nothing.
+/// The array that the filter has added to points or cells; null if there is none.
 inline vtkDataArray* ResultOf(vtkPolyDataAlgorithm* filter, const char* name)
 {
   vtkPolyData* output = filter->GetOutput();
@@ -117,7 +117,7 @@ inline vtkDataArray* ResultOf(vtkPolyDataAlgorithm* filter, const char* name)
   return ofPoints ? ofPoints : output->GetCellData()->GetArray(name);
 }
 
-/// Whether the output is the input and nothing else: the very arrays, points and cells.
+/// Whether the output has the points, cells and arrays of the input, shared, and no others.
 inline bool IsUnchanged(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 {
   vtkPolyData* output = filter->GetOutput();

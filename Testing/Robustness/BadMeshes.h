@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// Surfaces with one thing wrong each.
+/// Surfaces with one defect each.
 namespace SurfaceDiffusion::Testing
 {
 
@@ -22,7 +22,7 @@ inline Surface KleinBottle(Index around, Index across)
   {
     for (Index i = 0; i <= around; ++i)
     {
-      // Once around, the section has turned by a half and meets its start the other way round.
+      // After one turn the section is rotated by half a turn and meets its start reversed.
       const Index section = (i < around ? j : across - j) % across;
       number.push_back(section * around + i % around);
       if (i < around && j < across)
@@ -40,7 +40,7 @@ inline Surface KleinBottle(Index around, Index across)
   return MakeSurface(vertices, faces);
 }
 
-/// The pages of a book: every one of `pages` squares has the same edge on one side.
+/// The pages of a book: `pages` squares that share one edge.
 inline Surface Book(int pages)
 {
   std::vector<Eigen::RowVector3d> vertices = { { 0, 0, 0 }, { 0, 0, 1 } };
@@ -56,7 +56,7 @@ inline Surface Book(int pages)
   return MakeSurface(vertices, faces);
 }
 
-/// A disk among whose triangles one in a row of needles gets an angle of `degrees`.
+/// A disk with a row of needle triangles, one of which has an angle of `degrees`.
 inline Surface Needles(double degrees)
 {
   Surface s = Disk(6);
@@ -74,7 +74,7 @@ inline Surface Needles(double degrees)
       faces.push_back({ a, b, c });
       continue;
     }
-    // A vertex so near the edge ab that the angles there are as small as asked.
+    // A vertex so near the edge ab that the angles at a and b are as small as required.
     const Eigen::RowVector3d middle = 0.5 * (vertices[a] + vertices[b]);
     const double height = 0.5 * (vertices[b] - vertices[a]).norm() * std::tan(degrees * Pi / 180.0);
     const Index d = static_cast<Index>(vertices.size());
@@ -139,7 +139,7 @@ inline std::vector<NamedSurface> BadMeshes()
   }
 
   Surface cones = Joined(Moved(Disk(4), { 0, 0, 1 }), Moved(Disk(4), { 0, 0, -1 }));
-  for (Index i = 0; i < cones.NumberOfVertices(); ++i) // both centres to the origin: one vertex
+  for (Index i = 0; i < cones.NumberOfVertices(); ++i) // both centres become one vertex
   {
     cones.Vertices(i, 2) *= cones.Vertices.row(i).head(2).norm();
   }
@@ -166,7 +166,7 @@ inline std::vector<NamedSurface> BadMeshes()
   isolated.Vertices.bottomRows(1000).setConstant(2.0);
   family.push_back({ "AThousandIsolatedVertices", isolated });
 
-  Surface flat = Icosphere(2); // all corners of some triangles at one place or on one line
+  Surface flat = Icosphere(2); // some triangles have all corners at one place or on one line
   for (Index t = 0; t < flat.NumberOfTriangles(); t += 10)
   {
     flat.Vertices.row(flat.Faces(t, 0)) = flat.Vertices.row(flat.Faces(t, 1));

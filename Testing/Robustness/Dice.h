@@ -19,7 +19,7 @@ public:
   int Below(int limit) { return static_cast<int>(this->Random() % limit); }
   bool Flip(int oneIn = 2) { return this->Below(oneIn) == 0; }
   double Unit() { return this->Random() / 4294967296.0; }
-  /// A positive number, all orders of magnitude in the range alike.
+  /// A positive number whose logarithm is uniform.
   double Logarithmic(double low, double high) { return low * std::pow(high / low, this->Unit()); }
 
 private:

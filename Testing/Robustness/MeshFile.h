@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-/// An OFF file as it is: its polygons stay polygons, unlike in the core's MeshFiles.h. Colours are
-/// skipped.
+/// Reads an OFF file without its colours. Unlike in the core's MeshFiles.h, polygons are not cut
+/// into triangles.
 inline vtkSmartPointer<vtkPolyData> ReadOFF(const std::string& path)
 {
   std::ifstream file(path);

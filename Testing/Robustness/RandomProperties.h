@@ -57,7 +57,7 @@ inline bool SameValue(const double* a, const double* b)
   return std::equal(a, a + 3, b);
 }
 
-/// Of the class F: draws the values with the expression `value`, which may use `dice`.
+/// A property of the class F. The expression `value` draws a random value and may use `dice`.
 #define RANDOM_PROPERTY(F, name, value)                                                            \
   RandomProperty                                                                                   \
   {                                                                                                \
@@ -70,7 +70,7 @@ inline bool SameValue(const double* a, const double* b)
     { return SameValue(static_cast<F*>(a)->Get##name(), static_cast<F*>(b)->Get##name()); }        \
   }
 
-/// Positive, seldom negative, which most properties refuse.
+/// A positive number, rarely a negative one, which most properties do not allow.
 inline double Positive(Dice& dice)
 {
   return dice.Flip(24) ? -0.5 : dice.Logarithmic(1e-3, 1e3);
@@ -79,12 +79,12 @@ inline double ZeroOrPositive(Dice& dice, int zeroOneIn = 2)
 {
   return dice.Flip(zeroOneIn) ? 0.0 : Positive(dice);
 }
-/// A choice of an enum with `count` entries, seldom one more.
+/// An entry of an enum with `count` entries, rarely the number after the last.
 inline int Choice(Dice& dice, int count)
 {
   return dice.Below(dice.Flip(24) ? count + 1 : count);
 }
-/// A value not far from a default that makes a pattern.
+/// A value close to a default, so that textures still form.
 inline double Near(Dice& dice, double value)
 {
   return value * (0.75 + 0.5 * dice.Unit());
@@ -109,13 +109,13 @@ struct Color : std::array<double, 3>
 
 using List = std::vector<RandomProperty>;
 
-/// Of every filter.
+/// The properties of every filter.
 template <typename F>
 List OfSurface()
 {
   return {
     RANDOM_PROPERTY(F, MergeCoincidentPoints, dice.Flip()),
-    // A tolerance far beyond the size of the surface takes VTK's point locator for ever.
+    // With a tolerance far beyond the size of the surface VTK's point locator does not return.
     RANDOM_PROPERTY(F, MergeTolerance, dice.Flip() ? 0.0 : dice.Logarithmic(1e-9, 0.1)),
     RANDOM_PROPERTY(F, SeamTolerance, dice.Flip() ? -1.0 : ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, Controller, Controller(dice)),
@@ -123,13 +123,11 @@ List OfSurface()
   };
 }
 
-/// Of filters that take time steps; the fidelity and the diffusivities are the only value allowed
-/// by filters that have no use for them.
+/// The properties of filters with time steps. Bit i of timeIntegrators is set if the class has
+/// integrator i.
 template <typename F>
-List OfDiffusion(int timeIntegrators, bool usesData)
+List OfDiffusion(int timeIntegrators)
 {
-  static const auto fromData = [](Dice& dice, double unused)
-  { return dice.Flip(24) ? Positive(dice) : unused; };
   List list{
     RANDOM_PROPERTY(F, TimeStep, Positive(dice)),
     RANDOM_PROPERTY(F, NumberOfTimeSteps, dice.Below(6) - (dice.Flip(24) ? 7 : 0)),
@@ -137,8 +135,6 @@ List OfDiffusion(int timeIntegrators, bool usesData)
     RANDOM_PROPERTY(F, GenerateTimeSteps, !dice.Flip(3)),
     RANDOM_PROPERTY(F, OutputInterval, 1 + dice.Below(3)),
     RANDOM_PROPERTY(F, MaskMode, Choice(dice, 2)),
-    RANDOM_PROPERTY(F, InitialFill, Choice(dice, 3)),
-    RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
     RANDOM_PROPERTY(F, RandomSeed, dice.Below(5)),
     RANDOM_PROPERTY(F, Solver, Choice(dice, 4)),
     RANDOM_PROPERTY(F, Tolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-12, 0.5)),
@@ -147,27 +143,32 @@ List OfDiffusion(int timeIntegrators, bool usesData)
     RANDOM_PROPERTY(F, IntrinsicDelaunay, dice.Flip()),
     RANDOM_PROPERTY(F, OutputPrecision, Choice(dice, 3)),
     RANDOM_PROPERTY(F, CheckpointMemoryLimit, dice.Below(2)),
+    RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)),
   };
-  if (usesData)
-  {
-    list.push_back(RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)));
-    list.push_back(RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)));
-    list.push_back(RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)));
-  }
-  else
-  {
-    list.push_back(RANDOM_PROPERTY(F, FidelityWeight, fromData(dice, 0.0)));
-    list.push_back(RANDOM_PROPERTY(F, AlongDiffusivity, fromData(dice, 1.0)));
-    list.push_back(RANDOM_PROPERTY(F, AcrossDiffusivity, fromData(dice, 1.0)));
-  }
-  // Bit i of timeIntegrators: whether the class has integrator i.
-  list.push_back(RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)));
   list.back().Set = [timeIntegrators](vtkPolyDataAlgorithm* filter, Dice& dice)
   {
     const int choice = Choice(dice, 3);
     const bool has = timeIntegrators >> choice & 1;
     static_cast<F*>(filter)->SetTimeIntegrator(has || dice.Flip(12) ? choice : 0);
   };
+  return list;
+}
+
+/// The properties of filters with time steps that diffuse an input array.
+template <typename F>
+List OfDataDiffusion(int timeIntegrators)
+{
+  List list = OfDiffusion<F>(timeIntegrators);
+  for (const RandomProperty& property : {
+         RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)),
+         RANDOM_PROPERTY(F, InitialFill, Choice(dice, 3)),
+         RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
+         RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
+         RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
+       })
+  {
+    list.push_back(property);
+  }
   return list;
 }
 
@@ -288,11 +289,11 @@ inline std::vector<FilterClass> AllFilterClasses()
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   return {
-    MakeClass<Heat>({ OfSurface<Heat>(), OfDiffusion<Heat>(0b011, true), OfHeat() }),
-    MakeClass<TV>({ OfSurface<TV>(), OfDiffusion<TV>(0b101, true), OfTotalVariation() }),
+    MakeClass<Heat>({ OfSurface<Heat>(), OfDataDiffusion<Heat>(0b011), OfHeat() }),
+    MakeClass<TV>({ OfSurface<TV>(), OfDataDiffusion<TV>(0b101), OfTotalVariation() }),
     MakeClass<Harmonic>(
-      { OfSurface<Harmonic>(), OfDiffusion<Harmonic>(0b001, true), OfHarmonicMap() }),
-    MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011, false), OfTexture() }),
+      { OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(0b001), OfHarmonicMap() }),
+    MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
   };
 }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every mesh there is, and a family with one thing wrong each, through every filter with its
-// default properties, but few time steps: what comes out is finite, sums are kept, bounds hold
-// where they must, and nothing is an error. Run by itself the program prints a table. With
-// SURFACEDIFFUSION_LONG in the environment (ctest -C Long) runs have their full default length.
+// Every filter, with its default properties but few time steps, on all mesh files and on a family
+// of surfaces with one defect each. Results are finite, integrals are conserved, bounds hold if the
+// scheme has them, and no run is an error. Run by itself the program prints a table. With
+// SURFACEDIFFUSION_LONG in the environment (ctest -C Long) runs have their default length.
 
 #include "AllFilters.h"
 #include "BadMeshes.h"
@@ -91,7 +91,7 @@ vtkSmartPointer<vtkPolyData> MakePolyData(const SurfaceDiffusion::Testing::Named
   return surface;
 }
 
-/// What the case names, with the rough positive data "f" in [1, 3).
+/// The surface of the case, with the rough positive data "f" in [1, 3).
 vtkSmartPointer<vtkPolyData> MakeSurface(const Case& c)
 {
   vtkSmartPointer<vtkPolyData> surface;
@@ -111,19 +111,19 @@ vtkSmartPointer<vtkPolyData> MakeSurface(const Case& c)
   return surface;
 }
 
-/// Rows that a person can read, and that a program can cut.
+/// Print a row of the table, in columns of fixed width.
 void PrintRow(const std::string& mesh, vtkPolyDataAlgorithm* filter, const Messages& messages,
   const std::string& found)
 {
-  std::string told = messages.Errors.empty() ? "" : "error: " + messages.Errors[0];
-  if (told.empty() && !messages.Warnings.empty())
+  std::string message = messages.Errors.empty() ? "" : "error: " + messages.Errors[0];
+  if (message.empty() && !messages.Warnings.empty())
   {
-    told = messages.Warnings[0];
+    message = messages.Warnings[0];
   }
-  told = told.substr(told.find("):") == std::string::npos ? 0 : told.find("):") + 3);
-  std::replace(told.begin(), told.end(), '\n', ' ');
+  message = message.substr(message.find("):") == std::string::npos ? 0 : message.find("):") + 3);
+  std::replace(message.begin(), message.end(), '\n', ' ');
   std::printf("| %-28s | %-30s | %-34s | %s |\n", mesh.c_str(), filter->GetClassName(),
-    found.c_str(), told.c_str());
+    found.c_str(), message.c_str());
 }
 
 std::string Text(const char* format, double value)
@@ -133,7 +133,7 @@ std::string Text(const char* format, double value)
   return text;
 }
 
-/// The sum of A_i u_i as the history has it, relative to its start: the data are positive.
+/// The change of the integral in the history, relative to its start; the data are positive.
 double ChangeOfTotal(vtkAlgorithm* filter)
 {
   const vtkIdType last = History(filter)->GetNumberOfRows() - 1;
@@ -141,7 +141,7 @@ double ChangeOfTotal(vtkAlgorithm* filter)
   return first == 0.0 ? 0.0 : std::abs(HistoryAt(filter, last, "Total_0") / first - 1.0);
 }
 
-/// How far the values leave [1, 3), in parts of their range.
+/// The largest distance of the values from [1, 3), relative to the length of that interval.
 double Overshoot(vtkPolyData* surface, vtkDataArray* u)
 {
   double given[2];
@@ -165,7 +165,7 @@ class EveryMesh : public testing::TestWithParam<Case>
 protected:
   void SetUp() override { this->Surface = MakeSurface(this->GetParam()); }
 
-  /// Run the filter and look at its result; `examine` tells what it has found beyond that.
+  /// Run the filter and check its result; `examine` returns further findings for the table.
   template <typename Examine>
   void Run(vtkPolyDataAlgorithm* filter, const char* result, Examine examine)
   {
@@ -206,7 +206,7 @@ TEST_P(EveryMesh, IsDiffused)
 
   vtkNew<vtkIntrinsicTVFilter> tv;
   SetSteps(tv);
-  tv->SetFidelityWeight(0.0); // with its default weight, data pull at the sum
+  tv->SetFidelityWeight(0.0); // the fidelity term changes the integral
   this->RunConserving(tv, "fTV");
 
   vtkNew<vtkFVMHeatFilter> bounded;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whatever ends a run early, want of memory at any place, an abort at any report, a solver that
-// does not converge: an error where it is one, the unchanged input as output, and a filter that
-// works on the next update.
+// Runs that end early: memory runs out at any allocation, the user aborts at any progress report,
+// or a solver does not converge. The output is the unchanged input, failures are errors and aborts
+// are not, and the next update works.
 
 #include "AllFilters.h"
 
@@ -11,12 +11,13 @@
 #include <cstddef>
 #include <cstdlib>
 
-// operator new and Eigen both take memory from malloc. A sanitizer has one of its own.
+// operator new and Eigen both allocate with malloc, which sanitizers replace.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SURFACEDIFFUSION_FAIL_ALLOCATIONS
 namespace
 {
-/// Blocks that only the size of a mesh explains; smaller ones are VTK's objects and messages.
+/// Allocations of at least this size are arrays of the mesh; smaller ones are VTK's objects and
+/// messages.
 constexpr std::size_t Large = 4096;
 std::atomic<bool> Armed{ false };
 std::atomic<long> LargeBlocksLeft{ 0 };
@@ -62,7 +63,7 @@ protected:
     return ResultOf(filter, this->GetParam().Result);
   }
 
-  /// The filter, whose last update has ended early, does what it should have done.
+  /// The next update of a filter whose last one ended early gives the result.
   void ExpectWorksNow(vtkPolyDataAlgorithm* filter)
   {
     filter->AbortExecuteOff();
@@ -87,7 +88,7 @@ TEST_P(EveryFilter, WorksAgainAfterAnAbortAtAnyReport)
     const unsigned long tag = Listen(filter,
       [&](double amount)
       {
-        // The first and the last are the pipeline's, before and after all.
+        // The pipeline itself sends the first and the last report.
         if (amount > 0.0 && amount < 1.0 && ++reports == stop)
         {
           filter->AbortExecuteOn();
@@ -98,7 +99,7 @@ TEST_P(EveryFilter, WorksAgainAfterAnAbortAtAnyReport)
     ASSERT_TRUE(messages.Errors.empty()) << messages.Errors[0];
     if (reports < stop)
     {
-      EXPECT_GT(stop, 5); // or nothing was tried
+      EXPECT_GT(stop, 5); // or no early end was tested
       EXPECT_TRUE(Identical(this->ResultIn(filter), this->ResultIn(this->Reference)));
       return;
     }
@@ -112,7 +113,7 @@ TEST_P(EveryFilter, WorksAgainAfterAnAbortAtAnyReport)
 TEST_P(EveryFilter, WorksAgainAfterWantOfMemoryAtAnyPlace)
 {
 #ifdef SURFACEDIFFUSION_FAIL_ALLOCATIONS
-  for (long place = 1;; place += 1 + place / 32) // at first all, then fewer
+  for (long place = 1;; place += 1 + place / 32) // first every allocation, then some
   {
     auto filter = this->GetParam().Make();
     filter->SetInputData(this->Surface);
@@ -123,11 +124,11 @@ TEST_P(EveryFilter, WorksAgainAfterWantOfMemoryAtAnyPlace)
     Armed = false;
     if (LargeBlocksLeft > 0)
     {
-      EXPECT_GT(place, 10); // or nothing was tried
+      EXPECT_GT(place, 10); // or no early end was tested
       EXPECT_TRUE(Identical(this->ResultIn(filter), this->ResultIn(this->Reference)));
       return;
     }
-    if (messages.Errors.empty()) // sorting, for one, does without memory where it gets none
+    if (messages.Errors.empty()) // some algorithms, such as sorting, can do without the memory
     {
       EXPECT_TRUE(Identical(this->ResultIn(filter), this->ResultIn(this->Reference)));
       continue;

@@ -36,7 +36,7 @@ TEST(LoopWatch, EndsLoopsShortAndLongOnce)
         return false;
       });
     EXPECT_THROW(LoopForAWhile(blocks), Aborted);
-    EXPECT_NO_THROW(LoopForAWhile(blocks)); // what tidies up
+    EXPECT_NO_THROW(LoopForAWhile(blocks)); // clean-up does not abort
     EXPECT_EQ(questions, 1);
   }
   EXPECT_NO_THROW(LoopForAWhile(1000));
@@ -70,7 +70,7 @@ TEST(LoopWatch, AsksNothingWhereAllMayGoOnOrItHasEnded)
     });
   LoopForAWhile(100);
   EXPECT_GE(questions, 1);
-  EXPECT_LE(questions, 3); // seldom
+  EXPECT_LE(questions, 3); // not once per block
   watch.End();
   questions = 0;
   LoopForAWhile(100);

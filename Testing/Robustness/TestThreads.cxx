@@ -15,7 +15,7 @@ using SurfaceDiffusion::BlockSize;
 namespace
 {
 
-/// Large enough for loops over its points to run on threads.
+/// A surface large enough for loops over its points to run on several threads.
 vtkSmartPointer<vtkPolyData> Hills()
 {
   auto hills = Grid(224, 224);
@@ -64,7 +64,7 @@ TEST_P(AnyThreads, DoNotChangeABit)
   const vtkSmartPointer<vtkDataArray> alone = this->Run(surface);
   for (const char* backend : { "STDThread", "TBB", "OpenMP" })
   {
-    if (!vtkSMPTools::SetBackend(backend)) // VTK was built without
+    if (!vtkSMPTools::SetBackend(backend)) // VTK was built without this backend
     {
       continue;
     }

@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Every property of every filter changes alone between two updates, with settings for which it has
+// an effect. The second result differs from the first and is that of a new filter with the same
+// settings, bit for bit. A class with a property that these tests do not set fails, too.
+
+#include "Twins.h"
+
+#include "vtkCellArray.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace FilterTest;
+
+namespace
+{
+
+/// Properties without effect on the result of one process, or, the last four, without one that can be
+/// relied on: a choice between ways to the same numbers, and limits that lead to errors.
+const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controller",
+  "SeamTolerance", "Solver", "Tolerance", "MaximumNumberOfIterations", "ClampToNonNegative" };
+const std::set<std::string> WithoutEffectInClass = {
+  "vtkHarmonicMapFilter TimeIntegrator", // it has only one
+};
+
+/// An ellipsoid with obtuse triangles. One patch has points of its own: the others are at most 0.01
+/// away.
+vtkSmartPointer<vtkPolyData> PatchedEllipsoid()
+{
+  auto surface = Sphere(2);
+  vtkPoints* const points = surface->GetPoints();
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    points->GetPoint(i, p);
+    points->SetPoint(i, p[0], 3.0 * p[1] + 0.5 * p[0], 0.4 * p[2]);
+  }
+  vtkNew<vtkCellArray> cells;
+  std::map<vtkIdType, vtkIdType> copies;
+  for (vtkIdType c = 0; c < surface->GetNumberOfCells(); ++c)
+  {
+    vtkNew<vtkIdList> corners;
+    surface->GetCellPoints(c, corners);
+    for (vtkIdType a = 0; c < 16 && a < 3; ++a)
+    {
+      const vtkIdType point = corners->GetId(a);
+      if (!copies.count(point))
+      {
+        double p[3];
+        points->GetPoint(point, p);
+        p[2] += copies.size() % 2 ? 0.01 : 0.0;
+        copies[point] = points->InsertNextPoint(p);
+      }
+      corners->SetId(a, copies[point]);
+    }
+    cells->InsertNextCell(corners);
+  }
+  surface->SetPolys(cells);
+  AddPointArray(surface, "f", 3, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
+  AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 7 == 3; });
+  AddPointArray(surface, "e1", 3, [](vtkIdType, int k) { return k == 1 ? 1.0 : 0.3; });
+  surface->GetPointData()->SetActiveScalars("f");
+  return surface;
+}
+
+/// Settings with which a property has an effect, by its name or by class and name.
+template <typename F>
+std::function<void(vtkPolyDataAlgorithm*)> With(void (*set)(F*))
+{
+  return [set](vtkPolyDataAlgorithm* filter) { set(static_cast<F*>(filter)); };
+}
+
+std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings()
+{
+  using Surface = vtkSurfaceFilter;
+  using Diffusion = vtkSurfaceDiffusionAlgorithm;
+  using Data = vtkSurfaceDataDiffusionAlgorithm;
+  using Heat = vtkFVMHeatFilter;
+  using TV = vtkIntrinsicTVFilter;
+  using Harmonic = vtkHarmonicMapFilter;
+  using Turing = vtkTuringTextureFilter;
+  using Direction = vtkSurfaceDirectionFieldFilter;
+  std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
+  needed["MergeTolerance"] = With<Surface>([](Surface* f) { f->MergeCoincidentPointsOn(); });
+  needed["OutputInterval"] = With<Diffusion>([](Diffusion* f) { f->GenerateTimeStepsOn(); });
+  for (const char* name : { "vtkFVMHeatFilter", "vtkIntrinsicTVFilter", "vtkHarmonicMapFilter" })
+  {
+    needed[name + std::string(" RandomSeed")] =
+      With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
+  }
+  needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
+  needed["vtkIntrinsicTVFilter NoiseLevel"] = With<TV>([](TV* f) { f->AutomaticFidelityOn(); });
+  needed["EdgeThreshold"] = With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
+  needed["vtkIntrinsicTVFilter StopTolerance"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
+  needed["vtkHarmonicMapFilter Beta"] = With<Harmonic>([](Harmonic* f) { f->SetExponent(1.2); });
+  needed["ConsistentReaction"] = needed["ProjectToSphere"] =
+    With<Harmonic>([](Harmonic* f) { f->SetSchemeToExplicitReaction(); });
+  needed["ActivatorSupply"] = needed["SubstrateSupply"] =
+    With<Turing>([](Turing* f) { f->SetKineticsToSchnakenberg(); });
+  needed["FeedRate"] = needed["KillRate"] =
+    With<Turing>([](Turing* f) { f->SetKineticsToGrayScott(); });
+  needed["ReactantA"] = needed["ReactantB"] =
+    With<Turing>([](Turing* f) { f->SetKineticsToBrusselator(); });
+  needed["InhibitorDecayRate"] = needed["Saturation"] =
+    With<Turing>([](Turing* f) { f->SetKineticsToGiererMeinhardt(); });
+  needed["RecoveryRate"] = needed["RecoveryDamping"] = needed["Stimulus"] =
+    With<Turing>([](Turing* f) { f->SetKineticsToFitzHughNagumo(); });
+  needed["LowColor"] = needed["HighColor"] = With<Turing>([](Turing* f) { f->ColorOutputOn(); });
+  needed["SmoothingLength"] =
+    With<Direction>([](Direction* f) { f->SetMethodToCurvatureAligned(); });
+  needed["HintWeight"] = With<Direction>([](Direction* f) { f->SetMethodToHints(); });
+  return needed;
+}
+
+/// Changes one property many times. Returns whether two results without errors have differed.
+bool ChangeAlone(const FilterClass& kind, const RandomProperty& property)
+{
+  static const auto needed = NeededSettings();
+  const auto surface = PatchedEllipsoid();
+  const auto filter = kind.Make();
+  filter->SetInputData(surface);
+  const bool isTexture = kind.Name == "vtkTuringTextureFilter"; // it starts from noise
+  SetInputArray(filter, 0, isTexture ? "" : "f");
+  SetInputArray(filter, 1, "mask");
+  SetInputArray(filter, 2, "e1");
+  for (const std::string& name : { property.Name, kind.Name + " " + property.Name })
+  {
+    const auto found = needed.find(name);
+    if (found != needed.end())
+    {
+      found->second(filter);
+    }
+  }
+  if (const auto diffusion = vtkSurfaceDiffusionAlgorithm::SafeDownCast(filter))
+  {
+    diffusion->SetNumberOfTimeSteps(3);
+  }
+  Messages messages(filter);
+  auto last = vtkSmartPointer<vtkPolyDataAlgorithm>();
+  bool hasEffect = false;
+  Dice dice(1);
+  for (int change = 0; change < 6; ++change)
+  {
+    const auto before = kind.Make();
+    property.Copy(filter, before);
+    for (int draw = 0; change > 0 && draw < 8 && property.Equal(filter, before); ++draw)
+    {
+      property.Set(filter, dice);
+    }
+    if (!messages.Errors.empty())
+    {
+      filter->Modified(); // the pipeline does not repeat an update that only gave errors
+      messages.Errors.clear();
+    }
+    const auto twin = Twin(kind, filter);
+    Messages ofTwin(twin);
+    twin->SetInputData(surface);
+    for (vtkPolyDataAlgorithm* either : { filter.Get(), twin.Get() })
+    {
+      UpdateAt(either, 1.2);
+    }
+    EXPECT_EQ(Sentences(messages), Sentences(ofTwin));
+    EXPECT_EQ(Difference(filter, twin), "") << "change " << change;
+    if (messages.Errors.empty())
+    {
+      hasEffect = hasEffect || (last && Difference(last, twin) != "");
+      last = twin;
+    }
+  }
+  return hasEffect;
+}
+
+/// A header without the lines of its comments.
+std::string ReadCode(const std::filesystem::path& header)
+{
+  std::string code;
+  std::ifstream file(header);
+  for (std::string line; std::getline(file, line);)
+  {
+    const std::size_t first = line.find_first_not_of(' ');
+    const bool isComment = first != std::string::npos && (line[first] == '*' || line[first] == '/');
+    code += isComment ? std::string() : line + "\n";
+  }
+  return code;
+}
+
+/// The names X of all methods SetX() in the headers of a class and of its superclasses in this
+/// library, without the methods SetXToY().
+std::set<std::string> SettableInHeaders(const std::string& className)
+{
+  const std::filesystem::path folder = SURFACEDIFFUSION_FILTERS_DIR;
+  std::set<std::string> names;
+  std::string name = className;
+  while (std::filesystem::exists(folder / (name + ".h")))
+  {
+    const std::string text = ReadCode(folder / (name + ".h"));
+    const std::regex setter(R"((?:\bvtkSet\w*Macro\(\s*|\bSet)([A-Z]\w*)\b\s*[(,)])");
+    for (std::sregex_iterator match(text.begin(), text.end(), setter), end; match != end; ++match)
+    {
+      names.insert((*match)[1]);
+    }
+    std::smatch base;
+    const std::regex derived("class \\w+ " + name + "\\s*:\\s*public (\\w+)");
+    name = std::regex_search(text, base, derived) ? std::string(base[1]) : std::string();
+  }
+  const std::set<std::string> all = names;
+  for (const std::string& property : all)
+  {
+    for (auto it = names.begin(); it != names.end();)
+    {
+      const bool word = it->rfind(property + "To", 0) == 0;
+      it = word ? names.erase(it) : std::next(it);
+    }
+  }
+  return names;
+}
+
+/// The filters by their short names.
+class EveryProperty : public testing::TestWithParam<FilterClass>
+{
+};
+
+std::string ClassName(const testing::TestParamInfo<FilterClass>& info)
+{
+  return info.param.Name.substr(3);
+}
+
+} // namespace
+
+TEST_P(EveryProperty, ChangedAloneHasAnEffectAndGivesWhatANewFilterGives)
+{
+  const FilterClass& kind = this->GetParam();
+  for (const RandomProperty& property : kind.Properties)
+  {
+    SCOPED_TRACE(kind.Name + " " + property.Name);
+    const bool hasEffect = ChangeAlone(kind, property);
+    const bool excused = WithoutEffect.count(property.Name) ||
+      WithoutEffectInClass.count(kind.Name + " " + property.Name);
+    EXPECT_TRUE(hasEffect || excused) << "no effect: does it need other settings?";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+  AllFilters, EveryProperty, testing::ValuesIn(AllFilterClasses()), ClassName);
+
+TEST(Properties, AreTheOnesOfTheHeaders)
+{
+  std::set<std::string> tested;
+  for (const FilterClass& kind : AllFilterClasses())
+  {
+    std::set<std::string> known;
+    for (const RandomProperty& property : kind.Properties)
+    {
+      EXPECT_TRUE(known.insert(property.Name).second) << property.Name << " twice";
+    }
+    std::vector<std::string> different;
+    const std::set<std::string> settable = SettableInHeaders(kind.Name);
+    std::set_symmetric_difference(
+      known.begin(), known.end(), settable.begin(), settable.end(), std::back_inserter(different));
+    EXPECT_EQ(different, std::vector<std::string>())
+      << "of " << kind.Name << ", in the header or in RandomProperties.h but not in both";
+    EXPECT_GT(settable.size(), 5u);
+    tested.insert(kind.Name);
+  }
+  for (const auto& file : std::filesystem::directory_iterator(SURFACEDIFFUSION_FILTERS_DIR))
+  {
+    const std::string name = file.path().stem().string();
+    const bool isClass = file.path().extension() == ".h" && name.rfind("vtk", 0) == 0;
+    if (isClass && ReadCode(file.path()).find("static " + name + "* New()") != std::string::npos)
+    {
+      EXPECT_TRUE(tested.count(name)) << name << " is not in RandomProperties.h";
+    }
+  }
+}
