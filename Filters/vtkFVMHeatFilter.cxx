@@ -122,7 +122,7 @@ std::unique_ptr<SurfaceDiffusion::Model> vtkFVMHeatFilter::MakeModel(ModelInput&
   if (this->Mode == MODE_STEADY_STATE)
   {
     settings.TimeScheme = LinearDiffusion::Scheme::SteadyState;
-    task.DiffusionNumber = 1e4; // no time step bounds how far values travel
+    task.DiffusionNumber.reset();
   }
 
   this->EffectiveFidelityWeight = this->FidelityWeight;

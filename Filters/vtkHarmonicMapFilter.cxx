@@ -30,7 +30,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ostream>
 #include <stdexcept>
 #include <vector>
@@ -409,14 +408,7 @@ std::unique_ptr<SurfaceDiffusion::Model> vtkHarmonicMapFilter::MakeModel(
       settings.Method = HarmonicMap::Preconditioner::Automatic;
       break;
   }
-  if (this->Scheme != SCHEME_EXPLICIT_REACTION)
-  {
-    task.NumberOfSolves = 1e9; // a factor in any case: the model knows when to use it
-    if (!mesh.GetReduction().IsSerial())
-    {
-      task.DiffusionNumber = std::numeric_limits<double>::infinity(); // or multigrid
-    }
-  }
+  task.IsPreconditioner = this->Scheme != SCHEME_EXPLICIT_REACTION;
   return std::make_unique<HarmonicMap>(input.Surface.Operators, std::move(coefficients),
     std::move(input.Data), settings, input.Solver("harmonic", task), input.Parallel);
 }

@@ -20,7 +20,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkSMPTools.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -29,7 +28,6 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 using namespace SurfaceDiffusion;
 
@@ -108,17 +106,6 @@ double WavelengthOf(const PatternForecast& forecast)
   return forecast.SquaredWaveNumber > 0.0
     ? 2.0 * std::acos(-1.0) / std::sqrt(forecast.SquaredWaveNumber)
     : 0.0;
-}
-
-/// A factor's substitution runs on one thread, so two are better; the loops of conjugate gradients
-/// run on all. The back end Sequential is ParaView's default, nobody's wish for one thread.
-bool SolveSideBySide(bool direct)
-{
-  if (std::string(vtkSMPTools::GetBackend()) == "Sequential")
-  {
-    return std::thread::hardware_concurrency() > 1;
-  }
-  return direct && vtkSMPTools::GetEstimatedNumberOfThreads() > 1;
 }
 
 /// An array of one value per point, 0 where a point takes no part, unless `source` has a value.
@@ -519,12 +506,13 @@ std::unique_ptr<Model> vtkTuringTextureFilter::MakeModel(ModelInput& input, int 
     task.Tolerance = this->Tolerance;
     direct = direct &&
       (this->Solver == SOLVER_DIRECT ||
-        (this->Solver == SOLVER_AUTOMATIC && PreferFactorization(task)));
+        (this->Solver == SOLVER_AUTOMATIC &&
+          ChooseSolver(SolverMethod::Automatic, task).Method == SolverMethod::Factorization));
     chemicals[c].Solver = input.Solver(c == 0 ? "u1" : "u2", task);
     chemicals[c].Coefficients =
       AnisotropicWeights(mesh, isotropic, frames, rates.Along[c], rates.Across[c], input.Parallel);
   }
-  settings.SideBySide = mesh.GetReduction().IsSerial() && SolveSideBySide(direct);
+  settings.SideBySide = direct && mesh.GetReduction().IsSerial();
   return std::make_unique<ReactionDiffusion>(input.Surface.Operators, reaction,
     std::move(chemicals), std::move(input.Data), settings, input.Parallel);
 }

@@ -42,9 +42,6 @@ std::string Join(const std::vector<std::string>& sentences)
   return text;
 }
 
-/// Steps up to this many h^2 are cheapest with conjugate gradients, longer ones with multigrid.
-constexpr double LargestOfJacobi = 10.0;
-
 /// A power of two near the size of the surface that the processes have pieces of.
 double FindLengthUnit(const Processes& processes, vtkPolyData* piece)
 {
@@ -582,28 +579,22 @@ std::shared_ptr<LinearSolver> vtkSurfaceDiffusionAlgorithm::Execution::FindSolve
   IterationLimits limits;
   limits.Tolerance = this->Filter.Tolerance;
   limits.MaximumNumberOfIterations = this->Filter.MaximumNumberOfIterations;
+  const auto method = static_cast<SolverMethod>(this->Filter.Solver);
   if (run.Partition)
   {
-    const bool multigrid = this->Filter.Solver == SOLVER_MULTIGRID ||
-      (this->Filter.Solver == SOLVER_AUTOMATIC && task.AllowMultigrid &&
-        task.DiffusionNumber > LargestOfJacobi);
-    std::shared_ptr<LinearSolver> solver = MakeDistributedSolver(run.Partition, multigrid);
+    std::shared_ptr<LinearSolver> solver =
+      MakeDistributedSolver(run.Partition, PreferDistributedMultigrid(method, task));
     solver->SetLimits(limits);
     return solver;
   }
-  const SolverMethod method = this->Filter.Solver == SOLVER_AUTOMATIC
-    ? ChooseMethod(task)
-    : static_cast<SolverMethod>(this->Filter.Solver - SOLVER_DIRECT);
-  const bool automatic =
-    this->Filter.Solver == SOLVER_AUTOMATIC && method != SolverMethod::Factorization;
+  const SolverChoice choice = ChooseSolver(method, task);
   const std::string prefix = name + ' ';
-  const std::string key =
-    prefix + (automatic ? "automatic " : "") + std::to_string(static_cast<int>(method));
+  const std::string key = prefix + (choice.FallsBack ? "automatic " : "") +
+    std::to_string(static_cast<int>(choice.Method));
   std::shared_ptr<LinearSolver> solver = run.Solvers[key];
   if (!solver)
   {
-    const ParallelFor& parallel = SMPParallelFor::Instance();
-    solver = automatic ? MakeAutomaticSolver(task, parallel) : MakeSolver(method, parallel);
+    solver = MakeSolver(choice, SMPParallelFor::Instance());
   }
   // One solver per name: a factor that is no longer used would hold much memory.
   for (auto it = run.Solvers.begin(); it != run.Solvers.end();)

@@ -6,7 +6,7 @@
 #include "Core/Models/InitialState.h"
 #include "Core/Models/Model.h"
 #include "Core/Models/Trajectory.h"
-#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SolverChoice.h"
 #include "Distributed/PointIdentity.h"
 
 #include <cmath>
