@@ -38,6 +38,9 @@ public:
 
   /// Call body(begin, end) on pieces that cover [0, count) once, in any order, on any thread.
   virtual void Run(Index count, LoopBody body) const { body(0, count); }
+
+  /// The same for a few long tasks. Run() may take a short loop to be not worth its threads.
+  virtual void RunTasks(Index count, LoopBody body) const { body(0, count); }
 };
 
 /// The serial loop, as the default of all that keeps a reference: a temporary would be gone.
@@ -86,6 +89,20 @@ void ForEach(const ParallelFor& parallel, Index count, const Body& body)
       for (Index i = begin; i < end; ++i)
       {
         body(i);
+      }
+    });
+}
+
+/// Call task(i) for every i of [0, count), where each call is worth a thread.
+template <typename Task>
+void ForEachTask(const ParallelFor& parallel, Index count, const Task& task)
+{
+  parallel.RunTasks(count,
+    [&](Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        task(i);
       }
     });
 }

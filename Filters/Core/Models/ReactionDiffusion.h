@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Worker.h"
 #include "Core/Models/Kinetics.h"
 #include "Core/Models/Model.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Solvers/LinearSolver.h"
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -65,7 +63,8 @@ public:
     /// mean|), root mean squares over the surface, is at most this for both chemicals: the relative
     /// change per unit time. It is about the growth rate while the pattern grows. 0: never.
     double StopTolerance = 0.0;
-    /// Solve for the two chemicals on two threads. The bits are the same either way. Not in pieces.
+    /// Solve for the two chemicals as two parallel tasks, which is faster if the solvers run on one
+    /// thread each, as direct ones do. The bits are the same either way. Not over several processes.
     bool SideBySide = false;
   };
 
@@ -133,9 +132,6 @@ private:
   Values U;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;
   std::array<Solution, 2> Solutions;
-  std::atomic<bool> FirstFailed{ false };
-  const ProgressMonitor::Callback FirstGoesOn = [this](double) { return !this->FirstFailed; };
-  std::unique_ptr<Worker> Second; ///< solves for u2; last: it uses the others
 };
 
 } // namespace SurfaceDiffusion
