@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Reduction.h"
 
 #include <algorithm>
@@ -28,14 +29,14 @@ public:
   void Run(const ParallelFor& parallel, Index rows, int columns, int sets, const First& first,
     const Add& add)
   {
-    const int width = sets * (K > 0 ? K : columns);
+    const int width = sets * ColumnCount<K>(columns);
     ForEachBlock(parallel, rows,
       [&](Index block, Index begin, Index end)
       {
         first(begin, end);
         double* partial = this->Partial.data() + static_cast<std::size_t>(block) * width;
-        double registers[K > 0 ? 2 * K : 1];
-        double* sums = K > 0 ? registers : partial;
+        ColumnRegisters<double, K, 2> registers;
+        double* sums = registers.Or(partial);
         std::fill(sums, sums + width, 0.0);
         for (Index i = begin; i < end; ++i)
         {

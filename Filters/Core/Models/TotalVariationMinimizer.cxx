@@ -178,20 +178,11 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(
   const Values& g, const Values& f, Values& u, const ProgressMonitor& progress)
 {
-  switch (u.cols())
-  {
-    case 1:
-      return this->MinimizeColumns<1>(g, f, u, progress);
-    case 2:
-      return this->MinimizeColumns<2>(g, f, u, progress);
-    case 3:
-      return this->MinimizeColumns<3>(g, f, u, progress);
-    default:
-      return this->MinimizeColumns<0>(g, f, u, progress);
-  }
+  return ForColumns(u.cols(),
+    [&](auto k) { return this->MinimizeColumns<decltype(k)::value>(g, f, u, progress); });
 }
 
-/// The loops of one iteration for K columns, or as many as there are where K is 0.
+/// The loops of one iteration for K columns, or for any number of them if K is 0.
 template <int K>
 struct TotalVariationMinimizer::Pass
 {
@@ -199,13 +190,13 @@ struct TotalVariationMinimizer::Pass
   const Values& G;
   const Values& F;
   const Values& U;
-  const int Columns = K > 0 ? K : static_cast<int>(U.cols());
+  const int Columns = ColumnCount<K>(U.cols());
   const TriangleMesh& Mesh = Self.Operators->Mesh();
   const Reduction& OverProcesses = Mesh.GetReduction();
   const bool Joint = Self.Options.Coupling == ChannelCoupling::Joint;
   const bool HasAbsolute = (Self.Absolute.array() > 0.0).any();
 
-  int Count() const { return K > 0 ? K : this->Columns; }
+  int Count() const { return ColumnCount<K>(this->Columns); }
 
   /// S grad u of channel k on triangle t.
   Eigen::Vector2d GradientOf(Index t, int k) const

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/Assembler.h"
 
+#include "Core/Foundation/Columns.h"
 #include "Core/Foundation/IndexSet.h"
 #include "Core/Operators/SparseProduct.h"
 
@@ -159,17 +160,8 @@ void Multiply(const SparseMatrix& matrix, const Values& x, Values& y, const Para
   ForEachBlock(parallel, static_cast<Index>(matrix.rows()),
     [&](Index, Index begin, Index end)
     {
-      switch (x.cols())
-      {
-        case 1:
-          return MultiplyRows<1>(matrix, x, y, begin, end);
-        case 2:
-          return MultiplyRows<2>(matrix, x, y, begin, end);
-        case 3:
-          return MultiplyRows<3>(matrix, x, y, begin, end);
-        default:
-          return MultiplyRows<0>(matrix, x, y, begin, end);
-      }
+      ForColumns(x.cols(),
+        [&](auto k) { MultiplyRows<decltype(k)::value>(matrix, x, y, begin, end); });
     });
 }
 

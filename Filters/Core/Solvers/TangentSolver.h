@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Reduction.h"
-#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/ConjugateGradients.h"
 
 namespace SurfaceDiffusion
 {
@@ -22,9 +21,9 @@ struct TangentSystem
   const SurfaceDiffusion::Reduction& Reduction = SurfaceDiffusion::Reduction::Serial();
 };
 
-/// Solves such systems by conjugate gradients from x = 0, with one recurrence for all columns,
-/// which P couples. Every iterate has a smaller 1/2 x.Ax - b.x than the one before: a step that
-/// uses an unfinished x still goes downhill.
+/// Solves P A P x = P b by conjugate gradients from x = 0, as one system of all columns, which P
+/// couples. Every iterate has a smaller 1/2 x.Ax - b.x than the one before: a time step with an
+/// unfinished x still decreases the energy.
 class TangentSolver
 {
 public:
@@ -33,9 +32,9 @@ public:
   {
   }
 
-  /// preconditioner: a solver that has taken a matrix near A; none: the diagonal of A (Jacobi). The
-  /// residual is in the norm of LinearSolver, relative to the larger of P b and Inertia u: to what
-  /// the right-hand side would be if x were the whole of u.
+  /// preconditioner: a solver that has taken a matrix near A. Null: the diagonal of A (Jacobi). The
+  /// residual is measured in the norm of LinearSolver, relative to the larger of P b and Inertia u,
+  /// which is the size of the right-hand side if x is as large as u.
   SolveReport Solve(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
     const IterationLimits& limits, const ProgressMonitor& progress = ProgressMonitor());
 
@@ -43,12 +42,11 @@ private:
   template <int K>
   SolveReport SolveColumns(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
     const IterationLimits& limits, const ProgressMonitor& progress);
-  template <int K>
-  double Precondition(const TangentSystem& system, LinearSolver* preconditioner);
 
   const ParallelFor& Parallel;
   Vector InverseDiagonal, Inertia;
-  Values R, Z, P, Q;
+  Values Residual;
+  ConjugateGradientWork Work;
 };
 
 } // namespace SurfaceDiffusion
