@@ -249,7 +249,7 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, AnySolver,
       "AutomaticIterative", [] { return MakeSolver(SolverMethod::Automatic, OneShortStep()); } }),
   [](const auto& parameter) { return parameter.param.Name; });
 
-// It leaves out of its factor what is below round-off, much of it where steps are small.
+// Entries of the factor below round-off are dropped, many of them if steps are short.
 TEST(Cholesky, IsExactToRoundOffAtSmallAndLargeSteps)
 {
   const auto assembler = MakeAssembler(Icosphere(4));

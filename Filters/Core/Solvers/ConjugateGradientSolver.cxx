@@ -101,7 +101,7 @@ private:
     {
       unit[c] = ScaleOf(b, product, c, this->Parallel);
     }
-    this->Work.Sums.Run<K>(this->Parallel, n, k, 1,
+    this->Work.Sums.Run<K>(this->Parallel, n, k,
       [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)

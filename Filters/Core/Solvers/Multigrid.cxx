@@ -14,8 +14,8 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr Index SmallEnough = 500; // vertices, to be solved directly
-constexpr double WorthALevel = 0.8; // of the vertices left, or fewer
+constexpr Index LargestDirect = 500; // vertices of a level that is solved directly
+constexpr double LargestRatio = 0.8; // of the vertices of a level to those of the finer one
 
 /// matrix scaled to unit diagonal, from both sides.
 SparseMatrix Scaled(const SparseMatrix& matrix, const Vector& scaling, const ParallelFor& parallel)
@@ -81,10 +81,10 @@ void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& pro
   SparseMatrix current = Scaled(matrix, this->Scaling, this->Parallel);
   double strength = 0.08; // as in the paper
   double fraction = 0.0;
-  while (current.rows() > SmallEnough)
+  while (current.rows() > LargestDirect)
   {
     const SparseMatrix restriction = SmoothedAggregation(current, strength, kernel, this->Parallel);
-    if (restriction.rows() > WorthALevel * static_cast<double>(current.rows()))
+    if (restriction.rows() > LargestRatio * static_cast<double>(current.rows()))
     {
       break;
     }

@@ -3,6 +3,7 @@
 #include "Core/Solvers/QuadraticDescent.h"
 
 #include "Core/Operators/SparsePattern.h"
+#include "Core/Solvers/ConjugateGradients.h"
 
 namespace SurfaceDiffusion
 {

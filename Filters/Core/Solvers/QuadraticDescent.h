@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Solvers/ConjugateGradients.h"
+#include "Core/Foundation/Parallel.h"
+#include "Core/Solvers/ConjugateGradientSystem.h"
 
 namespace SurfaceDiffusion
 {

@@ -3,6 +3,7 @@
 #include "Core/Solvers/TangentSolver.h"
 
 #include "Core/Operators/SparsePattern.h"
+#include "Core/Solvers/ConjugateGradients.h"
 
 namespace SurfaceDiffusion
 {

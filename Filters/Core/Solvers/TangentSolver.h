@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Solvers/ConjugateGradients.h"
+#include "Core/Solvers/ConjugateGradientSystem.h"
+#include "Core/Solvers/LinearSolver.h"
 
 namespace SurfaceDiffusion
 {
 
-/// P A P x = P b for symmetric positive definite A, where P takes each row x_i to its part
-/// orthogonal to u_i, and to 0 at fixed vertices: the linear system of a step whose unknowns lie in
-/// the tangent spaces of the sphere.
+/// P A P x = P b for symmetric positive definite A, where P projects each row x_i onto
+/// the plane orthogonal to u_i, and to 0 at fixed vertices: the linear system of a time step whose
+/// unknowns lie in the tangent spaces of the sphere.
 struct TangentSystem
 {
   const SparseMatrix& Matrix;
