@@ -32,10 +32,10 @@ SURFACEDIFFUSION_MIRROR(Self::MASK_MODE_EXCLUDE, MaskMode::Exclude);
 SURFACEDIFFUSION_MIRROR(Self::TIME_INTEGRATOR_FIRST_ORDER, TimeIntegrator::FirstOrder);
 SURFACEDIFFUSION_MIRROR(Self::TIME_INTEGRATOR_SECOND_ORDER, TimeIntegrator::SecondOrder);
 SURFACEDIFFUSION_MIRROR(Self::TIME_INTEGRATOR_IMPLICIT, TimeIntegrator::Implicit);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_AUTOMATIC, SolverChoice::Automatic);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_DIRECT, SolverChoice::Direct);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_CONJUGATE_GRADIENT, SolverChoice::ConjugateGradient);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_MULTIGRID, SolverChoice::Multigrid);
+SURFACEDIFFUSION_MIRROR(Self::SOLVER_AUTOMATIC, SolverMethod::Automatic);
+SURFACEDIFFUSION_MIRROR(Self::SOLVER_DIRECT, SolverMethod::Factorization);
+SURFACEDIFFUSION_MIRROR(Self::SOLVER_CONJUGATE_GRADIENT, SolverMethod::ConjugateGradient);
+SURFACEDIFFUSION_MIRROR(Self::SOLVER_MULTIGRID, SolverMethod::Multigrid);
 
 namespace
 {
@@ -112,7 +112,7 @@ void vtkSurfaceDiffusionAlgorithm::CopyProperties(RunSettings& settings) const
   settings.MaskMode = static_cast<SurfaceDiffusion::MaskMode>(this->MaskMode);
   settings.RandomSeed = this->RandomSeed;
   settings.TimeIntegrator = static_cast<SurfaceDiffusion::TimeIntegrator>(this->TimeIntegrator);
-  settings.Solver = static_cast<SolverChoice>(this->Solver);
+  settings.Solver = static_cast<SolverMethod>(this->Solver);
   settings.Tolerance = this->Tolerance;
   settings.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   settings.IntrinsicDelaunay = this->IntrinsicDelaunay;

@@ -81,12 +81,17 @@ public:
     }
     else
     {
-      RunOnThreads(count, body, watch);
+      RunOnThreads(count, 0, body, watch);
     }
     if (watch)
     {
       watch->Ask();
     }
+  }
+
+  void RunTasks(Index count, LoopBody body) const override
+  {
+    RunOnThreads(count, 1, body, LoopWatch::OfThisThread());
   }
 
   /// The core keeps references: one object for all.
@@ -97,7 +102,8 @@ public:
   }
 
 private:
-  static void RunOnThreads(Index count, LoopBody body, LoopWatch* watch)
+  /// grain: of vtkSMPTools::For.
+  static void RunOnThreads(Index count, vtkIdType grain, LoopBody body, LoopWatch* watch)
   {
     // An exception that left a thread of VTK's would end the program (want of memory).
     std::exception_ptr failure;
@@ -125,7 +131,7 @@ private:
         failed = true;
       }
     };
-    vtkSMPTools::For(0, count, loop);
+    vtkSMPTools::For(0, count, grain, loop);
     if (failure)
     {
       std::rethrow_exception(failure);

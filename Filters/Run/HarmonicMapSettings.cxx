@@ -7,7 +7,6 @@
 #include "Run/ModelInputs.h"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace SurfaceDiffusion
@@ -71,20 +70,12 @@ ModelTraits HarmonicMapSettings::DescribeModel() const
 
 SolverTask HarmonicMapSettings::MakeTask(const ModelInputs& inputs, double timeStep) const
 {
-  const bool distributed = !inputs.Surface.Mesh().GetReduction().IsSerial();
   SolverTask task;
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
   task.DiffusionNumber =
     this->LargestDiffusivity() * timeStep / std::pow(inputs.Units.CoreEdgeLength(), this->Exponent);
   task.NumberOfSolves = this->Exponent == 2.0 ? this->NumberOfTimeSteps : 1.0;
-  if (this->Scheme != HarmonicMap::Scheme::ExplicitReaction)
-  {
-    task.NumberOfSolves = 1e9; // a factor in any case: the model knows when to use it
-    if (distributed)
-    {
-      task.DiffusionNumber = std::numeric_limits<double>::infinity(); // or multigrid
-    }
-  }
+  task.IsPreconditioner = this->Scheme != HarmonicMap::Scheme::ExplicitReaction;
   return task;
 }
 
@@ -115,12 +106,12 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   settings.Limits.Tolerance = this->Tolerance;
   settings.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   const bool distributed = !inputs.Surface.Mesh().GetReduction().IsSerial();
-  if (this->Solver == SolverChoice::Direct ||
-    (this->Solver == SolverChoice::Multigrid && distributed))
+  if (this->Solver == SolverMethod::Factorization ||
+    (this->Solver == SolverMethod::Multigrid && distributed))
   {
     settings.Method = HarmonicMap::Preconditioner::Factor;
   }
-  else if (this->Solver == SolverChoice::ConjugateGradient)
+  else if (this->Solver == SolverMethod::ConjugateGradient)
   {
     settings.Method = HarmonicMap::Preconditioner::Jacobi;
   }

@@ -92,7 +92,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   if (this->Mode == HeatMode::SteadyState)
   {
     settings.TimeScheme = LinearDiffusion::Scheme::SteadyState;
-    task.DiffusionNumber = 1e4; // no time step bounds how far values travel
+    task.DiffusionNumber.reset();
   }
 
   result.EffectiveFidelityWeight = this->FidelityWeight;

@@ -4,6 +4,7 @@
 
 #include "Core/Models/InitialState.h"
 #include "Core/Models/Model.h"
+#include "Core/Solvers/SolverChoice.h"
 #include "Run/Settings.h"
 #include "Run/Units.h"
 
@@ -33,14 +34,6 @@ enum class TimeIntegrator
   FirstOrder,
   SecondOrder,
   Implicit
-};
-
-enum class SolverChoice
-{
-  Automatic,
-  Direct,
-  ConjugateGradient,
-  Multigrid
 };
 
 /// Which input arrays there are, as far as settings have to agree with them.
@@ -85,7 +78,7 @@ struct RunSettings : Settings
   SurfaceDiffusion::MaskMode MaskMode = SurfaceDiffusion::MaskMode::Inpaint;
   int RandomSeed = 0;
   SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
-  SolverChoice Solver = SolverChoice::Automatic;
+  SolverMethod Solver = SolverMethod::Automatic;
   double Tolerance = 1e-10;
   int MaximumNumberOfIterations = 1000;
   bool IntrinsicDelaunay = false;

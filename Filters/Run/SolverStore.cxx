@@ -7,34 +7,9 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-/// Steps up to this many h^2 are solved fastest over processes by conjugate gradients with Jacobi
-/// preconditioner, longer ones by multigrid.
-constexpr double MaxJacobiDiffusionNumber = 10.0;
-
-SolverMethod MethodOf(SolverChoice choice, const SolverTask& task)
-{
-  switch (choice)
-  {
-    case SolverChoice::Direct:
-      return SolverMethod::Factorization;
-    case SolverChoice::ConjugateGradient:
-      return SolverMethod::ConjugateGradient;
-    case SolverChoice::Multigrid:
-      return SolverMethod::Multigrid;
-    case SolverChoice::Automatic:
-      break;
-  }
-  return ChooseMethod(task);
-}
-
-} // namespace
-
 void SolverStore::Configure(const RunSettings& settings, const ParallelFor& parallel)
 {
-  this->Choice = settings.Solver;
+  this->Method = settings.Solver;
   this->Limits.Tolerance = settings.Tolerance;
   this->Limits.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
   this->Parallel = &parallel;
@@ -44,24 +19,18 @@ std::shared_ptr<LinearSolver> SolverStore::Find(SolverPurpose purpose, SolverTas
 {
   task.Tolerance = this->Limits.Tolerance;
   Kept& kept = this->Solvers[static_cast<std::size_t>(purpose)];
-  const bool automatic = this->Choice == SolverChoice::Automatic;
   if (this->Distributed)
   {
-    const bool multigrid = this->Choice == SolverChoice::Multigrid ||
-      (automatic && task.AllowMultigrid && task.DiffusionNumber > MaxJacobiDiffusionNumber);
-    kept.Solver = this->Distributed(multigrid);
+    kept.Solver = this->Distributed(PreferDistributedMultigrid(this->Method, task));
   }
   else
   {
-    const SolverMethod method = MethodOf(this->Choice, task);
-    const bool fallsBack = automatic && method != SolverMethod::Factorization;
-    if (!kept.Solver || kept.Method != method || kept.Automatic != fallsBack)
+    const SolverChoice choice = ChooseSolver(this->Method, task);
+    if (!kept.Solver || kept.Choice != choice)
     {
       kept.Solver.reset(); // before another one takes memory
-      kept.Solver = fallsBack ? MakeAutomaticSolver(task, *this->Parallel)
-                              : MakeSolver(method, *this->Parallel);
-      kept.Method = method;
-      kept.Automatic = fallsBack;
+      kept.Solver = MakeSolver(choice, *this->Parallel);
+      kept.Choice = choice;
     }
   }
   kept.Solver->SetLimits(this->Limits);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SolverChoice.h"
 #include "Run/RunSettings.h"
 
 #include <array>
@@ -38,11 +39,10 @@ private:
   struct Kept
   {
     std::shared_ptr<LinearSolver> Solver;
-    SolverMethod Method = SolverMethod::Factorization;
-    bool Automatic = false; ///< an iteration that falls back on a factor
+    SolverChoice Choice;
   };
 
-  SolverChoice Choice = SolverChoice::Automatic;
+  SolverMethod Method = SolverMethod::Automatic;
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;

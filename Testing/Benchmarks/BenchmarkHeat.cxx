@@ -7,6 +7,7 @@
 // the core, both with the history. BenchmarkSolver.cxx has the linear solvers.
 
 #include "Core/Models/Trajectory.h"
+#include "Core/Solvers/SolverChoice.h"
 #include "Heat.h"
 #include "HeatSystem.h"
 
@@ -124,8 +125,8 @@ std::unique_ptr<LinearDiffusion> MakeRun(
   task.DiffusionNumber = number;
   task.NumberOfSolves = NumberOfSteps * (scheme == Scheme::SDIRK2 ? 2 : 1);
   const PointData data = PointData::FromValues(Noise(mesh));
-  return MakeHeat(
-    std::move(assembler), data, { number * h * h, 0.0, scheme }, MakeAutomaticSolver(task));
+  return MakeHeat(std::move(assembler), data, { number * h * h, 0.0, scheme },
+    MakeSolver(SolverMethod::Automatic, task));
 }
 
 /// A step of 1 h^2 after the first one.

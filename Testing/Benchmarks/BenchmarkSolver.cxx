@@ -7,7 +7,7 @@
 
 #include "HeatSystem.h"
 
-#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SolverChoice.h"
 
 #include <string>
 #include <vector>

@@ -9,10 +9,12 @@
 #include "HeatSystem.h"
 #include "ProcessTime.h"
 
-#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SolverChoice.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -90,7 +92,8 @@ void Compare(HeatSystem& system, double number)
     task.NumberOfVertices = system.Mesh->NumberOfVertices();
     task.DiffusionNumber = number;
     task.NumberOfSolves = steps;
-    const int chosen = static_cast<int>(ChooseMethod(task));
+    const SolverMethod method = ChooseSolver(SolverMethod::Automatic, task).Method;
+    const auto chosen = std::find(std::begin(Methods), std::end(Methods), method) - Methods;
     double seconds[3];
     for (int m = 0; m < 3; ++m)
     {

@@ -12,7 +12,7 @@
 #include "HeatSystem.h"
 #include "ProcessTime.h"
 
-#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SolverChoice.h"
 
 #include <cstdio>
 #include <exception>
@@ -28,7 +28,7 @@ namespace
 {
 
 constexpr double Tolerance = 1e-8;
-const std::string Names[] = { "Direct", "ConjugateGradient", "Multigrid" };
+const std::string Names[] = { "Automatic", "Direct", "ConjugateGradient", "Multigrid" };
 
 Vector Read(const std::string& path, Index count)
 {
@@ -70,18 +70,14 @@ double Memory(const std::string& key)
 
 SolverMethod MethodOf(const std::string& name, const SolverTask& task)
 {
-  for (int m = 0; m < 3; ++m)
+  for (int m = 0; m < 4; ++m)
   {
     if (name == Names[m])
     {
-      return static_cast<SolverMethod>(m);
+      return ChooseSolver(static_cast<SolverMethod>(m), task).Method;
     }
   }
-  if (name != "Automatic")
-  {
-    throw std::runtime_error("unknown solver " + name);
-  }
-  return ChooseMethod(task);
+  throw std::runtime_error("unknown solver " + name);
 }
 
 void Run(std::map<std::string, std::string> options)

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/CotanWeights.h"
-#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SolverChoice.h"
 #include "Meshes.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <ostream>
 
 using namespace SurfaceDiffusion;
@@ -173,6 +174,34 @@ TEST_P(AnySolver, RefusesWhatIsNotFinite)
   EXPECT_THROW(this->Solver->Solve(b, x), std::runtime_error);
 }
 
+TEST_P(AnySolver, IsAsNewAfterASolveThatFailed)
+{
+  const auto assembler = MakeAssembler(Icosphere(4)); // several levels of multigrid
+  const SparseMatrix matrix = HeatMatrix(*assembler, 0.01);
+  for (const Eigen::Index columns : { 1, 2, 5 })
+  {
+    const Values b = matrix * Noise(assembler->Mesh(), columns);
+    const auto solve = [&](LinearSolver& solver)
+    {
+      solver.SetMatrix(matrix);
+      Values x = Values::Zero(b.rows(), columns);
+      EXPECT_TRUE(solver.Solve(b, x).Converged);
+      return x;
+    };
+    const Values expected = solve(*GetParam().Make());
+    for (const double wrong :
+      { std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+    {
+      this->Solver->SetMatrix(matrix);
+      Values bad = b;
+      bad(7, columns - 1) = wrong;
+      Values x = Values::Zero(b.rows(), columns);
+      EXPECT_THROW(this->Solver->Solve(bad, x), std::runtime_error);
+      EXPECT_TRUE(solve(*this->Solver) == expected) << columns << " columns, " << wrong;
+    }
+  }
+}
+
 TEST_P(AnySolver, StopsWhenAskedAndWorksAfterwards)
 {
   const auto assembler = MakeAssembler(Icosphere(5)); // large enough to factorise in background
@@ -215,11 +244,12 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, AnySolver,
   ::testing::Values(Kind{ "Cholesky", [] { return MakeCholeskySolver(); } },
     Kind{ "ConjugateGradient", [] { return MakeConjugateGradientSolver(); } },
     Kind{ "Multigrid", [] { return MakeMultigridSolver(); } },
-    Kind{ "AutomaticDirect", [] { return MakeAutomaticSolver(ManySolves()); } },
-    Kind{ "AutomaticIterative", [] { return MakeAutomaticSolver(OneShortStep()); } }),
+    Kind{ "AutomaticDirect", [] { return MakeSolver(SolverMethod::Automatic, ManySolves()); } },
+    Kind{
+      "AutomaticIterative", [] { return MakeSolver(SolverMethod::Automatic, OneShortStep()); } }),
   [](const auto& parameter) { return parameter.param.Name; });
 
-// It leaves out of its factor what is below round-off, much of it where steps are small.
+// Entries of the factor below round-off are dropped, many of them if steps are short.
 TEST(Cholesky, IsExactToRoundOffAtSmallAndLargeSteps)
 {
   const auto assembler = MakeAssembler(Icosphere(4));
@@ -284,6 +314,27 @@ TEST_P(IterativeSolver, GivesEveryColumnTheBitsItHasAlone)
   }
 }
 
+TEST_P(AnySolver, PreconditionsSymmetricallyAndLinearly)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  this->Solver->SetMatrix(matrix);
+  const Values a = Noise(assembler->Mesh(), 1);
+  const Values b = Noise(assembler->Mesh(), 1, 1);
+  const auto apply = [&](const Values& r)
+  {
+    Values z = Values::Constant(r.rows(), r.cols(), 1e3); // no start of an iteration
+    this->Solver->Precondition(r, z);
+    return z;
+  };
+  const Values ofA = apply(a);
+  const Values ofB = apply(b);
+  constexpr double digits = 1e-5; // of multigrid, which is in single precision
+  const double size = std::sqrt(a.cwiseProduct(ofA).sum() * b.cwiseProduct(ofB).sum());
+  EXPECT_NEAR(a.cwiseProduct(ofB).sum(), b.cwiseProduct(ofA).sum(), digits * size);
+  EXPECT_LT((apply(a - 3.0 * b) - (ofA - 3.0 * ofB)).norm(), digits * ofA.norm());
+}
+
 TEST_P(IterativeSolver, TakesNoIterationFromTheSolution)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
@@ -298,7 +349,7 @@ TEST(Automatic, FactorisesWhereConjugateGradientsDoNotConverge)
 {
   const auto assembler = MakeAssembler(Icosphere(4));
   const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
-  const auto solver = MakeAutomaticSolver(OneShortStep()); // told so, but the step is long
+  const auto solver = MakeSolver(SolverMethod::Automatic, OneShortStep()); // the step is long
   solver->SetLimits({ 1e-10, 10 });
   solver->SetMatrix(matrix);
   const Values exact = Noise(assembler->Mesh());
@@ -318,7 +369,7 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
     task.DiffusionNumber = diffusionNumber;
     task.NumberOfSolves = solves;
     task.Tolerance = tolerance;
-    return ChooseMethod(task);
+    return ChooseSolver(SolverMethod::Automatic, task).Method;
   };
   EXPECT_EQ(choice(44000, 0.1, 1), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(44000, 100.0, 1), SolverMethod::Multigrid);
@@ -338,7 +389,43 @@ TEST(Automatic, ChoosesMultigridOnlyWhereAllowed)
   SolverTask task;
   task.NumberOfVertices = 711000;
   task.DiffusionNumber = 1e4;
-  EXPECT_EQ(ChooseMethod(task), SolverMethod::Multigrid);
+  EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
   task.AllowMultigrid = false;
-  EXPECT_NE(ChooseMethod(task), SolverMethod::Multigrid);
+  EXPECT_NE(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
+}
+
+TEST(Automatic, TakesASteadyStateForALongStep)
+{
+  SolverTask task;
+  task.NumberOfVertices = 711000;
+  task.DiffusionNumber.reset();
+  EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
+  EXPECT_TRUE(PreferDistributedMultigrid(SolverMethod::Automatic, task));
+}
+
+TEST(Automatic, FactorisesForAPreconditionerAtAnySize)
+{
+  SolverTask task;
+  task.NumberOfVertices = 3000000;
+  task.DiffusionNumber = 0.1;
+  task.IsPreconditioner = true;
+  const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, task);
+  EXPECT_EQ(choice.Method, SolverMethod::Factorization);
+  EXPECT_FALSE(choice.FallsBack);
+  EXPECT_TRUE(PreferDistributedMultigrid(SolverMethod::Automatic, task));
+}
+
+TEST(SolverChoice, IsTheMethodAskedForUnlessAutomatic)
+{
+  for (const SolverMethod method :
+    { SolverMethod::Factorization, SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
+  {
+    const SolverChoice choice = ChooseSolver(method, ManySolves());
+    EXPECT_EQ(choice.Method, method);
+    EXPECT_FALSE(choice.FallsBack);
+    EXPECT_EQ(PreferDistributedMultigrid(method, ManySolves()), method == SolverMethod::Multigrid);
+  }
+  EXPECT_TRUE(ChooseSolver(SolverMethod::Automatic, OneShortStep()).FallsBack);
+  EXPECT_TRUE(ChooseSolver(SolverMethod::Automatic, OneShortStep()) !=
+    ChooseSolver(SolverMethod::ConjugateGradient, OneShortStep()));
 }

@@ -36,6 +36,23 @@ TEST(Parallel, EveryIndexIsVisitedOnce)
   }
 }
 
+TEST(Parallel, EveryTaskRunsOnce)
+{
+  for (const Index count : { 0, 1, 2, 5 })
+  {
+    for (const bool threaded : { false, true })
+    {
+      const ThreadedFor threads(2);
+      std::vector<std::atomic<int>> runs(count);
+      ForEachTask(threaded ? threads : SerialFor(), count, [&](Index i) { ++runs[i]; });
+      for (const auto& r : runs)
+      {
+        EXPECT_EQ(r, 1);
+      }
+    }
+  }
+}
+
 TEST(Parallel, BlocksDoNotDependOnTheThreads)
 {
   const Index count = 7 * BlockSize + 5;

@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -89,6 +91,30 @@ TEST(ProgressMonitor, WorkInTheBackgroundIsLeftAloneByAnAbort)
   {
     std::this_thread::yield();
   }
+}
+
+TEST(ProgressMonitor, TheEndOfTheProgramWaitsForAbortedWork)
+{
+  const auto abortAndExit = []
+  {
+    const ProgressMonitor::Callback stop = [](double) { return false; };
+    try
+    {
+      RunInBackground(
+        []
+        {
+          std::this_thread::sleep_for(std::chrono::milliseconds(500));
+          std::fputs("the task has ended", stderr);
+        },
+        ProgressMonitor(stop));
+    }
+    catch (const Aborted&)
+    {
+      std::exit(0);
+    }
+  };
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(abortAndExit(), ::testing::ExitedWithCode(0), "the task has ended");
 }
 
 TEST(ProgressMonitor, AnExceptionInTheBackgroundIsPassedOn)

@@ -48,6 +48,19 @@ public:
     }
   }
 
+  void RunTasks(Index count, LoopBody body) const override
+  {
+    std::vector<std::thread> threads;
+    for (Index i = 0; i < count; ++i)
+    {
+      threads.emplace_back([i, body] { body(i, i + 1); });
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+  }
+
 private:
   int NumberOfThreads;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Reduction.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace SurfaceDiffusion
 {
 
-/// Sums over the rows of several columns, in the fixed order of blocks; no time step allocates.
+/// Sums over the rows of several columns, in the fixed order of blocks, without allocations.
 class ColumnSums
 {
 public:
@@ -21,21 +22,19 @@ public:
     this->Partial.assign(static_cast<std::size_t>(NumberOfBlocks(rows)) * width, 0.0);
   }
 
-  /// Sum what add(i, sums) adds to `sets` x K sums, or sets x columns where K is 0; sets <= 2.
-  /// first(begin, end) runs on the rows of a block before, and the sums find in the cache what it
-  /// made.
+  /// For every row i, add(i, sums) adds to K sums, or to `columns` of them if K is 0. Before,
+  /// first(begin, end) runs on all rows of a block, whose results are then in the cache.
   template <int K, typename First, typename Add>
-  void Run(const ParallelFor& parallel, Index rows, int columns, int sets, const First& first,
-    const Add& add)
+  void Run(const ParallelFor& parallel, Index rows, int columns, const First& first, const Add& add)
   {
-    const int width = sets * (K > 0 ? K : columns);
+    const int width = ColumnCount<K>(columns);
     ForEachBlock(parallel, rows,
       [&](Index block, Index begin, Index end)
       {
         first(begin, end);
         double* partial = this->Partial.data() + static_cast<std::size_t>(block) * width;
-        double registers[K > 0 ? 2 * K : 1];
-        double* sums = K > 0 ? registers : partial;
+        ColumnRegisters<double, K> registers;
+        double* sums = registers.Or(partial);
         std::fill(sums, sums + width, 0.0);
         for (Index i = begin; i < end; ++i)
         {
@@ -54,10 +53,10 @@ public:
   }
 
   template <int K, typename Add>
-  void Run(const ParallelFor& parallel, Index rows, int columns, int sets, const Add& add)
+  void Run(const ParallelFor& parallel, Index rows, int columns, const Add& add)
   {
     this->Run<K>(
-      parallel, rows, columns, sets, [](Index, Index) {}, add);
+      parallel, rows, columns, [](Index, Index) {}, add);
   }
 
   /// The totals become those over the processes.

@@ -53,7 +53,7 @@ public:
   Number* Or(Number* memory) { return K > 0 ? this->Numbers : memory; }
 
 private:
-  Number Numbers[K > 0 ? Rows * K : 1];
+  Number Numbers[K > 0 ? Rows* K : 1];
 };
 
 } // namespace SurfaceDiffusion

@@ -40,6 +40,9 @@ public:
   /// Call body(begin, end) on ranges that together cover [0, count) once, in any order and on any
   /// threads.
   virtual void Run(Index count, LoopBody body) const { body(0, count); }
+
+  /// The same for a few long tasks. Run() may take a short loop to be not worth its threads.
+  virtual void RunTasks(Index count, LoopBody body) const { body(0, count); }
 };
 
 /// The serial loop: the default argument everywhere, which may be kept by reference.
@@ -89,6 +92,20 @@ void ForEach(const ParallelFor& parallel, Index count, const Body& body)
       for (Index i = begin; i < end; ++i)
       {
         body(i);
+      }
+    });
+}
+
+/// Call task(i) for every i of [0, count), where each call is worth a thread.
+template <typename Task>
+void ForEachTask(const ParallelFor& parallel, Index count, const Task& task)
+{
+  parallel.RunTasks(count,
+    [&](Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        task(i);
       }
     });
 }

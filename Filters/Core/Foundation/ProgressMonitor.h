@@ -53,9 +53,10 @@ private:
   double End = 1.0;
 };
 
-/// Run `task` on another thread and keep `progress` informed meanwhile. When the progress throws
-/// Aborted the task runs on alone and its result is dropped: it must own all that it touches. An
-/// exception of the task is passed on.
+/// Run `task` on another thread and report progress meanwhile, for work that cannot be stopped. If
+/// the report throws Aborted, this function returns at once, the task runs to its end alone, and
+/// its result is dropped: it must own all data that it uses. The end of the program waits for such
+/// tasks. An exception of the task is passed on.
 void RunInBackground(std::function<void()> task, const ProgressMonitor& progress);
 
 } // namespace SurfaceDiffusion

@@ -4,6 +4,7 @@
 
 #include "Core/Geometry/PrincipalDirections.h"
 #include "Core/Geometry/SmoothLineField.h"
+#include "Core/Solvers/SolverChoice.h"
 
 #include <cmath>
 #include <utility>
@@ -14,16 +15,16 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// A solver for systems with modes as long as the surface.
+/// A solver for systems whose modes are as long as the surface.
 std::unique_ptr<LinearSolver> MakeSolverFor(
   Eigen::Index size, double solves, bool allowMultigrid, const ParallelFor& parallel)
 {
   SolverTask task;
   task.NumberOfVertices = static_cast<Index>(size);
-  task.DiffusionNumber = 1e4;
+  task.DiffusionNumber.reset();
   task.NumberOfSolves = solves;
   task.AllowMultigrid = allowMultigrid;
-  std::unique_ptr<LinearSolver> solver = MakeAutomaticSolver(task, parallel);
+  std::unique_ptr<LinearSolver> solver = MakeSolver(SolverMethod::Automatic, task, parallel);
   IterationLimits limits;
   limits.Tolerance = 1e-8; // of directions more can't be seen
   limits.MaximumNumberOfIterations = 20000;

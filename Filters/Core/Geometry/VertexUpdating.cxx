@@ -3,6 +3,7 @@
 #include "Core/Geometry/VertexUpdating.h"
 
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/ConjugateGradients.h"
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
@@ -20,11 +21,13 @@ namespace
 
 using Row3 = Eigen::RowVector3d;
 
-/// The matrix of the fit, K_N + M/range^2, applied without being stored, and the conjugate
-/// gradients that solve with it; the preconditioner is its 3 x 3 diagonal blocks.
-class NormalFit
+/// The matrix of the fit, K_N + M/range^2, applied without being stored. Its 3 x 3 diagonal blocks
+/// precondition the conjugate gradients.
+class NormalFit : public SystemDefaults
 {
 public:
+  static constexpr bool IsCoupled = true;
+
   NormalFit(
     const TriangleMesh& mesh, const Values& normals, double range, const ParallelFor& parallel)
     : Mesh(mesh)
@@ -61,73 +64,65 @@ public:
       });
   }
 
-  /// y = (K_N + pull M/range^2) x
-  void Multiply(const Points& x, Points& y, double pull) const
+  template <int K>
+  void MultiplyRows(const Values& x, Values& y, Index begin, Index end) const
   {
-    const Triangles& corners = this->Mesh.TriangleVertices();
-    ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        Row3 sum = (pull * this->Pull[i]) * x.row(i);
-        this->ForEachCorner(i,
-          [&](Index t, int corner, int next, int last)
-          {
-            const Row3 n = this->Normals.row(t);
-            const Row3 own = x.row(corners(t, corner));
-            const Row3 difference = this->Coefficients(t, last) * (own - x.row(corners(t, next))) +
-              this->Coefficients(t, next) * (own - x.row(corners(t, last)));
-            sum += n.dot(difference) * n;
-          });
-        y.row(i) = sum;
-      });
+    for (Index i = begin; i < end; ++i)
+    {
+      y.row(i) = this->Product(i, x, 1.0);
+    }
+  }
+  double Scale(Index i, int c, const double* r) const
+  {
+    const Eigen::Matrix3d& block = this->InverseBlocks[i];
+    return r[0] * block(0, c) + r[1] * block(1, c) + r[2] * block(2, c);
   }
 
-  /// x with (K_N + M/range^2) x = b, from x = 0.
-  Points Solve(
-    const Points& b, const IterationLimits& limits, const ProgressMonitor& progress) const
+  /// x with (K_N + M/range^2) x = -K_N start, from x = 0. The residual is relative to that of x =
+  /// 0.
+  Values Solve(
+    const Values& start, const IterationLimits& limits, const ProgressMonitor& progress) const
   {
     const Index n = this->Mesh.NumberOfVertices();
-    Points x = Points::Zero(n, 3), r = b, z(n, 3), p = Points::Zero(n, 3), q(n, 3);
-    SolveReport report;
-    double start = 0.0;
-    double rho = 0.0;
-    while (true)
+    Values x = Values::Zero(n, 3);
+    Values residual(n, 3);
+    ConjugateGradientWork work;
+    work.Resize(n, 3, 1);
+    const double square = Sum(this->Parallel, n,
+      [&](Index i)
+      {
+        residual.row(i) = -this->Product(i, start, 0.0);
+        return (residual.row(i) * this->InverseBlocks[i]).dot(residual.row(i));
+      });
+    work.Reference[0] = square > 0.0 ? square : 1.0;
+    const SolveReport report =
+      ConjugateGradients<3, NormalFit>(*this, residual, work, this->Parallel)
+        .Solve(x, limits, progress);
+    if (!report.Converged)
     {
-      const double previous = rho;
-      rho = Sum(this->Parallel, n,
-        [&](Index i)
-        {
-          z.row(i) = r.row(i) * this->InverseBlocks[i];
-          return z.row(i).dot(r.row(i));
-        });
-      start = report.Iterations == 0 ? rho : start;
-      report.Residual = start > 0.0 ? std::sqrt(rho / start) : 0.0;
-      if (report.Residual <= limits.Tolerance)
-      {
-        return x;
-      }
-      if (report.Iterations == limits.MaximumNumberOfIterations)
-      {
-        throw NotConverged(report);
-      }
-      const double beta = previous > 0.0 ? rho / previous : 0.0;
-      ForEach(this->Parallel, n, [&](Index i) { p.row(i) = z.row(i) + beta * p.row(i); });
-      this->Multiply(p, q, 1.0);
-      const double alpha =
-        rho / Sum(this->Parallel, n, [&](Index i) { return p.row(i).dot(q.row(i)); });
-      ForEach(this->Parallel, n,
-        [&](Index i)
-        {
-          x.row(i) += alpha * p.row(i);
-          r.row(i) -= alpha * q.row(i);
-        });
-      ++report.Iterations;
-      progress.Report(
-        std::min(0.99, std::max(0.0, std::log(report.Residual) / std::log(limits.Tolerance))));
+      throw NotConverged(report);
     }
+    return x;
   }
 
 private:
+  /// Row i of (K_N + pull M/range^2) x.
+  Row3 Product(Index i, const Values& x, double pull) const
+  {
+    const Triangles& corners = this->Mesh.TriangleVertices();
+    Row3 sum = (pull * this->Pull[i]) * x.row(i);
+    this->ForEachCorner(i,
+      [&](Index t, int corner, int next, int last)
+      {
+        const Row3 n = this->Normals.row(t);
+        const Row3 own = x.row(corners(t, corner));
+        const Row3 difference = this->Coefficients(t, last) * (own - x.row(corners(t, next))) +
+          this->Coefficients(t, next) * (own - x.row(corners(t, last)));
+        sum += n.dot(difference) * n;
+      });
+    return sum;
+  }
+
   /// body(t, corner, next corner, last corner) for every triangle around vertex i.
   template <typename Body>
   void ForEachCorner(Index i, const Body& body) const
@@ -193,12 +188,11 @@ Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<cons
   // Displacements rather than places, so that a surface far from the origin keeps its digits.
   const Row3 origin = points.row(mesh.InputVertex()[0]);
   const double unit = mesh.LengthUnit();
-  Points start(n, 3), load(n, 3);
+  Values start(n, 3);
   ForEach(parallel, n,
     [&](Index i) { start.row(i) = (points.row(mesh.InputVertex()[i]) - origin) / unit; });
   const NormalFit fit(mesh, normals, range / unit, parallel);
-  fit.Multiply(start, load, 0.0);
-  const Points step = fit.Solve(-load, limits, progress);
+  const Values step = fit.Solve(start, limits, progress);
   for (Index i = 0; i < n; ++i)
   {
     moved.row(mesh.InputVertex()[i]) += unit * step.row(i);

@@ -94,11 +94,6 @@ void ReactionDiffusion::Prepare(const ProgressMonitor& progress)
     }
     system.SetUpSolver(progress.Part(0.5 * c, 0.5 * c + 0.5));
   }
-  if (this->Options.SideBySide)
-  {
-    this->Second =
-      std::make_unique<Worker>([this] { this->SolveFor(1, ProgressMonitor(this->FirstGoesOn)); });
-  }
   this->Prepared = true;
 }
 
@@ -257,13 +252,11 @@ double ReactionDiffusion::IntegrateDiffusion(int chemical, const Values& u, Inde
 /// New = the solutions for the right-hand sides.
 void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)
 {
-  if (this->Second)
+  if (this->Options.SideBySide)
   {
-    this->FirstFailed = false;
-    this->Second->Start();
-    this->SolveFor(0, progress);
-    this->FirstFailed = this->Solutions[0].Failure != nullptr; // an abort: the second ends too
-    this->Second->Wait();
+    // Progress is reported to the thread of the caller only.
+    ForEachTask(this->Parallel, 2, [this](Index c) { this->SolveFor(c, ProgressMonitor()); });
+    progress.Report(1.0);
   }
   else
   {

@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Worker.h"
 #include "Core/Models/ImplicitSystem.h"
 #include "Core/Models/Model.h"
 #include "Core/Models/Reaction.h"
 #include "Core/Operators/Assembler.h"
 
 #include <array>
-#include <atomic>
 #include <exception>
 #include <memory>
 
@@ -50,7 +48,8 @@ public:
     /// its mean|), in L2 norms over the surface, is at most this for both chemicals: the relative
     /// change per unit time. It is about the growth rate while the pattern grows. 0: never.
     double StopTolerance = 0.0;
-    /// Solve for the two chemicals on two threads, with the same bits. Not over several processes.
+    /// Solve for the two chemicals as two parallel tasks, which is faster if the solvers run on one
+    /// thread each, as direct ones do. The bits are the same either way. Not over several processes.
     bool SideBySide = false;
   };
 
@@ -115,9 +114,6 @@ private:
   bool Done = false;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;
   std::array<Solution, 2> Solutions;
-  std::atomic<bool> FirstFailed{ false };
-  const ProgressMonitor::Callback FirstGoesOn = [this](double) { return !this->FirstFailed; };
-  std::unique_ptr<Worker> Second; ///< solves for u2; last: it uses the others
 };
 
 } // namespace SurfaceDiffusion

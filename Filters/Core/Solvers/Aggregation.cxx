@@ -77,7 +77,7 @@ Aggregates Aggregate(const SparseMatrix& matrix, const std::vector<char>& strong
     }
   }
 
-  // What joins a neighbour does not take further ones along.
+  // A vertex that joins an aggregate here does not bring its own neighbours along.
   std::vector<Index> joins(n, None);
   for (Index i = 0; i < n; ++i)
   {
@@ -150,8 +150,8 @@ SparseMatrix SmoothedAggregation(
 SparseMatrix GalerkinProduct(const SparseMatrix& matrix, const SparseMatrix& restriction,
   const SparseMatrix& prolongation, const ParallelFor& parallel)
 {
-  // Two products of short columns are faster than one of long ones: few numbers are told apart by
-  // comparing them.
+  // Two products with short columns are faster than one with long columns: in a short column a row
+  // is found by comparing with all of them (IndexSet).
   const Index coarse = static_cast<Index>(restriction.rows());
   const SparseMatrix half = CollectColumns(coarse, static_cast<Index>(matrix.rows()), parallel,
     [&](Index i, SparseColumn& column)

@@ -12,12 +12,14 @@ namespace SurfaceDiffusion
 /// restriction to the coarse level of a symmetric matrix, coarse x fine. Its transpose, the
 /// prolongation, spans the coarse space.
 ///
-/// Off-diagonal entries are strong where -a_ij > strength sqrt(a_ii a_jj). Vertices joined by
-/// strong entries form aggregates, in the order of the numbering: a vertex with its neighbours
-/// where none is taken, then what is left joins the neighbour it is joined to most strongly. On
-/// each the `kernel` is kept, a vector that the matrix nearly maps to zero: (I - 8/9 D^-1 A') T,
-/// where T is the kernel cut into aggregates of unit norm and A' with its diagonal D the strong
-/// part of A, the rest lumped to its diagonal. Rows without strong entries are left out.
+/// An off-diagonal entry is strong if -a_ij > strength sqrt(a_ii a_jj), and joins the vertices i
+/// and j as neighbours. In the order of the numbering, a vertex and its neighbours form an
+/// aggregate if none of them is in one yet. Every vertex that is left joins the aggregate of the
+/// neighbour with the strongest entry. Vertices without neighbours are left out.
+///
+/// The prolongation is (I - 8/9 D^-1 A') T. T is the `kernel`, a vector that the matrix nearly maps
+/// to zero, cut into one column of unit norm per aggregate. A' is the strong part of A with the
+/// other entries lumped to its diagonal D. So the coarse space contains the kernel.
 ///
 /// kernel: on entry the fine level's, on return the coarse level's, all positive.
 SparseMatrix SmoothedAggregation(

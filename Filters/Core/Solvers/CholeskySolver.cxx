@@ -36,14 +36,14 @@ public:
     {
       return;
     }
-    // A factorisation cannot be stopped: it runs on data of its own, and is dropped after an abort.
+    // A factorisation cannot be stopped: it runs on its own data, and an abort drops it.
     std::shared_ptr<SparseFactor> factor = std::move(this->Factor);
     if (!factor || !factor->HasPatternOf(matrix))
     {
       factor = std::make_shared<SparseFactor>();
     }
     factor->SetMatrix(matrix);
-    constexpr Eigen::Index quick = 5000; // vertices: not worth a thread
+    constexpr Eigen::Index quick = 5000; // vertices, whose factorisation is not worth a thread
     if (matrix.rows() < quick)
     {
       factor->Compute();
@@ -103,15 +103,15 @@ private:
       this->Rows = l.Rows + l.Begin[last];
       this->Count = l.Begin[last + 1] - l.Begin[last];
     }
-    /// Row j + b of column j + a.
+    /// The entry in row j + b of column j + a.
     double Within(int a, int b) const { return this->Below[a][b - Width]; }
 
-    const double* Below[Width]; ///< entries in the rows that all have
-    const Index* Rows; ///< these rows
-    Index Count; ///< and their number
+    const double* Below[Width]; ///< per column, the entries in the rows below the panel
+    const Index* Rows; ///< below the panel, the same for all columns
+    Index Count; ///< of these rows
   };
 
-  /// work(width), with the width of a panel as a number known to the compiler.
+  /// Call work(width) with the width of a panel as a number known to the compiler.
   template <typename Work>
   static void ForWidth(Index width, const Work& work)
   {
@@ -172,7 +172,7 @@ private:
     return this->W.data() + static_cast<std::ptrdiff_t>(i) * columns;
   }
 
-  /// W = L^-1 W, its part for the columns j .. j + Width - 1 of L.
+  /// The part of W = L^-1 W that belongs to the columns j .. j + Width - 1 of L.
   template <int K, int Width>
   void Forward(Index j, int columns)
   {
@@ -211,7 +211,7 @@ private:
     }
   }
 
-  /// W = L^-T D^-1 W, its rows j .. j + Width - 1, of which D^-1 is applied here.
+  /// The rows j .. j + Width - 1 of W = L^-T D^-1 W.
   template <int K, int Width>
   void Backward(Index j, int columns)
   {
@@ -254,7 +254,7 @@ private:
     }
   }
 
-  /// R = b - A x; largest over the columns of |R| / |b| in the norm of diag(A)^-1.
+  /// R = b - A x. Returns SolveReport::Residual.
   double ComputeResidual(const Values& b, const Values& x)
   {
     const Vector& weights = this->Factor->InverseDiagonal;

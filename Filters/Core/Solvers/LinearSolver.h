@@ -14,11 +14,13 @@ namespace SurfaceDiffusion
 
 struct SolveReport
 {
-  int Iterations = 0; ///< of an iterative method, the most over the columns; 0 for a direct one
+  int Iterations = 0; ///< the most over the columns; 0 for a direct method
   /// Largest over the columns of |b - A x| / |b| in the norm of diag(A)^-1, in which the equations
   /// of small and of badly shaped cells count alike.
   double Residual = 0.0;
-  bool Converged = true; ///< an iterative method reached its tolerance
+  /// Whether an iterative method reached its tolerance. Always true for a direct one, of which
+  /// Residual says what it reached.
+  bool Converged = true;
 };
 
 struct IterationLimits
@@ -27,17 +29,19 @@ struct IterationLimits
   int MaximumNumberOfIterations = 1000;
 };
 
-/// Of p . diag(A) p: where p . A p is less, it is round-off of A's entries, as on surfaces all of
-/// whose triangles are all but flat, and a step along p could be of any length.
+/// Conjugate gradients take no step along p if p.A p is not above this share of p.diag(A) p: it is
+/// then the round-off of A's entries, as on surfaces with triangles that are nearly flat, and the
+/// step would have no bounds.
 constexpr double ResolvedShare = 2e-15;
 
-/// Thrown by models where a solver ended at its iteration limit.
+/// Thrown by models if a solver ended at its iteration limit.
 struct NotConverged : std::runtime_error
 {
   explicit NotConverged(const SolveReport& report);
 };
 
-/// Solves A x = b for symmetric positive definite matrices of one pattern.
+/// Solves A x = b for symmetric positive definite matrices of one pattern. After a solve that
+/// failed it gives the same results as a new one.
 class LinearSolver
 {
 public:
@@ -45,31 +49,32 @@ public:
 
   void SetLimits(const IterationLimits& limits) { this->Limits = limits; }
 
-  /// Take the matrix, which must stay as it is until the next call. What holds for the pattern (an
-  /// ordering) is kept from call to call, what holds for the values too while they are the same.
+  /// Take the matrix, which must stay as it is until the next call. An ordering is kept from call
+  /// to call while the pattern is the same, a factor while the values are the same too.
   virtual void SetMatrix(
     const SparseMatrix& matrix, const ProgressMonitor& progress = ProgressMonitor()) = 0;
 
   /// x: the start of an iterative method on entry, the solution on return; b, x: n x k. Throws
-  /// std::runtime_error where no finite solution exists.
+  /// std::runtime_error if no finite solution exists.
   virtual SolveReport Solve(
     const Values& b, Values& x, const ProgressMonitor& progress = ProgressMonitor()) = 0;
 
-  /// z is about A^-1 r, and symmetric and linear in r as what preconditions other iterations has to
-  /// be: the solution of a direct method. Over several processes r is consistent.
-  virtual void Precondition(const Values& r, Values& z) { this->Solve(r, z); }
+  /// z = B r with B near A^-1, symmetric and linear, as a preconditioner of other iterations has to
+  /// be: the solution of a direct method, one cycle of multigrid, diag(A)^-1 r of conjugate
+  /// gradients. Over several processes r is consistent.
+  virtual void Precondition(const Values& r, Values& z) = 0;
 
 protected:
-  /// A power of two near the largest of two columns: squares of what is divided by it no double
-  /// need fear, and the division is exact.
+  /// A power of two near the largest entry of two columns. The squares of entries divided by it
+  /// neither overflow nor underflow, and the division is exact.
   static double ScaleOf(
     const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel);
 
   IterationLimits Limits;
 };
 
-/// Sparse LDL^T with approximate minimum degree ordering (Eigen::SimplicialLDLT), one step of
-/// iterative refinement where the residual is above the tolerance.
+/// Sparse Cholesky factorisation L D L^T, and one step of iterative refinement if the residual is
+/// above the tolerance. A nearly singular matrix is regularised: see SparseFactor.
 std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = SerialFor());
 
 /// Conjugate gradients with Jacobi preconditioner, all columns in one pass over the matrix, each
@@ -80,41 +85,5 @@ std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
 /// Conjugate gradients with a cycle of Multigrid as preconditioner: the number of iterations hardly
 /// grows with size and time step.
 std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel = SerialFor());
-
-/// What decides which method is fastest.
-struct SolverTask
-{
-  Index NumberOfVertices = 0;
-  double DiffusionNumber = 1.0; ///< (largest diffusivity) x (time step) / h^2
-  double NumberOfSolves = 1.0; ///< with one matrix
-  double Tolerance = 1e-10;
-  /// False where multigrid was measured to lose: connections of direction fields, which do not map
-  /// constants to zero, and coefficients that change in every step and by orders of magnitude from
-  /// triangle to triangle.
-  bool AllowMultigrid = true;
-};
-
-/// In the order of vtkSurfaceDiffusionAlgorithm::SolverType, which begins with Automatic.
-enum class SolverMethod
-{
-  Factorization,
-  ConjugateGradient,
-  Multigrid
-};
-
-/// The method that is expected to be fastest, by a model of measured times.
-SolverMethod ChooseMethod(const SolverTask& task);
-
-inline bool PreferFactorization(const SolverTask& task)
-{
-  return ChooseMethod(task) == SolverMethod::Factorization;
-}
-
-std::unique_ptr<LinearSolver> MakeSolver(
-  SolverMethod method, const ParallelFor& parallel = SerialFor());
-
-/// What ChooseMethod() says; an iteration that does not converge is followed by a factorisation.
-std::unique_ptr<LinearSolver> MakeAutomaticSolver(
-  const SolverTask& task, const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/Multigrid.h"
 
+#include "Core/Foundation/Columns.h"
 #include "Core/Solvers/Aggregation.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -14,8 +14,8 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr Index SmallEnough = 500; // vertices, to be solved directly
-constexpr double WorthALevel = 0.8; // of the vertices left, or fewer
+constexpr Index LargestDirect = 500; // vertices of a level that is solved directly
+constexpr double LargestRatio = 0.8; // of the vertices of a level to those of the finer one
 
 /// matrix scaled to unit diagonal, from both sides.
 SparseMatrix Scaled(const SparseMatrix& matrix, const Vector& scaling, const ParallelFor& parallel)
@@ -46,12 +46,12 @@ Eigen::SparseMatrix<float, Eigen::ColMajor, Index> Single(const SparseMatrix& ma
   return single;
 }
 
-/// sums += sign (column i of `matrix`) . x, K columns of x, or k where K is 0.
+/// sums += sign (column i of `matrix`) . x, K columns of x, or any number of them if K is 0.
 template <int K, typename Matrix, typename Numbers>
 void AddProduct(
   const Matrix& matrix, Index i, const Numbers& x, int columns, float sign, float* sums)
 {
-  const int k = K > 0 ? K : columns;
+  const int k = ColumnCount<K>(columns);
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
   const float* a = matrix.valuePtr();
@@ -81,10 +81,10 @@ void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& pro
   SparseMatrix current = Scaled(matrix, this->Scaling, this->Parallel);
   double strength = 0.08; // as in the paper
   double fraction = 0.0;
-  while (current.rows() > SmallEnough)
+  while (current.rows() > LargestDirect)
   {
     const SparseMatrix restriction = SmoothedAggregation(current, strength, kernel, this->Parallel);
-    if (restriction.rows() > WorthALevel * static_cast<double>(current.rows()))
+    if (restriction.rows() > LargestRatio * static_cast<double>(current.rows()))
     {
       break;
     }
@@ -97,7 +97,6 @@ void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& pro
   }
   this->CoarsestMatrix = std::move(current);
   this->Coarsest = MakeCholeskySolver();
-  this->Coarsest->SetLimits({ std::numeric_limits<double>::infinity(), 0 }); // no refinement
   this->Coarsest->SetMatrix(this->CoarsestMatrix, progress.Part(fraction, 1.0));
 }
 
@@ -156,21 +155,7 @@ void Multigrid::Apply(const Values& r, const std::vector<double>& scale, Values&
         b(i, c) = static_cast<float>(this->Scaling[i] * scale[c] * r(i, c));
       }
     });
-  switch (k)
-  {
-    case 1:
-      this->Cycle<1>(0, k);
-      break;
-    case 2:
-      this->Cycle<2>(0, k);
-      break;
-    case 3:
-      this->Cycle<3>(0, k);
-      break;
-    default:
-      this->Cycle<0>(0, k);
-      break;
-  }
+  ForColumns(k, [&](auto columns) { this->Cycle<decltype(columns)::value>(0, k); });
   const Numbers& x = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().X;
   ForEach(this->Parallel, static_cast<Index>(r.rows()),
     [&](Index i)
@@ -187,14 +172,14 @@ template <int K, typename Finish>
 void Multigrid::Subtract(
   Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)
 {
-  const int k = K > 0 ? K : columns;
+  const int k = ColumnCount<K>(columns);
   ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
     [&](Index i)
     {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
       float* r = level.R.data() + at;
-      float registers[K > 0 ? K : 1];
-      float* sums = K > 0 ? registers : r;
+      ColumnRegisters<float, K> registers;
+      float* sums = registers.Or(r);
       for (int c = 0; c < k; ++c)
       {
         sums[c] = from.data()[at + c];
@@ -212,13 +197,13 @@ void Multigrid::Subtract(
 template <int K>
 void Multigrid::Product(const Matrix& rows, const Numbers& x, Numbers& y, int columns, bool add)
 {
-  const int k = K > 0 ? K : columns;
+  const int k = ColumnCount<K>(columns);
   ForEach(this->Parallel, static_cast<Index>(rows.cols()),
     [&](Index i)
     {
       float* yi = y.data() + static_cast<std::ptrdiff_t>(i) * k;
-      float registers[K > 0 ? K : 1];
-      float* sums = K > 0 ? registers : yi;
+      ColumnRegisters<float, K> registers;
+      float* sums = registers.Or(yi);
       for (int c = 0; c < k; ++c)
       {
         sums[c] = add ? yi[c] : 0.0f;
@@ -239,11 +224,11 @@ void Multigrid::Cycle(std::size_t number, int columns)
   if (number == this->Levels.size())
   {
     this->CoarsestB = this->CoarsestNumbers.cast<double>();
-    this->Coarsest->Solve(this->CoarsestB, this->CoarsestX);
+    this->Coarsest->Precondition(this->CoarsestB, this->CoarsestX); // no refinement
     this->CoarsestNumbers = this->CoarsestX.cast<float>();
     return;
   }
-  const int k = K > 0 ? K : columns;
+  const int k = ColumnCount<K>(columns);
   Level& level = this->Levels[number];
   const auto first = [&](Index i, std::ptrdiff_t at, const float* r)
   {

@@ -12,21 +12,25 @@ namespace SurfaceDiffusion
 
 /// A symmetric positive definite approximation B of A^-1 by multigrid: a V-cycle of smoothed
 /// aggregation (P. Vanek, J. Mandel, M. Brezina, Computing 56, 1996) over a hierarchy made from the
-/// matrix. Neighbouring vertices with strong coefficients become one vertex of the next level;
-/// constants, which diffusion leaves alone, are represented exactly. The smoother is the Chebyshev
-/// polynomial of the fourth kind and degree 2 (J. Lottes, Numer. Linear Algebra Appl. 30, 2023) in
-/// D^-1 A, where D = diag(sum_j |a_ij|) bounds A on any mesh: nothing has to be estimated.
+/// matrix. Neighbouring vertices with strong entries become one vertex of the next level, on which
+/// constants, the kernel of the Laplace-Beltrami operator, are represented exactly. The smoother is
+/// the Chebyshev polynomial of the fourth kind and degree 2 (J. Lottes, Numer. Linear Algebra Appl.
+/// 30, 2023) in D^-1 A. D = diag(sum_j |a_ij|) bounds A on any mesh, so that no eigenvalue has to
+/// be estimated.
 ///
 /// The hierarchy is made in double precision from the matrix scaled to unit diagonal, and the cycle
-/// runs on it in single precision: B only steers an iteration in double precision, and half the
-/// memory is most of the time.
+/// runs in single precision. B is only the preconditioner of an iteration in double precision, and
+/// half the memory traffic is nearly half the time.
+///
+/// Nothing is added to the matrix. The coarsest matrix is factorised as by any CholeskySolver,
+/// which may regularise it (SparseFactor).
 class Multigrid
 {
 public:
   explicit Multigrid(const ParallelFor& parallel);
 
-  /// Make the hierarchy for `matrix`, which need not be kept. Throws Aborted, std::runtime_error
-  /// for a matrix that is not positive definite.
+  /// Make the hierarchy for `matrix`, which the caller need not keep. Throws Aborted, and
+  /// std::runtime_error if the matrix is not positive definite.
   void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress = ProgressMonitor());
 
   /// z = B r, all columns at once. scale: per column the factor that makes the norm of r in
@@ -41,7 +45,7 @@ private:
   {
     Matrix A;
     Eigen::VectorXf InverseD;
-    Matrix Prolongation; ///< column i: what vertex i takes from the vertices of the next level
+    Matrix Prolongation; ///< column i: the weights of the vertices of the next level in vertex i
     Matrix Restriction; ///< its transpose
     Numbers B, X, R, D, E;
   };
@@ -64,7 +68,7 @@ private:
   std::unique_ptr<LinearSolver> Coarsest;
   Values CoarsestB, CoarsestX;
   Numbers CoarsestNumbers;
-  int Columns = -1; ///< that there is room for
+  int Columns = -1; ///< for which the vectors are allocated
 };
 
 } // namespace SurfaceDiffusion

@@ -12,7 +12,7 @@
 namespace SurfaceDiffusion
 {
 
-/// A sparse vector to which numbers are added in any order.
+/// A sparse vector, to whose entries numbers are added in any order.
 class SparseColumn
 {
 public:
@@ -33,7 +33,7 @@ public:
     this->Numbers[entry] += value;
   }
 
-  /// Put them behind `rows` and `values`, by row; returns how many.
+  /// Append the entries to `rows` and `values`, sorted by row, and return their number.
   Index AppendTo(std::vector<Index>& rows, std::vector<double>& values)
   {
     this->Rows.Rank(this->Places);

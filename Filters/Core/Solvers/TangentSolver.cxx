@@ -3,11 +3,7 @@
 #include "Core/Solvers/TangentSolver.h"
 
 #include "Core/Operators/SparsePattern.h"
-
-#include "Core/Operators/Assembler.h"
-
-#include <algorithm>
-#include <cmath>
+#include "Core/Solvers/ConjugateGradients.h"
 
 namespace SurfaceDiffusion
 {
@@ -15,46 +11,55 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Row i; K columns, known to the compiler unless it is Eigen::Dynamic.
-template <int K>
-Eigen::Map<Eigen::Matrix<double, 1, K>> Row(Values& v, Index i)
+/// Row `at`; K columns, known to the compiler unless K is 0.
+template <int K, typename Number>
+auto Row(Number* at, Eigen::Index columns)
 {
-  return { v.data() + i * v.cols(), 1, v.cols() };
-}
-template <int K>
-Eigen::Map<const Eigen::Matrix<double, 1, K>> Row(const Values& v, Index i)
-{
-  return { v.data() + i * v.cols(), 1, v.cols() };
+  using Numbers = Eigen::Matrix<double, 1, K == 0 ? Eigen::Dynamic : K>;
+  return Eigen::Map<std::conditional_t<std::is_const<Number>::value, const Numbers, Numbers>>(
+    at, 1, columns);
 }
 
-/// Take from row i of x what is not tangential to the sphere at u_i; all of it where i is fixed.
-template <int K>
-void Project(const TangentSystem& system, Index i, Values& x)
+struct ProjectedSystem : MatrixSystem
 {
-  auto xi = Row<K>(x, i);
-  const auto ui = Row<K>(system.U, i);
-  if (system.Fixed[i])
+  static constexpr bool IsCoupled = true;
+  static constexpr bool IsProjected = true;
+
+  const Values& U;
+  const Flags& Fixed;
+  LinearSolver* Preconditioner;
+
+  bool HasPreconditioner() const { return this->Preconditioner != nullptr; }
+  void Precondition(const Values& r, const std::vector<double>&, Values& z) const
   {
-    xi.setZero();
-    return;
+    this->Preconditioner->Precondition(r, z);
   }
-  xi -= (xi.dot(ui) / ui.squaredNorm()) * ui;
-}
+
+  /// Take from a row what is not tangential to the sphere at u_i; all of it if i is fixed.
+  template <int K>
+  void Project(Index i, double* row) const
+  {
+    const Eigen::Index columns = this->U.cols();
+    auto x = Row<K>(row, columns);
+    const auto u = Row<K>(&this->U(i, 0), columns);
+    if (this->Fixed[i])
+    {
+      x.setZero();
+      return;
+    }
+    x -= (x.dot(u) / u.squaredNorm()) * u;
+  }
+};
 
 } // namespace
 
 SolveReport TangentSolver::Solve(const TangentSystem& system, Values& x,
   LinearSolver* preconditioner, const IterationLimits& limits, const ProgressMonitor& progress)
 {
-  switch (system.U.cols())
-  {
-    case 2:
-      return this->SolveColumns<2>(system, x, preconditioner, limits, progress);
-    case 3:
-      return this->SolveColumns<3>(system, x, preconditioner, limits, progress);
-    default:
-      return this->SolveColumns<Eigen::Dynamic>(system, x, preconditioner, limits, progress);
-  }
+  return ForColumns(system.U.cols(),
+    [&](auto k) {
+      return this->SolveColumns<decltype(k)::value>(system, x, preconditioner, limits, progress);
+    });
 }
 
 template <int K>
@@ -62,109 +67,42 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   LinearSolver* preconditioner, const IterationLimits& limits, const ProgressMonitor& progress)
 {
   const SparseMatrix& matrix = system.Matrix;
-  const Values& b = system.B;
-  const Index n = static_cast<Index>(b.rows());
-  x.setZero(b.rows(), b.cols());
-  this->InverseDiagonal.resize(n);
-  this->R = b;
-  this->Z.resize(b.rows(), b.cols());
-  this->P.setZero(b.rows(), b.cols());
-  this->Q.resize(b.rows(), b.cols());
   const Reduction& reduction = system.Reduction;
+  const auto n = static_cast<Index>(system.B.rows());
+  const auto columns = static_cast<int>(system.B.cols());
+  x.setZero(n, columns);
+  this->Residual = system.B;
+  reduction.Accumulate(this->Residual);
   const Vector& inertia = reduction.Accumulated(system.Inertia, this->Inertia);
+  this->InverseDiagonal.resize(n);
   ForEach(this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
   reduction.Accumulate(this->InverseDiagonal);
-  reduction.Accumulate(this->R);
+  const ProjectedSystem projected{ { matrix, this->InverseDiagonal, reduction }, system.U,
+    system.Fixed, preconditioner };
 
-  // Measured as in LinearSolver: in the norm of diag(A)^-1, whatever preconditions.
   const double scale = reduction.SumOverVertices(this->Parallel, n,
     [&](Index i)
     {
       this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i];
-      return inertia[i] * inertia[i] * this->InverseDiagonal[i] * Row<K>(system.U, i).squaredNorm();
+      return inertia[i] * inertia[i] * this->InverseDiagonal[i] *
+        Row<K>(&system.U(i, 0), columns).squaredNorm();
     });
   const double start = reduction.SumOverVertices(this->Parallel, n,
     [&](Index i)
     {
-      Project<K>(system, i, this->R);
-      Project<K>(system, i, this->R); // near rest the first leaves as much round-off as there is
-      return this->InverseDiagonal[i] * Row<K>(this->R, i).squaredNorm();
+      // Twice: near rest the first leaves as much round-off as there is residual.
+      double* const r = &this->Residual(i, 0);
+      projected.Project<K>(i, r);
+      projected.Project<K>(i, r);
+      return this->InverseDiagonal[i] * Row<K>(r, columns).squaredNorm();
     });
-  if (!std::isfinite(start))
-  {
-    throw std::runtime_error("the linear system has no finite solution");
-  }
 
-  const double target = limits.Tolerance * limits.Tolerance * std::max(scale, start);
-  SolveReport report;
-  double left = start;
-  double rho = 0.0;
-  while (left > target)
-  {
-    if (report.Iterations == limits.MaximumNumberOfIterations)
-    {
-      report.Converged = false;
-      break;
-    }
-    const double previous = rho;
-    rho = this->Precondition<K>(system, preconditioner);
-    const double beta = previous > 0.0 ? rho / previous : 0.0;
-    ForEach(this->Parallel, n,
-      [&](Index i) { Row<K>(this->P, i) = Row<K>(this->Z, i) + beta * Row<K>(this->P, i); });
-    Multiply(matrix, this->P, this->Q, this->Parallel);
-    reduction.Accumulate(this->Q);
-    const double curvature = reduction.SumOverVertices(this->Parallel, n,
-      [&](Index i)
-      {
-        Project<K>(system, i, this->Q);
-        return Row<K>(this->P, i).dot(Row<K>(this->Q, i));
-      });
-    if (!(curvature > 0.0)) // all that is left is round-off
-    {
-      report.Converged = false;
-      break;
-    }
-    const double alpha = rho / curvature;
-    left = reduction.SumOverVertices(this->Parallel, n,
-      [&](Index i)
-      {
-        auto r = Row<K>(this->R, i);
-        Row<K>(x, i) += alpha * Row<K>(this->P, i);
-        r -= alpha * Row<K>(this->Q, i);
-        return this->InverseDiagonal[i] * r.squaredNorm();
-      });
-    if (++report.Iterations % 8 == 0)
-    {
-      progress.Report(
-        std::min(0.99, std::max(0.0, std::log(left / start) / std::log(target / start))));
-    }
-  }
-  report.Residual = std::sqrt(left / std::max(scale, start));
-  progress.Report(1.0);
-  return report;
-}
-
-/// Z = P C^-1 R for the preconditioner C; returns R.Z.
-template <int K>
-double TangentSolver::Precondition(const TangentSystem& system, LinearSolver* preconditioner)
-{
-  if (preconditioner)
-  {
-    preconditioner->Precondition(this->R, this->Z);
-  }
-  return system.Reduction.SumOverVertices(this->Parallel, static_cast<Index>(this->R.rows()),
-    [&](Index i)
-    {
-      if (preconditioner)
-      {
-        Project<K>(system, i, this->Z);
-      }
-      else
-      {
-        Row<K>(this->Z, i) = this->InverseDiagonal[i] * Row<K>(this->R, i);
-      }
-      return Row<K>(this->R, i).dot(Row<K>(this->Z, i));
-    });
+  const double reference = std::max(scale, start);
+  this->Work.Resize(n, columns, 1);
+  this->Work.Reference[0] = reference > 0.0 ? reference : 1.0;
+  return ConjugateGradients<K, ProjectedSystem>(
+    projected, this->Residual, this->Work, this->Parallel)
+    .Solve(x, limits, progress);
 }
 
 } // namespace SurfaceDiffusion

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Reduction.h"
+#include "Core/Solvers/ConjugateGradientSystem.h"
 #include "Core/Solvers/LinearSolver.h"
 
 namespace SurfaceDiffusion
 {
 
-/// P A P x = P b for symmetric positive definite A, where P takes each row x_i to its part
-/// orthogonal to u_i, and to 0 at fixed vertices: the linear system of a step whose unknowns lie in
-/// the tangent spaces of the sphere.
+/// P A P x = P b for symmetric positive definite A, where P projects each row x_i onto
+/// the plane orthogonal to u_i, and to 0 at fixed vertices: the linear system of a time step whose
+/// unknowns lie in the tangent spaces of the sphere.
 struct TangentSystem
 {
   const SparseMatrix& Matrix;
@@ -22,9 +22,9 @@ struct TangentSystem
   const SurfaceDiffusion::Reduction& Reduction = SurfaceDiffusion::Reduction::Serial();
 };
 
-/// Solves such systems by conjugate gradients from x = 0, with one recurrence for all columns,
-/// which P couples. Every iterate has a smaller 1/2 x.Ax - b.x than the one before: a step that
-/// uses an unfinished x still goes downhill.
+/// Solves P A P x = P b by conjugate gradients from x = 0, as one system of all columns, which P
+/// couples. Every iterate has a smaller 1/2 x.Ax - b.x than the one before: a time step with an
+/// unfinished x still decreases the energy.
 class TangentSolver
 {
 public:
@@ -33,9 +33,9 @@ public:
   {
   }
 
-  /// preconditioner: a solver that has taken a matrix near A; none: the diagonal of A (Jacobi). The
-  /// residual is in the norm of LinearSolver, relative to the larger of P b and Inertia u: to what
-  /// the right-hand side would be if x were the whole of u.
+  /// preconditioner: a solver that has taken a matrix near A. Null: the diagonal of A (Jacobi). The
+  /// residual is measured in the norm of LinearSolver, relative to the larger of P b and Inertia u,
+  /// which is the size of the right-hand side if x is as large as u.
   SolveReport Solve(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
     const IterationLimits& limits, const ProgressMonitor& progress = ProgressMonitor());
 
@@ -43,12 +43,11 @@ private:
   template <int K>
   SolveReport SolveColumns(const TangentSystem& system, Values& x, LinearSolver* preconditioner,
     const IterationLimits& limits, const ProgressMonitor& progress);
-  template <int K>
-  double Precondition(const TangentSystem& system, LinearSolver* preconditioner);
 
   const ParallelFor& Parallel;
   Vector InverseDiagonal, Inertia;
-  Values R, Z, P, Q;
+  Values Residual;
+  ConjugateGradientWork Work;
 };
 
 } // namespace SurfaceDiffusion

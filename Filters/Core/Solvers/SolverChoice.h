@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Solvers/LinearSolver.h"
+
+#include <memory>
+#include <optional>
+
+namespace SurfaceDiffusion
+{
+
+enum class SolverMethod
+{
+  Automatic, ///< the one expected to be fastest
+  Factorization,
+  ConjugateGradient,
+  Multigrid
+};
+
+/// The linear systems a solver is made for, as far as the choice of the method depends on them.
+struct SolverTask
+{
+  Index NumberOfVertices = 0;
+  /// (largest diffusivity) x (time step) / h^2 of one step. Empty for a steady state, in which no
+  /// time step bounds the distance over which values diffuse.
+  std::optional<double> DiffusionNumber = 1.0;
+  double NumberOfSolves = 1.0; ///< with one matrix
+  double Tolerance = 1e-10;
+  /// False where multigrid was measured to be slower: connection Laplacians of direction fields,
+  /// which do not map constants to zero, and diffusivities that change in every step and by orders
+  /// of magnitude from triangle to triangle.
+  bool AllowMultigrid = true;
+  /// The solver is the preconditioner of another iteration (LinearSolver::Precondition), which has
+  /// tried the diagonal already and needs a method that knows the whole matrix.
+  bool IsPreconditioner = false;
+};
+
+/// A method, and whether a factorisation follows if it does not converge. Solvers of equal choices
+/// can stand in for each other.
+struct SolverChoice
+{
+  SolverMethod Method = SolverMethod::Factorization; ///< not Automatic
+  bool FallsBack = false;
+
+  bool operator==(const SolverChoice& other) const
+  {
+    return this->Method == other.Method && this->FallsBack == other.FallsBack;
+  }
+  bool operator!=(const SolverChoice& other) const { return !(*this == other); }
+};
+
+/// The method asked for, or instead of Automatic the one that is expected to be fastest by a model
+/// of measured times. Automatic falls back on a factorisation.
+SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task);
+
+std::unique_ptr<LinearSolver> MakeSolver(
+  const SolverChoice& choice, const ParallelFor& parallel = SerialFor());
+
+inline std::unique_ptr<LinearSolver> MakeSolver(SolverMethod method,
+  const SolverTask& task = SolverTask(), const ParallelFor& parallel = SerialFor())
+{
+  return MakeSolver(ChooseSolver(method, task), parallel);
+}
+
+/// Over several processes, where only conjugate gradients are available: whether multigrid
+/// preconditions them rather than the diagonal.
+bool PreferDistributedMultigrid(SolverMethod method, const SolverTask& task);
+
+} // namespace SurfaceDiffusion
