@@ -13,6 +13,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <string>
 
 namespace SurfaceDiffusion
 {
@@ -89,9 +90,19 @@ public:
     }
   }
 
+  /// The back end Sequential is ParaView's default, not a user's choice of one thread: a few long
+  /// tasks then run on VTK's other back end.
   void RunTasks(Index count, LoopBody body) const override
   {
-    RunOnThreads(count, 1, body, LoopWatch::OfThisThread());
+    const auto run = [&] { RunOnThreads(count, 1, body, LoopWatch::OfThisThread()); };
+    if (std::string(vtkSMPTools::GetBackend()) == "Sequential")
+    {
+      vtkSMPTools::LocalScope(vtkSMPTools::Config(std::string("STDThread")), run);
+    }
+    else
+    {
+      run();
+    }
   }
 
   /// The core keeps references: one object for all.
