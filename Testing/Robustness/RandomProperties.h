@@ -11,8 +11,10 @@
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkTuringTextureFilter.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,11 @@ struct FilterClass
   std::function<vtkSmartPointer<vtkPolyDataAlgorithm>()> Make;
   std::vector<RandomProperty> Properties;
 };
+
+inline void PrintTo(const FilterClass& kind, std::ostream* os)
+{
+  *os << kind.Name;
+}
 
 namespace RandomProperties
 {
@@ -115,8 +122,7 @@ List OfSurface()
 {
   return {
     RANDOM_PROPERTY(F, MergeCoincidentPoints, dice.Flip()),
-    // With a tolerance far beyond the size of the surface VTK's point locator does not return.
-    RANDOM_PROPERTY(F, MergeTolerance, dice.Flip() ? 0.0 : dice.Logarithmic(1e-9, 0.1)),
+    RANDOM_PROPERTY(F, MergeTolerance, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, SeamTolerance, dice.Flip() ? -1.0 : ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, Controller, Controller(dice)),
     RANDOM_PROPERTY(F, ResultArrayName, Name(dice)),

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every property of every filter changes alone between two updates, with settings for which it has
-// an effect. The second result differs from the first and is that of a new filter with the same
+// Every property of every filter changes alone between two updates, with settings for which it
+// has an effect. The second result differs from the first and is that of a new filter with the same
 // settings, bit for bit. A class with a property that these tests do not set fails, too.
 
 #include "Twins.h"
@@ -25,8 +25,8 @@ using namespace FilterTest;
 namespace
 {
 
-/// Properties without effect on the result of one process, or, the last four, without one that can be
-/// relied on: a choice between ways to the same numbers, and limits that lead to errors.
+/// Properties without a visible effect here: they concern memory or several processes, select among
+/// solvers with the same result, or only lead to errors or apply to negative concentrations.
 const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controller",
   "SeamTolerance", "Solver", "Tolerance", "MaximumNumberOfIterations", "ClampToNonNegative" };
 const std::set<std::string> WithoutEffectInClass = {
@@ -99,12 +99,27 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
   }
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
-  needed["vtkIntrinsicTVFilter NoiseLevel"] = With<TV>([](TV* f) { f->AutomaticFidelityOn(); });
+  needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
+    With<TV>([](TV* f) { f->SetStopTolerance(0.1); }); // it takes long otherwise
+  needed["vtkIntrinsicTVFilter NoiseLevel"] = With<TV>(
+    [](TV* f)
+    {
+      f->AutomaticFidelityOn();
+      f->SetStopTolerance(0.1);
+    });
   needed["EdgeThreshold"] = With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
   needed["vtkIntrinsicTVFilter StopTolerance"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
   needed["vtkHarmonicMapFilter Beta"] = With<Harmonic>([](Harmonic* f) { f->SetExponent(1.2); });
   needed["ConsistentReaction"] = needed["ProjectToSphere"] =
     With<Harmonic>([](Harmonic* f) { f->SetSchemeToExplicitReaction(); });
+  needed["UseAsNormals"] = needed["MoveVertices"] =
+    With<Harmonic>([](Harmonic* f) { SetInputArray(f, 0, ""); }); // of the surface's normals
+  needed["vtkTuringTextureFilter GenerateTimeSteps"] =
+    needed["vtkTuringTextureFilter OutputInterval"] =
+      needed["vtkTuringTextureFilter StopTolerance"] =
+        With<Turing>([](Turing* f) { f->SetTimeStep(0.5); });
+  needed["AutomaticTimeStep"] = With<Turing>([](Turing* f) { f->SetTimeStep(0.01); });
+  needed["ReactionRate"] = With<Turing>([](Turing* f) { f->SetUnitsToAbsolute(); });
   needed["ActivatorSupply"] = needed["SubstrateSupply"] =
     With<Turing>([](Turing* f) { f->SetKineticsToSchnakenberg(); });
   needed["FeedRate"] = needed["KillRate"] =
@@ -149,7 +164,7 @@ bool ChangeAlone(const FilterClass& kind, const RandomProperty& property)
   auto last = vtkSmartPointer<vtkPolyDataAlgorithm>();
   bool hasEffect = false;
   Dice dice(1);
-  for (int change = 0; change < 6; ++change)
+  for (int change = 0; change < 8; ++change)
   {
     const auto before = kind.Make();
     property.Copy(filter, before);
@@ -225,7 +240,6 @@ std::set<std::string> SettableInHeaders(const std::string& className)
   return names;
 }
 
-/// The filters by their short names.
 class EveryProperty : public testing::TestWithParam<FilterClass>
 {
 };

@@ -177,7 +177,7 @@ TEST(RandomUse, GivesWhatANewFilterGives)
 {
   const auto classes = AllFilterClasses();
   const char* const part = std::getenv("SURFACEDIFFUSION_LONG");
-  const unsigned int uses = part ? 30000 : 300;
+  const unsigned int uses = part ? 30000 : 150;
   const unsigned int first = part ? uses * (std::strtoul(part, nullptr, 10) - 1) : 0;
   for (unsigned int seed = first; seed < first + uses && !HasFatalFailure(); ++seed)
   {
