@@ -393,7 +393,14 @@ std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
     input.SurfaceVersion = FingerprintSurface(data, excluded);
     input.FieldsVersion = FingerprintFields(arrays);
     input.ReadSurface = [data, excluded, &cells] { return ReadSurface(data, excluded, cells); };
-    input.ReadFields = [&arrays, &cells] { return ReadFields(arrays, cells); };
+    input.ReadFields = [data, &arrays, &cells]
+    {
+      if (arrays.GlobalIds)
+      {
+        RequireTuples(arrays.GlobalIds, data->GetNumberOfPoints(), "point");
+      }
+      return ReadFields(arrays, cells);
+    };
     if (shared)
     {
       state.Decomposition->SetPiece(data, this->SeamTolerance);

@@ -186,10 +186,11 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const std::size_t limit = this->CheckpointMemory(*model, processes);
-  block.Path = std::make_unique<Trajectory>(
+  auto path = std::make_unique<Trajectory>(
     block.Surface->SharedMesh(), std::move(model), limit, this->Parallel);
-  block.Path->Reserve(this->Settings->DescribeModel().NumberOfSteps);
+  path->Reserve(this->Settings->DescribeModel().NumberOfSteps);
   progress.Report(1.0);
+  block.Path = std::move(path); // last: an aborted run must not look like a finished one
 }
 
 /// The data of the vertices. A vertex that several processes have takes its owner's.

@@ -22,6 +22,7 @@ History Run::MakeHistory(int step) const
   history.Records.resize(static_cast<std::size_t>(rows));
   history.Totals.assign(
     static_cast<std::size_t>(components), std::vector<double>(static_cast<std::size_t>(rows), 0.0));
+  history.Time.reserve(static_cast<std::size_t>(rows));
   for (int row = 0; row < rows; ++row)
   {
     history.Time.push_back(row * traits.TimeStep);

@@ -292,8 +292,12 @@ TEST(Updates, DataThatDependOnTheMeshAloneAreReused)
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfStepsComputed(), 20);
   const double kept = first;
+  sphere->GetPoints()->Modified(); // the contents are the same
+  sphere->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 20);
   first = 2.0;
-  sphere->GetPoints()->Modified();
+  sphere->GetPoints()->SetPoint(7, 0.0, 0.0, 1.3);
   sphere->Modified();
   filter->Update();
   EXPECT_LT(first, kept); // building the surface reports first

@@ -19,12 +19,6 @@ NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
     "TimestepValues",
 }
-# C++ properties that do not apply to a filter although its class inherits them.
-NOT_APPLICABLE = {
-    "TuringTextureFilter": {
-        "AlongDiffusivity", "AcrossDiffusivity", "FidelityWeight", "HoldKnownValues", "InitialFill",
-    },
-}
 
 
 def filters():
@@ -105,7 +99,7 @@ class TestProxies(unittest.TestCase):
             }
             words = {m for m in setters if any(m.startswith(s + "To") for s in setters)}
             missing = setters - words - set(proxy.ListProperties()) - {"Controller"}  # not a value
-            self.assertEqual(missing, NOT_APPLICABLE.get(name, set()), name)
+            self.assertEqual(missing, set(), name)
 
     def test_entries_of_enums_are_the_words_of_cxx(self):
         enums = set()
