@@ -46,6 +46,27 @@ TEST(Units, AreMeasuredOnDistinctEdgesAndKnownValues)
   EXPECT_EQ(filter->GetValueRange(), 20.0); // a NaN is missing
 }
 
+TEST(Units, PointsThatTakeNoPartDoNotCount)
+{
+  auto grid = Grid(3, 3);
+  AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return static_cast<double>(i % 5); });
+  grid->GetPoints()->InsertNextPoint(0.0, 0.0, 9.0); // of no cell
+  vtkDataArray* f = grid->GetPointData()->GetArray("f");
+  f->InsertNextTuple1(100.0);
+  auto filter = MakeFilter(grid);
+  SetInputArray(filter, 0, "f");
+  filter->Update();
+  EXPECT_EQ(filter->GetValueRange(), 4.0);
+
+  const vtkIdType corner = 0;
+  AddPointArray(grid, "mask", 1, [](vtkIdType i, int) { return i == corner; });
+  f->SetComponent(corner, 0, -100.0);
+  SetInputArray(filter, 1, "mask");
+  filter->SetMaskModeToExclude();
+  filter->Update();
+  EXPECT_EQ(filter->GetValueRange(), 4.0);
+}
+
 TEST(Units, RangeOfAConstantIsOne)
 {
   auto grid = Grid(3, 3);

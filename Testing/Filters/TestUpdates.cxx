@@ -280,6 +280,48 @@ TEST(Updates, ChangesOfInputsOfTheStepsRecomputeThem)
   expectAgain("triangles");
 }
 
+/// numpy edits an array in place, and the user marks the polydata only.
+TEST(Updates, ArraysThatAreEditedInPlaceAreReadAgain)
+{
+  const auto makeSphere = []
+  {
+    auto sphere = Sphere(3);
+    AddRough(sphere);
+    AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 9 == 0; });
+    AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i % 11 == 5; });
+    AddPointArray(sphere, "e1", 3, [](vtkIdType, int k) { return k == 0; });
+    return sphere;
+  };
+  const auto makeFilter = [](vtkPolyData* sphere)
+  {
+    auto filter = MakeFilter(sphere);
+    SetInputArray(filter, 1, "mask");
+    SetInputArray(filter, 2, "e1");
+    SetInputArray(filter, 3, "fixed");
+    filter->SetAlongDiffusivity(2.0);
+    return filter;
+  };
+  const auto sphere = makeSphere();
+  const auto filter = makeFilter(sphere);
+  filter->Update();
+  vtkPointData* data = sphere->GetPointData();
+  for (vtkDataArray* array : { data->GetScalars(), data->GetArray("mask"), data->GetArray("fixed"),
+         data->GetArray("e1"), sphere->GetPoints()->GetData() })
+  {
+    ASSERT_NE(array, nullptr);
+    const auto before = vtkSmartPointer<vtkDataArray>::Take(
+      vtkDataArray::SafeDownCast(Result(filter)->NewInstance()));
+    before->DeepCopy(Result(filter));
+    array->SetComponent(40, 0, array->GetComponent(40, 0) != 0.0 ? 0.0 : 1.0);
+    sphere->vtkObject::Modified();
+    filter->Update();
+    const auto fresh = makeFilter(sphere);
+    fresh->Update();
+    EXPECT_TRUE(Identical(Result(filter), Result(fresh))) << array->GetName();
+    EXPECT_FALSE(Identical(Result(filter), before)) << array->GetName();
+  }
+}
+
 TEST(Updates, DataThatDependOnTheMeshAloneAreReused)
 {
   auto sphere = Sphere(4);
