@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Meshes.h"
+
+#include "Run/DirectionFieldRun.h"
+#include "Run/HeatSettings.h"
+#include "Run/Run.h"
+#include "Run/TextureSettings.h"
+#include "Run/TotalVariationSettings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// One surface with one scalar per point, as arrays.
+struct Input
+{
+  Points Vertices;
+  Triangles Faces;
+  Fields Data;
+
+  explicit Input(const Testing::Surface& surface)
+    : Vertices(surface.Vertices)
+    , Faces(surface.Faces)
+  {
+    this->Data.Data = Values(this->Vertices.rows(), 1);
+    for (Eigen::Index i = 0; i < this->Vertices.rows(); ++i)
+    {
+      this->Data.Data(i, 0) = this->Vertices(i, 2) + 0.1 * std::cos(7.0 * i);
+    }
+  }
+
+  BlockInput Block() const
+  {
+    BlockInput block;
+    const auto add = [](Fingerprint& fingerprint, const auto& matrix)
+    {
+      fingerprint.AddBytes(
+        matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(*matrix.data()));
+    };
+    add(block.SurfaceVersion, this->Vertices);
+    add(block.SurfaceVersion, this->Faces);
+    add(block.FieldsVersion, this->Data.Data);
+    add(block.FieldsVersion, this->Data.Directions);
+    block.FieldsVersion.AddBytes(this->Data.Mask.data(), this->Data.Mask.size());
+    block.ReadSurface = [this] { return SurfaceArrays{ this->Vertices, this->Faces, {} }; };
+    block.ReadFields = [this] { return this->Data; };
+    return block;
+  }
+};
+
+const ProcessGroup Alone;
+
+/// The state at the last step.
+template <typename ModelSettings>
+Values StateOf(Run& run, const std::vector<BlockInput>& inputs, const ModelSettings& settings)
+{
+  run.Update(inputs, std::make_shared<ModelSettings>(settings), Alone, ProgressMonitor());
+  run.Seek(settings.DescribeModel().NumberOfSteps, ProgressMonitor());
+  return run.GetBlock(0).Path->State();
+}
+
+} // namespace
+
+TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
+{
+  // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2 z.
+  Input input(Testing::Icosphere(5));
+  input.Data.Data = input.Vertices.col(2);
+  HeatSettings settings;
+  settings.Units = UnitsMode::Absolute;
+  settings.TimeStep = 0.01;
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values state = StateOf(run, { input.Block() }, settings);
+  const Surface& surface = *run.GetBlock(0).Surface;
+  for (Index i = 0; i < static_cast<Index>(input.Vertices.rows()); ++i)
+  {
+    EXPECT_NEAR(state(surface.VertexOf(i), 0), std::exp(-0.2) * input.Vertices(i, 2), 1e-3);
+  }
+}
+
+TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
+{
+  const Input input(Testing::Icosphere(3));
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values first = StateOf(run, { input.Block() }, HeatSettings());
+  EXPECT_EQ(run.NumberOfStepsComputed(), 10);
+  const Values second = StateOf(run, { input.Block() }, HeatSettings());
+  EXPECT_EQ(run.NumberOfStepsComputed(), 10);
+  EXPECT_EQ(first, second);
+}
+
+TEST(Run, AfterAnyEditEqualsANewRun)
+{
+  Input input(Testing::Icosphere(3));
+  SurfaceDiffusion::Run run(SerialFor());
+  TotalVariationSettings settings;
+  StateOf(run, { input.Block() }, settings);
+  const auto expectAsNew = [&](const char* edit)
+  {
+    SurfaceDiffusion::Run fresh(SerialFor());
+    EXPECT_EQ(
+      StateOf(run, { input.Block() }, settings), StateOf(fresh, { input.Block() }, settings))
+      << edit;
+  };
+  input.Data.Data(7, 0) = 3.0;
+  expectAsNew("data");
+  input.Data.Mask.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
+  input.Data.Mask[9] = 1;
+  expectAsNew("mask");
+  input.Vertices.row(5) *= 1.5;
+  expectAsNew("points");
+  settings.FidelityWeight = 1.0;
+  expectAsNew("FidelityWeight");
+  settings.IntrinsicDelaunay = true;
+  expectAsNew("IntrinsicDelaunay");
+  settings.Mode = TotalVariationMode::SteadyState;
+  expectAsNew("Mode");
+}
+
+TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
+{
+  const Input input(Testing::Icosphere(3));
+  SurfaceDiffusion::Run run(SerialFor());
+  HeatSettings settings;
+  StateOf(run, { input.Block() }, settings);
+  settings.OutputInterval = 3;
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.NumberOfStepsComputed(), 10);
+}
+
+TEST(Run, SurfacesShareTheirUnits)
+{
+  const Input small(Testing::Icosphere(3));
+  const Input large(Testing::Scaled(Testing::Icosphere(3), 3.0));
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { small.Block() }, HeatSettings());
+  const double h = run.Units().MeanEdgeLength;
+  StateOf(run, { small.Block(), large.Block() }, HeatSettings());
+  EXPECT_NEAR(run.Units().MeanEdgeLength, 2.0 * h, 1e-12);
+  EXPECT_NEAR(run.TimeUnit(), 4.0 * h * h, 1e-12);
+}
+
+TEST(Run, ReportsEachWarningOnceUntilSomethingIsMadeAgain)
+{
+  Input input(Testing::Icosphere(2));
+  input.Vertices.conservativeResize(input.Vertices.rows() + 1, 3);
+  input.Vertices.bottomRows(1).setOnes();
+  input.Data.Data = Values::Ones(input.Vertices.rows(), 1);
+  SurfaceDiffusion::Run run(SerialFor());
+  HeatSettings settings;
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.TakeWarnings(Alone).size(), 1u);
+  run.Seek(3, ProgressMonitor());
+  EXPECT_TRUE(run.TakeWarnings(Alone).empty());
+  settings.TimeStep = 0.5;
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.TakeWarnings(Alone).size(), 1u);
+}
+
+TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
+{
+  const Input input(Testing::Icosphere(3));
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, HeatSettings());
+  const History history = run.MakeHistory(10);
+  ASSERT_EQ(history.Records.size(), 11u);
+  ASSERT_EQ(history.Totals.size(), 1u);
+  for (std::size_t step = 1; step < 11; ++step)
+  {
+    EXPECT_NEAR(history.Totals[0][step], history.Totals[0][0], 1e-12);
+    EXPECT_LT(history.Records[step].Energy, history.Records[step - 1].Energy);
+  }
+}
+
+TEST(Run, ATextureNeedsNoData)
+{
+  Input input(Testing::Icosphere(3));
+  input.Data.Data.resize(0, 0);
+  SurfaceDiffusion::Run run(SerialFor());
+  TextureSettings settings;
+  settings.NumberOfTimeSteps = 4;
+  const Values state = StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(state.cols(), 2);
+  EXPECT_TRUE(state.allFinite());
+  EXPECT_GT(run.GetBlock(0).Result.Wavelength, 0.0);
+}
+
+TEST(Run, InvalidArraysAreErrorsThatNameThem)
+{
+  Input input(Testing::Icosphere(2));
+  input.Data.Data(3, 0) = std::numeric_limits<double>::infinity();
+  SurfaceDiffusion::Run run(SerialFor());
+  try
+  {
+    StateOf(run, { input.Block() }, HeatSettings());
+    FAIL();
+  }
+  catch (const std::runtime_error& error)
+  {
+    EXPECT_STREQ(error.what(), "InputArray is infinite at point 3; allowed: finite values and NaN");
+  }
+  input.Faces(0, 0) = 9999;
+  EXPECT_THROW(StateOf(run, { input.Block() }, HeatSettings()), std::runtime_error);
+}
+
+TEST(DirectionFieldRun, IsKeptUntilInputsOrSettingsChange)
+{
+  const Input input(Testing::Cylinder(24, 24));
+  DirectionFieldRun run(SerialFor());
+  DirectionFieldSettings settings;
+  int reads = 0;
+  BlockInput block = input.Block();
+  block.ReadFields = [&]
+  {
+    ++reads;
+    return Fields();
+  };
+  run.Update(block, settings, ProgressMonitor());
+  const TangentVectors first = run.Directions();
+  run.Update(block, settings, ProgressMonitor());
+  EXPECT_EQ(reads, 1);
+  settings.Angle = 90.0;
+  run.Update(block, settings, ProgressMonitor());
+  EXPECT_EQ(reads, 2);
+  double largest = 0.0; // the field is turned by a right angle
+  for (Eigen::Index t = 0; t < first.rows(); ++t)
+  {
+    largest = std::max(largest, std::abs(first.row(t).dot(run.Directions().row(t))));
+  }
+  EXPECT_LT(largest, 1e-12);
+}
+
+} // namespace SurfaceDiffusion
