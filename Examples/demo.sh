@@ -1,15 +1,16 @@
 #!/bin/bash
-# The library at work on real surfaces: installs what it needs (Debian 12), fetches the data,
-# builds, and draws four pictures. Arguments go on to Examples/Python/demo.py, see its --help.
+# Demonstrates the library on real surfaces: installs the required packages (Debian 12), fetches the
+# data, builds the library and draws four pictures. Arguments are passed on to
+# Examples/Python/demo.py, see its --help.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-python=${PYTHON:-/usr/bin/python3}  # one that finds ParaView's or VTK's modules
+python=${PYTHON:-/usr/bin/python3}  # must find the modules of ParaView or VTK
 data=build/demo-data
 
 download()
 {
-  if ! apt-get -q download "$@"; then # perhaps there are no package lists yet
+  if ! apt-get -q download "$@"; then # the package lists may be missing
     sudo=
     [ "$(id -u)" -eq 0 ] || sudo=sudo
     $sudo apt-get -q update
@@ -25,14 +26,14 @@ mkdir -p "$data"
 work=$(mktemp -d "$data/fetch.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 
-# fsaverage5, an average human cortex (Fischl et al. 1999), as nilearn carries it.
+# fsaverage5, an average human cortex (Fischl et al. 1999), from the nilearn package.
 if [ ! -d "$data/fsaverage5" ]; then
   "$python" -m pip download --quiet --no-deps --dest "$work" nilearn==0.14.1
   "$python" -m zipfile -e "$work"/nilearn-*.whl "$work/nilearn"
   mv "$work/nilearn/nilearn/datasets/data/fsaverage5" "$data"
 fi
 
-# A scanned bunny (Stanford), as Debian's CGAL demos carry it.
+# A scanned bunny (Stanford), from Debian's package of CGAL demos.
 if [ ! -f "$data/bunny00.off" ]; then
   (cd "$work" && download libcgal-demo)
   dpkg-deb --extract "$work"/libcgal-demo_*.deb "$work/cgal"

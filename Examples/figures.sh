@@ -1,10 +1,11 @@
 #!/bin/bash
-# Figures 4 to 8 of the paper on scans, with photographs: installs what it needs (Debian 12), fetches
-# the data, builds, draws into build/figures, and prints what it took.
+# Draws figures 4 to 8 of the paper on scanned surfaces with photographs: installs the required
+# packages (Debian 12), fetches the data, builds the library, draws into build/figures, and prints
+# errors and run times.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-python=${PYTHON:-/usr/bin/python3}  # one that finds ParaView's or VTK's modules
+python=${PYTHON:-/usr/bin/python3}  # must find the modules of ParaView or VTK
 data=build/data
 
 echo "== Packages"

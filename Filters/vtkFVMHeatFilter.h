@@ -7,7 +7,7 @@
  * Solves the heat equation on the surface with the finite volume method of C. Wu, J. Deng and
  * F. Chen (IEEE TVCG 14(3), 2008):
  *
- *     u_t = div(g1 (grad u . e1) e1 + g2 (grad u . e2) e2) + lambda 1_D (f - u),   u(0) = f,
+ *     u_t = div(g1 (grad u . e1) e1 + g2 (grad u . e2) e2) + lambda chi (f - u),   u(0) = f,
  *
  * with no flux over the boundary. Its cases are the paper's (1) smoothing (lambda = 0, g1 = g2),
  * (4) anisotropic smoothing along a direction field, (16) denoising (lambda > 0) and (18)
@@ -30,20 +30,20 @@
  * Euler keeps the bounds of the data on Delaunay meshes at any step, SDIRK2 at small ones only.
  *
  * The energy in the history is 1/2 int (g1 (grad u . e1)^2 + g2 (grad u . e2)^2) + lambda/2
- * int 1_D (u - f)^2, summed over the components, in (units of the array)^2.
+ * int chi (u - f)^2, summed over the components, in (units of the array)^2.
  *
  * @sa vtkIntrinsicTVFilter vtkHarmonicMapFilter vtkTuringTextureFilter
  */
 #ifndef vtkFVMHeatFilter_h
 #define vtkFVMHeatFilter_h
 
-#include "vtkSurfaceDiffusionAlgorithm.h"
+#include "vtkSurfaceDataDiffusionAlgorithm.h"
 
-class VTKSURFACEDIFFUSION_EXPORT vtkFVMHeatFilter : public vtkSurfaceDiffusionAlgorithm
+class VTKSURFACEDIFFUSION_EXPORT vtkFVMHeatFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
   static vtkFVMHeatFilter* New();
-  vtkTypeMacro(vtkFVMHeatFilter, vtkSurfaceDiffusionAlgorithm);
+  vtkTypeMacro(vtkFVMHeatFilter, vtkSurfaceDataDiffusionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ModeType
@@ -111,22 +111,10 @@ protected:
   vtkFVMHeatFilter();
   ~vtkFVMHeatFilter() override = default;
 
-  void CheckProperties(Problems& problems) override;
-  void WriteRunKey(std::ostream& key) override;
-  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>&) override
-  {
-    return !this->AutomaticFidelity;
-  }
+  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
+  void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
-  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
-    SurfaceDiffusion::ModelInput& input, int steps) override;
-  const char* GetResultSuffix() override { return "Diffused"; }
-  Dimension GetTimeDimension() override { return { 2.0, 0.0 }; }
-  Dimension GetEnergyDimension() override { return { 0.0, 2.0 }; }
-  int GetEffectiveNumberOfTimeSteps() override;
-  double GetEffectiveTimeStep() override;
-  bool UsesFidelity() override;
-  bool GetTimeIsAbsolute() override;
+  const char* GetResultSuffix() const override { return "Diffused"; }
 
   int Mode = MODE_TIME_STEPS;
   double FWHM = 0.0;

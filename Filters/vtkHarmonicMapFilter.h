@@ -53,19 +53,13 @@
 #ifndef vtkHarmonicMapFilter_h
 #define vtkHarmonicMapFilter_h
 
-#include "vtkSmartPointer.h" // for the normals computed
-#include "vtkSurfaceDiffusionAlgorithm.h"
+#include "vtkSurfaceDataDiffusionAlgorithm.h"
 
-#include <map> // for what is kept per block
-#include <string> // for keys
-
-class vtkPoints;
-
-class VTKSURFACEDIFFUSION_EXPORT vtkHarmonicMapFilter : public vtkSurfaceDiffusionAlgorithm
+class VTKSURFACEDIFFUSION_EXPORT vtkHarmonicMapFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
   static vtkHarmonicMapFilter* New();
-  vtkTypeMacro(vtkHarmonicMapFilter, vtkSurfaceDiffusionAlgorithm);
+  vtkTypeMacro(vtkHarmonicMapFilter, vtkSurfaceDataDiffusionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -184,24 +178,15 @@ protected:
   vtkHarmonicMapFilter();
   ~vtkHarmonicMapFilter() override;
 
-  void CheckProperties(Problems& problems) override;
-  bool FindArrays(
-    vtkPolyData* block, SurfaceDiffusion::BlockArrays& arrays, Problems& problems) override;
-  void WriteRunKey(std::ostream& key) override;
+  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
+  bool CanSolveInPieces(const std::vector<SurfaceBlock>& pieces) override;
+  void WriteResult(
+    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
+  void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
-  void PrepareData(SurfaceDiffusion::ModelInput& input) override;
-  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
-    SurfaceDiffusion::ModelInput& input, int steps) override;
-  void PrepareResult(const SurfaceDiffusion::SurfaceRun& run,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
-  void WriteResult(const SurfaceDiffusion::SurfaceRun& run,
-    const SurfaceDiffusion::BlockArrays& arrays, vtkPolyData* output) override;
-  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>& pieces) override;
-  const char* GetResultSuffix() override { return "Harmonic"; }
-  Dimension GetTimeDimension() override { return { this->Exponent, 0.0 }; }
-  Dimension GetEnergyDimension() override { return { 2.0 - this->Exponent, 0.0 }; }
-  bool HasValueRange() override { return false; }
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  const char* GetResultSuffix() const override { return "Harmonic"; }
 
   double Exponent = 1.0;
   double Beta = 1e-6;
@@ -220,20 +205,10 @@ private:
   vtkHarmonicMapFilter(const vtkHarmonicMapFilter&) = delete;
   void operator=(const vtkHarmonicMapFilter&) = delete;
 
-  bool AsksForNormals();
-  vtkDataArray* FindNormals(vtkPolyData* block);
-  bool IsNormals(vtkDataArray* array, vtkPolyData* block) const;
-
-  /// Normals computed for a block without any, kept as long as its surface stays the same.
-  struct ComputedNormals
-  {
-    vtkSmartPointer<vtkDataArray> Array;
-    bool Used = false; ///< in this update
-  };
-  std::map<std::string, ComputedNormals> Computed;
-  std::map<const SurfaceDiffusion::SurfaceRun*, vtkSmartPointer<vtkPoints>>
-    MovedPoints; ///< in this update
-  double MovedArea = 0.0; ///< of the blocks moved so far in this update
+  /// Whether no array is requested by name or as an attribute other than normals.
+  bool UsesNormals();
+  vtkDataArray* FindComputedNormals(vtkPolyData* block);
+  bool IsNormals(const SurfaceDiffusion::InputFields& fields, vtkPolyData* block) const;
 };
 
 #endif

@@ -54,13 +54,13 @@
 #ifndef vtkIntrinsicTVFilter_h
 #define vtkIntrinsicTVFilter_h
 
-#include "vtkSurfaceDiffusionAlgorithm.h"
+#include "vtkSurfaceDataDiffusionAlgorithm.h"
 
-class VTKSURFACEDIFFUSION_EXPORT vtkIntrinsicTVFilter : public vtkSurfaceDiffusionAlgorithm
+class VTKSURFACEDIFFUSION_EXPORT vtkIntrinsicTVFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
   static vtkIntrinsicTVFilter* New();
-  vtkTypeMacro(vtkIntrinsicTVFilter, vtkSurfaceDiffusionAlgorithm);
+  vtkTypeMacro(vtkIntrinsicTVFilter, vtkSurfaceDataDiffusionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ModeType
@@ -314,21 +314,10 @@ protected:
   vtkIntrinsicTVFilter();
   ~vtkIntrinsicTVFilter() override = default;
 
-  void CheckProperties(Problems& problems) override;
-  bool FindArrays(
-    vtkPolyData* block, SurfaceDiffusion::BlockArrays& arrays, Problems& problems) override;
-  void WriteRunKey(std::ostream& key) override;
-  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>&) override;
+  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
+  void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
-  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
-    SurfaceDiffusion::ModelInput& input, int steps) override;
-  void PrepareResult(const SurfaceDiffusion::SurfaceRun& run,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
-  const char* GetResultSuffix() override { return "TV"; }
-  Dimension GetTimeDimension() override;
-  Dimension GetEnergyDimension() override;
-  int GetEffectiveNumberOfTimeSteps() override;
-  bool UsesFidelity() override;
+  const char* GetResultSuffix() const override { return "TV"; }
 
   int Mode = MODE_TIME_STEPS;
   int EdgeFunction = EDGE_FUNCTION_TOTAL_VARIATION;
@@ -346,14 +335,6 @@ protected:
 private:
   vtkIntrinsicTVFilter(const vtkIntrinsicTVFilter&) = delete;
   void operator=(const vtkIntrinsicTVFilter&) = delete;
-
-  class ModelMaker;
-
-  /// Whether steps minimise an energy: SteadyState or Implicit.
-  bool Minimizes() const;
-
-  /// Problems where there is no convex energy to minimise, which `purpose` needs.
-  void RequireConvexEnergy(const char* purpose, Problems& problems);
 };
 
 #endif

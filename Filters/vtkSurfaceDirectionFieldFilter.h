@@ -40,26 +40,18 @@
 #ifndef vtkSurfaceDirectionFieldFilter_h
 #define vtkSurfaceDirectionFieldFilter_h
 
-#include "vtkPolyDataAlgorithm.h"
-#include "vtkSurfaceDiffusionModule.h" // for export macro
-
-#include <memory> // for the private part
-#include <string> // for messages
-#include <vector> // for messages
+#include "vtkSurfaceFilter.h"
 
 namespace SurfaceDiffusion
 {
-class GatheredSurfaces;
-class ProgressMonitor;
+struct DirectionFieldSettings;
 }
-class vtkDataArray;
-class vtkMultiProcessController;
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDirectionFieldFilter : public vtkPolyDataAlgorithm
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDirectionFieldFilter : public vtkSurfaceFilter
 {
 public:
   static vtkSurfaceDirectionFieldFilter* New();
-  vtkTypeMacro(vtkSurfaceDirectionFieldFilter, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkSurfaceDirectionFieldFilter, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum MethodType
@@ -135,74 +127,28 @@ public:
   vtkGetMacro(Angle, double);
   ///@}
 
-  ///@{
-  /**
-   * On: points at one place (within MergeTolerance, in coordinate units, 0 or more, default 0) are
-   * one point of the surface. Default: off.
-   */
-  vtkSetMacro(MergeCoincidentPoints, bool);
-  vtkGetMacro(MergeCoincidentPoints, bool);
-  vtkBooleanMacro(MergeCoincidentPoints, bool);
-  vtkSetMacro(MergeTolerance, double);
-  vtkGetMacro(MergeTolerance, double);
-  ///@}
-
-  ///@{
-  /**
-   * Surfaces in pieces, see vtkSurfaceDiffusionAlgorithm: how far apart points of different pieces
-   * may lie that are one point (coordinate units; 0 or more, or -1: 1e-6 of the diagonal of the
-   * bounding box, the default), and the processes that hold the pieces (default: the global
-   * controller; null: this process's surface is the whole one).
-   */
-  vtkSetMacro(SeamTolerance, double);
-  vtkGetMacro(SeamTolerance, double);
-  virtual void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
-
-  ///@{
-  /**
-   * Name of the result. Default: Direction.
-   */
-  vtkSetStdStringFromCharMacro(ResultArrayName);
-  vtkGetCharFromStdStringMacro(ResultArrayName);
-  ///@}
-
-  vtkTypeBool ProcessRequest(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
 protected:
   vtkSurfaceDirectionFieldFilter();
   ~vtkSurfaceDirectionFieldFilter() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
+    const SurfaceDiffusion::ProgressMonitor& progress) override;
 
   int Method = METHOD_PRINCIPAL_CURVATURE;
   int PrincipalDirection = PRINCIPAL_DIRECTION_MINIMUM;
   double SmoothingLength = -1.0;
   double HintWeight = 0.1;
   double Angle = 0.0;
-  bool MergeCoincidentPoints = false;
-  double MergeTolerance = 0.0;
-  double SeamTolerance = -1.0;
-  std::string ResultArrayName = "Direction";
 
 private:
   vtkSurfaceDirectionFieldFilter(const vtkSurfaceDirectionFieldFilter&) = delete;
   void operator=(const vtkSurfaceDirectionFieldFilter&) = delete;
 
-  /// What is wrong with properties and arrays, one sentence each.
-  std::vector<std::string> FindProblems(vtkPolyData* input, vtkDataArray*& hints, bool& onCells);
-  /// On a surface that is here in one piece, reporting progress from begin to end.
-  void Execute(vtkPolyData* input, vtkPolyData* output, double begin, double end);
-  void MakeField(vtkPolyData* input, vtkDataArray* hints, bool onCells, vtkPolyData* output,
-    const SurfaceDiffusion::ProgressMonitor& progress);
+  std::unique_ptr<SurfaceDiffusion::DirectionFieldSettings> MakeSettings() const;
 
-  std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered; ///< of surfaces in pieces
-  vtkMultiProcessController* Controller = nullptr;
-  bool HasWholeSurface = false; ///< as null for Controller says
+  /// The fields, kept between updates.
+  struct RunState;
+  const std::unique_ptr<RunState> State;
 };
 
 #endif

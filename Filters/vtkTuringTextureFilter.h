@@ -61,9 +61,6 @@
 
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
-#include <array> // for parameters
-#include <map> // for what is kept per block
-
 class VTKSURFACEDIFFUSION_EXPORT vtkTuringTextureFilter : public vtkSurfaceDiffusionAlgorithm
 {
 public:
@@ -292,7 +289,6 @@ public:
   vtkGetMacro(Wavelength, double);
   vtkGetMacro(WavelengthGrowthRate, double);
   vtkGetMacro(DiffusionRateFactor, double);
-  double GetEffectiveTimeStep() override;
   ///@}
 
   void UsePaperScheme() override;
@@ -301,28 +297,14 @@ protected:
   vtkTuringTextureFilter();
   ~vtkTuringTextureFilter() override = default;
 
-  void CheckProperties(Problems& problems) override;
-  bool FindArrays(
-    vtkPolyData* block, SurfaceDiffusion::BlockArrays& arrays, Problems& problems) override;
-  void WriteRunKey(std::ostream& key) override;
+  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
+  void WriteResult(
+    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
+  void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
-  std::unique_ptr<SurfaceDiffusion::Model> MakeModel(
-    SurfaceDiffusion::ModelInput& input, int steps) override;
-  void PrepareResult(const SurfaceDiffusion::SurfaceRun& run,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
-  void WriteResult(const SurfaceDiffusion::SurfaceRun& run,
-    const SurfaceDiffusion::BlockArrays& arrays, vtkPolyData* output) override;
-  bool CanBeDistributed(const std::vector<SurfaceDiffusion::SurfacePiece>&) override
-  {
-    return true;
-  }
-  const char* GetResultSuffix() override { return ""; }
-  Dimension GetTimeDimension() override { return { 0.0, 0.0 }; }
-  Dimension GetEnergyDimension() override { return { 2.0, 0.0 }; }
-  double GetTimeFactor() override { return 1.0 / this->ReactionRate; }
-  bool HasValueRange() override { return false; }
-  bool CountsClamped() override { return true; }
-  bool UsesFidelity() override { return false; }
+  const char* GetResultSuffix() const override { return ""; }
 
   int Kinetics = KINETICS_TURING;
   double ReactionRate = 1.0;
@@ -359,18 +341,6 @@ protected:
 private:
   vtkTuringTextureFilter(const vtkTuringTextureFilter&) = delete;
   void operator=(const vtkTuringTextureFilter&) = delete;
-
-  struct Rates; // of the four diffusions, per triangle or everywhere
-
-  /// Of the kinetics chosen, in the order of the core's list.
-  std::array<double, 3> GetKineticsParameters();
-  bool AreRatesDirected();
-  Rates MakeRates(const SurfaceDiffusion::ModelInput& input);
-  void ReadRates(const SurfaceDiffusion::ModelInput& input, Rates& rates);
-  void ChooseFeatureSize(SurfaceDiffusion::ModelInput& input, Rates& rates);
-
-  std::map<const SurfaceDiffusion::SurfaceRun*, std::array<double, 2>>
-    ContrastLimits; ///< of this update
 };
 
 #endif

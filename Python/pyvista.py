@@ -1,14 +1,20 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filters as functions on PyVista's meshes: each takes a mesh and gives a new one back.
+"""The filters as functions of PyVista meshes: each takes a mesh and returns a new one.
 
     from surfacediffusion.pyvista import heat
 
     smooth = heat(mesh, "thickness", FWHM=10)  # adds the point array "thicknessDiffused"
 
-A mesh is a pyvista.PolyData, or a pyvista.MultiBlock of such. Arrays are given by name. Keywords in
-capitals are the properties of the filter's class, whose help tells formula, units and defaults;
-modes are given by their word: Mode="SteadyState". What the filter refuses is a ValueError.
+A mesh is a pyvista.PolyData with n points and m cells, or a pyvista.MultiBlock of such meshes. The
+input is not modified. Arrays are passed by name. Keywords that start with a capital are properties
+of the filter's class, for example TimeStep=2 or Mode="SteadyState" (an enumeration takes one of its
+words); help(vtkFVMHeatFilter) and its siblings list all of them with formula, unit, range and
+default. By default lengths are in mean edge lengths and values in the range of the data
+(Units="Natural"); Units="Absolute" takes them in the units of the coordinates and the data.
+
+Errors: ValueError if the filter rejects a property or an array, with its message, which names the
+property, its value and what is allowed; TypeError if the filter has no such property.
 """
 
 import pyvista
@@ -24,29 +30,54 @@ _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
 
 
 def heat(mesh, array=None, *, mask=None, direction=None, fixed=None, **properties):
-    """Smooth, denoise or inpaint a point array by linear diffusion: vtkFVMHeatFilter.
+    """Smooth, denoise or inpaint a point array by linear diffusion (vtkFVMHeatFilter).
 
-    array: the data, by default the active scalars; mask: point array, nonzero is missing;
-    direction: point or cell array to diffuse along; fixed: point array, nonzero stays.
-    The result is the point array <array>Diffused.
+    Solves u_t = div(D grad u) + lambda chi (f - u), u(0) = f, with no flux across the boundary.
+    D has the eigenvalues AlongDiffusivity and AcrossDiffusivity (default 1), lambda is
+    FidelityWeight (default 0), and chi is 1 where f is known and 0 where it is missing.
+
+    array      the data f: point array (n,) or (n, k) of any numeric type, NaN is missing; default:
+               the active scalars
+    mask       point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
+    direction  point or cell array (n, 3) or (m, 3): the direction that AlongDiffusivity acts along
+    fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
+
+    Useful properties: FWHM (width of the blur in the unit of the coordinates, in place of TimeStep;
+    default 0: off), TimeStep (above 0, default 1, in squared mean edge lengths), NumberOfTimeSteps
+    (default 10), AutomaticFidelity (default off), Mode ("TimeSteps" or "SteadyState").
+
+    The result is the point array <array>Diffused, with the shape of the data.
     """
     return _run(vtkFVMHeatFilter(), mesh, properties, array, mask, direction, fixed)
 
 
 def intrinsic_tv(mesh, array=None, *, mask=None, direction=None, fixed=None, **properties):
-    """Denoise or inpaint a point array and keep its edges: vtkIntrinsicTVFilter.
+    """Denoise or inpaint a point array and preserve its edges (vtkIntrinsicTVFilter).
 
-    The arguments are those of heat(). The result is the point array <array>TV.
+    Solves u_t = div(g(|grad u|) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
+    total variation, 1/sqrt(|grad u|^2 + beta).
+
+    The arguments are those of heat(). Useful properties: FidelityWeight (lambda, default 3; smaller
+    removes more), AutomaticFidelity (default off), EdgeFunction (default "TotalVariation"),
+    FidelityNorm ("L2", or "L1" for salt-and-pepper noise), Mode ("TimeSteps" or "SteadyState").
+
+    The result is the point array <array>TV, with the shape of the data.
     """
     return _run(vtkIntrinsicTVFilter(), mesh, properties, array, mask, direction, fixed)
 
 
 def harmonic_map(mesh, array=None, *, mask=None, direction=None, fixed=None, **properties):
-    """Regularise normals or other unit vectors, or denoise the mesh: vtkHarmonicMapFilter.
+    """Regularise normals or other unit vectors, or denoise the mesh (vtkHarmonicMapFilter).
 
-    array: the vectors, by default the normals, computed where there are none; the other arguments
-    are those of heat(). MoveVertices=True moves the points to fit the normals. The result is the
-    point array <array>Harmonic.
+    Solves u_t = div(g grad u) + u g |grad u|^2 + lambda chi (f - u), u(0) = f/|f|, with
+    g = (|grad u|^2 + beta)^((p - 2)/2); |u| = 1 at every point.
+
+    array: the vectors f, a point array (n, k) with k >= 2, which are normalised first; default: the
+    active normals, which are computed if there are none. The other arguments are those of heat().
+    Useful properties: Exponent (p in [1, 2], default 1: creases are preserved), LineField (u and -u
+    are equal, default off), MoveVertices (move the points to fit the normals, default off).
+
+    The result is the point array <array>Harmonic (n, k); NormalsHarmonic for computed normals.
     """
     return _run(vtkHarmonicMapFilter(), mesh, properties, array, mask, direction, fixed)
 
@@ -54,26 +85,37 @@ def harmonic_map(mesh, array=None, *, mask=None, direction=None, fixed=None, **p
 def turing_texture(
     mesh, initial=None, *, mask=None, direction=None, fixed=None, rates=None, **properties
 ):
-    """Grow a texture on the mesh by reaction and diffusion: vtkTuringTextureFilter.
+    """Grow a texture on the mesh by reaction and diffusion (vtkTuringTextureFilter).
 
-    initial: point array of two components to start from in place of noise; rates: cell array of
-    four components in place of the four diffusion rates; the other arguments are those of heat().
-    The result is the point arrays u1, u2 and Texture.
+    Solves du1/dt = D1 Lap u1 + F(u1, u2), du2/dt = D2 Lap u2 + G(u1, u2), where Lap is the
+    Laplace-Beltrami operator and Kinetics selects F and G.
+
+    initial: point array (n, 2), the initial state; default: the uniform steady state with noise.
+    rates: cell array (m, 4) that replaces DiffusionRate1, DiffusionRateAcross1, DiffusionRate2 and
+    DiffusionRateAcross2. The other arguments are those of heat(). Useful properties: FeatureSize
+    (the wavelength in the unit of the coordinates, default 0: off), DiffusionRate1 and
+    DiffusionRate2 (default 21 and 2.6), NumberOfTimeSteps (default 640), StopTolerance (default 0).
+
+    The results are the point arrays u1, u2 and Texture, (n,) each.
     """
     return _run(
         vtkTuringTextureFilter(), mesh, properties, initial, mask, direction, fixed, rates)
 
 
 def direction_field(mesh, hints=None, **properties):
-    """Make directions on the mesh, the cell array Direction: vtkSurfaceDirectionFieldFilter.
+    """Compute a line field on the mesh (vtkSurfaceDirectionFieldFilter).
 
-    hints: point or cell array of directions to follow, with Method="Hints".
+    hints: point or cell array (n, 3) or (m, 3) of directions, for Method="Hints"; zero or NaN is no
+    hint. Other values of Method: "PrincipalCurvature" (default), "CurvatureAligned", "Smooth".
+
+    The result is the cell array Direction (m, 3): unit vectors whose sign has no meaning, zero in
+    cells that have no direction.
     """
     return _run(vtkSurfaceDirectionFieldFilter(), mesh, properties, None, None, hints)
 
 
 def _run(algorithm, mesh, properties, *arrays):
-    """The output for these properties and input arrays, which stand in the order of their index."""
+    """Runs the filter; `arrays` are the names of input arrays 0, 1, ... (None: not set)."""
     for index, name in enumerate(arrays):
         if name is not None:
             algorithm.SetInputArrayToProcess(index, 0, 0, _association(mesh, index, name), name)
@@ -94,7 +136,7 @@ def _run(algorithm, mesh, properties, *arrays):
 
 
 def _association(mesh, index, name):
-    """Directions may be on points or cells, rates are on cells, all else is on points."""
+    """Directions are on points or cells, rates are on cells, all other arrays are on points."""
     block = mesh
     while isinstance(block, pyvista.MultiBlock):
         block = block[0]

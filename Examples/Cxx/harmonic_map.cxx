@@ -1,20 +1,21 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Denoise a surface by its normals. The normals u diffuse as unit vectors,
+// Denoise a mesh through its normals. The normals u diffuse as unit vectors,
 //
 //     u_t = div(grad u / |grad u|) + u |grad u|,   u(0) = the normals of the noisy surface,
 //
-// which is the harmonic map flow with exponent p = 1: noise goes, creases stay. Then the points
-// move so that the triangles stand upright on the new normals. Times are in mean edge lengths.
+// which is the harmonic map flow with exponent p = 1: it removes noise and preserves creases. Then
+// the points are moved so that the normals of the triangles match the regularised normals. Times
+// are in mean edge lengths.
 //
-//     harmonic_map                a shaken cube, made here
-//     harmonic_map surface.vtp    a surface of your own
+//     harmonic_map                a cube with noise, generated here
+//     harmonic_map surface.vtp    your own surface
 //
-// The result is written to harmonic_map.vtp: its points, and as its normals the regularised ones.
+// The result is written to harmonic_map.vtp: the moved points with the regularised normals.
 //
-// Try next: SetExponent(2.0), which rounds the cube's edges off; SetMoveVertices(false), which
-// changes the shading alone; LineField and another array for directions without a sign.
+// Try next: SetExponent(2.0), which rounds the edges of the cube; SetMoveVertices(false), which
+// changes only the shading; LineField and another array, for directions without a sign.
 
 #include <vtkDataObject.h>
 #include <vtkHarmonicMapFilter.h>
@@ -32,8 +33,8 @@
 #include <cmath>
 #include <iostream>
 
-// A cube of side 2: a sphere blown up to it, and every point moved by up to 0.015.
-vtkSmartPointer<vtkPolyData> ShakenCube()
+// A cube of side 2: a sphere projected onto it, with noise of up to 0.015 in every coordinate.
+vtkSmartPointer<vtkPolyData> NoisyCube()
 {
   vtkNew<vtkSphereSource> source;
   source->SetRadius(1.0);
@@ -68,17 +69,17 @@ vtkSmartPointer<vtkPolyData> Read(const char* file)
 int main(int argc, char* argv[])
 {
   vtkNew<vtkHarmonicMapFilter> harmonic;
-  harmonic->SetInputData(argc > 1 ? Read(argv[1]) : ShakenCube());
+  harmonic->SetInputData(argc > 1 ? Read(argv[1]) : NoisyCube());
   harmonic->SetTimeStep(0.02);
   harmonic->SetNumberOfTimeSteps(10);
   harmonic->MoveVerticesOn();
   harmonic->Update();
 
-  // Output 1 tells how the energy, the total variation of the normals, has fallen.
+  // Output 1, the history, shows that the energy, the total variation of the normals, decreases.
   vtkTable* const history = vtkTable::SafeDownCast(harmonic->GetOutputDataObject(1));
   if (history->GetNumberOfRows() == 0)
   {
-    return 1; // the filter has said why
+    return 1; // the filter has reported the error
   }
   std::cout << "time  energy\n";
   for (vtkIdType row = 0; row < history->GetNumberOfRows(); ++row)

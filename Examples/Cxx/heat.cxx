@@ -5,16 +5,18 @@
 //
 //     u_t = div grad u + lambda (f - u),   u(0) = f,
 //
-// f the noisy data. Diffusion removes noise, which varies from vertex to vertex, long before it
-// changes what is larger; lambda > 0 pulls the result back to the data, so that it comes to rest
-// at a smooth compromise. In natural units, the default, times are in squares of the mean edge
-// length: the same numbers do on every mesh.
+// where f is the noisy data and div grad is the Laplace-Beltrami operator. Diffusion removes noise,
+// which varies from vertex to vertex, long before it changes larger features. The fidelity term
+// (lambda > 0) pulls the result towards the data, so that the solution converges to a smooth
+// compromise. In natural units, the default, times are in squared mean edge lengths: the same
+// numbers suit every mesh.
 //
-//     heat                        noise on a sphere, made here
-//     heat surface.vtp array      data of your own; the result is written to heat.vtp
+//     heat                        noise on a sphere, generated here
+//     heat surface.vtp array      your own data; the result is written to heat.vtp
 //
-// Try next: SetFidelityWeight(0) and a long run, which ends at the mean; SetModeToSteadyState(),
-// which finds the compromise in one solve; SetAutomaticFidelity(true), which finds lambda.
+// Try next: SetFidelityWeight(0) and a long run, which converges to the mean;
+// SetModeToSteadyState(), which computes the limit in one solve; SetAutomaticFidelity(true), which
+// chooses lambda.
 
 #include <vtkDataObject.h>
 #include <vtkDoubleArray.h>
@@ -31,7 +33,7 @@
 
 #include <iostream>
 
-// The height on a unit sphere, with noise up to 0.3.
+// The height on a unit sphere, with noise of up to 0.3.
 vtkSmartPointer<vtkPolyData> NoisySphere(const char* name)
 {
   vtkNew<vtkSphereSource> source;
@@ -72,12 +74,12 @@ int main(int argc, char* argv[])
   heat->SetNumberOfTimeSteps(10);
   heat->Update();
 
-  // Output 0 is the surface with the array `heightDiffused`; output 1 tells how it came about.
+  // Output 0 is the surface with the array `heightDiffused`, output 1 the history of the run.
   vtkPolyData* const result = vtkPolyData::SafeDownCast(heat->GetOutputDataObject(0));
   vtkTable* const history = vtkTable::SafeDownCast(heat->GetOutputDataObject(1));
   if (history->GetNumberOfRows() == 0)
   {
-    return 1; // the filter has said why
+    return 1; // the filter has reported the error
   }
   std::cout << "mean edge length " << heat->GetMeanEdgeLength() << ", unit of time "
             << heat->GetTimeUnit() << "\ntime  integral      energy\n";

@@ -1,21 +1,20 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Take noise off colours on a surface and keep their edges, with intrinsic total variation
+// Denoise colours on a surface and preserve their edges, by intrinsic total variation flow
 //
 //     u_t = div(grad u / |grad u|) + lambda (f - u),   u(0) = f,
 //
-// f the noisy colours: first in ten steps of the paper's scheme, then its steady state directly,
-// the minimum of int |grad u| + lambda/2 int |u - f|^2. The three channels share one norm of the
-// gradient, so that their edges stay in one place.
+// where f is the noisy colours. The program first takes ten time steps of the paper's scheme and
+// then computes the steady state directly, the minimiser of int |grad u| + lambda/2 int |u - f|^2.
+// The three channels share one norm of the gradient, so that their edges stay aligned.
 //
-//     intrinsic_tv                        noise on the patches of a sphere, made here
-//     intrinsic_tv surface.vtp array      data of your own; the result is written to
-//                                         intrinsic_tv.vtp
+//     intrinsic_tv                        noisy patches on a sphere, generated here
+//     intrinsic_tv surface.vtp array      your own data; the result is written to intrinsic_tv.vtp
 //
-// Try next: SetFidelityWeight(6), which takes off less; SetAutomaticFidelity(true), which finds
-// lambda; SetFidelityNormToL1() with FidelityWeight 1.2, for single wrong colours (salt and
-// pepper); a mask as input array 1, whose points are filled.
+// Try next: SetFidelityWeight(6), which removes less; SetAutomaticFidelity(true), which chooses
+// lambda; SetFidelityNormToL1() with FidelityWeight 1.2, for salt-and-pepper noise; a mask as input
+// array 1, whose points are filled in.
 
 #include <vtkDataObject.h>
 #include <vtkIntrinsicTVFilter.h>
@@ -69,10 +68,10 @@ vtkSmartPointer<vtkPolyData> Read(const char* file)
   return reader->GetOutput();
 }
 
-// Prints how the last update came about; false if it did not, and the filter has said why. The
-// energy of time steps is a little lower at the same u: they round |grad u| by Beta, the minimum
-// does not.
-bool Report(const char* what, vtkIntrinsicTVFilter* tv)
+// Prints the energy and the iterations of the last update. Returns false if the update failed; the
+// filter has then reported the error. At the same u the energy of the time steps is slightly lower
+// than that of the minimiser, since they regularise |grad u| by Beta.
+bool Report(const char* title, vtkIntrinsicTVFilter* tv)
 {
   vtkTable* const history = vtkTable::SafeDownCast(tv->GetOutputDataObject(1));
   const vtkIdType rows = history->GetNumberOfRows();
@@ -80,7 +79,7 @@ bool Report(const char* what, vtkIntrinsicTVFilter* tv)
   {
     return false;
   }
-  std::cout << what << ": energy " << history->GetValueByName(0, "Energy").ToDouble() << " -> "
+  std::cout << title << ": energy " << history->GetValueByName(0, "Energy").ToDouble() << " -> "
             << history->GetValueByName(rows - 1, "Energy").ToDouble() << " in "
             << tv->GetNumberOfIterations() << " iterations\n";
   return true;
@@ -102,12 +101,12 @@ int main(int argc, char* argv[])
   }
   tv->SetModeToSteadyState();
   tv->Update();
-  if (!Report("the minimum", tv))
+  if (!Report("the minimiser", tv))
   {
     return 1;
   }
 
-  // The surface with the array `colorsTV`.
+  // Write the surface with the array `colorsTV`.
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(vtkPolyData::SafeDownCast(tv->GetOutputDataObject(0)));
   writer->SetFileName("intrinsic_tv.vtp");

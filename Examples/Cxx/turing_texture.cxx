@@ -5,16 +5,16 @@
 //
 //     du1/dt = D1 Lap u1 + 16 - u1 u2,   du2/dt = D2 Lap u2 + u1 u2 - u2 - 12,
 //
-// from the steady state u1 = u2 = 4 with noise. Where u1 diffuses more than four times as fast as
-// u2 a pattern grows: spots here.
+// from the steady state u1 = u2 = 4 with noise, where Lap is the Laplace-Beltrami operator. If u1
+// diffuses more than four times as fast as u2, a pattern grows; here it consists of spots.
 //
-//     turing_texture                     on a torus, made here
-//     turing_texture surface.vtp 0.2     on a surface of your own, spots 0.2 apart
+//     turing_texture                     on a torus, generated here
+//     turing_texture surface.vtp 0.2     on your own surface, with spots 0.2 apart
 //
 // The result is written to turing_texture.vtp: u1, u2, Texture and the colours TextureColor.
 //
-// Try next: SetDiffusionRate1(16 * 2.6), which makes a labyrinth; vtkSurfaceDirectionFieldFilter in
-// front and SetDiffusionRateAcross2(1.3), which makes stripes; SetKineticsToGrayScott().
+// Try next: SetDiffusionRate1(16 * 2.6), which gives a labyrinth; vtkSurfaceDirectionFieldFilter
+// upstream and SetDiffusionRateAcross2(1.3), which gives stripes; SetKineticsToGrayScott().
 
 #include <vtkNew.h>
 #include <vtkPolyData.h>
@@ -56,8 +56,8 @@ int main(int argc, char* argv[])
   turing->SetDiffusionRate1(5 * 2.6); // five times DiffusionRate2
   turing->SetTimeStep(1.0 / 8.0);
   turing->SetNumberOfTimeSteps(800);
-  turing->SetStopTolerance(0.05); // until the pattern stands
-  turing->MergeCoincidentPointsOn(); // the torus is a rolled-up sheet
+  turing->SetStopTolerance(0.05); // until the pattern is stationary
+  turing->MergeCoincidentPointsOn(); // the source leaves seams in the torus
   turing->SetMergeTolerance(1e-6);
   turing->ColorOutputOn();
   turing->Update();
@@ -67,11 +67,11 @@ int main(int argc, char* argv[])
   const vtkIdType rows = history->GetNumberOfRows();
   if (rows == 0)
   {
-    return 1; // the filter has said why
+    return 1; // the filter has reported the error
   }
   std::cout << "wavelength " << turing->GetWavelength() << ", "
             << turing->GetWavelength() / turing->GetMeanEdgeLength() << " mean edge lengths\n"
-            << "stands after " << rows - 1 << " steps, at time "
+            << "stationary after " << rows - 1 << " steps, at time "
             << history->GetValueByName(rows - 1, "Time").ToDouble() << "\n";
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputDataObject(turing->GetOutputDataObject(0));

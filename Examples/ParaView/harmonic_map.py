@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Denoise a surface by its normals, in ParaView's Python.
+"""Denoise a mesh through its normals, in ParaView's Python.
 
     PV_PLUGIN_PATH=<folder of SurfaceDiffusion.so> pvpython harmonic_map.py [surface.vtp]
 
-The normals diffuse as unit vectors (Exponent 1: noise goes, creases stay), and with MoveVertices
-the points follow them. Written is harmonic_map.png: the surface, the same points in the light of
-the regularised normals, and the points moved.
+The normals diffuse as unit vectors (Exponent 1 removes noise and preserves creases), and with
+MoveVertices the points are moved to fit them. The program writes harmonic_map.png: the surface, the
+same points shaded with the regularised normals, and the moved points.
 
-Try next: Exponent=2, which rounds the edges off; GenerateTimeSteps=1, which lets ParaView's clock
-play the run.
+Try next: Exponent=2, which rounds the edges; GenerateTimeSteps=1, which lets ParaView's clock play
+the run.
 """
 
 import sys
@@ -26,7 +26,7 @@ else:
     surface = WarpByVector(
         Calculator(fine, Function=noise, ResultArrayName="noise"), Vectors=["POINTS", "noise"])
 
-normals = GenerateSurfaceNormals(surface, Splitting=0)  # of the surface as it is, to compare with
+normals = GenerateSurfaceNormals(surface, Splitting=0)  # those of the noisy surface, for comparison
 lighted = HarmonicMapFilter(normals, TimeStep=0.03, NumberOfTimeSteps=10)
 moved = HarmonicMapFilter(normals, TimeStep=0.03, NumberOfTimeSteps=10, MoveVertices=1)
 moved.UpdatePipeline()

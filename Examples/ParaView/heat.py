@@ -4,12 +4,14 @@
 
     PV_PLUGIN_PATH=<folder of SurfaceDiffusion.so> pvpython heat.py [surface.vtp array]
 
-GenerateTimeSteps gives the surface time steps: time 0 shows the data, ParaView's clock plays the
-diffusion, in pvpython as in the window. The colours keep their range, so that ripples fade away
-before what is broad does. Written are heat.png, the start beside the end, and heat.0000.png ..., the animation.
+GenerateTimeSteps publishes time steps: time 0 shows the data, and ParaView's clock plays the
+diffusion, both in pvpython and in the window. The range of the colours is fixed, so that one sees
+the ripples fade before the broad wave. The program writes heat.png, the start beside the end, and
+the animation heat.0000.png, heat.0001.png, ...
 
-Try next: FWHM=0.5 blurs by half a unit of length in place of TimeStep; FidelityWeight=0.05 comes
-to rest near the data; Show(OutputPort(heat, 1), CreateView("XYChartView")) plots the history.
+Try next: FWHM=0.5, which blurs by half a unit of length and replaces TimeStep; FidelityWeight=0.05,
+whose limit is close to the data; Show(OutputPort(heat, 1), CreateView("XYChartView")), which plots
+the history.
 """
 
 import sys
@@ -20,7 +22,7 @@ if len(sys.argv) > 2:
     surface = OpenDataFile(sys.argv[1])
     name = sys.argv[2]
 else:
-    name = "waves"  # a broad one and ripples
+    name = "waves"  # a broad wave and ripples
     waves = "cos(6*coordsY) + 0.5*sin(40*coordsX)*sin(40*coordsZ)"
     sphere = Sphere(ThetaResolution=128, PhiResolution=128)
     surface = Calculator(sphere, Function=waves, ResultArrayName=name)

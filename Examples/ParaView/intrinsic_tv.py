@@ -1,14 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Take noise off data on a surface and keep edges, in ParaView's Python.
+"""Denoise data on a surface and preserve edges, in ParaView's Python.
 
     PV_PLUGIN_PATH=<folder of SurfaceDiffusion.so> pvpython intrinsic_tv.py [surface.vtp array]
 
-Beside the data stand linear diffusion, which smooths edges with the noise, and intrinsic total
-variation as it comes at the first Apply. Written is intrinsic_tv.png.
+The program writes intrinsic_tv.png: the data, the result of linear diffusion, which smooths the
+edges together with the noise, and that of intrinsic total variation with its default settings.
 
-Try next: FidelityWeight=6, which takes off less; Mode="SteadyState", the end of a long run in one
-step; FidelityNorm="L1" for single wrong values; MaskArray=["POINTS", name] fills what is missing.
+Try next: FidelityWeight=6, which removes less; Mode="SteadyState", which computes the limit of a
+long run in one step; FidelityNorm="L1", for outliers; MaskArray=["POINTS", name], which fills in
+missing points.
 """
 
 import sys
@@ -19,7 +20,7 @@ if len(sys.argv) > 2:
     surface = OpenDataFile(sys.argv[1])
     name = sys.argv[2]
 else:
-    name = "patches"  # of heights 0 and 1, under noise
+    name = "patches"  # of heights 0 and 1, with noise
     sphere = Sphere(ThetaResolution=128, PhiResolution=128)
     noise = RandomAttributes(sphere, GeneratePointScalars=1, GenerateCellVectors=0,
                              GeneratePointVectors=0)

@@ -4,14 +4,14 @@
 
     PV_PLUGIN_PATH=<folder of SurfaceDiffusion.so> pvpython turing_texture.py [surface.vtp size]
 
-Two chemicals react and diffuse over the surface, and a pattern of the width FeatureSize grows out
-of noise. On the left the same in all directions; on the right the slow chemical u2 diffuses farther
-along a smooth direction field, which makes stripes along it. GenerateTimeSteps lets ParaView's
-clock play the growth, in pvpython as in the window. Written are turing_texture.png, the end, and
-turing_texture.0000.png ..., the animation.
+Two chemicals react and diffuse over the surface, and a pattern of the wavelength FeatureSize grows
+out of noise. On the left diffusion is isotropic. On the right the slower chemical u2 diffuses
+faster along a smooth direction field, which gives stripes along it. GenerateTimeSteps lets
+ParaView's clock play the growth, both in pvpython and in the window. The program writes the final
+state, turing_texture.png, and the animation turing_texture.0000.png, turing_texture.0001.png, ...
 
-Try next: DiffusionRate1=42, a labyrinth; Kinetics="GrayScott" with AutomaticTimeStep=1; Method
-"CurvatureAligned", stripes that follow the form.
+Try next: DiffusionRate1=42, which gives a labyrinth; Kinetics="GrayScott" with AutomaticTimeStep=1;
+Method="CurvatureAligned", which gives stripes that follow the shape.
 """
 
 import sys

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Linear diffusion (vtkFVMHeatFilter) at work on real surfaces, in four pictures:
+"""Applications of linear diffusion (vtkFVMHeatFilter) on real surfaces, in four pictures:
 
-1. cortical thickness smoothed with a 10 mm FWHM, the medial wall left out;
+1. cortical thickness smoothed with a 10 mm FWHM, the medial wall excluded;
 2. a picture with noise on a scanned mesh denoised, equation (16);
 3. the same picture with a tenth of it missing inpainted, (18);
 4. random noise smeared along a direction field, (4).
 
-Examples/demo.sh fetches the data, builds the library and runs this.
+Examples/demo.sh fetches the data, builds the library and runs this program.
 """
 import argparse
 import sys
@@ -31,7 +31,7 @@ CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
 DATA, MASK, DIRECTION = 0, 1, 2  # the filter's input arrays
 
 LATERAL = dict(view=(-1, 0, 0.1), up=(0, 0, 1))  # a left hemisphere from outside
-MEDIAL = dict(view=(1, 0, 0.1), up=(0, 0, 1))    # and from between the hemispheres
+MEDIAL = dict(view=(1, 0, 0.1), up=(0, 0, 1))    # and from the inside
 VIRIDIS = [(0.27, 0.00, 0.33), (0.23, 0.32, 0.55), (0.13, 0.57, 0.55), (0.37, 0.79, 0.38),
            (0.99, 0.91, 0.14)]
 WHITE_TO_RED = [(0.95, 0.95, 0.95), (0.96, 0.65, 0.51), (0.70, 0.02, 0.15)]
@@ -40,7 +40,7 @@ GREY = (0.70, 0.70, 0.70)
 
 
 class DemoError(Exception):
-    """Something the user can put right; shown without a traceback."""
+    """An error that the user can correct; shown without a traceback."""
 
 
 # ---- running a filter --------------------------------------------------------------------------
@@ -57,8 +57,8 @@ def heat_filter(surface, array, mask=None, direction=None):
 
 
 def run(heat):
-    """Updates the filter under a progress bar and returns its output, which carries the result
-    beside the input's arrays."""
+    """Updates the filter, shows a progress bar, and returns the output: the input with the result
+    as a further array."""
     errors, warnings, width, shown = [], [], 40, 0
 
     def advance(caller, event):
@@ -89,7 +89,7 @@ def run(heat):
 
 
 def report(heat, conserves=True):
-    """Prints what the history table on the second output says of the run."""
+    """Prints a summary of the history table, the second output."""
     history = WrapDataObject(heat.GetOutputDataObject(1)).RowData
     steps = len(history["Step"]) - 1  # the first row is the initial state
     print(f"   {heat.GetOutput().GetNumberOfPoints():,} vertices, "
@@ -97,12 +97,12 @@ def report(heat, conserves=True):
     if conserves:
         totals = [np.asarray(history[name]) for name in history.keys() if name.startswith("Total_")]
         drift = max(abs(total - total[0]).max() / abs(total[0]) for total in totals)
-        print(f"; the sum of area x value is kept to {drift:.0e} of itself", end="")
+        print(f"; the sum of area x value is conserved to {drift:.0e} of itself", end="")
     print()
 
 
 def write_series(heat, folder, name):
-    """One file per published time, and a .pvd file with which ParaView plays them."""
+    """Writes one file per published time, and a .pvd file that ParaView plays."""
     times = heat.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
     (folder / name).mkdir(exist_ok=True)
     entries = []
@@ -122,7 +122,7 @@ def write_series(heat, folder, name):
     print(f"   {len(times)} time steps written")
 
 
-# ---- the four pictures: each returns its panels, the first of them before, the second after ------
+# ---- the four pictures: each returns its panels, the first before, the second after -------------
 
 def smooth_cortex(white, inflated, wall_up_to, output):
     print("1. Cortical thickness smoothed, FWHM 10 mm, the medial wall excluded")
@@ -139,13 +139,13 @@ def smooth_cortex(white, inflated, wall_up_to, output):
     report(heat)
     write_series(heat, output, "cortex")
 
-    print("   and once more with the wall taken for cortex, to see what would leak")
+    print("   and again with the wall taken for cortex, to show the leak that this avoids")
     leaking = heat_filter(white, "thickness")
     leaking.SetFWHM(10)
     leaking.SetNumberOfTimeSteps(16)
     leak = smooth - data.array_of(run(leaking), "thicknessDiffused")
 
-    # Drawn inflated, to see into the folds. Far below the tables' range the wall turns grey.
+    # The inflated surface shows the folds. Values far below the tables' range colour the wall grey.
     shown = data.make_surface(inflated, data.triangles_of(white))
     shown = data.with_arrays(shown, **{
         name: np.where(wall, -100, np.maximum(values, 0))
@@ -185,10 +185,10 @@ def inpaint(surface, side):
     torn = np.where(missing[:, None], np.uint8(255), clean)
     surface = data.with_arrays(surface, clean=clean, missing=missing, torn=torn)
     heat = heat_filter(surface, "torn", mask="missing")
-    heat.HoldKnownValuesOn()  # the known colours are exact: infinite fidelity to them
-    heat.SetModeToSteadyState()  # where it ends up, in one solve
+    heat.HoldKnownValuesOn()  # the known colours are exact: infinite fidelity
+    heat.SetModeToSteadyState()  # the limit for infinite time, in one solve
     result = run(heat)
-    report(heat, conserves=False)  # the holes gain colour
+    report(heat, conserves=False)  # the holes are filled, so the sum changes
     before, after = error_of(result, "torn"), error_of(result, "tornDiffused")
     print(f"   {missing.mean():.1%} missing, root mean square error {before:.1f} -> {after:.1f}"
           " of 255")
@@ -223,7 +223,7 @@ def smear(surface, side):
 
 
 def error_of(surface, name):
-    """Root mean square distance to the clean picture."""
+    """The root mean square difference from the clean picture."""
     difference = data.array_of(surface, name).astype(float) - data.array_of(surface, "clean")
     return np.sqrt(np.mean(difference ** 2))
 
@@ -233,7 +233,7 @@ def error_of(surface, name):
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
     parser.add_argument("--output", type=Path, default=Path("demo-output"), metavar="DIR",
-                        help="where the results go (default: %(default)s)")
+                        help="folder of the results (default: %(default)s)")
     parser.add_argument("--cortex", metavar="DIR",
                         help="fsaverage5: white_left.gii.gz, infl_left.gii.gz, thick_left.gii.gz")
     parser.add_argument("--wall", type=float, default=0, metavar="MM",
@@ -241,14 +241,15 @@ def arguments():
     parser.add_argument("--mesh", metavar="FILE", help="the mesh to paint on: .off or .vtp")
     parser.add_argument("--view", type=float, nargs=3, default=(0.35, 0.12, 1),
                         metavar=tuple("XYZ"),
-                        help="from where the mesh is looked at (default: %(default)s)")
+                        help="direction from the mesh to the camera (default: %(default)s)")
     parser.add_argument("--up", type=float, nargs=3, default=(0, 1, 0), metavar=tuple("XYZ"),
-                        help="what is upwards in its pictures (default: %(default)s)")
+                        help="upward direction in its pictures (default: %(default)s)")
     parser.add_argument("--vertices", type=int, default=500_000, metavar="N",
-                        help="refine the mesh to more than this many (default: %(default)s)")
+                        help="refine the mesh to more vertices than this (default: %(default)s)")
     parser.add_argument("--quick", action="store_true",
-                        help="small, and on made-up surfaces where no files are given")
-    parser.add_argument("--no-pictures", action="store_true", help="compute only; needs no display")
+                        help="small meshes, and generated surfaces if no files are given")
+    parser.add_argument("--no-pictures", action="store_true",
+                        help="compute only; no display is needed")
     parser.add_argument("--gallery", type=Path, metavar="FILE",
                         help="also draw all four in one small PNG file")
     args = parser.parse_args()
@@ -259,7 +260,7 @@ def arguments():
     if args.vertices < 1:
         parser.error("--vertices must be positive")
     if not args.no_pictures and display_missing():
-        parser.error("no display to draw on: run under xvfb-run, or give --no-pictures")
+        parser.error("no display to draw on: run under xvfb-run, or with --no-pictures")
     return args
 
 

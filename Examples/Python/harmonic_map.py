@@ -1,22 +1,23 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Take noise off the normals of a surface: figure 7 of the paper.
+"""Denoise the normals of a surface: figure 7 of the paper.
 
     harmonic_map.py [surface.off or .vtp ...]
 
-Unit vectors are diffused without leaving the unit sphere,
+The normals diffuse as unit vectors by the harmonic map flow
 
     u_t = div(g grad u) + u g |grad u|^2,   u(0) = the noisy normals,   g = |grad u|^(p - 2).
 
-Exponent p = 2 smooths evenly, p = 1 keeps creases: look at the mouth and the eyes. Only the normals
-change, not one point moves; shading shows it. Of each exponent the time with the smallest median
-error is drawn and reported. One picture per surface is written, harmonic_map_<name>.png.
+Exponent p = 2 smooths evenly; p = 1 preserves creases, as the mouth and the eyes show. Only the
+normals change, and with them the shading; the points do not move. For each exponent the program
+draws and reports the time with the smallest median error. It writes one picture per surface,
+harmonic_map_<name>.png.
 
-Without arguments: a head and a camel of libcgal-demo from the folder SURFACEDIFFUSION_MESH_DIR, or
-a made-up surface where that is not set.
+Without arguments it takes a head and a camel of libcgal-demo from the folder
+SURFACEDIFFUSION_MESH_DIR, or a generated surface if that is not set.
 
-Try next: SetExponent(1.5), between the two; UsePaperScheme(), which looks the same and whose energy
-may grow; MoveVerticesOn() on a surface with noisy points, which denoises the surface itself.
+Try next: SetExponent(1.5), between the two; UsePaperScheme(), which looks the same but whose energy
+may increase; MoveVerticesOn() on a surface with noisy points, which denoises the surface itself.
 """
 import os
 import sys
@@ -31,8 +32,8 @@ from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from surfacediffusion import vtkHarmonicMapFilter
 
-# Where to look from, which way is up, and the ball to look at closely: its middle as fractions of
-# the bounding box, its radius as a fraction of the longest side.
+# For each surface: view direction, up direction, and the ball that the close-up shows: its centre
+# as fractions of the bounding box and its radius as a fraction of the longest side.
 VIEWS = {
     "mannequin-devil": ((0.25, -1, 0), (0, 0, 1), (0.5, 0.1, 0.5), 0.2),
     "camel": ((1, 0, 0.1), (0, 1, 0), (0.5, 0.87, 0.86), 0.16),
@@ -51,7 +52,7 @@ def normals_of(surface):
 
 
 def shaded_by(surface, normals):
-    """The surface in one colour, with these normals."""
+    """The surface in one colour, with the given normals."""
     colour = np.tile(np.uint8(CLAY), (surface.GetNumberOfPoints(), 1))
     shaded = with_arrays(surface, Normals=normals, colour=colour)
     shaded.GetPointData().SetActiveNormals("Normals")
@@ -59,12 +60,12 @@ def shaded_by(surface, normals):
 
 
 def errors(normals, clean):
-    """Angles in degrees."""
+    """The angles between two arrays of unit vectors, in degrees."""
     return np.degrees(np.arccos(np.clip((normals * clean).sum(axis=1), -1, 1)))
 
 
 def regularised(surface, exponent, clean):
-    """The normals at the time with the smallest median error, that time, the seconds of it all."""
+    """The normals with the smallest median error, their time, and the run time in seconds."""
     harmonic = vtkHarmonicMapFilter()
     harmonic.SetInputData(surface)
     harmonic.SetExponent(exponent)

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Figures 4, 5 and 6 of Wu, Deng and Chen (IEEE TVCG 14(3), 2008) with photographs on scans: linear
-diffusion beside intrinsic total variation.
+"""Figures 4, 5 and 6 of Wu, Deng and Chen (IEEE TVCG 14(3), 2008) with photographs on scanned
+surfaces: linear diffusion compared with intrinsic total variation.
 
-4. denoising, (16) and (17): a grey photograph with 25 % noise and a coloured one with 50 % on closed
-   surfaces, one with 33 % on an open surface;
+4. denoising, (16) and (17): a grey photograph with 25 % noise and a coloured one with 50 % on
+   closed surfaces, one with 33 % on an open surface;
 5. 20 % and 80 % noise on one closed surface;
 6. inpainting, (18) and (19): scratches across edges on a surface of genus 2, random spots on a
    closed one, both on an open one.
 
 Noise of n % is Gaussian with standard deviation n/100 of the range from black to white. It is
-clipped in the pictures only. Both models are shown at the fidelity weight lambda whose result is
+clipped in the pictures only. Both models are shown with the fidelity weight lambda whose result is
 closest to the clean picture. Examples/figures.sh fetches meshes and photographs, builds the library
-and runs this.
+and runs this program.
 """
 import argparse
 import sys
@@ -40,21 +40,21 @@ ABOVE = dict(view=(0, 1, 0), up=(1, 0, 0))
 
 
 class FigureError(Exception):
-    """Something the user can put right; shown without a traceback."""
+    """An error that the user can correct; shown without a traceback."""
 
 
 @dataclass
 class Example:
-    """A row of a figure: a photograph on a mesh, and what spoils it."""
+    """A row of a figure: a photograph on a mesh, and the damage to it."""
     mesh: str
     photo: str
-    side: dict              # from where the photograph is projected and the mesh seen
-    closeup: tuple          # where its details are, as fractions of width and height
+    side: dict              # view direction of projection and picture
+    closeup: tuple          # centre of the close-up, as fractions of width and height
     closed: bool = True
     noise: float = 0        # standard deviation, as a fraction of the range
     missing: float = 0      # fraction of the points
-    scratches: float = 0.5  # how much of what is missing are scratches; the rest are spots
-    width: float = 4        # of a scratch, in mean edge lengths
+    scratches: float = 0.5  # fraction of the missing points in scratches; others: spots
+    width: float = 4        # width of a scratch, in mean edge lengths
 
 
 FIGURES = {
@@ -72,7 +72,7 @@ FIGURES = {
 # ---- surfaces with pictures ----------------------------------------------------------------------
 
 def painted(example, args):
-    """The row's surface with its picture, `clean`: one value per point, or three."""
+    """The surface of the row with its picture `clean`: one or three values per point."""
     if args.quick:
         surface = data.refined(data.pebble() if example.closed else data.half_pebble(), 4_000)
         clean = data.patches(surface)
@@ -87,7 +87,8 @@ def painted(example, args):
 
 
 def spoiled(surface, example):
-    """The surface with its picture under noise or with `missing` points in white, `spoiled`."""
+    """The surface with the array `spoiled`: the picture with noise, or with `missing` points in
+    white."""
     clean = data.array_of(surface, "clean")
     if example.noise:
         random = np.random.default_rng(1)
@@ -100,7 +101,7 @@ def spoiled(surface, example):
 
 
 def shown(surface, values):
-    """The surface with the values as colours of 8 bits, clipped."""
+    """The surface with the values as clipped 8-bit colours."""
     colours = np.rint(255 * np.clip(values, 0, 1)).astype(np.uint8)
     colours = colours.reshape(len(colours), -1)
     return data.with_arrays(surface, shown=np.broadcast_to(colours, (len(colours), 3)).copy())
@@ -118,15 +119,15 @@ def prepared(model, surface):
 
 
 def linear_model(surface):
-    """(16) or (18), as it ends."""
+    """The steady state of (16) or (18)."""
     model = prepared(vtkFVMHeatFilter(), surface)
     model.SetModeToSteadyState()
-    model.SetSolverToConjugateGradient()  # each lambda is another matrix
+    model.SetSolverToConjugateGradient()  # each lambda gives another matrix
     return model
 
 
 def tv_denoising(surface):
-    """(17), as it ends, found directly."""
+    """The steady state of (17), computed directly."""
     model = prepared(vtkIntrinsicTVFilter(), surface)
     model.SetModeToSteadyState()
     model.SetStopTolerance(2e-3)  # within 0.03 dB of the minimiser
@@ -134,7 +135,8 @@ def tv_denoising(surface):
 
 
 def paper_scheme(model, steps=10):
-    """The same in a few time steps, (11), with colours still in one norm."""
+    """The model with the scheme (11) in a few time steps; colours share one norm of the
+    gradient."""
     model.UsePaperScheme()
     model.SetChannelCouplingToJoint()
     model.SetNumberOfTimeSteps(steps)
@@ -143,7 +145,7 @@ def paper_scheme(model, steps=10):
 
 
 def tv_inpainting(surface):
-    """(19) in large time steps from random numbers, as in the paper."""
+    """(19) with large time steps from random initial values, as in the paper."""
     model = paper_scheme(prepared(vtkIntrinsicTVFilter(), surface), steps=8)
     model.SetInitialFillToNoise()
     model.SetBeta(1e-4)
@@ -152,7 +154,8 @@ def tv_inpainting(surface):
 
 
 def update(model):
-    """Its output; errors as exceptions."""
+    """Updates the model and returns its output; raises FigureError if the model reports an
+    error."""
     errors = []
 
     @calldata_type(VTK_STRING)
@@ -171,9 +174,9 @@ def update(model):
 class Result:
     weight: float      # lambda
     values: np.ndarray
-    psnr: float        # decibels, of the range from black to white
-    changed: float     # root mean square change of what was not missing
-    seconds: float     # of solving
+    psnr: float        # peak signal-to-noise ratio in decibels
+    changed: float     # root mean square change of the known values
+    seconds: float     # run time of the solves
     steps: int
     iterations: float  # per step
 
@@ -203,8 +206,9 @@ def solve(model, weight):
 
 
 def solve_best(model, weight, gain=0):
-    """With the weight whose result is closest to the clean picture: uphill from this one, in
-    factors of 2 and then of 2^(1/4), while PSNR gains more than so much."""
+    """The result with the best PSNR over the fidelity weight: a search from the given weight, in
+    factors of 2 and then of 2^(1/4), which stops when PSNR gains no more than `gain` a factor of
+    2."""
     results = {}
 
     def result(power):
@@ -220,8 +224,8 @@ def solve_best(model, weight, gain=0):
 
 
 def steps_to_result(model):
-    """From each initial fill: the number of steps after which the missing points are, in the root
-    mean square, within 1 % of the range from black to white of where 40 steps take them."""
+    """For each initial fill, the number of steps to convergence: until the root mean square
+    difference from the state after 40 steps, over the missing points, is below 1 % of the range."""
     counts = {}
     model.SetNumberOfTimeSteps(40)
     model.GenerateTimeStepsOn()
@@ -239,7 +243,7 @@ def steps_to_result(model):
     return counts
 
 
-# ---- rows of the figures: each prints its numbers; returns whether TV wins, and titles and values --
+# ---- rows of the figures: each prints its numbers and returns whether TV wins, and pictures ------
 
 def denoise(surface, example):
     linear = solve_best(linear_model(surface), 0.2)
@@ -255,21 +259,21 @@ def denoise(surface, example):
 
 
 def inpaint(surface, example):
-    # The larger lambda the better: none of the damage is in what is known. Its best is where more
-    # of it gains next to nothing.
+    # PSNR increases with lambda, since the known values are undamaged. The search stops where a
+    # larger lambda gains hardly anything.
     linear = solve_best(linear_model(surface), 1, gain=0.1)
     held = solve(linear_model(surface), np.inf)
     model = tv_inpainting(surface)
     tv = solve(model, np.inf)
     steps = steps_to_result(model)
-    print(f"   linear (18)         {linear}; the rest changed by {linear.changed:.2%}")
+    print(f"   linear (18)         {linear}; known values changed by {linear.changed:.2%}")
     print(f"     held              {held}")
-    print(f"   TV (19)             {tv}; the rest changed by {tv.changed:.2%}")
+    print(f"   TV (19)             {tv}; known values changed by {tv.changed:.2%}")
     print("     steps to 1 % from each initial fill: "
           + ", ".join(f"{fill} {count}" for fill, count in steps.items()), flush=True)
     wins = tv.psnr > max(linear.psnr, held.psnr) and tv.changed <= linear.changed / 4
-    what = {1: "scratches", 0: "spots"}.get(example.scratches, "scratches and spots")
-    return wins, [(f"{example.missing:.0%} missing: {what}", data.array_of(surface, "spoiled")),
+    kind = {1: "scratches", 0: "spots"}.get(example.scratches, "scratches and spots")
+    return wins, [(f"{example.missing:.0%} missing: {kind}", data.array_of(surface, "spoiled")),
                   ("Linear (18)", linear.values), ("TV (19)", tv.values)]
 
 
@@ -294,14 +298,15 @@ def panels_of(example, args):
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
     parser.add_argument("--figure", choices=[*map(str, FIGURES), "all"], default="all",
-                        help="which one (default: %(default)s)")
+                        help="which figure to draw (default: %(default)s)")
     parser.add_argument("--output", type=Path, default=Path("paper-figures"), metavar="DIR",
-                        help="where the pictures go (default: %(default)s)")
-    parser.add_argument("--meshes", type=Path, metavar="DIR", help="CGAL's meshes, .off")
-    parser.add_argument("--photos", type=Path, metavar="DIR", help="scikit-image's photographs")
+                        help="folder of the pictures (default: %(default)s)")
+    parser.add_argument("--meshes", type=Path, metavar="DIR", help="folder of CGAL's meshes, .off")
+    parser.add_argument("--photos", type=Path, metavar="DIR",
+                        help="folder of scikit-image's photographs")
     parser.add_argument("--width", type=int, default=560, metavar="N",
-                        help="of a panel, in pixels (default: %(default)s)")
-    parser.add_argument("--quick", action="store_true", help="small, on made-up surfaces")
+                        help="width of a panel, in pixels (default: %(default)s)")
+    parser.add_argument("--quick", action="store_true", help="small, on generated surfaces")
     args = parser.parse_args()
     if not args.quick and not (args.meshes and args.photos):
         parser.error("--meshes and --photos are needed (Examples/figures.sh fetches both), "

@@ -1,10 +1,10 @@
-"""Pictures of coloured surfaces side by side, on a white page."""
+"""Draws coloured surfaces side by side on a white background."""
 import os
 from dataclasses import dataclass
 
 import numpy as np
 
-# Both are imported for what they register with the rendering classes: OpenGL and the fonts.
+# These two imports register OpenGL and the fonts with the rendering classes.
 import vtkmodules.vtkRenderingFreeType  # noqa: F401
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -19,34 +19,34 @@ from vtkmodules.vtkRenderingCore import (
     vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
 
 INK = (0.13, 0.14, 0.16)
-SMALL = 300  # panels of less height have a title only
-ENLARGED = 3  # how much close-ups are
-BESIDE = 0.33  # width of a close-up, which is a square on the panel's right
-FINER = 2  # pictures are drawn this much larger and shrunk, which smooths every edge
+SMALL = 300  # smaller panels, in pixels of height, have a title only
+ENLARGED = 3  # magnification of close-ups
+BESIDE = 0.33  # width of a close-up, a square on the right of the panel
+FINER = 2  # pictures are drawn larger by this factor and shrunk, against aliasing
 
 
 @dataclass
 class Panel:
     surface: vtkPolyData
-    array: str                     # point array: a colour (unsigned char), or a number with `table`
+    array: str                     # point array: colours (unsigned char), or numbers with `table`
     title: str
     note: str = ""                 # a smaller second line
     view: tuple = (0, 0, 1)        # direction from the surface to the camera
     up: tuple = (0, 1, 0)
     table: vtkLookupTable = None
     bar: bool = False              # whether to draw the table's colour bar
-    closeup: tuple = None          # a place, as fractions of width and height, to show enlarged
-    ball: tuple = None             # (centre, radius): fill the panel with this part alone
+    closeup: tuple = None          # point to enlarge, as fractions of width and height
+    ball: tuple = None             # (centre, radius): show only this part
 
 
 def display_missing():
-    """Whether this VTK draws through an X server and there is none."""
+    """Whether this VTK needs an X server to draw and there is none."""
     return vtkRenderWindow().IsA("vtkXOpenGLRenderWindow") and not os.environ.get("DISPLAY")
 
 
 def colour_table(low, high, colours, below=None, steps=256):
-    """Colours at even distances from low to high, blended in so many steps; `below` (if any) is
-    for values under low."""
+    """A table that interpolates the colours, evenly spaced from low to high, in so many steps.
+    `below`, if given, is the colour of values below low."""
     ramp = vtkColorTransferFunction()
     ramp.SetColorSpaceToLab()
     for i, colour in enumerate(colours):
@@ -75,7 +75,7 @@ def actor_of(panel):
     if panel.table:
         mapper.SetLookupTable(panel.table)
         mapper.UseLookupTableScalarRangeOn()
-        mapper.InterpolateScalarsBeforeMappingOn()  # else the table's colours mix across triangles
+        mapper.InterpolateScalarsBeforeMappingOn()  # otherwise colours are interpolated
     actor = vtkActor()
     actor.SetMapper(mapper)
     material = actor.GetProperty()
@@ -87,7 +87,7 @@ def actor_of(panel):
 
 
 def text_of(words, size, height, bold=False):
-    """A line of text, centred; height as a fraction of its panel."""
+    """A centred line of text; height is its position as a fraction of the panel."""
     text = vtkTextActor()
     text.SetInput(words)
     style = text.GetTextProperty()
@@ -133,7 +133,7 @@ def renderer_of(panel, height):
 
 
 def lit_renderer(panel):
-    """Lights and a camera that looks the panel's way."""
+    """A renderer with lights and a camera in the panel's view direction."""
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     renderer.AutomaticLightCreationOff()
@@ -151,8 +151,8 @@ def lit_renderer(panel):
 
 
 def seen(renderer, panel):
-    """Bounds of the surface, or of its ball, as the camera sees it: low and high in its two
-    directions."""
+    """The bounds of the surface, or of its ball, in the two directions of the image: low and
+    high."""
     renderer.ResetCamera()
     matrix = renderer.GetActiveCamera().GetViewTransformMatrix()
     to_eye = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(2)])
@@ -165,8 +165,8 @@ def seen(renderer, panel):
 
 
 def fit(renderer, panel, height):
-    """Fill the panel with the surface as this camera sees it, between the title and the bar and
-    left of the close-up. Returns its scale."""
+    """Fits the surface into the panel, between the title and the bar and to the left of the
+    close-up. Returns the scale."""
     low, high = seen(renderer, panel)
     top = 0.85 if height >= SMALL else 0.9
     bottom = 0.17 if panel.bar and height >= SMALL else 0.04
@@ -182,7 +182,7 @@ def fit(renderer, panel, height):
 
 
 def enlarge(renderer, panel, scale):
-    """Look at the panel's close-up at this scale."""
+    """Points the camera at the panel's close-up at this scale."""
     low, high = seen(renderer, panel)
     camera = renderer.GetActiveCamera()
     camera.SetParallelScale(scale)
@@ -204,7 +204,7 @@ def save_picture(path, panels, columns, panel_size):
         if panel.closeup:
             closeup = lit_renderer(panel)
             closeup.AddActor(actor_of(panel))
-            half = BESIDE / 2 * panel_size[0] / panel_size[1]  # of its height, in panels
+            half = BESIDE / 2 * panel_size[0] / panel_size[1]  # half its height, in panels
             closeup.SetViewport((x + 0.99 - BESIDE) / columns, (y + 0.45 - half) / rows,
                                 (x + 0.99) / columns, (y + 0.45 + half) / rows)
             window.AddRenderer(closeup)

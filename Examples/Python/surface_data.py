@@ -1,4 +1,4 @@
-"""Reads triangulated surfaces and makes the data that the examples put on them."""
+"""Reads triangulated surfaces and generates data on them for the examples."""
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 
 class DataError(Exception):
-    """A file that is missing, damaged or of the wrong kind."""
+    """Raised for a file that is missing, damaged or of the wrong type."""
 
 
 # ---- surfaces ----------------------------------------------------------------------------------
@@ -46,7 +46,7 @@ def array_of(surface, name):
 
 
 def with_arrays(surface, cells=False, **arrays):
-    """A copy of the surface that carries these arrays, on its points or on its cells."""
+    """A shallow copy of the surface with these arrays added to its points or cells."""
     copy = vtkPolyData()
     copy.ShallowCopy(surface)
     wrapped = WrapDataObject(copy)
@@ -61,8 +61,8 @@ def mean_edge_length(surface):
 
 
 def refined(surface, more_than, smooth=False):
-    """Every triangle cut into four until there are more than so many vertices; `smooth` also rounds
-    what the triangles had for corners (Loop's scheme)."""
+    """The surface with every triangle split into four until there are more than this many vertices;
+    `smooth` selects Loop's scheme, which also smooths the surface."""
     times = 0
     while surface.GetNumberOfPoints() * 4 ** times <= more_than:
         times += 1
@@ -78,7 +78,7 @@ def refined(surface, more_than, smooth=False):
 # ---- files -------------------------------------------------------------------------------------
 
 def read_mesh(path):
-    """The triangles of an OFF file, or of a VTP file, which ParaView can save any surface as."""
+    """The triangles of an OFF file or of a VTP file; ParaView saves any surface as VTP."""
     path = Path(path)
     if not path.is_file():
         raise DataError(f"{path}: no such file")
@@ -126,11 +126,11 @@ def read_off(path):
 
 
 def read_photo(path):
-    """A PNG or JPEG file as an array of rows, from below, of 1 or 3 values from 0 to 1."""
+    """A PNG or JPEG file as an array of rows, from the bottom up, of 1 or 3 values from 0 to 1."""
     if not Path(path).is_file():
         raise DataError(f"{path}: no such file")
     content = Path(path).read_bytes()
-    ends = {b"\x89PNG": b"IEND\xaeB`\x82", b"\xff\xd8": b"\xff\xd9"}  # of whole files
+    ends = {b"\x89PNG": b"IEND\xaeB`\x82", b"\xff\xd8": b"\xff\xd9"}  # of complete files
     end = next((ends[start] for start in ends if content.startswith(start)), None)
     reader = vtkImageReader2Factory.CreateImageReader2(str(path))
     if end is None or reader is None:
@@ -164,7 +164,7 @@ def read_gifti(path, count):
 
 def read_cortex(folder, side="left"):
     """fsaverage5, an average human cortex: its white-matter surface with `thickness` in mm, and
-    the same points moved as if the cortex were inflated, to look into its folds."""
+    the points of the inflated surface, which shows the folds."""
     folder = Path(folder)
     points, triangles = read_gifti(folder / f"white_{side}.gii.gz", 2)
     inflated, _ = read_gifti(folder / f"infl_{side}.gii.gz", 2)
@@ -175,7 +175,7 @@ def read_cortex(folder, side="left"):
     return with_arrays(make_surface(points, triangles), thickness=thickness), inflated
 
 
-# ---- made-up surfaces, for a quick run without files ---------------------------------------------
+# ---- generated surfaces, for a quick run without files -------------------------------------------
 
 def pebble():
     """A closed surface with some bumps."""
@@ -198,7 +198,7 @@ def half_pebble():
 
 
 def pebble_cortex():
-    """What read_cortex returns, for a pebble of the size of a brain."""
+    """The same as read_cortex, for a pebble of the size of a brain."""
     small = pebble()
     points = 120 * points_of(small)
     thickness = 2.5 + 0.4 * waves(points) + np.random.default_rng(0).normal(0, 0.3, len(points))
@@ -216,8 +216,8 @@ LEAD = np.array([0.10, 0.10, 0.14])
 
 
 def paint(surface, photo, view, up):
-    """The values that the points get when a photograph, just large enough to cover the surface, is
-    projected onto it against the direction of view, through to its back."""
+    """The values at the points if a photograph, just large enough to cover the surface, is
+    projected onto it along the view direction, onto its front and its back."""
     view = np.array(view, float)
     right = np.cross(up, view)
     upwards = np.cross(view, right)
@@ -226,7 +226,7 @@ def paint(surface, photo, view, up):
     low, high = place.min(axis=0), place.max(axis=0)
     pixels = (np.array(photo.shape[1::-1]) / (high - low)).min()  # per unit of length
 
-    # Where pixels are smaller than triangles their means are drawn.
+    # If pixels are smaller than triangles, blocks of pixels are averaged.
     block = max(1, round(pixels * mean_edge_length(surface)))
     rows, columns = photo.shape[0] // block, photo.shape[1] // block
     photo = photo[:rows * block, :columns * block]
@@ -243,7 +243,7 @@ def paint(surface, photo, view, up):
 
 
 def spread_points(points, count):
-    """Numbers of `count` points far from each other: each the farthest from those before it."""
+    """Farthest-point sampling: the indices of `count` points."""
     chosen = [0]
     distance = np.full(len(points), np.inf)
     while len(chosen) < count:
@@ -253,11 +253,11 @@ def spread_points(points, count):
 
 
 def stained_glass(surface, seed=4):
-    """Paints coloured panes of glass, lighter in the middle, set in lead: 8-bit RGB per point."""
+    """Paints a stained glass window, coloured panes with dark borders: 8-bit RGB per point."""
     points = points_of(surface)
-    panes = round(len(points) ** (1 / 3))  # more of them where there are points to draw them with
+    panes = round(len(points) ** (1 / 3))  # more panes on finer meshes
     random = np.random.default_rng(seed)
-    nearest = np.full((2, len(points)), np.inf)  # distances to the two nearest middles
+    nearest = np.full((2, len(points)), np.inf)  # distances to the two nearest centres
     pane = np.zeros(len(points), int)
     for number, middle in enumerate(spread_points(points, panes)):
         distance = np.linalg.norm(points - points[middle], axis=1)
@@ -273,20 +273,21 @@ def stained_glass(surface, seed=4):
 
 
 def patches(surface):
-    """Paints wide patches of two colours from 0 to 1."""
+    """Paints large patches of two colours, as values from 0 to 1."""
     return GLASS[np.where(waves(points_of(surface)) > 0.3, 8, 4)]
 
 
 def with_noise(colour, fraction, seed=1):
-    """Gaussian noise whose standard deviation is this fraction of 255, clipped to 8 bits."""
+    """The colours with Gaussian noise, whose standard deviation is this fraction of 255, clipped to
+    8 bits."""
     random = np.random.default_rng(seed)
     noisy = colour + random.normal(0, fraction * 255, colour.shape)
     return np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
 
 
 def damage(surface, fraction, scratches=0.5, width=4, seed=2):
-    """Marks this fraction of the points as missing. So much of it are scratches, so many mean edge
-    lengths wide, the rest are spots."""
+    """Marks this fraction of the points as missing. `scratches` is the fraction of them in
+    scratches of the given width (in mean edge lengths); the others are in spots."""
     points, h = points_of(surface), mean_edge_length(surface)
     triangles = triangles_of(surface)
     random = np.random.default_rng(seed)
@@ -296,7 +297,7 @@ def damage(surface, fraction, scratches=0.5, width=4, seed=2):
         away = points - (a + b + c) / 3
         distance = np.linalg.norm(away, axis=1)
         if missing.mean() < scratches * fraction:
-            # Near a plane that cuts the surface upright.
+            # Points close to a plane perpendicular to the surface.
             across = random.normal() * (b - a) + random.normal() * (c - a)
             off = np.abs(away @ across) / np.linalg.norm(across)
             hit = (off < width / 2 * h) & (distance < random.uniform(30, 90) * h)
@@ -307,17 +308,17 @@ def damage(surface, fraction, scratches=0.5, width=4, seed=2):
 
 
 def waves(points):
-    """A smooth function on space whose level lines wind about the surface."""
+    """A smooth function of space whose level lines wind around the surface."""
     low, high = points.min(axis=0), points.max(axis=0)
     x, y, z = (2 * np.pi * (points - low) / (high - low).max()).T
     return np.sin(1.6 * x + 0.7 * z) + np.sin(1.9 * y - 0.4 * x) + np.sin(1.7 * z + 0.6 * y)
 
 
 def along_level_lines(surface, values):
-    """Per triangle the direction n x grad(values), in which the values do not change."""
+    """The direction n x grad(values) in each triangle, along which the values are constant."""
     a, b, c = np.moveaxis(points_of(surface)[triangles_of(surface)], 1, 0)
     u, v, w = values[triangles_of(surface)].T[:, :, None]
-    # Rotating grad(u) by 90 degrees turns the rotated opposite edges of its formula into the edges.
+    # grad(u) is a weighted sum of rotated edges; n x grad(u) is that sum with the edges themselves.
     direction = u * (c - b) + v * (a - c) + w * (b - a)
     length = np.linalg.norm(direction, axis=1, keepdims=True)
     return direction / np.where(length > 0, length, 1)

@@ -4,22 +4,23 @@
 
     turing_texture.py [surface.off or .vtp]
 
-Two chemicals react and diffuse, one much faster than the other, and a pattern grows out of noise:
+Two chemicals react and diffuse, u1 much faster than u2, and a pattern grows out of noise:
 
     du1/dt = D1 Lap u1 + F(u1, u2),   F = 16 - u1 u2,
     du2/dt = D2 Lap u2 + G(u1, u2),   G = u1 u2 - u2 - 12.
 
-Drawn is u1. FeatureSize sets the width of the pattern, the ratio D1/D2 its kind: 5 makes spots, 18
-a labyrinth, 30 a net. Where D2 is larger along a direction than across it, stripes follow the
-direction, here that in which the surface bends most, smoothed. For each texture is told of how many
-pieces {u1 > median} consists and its Euler number (pieces minus holes).
+Lap is the Laplace-Beltrami operator, and the pictures show u1. FeatureSize sets the wavelength of
+the pattern, and the ratio D1/D2 sets its kind: 5 gives spots, 18 a labyrinth, 30 a net. If D2 is
+larger along a direction than across it, stripes follow the direction, here the smoothed direction
+of maximum curvature. For each texture the program prints the number of connected components of {u1
+> median} and their Euler number (components minus holes).
 
-Without arguments: scans of libcgal-demo from the folder SURFACEDIFFUSION_MESH_DIR, or a made-up
-surface where that is not set. Written is turing_texture.png.
+Without arguments it takes scans of libcgal-demo from the folder SURFACEDIFFUSION_MESH_DIR, or a
+generated surface if that is not set. It writes turing_texture.png.
 
-Try next: SetKineticsToGrayScott() and the others, with AutomaticTimeStepOn(); rates per cell
-(input array 4), which let spots grow along the body; GenerateTimeStepsOn(), which keeps the way the
-pattern came.
+Try next: SetKineticsToGrayScott() and the others, with AutomaticTimeStepOn(); rates per cell (input
+array 4), which let spots grow along the body; GenerateTimeStepsOn(), which makes all times of the
+run available.
 """
 import os
 import sys
@@ -41,7 +42,7 @@ from surfacediffusion import vtkSurfaceDirectionFieldFilter, vtkTuringTextureFil
 @dataclass
 class Texture:
     title: str
-    ratio: float        # D1/D2 across the direction, if there is one
+    ratio: float        # D1/D2, across the direction if there is one
     low: tuple          # colours
     high: tuple
     mesh: str
@@ -62,7 +63,7 @@ VERTICES = 40_000
 
 
 def grown(surface, texture, size):
-    """The texture on the surface, with features of this size, and what it took."""
+    """The texture with this wavelength, the number of steps, and their run time in seconds."""
     turing = vtkTuringTextureFilter()
     turing.SetInputData(surface)
     turing.SetFeatureSize(size)
@@ -81,7 +82,7 @@ def grown(surface, texture, size):
         turing.SetDiffusionRateAcross2(2.6)
     turing.SetTimeStep(1 / 8)
     turing.SetNumberOfTimeSteps(800)
-    turing.SetStopTolerance(0.03)  # until the pattern stands
+    turing.SetStopTolerance(0.03)  # until the pattern is stationary
     turing.ColorOutputOn()
     turing.SetLowColor(texture.low)
     turing.SetHighColor(texture.high)
@@ -92,16 +93,16 @@ def grown(surface, texture, size):
     return turing.GetOutput(), steps, seconds.sum()
 
 
-def pieces_and_euler_number(surface, inside):
-    """Of the part of the surface whose corners are all inside."""
+def components_and_euler_number(surface, inside):
+    """Both numbers of the part of the surface that the vertices inside span."""
     faces = triangles_of(surface)
     pairs = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     edges = np.unique(np.sort(pairs, axis=1), axis=0)
     joined = edges[inside[edges].all(axis=1)]
     graph = coo_matrix((np.ones(len(joined)), joined.T), shape=(len(inside), len(inside)))
-    pieces = len(np.unique(connected_components(graph)[1][inside]))
+    components = len(np.unique(connected_components(graph)[1][inside]))
     euler = inside.sum() - len(joined) + inside[faces].all(axis=1).sum()
-    return pieces, euler
+    return components, euler
 
 
 def main():
@@ -119,11 +120,12 @@ def main():
         size = max(12 * mean_edge_length(surface), np.ptp(points_of(surface), axis=0).max() / 28)
         result, steps, seconds = grown(surface, texture, size)
         u1 = array_of(result, "u1")
-        pieces, euler = pieces_and_euler_number(surface, u1 > np.median(u1))
-        print(f"{texture.title:9} on {surface.GetNumberOfPoints()} vertices: {pieces} pieces, Euler "
-              f"number {euler}; {steps} steps in {seconds:.1f} s")
+        components, euler = components_and_euler_number(surface, u1 > np.median(u1))
+        print(f"{texture.title:9} on {surface.GetNumberOfPoints()} vertices: {components} "
+              f"components, Euler number {euler}; {steps} steps in {seconds:.1f} s")
         panels.append(Panel(result, "TextureColor", texture.title,
-                            f"{pieces} piece{'s' * (pieces != 1)}, Euler number {euler}",
+                            f"{components} component{'s' * (components != 1)}, "
+                            f"Euler number {euler}",
                             texture.view, texture.up))
     if display_missing():
         print("no picture: there is no display")

@@ -5,11 +5,11 @@
 
     with_pyvista.py [mesh array]
 
-heat(mesh, array, ...) takes a pyvista.PolyData and gives one back; so do intrinsic_tv(),
-harmonic_map(), turing_texture() and direction_field(). Written is with_pyvista.png, where there is
-a display.
+heat(mesh, array, ...) takes a pyvista.PolyData and returns a new one, as intrinsic_tv(),
+harmonic_map(), turing_texture() and direction_field() do. The program writes with_pyvista.png if
+there is a display.
 
-Try next: intrinsic_tv(mesh, name), which keeps the edges of the data; harmonic_map(mesh,
+Try next: intrinsic_tv(mesh, name), which preserves the edges of the data; harmonic_map(mesh,
 MoveVertices=True), which denoises the mesh itself.
 """
 

@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <stdexcept>
 #include <vector>
 
 #endif
@@ -27,7 +29,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Null where the processes do not talk by MPI.
+/// Null unless the processes communicate by MPI.
 MPI_Comm* Communicator(const Processes& processes)
 {
   vtkMPICommunicator* const communicator = processes.Controller()
@@ -44,9 +46,9 @@ HYPRE_Solver AsSolver(HYPRE_ParCSRMatrix matrix)
 class HypreSolver : public LinearSolver
 {
 public:
-  HypreSolver(std::shared_ptr<const PiecePartition> partition, bool multigrid)
-    : Pieces(std::move(partition))
-    , Comm(*Communicator(this->Pieces->GetProcesses()))
+  HypreSolver(std::shared_ptr<const DomainDecomposition> decomposition, bool multigrid)
+    : Domain(std::move(decomposition))
+    , Comm(*Communicator(this->Domain->GetProcesses()))
     , IsMultigrid(multigrid)
   {
     HYPRE_Init();
@@ -98,7 +100,7 @@ public:
       this->SolveColumn(b, x, k, report, progress.Part(1.0 * k / b.cols(), (k + 1.0) / b.cols()));
       progress.Report((k + 1.0) / b.cols());
     }
-    this->Pieces->UpdateFromOwners(x);
+    this->Domain->UpdateFromOwners(x);
     return report;
   }
 
@@ -111,7 +113,7 @@ public:
       this->ApplyPreconditioner(this->R.Vector, this->Z.Vector);
       this->GetOwned(this->Z, z, k);
     }
-    this->Pieces->UpdateFromOwners(z);
+    this->Domain->UpdateFromOwners(z);
   }
 
 private:
@@ -121,36 +123,37 @@ private:
     HYPRE_ParVector Vector = nullptr;
   };
 
-  /// Rows of the whole: each process has those of the vertices that it owns, one after the other.
+  /// Numbers the rows of the surface's matrix: each process has consecutive ones, of the vertices
+  /// that it owns.
   void NumberRows(Index n)
   {
     Index owned = 0;
     for (Index i = 0; i < n; ++i)
     {
-      owned += this->Pieces->Owns(i) ? 1 : 0;
+      owned += this->Domain->Owns(i) ? 1 : 0;
     }
-    const Processes& processes = this->Pieces->GetProcesses();
-    const std::vector<double> counts = processes.GatherAll({ static_cast<double>(owned) });
-    this->First = 0;
-    for (int p = 0; p < processes.Rank(); ++p)
-    {
-      this->First += static_cast<HYPRE_BigInt>(counts[p]);
-    }
+    const Processes& processes = this->Domain->GetProcesses();
+    const std::vector<Index> counts = processes.GatherAll({ owned });
+    this->First = std::accumulate(
+      counts.begin(), counts.begin() + processes.Rank(), static_cast<HYPRE_BigInt>(0));
     this->Last = this->First + owned - 1;
-    Values numbers(n, 1);
-    HYPRE_BigInt next = this->First;
+    std::vector<vtkIdType> numbers(n, -1);
+    vtkIdType next = this->First;
     for (Index i = 0; i < n; ++i)
     {
-      numbers(i, 0) = this->Pieces->Owns(i) ? static_cast<double>(next++) : -1.0;
+      if (this->Domain->Owns(i))
+      {
+        numbers[i] = next++;
+      }
     }
-    this->Pieces->UpdateFromOwners(numbers);
+    this->Domain->UpdateFromOwners(numbers);
     this->Rows.resize(n);
     this->OwnRows.clear();
     this->OwnVertices.clear();
     for (Index i = 0; i < n; ++i)
     {
-      this->Rows[i] = static_cast<HYPRE_BigInt>(numbers(i, 0));
-      if (this->Pieces->Owns(i))
+      this->Rows[i] = static_cast<HYPRE_BigInt>(numbers[i]);
+      if (this->Domain->Owns(i))
       {
         this->OwnRows.push_back(this->Rows[i]);
         this->OwnVertices.push_back(i);
@@ -168,7 +171,7 @@ private:
       HYPRE_BoomerAMGSetTol(this->Multigrid, 0.0);
       HYPRE_BoomerAMGSetMaxIter(this->Multigrid, 1);
       HYPRE_BoomerAMGSetCoarsenType(this->Multigrid, 10); // HMIS
-      HYPRE_BoomerAMGSetRelaxType(this->Multigrid, 6); // symmetric: as conjugate gradients need
+      HYPRE_BoomerAMGSetRelaxType(this->Multigrid, 6); // symmetric, as conjugate gradients need
       HYPRE_BoomerAMGSetInterpType(this->Multigrid, 6);
       HYPRE_BoomerAMGSetPMaxElmts(this->Multigrid, 4);
       HYPRE_BoomerAMGSetup(this->Multigrid, this->Matrix, this->B.Vector, this->X.Vector);
@@ -184,19 +187,19 @@ private:
     HYPRE_ParCSRPCGSetup(this->Krylov, this->Matrix, this->B.Vector, this->X.Vector);
   }
 
-  /// What hypre calls in each of its iterations: all processes stop together, or none.
+  /// hypre calls it as the preconditioner in each iteration. All processes stop together.
   HYPRE_Int Iterate(HYPRE_ParVector r, HYPRE_ParVector z)
   {
-    constexpr int iterationsPerQuestion = 16;
-    if (++this->Iterations % iterationsPerQuestion == 0)
+    constexpr int iterationsPerCheck = 16;
+    if (++this->Iterations % iterationsPerCheck == 0)
     {
       this->CurrentProgress.Report(
-        1.0 - 1.0 / (1.0 + 0.01 * this->Iterations)); // how many is unknown
-      this->IsAborted = this->Pieces->IsAborted();
+        1.0 - 1.0 / (1.0 + 0.01 * this->Iterations)); // their number is unknown
+      this->IsAborted = this->Domain->IsAborted();
     }
     if (this->IsAborted)
     {
-      return HYPRE_ParVectorSetConstantValues(z, 0.0); // which ends it
+      return HYPRE_ParVectorSetConstantValues(z, 0.0); // ends the iteration
     }
     return this->ApplyPreconditioner(r, z);
   }
@@ -243,7 +246,8 @@ private:
     HYPRE_IJVectorAssemble(this->B.IJ);
     this->SetOwned(this->X, x, k);
 
-    // hypre stops by the norm of its preconditioner: what is asked for is that of the diagonal.
+    // hypre measures the residual in the norm of its preconditioner. The tolerance is meant in that
+    // of the diagonal, so hypre is called again with a smaller one if need be.
     double tolerance = this->Limits.Tolerance;
     int iterations = 0;
     double residual = this->Residual();
@@ -256,7 +260,7 @@ private:
       HYPRE_PCGSetMaxIter(
         this->Krylov, std::max(1, this->Limits.MaximumNumberOfIterations - iterations));
       HYPRE_ParCSRPCGSolve(this->Krylov, this->Matrix, this->B.Vector, this->X.Vector);
-      HYPRE_ClearAllErrors(); // not to converge is told below
+      HYPRE_ClearAllErrors(); // reported below if it has not converged
       if (this->IsAborted)
       {
         throw Aborted();
@@ -325,7 +329,7 @@ private:
     }
   }
 
-  const std::shared_ptr<const PiecePartition> Pieces;
+  const std::shared_ptr<const DomainDecomposition> Domain;
   const MPI_Comm Comm;
   const bool IsMultigrid;
   bool IsAborted = false;
@@ -352,9 +356,9 @@ bool HasDistributedSolver(const Processes& processes)
 }
 
 std::unique_ptr<LinearSolver> MakeDistributedSolver(
-  std::shared_ptr<const PiecePartition> partition, bool multigrid)
+  std::shared_ptr<const DomainDecomposition> decomposition, bool multigrid)
 {
-  return std::make_unique<HypreSolver>(std::move(partition), multigrid);
+  return std::make_unique<HypreSolver>(std::move(decomposition), multigrid);
 }
 
 #else
@@ -365,7 +369,7 @@ bool HasDistributedSolver(const Processes&)
 }
 
 std::unique_ptr<SurfaceDiffusion::LinearSolver> MakeDistributedSolver(
-  std::shared_ptr<const PiecePartition>, bool)
+  std::shared_ptr<const DomainDecomposition>, bool)
 {
   return nullptr;
 }

@@ -3,19 +3,20 @@
 #pragma once
 
 #include "Core/Solvers/LinearSolver.h"
-#include "Distributed/PiecePartition.h"
+#include "Distributed/DomainDecomposition.h"
 
 #include <memory>
 
 namespace SurfaceDiffusion
 {
 
-/// Whether this library was built with an engine for systems that are spread over processes.
+/// Whether this library was built with hypre and the processes communicate by MPI.
 bool HasDistributedSolver(const Processes& processes);
 
-/// Conjugate gradients of hypre on matrices, right-hand sides and solutions as in Reduction,
-/// preconditioned with the diagonal or with BoomerAMG (multigrid). Null without an engine.
+/// hypre's conjugate gradients, preconditioned with the diagonal or with BoomerAMG (multigrid).
+/// Matrices and right-hand sides are accumulated, solutions consistent vectors (see Reduction).
+/// Null if this library was built without hypre.
 std::unique_ptr<LinearSolver> MakeDistributedSolver(
-  std::shared_ptr<const PiecePartition> partition, bool multigrid);
+  std::shared_ptr<const DomainDecomposition> decomposition, bool multigrid);
 
 } // namespace SurfaceDiffusion

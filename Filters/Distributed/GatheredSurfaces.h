@@ -2,66 +2,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Distributed/PointIdentity.h"
+#include "Distributed/PackedPiece.h"
 #include "Distributed/Processes.h"
+#include "Distributed/StitchedSurface.h"
 #include "Distributed/SurfacePieces.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkSmartPointer.h"
 
 #include <cstddef>
 #include <memory>
 #include <new>
-#include <string>
 #include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
 
-/// Surfaces whose pieces lie in several objects or processes, sewn together in process 0, and the
-/// way back. The whole has its points in the order of their ids and its cells in that of their
-/// points, so that it is the same whatever the partition.
+/// Surfaces whose pieces lie in several objects or processes, gathered in process 0, and their
+/// results, scattered back to the pieces. Points and cells of a gathered surface do not depend on
+/// the partition, and so neither do the bits of its results.
 class GatheredSurfaces
 {
 public:
-  GatheredSurfaces();
-  ~GatheredSurfaces();
-
-  /// Sew the pieces together, with the arrays that the filter has been told to process, unless
-  /// nothing has changed in any process. Collective.
+  /// Gathers the pieces, with the arrays that the filter processes, unless nothing has changed in
+  /// any process. Collective.
   void Update(const Processes& processes, const std::vector<SurfacePiece>& pieces, double tolerance,
     vtkAlgorithm* filter);
 
-  /// Process 0: the surfaces, each with an output that is a shallow copy. Elsewhere none.
+  /// Process 0: the surfaces, each with an output that is a shallow copy of it. Elsewhere none.
   std::vector<SurfacePiece> MakeOutputs();
 
-  /// Give the outputs of all pieces what process 0 has added to those of MakeOutputs(): arrays, and
-  /// points that have moved. Collective.
-  void Scatter(const Processes& processes, const std::vector<SurfacePiece>& pieces);
+  /// Adds the arrays and moved points that process 0 has added to the outputs of MakeOutputs() to
+  /// the outputs of all pieces. Collective.
+  void ScatterResults(const Processes& processes, const std::vector<SurfacePiece>& pieces);
 
 private:
-  struct Part;
-  struct Whole;
+  /// The state of the input that this process has contributed.
+  struct Version
+  {
+    double Tolerance;
+    std::vector<PieceVersion> Pieces;
+    bool operator==(const Version& other) const;
+  };
 
-  std::string Key;
-  std::vector<std::unique_ptr<Whole>> Wholes; ///< process 0: one per surface
-  /// Process 0: all parts, by process, within it as its pieces.
-  std::vector<std::pair<const Whole*, std::size_t>> Order;
+  void GatherPieces(const Processes& processes, const std::vector<SurfacePiece>& pieces,
+    double tolerance, vtkAlgorithm* filter);
+  StitchedSurface& FindSurface(std::size_t number);
+
+  std::unique_ptr<Version> Gathered; ///< null if there is nothing to be kept
+  std::vector<std::unique_ptr<StitchedSurface>> Surfaces; ///< process 0: by number, some null
+  /// Process 0: surface and number in it of each piece, as all processes list them.
+  std::vector<std::pair<StitchedSurface*, std::size_t>> Order;
 };
 
-/// An update of a filter on pieces: execute(surfaces), on each surface in one piece, in process 0,
-/// which tells all errors. Collective.
+/// One update of a filter whose input is in pieces: calls execute(surfaces) in process 0 with each
+/// surface in one piece, and scatters the results. Errors are reported there. Collective.
 template <typename Execute>
 void UpdateOfPieces(vtkAlgorithm* filter, const Processes& processes,
   const std::vector<SurfacePiece>& pieces, double tolerance,
   std::unique_ptr<GatheredSurfaces>& gathered, const Execute& execute)
 {
-  const bool first = processes.Rank() == 0;
-  if (!processes.Any(first ? HasSurfaceInPieces(pieces) : HasPoints(pieces)))
+  const bool isFirst = processes.Rank() == 0;
+  if (!processes.Any(isFirst ? HasSurfaceInPieces(pieces) : HasPoints(pieces)))
   {
     gathered.reset();
-    if (first)
+    if (isFirst)
     {
       execute(pieces);
     }
@@ -72,7 +77,7 @@ void UpdateOfPieces(vtkAlgorithm* filter, const Processes& processes,
     gathered = std::make_unique<GatheredSurfaces>();
   }
   gathered->Update(processes, pieces, tolerance, filter);
-  if (first)
+  if (isFirst)
   {
     try
     {
@@ -83,7 +88,7 @@ void UpdateOfPieces(vtkAlgorithm* filter, const Processes& processes,
       vtkErrorWithObjectMacro(filter, << "not enough memory for the whole surface in process 0");
     }
   }
-  gathered->Scatter(processes, pieces);
+  gathered->ScatterResults(processes, pieces);
 }
 
 } // namespace SurfaceDiffusion

@@ -5,14 +5,15 @@
 #include "vtkMultiProcessController.h"
 
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
 
-/// The processes that share a surface; without a controller it is this one alone. All calls but
-/// Rank() and Count() are collective.
+/// The processes of a vtkMultiProcessController; without a controller, this process alone. All
+/// calls but Rank(), Count() and Controller() are collective.
 class Processes
 {
 public:
@@ -23,66 +24,65 @@ public:
 
   int Count() const { return this->Shared ? this->Shared->GetNumberOfProcesses() : 1; }
   int Rank() const { return this->Shared ? this->Shared->GetLocalProcessId() : 0; }
-  /// Null where there is one process.
+  /// Null if there is one process.
   vtkMultiProcessController* Controller() const { return this->Shared; }
 
-  /// Everybody's numbers, one process after the other.
-  std::vector<double> GatherAll(const std::vector<double>& mine) const
+  /// The values of all processes, ordered by rank, in every process. T is a type that
+  /// vtkMultiProcessController sends: char, int, vtkIdType, double.
+  template <typename T>
+  std::vector<T> GatherAll(const std::vector<T>& here) const
   {
-    if (!this->Shared)
-    {
-      return mine;
-    }
-    const auto length = static_cast<vtkIdType>(mine.size());
-    std::vector<vtkIdType> lengths(this->Count()), offsets(this->Count());
-    this->Shared->AllGather(&length, lengths.data(), 1);
-    vtkIdType sum = 0;
-    for (int p = 0; p < this->Count(); ++p)
-    {
-      offsets[p] = sum;
-      sum += lengths[p];
-    }
-    std::vector<double> all(static_cast<std::size_t>(sum));
-    this->Shared->AllGatherV(mine.data(), all.data(), length, lengths.data(), offsets.data());
-    return all;
+    std::vector<vtkIdType> lengths = this->GatherLengths(here.size());
+    return this->GatherAll(here, lengths);
+  }
+  template <typename T>
+  std::vector<T> GatherAll(std::initializer_list<T> here) const
+  {
+    return this->GatherAll(std::vector<T>(here));
   }
 
-  /// Whether it holds in one of the processes.
-  bool Any(bool mine) const
+  /// The same with a vector per process.
+  template <typename T>
+  std::vector<std::vector<T>> GatherPerProcess(const std::vector<T>& here) const
   {
-    int any = mine ? 1 : 0;
+    std::vector<vtkIdType> lengths = this->GatherLengths(here.size());
+    const std::vector<T> all = this->GatherAll(here, lengths);
+    std::vector<std::vector<T>> perProcess;
+    auto begin = all.begin();
+    for (const vtkIdType length : lengths)
+    {
+      perProcess.emplace_back(begin, begin + length);
+      begin += length;
+    }
+    return perProcess;
+  }
+
+  /// True if it is true in one of the processes.
+  bool Any(bool here) const
+  {
+    const int mine = here ? 1 : 0;
+    int any = mine;
     if (this->Shared)
     {
-      const int here = any;
-      this->Shared->AllReduce(&here, &any, 1, vtkCommunicator::MAX_OP);
+      this->Shared->AllReduce(&mine, &any, 1, vtkCommunicator::MAX_OP);
     }
     return any != 0;
   }
 
-  /// The first message that is not empty, for everybody.
-  std::string FirstMessage(const std::string& mine) const
+  /// The message of the process of lowest rank that has one; empty if none has.
+  std::string FirstMessage(const std::string& here) const
   {
-    if (!this->Any(!mine.empty()))
+    for (const auto& text : this->GatherPerProcess(std::vector<char>(here.begin(), here.end())))
     {
-      return std::string();
-    }
-    std::vector<double> letters(mine.begin(), mine.end());
-    letters.push_back(0.0); // ends it
-    std::string first;
-    for (const double letter : this->GatherAll(letters))
-    {
-      if (letter != 0.0)
+      if (!text.empty())
       {
-        first += static_cast<char>(letter);
-      }
-      else if (!first.empty())
-      {
-        break;
+        return std::string(text.begin(), text.end());
       }
     }
-    return first;
+    return std::string();
   }
 
+  /// Every process gets the values of process 0.
   void Broadcast(double* values, vtkIdType count) const
   {
     if (this->Shared)
@@ -92,6 +92,40 @@ public:
   }
 
 private:
+  std::vector<vtkIdType> GatherLengths(std::size_t here) const
+  {
+    const auto length = static_cast<vtkIdType>(here);
+    std::vector<vtkIdType> lengths(this->Count(), length);
+    if (this->Shared)
+    {
+      this->Shared->AllGather(&length, lengths.data(), 1);
+    }
+    return lengths;
+  }
+
+  template <typename T>
+  std::vector<T> GatherAll(const std::vector<T>& here, std::vector<vtkIdType>& lengths) const
+  {
+    if (!this->Shared)
+    {
+      return here;
+    }
+    std::vector<vtkIdType> offsets;
+    vtkIdType sum = 0;
+    for (const vtkIdType length : lengths)
+    {
+      offsets.push_back(sum);
+      sum += length;
+    }
+    std::vector<T> all(static_cast<std::size_t>(sum));
+    if (sum > 0)
+    {
+      this->Shared->AllGatherV(here.data(), all.data(), static_cast<vtkIdType>(here.size()),
+        lengths.data(), offsets.data());
+    }
+    return all;
+  }
+
   vtkMultiProcessController* Shared;
 };
 

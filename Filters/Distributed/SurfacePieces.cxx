@@ -28,15 +28,15 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Appends the number of the surface of each leaf that is there, in the order of iterators. An
-/// absent block counts: other processes may have it.
-void NumberSurfaces(vtkDataObject* data, int& surfaces, std::vector<int>& ofLeaves)
+/// Appends the surface number of each leaf that exists, in the order of vtkCompositeDataIterator.
+/// Absent blocks are counted, since other processes may have them.
+void NumberSurfaces(vtkDataObject* data, int& surfaces, std::vector<int>& leafSurfaces)
 {
   if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
   {
     for (unsigned int b = 0; b < blocks->GetNumberOfBlocks(); ++b)
     {
-      NumberSurfaces(blocks->GetBlock(b), surfaces, ofLeaves);
+      NumberSurfaces(blocks->GetBlock(b), surfaces, leafSurfaces);
     }
     return;
   }
@@ -44,23 +44,23 @@ void NumberSurfaces(vtkDataObject* data, int& surfaces, std::vector<int>& ofLeav
   {
     for (unsigned int m = 0; m < members->GetNumberOfPartitionedDataSets(); ++m)
     {
-      NumberSurfaces(members->GetPartitionedDataSet(m), surfaces, ofLeaves);
+      NumberSurfaces(members->GetPartitionedDataSet(m), surfaces, leafSurfaces);
     }
     return;
   }
-  if (auto* partitions = vtkPartitionedDataSet::SafeDownCast(data)) // vtkMultiPieceDataSet is one
+  if (auto* partitions = vtkPartitionedDataSet::SafeDownCast(data)) // or vtkMultiPieceDataSet
   {
     for (unsigned int p = 0; p < partitions->GetNumberOfPartitions(); ++p)
     {
       if (partitions->GetPartitionAsDataObject(p))
       {
-        ofLeaves.push_back(surfaces);
+        leafSurfaces.push_back(surfaces);
       }
     }
   }
   else if (data)
   {
-    ofLeaves.push_back(surfaces);
+    leafSurfaces.push_back(surfaces);
   }
   ++surfaces;
 }
@@ -105,8 +105,8 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
   compositeOutput->GetFieldData()->ShallowCopy(compositeInput->GetFieldData());
   output->GetInformation()->CopyEntry(input->GetInformation(), vtkDataObject::DATA_TIME_STEP());
   int surfaces = 0;
-  std::vector<int> ofLeaves;
-  NumberSurfaces(input, surfaces, ofLeaves);
+  std::vector<int> leafSurfaces;
+  NumberSurfaces(input, surfaces, leafSurfaces);
   std::size_t number = 0;
   auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(compositeInput->NewIterator());
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
@@ -115,8 +115,8 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
     auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
     copy->ShallowCopy(leaf);
     compositeOutput->SetDataSet(iterator, copy);
-    // Other kinds of composite data (grids of several levels) hold no polydata.
-    add(number < ofLeaves.size() ? ofLeaves[number] : 0, leaf, copy);
+    // Other kinds of composite data (AMR grids) hold no polydata.
+    add(number < leafSurfaces.size() ? leafSurfaces[number] : 0, leaf, copy);
     ++number;
   }
   return pieces;
@@ -136,10 +136,28 @@ bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
   }
   vtkErrorWithObjectMacro(filter,
     "the input is one of " << input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())
-                           << " pieces, and Controller knows no process that has the others; "
-                              "allowed: a controller of all of them, or null where each piece is a "
-                              "surface of its own");
+                           << " pieces, and Controller has no process with the others; allowed: a "
+                              "controller of all processes, or null if each piece is a separate "
+                              "surface");
   return true;
+}
+
+PieceSummary SummarizePieces(const Processes& processes, const std::vector<SurfacePiece>& pieces)
+{
+  std::vector<vtkIdType> all; // surface and number of points of each piece
+  for (const SurfacePiece& piece : pieces)
+  {
+    all.insert(all.end(), { piece.Surface, piece.Input->GetNumberOfPoints() });
+  }
+  all = processes.GatherAll(all);
+  PieceSummary summary;
+  summary.OneSurface = !processes.Any(pieces.size() > 1);
+  for (std::size_t i = 0; i < all.size(); i += 2)
+  {
+    summary.OneSurface = summary.OneSurface && all[i] == all[0];
+    summary.NumberOfPoints += all[i + 1];
+  }
+  return summary;
 }
 
 bool HasPoints(const std::vector<SurfacePiece>& pieces)

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "vtkType.h"
+
 #include <vector>
 
 class vtkAlgorithm;
@@ -14,31 +16,43 @@ class vtkPolyData;
 namespace SurfaceDiffusion
 {
 
-/// A vtkPolyData of the input, and its copy in the output.
+class Processes;
+
+/// A vtkPolyData of the input and its copy in the output.
 struct SurfacePiece
 {
-  int Surface; ///< pieces with one number, in all processes, are pieces of one surface
+  int Surface; ///< pieces with the same number, in all processes, belong to one surface
   vtkPolyData* Input;
   vtkPolyData* Output;
 };
 
-/// Make the output objects of a filter that takes polydata and composite data: port 0 of the
-/// input's type. False without input.
+/// Makes the output object at port 0 of a filter that accepts polydata and composite data: one of
+/// the input's type. False without input.
 bool MakeOutputObject(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
-/// Make the output a shallow copy of the input, down to the blocks, and list the polydata. Blocks
-/// of multi-block data and members of collections are surfaces of their own, the partitions of a
-/// vtkPartitionedDataSet and the pieces of a vtkMultiPieceDataSet are pieces of one.
+/// Makes the output a shallow copy of the input, blocks included, and lists the polydata. Blocks of
+/// multi-block data and members of collections are separate surfaces. The partitions of a
+/// vtkPartitionedDataSet and the pieces of a vtkMultiPieceDataSet are pieces of one surface.
 std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* output);
 
-/// Whether the input is one of several pieces of which this process can see no other; tells the
-/// error then. whole: the user says that each is a surface.
+/// Whether the input is one of several pieces and the controller gives no access to the others.
+/// This is reported as an error. whole: the user states that each piece is a separate surface.
 bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
   vtkMultiProcessController* controller, bool whole);
 
+/// The pieces of all processes together.
+struct PieceSummary
+{
+  bool OneSurface = true; ///< all belong to one surface, and no process has several
+  vtkIdType NumberOfPoints = 0;
+};
+
+/// Collective.
+PieceSummary SummarizePieces(const Processes& processes, const std::vector<SurfacePiece>& pieces);
+
 bool HasPoints(const std::vector<SurfacePiece>& pieces);
 
-/// Whether points of several pieces belong to one surface.
+/// Whether one of the surfaces has several pieces with points.
 bool HasSurfaceInPieces(const std::vector<SurfacePiece>& pieces);
 
 } // namespace SurfaceDiffusion

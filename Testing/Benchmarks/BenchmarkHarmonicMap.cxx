@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Ten steps of harmonic map flow from noisy normals (about 14 degrees), on icospheres of
-// 10 4^s + 2 vertices, for both exponents of the paper and each scheme. The counters: mean angle to
-// the clean normals before and after, iterations, energy left. And the fit of vertices to normals.
+// 10 4^s + 2 vertices, for both exponents of the paper and each scheme. The counters are the mean
+// angle to the clean normals before and after, the iterations, and the remaining energy. Another
+// benchmark measures vertex updating from normals.
 
 #include "HarmonicMaps.h"
 #include "Meshes.h"
@@ -80,20 +81,20 @@ void FitVertices(benchmark::State& state)
 {
   const NoisyNormals normals(static_cast<int>(state.range(0)));
   const TriangleMesh& mesh = normals.Operators->Mesh();
-  Points shaken = normals.Sphere.Vertices;
+  Points noisy = normals.Sphere.Vertices;
   const double h = MeanEdge(mesh) * mesh.LengthUnit();
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
     for (int k = 0; k < 3; ++k)
     {
-      shaken(i, k) += 0.2 * h * (2.0 * UniformRandom(5, k, i) - 1.0);
+      noisy(i, k) += 0.2 * h * (2.0 * UniformRandom(5, k, i) - 1.0);
     }
   }
   for (auto _ : state)
   {
     VertexMotion motion;
     benchmark::DoNotOptimize(
-      UpdateVerticesFromNormals(mesh, shaken, normals.Clean, 5.0 * h, motion).data());
+      UpdateVerticesFromNormals(mesh, noisy, normals.Clean, 5.0 * h, motion).data());
     state.counters["volume_after"] = motion.VolumeAfter / (4.0 / 3.0 * Pi);
   }
 }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What each stage of linear diffusion costs, on one scan in sizes that grow by four. ns/vertex
-// shows how a stage grows; GB/s, of the bytes it cannot do without, is to be held against Triad.
-// The last benchmarks run the whole filter beside the same steps in the core, both with the
-// history. BenchmarkSolver.cxx has the linear solvers.
+// The cost of each stage of linear diffusion, on one scanned surface with sizes that grow by a
+// factor of four. ns/vertex shows the scaling of a stage. GB/s counts the minimum memory traffic
+// and is to be compared with Triad. The last benchmarks run the whole filter and the same steps in
+// the core, both with the history. BenchmarkSolver.cxx has the linear solvers.
 
 #include "Core/Models/Trajectory.h"
 #include "Core/Solvers/SolverChoice.h"
@@ -27,14 +27,14 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-constexpr int NumberOfSteps = 100; // of whole runs
+constexpr int NumberOfSteps = 100; // steps of a whole run
 
 const Surface& SurfaceOf(const benchmark::State& state)
 {
   return SurfaceOfLevel(static_cast<int>(state.range(0)));
 }
 
-/// The memory's bandwidth: a = b + s c.
+/// Memory bandwidth: a = b + s c.
 void Triad(benchmark::State& state)
 {
   const Eigen::Index n = state.range(0) * 1024 * 1024 / 24;
@@ -72,7 +72,7 @@ void PatternAndSlots(benchmark::State& state)
   CountVertices(state, system.Mesh->NumberOfVertices());
 }
 
-/// K and the areas, once mesh and pattern stand.
+/// Cotan weights and assembly of M + dt K, for a given mesh and pattern.
 void CoefficientsAndFill(benchmark::State& state)
 {
   HeatSystem system(SurfaceOf(state), 1.0);
@@ -85,7 +85,7 @@ void CoefficientsAndFill(benchmark::State& state)
   CountVertices(state, system.Mesh->NumberOfVertices());
 }
 
-/// The values of a matrix anew, as for another time step.
+/// Reassembly of the matrix with given weights, as for another time step.
 void Refill(benchmark::State& state)
 {
   HeatSystem system(SurfaceOf(state), 1.0);
@@ -95,7 +95,7 @@ void Refill(benchmark::State& state)
     benchmark::DoNotOptimize(system.Matrix.valuePtr());
   }
   CountVertices(state, system.Mesh->NumberOfVertices());
-  // coefficients; list of corners and slots; areas, diagonal slots; the matrix's values
+  // cotan weights; lists of corners and slots; areas and diagonal slots; the values of the matrix
   CountBytes(state,
     24.0 * system.Mesh->NumberOfTriangles() + 36.0 * system.Mesh->NumberOfTriangles() +
       12.0 * system.Mesh->NumberOfVertices() + 8.0 * static_cast<double>(system.Matrix.nonZeros()));
@@ -129,7 +129,7 @@ std::unique_ptr<LinearDiffusion> MakeRun(
     MakeSolver(SolverMethod::Automatic, task));
 }
 
-/// A step after the first, of 1 h^2.
+/// A step of 1 h^2 after the first one.
 void Step(benchmark::State& state, Scheme scheme)
 {
   const Surface& s = SurfaceOf(state);
@@ -142,8 +142,8 @@ void Step(benchmark::State& state, Scheme scheme)
   CountVertices(state, s.NumberOfVertices());
 }
 
-/// The steps to 140 h^2 at which the error of a wave with noise is 1e-3 of what is left of it, once
-/// the factor stands.
+/// The steps to time 140 h^2, without the factorisation, with the smallest number of steps for
+/// which the relative error is at most 1e-3. The initial state is a wave with noise.
 void ToAThousandth(benchmark::State& state, Scheme scheme)
 {
   const auto assembler = MakeAssembler(SurfaceOf(state));
@@ -210,7 +210,7 @@ vtkSmartPointer<vtkPolyData> MakePolyData(const Surface& s)
   return surface;
 }
 
-/// From polydata to polydata.
+/// The whole filter, from polydata to polydata.
 void Filter100Steps(benchmark::State& state)
 {
   const Surface& s = SurfaceOf(state);
@@ -225,7 +225,7 @@ void Filter100Steps(benchmark::State& state)
   CountVertices(state, s.NumberOfVertices());
 }
 
-/// The same in the core: from points and triangles to values and history.
+/// The same steps in the core, from points and triangles to values and history.
 void Core100Steps(benchmark::State& state)
 {
   const Surface& s = SurfaceOf(state);
@@ -239,7 +239,7 @@ void Core100Steps(benchmark::State& state)
   CountVertices(state, s.NumberOfVertices());
 }
 
-/// Another time of a run that has been to its end.
+/// A seek to another time of a completed run.
 void TimeSeek(benchmark::State& state)
 {
   const Surface& s = SurfaceOf(state);
@@ -257,13 +257,13 @@ void TimeSeek(benchmark::State& state)
   CountVertices(state, s.NumberOfVertices());
 }
 
-// CPU time of the process: part of the work is done on threads.
+// CPU time of the process, since part of the work is done on other threads.
 void OnLevels(benchmark::internal::Benchmark* b)
 {
   b->ArgName("level")->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 }
 
-void OnAllLevels(benchmark::internal::Benchmark* b) // the last is too large for a factor
+void OnAllLevels(benchmark::internal::Benchmark* b) // the largest is too large for a factorisation
 {
   OnLevels(b);
   b->Arg(4);

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the linear solvers cost in a backward Euler step dt = c h^2 that starts from noise: SetUp
-// makes the factor or the hierarchy, Solve is one solution to 1e-10 for so many columns. The number
-// behind c is ten times c. CompareSolvers.cxx looks at whole runs.
+// The cost of the linear solvers in a backward Euler step dt = c h^2 that starts from noise. SetUp
+// computes the factor or the multigrid hierarchy. Solve is one solve to 1e-10 with the given number
+// of columns. The number after "c:" is 10 c. CompareSolvers.cxx measures whole runs.
 
 #include "HeatSystem.h"
 
@@ -35,7 +35,7 @@ void SetUp(benchmark::State& state, SolverMethod method)
   CountVertices(state, system.Mesh->NumberOfVertices());
 }
 
-/// The values of the matrix have changed, its pattern has not.
+/// Set-up for new values of the matrix with an unchanged pattern.
 void SetUpAgain(benchmark::State& state, SolverMethod method)
 {
   HeatSystem system = MakeSystem(state);
@@ -68,8 +68,8 @@ void Solve(benchmark::State& state, SolverMethod method)
   state.counters["iterations"] = iterations;
   if (method == SolverMethod::ConjugateGradient)
   {
-    // Beside the product: x, r, p and A p read, x and r written; r, the diagonal and p read, p
-    // written.
+    // In addition to the product: x, r, p and A p are read, x and r written; then r, the diagonal
+    // and p are read, p written.
     const double n = system.Mesh->NumberOfVertices();
     const double columns = static_cast<double>(u.cols());
     CountBytes(
@@ -86,7 +86,7 @@ Benchmark* OnProcessTime(Benchmark* b, std::vector<std::string> names)
 }
 
 const Numbers Levels = { 0, 1, 2, 3 };
-constexpr std::int64_t Largest = 4; // too large for a factor
+constexpr std::int64_t Largest = 4; // too large for a factorisation
 
 void SetUpOnLevels(Benchmark* b)
 {
@@ -105,7 +105,7 @@ Benchmark* SolveOnLevels(Benchmark* b, Numbers tenths)
     ->ArgsProduct({ Levels, std::move(tenths), { 1, 3 } });
 }
 
-void SolveOnShortAndLongSteps(Benchmark* b) // all others take as long as the last
+void SolveOnShortAndLongSteps(Benchmark* b) // all further ones take as long as the last one
 {
   SolveOnLevels(b, { 1, 1000 });
 }
@@ -117,10 +117,10 @@ void SolveOnAllLevels(Benchmark* b)
 
 } // namespace
 
-BENCHMARK_CAPTURE(SetUp, Direct, SolverMethod::Factorization)->Apply(SetUpOnLevels);
-BENCHMARK_CAPTURE(SetUpAgain, Direct, SolverMethod::Factorization)->Apply(SetUpOnLevels);
+BENCHMARK_CAPTURE(SetUp, Direct, SolverMethod::Direct)->Apply(SetUpOnLevels);
+BENCHMARK_CAPTURE(SetUpAgain, Direct, SolverMethod::Direct)->Apply(SetUpOnLevels);
 BENCHMARK_CAPTURE(SetUp, Multigrid, SolverMethod::Multigrid)->Apply(SetUpOnAllLevels);
-BENCHMARK_CAPTURE(Solve, Direct, SolverMethod::Factorization)->Apply(SolveOnShortAndLongSteps);
+BENCHMARK_CAPTURE(Solve, Direct, SolverMethod::Direct)->Apply(SolveOnShortAndLongSteps);
 BENCHMARK_CAPTURE(Solve, Multigrid, SolverMethod::Multigrid)->Apply(SolveOnAllLevels);
 BENCHMARK_CAPTURE(Solve, ConjugateGradient, SolverMethod::ConjugateGradient)
   ->Apply(SolveOnAllLevels);

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What denoising by total variation costs, on icospheres of 10 4^s + 2 vertices with a pattern of
-// 0 and 1 under 25 % noise, lambda = 3 in natural units: the minimiser to a given duality gap, and
-// a step of the paper's scheme beside a step of the heat equation with a new factor. The counter
-// Gap is what was reached, Iterations what it took.
+// The cost of denoising by total variation, on icospheres of 10 4^s + 2 vertices with a pattern of
+// 0 and 1 and 25 % noise, with lambda = 3 in natural units: the minimiser to a given duality gap,
+// and a step of the paper's scheme compared with a step of the heat equation with a new factor. The
+// counter Gap is the duality gap that was reached, Iterations the number of iterations.
 
 #include "Meshes.h"
 
@@ -80,7 +80,7 @@ BENCHMARK(MinimizeToGap)
   ->ArgsProduct({ { 6, 7 }, { 3, 5 }, { 1, 3 } })
   ->Unit(benchmark::kMillisecond);
 
-/// Later steps, where most of the noise is gone and systems are hardest.
+/// Later steps, when most of the noise is removed and the systems are hardest.
 void LaggedStep(benchmark::State& state)
 {
   const NoisyPattern pattern(static_cast<int>(state.range(0)), 1);

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Textures of (24) with the default rates, on icospheres of 10 4^s + 2 vertices and, where the
-// build knows their folder, on scanned meshes cut into four s times.
+// Textures of (24) with the default rates, on icospheres of 10 4^s + 2 vertices and, if the build
+// has their folder, on scanned meshes that are subdivided s times.
 //
-// Step: one time step, beside the triangular solves in it (two per stage); step_over_solves is
-// their ratio. Stands: from noise until the pattern stands, with time steps of 1/n, u1 and u2 side
-// by side; explicit_steps is what an explicit scheme would need for the same time on that mesh.
+// Step: one time step compared with the triangular solves in it (two per stage); step_over_solves
+// is their ratio. Stands: from noise until the pattern is stationary, with time steps of 1/n and
+// concurrent solves for u1 and u2; explicit_steps is the number of steps that an explicit scheme
+// would need for the same time on that mesh.
 
 #include "MeshFiles.h"
 #include "Meshes.h"
@@ -33,7 +34,7 @@ using Settings = ReactionDiffusion::Settings;
 const char* const Meshes[] = { "", "refined_elephant", "bunny00",
   "armadillo" }; // the first: spheres
 
-/// Every triangle cut into four.
+/// The surface with every triangle split into four.
 Surface Refined(const Surface& s)
 {
   std::map<std::pair<Index, Index>, Index> middles;
@@ -65,7 +66,7 @@ struct Texture
 {
   std::shared_ptr<const Assembler> Operators;
   CornerWeights Coefficients;
-  double Square; ///< of the mean edge length
+  double Square; ///< square of the mean edge length
 
   Texture(int mesh, int subdivisions)
   {
@@ -92,8 +93,8 @@ struct Texture
       PointData::FromValues(NoisySteadyState(Reaction(), 0.1, 0, ids)), settings);
   }
 
-  /// The largest eigenvalue of A^-1 K, by power iteration: explicit steps must stay below 2 over
-  /// it times the larger rate.
+  /// The largest eigenvalue of M^-1 K, by power iteration. Explicit time steps must be smaller than
+  /// 2 over the product of this eigenvalue and the larger rate.
   double LargestEigenvalue() const
   {
     const TriangleMesh& mesh = this->Operators->Mesh();
@@ -113,7 +114,7 @@ struct Texture
   }
 };
 
-/// A solver that takes the time of its solves.
+/// A solver that measures the time of its solves.
 class TimedSolver : public LinearSolver
 {
 public:
@@ -169,7 +170,7 @@ void Step(benchmark::State& state)
   Settings settings;
   settings.TimeScheme = static_cast<ReactionDiffusion::Scheme>(state.range(2));
   const auto model = texture.MakeModel(settings, { solvers[0], solvers[1] });
-  for (int step = 0; step < 48; ++step) // until the pattern has appeared
+  for (int step = 0; step < 48; ++step) // until the pattern appears
   {
     model->Advance(ProgressMonitor());
   }
@@ -201,7 +202,6 @@ void Stands(benchmark::State& state)
   Settings settings;
   settings.TimeStep = 1.0 / static_cast<double>(state.range(2));
   settings.StopTolerance = 0.03;
-  settings.SideBySide = true;
   double steps = 0.0;
   for (auto _ : state)
   {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// CompareSolvers [<largest level>]: what each solver would take for runs of so many backward Euler
-// steps of c h^2 from noise, and which one Automatic takes. Prints a line of JSON per size, c and
-// number of steps: CPU seconds per method, Automatic's method and its time over the best. Sizes:
-// SurfaceOfLevel(); 2 (178,000 vertices) unless given.
+// CompareSolvers [<largest level>] compares the solver that Automatic selects with all solvers, for
+// runs of several backward Euler steps of c h^2 from noise. It prints a line of JSON per size, c
+// and number of steps: CPU seconds per method, the selected method, and its time over that of the
+// fastest. The sizes are those of SurfaceOfLevel(), by default up to level 2 (178,000 vertices).
 
 #include "HeatSystem.h"
 #include "ProcessTime.h"
@@ -22,11 +22,11 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-constexpr SolverMethod Methods[] = { SolverMethod::Factorization, SolverMethod::ConjugateGradient,
+constexpr SolverMethod Methods[] = { SolverMethod::Direct, SolverMethod::ConjugateGradient,
   SolverMethod::Multigrid };
 constexpr const char* Names[] = { "Direct", "ConjugateGradient", "Multigrid" };
 
-/// Seconds of the preparation and of each step: later steps cost as much as the last one measured.
+/// Seconds of the set-up and of each step. Steps after the last measured one cost as much as it.
 struct Cost
 {
   double SetUp = 0.0;
@@ -62,7 +62,7 @@ Cost Measure(const HeatSystem& system, SolverMethod method)
   return cost;
 }
 
-/// The cheaper of two measurements, one by one: other work on the machine only adds.
+/// The minimum of two measurements, entry by entry, since other work on the machine only adds time.
 Cost Least(const Cost& a, const Cost& b)
 {
   Cost least = a;

@@ -4,10 +4,10 @@
 // HeatStep --task heat --mesh <m.off> --t <t> --u0 <file> --out <file>
 //          [--solver Automatic|Direct|ConjugateGradient|Multigrid]
 //
-// One implicit step (M + t K) u = M u0 to a relative residual of 1e-8. u0 and out: raw doubles, one
-// per vertex of the mesh. Prints a line of JSON: CPU seconds of mesh and matrix (assembly_s), of
-// the factor or hierarchy (setup_s) and of the solution (solve_s), the most memory used on top of
-// the mesh (peak_mib) and which solver it was (version).
+// One backward Euler step (M + t K) u = M u0 to a relative residual of 1e-8. The files u0 and out
+// contain raw doubles, one per vertex of the mesh. The program prints a line of JSON: CPU seconds
+// of mesh and matrix (assembly_s), of the factor or multigrid hierarchy (setup_s) and of the solve
+// (solve_s), the peak memory in addition to the mesh (peak_mib), and the solver (version).
 
 #include "HeatSystem.h"
 #include "ProcessTime.h"
@@ -54,7 +54,7 @@ void Write(const std::string& path, const Values& values)
   }
 }
 
-/// MiB of a line of /proc/self/status; 0 where there is none.
+/// The value of a line of /proc/self/status in MiB; 0 if there is no such line.
 double Memory(const std::string& key)
 {
   std::ifstream file("/proc/self/status");
@@ -77,7 +77,7 @@ SolverMethod MethodOf(const std::string& name, const SolverTask& task)
       return ChooseSolver(static_cast<SolverMethod>(m), task).Method;
     }
   }
-  throw std::runtime_error("no solver is called " + name);
+  throw std::runtime_error("unknown solver " + name);
 }
 
 void Run(std::map<std::string, std::string> options)
@@ -89,7 +89,7 @@ void Run(std::map<std::string, std::string> options)
   const Surface s = ReadOff(options["--mesh"]);
   const Vector start = Read(options["--u0"], s.NumberOfVertices());
   const double time = std::stod(options["--t"]);
-  std::ofstream("/proc/self/clear_refs") << 5; // the peak counts from here
+  std::ofstream("/proc/self/clear_refs") << 5; // resets the peak
   const double memory = Memory("VmRSS");
 
   double before = Now();

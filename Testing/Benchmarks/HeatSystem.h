@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-/// What the benchmarks of linear diffusion run on.
+/// Surfaces and matrices of the benchmarks of linear diffusion.
 namespace SurfaceDiffusion::Testing
 {
 
-/// Every edge halved, `times` times; the surface stays where it is.
+/// The surface with every edge bisected, `times` times. The geometry is unchanged.
 inline Surface Subdivided(Surface s, int times)
 {
   for (; times > 0; --times)
@@ -67,8 +67,8 @@ inline Surface Subdivided(Surface s, int times)
   return s;
 }
 
-/// One scan in sizes that grow by four. Level 0 to 4: 11,112; 44,460; 177,852; 711,420; 2,845,692
-/// vertices; without mesh files, icospheres of 10,242 to 2,621,442.
+/// One scanned surface with sizes that grow by a factor of four. Levels 0 to 4 have 11,112; 44,460;
+/// 177,852; 711,420; 2,845,692 vertices. Without mesh files: icospheres of 10,242 to 2,621,442.
 inline const Surface& SurfaceOfLevel(int level)
 {
   static std::map<int, Surface> surfaces;
@@ -83,7 +83,7 @@ inline const Surface& SurfaceOfLevel(int level)
   return found->second;
 }
 
-/// Everything a backward Euler step needs, dt = number h^2 with the mean edge length h.
+/// The system of a backward Euler step with dt = number h^2, where h is the mean edge length.
 struct HeatSystem
 {
   std::shared_ptr<const TriangleMesh> Mesh;
@@ -91,7 +91,7 @@ struct HeatSystem
   CornerWeights Coefficients;
   SparseMatrix Matrix;
 
-  explicit HeatSystem(const Surface& s) // Matrix is all zero yet
+  explicit HeatSystem(const Surface& s) // the values of Matrix are zero
     : Mesh(MakeMesh(s))
     , Operators(std::make_shared<Assembler>(this->Mesh))
     , Coefficients(CotanWeights(*this->Mesh))
@@ -125,7 +125,7 @@ inline void CountVertices(benchmark::State& state, double vertices)
     vertices * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// What an iteration has to move to and from memory at the least.
+/// Counts the minimum memory traffic of an iteration.
 inline void CountBytes(benchmark::State& state, double bytes)
 {
   state.counters["bytes"] = bytes;
@@ -133,7 +133,8 @@ inline void CountBytes(benchmark::State& state, double bytes)
     benchmark::Counter(bytes * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// Of a product with `columns` columns: the matrix once, each vector once.
+/// The minimum memory traffic of a product with `columns` columns: the matrix once, each vector
+/// once.
 inline double BytesOfProduct(const SparseMatrix& matrix, double columns)
 {
   return 12.0 * static_cast<double>(matrix.nonZeros()) +

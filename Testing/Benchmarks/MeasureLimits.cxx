@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How long an abort can go unanswered and how much memory a run takes, for every filter on a torus
-// of a million vertices (or as many as the first argument says, squared): the longest time between
-// two questions whether to go on, when in the run that was, and the peak of memory per vertex above
-// what the input takes. Where other work runs on the machine, the CPU time between two questions,
-// of all threads together, tells more than the time on the clock.
+// The response time to an abort and the memory of a run, for every filter on a torus of a million
+// vertices (or of the square of the first argument): the longest time between two checks for an
+// abort, the progress at which it occurred, and the peak memory per vertex in addition to the
+// input. If other work runs on the machine, the CPU time of all threads between two checks is more
+// reliable than the elapsed time.
 
 #include "Meshes.h"
 #include "ProcessTime.h"
@@ -39,7 +39,7 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-/// A line of /proc/self/status, in bytes.
+/// The value of a line of /proc/self/status in bytes.
 double Memory(const std::string& name)
 {
   std::ifstream status("/proc/self/status");
@@ -77,21 +77,21 @@ vtkSmartPointer<vtkPolyData> MakeInput(Index around)
   return input;
 }
 
-/// The longest silence between reports.
+/// Measures the longest time between two reports of progress.
 struct Watch
 {
   Clock::time_point Last = Clock::now();
   double LastOfProcess = Testing::Now();
   double LastAmount = 0.0;
   double Longest = 0.0;
-  double Where = 0.0; ///< progress before the longest
-  double LongestOfProcess = 0.0; ///< in CPU time
+  double Where = 0.0; ///< progress at the start of the longest interval
+  double LongestOfProcess = 0.0; ///< longest interval in CPU time
 
   void Report(double amount)
   {
     const Clock::time_point now = Clock::now();
     const double silence = std::chrono::duration<double>(now - this->Last).count();
-    // The last part, after all is computed, cannot be aborted any more.
+    // An abort has no effect once everything is computed.
     if (silence > this->Longest && amount < 1.0)
     {
       this->Longest = silence;
@@ -117,8 +117,8 @@ void Measure(const char* name, vtkPolyData* input, vtkPolyDataAlgorithm* filter)
     { static_cast<Watch*>(client)->Report(*static_cast<double*>(amount)); });
   filter->AddObserver(vtkCommand::ProgressEvent, command);
   filter->SetInputData(input);
-  malloc_trim(0); // what the last run has freed
-  std::ofstream("/proc/self/clear_refs") << 5; // the peak starts anew
+  malloc_trim(0); // returns the memory that the last run freed
+  std::ofstream("/proc/self/clear_refs") << 5; // resets the peak
   const double before = Memory("VmRSS:");
   const Clock::time_point start = Clock::now();
   watch.Last = start;
@@ -183,6 +183,6 @@ int main(int argc, char** argv)
       f->SetSolverToConjugateGradient();
     });
   MeasureWith<Field>("Principal curvature", input, [](Field*) {});
-  MeasureWith<Heat>("Heat, factor", input, [](Heat* f) { f->SetSolverToDirect(); }); // long: last
+  MeasureWith<Heat>("Heat, factor", input, [](Heat* f) { f->SetSolverToDirect(); }); // slow
   return 0;
 }

@@ -7,7 +7,7 @@
 namespace SurfaceDiffusion::Testing
 {
 
-/// CPU seconds of all threads: other work on the machine counts little.
+/// CPU seconds of all threads, which other work on the machine hardly affects.
 inline double Now()
 {
   timespec t;

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Two steps on a torus in pieces, one per process:
+/// Measures two time steps on a torus that is distributed over processes, one piece per process:
 ///
-///     mpiexec -n <processes> ScaleProcesses <vertices of all, or per process with "weak"> [weak]
-///         [<time step in its natural unit> [heat | turing | harmonic | tv | minimum]]
+///     mpiexec -n <processes> ScaleProcesses <vertices in all, or per process with "weak"> [weak]
+///         [<time step in natural units> [heat | turing | harmonic | tv | minimum]]
 ///
-/// prints, for conjugate gradients with the diagonal and, where it is a choice, with multigrid
-/// (hypre): vertices, seconds of the first update (identity, assembly, setup, solve) and of a
-/// second step alone, iterations, vertices on seams, bytes sent per product by the busiest process,
-/// and its memory. minimum: total variation in steps solved in full.
+/// For conjugate gradients with the Jacobi preconditioner and, if the model allows it, with
+/// multigrid (hypre), the program prints: vertices, seconds of the first update (identification of
+/// interface vertices, assembly, set-up, solve) and of a second step alone, iterations, interface
+/// vertices, bytes that the busiest process sends per matrix-vector product, and its memory.
+/// "minimum" is total variation with TimeIntegrator Implicit.
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
@@ -39,7 +40,7 @@ double Seconds()
   return std::chrono::duration<double>(now).count();
 }
 
-/// Of this process: the most it ever held, MiB.
+/// The peak memory of this process in MiB.
 double PeakMemory()
 {
   std::ifstream status("/proc/self/status");
@@ -55,7 +56,8 @@ double PeakMemory()
   return kilobytes / 1024.0;
 }
 
-/// Columns begin .. end, of `around`, of a torus of `along` points each; neighbours share the ends.
+/// Columns begin .. end of the `around` columns of a torus, each of `along` points. Neighbouring
+/// pieces share their end columns.
 vtkSmartPointer<vtkPolyData> Piece(
   vtkIdType begin, vtkIdType end, vtkIdType around, vtkIdType along)
 {
@@ -180,9 +182,9 @@ int main(int argc, char** argv)
     if (rank == 0)
     {
       std::cout << count << " processes, " << around * along << " vertices, " << model << ", dt "
-                << step << ", " << (multigrid ? "multigrid" : "diagonal") << ": surface "
-                << seconds[0] << " s, first step (setup too) " << seconds[1] << " s, second "
-                << seconds[2] << " s, iterations of both " << iterations << ", on seams "
+                << step << ", " << (multigrid ? "multigrid" : "Jacobi") << ": surface "
+                << seconds[0] << " s, first step (with set-up) " << seconds[1] << " s, second "
+                << seconds[2] << " s, iterations of both " << iterations << ", on interfaces "
                 << (count > 1 ? count * along : 0) << " vertices, sent per product "
                 << (count > 1 ? 2 * along * 8 : 0) << " bytes per process, memory " << most[0]
                 << " MiB of which input " << most[1] << "\n";

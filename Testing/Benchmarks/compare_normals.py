@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Harmonic maps beside plain averaging of normals, with the same time to compute.
+"""Compares harmonic maps with averaging of normals at equal run time.
 
     compare_normals.py surface.off [...]       (with Examples/Python on PYTHONPATH)
 
-Twice: noise in the normals of a clean mesh, which vtkAttributeSmoothingFilter averages; and noise
-in the points, where vtkPolyDataNormals may take the normals of a mesh that vtkSmoothPolyDataFilter
-has smoothed. Each rival makes as many iterations as fit into the seconds of vtkHarmonicMapFilter,
-and is also shown with the number that suits it best. Printed are the angles to the clean normals in
+There are two comparisons. In the first, the normals of a clean mesh are noisy, and
+vtkAttributeSmoothingFilter averages them. In the second, the points are noisy, and
+vtkPolyDataNormals computes the normals of the mesh that vtkSmoothPolyDataFilter has smoothed. Each
+alternative makes as many iterations as fit into the run time of vtkHarmonicMapFilter, and is also
+shown with its best number of iterations. The program prints the angles to the clean normals in
 degrees and the energy of the maps per step.
 """
 import sys
@@ -25,7 +26,7 @@ from surfacediffusion import vtkHarmonicMapFilter
 
 
 def seconds_of(work):
-    """What work() returns and the shortest of three processor times it took."""
+    """The result of work() and the shortest of three CPU times."""
     times = []
     for _ in range(3):
         start = process_time()
@@ -81,7 +82,7 @@ def report(title, normals, clean, seconds):
 
 
 def compare(surface, clean, rival, name):
-    """The maps at the time that suits each exponent best, then the rival."""
+    """Reports the maps at the best time for each exponent, then the alternative."""
     report("noisy", array_of(surface, "Normals"), clean, 0)
     budget = 0
     for exponent in (2, 1):
@@ -102,7 +103,7 @@ def compare(surface, clean, rival, name):
 
 
 def main():
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_WARNING)  # a filter tells what it does
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_WARNING)  # no information messages
     for file in sys.argv[1:]:
         surface = read_mesh(Path(file))
         clean = normals_of(surface)
@@ -110,18 +111,18 @@ def main():
         print(f"{Path(file).stem}: {surface.GetNumberOfPoints()} vertices, noise in the normals")
         noisy = clean + random.normal(0, 0.2, clean.shape)
         noisy /= np.linalg.norm(noisy, axis=1, keepdims=True)
-        shaken = with_arrays(surface, Normals=noisy)
-        shaken.GetPointData().SetActiveNormals("Normals")
-        compare(shaken, clean, averaged, "vtkAttributeSmoothingFilter")
+        noisy_surface = with_arrays(surface, Normals=noisy)
+        noisy_surface.GetPointData().SetActiveNormals("Normals")
+        compare(noisy_surface, clean, averaged, "vtkAttributeSmoothingFilter")
 
         print(f"{Path(file).stem}: noise in the points")
         corners = points_of(surface)[triangles_of(surface)]
         edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean()
         moved = make_surface(points_of(surface) + random.normal(0, 0.1 * edge, clean.shape),
                              triangles_of(surface))
-        shaken = with_arrays(moved, Normals=normals_of(moved))
-        shaken.GetPointData().SetActiveNormals("Normals")
-        compare(shaken, clean, of_smoothed_mesh, "vtkPolyDataNormals of a smoothed mesh")
+        noisy_surface = with_arrays(moved, Normals=normals_of(moved))
+        noisy_surface.GetPointData().SetActiveNormals("Normals")
+        compare(noisy_surface, clean, of_smoothed_mesh, "vtkPolyDataNormals of a smoothed mesh")
 
 
 if __name__ == "__main__":

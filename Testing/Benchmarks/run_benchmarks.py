@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run the benchmarks on one CPU and write what they say into a page.
+"""Runs the benchmarks on one CPU and writes the results to a page.
 
     run_benchmarks.py BUILD [--level N] [--note TEXT]
                       [--peers DIR --peers-python PYTHON --meshes DIR] [--peers-level N]
 
-BUILD: a build folder with SURFACEDIFFUSION_BUILD_BENCHMARKS. DIR: programs that run other software
-(a run.py with --ours), with a Python that has it; meshes: the folder of elephant.off and
-refined_elephant.off. Level 4 goes to 2.8 million vertices. Times are CPU time.
+BUILD is a build folder with SURFACEDIFFUSION_BUILD_BENCHMARKS. --peers is a folder of programs that
+run other software (a run.py with the option --ours) and --peers-python a Python that can import
+that software; --meshes is the folder of elephant.off and refined_elephant.off. Level 4 has 2.8
+million vertices. All times are CPU times.
 """
 
 import argparse
@@ -23,22 +24,22 @@ from datetime import date
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 STAGES = {
-    "MeshAndOrder": "mesh: select, renumber, areas",
-    "PatternAndSlots": "pattern of the matrix",
-    "CoefficientsAndFill": "K and areas",
-    "Refill": "new values",
-    "Product/columns:1": "product, 1 column",
-    "Product/columns:3": "product, 3 columns",
-    "SetUp/Direct": "factor: order and values",
-    "SetUpAgain/Direct": "factor: values anew",
-    "SetUp/Multigrid": "multigrid: hierarchy",
+    "MeshAndOrder": "mesh: selection, renumbering, control areas",
+    "PatternAndSlots": "matrix pattern and slot map",
+    "CoefficientsAndFill": "cotan weights and assembly",
+    "Refill": "reassembly",
+    "Product/columns:1": "matrix-vector product, 1 column",
+    "Product/columns:3": "matrix-vector product, 3 columns",
+    "SetUp/Direct": "Cholesky: ordering and factorisation",
+    "SetUpAgain/Direct": "Cholesky: factorisation",
+    "SetUp/Multigrid": "multigrid: set-up",
     "Step/BackwardEuler": "backward Euler step, 1 h²",
     "Step/SDIRK2": "SDIRK2 step, 1 h²",
     "ToAThousandth/BackwardEuler": "backward Euler steps to an error of 1e-3",
     "ToAThousandth/SDIRK2": "SDIRK2 steps to an error of 1e-3",
     "Core100Steps": "100 SDIRK2 steps in the core, with history",
     "Filter100Steps": "the same in the filter",
-    "TimeSeek": "another time of that run",
+    "TimeSeek": "seek to another time of that run",
 }
 MODELS = "MinimizeToGap|LaggedStep/.*:3$|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
 NOTED = {"vertices", "Gap", "Iterations", "steps", "time", "step_over_solves",
@@ -69,7 +70,7 @@ def exponent(times):
 
 
 class Results:
-    """Rows of the benchmark program: milliseconds per name and number of vertices."""
+    """The rows of the benchmark program: milliseconds by name and number of vertices."""
 
     def __init__(self, rows):
         self.times, self.bandwidth, self.triad = {}, {}, {}
@@ -83,12 +84,12 @@ class Results:
             unit = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[row["time_unit"]]
             self.times.setdefault(name, {})[n] = row["cpu_time"] * unit
             if "bytes" in row:
-                passes = max(1, row["iterations"]) if "Gradient" in name else 1  # the solver's
+                passes = max(1, row["iterations"]) if "Gradient" in name else 1  # solver
                 self.bandwidth.setdefault(name, {})[n] = (row["GB/s"], row["bytes"] / passes)
         self.sizes = sorted({n for times in self.times.values() for n in times})
 
     def share(self, name):
-        """Of the triad's bandwidth at the same size of data, at the largest surface."""
+        """The bandwidth on the largest surface, relative to the triad on data of the same size."""
         if name not in self.bandwidth:
             return ""
         speed, size = self.bandwidth[name][max(self.bandwidth[name])]
@@ -125,7 +126,7 @@ def solvers(results):
 
 
 def models(rows):
-    """The other models' benchmarks, one surface each."""
+    """The table of the other models' benchmarks, one surface each."""
     body = []
     for row in rows:
         name = re.sub("/(process_time|real_time|iterations:1)", "", row["name"])
@@ -145,11 +146,11 @@ def choices(rows):
     body = [[f"{n:,}", f"{c:g}"] + [f"{letters[cell[k]['chosen']]} {cell[k]['ratio']:.2f}"
             for k in steps] for (n, c), cell in cells.items()]
     good = sum(row["ratio"] <= 1.3 for row in rows)
-    return table(head, body) + f"Within 1.3 of the best in {good} of {len(rows)} cells.\n\n"
+    return table(head, body) + f"At most 1.3 times the fastest in {good} of {len(rows)} cells.\n\n"
 
 
 def peers(options, program, folder):
-    """Rows of the peers' program, ours among them."""
+    """The rows of the peers' program, which include ours."""
     specs = ["elephant.off+1", "refined_elephant.off", "refined_elephant.off+1",
              "refined_elephant.off+2"][:options.peers_level + 1]
     run([options.peers_python, os.path.join(options.peers, "run.py"), "--mesh-dir", options.meshes,
@@ -160,12 +161,12 @@ def peers(options, program, folder):
 
 
 def peers_table(rows, steps):
-    """First results: milliseconds of set-up and solution together, and ours over each."""
+    """The tables of one solve: milliseconds of set-up and solution, and our time over each."""
     text = ""
     for c in steps:
         first = {}
         for row in rows:
-            # a factor costs the same for every step
+            # a factorisation costs the same for every time step
             direct = row["peer"].startswith("libigl +") and c != row.get("c")
             if row.get("solve_s") is None or (row.get("c") != c and not direct):
                 continue
@@ -206,7 +207,7 @@ def main():
     parser.add_argument("--peers")
     parser.add_argument("--peers-level", type=int, default=3)
     parser.add_argument("--peers-python", default=sys.executable)
-    parser.add_argument("--names", nargs="+", help="of the peers to run",
+    parser.add_argument("--names", nargs="+", help="names of the peers to run",
                         default=["igl_cholmod", "cg_jacobi", "pyamg_sa", "robust_cholmod"])
     parser.add_argument("--meshes", default=".")
     parser.add_argument("--note", default="")
@@ -229,29 +230,32 @@ def main():
             f"{machine()}. {options.note}\n\n"
             "Memory bandwidth (triad, 24 bytes per entry): "
             + ", ".join(f"{speed:.0f} GB/s at {mib} MiB" for mib, speed in results.triad.items())
-            + ".\n\n## Stages\n\nOne scan, subdivided. The exponent is the slope of log(time) over "
-            "log(vertices). Of bandwidth: the bytes that a stage cannot do without, per time, over "
-            "the triad at this size.\n\n" + stages(results)
-            + "## Solutions to 1e-10 from noise\n\n" + solvers(results)
-            + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser; LaggedStep: one step of "
-            "the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 vertices, "
-            "textures (Step, Stands) on a scan.\n\n" + models(of_models["benchmarks"])
-            + "## The choice of Automatic\n\nRuns of backward Euler steps: what is chosen (D: "
-            "Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the best.\n\n"
+            + ".\n\n## Stages\n\nOne scanned surface, subdivided. The exponent is the slope of "
+            "log(time) over log(vertices). Of bandwidth: the minimum memory traffic of a stage per "
+            "time, relative to the triad on data of the same size.\n\n" + stages(results)
+            + "## Linear solves from noise to a residual of 1e-10\n\n" + solvers(results)
+            + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser; LaggedStep: one "
+            "step of the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 "
+            "vertices, textures (Step: one step, Stands: until the pattern is stationary) on a "
+            "scanned surface.\n\n" + models(of_models["benchmarks"])
+            + "## The solver that Automatic selects\n\nRuns of backward Euler steps: the selected "
+            "solver (D: Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the "
+            "fastest.\n\n"
             + choices(grid))
     if options.peers:
         with tempfile.TemporaryDirectory() as folder:
             compared = peers(options, program("HeatStep"), folder)
-        page += ("## Beside other software\n\nOne step to 1e-8: factor or hierarchy and solution "
-                 "together, without the assembly; in brackets our time over theirs.\n\n"
+        page += ("## Comparison with other software\n\nOne step to a residual of 1e-8: set-up "
+                 "(factorisation or multigrid hierarchy) and solution together, without the "
+                 "assembly. In brackets: our time over theirs.\n\n"
                  + peers_table(compared, (1.0, 100.0, 1e4)))
         assembly = {(r["peer"], r["n"]): r["assembly_s"] for r in compared if r.get("assembly_s")}
         names = sorted({peer for peer, _ in assembly if peer == "libigl + CHOLMOD"
                         or peer.startswith("robust")})
         ours = [results.times["CoefficientsAndFill"], results.times["PatternAndSlots"],
                 results.times["MeshAndOrder"]]
-        body = [["K and areas alone"] + [number(ours[0][n]) for n in results.sizes],
-                ["with mesh, order and pattern"]
+        body = [["cotan weights and assembly"] + [number(ours[0][n]) for n in results.sizes],
+                ["with mesh, renumbering and pattern"]
                 + [number(sum(times[n] for times in ours)) for n in results.sizes]]
         body += [[peer] + [number(1e3 * assembly[peer, n]) if (peer, n) in assembly else ""
                            for n in results.sizes] for peer in names]

@@ -23,7 +23,7 @@ namespace SurfaceDiffusion::Testing
 
 const double Pi = std::acos(-1.0);
 
-/// What a TriangleMesh is made from.
+/// The input of a TriangleMesh.
 struct Surface
 {
   Points Vertices;
@@ -62,7 +62,7 @@ inline Surface Moved(Surface s, const Eigen::RowVector3d& offset)
   return s;
 }
 
-/// Turned about a skew axis, so that no edge keeps to a coordinate direction.
+/// Rotated about a skew axis, so that no edge is parallel to a coordinate axis.
 inline Surface Rotated(Surface s, double angle = 1.0)
 {
   const Eigen::Matrix3d turn =
@@ -71,7 +71,7 @@ inline Surface Rotated(Surface s, double angle = 1.0)
   return s;
 }
 
-/// All triangles the other way round.
+/// All triangles with the opposite orientation.
 inline Surface Flipped(Surface s)
 {
   s.Faces.col(1).swap(s.Faces.col(2));
@@ -98,7 +98,8 @@ inline std::vector<Index> Permutation(Index count, std::int64_t seed)
   return order;
 }
 
-/// Vertex i of `s` becomes vertex numbers[i]; the triangles are shuffled and their corners turned.
+/// Vertex i of `s` becomes vertex numbers[i]; the triangles are permuted and their corners
+/// rotated.
 inline Surface Renumbered(const Surface& s, const std::vector<Index>& numbers)
 {
   Surface result = s;
@@ -183,7 +184,7 @@ inline std::vector<std::array<Index, 3>> GridFaces(Index columns, Index rows)
   return faces;
 }
 
-/// Replace vertex numbers: glues the borders of a grid together.
+/// Replace vertex numbers, to glue the borders of a grid together.
 inline void Renumber(std::vector<std::array<Index, 3>>& faces, const std::vector<Index>& number)
 {
   for (auto& f : faces)
@@ -374,7 +375,7 @@ inline Surface Jittered(Surface s, double amount, double xLow, double xHigh, dou
   return s;
 }
 
-// --- Surfaces as the core takes them ---
+// --- Meshes and fields on them ---
 
 inline std::shared_ptr<const TriangleMesh> MakeMesh(const Surface& s)
 {

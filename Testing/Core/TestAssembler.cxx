@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/Assembler.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/DirichletEnergy.h"
 #include "Meshes.h"
 
 #include <Eigen/Eigenvalues>
@@ -235,5 +236,5 @@ TEST(Assembler, StopsWhenAsked)
 {
   const auto mesh = MakeMesh(Icosphere(2));
   const ProgressMonitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(Assembler(mesh, ParallelFor(), ProgressMonitor(stop)), Aborted);
+  EXPECT_THROW(Assembler(mesh, SerialFor(), ProgressMonitor(stop)), Aborted);
 }

@@ -4,6 +4,7 @@
 #include "Meshes.h"
 
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/DirichletEnergy.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 #include "Core/Surface/TangentVectors.h"
 
@@ -15,21 +16,21 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-/// Pressed flat along x, which makes most angles bad.
+/// Flattened along x, so that most angles are far from those of a Delaunay triangulation.
 Surface Pressed(Surface s, double factor)
 {
   s.Vertices.col(0) *= factor;
   return s;
 }
 
-/// Slanted within the plane: the same, and the boundary has obtuse angles opposite it.
+/// Sheared within the plane, so that angles opposite the boundary are obtuse too.
 Surface Slanted(Surface s, double slope)
 {
   s.Vertices.col(0) += slope * s.Vertices.col(1);
   return s;
 }
 
-/// The square [-1, 1]^2 with bad angles inside and good ones at its boundary.
+/// The square [-1, 1]^2 with obtuse angles inside and none opposite its boundary.
 Surface BadInside()
 {
   Surface s = Plate(12, 1.0);
@@ -67,7 +68,7 @@ TEST(IntrinsicDelaunay, MakesNoWeightNegative)
   for (const auto& [name, surface] : BadSurfaces())
   {
     const auto mesh = MakeMesh(surface);
-    const Assembler flipped(IntrinsicDelaunay(*mesh, nullptr));
+    const Assembler flipped(IntrinsicDelaunay(mesh).Mesh());
     const SparseMatrix before = Stiffness(Assembler(mesh));
     const SparseMatrix after = Stiffness(flipped);
     double worstBefore = 0.0;
@@ -93,7 +94,7 @@ TEST(IntrinsicDelaunay, KeepsTheArea)
   for (const auto& [name, surface] : BadSurfaces())
   {
     const auto mesh = MakeMesh(surface);
-    const auto flipped = IntrinsicDelaunay(*mesh, nullptr);
+    const auto flipped = IntrinsicDelaunay(mesh).Mesh();
     EXPECT_NEAR(flipped->ControlAreas().sum() / mesh->ControlAreas().sum(), 1.0, 1e-12) << name;
     EXPECT_GT(flipped->ControlAreas().minCoeff(), 0.0) << name;
     EXPECT_EQ(flipped->InputVertex(), mesh->InputVertex()) << name;
@@ -105,8 +106,8 @@ TEST(IntrinsicDelaunay, BackwardEulerKeepsTheBoundsAtAnyStep)
   for (const auto& [name, surface] : BadSurfaces())
   {
     const auto flipped =
-      std::make_shared<const Assembler>(IntrinsicDelaunay(*MakeMesh(surface), nullptr));
-    // One vertex at 1, the others at 0: what overshoots anywhere shows here.
+      std::make_shared<const Assembler>(IntrinsicDelaunay(MakeMesh(surface)).Mesh());
+    // One vertex at 1, the others at 0: an overshoot anywhere leaves the bounds.
     Values spike = Values::Zero(flipped->Mesh().NumberOfVertices(), 1);
     spike(spike.rows() / 2, 0) = 1.0;
     for (const double dt : { 1e-6, 1e-3, 1.0, 1e3 })
@@ -131,35 +132,102 @@ TEST(IntrinsicDelaunay, WithoutItTheSamePlateOvershoots)
 
 TEST(IntrinsicDelaunay, EnergyOfALinearFunctionIsExactOnAPlane)
 {
-  // Any triangulation of a plane has it right, on one sheet and on two, while no edge is flipped
-  // over the boundary.
+  // It is exact on any triangulation of a plane, on one sheet and on two, as long as no edge is
+  // flipped over the boundary.
   const Surface plate = BadInside();
-  const auto flipped = IntrinsicDelaunay(*MakeMesh(plate), nullptr);
+  const auto flipped = IntrinsicDelaunay(MakeMesh(plate)).Mesh();
   const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
   EXPECT_NEAR(DirichletEnergy(*flipped, CotanWeights(*flipped), u), 0.5 * 5.0 * 4.0, 1e-9);
 }
 
-TEST(IntrinsicDelaunay, CarriesDirectionsAlong)
+TEST(IntrinsicDelaunay, TransportKeepsAConstantFieldOfAPlane)
 {
   const Surface plate = BadInside();
   const auto mesh = MakeMesh(plate);
   const Eigen::RowVector3d direction(0.6, 0.8, 0.0);
-  TangentVectors frames = FramesFromTriangleVectors(
+  const TangentVectors lines = TangentVectorsFromTriangleVectors(
     *mesh, plate.Vertices, plate.Faces, direction.replicate(plate.Faces.rows(), 1));
-  const auto flipped = IntrinsicDelaunay(*mesh, &frames);
-  ASSERT_EQ(frames.rows(), flipped->NumberOfTriangles());
-  const CornerWeights c = AnisotropicWeights(*flipped, CotanWeights(*flipped), frames, 3.0, 0.5);
-  const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
+  const IntrinsicDelaunay delaunay(mesh);
+  const TriangleMesh& flipped = *delaunay.Mesh();
+  const TangentVectors transported = delaunay.Transport(lines);
+  ASSERT_EQ(transported.rows(), flipped.NumberOfTriangles());
+  const CornerWeights c = AnisotropicWeights(flipped, CotanWeights(flipped), transported, 3.0, 0.5);
+  const Values u = Sample(flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
   // grad u . e1 = 0.4, grad u . e2 = -2.2
-  EXPECT_NEAR(DirichletEnergy(*flipped, c, u), 0.5 * (3.0 * 0.16 + 0.5 * 4.84) * 4.0, 1e-9);
+  EXPECT_NEAR(DirichletEnergy(flipped, c, u), 0.5 * (3.0 * 0.16 + 0.5 * 4.84) * 4.0, 1e-9);
 }
 
-TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
+TEST(IntrinsicDelaunay, TransportAfterwardsEqualsCarryingAlong)
+{
+  // In a plane directions have coordinates, and a flip takes the area-weighted mean of d d^T of two
+  // triangles without any rotation.
+  const Surface plate = BadInside();
+  const auto mesh = MakeMesh(plate);
+  Points directions(plate.NumberOfTriangles(), 3);
+  for (Index t = 0; t < plate.NumberOfTriangles(); ++t)
+  {
+    const double angle = 2.0 * plate.Vertices.row(plate.Faces(t, 0)).sum();
+    directions.row(t) << std::cos(angle), std::sin(angle), 0.0;
+  }
+  const IntrinsicDelaunay delaunay(mesh);
+  ASSERT_GT(delaunay.Flips().size(), 50u);
+
+  IntrinsicTriangulation triangulation(*mesh);
+  const auto corner = [&](Index t, int a) -> Eigen::RowVector2d
+  { return plate.Vertices.row(mesh->InputVertex()[triangulation.Vertex(t, a)]).head<2>(); };
+  const auto area = [&](Index t)
+  {
+    const Eigen::RowVector2d u = corner(t, 1) - corner(t, 0);
+    const Eigen::RowVector2d v = corner(t, 2) - corner(t, 0);
+    return 0.5 * std::abs(u[0] * v[1] - u[1] * v[0]);
+  };
+  std::vector<Eigen::Matrix2d> carried(triangulation.NumberOfSides() / 3);
+  for (Index t = 0; t < static_cast<Index>(carried.size()); ++t)
+  {
+    const Index input = mesh->InputTriangle()[t % mesh->NumberOfTriangles()]; // front or back
+    const Eigen::RowVector2d d = directions.row(input).head<2>();
+    carried[t] = area(t) * d.transpose() * d;
+  }
+  for (const IntrinsicTriangulation::EdgeFlip& flip : delaunay.Flips())
+  {
+    IntrinsicTriangulation::EdgeFlip again;
+    ASSERT_TRUE(triangulation.Flip(flip.Side, again));
+    const Index left = flip.Side / 3;
+    const Index right = flip.Twin / 3;
+    const Eigen::Matrix2d sum = carried[left] + carried[right];
+    const double share = area(left) / (area(left) + area(right));
+    carried[left] = share * sum;
+    carried[right] = (1.0 - share) * sum;
+  }
+
+  const TangentVectors transported = delaunay.Transport(
+    TangentVectorsFromTriangleVectors(*mesh, plate.Vertices, plate.Faces, directions));
+  ASSERT_EQ(static_cast<std::size_t>(transported.rows()), carried.size());
+  for (Index t = 0; t < static_cast<Index>(carried.size()); ++t)
+  {
+    const Eigen::RowVector2d x = (corner(t, 1) - corner(t, 0)).normalized();
+    const Eigen::RowVector2d e = corner(t, 2) - corner(t, 0);
+    const Eigen::RowVector2d y = (e - e.dot(x) * x).normalized();
+    const Eigen::RowVector2d after = transported(t, 0) * x + transported(t, 1) * y;
+    const Eigen::RowVector2d along = MainAxis(carried[t](0, 0), carried[t](0, 1), carried[t](1, 1));
+    EXPECT_NEAR(std::abs(after.dot(along)), 1.0, 1e-12) << t;
+  }
+}
+
+TEST(IntrinsicDelaunay, TransportLeavesTrianglesWithoutDirectionAlone)
+{
+  const auto mesh = MakeMesh(Pressed(Icosphere(3), 0.05));
+  const IntrinsicDelaunay delaunay(mesh);
+  ASSERT_GT(delaunay.Flips().size(), 50u);
+  EXPECT_TRUE(delaunay.Transport(TangentVectors::Zero(mesh->NumberOfTriangles(), 2)).isZero(0.0));
+}
+
+TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDoNotDrownOthers)
 {
   // A needle, covered twice: one of its edges becomes one around vertex 1, from 0 to 0.
   const auto needle =
     MakeMesh(MakeSurface({ { 0, 0, 0 }, { 1.4e-8, 0, 0 }, { -1, 1, 0 } }, { { 0, 1, 2 } }));
-  const Assembler flipped(IntrinsicDelaunay(*needle, nullptr));
+  const Assembler flipped(IntrinsicDelaunay(needle).Mesh());
   const CornerWeights c = CotanWeights(flipped.Mesh());
   ASSERT_EQ(c.rows(), 2);
   ASSERT_GT(c.maxCoeff(), 1e5);
@@ -177,14 +245,16 @@ TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDrownNoOther)
   }
   // Where the two ends of such an edge have opposite signs, it has an energy.
   const CornerWeights opposite = CornerWeights::Constant(2, 3, -1.0);
-  flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data(), ParallelFor(), &opposite);
+  flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data(), SerialFor(), &opposite);
   EXPECT_NEAR(k.coeffs().maxCoeff() / (4.0 * 1e4 * c.maxCoeff()), 1.0, 1e-3);
 }
 
 TEST(IntrinsicDelaunay, LeavesADelaunayMeshAlone)
 {
   const auto mesh = MakeMesh(Icosphere(3));
-  const auto flipped = IntrinsicDelaunay(*mesh, nullptr);
-  EXPECT_EQ(flipped->NumberOfTriangles(), mesh->NumberOfTriangles());
-  EXPECT_NEAR((Stiffness(Assembler(flipped)) - Stiffness(Assembler(mesh))).norm(), 0.0, 1e-11);
+  const IntrinsicDelaunay delaunay(mesh);
+  EXPECT_TRUE(delaunay.Flips().empty());
+  EXPECT_EQ(delaunay.Mesh()->NumberOfTriangles(), mesh->NumberOfTriangles());
+  EXPECT_NEAR(
+    (Stiffness(Assembler(delaunay.Mesh())) - Stiffness(Assembler(mesh))).norm(), 0.0, 1e-11);
 }

@@ -33,7 +33,7 @@ Values RunModel(const Surface& s, const Values& values, std::shared_ptr<LinearSo
     directions.row(i) = Eigen::RowVector3d(s.Vertices.row(i)).cross(Eigen::RowVector3d(1, 2, 3));
   }
   const TangentVectors frames =
-    FramesFromPointVectors(*mesh, s.Vertices, s.Faces, directions, parallel);
+    TangentVectorsFromPointVectors(*mesh, s.Vertices, s.Faces, directions, parallel);
   const CornerWeights c =
     AnisotropicWeights(*mesh, CotanWeights(*mesh, parallel), frames, 1.0, 0.3, parallel);
   LinearDiffusion heat(assembler, c, std::move(data), HeatSettings(*mesh, 0.002, 10.0, scheme),

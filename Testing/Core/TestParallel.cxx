@@ -73,7 +73,7 @@ TEST(Parallel, SumsHaveTheSameBitsOnAnyNumberOfThreads)
   const auto f = [](Index i) { return std::sin(i) / (1.0 + i); };
   for (const Index count : Counts)
   {
-    const double serial = Sum(ParallelFor(), count, f);
+    const double serial = Sum(SerialFor(), count, f);
     for (const int threads : { 1, 2, 4 })
     {
       EXPECT_EQ(Sum(ThreadedFor(threads), count, f), serial);

@@ -18,7 +18,7 @@ namespace
 struct Result
 {
   Points Directions; ///< per input triangle
-  Vector Strength; ///< per triangle of the mesh, in 1/coordinate unit
+  Vector Difference; ///< per triangle of the mesh, in 1/coordinate unit
   std::shared_ptr<const Assembler> Operators;
 };
 
@@ -30,8 +30,8 @@ Result Find(const Surface& s, double fwhm = 0.0)
   const auto solver = MakeCholeskySolver();
   const PrincipalDirections found = FindPrincipalDirections(
     *result.Operators, s.Vertices, s.Faces, fwhm / mesh.LengthUnit(), *solver);
-  result.Directions = VectorsFromFrames(mesh, s.Vertices, s.Faces, found.LeastBent);
-  result.Strength = found.Strength / mesh.LengthUnit();
+  result.Directions = VectorsInSpace(mesh, s.Vertices, s.Faces, found.MinimumCurvature);
+  result.Difference = found.Difference / mesh.LengthUnit();
   return result;
 }
 
@@ -43,7 +43,7 @@ Eigen::RowVector3d Middle(const Surface& s, Index t)
 }
 
 /// Root mean square over the triangles of the sine of the angle to the circles around the z axis,
-/// along which a torus bends least.
+/// the minimum-curvature lines of a torus.
 double ErrorOnTorus(const Surface& s, double fwhm = 0.0)
 {
   const Points directions = Find(s, fwhm).Directions;
@@ -68,7 +68,7 @@ TEST(PrincipalDirections, OfATorusConvergeToItsCircles)
   EXPECT_LT(fine, 0.6 * coarse);
 }
 
-TEST(PrincipalDirections, StrengthIsTheDifferenceOfTheCurvatures)
+TEST(PrincipalDirections, DifferenceIsThatOfTheCurvatures)
 {
   const Surface s = Torus(80, 40);
   const Result result = Find(s);
@@ -78,7 +78,7 @@ TEST(PrincipalDirections, StrengthIsTheDifferenceOfTheCurvatures)
     const Eigen::RowVector3d p = Middle(s, mesh.InputTriangle()[t]);
     const double fromAxis = std::hypot(p[0], p[1]);
     const double exact = 1.0 - std::abs((fromAxis - 2.0) / fromAxis);
-    EXPECT_NEAR(result.Strength[t], exact, 0.06);
+    EXPECT_NEAR(result.Difference[t], exact, 0.06);
   }
 }
 
@@ -88,21 +88,21 @@ TEST(PrincipalDirections, OfACylinderAreItsAxis)
   const Surface axis = Rotated(MakeSurface({ { 0.0, 0.0, 1.0 } }, {}));
   const Result result = Find(s, 0.2);
   EXPECT_GT((result.Directions * axis.Vertices.row(0).transpose()).cwiseAbs().minCoeff(), 0.9999);
-  EXPECT_NEAR(result.Strength.minCoeff(), 2.0, 0.1);
-  EXPECT_NEAR(result.Strength.maxCoeff(), 2.0, 0.1);
+  EXPECT_NEAR(result.Difference.minCoeff(), 2.0, 0.1);
+  EXPECT_NEAR(result.Difference.maxCoeff(), 2.0, 0.1);
 }
 
 TEST(PrincipalDirections, PlanesHaveNone)
 {
   const Result result = Find(Rotated(Strip(8, 8)), 0.3);
   EXPECT_EQ(result.Directions.cwiseAbs().maxCoeff(), 0.0);
-  EXPECT_LT(result.Strength.maxCoeff(), 1e-9);
+  EXPECT_LT(result.Difference.maxCoeff(), 1e-9);
 }
 
-TEST(PrincipalDirections, OfASphereMeanLittle)
+TEST(PrincipalDirections, OfASphereDifferLittle)
 {
-  const double coarse = Find(Icosphere(3)).Strength.mean();
-  const double fine = Find(Icosphere(4)).Strength.mean();
+  const double coarse = Find(Icosphere(3)).Difference.mean();
+  const double fine = Find(Icosphere(4)).Difference.mean();
   EXPECT_LT(fine, 0.08); // of a curvature of 1, and falling
   EXPECT_LT(fine, 0.75 * coarse);
 }

@@ -214,7 +214,7 @@ TEST(ReactionDiffusion, SteadyStateStays)
 
 // With concentrations held at zero over a part of the surface: plain clamping would be of first
 // order whatever the scheme.
-TEST(ReactionDiffusion, OrderInTimeHoldsWhereConcentrationsAreHeldAtZero)
+TEST(ReactionDiffusion, OrderInTimeHoldsWithConcentrationsHeldAtZero)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
   const TriangleMesh& mesh = assembler->Mesh();
@@ -285,7 +285,7 @@ TEST(ReactionDiffusion, TuringRunsAwayBelowZeroUnlessHeld)
   }
 }
 
-TEST(ReactionDiffusion, SliversDoNotShakeWhatIsHeldAtZero)
+TEST(ReactionDiffusion, ConcentrationsHeldAtZeroDoNotOscillateOnSlivers)
 {
   // Sheared until the angles are between 0.3 and 179 degrees: half of the weights are negative.
   Surface s = Strip(30, 30);
@@ -300,7 +300,7 @@ TEST(ReactionDiffusion, SliversDoNotShakeWhatIsHeldAtZero)
   EXPECT_GE(model->State().minCoeff(), 0.0);
 }
 
-TEST(ReactionDiffusion, BlowUpIsToldNotPassedOn)
+TEST(ReactionDiffusion, BlowUpIsAnError)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
   Settings settings;
@@ -335,7 +335,7 @@ double ShareAcross(bool axial, const std::array<double, 2>& anisotropy)
     vectors.row(i) =
       axial ? Eigen::RowVector3d(0.0, 0.0, 1.0) : Eigen::RowVector3d(-p[1], p[0], 0.0);
   }
-  const TangentVectors frames = FramesFromPointVectors(mesh, s.Vertices, s.Faces, vectors);
+  const TangentVectors frames = TangentVectorsFromPointVectors(mesh, s.Vertices, s.Faces, vectors);
   const double square = MeanEdge(mesh) * MeanEdge(mesh);
   const double rates[2] = { 21.0 * square, 2.6 * square };
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
@@ -566,9 +566,7 @@ TEST(ReactionDiffusion, ThreadsDoNotChangeABit)
     for (const int threads : { 2, 4 })
     {
       const ThreadedFor parallel(threads);
-      Settings settings;
-      settings.SideBySide = true;
-      const auto threaded = MakeTexture(MakeAssembler(s), settings, parallel, direct);
+      const auto threaded = MakeTexture(MakeAssembler(s), Settings(), parallel, direct);
       Advance(*threaded, 8);
       EXPECT_TRUE(threaded->State() == serial->State());
       EXPECT_EQ(threaded->Energy(), serial->Energy());
@@ -579,20 +577,19 @@ TEST(ReactionDiffusion, ThreadsDoNotChangeABit)
 TEST(ReactionDiffusion, StepsAfterTheFirstAllocateNothing)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
-  for (const bool sideBySide : { false, true })
+  for (const bool direct : { false, true })
   {
     Settings settings;
-    settings.SideBySide = sideBySide;
     settings.StopTolerance = 1e-6;
-    const auto model = MakeTexture(assembler, settings, SerialFor(), false);
+    const auto model = MakeTexture(assembler, settings, SerialFor(), direct);
     Advance(*model, 1);
     const long before = NumberOfAllocations();
     Advance(*model, 100);
-    EXPECT_EQ(NumberOfAllocations(), before) << sideBySide;
+    EXPECT_EQ(NumberOfAllocations(), before) << direct;
   }
 }
 
-TEST(ReactionDiffusion, StopsWhenThePatternStands)
+TEST(ReactionDiffusion, StopsOnceThePatternIsStationary)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
   Settings settings;

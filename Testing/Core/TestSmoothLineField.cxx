@@ -22,23 +22,24 @@ struct Field
   double Eigenvalue; ///< in coordinate units
 };
 
-/// The smoothest field, started from the lines along `axis` (zero: from nothing).
+/// The smoothest field, started from the lines along `axis` (zero: from noise).
 Field Smoothest(const Surface& s, const Eigen::RowVector3d& axis = Eigen::RowVector3d::Zero())
 {
   Field field;
   field.Mesh = MakeMesh(s);
   const LineFieldOperator lines(field.Mesh);
   const Points along = axis.replicate(s.NumberOfTriangles(), 1);
-  const TangentVectors start = FramesFromTriangleVectors(*field.Mesh, s.Vertices, s.Faces, along);
+  const TangentVectors start =
+    TangentVectorsFromTriangleVectors(*field.Mesh, s.Vertices, s.Faces, along);
   const auto solver = MakeCholeskySolver();
-  const TangentVectors frames = SmoothestLineField(lines, start,
+  const TangentVectors tangents = SmoothestLineField(lines, start,
     Vector::Ones(field.Mesh->NumberOfTriangles()), *solver, ProgressMonitor(), &field.Eigenvalue);
   field.Eigenvalue /= field.Mesh->LengthUnit() * field.Mesh->LengthUnit();
-  field.Vectors = VectorsFromFrames(*field.Mesh, s.Vertices, s.Faces, frames);
+  field.Vectors = VectorsInSpace(*field.Mesh, s.Vertices, s.Faces, tangents);
   return field;
 }
 
-/// Every third triangle the other way round.
+/// Every third triangle with the opposite orientation.
 Surface PartlyFlipped(Surface s)
 {
   for (Index t = 0; t < s.NumberOfTriangles(); t += 3)
@@ -119,7 +120,7 @@ TEST(SmoothLineField, AnySurfaceGetsUnitTangents)
 
 TEST(SmoothLineField, HintsAreJoinedByAHarmonicField)
 {
-  // z = exp(2 i angle) goes straight from 1 (angle 0) to i (45 degrees).
+  // z = exp(2 i angle) is linear from 1 (angle 0) to i (45 degrees).
   const Surface s = Strip(40, 10, 4.0);
   const auto mesh = MakeMesh(s);
   Points hints = Points::Zero(s.NumberOfTriangles(), 3);
@@ -142,10 +143,10 @@ TEST(SmoothLineField, HintsAreJoinedByAHarmonicField)
   }
   const LineFieldOperator lines(mesh);
   const auto solver = MakeCholeskySolver();
-  const TangentVectors frames =
-    LineFieldFromHints(lines, FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, hints),
+  const TangentVectors tangents =
+    LineFieldFromHints(lines, TangentVectorsFromTriangleVectors(*mesh, s.Vertices, s.Faces, hints),
       Vector::Constant(mesh->NumberOfTriangles(), 1e8), *solver);
-  const Points vectors = VectorsFromFrames(*mesh, s.Vertices, s.Faces, frames);
+  const Points vectors = VectorsInSpace(*mesh, s.Vertices, s.Faces, tangents);
   for (Index t = 0; t < s.NumberOfTriangles(); ++t)
   {
     const double x = std::clamp((middle(t)[0] - 0.1) / 3.8, 0.0, 1.0);
@@ -163,10 +164,10 @@ TEST(SmoothLineField, ComponentsWithoutHintsGetNone)
   hints.row(0) << 1.0, 2.0, 0.0;
   const LineFieldOperator lines(mesh);
   const auto solver = MakeCholeskySolver();
-  const TangentVectors frames =
-    LineFieldFromHints(lines, FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, hints),
+  const TangentVectors tangents =
+    LineFieldFromHints(lines, TangentVectorsFromTriangleVectors(*mesh, s.Vertices, s.Faces, hints),
       Vector::Ones(mesh->NumberOfTriangles()), *solver);
-  const Points vectors = VectorsFromFrames(*mesh, s.Vertices, s.Faces, frames);
+  const Points vectors = VectorsInSpace(*mesh, s.Vertices, s.Faces, tangents);
   const Eigen::RowVector3d hint = Eigen::RowVector3d(1.0, 2.0, 0.0).normalized();
   for (Index t = 0; t < s.NumberOfTriangles(); ++t)
   {

@@ -217,7 +217,7 @@ TEST(TotalVariationFlow, StripesFallAtTheDiffusivityAcrossThem)
     Sample(mesh, s, [](const Eigen::RowVector3d& x) { return x[0] < 2.05 ? 1.0 : 0.0; });
   TangentVectors frames(mesh.NumberOfTriangles(), 2);
   const Points x = Eigen::RowVector3d(1.0, 0.0, 0.0).replicate(s.NumberOfTriangles(), 1);
-  frames = FramesFromTriangleVectors(mesh, s.Vertices, s.Faces, x);
+  frames = TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, x);
   for (const double along : { 1.0, 3.0 })
   {
     auto settings = ExactSettings(mesh, 0.1, 0.0, 1e-6);
@@ -280,7 +280,7 @@ TEST(TotalVariationFlow, FixedVerticesKeepTheirValues)
   }
 }
 
-TEST(TotalVariationFlow, SteadyStateOfWhatNothingHoldsIsTheMean)
+TEST(TotalVariationFlow, SteadyStateWithoutConditionsIsTheMean)
 {
   const auto assembler = MakeAssembler(Joined(Disk(5), Icosphere(2)));
   const TriangleMesh& mesh = assembler->Mesh();

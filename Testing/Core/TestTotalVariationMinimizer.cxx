@@ -129,7 +129,7 @@ TEST(TotalVariationMinimizer, StretchedGradientsGiveTheAnisotropicCoefficients)
   const Surface s = Icosphere(2);
   const auto mesh = MakeMesh(s);
   const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
-  TangentVectors frames = FramesFromTriangleVectors(*mesh, s.Vertices, s.Faces, directions);
+  TangentVectors frames = TangentVectorsFromTriangleVectors(*mesh, s.Vertices, s.Faces, directions);
   frames.topRows(10).setZero();
   const auto maps = StretchedGradients(*mesh, frames, std::sqrt(2.0), std::sqrt(0.3), SerialFor());
   const CornerWeights c = AnisotropicWeights(*mesh, CotanWeights(*mesh), frames, 2.0, 0.3);

@@ -118,19 +118,19 @@ INSTANTIATE_TEST_SUITE_P(TriangleMesh, AnySurface,
     AnySurface::ParamType{ "Several", Joined(Icosphere(1), Flipped(Disk(3))) }),
   NameOf);
 
-TEST(TriangleMesh, CountsEdgesAndWhatIsOddAboutThem)
+TEST(TriangleMesh, CountsBoundaryAndNonManifoldEdges)
 {
   const auto closed = MakeMesh(Torus(20, 10));
   EXPECT_EQ(closed->NumberOfVertices() - closed->NumberOfEdges() + closed->NumberOfTriangles(), 0);
-  EXPECT_EQ(closed->GetFindings().BoundaryEdges, 0);
-  EXPECT_EQ(closed->GetFindings().NonManifoldEdges, 0);
+  EXPECT_EQ(closed->Diagnostics().BoundaryEdges, 0);
+  EXPECT_EQ(closed->Diagnostics().NonManifoldEdges, 0);
 
   const auto open = MakeMesh(Strip(7, 4));
-  EXPECT_EQ(open->GetFindings().BoundaryEdges, 2 * (7 + 4));
+  EXPECT_EQ(open->Diagnostics().BoundaryEdges, 2 * (7 + 4));
 
   const auto fins = MakeMesh(ThreeFins(5));
-  EXPECT_EQ(fins->GetFindings().NonManifoldEdges, 5);
-  EXPECT_EQ(fins->GetFindings().BoundaryEdges, 3 * 15);
+  EXPECT_EQ(fins->Diagnostics().NonManifoldEdges, 5);
+  EXPECT_EQ(fins->Diagnostics().BoundaryEdges, 3 * 15);
   EXPECT_EQ(fins->NumberOfComponents(), 1);
 }
 
@@ -157,8 +157,8 @@ TEST(TriangleMesh, LeavesOutDegenerateTrianglesAndUnusedVertices)
   const TriangleMesh mesh(vertices, faces);
   EXPECT_EQ(mesh.NumberOfTriangles(), m);
   EXPECT_EQ(mesh.NumberOfVertices(), n);
-  EXPECT_EQ(mesh.GetFindings().DegenerateTriangles, 4);
-  EXPECT_EQ(mesh.GetFindings().IsolatedVertices, 3);
+  EXPECT_EQ(mesh.Diagnostics().DegenerateTriangles, 4);
+  EXPECT_EQ(mesh.Diagnostics().IsolatedVertices, 3);
   const double unit = mesh.LengthUnit();
   EXPECT_NEAR(mesh.ControlAreas().sum() * unit * unit, 1.0, 1e-13);
 }
@@ -182,8 +182,8 @@ TEST(TriangleMesh, IsEmptyWithoutUsableTriangles)
   const TriangleMesh degenerate(Points(Points::Ones(3, 3)), Triangles(Triangles::Zero(2, 3)));
   EXPECT_EQ(degenerate.NumberOfVertices(), 0);
   EXPECT_EQ(degenerate.NumberOfTriangles(), 0);
-  EXPECT_EQ(degenerate.GetFindings().DegenerateTriangles, 2);
-  EXPECT_EQ(degenerate.GetFindings().IsolatedVertices, 3);
+  EXPECT_EQ(degenerate.Diagnostics().DegenerateTriangles, 2);
+  EXPECT_EQ(degenerate.Diagnostics().IsolatedVertices, 3);
 }
 
 TEST(TriangleMesh, ComponentsHoldConsecutiveVertices)
@@ -278,5 +278,5 @@ TEST(TriangleMesh, StopsWhenAsked)
 {
   const Surface s = Icosphere(2);
   const ProgressMonitor::Callback stop = [](double) { return false; };
-  EXPECT_THROW(TriangleMesh(s.Vertices, s.Faces, ParallelFor(), ProgressMonitor(stop)), Aborted);
+  EXPECT_THROW(TriangleMesh(s.Vertices, s.Faces, SerialFor(), ProgressMonitor(stop)), Aborted);
 }

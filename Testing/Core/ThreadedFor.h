@@ -11,8 +11,8 @@
 namespace SurfaceDiffusion::Testing
 {
 
-/// Runs a loop on several threads, its pieces last to first and cut unevenly: whatever depends on
-/// the order or on who does the work shows.
+/// Runs a loop on several threads, in ranges of different lengths and from last to first, which
+/// reveals results that depend on the order or on the number of threads.
 class ThreadedFor : public ParallelFor
 {
 public:

@@ -15,12 +15,12 @@
 #include <cmath>
 #include <random>
 
-/// Pictures of a filter's result on a sphere, and data to put on it.
+/// Pictures of a filter's result on a sphere, and data on the sphere.
 namespace BandedImage
 {
 
-/// Error of the picture of the filter's result, its first component, in twelve bands of color over
-/// [low, high].
+/// Error of the picture of the first component of the filter's result, in twelve bands of color
+/// over [low, high].
 inline double Error(vtkPolyDataAlgorithm* filter, double low, double high,
   const std::string& baseline, const std::string& output = "")
 {

@@ -30,14 +30,14 @@
 #include <utility>
 #include <vector>
 
-/// Small surfaces and ways to look at results, shared by the tests of the filters.
+/// Small surfaces, and functions that examine results, for the tests of the filters.
 namespace FilterTest
 {
 
 // --- Surfaces ---
 
-/// A flat rectangle of nx x ny points, all cut along the same diagonal; point i + nx j is at
-/// (i, j, 0) spacing.
+/// A flat rectangle of nx x ny points, all squares split along the same diagonal. Point i + nx j is
+/// at (i, j, 0) spacing.
 inline vtkSmartPointer<vtkPolyData> Grid(int nx, int ny, double spacing = 1.0)
 {
   vtkNew<vtkPoints> points;
@@ -65,7 +65,7 @@ inline vtkSmartPointer<vtkPolyData> Grid(int nx, int ny, double spacing = 1.0)
   return grid;
 }
 
-/// The unit sphere: an octahedron each of whose triangles is cut in four `levels` times.
+/// The unit sphere: an octahedron whose triangles are split into four `levels` times.
 inline vtkSmartPointer<vtkPolyData> Sphere(int levels)
 {
   using Triangle = std::array<vtkIdType, 3>;
@@ -154,7 +154,7 @@ vtkDataArray* AddPointArray(
   return array;
 }
 
-/// Something that is smooth nowhere, in [-1, 1), different in each component.
+/// A function that is smooth nowhere, in [-1, 1), different in each component.
 inline double Rough(vtkIdType i, int k)
 {
   return std::fmod(static_cast<double>((i + 1) * (7919 + 104 * k) % 1009), 201.0) / 100.5 - 1.0;
@@ -230,7 +230,7 @@ inline std::vector<double> ControlAreas(vtkPolyData* surface)
   return areas;
 }
 
-/// Sum of A_i u_i of component k, and of A_i |u_i|.
+/// The sums of A_i u_i and of A_i |u_i|, of component k.
 inline double Total(const std::vector<double>& areas, vtkDataArray* u, int k = 0)
 {
   double sum = 0.0;
@@ -259,13 +259,13 @@ inline void SetInputArray(vtkAlgorithm* filter, int index, const char* name, boo
     name);
 }
 
-/// The point array of port 0, nullptr if there is none of this name.
+/// The point array of output port 0 with this name, or nullptr.
 inline vtkDataArray* Result(vtkPolyDataAlgorithm* filter, const char* name = "fDiffused")
 {
   return filter->GetOutput() ? filter->GetOutput()->GetPointData()->GetArray(name) : nullptr;
 }
 
-/// A copy that later updates do not touch.
+/// A copy that later updates do not change.
 inline vtkSmartPointer<vtkDataArray> Copy(vtkDataArray* array)
 {
   auto copy = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
@@ -283,7 +283,7 @@ inline double HistoryAt(vtkAlgorithm* filter, vtkIdType row, const char* column)
   return History(filter)->GetValueByName(row, column).ToDouble();
 }
 
-/// Asks for a time of port 0.
+/// Requests a time at output port 0.
 inline void UpdateAt(vtkAlgorithm* filter, double time)
 {
   filter->UpdateInformation();
@@ -300,7 +300,7 @@ inline std::vector<double> PublishedTimes(vtkAlgorithm* filter, int port = 0)
   return times ? std::vector<double>(times, times + info->Length(key)) : std::vector<double>();
 }
 
-/// Catches the errors and warnings of an object, which are then not printed.
+/// Collects the errors and warnings of an object instead of printing them.
 class Messages
 {
 public:

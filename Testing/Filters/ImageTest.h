@@ -16,7 +16,7 @@
 #include <string>
 
 /**
- * Comparison of what a window shows with a baseline, Testing/Baseline/<name>.png.
+ * Comparison of the contents of a window with a baseline, Testing/Baseline/<name>.png.
  *
  * A test asks `EXPECT_LE(ImageTest::Error(window, "Name"), ImageTest::Tolerance)`. A negative twin
  * draws something slightly wrong and asks `EXPECT_GT` of the same baseline, which shows that the
@@ -24,12 +24,12 @@
  */
 namespace ImageTest
 {
-/// Largest error of equal pictures, in pixels that differ fully (black for white). Leaves room for
-/// the rounding of another software renderer along a few edges, not for a shifted band.
+/// The largest error of equal pictures, in pixels that differ fully (black for white). It allows
+/// for the rounding of another software renderer along a few edges, but not for a shifted band.
 constexpr double Tolerance = 10.0;
 
-/// Call once, before the first Render(): off screen, without multisampling, which depends on the
-/// driver.
+/// Draws off screen, without multisampling, which depends on the driver. To be called once, before
+/// the first Render().
 inline void Prepare(vtkRenderWindow* window, int width = 300, int height = 300)
 {
   window->SetOffScreenRendering(1);
@@ -81,7 +81,7 @@ inline double Error(
     return std::numeric_limits<double>::quiet_NaN();
   }
 
-  // Strict on purpose: VTK's defaults allow shifts of a pixel and average neighbours.
+  // This is stricter than VTK's defaults, which allow shifts of a pixel and average neighbours.
   vtkNew<vtkImageDifference> difference;
   difference->SetInputConnection(obtained->GetOutputPort());
   difference->SetImageConnection(expected->GetOutputPort());

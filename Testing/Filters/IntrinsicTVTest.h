@@ -9,7 +9,7 @@
 #include <cmath>
 #include <functional>
 
-/// What the tests of vtkIntrinsicTVFilter share.
+/// Functions that the tests of vtkIntrinsicTVFilter share.
 namespace IntrinsicTVTest
 {
 using namespace FilterTest;
@@ -29,7 +29,7 @@ inline vtkDataArray* Result(Filter* filter)
   return FilterTest::Result(filter, "fTV");
 }
 
-/// The axis of the cap: its rim follows no edges of the mesh.
+/// The axis of the cap. The boundary of the cap follows no edges of the mesh.
 inline double Height(const double* p)
 {
   return (p[0] + 2.0 * p[1] + 3.0 * p[2]) / std::sqrt(14.0);

@@ -59,7 +59,7 @@ void ExpectError(const std::vector<std::string>& words, const Change& change)
     EXPECT_EQ(output->GetPointData()->GetScalars(), input->GetPointData()->GetScalars());
     EXPECT_EQ(History(filter)->GetNumberOfRows(), 0);
   }
-  // The filter itself with all of its state, put right.
+  // The same filter, with all of its state, after the error is corrected.
   vtkNew<vtkFVMHeatFilter> fresh;
   filter->SetTimeStep(fresh->GetTimeStep());
   filter->SetNumberOfTimeSteps(fresh->GetNumberOfTimeSteps());
@@ -199,7 +199,7 @@ TEST(BadInput, NumbersThatAreNotFiniteAreErrors)
       [&](vtkFVMHeatFilter*, vtkPolyData* input)
       { input->GetPointData()->GetScalars()->SetComponent(7, 0, bad); });
   }
-  ExpectError({ "InputArray", "\"f\"", "infinite", "point 36" }, // used by no triangle
+  ExpectError({ "InputArray", "\"f\"", "infinite", "point 36" }, // a point that no triangle uses
     [&](vtkFVMHeatFilter*, vtkPolyData* input)
     {
       input->GetPoints()->InsertNextPoint(0.0, 0.0, 1.0);
@@ -291,7 +291,7 @@ TEST(BadInput, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
     { { vtkFVMHeatFilter::TIME_INTEGRATOR_IMPLICIT, "2" } });
 }
 
-TEST(BadInput, AllProblemsAreToldTogether)
+TEST(BadInput, AllProblemsAreReportedTogether)
 {
   ExpectError({ "TimeStep is -1", "Tolerance is 2", "nosuch" },
     [](vtkFVMHeatFilter* filter, vtkPolyData*)
@@ -399,7 +399,7 @@ TEST(BadInput, HugeAndTinyTimesAndValuesGiveFiniteAnswersOrErrors)
   }
 }
 
-TEST(BadInput, TooFewIterationsAreAnErrorThatSaysWhatToChange)
+TEST(BadInput, TooFewIterationsAreAnErrorThatNamesARemedy)
 {
   ExpectError({ "MaximumNumberOfIterations", "Tolerance" },
     [](vtkFVMHeatFilter* filter, vtkPolyData*)

@@ -153,7 +153,7 @@ TEST(DirectionFieldFilter, PolygonsAndStripsGetOneDirectionEach)
   {
     EXPECT_NEAR(std::abs(Direction(filter)->GetComponent(c, 1)), 1.0, 1e-3);
   }
-  for (vtkIdType c = sides; c < sides + 2; ++c) // flat: none
+  for (vtkIdType c = sides; c < sides + 2; ++c) // flat caps have no direction
   {
     for (int k = 0; k < 3; ++k)
     {
@@ -182,7 +182,7 @@ TEST(DirectionFieldFilter, DirectsTheHeatFilter)
   heat->SetAcrossDiffusivity(0.001);
   heat->SetTimeStep(20.0);
   heat->Update();
-  // Alike along the axis, rough around it.
+  // Data that are constant along the axis and rough around it.
   double along = 0.0;
   double around = 0.0;
   vtkDataArray* u = Result(heat);
@@ -194,7 +194,7 @@ TEST(DirectionFieldFilter, DirectsTheHeatFilter)
   EXPECT_LT(along, 0.1 * around);
 }
 
-TEST(DirectionFieldFilter, RefusesWhatMakesNoSense)
+TEST(DirectionFieldFilter, RejectsInvalidSettings)
 {
   auto sphere = Sphere(1);
   using Change = void (*)(vtkSurfaceDirectionFieldFilter*);
@@ -225,7 +225,7 @@ TEST(DirectionFieldFilter, RefusesWhatMakesNoSense)
   EXPECT_NE(ErrorOf(filter).find("the input has no polygons"), std::string::npos);
 }
 
-TEST(DirectionFieldFilter, SaysItsChoicesInWords)
+TEST(DirectionFieldFilter, EnumsHaveTexts)
 {
   vtkNew<vtkSurfaceDirectionFieldFilter> filter;
   const char* const methods[] = { "PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints",

@@ -28,7 +28,7 @@ vtkSmartPointer<vtkHarmonicMapFilter> MakeFilter(vtkDataObject* data)
   return filter;
 }
 
-/// The unit sphere with its exact normals, shaken, as the active normals "n".
+/// The unit sphere with its exact normals plus noise as the active normals "n".
 vtkSmartPointer<vtkPolyData> SphereWithNoisyNormals(int levels, double noise = 0.3)
 {
   auto sphere = Sphere(levels);
@@ -134,12 +134,12 @@ TEST(HarmonicMapFilter, UsePaperSchemeSetsThePapersReading)
   EXPECT_FALSE(filter->GetMoveVertices());
   EXPECT_FALSE(filter->GetIntrinsicDelaunay());
   EXPECT_EQ(filter->GetInitialFill(), vtkHarmonicMapFilter::INITIAL_FILL_INPUT);
-  EXPECT_EQ(filter->GetExponent(), 1.7); // stays
+  EXPECT_EQ(filter->GetExponent(), 1.7); // unchanged
 }
 
 // --- Input and output arrays ---
 
-TEST(HarmonicMapFilter, ComputesNormalsWhereThereAreNone)
+TEST(HarmonicMapFilter, ComputesNormalsIfThereAreNone)
 {
   auto sphere = Sphere(4);
   auto filter = MakeFilter(sphere);
@@ -147,7 +147,7 @@ TEST(HarmonicMapFilter, ComputesNormalsWhereThereAreNone)
   filter->Update();
   vtkDataArray* result = Result(filter, "NormalsHarmonic");
   ASSERT_NE(result, nullptr);
-  EXPECT_EQ(result->GetDataType(), VTK_FLOAT); // as vtkPolyDataNormals makes them
+  EXPECT_EQ(result->GetDataType(), VTK_FLOAT); // as from vtkPolyDataNormals
   EXPECT_LT(MeanAngleToPoints(sphere, result), 0.01);
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), result);
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetVectors(), nullptr); // see the class comment
@@ -174,14 +174,14 @@ TEST(HarmonicMapFilter, NormalsOfStripsAreThoseOfTheirTriangles)
     1e-6);
 }
 
-TEST(HarmonicMapFilter, ACellOfNoPointIsAnErrorBeforeItsNormal)
+TEST(HarmonicMapFilter, ACellWithInvalidPointIdsIsAnErrorBeforeNormalsAreComputed)
 {
   auto sphere = Sphere(1);
   sphere->GetPolys()->InsertNextCell({ 0, 1, 1000000 });
   EXPECT_NE(OnlyError(MakeFilter(sphere)).find("point"), std::string::npos);
 }
 
-TEST(HarmonicMapFilter, AnEmptyNameMeansTheNormalsToo)
+TEST(HarmonicMapFilter, AnEmptyArrayNameSelectsTheNormals)
 {
   auto sphere = SphereWithNoisyNormals(3);
   AddPointArray(sphere, "other", 3, Rough);
@@ -226,12 +226,12 @@ TEST(HarmonicMapFilter, UseAsNormalsActsOnNormalsOnly)
   filter->Update();
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), normals);
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetVectors(), Result(filter, "fieldHarmonic"));
-  SetInputArray(filter, 0, "n"); // by name: the active normals all the same
+  SetInputArray(filter, 0, "n"); // the active normals, selected by name
   filter->Update();
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNormals(), Result(filter, "nHarmonic"));
 }
 
-TEST(HarmonicMapFilter, TakesAnyNumberOfComponentsFromTwo)
+TEST(HarmonicMapFilter, AcceptsTwoOrMoreComponents)
 {
   auto sphere = Sphere(3);
   for (const int components : { 2, 3, 4, 7 })
@@ -376,7 +376,7 @@ TEST(HarmonicMapFilter, FixedVectorsStay)
   }
 }
 
-TEST(HarmonicMapFilter, PointsOfNoTriangleKeepTheirVector)
+TEST(HarmonicMapFilter, PointsWithoutTrianglesKeepTheirVector)
 {
   auto grid = Grid(5, 5);
   grid->GetPoints()->InsertNextPoint(9.0, 9.0, 0.0);
@@ -392,7 +392,7 @@ TEST(HarmonicMapFilter, PointsOfNoTriangleKeepTheirVector)
   EXPECT_NEAR(Length(u, 24), 1.0, 1e-12);
 }
 
-TEST(HarmonicMapFilter, LineFieldsDoNotSeeTheSign)
+TEST(HarmonicMapFilter, LineFieldsAreIndependentOfTheSign)
 {
   auto sphere = Sphere(3);
   const auto field = [&](vtkIdType i, int k)
@@ -437,7 +437,7 @@ TEST(HarmonicMapFilter, IdentityOfTheSphereHasEnergyFourPi)
   EXPECT_LT(MeanAngleToPoints(sphere, Result(filter, "nHarmonic")), 1e-3);
 }
 
-TEST(HarmonicMapFilter, EnergyNeverGrowsByDefault)
+TEST(HarmonicMapFilter, EnergyNeverIncreasesByDefault)
 {
   auto sphere = SphereWithNoisyNormals(3, 2.0);
   for (const double exponent : { 1.0, 1.4, 2.0 })
@@ -460,9 +460,9 @@ TEST(HarmonicMapFilter, EnergyNeverGrowsByDefault)
   }
 }
 
-// A roof of two flat sides: after runs that leave the same noise on the sides, the ridge is sharper
-// with Exponent 1.
-TEST(HarmonicMapFilter, ExponentOneKeepsCreasesThatTwoRoundsOff)
+// A roof with two flat sides. After runs that leave the same noise on the sides, the ridge is
+// sharper with Exponent 1.
+TEST(HarmonicMapFilter, ExponentOnePreservesCreasesThatTwoRounds)
 {
   auto roof = Grid(41, 41);
   const auto side = [&](vtkIdType i) { return roof->GetPoint(i)[0] < 20.0 ? -1.0 : 1.0; };
@@ -497,7 +497,7 @@ TEST(HarmonicMapFilter, ExponentOneKeepsCreasesThatTwoRoundsOff)
   EXPECT_LT(one.second, 0.5 * two.second);
 }
 
-TEST(HarmonicMapFilter, NaturalUnitsFitAnySizeOfTheSurface)
+TEST(HarmonicMapFilter, NaturalUnitsSuitAnySizeOfTheSurface)
 {
   for (const double exponent : { 1.0, 1.5, 2.0 })
   {
@@ -529,7 +529,7 @@ TEST(HarmonicMapFilter, NaturalUnitsFitAnySizeOfTheSurface)
       absolute->SetTimeStep(0.05 * filter->GetTimeUnit());
       absolute->SetFidelityWeight(0.3 / filter->GetTimeUnit());
       absolute->SetBeta(1e-6 / filter->GetMeanEdgeLength() / filter->GetMeanEdgeLength());
-      if (size < 1e99 && size > 1e-99) // where beta is a number
+      if (size < 1e99 && size > 1e-99) // otherwise beta over- or underflows
       {
         absolute->Update();
         EXPECT_EQ(absolute->GetTimeUnit(), 1.0);
@@ -590,7 +590,7 @@ TEST(HarmonicMapFilter, TimesGiveTheSameBitsInAnyOrder)
   EXPECT_NEAR(
     Result(filter, "nHarmonic")->GetComponent(3, 1), n->GetComponent(3, 1) / Length(n, 3), 1e-15);
   const vtkIdType computed = filter->GetNumberOfStepsComputed();
-  filter->SetMoveVertices(true); // no part of the run
+  filter->SetMoveVertices(true); // does not affect the run
   filter->SetUseAsNormals(false);
   UpdateAt(filter, 1.0);
   EXPECT_LE(filter->GetNumberOfStepsComputed(), computed + 4);
@@ -604,7 +604,7 @@ TEST(HarmonicMapFilter, ComputedNormalsAreKeptWhilePlaying)
   const vtkIdType computed = filter->GetNumberOfStepsComputed();
   UpdateAt(filter, 0.4);
   UpdateAt(filter, 0.5);
-  EXPECT_LE(filter->GetNumberOfStepsComputed(), computed + 2); // nothing was started anew
+  EXPECT_LE(filter->GetNumberOfStepsComputed(), computed + 2); // the run was not restarted
 }
 
 TEST(HarmonicMapFilter, BitsDoNotDependOnThreads)
@@ -642,7 +642,7 @@ TEST(HarmonicMapFilter, MoveVerticesDenoisesTheSurface)
   }
   const auto roughness = [](vtkPolyData* surface)
   {
-    double sum = 0.0; // mean distance of the centres of triangles from the unit sphere's normals
+    double sum = 0.0; // of angles between the normals of the triangles and of the sphere
     vtkNew<vtkIdList> corners;
     for (vtkIdType c = 0; c < surface->GetNumberOfCells(); ++c)
     {
@@ -695,7 +695,7 @@ TEST(HarmonicMapFilter, MoveVerticesDenoisesTheSurface)
 TEST(HarmonicMapFilter, MovedPointsKeepTheirPrecisionAndMergedOnesStayTogether)
 {
   auto grid = Grid(6, 6);
-  vtkNew<vtkPoints> points; // two copies of the grid share nothing but places
+  vtkNew<vtkPoints> points; // two copies of the grid with coincident points only
   points->SetDataTypeToFloat();
   vtkNew<vtkCellArray> triangles;
   for (int half = 0; half < 2; ++half)
@@ -807,7 +807,7 @@ TEST(HarmonicMapFilter, AnAbortLeavesTheInput)
   EXPECT_NE(Result(filter, "nHarmonic"), nullptr);
 }
 
-TEST(HarmonicMapFilter, TellsWrongPropertiesAndArrays)
+TEST(HarmonicMapFilter, ReportsInvalidPropertiesAndArrays)
 {
   auto sphere = SphereWithNoisyNormals(2);
   AddPointArray(sphere, "one", 1, Rough);
@@ -830,7 +830,7 @@ TEST(HarmonicMapFilter, TellsWrongPropertiesAndArrays)
   {
     auto filter = MakeFilter(sphere);
     filter->SetBeta(0.0);
-    filter->SetExponent(2.0); // where beta does nothing
+    filter->SetExponent(2.0); // beta has no effect
     EXPECT_EQ(OnlyError(filter), "");
     EXPECT_NE(Result(filter, "nHarmonic"), nullptr);
   }
@@ -865,7 +865,7 @@ TEST(HarmonicMapFilter, TellsWrongPropertiesAndArrays)
   }
 }
 
-TEST(HarmonicMapFilter, SolversAgreeAndConjugateGradientsTellTheirLimit)
+TEST(HarmonicMapFilter, SolversAgreeAndConjugateGradientsReportTheirIterationLimit)
 {
   auto sphere = SphereWithNoisyNormals(4);
   vtkSmartPointer<vtkDataArray> first;
@@ -889,7 +889,7 @@ TEST(HarmonicMapFilter, SolversAgreeAndConjugateGradientsTellTheirLimit)
   filter->SetSolverToConjugateGradient();
   filter->SetMaximumNumberOfIterations(2);
   EXPECT_NE(OnlyError(filter).find("MaximumNumberOfIterations"), std::string::npos);
-  filter->SetSolverToAutomatic(); // finds another way, and never fails
+  filter->SetSolverToAutomatic(); // selects another solver and never fails
   EXPECT_EQ(OnlyError(filter), "");
   EXPECT_NE(Result(filter, "nHarmonic"), nullptr);
 }

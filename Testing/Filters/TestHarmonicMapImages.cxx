@@ -75,7 +75,7 @@ double Oblique(const double* u, const double*)
   return 0.8 * u[0] - 0.6 * u[1] + 0.3 * u[2];
 }
 
-/// The cube of side 2: a sphere blown up, with points moved by up to `shake`.
+/// The cube of side 2: a sphere projected onto it, with points moved by up to `shake`.
 vtkSmartPointer<vtkPolyData> Cube(double shake)
 {
   auto cube = Sphere(5);
@@ -94,7 +94,7 @@ vtkSmartPointer<vtkPolyData> Cube(double shake)
   return cube;
 }
 
-/// The cube with normals of its faces, noisy.
+/// The cube with the normals of its faces plus noise.
 vtkSmartPointer<vtkPolyData> CubeWithNoisyNormals()
 {
   auto cube = Cube(0.0);
@@ -111,7 +111,7 @@ vtkSmartPointer<vtkPolyData> CubeWithNoisyNormals()
 
 } // namespace
 
-TEST(HarmonicMapImages, CreasesStayForExponentOne)
+TEST(HarmonicMapImages, CreasesArePreservedForExponentOne)
 {
   vtkNew<vtkHarmonicMapFilter> filter;
   filter->SetInputData(CubeWithNoisyNormals());
@@ -122,7 +122,7 @@ TEST(HarmonicMapImages, CreasesStayForExponentOne)
     ImageTest::Tolerance);
 }
 
-TEST(HarmonicMapImages, CreasesRoundOffForExponentTwo)
+TEST(HarmonicMapImages, CreasesAreRoundedForExponentTwo)
 {
   vtkNew<vtkHarmonicMapFilter> filter;
   filter->SetInputData(CubeWithNoisyNormals());
@@ -134,7 +134,7 @@ TEST(HarmonicMapImages, CreasesRoundOffForExponentTwo)
     ImageTest::Tolerance);
 }
 
-TEST(HarmonicMapImages, LinesAreSmoothedWithoutTheirSign)
+TEST(HarmonicMapImages, LinesAreSmoothedIndependentlyOfTheirSign)
 {
   auto sphere = Sphere(5);
   Noise noise;
@@ -142,7 +142,7 @@ TEST(HarmonicMapImages, LinesAreSmoothedWithoutTheirSign)
     [&](vtkIdType i, int k)
     {
       const double* p = sphere->GetPoint(i);
-      const double angle = 1.5 * std::atan2(p[1], p[0]) + p[2]; // no vector field turns like this
+      const double angle = 1.5 * std::atan2(p[1], p[0]) + p[2]; // not a vector field
       return (k == 0 ? std::cos(angle) : std::sin(angle)) + 0.7 * noise();
     });
   vtkNew<vtkHarmonicMapFilter> filter;
@@ -158,7 +158,7 @@ TEST(HarmonicMapImages, LinesAreSmoothedWithoutTheirSign)
     ImageTest::Tolerance);
 }
 
-TEST(HarmonicMapImages, MovedVerticesMakeACubeOfAShakenOne)
+TEST(HarmonicMapImages, MovedVerticesDenoiseACube)
 {
   vtkNew<vtkHarmonicMapFilter> filter;
   filter->SetInputData(Cube(0.02));

@@ -153,7 +153,7 @@ TEST(HeatFilter, ConstantStaysConstant)
   EXPECT_NEAR(range[1], 0.1, 1e-14);
 }
 
-TEST(HeatFilter, CosineOnAStripDecaysAtItsRate)
+TEST(HeatFilter, CosineOnAStripDecaysAtItsEigenvalue)
 {
   const int n = 101;
   auto strip = Grid(n, 4);
@@ -179,7 +179,7 @@ TEST(HeatFilter, RealisesTheFWHMWithinOnePercent)
   {
     auto filter = MakeFilter(plane);
     SetInputArray(filter, 0, "f");
-    filter->SetUnits(units); // a width is in coordinate units whatever Units is
+    filter->SetUnits(units); // a width is in coordinate units, independent of Units
     filter->SetFWHM(10.0);
     filter->Update();
     const auto at = [&](int i) { return Result(filter)->GetComponent(i + n * middle, 0); };
@@ -189,7 +189,8 @@ TEST(HeatFilter, RealisesTheFWHMWithinOnePercent)
     {
       ++i;
     }
-    // Between two points the logarithm is nearer to a straight line than the Gaussian is.
+    // The logarithm of the Gaussian is interpolated, since it is closer to linear between two
+    // points.
     const double part = std::log(at(i) / half) / std::log(at(i) / at(i + 1));
     const double width = 2.0 * 0.5 * (i - middle + part);
     std::cout << "FWHM 10 is realised as " << width << " with 20 solves\n";
@@ -197,7 +198,7 @@ TEST(HeatFilter, RealisesTheFWHMWithinOnePercent)
   }
 }
 
-TEST(HeatFilter, SteadyStateWithNothingHeldIsTheMeanOfEachComponent)
+TEST(HeatFilter, SteadyStateWithoutConstraintsIsTheMeanOfEachComponent)
 {
   auto surface = Grid(6, 6);
   vtkNew<vtkPoints> points; // a second sheet above the first
@@ -295,7 +296,7 @@ TEST(HeatFilter, FixedPointsKeepTheirValueWhileOthersChange)
   }
 }
 
-TEST(HeatFilter, HeldKnownValuesStayToTheBitAndAPlaneIsFilledExactly)
+TEST(HeatFilter, HeldValuesKeepTheirBitsAndALinearFunctionIsFilledExactly)
 {
   const int n = 21;
   auto plane = Grid(n, n);
@@ -331,7 +332,7 @@ TEST(HeatFilter, HeldKnownValuesStayToTheBitAndAPlaneIsFilledExactly)
   }
 }
 
-TEST(HeatFilter, ComponentsTogetherEqualComponentsAlone)
+TEST(HeatFilter, ComponentsTogetherEqualSingleComponents)
 {
   auto sphere = Sphere(4);
   vtkDataArray* f = AddRough(sphere, 5);
@@ -368,10 +369,10 @@ TEST(HeatFilter, ComponentsTogetherEqualComponentsAlone)
   }
 }
 
-TEST(HeatFilter, SumIsKeptWhateverTheSolverAndIntegrator)
+TEST(HeatFilter, TotalIsConservedByEverySolverAndIntegrator)
 {
   auto sphere = Sphere(4);
-  // Slivers and obtuse angles too: a loose tolerance must not show.
+  // The surface has slivers and obtuse angles. A loose tolerance must not affect the total.
   for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
   {
     double p[3];
@@ -408,14 +409,15 @@ TEST(HeatFilter, SumIsKeptWhateverTheSolverAndIntegrator)
   }
 }
 
-TEST(HeatFilter, AlongAloneSpreadsOnlyAlongTheDirection)
+TEST(HeatFilter, AlongDiffusivityAloneDiffusesOnlyAlongTheDirection)
 {
   const int n = 41;
   auto plane = Grid(n, n);
   const double k = vtkMath::Pi() / (n - 1);
   AddPointArray(plane, "f", 2,
     [&](vtkIdType i, int c) { return std::cos(k * static_cast<double>(c == 0 ? i % n : i / n)); });
-  // Not of unit length, out of the plane, of changing sign: only the line in the plane counts.
+  // The directions have other lengths, components out of the plane, and alternating signs. Only
+  // their line in the plane matters.
   const auto direction = [](vtkIdType i, int c) {
     return (i % 2 ? -1.0 : 1.0) * (c == 0 ? 3.0 : c == 2 ? 0.7 : 0.0);
   };
@@ -444,7 +446,7 @@ TEST(HeatFilter, AlongAloneSpreadsOnlyAlongTheDirection)
   }
 }
 
-TEST(HeatFilter, WithoutADirectionItIsIsotropicWithTheGeometricMean)
+TEST(HeatFilter, ZeroDirectionsGiveIsotropicDiffusionWithTheGeometricMean)
 {
   auto plane = Grid(12, 12);
   AddRough(plane);
@@ -490,7 +492,7 @@ TEST(HeatFilter, AutomaticFidelityLeavesTheNoiseInTheResidual)
       area += areas[i];
     }
     EXPECT_NEAR(std::sqrt(sum / area), 4.0, 0.04);
-    // The weight that was found gives the same when it is set by hand.
+    // The weight that was found gives the same result if it is set explicitly.
     const auto automatic = Copy(Result(filter));
     filter->AutomaticFidelityOff();
     filter->SetFidelityWeight(filter->GetEffectiveFidelityWeight());

@@ -24,7 +24,7 @@ TEST(HeatImages, NoiseIsSmoothed)
   EXPECT_GT(Error(filter, -0.1, 0.1, "HeatSmoothed", "HeatSmoothedTwin"), ImageTest::Tolerance);
 }
 
-TEST(HeatImages, NoiseIsTakenOffASignal)
+TEST(HeatImages, NoiseIsRemovedFromASignal)
 {
   auto sphere = Sphere(5);
   Noise noise;
@@ -61,7 +61,7 @@ TEST(HeatImages, AHoleIsFilled)
   EXPECT_GT(Error(filter, -2.5, 2.5, "HeatInpainted", "HeatInpaintedTwin"), ImageTest::Tolerance);
 }
 
-TEST(HeatImages, NoiseIsSmearedAlongADirection)
+TEST(HeatImages, NoiseIsSmoothedAlongADirection)
 {
   auto sphere = Sphere(5);
   AddPointArray(sphere, "f", 1, Noise());

@@ -33,7 +33,7 @@ bool InHole(vtkIdType i)
 
 } // namespace
 
-TEST(InputArrays, DataOfAnyNumericTypeGiveTheSame)
+TEST(InputArrays, DataOfAnyNumericTypeGiveTheSameResult)
 {
   auto plane = Grid(10, 10);
   const auto value = [](vtkIdType i, int) { return i % 3 == 0; };
@@ -76,7 +76,7 @@ TEST(InputArrays, DataMayBeStoredByComponent)
   EXPECT_TRUE(Identical(Result(filter, "soaDiffused"), reference));
 }
 
-TEST(InputArrays, AMaskOfAnyNumericTypeMeansTheSame)
+TEST(InputArrays, MasksOfAnyNumericTypeHaveTheSameEffect)
 {
   auto plane = Grid(10, 10);
   AddRough(plane);
@@ -91,7 +91,7 @@ TEST(InputArrays, AMaskOfAnyNumericTypeMeansTheSame)
     reference->Update();
     for (const int type : NumericTypes)
     {
-      // Nonzero is missing, whatever the number.
+      // Any nonzero value means missing.
       const double missing = type == VTK_FLOAT || type == VTK_DOUBLE ? 0.01
         : type == VTK_BIT                                            ? 1.0
                                                                      : 77.0;
@@ -132,7 +132,7 @@ TEST(InputArrays, NaNInAnyComponentIsMissing)
   }
 }
 
-TEST(InputArrays, FillsStartWhereTheySay)
+TEST(InputArrays, EveryInitialFillStartsFromItsDocumentedValues)
 {
   auto plane = Grid(10, 10);
   AddPointArray(plane, "f", 1,
@@ -198,10 +198,10 @@ TEST(InputArrays, FillsStartWhereTheySay)
   EXPECT_TRUE(Identical(first, Result(filter)));
 }
 
-TEST(InputArrays, MeanFillIsOfTheConnectedComponent)
+TEST(InputArrays, MeanFillIsTheMeanOfTheConnectedComponent)
 {
   auto plane = Grid(10, 10);
-  vtkNew<vtkCellArray> halves; // cut between columns 4 and 5
+  vtkNew<vtkCellArray> halves; // disconnected between columns 4 and 5
   vtkNew<vtkIdList> corners;
   for (vtkIdType c = 0; c < plane->GetNumberOfCells(); ++c)
   {
@@ -224,7 +224,7 @@ TEST(InputArrays, MeanFillIsOfTheConnectedComponent)
   EXPECT_NEAR(Result(filter)->GetComponent(18, 0), 8.0, 1e-14);
 }
 
-TEST(InputArrays, WhatIsMissingNeverEntersTheFidelity)
+TEST(InputArrays, MissingValuesNeverEnterTheFidelityTerm)
 {
   auto plane = Grid(10, 10);
   AddRough(plane);
@@ -254,7 +254,7 @@ TEST(InputArrays, WhatIsMissingNeverEntersTheFidelity)
   }
 }
 
-TEST(InputArrays, NoiseFollowsTheGlobalIds)
+TEST(InputArrays, NoiseDependsOnTheGlobalIds)
 {
   auto plane = Grid(10, 10);
   AddPointArray(
@@ -263,7 +263,7 @@ TEST(InputArrays, NoiseFollowsTheGlobalIds)
   ids->SetName("ids");
   for (vtkIdType i = 0; i < 100; ++i)
   {
-    ids->InsertNextValue(i == 66 ? 57 : i == 57 ? 66 : i); // two of the hole exchange theirs
+    ids->InsertNextValue(i == 66 ? 57 : i == 57 ? 66 : i); // two missing points exchange their ids
   }
   auto filter = MakeFilter(plane);
   SetInputArray(filter, 0, "f");
@@ -282,7 +282,7 @@ TEST(InputArrays, NoiseFollowsTheGlobalIds)
   EXPECT_NE(byIndex->GetComponent(66, 0), byIndex->GetComponent(66, 1));
 }
 
-TEST(InputArrays, FixedBeatsMissing)
+TEST(InputArrays, FixedTakesPrecedenceOverMissing)
 {
   auto plane = Grid(10, 10);
   AddRough(plane);
@@ -330,13 +330,13 @@ TEST(InputArrays, NothingFlowsIntoOrOutOfAnExcludedRegion)
         Result(alone)->GetComponent(4 * (i / 10) + i % 10, 0), 1e-12);
     }
   }
-  // Kept over the region, with areas from its own triangles.
+  // The total over the region is conserved, with the areas of its own triangles.
   const std::vector<double> areas = ControlAreas(half);
   EXPECT_NEAR(Total(areas, Result(alone)), Total(areas, half->GetPointData()->GetArray("f")),
     1e-12 * TotalMagnitude(areas, Result(alone)));
 }
 
-TEST(InputArrays, AMaskThatCanChangeNothingIsOneWarning)
+TEST(InputArrays, AMaskWithoutEffectIsOneWarning)
 {
   auto plane = Grid(10, 10);
   AddRough(plane);
@@ -345,9 +345,9 @@ TEST(InputArrays, AMaskThatCanChangeNothingIsOneWarning)
   auto filter = MakeFilter(plane);
   Messages messages(filter);
   SetInputArray(filter, 1, "mask");
-  filter->Update(); // the hole starts from its mean
+  filter->Update(); // missing points start from the mean
   EXPECT_TRUE(messages.Warnings.empty());
-  filter->SetInitialFillToInput(); // without a fidelity missing and known points act alike
+  filter->SetInitialFillToInput(); // without fidelity, missing and known points are equivalent
   filter->Update();
   ASSERT_EQ(messages.Warnings.size(), 1u);
   EXPECT_NE(messages.Warnings[0].find("mask"), std::string::npos);

@@ -10,9 +10,9 @@ using namespace IntrinsicTVTest;
 
 // --- Masks, fixed and held values ---
 
-TEST(IntrinsicTVData, WhatIsMissingIsNotReadAndAnEdgeIsContinued)
+TEST(IntrinsicTVData, MissingValuesAreNotReadAndAnEdgeIsContinued)
 {
-  // A straight jump of height 1 along a grid line, its middle lost.
+  // A straight jump of height 1 along a grid line, whose middle is missing.
   auto grid = Grid(21, 21);
   const auto jump = [](vtkIdType i) { return i % 21 > 10 ? 1.0 : 0.0; };
   const auto lost = [](vtkIdType i)
@@ -53,7 +53,7 @@ TEST(IntrinsicTVData, WhatIsMissingIsNotReadAndAnEdgeIsContinued)
   }
 }
 
-TEST(IntrinsicTVData, FixedAndHeldValuesStayToTheBit)
+TEST(IntrinsicTVData, FixedAndHeldValuesKeepTheirBits)
 {
   auto sphere = Sphere(3);
   vtkDataArray* f = AddRough(sphere, 2);
@@ -75,7 +75,7 @@ TEST(IntrinsicTVData, FixedAndHeldValuesStayToTheBit)
       auto filter = MakeFilter(sphere);
       cases[c](filter);
       filter->SetHoldKnownValues(hold);
-      // Held: what is not missing, which is where the mask is 0.
+      // The points whose mask is 0 are known, and held.
       SetInputArray(filter, hold ? 1 : 3, "fixed");
       filter->Update();
       ASSERT_NE(Result(filter), nullptr) << c;
@@ -99,9 +99,9 @@ TEST(IntrinsicTVData, FixedAndHeldValuesStayToTheBit)
   }
 }
 
-TEST(IntrinsicTVData, L1RemovesImpulsesAndKeepsContrastAlsoWithAMask)
+TEST(IntrinsicTVData, L1RemovesImpulsesAndKeepsContrastEvenWithAMask)
 {
-  // A half-and-half sphere with impulses on a twelfth of the points; a part is lost besides.
+  // A sphere with two values, with impulses on a twelfth of the points and with missing points.
   auto sphere = Sphere(4);
   const auto clean = [&](vtkIdType i) { return sphere->GetPoint(i)[0] > 0.3 ? 0.75 : 0.25; };
   const auto impulse = [](vtkIdType i) { return Rough(i, 0) > 5.0 / 6.0; };
@@ -137,7 +137,8 @@ TEST(IntrinsicTVData, L1RemovesImpulsesAndKeepsContrastAlsoWithAMask)
 
 TEST(IntrinsicTVData, AcrossEdgeFunctionActsAcrossTheDirection)
 {
-  // Waves along x and along y; e1 = x. Constant across smooths those along y as heat does.
+  // Waves along x and along y, with e1 = x. Constant across the direction smooths the waves along y
+  // as linear diffusion does.
   auto grid = Grid(30, 30);
   AddPointArray(grid, "e1", 3, [](vtkIdType, int k) { return k == 0; });
   const auto decay = [&](bool alongX, const Setting& set)
@@ -154,7 +155,7 @@ TEST(IntrinsicTVData, AcrossEdgeFunctionActsAcrossTheDirection)
     set(filter);
     filter->Update();
     double largest = 0.0;
-    for (vtkIdType i = 10; i < 20; ++i) // away from the corners, whose cells are not symmetric
+    for (vtkIdType i = 10; i < 20; ++i) // not at the corners, whose cells are asymmetric
     {
       for (vtkIdType j = 10; j < 20; ++j)
       {
@@ -178,7 +179,7 @@ TEST(IntrinsicTVData, AcrossEdgeFunctionActsAcrossTheDirection)
 
 TEST(IntrinsicTVData, DiffusivitiesAlongAndAcrossActInEveryScheme)
 {
-  // Data that vary along e2 only see the across diffusivity.
+  // Only the across diffusivity affects data that vary along e2.
   auto grid = Grid(25, 24);
   AddPointArray(grid, "e1", 3, [](vtkIdType, int k) { return k == 0; });
   AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return i / 25 > 11 ? 1.0 : 0.0; });
@@ -238,10 +239,10 @@ TEST(IntrinsicTVData, AutomaticFidelityLeavesTheNoiseInTheResidual)
       }
     }
     const double discrepancy = std::sqrt(square / area);
-    const double wanted = noise > 0.0 ? noise : 0.25; // 0: estimated
+    const double wanted = noise > 0.0 ? noise : 0.25; // 0 means estimated
     EXPECT_NEAR(discrepancy, wanted, (noise > 0.0 ? 0.02 : 0.1) * wanted);
   }
-  // FidelityWeight is not read, and the one found gives the same run.
+  // FidelityWeight is ignored, and the weight that was found gives the same run.
   const auto found = Copy(Result(filter));
   const double fidelity = filter->GetEffectiveFidelityWeight();
   filter->SetFidelityWeight(1234.0);
@@ -253,7 +254,7 @@ TEST(IntrinsicTVData, AutomaticFidelityLeavesTheNoiseInTheResidual)
   EXPECT_LT(LargestDifference(Result(filter), found), 1e-6);
 }
 
-TEST(IntrinsicTVData, AutomaticFidelityKnowsOtherEdgeFunctions)
+TEST(IntrinsicTVData, AutomaticFidelityWorksWithOtherEdgeFunctions)
 {
   auto sphere = Sphere(3);
   AddPointArray(sphere, "f", 1,

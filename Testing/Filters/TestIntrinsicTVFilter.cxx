@@ -182,7 +182,7 @@ TEST(IntrinsicTVFilter, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
   }
 }
 
-TEST(IntrinsicTVFilter, WhatHasNoConvexEnergyIsNotMinimised)
+TEST(IntrinsicTVFilter, NonconvexEnergiesAreNotMinimised)
 {
   auto grid = Grid(4, 4);
   AddRough(grid);
@@ -285,7 +285,7 @@ TEST(IntrinsicTVFilter, NaturalSettingsAreTheAbsoluteOnesInTheirUnits)
     if (filter->GetMode() == Filter::MODE_STEADY_STATE &&
       filter->GetFidelityNorm() == Filter::FIDELITY_NORM_L1)
     {
-      // The minimiser is not unique: which one is found depends on the last bits of h.
+      // The minimiser is not unique, and the last bits of h determine the result.
       EXPECT_NEAR(HistoryAt(filter, 1, "Energy"), energy, filter->GetStopTolerance() * energy);
       continue;
     }
@@ -358,7 +358,7 @@ TEST(IntrinsicTVFilter, TimesInAnyOrderGiveTheSameBits)
     filter->GenerateTimeStepsOn();
     filter->SetTimeStep(0.25);
     filter->SetNumberOfTimeSteps(6);
-    filter->SetCheckpointMemoryLimit(0); // seeking back starts anew
+    filter->SetCheckpointMemoryLimit(0); // seeking back restarts the run
     EXPECT_EQ(PublishedTimes(filter).size(), 7u);
     std::map<double, vtkSmartPointer<vtkDataArray>> states;
     for (const double time : { 1.5, 0.5, 0.0, 1.0, 1.5, 0.5, 1.25, 0.0 })
@@ -463,7 +463,7 @@ TEST(IntrinsicTVFilter, AnyBetaAndTimeStepGiveFiniteValuesWithinBounds)
   }
 }
 
-TEST(IntrinsicTVFilter, AToleranceOutOfReachIsAWarningWithTheGap)
+TEST(IntrinsicTVFilter, AnUnreachableToleranceIsAWarningWithTheGap)
 {
   auto grid = Grid(8, 8);
   AddRough(grid, 2);

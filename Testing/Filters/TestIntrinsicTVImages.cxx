@@ -29,7 +29,7 @@ vtkSmartPointer<vtkIntrinsicTVFilter> MakeFilter(vtkPolyData* surface)
 
 } // namespace
 
-TEST(IntrinsicTVImages, NoiseIsTakenOffPatches)
+TEST(IntrinsicTVImages, NoiseIsRemovedFromPatches)
 {
   auto sphere = Sphere(5);
   Noise noise;

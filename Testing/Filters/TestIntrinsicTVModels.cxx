@@ -54,7 +54,7 @@ TEST(IntrinsicTVModels, ConstantStaysConstant)
   }
 }
 
-TEST(IntrinsicTVModels, SumIsKept)
+TEST(IntrinsicTVModels, TotalIsConserved)
 {
   auto sphere = Sphere(3);
   vtkDataArray* f = AddRough(sphere, 3);
@@ -97,9 +97,10 @@ TEST(IntrinsicTVModels, SumIsKept)
   }
 }
 
-TEST(IntrinsicTVModels, WhatIsConstantAlreadyStopsAtOnce)
+TEST(IntrinsicTVModels, AConstantStateStopsAtOnce)
 {
-  // The flow is extinct long before its last step; across e1 nothing flows at all.
+  // The state is constant long before the last step. Without diffusion across e1 nothing flows at
+  // all.
   auto grid = Grid(12, 12);
   AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return 1e3 + (i / 12 > 5 ? 1.0 : 0.0); });
   AddPointArray(grid, "e1", 3, [](vtkIdType, int k) { return k == 0; });
@@ -119,7 +120,7 @@ TEST(IntrinsicTVModels, WhatIsConstantAlreadyStopsAtOnce)
   }
 }
 
-TEST(IntrinsicTVModels, EnergyFallsAndTheHistoryEndsWithThatOfTheState)
+TEST(IntrinsicTVModels, EnergyDecreasesToThatOfTheFinalState)
 {
   auto sphere = Sphere(3);
   AddRough(sphere);
@@ -165,7 +166,7 @@ TEST(IntrinsicTVModels, ACapShrinksAtItsRateWithCrouzeixRaviartCloserThanLinear)
     for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
     {
       const double z = Height(sphere->GetPoint(i));
-      if (std::abs(z - 0.5) > 0.2) // plateaus, not the jump
+      if (std::abs(z - 0.5) > 0.2) // only the plateaus, away from the jump
       {
         sum +=
           areas[i] * std::abs(Result(filter)->GetComponent(i, 0) - (z > 0.5 ? inside : outside));
@@ -211,7 +212,7 @@ TEST(IntrinsicTVModels, SteadyStateIsTheLimitOfALongRun)
   EXPECT_LT(LargestDifference(Result(lagged), Result(steady)), 1e-2);
 }
 
-TEST(IntrinsicTVModels, SteadyStateWithNothingHeldIsTheMean)
+TEST(IntrinsicTVModels, SteadyStateWithoutConstraintsIsTheMean)
 {
   auto sphere = Sphere(2);
   AddRough(sphere);
@@ -231,7 +232,7 @@ TEST(IntrinsicTVModels, SteadyStateWithNothingHeldIsTheMean)
     const double mean = Total(areas, sphere->GetPointData()->GetArray("f")) / area;
     for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
     {
-      // On the way to the edges and back something is left of rough data, which is not lost.
+      // The transfer to the edges and back conserves the total but leaves some of the rough data.
       ASSERT_NEAR(Result(filter)->GetComponent(i, 0), mean, discretization == 0 ? 1e-12 : 0.02);
     }
   }
@@ -239,7 +240,7 @@ TEST(IntrinsicTVModels, SteadyStateWithNothingHeldIsTheMean)
 
 // --- Channels ---
 
-TEST(IntrinsicTVModels, PerChannelIsEachChannelAlone)
+TEST(IntrinsicTVModels, PerChannelTreatsEachChannelSeparately)
 {
   auto sphere = Sphere(3);
   vtkDataArray* f = AddRough(sphere, 3);
@@ -276,7 +277,7 @@ TEST(IntrinsicTVModels, PerChannelIsEachChannelAlone)
   }
 }
 
-TEST(IntrinsicTVModels, JointCouplingKnowsNoDirectionsOfColorSpace)
+TEST(IntrinsicTVModels, JointCouplingIsInvariantUnderRotationsOfColorSpace)
 {
   auto sphere = Sphere(3);
   vtkDataArray* f = AddRough(sphere, 2);

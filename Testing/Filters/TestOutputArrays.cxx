@@ -47,11 +47,11 @@ TEST(OutputArrays, TheOutputIsTheInputWithOneMoreActiveArray)
   EXPECT_EQ(output->GetCellData()->GetArray("ofCells"), plane->GetCellData()->GetArray("ofCells"));
   EXPECT_NE(output->GetFieldData()->GetArray("ofField"), nullptr);
   EXPECT_EQ(output->GetPointData()->GetScalars(), Result(filter));
-  EXPECT_EQ(plane->GetPointData()->GetNumberOfArrays(), 2); // the input is not touched
+  EXPECT_EQ(plane->GetPointData()->GetNumberOfArrays(), 2); // the input is unchanged
   EXPECT_STREQ(plane->GetPointData()->GetScalars()->GetName(), "f");
 }
 
-TEST(OutputArrays, TheResultIsNamedAsAsked)
+TEST(OutputArrays, TheResultHasTheRequestedName)
 {
   auto plane = Grid(6, 5);
   AddRough(plane);
@@ -102,7 +102,7 @@ TEST(OutputArrays, PrecisionFollowsTheInputOrIsSet)
   }
 }
 
-TEST(OutputArrays, ValuesThatNoFloatCanHoldAreAnError)
+TEST(OutputArrays, ValuesOutsideTheRangeOfFloatAreAnError)
 {
   auto plane = Grid(6, 5);
   AddPointArray(plane, "f", 2, [](vtkIdType i, int k) { return 1e60 * (2.0 + Rough(i, k)); });
@@ -164,7 +164,7 @@ TEST(OutputArrays, ColorsAreRoundedAtTheEndOnly)
   {
     auto filter = MakeFilter(sphere);
     SetInputArray(filter, 0, "rgb");
-    filter->SetTimeStep(0.05); // so little that rounding every step would stop some changes
+    filter->SetTimeStep(0.05); // so small that rounding in every step would suppress changes
     filter->SetNumberOfTimeSteps(60);
     filter->SetGenerateTimeSteps(timeSteps);
     filter->Update();
@@ -182,7 +182,7 @@ TEST(OutputArrays, ColorsAreRoundedAtTheEndOnly)
   }
 }
 
-TEST(OutputArrays, ColorsAreClampedWhereTheStateLeavesTheirRange)
+TEST(OutputArrays, ColorsAreClampedIfTheStateLeavesTheirRange)
 {
   auto sphere = Sphere(4);
   AddPointArray(
@@ -207,7 +207,7 @@ TEST(OutputArrays, ColorsAreClampedWhereTheStateLeavesTheirRange)
   EXPECT_LT(range[0], -1.0);
 }
 
-TEST(OutputArrays, PointsOfNoTriangleKeepTheirValueInEveryType)
+TEST(OutputArrays, PointsWithoutTrianglesKeepTheirValueInEveryType)
 {
   auto plane = Grid(6, 5);
   plane->GetPoints()->InsertNextPoint(9.0, 9.0, 9.0);

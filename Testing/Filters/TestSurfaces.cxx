@@ -22,7 +22,7 @@ vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
   return filter;
 }
 
-/// Two grids side by side that meet at x = 5 with points of their own: a seam nobody sewed.
+/// Two adjacent grids that meet at x = 5, each with its own points there: an unmerged seam.
 vtkSmartPointer<vtkPolyData> TwoSheets()
 {
   auto sheets = Grid(6, 6);
@@ -39,7 +39,7 @@ vtkSmartPointer<vtkPolyData> TwoSheets()
   return sheets;
 }
 
-/// f of the grid point (x, y), whatever number it has.
+/// f as a function of the place of a grid point, independent of its number.
 double Place(const double* p)
 {
   return std::sin(2.0 * p[0]) + std::cos(3.0 * p[1]) + 0.1 * p[0];
@@ -66,7 +66,7 @@ void AddGhosts(vtkPolyData* surface, const std::vector<vtkIdType>& cells, unsign
 
 } // namespace
 
-TEST(Surfaces, WhatIsWrongIsHandledAndToldInOneWarningWithCounts)
+TEST(Surfaces, DefectsAreHandledAndReportedInOneWarningWithCounts)
 {
   auto surface = TwoSheets(); // 6 + 6 points on the seam
   vtkPoints* points = surface->GetPoints();
@@ -115,7 +115,7 @@ TEST(Surfaces, WhatIsWrongIsHandledAndToldInOneWarningWithCounts)
   }
 }
 
-TEST(Surfaces, NothingIsWarnedAboutOnAGoodSurface)
+TEST(Surfaces, WithoutDefectsGiveNoWarning)
 {
   auto sphere = Sphere(2);
   AddRough(sphere);
@@ -125,7 +125,7 @@ TEST(Surfaces, NothingIsWarnedAboutOnAGoodSurface)
   EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
 }
 
-TEST(Surfaces, OfZeroAreaOnlyKeepsItsValues)
+TEST(Surfaces, OfZeroAreaKeepTheirValues)
 {
   auto surface = Grid(3, 3);
   for (vtkIdType i = 0; i < 9; ++i)
@@ -145,7 +145,7 @@ TEST(Surfaces, OfZeroAreaOnlyKeepsItsValues)
   }
 }
 
-TEST(Surfaces, WhollyExcludedOrWhollyMissingIsFinite)
+TEST(Surfaces, FullyExcludedOrMissingGiveFiniteResults)
 {
   auto surface = Grid(5, 5);
   vtkDataArray* f = AddRough(surface);
@@ -213,7 +213,7 @@ TEST(Surfaces, MergedPointsAreOne)
   };
   compare(1e-12);
 
-  // A seam a little open needs a tolerance.
+  // A seam with a small gap needs a tolerance.
   for (vtkIdType i = 36; i < 72; ++i)
   {
     double p[3];
@@ -294,7 +294,7 @@ TEST(Surfaces, PartitionsOfStripsAreOneSurface)
   }
 }
 
-TEST(Surfaces, APolygonOnALineIsLeftOutTriangleByTriangle)
+TEST(Surfaces, CollinearPolygonsAreIgnoredTriangleByTriangle)
 {
   auto surface = Grid(5, 5);
   surface->GetPolys()->InsertNextCell({ 0, 1, 2, 3, 4 });
@@ -308,7 +308,7 @@ TEST(Surfaces, APolygonOnALineIsLeftOutTriangleByTriangle)
     << messages.Warnings[0];
 }
 
-TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInsideOnly)
+TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInternallyOnly)
 {
   const int n = 6;
   auto triangles = Grid(n, n);
@@ -316,7 +316,7 @@ TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInsideOnly)
   auto reference = MakeFilter(triangles);
   reference->SetUnitsToAbsolute();
   reference->Update();
-  // Unit squares: both diagonals are right, the flux over a diagonal is zero either way.
+  // In unit squares both diagonals give the same result, since the cotan weight of a diagonal is 0.
   for (const char* kind : { "quads", "strips", "hexagons" })
   {
     vtkNew<vtkPolyData> surface;
@@ -334,7 +334,7 @@ TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInsideOnly)
         }
         continue;
       }
-      const bool hexagons = std::string(kind) == "hexagons"; // two squares and one more
+      const bool hexagons = std::string(kind) == "hexagons"; // each is two squares
       for (vtkIdType i = 0; i + 1 < n; ++i)
       {
         const vtkIdType a = i + n * j;
@@ -367,7 +367,7 @@ TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInsideOnly)
       filter->GetOutput()->GetPolys()->GetNumberOfCells(), surface->GetPolys()->GetNumberOfCells());
     EXPECT_EQ(filter->GetOutput()->GetNumberOfStrips(), surface->GetNumberOfStrips());
     EXPECT_NEAR(HistoryAt(filter, 10, "Total_0"), HistoryAt(filter, 0, "Total_0"), 1e-12);
-    if (std::string(kind) != "hexagons") // whose ears may make obtuse triangles
+    if (std::string(kind) != "hexagons") // ear clipping may give obtuse triangles
     {
       EXPECT_NEAR(HistoryAt(filter, 10, "Energy"), HistoryAt(reference, 10, "Energy"), 0.02)
         << kind;
@@ -377,9 +377,9 @@ TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInsideOnly)
   }
 }
 
-TEST(Surfaces, ConcavePolygonsAreCutInside)
+TEST(Surfaces, ConcavePolygonsAreCutInTheirInterior)
 {
-  // An L of one hexagon: a diagonal outside would give it area 4 or more instead of 3.
+  // An L-shaped hexagon of area 3. A diagonal outside would give an area of 4 or more.
   vtkNew<vtkPolyData> surface;
   vtkNew<vtkPoints> points;
   for (const auto& p :
@@ -397,7 +397,7 @@ TEST(Surfaces, ConcavePolygonsAreCutInside)
   SetInputArray(filter, 0, "f");
   filter->Update();
   EXPECT_NEAR(HistoryAt(filter, 0, "Total_0"), 3.0, 1e-14);
-  // A concave quadrilateral, an arrow head: area 1, with the other diagonal 3.
+  // A concave quadrilateral, an arrow head of area 1. The other diagonal would give 3.
   points->Initialize();
   for (const auto& p : { std::array<double, 2>{ 0, 0 }, { 2, -1 }, { 1, 0 }, { 2, 1 } })
   {
@@ -429,7 +429,7 @@ TEST(Surfaces, VertsAndLinesPassThroughAndCellDataStayWithTheirCells)
   lines->InsertNextCell({ vtkIdType(0), vtkIdType(35) });
   mixed->SetVerts(verts);
   mixed->SetLines(lines);
-  // Directions of cells count verts and lines first.
+  // Cell arrays contain the verts and lines first.
   const auto direction = [](int offset)
   { return [offset](vtkIdType c, int k) { return c < offset ? 0.0 : Rough(c - offset, k); }; };
   plane->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "e1", 50, 3, direction(0)));
@@ -452,7 +452,7 @@ TEST(Surfaces, VertsAndLinesPassThroughAndCellDataStayWithTheirCells)
   EXPECT_TRUE(Identical(results[0], results[1]));
 }
 
-TEST(Surfaces, GhostAndHiddenCellsTakeNoPart)
+TEST(Surfaces, GhostAndHiddenCellsAreIgnored)
 {
   for (const unsigned char kind :
     { vtkDataSetAttributes::DUPLICATECELL, vtkDataSetAttributes::HIDDENCELL })
@@ -492,7 +492,7 @@ TEST(Surfaces, NumberingAndOrientationDoNotMatter)
   AddPlaceData(sphere);
   auto reference = MakeFilter(sphere);
   reference->Update();
-  // Points backwards, triangles backwards, every third one the other way round.
+  // Points and triangles in reverse order, and every third triangle with reversed orientation.
   const vtkIdType last = sphere->GetNumberOfPoints() - 1;
   vtkNew<vtkPolyData> other;
   vtkNew<vtkPoints> points;

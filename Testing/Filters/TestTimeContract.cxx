@@ -30,7 +30,7 @@ double DataTime(vtkAlgorithm* filter, int port = 0)
   return filter->GetOutputDataObject(port)->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
 }
 
-/// A surface whose data are the time, and that counts how often it is made.
+/// A source whose data are the time, and which counts its executions.
 class TimeSource : public vtkPolyDataAlgorithm
 {
 public:
@@ -39,7 +39,7 @@ public:
 
   int Executions = 0;
   bool HasTimes = true;
-  bool HasSteps = true; ///< off: a range without steps
+  bool HasSteps = true; ///< false: a time range without steps
   bool TimeWasAsked = false;
   double LastTime = -1.0;
 
@@ -162,7 +162,7 @@ TEST(TimeContract, ARequestGetsTheLatestPublishedStateAtOrBeforeIt)
   filter->SetTimeStep(0.5);
   filter->SetOutputInterval(4);
   filter->SetSolverToDirect();
-  filter->Update(); // no request: the last
+  filter->Update(); // without a request: the last time
   EXPECT_TRUE(Identical(Result(filter), states[10]));
   EXPECT_EQ(DataTime(filter), 5.0);
   struct Case
@@ -191,7 +191,7 @@ TEST(TimeContract, EveryPublishedTimeIsFoundAgain)
   filter->SetNumberOfTimeSteps(300);
   const std::vector<double> times = PublishedTimes(filter);
   ASSERT_EQ(times.size(), 301u);
-  double sum = 0.0; // as a program gets it that adds steps up
+  double sum = 0.0; // as in a program that adds up steps
   for (std::size_t step = 0; step < times.size(); step += 7)
   {
     UpdateAt(filter, times[step]);
@@ -238,7 +238,7 @@ TEST(TimeContract, OrderOfTheRequestsDoesNotMatter)
       filter->SetNumberOfTimeSteps(50);
       filter->SetSolver(solver);
     }
-    jumping->SetCheckpointMemoryLimit(0); // so that it really goes back
+    jumping->SetCheckpointMemoryLimit(0); // so that going back recomputes steps
     std::vector<vtkSmartPointer<vtkDataArray>> states;
     for (int step = 0; step <= 40; ++step)
     {

@@ -35,7 +35,7 @@ double High(vtkDataArray* array, int component = 0)
   return array->GetRange(component)[1];
 }
 
-/// Connected pieces of the surface where the array is above `level`.
+/// The number of connected components of the set where the array is above `level`.
 int CountPieces(vtkPolyData* surface, vtkDataArray* array, double level)
 {
   std::vector<vtkIdType> parent(surface->GetNumberOfPoints());
@@ -74,7 +74,7 @@ int CountPieces(vtkPolyData* surface, vtkDataArray* array, double level)
   return pieces;
 }
 
-/// The one error of an update, whose output must be the unchanged input.
+/// The only error of an update, whose output must be the unchanged input.
 std::string ErrorOf(vtkTuringTextureFilter* filter)
 {
   Messages messages(filter);
@@ -101,7 +101,7 @@ bool Contains(const std::string& text, const std::string& part)
 
 } // namespace
 
-TEST(TuringTextureFilter, HasTheDefaultsOfTheDesign)
+TEST(TuringTextureFilter, HasTheDocumentedDefaults)
 {
   vtkNew<vtkTuringTextureFilter> filter;
   EXPECT_EQ(filter->GetTimeStep(), 1.0 / 16.0);
@@ -122,7 +122,7 @@ TEST(TuringTextureFilter, HasTheDefaultsOfTheDesign)
   EXPECT_FALSE(filter->GetColorOutput());
 }
 
-TEST(TuringTextureFilter, DrawsSpotsOutOfNothing)
+TEST(TuringTextureFilter, GrowsSpotsFromNoise)
 {
   auto sphere = Sphere(5);
   AddRough(sphere); // active scalars are no initial state
@@ -182,7 +182,7 @@ TEST(TuringTextureFilter, FeatureSizeGivesTheSameSpotsOnCoarseAndFineMeshes)
   EXPECT_LE(std::abs(pieces[0] - pieces[1]), 5);
 }
 
-TEST(TuringTextureFilter, TellsOnceWhyNoPatternGrows)
+TEST(TuringTextureFilter, WarnsOnceWhyNoPatternGrows)
 {
   auto sphere = Sphere(4);
   auto filter = MakeFilter(sphere);
@@ -210,7 +210,7 @@ TEST(TuringTextureFilter, TellsOnceWhyNoPatternGrows)
   EXPECT_TRUE(Contains(WarningOf(filter), "neither chemical promotes itself"));
 }
 
-TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
+TEST(TuringTextureFilter, RejectsInvalidSettings)
 {
   auto sphere = Sphere(2);
   AddRough(sphere, 1);
@@ -255,7 +255,7 @@ TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
     const std::string error = ErrorOf(filter);
     EXPECT_TRUE(Contains(error, message)) << error;
   }
-  // A value that another kinetics would refuse is not read.
+  // A parameter of other kinetics is not read, even if it is invalid.
   const auto filter = MakeFilter(sphere, 2);
   filter->SetFeedRate(-1.0);
   Messages messages(filter);
@@ -263,7 +263,7 @@ TEST(TuringTextureFilter, RefusesWhatMakesNoSense)
   EXPECT_TRUE(messages.Errors.empty());
 }
 
-TEST(TuringTextureFilter, TimesMayBeAskedForInAnyOrder)
+TEST(TuringTextureFilter, TimesMayBeRequestedInAnyOrder)
 {
   const auto filter = MakeFilter(Sphere(3), 40);
   filter->Update();
@@ -288,13 +288,13 @@ TEST(TuringTextureFilter, TimesMayBeAskedForInAnyOrder)
   EXPECT_NEAR(Low(Result(filter, "u1")), 3.6, 0.01);
 }
 
-TEST(TuringTextureFilter, ARunEndsWhenThePatternStands)
+TEST(TuringTextureFilter, ARunEndsWhenThePatternIsStationary)
 {
   const auto filter = MakeFilter(Sphere(3), 1500);
   filter->SetStopTolerance(0.05);
   filter->Update();
   const vtkIdType rows = History(filter)->GetNumberOfRows();
-  std::printf("stands after %d steps\n", static_cast<int>(rows - 1));
+  std::printf("stationary after %d steps\n", static_cast<int>(rows - 1));
   EXPECT_GT(rows, 50);
   EXPECT_LT(rows, 1200);
   const auto standing = Copy(Result(filter, "u1"));
@@ -309,7 +309,7 @@ TEST(TuringTextureFilter, ARunEndsWhenThePatternStands)
   EXPECT_TRUE(Identical(Result(filter, "u1"), standing));
 }
 
-TEST(TuringTextureFilter, ABlockThatStandsWaitsForTheOthers)
+TEST(TuringTextureFilter, AStationaryBlockWaitsForTheOthers)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (unsigned int b = 0; b < 2; ++b)
@@ -328,12 +328,12 @@ TEST(TuringTextureFilter, ABlockThatStandsWaitsForTheOthers)
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   const auto u1 = [&](unsigned int b)
   { return vtkPolyData::SafeDownCast(output->GetBlock(b))->GetPointData()->GetArray("u1"); };
-  EXPECT_NEAR(Low(u1(0)), 4.0, 1e-9); // at rest from the start
+  EXPECT_NEAR(Low(u1(0)), 4.0, 1e-9); // a steady state from the start
   EXPECT_NEAR(High(u1(0)), 4.0, 1e-9);
   EXPECT_GT(High(u1(1)) - Low(u1(1)), 1e-3);
 }
 
-TEST(TuringTextureFilter, HistoryCountsWhatIsHeldAtZero)
+TEST(TuringTextureFilter, HistoryCountsConcentrationsHeldAtZero)
 {
   const auto filter = MakeFilter(Sphere(4), 160);
   filter->Update();
@@ -379,7 +379,7 @@ TEST(TuringTextureFilter, FeatureSizeOverridesTheScaleOfTheRates)
   EXPECT_LT(LargestDifference(Result(filter, "u1"), expected), 1e-9);
 }
 
-TEST(TuringTextureFilter, TakesAnInitialState)
+TEST(TuringTextureFilter, StartsFromAnInitialState)
 {
   auto sphere = Sphere(3);
   AddPointArray(
@@ -401,7 +401,7 @@ TEST(TuringTextureFilter, TakesAnInitialState)
     0.001);
 }
 
-TEST(TuringTextureFilter, WhatWasMissingInAnInitialStateIsForgottenWithIt)
+TEST(TuringTextureFilter, MissingValuesOfARemovedInitialStateAreForgotten)
 {
   auto sphere = Sphere(2);
   AddPointArray(sphere, "state", 2, [](vtkIdType i, int) { return i == 9 ? std::nan("") : 4.0; });
@@ -430,7 +430,7 @@ TEST(TuringTextureFilter, HoldsFixedPoints)
   }
 }
 
-TEST(TuringTextureFilter, AnExcludedRegionTakesNoPart)
+TEST(TuringTextureFilter, AnExcludedRegionIsIgnored)
 {
   auto sphere = Sphere(4);
   const auto inRegion = [&](vtkIdType i) { return sphere->GetPoint(i)[2] > 0.5; };
@@ -446,7 +446,7 @@ TEST(TuringTextureFilter, AnExcludedRegionTakesNoPart)
   }
 }
 
-TEST(TuringTextureFilter, RatesPerCellAreThoseOfTheProperties)
+TEST(TuringTextureFilter, EqualRatesPerCellGiveTheResultOfTheProperties)
 {
   auto sphere = Sphere(3);
   AddPointArray(sphere, "e1", 3, [&](vtkIdType, int k) { return k == 2; });
@@ -471,7 +471,7 @@ TEST(TuringTextureFilter, RatesPerCellAreThoseOfTheProperties)
   isotropic->Update();
   EXPECT_GT(LargestDifference(Result(byCell, "u1"), Result(isotropic, "u1")), 1e-3);
 
-  // The half of the cells with other rates is seen.
+  // Other rates in half of the cells change the result.
   for (vtkIdType c = 0; c < sphere->GetNumberOfCells(); c += 2)
   {
     cells->SetComponent(c, 0, 60.0);
@@ -483,7 +483,7 @@ TEST(TuringTextureFilter, RatesPerCellAreThoseOfTheProperties)
   EXPECT_TRUE(Contains(ErrorOf(byCell), "IntrinsicDelaunay is on but DiffusionRateArray"));
 }
 
-TEST(TuringTextureFilter, ColorsMixTwoColorsByTheTexture)
+TEST(TuringTextureFilter, ColorsInterpolateBetweenTwoColorsByTheTexture)
 {
   const auto filter = MakeFilter(Sphere(4), 160);
   filter->ColorOutputOn();
@@ -512,7 +512,7 @@ TEST(TuringTextureFilter, ColorsMixTwoColorsByTheTexture)
   EXPECT_EQ(darkest, 0.0);
 }
 
-TEST(TuringTextureFilter, SeedsGiveDifferentPatternsAndTheSameSeedTheSameBits)
+TEST(TuringTextureFilter, DifferentSeedsGiveDifferentPatternsAndTheSameSeedTheSameBits)
 {
   auto sphere = Sphere(3);
   const auto filter = MakeFilter(sphere);
@@ -526,7 +526,7 @@ TEST(TuringTextureFilter, SeedsGiveDifferentPatternsAndTheSameSeedTheSameBits)
   EXPECT_TRUE(Identical(Result(filter, "u1"), first));
 }
 
-TEST(TuringTextureFilter, ThreadsDoNotChangeABit)
+TEST(TuringTextureFilter, BitsDoNotDependOnThreads)
 {
   auto sphere = Sphere(5);
   vtkSmartPointer<vtkDataArray> serial;
@@ -620,11 +620,11 @@ TEST(TuringTextureFilter, PaperSchemeIsTheFirstOrderOne)
   filter->UsePaperScheme();
   EXPECT_STREQ(filter->GetKineticsAsString(), "Turing");
   EXPECT_STREQ(filter->GetTimeIntegratorAsString(), "FirstOrder");
-  EXPECT_FALSE(filter->GetClampToNonNegative()); // left alone
+  EXPECT_FALSE(filter->GetClampToNonNegative()); // unchanged
   EXPECT_EQ(filter->GetDiffusionRate1(), 5.0);
 }
 
-TEST(TuringTextureFilter, FirstOrderAndSecondOrderMeetAtSmallSteps)
+TEST(TuringTextureFilter, FirstAndSecondOrderAgreeForSmallSteps)
 {
   auto sphere = Sphere(3);
   const auto run = [&](bool second, int steps)

@@ -60,7 +60,7 @@ double Error(
   return ErrorOfPicture(actor, baseline, output);
 }
 
-/// A texture of waves of 0.5 on the unit sphere, until it stands.
+/// A texture of wavelength 0.5 on the unit sphere, until it is stationary.
 vtkSmartPointer<vtkTuringTextureFilter> MakeTexture(double ratio)
 {
   auto filter = vtkSmartPointer<vtkTuringTextureFilter>::New();
@@ -81,24 +81,24 @@ void ExpectPictureOfItsOwn(vtkTuringTextureFilter* filter, const std::string& ba
 
 } // namespace
 
-TEST(TuringTextureImages, RatesAsFiveToOneMakeSpots)
+TEST(TuringTextureImages, ARateRatioOfFiveMakesSpots)
 {
   const auto filter = MakeTexture(5.0);
-  filter->SetNumberOfTimeSteps(320); // they come slowly
+  filter->SetNumberOfTimeSteps(320); // spots grow slowly
   ExpectPictureOfItsOwn(filter, "TuringSpots");
 }
 
-TEST(TuringTextureImages, RatesAsSixteenToOneMakeALabyrinth)
+TEST(TuringTextureImages, ARateRatioOfSixteenMakesALabyrinth)
 {
   ExpectPictureOfItsOwn(MakeTexture(16.0), "TuringLabyrinth");
 }
 
-TEST(TuringTextureImages, RatesAsThirtyToOneMakeANet)
+TEST(TuringTextureImages, ARateRatioOfThirtyMakesANet)
 {
   ExpectPictureOfItsOwn(MakeTexture(30.0), "TuringNet");
 }
 
-TEST(TuringTextureImages, RatesOfTheActivatorAlongADirectionMakeStripes)
+TEST(TuringTextureImages, AFasterActivatorAlongADirectionMakesStripes)
 {
   auto sphere = Sphere(5);
   AddPointArray(sphere, "e1", 3,
@@ -112,13 +112,13 @@ TEST(TuringTextureImages, RatesOfTheActivatorAlongADirectionMakeStripes)
   SetInputArray(filter, 2, "e1");
   filter->SetDiffusionRate2(5.2);
   filter->SetDiffusionRateAcross2(2.6);
-  filter->SetFeatureSize(0.6); // along e1, where waves do not grow
+  filter->SetFeatureSize(0.6); // along e1, along which no waves grow
   EXPECT_LE(Error(filter, "TuringStripes"), ImageTest::Tolerance);
   filter->SetDiffusionRate2(4.8);
   EXPECT_GT(Error(filter, "TuringStripes", "TuringStripesTwin"), ImageTest::Tolerance);
 }
 
-TEST(TuringTextureImages, ColorOutputIsAPictureByItself)
+TEST(TuringTextureImages, ColorOutputShowsTheTexture)
 {
   const auto filter = MakeTexture(8.0);
   filter->ColorOutputOn();
@@ -138,7 +138,7 @@ TEST(TuringTextureImages, ColorOutputIsAPictureByItself)
 
 TEST(DirectionFieldImages, SmoothLinesCoverASphere)
 {
-  // An egg: without symmetry the smoothest field is one of a kind.
+  // An egg. Without symmetry the smoothest field is unique.
   auto egg = Sphere(4);
   for (vtkIdType i = 0; i < egg->GetNumberOfPoints(); ++i)
   {

@@ -36,14 +36,14 @@ TEST(Units, AreMeasuredOnDistinctEdgesAndKnownValues)
   filter->Update();
   const double h = (7.0 * 2.0 + 2.0 * 2.0 * std::sqrt(2.0)) / 9.0;
   EXPECT_NEAR(filter->GetMeanEdgeLength(), h, 1e-14);
-  EXPECT_EQ(filter->GetValueRange(), 20.0); // of the second component, 0 to -20
+  EXPECT_EQ(filter->GetValueRange(), 20.0); // range of the second component, from 0 to -20
   EXPECT_NEAR(filter->GetTimeUnit(), h * h, 1e-13);
 
   grid->GetPointData()->GetArray("f")->SetComponent(5, 0, std::nan(""));
   grid->GetPointData()->GetArray("f")->Modified();
   SetInputArray(filter, 1, "");
   filter->Update();
-  EXPECT_EQ(filter->GetValueRange(), 20.0); // missing by NaN
+  EXPECT_EQ(filter->GetValueRange(), 20.0); // a NaN is missing
 }
 
 TEST(Units, RangeOfAConstantIsOne)
@@ -198,7 +198,7 @@ TEST(Units, BlocksOfCompositeDataShareLengthAndRange)
       total += HistoryAt(alone, 10, "Total_0");
     }
     EXPECT_NEAR(HistoryAt(filter, 10, "Total_0"), total, 1e-9);
-    EXPECT_EQ(fine->GetPointData()->GetArray("fDiffused"), nullptr); // the input is not written to
+    EXPECT_EQ(fine->GetPointData()->GetArray("fDiffused"), nullptr); // the input is unchanged
   }
 }
 
@@ -222,7 +222,7 @@ TEST(Units, BlocksWithoutTheArrayPassThroughAndBadOnesAreErrors)
     vtkPolyData::SafeDownCast(output->GetBlock(1))->GetPointData()->HasArray("fDiffused"));
   EXPECT_NE(vtkTable::SafeDownCast(output->GetBlock(2)), nullptr);
 
-  SetInputArray(filter, 1, "nosuchmask"); // must not be taken for "no mask"
+  SetInputArray(filter, 1, "nosuchmask"); // must not mean "no mask"
   filter->Update();
   ASSERT_EQ(messages.Errors.size(), 1u);
   EXPECT_NE(messages.Errors[0].find("nosuchmask"), std::string::npos) << messages.Errors[0];

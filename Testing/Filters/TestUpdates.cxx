@@ -14,7 +14,7 @@
 
 using namespace FilterTest;
 
-// Counting every allocation needs a malloc of our own, which sanitizers bring themselves.
+// Counting allocations replaces malloc, which sanitizers replace themselves.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define SURFACEDIFFUSION_COUNT_ALLOCATIONS
 static std::atomic<long> NumberOfAllocations{ 0 };
@@ -39,7 +39,7 @@ vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
   return filter;
 }
 
-/// What a filter tells of its progress.
+/// Records the progress reports of a filter.
 struct Reports
 {
   explicit Reports(vtkAlgorithm* filter)
@@ -95,7 +95,7 @@ TEST(Updates, ReportProgressEvenly)
   }
 }
 
-TEST(Updates, ReportProgressWhereNearlyEverythingIsKept)
+TEST(Updates, ReportProgressIfNearlyEverythingIsReused)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
@@ -158,7 +158,7 @@ TEST(Updates, ObeyAnAbortAndWorkAgainAfterwards)
   }
 }
 
-TEST(Updates, AnAbortedRunIsNotTakenForTheOneBeforeIt)
+TEST(Updates, AnAbortedRunIsNotReused)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
@@ -187,7 +187,7 @@ TEST(Updates, AnAbortedRunIsNotTakenForTheOneBeforeIt)
   }
 }
 
-TEST(Updates, ChangesOfTheOutputAloneComputeNothing)
+TEST(Updates, ChangesOfTheOutputAloneRecomputeNothing)
 {
   auto sphere = Sphere(3);
   AddRough(sphere);
@@ -211,7 +211,7 @@ TEST(Updates, ChangesOfTheOutputAloneComputeNothing)
   EXPECT_NE(Result(filter, "unrelated"), nullptr);
 }
 
-TEST(Updates, ChangesOfWhatTheStepsDependOnComputeThemAgain)
+TEST(Updates, ChangesOfInputsOfTheStepsRecomputeThem)
 {
   auto sphere = Sphere(3);
   vtkDataArray* f = AddRough(sphere);
@@ -226,7 +226,7 @@ TEST(Updates, ChangesOfWhatTheStepsDependOnComputeThemAgain)
     filter->Update();
     EXPECT_EQ(filter->GetNumberOfStepsComputed(), computed + 10) << what;
     computed = filter->GetNumberOfStepsComputed();
-    // Nothing stale: a new filter with the same settings agrees.
+    // The result is not stale: a new filter with the same settings gives the same.
     auto fresh = MakeFilter(sphere);
     SetInputArray(fresh, 1, "mask");
     SetInputArray(fresh, 2, "e1");
@@ -280,7 +280,7 @@ TEST(Updates, ChangesOfWhatTheStepsDependOnComputeThemAgain)
   expectAgain("triangles");
 }
 
-TEST(Updates, WhatTheMeshAloneDecidesIsKept)
+TEST(Updates, DataThatDependOnTheMeshAloneAreReused)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
@@ -387,7 +387,7 @@ TEST(Updates, LaterStepsAllocateNothing)
 #endif
 }
 
-TEST(Updates, TheFactorIsUsedAgainWhereTheMatrixStays)
+TEST(Updates, TheFactorIsReusedWhileTheMatrixIsUnchanged)
 {
   auto sphere = Sphere(6);
   AddRough(sphere);
@@ -407,7 +407,7 @@ TEST(Updates, TheFactorIsUsedAgainWhereTheMatrixStays)
   EXPECT_LT(without, 0.5 * withFactor);
 }
 
-TEST(Updates, OneOfSeveralPiecesIsAnErrorUnlessItIsSaidToBeWhole)
+TEST(Updates, OneOfSeveralPiecesIsAnErrorUnlessDeclaredWhole)
 {
   vtkNew<vtkSphereSource> source;
   vtkNew<vtkFVMHeatFilter> filter;

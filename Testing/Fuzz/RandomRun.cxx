@@ -366,7 +366,6 @@ void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
     bytes.Flip() ? ReactionDiffusion::Scheme::FirstOrder : ReactionDiffusion::Scheme::SecondOrder;
   settings.KeepNonNegative = reaction.Terms->NonNegative && bytes.Flip();
   settings.StopTolerance = bytes.Flip(4) ? bytes.Size(4.0) : 0.0;
-  settings.SideBySide = bytes.Flip(4);
   PointData data =
     PointData::FromValues(NoisySteadyState(reaction, std::abs(bytes.Short()), 1, Ids(mesh)));
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
@@ -415,7 +414,7 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   {
     vectors.row(i) << bytes.Short(), bytes.Short(), bytes.Short();
   }
-  TangentVectors frames = FramesFromPointVectors(*original, points, triangles, vectors);
+  TangentVectors frames = TangentVectorsFromPointVectors(*original, points, triangles, vectors);
   if (model == 5)
   {
     RunDirections(bytes, Assembler(original), points, triangles, frames);
@@ -425,7 +424,9 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   std::shared_ptr<const TriangleMesh> mesh = original;
   if (delaunay)
   {
-    mesh = IntrinsicDelaunay(*original, &frames);
+    const IntrinsicDelaunay triangulation(original);
+    frames = triangulation.Transport(frames);
+    mesh = triangulation.Mesh();
   }
   const auto assembler = std::make_shared<const Assembler>(mesh);
   if (model == 4)

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: debian_package.sh SOURCE FOLDER
-# Builds the Debian package in FOLDER with the preset, installs it into a copy of this system, which
-# is thrown away, and uses it there from a login shell. The copy needs root and overlay mounts; 77
-# (skipped) without them.
+# Builds the Debian package in FOLDER with the preset, installs it into a temporary copy of this
+# system, and uses it there from a login shell. The copy needs root and overlay mounts; without them
+# the exit code is 77 (skipped).
 set -eu
 source=$1
 folder=$2
@@ -20,7 +20,7 @@ for file in usr/share/doc/surfacediffusion/copyright usr/share/doc/surfacediffus
   echo "$contents" | grep -q "$file" || { echo "the package has no $file"; exit 1; }
 done
 if echo "$contents" | grep -v " \./\(etc\|usr\)\?/\|\./$"; then
-  echo "the package has something outside /etc and /usr"
+  echo "the package has files outside /etc and /usr"
   exit 1
 fi
 dpkg-deb --field "$deb" Depends | grep paraview
@@ -48,7 +48,7 @@ unshare --mount sh -eu -c '
   copy=$1
   if ! mount -t overlay overlay \
     -o "lowerdir=/,upperdir=$copy/upper,workdir=$copy/work" "$copy/root" 2>/dev/null; then
-    # An overlay cannot hold another: the changes go to memory.
+    # An overlay cannot be the upper layer of another one, so the changes are kept in memory.
     mount -t tmpfs tmpfs "$copy/upper" || exit 77
     mkdir "$copy/upper/upper" "$copy/upper/work"
     mount -t overlay overlay -o \

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Usage: pip_install.sh SOURCE FOLDER
-# "pip install SOURCE" into a new virtual environment in FOLDER, without a network, and what it
-# gives. Build dependencies come from SURFACEDIFFUSION_WHEEL_DIR; 77 (skipped) without it.
+# Usage: pip_install.sh SOURCE FOLDER Runs "pip install SOURCE" in a new virtual environment in
+# FOLDER, without a network, and checks the installed package. Build dependencies come from
+# SURFACEDIFFUSION_WHEEL_DIR; without it the exit code is 77 (skipped).
 set -eu
 source=$1
 folder=$2

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of a surface in pieces is that of the surface in one, whatever the processes."""
+"""A surface in pieces gives the picture of the whole surface on any number of processes."""
 
 import os
 import sys

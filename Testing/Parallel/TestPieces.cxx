@@ -22,7 +22,8 @@ vtkSmartPointer<vtkFVMHeatFilter> MakeHeat(vtkDataObject* input)
   return heat;
 }
 
-/// The largest difference from a process alone, at points of equal coordinates, over all.
+/// The largest difference from the result of a single process, at points of equal coordinates, over
+/// all processes.
 double LargestDifference(vtkFVMHeatFilter* heat, vtkPolyData* whole)
 {
   auto alone = MakeHeat(whole);
@@ -42,7 +43,7 @@ double LargestDifference(vtkFVMHeatFilter* heat, vtkPolyData* whole)
 
 } // namespace
 
-TEST(Pieces, GiveTheAnswerOfTheWhole)
+TEST(Pieces, GiveTheResultOfTheWholeSurface)
 {
   const int n = 24;
   auto heat = MakeHeat(Mine(n));
@@ -67,9 +68,9 @@ TEST(Pieces, MatchWithinTheToleranceOnly)
   EXPECT_EQ(walls > 1e-3, Count() > 1) << walls;
 }
 
-TEST(Pieces, AreSewnByIdsWhereTheyHaveThem)
+TEST(Pieces, AreMatchedByGlobalIdsIfTheyHaveThem)
 {
-  // Ids that differ tell that coincident points are none.
+  // Coincident points with different ids are different points.
   const int n = 24;
   auto mine = Mine(n);
   vtkNew<vtkIdTypeArray> ids;
@@ -83,6 +84,56 @@ TEST(Pieces, AreSewnByIdsWhereTheyHaveThem)
   heat->Update();
   const double walls = LargestDifference(heat, Strip(0, n, n));
   EXPECT_EQ(walls > 1e-3, Count() > 1) << walls;
+}
+
+TEST(Pieces, AreMatchedByGlobalIdsThatNoDoubleHolds)
+{
+  // Above 2^53 doubles are further apart than neighbouring ids.
+  const int n = 24;
+  for (const vtkIdType first : { (vtkIdType(1) << 53) + 1, vtkIdType(1) << 62 })
+  {
+    auto mine = Mine(n);
+    vtkNew<vtkIdTypeArray> ids;
+    ids->SetName("ids");
+    for (vtkIdType i = 0; i < mine->GetNumberOfPoints(); ++i)
+    {
+      const double* const x = mine->GetPoint(i);
+      ids->InsertNextValue(first + std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
+    }
+    mine->GetPointData()->SetGlobalIds(ids);
+    for (const int solver :
+      { vtkFVMHeatFilter::SOLVER_DIRECT, vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT })
+    {
+      auto heat = MakeHeat(mine);
+      heat->SetSolver(solver);
+      heat->SetTolerance(1e-12);
+      heat->Update();
+      EXPECT_LT(LargestDifference(heat, Strip(0, n, n)), 1e-9) << first << ' ' << solver;
+    }
+  }
+}
+
+TEST(Pieces, GiveTheSameBitsForAnyPartition)
+{
+  // Strips, and all in one process. A power of two, so that coordinates have the same bits too.
+  const int n = 32;
+  auto strips = MakeHeat(Mine(n));
+  strips->SetSolverToDirect();
+  strips->Update();
+  for (int owner = 1; owner < Count(); ++owner)
+  {
+    const auto whole = Strip(0, n, n);
+    vtkNew<vtkPolyData> none;
+    auto heat = MakeHeat(Rank() == owner ? whole.Get() : none.Get());
+    heat->SetSolverToDirect();
+    heat->Update();
+    vtkPolyData* const mine = strips->GetOutput();
+    for (vtkIdType i = 0; Rank() == owner && i < mine->GetNumberOfPoints(); ++i)
+    {
+      ASSERT_EQ(Result(strips)->GetComponent(i, 0),
+        Result(heat)->GetComponent(whole->FindPoint(mine->GetPoint(i)), 0));
+    }
+  }
 }
 
 TEST(Pieces, OfClosedSurfacesThatTouchStayApart)
@@ -114,7 +165,7 @@ TEST(Pieces, OfClosedSurfacesThatTouchStayApart)
 
 TEST(Pieces, SheetsThatTouchWithinAPieceStayApart)
 {
-  // Two sheets at one place, cut into the same pieces.
+  // Two coincident sheets, divided into the same pieces.
   const int n = 24;
   auto lower = Mine(n);
   vtkNew<vtkPolyData> both;
@@ -157,9 +208,9 @@ TEST(Pieces, SheetsThatTouchWithinAPieceStayApart)
   }
 }
 
-TEST(Pieces, BlocksAreSurfacesOfTheirOwnInPieces)
+TEST(Pieces, OfBlocksAreSeparateSurfaces)
 {
-  // Block 0 is in pieces, block 1 lies in the last process alone, block 2 is nowhere.
+  // Block 0 is divided into pieces, block 1 is in the last process only, block 2 is in none.
   const int n = 24;
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetNumberOfBlocks(3);
@@ -194,7 +245,7 @@ TEST(Pieces, BlocksAreSurfacesOfTheirOwnInPieces)
   }
 }
 
-TEST(Pieces, WithoutAControllerAreSurfacesOfTheirOwn)
+TEST(Pieces, WithoutAControllerAreSeparateSurfaces)
 {
   const auto mine = Mine(24);
   auto heat = MakeHeat(mine);
@@ -205,7 +256,7 @@ TEST(Pieces, WithoutAControllerAreSurfacesOfTheirOwn)
   EXPECT_EQ(History(heat)->GetNumberOfRows(), 11);
 }
 
-TEST(Pieces, WhoseArrayIsMissingAreAnErrorToldOnce)
+TEST(Pieces, WithoutTheArrayAreOneError)
 {
   auto mine = Mine(24);
   if (Rank() == Count() - 1)

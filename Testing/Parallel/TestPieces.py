@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every filter on a surface in pieces gives what it gives in one process; run with mpirun pvbatch
---sym. Prints the largest difference of each filter and partition."""
+"""Every filter gives the same result on a surface in pieces as in one process. To be run with
+mpirun pvbatch --sym. Prints the largest difference of each filter and decomposition."""
 
 import os
 import sys
@@ -25,7 +25,7 @@ HAS_HYPRE = os.environ.get("SURFACEDIFFUSION_HAS_HYPRE") == "1"
 RANK, COUNT = CONTROLLER.GetLocalProcessId(), CONTROLLER.GetNumberOfProcesses()
 LABYRINTH = dict(NumberOfTimeSteps=30)
 
-# Name, filter, properties, result. Random numbers are those of one process only with global ids.
+# Name, filter, properties, result. Random numbers equal those of one process only with global ids.
 CASES = (
     ("heat", FVMHeatFilter, {}, "fDiffused"),
     ("heat, inpainting", FVMHeatFilter,
@@ -63,8 +63,8 @@ CASES = (
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
 )
-# The same again where processes solve together, each with its piece; two kinds of multigrid agree
-# within what their tolerance leaves over.
+# The same for processes that solve by domain decomposition. The two multigrid methods agree within
+# their tolerance.
 TOGETHER = {
     "ConjugateGradient": ("heat", "heat, inpainting", "heat, NaN, noise", "heat, region",
                           "heat, fixed, along", "tv", "tv, minimum", "tv, minimum, L1",
@@ -78,16 +78,16 @@ DISTRIBUTED = tuple(
     for name, make, properties, result in CASES if name in names)
 CASES += DISTRIBUTED
 SEEDED = tuple(name for name, *_ in CASES if "noise" in name or "turing" in name)
-# Solvers stop at 1e-10; stopping rules of minimisers at larger gaps.
+# Linear solvers stop at 1e-10, minimisers at larger duality gaps.
 TOLERANCE = {name: 1e-6 for name, *_ in CASES if "tv, minimum" in name}
-# For partitions that differ from others in how the points are matched alone
+# For decompositions that differ from others only in the matching of points
 FEW = ("heat", "heat, region", "tv", "harmonic, normals", "direction, hints",
        "distributed heat, region, ConjugateGradient", "distributed heat, Multigrid")
 LARGEST = {}
 
 
 def largest_of_all(value):
-    """Over the processes, so that all pass or fail together."""
+    """The largest value over the processes, so that all of them pass or fail."""
     mine, all = vtkDoubleArray(), vtkDoubleArray()
     mine.InsertNextValue(value)
     CONTROLLER.AllReduce(mine, all, vtkCommunicator.MAX_OP)
@@ -108,7 +108,7 @@ def run(make, properties, source):
 
 
 def keys(data, of_cells):
-    """What names each point, or cell, in any partition."""
+    """Identifies each point or cell in any decomposition."""
     numbers = vtk_to_numpy(data.GetPointData().GetArray("number"))
     if not of_cells:
         return [(int(number),) for number in numbers]
@@ -117,7 +117,7 @@ def keys(data, of_cells):
 
 
 def values(data, name):
-    """Of a point or cell array, by key; lines have no sign."""
+    """The values of a point or cell array, by key; lines have no sign."""
     of_cells = name == "Direction"
     array = (data.GetCellData() if of_cells else data.GetPointData()).GetArray(name)
     assert array is not None, name
@@ -147,7 +147,7 @@ class TestPieces(unittest.TestCase):
             cls.expected[name] = values(output, result)
 
     def check(self, partition, source, exact_ids, names=None):
-        """All filters on the source, in all processes together."""
+        """Runs all filters on the source, in all processes together."""
         for name, make, properties, result in CASES:
             if (name in SEEDED and not exact_ids) or (names and name not in names):
                 continue
@@ -175,7 +175,7 @@ class TestPieces(unittest.TestCase):
     def test_slabs_with_ids(self):
         self.check("slabs, ids", producer(pieces.split(self.numbered, COUNT, "slabs")[RANK]), True)
 
-    def test_slabs_matched_by_place(self):
+    def test_slabs_matched_by_coordinates(self):
         self.check("slabs", producer(pieces.split(self.plain, COUNT, "slabs")[RANK]), False, FEW)
 
     def test_cells_at_random(self):
@@ -193,7 +193,7 @@ class TestPieces(unittest.TestCase):
         self.check("in the last", producer(mine), True, ("heat", "harmonic, normals", "direction"))
 
     def test_redistributed(self):
-        """By D3: what RedistributeDataSet sends, Debian 12's expat cannot read."""
+        """By D3, since the expat of Debian 12 cannot read the messages of RedistributeDataSet."""
         everything = producer(self.plain if RANK == 0 else self.plain.NewInstance())
         self.check("redistributed", ExtractSurface(D3(everything)), False, FEW)
 
@@ -207,7 +207,7 @@ class TestPieces(unittest.TestCase):
         self.check("vtkGenerateGlobalIds", GenerateGlobalIds(producer(mine)), False, ("heat", "direction"))
 
     def test_partitions(self):
-        """Three in each process, one of them empty."""
+        """Three partitions in each process, one of them empty."""
         data = vtkPartitionedDataSet()
         mine = pieces.split(self.numbered, 2 * COUNT, "slabs")
         for p, piece in enumerate((mine[2 * RANK], self.plain.NewInstance(), mine[2 * RANK + 1])):
@@ -215,7 +215,7 @@ class TestPieces(unittest.TestCase):
         self.check("partitions", producer(data), True, ("heat", "tv", "turing", "direction"))
 
     def test_pieces_of_a_parallel_source_match_within_rounding(self):
-        """The seams of vtkSphereSource differ in the last bits; the whole is a closed sphere."""
+        """Interfaces of vtkSphereSource differ in the last bits; the whole is a closed sphere."""
         sphere = Sphere(ThetaResolution=24, PhiResolution=24)
         heat = FVMHeatFilter(Calculator(sphere, Function="coordsX", ResultArrayName="f"))
         heat.UpdatePipeline()
@@ -224,10 +224,10 @@ class TestPieces(unittest.TestCase):
         u = vtk_to_numpy(data.GetPointData().GetArray("fDiffused"))
         quotient = u[np.abs(x) > 0.1] / x[np.abs(x) > 0.1]
         spread = largest_of_all(quotient.max()) + largest_of_all(-quotient.min())
-        # x is an eigenfunction: with walls at the seams it would not stay a multiple of itself.
+        # x is an eigenfunction. Boundaries at the interfaces would change its shape.
         self.assertLess(spread, 0.02)
 
-    def test_time_is_sought_without_starting_again(self):
+    def test_seeking_in_time_does_not_restart_the_run(self):
         mine = pieces.split(self.numbered, COUNT, "slabs")[RANK]
         heat = run(FVMHeatFilter, dict(GenerateTimeSteps=1), producer(mine))
         alone = run(FVMHeatFilter, dict(GenerateTimeSteps=1), producer(self.numbered))
@@ -247,7 +247,7 @@ class TestPieces(unittest.TestCase):
             get = lambda filter: getattr(filter.GetClientSideObject(), "Get" + name)()
             self.assertAlmostEqual(get(heat), get(alone), delta=1e-12, msg=name)
 
-    def test_errors_are_told_once_and_leave_the_input(self):
+    def test_errors_are_reported_once_and_leave_the_input(self):
         mine = pieces.split(self.numbered, COUNT, "slabs")[RANK]
         heat = run(FVMHeatFilter, dict(TimeStep=-1.0), producer(mine))
         errors = []
@@ -263,4 +263,4 @@ if __name__ == "__main__":
         print("%d processes: %s: %s: %.1e" % (COUNT, partition, name, worst))
     sys.stdout.flush()
     if not result.wasSuccessful():
-        os._exit(1)  # pvbatch's own exit would wait for the others
+        os._exit(1)  # pvbatch's normal exit would wait for the other processes

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin on a pvserver of two processes gives what it gives here."""
+"""The plugin gives the same results on a pvserver of two processes as in this process."""
 
 import os
 import re
@@ -25,7 +25,7 @@ OMPI_SETTINGS = ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
 
 
 def results(path, distribute):
-    """What each filter makes of the file, by the number of the point or cell."""
+    """The results of each filter for the file, by the number of the point or cell."""
     data = XMLPolyDataReader(FileName=[path])
     if distribute:
         data = ExtractSurface(D3(data))
@@ -50,7 +50,7 @@ def results(path, distribute):
 
 class TestServer(unittest.TestCase):
     def setUp(self):
-        # pvpython is an MPI process itself, which mpiexec takes for its parent.
+        # pvpython is an MPI process itself, and mpiexec would treat it as its parent.
         environment = {
             name: value for name, value in os.environ.items()
             if not name.startswith(("PMIX_", "OMPI_")) or name in OMPI_SETTINGS}
@@ -61,14 +61,14 @@ class TestServer(unittest.TestCase):
         self.addCleanup(self.stop)
 
     def stop(self):
-        """The server ends by itself when its client has gone."""
+        """Waits for the server, which ends when its client has disconnected."""
         try:
             self.server.communicate(timeout=2)
         except subprocess.TimeoutExpired:
             self.server.terminate()
             self.server.communicate()
 
-    def test_two_processes_give_what_one_gives(self):
+    def test_two_processes_give_the_result_of_one(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         path = os.path.join(folder.name, "sphere.vtp")

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where each process solves with its piece, with hypre.
+/// Solves by domain decomposition: each process with its own piece, with hypre.
 #include "Pieces.h"
 
 #include "vtkFVMHeatFilter.h"
@@ -22,8 +22,8 @@ namespace
 
 constexpr int N = 24;
 
-/// A piece with ids, vectors and a mask that do not depend on the partition. sheared: with obtuse
-/// angles.
+/// A piece with ids, vectors and a mask that do not depend on the decomposition. sheared: with
+/// obtuse angles.
 vtkSmartPointer<vtkPolyData> WithData(vtkSmartPointer<vtkPolyData> piece, bool sheared = false)
 {
   vtkNew<vtkIdTypeArray> ids;
@@ -72,7 +72,7 @@ vtkSmartPointer<Filter> Make(const char* array, int steps)
 
 using AnyFilter = vtkSmartPointer<vtkSurfaceDiffusionAlgorithm>;
 
-/// A filter and the array that it makes.
+/// A filter and its result array.
 struct Case
 {
   const char* Name;
@@ -99,7 +99,7 @@ AnyFilter TuringFirstOrder()
   return turing;
 }
 
-AnyFilter TuringUntilItStands()
+AnyFilter TuringUntilStationary()
 {
   auto turing = Make<vtkTuringTextureFilter>("", 300);
   turing->SetStopTolerance(0.3);
@@ -206,7 +206,8 @@ AnyFilter Heat()
   return Make<vtkFVMHeatFilter>("f", 5);
 }
 
-/// Largest difference from a process alone, at points of equal ids, over all processes.
+/// The largest difference from the result of a single process, at points of equal ids, over all
+/// processes.
 double LargestDifference(vtkPolyData* mine, vtkPolyData* whole, const char* name)
 {
   vtkDataArray* const here = mine->GetPointData()->GetArray(name);
@@ -235,13 +236,13 @@ class Together : public testing::TestWithParam<Case>
 {
 };
 
-TEST_P(Together, GiveTheAnswerOfTheWhole)
+TEST_P(Together, GiveTheResultOfTheWholeSurface)
 {
   for (const bool sheared : { false, true })
   {
     auto filter = GetParam().Make();
     filter->SetInputData(WithData(Mine(N), sheared));
-    bool workedHere = false; // gathered, only process 0 does
+    bool workedHere = false; // if surfaces are gathered, only process 0 computes
     Listen(
       filter, [&](double amount) { workedHere = workedHere || (amount > 0.0 && amount < 1.0); });
     filter->Update();
@@ -304,7 +305,7 @@ TEST_P(Together, SeekInTime)
 INSTANTIATE_TEST_SUITE_P(Pieces, Together,
   testing::Values(Case{ "heat", "fDiffused", Heat }, Case{ "turing", "u1", Turing },
     Case{ "turing, first order", "Texture", TuringFirstOrder },
-    Case{ "turing until it stands", "u2", TuringUntilItStands, 1e-7 },
+    Case{ "turing until stationary", "u2", TuringUntilStationary, 1e-7 },
     Case{ "turing, multigrid", "u1", TuringMultigrid }, Case{ "harmonic", "vHarmonic", Harmonic },
     Case{ "harmonic, long steps", "vHarmonic", HarmonicLongSteps },
     Case{ "harmonic, multigrid", "vHarmonic", HarmonicMultigrid },
@@ -317,7 +318,7 @@ INSTANTIATE_TEST_SUITE_P(Pieces, Together,
     Case{ "minimum, L1", "vTV", MinimumL1 },
     Case{ "implicit steps", "roughTV", ImplicitSteps, 1e-6 }));
 
-TEST_P(Together, StopWithinAStepWhereOneOfThemIsAborted)
+TEST_P(Together, StopWithinAStepIfOneOfThemIsAborted)
 {
   auto filter = GetParam().Make();
   filter->SetInputData(WithData(Mine(N)));
@@ -336,13 +337,13 @@ TEST_P(Together, StopWithinAStepWhereOneOfThemIsAborted)
   filter->SetAbortExecute(0);
   filter->Modified();
   filter->Update();
-  auto anew = GetParam().Make();
-  anew->SetInputData(WithData(Mine(N)));
-  anew->Update();
-  EXPECT_TRUE(Identical(Result(filter, GetParam().Result), Result(anew, GetParam().Result)));
+  auto fresh = GetParam().Make();
+  fresh->SetInputData(WithData(Mine(N)));
+  fresh->Update();
+  EXPECT_TRUE(Identical(Result(filter, GetParam().Result), Result(fresh, GetParam().Result)));
 }
 
-/// Columns begin .. end of a small grid of needles; found by search, see below.
+/// Columns begin .. end of a small grid of needle triangles, which was found by search, see below.
 vtkSmartPointer<vtkPolyData> Needles(int begin, int end)
 {
   constexpr int n = 4;
@@ -373,7 +374,7 @@ vtkSmartPointer<vtkPolyData> Needles(int begin, int end)
   return needles;
 }
 
-TEST(PiecesTogether, DampStepsThatWouldRaiseTheEnergyAsTheWholeDoes)
+TEST(PiecesTogether, DampStepsThatWouldIncreaseTheEnergyAsTheWholeSurfaceDoes)
 {
   const auto make = [](vtkPolyData* needles)
   {
@@ -391,7 +392,7 @@ TEST(PiecesTogether, DampStepsThatWouldRaiseTheEnergyAsTheWholeDoes)
   EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "vHarmonic"), 1e-9);
 }
 
-TEST(PiecesTogether, KeepTheTotal)
+TEST(PiecesTogether, ConserveTheTotal)
 {
   auto heat = MakeHeat();
   heat->SetSolverToMultigrid();
@@ -428,7 +429,7 @@ TEST(PiecesTogether, StopWithinASolve)
   EXPECT_EQ(heat->GetNumberOfStepsComputed(), 0);
 }
 
-TEST(PiecesTogether, TellWhatIsWrongInOneOfThemOnce)
+TEST(PiecesTogether, ReportAnErrorOfOneOfThemOnce)
 {
   auto mine = Mine(N);
   if (Rank() == Count() - 1)
@@ -445,7 +446,7 @@ TEST(PiecesTogether, TellWhatIsWrongInOneOfThemOnce)
   EXPECT_EQ(Result(heat), nullptr);
 }
 
-TEST(PiecesTogether, TellRatesThatAreWrongInOneOfThemOnce)
+TEST(PiecesTogether, ReportInvalidRatesOfOneOfThemOnce)
 {
   auto mine = WithData(Mine(N));
   mine->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "rates", mine->GetNumberOfCells(), 4,
@@ -459,7 +460,7 @@ TEST(PiecesTogether, TellRatesThatAreWrongInOneOfThemOnce)
   EXPECT_EQ(Result(turing, "u1"), nullptr);
 }
 
-TEST(PiecesTogether, WarnOnceOfAGapThatIsLeft)
+TEST(PiecesTogether, WarnOnceOfARemainingGap)
 {
   auto tv = Make<vtkIntrinsicTVFilter>("rough", 1);
   tv->SetModeToSteadyState();
@@ -471,7 +472,7 @@ TEST(PiecesTogether, WarnOnceOfAGapThatIsLeft)
   EXPECT_EQ(messages.Warnings.size(), Rank() == 0 ? 1u : 0u);
 }
 
-TEST(PiecesTogether, PointsOfNoTrianglesGoAlong)
+TEST(PiecesTogether, PiecesWithoutTrianglesGiveFiniteResults)
 {
   auto mine = WithData(Mine(N));
   if (Count() > 1 && Rank() == Count() - 1)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A surface with data, and ways to split it over processes."""
+"""A surface with data, and decompositions of it into pieces for several processes."""
 
 import math
 
@@ -30,7 +30,7 @@ def add(attributes, name, values):
 
 
 def make_surface(around=44, along=20):
-    """A bumpy tube that closes on itself, cut open on one side, with data."""
+    """A bumpy closed tube, cut open on one side, with data."""
     i, j = np.meshgrid(np.arange(around), np.arange(along), indexing="ij")
     a = 2 * math.pi * i.ravel() / around
     b = 2 * math.pi * j.ravel() / along
@@ -76,7 +76,7 @@ def give_ids(data):
 
 
 def select(data, cells):
-    """The piece of these cells, with points and arrays of its own."""
+    """The piece of these cells, with its own points and arrays."""
     adapted = dsa.WrapDataObject(data)
     triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)[cells]
     used, numbers = np.unique(triangles, return_inverse=True)
@@ -101,7 +101,7 @@ def select(data, cells):
 
 
 def split(data, count, how):
-    """Pieces of a surface: slabs; at random, cell by cell; one of them empty; all in the last."""
+    """Decompositions of a surface: slabs, random cells, an empty piece, all cells in one piece."""
     triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     number = data.GetNumberOfCells()
     if how == "random":

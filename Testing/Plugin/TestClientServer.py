@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filters on a pvserver, where the plugin is loaded too, give what they give here."""
+"""The filters on a pvserver with the plugin give the same results as in this process."""
 
 import os
 import re
@@ -19,7 +19,7 @@ PLUGIN = os.path.join(os.environ["PV_PLUGIN_PATH"], "SurfaceDiffusion.so")
 
 
 def results():
-    """What each filter makes of a sphere, where it runs now."""
+    """The result of each filter on a sphere, from the process in which it runs now."""
     sphere = Clean(Sphere(ThetaResolution=16, PhiResolution=16))
     data = Calculator(sphere, Function="coordsZ + sin(40*coordsX)", ResultArrayName="f")
     turing = TuringTextureFilter(data, NumberOfTimeSteps=40)
@@ -48,14 +48,14 @@ class TestClientServer(unittest.TestCase):
         self.addCleanup(self.stop)
 
     def stop(self):
-        """The server ends by itself when its client has gone."""
+        """Waits for the server, which ends when its client has disconnected."""
         try:
             self.server.communicate(timeout=10)
         except subprocess.TimeoutExpired:
             self.server.kill()
             self.server.communicate()
 
-    def test_the_server_gives_the_same_bits(self):
+    def test_a_server_gives_the_same_bits(self):
         here = results()
         port = next(
             int(match.group(1))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every filter on composite data of every kind; progress and abort, as the window has them."""
+"""Every filter on composite data of every kind; progress and abort as in the window."""
 
 import os
 import tempfile
@@ -14,7 +14,7 @@ from paraview.simple import (
 )
 from plugin_testing import read_sphere, values
 
-# What each filter adds.
+# The arrays that each filter adds.
 FILTERS = (
     (FVMHeatFilter, "noisyDiffused"), (IntrinsicTVFilter, "noisyTV"),
     (HarmonicMapFilter, "NormalsHarmonic"), (TuringTextureFilter, "u1"),
@@ -61,7 +61,8 @@ class TestComposite(unittest.TestCase):
         heat = FVMHeatFilter(self.spheres[0], NumberOfTimeSteps=20)
         algorithm = heat.GetClientSideObject()
         handler = servermanager.ActiveConnection.Session.GetProgressHandler()
-        # The handler passes on one report per interval: on every machine a report takes longer.
+        # The handler passes on one report per interval. A report takes longer than this on any
+        # machine.
         interval = handler.GetProgressInterval()
         self.addCleanup(handler.SetProgressInterval, interval)
         handler.SetProgressInterval(0.01)

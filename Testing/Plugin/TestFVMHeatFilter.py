@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The heat filter as a user of paraview.simple meets it."""
+"""The heat filter in paraview.simple."""
 
 import os
 import tempfile
@@ -36,11 +36,11 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertGreater(before, 0.15)
         self.assertLess(after, before / 2)
 
-    def test_without_a_name_the_active_scalars_are_taken(self):
+    def test_the_active_scalars_are_the_default(self):
         heat = FVMHeatFilter(self.sphere, InputArray=["POINTS", ""])
         self.assertIsNotNone(values(heat, "noisyDiffused"))
 
-    def test_enums_are_texts(self):
+    def test_enums_have_texts(self):
         heat = FVMHeatFilter(self.sphere, Mode="SteadyState", Units="Absolute")
         self.assertEqual(values(heat, "Step", port=1), [0, 1])
         self.assertEqual(heat.Mode, "SteadyState")
@@ -56,12 +56,12 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertEqual(menu(heat, "FixedArray"), scalars)
         self.assertEqual(menu(heat, "DirectionArray"), vectors | {"CELLS up"})
 
-    def test_optional_arrays_are_not_set_at_first(self):
+    def test_optional_arrays_are_not_set_by_default(self):
         heat = FVMHeatFilter(self.sphere)
         for array in (heat.MaskArray, heat.DirectionArray, heat.FixedArray):
             self.assertEqual(array[1], "")
 
-    def test_mask_is_filled_in_from_its_rim(self):
+    def test_masked_points_are_filled_in_from_their_boundary(self):
         heat = FVMHeatFilter(
             self.sphere, InputArray=["POINTS", "damaged"], MaskArray=["POINTS", "hole"],
             HoldKnownValues=1, Mode="SteadyState")
@@ -71,7 +71,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertTrue(all(f == n for f, n, h in zip(filled, noisy, hole) if not h))
         self.assertLess(max(abs(f) for f, h in zip(filled, hole) if h), 1.3)
 
-    def test_fixed_values_stay(self):
+    def test_fixed_values_are_unchanged(self):
         heat = FVMHeatFilter(self.sphere, FixedArray=["POINTS", "poles"])
         before, after = values(self.sphere, "noisy"), values(heat, "noisyDiffused")
         changed = [p for b, a, p in zip(before, after, values(self.sphere, "poles")) if a != b]
@@ -79,7 +79,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertEqual(set(changed), {0.0})
 
     def test_direction_at_points_and_at_cells_smooths_along_it_only(self):
-        """Around the axis a function of z does not change; along the meridians it does."""
+        """A function of z is constant around the axis, but not along the meridians."""
         change = {}
         for array in (["POINTS", "east"], ["CELLS", "up"]):
             heat = FVMHeatFilter(
@@ -99,7 +99,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertEqual(energy, sorted(energy, reverse=True))
         self.assertEqual(OutputPort(heat, "History").Port, 1)
 
-    def test_information_tells_the_units(self):
+    def test_information_properties_report_the_units(self):
         heat = FVMHeatFilter(self.sphere)
         heat.UpdatePipeline()
         heat.SMProxy.UpdatePropertyInformation()
@@ -109,13 +109,13 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertAlmostEqual(heat.GetPropertyValue("ValueRange"), max(noisy) - min(noisy))
 
     def test_clock_plays_seeks_and_reverses(self):
-        # One solver for all: Automatic depends on the number of steps.
+        # The same solver for all, since Automatic depends on the number of steps.
         heat = FVMHeatFilter(
             self.sphere, GenerateTimeSteps=1, NumberOfTimeSteps=6, OutputInterval=2,
             TimeStep=0.5, Solver="Direct")
         heat.UpdatePipelineInformation()
         self.assertEqual(list(heat.TimestepValues), [0.0, 1.0, 2.0, 3.0])
-        self.addCleanup(ResetSession)  # of the clock
+        self.addCleanup(ResetSession)  # resets the clock
         view = GetActiveViewOrCreate("RenderView")
         self.addCleanup(Delete, view)
         Show(heat, view)
@@ -128,7 +128,7 @@ class TestFVMHeatFilter(unittest.TestCase):
             frames[time] = values(heat, "noisyDiffused")
             reference = FVMHeatFilter(
                 self.sphere, TimeStep=0.5, NumberOfTimeSteps=int(2 * time), Solver="Direct")
-            # No assertEqual: telling two long lists apart takes it minutes.
+            # Not assertEqual, which takes minutes to show the difference of two long lists.
             self.assertTrue(frames[time] == values(reference, "noisyDiffused"))
         self.assertTrue(frames[0.0] == values(self.sphere, "noisy"))
         for move, time in (
@@ -139,7 +139,7 @@ class TestFVMHeatFilter(unittest.TestCase):
             self.assertEqual(scene.TimeKeeper.Time, time)
             self.assertTrue(values(heat, "noisyDiffused") == frames[time])
 
-    def test_filters_behind_follow_the_clock(self):
+    def test_downstream_filters_follow_the_clock(self):
         heat = FVMHeatFilter(self.sphere, GenerateTimeSteps=1)
         heat.UpdatePipeline(0.0)
         contour = Contour(Input=heat, ContourBy=["POINTS", "noisyDiffused"], Isosurfaces=[0.0])
@@ -151,7 +151,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertGreater(min(lengths[0.0]), max(lengths[10.0]))
 
     def check_refusal(self, word, right=None, **wrong):
-        """An error that has the word, the input unchanged, and right settings work again."""
+        """The error contains the word, the input is unchanged, and valid settings work again."""
         heat = FVMHeatFilter(self.sphere)
         right = right or {name: heat.GetPropertyValue(name) for name in wrong}
         errors = errors_of(heat)
@@ -167,7 +167,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertIsNotNone(values(heat, "noisyDiffused"))
         self.assertEqual(len(errors), 1, errors)
 
-    def test_wrong_array_is_refused(self):
+    def test_a_wrong_array_is_an_error(self):
         def check(name, wrong, right):
             self.check_refusal(name, right={name: right}, **{name: wrong})
 
@@ -180,14 +180,14 @@ class TestFVMHeatFilter(unittest.TestCase):
         check("DirectionArray", ["POINTS", "pair"], ["POINTS", "east"])
         self.check_refusal("DirectionArray", AlongDiffusivity=2.0)
 
-    def test_wrong_number_is_refused(self):
+    def test_an_invalid_number_is_an_error(self):
         self.check_refusal("TimeStep", TimeStep=0.0)
         self.check_refusal("TimeStep", TimeStep=float("nan"))
         self.check_refusal("NumberOfTimeSteps", NumberOfTimeSteps=-1)
         self.check_refusal("OutputInterval", OutputInterval=0)
         self.check_refusal("FidelityWeight", FidelityWeight=1.0, FWHM=0.1)
 
-    def test_input_without_polygons_is_refused(self):
+    def test_an_input_without_polygons_is_an_error(self):
         points = PointSource(NumberOfPoints=5)
         heat = FVMHeatFilter(points)
         errors = errors_of(heat)

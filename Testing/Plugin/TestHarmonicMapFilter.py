@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The harmonic map filter as a user of paraview.simple meets it."""
+"""The harmonic map filter in paraview.simple."""
 
 import os
 import tempfile
@@ -23,7 +23,7 @@ class TestHarmonicMapFilter(unittest.TestCase):
     def setUp(self):
         self.sphere = read_sphere(os.path.join(self.folder, "sphere.vtp"))
 
-    def test_the_normals_are_taken_without_a_name(self):
+    def test_the_normals_are_the_default(self):
         harmonic = HarmonicMapFilter(self.sphere)
         self.assertEqual(harmonic.InputArray[1], "")
         data = servermanager.Fetch(harmonic).GetPointData()
@@ -47,7 +47,7 @@ class TestHarmonicMapFilter(unittest.TestCase):
         data = servermanager.Fetch(harmonic).GetPointData()
         self.assertEqual(data.GetNormals().GetName(), "NormalsHarmonic")
 
-    def test_energy_falls_for_every_exponent(self):
+    def test_energy_decreases_for_every_exponent(self):
         for exponent in (1.0, 1.5, 2.0):
             harmonic = HarmonicMapFilter(
                 self.sphere, InputArray=["POINTS", "east"], Exponent=exponent, TimeStep=10.0)
@@ -55,21 +55,21 @@ class TestHarmonicMapFilter(unittest.TestCase):
             self.assertEqual(len(energy), 11)
             self.assertTrue(all(b <= a for a, b in zip(energy, energy[1:])), energy)
 
-    def test_vertices_move_on_request_and_what_was_done_is_told(self):
+    def test_vertices_move_on_request_and_displacements_are_reported(self):
         harmonic = HarmonicMapFilter(Sphere(ThetaResolution=40, PhiResolution=40))
 
-        def told(name):
+        def reported(name):
             harmonic.UpdatePipeline()
             harmonic.SMProxy.UpdatePropertyInformation()
             return harmonic.GetPropertyValue(name)
 
-        self.assertEqual(told("MaximumDisplacement"), 0.0)
+        self.assertEqual(reported("MaximumDisplacement"), 0.0)
         harmonic.MoveVertices = 1
-        self.assertGreater(told("MaximumDisplacement"), told("MeanDisplacement"))
-        self.assertGreater(told("MeanDisplacement"), 0.0)
-        self.assertAlmostEqual(told("VolumeAfter") / told("VolumeBefore"), 1.0, 1)
+        self.assertGreater(reported("MaximumDisplacement"), reported("MeanDisplacement"))
+        self.assertGreater(reported("MeanDisplacement"), 0.0)
+        self.assertAlmostEqual(reported("VolumeAfter") / reported("VolumeBefore"), 1.0, 1)
 
-    def test_a_scalar_is_refused_by_name(self):
+    def test_a_scalar_is_an_error_that_names_it(self):
         harmonic = HarmonicMapFilter(self.sphere, InputArray=["POINTS", "noisy"])
         errors = errors_of(harmonic)
         harmonic.UpdatePipeline()

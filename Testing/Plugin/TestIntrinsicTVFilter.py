@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The intrinsic TV filter as a user of paraview.simple meets it."""
+"""The intrinsic TV filter in paraview.simple."""
 
 import os
 import random
@@ -15,7 +15,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 
 def clean_color(point):
-    """Two hues and a step of brightness."""
+    """Two hues and a jump in brightness."""
     x, y, _ = point
     return (200, 90, 40) if x > 0.2 else (60, 120, 200 if y > 0 else 130)
 
@@ -63,12 +63,12 @@ class TestIntrinsicTVFilter(unittest.TestCase):
         after = root_mean_square(values(tv, "noisyTV"), clean)
         self.assertGreater(before, 40.0)
         self.assertLess(after, before / 3)
-        # Three components of bytes stay what they are.
+        # Three components of unsigned char keep their type.
         array = servermanager.Fetch(tv).GetPointData().GetArray("noisyTV")
         self.assertEqual(array.GetNumberOfComponents(), 3)
         self.assertEqual(array.GetDataTypeAsString(), "unsigned char")
 
-    def test_enums_are_texts(self):
+    def test_enums_have_texts(self):
         tv = IntrinsicTVFilter(
             self.sphere, Mode="SteadyState", EdgeFunction="Charbonnier", FidelityNorm="L1",
             ChannelCoupling="PerChannel", Discretization="CrouzeixRaviart",
@@ -77,7 +77,7 @@ class TestIntrinsicTVFilter(unittest.TestCase):
         with self.assertRaises(ValueError):
             tv.TimeIntegrator = "SecondOrder"
 
-    def test_automatic_fidelity_tells_what_it_found(self):
+    def test_automatic_fidelity_reports_the_weight(self):
         tv = IntrinsicTVFilter(self.sphere, AutomaticFidelity=1, NoiseLevel=0.17)
         tv.UpdatePipeline()
         tv.SMProxy.UpdatePropertyInformation()
@@ -91,7 +91,7 @@ class TestIntrinsicTVFilter(unittest.TestCase):
         h, r, unit = map(tv.GetPropertyValue, ("MeanEdgeLength", "ValueRange", "TimeUnit"))
         self.assertAlmostEqual(unit, h * r)
 
-    def test_mask_is_filled_in_from_its_rim(self):
+    def test_masked_points_are_filled_in_from_their_boundary(self):
         tv = IntrinsicTVFilter(
             self.sphere, InputArray=["POINTS", "damaged"], MaskArray=["POINTS", "hole"],
             HoldKnownValues=1, Mode="SteadyState")
@@ -101,7 +101,7 @@ class TestIntrinsicTVFilter(unittest.TestCase):
         self.assertTrue(all(f == n for f, n, h in zip(filled, noisy, hole) if not h))
         self.assertLess(max(abs(f) for f, h in zip(filled, hole) if h), 1.3)
 
-    def test_edge_function_across_needs_a_direction(self):
+    def test_an_across_edge_function_needs_a_direction(self):
         tv = IntrinsicTVFilter(self.sphere, AcrossEdgeFunction="Constant")
         errors = errors_of(tv)
         tv.UpdatePipeline()

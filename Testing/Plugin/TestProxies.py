@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Each filter of the plugin against its C++ class: names, defaults, entries, documentation."""
+"""Compares each filter of the plugin with its C++ class: names, defaults, entries,
+documentation."""
 
 import glob
 import os
@@ -13,13 +14,13 @@ from vtkmodules.vtkCommonExecutionModel import vtkPolyDataAlgorithm
 
 GROUPS = ("Data", "Model", "Time", "Constraints", "Solver")
 PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
-# Arrays have one C++ name, SetInputArrayToProcess(); the clock has none.
+# All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
     "TimestepValues",
 }
-# C++ properties that make no sense for a filter, though its class inherits them.
-SENSELESS = {
+# C++ properties that do not apply to a filter although its class inherits them.
+NOT_APPLICABLE = {
     "TuringTextureFilter": {
         "AlongDiffusivity", "AcrossDiffusivity", "FidelityWeight", "HoldKnownValues", "InitialFill",
     },
@@ -69,7 +70,7 @@ class TestProxies(unittest.TestCase):
             found = [proxy.SMProxy.GetOutputPortName(i) for i in range(len(ports))]
             self.assertEqual(found, ports, name)
 
-    def test_abstract_proxies_are_not_offered(self):
+    def test_abstract_proxies_are_hidden(self):
         self.assertFalse(hasattr(simple, "SurfaceDiffusionAlgorithm"))
         self.assertFalse(hasattr(simple, "SurfaceDataDiffusionAlgorithm"))
 
@@ -103,8 +104,8 @@ class TestProxies(unittest.TestCase):
                 if method.startswith("Set")
             }
             words = {m for m in setters if any(m.startswith(s + "To") for s in setters)}
-            missing = setters - words - set(proxy.ListProperties()) - {"Controller"}  # an object
-            self.assertEqual(missing, SENSELESS.get(name, set()), name)
+            missing = setters - words - set(proxy.ListProperties()) - {"Controller"}  # not a value
+            self.assertEqual(missing, NOT_APPLICABLE.get(name, set()), name)
 
     def test_entries_of_enums_are_the_words_of_cxx(self):
         enums = set()
@@ -118,12 +119,12 @@ class TestProxies(unittest.TestCase):
                 getattr(instance, "Set%sTo%s" % (key, domain.GetEntryText(i)))()
                 value = getattr(instance, "Get" + key)()
                 self.assertEqual(value, domain.GetEntryValue(i), name)
-            if key != "TimeIntegrator":  # not every class has every one
+            if key != "TimeIntegrator":  # classes have different integrators
                 words = [method for method in dir(cxx) if method.startswith("Set%sTo" % key)]
                 self.assertEqual(len(words), domain.GetNumberOfEntries(), name)
         self.assertLessEqual({"Units", "MaskMode", "Solver", "Mode", "TimeIntegrator"}, enums)
 
-    def test_every_shown_property_is_in_one_group(self):
+    def test_every_visible_property_is_in_one_group(self):
         for name, proxy, _ in proxies():
             grouped = []
             for i in range(proxy.SMProxy.GetNumberOfPropertyGroups()):

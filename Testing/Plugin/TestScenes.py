@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scene with every filter, saved and opened again, is the same picture, pixel for pixel. Each part
-is a process of its own, as for a user who comes back the next day."""
+"""A scene with every filter is saved and loaded again, and the pictures are equal in every pixel.
+Each part runs in a separate process, as for a user who returns the next day."""
 
 import os
 import subprocess
@@ -25,7 +25,7 @@ TIMES = (0, 4)
 
 
 def make(folder):
-    """Four spheres in a row, each shows what a filter does; two states of it, and pictures."""
+    """Saves a scene with the results of the filters, both kinds of state, and the pictures."""
     path = os.path.join(folder, "sphere.vtp")
     write_sphere(path)
     sphere = XMLPolyDataReader(FileName=[path])
@@ -68,7 +68,7 @@ def load_python(folder):
 
 def draw(folder, name):
     clock = GetAnimationScene()
-    clock.UpdateAnimationUsingDataTimeSteps()  # the window does it by itself
+    clock.UpdateAnimationUsingDataTimeSteps()  # the window does this automatically
     for time in TIMES:
         clock.AnimationTime = time
         SaveScreenshot(
@@ -101,10 +101,10 @@ class TestScenes(unittest.TestCase):
     def test_time_changes_the_picture(self):
         self.assertGreater(self.differences(("made", 0), ("made", 4)), 1000)
 
-    def test_state_file(self):
+    def test_a_state_file_restores_the_picture(self):
         self.check("load_pvsm")
 
-    def test_python_state(self):
+    def test_a_python_state_restores_the_picture(self):
         self.check("load_python")
 
     def check(self, part):

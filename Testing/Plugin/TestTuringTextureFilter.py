@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The texture and direction field filters as a user of paraview.simple meets them."""
+"""The texture and direction field filters in paraview.simple."""
 
 import os
 import tempfile
@@ -48,7 +48,7 @@ class TestTuringTextureFilter(unittest.TestCase):
         self.assertEqual(values(texture, "u1")[5], pair.GetComponent(5, 0))
         self.assertEqual(values(texture, "u2")[5], pair.GetComponent(5, 1))
 
-    def test_colours_come_on_request(self):
+    def test_colours_are_added_on_request(self):
         texture = TuringTextureFilter(self.sphere, NumberOfTimeSteps=4, ColorOutput=1,
                                       LowColor=[0.0, 0.0, 0.0], HighColor=[1.0, 0.0, 0.0])
         colour = servermanager.Fetch(texture).GetPointData().GetArray("TextureColor")
@@ -62,7 +62,7 @@ class TestTuringTextureFilter(unittest.TestCase):
                 self.sphere, Kinetics=kinetics, AutomaticTimeStep=1, NumberOfTimeSteps=4)
             self.assertIsNotNone(values(texture, "u1"), kinetics)
 
-    def test_a_bad_rate_is_refused_by_name(self):
+    def test_an_invalid_rate_is_an_error_that_names_it(self):
         texture = TuringTextureFilter(self.sphere, DecayRate=-1.0)
         errors = errors_of(texture)
         texture.UpdatePipeline()
@@ -76,7 +76,7 @@ class TestTuringTextureFilter(unittest.TestCase):
             NumberOfTimeSteps=16)
         self.assertIsNotNone(values(texture, "u1"))
 
-    def test_the_direction_field_filter_serves_the_heat_filter_too(self):
+    def test_the_direction_field_filter_directs_the_heat_filter(self):
         cylinder = Triangulate(Cylinder(Resolution=24))
         field = SurfaceDirectionFieldFilter(cylinder, SmoothingLength=0.0)
         data = servermanager.Fetch(field).GetCellData()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the macros of the client's tests look at. They run in ParaView's window, between two clicks;
-each prints one line for the test to find."""
+"""The checks of the macros of the client tests. They run in ParaView's window, between two clicks,
+and each prints one line that the test requires."""
 
 import os
 
@@ -13,18 +13,18 @@ from paraview.simple import (
 )
 from plugin_testing import assert_looks_like
 
-# What the test colours the picture of a filter by, and what the first Apply has coloured it by.
+# The array that colours the test's picture of a filter, and the array that the first Apply selects.
 COLORS = {
     "FVMHeatFilter": (("POINTS", "fDiffused"), ("POINTS", "fDiffused")),
     "IntrinsicTVFilter": (("POINTS", "fTV"), ("POINTS", "fTV")),
-    "HarmonicMapFilter": (("POINTS", "NormalsHarmonic"), ("POINTS", "f")),  # shading shows it
+    "HarmonicMapFilter": (("POINTS", "NormalsHarmonic"), ("POINTS", "f")),  # seen in the shading
     "TuringTextureFilter": (("POINTS", "Texture"), ("POINTS", "u1")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), ("POINTS", "f")),
 }
 
 
 def say(text):
-    """To the terminal: print() goes to the window."""
+    """Writes to the terminal; print() writes to the window."""
     os.write(1, (text + "\n").encode())
 
 
@@ -37,7 +37,7 @@ def render_view():
 
 
 def check_picture(baseline):
-    """The surface of the active source, coloured by its result."""
+    """Checks the picture of the active source, coloured by its result."""
     source, view = GetActiveSource(), render_view()
     array, _ = COLORS[name_of(source)]
     display = GetDisplayProperties(source, view)
@@ -63,7 +63,7 @@ def check_first_apply():
     display = GetDisplayProperties(source, view)
     assert display.Visibility
     assert tuple(display.ColorArrayName) == COLORS[name][1], display.ColorArrayName
-    assert len(GetViews()) == 1  # the history does not take half of the window by itself
+    assert len(GetViews()) == 1  # the history does not open by default
     check_picture("Client" + name)
     Hide(source, view)
     SetActiveView(view)
@@ -74,7 +74,7 @@ def check_first_apply():
 
 
 def check_time(time, end):
-    """The clock's time, and whether the picture is that of the end."""
+    """Checks the time of the clock and whether the picture is that of the end."""
     clock = GetAnimationScene()
     assert list(clock.TimeKeeper.TimestepValues) == list(range(11)), clock.TimeKeeper.TimestepValues
     assert clock.AnimationTime == time, clock.AnimationTime
@@ -83,19 +83,20 @@ def check_time(time, end):
 
 
 def check_steps(steps, end):
-    """The number of time steps that the panel set, and whether the picture is that of ten."""
+    """Checks the number of time steps from the panel and whether the picture is that of ten
+    steps."""
     assert GetActiveSource().NumberOfTimeSteps == steps, GetActiveSource().NumberOfTimeSteps
     assert looks_like("ClientFVMHeatFilter") == end
     say("as expected: %d steps" % steps)
 
 
 def start_recording():
-    """As "Start Trace" does."""
+    """The same as the menu item "Start Trace"."""
     smtrace.start_trace()
 
 
 def check_recording():
-    """Without the filter, the trace makes it again, and the same picture."""
+    """After the filter is deleted, the trace creates it again with the same picture."""
     trace = smtrace.stop_trace()
     assert "FVMHeatFilter(" in trace and "NumberOfTimeSteps = 10" not in trace, trace
     Delete(GetActiveSource())
@@ -107,14 +108,14 @@ def check_recording():
 
 
 def open_chart():
-    """As "Split Horizontal" and "Line Chart View" do."""
+    """The same as the buttons "Split Horizontal" and "Line Chart View"."""
     view = CreateView("XYChartView")
     AssignViewToLayout(view, GetLayout(render_view()))
     SetActiveView(view)
 
 
 def check_chart():
-    """The second output of the active source as lines over its time."""
+    """Checks that the chart shows the second output of the active source over its time."""
     chart = GetActiveView()
     assert name_of(chart) == "XYChartView"
     (lines,) = chart.Representations
@@ -125,7 +126,7 @@ def check_chart():
 
 
 def check_selected_denoised():
-    """The macro took the source that was selected."""
+    """Checks that the macro used the selected source."""
     source = GetActiveSource()
     assert source == FindSource("Denoised") and source.Input == FindSource("Data")
     assert source.PointData["fTV"] is not None
@@ -133,7 +134,7 @@ def check_selected_denoised():
 
 
 def check_history():
-    """A chart of the energy stands beside the picture, which is still the active view."""
+    """Checks that there is a chart of the energy, and that the picture is still the active view."""
     (chart,) = [view for view in GetViews() if name_of(view) == "XYChartView"]
     (lines,) = chart.Representations
     assert lines.Input.Port == 1 and "Energy" in lines.SeriesVisibility, lines.SeriesVisibility
@@ -146,7 +147,7 @@ def select_nothing():
 
 
 def check_macro():
-    """The picture of the example that a macro of Examples/ParaView shows."""
+    """Checks the picture of the example that a macro of Examples/ParaView shows."""
     source, view = GetActiveSource(), render_view()
     name = {
         "IntrinsicTVFilter": "Inpaint" if source == FindSource("Inpainted") else "Denoise",

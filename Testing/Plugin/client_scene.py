@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the client shows before the events start: data on an ellipsoid. Results are shown in bands of
-black and white, which make small differences of values large ones of images."""
+"""The initial scene of the client: data on an ellipsoid. Results are shown in black and white
+bands, so that small differences of values are large differences of images."""
 
 from paraview.simple import (
     Calculator, GenerateSurfaceNormals, GetActiveViewOrCreate, GetColorTransferFunction, Render,
@@ -18,7 +18,7 @@ RenameSource("Data", data)
 view = GetActiveViewOrCreate("RenderView")
 Show(data, view)
 
-BANDS = 13  # odd: x and -x look the same, since the sign of a direction means nothing
+BANDS = 13  # odd: x and -x look the same, since the sign of a direction has no meaning
 for array, largest in (
     ("fDiffused", 0.2), ("fTV", 1.0), ("NormalsHarmonic", 1.0), ("Texture", 1.0), ("Direction", 1.0),
 ):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of the plugin share: a surface in a file, and the errors of a filter."""
+"""Functions that the tests of the plugin share: a surface in a file, and the errors of a filter."""
 
 import math
 import os
@@ -17,11 +17,11 @@ from vtkmodules.vtkImagingCore import vtkImageDifference
 from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-GARBAGE = 1000.0  # what the damaged values are
+GARBAGE = 1000.0  # the damaged values
 
 
 def add_array(attributes, name, values, array=None):
-    """Add values, numbers or tuples of numbers, as an array."""
+    """Adds values, numbers or tuples of numbers, as an array."""
     array = array or vtkDoubleArray()
     array.SetName(name)
     tuples = [value if isinstance(value, tuple) else (value,) for value in values]
@@ -34,7 +34,8 @@ def add_array(attributes, name, values, array=None):
 
 
 def write_sphere(path, centre=(0.0, 0.0, 0.0)):
-    """A sphere of radius 1 with arrays, among them `noisy`, the smooth `clean` with noise."""
+    """A sphere of radius 1 with arrays, among them the smooth `clean` and `noisy`, its noisy
+    copy."""
     source = vtkSphereSource()
     source.SetRadius(1.0)
     source.SetThetaResolution(64)
@@ -67,12 +68,12 @@ def write_sphere(path, centre=(0.0, 0.0, 0.0)):
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(path)
     writer.SetInputData(sphere)
-    writer.SetDataModeToBinary()  # appended data do not pass through every expat
+    writer.SetDataModeToBinary()  # some versions of expat cannot read appended data
     assert writer.Write()
 
 
 def read_sphere(path, **arguments):
-    """A reader of such a sphere, up to date, as it is after Apply."""
+    """An updated reader of such a sphere, as after Apply."""
     write_sphere(path, **arguments)
     reader = XMLPolyDataReader(FileName=[path])
     reader.UpdatePipeline()
@@ -90,7 +91,7 @@ def values(source, name, port=0):
 
 
 def menu(source, name):
-    """What a menu of arrays lists: association and name each."""
+    """The entries of a menu of arrays: association and name of each."""
     domain = source.SMProxy.GetProperty(name).FindDomain("vtkSMArrayListDomain")
     names = [domain.GetString(i) for i in range(domain.GetNumberOfStrings())]
     return {
@@ -100,12 +101,12 @@ def menu(source, name):
 
 
 def root_mean_square(a, b):
-    """Of the difference of two lists."""
+    """The root mean square difference of two lists."""
     return math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / len(a))
 
 
 def errors_of(source):
-    """The list that the errors of a filter are added to from now on, in place of the terminal."""
+    """A list that collects the errors of a filter from now on instead of printing them."""
     errors = []
 
     @calldata_type(VTK_STRING)
@@ -117,7 +118,7 @@ def errors_of(source):
 
 
 def assert_looks_like(view, baseline):
-    """The view's picture is that of the baseline, but for ten pixels that differ fully."""
+    """Asserts that the picture of the view equals the baseline up to ten fully different pixels."""
     folder = os.environ["SURFACEDIFFUSION_OUTPUT_DIR"]
     written = os.path.join(folder, baseline + ".png")
     SaveScreenshot(written, view, ImageResolution=[300, 300], OverrideColorPalette="WhiteBackground")

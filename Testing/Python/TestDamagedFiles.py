@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The readers of the examples and the demo refuse files that are missing, cut off, altered or of
-another kind, with an error that names the file."""
+"""The readers of the examples reject files that are missing, truncated, altered or of another
+format, with an error that names the file."""
 
 import gzip
 import random
@@ -35,28 +35,28 @@ class DamagedFiles(unittest.TestCase):
         with self.assertRaisesRegex(data.DataError, name):
             read(path)
 
-    def test_missing_files_and_unknown_kinds(self):
+    def test_missing_files_and_unknown_formats_are_errors(self):
         for read in (data.read_mesh, data.read_photo, lambda path: data.read_gifti(path, 1)):
             with self.assertRaisesRegex(data.DataError, "none"):
                 read(self.folder / "none.off")
         self.refuses(data.read_mesh, "surface.xyz", b"1 2 3")
 
-    def test_off_files_cut_anywhere(self):
+    def test_truncated_off_files_are_errors(self):
         for size in range(len(OFF) - 2):
             self.refuses(data.read_mesh, "cut.off", OFF[:size].encode())
 
-    def test_off_files_with_impossible_numbers(self):
+    def test_off_files_with_invalid_numbers_are_errors(self):
         for old, new in (("3 1 3 2", "3 1 3 4"), ("3 1 3 2", "3 1 3 -2"), ("3 1 3 2", "4 1 3 2"),
                          ("-1 -1 1", "-1 nan 1"), ("-1 -1 1", "-1 inf 1"), ("4 4 6", "-4 4 6"),
                          ("4 4 6", "4 0 6"), ("1 -1 -1", "1 x -1"), ("OFF", "PLY")):
             self.refuses(data.read_mesh, "bad.off", OFF.replace(old, new, 1).encode())
 
-    def test_off_files_of_random_bytes(self):
+    def test_off_files_of_random_bytes_are_errors(self):
         numbers = random.Random(1)
         for _ in range(50):
             self.refuses(data.read_mesh, "random.off", b"OFF\n" + numbers.randbytes(200))
 
-    def test_vtp_files(self):
+    def test_damaged_vtp_files_are_errors(self):
         sphere = vtkSphereSource()
         writer = vtkXMLPolyDataWriter()
         writer.SetInputConnection(sphere.GetOutputPort())
@@ -69,7 +69,7 @@ class DamagedFiles(unittest.TestCase):
             self.refuses(data.read_mesh, "cut.vtp", good[:int(part * len(good))])
         self.refuses(data.read_mesh, "kind.vtp", b"<VTKFile type='ImageData'></VTKFile>")
 
-    def test_pictures(self):
+    def test_damaged_pictures_are_errors(self):
         source = vtkImageMandelbrotSource()
         source.SetWholeExtent(0, 63, 0, 63, 0, 0)
         scale = vtkImageShiftScale()
@@ -85,7 +85,7 @@ class DamagedFiles(unittest.TestCase):
             self.refuses(data.read_photo, "cut.png", good[:size])
         self.refuses(data.read_photo, "text.png", b"not a picture")
 
-    def test_gifti_files(self):
+    def test_damaged_gifti_files_are_errors(self):
         read = lambda path: data.read_gifti(path, 1)  # noqa: E731
         for content in (b"", b"<GIFTI>", gzip.compress(b"<GIFTI></GIFTI>")[:20]):
             self.refuses(read, "bad.gii.gz", content)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The harmonic map filter as Python users meet it."""
+"""The harmonic map filter in Python."""
 
 import unittest
 
@@ -29,13 +29,13 @@ def noisy_sphere():
 
 
 def angles(a, b):
-    """In degrees, row by row."""
+    """The angles between two arrays of unit vectors, row by row, in degrees."""
     lengths = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
     return np.degrees(np.arccos(np.clip((a * b).sum(axis=1) / lengths, -1.0, 1.0)))
 
 
 class TestHarmonicMapFilter(unittest.TestCase):
-    def test_noise_leaves_the_normals(self):
+    def test_noise_is_removed_from_the_normals(self):
         surface, exact = noisy_sphere()
         filter = vtkHarmonicMapFilter()
         filter.SetInputData(surface)
@@ -59,9 +59,9 @@ class TestHarmonicMapFilter(unittest.TestCase):
         filter.Update()
         self.assertIsNotNone(filter.GetOutput().GetPointData().GetArray("nHarmonic"))
 
-    def test_moving_vertices_makes_a_shaken_sphere_round(self):
+    def test_moving_vertices_denoises_a_sphere(self):
         surface, exact = noisy_sphere()
-        surface.GetPointData().Initialize()  # the normals of the shaken surface are computed
+        surface.GetPointData().Initialize()  # the normals of the noisy surface are computed
         points = vtk_to_numpy(surface.GetPoints().GetData())
         points += np.random.default_rng(2).normal(scale=0.01, size=points.shape)
         filter = vtkHarmonicMapFilter()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The heat filter as Python users meet it."""
+"""The heat filter in Python."""
 
 import os
 import subprocess
@@ -74,9 +74,9 @@ class TestHeatFilter(unittest.TestCase):
         self.assertEqual(vtkFVMHeatFilter.INITIAL_FILL_NOISE, 2)
         self.assertEqual(vtkSurfaceDiffusionAlgorithm.SOLVER_DIRECT, 1)
 
-    def test_docstrings_tell_units_and_defaults(self):
+    def test_docstrings_give_units_and_defaults(self):
         self.assertIn("heat equation", vtkFVMHeatFilter.__doc__)
-        # The wrapper breaks lines where it likes.
+        # The wrapper breaks lines anywhere.
         self.assertIn("Default: 1.", " ".join(vtkFVMHeatFilter.SetTimeStep.__doc__.split()))
         self.assertIn("coordinate units", " ".join(vtkFVMHeatFilter.SetFWHM.__doc__.split()))
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The intrinsic TV filter as Python users meet it."""
+"""The intrinsic TV filter in Python."""
 
 import unittest
 
@@ -87,7 +87,7 @@ class TestIntrinsicTVFilter(unittest.TestCase):
         self.assertEqual(vtkIntrinsicTVFilter.EDGE_FUNCTION_WEICKERT, 4)
         self.assertEqual(vtkIntrinsicTVFilter.ACROSS_EDGE_FUNCTION_CONSTANT, 6)
 
-    def test_docstrings_tell_formulas_units_and_defaults(self):
+    def test_docstrings_give_formulas_units_and_defaults(self):
         text = " ".join(vtkIntrinsicTVFilter.__doc__.split())
         self.assertIn("u_t = div(", text)
         self.assertIn("h R", text)
@@ -95,7 +95,7 @@ class TestIntrinsicTVFilter(unittest.TestCase):
         self.assertIn("(R/h)^2", text)
         self.assertIn("Default: 1e-6", text)
 
-    def test_every_edge_function_smooths_and_keeps_the_sum(self):
+    def test_every_edge_function_smooths_and_conserves(self):
         for function in FUNCTIONS:
             filter = run(
                 sphere(noisy), EdgeFunction=function, FidelityWeight=0.0, EdgeThreshold=0.5
@@ -106,7 +106,7 @@ class TestIntrinsicTVFilter(unittest.TestCase):
             energy = vtk_to_numpy(history.GetColumnByName("Energy"))
             self.assertLess(energy[-1], 0.5 * energy[0], function)
 
-    def test_steady_state_is_where_implicit_steps_end(self):
+    def test_steady_state_is_the_limit_of_implicit_steps(self):
         surface = sphere(noisy)
         steady = run(surface, Mode="SteadyState", StopTolerance=1e-6)
         steps = run(surface, TimeIntegrator="Implicit", TimeStep=10.0, StopTolerance=1e-6)
@@ -129,7 +129,7 @@ class TestIntrinsicTVFilter(unittest.TestCase):
         surface = sphere(holed)
         self.assertLess(error(run(surface, Mode="SteadyState", FidelityWeight=50.0), surface), 0.1)
 
-    def test_what_cannot_be_is_refused_by_name(self):
+    def test_invalid_settings_are_errors_that_name_them(self):
         filter = vtkIntrinsicTVFilter()
         filter.SetInputData(sphere(noisy))
         filter.SetModeToSteadyState()

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows of Examples/Python/paper_figures.py as pictures: made-up surfaces, and scans where there are
-some, with patches in place of photographs. Drawn is the first channel in bands, which show errors
-that smooth colours hide."""
+"""Rows of Examples/Python/paper_figures.py as pictures: generated surfaces, and scans if they are
+available, with patches instead of photographs. The pictures show the first channel in bands, which
+reveal errors that smooth colours hide."""
 
 import os
 import sys
@@ -27,7 +27,7 @@ TOLERANCE = 10.0  # fully different pixels, see Testing/Filters/ImageTest.h
 
 
 def on_scan(example):
-    """What figures.painted returns, with patches on the example's mesh."""
+    """The same as figures.painted, with patches on the mesh of the example."""
     surface = data.refined(data.read_mesh(Path(MESHES) / f"{example.mesh}.off"), 10_000)
     return data.with_arrays(surface, clean=data.patches(surface))
 
@@ -35,7 +35,7 @@ def on_scan(example):
 def denoised(surface, slip):
     linear = figures.solve(figures.linear_model(surface), 0.28)
     model = figures.tv_denoising(surface)
-    model.SetStopTolerance(1e-6)  # the picture does not depend on how the minimum is found
+    model.SetStopTolerance(1e-6)  # so that the picture does not depend on the iterations
     return linear, figures.solve(model, 6.7 * (1.2 if slip else 1))
 
 
@@ -50,7 +50,8 @@ def inpainted(surface, slip):
 @unittest.skipIf(display_missing(), "no display to draw on")
 class TestPaperFigures(unittest.TestCase):
     def error(self, surface, values, look, name, written):
-        """Of a row of pictures from the baseline `name`, in fully different pixels."""
+        """The difference of a row of pictures from the baseline `name`, in fully different
+        pixels."""
         panels = [Panel(data.with_arrays(surface, shown=each[:, 0].copy()), "shown", title,
                         table=BANDS, closeup=(0.6, 0.7), **look)
                   for title, each in values.items()]
@@ -70,7 +71,8 @@ class TestPaperFigures(unittest.TestCase):
         return difference.GetThresholdedError()
 
     def check(self, name, surface, example, look, model):
-        """The row is as it was, and would not be if the TV model had slipped."""
+        """Checks that the row equals its baseline, and that a small change of the TV model would
+        show."""
         surface = figures.spoiled(surface, example)
         for slip in (False, True):
             linear, tv = model(surface, slip)
@@ -83,21 +85,21 @@ class TestPaperFigures(unittest.TestCase):
                 self.assertLessEqual(error, TOLERANCE)
                 self.assertGreater(tv.psnr, linear.psnr + 1)
 
-    def test_noise_on_a_closed_surface(self):
+    def test_noise_is_removed_on_a_closed_surface(self):
         example = figures.FIGURES[4][1]
         self.check("Figure4", figures.painted(example, QUICK), example, figures.FRONT, denoised)
 
-    def test_scratches_and_spots_on_an_open_surface(self):
+    def test_scratches_and_spots_are_filled_in_on_an_open_surface(self):
         example = figures.FIGURES[6][2]
         self.check("Figure6", figures.painted(example, QUICK), example, figures.FRONT, inpainted)
 
     @unittest.skipUnless(MESHES, "no meshes")
-    def test_noise_on_a_scan(self):
+    def test_noise_is_removed_on_a_scan(self):
         example = figures.FIGURES[4][1]
         self.check("Figure4Scan", on_scan(example), example, example.side, denoised)
 
     @unittest.skipUnless(MESHES, "no meshes")
-    def test_spots_on_a_scan(self):
+    def test_spots_are_filled_in_on_a_scan(self):
         example = figures.FIGURES[6][1]
         self.check("Figure6Scan", on_scan(example), example, example.side, inpainted)
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filters as functions on PyVista's meshes."""
+"""The filters as functions of PyVista meshes."""
 
 import sys
 import unittest
@@ -8,7 +8,7 @@ import unittest
 try:
     import pyvista
 except ImportError:
-    print("PyVista is not there (SURFACEDIFFUSION_WHEEL_DIR)")
+    print("PyVista is not available (SURFACEDIFFUSION_WHEEL_DIR)")
     sys.exit(77)
 
 import numpy as np
@@ -28,7 +28,7 @@ def noisy_sphere(center=(0.0, 0.0, 0.0)):
 
 
 class TestPyVista(unittest.TestCase):
-    def test_one_line_gives_a_polydata(self):
+    def test_one_line_returns_a_polydata(self):
         mesh = noisy_sphere()
         smooth = heat(mesh, "f", FWHM=0.2)
         self.assertIsInstance(smooth, pyvista.PolyData)
@@ -36,7 +36,7 @@ class TestPyVista(unittest.TestCase):
         self.assertLess(np.std(smooth["fDiffused"] - mesh.points[:, 2]), 0.1 / 3)
         self.assertNotIn("fDiffused", mesh.array_names)
 
-    def test_it_is_what_the_class_gives(self):
+    def test_a_function_gives_the_same_bits_as_its_class(self):
         mesh = noisy_sphere()
         filter = vtkFVMHeatFilter()
         filter.SetInputData(mesh)
@@ -65,14 +65,14 @@ class TestPyVista(unittest.TestCase):
         along = heat(field, "f", direction="Direction", AcrossDiffusivity=0)
         self.assertFalse((along["fDiffused"] == heat(mesh, "f")["fDiffused"]).all())
 
-    def test_blocks(self):
+    def test_blocks_are_processed(self):
         blocks = pyvista.MultiBlock([noisy_sphere(), noisy_sphere(center=(2.0, 0.0, 0.0))])
         smooth = heat(blocks, "f")
         self.assertIsInstance(smooth, pyvista.MultiBlock)
         for block in smooth:
             self.assertIn("fDiffused", block.point_data)
 
-    def test_what_is_wrong_is_named(self):
+    def test_errors_name_the_property_or_array(self):
         mesh = noisy_sphere()
         with self.assertRaisesRegex(ValueError, "TimeStep is -1"):
             heat(mesh, "f", TimeStep=-1)

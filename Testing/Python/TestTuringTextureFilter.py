@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The texture and direction field filters as Python users meet them."""
+"""The texture and direction field filters in Python."""
 
 import unittest
 
@@ -26,7 +26,7 @@ def plane(cells, size=8.0):
 
 
 def euler_number(surface, inside):
-    """Of the part of the surface whose corners are all inside: pieces minus holes."""
+    """The Euler number, components minus holes, of the part that the vertices inside span."""
     faces = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     pairs = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     edges = np.unique(np.sort(pairs, axis=1), axis=0)
@@ -51,8 +51,8 @@ class TestTuringTextureFilter(unittest.TestCase):
             u1 = texture(surface, FeatureSize=1.0, DiffusionRate1=2.6 * ratio, TimeStep=0.125,
                          NumberOfTimeSteps=360)
             number[ratio] = euler_number(surface, u1 > np.median(u1))
-        self.assertGreater(number[5.0], 20)  # spots: pieces
-        self.assertLess(number[30.0], -8)  # a net: holes
+        self.assertGreater(number[5.0], 20)  # spots are components
+        self.assertLess(number[30.0], -8)  # a net has holes
         self.assertLess(abs(number[16.0]), 0.5 * number[5.0])
 
     def test_stripes_follow_a_direction_given_as_an_array(self):
@@ -76,7 +76,7 @@ class TestTuringTextureFilter(unittest.TestCase):
         across = ((dx - dy) ** 2).sum() / 2.0
         self.assertGreater(across, 8.0 * along)
 
-    def test_a_run_stops_when_the_pattern_stands(self):
+    def test_a_run_stops_when_the_pattern_is_stationary(self):
         filter = vtkTuringTextureFilter()
         filter.SetInputData(plane(24))
         filter.SetNumberOfTimeSteps(5000)

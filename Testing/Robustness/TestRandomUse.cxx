@@ -1,41 +1,35 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Filters used at random: arrays of any type and content, properties right and wrong, inputs and
-// properties changed between updates, times asked for in any order. Whatever came before, a filter
-// gives what a new one with the same settings gives, or the same error and the unchanged input.
+// Filters used at random: arrays of any type and content, every property with values right and
+// wrong, inputs and properties changed between updates, times requested in any order. After any
+// such sequence a filter gives the bits that a new one with the same settings gives, or the same
+// errors and the unchanged input. A property that is missing in what a filter compares to know
+// whether its results are still valid shows here.
 // SURFACEDIFFUSION_LONG=n in the environment makes it the n-th of many times as many uses.
 
 #include "AllFilters.h"
 #include "BadMeshes.h"
+#include "RandomProperties.h"
 
 #include "vtkCellArray.h"
+#include "vtkFieldData.h"
 #include "vtkVariant.h"
 
+#include <algorithm>
 #include <cstdlib>
-#include <random>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
 
 using namespace FilterTest;
 
 namespace
 {
 
-class Dice
-{
-public:
-  explicit Dice(unsigned int seed)
-    : Random(seed)
-  {
-  }
-  int Below(int limit) { return static_cast<int>(this->Random() % limit); }
-  bool Flip(int oneIn = 2) { return this->Below(oneIn) == 0; }
-  double Unit() { return this->Random() / 4294967296.0; }
-
-private:
-  std::mt19937 Random; // the same numbers everywhere
-};
-
-vtkSmartPointer<vtkPolyData> ThrowSurface(Dice& dice)
+vtkSmartPointer<vtkPolyData> RandomSurface(Dice& dice)
 {
   static const auto bad = SurfaceDiffusion::Testing::BadMeshes();
   auto surface = vtkSmartPointer<vtkPolyData>::New();
@@ -68,8 +62,9 @@ vtkSmartPointer<vtkPolyData> ThrowSurface(Dice& dice)
   return surface;
 }
 
-/// Arrays with the names that filters are told: of any type, sometimes with NaN, of wrong sizes.
-void ThrowArrays(Dice& dice, vtkPolyData* surface)
+/// Adds arrays of the names that SetRandomArray() chooses: of any type, sometimes with NaN or with
+/// a wrong number of components.
+void AddRandomArrays(Dice& dice, vtkPolyData* surface)
 {
   const int types[] = { VTK_DOUBLE, VTK_FLOAT, VTK_UNSIGNED_CHAR, VTK_INT, VTK_SHORT };
   const auto add = [&](const char* name, int components, const auto& value)
@@ -88,93 +83,27 @@ void ThrowArrays(Dice& dice, vtkPolyData* surface)
   add("mask", 1, [&](vtkIdType, int) { return dice.Flip(6); });
   add("fixed", 1, [&](vtkIdType, int) { return dice.Flip(9); });
   add("e1", 3, [&](vtkIdType i, int k) { return dice.Flip(20) ? 0.0 : Rough(i, k); });
+  add("rates", 4, [&](vtkIdType i, int k) { return 3.0 + Rough(i, k); });
   surface->GetPointData()->SetActiveScalars("f");
 }
 
-/// A property from what is allowed, seldom from what is not.
-void ThrowProperty(Dice& dice, vtkSurfaceDiffusionAlgorithm* filter)
-{
-  const auto size = [&] { return dice.Flip(12) ? -1.0 : std::pow(10.0, 6.0 * dice.Unit() - 3.0); };
-  switch (dice.Below(16))
-  {
-    case 0:
-      return filter->SetTimeStep(size());
-    case 1:
-      return filter->SetNumberOfTimeSteps(dice.Below(7) - (dice.Flip(12) ? 7 : 0));
-    case 2:
-      return filter->SetUnits(dice.Below(2));
-    case 3:
-      return filter->SetGenerateTimeSteps(!dice.Flip(3));
-    case 4:
-      return filter->SetOutputInterval(1 + dice.Below(3));
-    case 5:
-      return filter->SetFidelityWeight(dice.Flip() ? 0.0 : size());
-    case 6:
-      return filter->SetMaskMode(dice.Below(2));
-    case 7:
-      return filter->SetInitialFill(dice.Below(3));
-    case 8:
-      return filter->SetHoldKnownValues(dice.Flip(3));
-    case 9:
-      return filter->SetAlongDiffusivity(size());
-    case 10:
-      return filter->SetTimeIntegrator(dice.Below(3));
-    case 11:
-      return filter->SetSolver(dice.Below(4));
-    case 12:
-      return filter->SetIntrinsicDelaunay(dice.Flip());
-    case 13:
-      return filter->SetMergeCoincidentPoints(dice.Flip());
-    case 14:
-      return filter->SetOutputPrecision(dice.Below(3));
-    default:
-      return filter->SetCheckpointMemoryLimit(dice.Below(2));
-  }
-}
+const char* const ArrayNames[] = { "f", "mask", "e1", "fixed", "rates" };
 
-void ThrowArrayChoice(Dice& dice, vtkSurfaceDiffusionAlgorithm* filter)
+void SetRandomArray(Dice& dice, vtkPolyDataAlgorithm* filter)
 {
-  const int index = dice.Below(4);
-  const char* const names[] = { "f", "mask", "e1", "fixed" };
-  SetInputArray(filter, index, dice.Flip(3) ? "" : names[index]);
-}
-
-vtkSmartPointer<vtkSurfaceDiffusionAlgorithm> ThrowFilter(Dice& dice)
-{
-  switch (dice.Below(4))
-  {
-    case 0:
-      return vtkSmartPointer<vtkFVMHeatFilter>::New();
-    case 1:
-      return vtkSmartPointer<vtkIntrinsicTVFilter>::New();
-    case 2:
-      return vtkSmartPointer<vtkHarmonicMapFilter>::New();
-    default:
-      return vtkSmartPointer<vtkTuringTextureFilter>::New();
-  }
+  const int index = dice.Below(5);
+  SetInputArray(filter, index, dice.Flip(3) ? "" : ArrayNames[index]);
 }
 
 /// A new filter with the same properties and arrays.
-vtkSmartPointer<vtkSurfaceDiffusionAlgorithm> Twin(vtkSurfaceDiffusionAlgorithm* filter)
+vtkSmartPointer<vtkPolyDataAlgorithm> Twin(const FilterClass& kind, vtkPolyDataAlgorithm* filter)
 {
-  auto twin = vtkSmartPointer<vtkSurfaceDiffusionAlgorithm>::Take(filter->NewInstance());
-  twin->SetTimeStep(filter->GetTimeStep());
-  twin->SetNumberOfTimeSteps(filter->GetNumberOfTimeSteps());
-  twin->SetUnits(filter->GetUnits());
-  twin->SetGenerateTimeSteps(filter->GetGenerateTimeSteps());
-  twin->SetOutputInterval(filter->GetOutputInterval());
-  twin->SetFidelityWeight(filter->GetFidelityWeight());
-  twin->SetMaskMode(filter->GetMaskMode());
-  twin->SetInitialFill(filter->GetInitialFill());
-  twin->SetHoldKnownValues(filter->GetHoldKnownValues());
-  twin->SetAlongDiffusivity(filter->GetAlongDiffusivity());
-  twin->SetTimeIntegrator(filter->GetTimeIntegrator());
-  twin->SetSolver(filter->GetSolver());
-  twin->SetIntrinsicDelaunay(filter->GetIntrinsicDelaunay());
-  twin->SetMergeCoincidentPoints(filter->GetMergeCoincidentPoints());
-  twin->SetOutputPrecision(filter->GetOutputPrecision());
-  twin->SetCheckpointMemoryLimit(filter->GetCheckpointMemoryLimit());
-  for (int index = 0; index < 4; ++index)
+  const auto twin = kind.Make();
+  for (const RandomProperty& property : kind.Properties)
+  {
+    property.Copy(filter, twin);
+  }
+  for (int index = 0; index < 5; ++index)
   {
     vtkNew<vtkInformation> copy;
     copy->Copy(filter->GetInputArrayInformation(index), 1);
@@ -198,14 +127,36 @@ bool SameValues(vtkDataArray* a, vtkDataArray* b)
   return same;
 }
 
-bool SameArrays(vtkPolyData* a, vtkPolyData* b)
+/// The names of the arrays that differ.
+std::string DifferentArrays(vtkFieldData* a, vtkFieldData* b)
 {
-  bool same = a->GetPointData()->GetNumberOfArrays() == b->GetPointData()->GetNumberOfArrays();
-  for (int i = 0; same && i < a->GetPointData()->GetNumberOfArrays(); ++i)
+  std::string different = a->GetNumberOfArrays() == b->GetNumberOfArrays() ? "" : "their number ";
+  for (int i = 0; i < a->GetNumberOfArrays(); ++i)
   {
-    same = SameValues(a->GetPointData()->GetArray(i), b->GetPointData()->GetArray(i));
+    const char* const name = a->GetArrayName(i);
+    different += SameValues(a->GetArray(i), b->GetArray(name)) ? "" : std::string(name) + " ";
   }
-  return same;
+  return different;
+}
+
+/// What differs between the surfaces, their data and the histories.
+std::string Difference(vtkPolyDataAlgorithm* a, vtkPolyDataAlgorithm* b)
+{
+  vtkPolyData* const x = a->GetOutput();
+  vtkPolyData* const y = b->GetOutput();
+  std::string different =
+    SameValues(x->GetPoints()->GetData(), y->GetPoints()->GetData()) ? "" : "points ";
+  different += DifferentArrays(x->GetPointData(), y->GetPointData());
+  different += DifferentArrays(x->GetCellData(), y->GetCellData());
+  if (a->GetNumberOfOutputPorts() > 1)
+  {
+    for (vtkPolyDataAlgorithm* const either : { a, b })
+    {
+      History(either)->GetRowData()->RemoveArray("Seconds");
+    }
+    different += DifferentArrays(History(a)->GetRowData(), History(b)->GetRowData());
+  }
+  return different;
 }
 
 bool IsFinite(vtkDataArray* array, vtkIdType point)
@@ -235,62 +186,195 @@ bool AddedIsFinite(vtkPolyData* output, vtkPolyData* input)
   return finite;
 }
 
-void UseAtRandom(unsigned int seed)
+/// The errors without the object's address.
+std::vector<std::string> Sentences(const Messages& messages)
+{
+  std::vector<std::string> sentences;
+  for (const std::string& error : messages.Errors)
+  {
+    sentences.push_back(error.substr(error.find("): ") + 3));
+  }
+  return sentences;
+}
+
+/// Updates a filter of the class many times. `focus` is the property that is changed in any case,
+/// alone, between two updates.
+void UseAtRandom(const std::vector<FilterClass>& classes, unsigned int seed)
 {
   Dice dice(seed);
-  auto filter = ThrowFilter(dice);
+  const FilterClass& kind = classes[seed % classes.size()];
+  const RandomProperty& focus = kind.Properties[seed / classes.size() % kind.Properties.size()];
+  const auto filter = kind.Make();
+  const auto untouched = kind.Make();
   Messages messages(filter);
-  filter->SetNumberOfTimeSteps(3);
-  vtkSmartPointer<vtkPolyData> surface = ThrowSurface(dice);
-  ThrowArrays(dice, surface);
+  vtkSmartPointer<vtkPolyData> surface = RandomSurface(dice);
+  AddRandomArrays(dice, surface);
   for (int update = 0; update < 6; ++update)
   {
-    for (int change = dice.Below(4); change > 0; --change)
+    if (update % 2 == 1 && messages.Errors.empty())
     {
-      ThrowProperty(dice, filter);
+      const auto before = kind.Make();
+      focus.Copy(filter, before);
+      for (int draw = 0; draw < 8 && focus.Equal(filter, before); ++draw)
+      {
+        focus.Set(filter, dice);
+      }
     }
-    if (dice.Flip())
+    else
     {
-      ThrowArrayChoice(dice, filter);
+      for (int change = dice.Below(4); change > 0; --change)
+      {
+        kind.Properties[dice.Below(static_cast<int>(kind.Properties.size()))].Set(filter, dice);
+      }
+      if (dice.Flip())
+      {
+        SetRandomArray(dice, filter);
+      }
+      if (dice.Flip(4))
+      {
+        surface = RandomSurface(dice);
+        AddRandomArrays(dice, surface);
+      }
+      else if (dice.Flip(4))
+      {
+        AddRandomArrays(dice, surface);
+      }
     }
-    if (dice.Flip(4))
+    if (!messages.Errors.empty())
     {
-      surface = ThrowSurface(dice);
-      ThrowArrays(dice, surface);
+      filter->Modified(); // or the error is not reported again if nothing has changed
+      messages.Errors.clear();
     }
-    else if (dice.Flip(4))
-    {
-      ThrowArrays(dice, surface);
-    }
-    const double time = 4.0 * dice.Unit() * std::abs(filter->GetTimeStep());
-    auto twin = Twin(filter);
+    const auto twin = Twin(kind, filter);
     Messages ofTwin(twin);
-    messages.Errors.clear();
-    for (vtkSurfaceDiffusionAlgorithm* either : { filter.Get(), twin.Get() })
+    const double time = dice.Logarithmic(1e-2, 1e2);
+    for (vtkPolyDataAlgorithm* either : { filter.Get(), twin.Get() })
     {
       either->SetInputData(surface);
-      either->Modified(); // or an error is not told again where nothing has changed
       UpdateAt(either, time);
     }
-    ASSERT_EQ(messages.Errors.empty(), ofTwin.Errors.empty())
-      << (messages.Errors.empty() ? ofTwin.Errors[0] : messages.Errors[0]);
-    ASSERT_TRUE(SameArrays(filter->GetOutput(), twin->GetOutput())) << filter->GetClassName();
-    ASSERT_TRUE(!messages.Errors.empty() || AddedIsFinite(filter->GetOutput(), surface))
-      << filter->GetClassName();
+    const std::string name = kind.Name + ", " + focus.Name + ", update " + std::to_string(update);
+    ASSERT_EQ(Sentences(messages), Sentences(ofTwin)) << name;
+    ASSERT_EQ(Difference(filter, twin), "") << name;
+    ASSERT_TRUE(!messages.Errors.empty() || AddedIsFinite(filter->GetOutput(), surface)) << name;
     ASSERT_TRUE(messages.Errors.empty() || IsUnchanged(filter, surface)) << messages.Errors[0];
+    // What is refused hides what is computed: most of it does not stay.
+    for (const RandomProperty& property : kind.Properties)
+    {
+      if (!messages.Errors.empty() && dice.Flip())
+      {
+        property.Copy(untouched, filter);
+      }
+    }
   }
+}
+
+/// A header without the lines of its comments.
+std::string ReadCode(const std::filesystem::path& header)
+{
+  std::string code;
+  std::ifstream file(header);
+  for (std::string line; std::getline(file, line);)
+  {
+    const std::size_t first = line.find_first_not_of(' ');
+    const bool isComment = first != std::string::npos && (line[first] == '*' || line[first] == '/');
+    code += isComment ? std::string() : line + "\n";
+  }
+  return code;
+}
+
+/// The names X of all SetX() that a class of the library and its superclasses in the library have,
+/// without the forms SetXToY(): as their headers have them.
+std::set<std::string> SettableInHeaders(const std::string& className)
+{
+  const std::filesystem::path folder = SURFACEDIFFUSION_FILTERS_DIR;
+  std::set<std::string> names;
+  std::string name = className;
+  while (std::filesystem::exists(folder / (name + ".h")))
+  {
+    const std::string text = ReadCode(folder / (name + ".h"));
+    const std::regex setter(R"((?:\bvtkSet\w*Macro\(\s*|\bSet)([A-Z]\w*)\b\s*[(,)])");
+    for (std::sregex_iterator match(text.begin(), text.end(), setter), end; match != end; ++match)
+    {
+      names.insert((*match)[1]);
+    }
+    std::smatch base;
+    const std::regex derived("class \\w+ " + name + "\\s*:\\s*public (\\w+)");
+    name = std::regex_search(text, base, derived) ? std::string(base[1]) : std::string();
+  }
+  const std::set<std::string> all = names;
+  for (const std::string& property : all)
+  {
+    for (auto it = names.begin(); it != names.end();)
+    {
+      const bool word = it->rfind(property + "To", 0) == 0;
+      it = word ? names.erase(it) : std::next(it);
+    }
+  }
+  return names;
 }
 
 } // namespace
 
 TEST(RandomUse, GivesWhatANewFilterGives)
 {
+  const auto classes = AllFilterClasses();
   const char* const part = std::getenv("SURFACEDIFFUSION_LONG");
   const unsigned int uses = part ? 30000 : 300;
   const unsigned int first = part ? uses * (std::strtoul(part, nullptr, 10) - 1) : 0;
   for (unsigned int seed = first; seed < first + uses && !HasFatalFailure(); ++seed)
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    UseAtRandom(seed);
+    UseAtRandom(classes, seed);
+  }
+}
+
+TEST(RandomUse, SetsEveryPropertyThatTheHeadersHave)
+{
+  std::set<std::string> tested;
+  for (const FilterClass& kind : AllFilterClasses())
+  {
+    std::set<std::string> known;
+    for (const RandomProperty& property : kind.Properties)
+    {
+      EXPECT_TRUE(known.insert(property.Name).second) << property.Name << " twice";
+    }
+    std::vector<std::string> different;
+    const std::set<std::string> settable = SettableInHeaders(kind.Name);
+    std::set_symmetric_difference(
+      known.begin(), known.end(), settable.begin(), settable.end(), std::back_inserter(different));
+    EXPECT_EQ(different, std::vector<std::string>())
+      << "of " << kind.Name << ", in the header or in RandomProperties.h but not in both";
+    EXPECT_GT(settable.size(), 5u);
+    tested.insert(kind.Name);
+  }
+  for (const auto& file : std::filesystem::directory_iterator(SURFACEDIFFUSION_FILTERS_DIR))
+  {
+    const std::string name = file.path().stem().string();
+    const bool isClass = file.path().extension() == ".h" && name.rfind("vtk", 0) == 0;
+    if (isClass && ReadCode(file.path()).find("static " + name + "* New()") != std::string::npos)
+    {
+      EXPECT_TRUE(tested.count(name)) << name << " is not in RandomProperties.h";
+    }
+  }
+}
+
+TEST(RandomUse, DrawsOfEveryPropertyDifferentValues)
+{
+  for (const FilterClass& kind : AllFilterClasses())
+  {
+    for (const RandomProperty& property : kind.Properties)
+    {
+      Dice dice(1);
+      const auto filter = kind.Make();
+      const auto untouched = kind.Make();
+      bool differs = false;
+      for (int draw = 0; draw < 64 && !differs; ++draw)
+      {
+        property.Set(filter, dice);
+        differs = !property.Equal(filter, untouched);
+      }
+      EXPECT_TRUE(differs) << kind.Name << " " << property.Name;
+    }
   }
 }

@@ -20,7 +20,8 @@ vtkSmartPointer<vtkPolyData> Hills()
 {
   auto hills = Grid(224, 224);
   vtkPoints* points = hills->GetPoints();
-  EXPECT_GE(points->GetNumberOfPoints(), vtkIdType(SMPParallelFor::Few) * BlockSize);
+  EXPECT_GE(
+    points->GetNumberOfPoints(), vtkIdType(SurfaceDiffusion::SMPParallelFor::Few) * BlockSize);
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {
     double x[3];

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Takes the noise off the data of the selected surface and keeps their edges, (17) of the paper; how
-much of it is estimated. With nothing selected: an example."""
+"""Denoises the data of the selected surface and preserves their edges, equation (17) of the paper.
+The noise level is estimated. If no source is selected, an example is shown."""
 
 from paraview.simple import *
 

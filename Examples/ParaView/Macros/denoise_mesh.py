@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Takes the noise off the normals of the selected surface, keeps its creases, and moves the points to
-fit them, (21) of the paper. With nothing selected: an example."""
+"""Denoises the normals of the selected surface, preserves its creases, and moves the points to fit
+the normals, equation (21) of the paper. If no source is selected, an example is shown."""
 
 from paraview.simple import *
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shows the history of the selected surface diffusion filter, its energy over time, in a line chart
-beside the picture."""
+"""Plots the energy of the selected surface diffusion filter over time, in a line chart beside the
+surface."""
 
 from paraview.simple import *
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fills in the data of the selected surface where its point array "mask" is not zero and continues
-their edges, (19) of the paper. With nothing selected: an example."""
+"""Fills in the data of the selected surface at points whose array "mask" is nonzero and continues
+the edges of the data, equation (19) of the paper. If no source is selected, an example is shown."""
 
 from paraview.simple import *
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Grows stripes on the selected surface along a smooth direction field, (22) to (24) of the paper;
-"Play" shows how they grow. With nothing selected: an example."""
+"""Grows stripes on the selected surface along a smooth direction field, equations (22) to (24) of
+the paper. "Play" shows their growth. If no source is selected, an example is shown."""
 
 from paraview.simple import *
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the pictures of GUIDE.md: ParaView's window, and what each macro makes of its example.
+"""Makes the pictures of GUIDE.md: ParaView's window, and each macro's example before and after.
 
     make.py <folder of SurfaceDiffusion.so> <folder for the pictures>
 
-Needs Xvfb, and libqt5svg5 for ParaView's icons.
+It needs Xvfb, and libqt5svg5 for ParaView's icons.
 """
 
 import os
@@ -53,7 +53,7 @@ def read_png(path):
 
 
 def write_png(path, pixels):
-    """Rows from the bottom, as VTK has them."""
+    """Writes an array of rows, from the bottom up as in VTK."""
     image = vtkImageData()
     image.SetDimensions(pixels.shape[1], pixels.shape[0], 1)
     image.GetPointData().SetScalars(numpy_to_vtk(pixels.reshape(-1, 3), deep=True))
@@ -65,14 +65,14 @@ def write_png(path, pixels):
 
 
 def read_screen(path):
-    """What Xvfb's frame buffer file, an X window dump, shows."""
+    """The picture in Xvfb's frame buffer file, an X window dump."""
     data = path.read_bytes()
     header = struct.unpack(">25I", data[:100])
     width, height, stride = header[4], header[5], header[12]
-    start = header[0] + 12 * header[19]  # behind the colour map
+    start = header[0] + 12 * header[19]  # after the colour map
     rows = np.frombuffer(data, np.uint8, stride * height, start).reshape(height, stride)
     pixels = rows.reshape(height, -1, 4)[:, :width, [2, 1, 0]]
-    used = pixels.any(2)  # the window stands in the upper left corner of a black screen
+    used = pixels.any(2)  # the window is in the upper left corner of a black screen
     pixels = pixels[: used.any(1).nonzero()[0][-1] + 1, : used.any(0).nonzero()[0][-1] + 1]
     return pixels[::-1].copy()
 

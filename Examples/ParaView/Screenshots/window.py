@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ParaView's window shows before the clicks of window.xml: noisy data on a surface."""
+"""Prepares ParaView's window for the clicks of window.xml: noisy data on a surface."""
 
 from paraview.simple import *
 

@@ -11,7 +11,8 @@
 namespace SurfaceDiffusion
 {
 
-/// Sets of the numbers 0 .. count - 1, each known by its smallest member.
+/// Union-find: disjoint sets of the numbers 0 .. count - 1, each represented by its smallest
+/// member.
 class DisjointSets
 {
 public:
@@ -21,6 +22,7 @@ public:
     std::iota(this->Parent.begin(), this->Parent.end(), 0);
   }
 
+  /// The smallest member of the set of i, with path halving.
   Index Find(Index i)
   {
     while (this->Parent[i] != i)
@@ -37,7 +39,8 @@ public:
     this->Parent[std::max(i, j)] = std::min(i, j);
   }
 
-  /// For each number that of its set, in the order of their smallest members.
+  /// The number of the set of each member. Sets are numbered in the order of their smallest
+  /// members.
   std::vector<Index> Labels()
   {
     const auto count = static_cast<Index>(this->Parent.size());

@@ -11,24 +11,24 @@
 namespace SurfaceDiffusion
 {
 
-/// Numbers the distinct ones of a few indices >= 0 in the order in which they come, made to be used
-/// again for every row of a matrix or vertex of a mesh. As long as they are few they are compared
-/// with all, without a branch that could be mispredicted; many are found by a hash table.
+/// Assigns consecutive numbers to distinct indices >= 0 in the order of first appearance. Made to
+/// be reused for every row of a matrix or vertex of a mesh: small sets are searched linearly,
+/// without a branch that could be mispredicted, and large ones are hashed.
 class IndexSet
 {
 public:
   void Clear()
   {
-    std::fill_n(this->Distinct.begin(), Few, None);
+    std::fill_n(this->Distinct.begin(), SmallSetSize, None);
     this->Count = 0;
   }
 
-  /// The number of `index`, which is Size() - 1 for one not seen before.
+  /// The number of `index`, which is Size() - 1 if it is new.
   Index Insert(Index index)
   {
-    if (this->Count <= Few)
+    if (this->Count <= SmallSetSize)
     {
-      const Index known = this->FindAmongFew(index);
+      const Index known = this->FindLinearly(index);
       return known != None ? known : this->Append(index);
     }
     const std::size_t place = this->Find(index);
@@ -43,11 +43,11 @@ public:
   Index Size() const { return this->Count; }
   Index operator[](Index number) const { return this->Distinct[number]; }
 
-  /// rank[k]: how many are below (*this)[k].
+  /// rank[k]: how many of the indices are smaller than (*this)[k].
   void Rank(std::vector<Index>& rank)
   {
     rank.assign(this->Count, 0);
-    if (this->Count > Few)
+    if (this->Count > SmallSetSize)
     {
       this->Order.resize(this->Count);
       std::iota(this->Order.begin(), this->Order.end(), 0);
@@ -70,15 +70,15 @@ public:
 
 private:
   static constexpr Index None = -1;
-  static constexpr Index Few = 16;
-  static constexpr Index Lane = 8;
+  static constexpr Index SmallSetSize = 16;
+  static constexpr Index Lane = 8; ///< indices compared at once; divides SmallSetSize
 
-  Index FindAmongFew(Index index) const
+  Index FindLinearly(Index index) const
   {
     const Index* entry = this->Distinct.data();
     for (Index first = 0; first < this->Count; first += Lane, entry += Lane)
     {
-      Index found = 0; // 1 more than the place; the compiler makes vectors of this
+      Index found = 0; // the place + 1; compilers vectorise this loop
       for (Index k = 0; k < Lane; ++k)
       {
         found |= entry[k] == index ? k + 1 : 0;
@@ -99,14 +99,15 @@ private:
     }
     this->Distinct[this->Count] = index;
     ++this->Count;
-    if (this->Count == Few + 1 || 2 * this->Count > static_cast<Index>(this->Places.size()))
+    if (this->Count == SmallSetSize + 1 ||
+      2 * this->Count > static_cast<Index>(this->Places.size()))
     {
       this->Hash();
     }
     return this->Count - 1;
   }
 
-  /// Where `index` is in the table, or belongs.
+  /// The place of `index` in the table, or the free place for it.
   std::size_t Find(Index index) const
   {
     const std::size_t mask = this->Places.size() - 1;
@@ -118,7 +119,7 @@ private:
     return place;
   }
 
-  /// Make the table, which is not kept while there are few, and larger where it is half full.
+  /// Make the table, which small sets do not keep, of twice the size if it is half full.
   void Hash()
   {
     const bool full = 2 * this->Count > static_cast<Index>(this->Places.size());
@@ -129,9 +130,10 @@ private:
     }
   }
 
-  std::vector<Index> Distinct = std::vector<Index>(2 * Few, None);
-  std::vector<Index> Places = std::vector<Index>(4 * Few, None); ///< of a hash table, in Distinct
-  std::vector<Index> Order; ///< of many, by value
+  std::vector<Index> Distinct = std::vector<Index>(2 * SmallSetSize, None);
+  std::vector<Index> Places =
+    std::vector<Index>(4 * SmallSetSize, None); ///< hash table: places in Distinct
+  std::vector<Index> Order; ///< by value, for large sets
   Index Count = 0;
 };
 

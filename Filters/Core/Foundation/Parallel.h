@@ -12,7 +12,7 @@
 namespace SurfaceDiffusion
 {
 
-/// A reference to a callable, made without allocating: it must not outlive the callable.
+/// A reference to a callable, which must outlive it. Unlike std::function it never allocates.
 class LoopBody
 {
 public:
@@ -30,28 +30,30 @@ private:
   void (*Call)(const void*, Index, Index);
 };
 
-/// The loop the core runs on. The default is serial; the filters give one that calls vtkSMPTools.
+/// The loop over which the numerics are parallel. This one is serial; the filters pass one that
+/// runs on vtkSMPTools.
 class ParallelFor
 {
 public:
   virtual ~ParallelFor() = default;
 
-  /// Call body(begin, end) on pieces that cover [0, count) once, in any order, on any thread.
+  /// Call body(begin, end) on ranges that together cover [0, count) once, in any order and on any
+  /// threads.
   virtual void Run(Index count, LoopBody body) const { body(0, count); }
 
   /// The same for a few long tasks. Run() may take a short loop to be not worth its threads.
   virtual void RunTasks(Index count, LoopBody body) const { body(0, count); }
 };
 
-/// The serial loop, as the default of all that keeps a reference: a temporary would be gone.
+/// The serial loop: the default argument everywhere, which may be kept by reference.
 inline const ParallelFor& SerialFor()
 {
   static const ParallelFor serial;
   return serial;
 }
 
-/// Rows per block. Loops and sums are cut into these blocks whatever the number of threads, so
-/// that no bit of a result depends on it.
+/// Rows per block. Loops and sums are cut into these blocks for any number of threads, so that no
+/// bit of a result depends on that number.
 constexpr Index BlockSize = 2048;
 
 inline Index NumberOfBlocks(Index count)
@@ -71,7 +73,8 @@ void ForEachBlock(const ParallelFor& parallel, Index count, const Body& body)
     }
   };
   const Index numberOfBlocks = NumberOfBlocks(count);
-  if (numberOfBlocks <= 2) // waking threads costs more than such a loop
+  constexpr Index fewBlocks = 2; // waking threads costs more than such a loop
+  if (numberOfBlocks <= fewBlocks)
   {
     blocks(0, numberOfBlocks);
     return;
@@ -107,7 +110,7 @@ void ForEachTask(const ParallelFor& parallel, Index count, const Task& task)
     });
 }
 
-/// Largest of f(i) >= 0 over [0, count); 0 for none.
+/// The largest f(i) over [0, count) for f >= 0; 0 if count is 0.
 template <typename F>
 double Max(const ParallelFor& parallel, Index count, const F& f)
 {
@@ -115,30 +118,30 @@ double Max(const ParallelFor& parallel, Index count, const F& f)
   ForEachBlock(parallel, count,
     [&](Index, Index begin, Index end)
     {
-      double ofBlock = 0.0;
+      double blockMax = 0.0;
       for (Index i = begin; i < end; ++i)
       {
-        ofBlock = std::max(ofBlock, f(i));
+        blockMax = std::max(blockMax, f(i));
       }
       double known = largest;
-      while (ofBlock > known && !largest.compare_exchange_weak(known, ofBlock))
+      while (blockMax > known && !largest.compare_exchange_weak(known, blockMax))
       {
       }
     });
   return largest;
 }
 
-/// Sum of f(i) over [0, count), block by block.
+/// The sum of f(i) over [0, count), block by block.
 template <typename F>
 double Sum(const ParallelFor& parallel, Index count, const F& f)
 {
-  // A fixed number of partial sums on the stack keeps time steps free of allocations.
-  constexpr Index width = 1024;
+  // A fixed number of partial sums on the stack, so that time steps do not allocate.
+  constexpr Index maxPartialSums = 1024;
   double total = 0.0;
-  for (Index first = 0; first < count; first += width * BlockSize)
+  for (Index first = 0; first < count; first += maxPartialSums * BlockSize)
   {
-    double partial[width];
-    const Index chunk = std::min(count - first, width * BlockSize);
+    double partial[maxPartialSums];
+    const Index chunk = std::min(count - first, maxPartialSums * BlockSize);
     ForEachBlock(parallel, chunk,
       [&](Index block, Index begin, Index end)
       {

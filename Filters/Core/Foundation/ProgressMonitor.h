@@ -8,14 +8,14 @@
 namespace SurfaceDiffusion
 {
 
-/// Thrown where the user asked to stop.
+/// Thrown when the user asked to stop.
 struct Aborted : std::exception
 {
   const char* what() const noexcept override { return "aborted"; }
 };
 
-/// Carries progress out of long work and the wish to stop into it. Copies are cheap and share the
-/// callback; Part() makes one for a piece of the work, whose reports fill only that piece's share.
+/// Reports the progress of long work and throws Aborted when the user asked to stop. Copies are
+/// cheap and share the callback. Part() makes a monitor for a part of the work.
 class ProgressMonitor
 {
 public:
@@ -23,13 +23,13 @@ public:
   using Callback = std::function<bool(double)>;
 
   ProgressMonitor() = default;
-  /// callback must outlive the progress and its parts.
+  /// The callback must outlive the monitor and its parts.
   explicit ProgressMonitor(const Callback& callback)
     : Call(&callback)
   {
   }
 
-  /// Tell that `fraction` of this progress's work is done. Throws Aborted.
+  /// Report that `fraction` of this monitor's work is done. Throws Aborted.
   void Report(double fraction) const
   {
     if (this->Call && !(*this->Call)(this->Begin + fraction * (this->End - this->Begin)))
@@ -38,7 +38,7 @@ public:
     }
   }
 
-  /// The progress of the part [begin, end] of this one's work.
+  /// The monitor of the part [begin, end] of this one's work.
   ProgressMonitor Part(double begin, double end) const
   {
     ProgressMonitor part = *this;

@@ -7,7 +7,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The output function of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): mixes all bits.
+/// The output function of SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), a hash of 64 bits.
 inline std::uint64_t MixBits(std::uint64_t z)
 {
   z += 0x9e3779b97f4a7c15ULL;
@@ -16,14 +16,15 @@ inline std::uint64_t MixBits(std::uint64_t z)
   return z ^ (z >> 31);
 }
 
-/// A number in [0, 1) that depends on these three alone, not on the order of the calls: the same
-/// everywhere, on any number of threads or processes.
+/// A uniform random number in [0, 1) that is a function of its arguments alone. It is the same on
+/// every platform and on any number of threads or processes.
 inline double UniformRandom(std::int64_t seed, std::int64_t component, std::int64_t id)
 {
   const std::uint64_t bits = MixBits(
     MixBits(MixBits(static_cast<std::uint64_t>(seed)) ^ static_cast<std::uint64_t>(component)) ^
     static_cast<std::uint64_t>(id));
-  return static_cast<double>(bits >> 11) * 0x1.0p-53;
+  constexpr double unit = 0x1.0p-53; // the 53 high bits fill the mantissa of a double
+  return static_cast<double>(bits >> 11) * unit;
 }
 
 } // namespace SurfaceDiffusion

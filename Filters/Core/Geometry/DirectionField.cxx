@@ -32,15 +32,16 @@ std::unique_ptr<LinearSolver> MakeSolverFor(
   return solver;
 }
 
-void Turn(TangentVectors& frames, double angle, const ParallelFor& parallel)
+/// Rotate all lines by `angle` in their triangles.
+void Rotate(TangentVectors& lines, double angle, const ParallelFor& parallel)
 {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  ForEach(parallel, static_cast<Index>(frames.rows()),
+  ForEach(parallel, static_cast<Index>(lines.rows()),
     [&](Index t)
     {
-      const Eigen::RowVector2d d = frames.row(t);
-      frames.row(t) << c * d[0] - s * d[1], s * d[0] + c * d[1];
+      const Eigen::RowVector2d d = lines.row(t);
+      lines.row(t) << c * d[0] - s * d[1], s * d[0] + c * d[1];
     });
 }
 
@@ -53,31 +54,31 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
 {
   const TriangleMesh& mesh = assembler.Mesh();
   const double quarterTurn = 0.5 * std::acos(-1.0);
-  TangentVectors frames = hints;
+  TangentVectors lines = hints;
   Vector weights = Vector::Ones(mesh.NumberOfTriangles());
   if (settings.Method != DirectionMethod::Hints)
   {
     const auto solver = MakeSolverFor(mesh.NumberOfVertices(), 4.0, true, parallel);
     PrincipalDirections principal = FindPrincipalDirections(assembler, points, triangles,
       settings.SmoothingLength, *solver, parallel, progress.Part(0.0, 0.3));
-    frames = std::move(principal.LeastBent);
-    Turn(frames, settings.Perpendicular ? quarterTurn : 0.0, parallel);
-    const double mean = principal.Strength.size() > 0 ? principal.Strength.mean() : 0.0;
-    weights = principal.Strength / (mean > 0.0 ? mean : 1.0);
+    lines = std::move(principal.MinimumCurvature);
+    Rotate(lines, settings.Perpendicular ? quarterTurn : 0.0, parallel);
+    const double mean = principal.Difference.size() > 0 ? principal.Difference.mean() : 0.0;
+    weights = principal.Difference / (mean > 0.0 ? mean : 1.0);
   }
   if (settings.Method != DirectionMethod::PrincipalCurvature && mesh.NumberOfTriangles() > 0)
   {
-    const LineFieldOperator lines(assembler.SharedMesh());
+    const LineFieldOperator laplacian(assembler.SharedMesh());
     progress.Report(0.4);
-    const auto solver = MakeSolverFor(lines.Mass().size(), 10.0, false, parallel);
-    frames = settings.Method == DirectionMethod::Smooth
-      ? SmoothestLineField(lines, frames, weights, *solver, progress.Part(0.4, 1.0))
+    const auto solver = MakeSolverFor(laplacian.Mass().size(), 10.0, false, parallel);
+    lines = settings.Method == DirectionMethod::Smooth
+      ? SmoothestLineField(laplacian, lines, weights, *solver, progress.Part(0.4, 1.0))
       : LineFieldFromHints(
-          lines, frames, settings.HintWeight * weights, *solver, progress.Part(0.4, 1.0));
+          laplacian, lines, settings.HintWeight * weights, *solver, progress.Part(0.4, 1.0));
   }
-  Turn(frames, settings.Angle, parallel);
+  Rotate(lines, settings.Angle, parallel);
   progress.Report(1.0);
-  return frames;
+  return lines;
 }
 
 } // namespace SurfaceDiffusion

@@ -9,26 +9,26 @@
 namespace SurfaceDiffusion
 {
 
-/// The fields of directions that the filters offer, per triangle (see Frames.h).
+/// The direction fields that the filters offer, tangent vectors per triangle.
 enum class DirectionMethod
 {
-  PrincipalCurvature, ///< the direction in which the surface bends least
-  CurvatureAligned, ///< the same where it is distinct, joined by a smooth field
-  Smooth, ///< the smoothest line field, among equals the one nearest to the first
-  Hints ///< smooth, and near what is given
+  PrincipalCurvature, ///< the minimum-curvature direction
+  CurvatureAligned, ///< the minimum-curvature direction where it is distinct, smooth elsewhere
+  Smooth, ///< of the smoothest line fields the one nearest to the minimum-curvature direction
+  Hints ///< smooth, and near given directions
 };
 
 struct DirectionSettings
 {
   DirectionMethod Method = DirectionMethod::PrincipalCurvature;
-  bool Perpendicular = false; ///< the direction in which the surface bends most instead
-  double SmoothingLength = 0.0; ///< full width at half maximum, in LengthUnit()
+  bool Perpendicular = false; ///< the maximum-curvature direction instead
+  double SmoothingLength = 0.0; ///< of the normals: full width at half maximum, in LengthUnit()
   double HintWeight = 1.0; ///< in 1/LengthUnit()^2
-  double Angle = 0.0; ///< by which the field is turned at the end, in radians
+  double Angle = 0.0; ///< by which the field is rotated at the end, in radians
 };
 
-/// hints: for DirectionMethod::Hints; zero rows: none. points, triangles: what the mesh was made
-/// from.
+/// hints: tangent vectors for DirectionMethod::Hints, a zero row for a triangle without hint.
+/// points, triangles: the input of the mesh. Throws Aborted, NotConverged.
 TangentVectors MakeDirectionField(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
   const Eigen::Ref<const TangentVectors>& hints, const DirectionSettings& settings,

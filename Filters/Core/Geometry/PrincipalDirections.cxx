@@ -18,7 +18,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Rows of the six entries xx, xy, xz, yy, yz, zz of a symmetric tensor.
+/// The area-weighted mean of n n^T around each vertex: xx, xy, xz, yy, yz, zz.
 Values NormalTensors(const TriangleMesh& mesh, const Points& normals, const ParallelFor& parallel)
 {
   Values tensors(mesh.NumberOfVertices(), 6);
@@ -44,7 +44,7 @@ Values NormalTensors(const TriangleMesh& mesh, const Points& normals, const Para
   return tensors;
 }
 
-/// The heat equation (8) until the Gaussian has this full width at half maximum, in four steps.
+/// The heat equation (8) by backward Euler, until the Gaussian has this full width at half maximum.
 void Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& solver,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
@@ -75,6 +75,44 @@ Eigen::RowVector3d MainNormal(const Values& tensors, Index i)
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvectors().col(2).transpose();
 }
 
+Points TriangleNormals(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
+  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel)
+{
+  Points normals(mesh.NumberOfTriangles(), 3);
+  ForEach(parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      const auto axes = TriangleAxes(mesh, points, triangles, t);
+      normals.row(t) = axes.col(0).cross(axes.col(1)).transpose();
+    });
+  return normals;
+}
+
+/// A symmetric 2 x 2 matrix in a triangle's axes.
+struct ShapeOperator
+{
+  double XX, XY, YY;
+};
+
+/// The derivative of the normal, made symmetric. vertexNormals may have any sign.
+ShapeOperator ShapeOperatorOf(const TriangleMesh& mesh, Index t,
+  const Eigen::Matrix<double, 3, 2>& axes, const Eigen::RowVector3d& triangleNormal,
+  const Points& vertexNormals)
+{
+  Eigen::Vector3d tangential[2]; // the two components of the normals in the plane, per corner
+  for (int a = 0; a < 3; ++a)
+  {
+    const Eigen::RowVector3d n = vertexNormals.row(mesh.TriangleVertices()(t, a));
+    const double side = n.dot(triangleNormal) < 0.0 ? -1.0 : 1.0;
+    tangential[0][a] = side * n.dot(axes.col(0));
+    tangential[1][a] = side * n.dot(axes.col(1));
+  }
+  const TriangleMesh::Shape& s = mesh.Shapes()[t];
+  const Eigen::Vector2d dx = Gradient(s, tangential[0][0], tangential[0][1], tangential[0][2]);
+  const Eigen::Vector2d dy = Gradient(s, tangential[1][0], tangential[1][1], tangential[1][2]);
+  return { dx[0], 0.5 * (dx[1] + dy[0]), dy[1] };
+}
+
 } // namespace
 
 PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
@@ -82,57 +120,38 @@ PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
   LinearSolver& solver, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = assembler.Mesh();
-  const Index triangleCount = mesh.NumberOfTriangles();
-  Points normals(triangleCount, 3);
-  ForEach(parallel, triangleCount,
-    [&](Index t)
-    {
-      const auto axes = TriangleAxes(mesh, points, triangles, t);
-      normals.row(t) = axes.col(0).cross(axes.col(1)).transpose();
-    });
+  const Points normals = TriangleNormals(mesh, points, triangles, parallel);
   Values tensors = NormalTensors(mesh, normals, parallel);
   if (fwhm > 0.0)
   {
     Smooth(assembler, fwhm, tensors, solver, parallel, progress.Part(0.0, 0.9));
   }
-  Points ofVertices(mesh.NumberOfVertices(), 3);
+  Points vertexNormals(mesh.NumberOfVertices(), 3);
   ForEach(parallel, mesh.NumberOfVertices(),
-    [&](Index i) { ofVertices.row(i) = MainNormal(tensors, i); });
+    [&](Index i) { vertexNormals.row(i) = MainNormal(tensors, i); });
 
+  constexpr double roundOff = 1e-9; // of curvatures, on a surface of about unit size
   PrincipalDirections principal;
-  principal.LeastBent.resize(triangleCount, 2);
-  principal.Strength.resize(triangleCount);
-  ForEach(parallel, triangleCount,
+  principal.MinimumCurvature.resize(mesh.NumberOfTriangles(), 2);
+  principal.Difference.resize(mesh.NumberOfTriangles());
+  ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
       const auto axes = TriangleAxes(mesh, points, triangles, t);
-      Eigen::Vector3d inPlane[2]; // the two components of the normals in the plane, per corner
-      for (int a = 0; a < 3; ++a)
-      {
-        const Eigen::RowVector3d n = ofVertices.row(mesh.TriangleVertices()(t, a));
-        const double side = n.dot(normals.row(t)) < 0.0 ? -1.0 : 1.0;
-        inPlane[0][a] = side * n.dot(axes.col(0));
-        inPlane[1][a] = side * n.dot(axes.col(1));
-      }
-      // Shape operator: the derivative of the normal, made symmetric.
-      const TriangleMesh::Shape& s = mesh.Shapes()[t];
-      const Eigen::Vector2d dx = Gradient(s, inPlane[0][0], inPlane[0][1], inPlane[0][2]);
-      const Eigen::Vector2d dy = Gradient(s, inPlane[1][0], inPlane[1][1], inPlane[1][2]);
-      const double xx = dx[0];
-      const double yy = dy[1];
-      const double xy = 0.5 * (dx[1] + dy[0]);
-      // k1 >= k2 belongs to the main axis; it bends less than k2 where |k1| < |k2|, k1 + k2 < 0.
-      const double sum = xx + yy;
-      const double difference = std::hypot(xx - yy, 2.0 * xy);
-      principal.Strength[t] = std::min(std::abs(sum), difference);
-      Eigen::RowVector2d least = Eigen::RowVector2d::Zero();
-      if (principal.Strength[t] > 1e-9) // of a surface of about unit size: more than round-off
+      const ShapeOperator s = ShapeOperatorOf(mesh, t, axes, normals.row(t), vertexNormals);
+      // kappa_1 >= kappa_2 belongs to the main axis; |kappa_1| < |kappa_2| if their sum is
+      // negative.
+      const double sum = s.XX + s.YY;
+      const double difference = std::hypot(s.XX - s.YY, 2.0 * s.XY);
+      principal.Difference[t] = std::min(std::abs(sum), difference);
+      Eigen::RowVector2d direction = Eigen::RowVector2d::Zero();
+      if (principal.Difference[t] > roundOff)
       {
         const double angle =
-          0.5 * std::atan2(2.0 * xy, xx - yy) + (sum > 0.0 ? 0.5 * std::acos(-1.0) : 0.0);
-        least << std::cos(angle), std::sin(angle);
+          0.5 * std::atan2(2.0 * s.XY, s.XX - s.YY) + (sum > 0.0 ? 0.5 * std::acos(-1.0) : 0.0);
+        direction << std::cos(angle), std::sin(angle);
       }
-      principal.LeastBent.row(t) = least;
+      principal.MinimumCurvature.row(t) = direction;
     });
   progress.Report(1.0);
   return principal;

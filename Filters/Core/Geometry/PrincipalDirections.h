@@ -8,20 +8,21 @@
 namespace SurfaceDiffusion
 {
 
-/// Directions of principal curvature per triangle, with what tells how much they mean.
+/// Directions of principal curvature per triangle, and how distinct they are.
 struct PrincipalDirections
 {
-  /// Along which the surface bends least, (0, 0) where it bends alike in all directions; the
-  /// direction in which it bends most is perpendicular.
-  TangentVectors LeastBent;
-  /// ||k1| - |k2||, the difference of the principal curvatures' sizes, in 1/LengthUnit().
-  Vector Strength;
+  /// The minimum-curvature direction, of the smaller |kappa|, or (0, 0) if both are alike. The
+  /// maximum-curvature direction is perpendicular to it.
+  TangentVectors MinimumCurvature;
+  /// ||kappa_1| - |kappa_2||, in 1/LengthUnit().
+  Vector Difference;
 };
 
-/// From the derivative of the surface normal on each triangle. The normal at a vertex is the main
-/// axis of the mean of n n^T around it, which needs no orientation; smoothed beforehand by the heat
-/// equation (8) on n n^T over `fwhm`, the full width at half maximum of the Gaussian in
-/// LengthUnit(), 0: not at all. points, triangles: what the mesh was made from.
+/// From the shape operator, the derivative of the surface normal, on each triangle. The normal at a
+/// vertex is the main axis of the area-weighted mean of n n^T around it, which needs no
+/// orientation. Before, n n^T is smoothed by the heat equation (8) over `fwhm`, the full width at
+/// half maximum of the Gaussian in LengthUnit(); 0: no smoothing. points, triangles: the input of
+/// the mesh. Throws Aborted, NotConverged.
 PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles, double fwhm,
   LinearSolver& solver, const ParallelFor& parallel = SerialFor(),

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -18,7 +19,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// exp(2 i angle of v) for v of any length; zero for zero.
+/// exp(2 i a) for a vector at angle a and of any length, zero for the zero vector.
 Eigen::Vector2d Square(double x, double y)
 {
   const double square = x * x + y * y;
@@ -35,18 +36,20 @@ void SolveWith(LinearSolver& solver, const Values& b, Values& x, const ProgressM
   }
 }
 
-/// One step towards the lowest mode of A x = lambda M x (A. Knyazev, SIAM J. Sci. Comput. 23,
-/// 2001): column 0 of `basis` becomes the best combination of the three columns, of unit M-norm,
-/// column 2 the share of the last two in it. image = A basis throughout. Returns its lambda.
-double Improve(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> basis,
-  Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> image, const Eigen::Ref<const Vector>& mass)
+using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/// Makes the columns of `basis` orthonormal in the inner product of `mass`, by Gram-Schmidt, twice
+/// because of round-off. Dependent columns are dropped. image = A basis throughout. Returns the
+/// rank.
+int Orthonormalise(
+  Eigen::Ref<Columns3> basis, Eigen::Ref<Columns3> image, const Eigen::Ref<const Vector>& mass)
 {
-  // Gram-Schmidt, twice for the sake of round-off; what depends on the others is left out.
+  constexpr double independent = 1e-6; // of a column's norm must remain
+  const auto norm = [&](int j)
+  { return std::sqrt(basis.col(j).dot(mass.cwiseProduct(basis.col(j)))); };
   int rank = 0;
   for (int k = 0; k < 3; ++k)
   {
-    const auto norm = [&](int j)
-    { return std::sqrt(basis.col(j).dot(mass.cwiseProduct(basis.col(j)))); };
     const double before = norm(k);
     for (int pass = 0; pass < 2; ++pass)
     {
@@ -58,13 +61,24 @@ double Improve(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> basis,
       }
     }
     const double after = norm(k);
-    if (after > 1e-6 * before)
+    if (after > independent * before)
     {
       basis.col(rank) = basis.col(k) / after;
       image.col(rank) = image.col(k) / after;
       ++rank;
     }
   }
+  return rank;
+}
+
+/// One step towards the lowest mode of A x = lambda M x (A. Knyazev, SIAM J. Sci. Comput. 23,
+/// 2001): column 0 of `basis` becomes the combination of the three columns with the smallest
+/// Rayleigh quotient, of unit M-norm, and column 2 the share of the last two in it. image = A basis
+/// throughout. Returns the Rayleigh quotient.
+double Improve(
+  Eigen::Ref<Columns3> basis, Eigen::Ref<Columns3> image, const Eigen::Ref<const Vector>& mass)
+{
+  const int rank = Orthonormalise(basis, image, mass);
   const Eigen::MatrixXd reduced = basis.leftCols(rank).transpose() * image.leftCols(rank);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(reduced);
   const Vector best = modes.eigenvectors().col(0);
@@ -76,6 +90,82 @@ double Improve(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> basis,
   image.col(2) = imageOfChange;
   return modes.eigenvalues()[0];
 }
+
+/// The start of the inverse iteration: b = M z, with some of every mode.
+Values StartLoad(const LineFieldOperator& laplacian, const Eigen::Ref<const TangentVectors>& start,
+  const Eigen::Ref<const Vector>& weights)
+{
+  const Vector& mass = laplacian.Mass();
+  Vector preferred, diagonal;
+  laplacian.Project(start, weights, preferred, diagonal);
+  const double size = preferred.cwiseAbs().maxCoeff();
+  const double largest = mass.maxCoeff();
+  constexpr double noise = 1e-3;
+  Values b(mass.size(), 1);
+  for (Eigen::Index i = 0; i < mass.size(); ++i)
+  {
+    const double random = 2.0 * UniformRandom(0, 0, i) - 1.0;
+    b(i, 0) = (size > 0.0 ? preferred[i] / size : 0.0) + noise * mass[i] / largest * random;
+  }
+  return b;
+}
+
+/// The combination of the iterate, its inverse iterate and its last change with the smallest
+/// Rayleigh quotient, on each connected component.
+class InverseIteration
+{
+public:
+  InverseIteration(
+    const LineFieldOperator& laplacian, double shift, const Values& z, const Values& b)
+    : Mass(laplacian.Mass())
+    , Shift(shift)
+    , Components(laplacian.Edges()->ComponentsBegin())
+    , Basis(Columns3::Zero(z.rows(), 3))
+    , Image(Columns3::Zero(z.rows(), 3))
+    , Eigenvalues(this->Components.size() - 1, 0.0)
+  {
+    this->Basis.col(0) = z;
+    this->Image.col(0) = b;
+  }
+
+  /// One step; false while the eigenvalues change.
+  bool Step(LinearSolver& solver, Values& z, const ProgressMonitor& progress)
+  {
+    const Values b = this->Mass.cwiseProduct(this->Basis.col(0));
+    SolveWith(solver, b, z, progress);
+    this->Basis.col(1) = z;
+    this->Image.col(1) = b;
+    constexpr double tolerance = 1e-4;
+    bool settled = true;
+    for (std::size_t c = 0; c < this->Eigenvalues.size(); ++c)
+    {
+      const Index begin = 2 * this->Components[c];
+      const Index count = 2 * this->Components[c + 1] - begin;
+      const double next =
+        Improve(this->Basis.middleRows(begin, count), this->Image.middleRows(begin, count),
+          this->Mass.segment(begin, count)) -
+        this->Shift;
+      settled =
+        settled && std::abs(this->Eigenvalues[c] - next) <= tolerance * (next + this->Shift);
+      this->Eigenvalues[c] = next;
+    }
+    return settled;
+  }
+
+  Vector Mode() const { return this->Basis.col(0); }
+  double LargestEigenvalue() const
+  {
+    return *std::max_element(this->Eigenvalues.begin(), this->Eigenvalues.end());
+  }
+
+private:
+  const Vector& Mass;
+  const double Shift;
+  const std::vector<Index>& Components; ///< of the edges
+  Columns3 Basis;
+  Columns3 Image; ///< of the basis under K + Shift M
+  std::vector<double> Eigenvalues; ///< per component, of K
+};
 
 } // namespace
 
@@ -94,15 +184,20 @@ LineFieldOperator::LineFieldOperator(std::shared_ptr<const TriangleMesh> mesh)
   : Surface(std::move(mesh))
   , Medial(MedialMesh(*this->Surface).Edges())
 {
+  this->MakeTransports();
+  this->AssembleMatrices();
+}
+
+/// An edge's axes are those of its first triangle, turned so that the edge is the first axis. A
+/// triangle that runs along the edge in the same direction as the first one has the other
+/// orientation.
+void LineFieldOperator::MakeTransports()
+{
   const Triangles& corners = this->Surface->TriangleVertices();
   const Triangles& edges = this->Medial->TriangleVertices();
   const Index triangleCount = this->Surface->NumberOfTriangles();
-  const Index edgeCount = this->Medial->NumberOfVertices();
-
-  // An edge's axes are those of its first triangle, turned so that the edge is the first axis. Of
-  // a triangle that runs along the edge the same way as the first one, the orientation differs.
   this->Transports.resize(3 * static_cast<std::size_t>(triangleCount));
-  std::vector<signed char> firstWay(edgeCount, 0);
+  std::vector<signed char> firstWay(this->Medial->NumberOfVertices(), 0);
   for (Index t = 0; t < triangleCount; ++t)
   {
     const TriangleMesh::Shape& s = this->Surface->Shapes()[t];
@@ -116,17 +211,25 @@ LineFieldOperator::LineFieldOperator(std::shared_ptr<const TriangleMesh> mesh)
       first = first == 0 ? way : first;
     }
   }
+}
 
+void LineFieldOperator::AssembleMatrices()
+{
+  const Triangles& edges = this->Medial->TriangleVertices();
+  const Index triangleCount = this->Surface->NumberOfTriangles();
+  const Index edgeCount = this->Medial->NumberOfVertices();
   const CornerWeights c = CotanWeights(*this->Surface);
   std::vector<Eigen::Triplet<double, Index>> entries;
-  entries.reserve(36 * static_cast<std::size_t>(triangleCount));
+  constexpr std::size_t entriesPerTriangle = 36;
+  entries.reserve(entriesPerTriangle * static_cast<std::size_t>(triangleCount));
   this->M = Vector::Zero(2 * edgeCount);
   for (Index t = 0; t < triangleCount; ++t)
   {
     for (int a = 0; a < 3; ++a)
     {
       const int b = (a + 1) % 3;
-      const double weight = 4.0 * c(t, (a + 2) % 3);
+      const double weight =
+        4.0 * c(t, (a + 2) % 3); // gradients of edge functions are twice as steep
       const Index i = 2 * edges(t, a);
       const Index j = 2 * edges(t, b);
       const Eigen::Matrix2d coupling = -weight * this->Transports[3 * t + a].Matrix().transpose() *
@@ -148,14 +251,14 @@ LineFieldOperator::LineFieldOperator(std::shared_ptr<const TriangleMesh> mesh)
   this->K.setFromTriplets(entries.begin(), entries.end());
 }
 
-void LineFieldOperator::Project(const Eigen::Ref<const TangentVectors>& frames,
+void LineFieldOperator::Project(const Eigen::Ref<const TangentVectors>& lines,
   const Eigen::Ref<const Vector>& weights, Vector& load, Vector& diagonal) const
 {
   load = Vector::Zero(this->M.size());
   diagonal = Vector::Zero(this->M.size());
   for (Index t = 0; t < this->Surface->NumberOfTriangles(); ++t)
   {
-    const Eigen::Vector2d line = Square(frames(t, 0), frames(t, 1));
+    const Eigen::Vector2d line = Square(lines(t, 0), lines(t, 1));
     if (line.isZero(0.0))
     {
       continue;
@@ -170,9 +273,9 @@ void LineFieldOperator::Project(const Eigen::Ref<const TangentVectors>& frames,
   }
 }
 
-TangentVectors LineFieldOperator::Frames(const Eigen::Ref<const Vector>& z) const
+TangentVectors LineFieldOperator::Lines(const Eigen::Ref<const Vector>& z) const
 {
-  TangentVectors frames(this->Surface->NumberOfTriangles(), 2);
+  TangentVectors lines(this->Surface->NumberOfTriangles(), 2);
   for (Index t = 0; t < this->Surface->NumberOfTriangles(); ++t)
   {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -182,92 +285,59 @@ TangentVectors LineFieldOperator::Frames(const Eigen::Ref<const Vector>& z) cons
         z.segment(2 * this->Medial->TriangleVertices()(t, a), 2);
     }
     const double angle = 0.5 * std::atan2(mean[1], mean[0]);
-    frames.row(t) << std::cos(angle), std::sin(angle);
-    frames.row(t) *= mean.isZero(0.0) ? 0.0 : 1.0;
+    lines.row(t) << std::cos(angle), std::sin(angle);
+    lines.row(t) *= mean.isZero(0.0) ? 0.0 : 1.0;
   }
-  return frames;
+  return lines;
 }
 
-TangentVectors SmoothestLineField(const LineFieldOperator& lines,
+TangentVectors SmoothestLineField(const LineFieldOperator& laplacian,
   const Eigen::Ref<const TangentVectors>& start, const Eigen::Ref<const Vector>& weights,
   LinearSolver& solver, const ProgressMonitor& progress, double* lambda)
 {
-  const Vector& mass = lines.Mass();
-  const auto n = mass.size();
-  // Far below the smallest eigenvalue that curvature makes (2 on the unit sphere), and keeps the
-  // matrix of a flat surface, where it is 0, definite.
+  // Far below the smallest eigenvalue that curvature causes (2 on the unit sphere), and keeps the
+  // matrix of a flat surface, whose smallest eigenvalue is 0, definite.
+  constexpr double relativeShift = 1e-3;
+  const Vector& mass = laplacian.Mass();
   const double area = 0.5 * mass.sum();
-  const double shift = 1e-3 / area;
-  SparseMatrix matrix = lines.Stiffness();
+  const double shift = relativeShift / area;
+  SparseMatrix matrix = laplacian.Stiffness();
   matrix.diagonal() += shift * mass;
   solver.SetMatrix(matrix, progress.Part(0.0, 0.7));
 
-  Vector preferred, diagonal;
-  lines.Project(start, weights, preferred, diagonal);
-  const double size = preferred.cwiseAbs().maxCoeff();
-  const double largest = mass.maxCoeff();
-  Values z(n, 1), b(n, 1);
-  for (Eigen::Index i = 0; i < n; ++i)
-  {
-    // Some of everything, so that the smoothest is in it.
-    const double random = 2.0 * UniformRandom(0, 0, i) - 1.0;
-    b(i, 0) = (size > 0.0 ? preferred[i] / size : 0.0) + 1e-3 * mass[i] / largest * random;
-  }
-  z = Values::Zero(n, 1);
+  const Values b = StartLoad(laplacian, start, weights);
+  Values z = Values::Zero(b.rows(), 1);
   SolveWith(solver, b, z, progress.Part(0.7, 0.72));
-
-  // Locally optimal inverse iteration: the best of z, its inverse iterate and the last change.
-  Eigen::Matrix<double, Eigen::Dynamic, 3> basis(n, 3), image(n, 3); // image = matrix x basis
-  basis.setZero();
-  image.setZero();
-  basis.col(0) = z;
-  image.col(0) = b;
-  const std::vector<Index>& components = lines.Edges()->ComponentsBegin();
-  std::vector<double> eigenvalues(components.size() - 1, 0.0);
-  constexpr int most = 50;
+  InverseIteration iteration(laplacian, shift, z, b);
+  constexpr int maxIterations = 50;
   bool settled = false;
-  for (int iteration = 0; iteration < most && !settled; ++iteration)
+  for (int i = 0; i < maxIterations && !settled; ++i)
   {
-    b = mass.cwiseProduct(basis.col(0));
-    SolveWith(solver, b, z, progress.Part(0.72, 0.72));
-    basis.col(1) = z;
-    image.col(1) = b;
-    settled = true;
-    // Every connected component has a smoothest field of its own.
-    for (std::size_t c = 0; c < eigenvalues.size(); ++c)
-    {
-      const Index begin = 2 * components[c];
-      const Index count = 2 * components[c + 1] - begin;
-      const double next = Improve(basis.middleRows(begin, count), image.middleRows(begin, count),
-                            mass.segment(begin, count)) -
-        shift;
-      settled = settled && std::abs(eigenvalues[c] - next) <= 1e-4 * (next + shift);
-      eigenvalues[c] = next;
-    }
-    progress.Report(0.72 + 0.28 * iteration / most);
+    settled = iteration.Step(solver, z, progress.Part(0.72, 0.72));
+    progress.Report(0.72 + 0.28 * i / maxIterations);
   }
   if (lambda)
   {
-    *lambda = *std::max_element(eigenvalues.begin(), eigenvalues.end());
+    *lambda = iteration.LargestEigenvalue();
   }
-  return lines.Frames(basis.col(0));
+  return laplacian.Lines(iteration.Mode());
 }
 
-TangentVectors LineFieldFromHints(const LineFieldOperator& lines,
+TangentVectors LineFieldFromHints(const LineFieldOperator& laplacian,
   const Eigen::Ref<const TangentVectors>& hints, const Eigen::Ref<const Vector>& weights,
   LinearSolver& solver, const ProgressMonitor& progress)
 {
+  constexpr double regularisation = 1e-9; // see the header
   Vector load, diagonal;
-  lines.Project(hints, weights, load, diagonal);
-  SparseMatrix matrix = lines.Stiffness();
-  // Where a component has no hint, z = 0 is the answer: keep its matrix definite.
-  const double area = 0.5 * lines.Mass().sum();
-  matrix.diagonal() += diagonal + 1e-9 / area * lines.Mass();
+  laplacian.Project(hints, weights, load, diagonal);
+  SparseMatrix matrix = laplacian.Stiffness();
+  const double area = 0.5 * laplacian.Mass().sum();
+  matrix.diagonal() += diagonal + regularisation / area * laplacian.Mass();
   solver.SetMatrix(matrix, progress.Part(0.0, 0.8));
   const Values b = load;
   Values z = Values::Zero(b.rows(), 1);
   SolveWith(solver, b, z, progress.Part(0.8, 1.0));
-  return lines.Frames(z.col(0));
+  return laplacian.Lines(z.col(0));
 }
 
 } // namespace SurfaceDiffusion

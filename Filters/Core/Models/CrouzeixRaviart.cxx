@@ -15,7 +15,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double LeastJump = 2.5; ///< in mean differences
+constexpr double JumpOnset = 2.5; ///< in mean differences
 
 /// Each vertex takes the area-weighted mean of its triangles' means: keeps sum A x.
 void Spread(const TriangleMesh& mesh, Values& x, Values& means, const ParallelFor& parallel)
@@ -108,7 +108,7 @@ Values EdgesFromVertices(
       {
         w(e, k) = 0.5 * u(i, k) + 0.5 * u(j, k);
         const double difference = std::abs(u(i, k) - u(j, k));
-        const double excess = 2.0 * difference / (typical(i, k) + typical(j, k)) - LeastJump;
+        const double excess = 2.0 * difference / (typical(i, k) + typical(j, k)) - JumpOnset;
         if (excess > 0.0)
         {
           const bool high = smooth(i, k) + smooth(j, k) > u(i, k) + u(j, k);
@@ -141,26 +141,26 @@ void VerticesFromEdges(const TriangleMesh& mesh, const MedialMesh& edges, const 
 CrouzeixRaviartModel::CrouzeixRaviartModel(std::shared_ptr<const Assembler> vertices,
   std::shared_ptr<const MedialMesh> edges, PointData data, const ModelMaker& makeModel,
   const ParallelFor& parallel)
-  : Operators(std::move(vertices))
+  : Assembly(std::move(vertices))
   , Edges(std::move(edges))
   , Start(std::move(data.Start))
   , Fixed(std::move(data.Fixed))
   , Parallel(parallel)
   , U(this->Start)
   , Residue(U.rows(), U.cols())
-  , TriangleMeans(this->Operators->Mesh().NumberOfTriangles(), U.cols())
+  , TriangleMeans(this->Assembly->Mesh().NumberOfTriangles(), U.cols())
 {
   ForEach(parallel, static_cast<Index>(data.Given.rows()),
     [&](Index i)
     {
-      if (data.Missing[i]) // not to be read, even where known neighbours are judged
+      if (data.Missing[i]) // not to be read, even for the jumps of known neighbours
       {
         data.Given.row(i) = this->Start.row(i);
       }
     });
   PointData onEdges;
-  onEdges.Given = EdgesFromVertices(*this->Operators, *this->Edges, data.Given, parallel);
-  onEdges.Start = EdgesFromVertices(*this->Operators, *this->Edges, this->Start, parallel);
+  onEdges.Given = EdgesFromVertices(*this->Assembly, *this->Edges, data.Given, parallel);
+  onEdges.Start = EdgesFromVertices(*this->Assembly, *this->Edges, this->Start, parallel);
   onEdges.Missing.resize(onEdges.Start.rows());
   onEdges.Fixed.resize(onEdges.Start.rows());
   ForEach(parallel, static_cast<Index>(onEdges.Start.rows()),
@@ -173,7 +173,7 @@ CrouzeixRaviartModel::CrouzeixRaviartModel(std::shared_ptr<const Assembler> vert
     });
   this->StartResidue.resize(this->U.rows(), this->U.cols());
   VerticesFromEdges(
-    this->Operators->Mesh(), *this->Edges, onEdges.Start, this->StartResidue, parallel);
+    this->Assembly->Mesh(), *this->Edges, onEdges.Start, this->StartResidue, parallel);
   this->StartResidue = this->Start - this->StartResidue;
   this->EdgeModel = makeModel(std::move(onEdges));
 }
@@ -193,7 +193,7 @@ void CrouzeixRaviartModel::UpdateState()
     this->U = this->Start;
     return;
   }
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   const Triangles& corners = this->Edges->Edges()->TriangleVertices();
   const Values& w = this->EdgeModel->State();
   VerticesFromEdges(mesh, *this->Edges, w, this->U, this->Parallel);

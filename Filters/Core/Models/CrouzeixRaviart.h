@@ -13,27 +13,28 @@ namespace SurfaceDiffusion
 {
 
 /// Values at edges from values at vertices: their means, except at clear jumps. There the means
-/// would be a belt of half values, whose two rims have other lengths than the jump; so an edge
-/// takes the value of the end on whose side its midpoint lies, judged by the data smoothed over
-/// one ring. An edge jumps where its difference is 3.5 times the mean difference about it (4 to 5
-/// times at a straight jump between smooth parts, seldom in noise); from 2.5 times on the end value
-/// starts to count.
+/// would form a band of intermediate values, which biases the perimeter of the jump; so an edge
+/// takes the value of the end on whose side of the jump its midpoint lies, according to the data
+/// smoothed over one ring. An edge is at a jump if its difference is 3.5 times the mean difference
+/// around it (4 to 5 times at a straight jump between smooth parts, seldom in noise); from 2.5
+/// times on, the value of the end starts to count.
 Values EdgesFromVertices(const Assembler& vertices, const MedialMesh& edges, const Values& u,
   const ParallelFor& parallel = SerialFor());
 
-/// Values at vertices from values at edges: the means over the control cells of what the
-/// Crouzeix-Raviart functions are in the corners, w_ij + w_ik - w_jk at v_i. Keeps sum A u and is
+/// Values at vertices from values at edges: the means over the control cells of the values of the
+/// Crouzeix-Raviart functions in the corners, w_ij + w_ik - w_jk at v_i. Conserves sum A u and is
 /// exact for means of vertex values.
 void VerticesFromEdges(const TriangleMesh& vertices, const MedialMesh& edges, const Values& w,
   Values& u, const ParallelFor& parallel = SerialFor());
 
-/// Runs a model on the medial mesh, on data that come and go at the vertices. Fidelity acts on
-/// edges with two known ends; edges with two fixed ends are fixed.
+/// A model in nonconforming Crouzeix-Raviart elements: runs it on the medial mesh, from and to
+/// values at the vertices. Fidelity acts on edges with two known ends; edges with two fixed ends
+/// are fixed.
 ///
 /// The state is v = VerticesFromEdges(w), limited by the edges around each vertex, since the
-/// corner values overshoot next to jumps. What limits and the start's own way to the edges and
-/// back leave of sum A u is spread over a few neighbours, so that it is kept exactly and nothing
-/// of the start's finest scale stays.
+/// corner values overshoot next to jumps. The error in sum A u of the limits, and of the start on
+/// its way to the edges and back, is spread over a few neighbours, so that the total is conserved
+/// exactly and nothing of the finest scale of the start remains.
 class CrouzeixRaviartModel : public Model
 {
 public:
@@ -54,7 +55,7 @@ public:
 private:
   void UpdateState();
 
-  std::shared_ptr<const Assembler> Operators;
+  std::shared_ptr<const Assembler> Assembly;
   std::shared_ptr<const MedialMesh> Edges;
   Values Start;
   Flags Fixed;

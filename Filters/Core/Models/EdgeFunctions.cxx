@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/EdgeFunctions.h"
 
+#include <array>
+
 namespace SurfaceDiffusion
 {
 
@@ -25,7 +27,7 @@ double LowerGamma34(double v)
 /// 1/2 (ratio (1 - exp(-v)) + C^(1/4) Gamma(3/4, v)).
 double WeickertIntegral(double ratio)
 {
-  const double c = EdgeFunction::WeickertConstant;
+  const double c = EdgeFunctionList::Weickert::C;
   const double v = c / (ratio * ratio * ratio * ratio);
   if (!(v < 50.0)) // exp(-v) is far below round-off
   {
@@ -37,27 +39,22 @@ double WeickertIntegral(double ratio)
 
 } // namespace
 
-double EdgeFunction::Potential(double squared) const
+double EdgeFunctionList::Weickert::Potential(double squared) const
 {
-  const double k2 = this->Threshold * this->Threshold;
-  const double ratio = squared / k2;
-  switch (this->Kind)
-  {
-    case EdgeFunctionKind::TotalVariation: // sqrt(s^2 + beta) - sqrt(beta)
-      return squared > 0.0 ? squared / (std::sqrt(squared + this->Beta) + std::sqrt(this->Beta))
-                           : 0.0;
-    case EdgeFunctionKind::PeronaMalikExponential:
-      return -0.5 * k2 * std::expm1(-ratio);
-    case EdgeFunctionKind::PeronaMalikRational:
-      return 0.5 * k2 * std::log1p(ratio);
-    case EdgeFunctionKind::Charbonnier: // K^2 (sqrt(1 + (s/K)^2) - 1)
-      return squared / (1.0 + std::sqrt(1.0 + ratio));
-    case EdgeFunctionKind::Weickert:
-      return k2 * WeickertIntegral(ratio);
-    case EdgeFunctionKind::Constant:
-      break;
-  }
-  return 0.5 * squared;
+  return this->SquaredThreshold() * WeickertIntegral(this->Ratio(squared));
+}
+
+EdgeFunctionProperties GetEdgeFunction(EdgeFunctionKind kind)
+{
+  return std::apply(
+    [kind](const auto&... functions)
+    {
+      const std::array<EdgeFunctionProperties, NumberOfEdgeFunctions> rows = {
+        { { functions.Name, functions.Convex, functions.Dimensionless }... }
+      };
+      return rows.at(static_cast<std::size_t>(kind));
+    },
+    EdgeFunctionList::All());
 }
 
 } // namespace SurfaceDiffusion

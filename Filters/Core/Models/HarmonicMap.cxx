@@ -3,7 +3,6 @@
 #include "Core/Models/HarmonicMap.h"
 
 #include "Core/Models/UnitVectors.h"
-#include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,48 +10,48 @@
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+Fidelity::Settings MakeFidelity(const HarmonicMap::Settings& settings)
+{
+  Fidelity::Settings fidelity;
+  fidelity.Weight = settings.Fidelity;
+  fidelity.LineField = settings.LineField;
+  return fidelity;
+}
+
+} // namespace
+
 HarmonicMap::HarmonicMap(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
   PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
   const ParallelFor& parallel)
-  : Operators(std::move(assembler))
-  , Coefficients(std::move(coefficients))
+  : StateModel(data.Start)
+  , Assembly(std::move(assembler))
   , Data(std::move(data))
+  , Fit(this->Data, MakeFidelity(settings))
   , Options(settings)
-  , Solver(std::move(solver))
   , Parallel(parallel)
+  , GradientEnergy(this->Assembly->SharedMesh(), std::move(coefficients),
+      { settings.Exponent, settings.Beta, settings.LargestDiffusivity, settings.LineField },
+      parallel)
+  , System(this->Assembly, std::move(solver), parallel)
   , Tangent(parallel)
-  , Diagonal(this->Data.Start.rows())
-  , Damping(this->Data.Start.rows())
-  , Weights(this->Coefficients.rows())
-  , Squares(this->Coefficients.rows())
-  , U(this->Data.Start)
-  , Previous(U)
-  , Anchor(U)
-  , RightHandSide(U.rows(), U.cols())
-  , Step(U.rows(), U.cols())
-  , Other(U.rows(), U.cols())
+  , Diagonal(this->U.rows())
+  , Damping(this->U.rows())
+  , Previous(this->U)
+  , Anchor(this->U)
+  , RightHandSide(this->U.rows(), this->U.cols())
+  , Step(this->U.rows(), this->U.cols())
+  , Other(this->U.rows(), this->U.cols())
 {
-  TakePattern(this->Operators->Pattern(), this->Matrix, this->Parallel);
-  if (this->Options.LineField)
-  {
-    this->Signs.resize(this->Coefficients.rows(), 3);
-  }
-  if (this->Data.Fixed.any())
-  {
-    this->Load.resize(U.rows(), U.cols());
-  }
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       this->Diagonal[i] =
-        mesh.ControlAreas()[i] * (1.0 + this->Options.TimeStep * this->FidelityAt(i));
+        mesh.ControlAreas()[i] * (1.0 + this->Options.TimeStep * this->Fit.Weight(i));
     });
-}
-
-void HarmonicMap::Restore(const double* checkpoint)
-{
-  std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
 }
 
 StepReport HarmonicMap::Advance(const ProgressMonitor& progress)
@@ -75,107 +74,23 @@ StepReport HarmonicMap::Advance(const ProgressMonitor& progress)
 
 // --- The energy and its terms ---
 
-/// |grad u|^2 on a triangle, from c_ij = -area grad(phi_i) . D grad(phi_j): the sum over its edges
-/// of c_ij |u_i - u_j|^2 is area grad u . D grad u. Of a line field also the signs that make it
-/// smallest, where wanted.
-double HarmonicMap::GradientSquare(Index t, double* signs) const
-{
-  const auto c = this->Coefficients.row(t);
-  const TriangleMesh& mesh = this->Operators->Mesh();
-  const auto v = mesh.TriangleVertices().row(t);
-  const auto term = [&](int edge, double sign)
-  {
-    return c[edge] *
-      (this->U.row(v[(edge + 1) % 3]) - sign * this->U.row(v[(edge + 2) % 3])).squaredNorm();
-  };
-  double smallest = 0.0;
-  if (!this->Options.LineField)
-  {
-    smallest = term(0, 1.0) + term(1, 1.0) + term(2, 1.0);
-  }
-  else
-  {
-    const double same[3] = { term(0, 1.0), term(1, 1.0), term(2, 1.0) };
-    const double opposite[3] = { term(0, -1.0), term(1, -1.0), term(2, -1.0) };
-    smallest = same[0] + same[1] + same[2];
-    int flipped = -1;
-    for (int corner = 0; corner < 3; ++corner) // the two edges at this corner change
-    {
-      const int next = (corner + 1) % 3, last = (corner + 2) % 3;
-      const double sum = same[corner] + opposite[next] + opposite[last];
-      if (sum < smallest)
-      {
-        smallest = sum;
-        flipped = corner;
-      }
-    }
-    for (int edge = 0; signs && edge < 3; ++edge)
-    {
-      signs[edge] = flipped < 0 || edge == flipped ? 1.0 : -1.0;
-    }
-  }
-  const double square = smallest / (mesh.Shapes()[t].Area() * this->Options.LargestDiffusivity);
-  return std::max(square, 0.0); // round-off on slivers
-}
-
-/// g of (20), (21).
-double HarmonicMap::Weight(double square) const
-{
-  const double p = this->Options.Exponent;
-  if (p == 2.0)
-  {
-    return 1.0;
-  }
-  const double s = square + this->Options.Beta;
-  return p == 1.0 ? 1.0 / std::sqrt(s) : std::pow(s, 0.5 * (p - 2.0));
-}
-
-/// ((s + beta)^(p/2) - beta^(p/2)) / p, free of cancellation for small s.
-double HarmonicMap::EnergyDensity(double square) const
-{
-  const double p = this->Options.Exponent;
-  const double beta = this->Options.Beta;
-  if (p == 2.0)
-  {
-    return 0.5 * square;
-  }
-  if (p == 1.0)
-  {
-    return square / (std::sqrt(square + beta) + std::sqrt(beta));
-  }
-  return std::pow(beta, 0.5 * p) * std::expm1(0.5 * p * std::log1p(square / beta)) / p;
-}
-
 double HarmonicMap::Energy() const
 {
-  return this->Operators->Mesh().GetReduction().Sum(this->EnergyHere());
+  return this->Assembly->Mesh().GetReduction().Sum(this->ProcessEnergy());
 }
 
-double HarmonicMap::EnergyHere() const
+/// E, summed over the triangles and vertices of this process.
+double HarmonicMap::ProcessEnergy() const
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
-  double energy = this->Options.LargestDiffusivity *
-    Sum(this->Parallel, mesh.NumberOfTriangles(),
-      [&](Index t)
-      { return mesh.Shapes()[t].Area() * this->EnergyDensity(this->GradientSquare(t, nullptr)); });
-  if (this->Options.Fidelity > 0.0)
-  {
-    energy += 0.5 *
-      Sum(this->Parallel, mesh.NumberOfVertices(),
-        [&](Index i)
-        {
-          return mesh.ControlAreas()[i] * this->FidelityAt(i) *
-            (this->U.row(i) - this->SignOfGiven(i) * this->Data.Given.row(i)).squaredNorm();
-        });
-  }
-  return energy;
+  return this->GradientEnergy(this->U) +
+    this->Fit.Energy(this->Assembly->Mesh(), this->U, this->Parallel);
 }
 
-/// E + |u - anchor|^2_M / (2 dt), what a step makes smaller.
+/// E + |u - anchor|^2_M / (2 dt), which a step decreases.
 double HarmonicMap::Objective() const
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
-  const double here = this->EnergyHere() +
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const double here = this->ProcessEnergy() +
     Sum(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i)
       { return mesh.ControlAreas()[i] * (this->U.row(i) - this->Anchor.row(i)).squaredNorm(); }) /
@@ -183,34 +98,25 @@ double HarmonicMap::Objective() const
   return mesh.GetReduction().Sum(here);
 }
 
-/// The matrix (1 + lambda dt 1_D) M + dt K(g) with g, and the signs of lines, at u.
+/// The matrix (1 + lambda dt chi) M + dt K(g) with g, and the signs of lines, at u.
 void HarmonicMap::Freeze()
 {
-  ForEach(this->Parallel, this->Operators->Mesh().NumberOfTriangles(),
-    [&](Index t)
-    {
-      double signs[3];
-      this->Squares[t] = this->GradientSquare(t, signs);
-      this->Weights[t] = this->Weight(this->Squares[t]);
-      if (this->Options.LineField)
-      {
-        this->Signs.row(t) << signs[0], signs[1], signs[2];
-      }
-    });
-  this->Operators->Fill(this->Matrix, this->Diagonal, this->Options.TimeStep, this->Coefficients,
-    this->Weights.data(), this->Parallel, this->Options.LineField ? &this->Signs : nullptr);
+  this->GradientEnergy.Evaluate(this->U);
+  this->System.Assemble(this->Diagonal, this->Options.TimeStep,
+    this->GradientEnergy.GetCoefficients(), this->GradientEnergy.Diffusivities().data(),
+    this->GradientEnergy.GetSigns());
 }
 
 void HarmonicMap::ProjectToSphere()
 {
   if (this->Options.ProjectToSphere)
   {
-    ForEach(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+    ForEach(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
       [&](Index i)
       {
         if (!this->Data.Fixed[i] && !Normalize(this->U.row(i)))
         {
-          this->U.row(i) = this->Previous.row(i); // where nothing is left of a vector
+          this->U.row(i) = this->Previous.row(i); // its length is zero
         }
       });
   }
@@ -220,7 +126,7 @@ void HarmonicMap::ProjectToSphere()
 
 void HarmonicMap::ExplicitReactionStep(StepReport& report, const ProgressMonitor& progress)
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   const double dt = this->Options.TimeStep;
   const double p = this->Options.Exponent;
   this->Previous = this->U;
@@ -232,45 +138,22 @@ void HarmonicMap::ExplicitReactionStep(StepReport& report, const ProgressMonitor
       for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
       {
         const Index t = mesh.VertexCorners()[c] / 3;
-        const double rate = this->Options.ConsistentReaction ? this->Weights[t] * this->Squares[t]
-                                                             : std::pow(this->Squares[t], 0.5 * p);
+        const double square = this->GradientEnergy.GradientSquares()[t];
+        const double rate = this->Options.ConsistentReaction
+          ? this->GradientEnergy.Diffusivities()[t] * square
+          : std::pow(square, 0.5 * p);
         integral += mesh.Shapes()[t].Area() / 3.0 * rate;
       }
       const double area = mesh.ControlAreas()[i];
       this->RightHandSide.row(i) = (area + dt * integral) * this->U.row(i) +
-        (area * dt * this->FidelityAt(i) * this->SignOfGiven(i)) * this->Data.Given.row(i);
+        (area * dt * this->Fit.Weight(i) * this->Fit.Sign(i, this->U)) * this->Data.Given.row(i);
     });
   if (this->Data.Fixed.any())
   {
-    this->Operators->Constrain(
-      this->Matrix, this->Data.Fixed, this->Data.Start, this->Load, this->Parallel);
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        if (this->Data.Fixed[i])
-        {
-          this->RightHandSide.row(i).setZero();
-        }
-        this->RightHandSide.row(i) += this->Load.row(i);
-      });
+    this->System.Constrain(this->Data.Fixed, this->Data.Start);
   }
-  this->Solver->SetMatrix(this->Matrix, progress.Part(0.0, 0.5));
-  const SolveReport solve =
-    this->Solver->Solve(this->RightHandSide, this->U, progress.Part(0.5, 1.0));
-  if (!solve.Converged)
-  {
-    throw NotConverged(solve);
-  }
-  report.Iterations = solve.Iterations;
-  report.Residual = solve.Residual;
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      if (this->Data.Fixed[i])
-      {
-        this->U.row(i) = this->Data.Start.row(i); // to the last bit
-      }
-    });
+  this->System.SetUpSolver(progress.Part(0.0, 0.5));
+  this->System.Solve(this->RightHandSide, this->U, report, progress.Part(0.5, 1.0));
   this->ProjectToSphere();
 }
 
@@ -284,39 +167,39 @@ void HarmonicMap::TangentPlaneStep(StepReport& report, const ProgressMonitor& pr
 
 void HarmonicMap::MinimizingMovementStep(StepReport& report, const ProgressMonitor& progress)
 {
-  constexpr int most = 50; // repetitions
-  constexpr double little = 1e-4; // of the step's decrease so far: it rests
+  constexpr int maximumNumberOfRepetitions = 50;
+  constexpr double stopTolerance = 1e-4; // on the last decrease, relative to that of the step
   this->Anchor = this->U;
   const double start = this->Energy();
   double objective = start;
-  for (int k = 0; k < most; ++k)
+  for (int k = 0; k < maximumNumberOfRepetitions; ++k)
   {
     const double before = objective;
-    // Each repetition is expected to need half of what is left.
+    // Each repetition is expected to take half of the time left.
     objective = this->Descend(
       before, report, progress.Part(1.0 - std::pow(0.5, k), 1.0 - std::pow(0.5, k + 1)));
-    if (before - objective <= little * (start - objective))
+    if (before - objective <= stopTolerance * (start - objective))
     {
       return;
     }
   }
 }
 
-/// One step from u that does not raise Objective(), which is `objective` at u; returns what it is
-/// then.
+/// One step from u that does not raise Objective(), whose value at u is `objective`; returns the
+/// new value.
 double HarmonicMap::Descend(double objective, StepReport& report, const ProgressMonitor& progress)
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   const double dt = this->Options.TimeStep;
   this->Previous = this->U;
   this->Freeze();
-  Multiply(this->Matrix, this->U, this->RightHandSide, this->Parallel);
+  Multiply(this->System.GetMatrix(), this->U, this->RightHandSide, this->Parallel);
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       this->RightHandSide.row(i) = mesh.ControlAreas()[i] *
           (this->Anchor.row(i) +
-            (dt * this->FidelityAt(i) * this->SignOfGiven(i)) * this->Data.Given.row(i)) -
+            (dt * this->Fit.Weight(i) * this->Fit.Sign(i, this->U)) * this->Data.Given.row(i)) -
         this->RightHandSide.row(i);
     });
   this->FindDamping();
@@ -324,14 +207,12 @@ double HarmonicMap::Descend(double objective, StepReport& report, const Progress
   double done = 0.0;
   for (const double share : { 0.0, 1.0 / 16.0, 1.0 })
   {
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i) { this->Matrix.coeffRef(i, i) += (share - damped) * this->Damping[i]; });
+    this->System.AddToDiagonal(share - damped, this->Damping);
     damped = share;
     const SolveReport solve =
       this->SolveInTangentSpaces(progress.Part(done, done + 0.5 * (1.0 - done)));
     done += 0.5 * (1.0 - done);
-    report.Iterations += solve.Iterations;
-    report.Residual = std::max(report.Residual, solve.Residual);
+    report.Add(solve);
     ForEach(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i) { this->U.row(i) = this->Previous.row(i) + this->Step.row(i); });
     this->ProjectToSphere();
@@ -341,19 +222,20 @@ double HarmonicMap::Descend(double objective, StepReport& report, const Progress
       return reached;
     }
   }
-  this->U = this->Previous; // raised by round-off only
+  this->U = this->Previous; // only round-off raised it
   return objective;
 }
 
-/// D of the class comment, times dt. An edge on an interface counts once, with the absolute value
-/// of its accumulated entry.
+/// The lack of diagonal dominance of dt K, D of the class comment times dt. An edge on an interface
+/// counts once, with the absolute value of its accumulated entry.
 void HarmonicMap::FindDamping()
 {
-  const Reduction& reduction = this->Operators->Mesh().GetReduction();
-  const Index* outer = this->Matrix.outerIndexPtr();
-  const Index* inner = this->Matrix.innerIndexPtr();
-  const double* a = this->Matrix.valuePtr();
-  ForEach(this->Parallel, static_cast<Index>(this->Matrix.rows()),
+  const Reduction& reduction = this->Assembly->Mesh().GetReduction();
+  const SparseMatrix& matrix = this->System.GetMatrix();
+  const Index* outer = matrix.outerIndexPtr();
+  const Index* inner = matrix.innerIndexPtr();
+  const double* a = matrix.valuePtr();
+  ForEach(this->Parallel, static_cast<Index>(matrix.rows()),
     [&](Index i)
     {
       double excess = this->Diagonal[i];
@@ -374,7 +256,7 @@ void HarmonicMap::FindDamping()
   };
   for (std::size_t e = 0; e < edges.size(); ++e)
   {
-    this->InterfaceEntries[e] = this->Matrix.coeff(edges[e][0], edges[e][1]);
+    this->InterfaceEntries[e] = matrix.coeff(edges[e][0], edges[e][1]);
     add(e, -1.0);
   }
   reduction.AccumulateInterfaceEdges(this->InterfaceEntries.data());
@@ -401,7 +283,7 @@ SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
   }
   if (!report.Converged)
   {
-    // Where triangles are so bad that neither gets there, the better of the two is a step too.
+    // If triangles are so bad that neither converges, the better of the two is a step, too.
     const SolveReport other = this->TrySolve(!factor, this->Other, progress.Part(0.5, 1.0));
     if (other.Residual < report.Residual)
     {
@@ -417,12 +299,12 @@ SolveReport HarmonicMap::TrySolve(bool factor, Values& step, const ProgressMonit
 {
   if (factor)
   {
-    this->Solver->SetMatrix(this->Matrix, progress.Part(0.0, 0.5));
-    this->Solver->SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
+    this->System.SetUpSolver(progress.Part(0.0, 0.5));
+    this->System.GetSolver().SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
   }
-  const TangentSystem system{ this->Matrix, this->Previous, this->Data.Fixed, this->RightHandSide,
-    this->Diagonal, this->Operators->Mesh().GetReduction() };
-  return this->Tangent.Solve(system, step, factor ? this->Solver.get() : nullptr,
+  const TangentSystem system{ this->System.GetMatrix(), this->Previous, this->Data.Fixed,
+    this->RightHandSide, this->Diagonal, this->Assembly->Mesh().GetReduction() };
+  return this->Tangent.Solve(system, step, factor ? &this->System.GetSolver() : nullptr,
     this->Options.Limits, factor ? progress.Part(0.5, 1.0) : progress);
 }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/Fidelity.h"
+#include "Core/Models/HarmonicEnergy.h"
+#include "Core/Models/ImplicitSystem.h"
 #include "Core/Models/Model.h"
 #include "Core/Operators/Assembler.h"
-#include "Core/Solvers/LinearSolver.h"
 #include "Core/Solvers/TangentSolver.h"
 
 #include <memory>
@@ -13,48 +15,49 @@
 namespace SurfaceDiffusion
 {
 
-/// Regularisation of maps u into the unit sphere S^(m-1), any m >= 2: (20) p = 2, (21) p = 1 and
-/// every p between,
-///   u_t = div(g grad u) + u g |grad u|^2 + lambda 1_D (f - u),  g = (|grad u|^2 + beta)^((p-2)/2),
-/// where |grad u| runs over all components. This is the steepest descent, among unit vectors, of
-///   E(u) = int ((|grad u|^2 + beta)^(p/2) - beta^(p/2)) / p + lambda/2 int 1_D |f - u|^2,
-/// the integrals taken triangle by triangle and vertex by vertex. With anisotropic coefficients of
-/// D = g1 e1 e1^T + g2 e2 e2^T, |grad u|^2 is grad u . D grad u / d with d = max(g1, g2), and the
-/// first integral has the factor d.
+/// The heat flow of p-harmonic maps u into the unit sphere S^(m-1), any m >= 2, with fidelity: (20)
+/// p = 2, (21) p = 1 and every p between,
+///   u_t = div(g grad u) + u g |grad u|^2 + lambda chi (f - u),  g = (|grad u|^2 + beta)^((p-2)/2),
+/// with the indicator chi of the known part of the surface. This is the gradient flow, among unit
+/// vectors, of
+///   E(u) = int ((|grad u|^2 + beta)^(p/2) - beta^(p/2)) / p + lambda/2 int chi |f - u|^2;
+/// see HarmonicEnergy for the first integral and Fidelity for the second. Below, M is the lumped
+/// mass matrix and K(g) the stiffness matrix.
 ///
 /// ExplicitReaction is the paper's splitting,
-///   ((1 + lambda dt) M + dt K(g)) w = M (u + dt r u + lambda dt f),  u_new = w / |w|,
+///   ((1 + lambda dt chi) M + dt K(g)) w = M (u + dt r u + lambda dt chi f),  u_new = w / |w|,
 /// with r the control-cell average of |grad u|^p as printed or, ConsistentReaction, of
-/// g |grad u|^2. Its energy can grow.
+/// g |grad u|^2. Its energy can increase.
 ///
 /// TangentPlane moves along the tangent spaces (F. Alouges, SIAM J. Numer. Anal. 34, 1997;
 /// S. Bartels, SIAM J. Numer. Anal. 43, 2005): x_i orthogonal to u_i minimises
 ///   Q(u + x) + |x|^2_M / (2 dt),  and  u_new = (u + x) / |u + x|,
-/// where Q is E with g frozen at the old u. The energy never grows, for any dt and any triangles:
+/// where Q is E with g frozen at the old u. The energy never increases, for any dt and any
+/// triangles:
 /// - s -> (s + beta)^(p/2) is concave for p <= 2, so Q lies above E and touches it at u: it is
 ///   enough that Q(u_new) <= Q(u). The minimiser has Q(u + x) <= Q(u), and so has every iterate of
 ///   conjugate gradients started at x = 0.
-/// - |u_i + x_i| >= 1, and where both ends are at least 1 long, normalising brings neither two
+/// - |u_i + x_i| >= 1, and if both ends are at least 1 long, normalising brings neither two
 ///   vectors nor a vector and another's opposite further apart. With a_ij the entries of K(g),
 ///   unit vectors have Q = 1/2 sum over edges of |a_ij| |u_i + sign(a_ij) u_j|^2 + const:
 ///   normalising cannot raise that sum. So for a_ij <= 0 (no obtuse angles) the step is proven as
 ///   it stands.
-/// - Where some a_ij > 0, the sum differs from Q off the sphere by sum of 1/2 D_i |x_i|^2, with
-///   D_i = sum of |a_ij| over j other than i, less a_ii: what K lacks in diagonal dominance. A step
-///   with D > 0 added to the matrix does not raise the sum, and is proven again. As D slows down
-///   the vertices of obtuse triangles it is used only if the step without it did raise the energy:
-///   first a small part of it, then all.
+/// - If some a_ij > 0, the sum differs from Q off the sphere by the sum of 1/2 D_i |x_i|^2 with
+///   D_i = sum of |a_ij| over j other than i, minus a_ii: the lack of diagonal dominance of K. A
+///   step with D > 0 added to the matrix does not raise the sum, and is proven again. As D slows
+///   down the vertices of obtuse triangles it is used only if the step without it did raise the
+///   energy: first a small part of it, then all.
 /// - f is a unit vector, so that normalising does not take u away from it.
 /// A step that raises E by round-off only leaves u as it is.
 ///
 /// MinimizingMovement repeats that step on E + |u - u_old|^2_M / (2 dt), weights renewed, until it
-/// rests: backward Euler solved in full (minimising movements of De Giorgi), the same proof. It
-/// costs several solves per step and has no error from frozen weights.
+/// is stationary: backward Euler solved in full (minimising movements of De Giorgi), the same
+/// proof. It costs several solves per step and has no error from frozen weights.
 ///
-/// Line fields (u and -u are the same) take in each triangle, of the four ways to choose the signs
-/// of its corners, the one of the smallest |grad u|, and the nearer one of f and -f. A minimum over
-/// signs lies below the energy of the signs chosen at the old u, so that the proof holds.
-class HarmonicMap : public Model
+/// Line fields take signs in each triangle (HarmonicEnergy) and the nearer one of f and -f. A
+/// minimum over signs lies below the energy of the signs chosen at the old u, so that the proof
+/// holds.
+class HarmonicMap : public StateModel
 {
 public:
   enum class Scheme
@@ -64,11 +67,11 @@ public:
     MinimizingMovement
   };
 
-  /// What speeds up the conjugate gradients of the tangent spaces. Factor is the factorised matrix
-  /// (of a surface in pieces a multigrid cycle) that does not know the tangent spaces: good on
-  /// smooth maps at large steps, while on noise Jacobi is never far behind. One that does not
-  /// converge is followed by the other, and where neither does, the step is as exact as the report
-  /// says; Jacobi alone throws NotConverged.
+  /// The preconditioner of the conjugate gradients in the tangent spaces. Factor is the factorised
+  /// matrix without the projections (over several processes a multigrid cycle): good for smooth
+  /// maps and large steps, while for noise Jacobi is never far behind. If one does not converge,
+  /// the other follows; if neither does, the step has the residual in the report. Jacobi alone
+  /// throws NotConverged.
   enum class Preconditioner
   {
     Automatic, ///< Jacobi first
@@ -80,7 +83,7 @@ public:
   {
     double TimeStep = 1.0; ///< in LengthUnit()^p
     double Exponent = 1.0; ///< p in [1, 2]
-    double Beta = 1e-6; ///< in 1/LengthUnit()^2; > 0, or 0 where p = 2
+    double Beta = 1e-6; ///< in 1/LengthUnit()^2; > 0, or 0 if p = 2
     double Fidelity = 0.0; ///< lambda, in 1/LengthUnit()^p
     Scheme TimeScheme = Scheme::TangentPlane;
     bool ConsistentReaction = false; ///< of ExplicitReaction
@@ -97,13 +100,10 @@ public:
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());
 
-  const Values& State() const override { return this->U; }
   StepReport Advance(const ProgressMonitor& progress) override;
 
   /// E, with the p-th power of |grad u| in 1/LengthUnit()^p and areas in LengthUnit()^2.
   double Energy() const override;
-
-  void Restore(const double* checkpoint) override;
 
 private:
   void Freeze();
@@ -116,32 +116,20 @@ private:
   void FindDamping();
   void ProjectToSphere();
   double Objective() const;
-  double EnergyHere() const;
-  double GradientSquare(Index t, double* signs) const;
-  double Weight(double square) const;
-  double EnergyDensity(double square) const;
-  double FidelityAt(Index i) const { return this->Data.Missing[i] ? 0.0 : this->Options.Fidelity; }
-  double SignOfGiven(Index i) const
-  {
-    return this->Options.LineField && this->Data.Given.row(i).dot(this->U.row(i)) < 0.0 ? -1.0
-                                                                                        : 1.0;
-  }
+  double ProcessEnergy() const;
 
-  std::shared_ptr<const Assembler> Operators;
-  CornerWeights Coefficients;
+  std::shared_ptr<const Assembler> Assembly;
   PointData Data;
+  Fidelity Fit;
   Settings Options;
-  std::shared_ptr<LinearSolver> Solver;
   const ParallelFor& Parallel;
+  HarmonicEnergy GradientEnergy;
+  ImplicitSystem System;
   TangentSolver Tangent;
-  SparseMatrix Matrix;
-  Vector Diagonal; ///< (1 + lambda dt 1_D) M
+  Vector Diagonal; ///< (1 + lambda dt chi) M
   Vector Damping; ///< D, times dt; of an interface vertex in its owner only
   std::vector<double> InterfaceEntries; ///< matrix entries of the edges on interfaces
-  Vector Weights, Squares; ///< g and |grad u|^2 per triangle
-  CornerWeights Signs; ///< of line fields
-  Values Load; ///< what fixed neighbours give to the right-hand side
-  Values U, Previous, Anchor, RightHandSide, Step, Other;
+  Values Previous, Anchor, RightHandSide, Step, Other;
 };
 
 } // namespace SurfaceDiffusion

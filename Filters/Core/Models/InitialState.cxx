@@ -113,20 +113,20 @@ void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelit
 {
   const std::vector<Index> components = AllComponents(mesh);
   const Eigen::Index columns = data.Start.cols();
-  Values sums(mesh.NumberOfComponents(), columns + 2); // A u, A, what holds
+  Values sums(mesh.NumberOfComponents(), columns + 2); // A u, A, whether bound
   for (const Index c : components)
   {
     const Index begin = mesh.ComponentsBegin()[c];
     const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    bool held = false;
-    for (Index i = begin; i < begin + size && !held; ++i)
+    bool bound = false;
+    for (Index i = begin; i < begin + size && !bound; ++i)
     {
-      held = data.Fixed[i] || (fidelity > 0.0 && !data.Missing[i]);
+      bound = data.Fixed[i] || (fidelity > 0.0 && !data.Missing[i]);
     }
     const auto areas = mesh.ControlAreas().segment(begin, size);
     sums.row(c).head(columns) = areas.transpose() * data.Start.middleRows(begin, size);
     sums(c, columns) = areas.sum();
-    sums(c, columns + 1) = held ? 1.0 : 0.0;
+    sums(c, columns + 1) = bound ? 1.0 : 0.0;
   }
   mesh.GetReduction().SumComponents(components, sums);
   for (const Index c : components)

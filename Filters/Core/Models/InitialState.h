@@ -11,22 +11,22 @@
 namespace SurfaceDiffusion
 {
 
-/// What the missing points of (18), (19) start from.
+/// The initial values of the missing points of (18), (19).
 enum class InitialFill
 {
-  Input, ///< the damaged values f themselves; the mean where they are NaN
+  Input, ///< the damaged values f themselves; the mean instead of NaN
   Mean, ///< the area-weighted mean of the known values of the connected component
   Noise ///< the paper's f_rd: uniform between the smallest and largest known value
 };
 
-/// Fill data.Start, and Given where it is NaN, from Given at the missing vertices; Start = Given
-/// elsewhere. A component without known values takes the mean of all components; with no known
-/// value at all it is 0. ids: one per vertex, for the random numbers.
+/// Fill data.Start at the missing vertices, and NaN in Given; Start = Given elsewhere. A component
+/// without known values takes the mean of all components; with no known value at all it is 0. ids:
+/// one per vertex, for the random numbers.
 void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, std::int64_t seed,
   const std::vector<std::int64_t>& ids);
 
-/// For steady states: connected components that nothing holds, neither a fixed vertex nor fidelity
-/// at a known one, end at the mean of their Start; there Start becomes it, and fixed.
+/// For steady states: a connected component with neither a Dirichlet condition nor fidelity tends
+/// to the mean of its Start. Its Start becomes the mean, and its vertices fixed.
 void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelity);
 
 } // namespace SurfaceDiffusion

@@ -15,7 +15,7 @@ enum class KineticsName
 {
   Turing, ///< (24)
   Schnakenberg, ///< activator-substrate
-  GrayScott, ///< activator-substrate, fed and washed out
+  GrayScott, ///< activator-substrate, with feed and outflow
   Brusselator, ///< activator-substrate
   GiererMeinhardt, ///< activator-inhibitor
   FitzHughNagumo ///< activator-inhibitor, values of either sign
@@ -30,7 +30,7 @@ struct Kinetics
   struct Parameter
   {
     const char* Name; ///< nullptr: not used
-    double Default; ///< makes a pattern where D1/D2 is about 8
+    double Default; ///< makes a pattern if D1/D2 is about 8
     double Minimum; ///< values must be above it
   };
 
@@ -45,7 +45,7 @@ struct Kinetics
     double* f, double* g);
   /// dF/du1, dF/du2; dG/du1, dG/du2.
   Eigen::Matrix2d (*Jacobian)(const KineticsParameters& p, double u1, double u2);
-  /// The state that reactions leave alone and that makes patterns; NaN where there is none.
+  /// The steady state of the reactions that makes patterns; NaN if there is none.
   Eigen::Vector2d (*SteadyState)(const KineticsParameters& p);
 
   KineticsParameters Defaults() const

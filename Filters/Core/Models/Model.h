@@ -3,7 +3,8 @@
 #pragma once
 
 #include "Core/Foundation/ProgressMonitor.h"
-#include "Core/Foundation/Types.h"
+#include "Core/Solvers/LinearSolver.h"
+#include "Core/Surface/PointData.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,36 +13,22 @@
 namespace SurfaceDiffusion
 {
 
-/// The data of a model, per vertex of the mesh. Everything is finite: what is missing has been
-/// filled in Start, and Given there is not read.
-struct PointData
+/// The cost of a time step and the accuracy it reached.
+struct StepReport
 {
-  Values Given; ///< f, n x k
-  Values Start; ///< u at t = 0, n x k
-  Flags Missing; ///< the paper's D: no fidelity there
-  Flags Fixed; ///< Dirichlet: keeps its Start
+  int Iterations = 0; ///< linear (or outer) iterations of the step
+  double Residual = 0.0; ///< largest relative residual of its solves
+  Index Clamped = 0; ///< number of values clamped at zero (reaction-diffusion)
 
-  /// All of f known and free.
-  static PointData FromValues(Values f)
+  void Add(const SolveReport& solve)
   {
-    PointData data;
-    data.Missing = Flags::Constant(f.rows(), false);
-    data.Fixed = data.Missing;
-    data.Start = f;
-    data.Given = std::move(f);
-    return data;
+    this->Iterations += solve.Iterations;
+    this->Residual = std::max(this->Residual, solve.Residual);
   }
 };
 
-struct StepReport
-{
-  int Iterations = 0; ///< of linear (or outer) iterations in the step
-  double Residual = 0.0; ///< largest relative residual of its solves
-  Index Clamped = 0; ///< values that had to be clamped (reaction-diffusion)
-};
-
-/// A model on one surface with its data: a state that moves step by step in time. What a later
-/// step depends on can be saved and restored, and gives the same bits again.
+/// The time stepper of an evolution equation on one surface: a state that moves in time step by
+/// step. All that later steps depend on can be saved and restored, and then gives the same bits.
 class Model
 {
 public:
@@ -53,13 +40,13 @@ public:
   /// One time step. On an exception the state is not defined until Restore().
   virtual StepReport Advance(const ProgressMonitor& progress) = 0;
 
-  /// True once further steps change nothing, by a stopping rule of the model's.
+  /// True if the model's stopping rule says that further steps change nothing.
   virtual bool Finished() const { return false; }
 
   /// The model's energy of the current state, in the units of the data and the mesh's lengths.
   virtual double Energy() const = 0;
 
-  /// What later steps depend on, as CheckpointSize() numbers: the state, unless a model says more.
+  /// A checkpoint of CheckpointSize() numbers: the state, and more if later steps depend on it.
   virtual std::size_t CheckpointSize() const
   {
     return static_cast<std::size_t>(this->State().size());
@@ -69,6 +56,25 @@ public:
     std::copy(this->State().data(), this->State().data() + this->State().size(), checkpoint);
   }
   virtual void Restore(const double* checkpoint) = 0;
+};
+
+/// A model whose later steps depend on its state alone.
+class StateModel : public Model
+{
+public:
+  const Values& State() const override { return this->U; }
+  void Restore(const double* checkpoint) override
+  {
+    std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
+  }
+
+protected:
+  explicit StateModel(Values start)
+    : U(std::move(start))
+  {
+  }
+
+  Values U; ///< n x k
 };
 
 } // namespace SurfaceDiffusion

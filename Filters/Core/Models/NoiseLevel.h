@@ -11,15 +11,16 @@ namespace SurfaceDiffusion
 {
 
 /// Standard deviation of white noise in the known values, estimated without knowing the signal:
-/// 1.4826 x the median of |f_i - mean of the neighbours| / sqrt(1 + 1/valence), which edges and
-/// smooth parts hardly move (median absolute deviation; Donoho 1995). Root mean square over the
-/// columns; 0 where no vertex has known neighbours only.
+/// 1.4826 x the median of |f_i - mean of the neighbours| / sqrt(1 + 1/valence), which is robust to
+/// edges and smooth variation (median absolute deviation; Donoho 1995). Root mean square over the
+/// columns; 0 if every vertex has a missing neighbour.
 double EstimateNoiseLevel(const Assembler& assembler, const PointData& data);
 
 /// The fidelity weight at which the mean square of u - f equals the noise: discrepancy principle
-/// (Morozov 1966). discrepancy(lambda), the root mean square of u - f at lambda, must not grow
-/// with lambda. `start` is the first guess, of the right units. Stops at 1 % in lambda. Where even
-/// lambda = 1e-8 start leaves less than the noise, that lambda is returned; likewise 1e8 start.
+/// (Morozov 1966). discrepancy(lambda), the root mean square of u - f at lambda, must not
+/// increase with lambda. `start` is the first guess, of the right units. Stops at 1 % in lambda. If
+/// even lambda = 1e-8 start leaves less than the noise, that lambda is returned; likewise 1e8
+/// start.
 double FindFidelityByDiscrepancy(
   const std::function<double(double)>& discrepancy, double noiseLevel, double start);
 

@@ -2,29 +2,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/ChannelNorms.h"
 #include "Core/Models/EdgeFunctions.h"
+#include "Core/Models/Fidelity.h"
+#include "Core/Models/ImplicitSystem.h"
 #include "Core/Models/Model.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/MeanCorrection.h"
-#include "Core/Solvers/LinearSolver.h"
 
 #include <memory>
 
 namespace SurfaceDiffusion
 {
 
-/// Nonlinear diffusion by the paper's semi-implicit scheme: (2), (3), the general (4), denoising
-/// (17) and inpainting (19),
-///   u_t = div(g1 (grad u . e1) e1 + g2 (grad u . e2) e2) + lambda 1_D (f - u),
-/// g1 and g2 functions of |grad u|. Each step takes them at the old level, constant on each
-/// triangle, and solves one linear system (per channel, where channels have their own |grad u|):
-///   (11), (14)  (M + dt K(u_old) + dt lambda M 1_D) u_new = M (u_old + dt lambda 1_D f).
+/// Nonlinear diffusion with fidelity: total variation (2), (3), the general anisotropic equation
+/// (4), denoising (17) and inpainting (19),
+///   u_t = div(g1 (grad u . e1) e1 + g2 (grad u . e2) e2) + lambda chi (f - u),
+/// with edge-stopping functions g1 and g2 of |grad u| and the indicator chi of the known part of
+/// the surface. In time the paper's semi-implicit scheme: each step takes g1 and g2 at the old
+/// level, constant on each triangle, and solves one linear system (per channel, if channels have
+/// their own |grad u|) with the lumped mass matrix M and the stiffness matrix K:
+///   (11), (14)  (M + dt K(u_old) + dt lambda chi M) u_new = M (u_old + dt lambda chi f).
 /// It is solved for u_new - u_old, so that round-off is relative to the change and a constant stays
 /// constant to the last bit, however large g may be.
 ///
 /// L1 fidelity is lagged likewise: lambda/sqrt((f - u_old)^2 + delta^2) in place of lambda.
-class NonlinearDiffusion : public Model
+class NonlinearDiffusion : public StateModel
 {
 public:
   struct Settings
@@ -40,43 +42,38 @@ public:
     double FidelityRounding = 1e-3; ///< delta of L1, in units of the values, > 0
   };
 
-  /// frames: e1 per triangle (see Frames.h), without rows where g1 = g2. Triangles without a
-  /// direction have sqrt(g1 g2). solver: kept by the caller, so that an ordering is used again.
+  /// frames: e1 per triangle (see TangentVectors.h), without rows if g1 = g2; see IsotropicMean()
+  /// for triangles without a direction. solver: kept by the caller, so that an ordering is reused.
   NonlinearDiffusion(std::shared_ptr<const Assembler> assembler, TangentVectors frames,
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());
 
-  const Values& State() const override { return this->U; }
   StepReport Advance(const ProgressMonitor& progress) override;
 
-  /// int psi(|grad u|) + lambda/2 int 1_D |u - f|^2, psi the potential of g; with L1 lambda int 1_D
-  /// (sqrt(|u - f|^2 + delta^2) - delta). Where g1 and g2 differ, psi1 cos^2 + psi2 sin^2 with the
-  /// angle between grad u and e1.
+  /// int psi(|grad u|) with the potential psi of g, and the energy of Fidelity. If g1 and g2
+  /// differ, psi1 cos^2 + psi2 sin^2 with the angle between grad u and e1.
   double Energy() const override;
-
-  void Restore(const double* checkpoint) override;
 
 private:
   void AdvanceColumns(
     Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress);
   void FillWeights(Eigen::Index first, Eigen::Index last);
   void FillChange(Eigen::Index first, Eigen::Index last);
-  double FidelityAt(Index i, Eigen::Index first, Eigen::Index last) const;
 
-  std::shared_ptr<const Assembler> Operators;
+  std::shared_ptr<const Assembler> Assembly;
   TangentVectors Frames;
   PointData Data;
+  Fidelity Fit;
   Settings Options;
-  std::shared_ptr<LinearSolver> Solver;
   const ParallelFor& Parallel;
+  ImplicitSystem System;
   TotalCorrection Conserved;
-  CornerWeights Isotropic; ///< (10)
-  CornerWeights Directional; ///< (13), no rows where g1 = g2
-  SparseMatrix Matrix;
-  CornerWeights Weighted; ///< g1 c1 + g2 c2 of (12)
+  CornerWeights Isotropic; ///< cotan weights (10)
+  CornerWeights Directional; ///< (13), no rows if g1 = g2
+  CornerWeights Weighted; ///< of g1 and g2 at the old level (12)
   Vector Diagonal;
-  Values NoValues, NoLoad; ///< fixed vertices do not change
-  Values U, Change, RightHandSide;
+  Values Change, RightHandSide;
+  Values NoChange; ///< the Dirichlet conditions of Change
 };
 
 } // namespace SurfaceDiffusion

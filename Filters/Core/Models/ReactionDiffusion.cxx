@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/ReactionDiffusion.h"
 
-#include "Core/Foundation/Random.h"
-#include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/DirichletEnergy.h"
 #include "Core/Operators/MeanCorrection.h"
-#include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,42 +33,27 @@ double Norm(const TriangleMesh& mesh, const ParallelFor& parallel, const F& f)
 
 } // namespace
 
-Values NoisySteadyState(
-  const Reaction& reaction, double noise, std::int64_t seed, const std::vector<std::int64_t>& ids)
-{
-  const Eigen::Vector2d steady = reaction.Terms->SteadyState(reaction.Parameters);
-  Values u(static_cast<Eigen::Index>(ids.size()), 2);
-  for (Eigen::Index i = 0; i < u.rows(); ++i)
-  {
-    for (Eigen::Index k = 0; k < 2; ++k)
-    {
-      const double random = 2.0 * UniformRandom(seed, k, ids[static_cast<std::size_t>(i)]) - 1.0;
-      const double size = reaction.Terms->NonNegative ? steady[k] : 1.0;
-      u(i, k) = steady[k] + size * noise * random;
-    }
-  }
-  return u;
-}
-
 ReactionDiffusion::ReactionDiffusion(std::shared_ptr<const Assembler> assembler,
   const Reaction& reaction, std::array<Chemical, 2> chemicals, PointData data,
   const Settings& settings, const ParallelFor& parallel)
-  : Operators(std::move(assembler))
+  : StateModel(data.Start)
+  , Assembly(std::move(assembler))
   , Terms(reaction)
-  , Chemicals(std::move(chemicals))
+  , Coefficients{ std::move(chemicals[0].Coefficients), std::move(chemicals[1].Coefficients) }
   , Data(std::move(data))
   , Options(settings)
   , Parallel(parallel)
   , ImplicitTime(settings.TimeStep * (settings.TimeScheme == Scheme::SecondOrder ? Gamma : 1.0))
-  , Areas(this->Operators->Mesh().GetReduction().Accumulated(
-      this->Operators->Mesh().ControlAreas(), this->AccumulatedAreas))
-  , U(this->Data.Start)
+  , Systems{ ImplicitSystem(this->Assembly, std::move(chemicals[0].Solver), parallel),
+    ImplicitSystem(this->Assembly, std::move(chemicals[1].Solver), parallel) }
+  , Areas(this->Assembly->Mesh().GetReduction().Accumulated(
+      this->Assembly->Mesh().ControlAreas(), this->AccumulatedAreas))
 {
   for (int c = 0; c < 2; ++c)
   {
     this->New[c] = this->U.col(c);
-    for (Pair* pair : { &this->Old, &this->Rates, &this->Force, &this->Explicit,
-           &this->RightHandSide, &this->Load })
+    for (Pair* pair :
+      { &this->Old, &this->Rates, &this->Force, &this->Explicit, &this->RightHandSide })
     {
       (*pair)[c] = Values::Zero(this->U.rows(), 1);
     }
@@ -84,12 +67,13 @@ std::size_t ReactionDiffusion::CheckpointSize() const
 
 void ReactionDiffusion::Save(double* checkpoint) const
 {
-  *std::copy(this->U.data(), this->U.data() + this->U.size(), checkpoint) = this->Done ? 1.0 : 0.0;
+  StateModel::Save(checkpoint);
+  checkpoint[this->U.size()] = this->Done ? 1.0 : 0.0;
 }
 
 void ReactionDiffusion::Restore(const double* checkpoint)
 {
-  std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
+  StateModel::Restore(checkpoint);
   this->Done = checkpoint[this->U.size()] != 0.0;
   for (int c = 0; c < 2; ++c)
   {
@@ -99,19 +83,16 @@ void ReactionDiffusion::Restore(const double* checkpoint)
 
 void ReactionDiffusion::Prepare(const ProgressMonitor& progress)
 {
-  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  const Vector& areas = this->Assembly->Mesh().ControlAreas();
   for (int c = 0; c < 2; ++c)
   {
-    SparseMatrix& matrix = this->Matrices[c];
-    TakePattern(this->Operators->Pattern(), matrix, this->Parallel);
-    this->Operators->Fill(
-      matrix, areas, this->ImplicitTime, this->Chemicals[c].Coefficients, nullptr, this->Parallel);
+    ImplicitSystem& system = this->Systems[c];
+    system.Assemble(areas, this->ImplicitTime, this->Coefficients[c]);
     if (this->Data.Fixed.any())
     {
-      this->Operators->Constrain(
-        matrix, this->Data.Fixed, this->New[c], this->Load[c], this->Parallel);
+      system.Constrain(this->Data.Fixed, this->Data.Start.col(c));
     }
-    this->Chemicals[c].Solver->SetMatrix(matrix, progress.Part(0.5 * c, 0.5 * c + 0.5));
+    system.SetUpSolver(progress.Part(0.5 * c, 0.5 * c + 0.5));
   }
   this->Prepared = true;
 }
@@ -148,17 +129,16 @@ StepReport ReactionDiffusion::Advance(const ProgressMonitor& progress)
 /// (M + dt K_k) u_k,new = M (u_k + dt F_k(u1, u2)).
 void ReactionDiffusion::FirstOrderStep(StepReport& report, const ProgressMonitor& progress)
 {
-  const Vector& areas = this->Operators->Mesh().ControlAreas();
+  const Vector& areas = this->Assembly->Mesh().ControlAreas();
   const double dt = this->Options.TimeStep;
   this->React(this->Old, this->Rates);
-  ForEach(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+  ForEach(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
     [&](Index i)
     {
-      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      const double area = areas[i];
       for (int c = 0; c < 2; ++c)
       {
-        this->RightHandSide[c](i) =
-          area * (this->Old[c](i) + dt * this->Rates[c](i)) + this->Load[c](i);
+        this->RightHandSide[c](i) = area * (this->Old[c](i) + dt * this->Rates[c](i));
       }
     });
   this->Solve(report, progress);
@@ -168,11 +148,11 @@ void ReactionDiffusion::FirstOrderStep(StepReport& report, const ProgressMonitor
 /// With f = F + l, per chemical,
 ///   (M + g dt K) y = M (u + g dt f(u)),   g = gamma,
 ///   (M + g dt K) u_new = M (u + dt (d f(u) + (1 - d) f(y))) - (1 - g) dt K y,   d = delta,
-/// where the first stage gives dt K y = M ((u - y)/g + dt f(u)): no product with K is needed.
+/// and the first stage gives dt K y = M ((u - y)/g + dt f(u)): no product with K is needed.
 void ReactionDiffusion::SecondOrderStep(StepReport& report, const ProgressMonitor& progress)
 {
-  const Vector& areas = this->Operators->Mesh().ControlAreas();
-  const Index n = this->Operators->Mesh().NumberOfVertices();
+  const Vector& areas = this->Assembly->Mesh().ControlAreas();
+  const Index n = this->Assembly->Mesh().NumberOfVertices();
   const double dt = this->Options.TimeStep;
 
   this->React(this->Old, this->Rates);
@@ -180,11 +160,10 @@ void ReactionDiffusion::SecondOrderStep(StepReport& report, const ProgressMonito
   ForEach(this->Parallel, n,
     [&](Index i)
     {
-      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      const double area = areas[i];
       for (int c = 0; c < 2; ++c)
       {
-        this->RightHandSide[c](i) =
-          area * (this->Old[c](i) + Gamma * dt * this->Rates[c](i)) + this->Load[c](i);
+        this->RightHandSide[c](i) = area * (this->Old[c](i) + Gamma * dt * this->Rates[c](i));
       }
     });
   this->Solve(report, progress.Part(0.0, 0.5));
@@ -206,12 +185,12 @@ void ReactionDiffusion::SecondOrderStep(StepReport& report, const ProgressMonito
   ForEach(this->Parallel, n,
     [&](Index i)
     {
-      const double area = this->Data.Fixed[i] ? 0.0 : areas[i];
+      const double area = areas[i];
       for (int c = 0; c < 2; ++c)
       {
         this->RightHandSide[c](i) =
-          area * (this->Explicit[c](i) + (1.0 - Delta) * dt * this->Rates[c](i)) + this->Load[c](i);
-        // Where an iterative solver starts: the straight line through u and y.
+          area * (this->Explicit[c](i) + (1.0 - Delta) * dt * this->Rates[c](i));
+        // The start of an iterative solver, on the straight line through u and y.
         this->New[c](i) = this->Old[c](i) + (this->New[c](i) - this->Old[c](i)) / Gamma;
       }
     });
@@ -222,7 +201,7 @@ void ReactionDiffusion::SecondOrderStep(StepReport& report, const ProgressMonito
 /// f = (F, G) at u.
 void ReactionDiffusion::React(const Pair& u, Pair& f) const
 {
-  ForEachBlock(this->Parallel, this->Operators->Mesh().NumberOfVertices(),
+  ForEachBlock(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
     [&](Index, Index begin, Index end)
     {
       this->Terms.Terms->React(this->Terms.Parameters, end - begin, u[0].data() + begin,
@@ -234,16 +213,16 @@ void ReactionDiffusion::React(const Pair& u, Pair& f) const
     });
 }
 
-/// Force = l where u = 0, else 0: what holds u there against f and the diffusion -(K u)_i / A_i;
-/// f += l. From neighbours of 0 and more diffusion only brings, except through the negative weights
-/// of obtuse triangles, which without the inner bound would shake slivers.
+/// f += l, with Force = l >= 0 at vertices with u = 0, else 0: l balances f and the diffusion
+/// -(K u)_i / A_i there. Between values >= 0 the diffusion is >= 0, except through the negative
+/// weights of obtuse triangles, which without the inner maximum would make slivers oscillate.
 void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
 {
   if (!this->Options.KeepNonNegative)
   {
     return;
   }
-  const Reduction& reduction = this->Operators->Mesh().GetReduction();
+  const Reduction& reduction = this->Assembly->Mesh().GetReduction();
   for (int c = 0; c < 2; ++c)
   {
     reduction.AccumulateEach(
@@ -264,23 +243,18 @@ void ReactionDiffusion::AddHoldingForce(const Pair& u, Pair& f)
   }
 }
 
-/// -ImplicitTime (K u)_i, from the matrix M + ImplicitTime K.
+/// -ImplicitTime (K u)_i, from the matrix M + ImplicitTime K. Accumulated.
 double ReactionDiffusion::IntegrateDiffusion(int chemical, const Values& u, Index i) const
 {
-  double sum = -this->Load[chemical](i);
-  for (SparseMatrix::InnerIterator a(this->Matrices[chemical], i); a; ++a)
-  {
-    sum += a.value() * u(a.index());
-  }
-  return this->Operators->Mesh().ControlAreas()[i] * u(i) - sum;
+  return this->Assembly->Mesh().ControlAreas()[i] * u(i) - this->Systems[chemical].Product(i, u);
 }
 
 /// New = the solutions for the right-hand sides.
 void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)
 {
-  if (this->Options.SideBySide)
+  if (this->CanSolveSideBySide())
   {
-    // Progress is reported to the thread of the caller only.
+    // Without progress, which only the thread of the caller may report.
     ForEachTask(this->Parallel, 2, [this](Index c) { this->SolveFor(c, ProgressMonitor()); });
     progress.Report(1.0);
   }
@@ -297,7 +271,7 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
     const Solution& solution = this->Solutions[c];
     constexpr double boundless = 1e100;
     if (solution.Failure &&
-      this->Operators->Mesh().GetReduction().Any(
+      this->Assembly->Mesh().GetReduction().Any(
         !(this->RightHandSide[c].array().abs() < boundless).all()))
     {
       throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
@@ -307,13 +281,18 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
     {
       std::rethrow_exception(solution.Failure);
     }
-    if (!solution.Report.Converged)
-    {
-      throw NotConverged(solution.Report);
-    }
     report.Iterations += solution.Report.Iterations;
     report.Residual = std::max(report.Residual, solution.Report.Residual);
   }
+}
+
+/// Whether the two solves run as two parallel tasks, with the same bits. Solvers that run on all
+/// threads, or communicate with other processes, follow each other.
+bool ReactionDiffusion::CanSolveSideBySide() const
+{
+  return this->Systems[0].GetSolver().RunsOnOneThread() &&
+    this->Systems[1].GetSolver().RunsOnOneThread() &&
+    this->Assembly->Mesh().GetReduction().IsSerial();
 }
 
 void ReactionDiffusion::SolveFor(int c, const ProgressMonitor& progress)
@@ -321,8 +300,8 @@ void ReactionDiffusion::SolveFor(int c, const ProgressMonitor& progress)
   this->Solutions[c] = Solution();
   try
   {
-    this->Solutions[c].Report =
-      this->Chemicals[c].Solver->Solve(this->RightHandSide[c], this->New[c], progress);
+    this->Systems[c].Solve(
+      this->RightHandSide[c], this->New[c], this->Solutions[c].Report, progress);
   }
   catch (...)
   {
@@ -330,14 +309,15 @@ void ReactionDiffusion::SolveFor(int c, const ProgressMonitor& progress)
   }
 }
 
-/// The solve had `dt` Force in it. Take it back, u - dt l, and hold at zero what falls below.
+/// The right-hand side of the solve contained dt l. Subtract it, u - dt l, and clamp negative
+/// values to zero.
 void ReactionDiffusion::Project(double dt, StepReport& report)
 {
   if (!this->Options.KeepNonNegative)
   {
     return;
   }
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   const double held = mesh.GetReduction().SumOverVertices(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
@@ -356,7 +336,7 @@ void ReactionDiffusion::Project(double dt, StepReport& report)
 
 void ReactionDiffusion::FinishStep()
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
@@ -386,10 +366,10 @@ void ReactionDiffusion::FinishStep()
 
 double ReactionDiffusion::Energy() const
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   return mesh.GetReduction().Sum(
-    DirichletEnergy(mesh, this->Chemicals[0].Coefficients, this->New[0], this->Parallel) +
-    DirichletEnergy(mesh, this->Chemicals[1].Coefficients, this->New[1], this->Parallel));
+    DirichletEnergy(mesh, this->Coefficients[0], this->New[0], this->Parallel) +
+    DirichletEnergy(mesh, this->Coefficients[1], this->New[1], this->Parallel));
 }
 
 } // namespace SurfaceDiffusion

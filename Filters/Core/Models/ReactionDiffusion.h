@@ -2,44 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/Kinetics.h"
+#include "Core/Models/ImplicitSystem.h"
 #include "Core/Models/Model.h"
+#include "Core/Models/Reaction.h"
 #include "Core/Operators/Assembler.h"
-#include "Core/Solvers/LinearSolver.h"
 
 #include <array>
-#include <cstdint>
 #include <exception>
 #include <memory>
-#include <vector>
 
 namespace SurfaceDiffusion
 {
 
-/// F and G of (22) with a reaction rate s.
-struct Reaction
-{
-  const Kinetics* Terms = &GetKinetics(KineticsName::Turing);
-  KineticsParameters Parameters = Terms->Defaults();
-  double Rate = 1.0; ///< s, in 1/time
-};
-
-/// The steady state with uniform relative noise of half width `noise`, the same for a seed on any
-/// machine: u_k = u*_k (1 + noise (2 r - 1)) with r in [0, 1) from seed, k and id; for kinetics of
-/// either sign u_k = u*_k + noise (2 r - 1). ids: one per vertex.
-Values NoisySteadyState(
-  const Reaction& reaction, double noise, std::int64_t seed, const std::vector<std::int64_t>& ids);
-
-/// (22), (23): two chemicals that react and diffuse,
+/// Reaction-diffusion equations of two chemicals (22), (23),
 ///   u1_t = div(D1 grad u1) + F(u1, u2),  u2_t = div(D2 grad u2) + G(u1, u2),
-/// with tensors D1, D2 that may be anisotropic and differ from triangle to triangle. Diffusion is
-/// implicit, with one matrix per chemical for all steps, the reaction is explicit, both chemicals
-/// step together. Fixed vertices keep their start; fidelity does not apply.
+/// with diffusion tensors D1, D2 that may be anisotropic and differ from triangle to triangle. An
+/// implicit-explicit method (IMEX): diffusion is implicit, with one matrix M + dt K per chemical
+/// for all steps, the reaction is explicit. Fixed vertices have Dirichlet conditions; fidelity does
+/// not apply.
 ///
 /// Concentrations stay >= 0: (24) as printed runs away as soon as u2 < 0, since its decay mu acts
-/// even where nothing is left. With bounds the equations hold where u > 0, and where u = 0 a force
-/// l >= 0 holds u up against what the reaction takes away (an obstacle problem).
-class ReactionDiffusion : public Model
+/// even at u2 = 0. With bounds the equations hold at vertices with u > 0; at u = 0 a force l >= 0
+/// balances the loss by the reaction (an obstacle problem, l its Lagrange multiplier).
+class ReactionDiffusion : public StateModel
 {
 public:
   enum class Scheme
@@ -49,8 +34,8 @@ public:
     /// ARS(2,2,2) (Ascher, Ruuth, Spiteri, Appl. Numer. Math. 25, 1997): two stages with one
     /// matrix, L-stable diffusion. l, known from the state, enters the stages like a reaction, and
     /// each stage's own share of it is corrected after its solve (operator splitting; Ikonen,
-    /// Toivanen, Appl. Math. Lett. 17, 2004). Second order with bounds too, where clamping alone
-    /// would be first order.
+    /// Toivanen, Appl. Math. Lett. 17, 2004). Second order also with bounds, for which clamping
+    /// alone would be first order.
     SecondOrder
   };
 
@@ -59,17 +44,14 @@ public:
     double TimeStep = 1.0 / 16.0;
     Scheme TimeScheme = Scheme::SecondOrder;
     bool KeepNonNegative = true;
-    /// The pattern stands, and steps change nothing any more, once |u_new - u| / (dt |u_new - its
-    /// mean|), root mean squares over the surface, is at most this for both chemicals: the relative
+    /// The pattern is stationary, and further steps change nothing, once |u_new - u| / (dt |u_new -
+    /// its mean|), in L2 norms over the surface, is at most this for both chemicals: the relative
     /// change per unit time. It is about the growth rate while the pattern grows. 0: never.
     double StopTolerance = 0.0;
-    /// Solve for the two chemicals as two parallel tasks, which is faster if the solvers run on one
-    /// thread each, as direct ones do. The bits are the same either way. Not over several processes.
-    bool SideBySide = false;
   };
 
-  /// How one chemical diffuses: coefficients with its rates in them (LengthUnit()^2/time), and the
-  /// solver of its matrix, kept by the caller from run to run.
+  /// The diffusion of one chemical: the coefficients of D (CotanWeights.h) in LengthUnit()^2/time,
+  /// and the solver of its matrix, kept by the caller from run to run.
   struct Chemical
   {
     CornerWeights Coefficients;
@@ -81,10 +63,9 @@ public:
     std::array<Chemical, 2> chemicals, PointData data, const Settings& settings,
     const ParallelFor& parallel = SerialFor());
 
-  const Values& State() const override { return this->U; }
   StepReport Advance(const ProgressMonitor& progress) override;
 
-  /// The pattern stands by StopTolerance.
+  /// The pattern is stationary by StopTolerance.
   bool Finished() const override { return this->Done; }
 
   /// 1/2 int D1 grad u1 . grad u1 + D2 grad u2 . grad u2, in value^2 LengthUnit()^2/time: how much
@@ -101,7 +82,7 @@ private:
 
   struct Solution
   {
-    SolveReport Report;
+    StepReport Report;
     std::exception_ptr Failure;
   };
 
@@ -113,23 +94,22 @@ private:
   double IntegrateDiffusion(int chemical, const Values& u, Index i) const;
   void Solve(StepReport& report, const ProgressMonitor& progress);
   void SolveFor(int chemical, const ProgressMonitor& progress);
+  bool CanSolveSideBySide() const;
   void Project(double dt, StepReport& report);
   void FinishStep();
 
-  std::shared_ptr<const Assembler> Operators;
+  std::shared_ptr<const Assembler> Assembly;
   Reaction Terms;
-  std::array<Chemical, 2> Chemicals;
+  std::array<CornerWeights, 2> Coefficients;
   PointData Data;
   Settings Options;
   const ParallelFor& Parallel;
   double ImplicitTime; ///< dt times the implicit part of a stage
-  std::array<SparseMatrix, 2> Matrices;
+  std::array<ImplicitSystem, 2> Systems;
   Vector AccumulatedAreas;
   const Vector& Areas; ///< of the control cells, consistent
   bool Prepared = false;
   bool Done = false;
-  Pair Load; ///< what fixed neighbours give to the right-hand side
-  Values U;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;
   std::array<Solution, 2> Solutions;
 };

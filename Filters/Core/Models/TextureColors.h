@@ -13,11 +13,11 @@ namespace SurfaceDiffusion
 using Colors = Eigen::Matrix<unsigned char, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 /// The 1st and 99th percentile of u over the vertices of the surface, so that no single vertex sets
-/// the contrast. reduction: over the processes that have the others.
+/// the contrast. reduction: over the processes of the surface.
 std::array<double, 2> ContrastLimits(
   const Eigen::Ref<const Vector>& u, const Reduction& reduction = Reduction::Serial());
 
-/// u stretched to [0, 1] between the limits; 1/2 where these are the same.
+/// u stretched to [0, 1] between the limits; 1/2 if these are the same.
 Vector StretchContrast(const Eigen::Ref<const Vector>& u, const std::array<double, 2>& limits);
 
 /// Mixtures of two colours with components in [0, 1]: `low` for 0, `high` for 1.

@@ -14,7 +14,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The largest max - min over the columns; 1 for constants and where there are no values.
+/// The largest max - min over the columns; 1 for constants and without values.
 double ValueRange(const Values& u, const Reduction& reduction)
 {
   constexpr double none = -std::numeric_limits<double>::infinity();
@@ -36,20 +36,20 @@ double ValueRange(const Values& u, const Reduction& reduction)
 TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assembler,
   const TangentVectors& frames, PointData data, const Settings& settings,
   const ParallelFor& parallel)
-  : Operators(std::move(assembler))
+  : StateModel(data.Start)
+  , Assembly(std::move(assembler))
   , Data(std::move(data))
+  , Fit(this->Data, { settings.Fidelity, settings.Norm, settings.Coupling })
   , Options(settings)
   , Parallel(parallel)
   , Diffusivity(std::max(settings.AlongDiffusivity, settings.AcrossDiffusivity))
-  , U(this->Data.Start)
   , Target(this->Data.Given)
 {
-  if (settings.Norm == FidelityNorm::L2 || settings.Fidelity == 0.0) // L1 does not conserve
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  if (this->Fit.CanConserve())
   {
-    this->Conserved =
-      TotalCorrection(this->Operators->Mesh(), this->Data, settings.Fidelity > 0.0, parallel);
+    this->Conserved = TotalCorrection(mesh, this->Data, this->Fit.IsPresent(), parallel);
   }
-  const TriangleMesh& mesh = this->Operators->Mesh();
   if (settings.SteadyState)
   {
     FixFreeComponents(mesh, this->Data, settings.Fidelity);
@@ -57,7 +57,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
 
   double along = settings.AlongDiffusivity / this->Diffusivity;
   double across = settings.AcrossDiffusivity / this->Diffusivity;
-  if (settings.Function.Kind != EdgeFunctionKind::TotalVariation)
+  if (GetEdgeFunction(settings.Function.Kind).Dimensionless)
   {
     along = std::sqrt(along);
     across = std::sqrt(across);
@@ -74,7 +74,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   ForEach(parallel, n,
     [&](Index i)
     {
-      const double fidelity = this->FidelityAt(i) / this->Diffusivity;
+      const double fidelity = this->Fit.Weight(i) / this->Diffusivity;
       const bool squared = settings.Norm == FidelityNorm::L2;
       quadratic[i] = inertia + (squared ? fidelity : 0.0);
       absolute[i] = squared ? 0.0 : fidelity;
@@ -85,18 +85,13 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   minimizer.Range = ValueRange(this->Data.Start, mesh.GetReduction());
   minimizer.StopTolerance = settings.StopTolerance;
   minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
-  this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Operators, std::move(gradients),
+  this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Assembly, std::move(gradients),
     std::move(quadratic), std::move(absolute), this->Data.Fixed, minimizer, parallel);
-}
-
-void TotalVariationFlow::Restore(const double* checkpoint)
-{
-  std::copy(checkpoint, checkpoint + this->U.size(), this->U.data());
 }
 
 StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
+  const TriangleMesh& mesh = this->Assembly->Mesh();
   if (this->Options.SteadyState)
   {
     ForEach(this->Parallel, mesh.NumberOfVertices(),
@@ -115,7 +110,7 @@ StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
     ForEach(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i)
       {
-        const double pull = squared ? this->Options.TimeStep * this->FidelityAt(i) : 0.0;
+        const double pull = squared ? this->Options.TimeStep * this->Fit.Weight(i) : 0.0;
         this->Target.row(i) =
           this->U.row(i) + (pull / (1.0 + pull)) * (this->Data.Given.row(i) - this->U.row(i));
       });
@@ -131,23 +126,9 @@ StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
 
 double TotalVariationFlow::Energy() const
 {
-  const TriangleMesh& mesh = this->Operators->Mesh();
-  double energy = this->Diffusivity * this->Minimizer->GradientEnergy(this->U);
-  if (this->Options.Fidelity > 0.0)
-  {
-    const bool joint = this->Options.Coupling == ChannelCoupling::Joint;
-    const double here = Sum(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        const auto distance = this->U.row(i) - this->Data.Given.row(i);
-        const double density = this->Options.Norm == FidelityNorm::L2 ? 0.5 * distance.squaredNorm()
-          : joint                                                     ? distance.norm()
-                                                                      : distance.lpNorm<1>();
-        return mesh.ControlAreas()[i] * this->FidelityAt(i) * density;
-      });
-    energy += mesh.GetReduction().Sum(here);
-  }
-  return energy;
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  return this->Diffusivity * this->Minimizer->GradientEnergy(this->U) +
+    mesh.GetReduction().Sum(this->Fit.Energy(mesh, this->U, this->Parallel));
 }
 
 } // namespace SurfaceDiffusion

@@ -28,7 +28,7 @@ void CheckpointStore::Reserve(Index steps)
   }
 }
 
-void CheckpointStore::Offer(Index step, const Model& evolution)
+void CheckpointStore::Offer(Index step, const Model& model)
 {
   if (step != static_cast<Index>(this->Count) * this->StepStride)
   {
@@ -56,7 +56,7 @@ void CheckpointStore::Offer(Index step, const Model& evolution)
       return;
     }
   }
-  evolution.Save(this->Slot(this->Count++));
+  model.Save(this->Slot(this->Count++));
 }
 
 Index CheckpointStore::LatestAtOrBefore(Index step) const
@@ -69,10 +69,10 @@ const double* CheckpointStore::At(Index step) const
   return this->Memory.get() + static_cast<std::size_t>(step / this->StepStride) * this->Size;
 }
 
-Trajectory::Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> evolution,
+Trajectory::Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> model,
   std::size_t memoryLimit, const ParallelFor& parallel)
   : Surface(std::move(mesh))
-  , Stepper(std::move(evolution))
+  , Stepper(std::move(model))
   , Parallel(parallel)
   , Checkpoints(this->Stepper->CheckpointSize(), memoryLimit)
 {

@@ -23,7 +23,7 @@ public:
   /// Make room for the checkpoints of steps 0 .. steps, as far as the limit allows, so that Offer()
   /// does not allocate.
   void Reserve(Index steps);
-  void Offer(Index step, const Model& evolution);
+  void Offer(Index step, const Model& model);
   /// The last step at or before `step` that is kept; step 0 must have been offered.
   Index LatestAtOrBefore(Index step) const;
   const double* At(Index step) const;
@@ -50,22 +50,21 @@ struct StepRecord
   Index Clamped = 0;
 };
 
-/// An evolution that can be moved to any step, forwards and backwards, with the same bits
-/// whatever the order.
+/// A model that can be moved to any step, forwards and backwards, with the same bits in any order.
 class Trajectory
 {
 public:
-  /// memoryLimit: bytes for checkpoints; 0 where only forward steps are expected.
-  Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> evolution,
+  /// memoryLimit: bytes for checkpoints; 0 if only forward steps are expected.
+  Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> model,
     std::size_t memoryLimit, const ParallelFor& parallel = SerialFor());
 
   /// Announce that steps up to this one may be asked for.
   void Reserve(Index steps);
 
-  /// How many steps Seek() would compute.
+  /// The number of steps that Seek() would compute.
   Index NumberOfStepsTo(Index step) const;
 
-  /// Move to `step`, or to the last one where the evolution finishes before. Throws Aborted or
+  /// Move to `step`, or to the last one if the model finishes before. Throws Aborted or
   /// std::runtime_error, after which any Seek() still works.
   void Seek(Index step, const ProgressMonitor& progress = ProgressMonitor());
 
@@ -80,7 +79,7 @@ public:
     return this->Totals[static_cast<std::size_t>(step) * this->State().cols() + component];
   }
 
-  /// How many steps were computed in all: a measure of what seeking costs.
+  /// The number of steps computed in all: a measure of the cost of seeking.
   Index NumberOfAdvances() const { return this->Advances; }
 
 private:

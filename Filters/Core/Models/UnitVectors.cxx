@@ -14,9 +14,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// A mean shorter than this tells little about where the vectors point, and can mislead: that of
-/// the normals of a closed surface with a hole points away from the hole.
-constexpr double Undecided = 0.5;
+/// A mean shorter than this says little about the direction of the vectors, and can mislead: that
+/// of the normals of a closed surface with a hole points away from the hole.
+constexpr double MinimumMeanLength = 0.5;
 
 /// Sums over the known vectors of each component of the surface: area, A u, and of lines A u u^T.
 Values SumKnown(const TriangleMesh& mesh, const PointData& data, bool lineField)
@@ -47,7 +47,7 @@ Values SumKnown(const TriangleMesh& mesh, const PointData& data, bool lineField)
   return sums;
 }
 
-/// The direction that prevails, from a component's row of SumKnown(); zero where there is none.
+/// The direction that prevails, from a component's row of SumKnown(); zero if there is none.
 Eigen::RowVectorXd PrevailingDirection(
   const Eigen::Ref<const Eigen::RowVectorXd>& sums, Eigen::Index m, bool lineField)
 {
@@ -57,11 +57,12 @@ Eigen::RowVectorXd PrevailingDirection(
   {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(
       Eigen::Map<const Eigen::MatrixXd>(sums.data() + 1 + m, m, m));
-    const bool decided = axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > Undecided * area;
+    const bool decided =
+      axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > MinimumMeanLength * area;
     sum = decided ? Eigen::RowVectorXd(axes.eigenvectors().col(m - 1).transpose())
                   : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(m));
   }
-  else if (!(sum.norm() > Undecided * area))
+  else if (!(sum.norm() > MinimumMeanLength * area))
   {
     sum.setZero();
   }
@@ -90,7 +91,7 @@ Eigen::RowVectorXd SumOfNeighbours(
 }
 
 /// Give every vertex without a direction the sum of those of its neighbours, ring by ring from the
-/// rim inwards; e_1 where nothing is known, or where neighbours cancel exactly. (The sum of lines
+/// rim inwards; e_1 if nothing is known or neighbours cancel exactly. (The sum of lines
 /// depends on its order: only the serial reduction takes them.)
 void SpreadInwards(const TriangleMesh& mesh, Values& u, Flags& known, bool lineField)
 {

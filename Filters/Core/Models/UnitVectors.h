@@ -16,7 +16,7 @@ namespace SurfaceDiffusion
 /// Maps into the unit sphere S^(m-1): one unit vector of m >= 2 components per vertex, a row of a
 /// Values. Line fields are such maps with u and -u taken as the same.
 
-/// Bring a row to length one, whatever its size; false (and unchanged) where it is zero or not
+/// Normalise a row of any size, without overflow; false (and unchanged) if it is zero or not
 /// finite: no direction.
 template <typename Row>
 bool Normalize(Row&& row)
@@ -34,12 +34,12 @@ bool Normalize(Row&& row)
 /// Make the data of a harmonic map from vectors of any length: Given is normalised where it is
 /// known; vectors without a direction (zero or NaN) become missing, and Start is filled there:
 /// - Mean: the normalised mean of the known vectors of the connected component (of lines: the main
-///   axis of the sum of u u^T). Where no direction prevails (the mean is shorter than 1/2, as of
+///   axis of the sum of u u^T). If no direction prevails (the mean is shorter than 1/2, as of
 ///   the normals of a closed surface) the rim of the hole spreads inwards instead;
-/// - Input: the vectors themselves, Mean where they have no direction;
+/// - Input: the vectors themselves, as Mean if they have no direction;
 /// - Noise: random directions, each component uniform between the smallest and largest known value.
-/// A component without any known vector takes e_1. ids: one per vertex, for the random numbers. Of
-/// a surface in pieces: lines only where none is missing.
+/// A component without any known vector takes e_1. ids: one per vertex, for the random numbers.
+/// Over several processes no line may be missing.
 void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField,
   InitialFill fill, std::int64_t seed, const std::vector<std::int64_t>& ids);
 

@@ -13,15 +13,15 @@ namespace SurfaceDiffusion
 
 Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor& parallel,
   const ProgressMonitor& progress)
-  : Surface(std::move(mesh))
+  : SurfaceMesh(std::move(mesh))
 {
-  const TriangleMesh& m = *this->Surface;
+  const TriangleMesh& m = *this->SurfaceMesh;
   const Index n = m.NumberOfVertices();
   const auto& begin = m.VertexCornersBegin();
   const auto& corners = m.VertexCorners();
 
-  // Rows are listed once, with slots counted from the start of the row; where rows begin, and so
-  // where slots are in the matrix, is known when all are listed.
+  // Rows are listed once, with slots counted from the start of the row. The positions of rows, and
+  // so of slots, in the matrix are known when all rows are listed.
   std::vector<Index> outer(n + 1, 0);
   std::vector<std::vector<Index>> rows(NumberOfBlocks(n)); // one after another, per block
   this->SlotMap.resize(corners.size());
@@ -91,11 +91,11 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
   const CornerWeights& coefficients, const double* weights, const ParallelFor& parallel,
   const CornerWeights* signs) const
 {
-  const auto& begin = this->Surface->VertexCornersBegin();
-  const auto& corners = this->Surface->VertexCorners();
+  const auto& begin = this->SurfaceMesh->VertexCornersBegin();
+  const auto& corners = this->SurfaceMesh->VertexCorners();
   const Index* outer = matrix.outerIndexPtr();
   double* values = matrix.valuePtr();
-  ForEach(parallel, this->Surface->NumberOfVertices(),
+  ForEach(parallel, this->SurfaceMesh->NumberOfVertices(),
     [&](Index i)
     {
       std::fill(values + outer[i], values + outer[i + 1], 0.0);
@@ -105,8 +105,8 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
       {
         if (slot == diagonalSlot)
         {
-          // An edge from i to i, as intrinsic triangulations have them, can have a coefficient that
-          // all others would drown in, were it added and taken off again.
+          // An edge from i to i, as in intrinsic triangulations, can have a coefficient so large
+          // that adding and subtracting it would cancel all others.
           onDiagonal += (1.0 - sign) * coefficient;
           return;
         }
@@ -132,7 +132,7 @@ void Assembler::Constrain(SparseMatrix& matrix, const Flags& fixed, const Values
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
   double* a = matrix.valuePtr();
-  ForEach(parallel, this->Surface->NumberOfVertices(),
+  ForEach(parallel, this->SurfaceMesh->NumberOfVertices(),
     [&](Index i)
     {
       load.row(i).setZero();
@@ -160,8 +160,8 @@ void Multiply(const SparseMatrix& matrix, const Values& x, Values& y, const Para
   ForEachBlock(parallel, static_cast<Index>(matrix.rows()),
     [&](Index, Index begin, Index end)
     {
-      ForColumns(x.cols(),
-        [&](auto k) { MultiplyRows<decltype(k)::value>(matrix, x, y, begin, end); });
+      ForColumns(
+        x.cols(), [&](auto columns) { MultiplyRows<columns()>(matrix, x, y, begin, end); });
     });
 }
 

@@ -10,46 +10,50 @@
 namespace SurfaceDiffusion
 {
 
-/// Turns coefficients per triangle into the matrices of (8), (11) and (14): what is left of the
-/// integrals of an equation over the control cells (5). The pattern and the map
-/// from triangles to its slots are made once; filling in values is then one pass over the
-/// triangles, gathered row by row: no two threads write one entry, the order of every sum is fixed,
-/// and the matrix is symmetric to the last bit.
+/// Assembles the matrices of a diffusion equation on a triangulated surface, diag(d) + s K: a
+/// multiple of the lumped mass matrix M = diag(A_i), whose entries are the areas of the control
+/// cells, and the stiffness matrix K. With cotan weights K is the cotan Laplacian, and -M^-1 K the
+/// discrete Laplace-Beltrami operator. This is the finite-volume discretisation (5) of the paper,
+/// (8), (11) and (14), and the same as that by linear finite elements.
+///
+/// The pattern and the map from triangles to the entries of the matrix are made once. Assembling is
+/// then one pass over the triangles, gathered row by row: no two threads write one entry, the order
+/// of every sum is fixed, and the matrix is symmetric to the last bit.
 class Assembler
 {
 public:
   explicit Assembler(std::shared_ptr<const TriangleMesh> mesh,
-    const ParallelFor& parallel = ParallelFor(),
-    const ProgressMonitor& progress = ProgressMonitor());
+    const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 
-  const TriangleMesh& Mesh() const { return *this->Surface; }
-  std::shared_ptr<const TriangleMesh> SharedMesh() const { return this->Surface; }
+  const TriangleMesh& Mesh() const { return *this->SurfaceMesh; }
+  std::shared_ptr<const TriangleMesh> SharedMesh() const { return this->SurfaceMesh; }
 
-  /// A matrix of the pattern, all zero: a vertex and its neighbours, sorted.
+  /// A matrix of the pattern, all zero: in each row a vertex and its neighbours, sorted.
   const SparseMatrix& Pattern() const { return this->Empty; }
 
-  /// matrix = diag(d) + scale K, with (K u)_i = -sum over triangles and j of c_ij u_j (6), rows
-  /// summing to zero: (7) and (9), (12) summed over the triangles of D_1(i). `matrix` is a copy of
-  /// Pattern(); weights, one per triangle, multiply the coefficients (g of (9)); none means 1.
-  /// signs, +1 or -1, multiply those off the diagonal, for fields whose neighbours are compared up
-  /// to the sign: the rows of K then give sum of c_ij (u_i - sign_ij u_j).
+  /// matrix = diag(d) + scale K with the stiffness matrix K,
+  ///   (K u)_i = sum over the triangles at vertex i and their corners j of c_ij (u_i - u_j),
+  /// (6), (7), (9), (12). coefficients: c as in CotanWeights.h. `matrix` is a copy of Pattern().
+  /// weights, one per triangle, multiply the coefficients (g of (9)); none means 1. signs, +1 or
+  /// -1, are for fields whose neighbours are compared up to the sign: the rows of K then give the
+  /// sum of c_ij (u_i - sign_ij u_j).
   void Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diagonal, double scale,
     const CornerWeights& coefficients, const double* weights = nullptr,
-    const ParallelFor& parallel = ParallelFor(), const CornerWeights* signs = nullptr) const;
+    const ParallelFor& parallel = SerialFor(), const CornerWeights* signs = nullptr) const;
 
-  /// Make `fixed` vertices known: their rows keep only the diagonal and their columns are taken
-  /// out. load is what this adds to the right-hand side: -sum over fixed j of a_ij values_j in free
-  /// rows, and in fixed rows a_ii values_i, which stands alone there. The matrix stays symmetric
-  /// positive definite. load: n x k.
+  /// Impose Dirichlet conditions u = values at `fixed` vertices: their rows keep only the diagonal
+  /// and their columns are eliminated, so that the matrix stays symmetric positive definite. load,
+  /// n x k, is the term of the right-hand side: the sum over fixed j of -a_ij values_j in free
+  /// rows, and a_ii values_i in fixed rows, whose right-hand side it replaces.
   void Constrain(SparseMatrix& matrix, const Flags& fixed, const Values& values, Values& load,
-    const ParallelFor& parallel = ParallelFor()) const;
+    const ParallelFor& parallel = SerialFor()) const;
 
 private:
-  std::shared_ptr<const TriangleMesh> Surface;
+  std::shared_ptr<const TriangleMesh> SurfaceMesh;
   SparseMatrix Empty;
   struct Slots
   {
-    Index Next, Last; ///< where a corner's row keeps the triangle's next and last vertex
+    Index Next, Last; ///< entries of the triangle's next and last vertex in a corner's row
   };
   std::vector<Slots> SlotMap; ///< in the order of TriangleMesh::VertexCorners()
   std::vector<Index> DiagonalSlot; ///< per row
@@ -57,6 +61,6 @@ private:
 
 /// y = matrix x for all columns of x at once. y must not be x.
 void Multiply(const SparseMatrix& matrix, const Values& x, Values& y,
-  const ParallelFor& parallel = ParallelFor());
+  const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/CotanWeights.h"
 
-#include <cmath>
-
 namespace SurfaceDiffusion
 {
 
@@ -14,7 +12,7 @@ CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel
     [&](Index t)
     {
       const TriangleMesh::Shape& s = mesh.Shapes()[t];
-      // cot = (cosine part) / (sine part) of the two edges at each corner.
+      // The cotangent of an angle is the cosine over the sine of its two edges.
       const double half = 0.5 * s.Weight;
       c(t, 0) = half * s.X / s.Y;
       c(t, 1) = half * (s.Length - s.X) / s.Y;
@@ -57,14 +55,8 @@ CornerWeights AnisotropicWeights(const TriangleMesh& mesh, const CornerWeights& 
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      if (frames.row(t).isZero(0.0))
-      {
-        c.row(t) = std::sqrt(g1[t]) * std::sqrt(g2[t]) * isotropic.row(t);
-      }
-      else
-      {
-        c.row(t) = g1[t] * c.row(t) + g2[t] * (isotropic.row(t) - c.row(t));
-      }
+      c.row(t) =
+        AnisotropicWeights(HasDirection(frames, t), isotropic.row(t), c.row(t), g1[t], g2[t]);
     });
   return c;
 }

@@ -4,13 +4,19 @@
 
 #include "Core/Surface/TriangleMesh.h"
 
+#include <cmath>
+
 namespace SurfaceDiffusion
 {
 
-/// Coefficients of the finite volume scheme, per triangle, from its shape alone. By Theorem 1 (15)
-/// the normal integrates over the part of the boundary of C_i inside a triangle to
-/// -area grad(phi_i); so every coefficient is c_ij = -area grad(phi_i) . D grad(phi_j), symmetric,
-/// and entry (t, a) of an CornerWeights is that of the two corners other than a.
+/// The coefficients of the Laplace-Beltrami operator, and of div(D grad u) with a diffusion tensor
+/// D, on a triangulated surface: cotan weights and their anisotropic relatives,
+///   c_ij = -area grad(phi_i) . D grad(phi_j)
+/// for two corners i, j of a triangle, with the linear basis functions phi. They are symmetric.
+/// Entry (t, a) of CornerWeights belongs to the edge of triangle t opposite corner a. Assembler
+/// sums them to the stiffness matrix K. The paper derives them from integrals over the boundaries
+/// of control cells: by its Theorem 1 (15) the normal integrates over the part of the boundary of
+/// C_i inside a triangle to -area grad(phi_i).
 
 /// Gradient of the linear function with these corner values, in the triangle's own axes.
 inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double u1, double u2)
@@ -19,15 +25,15 @@ inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double 
   return { x, (u2 - u0 - x * s.X) / s.Y };
 }
 
-/// (10) c_ij = 1/2 cot(angle at v_k): D = 1.
-CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = ParallelFor());
+/// The cotan weights (10): c_ij = 1/2 cot(angle at v_k), D = 1.
+CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
-/// (13) c1_ij = -area (grad(phi_i) . e1)(grad(phi_j) . e1): D = e1 e1^T. Zero where the frame is
-/// zero. Those of e2 are c2 = c - c1.
+/// The weights of the diffusion along a direction (13): D = e1 e1^T. Zero if e1 is zero. Those of
+/// the diffusion across it are the cotan weights minus these.
 CornerWeights DirectionalWeights(const TriangleMesh& mesh,
-  const Eigen::Ref<const TangentVectors>& frames, const ParallelFor& parallel = ParallelFor());
+  const Eigen::Ref<const TangentVectors>& frames, const ParallelFor& parallel = SerialFor());
 
-/// (12) g1 c1 + g2 c2 with constant g1, g2 >= 0; sqrt(g1 g2) c where the frame is zero.
+/// The weights of D = g1 e1 e1^T + g2 e2 e2^T (12) with constant g1, g2 >= 0.
 CornerWeights AnisotropicWeights(const TriangleMesh& mesh, const CornerWeights& isotropic,
   const Eigen::Ref<const TangentVectors>& frames, double g1, double g2,
   const ParallelFor& parallel = SerialFor());
@@ -36,5 +42,31 @@ CornerWeights AnisotropicWeights(const TriangleMesh& mesh, const CornerWeights& 
 CornerWeights AnisotropicWeights(const TriangleMesh& mesh, const CornerWeights& isotropic,
   const Eigen::Ref<const TangentVectors>& frames, const Eigen::Ref<const Vector>& g1,
   const Eigen::Ref<const Vector>& g2, const ParallelFor& parallel = SerialFor());
+
+/// False for a triangle without a direction: e1 is zero there.
+inline bool HasDirection(const Eigen::Ref<const TangentVectors>& frames, Index t)
+{
+  return !frames.row(t).isZero(0.0);
+}
+
+/// The diffusivity of a triangle without a direction, which is isotropic: the geometric mean of g1
+/// and g2, as det D = g1 g2 has it. The same for other factors along and across a direction.
+inline double IsotropicMean(double g1, double g2)
+{
+  return std::sqrt(g1) * std::sqrt(g2);
+}
+
+/// The weights of D = g1 e1 e1^T + g2 e2 e2^T on one triangle, from its cotan weights and its
+/// directional ones.
+template <typename Isotropic, typename Directional>
+Eigen::RowVector3d AnisotropicWeights(
+  bool directed, const Isotropic& isotropic, const Directional& directional, double g1, double g2)
+{
+  if (directed)
+  {
+    return g1 * directional + g2 * (isotropic - directional);
+  }
+  return IsotropicMean(g1, g2) * isotropic;
+}
 
 } // namespace SurfaceDiffusion

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/Parallel.h"
-#include "Core/Models/Model.h"
+#include "Core/Surface/PointData.h"
 #include "Core/Surface/TriangleMesh.h"
 
 #include <vector>
@@ -13,17 +13,18 @@ namespace SurfaceDiffusion
 
 /// Sum over the surface of A_i u_i for column k.
 double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k,
-  const ParallelFor& parallel = ParallelFor());
+  const ParallelFor& parallel = SerialFor());
 
-/// Keeps sum A u to round-off, whatever tolerance the solver has: what a solve leaves over on a
-/// connected component is spread over it evenly. Acts on the components that conserve the sum: no
-/// fixed vertex, and no fidelity or one to the start itself (nothing missing, start = f).
+/// Conserves the total sum A u to round-off, independently of the tolerance of the solver: the
+/// error that a solve makes on a connected component is spread over it evenly. Acts on the
+/// components that conserve the total: no fixed vertex, and no fidelity or one to the start itself
+/// (nothing missing, start = f).
 class TotalCorrection
 {
 public:
   TotalCorrection() = default;
   TotalCorrection(const TriangleMesh& mesh, const PointData& data, bool hasFidelity,
-    const ParallelFor& parallel = ParallelFor());
+    const ParallelFor& parallel = SerialFor());
 
   void Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel);
 
@@ -36,16 +37,17 @@ private:
   Values Targets; ///< sum A u at the start, component x column
 };
 
-/// Makes solutions of (diag(w) + K) x = b satisfy the sum of the equations over each connected
-/// component without fixed vertices: sum w x = sum b, whatever K is, since its columns sum to zero.
-/// Where w is small against K (long steps, weak fidelity) the matrix tells the mean of x from
-/// nothing but the last digits of its diagonal; this sum tells it exactly.
+/// Corrects the mean of a solution of (diag(w) + K) x = b, K a stiffness matrix: makes it satisfy
+/// the sum of the equations over each connected component without fixed vertices, sum w x = sum b,
+/// in which K vanishes since its columns sum to zero. If w is small against K (long steps, weak
+/// fidelity), the mean of x depends on the last digits of the diagonal of the matrix only; this sum
+/// determines it exactly.
 class MeanCorrection
 {
 public:
   MeanCorrection() = default;
   MeanCorrection(const TriangleMesh& mesh, Vector weights, const Flags& fixed,
-    const ParallelFor& parallel = ParallelFor());
+    const ParallelFor& parallel = SerialFor());
 
   void Restore(const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel);
 

@@ -7,9 +7,8 @@
 namespace SurfaceDiffusion
 {
 
-/// Rows [begin, end) of y = matrix x, with x of K columns, or any number where K is 0. The number
-/// known to the compiler and everything in local variables, the sums stay in registers and what
-/// is left is the way to memory.
+/// Rows [begin, end) of y = matrix x, for K columns of x, or any number of them if K is 0. With the
+/// number known to the compiler the sums stay in registers, so that the speed is that of memory.
 template <int K>
 void MultiplyRows(const SparseMatrix& matrix, const Values& x, Values& y, Index begin, Index end)
 {

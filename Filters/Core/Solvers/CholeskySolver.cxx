@@ -88,6 +88,8 @@ public:
 
   void Precondition(const Values& r, Values& z) override { this->Substitute(r, z); }
 
+  bool RunsOnOneThread() const override { return true; }
+
 private:
   /// Columns j .. j + Width - 1 of L, a panel of the factor.
   template <int Width>

@@ -11,7 +11,7 @@
 namespace SurfaceDiffusion
 {
 
-/// Bits 0, 1, 2, ... of the lower 21 moved to 0, 3, 6, ...
+/// Moves bits 0, 1, 2, ... 20 to 0, 3, 6, ... 60.
 inline std::uint64_t SpreadBits(std::uint64_t x)
 {
   x = (x | x << 32) & 0x001F00000000FFFF;
@@ -21,12 +21,12 @@ inline std::uint64_t SpreadBits(std::uint64_t x)
   return (x | x << 2) & 0x1249249249249249;
 }
 
-/// Per axis of the unit cube: as fine as neighbours in memory need to be near on the surface.
+/// Bits per axis of the unit cube: fine enough for neighbours in memory to be near on the surface.
 constexpr int HilbertBits = 12;
 constexpr double HilbertCells = 1 << HilbertBits;
 
-/// Position along the three-dimensional Hilbert curve of a cell, < 2^36.
-/// J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004).
+/// The position of a cell along the three-dimensional Hilbert curve, < 2^36 (J. Skilling,
+/// Programming the Hilbert curve, AIP Conf. Proc. 707, 2004).
 inline std::uint64_t HilbertPosition(std::array<std::uint32_t, 3> x)
 {
   for (std::uint32_t q = 1U << (HilbertBits - 1); q > 1; q >>= 1)
@@ -34,8 +34,8 @@ inline std::uint64_t HilbertPosition(std::array<std::uint32_t, 3> x)
     const std::uint32_t p = q - 1;
     for (auto& xi : x)
     {
-      // Invert the low bits of the first axis where the bit is set, exchange them with the first
-      // axis' where it is not. Masks, since no branch predictor knows such bits.
+      // If the bit is set, invert the low bits of the first axis; otherwise exchange them with
+      // those of this axis. Masks instead of branches, since these bits cannot be predicted.
       const std::uint32_t set = xi & q ? ~0U : 0U;
       const std::uint32_t t = (x[0] ^ xi) & p & ~set;
       x[0] ^= t | (p & set);
@@ -60,8 +60,7 @@ struct HilbertPlace
   Index Vertex;
 };
 
-/// By position; places that share one keep their order. Sorts by one digit of the position after
-/// the other, from the lowest.
+/// Stable radix sort by position.
 inline void SortAlongCurve(std::vector<HilbertPlace>& places)
 {
   constexpr std::uint64_t digit = (1 << HilbertBits) - 1;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -13,8 +14,8 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The distinct edges as pairs of vertices, smaller one first, ascending: neighbours along the
-/// vertices' curve stay neighbours.
+/// The distinct edges as pairs of vertices, the smaller one first, in ascending order: edges that
+/// are neighbours on the surface stay neighbours in memory.
 std::vector<std::array<Index, 2>> ListEdges(const TriangleMesh& mesh)
 {
   std::vector<std::array<Index, 2>> edges;
@@ -44,69 +45,79 @@ std::vector<std::array<Index, 2>> ListEdges(const TriangleMesh& mesh)
   return edges;
 }
 
-} // namespace
-
-MedialMesh::MedialMesh(const TriangleMesh& mesh)
+/// For every corner of a triangle the place of the opposite edge in the list.
+Triangles OppositeEdges(const TriangleMesh& mesh, const std::vector<std::array<Index, 2>>& edges)
 {
-  const std::vector<std::array<Index, 2>> edges = ListEdges(mesh);
-  const Index edgeCount = static_cast<Index>(edges.size());
-  const Index triangleCount = mesh.NumberOfTriangles();
   const Triangles& vertices = mesh.TriangleVertices();
-  Triangles corners(triangleCount, 3);
-  for (Index t = 0; t < triangleCount; ++t)
+  Triangles opposite(mesh.NumberOfTriangles(), 3);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     for (int a = 0; a < 3; ++a)
     {
       const Index i = vertices(t, (a + 1) % 3);
       const Index j = vertices(t, (a + 2) % 3);
       const std::array<Index, 2> edge = { std::min(i, j), std::max(i, j) };
-      corners(t, a) =
+      opposite(t, a) =
         static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
     }
   }
+  return opposite;
+}
 
-  // Gather components, keeping the order within each. Triangles that share a vertex but no edge are
-  // not connected here.
+/// The connected component of every edge. Triangles that share a vertex but no edge are not
+/// connected here.
+std::vector<Index> ComponentOfEdges(const Triangles& corners, Index edgeCount)
+{
   DisjointSets connected(edgeCount);
-  for (Index t = 0; t < triangleCount; ++t)
+  for (const auto& edges : corners.rowwise())
   {
-    connected.Join(corners(t, 0), corners(t, 1));
-    connected.Join(corners(t, 0), corners(t, 2));
+    connected.Join(edges[0], edges[1]);
+    connected.Join(edges[0], edges[2]);
   }
-  const std::vector<Index> label = connected.Labels();
+  return connected.Labels();
+}
+
+} // namespace
+
+MedialMesh::MedialMesh(const TriangleMesh& mesh)
+{
+  const std::vector<std::array<Index, 2>> edges = ListEdges(mesh);
+  const auto edgeCount = static_cast<Index>(edges.size());
+  const Triangles corners = OppositeEdges(mesh, edges);
+  const std::vector<Index> component = ComponentOfEdges(corners, edgeCount);
+
+  // Edges of a component become consecutive and keep their order.
   std::vector<Index> order(edgeCount);
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(
-    order.begin(), order.end(), [&](Index a, Index b) { return label[a] < label[b]; });
+    order.begin(), order.end(), [&](Index a, Index b) { return component[a] < component[b]; });
   std::vector<Index> number(edgeCount);
-  auto medial = std::shared_ptr<TriangleMesh>(new TriangleMesh);
   this->EdgeEnds.resize(edgeCount);
+  TriangleMesh::Contents medial;
   for (Index e = 0; e < edgeCount; ++e)
   {
     number[order[e]] = e;
     this->EdgeEnds[e] = edges[order[e]];
-    if (e == 0 || label[order[e]] != label[order[e - 1]])
+    if (e == 0 || component[order[e]] != component[order[e - 1]])
     {
-      medial->Components.push_back(e);
+      medial.ComponentsBegin.push_back(e);
     }
   }
-  medial->Components.push_back(edgeCount);
-  medial->Corners = corners.unaryExpr([&](Index e) { return number[e]; });
+  medial.ComponentsBegin.push_back(edgeCount);
+  medial.TriangleVertices = corners.unaryExpr([&](Index e) { return number[e]; });
 
-  medial->TriangleShapes.reserve(triangleCount);
+  medial.Shapes.reserve(mesh.Shapes().size());
   for (const TriangleMesh::Shape& s : mesh.Shapes())
   {
-    medial->TriangleShapes.push_back({ 0.5 * s.Length, 0.5 * s.X, 0.5 * s.Y, s.Weight });
+    medial.Shapes.push_back({ 0.5 * s.Length, 0.5 * s.X, 0.5 * s.Y, s.Weight });
   }
-  medial->InputVertices.resize(edgeCount);
-  std::iota(medial->InputVertices.begin(), medial->InputVertices.end(), 0);
-  medial->InputTriangles = mesh.InputTriangle();
-  medial->ListCorners();
-  medial->MeasureAreas(SerialFor());
-  medial->Unit = mesh.LengthUnit();
-  medial->EdgeLength = 0.5 * mesh.TotalEdgeLength();
-  medial->Edges = mesh.NumberOfEdges();
-  this->Medial = medial;
+  medial.InputVertex.resize(edgeCount);
+  std::iota(medial.InputVertex.begin(), medial.InputVertex.end(), 0);
+  medial.InputTriangle = mesh.InputTriangle();
+  medial.LengthUnit = mesh.LengthUnit();
+  medial.TotalEdgeLength = 0.5 * mesh.TotalEdgeLength();
+  medial.NumberOfEdges = mesh.NumberOfEdges();
+  this->Medial = std::make_shared<TriangleMesh>(std::move(medial));
 }
 
 } // namespace SurfaceDiffusion

@@ -11,26 +11,27 @@
 namespace SurfaceDiffusion
 {
 
-/// The triangles' medial triangles, whose corners are the midpoints of the edges: a mesh with one
-/// vertex per edge, where neighbours touch at corners.
+/// The medial triangles of a surface, whose corners are the midpoints of the edges: a mesh with one
+/// vertex per edge, whose triangles touch at corners.
 ///
-/// The Crouzeix-Raviart discretisation is the ordinary one on this mesh. Its functions are linear
-/// on each triangle, continuous at the midpoints of edges only, and its unknowns are the values
-/// there: just the continuous functions on the medial triangles. These have a quarter of the area
-/// and the shape of their triangles, so that every integral is a quarter of the one on the surface
-/// while equations and time scales are the same, and no model needs to know. (M. Crouzeix, P.-A.
-/// Raviart, RAIRO 7, 1973; total variation: A. Chambolle, T. Pock, J. Math. Imaging Vis. 62, 2020.)
+/// The Crouzeix-Raviart finite element method is the usual linear one on this mesh. Its functions
+/// are linear on each triangle and continuous at the midpoints of edges only; its unknowns are the
+/// values there. These are exactly the continuous functions on the medial triangles. A medial
+/// triangle is similar to its triangle and has a quarter of the area, so that every integral is a
+/// quarter of the one on the surface, equations and time scales are the same, and models run on it
+/// unchanged. (M. Crouzeix, P.-A. Raviart, RAIRO 7, 1973; total variation: A. Chambolle, T. Pock,
+/// J. Math. Imaging Vis. 62, 2020.)
 class MedialMesh
 {
 public:
   explicit MedialMesh(const TriangleMesh& mesh);
 
-  /// Triangle t lies in triangle t of the surface, corner a on the edge opposite corner a, and the
-  /// two have the same axes up to sign: direction fields carry over as they are.
+  /// Triangle t lies in triangle t of the surface, its corner a on the edge opposite corner a. The
+  /// two have the same axes up to sign, so that tangent vectors are the same on both.
   std::shared_ptr<const TriangleMesh> Edges() const { return this->Medial; }
 
-  /// The two vertices of the edge that vertex e of the medial mesh stands for. Edges between the
-  /// same two, which intrinsic triangulations can have, are one.
+  /// The two vertices of the edge whose midpoint is vertex e of the medial mesh. Several edges
+  /// between the same two vertices, which intrinsic triangulations can have, count as one.
   const std::vector<std::array<Index, 2>>& Ends() const { return this->EdgeEnds; }
 
 private:

@@ -12,44 +12,33 @@ namespace
 
 using Row3 = Eigen::RowVector3d;
 
-/// The triangle's plane axes in space, as the columns of a 3 x 2 matrix.
-Eigen::Matrix<double, 3, 2> AxesInSpace(const Row3& p0, const Row3& p1, const Row3& p2, double unit)
-{
-  const Row3 e1 = (p1 - p0) / unit;
-  const Row3 e2 = (p2 - p0) / unit;
-  const Row3 x = e1.normalized();
-  const Row3 y = (e2 - e2.dot(x) * x).normalized();
-  Eigen::Matrix<double, 3, 2> axes;
-  axes << x.transpose(), y.transpose();
-  return axes;
-}
-
-/// A vector of unit length along d, whatever the size of d; zero where d is zero or not finite.
+/// The unit vector along d for d of any size, or zero if d is zero or not finite.
 Row3 Direction(const Row3& d)
 {
   const double size = d.cwiseAbs().maxCoeff();
   return std::isfinite(size) && size > 0.0 ? Row3((d / size).normalized()) : Row3(Row3::Zero());
 }
 
+/// Main axes of the tensors tensorOf(input triangle), projected into the triangles.
 template <typename TensorOf>
 TangentVectors MainAxes(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
   const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel,
   const TensorOf& tensorOf)
 {
-  TangentVectors frames(mesh.NumberOfTriangles(), 2);
+  // Of d d^T for a vector d that is normal to the triangle, round-off alone lies in its plane.
+  constexpr double roundOff = 1e-16;
+  TangentVectors lines(mesh.NumberOfTriangles(), 2);
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      const Index input = mesh.InputTriangle()[t];
       const auto axes = TriangleAxes(mesh, points, triangles, t);
-      const Eigen::Matrix3d tensor = tensorOf(input);
+      const Eigen::Matrix3d tensor = tensorOf(mesh.InputTriangle()[t]);
       const Eigen::Matrix2d plane = axes.transpose() * tensor * axes;
-      // A vector that stands almost upright on the triangle gives no direction in it.
-      frames.row(t) = plane.trace() > 1e-16 * tensor.trace()
+      lines.row(t) = plane.trace() > roundOff * tensor.trace()
         ? MainAxis(plane(0, 0), 0.5 * (plane(0, 1) + plane(1, 0)), plane(1, 1))
         : Eigen::RowVector2d(Eigen::RowVector2d::Zero());
     });
-  return frames;
+  return lines;
 }
 
 } // namespace
@@ -58,15 +47,22 @@ Eigen::Matrix<double, 3, 2> TriangleAxes(const TriangleMesh& mesh,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles, Index t)
 {
   const Index input = mesh.InputTriangle()[t];
-  return AxesInSpace(points.row(triangles(input, 0)), points.row(triangles(input, 1)),
-    points.row(triangles(input, 2)), mesh.LengthUnit());
+  const auto corner = [&](int a) -> Row3 { return points.row(triangles(input, a)); };
+  const Row3 e1 = (corner(1) - corner(0)) / mesh.LengthUnit();
+  const Row3 e2 = (corner(2) - corner(0)) / mesh.LengthUnit();
+  const Row3 x = e1.normalized();
+  const Row3 y = (e2 - e2.dot(x) * x).normalized();
+  Eigen::Matrix<double, 3, 2> axes;
+  axes << x.transpose(), y.transpose();
+  return axes;
 }
 
 Eigen::RowVector2d MainAxis(double xx, double xy, double yy)
 {
   const double trace = xx + yy;
   const double difference = std::hypot(xx - yy, 2.0 * xy);
-  if (!(difference > 1e-12 * trace))
+  constexpr double roundOff = 1e-12;
+  if (!(difference > roundOff * trace))
   {
     return Eigen::RowVector2d::Zero();
   }
@@ -74,7 +70,7 @@ Eigen::RowVector2d MainAxis(double xx, double xy, double yy)
   return { std::cos(angle), std::sin(angle) };
 }
 
-TangentVectors FramesFromTriangleVectors(const TriangleMesh& mesh,
+TangentVectors TangentVectorsFromTriangleVectors(const TriangleMesh& mesh,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
   const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel)
 {
@@ -86,7 +82,7 @@ TangentVectors FramesFromTriangleVectors(const TriangleMesh& mesh,
     });
 }
 
-TangentVectors FramesFromPointVectors(const TriangleMesh& mesh,
+TangentVectors TangentVectorsFromPointVectors(const TriangleMesh& mesh,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
   const Eigen::Ref<const Points>& vectors, const ParallelFor& parallel)
 {
@@ -103,18 +99,18 @@ TangentVectors FramesFromPointVectors(const TriangleMesh& mesh,
     });
 }
 
-Points VectorsFromFrames(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
-  const Eigen::Ref<const Triangles>& triangles, const Eigen::Ref<const TangentVectors>& frames,
+Points VectorsInSpace(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
+  const Eigen::Ref<const Triangles>& triangles, const Eigen::Ref<const TangentVectors>& vectors,
   const ParallelFor& parallel)
 {
-  Points vectors = Points::Zero(triangles.rows(), 3);
+  Points inSpace = Points::Zero(triangles.rows(), 3);
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      vectors.row(mesh.InputTriangle()[t]) =
-        (TriangleAxes(mesh, points, triangles, t) * frames.row(t).transpose()).transpose();
+      inSpace.row(mesh.InputTriangle()[t]) =
+        (TriangleAxes(mesh, points, triangles, t) * vectors.row(t).transpose()).transpose();
     });
-  return vectors;
+  return inSpace;
 }
 
 } // namespace SurfaceDiffusion

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conversion/FieldReader.h"
+
+#include "Conversion/SurfaceReader.h"
+#include "Conversion/TupleRange.h"
+#include "Distributed/InterfacePoints.h"
+
+#include "vtkDataArray.h"
+#include "vtkPolyData.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+std::string NameOf(vtkDataArray* array)
+{
+  return array->GetName() ? array->GetName() : "";
+}
+
+std::vector<char> ReadFlags(vtkDataArray* array)
+{
+  std::vector<char> flags;
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    flags.push_back(array->GetComponent(i, 0) != 0.0);
+  }
+  return flags;
+}
+
+Points ReadDirections(vtkDataArray* array)
+{
+  Points vectors(array->GetNumberOfTuples(), 3);
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    array->GetTuple(i, vectors.row(i).data());
+    if (vectors.row(i).array().isInf().any())
+    {
+      std::ostringstream text;
+      text << "DirectionArray \"" << NameOf(array) << "\" is infinite at tuple " << i
+           << "; allowed: finite values and NaN";
+      throw std::runtime_error(text.str());
+    }
+  }
+  return vectors;
+}
+
+Values ReadRates(vtkDataArray* array, const std::vector<vtkIdType>& cells)
+{
+  Values rates(static_cast<Eigen::Index>(cells.size()), 4);
+  for (std::size_t t = 0; t < cells.size(); ++t)
+  {
+    for (int k = 0; k < 4; ++k)
+    {
+      const double rate = array->GetComponent(cells[t], k);
+      if (!(std::isfinite(rate) && rate >= 0.0))
+      {
+        std::ostringstream text;
+        text << "DiffusionRateArray is " << rate << " at cell " << cells[t]
+             << "; allowed: finite numbers, 0 or more";
+        throw std::runtime_error(text.str());
+      }
+      rates(static_cast<Eigen::Index>(t), k) = rate;
+    }
+  }
+  return rates;
+}
+
+} // namespace
+
+FieldSummary InputFields::Summarize() const
+{
+  FieldSummary summary;
+  summary.Data = this->Data != nullptr;
+  summary.DataComponents = this->Data ? NumberOfDataComponents(this->Data) : 0;
+  summary.Directions = this->Direction != nullptr;
+  summary.Fixed = this->Fixed != nullptr;
+  summary.Rates = this->Rates != nullptr;
+  return summary;
+}
+
+int NumberOfDataComponents(vtkDataArray* array)
+{
+  const int components = array->GetNumberOfComponents();
+  const bool hasAlpha =
+    array->GetDataType() == VTK_UNSIGNED_CHAR && (components == 2 || components == 4);
+  return hasAlpha ? components - 1 : components;
+}
+
+Values ReadValues(vtkDataArray* array)
+{
+  const int components = NumberOfDataComponents(array);
+  Values values(array->GetNumberOfTuples(), components);
+  VisitTuples(array,
+    [&](const auto& tuples)
+    {
+      for (vtkIdType i = 0; i < static_cast<vtkIdType>(tuples.size()); ++i)
+      {
+        const auto tuple = tuples[i];
+        for (int k = 0; k < components; ++k)
+        {
+          values(i, k) = static_cast<double>(tuple[k]);
+        }
+      }
+    });
+  return values;
+}
+
+Fingerprint FingerprintFields(const InputFields& arrays)
+{
+  Fingerprint fingerprint;
+  for (vtkDataArray* array : { arrays.Data.Get(), arrays.Mask, arrays.Direction, arrays.Fixed,
+         arrays.Rates, arrays.GlobalIds })
+  {
+    AddArray(fingerprint, array);
+  }
+  fingerprint.AddNumber(std::uint64_t{ arrays.DirectionOnCells ? 1u : 0u });
+  return fingerprint;
+}
+
+Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells)
+{
+  Fields fields;
+  if (arrays.Data)
+  {
+    fields.Data = ReadValues(arrays.Data);
+    fields.DataName = "InputArray \"" + NameOf(arrays.Data) + "\"";
+  }
+  fields.Mask = ReadFlags(arrays.Mask);
+  fields.Fixed = ReadFlags(arrays.Fixed);
+  if (arrays.Direction)
+  {
+    const Points vectors = ReadDirections(arrays.Direction);
+    fields.DirectionsOnTriangles = arrays.DirectionOnCells;
+    if (arrays.DirectionOnCells)
+    {
+      fields.Directions.resize(static_cast<Eigen::Index>(cells.size()), 3);
+      for (std::size_t t = 0; t < cells.size(); ++t)
+      {
+        fields.Directions.row(static_cast<Eigen::Index>(t)) = vectors.row(cells[t]);
+      }
+    }
+    else
+    {
+      fields.Directions = vectors;
+    }
+  }
+  if (arrays.Rates)
+  {
+    fields.Rates = ReadRates(arrays.Rates, cells);
+  }
+  if (arrays.GlobalIds)
+  {
+    const auto ids = AsIdTypeArray(arrays.GlobalIds);
+    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+    {
+      fields.Ids.push_back(ids->GetValue(i));
+    }
+  }
+  return fields;
+}
+
+} // namespace SurfaceDiffusion

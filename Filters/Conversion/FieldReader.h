@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/Fields.h"
+#include "Run/Fingerprint.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkPolyData;
+
+namespace SurfaceDiffusion
+{
+
+/// The input arrays of one block, found and checked.
+struct InputFields
+{
+  vtkSmartPointer<vtkDataArray> Data; ///< index 0
+  bool DataAreComputed = false; ///< normals that the input does not have
+  vtkDataArray* Mask = nullptr; ///< index 1
+  vtkDataArray* Direction = nullptr; ///< index 2
+  bool DirectionOnCells = false;
+  vtkDataArray* Fixed = nullptr; ///< index 3
+  vtkDataArray* Rates = nullptr; ///< index 4
+  vtkDataArray* GlobalIds = nullptr; ///< of the points
+
+  FieldSummary Summarize() const;
+};
+
+/// The number of components that are data: the last of 2 or 4 unsigned chars is alpha.
+int NumberOfDataComponents(vtkDataArray* array);
+
+/// All data components as doubles, one row per tuple.
+Values ReadValues(vtkDataArray* array);
+
+/// The hash of everything that ReadFields() reads.
+Fingerprint FingerprintFields(const InputFields& arrays);
+
+/// cells: the cell of each triangle of the surface's input. Throws std::runtime_error, with the
+/// property's name, on infinite directions and on rates that are negative or not finite.
+Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conversion/ResultWriter.h"
+
+#include "Conversion/ConvertValue.h"
+#include "Conversion/NewArray.h"
+#include "Conversion/SMPParallelFor.h"
+#include "Conversion/TupleRange.h"
+#include "Core/Surface/TangentVectors.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkIntArray.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+template <typename Array>
+vtkSmartPointer<vtkDataArray> MakeScalars(const Surface& surface, const std::string& name,
+  const Eigen::Ref<const Vector>& values, vtkDataArray* source, int component)
+{
+  const auto count = static_cast<vtkIdType>(surface.Points().rows());
+  auto array = NewArray<Array>(name, 1, count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    const double elsewhere = source ? source->GetComponent(i, component) : 0.0;
+    array->SetValue(i, ConvertValue<typename Array::ValueType>(v >= 0 ? values[v] : elsewhere));
+  }
+  return array;
+}
+
+template <typename Array, typename Value>
+void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& value)
+{
+  const auto column = NewArray<Array>(name, 1, rows);
+  for (int row = 0; row < rows; ++row)
+  {
+    column->SetValue(row, value(row));
+  }
+  table->AddColumn(column);
+}
+
+} // namespace
+
+vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArray* source,
+  const Values& values, double unit, int type, const std::string& name)
+{
+  const int components = source->GetNumberOfComponents();
+  const vtkIdType tuples = source->GetNumberOfTuples();
+  vtkSmartPointer<vtkDataArray> result;
+  switch (type)
+  {
+    case VTK_UNSIGNED_CHAR:
+      result = NewArray<vtkUnsignedCharArray>(name, components, tuples);
+      break;
+    case VTK_FLOAT:
+      result = NewArray<vtkFloatArray>(name, components, tuples);
+      break;
+    default:
+      result = NewArray<vtkDoubleArray>(name, components, tuples);
+      break;
+  }
+  result->CopyComponentNames(source);
+  const int dataComponents = static_cast<int>(values.cols());
+  VisitTuples(source,
+    [&](const auto& from)
+    {
+      const auto write = [&](auto* typed)
+      {
+        auto to = vtk::DataArrayTupleRange(typed);
+        using T = typename std::decay_t<decltype(to)>::ComponentType;
+        ForEach(SMPParallelFor::Instance(), static_cast<Index>(tuples),
+          [&](Index i)
+          {
+            auto tuple = to[i];
+            const auto old = from[i];
+            const Index v = surface.VertexOf(i);
+            for (int k = 0; k < components; ++k)
+            {
+              tuple[k] = v >= 0 && k < dataComponents
+                ? ConvertValue<T>(values(v, k) * unit)
+                : ConvertValue<T>(static_cast<double>(old[k]));
+            }
+          });
+      };
+      using Dispatch =
+        vtkArrayDispatch::DispatchByArray<vtkTypeList::Create<vtkAOSDataArrayTemplate<double>,
+          vtkAOSDataArrayTemplate<float>, vtkAOSDataArrayTemplate<unsigned char>>>;
+      Dispatch::Execute(result.Get(), write);
+    });
+  return result;
+}
+
+vtkSmartPointer<vtkDataArray> WriteScalars(const Surface& surface, const std::string& name,
+  const Eigen::Ref<const Vector>& values, bool single, vtkDataArray* source, int component)
+{
+  return single ? MakeScalars<vtkFloatArray>(surface, name, values, source, component)
+                : MakeScalars<vtkDoubleArray>(surface, name, values, source, component);
+}
+
+vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like)
+{
+  const auto count = static_cast<vtkIdType>(points.rows());
+  auto result = vtkSmartPointer<vtkPoints>::New();
+  if (like->GetDataType() == VTK_FLOAT)
+  {
+    result->SetData(NewArray<vtkFloatArray>("Points", 3, count));
+  }
+  else
+  {
+    result->SetData(NewArray<vtkDoubleArray>("Points", 3, count));
+  }
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    result->SetPoint(i, points.row(i).data());
+  }
+  return result;
+}
+
+vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
+  const std::vector<vtkIdType>& cells, vtkPolyData* input, const TangentVectors& directions,
+  const std::string& name, const ParallelFor& parallel)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  const Points vectors =
+    VectorsInSpace(mesh, surface.Points(), surface.Triangles(), directions, parallel);
+  auto array = NewArray<vtkDoubleArray>(name, 3, input->GetNumberOfCells());
+  array->Fill(0.0);
+
+  Vector areas = Vector::Zero(surface.Triangles().rows());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    areas[mesh.InputTriangle()[t]] = mesh.Shapes()[t].Area();
+  }
+  // The triangles of a cell follow one another.
+  for (Eigen::Index begin = 0, end = 0; begin < vectors.rows(); begin = end)
+  {
+    const vtkIdType cell = cells[surface.InputTriangle(static_cast<Index>(begin))];
+    Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+    for (end = begin;
+         end < vectors.rows() && cells[surface.InputTriangle(static_cast<Index>(end))] == cell;
+         ++end)
+    {
+      tensor += areas[end] * vectors.row(end).transpose() * vectors.row(end);
+    }
+    Eigen::Vector3d direction = vectors.row(begin);
+    if (end - begin > 1)
+    {
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(tensor);
+      direction = axes.eigenvalues()[2] > 0.0 ? Eigen::Vector3d(axes.eigenvectors().col(2))
+                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    }
+    array->SetTuple(cell, direction.data());
+  }
+  return array;
+}
+
+void WriteHistory(const History& history, vtkTable* table)
+{
+  const std::vector<StepRecord>& records = history.Records;
+  const int rows = static_cast<int>(records.size());
+  AddColumn<vtkIntArray>(table, "Step", rows, [](int row) { return row; });
+  AddColumn<vtkDoubleArray>(table, "Time", rows, [&](int row) { return history.Time[row]; });
+  for (std::size_t k = 0; k < history.Totals.size(); ++k)
+  {
+    AddColumn<vtkDoubleArray>(
+      table, "Total_" + std::to_string(k), rows, [&](int row) { return history.Totals[k][row]; });
+  }
+  AddColumn<vtkDoubleArray>(table, "Energy", rows, [&](int row) { return records[row].Energy; });
+  AddColumn<vtkIntArray>(
+    table, "Iterations", rows, [&](int row) { return records[row].Iterations; });
+  AddColumn<vtkDoubleArray>(
+    table, "Residual", rows, [&](int row) { return records[row].Residual; });
+  AddColumn<vtkDoubleArray>(table, "Seconds", rows, [&](int row) { return records[row].Seconds; });
+  if (history.CountsClamped)
+  {
+    AddColumn<vtkIntArray>(table, "Clamped", rows, [&](int row) { return records[row].Clamped; });
+  }
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "vtkSurfaceDiffusionAlgorithm.h"
+
+#include "Conversion/FieldReader.h"
+#include "Conversion/SMPParallelFor.h"
+#include "Distributed/PieceDecomposition.h"
+#include "Run/Run.h"
+
+#include <memory>
+#include <vector>
+
+/// The state of vtkSurfaceDiffusionAlgorithm that its header hides.
+struct vtkSurfaceDiffusionAlgorithm::RunState
+{
+  SurfaceDiffusion::Run Run{ SurfaceDiffusion::SMPParallelFor::Instance() };
+  /// Per block of the run: the cell of each triangle of its input.
+  std::vector<std::vector<vtkIdType>> Cells;
+  /// How the surface is spread over processes, if each works on its piece.
+  std::unique_ptr<SurfaceDiffusion::PieceDecomposition> Decomposition;
+
+  /// Normals computed for blocks without any, by the surface that they belong to.
+  struct ComputedNormals
+  {
+    SurfaceDiffusion::Fingerprint SurfaceVersion;
+    vtkSmartPointer<vtkDataArray> Array;
+    bool Used = true; ///< in the current update
+  };
+  std::vector<ComputedNormals> Normals;
+
+  // Of one update:
+  int Step = 0; ///< the step that is asked for
+  SurfaceDiffusion::History History;
+  bool Succeeded = false;
+};

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "vtkSurfaceFilter.h"
+
+#include "Conversion/SMPParallelFor.h"
+#include "Distributed/GatheredSurfaces.h"
+#include "Distributed/SharedProcessGroup.h"
+
+#include <memory>
+
+/// The state of vtkSurfaceFilter that its header hides.
+struct vtkSurfaceFilter::Internals
+{
+  std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered;
+
+  /// During an update: the processes, if each works on its piece.
+  std::unique_ptr<SurfaceDiffusion::SharedProcessGroup> Group;
+  SurfaceDiffusion::LoopWatch* Watch = nullptr;
+  /// Whether this process is to stop. Processes that work together stop together.
+  const std::shared_ptr<bool> AbortRequested = std::make_shared<bool>(false);
+};

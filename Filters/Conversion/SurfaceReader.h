@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/Fingerprint.h"
+#include "Run/Surface.h"
+
+#include "vtkType.h"
+
+#include <vector>
+
+class vtkDataArray;
+class vtkPolyData;
+
+namespace SurfaceDiffusion
+{
+
+/// Throws std::runtime_error unless the array has one tuple for each of `count`.
+void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what);
+
+/// Hash the contents of an array: type, shape and values. A null array has a hash, too.
+void AddArray(Fingerprint& fingerprint, vtkDataArray* array);
+
+/// The hash of everything that ReadSurface() reads.
+Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded);
+
+/// The triangles of the polygons and strips of `input`. Ghost and hidden cells are left out.
+/// excluded: per point, nonzero for points whose triangles do not take part; may be null. cells:
+/// the input's cell of each triangle.
+///
+/// Throws std::runtime_error if there are more points or triangles than 32-bit numbers count, and
+/// if a cell refers to a point that does not exist.
+SurfaceArrays ReadSurface(
+  vtkPolyData* input, vtkDataArray* excluded, std::vector<vtkIdType>& cells);
+
+} // namespace SurfaceDiffusion

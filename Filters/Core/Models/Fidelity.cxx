@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Fidelity.h"
+
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+double Fidelity::Weight(Index i, const Values& u, Eigen::Index first, Eigen::Index last) const
+{
+  const double weight = this->Weight(i);
+  if (weight == 0.0 || this->Options.Norm == FidelityNorm::L2)
+  {
+    return weight;
+  }
+  const double squared =
+    (u.row(i) - this->Data.Given.row(i)).segment(first, last - first).squaredNorm();
+  return weight / std::sqrt(squared + this->Options.Rounding * this->Options.Rounding);
+}
+
+double Fidelity::Density(double squaredDistance) const
+{
+  if (this->Options.Norm == FidelityNorm::L2)
+  {
+    return 0.5 * squaredDistance;
+  }
+  // Free of cancellation if the distance is small.
+  const double delta = this->Options.Rounding;
+  return squaredDistance > 0.0
+    ? squaredDistance / (std::sqrt(squaredDistance + delta * delta) + delta)
+    : 0.0;
+}
+
+double Fidelity::Energy(
+  const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel) const
+{
+  if (!this->IsPresent())
+  {
+    return 0.0;
+  }
+  const ChannelCoupling coupling =
+    this->Options.Norm == FidelityNorm::L2 ? ChannelCoupling::Joint : this->Options.Coupling;
+  return Sum(parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      if (this->Data.Missing[i])
+      {
+        return 0.0;
+      }
+      const auto distance = u.row(i) - this->Sign(i, u) * this->Data.Given.row(i);
+      double density = 0.0;
+      ForEachNorm(coupling, static_cast<int>(u.cols()),
+        [&](int first, int last)
+        { density += this->Density(distance.segment(first, last - first).squaredNorm()); });
+      return mesh.ControlAreas()[i] * this->Options.Weight * density;
+    });
+}
+
+} // namespace SurfaceDiffusion

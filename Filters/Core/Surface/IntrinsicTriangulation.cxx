@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Surface/IntrinsicTriangulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+using Vec2 = Eigen::Vector2d;
+
+constexpr int Next(int a)
+{
+  return (a + 1) % 3;
+}
+constexpr int Last(int a)
+{
+  return (a + 2) % 3;
+}
+
+/// Of a triangle with sides a, b, c, the corner opposite c, with c from the origin to (c, 0).
+Vec2 Apex(double a, double b, double c)
+{
+  const double x = (c * c + (b - a) * (b + a)) / (2.0 * c);
+  // Kahan's stable product for needles: 16 area^2 from sorted lengths.
+  std::array<double, 3> s{ a, b, c };
+  std::sort(s.begin(), s.end());
+  const double squared = (s[2] + (s[1] + s[0])) * (s[0] - (s[2] - s[1])) * (s[0] + (s[2] - s[1])) *
+    (s[2] + (s[1] - s[0]));
+  return { x, 0.5 * std::sqrt(std::max(squared, 0.0)) / c };
+}
+
+Vec2 Apex(const std::array<double, 3>& lengths)
+{
+  return Apex(lengths[0], lengths[1], lengths[2]);
+}
+
+double Area(const std::array<double, 3>& lengths)
+{
+  return 0.5 * lengths[2] * Apex(lengths)[1];
+}
+
+/// The angle of side a in the triangle's own axes.
+double AngleOfSide(const std::array<double, 3>& lengths, int a)
+{
+  const std::array<Vec2, 3> corners{ Vec2(0.0, 0.0), Vec2(lengths[2], 0.0), Apex(lengths) };
+  const Vec2 direction = corners[Last(a)] - corners[Next(a)];
+  return std::atan2(direction[1], direction[0]);
+}
+
+/// False for a triangle that is degenerate in floating point: its weights would not be finite.
+bool IsProper(const std::array<double, 3>& lengths)
+{
+  constexpr double flat = 4.0 * std::numeric_limits<double>::epsilon(); // as in TriangleMesh
+  const double longest = std::max({ lengths[0], lengths[1], lengths[2] });
+  return lengths[2] * Apex(lengths)[1] > flat * longest * longest;
+}
+
+/// The side of the back of the same triangle, whose corners 1 and 2 are exchanged.
+Index BackOf(Index side, Index triangleCount)
+{
+  constexpr int behind[3] = { 0, 2, 1 };
+  return 3 * (triangleCount + side / 3) + behind[side % 3];
+}
+
+} // namespace
+
+IntrinsicTriangulation::IntrinsicTriangulation(const TriangleMesh& mesh)
+{
+  const std::vector<EdgeUse> uses = ListEdgeUses(mesh);
+  bool oneSheet = true; // every edge joins two triangles that run along it in opposite directions
+  for (std::size_t i = 0; i < uses.size() && oneSheet; i += 2)
+  {
+    oneSheet = i + 1 < uses.size() && uses[i].SameEdge(uses[i + 1]) &&
+      !(i + 2 < uses.size() && uses[i].SameEdge(uses[i + 2])) &&
+      uses[i].Ascending != uses[i + 1].Ascending;
+  }
+  this->TwoSheets = !oneSheet;
+  this->MakeSheets(mesh);
+  this->JoinSheets(uses, mesh.NumberOfTriangles());
+  this->Mollify(mesh);
+}
+
+/// Sorted by edge.
+std::vector<IntrinsicTriangulation::EdgeUse> IntrinsicTriangulation::ListEdgeUses(
+  const TriangleMesh& mesh)
+{
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      const Index from = mesh.TriangleVertices()(t, Next(a));
+      const Index to = mesh.TriangleVertices()(t, Last(a));
+      uses.push_back({ std::min(from, to), std::max(from, to), 3 * t + a, from < to });
+    }
+  }
+  std::sort(uses.begin(), uses.end(),
+    [](const EdgeUse& i, const EdgeUse& j)
+    { return std::tie(i.Low, i.High, i.Side) < std::tie(j.Low, j.High, j.Side); });
+  return uses;
+}
+
+void IntrinsicTriangulation::MakeSheets(const TriangleMesh& mesh)
+{
+  const Index count = mesh.NumberOfTriangles();
+  this->Triangles.resize((this->TwoSheets ? 2 : 1) * static_cast<std::size_t>(count));
+  for (Index t = 0; t < count; ++t)
+  {
+    const auto v = mesh.TriangleVertices().row(t);
+    const TriangleMesh::Shape& s = mesh.Shapes()[t];
+    const double l0 = s.EdgeLength(0);
+    const double l1 = s.EdgeLength(1);
+    this->Triangles[t] = { { v[0], v[1], v[2] }, { l0, l1, s.Length }, {} };
+    if (this->TwoSheets)
+    {
+      // The back is the triangle seen from behind: corners 1 and 2 exchanged.
+      this->Triangles[count + t] = { { v[0], v[2], v[1] }, { l0, s.Length, l1 }, {} };
+    }
+  }
+}
+
+void IntrinsicTriangulation::JoinSheets(const std::vector<EdgeUse>& uses, Index triangleCount)
+{
+  // The side of the front or of the back that runs in the given direction.
+  const auto sideOf = [&](const EdgeUse& use, bool ascending)
+  { return use.Ascending == ascending ? use.Side : BackOf(use.Side, triangleCount); };
+  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
+  {
+    while (end < uses.size() && uses[begin].SameEdge(uses[end]))
+    {
+      ++end;
+    }
+    if (!this->TwoSheets)
+    {
+      this->Join(uses[begin].Side, uses[begin + 1].Side);
+      continue;
+    }
+    // Around the edge, the ascending side of each triangle meets the descending side of the next
+    // one: any cyclic order gives nonnegative weights.
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      const EdgeUse& next = uses[k + 1 < end ? k + 1 : begin];
+      this->Join(sideOf(uses[k], true), sideOf(next, false));
+    }
+  }
+}
+
+void IntrinsicTriangulation::Join(Index side, Index other)
+{
+  this->Triangles[side / 3].Twins[side % 3] = other;
+  this->Triangles[other / 3].Twins[other % 3] = side;
+}
+
+/// Add one length to all edges, so that all triangle inequalities hold by a margin.
+void IntrinsicTriangulation::Mollify(const TriangleMesh& mesh)
+{
+  constexpr double relativeMargin = 1e-6; // of the mean edge length
+  const double margin =
+    relativeMargin * mesh.TotalEdgeLength() / std::max<Index>(1, mesh.NumberOfEdges());
+  double extra = 0.0;
+  for (const Triangle& t : this->Triangles)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      extra = std::max(extra, margin + t.Lengths[a] - t.Lengths[Next(a)] - t.Lengths[Last(a)]);
+    }
+  }
+  for (Triangle& t : this->Triangles)
+  {
+    for (double& length : t.Lengths)
+    {
+      length += extra;
+    }
+  }
+}
+
+double IntrinsicTriangulation::Cotangent(Index side) const
+{
+  const Triangle& t = this->Triangles[side / 3];
+  const int a = side % 3;
+  const double l = t.Lengths[a];
+  const Vec2 apex = Apex(t.Lengths[Next(a)], t.Lengths[Last(a)], l);
+  return apex[1] / l - (apex[0] / apex[1]) * ((l - apex[0]) / l);
+}
+
+bool IntrinsicTriangulation::IsDelaunay(Index side) const
+{
+  const Index twin = this->Twin(side);
+  if (twin / 3 == side / 3)
+  {
+    return true; // a cone around one vertex: nothing to flip
+  }
+  const double here = this->Cotangent(side);
+  const double there = this->Cotangent(twin);
+  // An edge of a triangle too flat to measure, whose cotangent is not a number, stays as it is.
+  constexpr double roundOff = 1e-10;
+  return !(here + there < -roundOff * (1.0 + std::abs(here) + std::abs(there)));
+}
+
+bool IntrinsicTriangulation::Flip(Index side, EdgeFlip& flip)
+{
+  const Index twin = this->Twin(side);
+  Triangle& first = this->Triangles[side / 3];
+  Triangle& second = this->Triangles[twin / 3];
+  const std::array<double, 3> f = first.Lengths;
+  const std::array<double, 3> g = second.Lengths;
+  const int a = side % 3;
+  const int b = twin % 3;
+  const double pq = f[a];
+  // P at the origin, Q at (pq, 0), A above and B below.
+  const Vec2 above = Apex(f[Next(a)], f[Last(a)], pq);
+  Vec2 below = Apex(g[Last(b)], g[Next(b)], pq);
+  below[1] = -below[1];
+  const double ab = (above - below).norm();
+  const std::array<double, 3> left{ g[Next(b)], ab, f[Last(a)] };
+  const std::array<double, 3> right{ f[Next(a)], ab, g[Last(b)] };
+  if (!IsProper(left) || !IsProper(right))
+  {
+    return false;
+  }
+  const Vec2 fromBToQ = Vec2(pq, 0.0) - below;
+  const double leftArea = Area(left);
+  flip = { side, twin, AngleOfSide(f, a), AngleOfSide(g, b), std::atan2(-above[1], -above[0]),
+    std::atan2(fromBToQ[1], fromBToQ[0]), leftArea / (leftArea + Area(right)) };
+  this->Relink(side, twin);
+  first.Lengths = left;
+  second.Lengths = right;
+  return true;
+}
+
+/// The vertices and neighbours of a flip.
+void IntrinsicTriangulation::Relink(Index side, Index twin)
+{
+  const Index first = side / 3;
+  const Index second = twin / 3;
+  const int a = side % 3;
+  const int b = twin % 3;
+  const Triangle f = this->Triangles[first];
+  const Triangle g = this->Triangles[second];
+  // The outer sides A P, Q A of the first triangle and B Q, P B of the second: old and new place.
+  const std::array<std::pair<Index, Index>, 4> outer{ { { 3 * first + Last(a), 3 * first + 2 },
+    { 3 * first + Next(a), 3 * second + 0 }, { 3 * second + Last(b), 3 * second + 2 },
+    { 3 * second + Next(b), 3 * first + 0 } } };
+  const auto moved = [&](Index old)
+  {
+    const auto place = std::find_if(
+      outer.begin(), outer.end(), [&](const auto& candidate) { return candidate.first == old; });
+    return place == outer.end() ? old : place->second;
+  };
+  const std::array<Index, 4> twins{ moved(f.Twins[Last(a)]), moved(f.Twins[Next(a)]),
+    moved(g.Twins[Last(b)]), moved(g.Twins[Next(b)]) };
+
+  const Index A = f.Vertices[a];
+  const Index P = f.Vertices[Next(a)];
+  const Index Q = f.Vertices[Last(a)];
+  const Index B = g.Vertices[b];
+  this->Triangles[first].Vertices = { A, P, B };
+  this->Triangles[second].Vertices = { B, Q, A };
+  this->Join(3 * first + 1, 3 * second + 1);
+  for (int k = 0; k < 4; ++k)
+  {
+    this->Join(outer[k].second, twins[k]);
+  }
+}
+
+std::shared_ptr<TriangleMesh> IntrinsicTriangulation::MakeMesh(
+  const TriangleMesh& mesh, const ParallelFor& parallel) const
+{
+  TriangleMesh::Contents contents;
+  const auto count = static_cast<Index>(this->Triangles.size());
+  contents.TriangleVertices.resize(count, 3);
+  contents.Shapes.resize(count);
+  for (Index t = 0; t < count; ++t)
+  {
+    const Triangle& triangle = this->Triangles[t];
+    const Vec2 apex = Apex(triangle.Lengths);
+    contents.Shapes[t] = { triangle.Lengths[2], apex[0], apex[1], this->TwoSheets ? 0.5 : 1.0 };
+    contents.TriangleVertices.row(t) << triangle.Vertices[0], triangle.Vertices[1],
+      triangle.Vertices[2];
+  }
+  contents.InputVertex = mesh.InputVertex();
+  contents.ComponentsBegin = mesh.ComponentsBegin();
+  contents.BoundaryVertices = mesh.BoundaryVertices();
+  contents.LengthUnit = mesh.LengthUnit();
+  contents.TotalEdgeLength = mesh.TotalEdgeLength();
+  contents.NumberOfEdges = mesh.NumberOfEdges();
+  contents.Diagnostics = mesh.Diagnostics();
+  return std::make_shared<TriangleMesh>(std::move(contents), parallel);
+}
+
+} // namespace SurfaceDiffusion

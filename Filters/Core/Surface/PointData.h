@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Types.h"
+
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+/// The data of a model on the vertices of a surface, all finite: values, initial state and
+/// Dirichlet conditions. Missing values have been filled in Start; Given is not read at those
+/// vertices.
+struct PointData
+{
+  Values Given; ///< f, n x k
+  Values Start; ///< u at t = 0, n x k
+  Flags Missing; ///< the hole of the data, where chi = 0: no fidelity term
+  Flags Fixed; ///< Dirichlet condition: u keeps its Start
+
+  /// Data that are known everywhere, without Dirichlet conditions.
+  static PointData FromValues(Values f)
+  {
+    PointData data;
+    data.Missing = Flags::Constant(f.rows(), false);
+    data.Fixed = data.Missing;
+    data.Start = f;
+    data.Given = std::move(f);
+    return data;
+  }
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,392 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/DomainDecomposition.h"
+
+#include "Core/Foundation/DisjointSets.h"
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Surface/TriangleMesh.h"
+
+#include "vtkDataArray.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr int ExchangeTag = 7403;
+
+} // namespace
+
+DomainDecomposition::DomainDecomposition(
+  const Processes& processes, const Surface& surface, const PointIdentity& identity)
+  : Reduction(Reduction::Kind::Distributed)
+  , Group(processes)
+{
+  this->FindInterfaceVertices(surface.InputMesh(), identity);
+  this->MergeComponents(surface.InputMesh(), identity);
+  this->FindInterfaceEdges(surface.InputMesh(), identity);
+  this->FindCopies(surface, identity);
+}
+
+void DomainDecomposition::Sum(double* numbers, Index count) const
+{
+  std::vector<double> here(numbers, numbers + count);
+  here.push_back(this->AbortAsked && *this->AbortAsked ? 1.0 : 0.0);
+  std::vector<double> all(here.size());
+  this->Group.Controller()->AllReduce(
+    here.data(), all.data(), static_cast<vtkIdType>(all.size()), vtkCommunicator::SUM_OP);
+  if (all.back() > 0.0)
+  {
+    throw Aborted();
+  }
+  std::copy_n(all.begin(), count, numbers);
+}
+
+void DomainDecomposition::Max(double* numbers, Index count) const
+{
+  const std::vector<double> here(numbers, numbers + count);
+  this->Group.Controller()->AllReduce(here.data(), numbers, count, vtkCommunicator::MAX_OP);
+}
+
+void DomainDecomposition::FindInterfaceVertices(
+  const TriangleMesh& mesh, const PointIdentity& identity)
+{
+  // A piece knows only from its own points that they have the labels of others. All processes
+  // exchange these labels, so that their owners know them too.
+  std::vector<vtkIdType> foreign;
+  for (std::size_t i = 0; i < identity.Labels.size(); ++i)
+  {
+    if (identity.Labels[i] != identity.FirstLabel + static_cast<vtkIdType>(i))
+    {
+      foreign.push_back(identity.Labels[i]);
+    }
+  }
+  foreign = this->Group.GatherAll(foreign);
+  const std::set<vtkIdType> shared(foreign.begin(), foreign.end());
+  std::vector<vtkIdType> labels;
+  std::map<vtkIdType, Index> vertexOf;
+  for (Index v = 0; v < mesh.NumberOfVertices(); ++v)
+  {
+    const vtkIdType label = identity.Labels[mesh.InputVertex()[v]];
+    if (shared.count(label) > 0)
+    {
+      labels.push_back(label);
+      vertexOf[label] = v;
+    }
+  }
+  const auto perProcess = this->Group.GatherPerProcess(labels);
+  for (int p = 0; p < this->Group.Count(); ++p)
+  {
+    for (const vtkIdType label : perProcess[p])
+    {
+      this->Holders[label].push_back(p);
+    }
+  }
+  this->OwnedVertices.assign(mesh.NumberOfVertices(), true);
+  for (const auto& [label, vertex] : vertexOf)
+  {
+    this->OwnedVertices[vertex] =
+      this->AddToInterface(this->Vertices, vertex, this->Holders[label]);
+  }
+}
+
+bool DomainDecomposition::IsOnInterface(vtkIdType label) const
+{
+  const auto holders = this->Holders.find(label);
+  return holders != this->Holders.end() && holders->second.size() > 1;
+}
+
+/// holders: the processes that have the item, ascending; the first owns it. Returns whether that is
+/// this process.
+bool DomainDecomposition::AddToInterface(
+  Interface& to, Index item, const std::vector<int>& holders) const
+{
+  const int owner = holders.front();
+  if (owner != this->Group.Rank())
+  {
+    to.Foreign[owner].push_back(item);
+    return false;
+  }
+  for (std::size_t h = 1; h < holders.size(); ++h)
+  {
+    to.Owned[holders[h]].push_back(item);
+  }
+  return true;
+}
+
+/// Components of pieces that share a vertex are parts of one component of the surface.
+void DomainDecomposition::MergeComponents(const TriangleMesh& mesh, const PointIdentity& identity)
+{
+  const std::vector<Index> counts = this->Group.GatherAll({ mesh.NumberOfComponents() });
+  const Index first = std::accumulate(counts.begin(), counts.begin() + this->Group.Rank(), 0);
+  std::vector<vtkIdType> pairs; // label, component numbered through all processes
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    for (Index v = mesh.ComponentsBegin()[c]; v < mesh.ComponentsBegin()[c + 1]; ++v)
+    {
+      const vtkIdType label = identity.Labels[mesh.InputVertex()[v]];
+      if (this->IsOnInterface(label))
+      {
+        pairs.push_back(label);
+        pairs.push_back(first + c);
+      }
+    }
+  }
+  pairs = this->Group.GatherAll(pairs);
+  DisjointSets connected(std::accumulate(counts.begin(), counts.end(), 0));
+  std::map<vtkIdType, Index> componentOf;
+  for (std::size_t i = 0; i < pairs.size(); i += 2)
+  {
+    const auto component = static_cast<Index>(pairs[i + 1]);
+    const auto known = componentOf.emplace(pairs[i], component).first;
+    connected.Join(component, known->second);
+  }
+  const std::vector<Index> numbers = connected.Labels();
+  this->NumberOfComponents =
+    numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1;
+  const auto own = numbers.begin() + first;
+  this->SurfaceComponent.assign(own, own + mesh.NumberOfComponents());
+}
+
+/// Edges of this process between vertices on interfaces.
+DomainDecomposition::EdgeMap DomainDecomposition::FindCandidateEdges(
+  const TriangleMesh& mesh, const PointIdentity& identity) const
+{
+  const auto labelOf = [&](Index vertex) { return identity.Labels[mesh.InputVertex()[vertex]]; };
+  EdgeMap edges;
+  const Triangles& corners = mesh.TriangleVertices();
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      const Index i = corners(t, (a + 1) % 3);
+      const Index j = corners(t, (a + 2) % 3);
+      if (this->IsOnInterface(labelOf(i)) && this->IsOnInterface(labelOf(j)))
+      {
+        edges[std::minmax(labelOf(i), labelOf(j))] = { { i, j }, mesh.Shapes()[t].EdgeLength(a) };
+      }
+    }
+  }
+  return edges;
+}
+
+void DomainDecomposition::FindInterfaceEdges(
+  const TriangleMesh& mesh, const PointIdentity& identity)
+{
+  const EdgeMap edges = this->FindCandidateEdges(mesh, identity);
+  std::vector<vtkIdType> ends;
+  for (const auto& edge : edges)
+  {
+    ends.push_back(edge.first.first);
+    ends.push_back(edge.first.second);
+  }
+  const auto perProcess = this->Group.GatherPerProcess(ends);
+  std::map<EdgeMap::key_type, std::vector<int>> holders;
+  for (int p = 0; p < this->Group.Count(); ++p)
+  {
+    for (std::size_t e = 0; e < perProcess[p].size(); e += 2)
+    {
+      const EdgeMap::key_type key(perProcess[p][e], perProcess[p][e + 1]);
+      if (edges.count(key) > 0)
+      {
+        holders[key].push_back(p);
+      }
+    }
+  }
+  for (const auto& [key, edge] : edges)
+  {
+    if (holders[key].size() > 1)
+    {
+      const auto number = static_cast<Index>(this->EdgesOnInterface.size());
+      const bool isOwned = this->AddToInterface(this->Edges, number, holders[key]);
+      this->EdgesOnInterface.push_back(edge.Vertices);
+      this->OwnedEdges.push_back(isOwned);
+      this->ForeignEdges += isOwned ? 0 : 1;
+      this->ForeignEdgeLength += isOwned ? 0.0 : edge.Length;
+    }
+  }
+}
+
+/// Finds the points that no triangle of this process uses (those of ghost cells, and those of
+/// excluded triangles only) and that other pieces have: as a vertex, or else as the point that owns
+/// them.
+void DomainDecomposition::FindCopies(const Surface& surface, const PointIdentity& identity)
+{
+  const int rank = this->Group.Rank();
+  const std::vector<vtkIdType> firsts = this->Group.GatherAll({ identity.FirstLabel });
+  const auto sourceOf = [&](vtkIdType label)
+  {
+    const auto holders = this->Holders.find(label);
+    if (holders != this->Holders.end())
+    {
+      return holders->second.front();
+    }
+    // A piece without points has the first label of the next one, which has the point.
+    const auto after = std::upper_bound(firsts.begin(), firsts.end(), label);
+    return static_cast<int>(after - firsts.begin()) - 1;
+  };
+  std::vector<vtkIdType> labels;
+  for (std::size_t i = 0; i < identity.Labels.size(); ++i)
+  {
+    const vtkIdType label = identity.Labels[i];
+    if (surface.VertexOf(static_cast<Index>(i)) < 0 && sourceOf(label) != rank)
+    {
+      labels.push_back(label);
+      this->Copies[sourceOf(label)].push_back(static_cast<vtkIdType>(i));
+      ++this->CopyCount;
+    }
+  }
+  std::map<vtkIdType, vtkIdType> pointOf; // of labels on interfaces that are vertices here
+  for (const Index point : surface.InputMesh().InputVertex())
+  {
+    if (this->Holders.count(identity.Labels[point]) > 0)
+    {
+      pointOf[identity.Labels[point]] = point;
+    }
+  }
+  const auto perProcess = this->Group.GatherPerProcess(labels);
+  for (int p = 0; p < this->Group.Count(); ++p)
+  {
+    for (const vtkIdType label : perProcess[p])
+    {
+      if (sourceOf(label) == rank)
+      {
+        const auto point = pointOf.find(label);
+        this->Originals[p].push_back(
+          point != pointOf.end() ? point->second : label - identity.FirstLabel);
+      }
+    }
+  }
+}
+
+/// The process of lower rank sends first.
+template <typename T>
+void DomainDecomposition::Exchange(
+  int other, const std::vector<T>& sent, std::vector<T>& received) const
+{
+  vtkMultiProcessController* const controller = this->Group.Controller();
+  for (const bool send : { this->Group.Rank() < other, this->Group.Rank() > other })
+  {
+    if (send && !sent.empty())
+    {
+      controller->Send(sent.data(), static_cast<vtkIdType>(sent.size()), other, ExchangeTag);
+    }
+    else if (!send && !received.empty())
+    {
+      controller->Receive(
+        received.data(), static_cast<vtkIdType>(received.size()), other, ExchangeTag);
+    }
+  }
+}
+
+namespace
+{
+
+/// The processes named in either, ascending.
+template <typename Map>
+std::set<int> FindPartners(const Map& a, const Map& b)
+{
+  std::set<int> partners;
+  for (const Map* map : { &a, &b })
+  {
+    for (const auto& entry : *map)
+    {
+      partners.insert(entry.first);
+    }
+  }
+  return partners;
+}
+
+template <typename Map>
+const typename Map::mapped_type& FindItems(const Map& map, int process)
+{
+  static const typename Map::mapped_type none;
+  const auto found = map.find(process);
+  return found == map.end() ? none : found->second;
+}
+
+} // namespace
+
+void DomainDecomposition::UpdateFromOwners(Values& values) const
+{
+  this->UpdateItems(this->Vertices, values.data(), static_cast<Index>(values.cols()));
+}
+
+void DomainDecomposition::UpdateFromOwners(std::vector<vtkIdType>& numbers) const
+{
+  this->UpdateItems(this->Vertices, numbers.data(), 1);
+}
+
+void DomainDecomposition::Accumulate(double* rows, Index columns) const
+{
+  this->AccumulateItems(this->Vertices, rows, columns);
+}
+
+void DomainDecomposition::AccumulateInterfaceEdges(double* ofEdges) const
+{
+  this->AccumulateItems(this->Edges, ofEdges, 1);
+}
+
+/// Each process sends `columns` numbers of type T for every item in `sent`, which read(item,
+/// numbers) fills in, and gives those it gets for the items in `received` to write(item, numbers).
+template <typename T, typename Items, typename Read, typename Write>
+void DomainDecomposition::ExchangeItems(const Items& sent, const Items& received,
+  std::size_t columns, const Read& read, const Write& write) const
+{
+  for (const int other : FindPartners(sent, received))
+  {
+    const auto& out = FindItems(sent, other);
+    const auto& in = FindItems(received, other);
+    std::vector<T> outgoing(out.size() * columns);
+    std::vector<T> incoming(in.size() * columns);
+    for (std::size_t i = 0; i < out.size(); ++i)
+    {
+      read(out[i], outgoing.data() + i * columns);
+    }
+    this->Exchange(other, outgoing, incoming);
+    for (std::size_t i = 0; i < in.size(); ++i)
+    {
+      write(in[i], incoming.data() + i * columns);
+    }
+  }
+}
+
+template <typename T>
+void DomainDecomposition::UpdateItems(const Interface& items, T* rows, Index columns) const
+{
+  const auto row = [&](Index item) { return rows + static_cast<std::ptrdiff_t>(item) * columns; };
+  this->ExchangeItems<T>(
+    items.Owned, items.Foreign, columns,
+    [&](Index item, T* numbers) { std::copy_n(row(item), columns, numbers); },
+    [&](Index item, const T* numbers) { std::copy_n(numbers, columns, row(item)); });
+}
+
+/// Owners add the values of the other processes, ordered by rank, and send the sums back.
+void DomainDecomposition::AccumulateItems(const Interface& items, double* rows, Index columns) const
+{
+  const auto row = [&](Index item) { return rows + static_cast<std::ptrdiff_t>(item) * columns; };
+  this->ExchangeItems<double>(
+    items.Foreign, items.Owned, columns,
+    [&](Index item, double* numbers) { std::copy_n(row(item), columns, numbers); },
+    [&](Index item, const double* numbers)
+    { std::transform(numbers, numbers + columns, row(item), row(item), std::plus<double>()); });
+  this->UpdateItems(items, rows, columns);
+}
+
+void DomainDecomposition::FillCopies(vtkDataArray* array) const
+{
+  this->ExchangeItems<double>(
+    this->Originals, this->Copies, static_cast<std::size_t>(array->GetNumberOfComponents()),
+    [&](vtkIdType point, double* tuple) { array->GetTuple(point, tuple); },
+    [&](vtkIdType point, const double* tuple) { array->SetTuple(point, tuple); });
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,257 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/InterfacePoints.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// Finds the points that the cells of a piece use, ghost cells not counted, and those on edges of
+/// one triangle.
+class OpenPoints
+{
+public:
+  /// candidates: the points that matter.
+  OpenPoints(vtkPolyData* data, const std::vector<char>& candidates)
+    : Candidates(candidates)
+    , Used(candidates.size(), 0)
+    , OnEdge(candidates.size(), 0)
+  {
+    vtkUnsignedCharArray* const ghosts = data->GetCellGhostArray();
+    const bool known = ghosts && ghosts->GetNumberOfTuples() == data->GetNumberOfCells();
+    const unsigned char* const flags = known ? ghosts->GetPointer(0) : nullptr;
+    vtkIdType cell = data->GetNumberOfVerts() + data->GetNumberOfLines();
+    this->AddCells(data->GetPolys(), flags ? flags + cell : nullptr, false);
+    cell += data->GetNumberOfPolys();
+    this->AddCells(data->GetStrips(), flags ? flags + cell : nullptr, true);
+    std::sort(this->Edges.begin(), this->Edges.end());
+    for (std::size_t begin = 0, end = 0; begin < this->Edges.size(); begin = end)
+    {
+      while (end < this->Edges.size() && this->Edges[end] == this->Edges[begin])
+      {
+        ++end;
+      }
+      if (end == begin + 1)
+      {
+        this->OnEdge[this->Edges[begin].first] = this->OnEdge[this->Edges[begin].second] = 1;
+      }
+    }
+  }
+
+  bool IsUsed(vtkIdType point) const { return this->Used[point] != 0; }
+  bool IsOnEdge(vtkIdType point) const { return this->OnEdge[point] != 0; }
+
+private:
+  void AddCells(vtkCellArray* cells, const unsigned char* ghosts, bool strips)
+  {
+    constexpr unsigned char ignored =
+      vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+    const vtkIdType count = cells ? cells->GetNumberOfCells() : 0;
+    const auto points = static_cast<vtkIdType>(this->Candidates.size());
+    for (vtkIdType c = 0; c < count; ++c)
+    {
+      vtkIdType size = 0;
+      const vtkIdType* ids = nullptr;
+      cells->GetCellAtId(c, size, ids);
+      if ((ghosts && (ghosts[c] & ignored)) ||
+        std::any_of(ids, ids + size, [&](vtkIdType id) { return id < 0 || id >= points; }))
+      {
+        continue; // the filter reports point ids out of range later
+      }
+      for (vtkIdType i = 0; i < size; ++i)
+      {
+        this->Used[ids[i]] = 1;
+      }
+      for (vtkIdType i = 0; strips && i + 2 < size; ++i)
+      {
+        const vtkIdType corners[3] = { ids[i], ids[i + 1], ids[i + 2] };
+        this->AddPolygon(3, corners);
+      }
+      if (!strips)
+      {
+        this->AddPolygon(size, ids);
+      }
+    }
+  }
+
+  void AddPolygon(vtkIdType size, const vtkIdType* ids)
+  {
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      const vtkIdType a = ids[i];
+      const vtkIdType b = ids[(i + 1) % size];
+      if (this->Candidates[a] || this->Candidates[b])
+      {
+        this->Edges.emplace_back(std::min(a, b), std::max(a, b));
+      }
+    }
+  }
+
+  const std::vector<char>& Candidates;
+  std::vector<char> Used, OnEdge;
+  std::vector<std::pair<vtkIdType, vtkIdType>> Edges;
+};
+
+/// Per point whether it lies inside the bounding box of another piece of the surface.
+std::vector<char> FindCandidates(const SurfacePiece& piece, std::size_t number,
+  const std::vector<PieceEntry>& list, double tolerance)
+{
+  const vtkIdType count = piece.Input->GetNumberOfPoints();
+  std::vector<char> candidates(count, 0);
+  for (std::size_t other = 0; other < list.size(); ++other)
+  {
+    vtkBoundingBox box = list[other].Box;
+    if (other == number || list[other].Surface != piece.Surface || !box.IsValid())
+    {
+      continue;
+    }
+    box.Inflate(tolerance);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const double* const x = piece.Input->GetPoint(i);
+      const bool finite = std::all_of(x, x + 3, [](double value) { return std::isfinite(value); });
+      candidates[i] = candidates[i] || (finite && box.ContainsPoint(x));
+    }
+  }
+  return candidates;
+}
+
+constexpr vtkIdType OpenFlag = 1;
+constexpr vtkIdType CopyFlag = 2;
+constexpr std::size_t IntegersPerPoint = 3; // piece, label, flags
+
+/// Interface points as they are sent: integers of all, then of each the id or the coordinates.
+struct Message
+{
+  std::vector<vtkIdType> Integers, GlobalIds;
+  std::vector<double> Coordinates;
+};
+
+void AppendPoints(const SurfacePiece& piece, std::size_t number,
+  const std::vector<PieceEntry>& list, double tolerance, bool byId, Message& message)
+{
+  vtkPolyData* const data = piece.Input;
+  const vtkIdType count = data->GetNumberOfPoints();
+  const std::vector<char> candidates = FindCandidates(piece, number, list, tolerance);
+  const OpenPoints open(data, candidates);
+  vtkUnsignedCharArray* const ghosts = data->GetPointGhostArray();
+  const auto ids = AsIdTypeArray(byId ? FindGlobalPointIds(data) : nullptr);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (!candidates[i])
+    {
+      continue;
+    }
+    const bool isDuplicate = ghosts && ghosts->GetNumberOfTuples() == count &&
+      (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+    const bool isUsed = open.IsUsed(i);
+    message.Integers.push_back(static_cast<vtkIdType>(number));
+    message.Integers.push_back(list[number].FirstLabel + i);
+    message.Integers.push_back(
+      (!isUsed || open.IsOnEdge(i) ? OpenFlag : 0) | (!isUsed || isDuplicate ? CopyFlag : 0));
+    if (ids)
+    {
+      message.GlobalIds.push_back(ids->GetValue(i));
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      message.Coordinates.push_back(data->GetPoint(i)[k] + 0.0); // -0 becomes 0
+    }
+  }
+}
+
+} // namespace
+
+vtkSmartPointer<vtkIdTypeArray> AsIdTypeArray(vtkDataArray* ids)
+{
+  vtkSmartPointer<vtkIdTypeArray> array = vtkIdTypeArray::SafeDownCast(ids);
+  if (ids && !array)
+  {
+    array = vtkSmartPointer<vtkIdTypeArray>::New();
+    array->DeepCopy(ids);
+  }
+  return array;
+}
+
+vtkDataArray* FindGlobalPointIds(vtkPolyData* data)
+{
+  vtkDataArray* ids = data->GetPointData()->GetGlobalIds();
+  const bool isUsable = ids && ids->GetNumberOfComponents() == 1 &&
+    ids->GetNumberOfTuples() == data->GetNumberOfPoints();
+  return isUsable ? ids : nullptr;
+}
+
+std::vector<PieceEntry> ListPieces(
+  const Processes& processes, const std::vector<SurfacePiece>& pieces)
+{
+  constexpr std::size_t width = 3; // process, surface, points
+  std::vector<vtkIdType> integers;
+  std::vector<double> bounds;
+  for (const SurfacePiece& piece : pieces)
+  {
+    integers.insert(
+      integers.end(), { processes.Rank(), piece.Surface, piece.Input->GetNumberOfPoints() });
+    const double* const box = piece.Input->GetBounds();
+    bounds.insert(bounds.end(), box, box + 6);
+  }
+  integers = processes.GatherAll(integers);
+  bounds = processes.GatherAll(bounds);
+  std::vector<PieceEntry> list;
+  vtkIdType label = 0;
+  for (std::size_t p = 0; p < integers.size() / width; ++p)
+  {
+    const vtkIdType* const entry = &integers[width * p];
+    list.push_back({ static_cast<int>(entry[0]), static_cast<int>(entry[1]), label,
+      vtkBoundingBox(&bounds[6 * p]) });
+    label += entry[2];
+  }
+  return list;
+}
+
+std::vector<InterfacePoint> GatherInterfacePoints(const Processes& processes,
+  const std::vector<SurfacePiece>& pieces, const std::vector<PieceEntry>& list, std::size_t first,
+  double tolerance, bool byId)
+{
+  Message message;
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+  {
+    AppendPoints(pieces[p], first + p, list, tolerance, byId, message);
+  }
+  message.Integers = processes.GatherAll(message.Integers);
+  message.GlobalIds = processes.GatherAll(message.GlobalIds);
+  message.Coordinates = processes.GatherAll(message.Coordinates);
+  std::vector<InterfacePoint> points(message.Integers.size() / IntegersPerPoint);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    InterfacePoint& point = points[i];
+    const vtkIdType* const integers = &message.Integers[IntegersPerPoint * i];
+    point.Piece = static_cast<int>(integers[0]);
+    point.Surface = list[point.Piece].Surface;
+    point.Label = integers[1];
+    point.IsOpen = (integers[2] & OpenFlag) != 0;
+    point.IsCopy = (integers[2] & CopyFlag) != 0;
+    point.GlobalId = byId ? message.GlobalIds[i] : 0;
+    point.Coordinates = { 0.0, 0.0, 0.0 };
+    if (!byId)
+    {
+      std::copy_n(&message.Coordinates[3 * i], 3, point.Coordinates.begin());
+    }
+  }
+  return points;
+}
+
+} // namespace SurfaceDiffusion

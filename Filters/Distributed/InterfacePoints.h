@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Distributed/Processes.h"
+#include "Distributed/SurfacePieces.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkIdTypeArray.h"
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <array>
+#include <vector>
+
+class vtkDataArray;
+
+namespace SurfaceDiffusion
+{
+
+/// A piece in the list that all processes have, ordered by process. Labels number the points of
+/// all pieces.
+struct PieceEntry
+{
+  int Process;
+  int Surface;
+  vtkIdType FirstLabel;
+  vtkBoundingBox Box;
+};
+
+/// A point of a piece that may be a point of other pieces too.
+struct InterfacePoint
+{
+  int Piece; ///< its number in the list
+  int Surface;
+  vtkIdType Label;
+  bool IsOpen; ///< on the edge of its piece, or used by no cell of its own
+  bool IsCopy; ///< used by no cell of its own, or flagged as a duplicate
+  vtkIdType GlobalId; ///< 0 if points are matched by their coordinates
+  std::array<double, 3> Coordinates; ///< zeros if points are matched by their ids
+};
+
+/// Global ids without rounding: the array itself, or a copy of an array of another type. Null for
+/// null.
+vtkSmartPointer<vtkIdTypeArray> AsIdTypeArray(vtkDataArray* ids);
+
+/// The global ids of the points, or null if they have none, one each.
+vtkDataArray* FindGlobalPointIds(vtkPolyData* data);
+
+/// The pieces of all processes. Collective.
+std::vector<PieceEntry> ListPieces(
+  const Processes& processes, const std::vector<SurfacePiece>& pieces);
+
+/// The points of all processes that lie inside the bounding box of another piece of the same
+/// surface, enlarged by the tolerance. list[first] is the first piece of this process. Collective.
+std::vector<InterfacePoint> GatherInterfacePoints(const Processes& processes,
+  const std::vector<SurfacePiece>& pieces, const std::vector<PieceEntry>& list, std::size_t first,
+  double tolerance, bool byId);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/PointMatching.h"
+
+#include "vtkMath.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+using Group = std::vector<std::size_t>; // of points
+
+/// Calls use(group) for the points of each surface with one id and the same coordinates, each group
+/// ordered by label and so by piece.
+template <typename Use>
+void ForEachGroup(const std::vector<InterfacePoint>& points, Group among, const Use& use)
+{
+  const auto key = [&](std::size_t p)
+  { return std::tie(points[p].Surface, points[p].GlobalId, points[p].Coordinates); };
+  std::sort(among.begin(), among.end(),
+    [&](std::size_t a, std::size_t b)
+    { return key(a) != key(b) ? key(a) < key(b) : points[a].Label < points[b].Label; });
+  for (std::size_t begin = 0, end = 0; begin < among.size(); begin = end)
+  {
+    while (end < among.size() && key(among[end]) == key(among[begin]))
+    {
+      ++end;
+    }
+    use(Group(among.begin() + begin, among.begin() + end));
+  }
+}
+
+/// Matches the points of a group: the k-th of each piece with the k-th of the others.
+class PointMatcher
+{
+public:
+  /// needsOpen: whether one of the points must lie on the edge of its piece.
+  PointMatcher(const std::vector<InterfacePoint>& points, bool needsOpen)
+    : Points(points)
+    , NeedsOpen(needsOpen)
+    , Owners(points.size())
+  {
+    std::iota(this->Owners.begin(), this->Owners.end(), std::size_t(0));
+  }
+
+  /// Appends the points that match no other to `unmatched`.
+  void MatchGroup(const Group& group, Group& unmatched)
+  {
+    std::map<std::pair<int, bool>, std::size_t> seen; // piece, copy: how many so far
+    std::map<std::size_t, Group> ordinals;
+    for (const std::size_t p : group)
+    {
+      ordinals[seen[{ this->Points[p].Piece, this->Points[p].IsCopy }]++].push_back(p);
+    }
+    for (const auto& ordinal : ordinals)
+    {
+      const Group& members = ordinal.second;
+      const bool haveSeveralPieces = this->AnyOf(members,
+        [&](const InterfacePoint& point)
+        { return point.Piece != this->Points[members.front()].Piece; });
+      const bool isOpen =
+        this->AnyOf(members, [](const InterfacePoint& point) { return point.IsOpen; });
+      if (!haveSeveralPieces || (this->NeedsOpen && !isOpen))
+      {
+        unmatched.insert(unmatched.end(), members.begin(), members.end());
+        continue;
+      }
+      // The first point that is no copy owns the others.
+      const auto original = std::find_if(
+        members.begin(), members.end(), [&](std::size_t p) { return !this->Points[p].IsCopy; });
+      const std::size_t owner = original == members.end() ? members.front() : *original;
+      for (const std::size_t p : members)
+      {
+        this->Owners[p] = owner;
+      }
+    }
+  }
+
+  std::vector<std::size_t> TakeOwners() { return std::move(this->Owners); }
+
+private:
+  template <typename Predicate>
+  bool AnyOf(const Group& group, const Predicate& predicate) const
+  {
+    return std::any_of(
+      group.begin(), group.end(), [&](std::size_t p) { return predicate(this->Points[p]); });
+  }
+
+  const std::vector<InterfacePoint>& Points;
+  const bool NeedsOpen;
+  std::vector<std::size_t> Owners;
+};
+
+/// Moves points within the tolerance of each other to the same coordinates, those of the first.
+/// Cubes of the tolerance's width hold the first points, so that 27 of them are searched.
+void SnapNearPoints(std::vector<InterfacePoint>& points, const Group& among, double tolerance)
+{
+  using Cube = std::array<double, 4>; // surface, and the position in a grid
+  const auto cubeOf = [&](const InterfacePoint& point)
+  {
+    Cube cube{ static_cast<double>(point.Surface), 0.0, 0.0, 0.0 };
+    for (int k = 0; k < 3; ++k)
+    {
+      cube[k + 1] = std::floor(point.Coordinates[k] / tolerance);
+    }
+    return cube;
+  };
+  std::map<Cube, Group> firsts;
+  for (const std::size_t p : among)
+  {
+    const Cube centre = cubeOf(points[p]);
+    const std::size_t* nearest = nullptr;
+    double distance = tolerance * tolerance;
+    for (int n = 0; n < 27; ++n)
+    {
+      const int shift[3] = { n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1 };
+      const auto found = firsts.find(
+        { centre[0], centre[1] + shift[0], centre[2] + shift[1], centre[3] + shift[2] });
+      if (found == firsts.end())
+      {
+        continue;
+      }
+      for (const std::size_t& first : found->second)
+      {
+        const double d = vtkMath::Distance2BetweenPoints(
+          points[first].Coordinates.data(), points[p].Coordinates.data());
+        if (d <= distance)
+        {
+          distance = d;
+          nearest = &first;
+        }
+      }
+    }
+    if (nearest)
+    {
+      points[p].Coordinates = points[*nearest].Coordinates;
+    }
+    else
+    {
+      firsts[centre].push_back(p);
+    }
+  }
+}
+
+} // namespace
+
+std::vector<std::size_t> MatchPoints(
+  std::vector<InterfacePoint> points, bool byId, double tolerance)
+{
+  PointMatcher matcher(points, !byId);
+  Group all(points.size()), unmatched, isolated;
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  ForEachGroup(points, all, [&](const Group& group) { matcher.MatchGroup(group, unmatched); });
+  if (!byId && tolerance > 0.0)
+  {
+    std::sort(unmatched.begin(), unmatched.end());
+    SnapNearPoints(points, unmatched, tolerance);
+    ForEachGroup(
+      points, unmatched, [&](const Group& group) { matcher.MatchGroup(group, isolated); });
+  }
+  return matcher.TakeOwners();
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/DataPreparation.h"
+
+#include "Core/Models/NoiseLevel.h"
+#include "Core/Operators/CotanWeights.h"
+
+namespace SurfaceDiffusion
+{
+
+void DescribeData(const DataSettings& settings, ModelTraits& traits)
+{
+  traits.NeedsDirections = settings.IsDirected();
+  traits.HoldsKnownValues = settings.HoldKnownValues;
+  traits.MaskHasEffect =
+    settings.InitialFill != InitialFill::Input || traits.UsesFidelity || settings.HoldKnownValues;
+}
+
+void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& result)
+{
+  FillMissing(
+    inputs.Surface.Mesh(), inputs.Data, settings.InitialFill, settings.RandomSeed, inputs.Ids);
+  ApplyHold(settings, inputs, result);
+}
+
+void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result)
+{
+  result.HasMissing = inputs.Data.Missing.any();
+  if (settings.HoldKnownValues)
+  {
+    inputs.Data.Fixed = inputs.Data.Fixed || !inputs.Data.Missing;
+  }
+}
+
+CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& inputs)
+{
+  const TriangleMesh& mesh = inputs.Surface.Mesh();
+  const CornerWeights isotropic = CotanWeights(mesh, inputs.Parallel);
+  return settings.IsDirected()
+    ? AnisotropicWeights(mesh, isotropic, inputs.Directions, settings.AlongDiffusivity,
+        settings.AcrossDiffusivity, inputs.Parallel)
+    : CornerWeights(settings.AlongDiffusivity * isotropic);
+}
+
+double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start,
+  const std::function<std::unique_ptr<Model>(double)>& makeModel)
+{
+  const double noise = noiseLevel > 0.0
+    ? noiseLevel / inputs.Units.ValueUnit
+    : EstimateNoiseLevel(*inputs.Surface.SharedAssembler(), inputs.Data);
+  const auto discrepancy = [&](double fidelity)
+  {
+    const std::unique_ptr<Model> model = makeModel(fidelity);
+    model->Advance(inputs.Progress.Part(0.5, 0.5));
+    return Discrepancy(inputs.Surface.Mesh(), inputs.Data, model->State());
+  };
+  return FindFidelityByDiscrepancy(discrepancy, noise, start);
+}
+
+} // namespace SurfaceDiffusion

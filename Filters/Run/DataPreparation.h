@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/ModelInputs.h"
+
+#include <functional>
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+/// The traits that models of given data share.
+void DescribeData(const DataSettings& settings, ModelTraits& traits);
+
+/// Fill the start on missing vertices, note whether there are any, and hold the known values if
+/// the settings say so.
+void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
+
+/// The second half of PrepareData(), for models that fill the start by themselves.
+void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
+
+/// The cotan weights times the constant diffusivities of the settings: the weights of (12).
+CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& inputs);
+
+/// The fidelity weight, in units of the numerics, at which the steady state differs from the data
+/// by the noise (discrepancy principle). noiseLevel: in array units; 0: estimated. makeModel: the
+/// model that reaches the steady state of a fidelity weight in one step.
+double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start,
+  const std::function<std::unique_ptr<Model>(double)>& makeModel);
+
+} // namespace SurfaceDiffusion

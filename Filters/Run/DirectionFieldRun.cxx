@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/DirectionFieldRun.h"
+
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// The default of SmoothingLength, in mean edge lengths.
+constexpr double DefaultSmoothing = 4.0;
+
+double RadiansFromDegrees(double degrees)
+{
+  return degrees * std::acos(-1.0) / 180.0;
+}
+
+} // namespace
+
+void DirectionFieldSettings::Visit(SettingVisitor& visitor)
+{
+  visitor.Choice({ "Method", "", "How the line field is made." }, this->Method,
+    { "PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints" });
+  visitor.Choice({ "PrincipalDirection", "",
+                   "The direction of the smallest or of the largest absolute curvature." },
+    this->PrincipalDirection, { "Minimum", "Maximum" }, {});
+  visitor.Number({ "SmoothingLength", "coordinates",
+                   "The full width at half maximum of the Gaussian that smooths the normals; -1: "
+                   "four mean edge lengths." },
+    this->SmoothingLength,
+    SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: four mean edge lengths"));
+  visitor.Number(
+    { "HintWeight", "1/h^2", "The weight of hints and curvatures against smoothness." },
+    this->HintWeight, SettingRange::Positive());
+  visitor.Number({ "Angle", "degrees", "The rotation of the field in the surface at the end." },
+    this->Angle, SettingRange::AnyFinite());
+  visitor.Switch(
+    { "MergeCoincidentPoints", "",
+      "Whether points within MergeTolerance are one point of the surface.", SettingScope::Surface },
+    this->MergeCoincidentPoints);
+  visitor.Number({ "MergeTolerance", "coordinates", "The largest distance of merged points.",
+                   SettingScope::Surface },
+    this->MergeTolerance, SettingRange::NonNegative());
+}
+
+void DirectionFieldSettings::Check(const FieldSummary* fields, Problems& problems)
+{
+  CheckRanges(*this, problems);
+  if (fields && this->Method == DirectionMethod::Hints && !fields->Directions)
+  {
+    problems.emplace_back("Method is Hints but DirectionArray is not set; allowed: an array of "
+                          "directions on points or cells");
+  }
+}
+
+double DirectionFieldRun::MeanEdgeLength() const
+{
+  const TriangleMesh& mesh = this->Domain->Mesh();
+  const double edges = mesh.NumberOfEdges();
+  return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges : 1.0;
+}
+
+void DirectionFieldRun::Update(
+  const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress)
+{
+  const SettingsSnapshot surfaceSettings(settings, SettingScope::Surface);
+  const SettingsSnapshot modelSettings(settings, SettingScope::Model);
+  if (!this->Domain || this->SurfaceVersion != input.SurfaceVersion ||
+    this->SurfaceSettings != surfaceSettings)
+  {
+    this->HasField = false;
+    this->Domain.reset();
+    SurfaceOptions options;
+    options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
+    options.MergeTolerance = settings.MergeTolerance;
+    this->Domain = std::make_unique<Surface>(
+      input.ReadSurface(), options, this->Parallel, progress.Part(0.0, 0.1));
+    this->SurfaceVersion = input.SurfaceVersion;
+    this->SurfaceSettings = surfaceSettings;
+    this->WarnAgain = true;
+  }
+  if (this->HasField && this->FieldsVersion == input.FieldsVersion &&
+    this->ModelSettings == modelSettings)
+  {
+    return;
+  }
+  this->HasField = false;
+  const TriangleMesh& mesh = this->Domain->Mesh();
+  const double h = this->MeanEdgeLength() / mesh.LengthUnit();
+  DirectionSettings core;
+  core.Method = settings.Method;
+  core.Perpendicular = settings.PrincipalDirection == 1;
+  core.SmoothingLength = settings.SmoothingLength == -1.0
+    ? DefaultSmoothing * h
+    : settings.SmoothingLength / mesh.LengthUnit();
+  core.HintWeight = settings.HintWeight / (h * h);
+  core.Angle = RadiansFromDegrees(settings.Angle);
+  const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
+  this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
+    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0));
+  this->FieldsVersion = input.FieldsVersion;
+  this->ModelSettings = modelSettings;
+  this->HasField = true;
+}
+
+std::vector<std::string> DirectionFieldRun::TakeWarnings()
+{
+  std::vector<std::string> warnings;
+  const Index degenerate = this->Domain->Diagnostics().DegenerateTriangles;
+  if (this->WarnAgain && degenerate > 0)
+  {
+    warnings.push_back(std::to_string(degenerate) + " triangles of zero area get no direction");
+  }
+  this->WarnAgain = false;
+  return warnings;
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Geometry/DirectionField.h"
+#include "Run/Run.h"
+
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+/// Line fields on surfaces: principal curvature, the smoothest line field, or from hints.
+struct DirectionFieldSettings : Settings
+{
+  DirectionMethod Method = DirectionMethod::PrincipalCurvature;
+  int PrincipalDirection = 0; ///< 0: minimum, 1: maximum curvature
+  double SmoothingLength = -1.0;
+  double HintWeight = 0.1;
+  double Angle = 0.0;
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+
+  void Visit(SettingVisitor& visitor) override;
+  /// Problems of the settings, and with `fields` those of settings and arrays together.
+  void Check(const FieldSummary* fields, Problems& problems);
+};
+
+/// The line field of one surface, kept as long as neither inputs nor settings change.
+class DirectionFieldRun
+{
+public:
+  explicit DirectionFieldRun(const ParallelFor& parallel)
+    : Parallel(parallel)
+  {
+  }
+
+  /// Only Directions of the fields are read. Throws std::runtime_error, std::bad_alloc, Aborted.
+  void Update(
+    const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress);
+
+  const Surface& GetSurface() const { return *this->Domain; }
+  /// e1 per triangle of the surface's InputMesh().
+  const TangentVectors& Directions() const { return this->Field; }
+  /// In coordinate units.
+  double MeanEdgeLength() const;
+  /// Warnings that were not taken before.
+  std::vector<std::string> TakeWarnings();
+
+private:
+  const ParallelFor& Parallel;
+  Fingerprint SurfaceVersion, FieldsVersion;
+  SettingsSnapshot SurfaceSettings, ModelSettings;
+  std::unique_ptr<Surface> Domain;
+  TangentVectors Field;
+  bool HasField = false;
+  bool WarnAgain = true;
+};
+
+} // namespace SurfaceDiffusion

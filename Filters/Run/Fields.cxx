@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/Fields.h"
+
+#include "Core/Surface/TangentVectors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+bool IsSet(const std::vector<char>& flags, Eigen::Index i)
+{
+  return !flags.empty() && flags[static_cast<std::size_t>(i)] != 0;
+}
+
+std::runtime_error PointError(
+  const Fields& fields, Eigen::Index point, const char* found, const char* allowed)
+{
+  std::ostringstream text;
+  text << fields.DataName << " " << found << " at point " << point << "; " << allowed;
+  return std::runtime_error(text.str());
+}
+
+} // namespace
+
+void ValueStatistics::Widen(std::size_t component, double low, double high)
+{
+  if (component >= this->Low.size())
+  {
+    this->Low.resize(component + 1, Infinity);
+    this->High.resize(component + 1, -Infinity);
+  }
+  this->Low[component] = std::min(this->Low[component], low);
+  this->High[component] = std::max(this->High[component], high);
+}
+
+void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint)
+{
+  const Values& values = fields.Data;
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
+  {
+    if (surface.VertexOf(static_cast<Index>(i)) < 0 || !values.row(i).allFinite())
+    {
+      continue;
+    }
+    this->Largest = std::max(this->Largest, values.row(i).cwiseAbs().maxCoeff());
+    if (inpaint && IsSet(fields.Mask, i) && !IsSet(fields.Fixed, i))
+    {
+      continue;
+    }
+    for (Eigen::Index k = 0; k < values.cols(); ++k)
+    {
+      this->Widen(static_cast<std::size_t>(k), values(i, k), values(i, k));
+    }
+  }
+}
+
+void ValueStatistics::Merge(const ValueStatistics& other)
+{
+  this->Largest = std::max(this->Largest, other.Largest);
+  for (std::size_t k = 0; k < other.Low.size(); ++k)
+  {
+    this->Widen(k, other.Low[k], other.High[k]);
+  }
+}
+
+void ValueStatistics::Merge(const ProcessGroup& processes)
+{
+  if (!processes.IsShared())
+  {
+    return;
+  }
+  // Components, magnitude, low and high of each process. A process without data has no components.
+  std::vector<double> mine = { static_cast<double>(this->Low.size()), this->Largest };
+  mine.insert(mine.end(), this->Low.begin(), this->Low.end());
+  mine.insert(mine.end(), this->High.begin(), this->High.end());
+  const std::vector<double> all = processes.GatherAll(mine);
+  for (std::size_t i = 0; i < all.size();)
+  {
+    const auto components = static_cast<std::size_t>(all[i]);
+    this->Largest = std::max(this->Largest, all[i + 1]);
+    for (std::size_t k = 0; k < components; ++k)
+    {
+      this->Widen(k, all[i + 2 + k], all[i + 2 + components + k]);
+    }
+    i += 2 + 2 * components;
+  }
+}
+
+double ValueStatistics::Range() const
+{
+  double range = 0.0;
+  for (std::size_t k = 0; k < this->Low.size(); ++k)
+  {
+    range = std::max(range, this->High[k] - this->Low[k]);
+  }
+  return range > 0.0 ? range : 1.0;
+}
+
+PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit)
+{
+  const Index n = surface.Mesh().NumberOfVertices();
+  const Values& values = fields.Data;
+  PointData data;
+  data.Given = Values::Zero(n, values.cols());
+  data.Missing = Flags::Constant(n, true);
+  data.Fixed = Flags::Constant(n, false);
+  Values damaged = data.Given; // the value of a vertex without any known point
+  std::vector<Index> known(static_cast<std::size_t>(n), 0);
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
+  {
+    if (values.row(i).array().isInf().any())
+    {
+      throw PointError(fields, i, "is infinite", "allowed: finite values and NaN");
+    }
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v < 0)
+    {
+      continue;
+    }
+    const bool isFixed = IsSet(fields.Fixed, i);
+    const bool isNaN = values.row(i).hasNaN();
+    if (isFixed && isNaN)
+    {
+      throw PointError(
+        fields, i, "is NaN where FixedArray holds it", "allowed there: finite values");
+    }
+    data.Fixed[v] = data.Fixed[v] || isFixed;
+    damaged.row(v) = values.row(i) / unit;
+    if (isFixed || !(isNaN || (inpaint && IsSet(fields.Mask, i))))
+    {
+      data.Given.row(v) += values.row(i) / unit;
+      data.Missing[v] = false;
+      ++known[static_cast<std::size_t>(v)];
+    }
+  }
+  for (Index v = 0; v < n; ++v)
+  {
+    const Index count = known[static_cast<std::size_t>(v)];
+    if (count == 0)
+    {
+      data.Given.row(v) = damaged.row(v);
+    }
+    else if (count > 1)
+    {
+      data.Given.row(v) /= count;
+    }
+  }
+  return data;
+}
+
+TangentVectors MakeDirections(
+  const Surface& surface, const Fields& fields, const ParallelFor& parallel)
+{
+  if (fields.Directions.rows() == 0)
+  {
+    return TangentVectors(0, 2);
+  }
+  if (!fields.DirectionsOnTriangles)
+  {
+    return TransportToMesh(surface,
+      TangentVectorsFromPointVectors(
+        surface.InputMesh(), surface.Points(), surface.Triangles(), fields.Directions, parallel));
+  }
+  SurfaceDiffusion::Points ofTriangles(surface.Triangles().rows(), 3);
+  for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
+  {
+    ofTriangles.row(t) = fields.Directions.row(surface.InputTriangle(static_cast<Index>(t)));
+  }
+  return TransportToMesh(surface,
+    TangentVectorsFromTriangleVectors(
+      surface.InputMesh(), surface.Points(), surface.Triangles(), ofTriangles, parallel));
+}
+
+std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields)
+{
+  const TriangleMesh& mesh = surface.Mesh();
+  std::vector<std::int64_t> ids(static_cast<std::size_t>(mesh.NumberOfVertices()));
+  for (std::size_t v = 0; v < ids.size(); ++v)
+  {
+    const Index point = mesh.InputVertex()[v];
+    ids[v] = fields.Ids.empty() ? point : fields.Ids[static_cast<std::size_t>(point)];
+  }
+  return ids;
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Model.h"
+#include "Run/ProcessGroup.h"
+#include "Run/RunSettings.h"
+#include "Run/Surface.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// The input arrays of a run on one surface.
+struct Fields
+{
+  /// f, one row per input point and one column per component; no column if there are no data. NaN
+  /// in any component of a point means that the point is missing.
+  Values Data;
+  std::string DataName = "InputArray"; ///< for error messages
+  std::vector<char> Mask; ///< per point, nonzero: missing or excluded; may be empty
+  std::vector<char> Fixed; ///< per point, nonzero: Dirichlet; may be empty
+  /// e1, per point or per input triangle; no row if there are no directions. Finite or NaN.
+  SurfaceDiffusion::Points Directions;
+  bool DirectionsOnTriangles = false;
+  /// Diffusion rates of a texture, per input triangle; no row if there are none.
+  Values Rates;
+  std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: the point's index
+};
+
+/// The extreme known values of each component, over several surfaces and processes.
+class ValueStatistics
+{
+public:
+  /// Count the finite values at points of participating triangles; those that are missing count
+  /// for Magnitude() alone. inpaint: whether a mask means missing.
+  void Add(const Surface& surface, const Fields& fields, bool inpaint);
+  void Merge(const ValueStatistics& other);
+  void Merge(const ProcessGroup& processes);
+
+  /// R: the largest over the components of max - min; 1 if no value differs.
+  double Range() const;
+  /// The largest magnitude.
+  double Magnitude() const { return this->Largest; }
+
+private:
+  void Widen(std::size_t component, double low, double high);
+
+  std::vector<double> Low, High;
+  double Largest = 0.0;
+};
+
+/// Given, Missing and Fixed of the vertices, with values divided by `unit`. Points that are merged
+/// into one vertex give it the mean of the known ones. Throws std::runtime_error on infinite values
+/// and on points that are fixed at NaN.
+PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit);
+
+/// e1 on the triangles of surface.Mesh(); no row if there are no directions.
+TangentVectors MakeDirections(
+  const Surface& surface, const Fields& fields, const ParallelFor& parallel);
+
+/// A number per vertex that identifies it in random numbers.
+std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/HarmonicMapSettings.h"
+
+#include "Core/Models/UnitVectors.h"
+#include "Run/DataPreparation.h"
+#include "Run/ModelInputs.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// The length over which MoveVertices adapts the shape, in mean edge lengths: noise is shorter, the
+/// shape longer. Measured on noisy spheres and on fandisk.
+constexpr double UpdateRange = 5.0;
+
+} // namespace
+
+void HarmonicMapSettings::Visit(SettingVisitor& visitor)
+{
+  this->DataSettings::Visit(visitor);
+  visitor.Number({ "Exponent", "", "p: 1 keeps creases, 2 smooths evenly." }, this->Exponent,
+    SettingRange::Between(1.0, 2.0, "numbers from 1 to 2"));
+  visitor.Number(
+    { "Beta", "1/h^2", "beta in |grad u|^2 + beta." }, this->Beta, SettingRange::NonNegative());
+  visitor.Choice(
+    { "Scheme", "",
+      "The scheme of a step: the paper's explicit reaction, one descent in the tangent "
+      "spaces, or that repeated until backward Euler is solved." },
+    this->Scheme, { "ExplicitReaction", "TangentPlane", "MinimizingMovement" });
+  visitor.Switch({ "ConsistentReaction", "",
+                   "Whether ExplicitReaction has the reaction u g |grad u|^2 that balances the "
+                   "diffusion." },
+    this->ConsistentReaction);
+  visitor.Switch({ "ProjectToSphere", "", "Whether vectors are normalised after each step." },
+    this->ProjectToSphere);
+  visitor.Switch({ "LineField", "", "Whether u and -u are the same." }, this->LineField);
+  visitor.Switch({ "MoveVertices", "",
+                   "Whether the points are moved so that the triangles' normals match the result.",
+                   SettingScope::Output },
+    this->MoveVertices);
+}
+
+void HarmonicMapSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
+{
+  this->DataSettings::CheckTogether(fields, problems);
+  Require(this->Exponent == 2.0 || this->Beta != 0.0, "Beta", this->Beta, "finite numbers above 0",
+    problems);
+}
+
+ModelTraits HarmonicMapSettings::DescribeModel() const
+{
+  ModelTraits traits;
+  traits.NumberOfSteps = this->NumberOfTimeSteps;
+  traits.TimeStep = this->TimeStep;
+  traits.AbsoluteTime = this->IsAbsolute();
+  traits.Time = { this->Exponent, 0.0 };
+  traits.Energy = { 2.0 - this->Exponent, 0.0 };
+  traits.HasValueRange = false;
+  traits.UsesFidelity = this->FidelityWeight > 0.0;
+  traits.CanBeDistributed = !this->MoveVertices;
+  DescribeData(*this, traits);
+  return traits;
+}
+
+SolverTask HarmonicMapSettings::MakeTask(const ModelInputs& inputs, double timeStep) const
+{
+  SolverTask task;
+  task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
+  task.DiffusionNumber =
+    this->LargestDiffusivity() * timeStep / std::pow(inputs.Units.CoreEdgeLength(), this->Exponent);
+  task.NumberOfSolves = this->Exponent == 2.0 ? this->NumberOfTimeSteps : 1.0;
+  task.IsPreconditioner = this->Scheme != HarmonicMap::Scheme::ExplicitReaction;
+  return task;
+}
+
+std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult& result) const
+{
+  FillMissingUnitVectors(inputs.Surface.Mesh(), inputs.Data, this->LineField, this->InitialFill,
+    this->RandomSeed, inputs.Ids);
+  if (inputs.Processes.Any((inputs.Data.Fixed && inputs.Data.Missing).any()))
+  {
+    throw std::runtime_error("InputArray has a vector of length zero where FixedArray holds it; "
+                             "fixed vectors must have a direction");
+  }
+  ApplyHold(*this, inputs, result);
+  result.EffectiveFidelityWeight = this->FidelityWeight;
+
+  const double p = this->Exponent;
+  const double fastest = this->LargestDiffusivity();
+  HarmonicMap::Settings settings;
+  settings.Exponent = p;
+  settings.TimeStep = inputs.Units.ToCore(this->TimeStep, p, 0.0);
+  settings.Beta = inputs.Units.ToCore(this->Beta, -2.0, 0.0);
+  settings.Fidelity = inputs.Units.ToCore(this->FidelityWeight, -p, 0.0);
+  settings.TimeScheme = this->Scheme;
+  settings.ConsistentReaction = this->ConsistentReaction;
+  settings.ProjectToSphere = this->ProjectToSphere;
+  settings.LineField = this->LineField;
+  settings.LargestDiffusivity = fastest > 0.0 ? fastest : 1.0;
+  settings.Limits.Tolerance = this->Tolerance;
+  settings.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
+  const bool distributed = !inputs.Surface.Mesh().GetReduction().IsSerial();
+  if (this->Solver == SolverMethod::Direct ||
+    (this->Solver == SolverMethod::Multigrid && distributed))
+  {
+    settings.Method = HarmonicMap::Preconditioner::Factor;
+  }
+  else if (this->Solver == SolverMethod::ConjugateGradient)
+  {
+    settings.Method = HarmonicMap::Preconditioner::Jacobi;
+  }
+  const auto solver =
+    inputs.Solvers.Find(SolverPurpose::Step, this->MakeTask(inputs, settings.TimeStep));
+  return std::make_unique<HarmonicMap>(inputs.Surface.SharedAssembler(), MakeWeights(*this, inputs),
+    std::move(inputs.Data), settings, solver, inputs.Parallel);
+}
+
+void HarmonicMapSettings::Finish(const RunState& state, RunResult& result) const
+{
+  result.MovedPoints.resize(0, 3);
+  result.Motion = VertexMotion();
+  if (!this->MoveVertices)
+  {
+    return;
+  }
+  const Surface& surface = state.Surface;
+  const TriangleMesh& mesh = surface.InputMesh();
+  IterationLimits limits;
+  limits.Tolerance = this->Tolerance;
+  limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
+  const Points moved = UpdateVerticesFromNormals(mesh, surface.Points(), state.Path.State(),
+    UpdateRange * state.Units.MeanEdgeLength, result.Motion, limits, state.Parallel,
+    state.Progress);
+  result.MovedPoints = surface.Points();
+  for (Eigen::Index i = 0; i < moved.rows(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0) // points merged into one vertex move together
+    {
+      const Index vertex = mesh.InputVertex()[static_cast<std::size_t>(v)];
+      result.MovedPoints.row(i) += moved.row(vertex) - surface.Points().row(vertex);
+    }
+  }
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/HarmonicMap.h"
+#include "Run/RunSettings.h"
+
+namespace SurfaceDiffusion
+{
+
+/// The flow of p-harmonic maps into the unit sphere,
+/// u_t = div(|grad u|^(p-2) grad u) + u |grad u|^p + lambda chi (f - u), |u| = 1: (20), (21).
+struct HarmonicMapSettings : DataSettings
+{
+  double Exponent = 1.0;
+  double Beta = 1e-6;
+  HarmonicMap::Scheme Scheme = HarmonicMap::Scheme::TangentPlane;
+  bool ConsistentReaction = false;
+  bool ProjectToSphere = true;
+  bool LineField = false;
+  bool MoveVertices = false;
+
+  void Visit(SettingVisitor& visitor) override;
+  ModelTraits DescribeModel() const override;
+  std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
+  void Finish(const RunState& state, RunResult& result) const override;
+
+protected:
+  std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
+  void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
+
+private:
+  SolverTask MakeTask(const ModelInputs& inputs, double timeStep) const;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/HeatSettings.h"
+
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Models/NoiseLevel.h"
+#include "Run/DataPreparation.h"
+#include "Run/ModelInputs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+void HeatSettings::Visit(SettingVisitor& visitor)
+{
+  this->DataSettings::Visit(visitor);
+  visitor.Choice(
+    { "Mode", "",
+      "TimeSteps: NumberOfTimeSteps steps. SteadyState: the limit of infinite time, in "
+      "one solve." },
+    this->Mode, { "TimeSteps", "SteadyState" });
+  visitor.Number({ "FWHM", "coordinates",
+                   "The full width at half maximum of the Gaussian that the data are convolved "
+                   "with; 0: off. The run takes the time FWHM^2 / (16 ln 2)." },
+    this->FWHM, SettingRange::NonNegative());
+  visitor.Switch({ "AutomaticFidelity", "",
+                   "Whether lambda is chosen by the discrepancy principle (Morozov 1966)." },
+    this->AutomaticFidelity);
+  visitor.Number({ "NoiseLevel", "values",
+                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated." },
+    this->NoiseLevel, SettingRange::NonNegative());
+}
+
+void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
+{
+  this->DataSettings::CheckTogether(fields, problems);
+  if (!(this->FWHM > 0.0))
+  {
+    return;
+  }
+  const char* const off = "0 together with FWHM, whose width it would change";
+  Require(this->FidelityWeight == 0.0, "FidelityWeight", this->FidelityWeight, off, problems);
+  Require(!this->AutomaticFidelity, "AutomaticFidelity", 1.0, off, problems);
+  const char* const one = "1 together with FWHM, whose width it would change";
+  Require(this->AlongDiffusivity == 1.0, "AlongDiffusivity", this->AlongDiffusivity, one, problems);
+  Require(
+    this->AcrossDiffusivity == 1.0, "AcrossDiffusivity", this->AcrossDiffusivity, one, problems);
+  Require(this->Mode == HeatMode::TimeSteps, "Mode", static_cast<double>(this->Mode),
+    "0 TimeSteps together with FWHM: a steady state has no width", problems);
+}
+
+ModelTraits HeatSettings::DescribeModel() const
+{
+  ModelTraits traits;
+  traits.NumberOfSteps = this->Mode == HeatMode::SteadyState ? 1 : this->NumberOfTimeSteps;
+  traits.TimeStep = this->FWHM > 0.0
+    ? this->FWHM * this->FWHM / (16.0 * std::log(2.0)) / std::max(1, this->NumberOfTimeSteps)
+    : this->TimeStep;
+  traits.AbsoluteTime = this->FWHM > 0.0 || this->IsAbsolute();
+  traits.Time = { 2.0, 0.0 };
+  traits.Energy = { 0.0, 2.0 };
+  traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
+  traits.CanBeDistributed = !this->AutomaticFidelity;
+  DescribeData(*this, traits);
+  return traits;
+}
+
+std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result) const
+{
+  PrepareData(*this, inputs, result);
+  const TriangleMesh& mesh = inputs.Surface.Mesh();
+  const CornerWeights weights = MakeWeights(*this, inputs);
+  const ModelTraits traits = this->DescribeModel();
+
+  UnitSystem timeUnits = inputs.Units;
+  timeUnits.Natural = !traits.AbsoluteTime;
+  const double fidelityUnit = timeUnits.ToCore(1.0, -2.0, 0.0);
+  const bool secondOrder = this->TimeIntegrator == SurfaceDiffusion::TimeIntegrator::SecondOrder;
+  LinearDiffusion::Settings settings;
+  settings.TimeStep = timeUnits.ToCore(traits.TimeStep, traits.Time);
+  settings.Fidelity = this->FidelityWeight * fidelityUnit;
+  settings.TimeScheme =
+    secondOrder ? LinearDiffusion::Scheme::SDIRK2 : LinearDiffusion::Scheme::BackwardEuler;
+
+  const double h = inputs.Units.CoreEdgeLength();
+  SolverTask task;
+  task.NumberOfVertices = mesh.NumberOfVertices();
+  task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
+  task.NumberOfSolves = secondOrder ? 2.0 * traits.NumberOfSteps : traits.NumberOfSteps;
+  if (this->Mode == HeatMode::SteadyState)
+  {
+    settings.TimeScheme = LinearDiffusion::Scheme::SteadyState;
+    task.DiffusionNumber.reset();
+  }
+
+  result.EffectiveFidelityWeight = this->FidelityWeight;
+  if (this->AutomaticFidelity)
+  {
+    const auto solver = inputs.Solvers.Find(SolverPurpose::Search, task);
+    const auto solve = [&](double fidelity)
+    {
+      LinearDiffusion::Settings steady;
+      steady.Fidelity = fidelity;
+      steady.TimeScheme = LinearDiffusion::Scheme::SteadyState;
+      return std::make_unique<LinearDiffusion>(
+        inputs.Surface.SharedAssembler(), weights, inputs.Data, steady, solver, inputs.Parallel);
+    };
+    settings.Fidelity = FindFidelity(inputs, this->NoiseLevel, 1.0 / (h * h), solve);
+    result.EffectiveFidelityWeight = settings.Fidelity / fidelityUnit;
+  }
+  return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
+    std::move(inputs.Data), settings, inputs.Solvers.Find(SolverPurpose::Step, task),
+    inputs.Parallel);
+}
+
+} // namespace SurfaceDiffusion

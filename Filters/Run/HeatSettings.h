@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/RunSettings.h"
+
+namespace SurfaceDiffusion
+{
+
+enum class HeatMode
+{
+  TimeSteps,
+  SteadyState ///< the limit of infinite time, in one solve
+};
+
+/// Linear diffusion with fidelity, u_t = div(D grad u) + lambda chi (f - u): (1), (4), (16), (18).
+struct HeatSettings : DataSettings
+{
+  HeatMode Mode = HeatMode::TimeSteps;
+  double FWHM = 0.0; ///< in coordinate units; 0: TimeStep is used
+  bool AutomaticFidelity = false;
+  double NoiseLevel = 0.0;
+
+  HeatSettings() { this->TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder; }
+
+  void Visit(SettingVisitor& visitor) override;
+  ModelTraits DescribeModel() const override;
+  std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
+
+protected:
+  std::vector<bool> AllowedIntegrators() const override { return { true, true, false }; }
+  void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Geometry/VertexUpdating.h"
+#include "Core/Models/Trajectory.h"
+#include "Run/Fields.h"
+#include "Run/SolverStore.h"
+#include "Run/Units.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// What a model is made from: one surface with its fields, in units of the numerics.
+struct ModelInputs
+{
+  const SurfaceDiffusion::Surface& Surface;
+  UnitSystem Units;
+  PointData Data; ///< in ValueUnit; Start is not filled yet
+  TangentVectors Directions; ///< e1 per triangle of Surface.Mesh(); no row if there is none
+  Values Rates; ///< as in Fields
+  std::vector<std::int64_t> Ids; ///< per vertex, for random numbers
+  const ParallelFor& Parallel;
+  ProgressMonitor Progress;
+  SolverStore& Solvers;
+  const ProcessGroup& Processes;
+};
+
+/// A run on one surface at its current step.
+struct RunState
+{
+  const SurfaceDiffusion::Surface& Surface;
+  const UnitSystem& Units;
+  const Trajectory& Path;
+  const ParallelFor& Parallel;
+  ProgressMonitor Progress;
+};
+
+/// What a run on one surface gives beside its states.
+struct RunResult
+{
+  bool HasMissing = false;
+  double EffectiveFidelityWeight = 0.0; ///< lambda, in the unit of FidelityWeight
+  double Wavelength = 0.0; ///< of a texture, in coordinate units
+  double WavelengthGrowthRate = 0.0;
+  double DiffusionRateFactor = 1.0;
+  std::array<double, 2> ContrastLimits = { 0.0, 1.0 }; ///< of a texture, at the current step
+  Points MovedPoints; ///< per input point, if vertices were moved; otherwise no row
+  VertexMotion Motion;
+  bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
+  std::vector<std::string> Warnings;
+};
+
+} // namespace SurfaceDiffusion

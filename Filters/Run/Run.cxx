@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/Run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+SurfaceOptions MakeOptions(const RunSettings& settings)
+{
+  SurfaceOptions options;
+  options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
+  options.MergeTolerance = settings.MergeTolerance;
+  options.IntrinsicDelaunay = settings.IntrinsicDelaunay;
+  return options;
+}
+
+/// Squares of values within these bounds neither overflow nor vanish.
+constexpr double LargestMagnitude = 1e100;
+constexpr double SmallestMagnitude = 1e-100;
+
+} // namespace
+
+void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSettings> settings,
+  const ProcessGroup& processes, const ProgressMonitor& progress)
+{
+  this->Settings = std::move(settings);
+  this->UpdateSurfaces(inputs, processes, progress.Part(0.0, 0.6));
+  progress.Report(0.6);
+
+  const SettingsSnapshot snapshot(*this->Settings, SettingScope::Model);
+  const std::size_t count = this->Blocks.size();
+  std::vector<std::unique_ptr<Fields>> fields(count);
+  for (std::size_t b = 0; b < count; ++b)
+  {
+    Block& block = *this->Blocks[b];
+    if (processes.Any(!block.Path || block.FieldsVersion != inputs[b].FieldsVersion ||
+          block.ModelSettings != snapshot || block.NumberOfBlocks != count))
+    {
+      block.Path.reset();
+      this->ReadFields(inputs[b], processes, block, fields[b]);
+    }
+  }
+  this->MeasureUnits(processes);
+  for (std::size_t b = 0; b < count; ++b)
+  {
+    Block& block = *this->Blocks[b];
+    UnitSystem units = this->CommonUnits;
+    units.LengthUnit = block.Surface->Mesh().LengthUnit();
+    if (processes.Any(!block.Path || !(units == block.Units)))
+    {
+      block.Path.reset();
+      if (!fields[b])
+      {
+        this->ReadFields(inputs[b], processes, block, fields[b]);
+      }
+      block.Units = units;
+      const double share = static_cast<double>(count);
+      this->MakeModel(block, *fields[b], processes,
+        progress.Part(0.6 + 0.4 * b / share, 0.6 + 0.4 * (b + 1) / share));
+      block.FieldsVersion = inputs[b].FieldsVersion;
+      block.ModelSettings = snapshot;
+      block.NumberOfBlocks = count;
+      this->WarnAgain = true;
+    }
+    fields[b].reset();
+  }
+  this->CheckHold(processes);
+}
+
+void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
+  const ProgressMonitor& progress)
+{
+  const SettingsSnapshot snapshot(*this->Settings, SettingScope::Surface);
+  this->Blocks.resize(inputs.size());
+  for (std::size_t b = 0; b < inputs.size(); ++b)
+  {
+    std::unique_ptr<Block>& block = this->Blocks[b];
+    if (processes.Any(!block || !block->Surface ||
+          block->SurfaceVersion != inputs[b].SurfaceVersion || block->SurfaceSettings != snapshot))
+    {
+      block.reset(); // before the new one takes memory
+      block = std::make_unique<Block>();
+      const double share = static_cast<double>(inputs.size());
+      this->MakeSurface(inputs[b], processes, *block, progress.Part(b / share, (b + 1) / share));
+      block->SurfaceVersion = inputs[b].SurfaceVersion;
+      block->SurfaceSettings = snapshot;
+      this->WarnAgain = true;
+    }
+  }
+}
+
+void Run::MakeSurface(const BlockInput& input, const ProcessGroup& processes, Block& block,
+  const ProgressMonitor& progress)
+{
+  SurfaceOptions options = MakeOptions(*this->Settings);
+  if (input.Decomposition)
+  {
+    options.LengthUnit = input.Decomposition->FindLengthUnit();
+  }
+  processes.RunCollectively(
+    [&]
+    {
+      block.Surface =
+        std::make_unique<Surface>(input.ReadSurface(), options, this->Parallel, progress);
+    });
+  block.Decomposition = input.Decomposition;
+  if (input.Decomposition)
+  {
+    input.Decomposition->Attach(*block.Surface, block.Solvers);
+  }
+}
+
+void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Block& block,
+  std::unique_ptr<Fields>& fields)
+{
+  processes.RunCollectively([&] { fields = std::make_unique<Fields>(input.ReadFields()); });
+  const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
+  block.Statistics = ValueStatistics();
+  block.Statistics.Add(*block.Surface, *fields, inpaint);
+  block.HasData = processes.Any(fields->Data.cols() > 0);
+  block.HasMask = !fields->Mask.empty();
+  block.HasMasked =
+    std::any_of(fields->Mask.begin(), fields->Mask.end(), [](char masked) { return masked != 0; });
+}
+
+/// h and R of all surfaces together.
+void Run::MeasureUnits(const ProcessGroup& processes)
+{
+  double length = 0.0;
+  double edges = 0.0;
+  ValueStatistics statistics;
+  for (const auto& block : this->Blocks)
+  {
+    const TriangleMesh& mesh = block->Surface->Mesh();
+    edges += mesh.NumberOfEdges();
+    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
+    if (block->Decomposition)
+    {
+      edges = processes.Sum(edges - block->Decomposition->NumberOfSharedEdges());
+      length = processes.Sum(length - block->Decomposition->SharedEdgeLength() * mesh.LengthUnit());
+    }
+    statistics.Merge(block->Statistics);
+  }
+  statistics.Merge(processes);
+
+  const ModelTraits traits = this->Settings->DescribeModel();
+  UnitSystem units;
+  units.Natural = !this->Settings->IsAbsolute();
+  units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
+  units.ValueRange = traits.HasValueRange ? statistics.Range() : 1.0;
+  if (!std::isfinite(units.ValueRange) || !std::isfinite(units.MeanEdgeLength))
+  {
+    throw std::runtime_error(
+      "the range of the coordinates or of the values is larger than a double can hold");
+  }
+  // A power of two changes no bit of a result.
+  const double magnitude = traits.HasValueRange ? statistics.Magnitude() : 0.0;
+  if (magnitude > 0.0 && (magnitude > LargestMagnitude || magnitude < SmallestMagnitude))
+  {
+    units.ValueUnit = std::exp2(std::ilogb(magnitude));
+  }
+  this->CommonUnits = units;
+  this->UnitOfTime = traits.AbsoluteTime ? 1.0
+                                         : std::pow(units.MeanEdgeLength, traits.Time.Length) *
+      std::pow(units.ValueRange, traits.Time.Value) * traits.TimeFactor;
+}
+
+void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& processes,
+  const ProgressMonitor& progress)
+{
+  TangentVectors directions;
+  processes.RunCollectively(
+    [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
+  block.Result = RunResult();
+  block.Solvers.Configure(*this->Settings, this->Parallel);
+  ModelInputs inputs{ *block.Surface, block.Units, this->MakeData(block, fields, processes),
+    std::move(directions), fields.Rates, MakeVertexIds(*block.Surface, fields), this->Parallel,
+    progress.Part(0.2, 1.0), block.Solvers, processes };
+  progress.Report(0.2);
+  std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
+  const std::size_t limit = this->CheckpointMemory(*model, processes);
+  block.Path = std::make_unique<Trajectory>(
+    block.Surface->SharedMesh(), std::move(model), limit, this->Parallel);
+  block.Path->Reserve(this->Settings->DescribeModel().NumberOfSteps);
+  progress.Report(1.0);
+}
+
+/// The data of the vertices. A vertex that several processes have takes its owner's.
+PointData Run::MakeData(
+  const Block& block, const Fields& fields, const ProcessGroup& processes) const
+{
+  PointData data;
+  if (!block.HasData)
+  {
+    return data;
+  }
+  const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
+  processes.RunCollectively(
+    [&]
+    {
+      if (fields.Data.cols() > 0)
+      {
+        data = MakePointData(*block.Surface, fields, inpaint, block.Units.ValueUnit);
+      }
+    });
+  const Reduction& reduction = block.Surface->Mesh().GetReduction();
+  if (!reduction.IsSerial())
+  {
+    double components = static_cast<double>(data.Given.cols());
+    reduction.Max(&components, 1);
+    const auto columns = static_cast<Eigen::Index>(components);
+    const Eigen::Index n = block.Surface->Mesh().NumberOfVertices();
+    Values all = Values::Zero(n, columns + 2);
+    if (n > 0)
+    {
+      all << data.Given, data.Missing.cast<double>(), data.Fixed.cast<double>();
+    }
+    reduction.UpdateFromOwners(all);
+    data.Given = all.leftCols(columns);
+    data.Missing = all.col(columns).array() != 0.0;
+    data.Fixed = all.col(columns + 1).array() != 0.0;
+  }
+  return data;
+}
+
+/// For the checkpoints of one surface. All processes keep the same steps.
+std::size_t Run::CheckpointMemory(const Model& model, const ProcessGroup& processes) const
+{
+  if (!this->Settings->GenerateTimeSteps)
+  {
+    return 0;
+  }
+  const std::size_t limit = static_cast<std::size_t>(this->Settings->CheckpointMemoryLimit) * 1024 *
+    1024 / this->Blocks.size();
+  if (!processes.IsShared())
+  {
+    return limit;
+  }
+  const std::size_t mine = std::max<std::size_t>(model.CheckpointSize(), 1) * sizeof(double);
+  const std::vector<double> sizes = processes.GatherAll({ static_cast<double>(mine) });
+  const auto largest = static_cast<std::size_t>(*std::max_element(sizes.begin(), sizes.end()));
+  return std::max<std::size_t>(limit / largest, 1) * mine;
+}
+
+void Run::CheckHold(const ProcessGroup& processes) const
+{
+  const bool missing = std::any_of(this->Blocks.begin(), this->Blocks.end(),
+    [](const auto& block) { return block->Result.HasMissing; });
+  if (this->Settings->DescribeModel().HoldsKnownValues && !processes.Any(missing))
+  {
+    throw std::runtime_error("HoldKnownValues is on but nothing is missing, so nothing would "
+                             "change; allowed: on with a mask in mode Inpaint or with NaN");
+  }
+}
+
+Index Run::NumberOfStepsTo(int step) const
+{
+  Index largest = 0;
+  for (const auto& block : this->Blocks)
+  {
+    largest = std::max(largest, block->Path->NumberOfStepsTo(step));
+  }
+  return largest;
+}
+
+void Run::Seek(int step, const ProgressMonitor& progress)
+{
+  double all = 0.0;
+  for (const auto& block : this->Blocks)
+  {
+    all += block->Surface->Mesh().NumberOfTriangles();
+  }
+  double done = 0.0;
+  for (const auto& block : this->Blocks)
+  {
+    const double size = block->Surface->Mesh().NumberOfTriangles();
+    const ProgressMonitor part =
+      all > 0.0 ? progress.Part(done / all, (done + size) / all) : progress;
+    done += size;
+    const Index before = block->Path->NumberOfAdvances();
+    block->Path->Seek(step, part);
+    this->StepsComputed += block->Path->NumberOfAdvances() - before;
+  }
+  for (const auto& block : this->Blocks)
+  {
+    this->Settings->Finish(
+      { *block->Surface, block->Units, *block->Path, this->Parallel, progress.Part(1.0, 1.0) },
+      block->Result);
+  }
+}
+
+} // namespace SurfaceDiffusion

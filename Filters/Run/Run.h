@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Trajectory.h"
+#include "Run/Fields.h"
+#include "Run/Fingerprint.h"
+#include "Run/History.h"
+#include "Run/ModelInputs.h"
+#include "Run/SolverStore.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// How one surface is spread over processes. All calls are collective.
+class Decomposition
+{
+public:
+  virtual ~Decomposition() = default;
+  /// A power of two near the size of the whole surface.
+  virtual double FindLengthUnit() = 0;
+  /// Give the surface its reductions, and the store its solvers over processes.
+  virtual void Attach(Surface& surface, SolverStore& solvers) = 0;
+  /// Edges of this process's piece that an earlier process has, too: number and total length.
+  virtual double NumberOfSharedEdges() const = 0;
+  virtual double SharedEdgeLength() const = 0;
+  /// Points that are copies of another process's points.
+  virtual Index NumberOfCopies() const = 0;
+};
+
+/// One surface with its fields. The arrays are read only if their fingerprint has changed.
+struct BlockInput
+{
+  Fingerprint SurfaceVersion;
+  Fingerprint FieldsVersion;
+  std::function<SurfaceArrays()> ReadSurface;
+  std::function<Fields()> ReadFields;
+  SurfaceDiffusion::Decomposition* Decomposition = nullptr; ///< null: the surface is whole
+};
+
+/// A run of one model on several surfaces that share their units. A run is determined by its inputs
+/// and settings: Update() computes again what depends on what has changed, and nothing else.
+class Run
+{
+public:
+  explicit Run(const ParallelFor& parallel)
+    : Parallel(parallel)
+  {
+  }
+
+  /// Take the inputs and the settings, which must have passed Check(). Throws std::runtime_error,
+  /// std::bad_alloc, and Aborted, after which a later Update() continues.
+  void Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSettings> settings,
+    const ProcessGroup& processes, const ProgressMonitor& progress);
+
+  /// The number of steps that Seek() would compute.
+  Index NumberOfStepsTo(int step) const;
+  /// Move all surfaces to a step, and finish their results there.
+  void Seek(int step, const ProgressMonitor& progress);
+
+  void Clear() { this->Blocks.clear(); }
+
+  /// One surface of the run.
+  struct Block
+  {
+    std::unique_ptr<SurfaceDiffusion::Surface> Surface;
+    UnitSystem Units;
+    std::unique_ptr<Trajectory> Path;
+    RunResult Result;
+
+    /// What the parts above were made from.
+    Fingerprint SurfaceVersion, FieldsVersion;
+    SettingsSnapshot SurfaceSettings, ModelSettings;
+    std::size_t NumberOfBlocks = 0;
+    ValueStatistics Statistics;
+    bool HasData = false;
+    bool HasMask = false;
+    bool HasMasked = false; ///< a nonzero entry of the mask
+    SolverStore Solvers;
+    const SurfaceDiffusion::Decomposition* Decomposition = nullptr;
+  };
+  const Block& GetBlock(std::size_t block) const { return *this->Blocks[block]; }
+  std::size_t NumberOfBlocks() const { return this->Blocks.size(); }
+
+  /// h and R of all surfaces together, in coordinate and array units.
+  const UnitSystem& Units() const { return this->CommonUnits; }
+  /// The unit of time in coordinate and array units; 1 if times are absolute.
+  double TimeUnit() const { return this->UnitOfTime; }
+  /// The number of steps computed by Seek() in the life of this object.
+  long long NumberOfStepsComputed() const { return this->StepsComputed; }
+
+  /// The history up to a step.
+  History MakeHistory(int step) const;
+
+  /// Warnings that were not taken before. They appear again if what they are about is made again.
+  std::vector<std::string> TakeWarnings(const ProcessGroup& processes);
+
+private:
+  void UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
+    const ProgressMonitor& progress);
+  void MakeSurface(const BlockInput& input, const ProcessGroup& processes, Block& block,
+    const ProgressMonitor& progress);
+  void ReadFields(const BlockInput& input, const ProcessGroup& processes, Block& block,
+    std::unique_ptr<Fields>& fields);
+  void MeasureUnits(const ProcessGroup& processes);
+  void MakeModel(Block& block, const Fields& fields, const ProcessGroup& processes,
+    const ProgressMonitor& progress);
+  PointData MakeData(const Block& block, const Fields& fields, const ProcessGroup& processes) const;
+  std::size_t CheckpointMemory(const Model& model, const ProcessGroup& processes) const;
+  void CheckHold(const ProcessGroup& processes) const;
+  bool MaskChangesNothing(const ProcessGroup& processes) const;
+
+  const ParallelFor& Parallel;
+  std::shared_ptr<RunSettings> Settings;
+  std::vector<std::unique_ptr<Block>> Blocks;
+  UnitSystem CommonUnits;
+  double UnitOfTime = 1.0;
+  long long StepsComputed = 0;
+  bool WarnAgain = true;
+  std::vector<std::string> Reported; ///< warnings taken since something was made
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/InitialState.h"
+#include "Core/Models/Model.h"
+#include "Core/Solvers/SolverChoice.h"
+#include "Run/Settings.h"
+#include "Run/Units.h"
+
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+struct ModelInputs;
+struct RunResult;
+struct RunState;
+
+enum class UnitsMode
+{
+  Natural,
+  Absolute
+};
+
+enum class MaskMode
+{
+  Inpaint, ///< masked points are missing and are filled in
+  Exclude ///< triangles with a masked vertex do not take part
+};
+
+enum class TimeIntegrator
+{
+  FirstOrder,
+  SecondOrder,
+  Implicit
+};
+
+/// Which input arrays there are, as far as settings have to agree with them.
+struct FieldSummary
+{
+  bool Data = false;
+  int DataComponents = 0; ///< alpha of colours not counted
+  bool Directions = false;
+  bool Fixed = false;
+  bool Rates = false;
+};
+
+/// What a run must know of its model before it makes one.
+struct ModelTraits
+{
+  int NumberOfSteps = 0;
+  double TimeStep = 1.0; ///< in the unit that TimeStep is in
+  bool AbsoluteTime = false; ///< times are in coordinate units even with natural units
+  Dimension Time; ///< of the natural unit of time
+  double TimeFactor = 1.0; ///< of the natural unit of time, beyond its dimension
+  Dimension Energy;
+  bool HasValueRange = true; ///< false: R is 1
+  bool UsesFidelity = false;
+  bool NeedsDirections = false; ///< diffusivities along and across differ
+  bool HoldsKnownValues = false;
+  bool MaskHasEffect = true; ///< in mode Inpaint, if there are data
+  bool CountsClamped = false;
+  bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
+};
+
+/// The settings of every time-dependent model, in the user's terms, and the model itself: what it
+/// is, how it is made, and what it leaves behind. These four virtual functions (Visit,
+/// DescribeModel, Make, Finish) are all that the run asks of a model; CheckTogether() has a
+/// default.
+struct RunSettings : Settings
+{
+  double TimeStep = 1.0;
+  int NumberOfTimeSteps = 10;
+  UnitsMode Units = UnitsMode::Natural;
+  bool GenerateTimeSteps = false;
+  int OutputInterval = 1;
+  SurfaceDiffusion::MaskMode MaskMode = SurfaceDiffusion::MaskMode::Inpaint;
+  int RandomSeed = 0;
+  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
+  SolverMethod Solver = SolverMethod::Automatic;
+  double Tolerance = 1e-10;
+  int MaximumNumberOfIterations = 1000;
+  bool IntrinsicDelaunay = false;
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+  int CheckpointMemoryLimit = 512;
+
+  void Visit(SettingVisitor& visitor) override;
+
+  /// What the run must know; called with settings that have passed Check().
+  virtual ModelTraits DescribeModel() const = 0;
+
+  /// The model in its initial state. Throws std::runtime_error and Aborted.
+  virtual std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const = 0;
+
+  /// What depends on the current state and may take long or fail. The default adds nothing.
+  virtual void Finish(const RunState& state, RunResult& result) const;
+
+  /// Problems of single settings and of settings that do not go together, all at once. `fields` is
+  /// null if the arrays are not known yet.
+  void Check(const FieldSummary* fields, Problems& problems);
+
+  bool IsAbsolute() const { return this->Units == UnitsMode::Absolute; }
+
+  /// The times of the published states, in the unit of TimeStep.
+  std::vector<double> PublishedTimes() const;
+  /// The step of the last state published at or before `time`.
+  int FindStep(double time) const;
+
+protected:
+  /// The time integrators that the model has.
+  virtual std::vector<bool> AllowedIntegrators() const = 0;
+  virtual void CheckTogether(const FieldSummary* fields, Problems& problems) const;
+};
+
+/// The settings of models of given data: fidelity, diffusivities, and what missing data start from.
+struct DataSettings : RunSettings
+{
+  double FidelityWeight = 0.0;
+  SurfaceDiffusion::InitialFill InitialFill = SurfaceDiffusion::InitialFill::Mean;
+  bool HoldKnownValues = false;
+  double AlongDiffusivity = 1.0;
+  double AcrossDiffusivity = 1.0;
+
+  void Visit(SettingVisitor& visitor) override;
+
+  bool IsDirected() const { return this->AlongDiffusivity != this->AcrossDiffusivity; }
+  double LargestDiffusivity() const;
+
+protected:
+  void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
+};
+
+/// For the mirrored enumerations of other layers.
+const std::vector<const char*>& WordsOfIntegrators();
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// What has to be computed again when a setting changes.
+enum class SettingScope
+{
+  Surface, ///< the mesh, and everything after it
+  Model, ///< the model and its states
+  Output ///< nothing: the setting is used when a state is written
+};
+
+/// The values a number may have, and how an error message says so.
+struct SettingRange
+{
+  const char* Text = "any finite number";
+  double Low = 0.0, High = 0.0; ///< used if Low < High
+  bool LowIncluded = true, HighIncluded = true;
+  bool Restricted = true; ///< false: any number, even NaN
+  bool HasSpecial = false; ///< one more value is allowed, with a meaning of its own
+  double Special = 0.0;
+
+  /// False for NaN, for infinite values, and outside the range.
+  bool Contains(double value) const;
+
+  /// For a setting that is not used with the others as they are.
+  static SettingRange Anything();
+  static SettingRange AnyFinite();
+  static SettingRange Positive();
+  static SettingRange NonNegative();
+  static SettingRange OpenUnitInterval();
+  static SettingRange ClosedUnitInterval();
+  static SettingRange Between(double low, double high, const char* text);
+  static SettingRange AtLeast(double low, const char* text);
+  /// 0 or more, or `special`.
+  static SettingRange NonNegativeOr(double special, const char* text);
+};
+
+/// The description of one setting: the single place for its name, range, unit and meaning.
+struct SettingInfo
+{
+  const char* Name; ///< as in ParaView and VTK, for instance "TimeStep"
+  const char* Unit; ///< empty for pure numbers
+  const char* Documentation;
+  SettingScope Scope = SettingScope::Model;
+};
+
+/// Receives every setting of a run with its description. A visitor may change the values.
+class SettingVisitor
+{
+public:
+  virtual ~SettingVisitor() = default;
+  virtual void Number(const SettingInfo& info, double& value, const SettingRange& range) = 0;
+  virtual void Integer(const SettingInfo& info, int& value, const SettingRange& range) = 0;
+  virtual void Switch(const SettingInfo& info, bool& value) = 0;
+  /// `value` is the index of one of the words. Only those with a true entry in `allowed` may be
+  /// chosen; an empty list allows all.
+  virtual void Choice(const SettingInfo& info, int& value, const std::vector<const char*>& words,
+    const std::vector<bool>& allowed) = 0;
+
+  template <typename Enum>
+  void Choice(const SettingInfo& info, Enum& value, const std::vector<const char*>& words,
+    const std::vector<bool>& allowed = {})
+  {
+    int number = static_cast<int>(value);
+    this->Choice(info, number, words, allowed);
+    value = static_cast<Enum>(number);
+  }
+};
+
+/// A set of settings that can list itself. Copies are values; the functions below work on any.
+class Settings
+{
+public:
+  virtual ~Settings() = default;
+  virtual void Visit(SettingVisitor& visitor) = 0;
+};
+
+/// The values of all settings of one scope, in the order of Visit(). Two snapshots of one class are
+/// equal exactly if no such setting differs, so that no list of what a result depends on has to be
+/// kept beside the settings themselves.
+class SettingsSnapshot
+{
+public:
+  SettingsSnapshot() = default;
+  SettingsSnapshot(Settings& settings, SettingScope scope);
+
+  friend bool operator==(const SettingsSnapshot& a, const SettingsSnapshot& b)
+  {
+    return a.Values == b.Values;
+  }
+  friend bool operator!=(const SettingsSnapshot& a, const SettingsSnapshot& b) { return !(a == b); }
+
+private:
+  std::vector<double> Values;
+};
+
+/// One sentence per setting: name, value and what is allowed.
+using Problems = std::vector<std::string>;
+
+/// Append a sentence for each setting whose value is outside its range.
+void CheckRanges(Settings& settings, Problems& problems);
+
+/// Append "`name` is `value`; allowed: `allowed`" unless `holds`.
+void Require(bool holds, const char* name, double value, const char* allowed, Problems& problems);
+
+/// "Name: value" lines, with words for choices, each after `indent`.
+std::string Describe(Settings& settings, const std::string& indent);
+
+/// The word of the choice `name`; "Unknown" for a number without a word.
+const char* FindWord(Settings& settings, const std::string& name);
+
+/// "0 First, 1 Second" for the words that are allowed.
+std::string ListChoices(
+  const std::vector<const char*>& words, const std::vector<bool>& allowed = {});
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Solvers/SolverChoice.h"
+#include "Run/RunSettings.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+/// What a linear solver is for. Each purpose keeps its own solver from run to run.
+enum class SolverPurpose
+{
+  Step, ///< the time steps
+  SecondChemical, ///< those of a texture's second chemical
+  Search ///< the search for a fidelity weight
+};
+
+/// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
+/// used again; a solver that is no longer used is freed.
+class SolverStore
+{
+public:
+  /// Makes a solver over processes; multigrid: whether a multigrid preconditioner is wanted.
+  using DistributedFactory = std::function<std::unique_ptr<LinearSolver>(bool multigrid)>;
+
+  void Configure(const RunSettings& settings, const ParallelFor& parallel);
+  void SetDistributedFactory(DistributedFactory factory) { this->Distributed = std::move(factory); }
+
+  /// The solver that the settings ask for. task.Tolerance is set here.
+  std::shared_ptr<LinearSolver> Find(SolverPurpose purpose, SolverTask task);
+
+private:
+  struct Kept
+  {
+    std::shared_ptr<LinearSolver> Solver;
+    SolverChoice Choice;
+  };
+
+  SolverMethod Method = SolverMethod::Automatic;
+  IterationLimits Limits;
+  const ParallelFor* Parallel = nullptr;
+  DistributedFactory Distributed;
+  std::array<Kept, 3> Solvers;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/Surface.h"
+
+#include "Core/Surface/MergePoints.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr Eigen::Index LargestCount = std::numeric_limits<Index>::max() / 6; // 6 slots per corner
+
+/// Surfaces with fewer points are made faster than a thread is started.
+constexpr Eigen::Index SmallSurface = 5000;
+
+/// The parts of a surface that take long to make. The background task owns all that it touches.
+struct Construction
+{
+  Points Coordinates;
+  Triangles Corners;
+  std::shared_ptr<TriangleMesh> Input;
+  std::shared_ptr<const IntrinsicDelaunay> Delaunay;
+  std::shared_ptr<const TriangleMesh> Working;
+  std::shared_ptr<const Assembler> Operators;
+
+  void Run(
+    const SurfaceOptions& options, const ParallelFor& parallel, const ProgressMonitor& progress)
+  {
+    this->Input = std::make_shared<TriangleMesh>(
+      this->Coordinates, this->Corners, parallel, progress.Part(0.0, 0.5), options.LengthUnit);
+    this->Working = this->Input;
+    if (options.IntrinsicDelaunay)
+    {
+      this->Delaunay =
+        std::make_shared<IntrinsicDelaunay>(this->Input, parallel, progress.Part(0.5, 0.6));
+      this->Working = this->Delaunay->Mesh();
+    }
+    this->Operators = std::make_shared<Assembler>(this->Working, parallel, progress.Part(0.6, 1.0));
+  }
+};
+
+void CheckArrays(const SurfaceArrays& arrays)
+{
+  if (arrays.Points.rows() > LargestCount)
+  {
+    throw std::runtime_error("the input has more points than this library can number");
+  }
+  if (arrays.Triangles.rows() > LargestCount)
+  {
+    throw std::runtime_error("the input has more triangles than this library can number");
+  }
+  RequireFiniteCoordinates(arrays.Points);
+  for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      const Index point = arrays.Triangles(t, a);
+      if (point < 0 || point >= arrays.Points.rows())
+      {
+        std::ostringstream text;
+        text << "triangle " << t << " of the input refers to point " << point << ", but there are "
+             << arrays.Points.rows() << " points";
+        throw std::runtime_error(text.str());
+      }
+    }
+  }
+}
+
+} // namespace
+
+void RequireFiniteCoordinates(const Points& points)
+{
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+  {
+    if (!points.row(i).allFinite())
+    {
+      std::ostringstream text;
+      text << "point " << i << " of the input has coordinates that are not finite";
+      throw std::runtime_error(text.str());
+    }
+  }
+}
+
+Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
+  : Arrays(std::move(arrays))
+{
+  CheckArrays(this->Arrays);
+  this->SelectTriangles(options);
+  progress.Report(0.1);
+  this->Build(options, parallel, progress.Part(0.1, 1.0));
+  this->FindVertices();
+  this->Found.DegenerateTriangles = this->Working->Diagnostics().DegenerateTriangles;
+  this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
+  if (!options.MergeCoincidentPoints)
+  {
+    this->Found.CoincidentBoundaryPoints = this->CountCoincidentBoundaryPoints();
+  }
+}
+
+/// Drop the triangles with an excluded corner, and let merged points stand for one another.
+void Surface::SelectTriangles(const SurfaceOptions& options)
+{
+  if (options.MergeCoincidentPoints)
+  {
+    this->Representative = MergePoints(this->Arrays.Points, options.MergeTolerance);
+  }
+  SurfaceDiffusion::Triangles& triangles = this->Arrays.Triangles;
+  const std::vector<char>& excluded = this->Arrays.Excluded;
+  const auto isExcluded = [&](Index point)
+  { return !excluded.empty() && excluded[static_cast<std::size_t>(point)] != 0; };
+  Eigen::Index kept = 0;
+  this->TriangleRows.reserve(static_cast<std::size_t>(triangles.rows()));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  {
+    if (isExcluded(triangles(t, 0)) || isExcluded(triangles(t, 1)) || isExcluded(triangles(t, 2)))
+    {
+      continue;
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const Index point = triangles(t, a);
+      triangles(kept, a) = this->Representative.empty()
+        ? point
+        : this->Representative[static_cast<std::size_t>(point)];
+    }
+    this->TriangleRows.push_back(static_cast<Index>(t));
+    ++kept;
+  }
+  triangles.conservativeResize(kept, 3);
+}
+
+void Surface::Build(
+  const SurfaceOptions& options, const ParallelFor& parallel, const ProgressMonitor& progress)
+{
+  const auto construction = std::make_shared<Construction>();
+  construction->Coordinates.swap(this->Arrays.Points);
+  construction->Corners.swap(this->Arrays.Triangles);
+  if (construction->Coordinates.rows() < SmallSurface)
+  {
+    construction->Run(options, parallel, progress);
+  }
+  else
+  {
+    RunInBackground([construction, options, &parallel]
+      { construction->Run(options, parallel, ProgressMonitor()); },
+      progress);
+  }
+  this->Arrays.Points.swap(construction->Coordinates);
+  this->Arrays.Triangles.swap(construction->Corners);
+  this->Input = std::move(construction->Input);
+  this->Flipped = std::move(construction->Delaunay);
+  this->Working = std::move(construction->Working);
+  this->Operators = std::move(construction->Operators);
+}
+
+void Surface::FindVertices()
+{
+  const auto count = static_cast<std::size_t>(this->Arrays.Points.rows());
+  this->Vertices.assign(count, -1);
+  for (Index v = 0; v < this->Working->NumberOfVertices(); ++v)
+  {
+    this->Vertices[static_cast<std::size_t>(this->Working->InputVertex()[v])] = v;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (!this->Representative.empty())
+    {
+      this->Vertices[i] = this->Vertices[static_cast<std::size_t>(this->Representative[i])];
+    }
+    const bool excluded = !this->Arrays.Excluded.empty() && this->Arrays.Excluded[i] != 0;
+    this->Found.UnusedPoints += this->Vertices[i] < 0 && !excluded;
+  }
+}
+
+/// Points on boundary edges that lie at the place of another such point: an unmerged seam.
+Index Surface::CountCoincidentBoundaryPoints() const
+{
+  std::vector<std::array<double, 3>> places;
+  places.reserve(this->Working->BoundaryVertices().size());
+  for (const Index vertex : this->Working->BoundaryVertices())
+  {
+    const auto row = this->Arrays.Points.row(this->Working->InputVertex()[vertex]);
+    places.push_back({ row[0], row[1], row[2] });
+  }
+  std::sort(places.begin(), places.end());
+  Index count = 0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    count += (i > 0 && places[i] == places[i - 1]) ||
+      (i + 1 < places.size() && places[i] == places[i + 1]);
+  }
+  return count;
+}
+
+TangentVectors TransportToMesh(const Surface& surface, TangentVectors vectors)
+{
+  return surface.Delaunay() ? surface.Delaunay()->Transport(vectors) : vectors;
+}
+
+} // namespace SurfaceDiffusion

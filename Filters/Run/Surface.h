@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Operators/Assembler.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
+
+#include <memory>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// A triangulated surface as arrays: n x 3 coordinates, m x 3 point numbers.
+struct SurfaceArrays
+{
+  SurfaceDiffusion::Points Points;
+  SurfaceDiffusion::Triangles Triangles;
+  std::vector<char> Excluded; ///< per point: triangles with a nonzero corner do not take part
+};
+
+/// Throws std::runtime_error if a coordinate is not finite.
+void RequireFiniteCoordinates(const Points& points);
+
+struct SurfaceOptions
+{
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+  bool IntrinsicDelaunay = false;
+  double LengthUnit = 0.0; ///< of the meshes; 0: chosen by the extent of the surface
+};
+
+/// Counts of what a surface has that is left out or looks unintended.
+struct SurfaceDiagnostics
+{
+  Index DegenerateTriangles = 0;
+  Index UnusedPoints = 0; ///< of no participating triangle; excluded points do not count
+  Index NonManifoldEdges = 0;
+  Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
+};
+
+/// The surface that the numerics work on, and the way back to its points.
+class Surface
+{
+public:
+  /// Throws std::runtime_error on coordinates that are not finite, on triangles that refer to no
+  /// point, and on more points or triangles than 32-bit numbers count; Aborted.
+  Surface(SurfaceArrays arrays, const SurfaceOptions& options, const ParallelFor& parallel,
+    const ProgressMonitor& progress);
+
+  /// Declare this surface one process's part of a larger one. Only without IntrinsicDelaunay.
+  void SetReduction(std::shared_ptr<const Reduction> reduction)
+  {
+    this->Input->SetReduction(std::move(reduction));
+  }
+
+  /// Per input point.
+  const SurfaceDiffusion::Points& Points() const { return this->Arrays.Points; }
+  /// Rows of Points(). Merged points are replaced by the point that represents them, and excluded
+  /// triangles are gone.
+  const SurfaceDiffusion::Triangles& Triangles() const { return this->Arrays.Triangles; }
+  /// The row of the input's triangles that row t of Triangles() is.
+  Index InputTriangle(Index t) const { return this->TriangleRows[static_cast<std::size_t>(t)]; }
+  /// The mesh of Triangles().
+  const TriangleMesh& InputMesh() const { return *this->Input; }
+
+  /// The mesh that models work on: InputMesh() or its intrinsic Delaunay triangulation, which has
+  /// the same vertices.
+  const TriangleMesh& Mesh() const { return *this->Working; }
+  std::shared_ptr<const TriangleMesh> SharedMesh() const { return this->Working; }
+  /// Null if models work on InputMesh().
+  const IntrinsicDelaunay* Delaunay() const { return this->Flipped.get(); }
+  std::shared_ptr<const Assembler> SharedAssembler() const { return this->Operators; }
+
+  /// The vertex of an input point; -1 if no participating triangle uses the point.
+  Index VertexOf(Index point) const { return this->Vertices[static_cast<std::size_t>(point)]; }
+
+  const SurfaceDiagnostics& Diagnostics() const { return this->Found; }
+
+private:
+  void SelectTriangles(const SurfaceOptions& options);
+  void Build(
+    const SurfaceOptions& options, const ParallelFor& parallel, const ProgressMonitor& progress);
+  void FindVertices();
+  Index CountCoincidentBoundaryPoints() const;
+
+  SurfaceArrays Arrays;
+  std::vector<Index> Representative; ///< per point; empty if every point represents itself
+  std::vector<Index> TriangleRows;
+  std::shared_ptr<TriangleMesh> Input;
+  std::shared_ptr<const IntrinsicDelaunay> Flipped;
+  std::shared_ptr<const TriangleMesh> Working;
+  std::shared_ptr<const Assembler> Operators;
+  std::vector<Index> Vertices;
+  SurfaceDiagnostics Found;
+};
+
+/// e1 per triangle of Mesh(), from tangent vectors of InputMesh().
+TangentVectors TransportToMesh(const Surface& surface, TangentVectors vectors);
+
+} // namespace SurfaceDiffusion

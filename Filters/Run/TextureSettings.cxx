@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/TextureSettings.h"
+
+#include "Core/Models/DispersionRelation.h"
+#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/TextureColors.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Run/ModelInputs.h"
+#include "Run/TextureRates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+std::vector<const char*> WordsOfKinetics()
+{
+  std::vector<const char*> words;
+  for (int k = 0; k < NumberOfKinetics; ++k)
+  {
+    words.push_back(GetKinetics(static_cast<KineticsName>(k)).Name);
+  }
+  return words;
+}
+
+SettingRange RangeOf(const Kinetics::Parameter& parameter)
+{
+  if (parameter.Minimum == 0.0)
+  {
+    return SettingRange::Positive();
+  }
+  return std::isfinite(parameter.Minimum) ? SettingRange::NonNegative() : SettingRange::AnyFinite();
+}
+
+} // namespace
+
+void TextureSettings::Visit(SettingVisitor& visitor)
+{
+  this->RunSettings::Visit(visitor);
+  visitor.Choice(
+    { "Kinetics", "", "The reaction terms F and G." }, this->Kinetics, WordsOfKinetics());
+  visitor.Number({ "ReactionRate", "1/time", "The rate s of the reaction." }, this->ReactionRate,
+    SettingRange::Positive());
+  visitor.Number({ "DiffusionRate1", "h^2 ReactionRate", "The diffusion rate of u1 along e1." },
+    this->DiffusionRate1, SettingRange::NonNegative());
+  visitor.Number({ "DiffusionRate2", "h^2 ReactionRate", "The diffusion rate of u2 along e1." },
+    this->DiffusionRate2, SettingRange::NonNegative());
+  const auto across =
+    SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: as along");
+  visitor.Number({ "DiffusionRateAcross1", "h^2 ReactionRate",
+                   "The diffusion rate of u1 along e2; -1: as along e1." },
+    this->DiffusionRateAcross1, across);
+  visitor.Number({ "DiffusionRateAcross2", "h^2 ReactionRate",
+                   "The diffusion rate of u2 along e2; -1: as along e1." },
+    this->DiffusionRateAcross2, across);
+  visitor.Number({ "FeatureSize", "coordinates",
+                   "The fastest-growing wavelength along e1 to which the diffusion rates are "
+                   "scaled; 0: off." },
+    this->FeatureSize, SettingRange::NonNegative());
+  visitor.Number(
+    { "InitialNoise", "", "The half width of the uniform relative noise around the steady state." },
+    this->InitialNoise, SettingRange::NonNegative());
+  visitor.Switch({ "ClampToNonNegative", "", "Whether concentrations stay at 0 and above." },
+    this->ClampToNonNegative);
+  visitor.Switch({ "AutomaticTimeStep", "",
+                   "Whether the time step is 1/8 of the time constant of the kinetics' fastest "
+                   "mode." },
+    this->AutomaticTimeStep);
+  visitor.Number({ "StopTolerance", "1/time",
+                   "The relative change per unit of time at which the run ends; 0: never." },
+    this->StopTolerance, SettingRange::NonNegative());
+
+  for (int k = 0; k < NumberOfKinetics; ++k)
+  {
+    // The parameters of kinetics that are not chosen have no effect and may be anything.
+    const bool chosen = static_cast<int>(this->Kinetics) == k;
+    const auto& list = GetKinetics(static_cast<KineticsName>(k)).Parameters;
+    for (std::size_t p = 0; p < list.size(); ++p)
+    {
+      if (list[p].Name)
+      {
+        visitor.Number({ list[p].Name, "", "A parameter of the kinetics.",
+                         chosen ? SettingScope::Model : SettingScope::Output },
+          this->Parameters[static_cast<std::size_t>(k)][p],
+          chosen ? RangeOf(list[p]) : SettingRange::Anything());
+      }
+    }
+  }
+  visitor.Choice({ "TextureChemical", "", "The chemical that Texture and TextureColor show.",
+                   SettingScope::Output },
+    this->TextureChemical, { "U1", "U2" }, {});
+  visitor.Switch(
+    { "ColorOutput", "", "Whether the texture is written as colours, too.", SettingScope::Output },
+    this->ColorOutput);
+}
+
+TextureSettings::TextureSettings()
+{
+  this->TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder;
+  this->TimeStep = 1.0 / 16.0;
+  this->NumberOfTimeSteps = 640;
+  for (int k = 0; k < NumberOfKinetics; ++k)
+  {
+    this->Parameters[static_cast<std::size_t>(k)] =
+      GetKinetics(static_cast<KineticsName>(k)).Defaults();
+  }
+}
+
+bool TextureSettings::HasKnownKinetics() const
+{
+  const int number = static_cast<int>(this->Kinetics);
+  return number >= 0 && number < NumberOfKinetics;
+}
+
+const KineticsParameters& TextureSettings::ChosenParameters() const
+{
+  return this->Parameters[static_cast<std::size_t>(this->Kinetics)];
+}
+
+Eigen::Matrix2d TextureSettings::JacobianAtRest() const
+{
+  const auto& terms = GetKinetics(this->Kinetics);
+  const Eigen::Vector2d steady = terms.SteadyState(this->ChosenParameters());
+  return terms.Jacobian(this->ChosenParameters(), steady[0], steady[1]);
+}
+
+bool TextureSettings::HasDirectedRates() const
+{
+  const auto differs = [](double along, double across)
+  { return across != -1.0 && across != along; };
+  return differs(this->DiffusionRate1, this->DiffusionRateAcross1) ||
+    differs(this->DiffusionRate2, this->DiffusionRateAcross2);
+}
+
+void TextureSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
+{
+  this->RunSettings::CheckTogether(fields, problems);
+  if (!fields)
+  {
+    return;
+  }
+  const auto require = [&](bool holds, const char* problem)
+  {
+    if (!holds)
+    {
+      problems.emplace_back(problem);
+    }
+  };
+  require(!fields->Data || fields->DataComponents == 2,
+    "InputArray holds colours, whose last component is alpha; allowed: 2 components of a type "
+    "other than unsigned char");
+  require(!fields->Rates || !this->IntrinsicDelaunay,
+    "IntrinsicDelaunay is on but DiffusionRateArray gives rates per cell, whose triangles it would "
+    "replace; allowed: one of the two");
+  require(fields->Directions || fields->Rates || !this->HasDirectedRates(),
+    "DiffusionRateAcross1 or DiffusionRateAcross2 differs from the rate along but DirectionArray "
+    "is not set; allowed: -1, or an array of directions");
+  require(!fields->Fixed || fields->Data,
+    "FixedArray is set but InputArray, the values to hold, is not; allowed: both or neither");
+}
+
+double TextureSettings::EffectiveTimeStep() const
+{
+  if (!this->AutomaticTimeStep || !this->HasKnownKinetics())
+  {
+    return this->TimeStep;
+  }
+  const double step = ReactionTimeStep(this->JacobianAtRest());
+  if (!std::isfinite(step))
+  {
+    return this->TimeStep; // no steady state
+  }
+  return this->IsAbsolute() ? step / this->ReactionRate : step;
+}
+
+ModelTraits TextureSettings::DescribeModel() const
+{
+  ModelTraits traits;
+  traits.NumberOfSteps = this->NumberOfTimeSteps;
+  traits.TimeStep = this->EffectiveTimeStep();
+  traits.AbsoluteTime = this->IsAbsolute();
+  traits.TimeFactor = 1.0 / this->ReactionRate;
+  traits.Energy = { 2.0, 0.0 };
+  traits.HasValueRange = false;
+  traits.CountsClamped = true;
+  return traits;
+}
+
+std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& result) const
+{
+  const TriangleMesh& mesh = inputs.Surface.Mesh();
+  Rates rates = this->MakeRates(inputs);
+  this->ScaleToFeatureSize(inputs, rates, result);
+  this->WarnOfObstacles(inputs, rates, result);
+
+  Reaction reaction; // in units of 1/ReactionRate
+  reaction.Terms = &GetKinetics(this->Kinetics);
+  reaction.Parameters = this->ChosenParameters();
+  if (inputs.Data.Given.cols() > 0)
+  {
+    FillMissing(mesh, inputs.Data, InitialFill::Mean, this->RandomSeed, inputs.Ids);
+  }
+  else if (!reaction.Terms->SteadyState(reaction.Parameters).allFinite())
+  {
+    throw std::runtime_error(std::string("Kinetics is ") + reaction.Terms->Name +
+      ", which has no steady state with these parameters to start from; allowed: others (for "
+      "Turing GrowthRate above DecayRate), or an initial state as InputArray");
+  }
+  else
+  {
+    inputs.Data = PointData::FromValues(
+      NoisySteadyState(reaction, this->InitialNoise, this->RandomSeed, inputs.Ids));
+  }
+  result.HasMissing = inputs.Data.Missing.any();
+
+  const double perTime = this->IsAbsolute() ? this->ReactionRate : 1.0;
+  const bool secondOrder = this->TimeIntegrator == SurfaceDiffusion::TimeIntegrator::SecondOrder;
+  ReactionDiffusion::Settings settings;
+  settings.TimeStep = this->EffectiveTimeStep() * perTime;
+  settings.TimeScheme =
+    secondOrder ? ReactionDiffusion::Scheme::SecondOrder : ReactionDiffusion::Scheme::FirstOrder;
+  settings.KeepNonNegative = this->ClampToNonNegative && reaction.Terms->NonNegative;
+  settings.StopTolerance = this->StopTolerance / perTime;
+
+  const double h = inputs.Units.CoreEdgeLength();
+  const CornerWeights isotropic = CotanWeights(mesh, inputs.Parallel);
+  const TangentVectors directions = inputs.Directions.rows() > 0
+    ? inputs.Directions
+    : TangentVectors(TangentVectors::Zero(mesh.NumberOfTriangles(), 2));
+  std::array<ReactionDiffusion::Chemical, 2> chemicals;
+  for (int c = 0; c < 2; ++c)
+  {
+    const double fastest = std::max(rates.MeanAlong[c], rates.MeanAcross[c]);
+    SolverTask task;
+    task.NumberOfVertices = mesh.NumberOfVertices();
+    task.DiffusionNumber = fastest * settings.TimeStep / (h * h);
+    task.NumberOfSolves = (secondOrder ? 2.0 : 1.0) * this->NumberOfTimeSteps;
+    chemicals[c].Solver =
+      inputs.Solvers.Find(c == 0 ? SolverPurpose::Step : SolverPurpose::SecondChemical, task);
+    chemicals[c].Coefficients = AnisotropicWeights(
+      mesh, isotropic, directions, rates.Along[c], rates.Across[c], inputs.Parallel);
+  }
+  return std::make_unique<ReactionDiffusion>(inputs.Surface.SharedAssembler(), reaction,
+    std::move(chemicals), std::move(inputs.Data), settings, inputs.Parallel);
+}
+
+void TextureSettings::Finish(const RunState& state, RunResult& result) const
+{
+  result.ContrastLimits = ContrastLimits(
+    state.Path.State().col(this->TextureChemical), state.Surface.Mesh().GetReduction());
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Kinetics.h"
+#include "Run/RunSettings.h"
+
+#include <array>
+
+namespace SurfaceDiffusion
+{
+
+/// Reaction-diffusion of two chemicals, u_t = div(D grad u) + F(u): (22) to (24).
+struct TextureSettings : RunSettings
+{
+  KineticsName Kinetics = KineticsName::Turing;
+  double ReactionRate = 1.0;
+  double DiffusionRate1 = 21.0;
+  double DiffusionRate2 = 2.6;
+  double DiffusionRateAcross1 = -1.0;
+  double DiffusionRateAcross2 = -1.0;
+  double FeatureSize = 0.0;
+  double InitialNoise = 0.1;
+  bool ClampToNonNegative = true;
+  bool AutomaticTimeStep = false;
+  double StopTolerance = 0.0;
+  /// Those of each kinetics, in the order of its list of parameters.
+  std::array<KineticsParameters, NumberOfKinetics> Parameters;
+  int TextureChemical = 0; ///< 0: u1, 1: u2
+  bool ColorOutput = false;
+
+  TextureSettings();
+
+  void Visit(SettingVisitor& visitor) override;
+  ModelTraits DescribeModel() const override;
+  std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
+  void Finish(const RunState& state, RunResult& result) const override;
+
+  /// The time step taken: TimeStep, or that of AutomaticTimeStep.
+  double EffectiveTimeStep() const;
+
+protected:
+  std::vector<bool> AllowedIntegrators() const override { return { true, true, false }; }
+  void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
+
+private:
+  struct Rates;
+
+  bool HasKnownKinetics() const;
+  const KineticsParameters& ChosenParameters() const;
+  Eigen::Matrix2d JacobianAtRest() const;
+  /// Whether a rate across differs from the rate along.
+  bool HasDirectedRates() const;
+  Rates MakeRates(const ModelInputs& inputs) const;
+  void ReadRates(const ModelInputs& inputs, Rates& rates) const;
+  void ScaleToFeatureSize(const ModelInputs& inputs, Rates& rates, RunResult& result) const;
+  void WarnOfObstacles(const ModelInputs& inputs, const Rates& rates, RunResult& result) const;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSurfaceFilter.h"
+
+#include "Conversion/SurfaceFilterInternals.h"
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Distributed/SurfacePieces.h"
+#include "Run/Settings.h"
+
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkVersionMacros.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+
+using namespace SurfaceDiffusion;
+
+namespace
+{
+
+std::string JoinSentences(const std::vector<std::string>& sentences)
+{
+  std::string text;
+  for (const std::string& sentence : sentences)
+  {
+    text += (text.empty() ? "" : "; ") + sentence;
+  }
+  return text;
+}
+
+} // namespace
+
+vtkSurfaceFilter::vtkSurfaceFilter()
+  : Private(std::make_unique<Internals>())
+{
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->HasWholeSurface = false; // only if a user sets null
+}
+
+vtkSurfaceFilter::~vtkSurfaceFilter()
+{
+  this->SetController(nullptr);
+}
+
+void vtkSurfaceFilter::SetController(vtkMultiProcessController* controller)
+{
+  if (this->HasWholeSurface != !controller)
+  {
+    this->HasWholeSurface = !controller;
+    this->Modified();
+  }
+  vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
+}
+
+void vtkSurfaceFilter::CheckSurfaceProperties(Problems& problems)
+{
+  Require(SettingRange::NonNegative().Contains(this->MergeTolerance), "MergeTolerance",
+    this->MergeTolerance, SettingRange::NonNegative().Text, problems);
+  const SettingRange seam =
+    SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: 1e-6 of the bounding box");
+  Require(
+    seam.Contains(this->SeamTolerance), "SeamTolerance", this->SeamTolerance, seam.Text, problems);
+}
+
+bool vtkSurfaceFilter::SolvesInPieces(const std::vector<SurfaceBlock>&, bool, double)
+{
+  return false;
+}
+
+const ProcessGroup& vtkSurfaceFilter::GetProcessGroup() const
+{
+  static const ProcessGroup alone;
+  return this->Private->Group ? *this->Private->Group : alone;
+}
+
+std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
+  const std::vector<SurfaceBlock>& blocks, Problems& problems) const
+{
+  const ProcessGroup& group = this->GetProcessGroup();
+  std::vector<SurfaceBlock> selected;
+  bool anyPoint = false;
+  bool anyPolygon = false;
+  for (const SurfaceBlock& block : blocks)
+  {
+    vtkPolyData* const data = block.Input;
+    anyPoint = anyPoint || data->GetNumberOfPoints() > 0;
+    const bool polygons =
+      data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0;
+    anyPolygon = anyPolygon || polygons;
+    if (polygons || group.IsShared())
+    {
+      selected.push_back(block);
+    }
+  }
+  anyPoint = group.Any(anyPoint);
+  anyPolygon = group.Any(anyPolygon);
+  if (!anyPoint)
+  {
+    problems.emplace_back("the input is empty; a surface of polygons or strips is needed");
+  }
+  else if (!anyPolygon)
+  {
+    problems.emplace_back("the input has no polygons or strips; a surface is needed");
+  }
+  return selected;
+}
+
+bool vtkSurfaceFilter::ReportProblems(Problems problems)
+{
+  std::sort(problems.begin(), problems.end());
+  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
+  const std::string text = this->GetProcessGroup().FirstMessage(JoinSentences(problems));
+  if (text.empty())
+  {
+    return false;
+  }
+  this->ReportError(text);
+  return true;
+}
+
+/// Process 0 reports for all.
+void vtkSurfaceFilter::ReportError(const std::string& text)
+{
+  if (this->GetProcessGroup().IsRoot())
+  {
+    vtkErrorMacro(<< text);
+  }
+}
+
+void vtkSurfaceFilter::ReportWarnings(const std::vector<std::string>& sentences)
+{
+  if (!sentences.empty() && this->GetProcessGroup().IsRoot())
+  {
+    vtkWarningMacro(<< JoinSentences(sentences));
+  }
+}
+
+void vtkSurfaceFilter::BeginWriting()
+{
+  if (this->GetProcessGroup().IsShared() &&
+    this->GetProcessGroup().Any(*this->Private->AbortRequested))
+  {
+    throw Aborted();
+  }
+  if (this->Private->Watch)
+  {
+    this->Private->Watch->End();
+  }
+}
+
+bool vtkSurfaceFilter::IsAborted()
+{
+  bool aborted = this->GetAbortExecute() != 0;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  aborted = aborted || this->CheckAbort(); // containers and upstream filters, too
+  this->SetAbortOutput(false); // the executive would empty the output
+#endif
+  return aborted;
+}
+
+//------------------------------------------------------------------------------------------------
+int vtkSurfaceFilter::FillInputPortInformation(int, vtkInformation* info)
+{
+  // Composite data come as a whole: their blocks share natural units, or are pieces of one surface.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  return 1;
+}
+
+int vtkSurfaceFilter::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+vtkTypeBool vtkSurfaceFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->RequestDataObject(request, inputs, outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+int vtkSurfaceFilter::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return MakeOutputObject(inputs, outputs) ? 1 : 0;
+}
+
+int vtkSurfaceFilter::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const std::vector<SurfacePiece> pieces =
+    CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
+  if (IsLonePiece(this, inputs, this->Controller, this->HasWholeSurface))
+  {
+    return 1;
+  }
+  const auto toBlocks = [](const std::vector<SurfacePiece>& surfaces)
+  {
+    std::vector<SurfaceBlock> blocks;
+    for (const SurfacePiece& surface : surfaces)
+    {
+      blocks.push_back({ surface.Input, surface.Output });
+    }
+    return blocks;
+  };
+  const Processes processes(this->Controller);
+  const PieceSummary summary =
+    processes.Count() > 1 ? SummarizePieces(processes, pieces) : PieceSummary();
+  this->Private->Group.reset();
+  if (processes.Count() > 1 &&
+    this->SolvesInPieces(toBlocks(pieces), summary.OneSurface, summary.NumberOfPoints))
+  {
+    this->Private->Gathered.reset();
+    this->Private->Group = std::make_unique<SharedProcessGroup>(this->Controller);
+    vtkNew<vtkPolyData> nothing;
+    vtkNew<vtkPolyData> noResult;
+    std::vector<SurfaceBlock> blocks = toBlocks(pieces);
+    if (blocks.empty())
+    {
+      blocks.push_back({ nothing, noResult });
+    }
+    this->ProcessGuarded(blocks);
+    this->Private->Group.reset();
+  }
+  else
+  {
+    UpdateOfPieces(this, processes, pieces, this->SeamTolerance, this->Private->Gathered,
+      [&](const std::vector<SurfacePiece>& surfaces) { this->ProcessGuarded(toBlocks(surfaces)); });
+  }
+  this->ShareReported();
+  return 1;
+}
+
+void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
+{
+  double reported = 0.0;
+  *this->Private->AbortRequested = false;
+  const bool shared = this->GetProcessGroup().IsShared();
+  const ProgressMonitor::Callback callback = [&](double fraction)
+  {
+    reported = std::max(reported, fraction);
+    this->UpdateProgress(reported);
+    *this->Private->AbortRequested = *this->Private->AbortRequested || this->IsAborted();
+    return shared || !*this->Private->AbortRequested; // together with the others, or at once
+  };
+  LoopWatch watch([&] { return callback(reported); });
+  this->Private->Watch = &watch;
+  std::string failure;
+  bool completed = false;
+  try
+  {
+    this->ProcessSurfaces(blocks, ProgressMonitor(callback));
+    this->UpdateProgress(1.0);
+    completed = true;
+  }
+  catch (const Aborted&)
+  {
+    // The output is the unchanged input. What was made so far is kept for the next update.
+  }
+  catch (const std::bad_alloc&)
+  {
+    failure = OutOfMemoryMessage;
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  this->Private->Watch = nullptr;
+  if (!completed)
+  {
+    for (const SurfaceBlock& block : blocks) // some may have been written already
+    {
+      block.Output->ShallowCopy(block.Input);
+    }
+  }
+  if (!failure.empty())
+  {
+    this->ReportError(failure);
+  }
+}
+
+void vtkSurfaceFilter::VisitReported(const std::function<void(double&)>& visit)
+{
+  visit(this->MeanEdgeLength);
+}
+
+/// Give all processes the read-only values of process 0.
+void vtkSurfaceFilter::ShareReported()
+{
+  const Processes processes(this->Controller);
+  if (processes.Count() > 1)
+  {
+    std::vector<double> values;
+    this->VisitReported([&](double& value) { values.push_back(value); });
+    processes.Broadcast(values.data(), static_cast<vtkIdType>(values.size()));
+    auto next = values.begin();
+    this->VisitReported([&](double& value) { value = *next++; });
+  }
+}
+
+void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
+  os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
+  os << indent << "SeamTolerance: " << this->SeamTolerance << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
+  os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
+  os << indent << "MeanEdgeLength: " << this->MeanEdgeLength << "\n";
+}

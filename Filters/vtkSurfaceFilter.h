@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSurfaceFilter
+ * @brief   superclass of the filters on triangulated surfaces: pieces, composite data, errors,
+ * abort
+ *
+ * A subclass overrides ProcessSurfaces(), which gets the surfaces of the input, each in one piece,
+ * with an output that already is a shallow copy, and adds its results to the outputs. This class
+ * does the rest: composite data, surfaces that are spread over processes, progress, abort, and
+ * errors, after which the output is the unchanged input.
+ *
+ * Polygons and strips are triangulated internally; vertices and lines pass through; ghost and
+ * hidden cells are ignored. Each block of composite input is a surface of its own.
+ *
+ * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with
+ * a piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one
+ * piece, for any partition. All processes update together. Points of different pieces are one
+ * point of the surface if they have the same global id, provided that all pieces have global ids.
+ * Otherwise they are one point if they coincide within SeamTolerance and at least one of them lies
+ * on the boundary of its piece. Points of one piece are never joined, which is the task of
+ * MergeCoincidentPoints: the k-th coincident point of a piece is identified with the k-th of the
+ * others. Data are those of the first piece that has the point. Ghost cells are ignored; ghost
+ * points get the results of the points that they are copies of. Warnings and errors are reported by
+ * process 0 alone. Unless a subclass solves with the pieces themselves, the surface is gathered in
+ * process 0 and the result is scattered.
+ *
+ * @sa vtkSurfaceDiffusionAlgorithm vtkSurfaceDirectionFieldFilter
+ */
+#ifndef vtkSurfaceFilter_h
+#define vtkSurfaceFilter_h
+
+#include "vtkPolyDataAlgorithm.h"
+#include "vtkSurfaceDiffusionModule.h" // for export macro
+
+#include <functional> // for read-only values
+#include <memory> // for the private part
+#include <string> // for messages
+#include <vector> // for messages
+
+namespace SurfaceDiffusion
+{
+class ProcessGroup;
+class ProgressMonitor;
+}
+class vtkMultiProcessController;
+class vtkPolyData;
+
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceFilter : public vtkPolyDataAlgorithm
+{
+public:
+  vtkTypeMacro(vtkSurfaceFilter, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * On: points within MergeTolerance of one another (in coordinate units, 0 or more, default 0) are
+   * one point of the surface, as STL files and split normals need. The output keeps the input's
+   * points. Off (default): coincident boundary points are counted in a warning.
+   */
+  vtkSetMacro(MergeCoincidentPoints, bool);
+  vtkGetMacro(MergeCoincidentPoints, bool);
+  vtkBooleanMacro(MergeCoincidentPoints, bool);
+  vtkSetMacro(MergeTolerance, double);
+  vtkGetMacro(MergeTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * The largest distance of points of different pieces that are one point of the surface, in
+   * coordinate units; 0: equal coordinates only; -1 (default): 1e-6 of the diagonal of the bounding
+   * box, a difference that single precision may cause. Not used with global point ids. 0 or more,
+   * or -1.
+   */
+  vtkSetMacro(SeamTolerance, double);
+  vtkGetMacro(SeamTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * The processes that hold pieces of the surface. Default: the global controller. Null, set
+   * by SetController(): this process's surface is the whole one. Otherwise an update is an error if
+   * the pipeline asks for one of several pieces and no other process can be reached (no MPI, or no
+   * controller of it).
+   */
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  ///@{
+  /**
+   * The name of the result. Default: empty, which stands for a name that the subclass makes, or the
+   * subclass's own default.
+   */
+  vtkSetStdStringFromCharMacro(ResultArrayName);
+  vtkGetCharFromStdStringMacro(ResultArrayName);
+  ///@}
+
+  /**
+   * The mean length h of the distinct edges of triangles of positive area, of the last update.
+   */
+  vtkGetMacro(MeanEdgeLength, double);
+
+  vtkTypeBool ProcessRequest(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+protected:
+  vtkSurfaceFilter();
+  ~vtkSurfaceFilter() override;
+
+  /// A surface of the input, and its shallow copy in the output.
+  struct SurfaceBlock
+  {
+    vtkPolyData* Input;
+    vtkPolyData* Output;
+  };
+
+  /// Process the surfaces of one update and add the results to the outputs. Errors are
+  /// std::runtime_error or calls of ReportProblems(); call BeginWriting() before the outputs
+  /// change.
+  virtual void ProcessSurfaces(
+    const std::vector<SurfaceBlock>& blocks, const SurfaceDiffusion::ProgressMonitor& progress) = 0;
+
+  /// Whether every process works on its own piece, which then is the only block. All processes give
+  /// the same answer. pieces: this process's; oneSurface: whether all pieces belong to one surface
+  /// and no process has several; points: their number over all processes.
+  virtual bool SolvesInPieces(
+    const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points);
+
+  /// Visit the read-only values, which process 0 shares with all. Superclass first.
+  virtual void VisitReported(const std::function<void(double&)>& visit);
+
+  /// Sentences that name a property or array, its value and what is allowed.
+  using Problems = std::vector<std::string>;
+
+  /// Append the problems of this class's properties.
+  void CheckSurfaceProperties(Problems& problems);
+
+  /// The blocks with polygons (all of them if processes work on pieces), and problems if there are
+  /// none in any process.
+  std::vector<SurfaceBlock> SelectSurfaces(
+    const std::vector<SurfaceBlock>& blocks, Problems& problems) const;
+
+  /// Report the problems of all processes as one error; false if there are none.
+  bool ReportProblems(Problems problems);
+
+  /// The last chance to abort, before outputs change. Throws SurfaceDiffusion::Aborted.
+  void BeginWriting();
+
+  /// Report sentences as one warning, unless there are none.
+  void ReportWarnings(const std::vector<std::string>& sentences);
+
+  /// The processes that work on this update together: one, unless SolvesInPieces().
+  const SurfaceDiffusion::ProcessGroup& GetProcessGroup() const;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  virtual int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
+
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+  double SeamTolerance = -1.0;
+  std::string ResultArrayName;
+  double MeanEdgeLength = 0.0;
+
+  /// What the library keeps between updates and during one; not for other subclasses.
+  struct Internals;
+  const std::unique_ptr<Internals> Private;
+
+private:
+  vtkSurfaceFilter(const vtkSurfaceFilter&) = delete;
+  void operator=(const vtkSurfaceFilter&) = delete;
+
+  void ProcessGuarded(const std::vector<SurfaceBlock>& blocks);
+  void ReportError(const std::string& text);
+  bool IsAborted();
+  void ShareReported();
+
+  vtkMultiProcessController* Controller = nullptr;
+  bool HasWholeSurface = false; ///< the meaning of a null Controller
+};
+
+#endif

@@ -1,0 +1,38 @@
+# Fails if a source in FOLDER, the folder of the numerics, includes a file of a layer above its own.
+# Every folder lists the folders below it. Models and Geometry are side by side: neither uses the
+# other.
+cmake_minimum_required(VERSION 3.22)
+set(below_Foundation "")
+set(below_Surface Foundation)
+set(below_Operators Foundation Surface)
+set(below_Solvers Foundation Surface Operators)
+set(below_Models Foundation Surface Operators Solvers)
+set(below_Geometry Foundation Surface Operators Solvers)
+
+file(GLOB folders LIST_DIRECTORIES true RELATIVE "${FOLDER}" "${FOLDER}/*")
+set(number_of_includes 0)
+foreach (folder IN LISTS folders)
+  if (NOT IS_DIRECTORY "${FOLDER}/${folder}")
+    continue ()
+  endif ()
+  if (NOT DEFINED below_${folder})
+    message(SEND_ERROR "${folder} is in no layer; allowed: a line for it in ${CMAKE_CURRENT_LIST_FILE}")
+  endif ()
+  file(GLOB_RECURSE sources RELATIVE "${FOLDER}" "${FOLDER}/${folder}/*.h" "${FOLDER}/${folder}/*.cxx")
+  foreach (source IN LISTS sources)
+    file(STRINGS "${FOLDER}/${source}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*\"")
+    foreach (line IN LISTS lines)
+      math(EXPR number_of_includes "${number_of_includes} + 1")
+      string(REGEX REPLACE ".*\"(.*)\".*" "\\1" file "${line}")
+      string(REGEX MATCH "^Core/([A-Za-z]+)/[A-Za-z]+\\.h$" written_in_full "${file}")
+      if (NOT written_in_full OR NOT "${CMAKE_MATCH_1}" IN_LIST below_${folder}
+          AND NOT "${CMAKE_MATCH_1}" STREQUAL "${folder}")
+        message(SEND_ERROR "${source} includes \"${file}\"; allowed: Core/<folder>/<file>.h of "
+          "${folder} or of the layers below it (${below_${folder}})")
+      endif ()
+    endforeach ()
+  endforeach ()
+endforeach ()
+if (number_of_includes LESS 100)
+  message(SEND_ERROR "only ${number_of_includes} includes found in ${FOLDER}")
+endif ()

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/HarmonicMapSettings.h"
+#include "Run/HeatSettings.h"
+#include "Run/TextureSettings.h"
+#include "Run/TotalVariationSettings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace SurfaceDiffusion;
+
+namespace
+{
+
+/// Calls change(value) for one setting after the other.
+class EachSetting : public SettingVisitor
+{
+public:
+  using SettingVisitor::Choice;
+  explicit EachSetting(int index)
+    : Index(index)
+  {
+  }
+  void Number(const SettingInfo& info, double& value, const SettingRange&) override
+  {
+    if (this->IsNext(info))
+    {
+      value += 0.25;
+    }
+  }
+  void Integer(const SettingInfo& info, int& value, const SettingRange&) override
+  {
+    if (this->IsNext(info))
+    {
+      ++value;
+    }
+  }
+  void Switch(const SettingInfo& info, bool& value) override
+  {
+    if (this->IsNext(info))
+    {
+      value = !value;
+    }
+  }
+  void Choice(const SettingInfo& info, int& value, const std::vector<const char*>&,
+    const std::vector<bool>&) override
+  {
+    if (this->IsNext(info))
+    {
+      ++value;
+    }
+  }
+
+  SettingInfo Changed{ "", "", "" };
+  int Count = 0;
+
+private:
+  bool IsNext(const SettingInfo& info)
+  {
+    const bool next = this->Count++ == this->Index;
+    if (next)
+    {
+      this->Changed = info;
+    }
+    return next;
+  }
+
+  const int Index;
+};
+
+using Maker = std::function<std::unique_ptr<RunSettings>()>;
+
+const std::vector<Maker> AllModels = { [] { return std::make_unique<HeatSettings>(); },
+  [] { return std::make_unique<TotalVariationSettings>(); },
+  [] { return std::make_unique<HarmonicMapSettings>(); },
+  [] { return std::make_unique<TextureSettings>(); } };
+
+bool HasProblem(RunSettings& settings, const std::string& start)
+{
+  Problems problems;
+  settings.Check(nullptr, problems);
+  for (const std::string& problem : problems)
+  {
+    if (problem.compare(0, start.size(), start) == 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
+
+TEST(Settings, EveryChangedSettingChangesTheSnapshotOfItsScopeAlone)
+{
+  for (const Maker& make : AllModels)
+  {
+    EachSetting counter(-1);
+    make()->Visit(counter);
+    ASSERT_GT(counter.Count, 15);
+    for (int i = 0; i < counter.Count; ++i)
+    {
+      const auto before = make();
+      const auto after = make();
+      EachSetting change(i);
+      after->Visit(change);
+      for (const SettingScope scope :
+        { SettingScope::Surface, SettingScope::Model, SettingScope::Output })
+      {
+        const bool equal =
+          SettingsSnapshot(*before, scope) == SettingsSnapshot(*after, scope);
+        EXPECT_EQ(equal, scope != change.Changed.Scope) << change.Changed.Name;
+      }
+    }
+  }
+}
+
+TEST(Settings, EverySettingHasANameOfItsOwnAndADocumentation)
+{
+  for (const Maker& make : AllModels)
+  {
+    const auto settings = make();
+    EachSetting counter(-1);
+    settings->Visit(counter);
+    std::set<std::string> names;
+    for (int i = 0; i < counter.Count; ++i)
+    {
+      EachSetting change(i);
+      make()->Visit(change);
+      names.insert(change.Changed.Name);
+      EXPECT_GT(std::string(change.Changed.Documentation).size(), 10u) << change.Changed.Name;
+    }
+    EXPECT_EQ(static_cast<int>(names.size()), counter.Count);
+  }
+}
+
+TEST(Settings, DefaultsHaveNoProblem)
+{
+  for (const Maker& make : AllModels)
+  {
+    Problems problems;
+    make()->Check(nullptr, problems);
+    EXPECT_TRUE(problems.empty()) << problems.front();
+  }
+}
+
+TEST(Settings, AProblemNamesTheSettingItsValueAndTheAllowedValues)
+{
+  HeatSettings settings;
+  settings.TimeStep = -2.5;
+  Problems problems;
+  settings.Check(nullptr, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems.front(), "TimeStep is -2.5; allowed: finite numbers above 0");
+}
+
+TEST(Settings, ChoicesListTheWordsThatTheModelAllows)
+{
+  TotalVariationSettings settings;
+  settings.TimeIntegrator = TimeIntegrator::SecondOrder;
+  Problems problems;
+  settings.Check(nullptr, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems.front(), "TimeIntegrator is 1; allowed: 0 FirstOrder, 2 Implicit");
+}
+
+TEST(Settings, NumbersThatAreNotFiniteAreProblems)
+{
+  for (const double value : { std::nan(""), std::numeric_limits<double>::infinity() })
+  {
+    HarmonicMapSettings settings;
+    settings.FidelityWeight = value;
+    EXPECT_TRUE(HasProblem(settings, "FidelityWeight is"));
+  }
+}
+
+TEST(Settings, ParametersOfOtherKineticsAreFree)
+{
+  TextureSettings settings;
+  settings.Parameters[static_cast<std::size_t>(KineticsName::GrayScott)][0] = -1.0;
+  EXPECT_FALSE(HasProblem(settings, "FeedRate"));
+  settings.Kinetics = KineticsName::GrayScott;
+  EXPECT_TRUE(HasProblem(settings, "FeedRate is -1"));
+}
+
+TEST(Settings, FWHMExcludesWhatWouldChangeTheWidth)
+{
+  HeatSettings settings;
+  settings.FWHM = 2.0;
+  settings.FidelityWeight = 1.0;
+  EXPECT_TRUE(HasProblem(settings, "FidelityWeight is 1; allowed: 0 together with FWHM"));
+}
+
+TEST(Settings, UnknownNumbersOfChoicesAreProblemsAndNotFailures)
+{
+  for (const int number : { -1, 99 })
+  {
+    TotalVariationSettings settings;
+    settings.EdgeFunction = static_cast<EdgeFunctionKind>(number);
+    EXPECT_TRUE(HasProblem(settings, "EdgeFunction is"));
+    TextureSettings texture;
+    texture.Kinetics = static_cast<KineticsName>(number);
+    EXPECT_TRUE(HasProblem(texture, "Kinetics is"));
+    EXPECT_STREQ(FindWord(texture, "Kinetics"), "Unknown");
+  }
+}
+
+TEST(Settings, PublishedTimesEndWithTheLastStep)
+{
+  HeatSettings settings;
+  settings.TimeStep = 0.5;
+  settings.NumberOfTimeSteps = 7;
+  settings.OutputInterval = 3;
+  EXPECT_EQ(settings.PublishedTimes(), (std::vector<double>{ 0.0, 1.5, 3.0, 3.5 }));
+  EXPECT_EQ(settings.FindStep(1.49), 0);
+  EXPECT_EQ(settings.FindStep(1.5), 3);
+  EXPECT_EQ(settings.FindStep(3.4), 6);
+  EXPECT_EQ(settings.FindStep(99.0), 7);
+  EXPECT_EQ(settings.FindStep(-1.0), 0);
+}

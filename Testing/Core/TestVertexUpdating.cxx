@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/VertexUpdating.h"
+#include "HarmonicMaps.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+Eigen::RowVector3d FaceNormal(const Surface& s, Index t)
+{
+  const Eigen::RowVector3d a = s.Vertices.row(s.Faces(t, 0));
+  const Eigen::RowVector3d b = s.Vertices.row(s.Faces(t, 1));
+  const Eigen::RowVector3d c = s.Vertices.row(s.Faces(t, 2));
+  return (b - a).cross(c - a).normalized();
+}
+
+/// Mean angle, in degrees, between the triangles of two surfaces.
+double MeanAngle(const Surface& a, const Surface& b)
+{
+  double sum = 0.0;
+  for (Index t = 0; t < a.NumberOfTriangles(); ++t)
+  {
+    sum += std::acos(std::min(1.0, FaceNormal(a, t).dot(FaceNormal(b, t))));
+  }
+  return sum / a.NumberOfTriangles() * 180.0 / Pi;
+}
+
+Surface Noisy(Surface s, double amount)
+{
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      s.Vertices(i, k) += amount * (2.0 * UniformRandom(5, k, i) - 1.0);
+    }
+  }
+  return s;
+}
+
+} // namespace
+
+TEST(VertexUpdating, NoisyPlaneWithExactNormalsBecomesFlat)
+{
+  const Surface flat = Rotated(Strip(20, 20));
+  const Surface s = Noisy(flat, 0.01);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  Values normals(mesh.NumberOfVertices(), 3);
+  normals.rowwise() = FaceNormal(flat, 0);
+  VertexMotion motion;
+  Surface fitted = s;
+  fitted.Vertices = UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion);
+  EXPECT_GT(MeanAngle(s, flat), 5.0);
+  EXPECT_LT(MeanAngle(fitted, flat), 1e-2);
+  // No vertex moves along the plane, and the mean plane stays.
+  const Points moved = fitted.Vertices - s.Vertices;
+  const Eigen::Vector3d normal = normals.row(0).transpose();
+  EXPECT_LT((moved - (moved * normal) * normal.transpose()).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT(motion.MaximumDisplacement, 0.05);
+  EXPECT_EQ(motion.VolumeBefore, 0.0); // open
+}
+
+TEST(VertexUpdating, ReportsThatItDidNotConverge)
+{
+  const Surface s = Noisy(Strip(20, 20), 0.01);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  Values normals(mesh.NumberOfVertices(), 3);
+  normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+  VertexMotion motion;
+  EXPECT_THROW(
+    UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }), NotConverged);
+}
+
+TEST(VertexUpdating, NoisySphereIsSmoothedAtConstantVolume)
+{
+  const Surface clean = Icosphere(4);
+  const Surface s = Noisy(clean, 0.02);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  const Values normals = SampleUnit(mesh, clean, 3, [](const Eigen::RowVector3d& x) { return x; });
+  VertexMotion motion;
+  Surface fitted = s;
+  fitted.Vertices = UpdateVerticesFromNormals(
+    mesh, s.Vertices, normals, 5.0 * MeanEdge(mesh) * mesh.LengthUnit(), motion);
+  std::printf("angle %.2f -> %.2f degrees, volume %.4f -> %.4f, moved %.4f (mean), %.4f (most)\n",
+    MeanAngle(s, clean), MeanAngle(fitted, clean), motion.VolumeBefore, motion.VolumeAfter,
+    motion.MeanDisplacement, motion.MaximumDisplacement);
+  EXPECT_LT(MeanAngle(fitted, clean), 0.15 * MeanAngle(s, clean));
+  EXPECT_NEAR(motion.VolumeBefore, 4.0 / 3.0 * Pi, 0.03);
+  EXPECT_NEAR(motion.VolumeAfter / motion.VolumeBefore, 1.0, 1e-3);
+  EXPECT_LT(motion.MeanDisplacement, motion.MaximumDisplacement);
+  EXPECT_LT(motion.MaximumDisplacement, 0.06);
+  double largest = 0.0;
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    largest = std::max(largest, (fitted.Vertices.row(i) - s.Vertices.row(i)).norm());
+  }
+  EXPECT_NEAR(motion.MaximumDisplacement, largest, 1e-15);
+}
+
+TEST(VertexUpdating, DoesNotDependOnPlaceSizeOrOrientation)
+{
+  const Surface s = Noisy(Icosphere(2), 0.03);
+  const auto fit = [](const Surface& surface, double scale, const Eigen::RowVector3d& centre)
+  {
+    const TriangleMesh mesh(surface.Vertices, surface.Faces);
+    const Values normals = SampleUnit(mesh, surface, 3,
+      [&](const Eigen::RowVector3d& x) { return Eigen::RowVector3d(x - centre); });
+    VertexMotion motion;
+    return UpdateVerticesFromNormals(mesh, surface.Vertices, normals, 0.7 * scale, motion);
+  };
+  const Eigen::RowVector3d origin = Eigen::RowVector3d::Zero();
+  const Eigen::RowVector3d away(300.0, -200.0, 50.0);
+  const Points reference = fit(s, 1.0, origin);
+  EXPECT_LT((fit(Scaled(s, 1e-6), 1e-6, origin) * 1e6 - reference).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT(
+    ((fit(Moved(s, away), 1.0, away)).rowwise() - away - reference).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT((fit(Flipped(s), 1.0, origin) - reference).cwiseAbs().maxCoeff(), 1e-8);
+}
