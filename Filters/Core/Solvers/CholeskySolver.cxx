@@ -139,7 +139,7 @@ private:
   template <int K>
   void SubstituteColumns(const Values& b, Values& x)
   {
-    const int k = ColumnCount<K>(b.cols());
+    const ColumnCount<K> k(b.cols());
     const Index n = static_cast<Index>(b.rows());
     const Index* place = this->Factor->Place;
     for (Index i = 0; i < n; ++i)
@@ -178,7 +178,7 @@ private:
   template <int K, int Width>
   void Forward(Index j, int columns)
   {
-    const int k = ColumnCount<K>(columns);
+    const ColumnCount<K> k(columns);
     const Panel<Width> panel(*this->Factor, j);
     double* w = this->Row(j, k);
     for (int a = 0; a < Width; ++a)
@@ -217,7 +217,7 @@ private:
   template <int K, int Width>
   void Backward(Index j, int columns)
   {
-    const int k = ColumnCount<K>(columns);
+    const ColumnCount<K> k(columns);
     const Panel<Width> panel(*this->Factor, j);
     double* result = this->Row(j, k);
     ColumnRegisters<double, K, Width> registers;
