@@ -106,7 +106,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   settings.Limits.Tolerance = this->Tolerance;
   settings.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   const bool distributed = !inputs.Surface.Mesh().GetReduction().IsSerial();
-  if (this->Solver == SolverMethod::Factorization ||
+  if (this->Solver == SolverMethod::Direct ||
     (this->Solver == SolverMethod::Multigrid && distributed))
   {
     settings.Method = HarmonicMap::Preconditioner::Factor;

@@ -234,7 +234,6 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
     ? inputs.Directions
     : TangentVectors(TangentVectors::Zero(mesh.NumberOfTriangles(), 2));
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
-  bool direct = mesh.GetReduction().IsSerial();
   for (int c = 0; c < 2; ++c)
   {
     const double fastest = std::max(rates.MeanAlong[c], rates.MeanAcross[c]);
@@ -242,14 +241,11 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
     task.NumberOfVertices = mesh.NumberOfVertices();
     task.DiffusionNumber = fastest * settings.TimeStep / (h * h);
     task.NumberOfSolves = (secondOrder ? 2.0 : 1.0) * this->NumberOfTimeSteps;
-    task.Tolerance = this->Tolerance;
-    direct = direct && ChooseSolver(this->Solver, task).Method == SolverMethod::Factorization;
     chemicals[c].Solver =
       inputs.Solvers.Find(c == 0 ? SolverPurpose::Step : SolverPurpose::SecondChemical, task);
     chemicals[c].Coefficients = AnisotropicWeights(
       mesh, isotropic, directions, rates.Along[c], rates.Across[c], inputs.Parallel);
   }
-  settings.SideBySide = direct; // a substitution runs on one thread
   return std::make_unique<ReactionDiffusion>(inputs.Surface.SharedAssembler(), reaction,
     std::move(chemicals), std::move(inputs.Data), settings, inputs.Parallel);
 }

@@ -117,10 +117,10 @@ void SolveOnAllLevels(Benchmark* b)
 
 } // namespace
 
-BENCHMARK_CAPTURE(SetUp, Direct, SolverMethod::Factorization)->Apply(SetUpOnLevels);
-BENCHMARK_CAPTURE(SetUpAgain, Direct, SolverMethod::Factorization)->Apply(SetUpOnLevels);
+BENCHMARK_CAPTURE(SetUp, Direct, SolverMethod::Direct)->Apply(SetUpOnLevels);
+BENCHMARK_CAPTURE(SetUpAgain, Direct, SolverMethod::Direct)->Apply(SetUpOnLevels);
 BENCHMARK_CAPTURE(SetUp, Multigrid, SolverMethod::Multigrid)->Apply(SetUpOnAllLevels);
-BENCHMARK_CAPTURE(Solve, Direct, SolverMethod::Factorization)->Apply(SolveOnShortAndLongSteps);
+BENCHMARK_CAPTURE(Solve, Direct, SolverMethod::Direct)->Apply(SolveOnShortAndLongSteps);
 BENCHMARK_CAPTURE(Solve, Multigrid, SolverMethod::Multigrid)->Apply(SolveOnAllLevels);
 BENCHMARK_CAPTURE(Solve, ConjugateGradient, SolverMethod::ConjugateGradient)
   ->Apply(SolveOnAllLevels);

@@ -202,7 +202,6 @@ void Stands(benchmark::State& state)
   Settings settings;
   settings.TimeStep = 1.0 / static_cast<double>(state.range(2));
   settings.StopTolerance = 0.03;
-  settings.SideBySide = true;
   double steps = 0.0;
   for (auto _ : state)
   {

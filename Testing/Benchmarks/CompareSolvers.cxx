@@ -22,7 +22,7 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-constexpr SolverMethod Methods[] = { SolverMethod::Factorization, SolverMethod::ConjugateGradient,
+constexpr SolverMethod Methods[] = { SolverMethod::Direct, SolverMethod::ConjugateGradient,
   SolverMethod::Multigrid };
 constexpr const char* Names[] = { "Direct", "ConjugateGradient", "Multigrid" };
 

@@ -373,14 +373,14 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
   };
   EXPECT_EQ(choice(44000, 0.1, 1), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(44000, 100.0, 1), SolverMethod::Multigrid);
-  EXPECT_EQ(choice(44000, 1.0, 10), SolverMethod::Factorization);
+  EXPECT_EQ(choice(44000, 1.0, 10), SolverMethod::Direct);
   EXPECT_EQ(choice(44000, 1.0, 10, 1e-3), SolverMethod::ConjugateGradient);
-  EXPECT_EQ(choice(178000, 100.0, 20), SolverMethod::Factorization);
+  EXPECT_EQ(choice(178000, 100.0, 20), SolverMethod::Direct);
   EXPECT_EQ(choice(178000, 1e4, 1), SolverMethod::Multigrid);
   EXPECT_EQ(choice(711000, 0.1, 10), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(711000, 1e4, 10), SolverMethod::Multigrid);
-  EXPECT_EQ(choice(711000, 1.0, 100), SolverMethod::Factorization);
-  EXPECT_EQ(choice(178000, 0.1, 100), SolverMethod::Factorization);
+  EXPECT_EQ(choice(711000, 1.0, 100), SolverMethod::Direct);
+  EXPECT_EQ(choice(178000, 0.1, 100), SolverMethod::Direct);
   EXPECT_EQ(choice(1000000, 0.1, 200), SolverMethod::ConjugateGradient);
 }
 
@@ -410,7 +410,7 @@ TEST(Automatic, FactorisesForAPreconditionerAtAnySize)
   task.DiffusionNumber = 0.1;
   task.IsPreconditioner = true;
   const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, task);
-  EXPECT_EQ(choice.Method, SolverMethod::Factorization);
+  EXPECT_EQ(choice.Method, SolverMethod::Direct);
   EXPECT_FALSE(choice.FallsBack);
   EXPECT_TRUE(PreferDistributedMultigrid(SolverMethod::Automatic, task));
 }
@@ -418,7 +418,7 @@ TEST(Automatic, FactorisesForAPreconditionerAtAnySize)
 TEST(SolverChoice, IsTheMethodAskedForUnlessAutomatic)
 {
   for (const SolverMethod method :
-    { SolverMethod::Factorization, SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
+    { SolverMethod::Direct, SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
   {
     const SolverChoice choice = ChooseSolver(method, ManySolves());
     EXPECT_EQ(choice.Method, method);

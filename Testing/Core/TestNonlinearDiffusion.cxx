@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/MeanCorrection.h"
+#include "Core/Solvers/SolverChoice.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
 #include "ThreadedFor.h"
@@ -279,7 +280,7 @@ TEST(NonlinearDiffusion, NeverBlowsUp)
       {
         std::shared_ptr<LinearSolver> solver = direct
           ? MakeCholeskySolver()
-          : MakeAutomaticSolver({ mesh.NumberOfVertices(), 1e-3, 1.0 });
+          : MakeSolver(SolverMethod::Automatic, { mesh.NumberOfVertices(), 1e-3, 1.0 });
         solver->SetLimits({ 1e-6, 300 });
         const auto model =
           MakeLagged(assembler, data, LaggedSettings(mesh, step, 1.0, beta), solver);

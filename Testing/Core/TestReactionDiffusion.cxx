@@ -566,9 +566,7 @@ TEST(ReactionDiffusion, ThreadsDoNotChangeABit)
     for (const int threads : { 2, 4 })
     {
       const ThreadedFor parallel(threads);
-      Settings settings;
-      settings.SideBySide = true;
-      const auto threaded = MakeTexture(MakeAssembler(s), settings, parallel, direct);
+      const auto threaded = MakeTexture(MakeAssembler(s), Settings(), parallel, direct);
       Advance(*threaded, 8);
       EXPECT_TRUE(threaded->State() == serial->State());
       EXPECT_EQ(threaded->Energy(), serial->Energy());
@@ -579,16 +577,15 @@ TEST(ReactionDiffusion, ThreadsDoNotChangeABit)
 TEST(ReactionDiffusion, StepsAfterTheFirstAllocateNothing)
 {
   const auto assembler = MakeAssembler(Icosphere(3));
-  for (const bool sideBySide : { false, true })
+  for (const bool direct : { false, true })
   {
     Settings settings;
-    settings.SideBySide = sideBySide;
     settings.StopTolerance = 1e-6;
-    const auto model = MakeTexture(assembler, settings, SerialFor(), false);
+    const auto model = MakeTexture(assembler, settings, SerialFor(), direct);
     Advance(*model, 1);
     const long before = NumberOfAllocations();
     Advance(*model, 100);
-    EXPECT_EQ(NumberOfAllocations(), before) << sideBySide;
+    EXPECT_EQ(NumberOfAllocations(), before) << direct;
   }
 }
 

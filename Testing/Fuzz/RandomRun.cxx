@@ -366,7 +366,6 @@ void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
     bytes.Flip() ? ReactionDiffusion::Scheme::FirstOrder : ReactionDiffusion::Scheme::SecondOrder;
   settings.KeepNonNegative = reaction.Terms->NonNegative && bytes.Flip();
   settings.StopTolerance = bytes.Flip(4) ? bytes.Size(4.0) : 0.0;
-  settings.SideBySide = bytes.Flip(4);
   PointData data =
     PointData::FromValues(NoisySteadyState(reaction, std::abs(bytes.Short()), 1, Ids(mesh)));
   std::array<ReactionDiffusion::Chemical, 2> chemicals;

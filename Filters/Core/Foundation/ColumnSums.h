@@ -27,7 +27,7 @@ public:
   template <int K, typename First, typename Add>
   void Run(const ParallelFor& parallel, Index rows, int columns, const First& first, const Add& add)
   {
-    const int width = ColumnCount<K>(columns);
+    const ColumnCount<K> width(columns);
     ForEachBlock(parallel, rows,
       [&](Index block, Index begin, Index end)
       {

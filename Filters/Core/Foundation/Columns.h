@@ -36,12 +36,25 @@ decltype(auto) ForColumns(Eigen::Index columns, const F& f)
   return ForNumber<3>(columns, f);
 }
 
-/// The number of columns in a template over them: K, or `columns` if K is 0.
+/// The number of columns in a template over them: K, or any number if K is 0. A type, so that K is
+/// known to the compiler in lambdas too, which ParallelFor calls through a pointer.
 template <int K>
-constexpr int ColumnCount(Eigen::Index columns)
+struct ColumnCount
 {
-  return K > 0 ? K : static_cast<int>(columns);
-}
+  explicit ColumnCount(Eigen::Index /*columns*/) {}
+  constexpr operator int() const { return K; } // NOLINT(google-explicit-constructor)
+};
+template <>
+struct ColumnCount<0>
+{
+  explicit ColumnCount(Eigen::Index columns)
+    : Columns(static_cast<int>(columns))
+  {
+  }
+  operator int() const { return this->Columns; } // NOLINT(google-explicit-constructor)
+
+  int Columns;
+};
 
 /// Room in registers for Rows x K numbers. For any number of columns (K = 0) the numbers stay in
 /// memory.

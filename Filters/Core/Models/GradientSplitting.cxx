@@ -101,7 +101,7 @@ void GradientSplitting::UpdateColumns(const Values& values, double relaxation)
   ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
     {
-      const int count = ColumnCount<K>(values.cols());
+      const ColumnCount<K> count(values.cols());
       const GradientMap map = this->Gradients[t];
       const double* u0 = u + static_cast<std::ptrdiff_t>(vertices[3 * t]) * count;
       const double* u1 = u + static_cast<std::ptrdiff_t>(vertices[3 * t + 1]) * count;

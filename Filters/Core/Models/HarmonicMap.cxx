@@ -300,7 +300,6 @@ SolveReport HarmonicMap::TrySolve(bool factor, Values& step, const ProgressMonit
   if (factor)
   {
     this->System.SetUpSolver(progress.Part(0.0, 0.5));
-    this->System.GetSolver().SetLimits({ 1.0, 1 }); // a preconditioner need not be refined
   }
   const TangentSystem system{ this->System.GetMatrix(), this->Previous, this->Data.Fixed,
     this->RightHandSide, this->Diagonal, this->Assembly->Mesh().GetReduction() };

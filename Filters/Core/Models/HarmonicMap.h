@@ -95,7 +95,7 @@ public:
   };
 
   /// data: unit vectors (see FillMissingUnitVectors). solver: kept by the caller from run to run;
-  /// of ExplicitReaction any, otherwise a direct one.
+  /// schemes other than ExplicitReaction use it as preconditioner.
   HarmonicMap(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());

@@ -252,9 +252,9 @@ double ReactionDiffusion::IntegrateDiffusion(int chemical, const Values& u, Inde
 /// New = the solutions for the right-hand sides.
 void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)
 {
-  if (this->Options.SideBySide)
+  if (this->CanSolveSideBySide())
   {
-    // Progress is reported to the thread of the caller only.
+    // Without progress, which only the thread of the caller may report.
     ForEachTask(this->Parallel, 2, [this](Index c) { this->SolveFor(c, ProgressMonitor()); });
     progress.Report(1.0);
   }
@@ -284,6 +284,15 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
     report.Iterations += solution.Report.Iterations;
     report.Residual = std::max(report.Residual, solution.Report.Residual);
   }
+}
+
+/// Whether the two solves run as two parallel tasks, with the same bits. Solvers that run on all
+/// threads, or communicate with other processes, follow each other.
+bool ReactionDiffusion::CanSolveSideBySide() const
+{
+  return this->Systems[0].GetSolver().RunsOnOneThread() &&
+    this->Systems[1].GetSolver().RunsOnOneThread() &&
+    this->Assembly->Mesh().GetReduction().IsSerial();
 }
 
 void ReactionDiffusion::SolveFor(int c, const ProgressMonitor& progress)

@@ -48,9 +48,6 @@ public:
     /// its mean|), in L2 norms over the surface, is at most this for both chemicals: the relative
     /// change per unit time. It is about the growth rate while the pattern grows. 0: never.
     double StopTolerance = 0.0;
-    /// Solve for the two chemicals as two parallel tasks, which is faster if the solvers run on one
-    /// thread each, as direct ones do. The bits are the same either way. Not over several processes.
-    bool SideBySide = false;
   };
 
   /// The diffusion of one chemical: the coefficients of D (CotanWeights.h) in LengthUnit()^2/time,
@@ -97,6 +94,7 @@ private:
   double IntegrateDiffusion(int chemical, const Values& u, Index i) const;
   void Solve(StepReport& report, const ProgressMonitor& progress);
   void SolveFor(int chemical, const ProgressMonitor& progress);
+  bool CanSolveSideBySide() const;
   void Project(double dt, StepReport& report);
   void FinishStep();
 

@@ -127,7 +127,7 @@ void TotalVariationMinimizer::UpdateResidual()
 template <int K>
 void TotalVariationMinimizer::UpdateColumns()
 {
-  const int columns = ColumnCount<K>(this->RightHandSide.cols());
+  const ColumnCount<K> columns(this->RightHandSide.cols());
   this->OverProcesses.AccumulateEach(
     this->Parallel, this->Gathered,
     [&](Index i) { this->Gradients.GatherRightHandSide<K>(i, &this->Gathered(i, 0)); },

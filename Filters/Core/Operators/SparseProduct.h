@@ -9,45 +9,8 @@ namespace SurfaceDiffusion
 
 /// Rows [begin, end) of y = matrix x, for K columns of x, or any number of them if K is 0. With the
 /// number known to the compiler the sums stay in registers, so that the speed is that of memory.
+/// Instantiated for K <= 3 in a file of its own, lest the loops around it take its registers.
 template <int K>
-void MultiplyRows(const SparseMatrix& matrix, const Values& x, Values& y, Index begin, Index end)
-{
-  const Index* outer = matrix.outerIndexPtr();
-  const Index* inner = matrix.innerIndexPtr();
-  const double* a = matrix.valuePtr();
-  if constexpr (K == 0)
-  {
-    for (Index i = begin; i < end; ++i)
-    {
-      y.row(i).setZero();
-      for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
-      {
-        y.row(i) += a[slot] * x.row(inner[slot]);
-      }
-    }
-  }
-  else
-  {
-    const double* in = x.data();
-    double* out = y.data();
-    for (Index i = begin; i < end; ++i)
-    {
-      double sum[K] = {};
-      const Index last = outer[i + 1];
-      for (Index slot = outer[i]; slot < last; ++slot)
-      {
-        const double* xj = in + static_cast<std::ptrdiff_t>(inner[slot]) * K;
-        for (int k = 0; k < K; ++k)
-        {
-          sum[k] += a[slot] * xj[k];
-        }
-      }
-      for (int k = 0; k < K; ++k)
-      {
-        out[static_cast<std::ptrdiff_t>(i) * K + k] = sum[k];
-      }
-    }
-  }
-}
+void MultiplyRows(const SparseMatrix& matrix, const Values& x, Values& y, Index begin, Index end);
 
 } // namespace SurfaceDiffusion

@@ -88,6 +88,8 @@ public:
 
   void Precondition(const Values& r, Values& z) override { this->Substitute(r, z); }
 
+  bool RunsOnOneThread() const override { return true; }
+
 private:
   /// Columns j .. j + Width - 1 of L, a panel of the factor.
   template <int Width>
@@ -137,7 +139,7 @@ private:
   template <int K>
   void SubstituteColumns(const Values& b, Values& x)
   {
-    const int k = ColumnCount<K>(b.cols());
+    const ColumnCount<K> k(b.cols());
     const Index n = static_cast<Index>(b.rows());
     const Index* place = this->Factor->Place;
     for (Index i = 0; i < n; ++i)
@@ -176,7 +178,7 @@ private:
   template <int K, int Width>
   void Forward(Index j, int columns)
   {
-    const int k = ColumnCount<K>(columns);
+    const ColumnCount<K> k(columns);
     const Panel<Width> panel(*this->Factor, j);
     double* w = this->Row(j, k);
     for (int a = 0; a < Width; ++a)
@@ -215,7 +217,7 @@ private:
   template <int K, int Width>
   void Backward(Index j, int columns)
   {
-    const int k = ColumnCount<K>(columns);
+    const ColumnCount<K> k(columns);
     const Panel<Width> panel(*this->Factor, j);
     double* result = this->Row(j, k);
     ColumnRegisters<double, K, Width> registers;

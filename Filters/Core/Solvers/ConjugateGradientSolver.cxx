@@ -86,7 +86,7 @@ private:
   template <int K>
   SolveReport SolveColumns(const Values& b, Values& x, const ProgressMonitor& progress)
   {
-    const int k = ColumnCount<K>(b.cols());
+    const ColumnCount<K> k(b.cols());
     const Index n = static_cast<Index>(b.rows());
     this->Residual.resize(n, k);
     this->Scales.resize(k);

@@ -14,6 +14,35 @@
 namespace SurfaceDiffusion
 {
 
+/// Copies of S numbers, or S = 0 a reference to any number of them: stores into vectors do not make
+/// the compiler load copies again.
+template <int S>
+class SystemNumbers
+{
+public:
+  explicit SystemNumbers(const std::vector<double>& numbers)
+  {
+    std::copy_n(numbers.begin(), S, this->Copies);
+  }
+  double operator[](int s) const { return this->Copies[s]; }
+
+private:
+  double Copies[S];
+};
+template <>
+class SystemNumbers<0>
+{
+public:
+  explicit SystemNumbers(const std::vector<double>& numbers)
+    : All(numbers.data())
+  {
+  }
+  double operator[](int s) const { return this->All[s]; }
+
+private:
+  const double* All;
+};
+
 /// Preconditioned conjugate gradients (M. Hestenes, E. Stiefel, J. Res. Nat. Bur. Stand. 49, 1952)
 /// for A x = b with a symmetric positive definite matrix A: the one recurrence of all solvers here.
 /// K: the number of columns, or 0 for any. An iteration makes three passes over memory:
@@ -77,7 +106,7 @@ public:
   void Start(double tolerance)
   {
     this->Tolerance = tolerance;
-    const int k = ColumnCount<K>(this->Columns);
+    const ColumnCount<K> k(this->Columns);
     const double* const r = this->R.data();
     double* const p = this->W.P.data();
     this->Sum(
@@ -108,7 +137,7 @@ public:
   /// is then 0.
   bool Multiply()
   {
-    const int k = ColumnCount<K>(this->Columns);
+    const ColumnCount<K> k(this->Columns);
     const double* const p = this->W.P.data();
     double* const q = this->W.Q.data();
     const auto multiply = [this](Index begin, Index end)
@@ -156,10 +185,10 @@ public:
   /// The step along p, and the next direction unless this is the last iteration.
   void Advance(Values& x, bool isLast)
   {
-    const int k = ColumnCount<K>(this->Columns);
+    const ColumnCount<K> k(this->Columns);
     double* const r = this->R.data();
     const double* const q = this->W.Q.data();
-    const double* const alpha = this->W.Alpha.data();
+    const Numbers alpha(this->W.Alpha);
     this->Sum(
       [this, k, r, q, alpha](Index i, double* sums)
       {
@@ -220,6 +249,9 @@ public:
   }
 
 private:
+  static constexpr int KnownSystems = System::IsCoupled ? 1 : K;
+  using Numbers = SystemNumbers<KnownSystems>;
+
   int Systems() const { return System::IsCoupled ? 1 : ColumnCount<K>(this->Columns); }
 
   bool IsFinished(int s) const
@@ -251,7 +283,7 @@ private:
   void Precondition()
   {
     this->S.Precondition(this->R, this->W.Square, this->W.Q);
-    const int k = ColumnCount<K>(this->Columns);
+    const ColumnCount<K> k(this->Columns);
     const double* const r = this->R.data();
     double* const q = this->W.Q.data();
     this->Sum(
@@ -270,11 +302,11 @@ private:
   template <bool HasNext, typename Z>
   void Turn(Values& x, const Z& z)
   {
-    const int k = ColumnCount<K>(this->Columns);
+    const ColumnCount<K> k(this->Columns);
     double* const u = x.data();
     double* const p = this->W.P.data();
-    const double* const step = this->W.Step.data();
-    const double* const beta = this->W.Beta.data();
+    const Numbers step(this->W.Step);
+    const Numbers beta(this->W.Beta);
     ForEach(this->Parallel, this->Rows,
       [k, u, p, step, beta, &z](Index i)
       {
@@ -324,8 +356,8 @@ private:
   template <typename First, typename Add>
   void Sum(const First& first, const Add& add)
   {
-    constexpr int known = System::IsCoupled ? 1 : K;
-    this->W.Sums.template Run<known>(this->Parallel, this->Rows, this->Systems(), first, add);
+    this->W.Sums.template Run<KnownSystems>(
+      this->Parallel, this->Rows, this->Systems(), first, add);
     this->W.Sums.Reduce(this->S.OverProcesses);
   }
 

@@ -64,6 +64,9 @@ public:
   /// gradients. Over several processes r is consistent.
   virtual void Precondition(const Values& r, Values& z) = 0;
 
+  /// Whether Solve() leaves the other threads idle, so that another solver can run beside it.
+  virtual bool RunsOnOneThread() const { return false; }
+
 protected:
   /// A power of two near the largest entry of two columns. The squares of entries divided by it
   /// neither overflow nor underflow, and the division is exact.

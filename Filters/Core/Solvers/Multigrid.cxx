@@ -51,7 +51,7 @@ template <int K, typename Matrix, typename Numbers>
 void AddProduct(
   const Matrix& matrix, Index i, const Numbers& x, int columns, float sign, float* sums)
 {
-  const int k = ColumnCount<K>(columns);
+  const ColumnCount<K> k(columns);
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
   const float* a = matrix.valuePtr();
@@ -172,7 +172,7 @@ template <int K, typename Finish>
 void Multigrid::Subtract(
   Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)
 {
-  const int k = ColumnCount<K>(columns);
+  const ColumnCount<K> k(columns);
   ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
     [&](Index i)
     {
@@ -197,7 +197,7 @@ void Multigrid::Subtract(
 template <int K>
 void Multigrid::Product(const Matrix& rows, const Numbers& x, Numbers& y, int columns, bool add)
 {
-  const int k = ColumnCount<K>(columns);
+  const ColumnCount<K> k(columns);
   ForEach(this->Parallel, static_cast<Index>(rows.cols()),
     [&](Index i)
     {
@@ -228,7 +228,7 @@ void Multigrid::Cycle(std::size_t number, int columns)
     this->CoarsestNumbers = this->CoarsestX.cast<float>();
     return;
   }
-  const int k = ColumnCount<K>(columns);
+  const ColumnCount<K> k(columns);
   Level& level = this->Levels[number];
   const auto first = [&](Index i, std::ptrdiff_t at, const float* r)
   {

@@ -73,7 +73,7 @@ SolverMethod FindFastest(const SolverTask& task)
   const bool hasRoom = task.NumberOfVertices <= LargestFactor || !task.AllowMultigrid;
   if (factorization < iterative && hasRoom)
   {
-    return SolverMethod::Factorization;
+    return SolverMethod::Direct;
   }
   return iterative < conjugateGradient ? SolverMethod::Multigrid : SolverMethod::ConjugateGradient;
 }
@@ -125,15 +125,15 @@ SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task)
   choice.Method = method;
   if (method == SolverMethod::Automatic)
   {
-    choice.Method = task.IsPreconditioner ? SolverMethod::Factorization : FindFastest(task);
-    choice.FallsBack = choice.Method != SolverMethod::Factorization;
+    choice.Method = task.IsPreconditioner ? SolverMethod::Direct : FindFastest(task);
+    choice.FallsBack = choice.Method != SolverMethod::Direct;
   }
   return choice;
 }
 
 std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const ParallelFor& parallel)
 {
-  if (choice.Method == SolverMethod::Factorization)
+  if (choice.Method == SolverMethod::Direct)
   {
     return MakeCholeskySolver(parallel);
   }

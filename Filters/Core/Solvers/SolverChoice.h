@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 enum class SolverMethod
 {
   Automatic, ///< the one expected to be fastest
-  Factorization,
+  Direct, ///< a factorisation
   ConjugateGradient,
   Multigrid
 };
@@ -40,7 +40,7 @@ struct SolverTask
 /// can stand in for each other.
 struct SolverChoice
 {
-  SolverMethod Method = SolverMethod::Factorization; ///< not Automatic
+  SolverMethod Method = SolverMethod::Direct; ///< not Automatic
   bool FallsBack = false;
 
   bool operator==(const SolverChoice& other) const
