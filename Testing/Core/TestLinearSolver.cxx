@@ -87,6 +87,8 @@ TEST_P(AnySolver, TakesEmptySystems)
   this->Solver->SetMatrix(none);
   Values x(0, 1);
   EXPECT_TRUE(this->Solver->Solve(Values(0, 1), x).Converged);
+  this->Solver->Precondition(Values(0, 1), x);
+  EXPECT_EQ(x.rows(), 0);
 }
 
 TEST_P(AnySolver, TakesNoColumns)

@@ -86,7 +86,15 @@ public:
     return report;
   }
 
-  void Precondition(const Values& r, Values& z) override { this->Substitute(r, z); }
+  void Precondition(const Values& r, Values& z) override
+  {
+    if (r.rows() == 0)
+    {
+      z = r;
+      return;
+    }
+    this->Substitute(r, z);
+  }
 
   bool RunsOnOneThread() const override { return true; }
 
