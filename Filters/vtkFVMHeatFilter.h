@@ -4,30 +4,35 @@
  * @class   vtkFVMHeatFilter
  * @brief   linear diffusion of point data on a triangulated surface
  *
- * Solves the heat equation on the surface with the finite volume method of C. Wu, J. Deng and
- * F. Chen (IEEE TVCG 14(3), 2008):
+ * Solves the heat equation of the Laplace-Beltrami operator, with anisotropic diffusion and
+ * fidelity as options,
  *
  *     u_t = div(g1 (grad u . e1) e1 + g2 (grad u . e2) e2) + lambda chi (f - u),   u(0) = f,
  *
- * with no flux over the boundary. Its cases are the paper's (1) smoothing (lambda = 0, g1 = g2),
- * (4) anisotropic smoothing along a direction field, (16) denoising (lambda > 0) and (18)
- * inpainting (1_D = 0 where data are missing). Each component of the data diffuses alone.
+ * by the finite volume method of C. Wu, J. Deng and F. Chen (IEEE TVCG 14(3), 2008): cotan weights,
+ * a lumped mass matrix and implicit time steps. chi is the indicator of the known part: 0 where
+ * data are missing, 1 elsewhere. The boundary condition is the homogeneous Neumann condition. The
+ * special cases are the paper's (1) smoothing (lambda = 0, g1 = g2), (4) anisotropic smoothing
+ * along a direction field, (16) denoising (lambda > 0) and (18) inpainting (missing data). Each
+ * component of the data diffuses independently of the others.
  *
- * Diffusion for time t is a Gaussian blur of full width at half maximum 4 sqrt(t ln 2), whatever
- * the triangles: FWHM sets that width directly.
+ * Diffusion for time t is a Gaussian blur of full width at half maximum 4 sqrt(t ln 2), regardless
+ * of the triangulation. The property FWHM sets that width directly.
  *
- * The unit of time in natural units is h^2 (h the mean edge length): diffusivities have no unit,
- * lambda is in 1/h^2. The discretisation is
+ * The unit of time in natural units is h^2 (h the mean edge length). Diffusivities have no unit,
+ * and lambda is in 1/h^2. The semi-discrete equation is
  *
- *     A_i du_i/dt = sum over triangles and j of c_ij u_j + A_i lambda 1_D(v_i) (f_i - u_i),
+ *     A_i du_i/dt = sum over triangles and j of c_ij u_j + A_i lambda chi_i (f_i - u_i),
  *
- * A_i the barycentric control areas, c_ij of (10) and (13); without fidelity, fixed or held values
- * the sum of A_i u_i is kept to 1e-12 of its start.
+ * with the barycentric control areas A_i (the lumped mass matrix) and the weights c_ij of (10),
+ * the cotan weights, and of (13). Without fidelity, fixed or held values, the sum of A_i u_i is
+ * conserved to a relative error of 1e-12.
  *
  * TimeIntegrator SecondOrder (the default) is SDIRK2 with gamma = 1 - 1/sqrt(2) (R. Alexander, SIAM
- * J. Numer. Anal. 14, 1977): two solves a step with one matrix, L-stable; to an error of 1e-3 it
- * takes 3 to 4 steps where FirstOrder, backward Euler as in (8), (14), takes about 100. Backward
- * Euler keeps the bounds of the data on Delaunay meshes at any step, SDIRK2 at small ones only.
+ * J. Numer. Anal. 14, 1977). It is L-stable and solves two systems with one matrix per step. For an
+ * error of 1e-3 it takes 3 to 4 steps; FirstOrder, backward Euler as in (8) and (14), takes about
+ * 100. Backward Euler keeps the bounds of the data on Delaunay meshes at any time step, SDIRK2 only
+ * at small time steps.
  *
  * The energy in the history is 1/2 int (g1 (grad u . e1)^2 + g2 (grad u . e2)^2) + lambda/2
  * int chi (u - f)^2, summed over the components, in (units of the array)^2.
@@ -54,10 +59,10 @@ public:
 
   ///@{
   /**
-   * TimeSteps (default): NumberOfTimeSteps steps of TimeStep. SteadyState: the limit of endless
-   * time, found with one solve, which counts as one step: with fixed or held values the harmonic
-   * inpainting, with lambda the minimiser of the energy, with neither the mean of each connected
-   * component.
+   * TimeSteps (default): NumberOfTimeSteps steps of TimeStep. SteadyState: the limit of infinite
+   * time, computed by one solve, which counts as one step. It is the harmonic inpainting with fixed
+   * or held values, the minimiser of the energy with lambda, and the mean of each connected
+   * component with neither.
    */
   vtkSetMacro(Mode, int);
   vtkGetMacro(Mode, int);
@@ -68,10 +73,11 @@ public:
 
   ///@{
   /**
-   * Full width at half maximum of the Gaussian that the data are blurred with, in coordinate
-   * units; 0 (default): off. The run then takes FWHM^2/(16 ln 2) in NumberOfTimeSteps equal steps
-   * in place of TimeStep, and times are in coordinate units squared, whatever Units is. An error
-   * together with a fidelity, diffusivities other than 1, or Mode SteadyState.
+   * The full width at half maximum of the Gaussian that the data are convolved with, in coordinate
+   * units; 0 (default): off. If it is set, the run takes the time FWHM^2/(16 ln 2) in
+   * NumberOfTimeSteps equal steps in place of TimeStep, and times are in coordinate units squared
+   * regardless of Units. FWHM is an error together with a fidelity, diffusivities other than 1, or
+   * Mode SteadyState.
    */
   vtkSetMacro(FWHM, double);
   vtkGetMacro(FWHM, double);
@@ -79,10 +85,10 @@ public:
 
   ///@{
   /**
-   * On: lambda is chosen so that in the steady state of (16) the result differs from the data by
-   * the noise, in the root of the area-weighted mean square (discrepancy principle, Morozov 1966);
-   * FidelityWeight is not read. The principle errs on the smooth side: on photographs under noise
-   * of 5 to 80 % its result was 1.3 to 2.6 dB from that of the best lambda. Default: off.
+   * On: lambda is chosen by the discrepancy principle (Morozov 1966), so that the area-weighted
+   * root mean square of the difference between the steady state of (16) and the data is that of the
+   * noise. FidelityWeight is ignored. The principle errs on the smooth side: on photographs with
+   * noise of 5 to 80 % its result was 1.3 to 2.6 dB from that of the best lambda. Default: off.
    */
   vtkSetMacro(AutomaticFidelity, bool);
   vtkGetMacro(AutomaticFidelity, bool);
@@ -91,20 +97,24 @@ public:
 
   ///@{
   /**
-   * With AutomaticFidelity: the standard deviation of the noise in the array's own units, whatever
-   * Units is. 0 (default): estimated from the median difference of each value from the mean of its
-   * neighbours.
+   * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
+   * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
+   * the mean of its neighbours.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);
   ///@}
 
   /**
-   * The lambda of the last update: FidelityWeight, or what AutomaticFidelity found (for the first
-   * block of composite data; each block has its own), in the unit of FidelityWeight.
+   * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
+   * AutomaticFidelity found. For composite data it is that of the first block, since
+   * AutomaticFidelity finds one value for each block.
    */
   vtkGetMacro(EffectiveFidelityWeight, double);
 
+  /**
+   * In addition to the superclass: Mode TimeSteps.
+   */
   void UsePaperScheme() override;
 
 protected:

@@ -160,8 +160,8 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
   return true;
 }
 
-/// Vertices that move, normals that have to be computed, and missing lines, whose start depends on
-/// the order of their neighbours, need the whole surface.
+/// Moving vertices and computing normals need the whole surface, and so do line fields with missing
+/// values, whose initial values depend on the order of their neighbours.
 bool vtkHarmonicMapFilter::CanSolveInPieces(const std::vector<SurfaceBlock>& pieces)
 {
   for (const SurfaceBlock& piece : pieces)
@@ -209,7 +209,7 @@ void vtkHarmonicMapFilter::WriteResult(
   int attribute = isVector ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
   if (isNormals && this->UseAsNormals)
   {
-    attribute = vtkDataSetAttributes::NORMALS; // alone: ParaView would not shade with vectors
+    attribute = vtkDataSetAttributes::NORMALS; // only these: ParaView shades with no vectors
   }
   data->SetActiveAttribute(array, attribute);
   if (block.Result.MovedPoints.rows() > 0)

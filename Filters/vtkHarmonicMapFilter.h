@@ -4,49 +4,55 @@
  * @class   vtkHarmonicMapFilter
  * @brief   regularise unit vectors on a triangulated surface: normals, directions, chromaticity
  *
- * Diffuses maps u from the surface into the unit sphere S^(m-1), m the number of components, 2 or
- * more: models (20) with p = 2, (21) with p = 1 and every p between of C. Wu, J. Deng and F. Chen
- * (IEEE TVCG 14(3), 2008),
+ * Solves the heat flow of p-harmonic maps u from the surface into the unit sphere S^(m-1),
  *
- *     u_t = div(g grad u) + u g |grad u|^2 + lambda 1_D (f - u),   u(0) = f / |f|,
+ *     u_t = div(g grad u) + u g |grad u|^2 + lambda chi (f - u),   u(0) = f / |f|,   |u| = 1,
  *     g = (|grad u|^2 + beta)^((p - 2)/2),   |grad u|^2 the sum over all components,
  *
- * with no flux over the boundary. |u| = 1 is kept to 1e-12 at every vertex. p = 2 smooths evenly;
- * p = 1 smooths within the faces of a surface and keeps its creases.
+ * with finite volumes (cotan weights, lumped mass matrix), implicit steps in the tangent spaces and
+ * normalisation. These are the models (20) with p = 2, (21) with p = 1 and all p between them of C.
+ * Wu, J. Deng and F. Chen (IEEE TVCG 14(3), 2008). The number of components m is 2 or more. chi is
+ * the indicator of the known part: 0 where data are missing, 1 elsewhere. The boundary condition is
+ * the homogeneous Neumann condition. |u| = 1 holds to 1e-12 at every vertex. p = 2 smooths evenly,
+ * whereas p = 1 smooths the faces of a surface and keeps its creases.
  *
- * **Data.** By default the surface's normals: the active ones, or ones computed (not split at
- * edges) where there are none. Any other point array of 2 or more components is normalised on
- * entry; only its direction counts. Vectors of length zero or with NaN are missing and filled in,
- * as are masked ones. Where InitialFill is Mean and no direction prevails (the mean of the known
- * unit vectors is shorter than 1/2, as of the normals of a closed surface), what is missing starts
- * from the rim of its hole instead. Colours (unsigned char) are regularised in chromaticity: with
- * OutputPrecision Input the result is a colour of the input's brightness |f|.
+ * **Data.** The default data are the surface's normals: the active ones, or, if there are none,
+ * computed normals (not split at edges). Any other point array of 2 or more components is
+ * normalised on entry, so that only its direction counts. Vectors of length zero or with NaN are
+ * missing and are filled in, as masked vectors are. If InitialFill is Mean but there is no
+ * prevailing direction (the mean of the known unit vectors is shorter than 1/2, as it is for the
+ * normals of a closed surface), missing vectors start from the values at the rim of their hole.
+ * Colours (unsigned char) are regularised in chromaticity: with OutputPrecision Input the result is
+ * a colour of the input's brightness |f|.
  *
- * The result becomes the active normals (UseAsNormals; only these, since ParaView takes an array
- * that is active vectors too for no normals), or else the active vectors (three components, no
- * colour) or the active scalars.
+ * The result becomes the active normals if UseAsNormals is on and the data are normals. It does not
+ * become the active vectors as well, since ParaView does not shade with an array that is both.
+ * Otherwise the result becomes the active vectors (if it has three components and is no colour) or
+ * the active scalars.
  *
- * **Energy.** The history's energy is
+ * **Energy.** The energy in the history is
  *
- *     E = int ((|grad u|^2 + beta)^(p/2) - beta^(p/2)) / p + lambda/2 int 1_D |f - u|^2,
+ *     E = int ((|grad u|^2 + beta)^(p/2) - beta^(p/2)) / p + lambda/2 int chi |f - u|^2,
  *
- * in length^(2 - p), 4 pi for the identity of the sphere at p = 2. With AlongDiffusivity and
- * AcrossDiffusivity (D with these eigenvalues, d the larger), |grad u|^2 stands for
- * grad u . D grad u / d in E and g, and the first integral has the factor d.
+ * in length^(2 - p). It is 4 pi for the identity of the sphere at p = 2. With AlongDiffusivity and
+ * AcrossDiffusivity, which are the eigenvalues of the diffusion tensor D with the larger one d,
+ * |grad u|^2 is replaced by grad u . D grad u / d in E and g, and the first integral is multiplied
+ * by d.
  *
- * **Schemes.** TangentPlane (default) and MinimizingMovement never raise E, at any time step, on
- * any triangles; Core/HarmonicMap.h has the proof. In short: a step minimises the energy with g
- * frozen, which lies above E, over displacements orthogonal to u at every vertex; normalising then
- * brings no two vectors further apart, and where obtuse triangles give a negative coefficient, no
- * vector and another's opposite, once the matrix has been made diagonally dominant there. The
- * paper's splitting, ExplicitReaction, cannot promise it. On noisy normals TangentPlane and
- * ExplicitReaction are as accurate and as fast; at equal accuracy MinimizingMovement takes 3 to 5
- * times as long, but its result depends least on the time step.
+ * **Schemes.** TangentPlane (default) and MinimizingMovement never increase E, for any time step
+ * and any triangles. Core/Models/HarmonicMap.h has the proof. In short, a step minimises the energy
+ * with frozen g, an upper bound of E, over displacements orthogonal to u at every vertex.
+ * Normalising then does not increase the distance of any two vectors. For negative weights, which
+ * obtuse triangles cause, the same holds for a vector and the opposite of another one, after the
+ * matrix has been made diagonally dominant there. The paper's splitting, ExplicitReaction, has no
+ * such guarantee. On noisy normals TangentPlane and ExplicitReaction are equally accurate and
+ * equally fast. At equal accuracy MinimizingMovement takes 3 to 5 times as long, but its result
+ * depends least on the time step.
  *
- * The unit of time in natural units is h^p (h the mean edge length), beta is in 1/h^2, lambda in
- * 1/h^p. Normals with noise of 15 degrees are at their best after a time of 0.2 to 0.4.
+ * The unit of time in natural units is h^p (h the mean edge length). beta is in 1/h^2, lambda in
+ * 1/h^p. Normals with noise of 15 degrees are most accurate after a time of 0.2 to 0.4.
  *
- * There is no second-order time integrator and the sum of A_i u_i is not conserved.
+ * There is no second-order time integrator, and the sum of A_i u_i is not conserved.
  *
  * @sa vtkFVMHeatFilter vtkIntrinsicTVFilter vtkTuringTextureFilter vtkPolyDataNormals
  */
@@ -64,7 +70,7 @@ public:
 
   ///@{
   /**
-   * p, in [1, 2]. 1 (default): (21), keeps creases; 2: (20), smooths evenly.
+   * The exponent p, in [1, 2]. 1 (default) is (21) and keeps creases; 2 is (20) and smooths evenly.
    */
   vtkSetMacro(Exponent, double);
   vtkGetMacro(Exponent, double);
@@ -73,7 +79,7 @@ public:
   ///@{
   /**
    * beta in |grad u|^2 + beta, in 1/length^2 (natural: 1/h^2). Above 0; 0 is allowed with Exponent
-   * 2, where beta has no effect. Default: 1e-6.
+   * 2, for which beta has no effect. Default: 1e-6.
    */
   vtkSetMacro(Beta, double);
   vtkGetMacro(Beta, double);
@@ -88,11 +94,11 @@ public:
 
   ///@{
   /**
-   * How a step is made. TangentPlane (default): one linear solve for displacements tangential to
-   * the sphere, then normalisation; the energy never grows. MinimizingMovement: that repeated until
-   * the backward Euler step is solved in full; the energy never grows. ExplicitReaction: the
-   * paper's, semi-implicit diffusion of the components with one matrix, explicit reaction, then
-   * normalisation.
+   * The scheme of a step. TangentPlane (default): one linear solve for displacements tangential to
+   * the sphere, then normalisation; the energy never increases. MinimizingMovement: the same,
+   * repeated until the backward Euler step is solved in full; the energy never increases.
+   * ExplicitReaction: the paper's scheme, with semi-implicit diffusion of the components with one
+   * matrix, explicit reaction, then normalisation.
    */
   vtkSetMacro(Scheme, int);
   vtkGetMacro(Scheme, int);
@@ -104,8 +110,9 @@ public:
 
   ///@{
   /**
-   * Of ExplicitReaction. Off (default): the reaction u |grad u|^p as printed. On: u g |grad u|^2,
-   * which balances the diffusion, so that |u| hardly drifts even without ProjectToSphere.
+   * The reaction of Scheme ExplicitReaction. Off (default): u |grad u|^p as printed in the paper.
+   * On: u g |grad u|^2, which balances the diffusion, so that |u| hardly drifts even without
+   * ProjectToSphere.
    */
   vtkSetMacro(ConsistentReaction, bool);
   vtkGetMacro(ConsistentReaction, bool);
@@ -114,8 +121,8 @@ public:
 
   ///@{
   /**
-   * On (default): u/|u| after each step. Off: lengths drift; with ExplicitReaction and p = 2 they
-   * run away.
+   * On (default): vectors are normalised to u/|u| after each step. Off: lengths drift, and with
+   * ExplicitReaction and p = 2 they diverge.
    */
   vtkSetMacro(ProjectToSphere, bool);
   vtkGetMacro(ProjectToSphere, bool);
@@ -125,8 +132,8 @@ public:
   ///@{
   /**
    * On: u and -u are the same, as for principal directions. In each triangle the signs of the
-   * corners are those of the smallest |grad u|; the sign that comes out means nothing. Default:
-   * off.
+   * corners are chosen so that |grad u| is smallest. The sign of the result has no meaning.
+   * Default: off.
    */
   vtkSetMacro(LineField, bool);
   vtkGetMacro(LineField, bool);
@@ -135,8 +142,8 @@ public:
 
   ///@{
   /**
-   * On (default): where the input array is the surface's normals, the result becomes the output's
-   * active normals, and shading shows it at once.
+   * On (default): if the input array is the surface's normals, the result becomes the output's
+   * active normals, so that the shading shows it.
    */
   vtkSetMacro(UseAsNormals, bool);
   vtkGetMacro(UseAsNormals, bool);
@@ -145,11 +152,12 @@ public:
 
   ///@{
   /**
-   * On: the points of the output are moved so that its triangles stand upright on the result (mesh
-   * denoising): they minimise 1/2 int |grad(N . x)|^2 + 1/(2 r^2) int |x - x_0|^2 with N the
-   * result on the triangle and r = 5 mean edge lengths. The input array must be the surface's
-   * normals. Points in single precision stay so, all others become double. See GetVolumeBefore()
-   * and what follows. Default: off.
+   * On: the points of the output are moved so that the normals of its triangles match the result
+   * (mesh denoising by vertex updating). They minimise 1/2 int |grad(N . x)|^2 + 1/(2 r^2) int
+   * |x - x_0|^2 with N the result on the triangle and r = 5 mean edge lengths. The input array must
+   * be the surface's normals. Points in single precision stay in single precision, all others
+   * become double. GetMeanDisplacement() and the following values describe the motion. Default:
+   * off.
    */
   vtkSetMacro(MoveVertices, bool);
   vtkGetMacro(MoveVertices, bool);
@@ -158,9 +166,10 @@ public:
 
   ///@{
   /**
-   * What MoveVertices did in the last update: the area-weighted mean and the largest displacement
-   * in coordinate units, and the volume enclosed before and after, signed by the orientation (of
-   * blocks that are closed and consistently oriented; 0 of others). 0 where it was off.
+   * The motion by MoveVertices in the last update, over all blocks: the area-weighted mean and the
+   * largest displacement in coordinate units, and the enclosed volume before and after, signed by
+   * the orientation. Blocks that are not closed or not consistently oriented have volume 0. All
+   * values are 0 if MoveVertices was off.
    */
   vtkGetMacro(MeanDisplacement, double);
   vtkGetMacro(MaximumDisplacement, double);
@@ -169,8 +178,8 @@ public:
   ///@}
 
   /**
-   * In addition to the superclass: ExplicitReaction, ConsistentReaction off, ProjectToSphere on,
-   * LineField and MoveVertices off. Exponent stays.
+   * In addition to the superclass: Scheme ExplicitReaction, ConsistentReaction off, ProjectToSphere
+   * on, LineField and MoveVertices off. Exponent does not change.
    */
   void UsePaperScheme() override;
 

@@ -2,52 +2,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkIntrinsicTVFilter
- * @brief   denoising and inpainting of point data on a surface that keep edges
+ * @brief   edge-preserving denoising and inpainting of point data on a surface
  *
- * Solves nonlinear diffusion on the surface (C. Wu, J. Deng, F. Chen, IEEE TVCG 14(3), 2008):
+ * Solves nonlinear diffusion on a triangulated surface, by default total variation flow,
  *
- *     u_t = div(g1 (grad u . e1) e1 + g2 (grad u . e2) e2) + lambda 1_D (f - u),   u(0) = f,
- *     g1 = AlongDiffusivity g(|grad u|),   g2 = AcrossDiffusivity g(|grad u|)
+ *     u_t = div(g1 (grad u . e1) e1 + g2 (grad u . e2) e2) + lambda chi (f - u),   u(0) = f,
+ *     g1 = AlongDiffusivity g(|grad u|),   g2 = AcrossDiffusivity g(|grad u|),
  *
- * with no flux over the boundary. EdgeFunction chooses g; AcrossEdgeFunction another one for g2.
- * Its cases are the paper's (2) nonlinear diffusion, (3) intrinsic total variation, the default,
- * g(s) = 1/sqrt(s^2 + beta), (4) anisotropic diffusion with g1, g2 of |grad u|, (17) denoising
- * (lambda > 0) and (19) inpainting (1_D = 0 where data are missing). Colours have one norm over
- * their channels (ChannelCoupling), so that edges stay in one place in all of them.
+ * by the finite volume method of C. Wu, J. Deng and F. Chen (IEEE TVCG 14(3), 2008) or by
+ * minimising the energy of each step. chi is the indicator of the known part: 0 where data are
+ * missing, 1 elsewhere. The boundary condition is the homogeneous Neumann condition. EdgeFunction
+ * chooses the edge-stopping function g (the diffusivity), and AcrossEdgeFunction may choose another
+ * one for g2. The special cases are the paper's (2) nonlinear diffusion, (3) intrinsic total
+ * variation with g(s) = 1/sqrt(s^2 + beta), the default, (4) anisotropic diffusion with g1 and g2
+ * functions of |grad u|, (17) denoising (lambda > 0) and (19) inpainting (missing data). The
+ * gradient norm of colours combines their channels (ChannelCoupling), so that edges have the same
+ * place in all of them.
  *
- * **Units.** The natural unit of time T is h R with EdgeFunction TotalVariation (its speed depends
- * on the height of the data: a step of height R around a disk of radius r loses R in about r/2
- * units), h^2 with all others, h the mean edge length and R the range of the values. FidelityWeight
- * lambda is in 1/T, with FidelityNorm L1 in R/T; Beta in (R/h)^2; EdgeThreshold in R/h. In absolute
- * units g is what its formula says, in the units of coordinates and values. Where
- * AcrossEdgeFunction has another dimension than EdgeFunction, natural units make its formula one in
- * x/h and u/R.
+ * **Units.** Let h be the mean edge length and R the range of the values. The natural unit of time
+ * T is h R with EdgeFunction TotalVariation, whose speed depends on the height of the data: a step
+ * of height R around a disk of radius r loses R in about r/2 units. With all other edge functions
+ * T is h^2. FidelityWeight lambda is in 1/T (with FidelityNorm L1 in R/T), Beta in (R/h)^2 and
+ * EdgeThreshold in R/h. In absolute units g is given by its formula in the units of coordinates and
+ * values. If AcrossEdgeFunction has another dimension than EdgeFunction, natural units make its
+ * formula one in x/h and u/R.
  *
- * **Schemes.** FirstOrder is the paper's (11): g at the old level, one linear system a step (one
- * per channel with PerChannel). It works for every edge function and keeps the bounds of the data
- * where no triangle is obtuse. It is the default: ten steps of the default size, on noisy colours,
- * come within 0.3 dB of the minimiser in a third of Implicit's time. Implicit, for convex energies
- * (TotalVariation, Charbonnier, Constant, with AcrossEdgeFunction Same), is backward Euler with g
- * at the new level: each step minimises int psi(|grad u|) + lambda/2 int 1_D |u - f|^2 + 1/(2 dt)
- * int |u - u_old|^2 by ADMM to StopTolerance, for TotalVariation without beta; steps may be long.
- * SecondOrder does not exist here: it is an error. Mode SteadyState minimises the same without the
- * last term, in one step. With diffusivities g1 along and g2 across a direction the integral is
- * that of
+ * **Schemes.** FirstOrder is the paper's (11): g is taken at the old level, and each step solves
+ * one linear system (one per channel with PerChannel). It works for every edge function and keeps
+ * the bounds of the data if no triangle is obtuse. It is the default: on noisy colours, ten steps
+ * of the default size come within 0.3 dB of the minimiser in a third of the time of Implicit.
+ * Implicit is backward Euler with g at the new level, for convex energies (TotalVariation,
+ * Charbonnier, Constant, with AcrossEdgeFunction Same). Each step minimises int psi(|grad u|) +
+ * lambda/2 int chi |u - f|^2 + 1/(2 dt) int |u - u_old|^2 by ADMM up to StopTolerance, without beta
+ * for TotalVariation. Time steps may be long. SecondOrder is not available and is an error. Mode
+ * SteadyState minimises the same energy without the last term, in one step. With diffusivities g1
+ * along and g2 across a direction the integrand is
  *
  *     TotalVariation: sqrt((g1 grad u . e1)^2 + (g2 grad u . e2)^2),
  *     others:         g psi(sqrt((g1/g) (grad u . e1)^2 + (g2/g) (grad u . e2)^2)),
  *                     g the larger of g1 and g2,
  *
- * which has the flux of (4) for gradients along e1 or e2, and everywhere if g1 = g2.
+ * which has the flux of (4) for gradients along e1 or e2, and for all gradients if g1 = g2.
  *
- * Without fidelity, fixed or held values the sum of A_i u_i is kept to 1e-12 of its start, with
- * FidelityNorm L2 also if nothing is missing.
+ * Without fidelity, fixed or held values, the sum of A_i u_i is conserved to a relative error of
+ * 1e-12. With FidelityNorm L2 it is conserved also with fidelity if nothing is missing.
  *
- * **Energy** in the history: int psi(|grad u|) + lambda/2 int 1_D |u - f|^2, with FidelityNorm L1
- * lambda int 1_D |u - f| in place of the latter, where psi'(s) = s g(s) and psi(0) = 0; for
- * TotalVariation psi(s) = sqrt(s^2 + beta) - sqrt(beta), s with Implicit and SteadyState. In
- * (length unit)(array unit) for TotalVariation, (array unit)^2 for the others. `Residual` is the
- * duality gap with Implicit and SteadyState.
+ * **Energy.** The energy in the history is int psi(|grad u|) + lambda/2 int chi |u - f|^2. With
+ * FidelityNorm L1 the second term is lambda int chi |u - f|. psi is defined by psi'(s) = s g(s) and
+ * psi(0) = 0. For TotalVariation it is sqrt(s^2 + beta) - sqrt(beta), or s with Implicit and
+ * SteadyState. The energy is in (length unit)(array unit) for TotalVariation and in (array unit)^2
+ * for the others. The column `Residual` is the duality gap with Implicit and SteadyState.
  *
  * @sa vtkFVMHeatFilter vtkHarmonicMapFilter vtkTuringTextureFilter
  */
@@ -72,10 +76,10 @@ public:
   ///@{
   /**
    * TimeSteps (default): NumberOfTimeSteps steps of TimeStep. SteadyState: the minimiser of the
-   * energy, found directly, without time steps and for TotalVariation without beta, to
-   * StopTolerance; it counts as one step. For TotalVariation, Charbonnier and Constant with
-   * AcrossEdgeFunction Same; otherwise an error. Where neither fidelity nor a fixed value binds a
-   * connected component, it is the mean.
+   * energy, computed directly up to StopTolerance, without time steps and for TotalVariation
+   * without beta; it counts as one step. SteadyState needs EdgeFunction TotalVariation, Charbonnier
+   * or Constant and AcrossEdgeFunction Same, and is an error otherwise. On a connected component
+   * without fidelity and without fixed values the minimiser is the mean.
    */
   vtkSetMacro(Mode, int);
   vtkGetMacro(Mode, int);
@@ -96,7 +100,7 @@ public:
 
   ///@{
   /**
-   * g(s), s = |grad u|, K = EdgeThreshold:
+   * The edge-stopping function g(s), s = |grad u|, with K = EdgeThreshold:
    *
    * | edge function | g(s) | source |
    * | --- | --- | --- |
@@ -111,7 +115,7 @@ public:
    * P. Charbonnier, L. Blanc-Feraud, G. Aubert, M. Barlaud, IEEE ICIP, 1994; J. Weickert,
    * Anisotropic Diffusion in Image Processing, Teubner, 1998.)
    *
-   * Perona-Malik and Weickert sharpen edges steeper than about K, and noise as steep likewise.
+   * Perona-Malik and Weickert sharpen edges that are steeper than about K, and equally steep noise.
    */
   vtkSetMacro(EdgeFunction, int);
   vtkGetMacro(EdgeFunction, int);
@@ -143,9 +147,9 @@ public:
 
   ///@{
   /**
-   * The g of g2, across the direction: Same (default) as EdgeFunction, or any of these, which makes
-   * (4) fully general. Another one needs the direction array, input array 2, and TimeIntegrator
-   * FirstOrder.
+   * The edge-stopping function of g2, across the direction: Same (default) as EdgeFunction, or any
+   * of the functions above, which makes (4) fully general. A function other than Same needs the
+   * direction array, input array 2, and TimeIntegrator FirstOrder.
    */
   vtkSetMacro(AcrossEdgeFunction, int);
   vtkGetMacro(AcrossEdgeFunction, int);
@@ -179,9 +183,9 @@ public:
 
   ///@{
   /**
-   * beta of TotalVariation, in (R/h)^2: gradients well below its root are smoothed as by linear
-   * diffusion, those above keep their edges. Above 0. Default: 1e-6. Not used by Implicit and
-   * SteadyState, which need none.
+   * beta of TotalVariation, in (R/h)^2. Gradients well below its square root are smoothed as by
+   * linear diffusion; larger gradients are preserved as edges. Above 0. Default: 1e-6. Implicit and
+   * SteadyState do not use it.
    */
   vtkSetMacro(Beta, double);
   vtkGetMacro(Beta, double);
@@ -189,7 +193,7 @@ public:
 
   ///@{
   /**
-   * K of the other edge functions, in R/h: gradients above it count as edges. Above 0. Default:
+   * K of the other edge functions, in R/h. Gradients above it count as edges. Above 0. Default:
    * 0.1, a tenth of the range from one vertex to the next.
    */
   vtkSetMacro(EdgeThreshold, double);
@@ -204,9 +208,10 @@ public:
 
   ///@{
   /**
-   * PerChannel: each component has its own |grad u| (and |u - f| with FidelityNorm L1): k
-   * components are k runs. Joint (default): one Euclidean norm over all components, vectorial total
-   * variation (P. Blomgren, T. Chan, IEEE Trans. Image Proc. 7(3), 1998), without colour fringes.
+   * The way in which the gradient norm combines the components. PerChannel: each component has its
+   * own |grad u| (and |u - f| with FidelityNorm L1), so that the components do not depend on each
+   * other. Joint (default): one Euclidean norm over all components, vectorial total variation (P.
+   * Blomgren, T. Chan, IEEE Trans. Image Proc. 7(3), 1998), which avoids colour fringes.
    */
   vtkSetMacro(ChannelCoupling, int);
   vtkGetMacro(ChannelCoupling, int);
@@ -223,10 +228,11 @@ public:
 
   ///@{
   /**
-   * L2 (default): lambda (f - u), for Gaussian noise. L1: lambda (f - u)/|f - u|, for impulse noise
-   * (salt and pepper): what is wrong is replaced and the rest stays as it is, contrast included (T.
-   * Chan, S. Esedoglu, SIAM J. Appl. Math. 65(5), 2005); with FirstOrder rounded over |f - u| <
-   * 1e-3 R and taken at the old level.
+   * The norm of the fidelity term. L2 (default): lambda (f - u), for Gaussian noise. L1: lambda (f
+   * - u)/|f - u|, for impulse noise (salt and pepper). L1 replaces wrong values and preserves the
+   * others, including their contrast (T. Chan, S. Esedoglu, SIAM J. Appl. Math. 65(5), 2005). With
+   * FirstOrder the quotient is rounded over |f - u| < 1e-3 R, and |f - u| is taken at the old
+   * level.
    */
   vtkSetMacro(FidelityNorm, int);
   vtkGetMacro(FidelityNorm, int);
@@ -237,11 +243,12 @@ public:
 
   ///@{
   /**
-   * On: lambda is chosen so that the steady state differs from the data by the noise, in the root
-   * of the area-weighted mean square (discrepancy principle, V. Morozov, 1966); FidelityWeight is
-   * not read. Needs what SteadyState needs, and FidelityNorm L2. The principle errs on the smooth
-   * side: on photographs under noise of 5 to 80 % its result was 1 to 3 dB from that of the best
-   * lambda, which leaves 0.88 to 0.99 of the noise in the residual. Default: off.
+   * On: lambda is chosen by the discrepancy principle (V. Morozov, 1966), so that the area-weighted
+   * root mean square of the difference between the steady state and the data is that of the noise.
+   * FidelityWeight is ignored. AutomaticFidelity has the requirements of SteadyState and needs
+   * FidelityNorm L2. The principle errs on the smooth side: on photographs with noise of 5 to 80 %
+   * its result was 1 to 3 dB from that of the best lambda, which leaves 0.88 to 0.99 of the noise
+   * in the residual. Default: off.
    */
   vtkSetMacro(AutomaticFidelity, bool);
   vtkGetMacro(AutomaticFidelity, bool);
@@ -250,17 +257,18 @@ public:
 
   ///@{
   /**
-   * With AutomaticFidelity: the standard deviation of the noise in the array's own units, whatever
-   * Units is. 0 or more. 0 (default): estimated from the median difference of each value from the
-   * mean of its neighbours.
+   * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
+   * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
+   * the mean of its neighbours.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);
   ///@}
 
   /**
-   * The lambda of the last update: FidelityWeight, or what AutomaticFidelity found (for the first
-   * block of composite data; each block has its own), in the unit of FidelityWeight.
+   * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
+   * AutomaticFidelity found. For composite data it is that of the first block, since
+   * AutomaticFidelity finds one value for each block.
    */
   vtkGetMacro(EffectiveFidelityWeight, double);
 
@@ -272,12 +280,13 @@ public:
 
   ///@{
   /**
-   * Linear (default): values at the vertices, the paper's. An edge of the data that cuts across
-   * triangles is then some 10 % too long, and too much is taken off. CrouzeixRaviart: values at the
-   * midpoints of the mesh's edges (M. Crouzeix, P.-A. Raviart, RAIRO 7, 1973), three times as many;
-   * plateaus are right to a fraction of a percent. Data come from the vertices and go back to them,
-   * conservatively. Fidelity then acts on mesh edges with two known ends, and those with two fixed
-   * ends are fixed.
+   * The finite elements. Linear (default): values at the vertices, as in the paper. The total
+   * variation of an edge of the data that cuts across triangles is then some 10 % too large, so
+   * that plateaus lose too much of their height. CrouzeixRaviart: values at the midpoints of the
+   * mesh's edges (M. Crouzeix, P.-A. Raviart, RAIRO 7, 1973), which are three times as many;
+   * plateaus are accurate to a fraction of a percent. Values are transferred from the vertices to
+   * the midpoints and back conservatively. Fidelity then acts on mesh edges with two known ends,
+   * and mesh edges with two fixed ends are fixed.
    */
   vtkSetMacro(Discretization, int);
   vtkGetMacro(Discretization, int);
@@ -291,22 +300,23 @@ public:
 
   ///@{
   /**
-   * Where SteadyState and each step of Implicit stop: the duality gap, a bound of how far the
-   * energy is above its minimum, relative to the energy. In (0, 1). Default: 1e-4.
-   * 10,000 iterations that do not reach it are a warning with the gap. MaximumNumberOfIterations
-   * and Tolerance are of FirstOrder's linear systems; Tolerance is 1e-3 here, which changes ten
-   * steps by 2e-5 of the range and takes a quarter of the time of 1e-10.
+   * The duality gap, relative to the energy, at which SteadyState and each step of Implicit stop.
+   * The gap bounds the difference between the energy and its minimum. In (0, 1). Default: 1e-4. A
+   * warning reports the gap if 10,000 iterations do not reach it. MaximumNumberOfIterations and
+   * Tolerance apply to the linear systems of FirstOrder. The default of Tolerance is 1e-3 in this
+   * class, which changes ten steps by 2e-5 of the range and takes a quarter of the time of 1e-10.
    */
   vtkSetMacro(StopTolerance, double);
   vtkGetMacro(StopTolerance, double);
   ///@}
 
-  /// TimeIntegrator: see the top of this page.
+  /// Set TimeIntegrator to Implicit, see the class comment.
   void SetTimeIntegratorToImplicit() { this->SetTimeIntegrator(TIME_INTEGRATOR_IMPLICIT); }
 
   /**
-   * Superclass, and Mode TimeSteps, EdgeFunction TotalVariation, AcrossEdgeFunction Same,
-   * ChannelCoupling PerChannel, FidelityNorm L2, AutomaticFidelity off, Discretization Linear.
+   * In addition to the superclass: Mode TimeSteps, EdgeFunction TotalVariation, AcrossEdgeFunction
+   * Same, ChannelCoupling PerChannel, FidelityNorm L2, AutomaticFidelity off, Discretization
+   * Linear.
    */
   void UsePaperScheme() override;
 

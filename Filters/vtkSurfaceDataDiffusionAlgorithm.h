@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSurfaceDataDiffusionAlgorithm
- * @brief   superclass of the models that start from given data: fidelity, diffusivities, missing
- * data
+ * @brief   superclass of the models of given data: fidelity, diffusivities, missing data
  *
- * The models below this class evolve given data f on a surface,
+ * The subclasses solve diffusion equations for given data f on a surface,
  *
  *     u_t = div(D grad u) + lambda chi (f - u),
  *
- * with chi the indicator of the known part, in one form or another. See
- * vtkSurfaceDiffusionAlgorithm for arrays, units and time.
+ * with the diffusion tensor D of each model and the indicator chi of the known part: 0 where data
+ * are missing, 1 elsewhere. See vtkSurfaceDiffusionAlgorithm for arrays, units and time.
  *
  * @sa vtkFVMHeatFilter vtkIntrinsicTVFilter vtkHarmonicMapFilter
  */
@@ -32,8 +31,8 @@ public:
 
   ///@{
   /**
-   * lambda of (16) to (19), the weight of lambda chi (f - u), with chi the indicator of the known
-   * part, in 1/(unit of time). 0 or more. Default: 0.
+   * The weight lambda of the fidelity term lambda chi (f - u) of (16) to (19), in 1/(unit of time).
+   * 0 or more. Default: 0.
    */
   vtkSetMacro(FidelityWeight, double);
   vtkGetMacro(FidelityWeight, double);
@@ -48,8 +47,8 @@ public:
 
   ///@{
   /**
-   * What missing points start from. Input: the damaged values themselves, as in the paper (Mean
-   * where they are NaN). Mean (default): the mean of the known values of the connected component.
+   * The initial values at missing points. Input: the damaged values themselves, as in the paper, or
+   * Mean if they are NaN. Mean (default): the mean of the known values of the connected component.
    * Noise: the paper's random guess, uniform between the smallest and largest known value of the
    * component of the data.
    */
@@ -63,8 +62,8 @@ public:
 
   ///@{
   /**
-   * On: known points keep their value exactly (lambda = infinity) and only what is missing is
-   * filled. An error where nothing is missing. Default: off.
+   * On: known points keep their value exactly (lambda = infinity), so that only missing points
+   * change. It is an error if nothing is missing. Default: off.
    */
   vtkSetMacro(HoldKnownValues, bool);
   vtkGetMacro(HoldKnownValues, bool);
@@ -73,9 +72,9 @@ public:
 
   ///@{
   /**
-   * Factors of the diffusivity along the direction e1 and across it (along e2): g1 and g2 of (4)
-   * are these times g(|grad u|), and g = 1 for linear diffusion. 0 or more; different values need
-   * the direction array, input array 2. Default: 1, 1.
+   * The factors of the diffusivity along the direction e1 and across it (along e2). g1 and g2 of
+   * (4) are these factors times g(|grad u|), with g = 1 for linear diffusion. 0 or more. Different
+   * values need the direction array, input array 2. Default: 1, 1.
    */
   vtkSetMacro(AlongDiffusivity, double);
   vtkGetMacro(AlongDiffusivity, double);

@@ -42,7 +42,8 @@ namespace
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// A surface of up to this many points is solved as fast in one process, in less than a GiB.
+/// One process solves a surface with at most this many points as fast as several processes do, and
+/// needs less than a GiB.
 constexpr double MaxGatheredPoints = 1e6;
 
 const std::vector<const char*> WordsOfPrecision = { "Input", "Single", "Double" };
@@ -329,8 +330,8 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   this->ReportWarnings(state.Run.TakeWarnings(group));
 }
 
-/// The surfaces with data, their fields, and what is wrong with them. Blocks without data pass
-/// through as long as one has them.
+/// The surfaces with data, their fields, and the problems of both. Blocks without data pass through
+/// if at least one block has data.
 void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& blocks,
   RunSettings& settings, std::vector<SurfaceBlock>& surfaces, std::vector<InputFields>& fields,
   Problems& problems)
@@ -341,7 +342,7 @@ void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>
     InputFields found;
     if (this->GetProcessGroup().IsShared() && block.Input->GetNumberOfPoints() == 0)
     {
-      surfaces.push_back(block); // it takes part in collective calls
+      surfaces.push_back(block); // it participates in collective calls
       fields.push_back(found);
       continue;
     }

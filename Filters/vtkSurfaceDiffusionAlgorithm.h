@@ -4,13 +4,13 @@
  * @class   vtkSurfaceDiffusionAlgorithm
  * @brief   superclass of the time-dependent models: units, time, masks, solvers, history
  *
- * The filters below this class solve diffusion equations on triangulated surfaces by the finite
+ * The subclasses solve diffusion equations on triangulated surfaces by the finite
  * volume method of C. Wu, J. Deng, F. Chen, "Diffusion Equations over Arbitrary Triangulated
  * Surfaces for Filtering and Texture Applications", IEEE TVCG 14(3), 2008: the Laplace-Beltrami
  * operator is discretised with cotan weights and a lumped mass matrix, whose entries are the areas
  * A_i of barycentric control cells. The surface may have any angles and any topology. Data are
  * point data, piecewise linear on the triangles. The boundary condition is the homogeneous Neumann
- * condition: nothing flows over the boundary of the surface.
+ * condition: there is no flux over the boundary of the surface.
  *
  * **Input arrays**, `SetInputArrayToProcess(idx, 0, 0, association, name)`; an empty name means
  * that the array is not set:
@@ -33,11 +33,11 @@
  * if the library was built with hypre, the surface has one piece per process, IntrinsicDelaunay and
  * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid (hypre's BoomerAMG),
  * or Automatic with more than a million points. An abort is then obeyed by all processes within a
- * few iterations. Solved in process 0, which then holds the whole surface, are also:
- * AutomaticFidelity; Discretization CrouzeixRaviart of vtkIntrinsicTVFilter; and, of
- * vtkHarmonicMapFilter, MoveVertices, normals that it has to compute, and line fields with missing
- * values. Random numbers are those of one process if there are global ids; otherwise they depend
- * on the coordinates.
+ * few iterations. Some features are always computed in process 0, which then holds the whole
+ * surface: AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, and
+ * MoveVertices, computed normals and line fields with missing values of vtkHarmonicMapFilter.
+ * Random numbers are those of one process if there are global ids; otherwise they depend on the
+ * coordinates.
  *
  * **Output port 0** is the input with the result as a further point array, made active. Points
  * that no participating triangle uses keep their value. **Output port 1** is a vtkTable, the
@@ -45,7 +45,7 @@
  * `Total_0` ... (sum of A_i u_i of each component), `Energy`, `Iterations`, `Residual`, `Seconds`.
  *
  * **Invalid properties or arrays** are errors at update that name the property, its value and what
- * is allowed; the output then is the unchanged input. Defects of the surface (zero-area triangles,
+ * is allowed. The output then is the unchanged input. Defects of the surface (zero-area triangles,
  * non-manifold edges, unused or coincident points) are handled and reported in one warning with
  * counts.
  *
@@ -82,7 +82,7 @@ public:
 
   ///@{
   /**
-   * The number of time steps n: there are n + 1 states, from the initial one on. 0 to 1e9.
+   * The number of time steps n. There are n + 1 states, from the initial one on. 0 to 1e9.
    * Default: 10.
    */
   vtkSetMacro(NumberOfTimeSteps, int);
@@ -97,11 +97,11 @@ public:
 
   ///@{
   /**
-   * The units of times, weights and thresholds. Absolute: lengths and values as they come. Natural
-   * (default): lengths in h, the mean length of the distinct edges of triangles of positive area,
-   * and values in R, the largest over the components of max - min of the known values (1 if that
-   * is 0), so that one setting suits any mesh and any array. Each class says what its unit of time
-   * is; see GetTimeUnit().
+   * The units of times, weights and thresholds. Absolute: the units of the coordinates and of the
+   * array. Natural (default): lengths are in h, the mean length of the distinct edges of triangles
+   * of positive area, and values are in R, the largest over the components of max - min of the
+   * known values (1 if that is 0), so that one setting suits any mesh and any array. Each class
+   * documents its unit of time; see also GetTimeUnit().
    */
   vtkSetMacro(Units, int);
   vtkGetMacro(Units, int);
@@ -113,9 +113,9 @@ public:
   ///@{
   /**
    * On: the output has time steps, one per OutputInterval steps of the run, and any time can be
-   * asked for: between two the earlier is given, outside them the nearest. The input is then asked
-   * for once, at its own first time if it has times. Off (default): the output is the final state,
-   * and the input's time passes through.
+   * requested. Between two time steps the output is the earlier one, outside their range it is the
+   * nearest one. The input is then requested once, at its own first time if it has times. Off
+   * (default): the output is the final state, and the input's time passes through.
    */
   vtkSetMacro(GenerateTimeSteps, bool);
   vtkGetMacro(GenerateTimeSteps, bool);
@@ -124,8 +124,8 @@ public:
 
   ///@{
   /**
-   * With GenerateTimeSteps: the published times are those of steps 0, k, 2 k, ... and the last.
-   * 1 or more. Default: 1.
+   * The interval k of the published times with GenerateTimeSteps, which are those of steps 0, k, 2
+   * k, ... and the last one. 1 or more. Default: 1.
    */
   vtkSetMacro(OutputInterval, int);
   vtkGetMacro(OutputInterval, int);
@@ -139,9 +139,9 @@ public:
 
   ///@{
   /**
-   * What the mask means. Inpaint (default): masked points are missing and are filled in, (18) and
-   * (19). Exclude: triangles with a masked vertex take no part, nothing flows across, and masked
-   * points keep their value: the rest is a region of interest.
+   * The meaning of the mask. Inpaint (default): masked points are missing and are filled in, (18)
+   * and (19). Exclude: triangles with a masked vertex are ignored, there is no flux over the edges
+   * of the remaining region of interest, and masked points keep their value.
    */
   vtkSetMacro(MaskMode, int);
   vtkGetMacro(MaskMode, int);
@@ -152,8 +152,9 @@ public:
 
   ///@{
   /**
-   * Seed of all random numbers. They are a hash of the seed, the component and the point's global
-   * id (its index without global ids): the same bits everywhere. Default: 0.
+   * The seed of all random numbers. A random number is a hash of the seed, the component and the
+   * point's global id (its index without global ids), so that it is the same on all machines.
+   * Default: 0.
    */
   vtkSetMacro(RandomSeed, int);
   vtkGetMacro(RandomSeed, int);
@@ -168,8 +169,8 @@ public:
 
   ///@{
   /**
-   * The time integrator: each class says which it has and which is its default. FirstOrder is the
-   * paper's. Second-order schemes do not keep the bounds of the data at large steps.
+   * The time integrator. Each class documents its integrators and its default. FirstOrder is the
+   * paper's. Second-order schemes do not keep the bounds of the data at large time steps.
    */
   vtkSetMacro(TimeIntegrator, int);
   vtkGetMacro(TimeIntegrator, int);
@@ -188,11 +189,12 @@ public:
 
   ///@{
   /**
-   * How linear systems are solved. Direct: sparse Cholesky factorisation, kept while the matrix
-   * stays. ConjugateGradient: with Jacobi preconditioner, the paper's. Multigrid: conjugate
-   * gradients with smoothed aggregation, whose iterations hardly grow with size and time step.
-   * Automatic (default): the fastest of them for the size, the step and the number of steps, by
-   * measurement.
+   * The solver of linear systems. Direct: sparse Cholesky factorisation, which is kept while the
+   * matrix does not change. ConjugateGradient: conjugate gradients with Jacobi preconditioner, as
+   * in the paper. Multigrid: conjugate gradients with smoothed aggregation as preconditioner; the
+   * number of iterations hardly grows with the size and the time step. Automatic (default): the
+   * solver that is expected to be the fastest for the size, the time step and the number of steps,
+   * according to measurements.
    */
   vtkSetMacro(Solver, int);
   vtkGetMacro(Solver, int);
@@ -205,9 +207,9 @@ public:
 
   ///@{
   /**
-   * Where iterative solvers stop: relative residual, in the norm of the inverse diagonal. In
-   * (0, 1). Default: 1e-10, in vtkIntrinsicTVFilter 1e-3. And the most iterations, 1 or more,
-   * default 1000: not to converge in them is an error.
+   * The relative residual, in the norm of the inverse diagonal, at which iterative solvers stop, in
+   * (0, 1), and the largest number of iterations, 1 or more. A solve that does not converge within
+   * them is an error. Default: 1e-10 (1e-3 in vtkIntrinsicTVFilter), 1000.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
@@ -217,10 +219,10 @@ public:
 
   ///@{
   /**
-   * On: work on the intrinsic Delaunay triangulation of the same surface: no vertex moves, edges
-   * are flipped along geodesics, over two sheets where the surface has a boundary or is not a
-   * manifold (N. Sharp, K. Crane, SGP 2020). Linear diffusion FirstOrder then keeps the bounds of
-   * the data at any time step on any surface. Default: off.
+   * On: the equations are solved on the intrinsic Delaunay triangulation of the same surface. No
+   * vertex moves; edges are flipped along geodesics, on a double cover of the surface if it has a
+   * boundary or is not a manifold (N. Sharp, K. Crane, SGP 2020). Linear diffusion with FirstOrder
+   * then keeps the bounds of the data at any time step on any surface. Default: off.
    */
   vtkSetMacro(IntrinsicDelaunay, bool);
   vtkGetMacro(IntrinsicDelaunay, bool);
@@ -236,9 +238,9 @@ public:
 
   ///@{
   /**
-   * Type of the result; all arithmetic is in double. Input (default): unsigned char gives unsigned
-   * char (rounded and clamped at the end, never between steps), float gives float, everything
-   * else double.
+   * The type of the result. All arithmetic is in double precision. Input (default): unsigned char
+   * gives unsigned char (rounded and clamped at the end, never between steps), float gives float,
+   * and all other types give double.
    */
   vtkSetMacro(OutputPrecision, int);
   vtkGetMacro(OutputPrecision, int);
@@ -250,21 +252,21 @@ public:
 
   ///@{
   /**
-   * With GenerateTimeSteps: MiB for states kept so that going back in time is cheap. 0 or more.
-   * Default: 512.
+   * The memory in MiB for states that are kept with GenerateTimeSteps so that going back in time is
+   * cheap. 0 or more. Default: 512.
    */
   vtkSetMacro(CheckpointMemoryLimit, int);
   vtkGetMacro(CheckpointMemoryLimit, int);
   ///@}
 
   /**
-   * Set what the paper does: FirstOrder, IntrinsicDelaunay off, MaskMode Inpaint, and what
-   * subclasses add. Units, times, weights and the solver stay.
+   * Select the paper's scheme: TimeIntegrator FirstOrder, IntrinsicDelaunay off, MaskMode Inpaint,
+   * and the settings that subclasses add. Units, times, weights and the solver do not change.
    */
   virtual void UsePaperScheme();
 
   /**
-   * The time step taken, in the unit of TimeStep.
+   * The time step that the run uses, in the unit of TimeStep.
    */
   double GetEffectiveTimeStep();
 
@@ -303,7 +305,7 @@ protected:
   virtual void WriteResult(
     std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output);
 
-  /// Take what the run has computed beside its states. The default takes the values above.
+  /// Take the results of the run other than its states. The default takes the values above.
   virtual void TakeResults();
 
   /// The suffix of the result's name, if ResultArrayName is empty.

@@ -2,38 +2,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSurfaceDirectionFieldFilter
- * @brief   makes fields of directions on a surface, as cell data
+ * @brief   computes line fields on a surface, as cell data
  *
- * The anisotropic diffusion filters take one direction per cell or point, as a line: its sign does
- * not matter. This filter makes such fields, as unit vectors in the cell array `Direction`, made
- * active; zero where there is no direction (the diffusion filters are isotropic there).
+ * Computes a line field (unit vectors up to their sign) from principal curvatures, as the smoothest
+ * field in the sense of the vector Dirichlet energy, or from hints. The anisotropic diffusion
+ * filters take such a field as their direction. The result is the cell array `Direction`, which is
+ * made active. It is zero where there is no direction; the diffusion filters are isotropic there.
  *
- * - PrincipalCurvature: along which the surface bends least (Minimum) or most (Maximum), from the
- *   derivative of the normals, which the heat equation smooths first over SmoothingLength.
- * - CurvatureAligned: the same where the surface bends distinctly, joined smoothly elsewhere.
- * - Smooth: the line field that turns least over the whole surface, the lowest mode of the
- *   connection Laplacian (F. Knoppel, K. Crane, U. Pinkall, P. Schroder, Globally Optimal Direction
- *   Fields, ACM Trans. Graph. 32(4), 2013). Of equally smooth ones the one nearest to the direction
- *   of principal curvature.
- * - Hints: smooth, and near the directions of input array 2 where it has any.
+ * - PrincipalCurvature: the minimum-curvature direction (Minimum) or the maximum-curvature
+ *   direction (Maximum), from the derivative of the normals. The heat equation first smooths the
+ *   normals over SmoothingLength.
+ * - CurvatureAligned: the same where the principal curvatures differ distinctly, continued smoothly
+ *   elsewhere.
+ * - Smooth: the smoothest line field, which is the lowest mode of the connection Laplacian (F.
+ *   Knoppel, K. Crane, U. Pinkall, P. Schroder, Globally Optimal Direction Fields, ACM Trans.
+ *   Graph. 32(4), 2013). If there are several, it is the one closest to the principal direction.
+ * - Hints: a smooth field that is close to the directions of input array 2 where these are given.
  *
- * A line at angle a is the complex number z = exp(2 i a). CurvatureAligned and Hints minimise
+ * A line at angle a is represented by the complex number z = exp(2 i a). CurvatureAligned and Hints
+ * minimise
  *
  *     int |grad z|^2 + int w |z - z_hint|^2,    w = HintWeight / h^2,
  *
- * h the mean edge length; for CurvatureAligned w is multiplied by the difference of the principal
- * curvatures' sizes over its mean. Discretised with Crouzeix-Raviart elements (O. Stein, M.
- * Wardetzky, A. Jacobson, E. Grinspun, A Simple Discretization of the Vector Dirichlet Energy, CGF
- * 39(5), 2020): any angles and any topology, orientable or not. Fields must turn around singular
- * points where the surface is curved in all (a sphere has at least four, of half a turn each).
+ * with the mean edge length h. For CurvatureAligned w is multiplied by the difference of the
+ * absolute principal curvatures, divided by the mean of that difference. The discretisation uses
+ * Crouzeix-Raviart elements (O. Stein, M. Wardetzky, A. Jacobson, E. Grinspun, A Simple
+ * Discretization of the Vector Dirichlet Energy, CGF 39(5), 2020), and allows any angles and any
+ * topology, orientable or not. By the Poincare-Hopf theorem, a line field on a closed surface of
+ * nonzero Euler characteristic has singularities: on a sphere it typically has
+ * four, of index 1/2.
  *
- * Input array 2 (points or cells, 3 components), for Hints: zero or NaN means no hint there, the
- * length does not matter. Connected components without a hint get zero vectors.
+ * Input array 2 (points or cells, 3 components) has the hints. A vector that is zero or NaN is no
+ * hint, and the length of a hint does not matter. Connected components without a hint get zero
+ * vectors.
  *
- * Surfaces in pieces, over processes and partitions, are treated as vtkSurfaceDiffusionAlgorithm
- * does: the whole is solved in process 0.
+ * Surfaces in pieces, over processes and partitions, are gathered and solved in process 0; see
+ * vtkSurfaceFilter.
  *
- * Polygons and strips get the main axis of their triangles' directions, vertices and lines zero.
+ * Polygons and strips get the main axis of the directions of their triangles. Vertices and lines
+ * get zero vectors.
  *
  * @sa vtkTuringTextureFilter vtkFVMHeatFilter vtkIntrinsicTVFilter
  */
@@ -64,7 +71,7 @@ public:
 
   ///@{
   /**
-   * How the field is made, see above. Default: PrincipalCurvature.
+   * The method that computes the field, see above. Default: PrincipalCurvature.
    */
   vtkSetMacro(Method, int);
   vtkGetMacro(Method, int);
@@ -83,8 +90,9 @@ public:
 
   ///@{
   /**
-   * The direction of principal curvature: Minimum (default), along which the surface bends least (a
-   * cylinder's axis), or Maximum, perpendicular to it. Curvatures count by their size.
+   * The principal direction: the minimum-curvature direction (Minimum, the default; the axis of a
+   * cylinder), or the maximum-curvature direction (Maximum), perpendicular to it. Curvatures are
+   * compared by their absolute values.
    */
   vtkSetMacro(PrincipalDirection, int);
   vtkGetMacro(PrincipalDirection, int);
@@ -101,8 +109,8 @@ public:
 
   ///@{
   /**
-   * Full width at half maximum of the Gaussian that smooths the normals before their derivative is
-   * taken, in coordinate units; 0: none, -1 (default): four mean edge lengths.
+   * The full width at half maximum of the Gaussian that smooths the normals before their derivative
+   * is taken, in coordinate units. 0: no smoothing; -1 (default): four mean edge lengths.
    */
   vtkSetMacro(SmoothingLength, double);
   vtkGetMacro(SmoothingLength, double);
@@ -110,8 +118,8 @@ public:
 
   ///@{
   /**
-   * How much hints and curvatures weigh against smoothness, in 1/h^2 with h the mean edge length:
-   * the field follows changes of the hints over lengths down to about h/sqrt(HintWeight). Above 0.
+   * The weight of hints and curvatures against smoothness, in 1/h^2 with h the mean edge length.
+   * The field follows changes of the hints over lengths down to about h/sqrt(HintWeight). Above 0.
    * Default: 0.1.
    */
   vtkSetMacro(HintWeight, double);
@@ -120,8 +128,8 @@ public:
 
   ///@{
   /**
-   * By how many degrees the field is turned in the surface at the end, counter-clockwise about the
-   * normals of the cells. Default: 0.
+   * The angle in degrees by which the field is rotated in the surface at the end, counter-clockwise
+   * about the normals of the cells. Default: 0.
    */
   vtkSetMacro(Angle, double);
   vtkGetMacro(Angle, double);

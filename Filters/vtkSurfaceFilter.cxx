@@ -167,7 +167,7 @@ bool vtkSurfaceFilter::IsAborted()
 //------------------------------------------------------------------------------------------------
 int vtkSurfaceFilter::FillInputPortInformation(int, vtkInformation* info)
 {
-  // Composite data come as a whole: their blocks share natural units, or are pieces of one surface.
+  // All blocks of composite data are needed: they share natural units or are pieces of a surface.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   return 1;
@@ -265,7 +265,7 @@ void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
   }
   catch (const Aborted&)
   {
-    // The output is the unchanged input. What was made so far is kept for the next update.
+    // The output is the unchanged input. Completed parts of the run are kept for the next update.
   }
   catch (const std::bad_alloc&)
   {

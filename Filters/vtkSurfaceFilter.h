@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSurfaceFilter
- * @brief   superclass of the filters on triangulated surfaces: pieces, composite data, errors,
- * abort
+ * @brief   superclass of the filters on triangulated surfaces: pieces, composite data, errors
  *
  * A subclass overrides ProcessSurfaces(), which gets the surfaces of the input, each in one piece,
  * with an output that already is a shallow copy, and adds its results to the outputs. This class
- * does the rest: composite data, surfaces that are spread over processes, progress, abort, and
+ * handles composite data, surfaces that are distributed over processes, progress, abort, and
  * errors, after which the output is the unchanged input.
  *
- * Polygons and strips are triangulated internally; vertices and lines pass through; ghost and
+ * Polygons and strips are triangulated internally. Vertices and lines pass through. Ghost and
  * hidden cells are ignored. Each block of composite input is a surface of its own.
  *
  * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with
@@ -20,7 +19,7 @@
  * Otherwise they are one point if they coincide within SeamTolerance and at least one of them lies
  * on the boundary of its piece. Points of one piece are never joined, which is the task of
  * MergeCoincidentPoints: the k-th coincident point of a piece is identified with the k-th of the
- * others. Data are those of the first piece that has the point. Ghost cells are ignored; ghost
+ * others. Data are those of the first piece that has the point. Ghost cells are ignored, and ghost
  * points get the results of the points that they are copies of. Warnings and errors are reported by
  * process 0 alone. Unless a subclass solves with the pieces themselves, the surface is gathered in
  * process 0 and the result is scattered.
@@ -68,9 +67,9 @@ public:
   ///@{
   /**
    * The largest distance of points of different pieces that are one point of the surface, in
-   * coordinate units; 0: equal coordinates only; -1 (default): 1e-6 of the diagonal of the bounding
-   * box, a difference that single precision may cause. Not used with global point ids. 0 or more,
-   * or -1.
+   * coordinate units. 0 or more, or -1. 0: equal coordinates only. -1 (default): 1e-6 of the
+   * diagonal of the bounding box, a difference that single precision may cause. It is not used with
+   * global point ids.
    */
   vtkSetMacro(SeamTolerance, double);
   vtkGetMacro(SeamTolerance, double);
@@ -78,10 +77,10 @@ public:
 
   ///@{
   /**
-   * The processes that hold pieces of the surface. Default: the global controller. Null, set
-   * by SetController(): this process's surface is the whole one. Otherwise an update is an error if
-   * the pipeline asks for one of several pieces and no other process can be reached (no MPI, or no
-   * controller of it).
+   * The processes that hold pieces of the surface. Default: the global controller. Null,
+   * if it was set by SetController(), means that this process has the whole surface. Otherwise an
+   * update is an error if the pipeline asks for one of several pieces and no other process can be
+   * reached (no MPI, or no controller of it).
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);

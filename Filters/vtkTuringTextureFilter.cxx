@@ -35,7 +35,7 @@ vtkTuringTextureFilter::vtkTuringTextureFilter()
   this->TimeIntegrator = TIME_INTEGRATOR_SECOND_ORDER;
   this->TimeStep = 1.0 / 16.0;
   this->NumberOfTimeSteps = 640;
-  // No data are needed: the active scalars are not meant.
+  // An initial state is optional: the active scalars are not used by default.
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
 }
 
@@ -72,7 +72,7 @@ std::unique_ptr<RunSettings> vtkTuringTextureFilter::MakeSettings() const
   settings->StopTolerance = this->StopTolerance;
   settings->TextureChemical = this->TextureChemical;
   settings->ColorOutput = this->ColorOutput;
-  // In the order of KineticsName, and of the parameters of each.
+  // The order is that of KineticsName, and that of the parameters of each kinetics.
   settings->Parameters = { { { this->GrowthRate, this->DecayRate, 0.0 },
     { this->ActivatorSupply, this->SubstrateSupply, 0.0 }, { this->FeedRate, this->KillRate, 0.0 },
     { this->ReactantA, this->ReactantB, 0.0 }, { this->InhibitorDecayRate, this->Saturation, 0.0 },

@@ -2,57 +2,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkTuringTextureFilter
- * @brief   spots, stripes and labyrinths that two reacting chemicals draw on a surface
+ * @brief   reaction-diffusion textures on a surface: spots, stripes and labyrinths
  *
- * Two chemicals with concentrations u1, u2 react with each other and diffuse over the surface (C.
- * Wu, J. Deng, F. Chen, IEEE TVCG 14(3), 2008, equations (22) and (23)):
+ * Solves the reaction-diffusion equations of two chemicals with concentrations u1 and u2 on a
+ * triangulated surface,
  *
  *     du1/dt = div(g11 (grad u1 . e1) e1 + g12 (grad u1 . e2) e2) + F(u1, u2)
- *     du2/dt = div(g21 (grad u2 . e1) e1 + g22 (grad u2 . e2) e2) + G(u1, u2)
+ *     du2/dt = div(g21 (grad u2 . e1) e1 + g22 (grad u2 . e2) e2) + G(u1, u2),
  *
- * with no flux over the boundary. Where u1 diffuses much faster than u2 the uniform state is
- * unstable and a pattern of one wavelength grows out of noise (A. Turing, 1952). Kinetics chooses F
- * and G; with the default, (24), F = s (gamma - u1 u2), G = s (u1 u2 - u2 - mu).
+ * by the finite volume method of C. Wu, J. Deng and F. Chen (IEEE TVCG 14(3), 2008, equations (22)
+ * and (23)), with implicit diffusion and explicit reaction. The boundary condition is the
+ * homogeneous Neumann condition. If u1 diffuses much faster than u2, the uniform state is unstable
+ * and a pattern of one wavelength grows out of noise (A. Turing, 1952). Kinetics chooses F and G.
+ * The default is (24), F = s (gamma - u1 u2), G = s (u1 u2 - u2 - mu).
  *
  * **The wavelength** follows from the rates: the fastest-growing wave number k maximises the larger
- * eigenvalue of J - k^2 diag(D1, D2), J the Jacobian of (F, G) at the steady state. FeatureSize
- * sets it directly, in coordinate units, the same on a coarse and on a fine mesh. Standing patterns
- * of (24) come out some 5 % narrower than the wave they grew from. Parameters and rates that can
- * make no pattern are told in one warning that says why: (24) with its default parameters needs
- * D1/D2 > 4; the mesh should have 6 edges per wavelength.
+ * eigenvalue of J - k^2 diag(D1, D2), with the Jacobian J of (F, G) at the steady state and the
+ * diffusion rates D1 and D2. FeatureSize sets the wavelength directly, in coordinate units, so that
+ * it is the same on a coarse and on a fine mesh. Stationary patterns of (24) are some 5 % narrower
+ * than the wave that they grew from. A warning explains why if no pattern can form with the given
+ * parameters and rates: (24) with its default parameters needs D1/D2 > 4, and the mesh should have
+ * 6 edges per wavelength.
  *
  * **Direction**: with a direction array (input array 2, for instance of
- * vtkSurfaceDirectionFieldFilter) rates across it may differ from those along. All four rates
- * larger along by one factor stretch the pattern along e1; a larger rate of u2 alone makes stripes
- * along e1. Input array 4 gives the four rates per cell (4 components: DiffusionRate1,
- * DiffusionRateAcross1, DiffusionRate2, DiffusionRateAcross2), in place of the properties and in
- * their units, so that direction and width can vary over the surface.
+ * vtkSurfaceDirectionFieldFilter) the rates across the direction may differ from those along it. If
+ * the rates of both chemicals are larger along e1 by one factor, the pattern is stretched along e1.
+ * If only that of u2 is larger, stripes form along e1. Input array 4 gives the four rates per cell
+ * (4 components: DiffusionRate1, DiffusionRateAcross1, DiffusionRate2, DiffusionRateAcross2), in
+ * place of the properties and in their units, so that direction and width can vary over the
+ * surface.
  *
- * **Start**: the steady state with seeded noise, or the two components of input array 0, if one is
- * set (it is not by default; missing values are filled as InitialFill says).
+ * **Start**: the initial state is the steady state with seeded noise, or the two components of
+ * input array 0 if it is set (it is not by default). Missing values start from the mean of the
+ * known values of the connected component.
  *
  * **Units**: natural units measure time in 1/ReactionRate, lengths in h (the mean edge length) and
- * diffusion rates in h^2 ReactionRate; concentrations are the kinetics' own.
+ * diffusion rates in h^2 ReactionRate. Concentrations have the units of the kinetics.
  *
- * **Scheme**: diffusion is implicit with one matrix per chemical, reaction explicit. TimeIntegrator
- * SecondOrder (the default) is ARS(2,2,2) (Ascher, Ruuth, Spiteri 1997), FirstOrder backward Euler
- * with the reaction of the old level, the paper's. ClampToNonNegative keeps concentrations at 0 and
- * above: (24) as printed runs away as soon as u2 < 0. FirstOrder sets negative values to 0 after
- * the step; SecondOrder solves the equations with the constraint u >= 0 (a force holds u where the
- * reaction would take it below), to second order: on a sphere of 642 vertices after 5 units of time
- * the error at TimeStep 1/8 is 0.2 %, that of FirstOrder 10 %. u1 and u2 are solved for on two
- * threads where the machine has them; at 44,000 vertices a step takes 10 ms of processor time, and
- * the pattern stands after about 18 units of time (StopTolerance 0.03).
+ * **Scheme**: diffusion is implicit with one matrix per chemical, and reaction is explicit.
+ * TimeIntegrator SecondOrder (the default) is ARS(2,2,2) (Ascher, Ruuth, Spiteri 1997). FirstOrder
+ * is the paper's: backward Euler with the reaction of the old level. ClampToNonNegative keeps
+ * concentrations at 0 and above, because the values of (24) as printed diverge as soon as u2 < 0.
+ * FirstOrder sets negative values to 0 after the step. SecondOrder solves the equations with the
+ * constraint u >= 0 to second order (a reaction force holds u at 0 if the kinetics would make it
+ * negative): on a sphere of 642 vertices after 5 units of time, the error at TimeStep 1/8 is 0.2 %,
+ * that of FirstOrder 10 %. u1 and u2 are solved for on two threads if the machine has them. With
+ * 44,000 vertices a step takes 10 ms of processor time, and the pattern is stationary after about
+ * 18 units of time (StopTolerance 0.03).
  *
- * **Output**: point arrays u1 and u2, Texture (the chosen chemical with its contrast stretched to
- * [0, 1]), with ColorOutput the RGB array TextureColor; ResultArrayName, if any, is put before each
- * of these names. u1 is made active, or TextureColor. Points that take no part keep the values of
- * input array 0, 0 without one. The history has a column `Clamped`: how many concentrations
+ * **Output**: the point arrays u1, u2 and Texture (the chosen chemical with its contrast stretched
+ * to [0, 1]), and with ColorOutput the RGB array TextureColor. ResultArrayName, if it is not empty,
+ * is put before each of these names. The active scalars are TextureColor if it is written, and u1
+ * otherwise. Points that no participating triangle uses keep the values of input array 0, or get 0
+ * if it is not set. The history has a further column `Clamped`: the number of concentrations that
  * were held at zero in the step. Its energy is 1/2 int (D1 grad u1 . grad u1 + D2 grad u2 . grad
- * u2) / ReactionRate, in coordinate units squared: how much pattern there is. It need not fall.
- *
- * Fidelity and the diffusivities of the superclass do not apply: FidelityWeight must be 0,
- * AlongDiffusivity and AcrossDiffusivity 1.
+ * u2) / ReactionRate, in coordinate units squared, which measures how much pattern there is. It
+ * need not decrease.
  *
  * @sa vtkSurfaceDirectionFieldFilter vtkFVMHeatFilter
  */
@@ -80,7 +85,8 @@ public:
 
   ///@{
   /**
-   * F and G, all times s = ReactionRate, with u1 the faster chemical in each:
+   * The reaction terms F and G, all multiplied by s = ReactionRate. u1 is the faster chemical in
+   * each:
    *
    * | kinetics | F | G |
    * | --- | --- | --- |
@@ -93,8 +99,9 @@ public:
    *
    * References: A. Turing 1952, G. Turk 1991; J. Schnakenberg 1979; P. Gray, S. Scott 1983, J.
    * Pearson 1993 (whose unit of time is 25 of ours); I. Prigogine, R. Lefever 1968; A. Gierer, H.
-   * Meinhardt 1972; R. FitzHugh 1961, J. Nagumo et al. 1962. The default parameters make a pattern
-   * with the default rates; only (24) and the Brusselator grow it within the default time.
+   * Meinhardt 1972; R. FitzHugh 1961, J. Nagumo et al. 1962. With the default rates, the default
+   * parameters of all kinetics give a pattern, but only those of (24) and the Brusselator do so
+   * within the default time.
    */
   vtkSetMacro(Kinetics, int);
   vtkGetMacro(Kinetics, int);
@@ -109,7 +116,7 @@ public:
 
   ///@{
   /**
-   * s, in 1/time; positive. The natural unit of time is 1/s. Default: 1.
+   * The reaction rate s, in 1/time. Positive. The natural unit of time is 1/s. Default: 1.
    */
   vtkSetMacro(ReactionRate, double);
   vtkGetMacro(ReactionRate, double);
@@ -117,8 +124,8 @@ public:
 
   ///@{
   /**
-   * Diffusion rates of u1 and u2 along e1, or in all directions. 0 or more. Default: 21 and 2.6, in
-   * natural units: a wavelength of about 11 h with (24).
+   * The diffusion rates of u1 and u2 along e1, or in all directions without a direction array. 0 or
+   * more. Default: 21 and 2.6, which in natural units give a wavelength of about 11 h with (24).
    */
   vtkSetMacro(DiffusionRate1, double);
   vtkGetMacro(DiffusionRate1, double);
@@ -128,8 +135,8 @@ public:
 
   ///@{
   /**
-   * Diffusion rates of u1 and u2 along e2, across the direction; 0 or more, or -1 (default): the
-   * same as along. Others than along need the direction array.
+   * The diffusion rates of u1 and u2 along e2, across the direction. 0 or more, or -1 (default):
+   * the same as along e1. Rates that differ from those along e1 need the direction array.
    */
   vtkSetMacro(DiffusionRateAcross1, double);
   vtkGetMacro(DiffusionRateAcross1, double);
@@ -139,10 +146,10 @@ public:
 
   ///@{
   /**
-   * The wavelength wanted, in coordinate units; 0 (default): off. All four diffusion rates are
-   * multiplied by the one factor with which the fastest-growing wavelength along e1 is this (with
-   * rates per cell: that of their means over the surface). Where no wave grows fastest the rates
-   * stay, with a warning.
+   * The requested wavelength, in coordinate units; 0 (default): off. All four diffusion rates are
+   * multiplied by one factor so that the fastest-growing wavelength along e1 is FeatureSize (with
+   * rates per cell: the wavelength for their means over the surface). If no wave grows fastest, the
+   * rates do not change and a warning is given.
    */
   vtkSetMacro(FeatureSize, double);
   vtkGetMacro(FeatureSize, double);
@@ -150,8 +157,8 @@ public:
 
   ///@{
   /**
-   * Half width of the uniform noise around the steady state, relative to it (FitzHughNagumo, whose
-   * values have either sign: absolute). 0 or more. Default: 0.1.
+   * The half width of the uniform noise around the steady state, relative to it. It is absolute for
+   * FitzHughNagumo, whose values have either sign. 0 or more. Default: 0.1.
    */
   vtkSetMacro(InitialNoise, double);
   vtkGetMacro(InitialNoise, double);
@@ -159,8 +166,8 @@ public:
 
   ///@{
   /**
-   * Keep concentrations at 0 and above, see above. FitzHughNagumo's values are no concentrations
-   * and are left alone. Default: on.
+   * On (default): concentrations are kept at 0 and above, see the class comment. The values of
+   * FitzHughNagumo are not concentrations and are not constrained.
    */
   vtkSetMacro(ClampToNonNegative, bool);
   vtkGetMacro(ClampToNonNegative, bool);
@@ -169,8 +176,8 @@ public:
 
   ///@{
   /**
-   * On: the time step is 1/8 of the time constant of the kinetics' fastest mode, whatever TimeStep
-   * is: 1/16 for (24). Default: off.
+   * On: the time step is 1/8 of the time constant of the kinetics' fastest mode (1/16 for (24)),
+   * regardless of TimeStep. Default: off.
    */
   vtkSetMacro(AutomaticTimeStep, bool);
   vtkGetMacro(AutomaticTimeStep, bool);
@@ -179,9 +186,10 @@ public:
 
   ///@{
   /**
-   * The run ends, before NumberOfTimeSteps, when the pattern stands: when the relative change per
-   * unit of time (root mean square, relative to the pattern's own) is at most this; about 0.05
-   * when it looks finished. Later times show the last state. 0 (default): all steps are run.
+   * The run ends before NumberOfTimeSteps when the pattern is stationary, that is, when the
+   * relative change per unit of time (root mean square, relative to that of the pattern) is at most
+   * StopTolerance. A pattern that looks finished has about 0.05. Later times show the last state. 0
+   * (default): all steps are computed.
    */
   vtkSetMacro(StopTolerance, double);
   vtkGetMacro(StopTolerance, double);
@@ -189,7 +197,8 @@ public:
 
   ///@{
   /**
-   * Parameters of Turing: gamma and mu, above 0. A steady state needs gamma > mu. Default: 16, 12.
+   * The parameters of Turing: gamma and mu, above 0. A steady state needs gamma > mu. Default: 16,
+   * 12.
    */
   vtkSetMacro(GrowthRate, double);
   vtkGetMacro(GrowthRate, double);
@@ -199,7 +208,7 @@ public:
 
   ///@{
   /**
-   * Parameters of Schnakenberg: a and b, above 0. Default: 0.01, 1.
+   * The parameters of Schnakenberg: a and b, above 0. Default: 0.01, 1.
    */
   vtkSetMacro(ActivatorSupply, double);
   vtkGetMacro(ActivatorSupply, double);
@@ -209,7 +218,7 @@ public:
 
   ///@{
   /**
-   * Parameters of GrayScott: f and k, above 0. Default: 0.05, 0.06.
+   * The parameters of GrayScott: f and k, above 0. Default: 0.05, 0.06.
    */
   vtkSetMacro(FeedRate, double);
   vtkGetMacro(FeedRate, double);
@@ -219,7 +228,7 @@ public:
 
   ///@{
   /**
-   * Parameters of Brusselator: A and B, above 0. Default: 2, 4.
+   * The parameters of Brusselator: A and B, above 0. Default: 2, 4.
    */
   vtkSetMacro(ReactantA, double);
   vtkGetMacro(ReactantA, double);
@@ -229,7 +238,7 @@ public:
 
   ///@{
   /**
-   * Parameters of GiererMeinhardt: nu, above 0, and kappa, 0 or more. Default: 1.05, 0.
+   * The parameters of GiererMeinhardt: nu, above 0, and kappa, 0 or more. Default: 1.05, 0.
    */
   vtkSetMacro(InhibitorDecayRate, double);
   vtkGetMacro(InhibitorDecayRate, double);
@@ -239,7 +248,7 @@ public:
 
   ///@{
   /**
-   * Parameters of FitzHughNagumo: epsilon and beta, above 0, and alpha. Default: 1.2, 0.9, 0.
+   * The parameters of FitzHughNagumo: epsilon and beta, above 0, and alpha. Default: 1.2, 0.9, 0.
    */
   vtkSetMacro(RecoveryRate, double);
   vtkGetMacro(RecoveryRate, double);
@@ -268,8 +277,9 @@ public:
 
   ///@{
   /**
-   * On: add the point array TextureColor, RGB, a mixture of LowColor and HighColor (components in
-   * [0, 1]) by Texture, and make it active. Default: off; dark brown, sand.
+   * On: the output has the RGB point array TextureColor, a mixture of LowColor and HighColor
+   * (components in [0, 1]) by Texture, as its active scalars. Default: off; the colours are dark
+   * brown and sand.
    */
   vtkSetMacro(ColorOutput, bool);
   vtkGetMacro(ColorOutput, bool);
@@ -282,15 +292,18 @@ public:
 
   ///@{
   /**
-   * Of the last update (of the first block of composite data): the fastest-growing wavelength along
-   * e1 in coordinate units (0 where there is none), its growth rate in 1/(unit of time), the factor
-   * that FeatureSize put on the diffusion rates, and the time step taken.
+   * Values of the last update: the fastest-growing wavelength along e1 in coordinate units (0 if
+   * there is none), its growth rate in 1/(unit of time), and the factor by which FeatureSize
+   * multiplied the diffusion rates. For composite data they are those of the first block.
    */
   vtkGetMacro(Wavelength, double);
   vtkGetMacro(WavelengthGrowthRate, double);
   vtkGetMacro(DiffusionRateFactor, double);
   ///@}
 
+  /**
+   * In addition to the superclass: Kinetics Turing.
+   */
   void UsePaperScheme() override;
 
 protected:

@@ -10,8 +10,8 @@
 namespace SurfaceDiffusion
 {
 
-/// The value as a T: rounded to the nearest and clamped where T is an integer type. NaN stays NaN;
-/// throws where T cannot hold the value.
+/// The value as a T, rounded to the nearest and clamped if T is an integer type. NaN stays NaN.
+/// Throws if T cannot hold the value.
 template <typename T>
 T ConvertValue(double value)
 {

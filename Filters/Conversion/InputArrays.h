@@ -12,7 +12,7 @@ class vtkPolyData;
 namespace SurfaceDiffusion
 {
 
-/// Finds the arrays that SetInputArrayToProcess() chose on one block, and says what is wrong.
+/// Finds the arrays that SetInputArrayToProcess() chose on one block, and lists their problems.
 class InputArrays
 {
 public:
@@ -20,11 +20,11 @@ public:
 
   InputArrays(vtkAlgorithm* filter, vtkPolyData* block, std::vector<std::string>& problems);
 
-  /// The array at `index`, called `property` in messages; null where it is not set, and, with a
-  /// problem told, where it is absent or unfit. onCells says where it was found.
+  /// The array at `index`, called `property` in messages. Null if it is not set, and null with a
+  /// problem reported if it is absent or not allowed. onCells: whether it is cell data.
   vtkDataArray* Find(int index, const char* property, int components, bool& onCells) const;
 
-  /// The same where only point data are allowed.
+  /// The same if only point data are allowed.
   vtkDataArray* FindOnPoints(int index, const char* property, int components) const;
 
 private:

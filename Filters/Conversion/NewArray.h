@@ -12,8 +12,8 @@
 namespace SurfaceDiffusion
 {
 
-/// An array with room for `tuples` tuples. Throws std::bad_alloc where memory is short;
-/// SetNumberOfTuples() ends the program then, unless VTK was built with NDEBUG.
+/// A new array with `tuples` tuples. Throws std::bad_alloc if there is not enough memory, whereas
+/// SetNumberOfTuples() ends the program unless VTK was built with NDEBUG.
 template <typename Array>
 vtkSmartPointer<Array> NewArray(const std::string& name, int components, vtkIdType tuples)
 {

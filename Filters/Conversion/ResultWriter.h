@@ -32,8 +32,8 @@ vtkSmartPointer<vtkDataArray> WriteScalars(const Surface& surface, const std::st
 /// Points in single precision if those of `like` are, in double precision otherwise.
 vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like);
 
-/// An array for the cells of `input` of unit vectors: for cells with several triangles the main
-/// axis of their area-weighted sum of d d^T. Zero if there is no direction.
+/// An array of unit vectors for the cells of `input`. For a cell with several triangles it is the
+/// main axis of the area-weighted sum of d d^T over their directions d. Zero if there is none.
 vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
   const std::vector<vtkIdType>& cells, vtkPolyData* input, const TangentVectors& directions,
   const std::string& name, const ParallelFor& parallel);

@@ -18,7 +18,7 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
   SurfaceDiffusion::Run Run{ SurfaceDiffusion::SMPParallelFor::Instance() };
   /// Per block of the run: the cell of each triangle of its input.
   std::vector<std::vector<vtkIdType>> Cells;
-  /// How the surface is spread over processes, if each works on its piece.
+  /// The decomposition of the surface over processes, if each works on its piece.
   std::unique_ptr<SurfaceDiffusion::PieceDecomposition> Decomposition;
 
   /// Normals computed for blocks without any, by the surface that they belong to.
@@ -31,7 +31,7 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
   std::vector<ComputedNormals> Normals;
 
   // Of one update:
-  int Step = 0; ///< the step that is asked for
+  int Step = 0; ///< the requested step
   SurfaceDiffusion::History History;
   bool Succeeded = false;
 };

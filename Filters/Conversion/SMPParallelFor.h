@@ -18,9 +18,8 @@
 namespace SurfaceDiffusion
 {
 
-/// While it lives, the loops of its thread ask every 50 ms whether to go on, and throw Aborted,
-/// once, where not: no stage of the core that consists of loops lets an abort wait, whenever it
-/// reports.
+/// During its lifetime, the loops of its thread check for an abort every 50 ms and throw Aborted
+/// once. An abort is thus obeyed within loops, too, however rarely these report their progress.
 class LoopWatch
 {
 public:
@@ -34,7 +33,7 @@ public:
   LoopWatch(const LoopWatch&) = delete;
   LoopWatch& operator=(const LoopWatch&) = delete;
 
-  /// Ask no more.
+  /// End the checks.
   void End() { this->Ended = true; }
 
   /// The watch of this thread; null for none.
@@ -50,7 +49,7 @@ public:
     this->Last = now;
     if (!this->GoOn())
     {
-      this->End(); // what tidies up may run loops
+      this->End(); // the cleanup may run loops
       throw Aborted();
     }
   }
@@ -70,7 +69,7 @@ private:
 class SMPParallelFor : public ParallelFor
 {
 public:
-  /// The std::thread backend starts its threads anew for every loop: shorter ones are faster alone.
+  /// The std::thread back end starts new threads for every loop: shorter loops are faster on one.
   static constexpr Index Few = 24;
 
   void Run(Index count, LoopBody body) const override
@@ -105,7 +104,7 @@ public:
     }
   }
 
-  /// The core keeps references: one object for all.
+  /// The object that all share, because the core keeps references to it.
   static const SMPParallelFor& Instance()
   {
     static const SMPParallelFor instance;
@@ -113,10 +112,10 @@ public:
   }
 
 private:
-  /// grain: of vtkSMPTools::For.
+  /// grain: as for vtkSMPTools::For.
   static void RunOnThreads(Index count, vtkIdType grain, LoopBody body, LoopWatch* watch)
   {
-    // An exception that left a thread of VTK's would end the program (want of memory).
+    // An exception (not enough memory) that leaves a thread of VTK would end the program.
     std::exception_ptr failure;
     std::mutex ofFailure;
     std::atomic<bool> failed{ false };
@@ -124,7 +123,7 @@ private:
     {
       try
       {
-        constexpr vtkIdType piece = 16; // blocks between two questions
+        constexpr vtkIdType piece = 16; // blocks between two checks
         for (vtkIdType first = begin; first < end && !failed; first += piece)
         {
           const vtkIdType last = std::min(end, first + piece);

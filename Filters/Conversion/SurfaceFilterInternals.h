@@ -18,6 +18,6 @@ struct vtkSurfaceFilter::Internals
   /// During an update: the processes, if each works on its piece.
   std::unique_ptr<SurfaceDiffusion::SharedProcessGroup> Group;
   SurfaceDiffusion::LoopWatch* Watch = nullptr;
-  /// Whether this process is to stop. Processes that work together stop together.
+  /// Whether an abort was requested. Processes that work together stop together.
   const std::shared_ptr<bool> AbortRequested = std::make_shared<bool>(false);
 };

@@ -45,7 +45,7 @@ Points ReadPoints(vtkPolyData* input)
 /// vtkTriangleFilter cuts most polygons alike: quads along the shorter diagonal that lies inside,
 /// others by the same ear cutting of vtkPolygon, and an array of cell ids would give the cells. But
 /// it silently drops polygons that ear cutting refuses, which leaves holes (VTK 9.2): all that
-/// cross themselves, valid ones of size 1e-150 or 1e150, and half of a quad that has a point twice.
+/// intersect themselves, valid ones of size 1e-150 or 1e150, and half of a quad with a point twice.
 /// It also takes 60 times as long for quads and 7 times as long for triangles (7.5 s against 0.12 s
 /// for a million quads).
 ///
@@ -53,7 +53,7 @@ Points ReadPoints(vtkPolyData* input)
 /// Herholz, M. Kazhdan, M. Botsch, Computer Graphics Forum 39, 2020). Measured with theirs on
 /// spheres of 384 to 6144 quads, even and jittered, the error of a Poisson problem is 0.92 to 1.05
 /// times that of triangles at 1.3 times the entries, and positive weights off the diagonal are as
-/// large: nothing is gained that a second discretisation of every model would be worth.
+/// large. The gain does not justify a second discretisation of every model.
 class Triangulator
 {
 public:
@@ -141,7 +141,7 @@ private:
     }
   }
 
-  /// Cut along the shorter diagonal that lies inside, whatever corner the numbering starts at.
+  /// Cut along the shorter diagonal that lies inside, regardless of the corner that comes first.
   void AddQuad(vtkIdType cell, const vtkIdType* ids)
   {
     using Row3 = Eigen::RowVector3d;
@@ -186,7 +186,7 @@ private:
       }
       return;
     }
-    for (vtkIdType i = 1; i + 1 < count; ++i) // crossing or flat: a fan covers it
+    for (vtkIdType i = 1; i + 1 < count; ++i) // it intersects itself or is flat: use a fan
     {
       this->Add(cell, ids[0], ids[i], ids[i + 1]);
     }

@@ -24,8 +24,8 @@ void AddArray(Fingerprint& fingerprint, vtkDataArray* array);
 /// The hash of everything that ReadSurface() reads.
 Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded);
 
-/// The triangles of the polygons and strips of `input`. Ghost and hidden cells are left out.
-/// excluded: per point, nonzero for points whose triangles do not take part; may be null. cells:
+/// The triangles of the polygons and strips of `input`. Ghost and hidden cells are ignored.
+/// excluded: per point, nonzero for points whose triangles are ignored; may be null. cells:
 /// the input's cell of each triangle.
 ///
 /// Throws std::runtime_error if there are more points or triangles than 32-bit numbers count, and

@@ -10,8 +10,8 @@
 namespace SurfaceDiffusion
 {
 
-/// A 64-bit hash of contents. Inputs with equal fingerprints count as unchanged, no matter where
-/// they are stored and who edited them when.
+/// A 64-bit hash of contents. Inputs with equal fingerprints count as unchanged, regardless of
+/// their addresses and modification times.
 class Fingerprint
 {
 public:

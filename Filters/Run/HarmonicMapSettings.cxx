@@ -15,8 +15,8 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The length over which MoveVertices adapts the shape, in mean edge lengths: noise is shorter, the
-/// shape longer. Measured on noisy spheres and on fandisk.
+/// The length scale of MoveVertices, in mean edge lengths: noise is shorter, features are longer.
+/// Measured on noisy spheres and on fandisk.
 constexpr double UpdateRange = 5.0;
 
 } // namespace

@@ -15,7 +15,7 @@
 namespace SurfaceDiffusion
 {
 
-/// What a model is made from: one surface with its fields, in units of the numerics.
+/// The inputs of a model: one surface with its fields, in units of the numerics.
 struct ModelInputs
 {
   const SurfaceDiffusion::Surface& Surface;
@@ -40,7 +40,7 @@ struct RunState
   ProgressMonitor Progress;
 };
 
-/// What a run on one surface gives beside its states.
+/// The results of a run on one surface other than its states.
 struct RunResult
 {
   bool HasMissing = false;

@@ -193,7 +193,7 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
   block.Path = std::move(path); // last: an aborted run must not look like a finished one
 }
 
-/// The data of the vertices. A vertex that several processes have takes its owner's.
+/// The data of the vertices. A vertex on an interface takes the data of its owner.
 PointData Run::MakeData(
   const Block& block, const Fields& fields, const ProcessGroup& processes) const
 {
@@ -231,7 +231,7 @@ PointData Run::MakeData(
   return data;
 }
 
-/// For the checkpoints of one surface. All processes keep the same steps.
+/// The memory for the checkpoints of one surface. All processes keep the same steps.
 std::size_t Run::CheckpointMemory(const Model& model, const ProcessGroup& processes) const
 {
   if (!this->Settings->GenerateTimeSteps)

@@ -17,7 +17,7 @@
 namespace SurfaceDiffusion
 {
 
-/// How one surface is spread over processes. All calls are collective.
+/// The domain decomposition of one surface over processes. All calls are collective.
 class Decomposition
 {
 public:
@@ -26,7 +26,7 @@ public:
   virtual double FindLengthUnit() = 0;
   /// Give the surface its reductions, and the store its solvers over processes.
   virtual void Attach(Surface& surface, SolverStore& solvers) = 0;
-  /// Edges of this process's piece that an earlier process has, too: number and total length.
+  /// The number and total length of the edges of this piece that an earlier process has, too.
   virtual double NumberOfSharedEdges() const = 0;
   virtual double SharedEdgeLength() const = 0;
   /// Points that are copies of another process's points.
@@ -44,7 +44,7 @@ struct BlockInput
 };
 
 /// A run of one model on several surfaces that share their units. A run is determined by its inputs
-/// and settings: Update() computes again what depends on what has changed, and nothing else.
+/// and settings: Update() recomputes only the parts that depend on a changed input or setting.
 class Run
 {
 public:
@@ -73,7 +73,7 @@ public:
     std::unique_ptr<Trajectory> Path;
     RunResult Result;
 
-    /// What the parts above were made from.
+    /// The inputs and settings that the parts above were made from.
     Fingerprint SurfaceVersion, FieldsVersion;
     SettingsSnapshot SurfaceSettings, ModelSettings;
     std::size_t NumberOfBlocks = 0;
@@ -97,7 +97,7 @@ public:
   /// The history up to a step.
   History MakeHistory(int step) const;
 
-  /// Warnings that were not taken before. They appear again if what they are about is made again.
+  /// Warnings that were not taken before. They appear again if their surface or model is rebuilt.
   std::vector<std::string> TakeWarnings(const ProcessGroup& processes);
 
 private:
@@ -122,7 +122,7 @@ private:
   double UnitOfTime = 1.0;
   long long StepsComputed = 0;
   bool WarnAgain = true;
-  std::vector<std::string> Reported; ///< warnings taken since something was made
+  std::vector<std::string> Reported; ///< warnings taken since the last rebuild
 };
 
 } // namespace SurfaceDiffusion

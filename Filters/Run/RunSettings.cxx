@@ -44,7 +44,7 @@ void RunSettings::Visit(SettingVisitor& visitor)
   visitor.Choice(
     { "MaskMode", "",
       "Inpaint: masked points are missing and are filled in. Exclude: triangles with a "
-      "masked vertex do not take part." },
+      "masked vertex are ignored." },
     this->MaskMode, { "Inpaint", "Exclude" });
   visitor.Integer({ "RandomSeed", "", "The seed of all random numbers." }, this->RandomSeed,
     SettingRange::AnyFinite());
@@ -110,7 +110,7 @@ int RunSettings::FindStep(double time) const
 {
   const ModelTraits traits = this->DescribeModel();
   const std::vector<double> times = this->PublishedTimes();
-  // A time that went through another program's text or sums may have lost its last bits.
+  // A time that another program has printed or summed may have lost its last bits.
   const double slack = 1e-9 * traits.TimeStep;
   const auto after = std::upper_bound(times.begin(), times.end(), time + slack);
   const std::int64_t index = std::max<std::ptrdiff_t>(after - times.begin() - 1, 0);

@@ -26,7 +26,7 @@ enum class UnitsMode
 enum class MaskMode
 {
   Inpaint, ///< masked points are missing and are filled in
-  Exclude ///< triangles with a masked vertex do not take part
+  Exclude ///< triangles with a masked vertex are ignored
 };
 
 enum class TimeIntegrator
@@ -36,7 +36,7 @@ enum class TimeIntegrator
   Implicit
 };
 
-/// Which input arrays there are, as far as settings have to agree with them.
+/// The properties of the input arrays that the settings have to agree with.
 struct FieldSummary
 {
   bool Data = false;
@@ -46,7 +46,7 @@ struct FieldSummary
   bool Rates = false;
 };
 
-/// What a run must know of its model before it makes one.
+/// The properties of a model that a run needs before it makes the model.
 struct ModelTraits
 {
   int NumberOfSteps = 0;
@@ -64,10 +64,9 @@ struct ModelTraits
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
 };
 
-/// The settings of every time-dependent model, in the user's terms, and the model itself: what it
-/// is, how it is made, and what it leaves behind. These four virtual functions (Visit,
-/// DescribeModel, Make, Finish) are all that the run asks of a model; CheckTogether() has a
-/// default.
+/// The settings of a time-dependent model, in the user's terms. A subclass describes its model with
+/// four virtual functions: Visit() lists the settings, DescribeModel() gives the traits, Make()
+/// makes the model and Finish() completes its results. CheckTogether() has a default.
 struct RunSettings : Settings
 {
   double TimeStep = 1.0;
@@ -88,13 +87,14 @@ struct RunSettings : Settings
 
   void Visit(SettingVisitor& visitor) override;
 
-  /// What the run must know; called with settings that have passed Check().
+  /// The traits of the model. The settings have passed Check().
   virtual ModelTraits DescribeModel() const = 0;
 
   /// The model in its initial state. Throws std::runtime_error and Aborted.
   virtual std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const = 0;
 
-  /// What depends on the current state and may take long or fail. The default adds nothing.
+  /// Add the results that depend on the current state and may take long or fail. The default adds
+  /// none.
   virtual void Finish(const RunState& state, RunResult& result) const;
 
   /// Problems of single settings and of settings that do not go together, all at once. `fields` is
@@ -114,7 +114,7 @@ protected:
   virtual void CheckTogether(const FieldSummary* fields, Problems& problems) const;
 };
 
-/// The settings of models of given data: fidelity, diffusivities, and what missing data start from.
+/// The settings of models of given data: fidelity, diffusivities, and the start on missing points.
 struct DataSettings : RunSettings
 {
   double FidelityWeight = 0.0;

@@ -8,7 +8,7 @@
 namespace SurfaceDiffusion
 {
 
-/// What has to be computed again when a setting changes.
+/// The part of a run that has to be recomputed if a setting changes.
 enum class SettingScope
 {
   Surface, ///< the mesh, and everything after it
@@ -16,7 +16,7 @@ enum class SettingScope
   Output ///< nothing: the setting is used when a state is written
 };
 
-/// The values a number may have, and how an error message says so.
+/// The allowed values of a number, and their wording in error messages.
 struct SettingRange
 {
   const char* Text = "any finite number";
@@ -29,7 +29,7 @@ struct SettingRange
   /// False for NaN, for infinite values, and outside the range.
   bool Contains(double value) const;
 
-  /// For a setting that is not used with the others as they are.
+  /// The range of a setting that has no effect with the present values of the others.
   static SettingRange Anything();
   static SettingRange AnyFinite();
   static SettingRange Positive();
@@ -83,8 +83,8 @@ public:
 };
 
 /// The values of all settings of one scope, in the order of Visit(). Two snapshots of one class are
-/// equal exactly if no such setting differs, so that no list of what a result depends on has to be
-/// kept beside the settings themselves.
+/// equal if and only if no such setting differs, so that no separate list of the dependencies of a
+/// result is necessary.
 class SettingsSnapshot
 {
 public:

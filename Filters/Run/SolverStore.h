@@ -13,7 +13,7 @@
 namespace SurfaceDiffusion
 {
 
-/// What a linear solver is for. Each purpose keeps its own solver from run to run.
+/// The purpose of a linear solver. Each purpose keeps its own solver from run to run.
 enum class SolverPurpose
 {
   Step, ///< the time steps

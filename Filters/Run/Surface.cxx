@@ -18,7 +18,7 @@ namespace
 
 constexpr Eigen::Index LargestCount = std::numeric_limits<Index>::max() / 6; // 6 slots per corner
 
-/// Surfaces with fewer points are made faster than a thread is started.
+/// Surfaces with fewer points are made in less time than a thread takes to start.
 constexpr Eigen::Index SmallSurface = 5000;
 
 /// The parts of a surface that take long to make. The background task owns all that it touches.
@@ -106,7 +106,7 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   }
 }
 
-/// Drop the triangles with an excluded corner, and let merged points stand for one another.
+/// Drop the triangles with an excluded corner, and replace merged points by their representatives.
 void Surface::SelectTriangles(const SurfaceOptions& options)
 {
   if (options.MergeCoincidentPoints)
@@ -181,7 +181,7 @@ void Surface::FindVertices()
   }
 }
 
-/// Points on boundary edges that lie at the place of another such point: an unmerged seam.
+/// The number of boundary points that coincide with another boundary point: an unmerged seam.
 Index Surface::CountCoincidentBoundaryPoints() const
 {
   std::vector<std::array<double, 3>> places;

@@ -17,7 +17,7 @@ struct SurfaceArrays
 {
   SurfaceDiffusion::Points Points;
   SurfaceDiffusion::Triangles Triangles;
-  std::vector<char> Excluded; ///< per point: triangles with a nonzero corner do not take part
+  std::vector<char> Excluded; ///< per point: triangles with a nonzero corner are ignored
 };
 
 /// Throws std::runtime_error if a coordinate is not finite.
@@ -31,11 +31,11 @@ struct SurfaceOptions
   double LengthUnit = 0.0; ///< of the meshes; 0: chosen by the extent of the surface
 };
 
-/// Counts of what a surface has that is left out or looks unintended.
+/// Counts of the parts of a surface that are ignored or look unintended.
 struct SurfaceDiagnostics
 {
   Index DegenerateTriangles = 0;
-  Index UnusedPoints = 0; ///< of no participating triangle; excluded points do not count
+  Index UnusedPoints = 0; ///< not in any participating triangle; excluded points do not count
   Index NonManifoldEdges = 0;
   Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
 };

@@ -36,7 +36,8 @@ std::vector<const char*> WordsOfEdgeFunctions()
   return words;
 }
 
-/// Those of TotalVariation for numbers that are no edge-stopping function, which Check() reports.
+/// The properties of an edge-stopping function. Numbers that are none, which Check() reports, get
+/// the properties of TotalVariation.
 EdgeFunctionProperties PropertiesOf(EdgeFunctionKind kind)
 {
   const int number = static_cast<int>(kind);
