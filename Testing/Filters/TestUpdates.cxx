@@ -312,7 +312,8 @@ TEST(Updates, ArraysThatAreEditedInPlaceAreReadAgain)
     const auto before = vtkSmartPointer<vtkDataArray>::Take(
       vtkDataArray::SafeDownCast(Result(filter)->NewInstance()));
     before->DeepCopy(Result(filter));
-    array->SetComponent(40, 0, array->GetComponent(40, 0) != 0.0 ? 0.0 : 1.0);
+    const int last = array->GetNumberOfComponents() - 1;
+    array->SetComponent(40, last, array->GetComponent(40, last) != 0.0 ? 0.0 : 1.0);
     sphere->vtkObject::Modified();
     filter->Update();
     const auto fresh = makeFilter(sphere);
