@@ -20,7 +20,8 @@ Values DiffuseAlong(const Surface& s, const Points& directions, double g1, doubl
 {
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
-  const TangentVectors frames = TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
+  const TangentVectors frames =
+    TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
   const CornerWeights c = AnisotropicWeights(mesh, CotanWeights(mesh), frames, g1, g2);
   LinearDiffusion heat(assembler, c, PointData::FromValues(start), HeatSettings(mesh, time / steps),
     MakeCholeskySolver());

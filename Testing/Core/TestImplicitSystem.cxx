@@ -9,27 +9,29 @@
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
-namespace {
+namespace
+{
 
 /// (M + 0.01 K) u = b for two columns on a sphere, with a few fixed vertices
 /// next to each other.
-struct Problem {
+struct Problem
+{
   std::shared_ptr<const Assembler> Assembly = MakeAssembler(Icosphere(2));
-  const TriangleMesh &Mesh = Assembly->Mesh();
+  const TriangleMesh& Mesh = Assembly->Mesh();
   CornerWeights Coefficients = CotanWeights(Mesh);
   Values Given = Noise(Mesh, 2, 1);
   Values B = Noise(Mesh, 2, 2);
   Flags Fixed = Flags::Constant(Mesh.NumberOfVertices(), false);
   SparseMatrix Matrix = Assembly->Pattern(); ///< without Dirichlet conditions
 
-  Problem() {
+  Problem()
+  {
     this->Fixed.head(7).setConstant(true);
-    this->Assembly->Fill(this->Matrix, this->Mesh.ControlAreas(), 0.01,
-                         this->Coefficients);
+    this->Assembly->Fill(this->Matrix, this->Mesh.ControlAreas(), 0.01, this->Coefficients);
   }
 
-  ImplicitSystem MakeSystem(std::shared_ptr<LinearSolver> solver,
-                            const Values &given) const {
+  ImplicitSystem MakeSystem(std::shared_ptr<LinearSolver> solver, const Values& given) const
+  {
     ImplicitSystem system(this->Assembly, std::move(solver), SerialFor());
     system.Assemble(this->Mesh.ControlAreas(), 0.01, this->Coefficients);
     system.Constrain(this->Fixed, given);
@@ -40,23 +42,28 @@ struct Problem {
 
 } // namespace
 
-TEST(ImplicitSystem, SolutionSatisfiesFreeRowsAndDirichletConditions) {
+TEST(ImplicitSystem, SolutionSatisfiesFreeRowsAndDirichletConditions)
+{
   const Problem problem;
-  for (const auto &solver : {std::shared_ptr(MakeCholeskySolver()),
-                             std::shared_ptr(MakeConjugateGradientSolver())}) {
+  for (const auto& solver :
+    { std::shared_ptr(MakeCholeskySolver()), std::shared_ptr(MakeConjugateGradientSolver()) })
+  {
     ImplicitSystem system = problem.MakeSystem(solver, problem.Given);
-    for (int again = 0; again < 2;
-         ++again) // the same matrix serves several right-hand sides
+    for (int again = 0; again < 2; ++again) // the same matrix serves several right-hand sides
     {
       Values b = (1.0 + again) * problem.B;
       Values u = Values::Zero(b.rows(), b.cols());
       StepReport report;
       system.Solve(b, u, report);
       const Values residual = problem.Matrix * u - (1.0 + again) * problem.B;
-      for (Index i = 0; i < problem.Mesh.NumberOfVertices(); ++i) {
-        if (problem.Fixed[i]) {
+      for (Index i = 0; i < problem.Mesh.NumberOfVertices(); ++i)
+      {
+        if (problem.Fixed[i])
+        {
           EXPECT_EQ(u.row(i), problem.Given.row(i));
-        } else {
+        }
+        else
+        {
           EXPECT_LT(residual.row(i).norm(), 1e-9);
         }
       }
@@ -64,22 +71,25 @@ TEST(ImplicitSystem, SolutionSatisfiesFreeRowsAndDirichletConditions) {
   }
 }
 
-TEST(ImplicitSystem, ProductIsTheRowWithoutDirichletConditions) {
+TEST(ImplicitSystem, ProductIsTheRowWithoutDirichletConditions)
+{
   const Problem problem;
   Values u = Noise(problem.Mesh, 1, 3);
   const ImplicitSystem system = problem.MakeSystem(MakeCholeskySolver(), u);
   const Values expected = problem.Matrix * u;
-  for (Index i = 7; i < problem.Mesh.NumberOfVertices(); ++i) {
+  for (Index i = 7; i < problem.Mesh.NumberOfVertices(); ++i)
+  {
     EXPECT_NEAR(system.Product(i, u), expected(i), 1e-14);
   }
 }
 
-TEST(ImplicitSystem, ReportsAddUp) {
+TEST(ImplicitSystem, ReportsAddUp)
+{
   const Problem problem;
-  ImplicitSystem system =
-      problem.MakeSystem(MakeConjugateGradientSolver(), problem.Given);
+  ImplicitSystem system = problem.MakeSystem(MakeConjugateGradientSolver(), problem.Given);
   StepReport once, twice;
-  for (StepReport *report : {&once, &twice, &twice}) {
+  for (StepReport* report : { &once, &twice, &twice })
+  {
     Values b = problem.B;
     Values u = Values::Zero(b.rows(), b.cols());
     system.Solve(b, u, *report);
@@ -89,10 +99,11 @@ TEST(ImplicitSystem, ReportsAddUp) {
   EXPECT_EQ(twice.Residual, once.Residual);
 }
 
-TEST(ImplicitSystem, ThrowsIfTheSolverDoesNotConverge) {
+TEST(ImplicitSystem, ThrowsIfTheSolverDoesNotConverge)
+{
   const Problem problem;
   std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
-  solver->SetLimits({1e-12, 1});
+  solver->SetLimits({ 1e-12, 1 });
   ImplicitSystem system = problem.MakeSystem(solver, problem.Given);
   Values b = problem.B;
   Values u = Values::Zero(b.rows(), b.cols());

@@ -11,50 +11,59 @@
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
-namespace {
+namespace
+{
 
 /// As if another process had just the same, and elsewhere joined the first two
 /// components.
-class Twin : public Reduction {
+class Twin : public Reduction
+{
 public:
-  explicit Twin(Index vertices) : Reduction(Reduction::Kind::Distributed) {
+  explicit Twin(Index vertices)
+    : Reduction(Reduction::Kind::Distributed)
+  {
     this->NumberOfComponents = 2;
-    this->SurfaceComponent = {0, 0, 1};
+    this->SurfaceComponent = { 0, 0, 1 };
     this->OwnedVertices.assign(vertices, true);
     this->OwnedVertices[0] = false; // the other counts it
   }
   using Reduction::Sum;
-  void Sum(double *numbers, Index count) const override {
-    for (Index i = 0; i < count; ++i) {
+  void Sum(double* numbers, Index count) const override
+  {
+    for (Index i = 0; i < count; ++i)
+    {
       numbers[i] *= 2.0;
     }
   }
-  void Max(double *, Index) const override {}
-  void UpdateFromOwners(Values &) const override {}
+  void Max(double*, Index) const override {}
+  void UpdateFromOwners(Values&) const override {}
   using Reduction::Accumulate;
-  void Accumulate(double *, Index) const override {}
-  void AccumulateInterfaceEdges(double *) const override {}
+  void Accumulate(double*, Index) const override {}
+  void AccumulateInterfaceEdges(double*) const override {}
 };
 
 /// As if all vertices were on the interface with a process that has the same
 /// values.
-class Equal : public Twin {
+class Equal : public Twin
+{
 public:
   using Twin::Accumulate;
   using Twin::Twin;
-  void Accumulate(double *rows, Index columns) const override {
-    for (Index i = 0;
-         i < static_cast<Index>(this->OwnedVertices.size()) * columns; ++i) {
+  void Accumulate(double* rows, Index columns) const override
+  {
+    for (Index i = 0; i < static_cast<Index>(this->OwnedVertices.size()) * columns; ++i)
+    {
       rows[i] *= 2.0;
     }
   }
 };
 
-std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces) {
-  const Surface spheres =
-      Joined(Joined(Icosphere(1), Icosphere(1)), Icosphere(1));
+std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces)
+{
+  const Surface spheres = Joined(Joined(Icosphere(1), Icosphere(1)), Icosphere(1));
   auto mesh = std::make_shared<TriangleMesh>(spheres.Vertices, spheres.Faces);
-  if (inPieces) {
+  if (inPieces)
+  {
     mesh->SetReduction(std::make_shared<Twin>(mesh->NumberOfVertices()));
   }
   return mesh;
@@ -62,40 +71,42 @@ std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces) {
 
 } // namespace
 
-TEST(Reduction, AccumulatedVectorsBecomeConsistentBeforeTheyAreUsed) {
+TEST(Reduction, AccumulatedVectorsBecomeConsistentBeforeTheyAreUsed)
+{
   const Equal equal(3000);
-  for (const Reduction *reduction :
-       {&Reduction::Serial(), static_cast<const Reduction *>(&equal)}) {
+  for (const Reduction* reduction : { &Reduction::Serial(), static_cast<const Reduction*>(&equal) })
+  {
     Values here(3000, 2);
     double sum = 0.0;
     reduction->AccumulateEach(
-        SerialFor(), here, [&](Index i) { here.row(i) << i, 1.0; },
-        [&](Index i) { sum += here(i, 0) + here(i, 1); });
+      SerialFor(), here, [&](Index i) { here.row(i) << i, 1.0; },
+      [&](Index i) { sum += here(i, 0) + here(i, 1); });
     const double factor = reduction->IsSerial() ? 1.0 : 2.0;
     EXPECT_EQ(sum, factor * (3000 * 2999 / 2 + 3000));
     Vector storage;
     const Vector ones = Vector::Ones(3000);
     EXPECT_EQ(reduction->Accumulated(ones, storage), factor * ones);
-    EXPECT_EQ(reduction->OwnedPart(ones, storage).sum(),
-              reduction->IsSerial() ? 3000.0 : 2999.0);
+    EXPECT_EQ(reduction->OwnedPart(ones, storage).sum(), reduction->IsSerial() ? 3000.0 : 2999.0);
   }
 }
 
-TEST(Reduction, TotalsAreThoseOfAllProcesses) {
+TEST(Reduction, TotalsAreThoseOfAllProcesses)
+{
   const auto mesh = ThreeSpheres(true);
   const Values u = Noise(*mesh, 2);
-  EXPECT_NEAR(Total(*mesh, u, 1), 2.0 * mesh->ControlAreas().dot(u.col(1)),
-              1e-13);
+  EXPECT_NEAR(Total(*mesh, u, 1), 2.0 * mesh->ControlAreas().dot(u.col(1)), 1e-13);
 }
 
-TEST(Reduction, VerticesOnInterfacesCountOnce) {
+TEST(Reduction, VerticesOnInterfacesCountOnce)
+{
   const Twin twin(5);
   const auto one = [](Index) { return 1.0; };
   EXPECT_EQ(twin.SumOverVertices(SerialFor(), 5, one), 8.0);
   EXPECT_EQ(Reduction::Serial().SumOverVertices(SerialFor(), 5, one), 5.0);
 }
 
-TEST(Reduction, PercentilesAreThoseOfAllProcesses) {
+TEST(Reduction, PercentilesAreThoseOfAllProcesses)
+{
   Vector here = Vector::Random(201);
   here[0] = 5.0; // not owned
   Vector all(400);
@@ -104,8 +115,10 @@ TEST(Reduction, PercentilesAreThoseOfAllProcesses) {
   EXPECT_EQ(ContrastLimits(here, twin), ContrastLimits(all));
 }
 
-TEST(Reduction, ComponentsThatMeetElsewhereAreFilledWithOneMean) {
-  for (const bool inPieces : {false, true}) {
+TEST(Reduction, ComponentsThatMeetElsewhereAreFilledWithOneMean)
+{
+  for (const bool inPieces : { false, true })
+  {
     const auto mesh = ThreeSpheres(inPieces);
     Values f = Values::Constant(mesh->NumberOfVertices(), 1, 1.0);
     const Index second = mesh->ComponentsBegin()[1];
@@ -118,19 +131,19 @@ TEST(Reduction, ComponentsThatMeetElsewhereAreFilledWithOneMean) {
   }
 }
 
-TEST(Reduction, ComponentsThatMeetElsewhereConserveTheirSumTogether) {
-  for (const bool inPieces : {false, true}) {
+TEST(Reduction, ComponentsThatMeetElsewhereConserveTheirSumTogether)
+{
+  for (const bool inPieces : { false, true })
+  {
     const auto mesh = ThreeSpheres(inPieces);
     const PointData data = PointData::FromValues(Noise(*mesh, 1));
     TotalCorrection conserved(*mesh, data, false);
     Values u = data.Start;
     const Index second = mesh->ComponentsBegin()[1];
-    u.topRows(second).array() +=
-        1.0; // a third of the surface, half of the first two components
+    u.topRows(second).array() += 1.0; // a third of the surface, half of the first two components
     conserved.Restore(*mesh, u, SerialFor());
     EXPECT_NEAR(u(0, 0) - data.Start(0, 0), inPieces ? 0.5 : 0.0, 1e-12);
-    EXPECT_NEAR(u(second, 0) - data.Start(second, 0), inPieces ? -0.5 : 0.0,
-                1e-12);
+    EXPECT_NEAR(u(second, 0) - data.Start(second, 0), inPieces ? -0.5 : 0.0, 1e-12);
     const Index last = mesh->NumberOfVertices() - 1;
     EXPECT_NEAR(u(last, 0), data.Start(last, 0), 1e-12);
   }
