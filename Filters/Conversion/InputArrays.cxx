@@ -49,7 +49,7 @@ vtkDataArray* InputArrays::FindAs(
       return nullptr;
     }
   }
-  const auto tell = [&](const std::string& what)
+  const auto report = [&](const std::string& what)
   {
     std::ostringstream text;
     text << property;
@@ -69,7 +69,7 @@ vtkDataArray* InputArrays::FindAs(
   if (!onCells && association != vtkDataObject::FIELD_ASSOCIATION_POINTS &&
     association != vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS)
   {
-    return tell("has association " + std::to_string(association) + "; allowed: points (0)" +
+    return report("has association " + std::to_string(association) + "; allowed: points (0)" +
       (allowCells ? " or cells (1)" : ""));
   }
   vtkDataSetAttributes* attributes = this->Block->GetPointData();
@@ -84,7 +84,7 @@ vtkDataArray* InputArrays::FindAs(
     found = attributes->GetAbstractArray(name);
     if (!found)
     {
-      return tell(std::string("is not among the ") + (onCells ? "cell" : "point") +
+      return report(std::string("is not among the ") + (onCells ? "cell" : "point") +
         " arrays of the input; choose one of them");
     }
   }
@@ -95,7 +95,7 @@ vtkDataArray* InputArrays::FindAs(
     found = attributes->GetAbstractAttribute(type);
     if (!found)
     {
-      return tell(std::string("is not set and the input has no active point ") +
+      return report(std::string("is not set and the input has no active point ") +
         vtkDataSetAttributes::GetAttributeTypeAsString(type) + "; choose a point array");
     }
   }
@@ -103,19 +103,19 @@ vtkDataArray* InputArrays::FindAs(
   vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!array)
   {
-    return tell(std::string("is a ") + found->GetClassName() + "; allowed: numeric arrays");
+    return report(std::string("is a ") + found->GetClassName() + "; allowed: numeric arrays");
   }
   const vtkIdType tuples =
     onCells ? this->Block->GetNumberOfCells() : this->Block->GetNumberOfPoints();
   if (array->GetNumberOfTuples() != tuples)
   {
-    return tell("has " + std::to_string(array->GetNumberOfTuples()) +
+    return report("has " + std::to_string(array->GetNumberOfTuples()) +
       " tuples; allowed: " + std::to_string(tuples) + ", one per " + (onCells ? "cell" : "point"));
   }
   const int size = array->GetNumberOfComponents();
   if (components == AnyNumberOfComponents ? size < 1 : size != components)
   {
-    return tell("has " + std::to_string(size) + " components; allowed: " +
+    return report("has " + std::to_string(size) + " components; allowed: " +
       (components == AnyNumberOfComponents ? std::string("1 or more")
                                            : std::to_string(components)));
   }

@@ -135,6 +135,7 @@ public:
     this->Iterations += report.Iterations;
     return report;
   }
+  void Precondition(const Values& r, Values& z) override { this->Inner->Precondition(r, z); }
 
   double Seconds = 0.0;
   int Iterations = 0;
