@@ -383,6 +383,7 @@ std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
       std::make_unique<PieceDecomposition>(this->GetController(), this->Private->AbortRequested);
   }
   state.Cells.resize(surfaces.size());
+  state.Versions.resize(surfaces.size());
   std::vector<BlockInput> inputs(surfaces.size());
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
@@ -391,8 +392,15 @@ std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
     vtkDataArray* const excluded = this->MaskMode == MASK_MODE_EXCLUDE ? arrays.Mask : nullptr;
     std::vector<vtkIdType>& cells = state.Cells[b];
     BlockInput& input = inputs[b];
-    input.SurfaceVersion = FingerprintSurface(data, excluded);
-    input.FieldsVersion = FingerprintFields(arrays);
+    RunState::Version& version = state.Versions[b];
+    const InputStamp stamp(data, arrays.List());
+    if (!(version.Stamp == stamp) || version.Excludes != (excluded != nullptr))
+    {
+      version = { stamp, excluded != nullptr, FingerprintSurface(data, excluded),
+        FingerprintFields(arrays) };
+    }
+    input.SurfaceVersion = version.Surface;
+    input.FieldsVersion = version.Fields;
     input.ReadSurface = [data, excluded, &cells] { return ReadSurface(data, excluded, cells); };
     input.ReadFields = [data, &arrays, &cells]
     {

@@ -85,6 +85,11 @@ FieldSummary InputFields::Summarize() const
   return summary;
 }
 
+std::vector<vtkDataArray*> InputFields::List() const
+{
+  return { this->Data, this->Mask, this->Direction, this->Fixed, this->Rates, this->GlobalIds };
+}
+
 int NumberOfDataComponents(vtkDataArray* array)
 {
   const int components = array->GetNumberOfComponents();
@@ -115,8 +120,7 @@ Values ReadValues(vtkDataArray* array)
 Fingerprint FingerprintFields(const InputFields& arrays)
 {
   Fingerprint fingerprint;
-  for (vtkDataArray* array : { arrays.Data.Get(), arrays.Mask, arrays.Direction, arrays.Fixed,
-         arrays.Rates, arrays.GlobalIds })
+  for (vtkDataArray* array : arrays.List())
   {
     AddArray(fingerprint, array);
   }

@@ -31,6 +31,8 @@ struct InputFields
   vtkDataArray* GlobalIds = nullptr; ///< of the points
 
   FieldSummary Summarize() const;
+  /// All arrays, null for those that are not set.
+  std::vector<vtkDataArray*> List() const;
 };
 
 /// The number of components that are data: the last of 2 or 4 unsigned chars is alpha.

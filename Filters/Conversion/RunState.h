@@ -6,6 +6,7 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/SMPParallelFor.h"
+#include "Conversion/SurfaceReader.h"
 #include "Distributed/PieceDecomposition.h"
 #include "Run/Run.h"
 
@@ -20,6 +21,16 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
   std::vector<std::vector<vtkIdType>> Cells;
   /// The decomposition of the surface over processes, if each works on its piece.
   std::unique_ptr<SurfaceDiffusion::PieceDecomposition> Decomposition;
+
+  /// Per block: the hashes of the last update, and what they were computed from. Requests of other
+  /// times need not hash the input again.
+  struct Version
+  {
+    SurfaceDiffusion::InputStamp Stamp;
+    bool Excludes = false;
+    SurfaceDiffusion::Fingerprint Surface, Fields;
+  };
+  std::vector<Version> Versions;
 
   /// Normals computed for blocks without any, by the surface that they belong to.
   struct ComputedNormals

@@ -14,6 +14,7 @@
 #include "vtkPolygon.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <sstream>
@@ -248,6 +249,25 @@ void AddArray(Fingerprint& fingerprint, vtkDataArray* array)
     {
       fingerprint.AddNumber(array->GetComponent(i, k));
     }
+  }
+}
+
+InputStamp::InputStamp(vtkPolyData* input, std::vector<vtkDataArray*> arrays)
+  : Input(input)
+  , Time(input->GetMTime())
+  , Arrays(std::move(arrays))
+{
+  for (vtkCellArray* cells : { input->GetPolys(), input->GetStrips() })
+  {
+    if (cells)
+    {
+      this->Time = std::max({ this->Time, cells->GetMTime(), cells->GetOffsetsArray()->GetMTime(),
+        cells->GetConnectivityArray()->GetMTime() });
+    }
+  }
+  for (vtkDataArray* array : this->Arrays)
+  {
+    this->Time = std::max(this->Time, array ? array->GetMTime() : 0);
   }
 }
 
