@@ -37,13 +37,7 @@ void DirectionFieldSettings::Visit(SettingVisitor& visitor)
     this->HintWeight, SettingRange::Positive());
   visitor.Number({ "Angle", "degrees", "The rotation of the field in the surface at the end." },
     this->Angle, SettingRange::AnyFinite());
-  visitor.Switch(
-    { "MergeCoincidentPoints", "",
-      "Whether points within MergeTolerance are one point of the surface.", SettingScope::Surface },
-    this->MergeCoincidentPoints);
-  visitor.Number({ "MergeTolerance", "coordinates", "The largest distance of merged points.",
-                   SettingScope::Surface },
-    this->MergeTolerance, SettingRange::NonNegative());
+  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
 void DirectionFieldSettings::Check(const FieldSummary* fields, Problems& problems)

@@ -25,12 +25,7 @@ void HeatSettings::Visit(SettingVisitor& visitor)
                    "The full width at half maximum of the Gaussian that the data are convolved "
                    "with; 0: off. The run takes the time FWHM^2 / (16 ln 2)." },
     this->FWHM, SettingRange::NonNegative());
-  visitor.Switch({ "AutomaticFidelity", "",
-                   "Whether lambda is chosen by the discrepancy principle (Morozov 1966)." },
-    this->AutomaticFidelity);
-  visitor.Number({ "NoiseLevel", "values",
-                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated." },
-    this->NoiseLevel, SettingRange::NonNegative());
+  VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
 }
 
 void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const

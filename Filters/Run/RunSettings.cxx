@@ -49,7 +49,7 @@ void RunSettings::Visit(SettingVisitor& visitor)
   visitor.Integer({ "RandomSeed", "", "The seed of all random numbers." }, this->RandomSeed,
     SettingRange::AnyFinite());
   visitor.Choice({ "TimeIntegrator", "", "The time integrator. FirstOrder is the paper's." },
-    this->TimeIntegrator, WordsOfIntegrators(), this->AllowedIntegrators());
+    this->TimeIntegrator, { "FirstOrder", "SecondOrder", "Implicit" }, this->AllowedIntegrators());
   visitor.Choice({ "Solver", "", "How linear systems are solved." }, this->Solver,
     { "Automatic", "Direct", "ConjugateGradient", "Multigrid" });
   visitor.Number({ "Tolerance", "",
@@ -64,13 +64,7 @@ void RunSettings::Visit(SettingVisitor& visitor)
                    "surface.",
                    SettingScope::Surface },
     this->IntrinsicDelaunay);
-  visitor.Switch(
-    { "MergeCoincidentPoints", "",
-      "Whether points within MergeTolerance are one point of the surface.", SettingScope::Surface },
-    this->MergeCoincidentPoints);
-  visitor.Number({ "MergeTolerance", "coordinates", "The largest distance of merged points.",
-                   SettingScope::Surface },
-    this->MergeTolerance, SettingRange::NonNegative());
+  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
   visitor.Integer({ "CheckpointMemoryLimit", "MiB",
                     "The memory for states that are kept so that going back in time is cheap." },
     this->CheckpointMemoryLimit, SettingRange::AtLeast(0.0, "0 or more MiB"));
@@ -118,10 +112,25 @@ int RunSettings::FindStep(double time) const
     std::min<std::int64_t>(index * this->OutputInterval, traits.NumberOfSteps));
 }
 
-const std::vector<const char*>& WordsOfIntegrators()
+void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance)
 {
-  static const std::vector<const char*> words = { "FirstOrder", "SecondOrder", "Implicit" };
-  return words;
+  visitor.Switch(
+    { "MergeCoincidentPoints", "",
+      "Whether points within MergeTolerance are one point of the surface.", SettingScope::Surface },
+    merge);
+  visitor.Number({ "MergeTolerance", "coordinates", "The largest distance of merged points.",
+                   SettingScope::Surface },
+    tolerance, SettingRange::NonNegative());
+}
+
+void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel)
+{
+  visitor.Switch({ "AutomaticFidelity", "",
+                   "Whether lambda is chosen by the discrepancy principle (Morozov 1966)." },
+    automatic);
+  visitor.Number({ "NoiseLevel", "values",
+                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated." },
+    noiseLevel, SettingRange::NonNegative());
 }
 
 void DataSettings::Visit(SettingVisitor& visitor)

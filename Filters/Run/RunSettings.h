@@ -132,7 +132,10 @@ protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 };
 
-/// For the mirrored enumerations of other layers.
-const std::vector<const char*>& WordsOfIntegrators();
+/// The settings MergeCoincidentPoints and MergeTolerance.
+void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance);
+
+/// The settings AutomaticFidelity and NoiseLevel.
+void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel);
 
 } // namespace SurfaceDiffusion

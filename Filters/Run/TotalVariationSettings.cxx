@@ -190,12 +190,7 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
     this->ChannelCoupling, { "PerChannel", "Joint" });
   visitor.Choice({ "FidelityNorm", "", "L2 for Gaussian noise, L1 for impulse noise." },
     this->FidelityNorm, { "L2", "L1" });
-  visitor.Switch({ "AutomaticFidelity", "",
-                   "Whether lambda is chosen by the discrepancy principle (Morozov 1966)." },
-    this->AutomaticFidelity);
-  visitor.Number({ "NoiseLevel", "values",
-                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated." },
-    this->NoiseLevel, SettingRange::NonNegative());
+  VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
   visitor.Choice({ "Discretization", "", "Linear: vertex values. CrouzeixRaviart: edge values." },
     this->Discretization, { "Linear", "CrouzeixRaviart" });
   visitor.Number({ "StopTolerance", "", "The relative duality gap at which a minimisation stops." },
