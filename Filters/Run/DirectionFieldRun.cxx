@@ -3,6 +3,7 @@
 #include "Run/DirectionFieldRun.h"
 
 #include <cmath>
+#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -91,10 +92,12 @@ void DirectionFieldRun::Update(
     ? DefaultSmoothing * h
     : settings.SmoothingLength / mesh.LengthUnit();
   core.HintWeight = settings.HintWeight / (h * h);
+  core.MaximumNumberOfSteps = settings.MaximumNumberOfSteps;
   core.Angle = RadiansFromDegrees(settings.Angle);
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
-    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0));
+    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0), &this->Report);
+  this->WarnOfField = true;
   this->FieldsVersion = input.FieldsVersion;
   this->ModelSettings = modelSettings;
   this->HasField = true;
@@ -108,7 +111,23 @@ std::vector<std::string> DirectionFieldRun::TakeWarnings()
   {
     warnings.push_back(std::to_string(degenerate) + " triangles of zero area get no direction");
   }
+  std::ostringstream text;
+  if (this->WarnOfField && this->Report.MissedResidual > 0.0)
+  {
+    text << "the linear solver missed its tolerance; the largest relative residual is "
+         << this->Report.MissedResidual;
+    warnings.push_back(text.str());
+    text.str("");
+  }
+  if (this->WarnOfField && this->Report.UnsettledChange > 0.0)
+  {
+    text << "the search for the smoothest field ended at its largest number of steps; the last "
+            "one changed an eigenvalue by "
+         << 100.0 * this->Report.UnsettledChange << " %";
+    warnings.push_back(text.str());
+  }
   this->WarnAgain = false;
+  this->WarnOfField = false;
   return warnings;
 }
 

@@ -20,6 +20,7 @@ struct DirectionFieldSettings : Settings
   double Angle = 0.0;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
+  int MaximumNumberOfSteps = 50; ///< of the inverse iteration of Smooth; no property
 
   void Visit(SettingVisitor& visitor) override;
   /// Problems of the settings, and with `fields` those of settings and arrays together.
@@ -53,8 +54,10 @@ private:
   SettingsSnapshot SurfaceSettings, ModelSettings;
   std::unique_ptr<Surface> Domain;
   TangentVectors Field;
+  LineFieldReport Report;
   bool HasField = false;
-  bool WarnAgain = true;
+  bool WarnAgain = true; ///< of the surface
+  bool WarnOfField = true;
 };
 
 } // namespace SurfaceDiffusion

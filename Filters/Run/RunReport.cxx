@@ -3,9 +3,41 @@
 #include "Run/Run.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace SurfaceDiffusion
 {
+
+namespace
+{
+
+std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
+{
+  std::ostringstream text;
+  text << "the linear solver missed its Tolerance " << tolerance << " in ";
+  if (found.MissedSteps > 0)
+  {
+    text << found.MissedSteps << " of " << found.Steps << " steps";
+  }
+  else
+  {
+    text << "moving the vertices";
+  }
+  text << "; the largest relative residual is " << found.MissedResidual;
+  return text.str();
+}
+
+std::string DescribeUnsettledSteps(const Shortfalls& found)
+{
+  std::ostringstream text;
+  text << "the repetitions ended at their largest number in " << found.UnsettledSteps << " of "
+       << found.Steps << " steps of MinimizingMovement; the last one still made up to "
+       << 100.0 * found.UnsettledDecrease
+       << " % of the decrease of the energy (smaller time steps need fewer)";
+  return text.str();
+}
+
+} // namespace
 
 History Run::MakeHistory(int step) const
 {
@@ -74,6 +106,26 @@ bool Run::MaskChangesNothing(const ProcessGroup& processes) const
   return anyMask && (!anyMasked || inert);
 }
 
+/// Over all steps computed so far.
+Shortfalls Run::FindShortfalls() const
+{
+  Shortfalls found;
+  for (const auto& block : this->Blocks)
+  {
+    for (const StepRecord& record : block->Path->Records())
+    {
+      ++found.Steps;
+      found.MissedSteps += record.MissedResidual > 0.0;
+      found.MissedResidual = std::max(found.MissedResidual, record.MissedResidual);
+      found.UnsettledSteps += record.UnsettledDecrease > 0.0;
+      found.UnsettledDecrease = std::max(found.UnsettledDecrease, record.UnsettledDecrease);
+    }
+    --found.Steps; // the initial state
+    found.MissedResidual = std::max(found.MissedResidual, block->Result.Motion.MissedResidual);
+  }
+  return found;
+}
+
 std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
 {
   SurfaceDiagnostics sum;
@@ -88,6 +140,7 @@ std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
     }
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
+    sum.EdgesLeft += found.EdgesLeft;
   }
   if (this->WarnAgain)
   {
@@ -95,14 +148,16 @@ std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
     this->WarnAgain = false;
   }
   std::vector<std::string> sentences;
-  const auto add = [&](const std::string& sentence)
+  // A warning is taken once, even if its figures have changed since.
+  const auto addKind = [&](const std::string& kind, const std::string& sentence)
   {
-    if (std::find(this->Reported.begin(), this->Reported.end(), sentence) == this->Reported.end())
+    if (std::find(this->Reported.begin(), this->Reported.end(), kind) == this->Reported.end())
     {
       sentences.push_back(sentence);
-      this->Reported.push_back(sentence);
+      this->Reported.push_back(kind);
     }
   };
+  const auto add = [&](const std::string& sentence) { addKind(sentence, sentence); };
   const auto addCount = [&](Index here, const char* sentence)
   {
     const auto count = static_cast<long long>(processes.Sum(static_cast<double>(here)));
@@ -118,12 +173,25 @@ std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
   addCount(sum.CoincidentBoundaryPoints,
     " boundary points coincide with others and nothing flows between them (to join them, set "
     "MergeCoincidentPoints)");
+  addCount(sum.EdgesLeft,
+    " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
+    "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "
+    "data there");
   for (const auto& block : this->Blocks)
   {
     for (const std::string& sentence : block->Result.Warnings)
     {
       add(sentence);
     }
+  }
+  const Shortfalls shortfalls = this->FindShortfalls();
+  if (shortfalls.MissedResidual > 0.0)
+  {
+    addKind("MissedResidual", DescribeMissedTolerance(shortfalls, this->Settings->Tolerance));
+  }
+  if (shortfalls.UnsettledDecrease > 0.0)
+  {
+    addKind("UnsettledDecrease", DescribeUnsettledSteps(shortfalls));
   }
   if (this->MaskChangesNothing(processes))
   {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Meshes.h"
+#include "RunInput.h"
 
 #include "Run/DirectionFieldRun.h"
 #include "Run/HeatSettings.h"
@@ -20,63 +20,14 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-/// One surface with one scalar per point, as arrays.
-struct Input
-{
-  Points Vertices;
-  Triangles Faces;
-  Fields Data;
-
-  explicit Input(const Testing::Surface& surface)
-    : Vertices(surface.Vertices)
-    , Faces(surface.Faces)
-  {
-    this->Data.Data = Values(this->Vertices.rows(), 1);
-    for (Eigen::Index i = 0; i < this->Vertices.rows(); ++i)
-    {
-      this->Data.Data(i, 0) = this->Vertices(i, 2) + 0.1 * std::cos(7.0 * i);
-    }
-  }
-
-  BlockInput Block() const
-  {
-    BlockInput block;
-    const auto add = [](Fingerprint& fingerprint, const auto& matrix)
-    {
-      fingerprint.AddBytes(
-        matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(*matrix.data()));
-    };
-    add(block.SurfaceVersion, this->Vertices);
-    add(block.SurfaceVersion, this->Faces);
-    add(block.FieldsVersion, this->Data.Data);
-    add(block.FieldsVersion, this->Data.Directions);
-    block.FieldsVersion.AddBytes(this->Data.Mask.data(), this->Data.Mask.size());
-    block.ReadSurface = [this] { return SurfaceArrays{ this->Vertices, this->Faces, {} }; };
-    block.ReadFields = [this] { return this->Data; };
-    return block;
-  }
-};
-
-const ProcessGroup Alone;
-
-/// The state at the last step.
-template <typename ModelSettings>
-Values StateOf(Run& run, const std::vector<BlockInput>& inputs, const ModelSettings& settings)
-{
-  run.Update(inputs, std::make_shared<ModelSettings>(settings), Alone, ProgressMonitor());
-  run.Seek(settings.DescribeModel().NumberOfSteps, ProgressMonitor());
-  return run.GetBlock(0).Path->State();
-}
-
-} // namespace
+using Testing::Alone;
+using Testing::RunInput;
+using Testing::StateOf;
 
 TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 {
   // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2 z.
-  Input input(Testing::Icosphere(5));
+  RunInput input(Testing::Icosphere(5));
   input.Data.Data = input.Vertices.col(2);
   HeatSettings settings;
   settings.Units = UnitsMode::Absolute;
@@ -92,7 +43,7 @@ TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 
 TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   const Values first = StateOf(run, { input.Block() }, HeatSettings());
   EXPECT_EQ(run.NumberOfStepsComputed(), 10);
@@ -103,7 +54,7 @@ TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
 
 TEST(Run, AfterAnyEditEqualsANewRun)
 {
-  Input input(Testing::Icosphere(3));
+  RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   TotalVariationSettings settings;
   StateOf(run, { input.Block() }, settings);
@@ -131,7 +82,7 @@ TEST(Run, AfterAnyEditEqualsANewRun)
 
 TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
   StateOf(run, { input.Block() }, settings);
@@ -142,8 +93,8 @@ TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
 
 TEST(Run, SurfacesShareTheirUnits)
 {
-  const Input small(Testing::Icosphere(3));
-  const Input large(Testing::Scaled(Testing::Icosphere(3), 3.0));
+  const RunInput small(Testing::Icosphere(3));
+  const RunInput large(Testing::Scaled(Testing::Icosphere(3), 3.0));
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { small.Block() }, HeatSettings());
   const double h = run.Units().MeanEdgeLength;
@@ -154,7 +105,7 @@ TEST(Run, SurfacesShareTheirUnits)
 
 TEST(Run, ReportsEachWarningOnceUntilSomethingIsMadeAgain)
 {
-  Input input(Testing::Icosphere(2));
+  RunInput input(Testing::Icosphere(2));
   input.Vertices.conservativeResize(input.Vertices.rows() + 1, 3);
   input.Vertices.bottomRows(1).setOnes();
   input.Data.Data = Values::Ones(input.Vertices.rows(), 1);
@@ -171,7 +122,7 @@ TEST(Run, ReportsEachWarningOnceUntilSomethingIsMadeAgain)
 
 TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { input.Block() }, HeatSettings());
   const History history = run.MakeHistory(10);
@@ -186,7 +137,7 @@ TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
 
 TEST(Run, ATextureNeedsNoData)
 {
-  Input input(Testing::Icosphere(3));
+  RunInput input(Testing::Icosphere(3));
   input.Data.Data.resize(0, 0);
   SurfaceDiffusion::Run run(SerialFor());
   TextureSettings settings;
@@ -199,7 +150,7 @@ TEST(Run, ATextureNeedsNoData)
 
 TEST(Run, InvalidArraysAreErrorsThatNameThem)
 {
-  Input input(Testing::Icosphere(2));
+  RunInput input(Testing::Icosphere(2));
   input.Data.Data(3, 0) = std::numeric_limits<double>::infinity();
   SurfaceDiffusion::Run run(SerialFor());
   try
@@ -217,7 +168,7 @@ TEST(Run, InvalidArraysAreErrorsThatNameThem)
 
 TEST(DirectionFieldRun, IsKeptUntilInputsOrSettingsChange)
 {
-  const Input input(Testing::Cylinder(24, 24));
+  const RunInput input(Testing::Cylinder(24, 24));
   DirectionFieldRun run(SerialFor());
   DirectionFieldSettings settings;
   int reads = 0;

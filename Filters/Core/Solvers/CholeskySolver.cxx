@@ -82,6 +82,8 @@ public:
         report.Residual = refined;
       }
     }
+    report.Converged = report.Residual <= this->Limits.Tolerance;
+    report.IsFinal = true;
     progress.Report(1.0);
     return report;
   }
