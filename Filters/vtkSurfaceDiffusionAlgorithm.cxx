@@ -327,7 +327,7 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   state.History = state.Run.MakeHistory(state.Step);
   state.Succeeded = group.IsRoot();
   this->TakeResults();
-  this->ReportWarnings(state.Run.TakeWarnings(group));
+  this->ReportWarnings(state.Run.FindWarnings(group));
 }
 
 /// The surfaces with data, their fields, and the problems of both. Blocks without data pass through

@@ -47,7 +47,7 @@
  * **Invalid properties or arrays** are errors at update that name the property, its value and what
  * is allowed. The output then is the unchanged input. Defects of the surface (zero-area triangles,
  * non-manifold edges, unused or coincident points) are handled and reported in one warning with
- * counts.
+ * counts. A warning is repeated only if the arrays or the surface that it is about have changed.
  *
  * Results do not depend on the number of threads or on the order in which times are requested.
  *
@@ -83,7 +83,8 @@ public:
   ///@{
   /**
    * The number of time steps n. There are n + 1 states, from the initial one on. 0 to 1e9.
-   * Default: 10.
+   * Default: 10. If only this number is raised, the next update computes the new steps alone,
+   * unless a run of that length has another solver with Solver Automatic.
    */
   vtkSetMacro(NumberOfTimeSteps, int);
   vtkGetMacro(NumberOfTimeSteps, int);

@@ -133,8 +133,9 @@ void vtkSurfaceFilter::ReportError(const std::string& text)
   }
 }
 
-void vtkSurfaceFilter::ReportWarnings(const std::vector<std::string>& sentences)
+void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 {
+  const std::vector<std::string> sentences = this->Private->Reported.Report(std::move(warnings));
   if (!sentences.empty() && this->GetProcessGroup().IsRoot())
   {
     vtkWarningMacro(<< JoinSentences(sentences));

@@ -41,6 +41,7 @@ namespace SurfaceDiffusion
 {
 class ProcessGroup;
 class ProgressMonitor;
+struct Warning;
 }
 class vtkMultiProcessController;
 class vtkPolyData;
@@ -146,8 +147,8 @@ protected:
   /// The last chance to abort, before outputs change. Throws SurfaceDiffusion::Aborted.
   void BeginWriting();
 
-  /// Report sentences as one warning, unless there are none.
-  void ReportWarnings(const std::vector<std::string>& sentences);
+  /// Report, as one warning, those of the warnings that hold now that have not been reported yet.
+  void ReportWarnings(std::vector<SurfaceDiffusion::Warning> warnings);
 
   /// The processes that work on this update together: one, unless SolvesInPieces().
   const SurfaceDiffusion::ProcessGroup& GetProcessGroup() const;

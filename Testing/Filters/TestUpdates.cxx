@@ -280,6 +280,27 @@ TEST(Updates, ChangesOfInputsOfTheStepsRecomputeThem)
   expectAgain("triangles");
 }
 
+TEST(Updates, MoreTimeStepsComputeOnlyTheNewOnes)
+{
+  auto sphere = Sphere(3);
+  AddRough(sphere);
+  for (const bool timeSteps : { false, true })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetGenerateTimeSteps(timeSteps);
+    filter->Update();
+    filter->SetNumberOfTimeSteps(12);
+    filter->Update();
+    EXPECT_EQ(filter->GetNumberOfStepsComputed(), 12);
+    auto fresh = MakeFilter(sphere);
+    fresh->SetNumberOfTimeSteps(12);
+    fresh->Update();
+    EXPECT_TRUE(Identical(Result(filter), Result(fresh)));
+    EXPECT_EQ(History(filter)->GetNumberOfRows(), 13);
+    EXPECT_EQ(HistoryAt(filter, 12, "Total_0"), HistoryAt(fresh, 12, "Total_0"));
+  }
+}
+
 /// numpy edits an array in place, and the user marks the polydata only.
 TEST(Updates, ArraysThatAreEditedInPlaceAreReadAgain)
 {
