@@ -127,10 +127,14 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     versions.Add(block->Run.GetSurfaceVersion());
   }
   this->BeginWriting();
+  std::vector<std::string> replaced;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
     vtkCellData* const cells = surfaces[b].Output->GetCellData();
-    cells->AddArray(results[b]);
+    if (ReplaceArray(results[b], fields[b].Direction, cells))
+    {
+      replaced.push_back(this->ResultArrayName);
+    }
     cells->SetActiveVectors(this->ResultArrayName.c_str());
   }
   this->MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
@@ -140,7 +144,17 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     warnings.push_back(
       { std::to_string(degenerate) + " triangles of zero area get no direction", versions });
   }
+  if (!replaced.empty())
+  {
+    warnings.push_back({ DescribeReplacement(replaced), Fingerprint() });
+  }
   this->ReportWarnings(std::move(warnings));
+}
+
+void vtkSurfaceDirectionFieldFilter::ReleaseCache()
+{
+  this->Superclass::ReleaseCache();
+  this->State->Blocks.clear();
 }
 
 void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)

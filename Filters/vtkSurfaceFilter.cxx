@@ -239,7 +239,16 @@ int vtkSurfaceFilter::RequestData(
       [&](const std::vector<SurfacePiece>& surfaces) { this->ProcessGuarded(toBlocks(surfaces)); });
   }
   this->ShareReported();
+  if (this->GetReleaseDataFlag() != 0 || vtkDataObject::GetGlobalReleaseDataFlag() != 0)
+  {
+    this->ReleaseCache();
+  }
   return 1;
+}
+
+void vtkSurfaceFilter::ReleaseCache()
+{
+  this->Private->Gathered.reset();
 }
 
 void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)

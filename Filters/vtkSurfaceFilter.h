@@ -101,6 +101,16 @@ public:
    */
   vtkGetMacro(MeanEdgeLength, double);
 
+  /**
+   * Free the memory that the filter keeps from one update to the next: the surface and its
+   * operators, factors and preconditioners of linear solvers, the current state, and the states
+   * kept for GenerateTimeSteps. They let an edit of a property, or a request of another time,
+   * repeat only the steps that depend on it. The next update computes all of them again, with the
+   * same result. If the release-data flag of output port 0 is on, or the global one, every update
+   * ends with this call.
+   */
+  virtual void ReleaseCache();
+
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

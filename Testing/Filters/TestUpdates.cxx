@@ -158,6 +158,30 @@ TEST(Updates, ObeyAnAbortAndWorkAgainAfterwards)
   }
 }
 
+/// Taking the abort back is enough; scripts need not mark the filter as modified.
+TEST(Updates, AnAbortedUpdateIsRepeatedByTheNextOne)
+{
+  auto sphere = Sphere(4);
+  AddRough(sphere);
+  auto reference = MakeFilter(sphere);
+  reference->Update();
+  auto filter = MakeFilter(sphere);
+  const unsigned long tag = Listen(filter,
+    [&](double amount)
+    {
+      if (amount > 0.3)
+      {
+        filter->AbortExecuteOn();
+      }
+    });
+  filter->Update();
+  EXPECT_EQ(Result(filter), nullptr);
+  filter->RemoveObserver(tag);
+  filter->AbortExecuteOff();
+  filter->Update();
+  EXPECT_TRUE(Identical(Result(filter), Result(reference)));
+}
+
 TEST(Updates, AnAbortedRunIsNotReused)
 {
   auto sphere = Sphere(4);
