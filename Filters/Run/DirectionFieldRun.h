@@ -4,6 +4,7 @@
 
 #include "Core/Geometry/DirectionField.h"
 #include "Run/Run.h"
+#include "Run/WarningLog.h"
 
 #include <memory>
 
@@ -45,8 +46,10 @@ public:
   const TangentVectors& Directions() const { return this->Field; }
   /// In coordinate units.
   double MeanEdgeLength() const;
-  /// Warnings that were not taken before.
-  std::vector<std::string> TakeWarnings();
+  /// The warnings about the line field that hold.
+  std::vector<Warning> FindWarnings() const;
+  /// The surface that the line field belongs to.
+  const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
 
 private:
   const ParallelFor& Parallel;
@@ -56,8 +59,6 @@ private:
   TangentVectors Field;
   LineFieldReport Report;
   bool HasField = false;
-  bool WarnAgain = true; ///< of the surface
-  bool WarnOfField = true;
 };
 
 } // namespace SurfaceDiffusion

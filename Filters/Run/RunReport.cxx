@@ -3,6 +3,7 @@
 #include "Run/Run.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <sstream>
 
 namespace SurfaceDiffusion
@@ -121,14 +122,18 @@ Shortfalls Run::FindShortfalls() const
       found.UnsettledDecrease = std::max(found.UnsettledDecrease, record.UnsettledDecrease);
     }
     --found.Steps; // the initial state
+    found.Inputs.Add(block->SurfaceVersion);
+    found.Inputs.Add(block->FieldsVersion);
     found.MissedResidual = std::max(found.MissedResidual, block->Result.Motion.MissedResidual);
   }
   return found;
 }
 
-std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
+std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
 {
   SurfaceDiagnostics sum;
+  Fingerprint surfaces;
+  Fingerprint masks;
   for (const auto& block : this->Blocks)
   {
     const SurfaceDiagnostics& found = block->Surface->Diagnostics();
@@ -141,29 +146,16 @@ std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
     sum.EdgesLeft += found.EdgesLeft;
+    surfaces.Add(block->SurfaceVersion);
+    masks.Add(block->MaskVersion);
   }
-  if (this->WarnAgain)
-  {
-    this->Reported.clear();
-    this->WarnAgain = false;
-  }
-  std::vector<std::string> sentences;
-  // A warning is taken once, even if its figures have changed since.
-  const auto addKind = [&](const std::string& kind, const std::string& sentence)
-  {
-    if (std::find(this->Reported.begin(), this->Reported.end(), kind) == this->Reported.end())
-    {
-      sentences.push_back(sentence);
-      this->Reported.push_back(kind);
-    }
-  };
-  const auto add = [&](const std::string& sentence) { addKind(sentence, sentence); };
+  std::vector<Warning> warnings;
   const auto addCount = [&](Index here, const char* sentence)
   {
     const auto count = static_cast<long long>(processes.Sum(static_cast<double>(here)));
     if (count > 0)
     {
-      add(std::to_string(count) + sentence);
+      warnings.push_back({ std::to_string(count) + sentence, surfaces });
     }
   };
   addCount(sum.DegenerateTriangles, " triangles of zero area were left out");
@@ -179,25 +171,30 @@ std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
     "data there");
   for (const auto& block : this->Blocks)
   {
+    Fingerprint inputs = block->SurfaceVersion;
+    inputs.Add(block->FieldsVersion);
     for (const std::string& sentence : block->Result.Warnings)
     {
-      add(sentence);
+      warnings.push_back({ sentence, inputs });
     }
   }
   const Shortfalls shortfalls = this->FindShortfalls();
   if (shortfalls.MissedResidual > 0.0)
   {
-    addKind("MissedResidual", DescribeMissedTolerance(shortfalls, this->Settings->Tolerance));
+    warnings.push_back({ DescribeMissedTolerance(shortfalls, this->Settings->Tolerance),
+      shortfalls.Inputs, "MissedResidual" });
   }
   if (shortfalls.UnsettledDecrease > 0.0)
   {
-    addKind("UnsettledDecrease", DescribeUnsettledSteps(shortfalls));
+    warnings.push_back(
+      { DescribeUnsettledSteps(shortfalls), shortfalls.Inputs, "UnsettledDecrease" });
   }
+  masks.AddNumber(static_cast<std::uint64_t>(this->Settings->MaskMode));
   if (this->MaskChangesNothing(processes))
   {
-    add("the mask changes nothing with these settings");
+    warnings.push_back({ "the mask changes nothing with these settings", masks });
   }
-  return sentences;
+  return warnings;
 }
 
 } // namespace SurfaceDiffusion
