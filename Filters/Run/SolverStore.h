@@ -7,6 +7,7 @@
 #include "Run/RunSettings.h"
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
 
@@ -34,6 +35,12 @@ public:
 
   /// The solver that the settings ask for. task.Tolerance is set here.
   std::shared_ptr<LinearSolver> Find(SolverPurpose purpose, SolverTask task);
+
+  /// The solver that is kept for a purpose; null if there is none.
+  const LinearSolver* Get(SolverPurpose purpose) const
+  {
+    return this->Solvers[static_cast<std::size_t>(purpose)].Solver.get();
+  }
 
 private:
   struct Kept

@@ -43,6 +43,7 @@ public:
       factor = std::make_shared<SparseFactor>();
     }
     factor->SetMatrix(matrix);
+    ++this->Factorizations;
     constexpr Eigen::Index quick = 5000; // vertices, whose factorisation is not worth a thread
     if (matrix.rows() < quick)
     {
@@ -97,6 +98,8 @@ public:
   }
 
   bool RunsOnOneThread() const override { return true; }
+
+  long NumberOfFactorizations() const override { return this->Factorizations; }
 
 private:
   /// Columns j .. j + Width - 1 of L, a panel of the factor.
@@ -296,6 +299,7 @@ private:
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
   std::shared_ptr<SparseFactor> Factor;
+  long Factorizations = 0;
   Values R, Correction;
   Values W; ///< in the order of the factor
 };
