@@ -81,6 +81,28 @@ TEST(Run, AfterAnyEditEqualsANewRun)
   expectAsNew("Mode");
 }
 
+TEST(Run, FactorisesAgainOnlyIfTheMatrixChanges)
+{
+  Input input(Testing::Icosphere(4));
+  HeatSettings settings;
+  settings.Solver = SolverMethod::Direct;
+  SurfaceDiffusion::Run run(SerialFor());
+  const auto factorizationsAfterARun = [&]
+  {
+    StateOf(run, { input.Block() }, settings);
+    return run.GetBlock(0).Solvers.Get(SolverPurpose::Step)->NumberOfFactorizations();
+  };
+  EXPECT_EQ(factorizationsAfterARun(), 1);
+  input.Data.Data(7, 0) += 1.0;
+  EXPECT_EQ(factorizationsAfterARun(), 1);
+  settings.NumberOfTimeSteps += 2;
+  EXPECT_EQ(factorizationsAfterARun(), 1);
+  settings.TimeStep *= 2.0;
+  EXPECT_EQ(factorizationsAfterARun(), 2);
+  input.Data.Data(8, 0) += 1.0;
+  EXPECT_EQ(factorizationsAfterARun(), 2);
+}
+
 TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
 {
   const RunInput input(Testing::Icosphere(3));

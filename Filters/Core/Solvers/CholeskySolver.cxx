@@ -45,6 +45,7 @@ public:
       factor = std::make_shared<SparseFactor>();
     }
     factor->SetMatrix(matrix);
+    ++this->Factorizations;
     constexpr Eigen::Index quick = 5000; // vertices, whose factorisation is not worth a thread
     if (matrix.rows() < quick)
     {
@@ -101,6 +102,8 @@ public:
   }
 
   bool RunsOnOneThread() const override { return true; }
+
+  long NumberOfFactorizations() const override { return this->Factorizations; }
 
 private:
   /// x = P^T L^-T D^-1 L^-1 P b
@@ -197,6 +200,7 @@ private:
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
   std::shared_ptr<SparseFactor> Factor;
+  long Factorizations = 0;
   Values R, Correction;
   Values W; ///< in the order of the factor
   std::vector<double> OfR, OfB; ///< weighted squares of the columns of R and b

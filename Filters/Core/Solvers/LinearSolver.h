@@ -77,6 +77,9 @@ public:
   /// Whether Solve() leaves the other threads idle, so that another solver can run beside it.
   virtual bool RunsOnOneThread() const { return false; }
 
+  /// The number of factorisations that a direct method has computed so far.
+  virtual long NumberOfFactorizations() const { return 0; }
+
 protected:
   /// A power of two near the largest entry of two columns. The squares of entries divided by it
   /// neither overflow nor underflow, and the division is exact.
