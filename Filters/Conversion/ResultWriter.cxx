@@ -8,6 +8,7 @@
 #include "Run/CellDirections.h"
 #include "Run/ConvertValue.h"
 
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkIntArray.h"
@@ -17,6 +18,8 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <cstdint>
+
+#include <algorithm>
 
 namespace SurfaceDiffusion
 {
@@ -141,6 +144,32 @@ vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
     array->SetTuple(cell, vectors.row(cell).data());
   }
   return array;
+}
+
+bool ReplaceArray(vtkDataArray* result, vtkDataArray* data, vtkDataSetAttributes* attributes)
+{
+  vtkAbstractArray* const former = attributes->GetAbstractArray(result->GetName());
+  const bool isAnother = former && former != data;
+  if (former)
+  {
+    attributes->RemoveArray(result->GetName());
+  }
+  attributes->AddArray(result);
+  return isAnother;
+}
+
+std::string DescribeReplacement(const std::vector<std::string>& names)
+{
+  std::vector<std::string> distinct = names; // blocks share their names
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  std::string list;
+  for (const std::string& name : distinct)
+  {
+    list += (list.empty() ? "\"" : ", \"") + name + "\"";
+  }
+  return "results replace arrays of the input: " + list +
+    "; to keep these, set another ResultArrayName";
 }
 
 void WriteHistory(const History& history, vtkTable* table)
