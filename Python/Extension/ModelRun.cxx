@@ -160,9 +160,14 @@ void ModelRun::Seek(int step, const nb::object& progress)
     });
 }
 
-std::vector<std::string> ModelRun::TakeWarnings()
+std::vector<std::string> ModelRun::GetWarnings() const
 {
-  return this->Model.TakeWarnings(this->Alone);
+  std::vector<std::string> sentences;
+  for (const Warning& warning : this->Model.FindWarnings(this->Alone))
+  {
+    sentences.push_back(warning.Sentence);
+  }
+  return sentences;
 }
 
 nb::dict ModelRun::GetHistory() const

@@ -34,7 +34,8 @@ public:
 
   int NumberOfSteps() const { return this->Settings->DescribeModel().NumberOfSteps; }
   double TimeStep() const { return this->Settings->DescribeModel().TimeStep; }
-  std::vector<std::string> TakeWarnings();
+  /// The sentences of all warnings that hold.
+  std::vector<std::string> GetWarnings() const;
   nanobind::dict GetHistory() const;
   /// Numbers that describe the run on one surface.
   nanobind::dict GetResults(std::size_t block) const;
@@ -72,7 +73,10 @@ public:
   void Update(
     const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
   double MeanEdgeLength() const { return this->Field.MeanEdgeLength(); }
-  std::vector<std::string> TakeWarnings() { return this->Field.TakeWarnings(); }
+  Index NumberOfDegenerateTriangles() const
+  {
+    return this->Field.GetSurface().Diagnostics().DegenerateTriangles;
+  }
   /// Per polygon of the surface.
   void Write(const InputSurface& surface, const OutputArray& output) const;
 

@@ -529,5 +529,7 @@ def direction_field(
         reporter.finish_part()
         output = np.empty((surface.n_faces, 3))
         runner.call(run.write, surface._core, output)
-        warn(runner._warnings(run))
+        degenerate = run.number_of_degenerate_triangles()
+    if degenerate:
+        warn([f"{degenerate} triangles of zero area get no direction"])
     return output

@@ -152,7 +152,7 @@ class Runner:
             raise ValueError(translate(self.function, str(error), self.arrays)) from None
 
     def _warnings(self, run: Any) -> list[str]:
-        return [translate(self.function, text, self.arrays) for text in run.take_warnings()]
+        return [translate(self.function, text, self.arrays) for text in run.warnings()]
 
     def finish(self, run: Any, inputs: list[Input], progress: Progress) -> list[dict[str, Any]]:
         """Run to the last step. The common attributes of the result on each surface."""
@@ -173,12 +173,14 @@ class Runner:
         reporter = ProgressReporter(progress, len(steps))
 
         def states() -> Iterator[Any]:
+            known: list[str] = []
             with reporter:
                 for step in steps:
                     self.call(run.seek, step, reporter.callable)
                     reporter.finish_part()
                     sentences = self._warnings(run)
-                    warn(sentences)
+                    warn([sentence for sentence in sentences if sentence not in known])
+                    known = sentences
                     attributes = self._attributes(run, inputs, sentences)
                     yield make(attributes[0])
                     if attributes[0]["step"] < step:
