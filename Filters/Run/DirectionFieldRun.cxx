@@ -74,7 +74,6 @@ void DirectionFieldRun::Update(
       input.ReadSurface(), options, this->Parallel, progress.Part(0.0, 0.1));
     this->SurfaceVersion = input.SurfaceVersion;
     this->SurfaceSettings = surfaceSettings;
-    this->WarnAgain = true;
   }
   if (this->HasField && this->FieldsVersion == input.FieldsVersion &&
     this->ModelSettings == modelSettings)
@@ -98,18 +97,6 @@ void DirectionFieldRun::Update(
   this->FieldsVersion = input.FieldsVersion;
   this->ModelSettings = modelSettings;
   this->HasField = true;
-}
-
-std::vector<std::string> DirectionFieldRun::TakeWarnings()
-{
-  std::vector<std::string> warnings;
-  const Index degenerate = this->Domain->Diagnostics().DegenerateTriangles;
-  if (this->WarnAgain && degenerate > 0)
-  {
-    warnings.push_back(std::to_string(degenerate) + " triangles of zero area get no direction");
-  }
-  this->WarnAgain = false;
-  return warnings;
 }
 
 } // namespace SurfaceDiffusion

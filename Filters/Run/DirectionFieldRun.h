@@ -44,8 +44,8 @@ public:
   const TangentVectors& Directions() const { return this->Field; }
   /// In coordinate units.
   double MeanEdgeLength() const;
-  /// Warnings that were not taken before.
-  std::vector<std::string> TakeWarnings();
+  /// The surface that the line field belongs to.
+  const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
 
 private:
   const ParallelFor& Parallel;
@@ -54,7 +54,6 @@ private:
   std::unique_ptr<Surface> Domain;
   TangentVectors Field;
   bool HasField = false;
-  bool WarnAgain = true;
 };
 
 } // namespace SurfaceDiffusion

@@ -74,7 +74,6 @@ SolverTask HarmonicMapSettings::MakeTask(const ModelInputs& inputs, double timeS
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
   task.DiffusionNumber =
     this->LargestDiffusivity() * timeStep / std::pow(inputs.Units.CoreEdgeLength(), this->Exponent);
-  task.NumberOfSolves = this->Exponent == 2.0 ? this->NumberOfTimeSteps : 1.0;
   task.IsPreconditioner = this->Scheme != HarmonicMap::Scheme::ExplicitReaction;
   return task;
 }
@@ -115,8 +114,9 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   {
     settings.Method = HarmonicMap::Preconditioner::Jacobi;
   }
-  const auto solver =
-    inputs.Solvers.Find(SolverPurpose::Step, this->MakeTask(inputs, settings.TimeStep));
+  const double solvesPerStep = p == 2.0 ? 1.0 : 0.0; // with other exponents each step has a matrix
+  const auto solver = inputs.Solvers.Find(
+    SolverPurpose::Step, this->MakeTask(inputs, settings.TimeStep), solvesPerStep);
   return std::make_unique<HarmonicMap>(inputs.Surface.SharedAssembler(), MakeWeights(*this, inputs),
     std::move(inputs.Data), settings, solver, inputs.Parallel);
 }

@@ -8,6 +8,7 @@
 #include "Run/History.h"
 #include "Run/ModelInputs.h"
 #include "Run/SolverStore.h"
+#include "Run/WarningLog.h"
 
 #include <functional>
 #include <memory>
@@ -77,10 +78,12 @@ public:
     Fingerprint SurfaceVersion, FieldsVersion;
     SettingsSnapshot SurfaceSettings, ModelSettings;
     std::size_t NumberOfBlocks = 0;
+    double TimeStep = 0.0;
     ValueStatistics Statistics;
     bool HasData = false;
     bool HasMask = false;
     bool HasMasked = false; ///< a nonzero entry of the mask
+    Fingerprint MaskVersion;
     SolverStore Solvers;
     const SurfaceDiffusion::Decomposition* Decomposition = nullptr;
   };
@@ -97,10 +100,12 @@ public:
   /// The history up to a step.
   History MakeHistory(int step) const;
 
-  /// Warnings that were not taken before. They appear again if their surface or model is rebuilt.
-  std::vector<std::string> TakeWarnings(const ProcessGroup& processes);
+  /// The warnings that hold, with the inputs that each is about.
+  std::vector<Warning> FindWarnings(const ProcessGroup& processes) const;
 
 private:
+  bool IsModelCurrent(const Block& block, const BlockInput& input, const SettingsSnapshot& settings,
+    const ModelTraits& traits) const;
   void UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
     const ProgressMonitor& progress);
   void MakeSurface(const BlockInput& input, const ProcessGroup& processes, Block& block,
@@ -121,8 +126,6 @@ private:
   UnitSystem CommonUnits;
   double UnitOfTime = 1.0;
   long long StepsComputed = 0;
-  bool WarnAgain = true;
-  std::vector<std::string> Reported; ///< warnings taken since the last rebuild
 };
 
 } // namespace SurfaceDiffusion

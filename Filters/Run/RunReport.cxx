@@ -3,6 +3,7 @@
 #include "Run/Run.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace SurfaceDiffusion
 {
@@ -74,9 +75,11 @@ bool Run::MaskChangesNothing(const ProcessGroup& processes) const
   return anyMask && (!anyMasked || inert);
 }
 
-std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
+std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
 {
   SurfaceDiagnostics sum;
+  Fingerprint surfaces;
+  Fingerprint masks;
   for (const auto& block : this->Blocks)
   {
     const SurfaceDiagnostics& found = block->Surface->Diagnostics();
@@ -88,27 +91,16 @@ std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
     }
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
+    surfaces.Add(block->SurfaceVersion);
+    masks.Add(block->MaskVersion);
   }
-  if (this->WarnAgain)
-  {
-    this->Reported.clear();
-    this->WarnAgain = false;
-  }
-  std::vector<std::string> sentences;
-  const auto add = [&](const std::string& sentence)
-  {
-    if (std::find(this->Reported.begin(), this->Reported.end(), sentence) == this->Reported.end())
-    {
-      sentences.push_back(sentence);
-      this->Reported.push_back(sentence);
-    }
-  };
+  std::vector<Warning> warnings;
   const auto addCount = [&](Index here, const char* sentence)
   {
     const auto count = static_cast<long long>(processes.Sum(static_cast<double>(here)));
     if (count > 0)
     {
-      add(std::to_string(count) + sentence);
+      warnings.push_back({ std::to_string(count) + sentence, surfaces });
     }
   };
   addCount(sum.DegenerateTriangles, " triangles of zero area were left out");
@@ -120,16 +112,19 @@ std::vector<std::string> Run::TakeWarnings(const ProcessGroup& processes)
     "MergeCoincidentPoints)");
   for (const auto& block : this->Blocks)
   {
+    Fingerprint inputs = block->SurfaceVersion;
+    inputs.Add(block->FieldsVersion);
     for (const std::string& sentence : block->Result.Warnings)
     {
-      add(sentence);
+      warnings.push_back({ sentence, inputs });
     }
   }
+  masks.AddNumber(static_cast<std::uint64_t>(this->Settings->MaskMode));
   if (this->MaskChangesNothing(processes))
   {
-    add("the mask changes nothing with these settings");
+    warnings.push_back({ "the mask changes nothing with these settings", masks });
   }
-  return sentences;
+  return warnings;
 }
 
 } // namespace SurfaceDiffusion

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -140,6 +141,63 @@ TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
   EXPECT_EQ(run.NumberOfStepsComputed(), 10);
 }
 
+template <typename ModelSettings>
+void ExpectLongerRunsContinueShorterOnes(
+  const Input& input, ModelSettings settings, std::initializer_list<int> lengths)
+{
+  SurfaceDiffusion::Run run(SerialFor());
+  for (const int length : lengths)
+  {
+    settings.NumberOfTimeSteps = length;
+    const Values state = StateOf(run, { input.Block() }, settings);
+    SurfaceDiffusion::Run fresh(SerialFor());
+    EXPECT_TRUE((state.array() == StateOf(fresh, { input.Block() }, settings).array()).all())
+      << length << " steps, solver " << static_cast<int>(settings.Solver);
+    EXPECT_EQ(run.MakeHistory(length).Records.size(), static_cast<std::size_t>(length) + 1);
+  }
+}
+
+TEST(Run, ALongerRunComputesOnlyTheNewSteps)
+{
+  const Input input(Testing::Icosphere(3));
+  SurfaceDiffusion::Run run(SerialFor());
+  HeatSettings settings;
+  settings.NumberOfTimeSteps = 20;
+  StateOf(run, { input.Block() }, settings);
+  settings.NumberOfTimeSteps = 22;
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.NumberOfStepsComputed(), 22);
+  settings.NumberOfTimeSteps = 5;
+  settings.FWHM = 0.3;
+  StateOf(run, { input.Block() }, settings);
+  settings.NumberOfTimeSteps = 8; // other steps
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.NumberOfStepsComputed(), 22 + 5 + 8);
+}
+
+/// Automatic chooses by the number of steps, too, and the result is still that of a fresh run.
+TEST(Run, ALongerRunGivesTheBitsOfAFreshOne)
+{
+  const Input input(Testing::Icosphere(3));
+  Input nothing(Testing::Icosphere(3));
+  nothing.Data.Data.resize(0, 0);
+  for (const SolverMethod solver : { SolverMethod::Automatic, SolverMethod::Direct,
+         SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
+  {
+    HeatSettings heat;
+    heat.Solver = solver;
+    heat.TimeStep = 3.0;
+    ExpectLongerRunsContinueShorterOnes(input, heat, { 0, 1, 3, 40, 42, 2, 300 });
+    heat.FWHM = 0.3;
+    ExpectLongerRunsContinueShorterOnes(input, heat, { 1, 3, 2 });
+    TextureSettings texture;
+    texture.Solver = solver;
+    ExpectLongerRunsContinueShorterOnes(nothing, texture, { 2, 40, 10 });
+  }
+  TotalVariationSettings flow;
+  ExpectLongerRunsContinueShorterOnes(input, flow, { 1, 4, 2 });
+}
+
 TEST(Run, SurfacesShareTheirUnits)
 {
   const Input small(Testing::Icosphere(3));
@@ -152,7 +210,7 @@ TEST(Run, SurfacesShareTheirUnits)
   EXPECT_NEAR(run.TimeUnit(), 4.0 * h * h, 1e-12);
 }
 
-TEST(Run, ReportsEachWarningOnceUntilSomethingIsMadeAgain)
+TEST(Run, EachWarningIsReportedOncePerCause)
 {
   Input input(Testing::Icosphere(2));
   input.Vertices.conservativeResize(input.Vertices.rows() + 1, 3);
@@ -160,13 +218,29 @@ TEST(Run, ReportsEachWarningOnceUntilSomethingIsMadeAgain)
   input.Data.Data = Values::Ones(input.Vertices.rows(), 1);
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
-  StateOf(run, { input.Block() }, settings);
-  EXPECT_EQ(run.TakeWarnings(Alone).size(), 1u);
+  WarningLog log;
+  const auto update = [&]
+  {
+    StateOf(run, { input.Block() }, settings);
+    return log.Report(run.FindWarnings(Alone));
+  };
+  EXPECT_EQ(update().size(), 1u); // an unused point
   run.Seek(3, ProgressMonitor());
-  EXPECT_TRUE(run.TakeWarnings(Alone).empty());
+  EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty());
   settings.TimeStep = 0.5;
-  StateOf(run, { input.Block() }, settings);
-  EXPECT_EQ(run.TakeWarnings(Alone).size(), 1u);
+  EXPECT_TRUE(update().empty());
+  input.Data.Data(3, 0) = 2.0;
+  EXPECT_TRUE(update().empty());
+  input.Data.Mask.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
+  EXPECT_EQ(update().size(), 1u); // a mask without effect
+  settings.TimeStep = 0.25;
+  EXPECT_TRUE(update().empty());
+  input.Data.Mask[5] = 1;
+  EXPECT_TRUE(update().empty());
+  input.Data.Mask[5] = 0;
+  EXPECT_EQ(update().size(), 1u); // the mask had an effect in between
+  input.Vertices.row(7) *= 1.1;
+  EXPECT_EQ(update().size(), 1u); // another surface with an unused point
 }
 
 TEST(Run, HistoryHasARowPerStepAndAConstantTotal)

@@ -8,10 +8,12 @@ import os
 from paraview import smtrace
 from paraview.simple import (
     AssignViewToLayout, ColorBy, CreateView, Delete, FindSource, GetActiveSource, GetActiveView,
-    GetAnimationScene, GetColorTransferFunction, GetDisplayProperties, GetLayout, GetViews, Hide,
-    SetActiveSource, SetActiveView, Show,
+    GetAnimationScene, GetColorTransferFunction, GetDisplayProperties, GetLayout, GetSources,
+    GetViews, Hide, SetActiveSource, SetActiveView, Show,
 )
-from plugin_testing import assert_looks_like
+from plugin_testing import (
+    PICTURE_TOLERANCE, assert_looks_like, assert_looks_unlike, picture_error,
+)
 
 # The array that colours the test's picture of a filter, and the array that the first Apply selects.
 COLORS = {
@@ -20,6 +22,15 @@ COLORS = {
     "HarmonicMapFilter": (("POINTS", "NormalsHarmonic"), ("POINTS", "f")),  # seen in the shading
     "TuringTextureFilter": (("POINTS", "Texture"), ("POINTS", "u1")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), ("POINTS", "f")),
+}
+
+# A change of each filter that its picture must show: one step fewer, or a rate that is slightly off.
+SLIPS = {
+    "FVMHeatFilter": lambda heat: {"NumberOfTimeSteps": heat.NumberOfTimeSteps - 1},
+    "IntrinsicTVFilter": lambda tv: {"FidelityWeight": 1.2 * tv.FidelityWeight},
+    "HarmonicMapFilter": lambda harmonic: {"NumberOfTimeSteps": harmonic.NumberOfTimeSteps - 1},
+    "TuringTextureFilter": lambda turing: {"DiffusionRate2": 1.02 * turing.DiffusionRate2},
+    "SurfaceDirectionFieldFilter": lambda field: {"Angle": field.Angle + 3.0},
 }
 
 
@@ -36,8 +47,8 @@ def render_view():
     return next(view for view in GetViews() if name_of(view) == "RenderView")
 
 
-def check_picture(baseline):
-    """Checks the picture of the active source, coloured by its result."""
+def show_result():
+    """Colours the picture of the active source by its result."""
     source, view = GetActiveSource(), render_view()
     array, _ = COLORS[name_of(source)]
     display = GetDisplayProperties(source, view)
@@ -46,15 +57,27 @@ def check_picture(baseline):
     display.LookupTable = GetColorTransferFunction(array[1])
     display.SetScalarBarVisibility(view, False)
     view.OrientationAxesVisibility = 0
-    assert_looks_like(view, baseline)
+    return view
+
+
+def check_picture(baseline):
+    """Checks the picture of the active source, coloured by its result."""
+    assert_looks_like(show_result(), baseline)
 
 
 def looks_like(baseline):
-    try:
-        check_picture(baseline)
-    except AssertionError:
-        return False
-    return True
+    return picture_error(show_result(), baseline) <= PICTURE_TOLERANCE
+
+
+def check_slip(view, baseline, slip):
+    """Checks that the picture of the active source would show this change of its properties."""
+    source = GetActiveSource()
+    correct = {name: source.GetPropertyValue(name) for name in slip}
+    for name, value in slip.items():
+        source.SetPropertyWithName(name, value)
+    assert_looks_unlike(view, baseline)
+    for name, value in correct.items():
+        source.SetPropertyWithName(name, value)
 
 
 def check_first_apply():
@@ -65,6 +88,7 @@ def check_first_apply():
     assert tuple(display.ColorArrayName) == COLORS[name][1], display.ColorArrayName
     assert len(GetViews()) == 1  # the history does not open by default
     check_picture("Client" + name)
+    check_slip(view, "Client" + name, SLIPS[name](source))
     Hide(source, view)
     SetActiveView(view)
     data = FindSource("Data")
@@ -149,13 +173,19 @@ def select_nothing():
 def check_macro():
     """Checks the picture of the example that a macro of Examples/ParaView shows."""
     source, view = GetActiveSource(), render_view()
-    name = {
-        "IntrinsicTVFilter": "Inpaint" if source == FindSource("Inpainted") else "Denoise",
-        "HarmonicMapFilter": "DenoiseMesh",
-        "TuringTextureFilter": "Texture",
-    }[name_of(source)]
+    name, slip = {
+        "Inpainted": ("Inpaint", {"HoldKnownValues": 0}),
+        "Denoised": ("Denoise", {}),
+        "Denoised mesh": ("DenoiseMesh", {"TimeStep": 1.2 * 0.03}),
+        "Texture": ("Texture", {"DiffusionRate2": 1.02 * 5.2}),
+    }[next(key[0] for key, each in GetSources().items() if each == source)]
+    if name == "Denoise":
+        source.UpdatePropertyInformation()
+        weight = source.GetPropertyValue("EffectiveFidelityWeight")
+        slip = {"AutomaticFidelity": 0, "FidelityWeight": 1.2 * weight}
     if name != "DenoiseMesh":
         GetDisplayProperties(source, view).SetScalarBarVisibility(view, False)
     view.OrientationAxesVisibility = 0
     assert_looks_like(view, "Macro" + name)
+    check_slip(view, "Macro" + name, slip)
     say("as expected: " + name)

@@ -117,20 +117,43 @@ def errors_of(source):
     return errors
 
 
-def assert_looks_like(view, baseline):
-    """Asserts that the picture of the view equals the baseline up to ten fully different pixels."""
+# The largest error of equal pictures, in fully different pixels; see Testing/Filters/ImageTest.h.
+PICTURE_TOLERANCE = 10.0
+
+
+def picture_error(view, baseline, written=None):
+    """The difference of the view's picture from the baseline, in fully different pixels, by the
+    strict comparison of ImageTest.h: no shifts, no averages. The picture is kept as `written`."""
     folder = os.environ["SURFACEDIFFUSION_OUTPUT_DIR"]
-    written = os.path.join(folder, baseline + ".png")
-    SaveScreenshot(written, view, ImageResolution=[300, 300], OverrideColorPalette="WhiteBackground")
+    path = os.path.join(folder, (written or baseline) + ".png")
+    SaveScreenshot(path, view, ImageResolution=[300, 300], OverrideColorPalette="WhiteBackground")
     images = []
-    for path in (written, os.path.join(os.environ["SURFACEDIFFUSION_BASELINE_DIR"], baseline + ".png")):
+    for each in (path, os.path.join(os.environ["SURFACEDIFFUSION_BASELINE_DIR"], baseline + ".png")):
+        assert os.path.exists(each), "no picture %s; obtained: %s" % (each, path)
         reader = vtkPNGReader()
-        reader.SetFileName(path)
+        reader.SetFileName(each)
         reader.Update()
         images.append(reader)
     difference = vtkImageDifference()
     difference.SetInputConnection(images[0].GetOutputPort())
     difference.SetImageConnection(images[1].GetOutputPort())
+    difference.AllowShiftOff()
+    difference.AveragingOff()
+    difference.SetThreshold(16)
     difference.Update()
     error = difference.GetThresholdedError()
-    assert error <= 10.0, "%s differs from its baseline by %g pixels" % (written, error)
+    os.write(1, ("%s: difference %g\n" % (path, error)).encode())
+    return error
+
+
+def assert_looks_like(view, baseline):
+    """Asserts that the picture of the view equals the baseline."""
+    error = picture_error(view, baseline)
+    assert error <= PICTURE_TOLERANCE, "%s differs from its baseline by %g pixels" % (baseline, error)
+
+
+def assert_looks_unlike(view, baseline):
+    """Asserts that the picture differs from the baseline: a negative twin, which shows something
+    slightly wrong."""
+    error = picture_error(view, baseline, written=baseline + "Slipped")
+    assert error > PICTURE_TOLERANCE, "%s does not show the change: %g pixels" % (baseline, error)

@@ -1,20 +1,23 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every filter, with its default properties but few time steps, on all mesh files and on a family
-// of surfaces with one defect each. Results are finite, integrals are conserved, bounds hold if the
-// scheme has them, and no run is an error. Run by itself the program prints a table. With
-// SURFACEDIFFUSION_LONG in the environment (ctest -C Long) runs have their default length.
+// Every filter, with its default properties but few time steps, on mesh files and on a family of
+// surfaces with one defect each. The promises of each class hold (Promises.h), and no run is an
+// error. Run by itself the program prints a table. With SURFACEDIFFUSION_LONG in the environment
+// (the test preset "long") all mesh files are read, and runs have their default length.
 
 #include "AllFilters.h"
 #include "BadMeshes.h"
 #include "MeshFile.h"
+#include "Promises.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 
 using namespace FilterTest;
 
@@ -43,6 +46,24 @@ std::string NameOf(const testing::TestParamInfo<Case>& info)
   return name;
 }
 
+/// A tenth of the mesh files, with every defect that occurs in them.
+const std::set<std::string> SomeMeshes = {
+  "anchor_dense", // angles from 0.0007 to 180 degrees, genus 4
+  "bear", // a closed scan of 14,000 points
+  "blobby-shuffled", // triangles of both orientations
+  "boeing", // 122 components, 1,477 coincident points
+  "bones", // 26 closed components
+  "cow", // a coincident point
+  "degtri_sliding", // triangles of zero area
+  "double-torus-example", // polygons of 4 to 7 corners, genus 2
+  "elephant-with-holes", // open, coincident points
+  "fandisk", // sharp creases
+  "mpi_triang", // angles of 2e-5 degrees, genus 1
+  "polygon_mesh", // non-manifold vertices
+  "prim", // isolated vertices
+  "triceratops", // angles from 0.0002 to 180 degrees
+};
+
 std::vector<Case> MeshFiles()
 {
   std::vector<Case> cases;
@@ -51,7 +72,7 @@ std::vector<Case> MeshFiles()
   {
     for (const auto& entry : std::filesystem::directory_iterator(folder))
     {
-      if (entry.path().extension() == ".off")
+      if (entry.path().extension() == ".off" && (Long || SomeMeshes.count(entry.path().stem())))
       {
         cases.push_back({ entry.path().stem().string(), entry.path().string() });
       }
@@ -126,37 +147,11 @@ void PrintRow(const std::string& mesh, vtkPolyDataAlgorithm* filter, const Messa
     found.c_str(), message.c_str());
 }
 
-std::string Text(const char* format, double value)
-{
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-/// The change of the integral in the history, relative to its start; the data are positive.
-double ChangeOfTotal(vtkAlgorithm* filter)
-{
-  const vtkIdType last = History(filter)->GetNumberOfRows() - 1;
-  const double first = HistoryAt(filter, 0, "Total_0");
-  return first == 0.0 ? 0.0 : std::abs(HistoryAt(filter, last, "Total_0") / first - 1.0);
-}
-
-/// The largest distance of the values from [1, 3), relative to the length of that interval.
-double Overshoot(vtkPolyData* surface, vtkDataArray* u)
-{
-  double given[2];
-  double range[2];
-  surface->GetPointData()->GetScalars()->GetRange(given);
-  u->GetRange(range);
-  return std::max({ 0.0, given[0] - range[0], range[1] - given[1] }) /
-    std::max(given[1] - given[0], 1e-300);
-}
-
-void SetSteps(vtkSurfaceDiffusionAlgorithm* filter)
+void SetSteps(vtkSurfaceDiffusionAlgorithm* filter, int steps)
 {
   if (!Long)
   {
-    filter->SetNumberOfTimeSteps(2);
+    filter->SetNumberOfTimeSteps(steps);
   }
 }
 
@@ -165,32 +160,16 @@ class EveryMesh : public testing::TestWithParam<Case>
 protected:
   void SetUp() override { this->Surface = MakeSurface(this->GetParam()); }
 
-  /// Run the filter and check its result; `examine` returns further findings for the table.
-  template <typename Examine>
-  void Run(vtkPolyDataAlgorithm* filter, const char* result, Examine examine)
+  /// Run the filter and check the promises of its class.
+  void Run(vtkPolyDataAlgorithm* filter, const char* result)
   {
+    SCOPED_TRACE(filter->GetClassName());
     filter->SetInputData(this->Surface);
     Messages messages(filter);
     filter->Update();
-    EXPECT_TRUE(messages.Errors.empty()) << filter->GetClassName() << messages.Errors[0];
-    vtkDataArray* u = Result(filter, result);
-    if (!u)
-    {
-      u = filter->GetOutput()->GetCellData()->GetArray(result);
-    }
-    EXPECT_TRUE(AllFinite(u)) << filter->GetClassName();
-    PrintRow(this->GetParam().Name, filter, messages, u ? examine(u) : "");
-  }
-
-  void RunConserving(vtkPolyDataAlgorithm* filter, const char* result)
-  {
-    this->Run(filter, result,
-      [&](vtkDataArray*)
-      {
-        const double change = ChangeOfTotal(filter);
-        EXPECT_LE(change, 1e-12) << filter->GetClassName();
-        return Text("sum changed by %.1e", change);
-      });
+    EXPECT_TRUE(messages.Errors.empty()) << messages.Errors[0];
+    PrintRow(
+      this->GetParam().Name, filter, messages, ExpectPromises(filter, this->Surface, result));
   }
 
   vtkSmartPointer<vtkPolyData> Surface;
@@ -201,65 +180,50 @@ protected:
 TEST_P(EveryMesh, IsDiffused)
 {
   vtkNew<vtkFVMHeatFilter> heat;
-  SetSteps(heat);
-  this->RunConserving(heat, "fDiffused");
-
-  vtkNew<vtkIntrinsicTVFilter> tv;
-  SetSteps(tv);
-  tv->SetFidelityWeight(0.0); // the fidelity term changes the integral
-  this->RunConserving(tv, "fTV");
+  SetSteps(heat, 2);
+  this->Run(heat, "fDiffused");
 
   vtkNew<vtkFVMHeatFilter> bounded;
-  SetSteps(bounded);
+  SetSteps(bounded, 2);
   bounded->IntrinsicDelaunayOn();
   bounded->SetTimeIntegratorToFirstOrder();
-  this->Run(bounded, "fDiffused",
-    [&](vtkDataArray* u)
-    {
-      const double overshoot = Overshoot(this->Surface, u);
-      EXPECT_LE(overshoot, 1e-9); // the solver's tolerance
-      EXPECT_LE(ChangeOfTotal(bounded), 1e-12);
-      return Text("Delaunay: overshoot %.1e", overshoot);
-    });
+  this->Run(bounded, "fDiffused");
 }
 
 TEST_P(EveryMesh, IsDenoisedByTotalVariation)
 {
-  vtkNew<vtkIntrinsicTVFilter> tv;
-  SetSteps(tv);
-  this->Run(tv, "fTV",
-    [&](vtkDataArray* u) { return Text("overshoot %.1e", Overshoot(this->Surface, u)); });
+  for (const double fidelity : { 0.0, 3.0 })
+  {
+    vtkNew<vtkIntrinsicTVFilter> tv;
+    SetSteps(tv, 2);
+    tv->SetFidelityWeight(fidelity);
+    this->Run(tv, "fTV");
+  }
 }
 
 TEST_P(EveryMesh, HasItsNormalsRegularised)
 {
   vtkNew<vtkHarmonicMapFilter> harmonic;
-  SetSteps(harmonic);
-  this->Run(harmonic, "NormalsHarmonic",
-    [&](vtkDataArray*)
-    {
-      const vtkIdType last = History(harmonic)->GetNumberOfRows() - 1;
-      const double first = HistoryAt(harmonic, 0, "Energy");
-      const double energy = HistoryAt(harmonic, last, "Energy");
-      EXPECT_LE(energy, first * (1.0 + 1e-9));
-      return Text("energy fell to %.4f", first > 0.0 ? energy / first : 1.0);
-    });
+  SetSteps(harmonic, 2);
+  this->Run(harmonic, "NormalsHarmonic");
 }
 
 TEST_P(EveryMesh, HasATextureGrown)
 {
   vtkNew<vtkTuringTextureFilter> turing;
-  if (!Long)
-  {
-    turing->SetNumberOfTimeSteps(8);
-  }
-  this->Run(turing, "u1", [&](vtkDataArray* u) { return Text("smallest %.1e", u->GetRange()[0]); });
+  SetSteps(turing, 8);
+  this->Run(turing, "u1");
+
+  vtkNew<vtkTuringTextureFilter> firstOrder;
+  SetSteps(firstOrder, 8);
+  firstOrder->SetTimeIntegratorToFirstOrder();
+  this->Run(firstOrder, "u1");
 }
 
 TEST_P(EveryMesh, HasDirectionsFound)
 {
   vtkNew<vtkSurfaceDirectionFieldFilter> field;
-  this->Run(field, "Direction", [&](vtkDataArray*) { return std::string(); });
+  this->Run(field, "Direction");
 }
 
 class EveryBadMesh : public EveryMesh
@@ -271,7 +235,7 @@ TEST_P(EveryBadMesh, IsTakenByEveryModel)
   for (const FilterKind& kind : AllFilters())
   {
     SCOPED_TRACE(kind.Name);
-    this->Run(kind.Make(), kind.Result, [&](vtkDataArray*) { return kind.Name; });
+    this->Run(kind.Make(), kind.Result);
   }
 }
 

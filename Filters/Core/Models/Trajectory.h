@@ -91,6 +91,7 @@ private:
   CheckpointStore Checkpoints;
   std::vector<StepRecord> History;
   std::vector<double> Totals;
+  std::vector<double> StateTotals; ///< of the last row of Totals
   Index Current = 0;
   Index Advances = 0;
 };

@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "AllFilters.h"
+
+#include "vtkIdList.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+/// The promises of each class for any surface, as its header states them. The input's data are
+/// positive and complete.
+namespace FilterTest
+{
+
+inline std::string Text(const char* format, double value)
+{
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+inline std::vector<double> HistoryColumn(vtkAlgorithm* filter, const char* column)
+{
+  std::vector<double> values;
+  for (vtkIdType row = 0; row < History(filter)->GetNumberOfRows(); ++row)
+  {
+    values.push_back(HistoryAt(filter, row, column));
+  }
+  return values;
+}
+
+/// Sum A_i u_i of every state is that of the start, up to a relative error of 1e-12.
+inline std::string ExpectTotalIsConserved(vtkAlgorithm* filter)
+{
+  const std::vector<double> totals = HistoryColumn(filter, "Total_0");
+  double change = 0.0;
+  for (const double total : totals)
+  {
+    change = std::max(change, totals[0] == 0.0 ? total : std::abs(total / totals[0] - 1.0));
+  }
+  EXPECT_LE(change, 1e-12);
+  return Text("sum changed by %.1e", change);
+}
+
+/// The energy of no step is above that of the step before, up to round-off.
+inline std::string ExpectEnergyFalls(vtkAlgorithm* filter)
+{
+  const std::vector<double> energies = HistoryColumn(filter, "Energy");
+  for (std::size_t step = 1; step < energies.size(); ++step)
+  {
+    EXPECT_LE(energies[step], energies[step - 1] + 1e-9 * energies[0]) << "step " << step;
+  }
+  return Text("energy fell to %.4f", energies[0] > 0.0 ? energies.back() / energies[0] : 1.0);
+}
+
+/// The result has no value outside the range of the data, up to the solver's tolerance.
+inline std::string ExpectStaysInRange(vtkDataArray* given, vtkDataArray* u)
+{
+  double data[2];
+  double result[2];
+  given->GetRange(data);
+  u->GetRange(result);
+  const double overshoot = std::max({ 0.0, data[0] - result[0], result[1] - data[1] });
+  EXPECT_LE(overshoot, 1e-9 * (data[1] - data[0]));
+  return Text("overshoot %.1e", overshoot);
+}
+
+/// The uniform steady state of the default texture, u1 = u2 = gamma - mu at the points that take
+/// part and 0 at all others.
+inline vtkSmartPointer<vtkTuringTextureFilter> UniformState(vtkPolyData* surface)
+{
+  auto uniform = vtkSmartPointer<vtkTuringTextureFilter>::New();
+  uniform->SetInputData(surface);
+  uniform->SetInitialNoise(0.0);
+  uniform->SetNumberOfTimeSteps(0);
+  Messages messages(uniform);
+  uniform->Update();
+  return uniform;
+}
+
+/// The area of the participating triangles.
+inline double AreaOf(vtkPolyData* surface)
+{
+  const auto uniform = UniformState(surface);
+  return HistoryAt(uniform, 0, "Total_1") / (uniform->GetGrowthRate() - uniform->GetDecayRate());
+}
+
+/// Vectors have length 1 at points that take part.
+inline std::string ExpectUnitLength(vtkPolyData* surface, vtkDataArray* u)
+{
+  const double tolerance = u->GetDataType() == VTK_FLOAT ? 1e-6 : 1e-12;
+  const auto uniform = UniformState(surface);
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < u->GetNumberOfTuples(); ++i)
+  {
+    if (Result(uniform, "u1")->GetComponent(i, 0) != 0.0)
+    {
+      largest = std::max(largest, std::abs(vtkMath::Norm(u->GetTuple3(i)) - 1.0));
+    }
+  }
+  EXPECT_LE(largest, tolerance);
+  return Text("length changed by %.1e", largest);
+}
+
+/// The normal of a triangle, divided by the square of the longest edge and thus at any scale. Its
+/// length is between half the sine of the smallest angle and this sine.
+struct UnitTriangle
+{
+  UnitTriangle(vtkPolyData* surface, vtkIdList* corners)
+  {
+    double p[3][3];
+    for (int a = 0; a < 3; ++a)
+    {
+      surface->GetPoint(corners->GetId(a), p[a]);
+    }
+    vtkMath::Subtract(p[1], p[0], p[1]);
+    vtkMath::Subtract(p[2], p[0], p[2]);
+    double last[3];
+    vtkMath::Subtract(p[2], p[1], last);
+    const double longest =
+      std::max({ vtkMath::Norm(p[1]), vtkMath::Norm(p[2]), vtkMath::Norm(last) });
+    if (longest > 0.0)
+    {
+      vtkMath::MultiplyScalar(p[1], 1.0 / longest);
+      vtkMath::MultiplyScalar(p[2], 1.0 / longest);
+      vtkMath::Cross(p[1], p[2], this->Normal);
+    }
+    this->Sine = vtkMath::Norm(this->Normal);
+  }
+
+  double Normal[3] = { 0.0, 0.0, 0.0 };
+  double Sine = 0.0;
+};
+
+/// The coordinates of a triangle with a small angle determine its normal and its weights only up to
+/// this relative error.
+inline double RoundingOf(double sine)
+{
+  return 1e-15 / std::max(sine, 1e-15);
+}
+
+/// The largest such error of the triangles, except those of zero area.
+inline double RoundingOf(vtkPolyData* surface)
+{
+  double rounding = 0.0;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell)
+  {
+    surface->GetCellPoints(cell, corners);
+    const double sine = corners->GetNumberOfIds() == 3 ? UnitTriangle(surface, corners).Sine : 0.0;
+    rounding = sine > 1e-14 ? std::max(rounding, RoundingOf(sine)) : rounding;
+  }
+  return rounding;
+}
+
+/// Directions of triangles lie in their triangle and have length 1, or are zero.
+inline std::string ExpectTangentialUnitOrZero(vtkPolyData* surface, vtkDataArray* directions)
+{
+  double normalPart = 0.0;
+  vtkIdType zeros = 0;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell)
+  {
+    double d[3];
+    directions->GetTuple(cell, d);
+    const double length = vtkMath::Norm(d);
+    if (length == 0.0)
+    {
+      ++zeros;
+      continue;
+    }
+    surface->GetCellPoints(cell, corners);
+    if (corners->GetNumberOfIds() != 3)
+    {
+      EXPECT_NEAR(length, 1.0, 1e-12) << "cell " << cell;
+      continue;
+    }
+    const UnitTriangle triangle(surface, corners);
+    EXPECT_NEAR(length, 1.0, 1e-12 + RoundingOf(triangle.Sine)) << "cell " << cell;
+    normalPart = std::max(normalPart, std::abs(vtkMath::Dot(d, triangle.Normal)));
+  }
+  EXPECT_LE(normalPart, 1e-12);
+  return Text("normal part %.1e, ", normalPart) +
+    Text("%.0f without direction", static_cast<double>(zeros));
+}
+
+/// Concentrations are not negative, and the texture is in [0, 1].
+inline std::string ExpectPatternBounds(vtkPolyDataAlgorithm* filter)
+{
+  const double u1 = Result(filter, "u1")->GetRange()[0];
+  const double u2 = Result(filter, "u2")->GetRange()[0];
+  EXPECT_GE(std::min(u1, u2), 0.0);
+  EXPECT_GE(Result(filter, "Texture")->GetRange()[0], 0.0);
+  EXPECT_LE(Result(filter, "Texture")->GetRange()[1], 1.0);
+  return Text("smallest %.1e", std::min(u1, u2));
+}
+
+/// Diffusion conserves both totals, and the reactions (24) have F + G = s (gamma - mu - u2). A step
+/// of the first-order scheme therefore changes the total of u1 + u2 by a known amount, to which
+/// clamping can only add.
+inline std::string ExpectReactionBalance(vtkTuringTextureFilter* filter, vtkPolyData* surface)
+{
+  const double area = AreaOf(surface);
+  const double tolerance = 1e-11 + RoundingOf(surface);
+  const std::vector<double> times = HistoryColumn(filter, "Time");
+  const std::vector<double> clamped = HistoryColumn(filter, "Clamped");
+  const std::vector<double> u1 = HistoryColumn(filter, "Total_0");
+  const std::vector<double> u2 = HistoryColumn(filter, "Total_1");
+  const double supply = filter->GetGrowthRate() - filter->GetDecayRate();
+  double largest = 0.0;
+  for (std::size_t step = 1; step < times.size(); ++step)
+  {
+    const double before = u1[step - 1] + u2[step - 1];
+    const double change = (times[step] - times[step - 1]) * (supply * area - u2[step - 1]);
+    const double error = (u1[step] + u2[step] - before - change) / std::max(before, 1e-300);
+    EXPECT_GE(error, -tolerance) << "step " << step;
+    if (clamped[step] == 0.0)
+    {
+      EXPECT_LE(error, tolerance) << "step " << step;
+      largest = std::max(largest, std::abs(error));
+    }
+  }
+  return Text("balance to %.1e", largest);
+}
+
+/// Check the promises of an updated filter. The return value describes the findings.
+inline std::string ExpectPromises(
+  vtkPolyDataAlgorithm* filter, vtkPolyData* input, const char* name)
+{
+  vtkDataArray* const u = ResultOf(filter, name);
+  EXPECT_TRUE(AllFinite(u));
+  if (!u)
+  {
+    return "no result";
+  }
+  if (auto* heat = vtkFVMHeatFilter::SafeDownCast(filter))
+  {
+    std::string found = ExpectTotalIsConserved(heat) + ", " + ExpectEnergyFalls(heat);
+    if (heat->GetIntrinsicDelaunay() &&
+      heat->GetTimeIntegrator() == vtkFVMHeatFilter::TIME_INTEGRATOR_FIRST_ORDER)
+    {
+      found += ", " + ExpectStaysInRange(input->GetPointData()->GetScalars(), u);
+    }
+    return found;
+  }
+  if (auto* tv = vtkIntrinsicTVFilter::SafeDownCast(filter))
+  {
+    std::string found = ExpectTotalIsConserved(tv);
+    if (tv->GetTimeIntegrator() == vtkIntrinsicTVFilter::TIME_INTEGRATOR_FIRST_ORDER &&
+      tv->GetMode() == vtkIntrinsicTVFilter::MODE_TIME_STEPS &&
+      tv->GetDiscretization() == vtkIntrinsicTVFilter::DISCRETIZATION_LINEAR)
+    {
+      found += ", " + ExpectEnergyFalls(tv);
+    }
+    return found;
+  }
+  if (auto* harmonic = vtkHarmonicMapFilter::SafeDownCast(filter))
+  {
+    std::string found = ExpectUnitLength(input, u);
+    if (harmonic->GetScheme() != vtkHarmonicMapFilter::SCHEME_EXPLICIT_REACTION)
+    {
+      found += ", " + ExpectEnergyFalls(harmonic);
+    }
+    return found;
+  }
+  if (auto* turing = vtkTuringTextureFilter::SafeDownCast(filter))
+  {
+    std::string found = ExpectPatternBounds(turing);
+    if (turing->GetTimeIntegrator() == vtkTuringTextureFilter::TIME_INTEGRATOR_FIRST_ORDER)
+    {
+      found += ", " + ExpectReactionBalance(turing, input);
+    }
+    return found;
+  }
+  return ExpectTangentialUnitOrZero(input, u);
+}
+
+} // namespace FilterTest
