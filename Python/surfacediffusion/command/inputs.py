@@ -83,7 +83,7 @@ def make_patches(surfaces, data: Data, columns, arguments):
     patches = []
     for part in data.parts:
         surface = _surface_for(part, surfaces, data)
-        values = np.array(part.values[:, columns], order="F", dtype=_float_type(part.values))
+        values = np.array(part.values[:, columns], order="C", dtype=_float_type(part.values))
         _require_finite(values, data, part, columns)
         if arguments.fix_zeros:
             values[values == 0] = np.nan

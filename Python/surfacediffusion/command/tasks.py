@@ -73,12 +73,11 @@ def texture(arguments, report):
     if arguments.steps:
         options["number_of_time_steps"] = arguments.steps
     with report.timed("compute"), report.progress("Texture") as progress:
-        values = turing_texture(Surface(surface.points, surface.faces),
-                                feature_size=arguments.size, seed=arguments.seed,
-                                progress=progress, **options)
-    values = np.asarray(values).reshape(len(surface.points), -1)[:, :1].astype(np.float32)
-    report.facts.update(feature_size=arguments.size, seed=arguments.seed)
-    _write_new(arguments, report, target, values)
+        result = turing_texture(Surface(surface.points, surface.faces), progress=progress,
+                                feature_size=arguments.size, seed=arguments.seed, **options)
+    report.facts.update(feature_size=arguments.size, seed=arguments.seed, steps=result.step,
+                        wavelength=number(result.wavelength))
+    _write_new(arguments, report, target, result.texture[:, None].astype(np.float32))
 
 
 def directions(arguments, report):
@@ -118,17 +117,20 @@ def normals(arguments, report):
     if arguments.steps:
         options["number_of_time_steps"] = arguments.steps
     with report.timed("compute"), report.progress("Normals") as progress:
-        result = harmonic_map(Surface(surface.points, surface.faces), progress=progress,
-                              full_output=True, **options)
-    report.facts.update(exponent=arguments.exponent, moved=arguments.move)
+        result = harmonic_map(Surface(surface.points, surface.faces), progress=progress, **options)
+    report.facts.update(exponent=arguments.exponent, moved=arguments.move, steps=result.step)
     if not arguments.move:
         _write_new(arguments, report, target, np.asarray(result.values, dtype=np.float32))
         return
     with report.timed("write"):
         surface.save(arguments.output, result.points)
-    distance = np.linalg.norm(np.asarray(result.points) - surface.points, axis=1)
-    report.facts["largest_move"] = number(distance.max())
-    _say_written(arguments, report, f"points moved by at most {distance.max():.4g}")
+    report.facts.update(mean_displacement=number(result.mean_displacement),
+                        maximum_displacement=number(result.maximum_displacement),
+                        volume_before=number(result.volume_before),
+                        volume_after=number(result.volume_after))
+    _say_written(arguments, report,
+                 f"points moved by {result.mean_displacement:.4g} on average, at most "
+                 f"{result.maximum_displacement:.4g}")
 
 
 def fwhm(arguments, report):
@@ -144,7 +146,7 @@ def fwhm(arguments, report):
         entry = {"surface": patch.surface.path, "structure": patch.part.structure,
                  "pooled": number(result.pooled),
                  "columns": [{"name": data.names[c], "fwhm": number(width)}
-                             for c, width in zip(columns, np.atleast_1d(result.values))]}
+                             for c, width in zip(columns, result.columns)]}
         report.facts.setdefault("surfaces", []).append(entry)
         where = f"{patch.part.structure}: " if len(patches) > 1 else ""
         for column, row in zip(columns, entry["columns"]):
@@ -251,13 +253,14 @@ def _change_data(arguments, report, title, compute, groups, missing=None):
     with report.progress(title) as progress:
         for patch in patches:
             surface = Surface(patch.surface.points, patch.surface.faces)
-            new = np.array(patch.values)
+            mask = patch.excluded if patch.excluded.any() else None
+            new = np.empty_like(patch.values)
             for group in groups(data, columns, patch):
                 _require_known(patch, group, data, columns)
+                chosen = slice(None) if len(group) == len(columns) else group
                 with report.timed("compute"):
-                    new[:, group] = compute(
-                        surface, patch.values[:, group],
-                        patch.excluded if patch.excluded.any() else None,
+                    new[:, chosen] = compute(
+                        surface, patch.values[:, chosen], mask,
                         _part_of(progress, done / total, len(group) / total))
                 done += len(group)
             results.append(patch.to_part(new))
