@@ -145,7 +145,8 @@ void Trajectory::Record(const StepReport& report, double seconds)
     this->Totals.push_back(
       Total(*this->Surface, this->State(), static_cast<Eigen::Index>(k), this->Parallel));
   }
-  this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped });
+  this->History.push_back(
+    { energy, report.Iterations, report.Residual, seconds, report.Clamped, report.ErrorBound });
 }
 
 } // namespace SurfaceDiffusion

@@ -48,6 +48,7 @@ struct StepRecord
   double Residual = 0.0;
   double Seconds = 0.0;
   Index Clamped = 0;
+  double ErrorBound = 0.0;
 };
 
 /// A model that can be moved to any step, forwards and backwards, with the same bits in any order.
