@@ -371,7 +371,7 @@ TEST(TotalVariationFlow, OutliersAtMostDoubleTheIterations)
     EXPECT_LE(report.Residual, settings.StopTolerance);
     return report.Iterations;
   };
-  for (const FidelityNorm norm : { FidelityNorm::L2 })
+  for (const FidelityNorm norm : { FidelityNorm::L2, FidelityNorm::L1 })
   {
     const int without = iterations(norm, 0.0);
     for (const double outlier : { 10.0, 100.0, 1e3, 1e4 })

@@ -60,15 +60,20 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
     });
   this->MeasureWeights(quadratic);
 
+  if (settings.SteadyState && settings.Norm == FidelityNorm::L1)
+  {
+    this->SteadyStart = WithoutOutliers(this->Data.Start, mesh.GetReduction());
+  }
+  const Values& values = this->SteadyStart.size() > 0 ? this->SteadyStart : this->Data.Start;
   const Eigen::Index all = this->U.cols();
   const Eigen::Index columns = settings.Coupling == ChannelCoupling::Joint ? all : 1;
   for (Eigen::Index first = 0; first < all; first += columns)
   {
-    const auto start = this->Data.Start.middleCols(first, columns);
+    const auto start = values.middleCols(first, columns);
     TotalVariationMinimizer::Settings minimizer;
     minimizer.Function = settings.Function;
     minimizer.Coupling = settings.Coupling;
-    minimizer.Range = ValueRange(start, mesh.GetReduction());
+    minimizer.Range = ValueRange(this->Data.Start.middleCols(first, columns), mesh.GetReduction());
     minimizer.StopTolerance = settings.StopTolerance;
     minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
     this->Systems.push_back({ first, columns,
@@ -129,6 +134,10 @@ void TotalVariationFlow::SetTarget()
   const Index n = this->Assembly->Mesh().NumberOfVertices();
   if (this->Options.SteadyState)
   {
+    if (this->SteadyStart.size() > 0)
+    {
+      this->U = this->SteadyStart;
+    }
     ForEach(this->Parallel, n,
       [&](Index i)
       {

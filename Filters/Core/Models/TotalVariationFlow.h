@@ -91,6 +91,7 @@ private:
   double WeightedArea = 0.0; ///< of the control cells with mu > 0
   std::vector<System> Systems;
   Values Target;
+  Values SteadyStart; ///< from which the steady state of L1 is sought, which removes outliers
   mutable Values ColumnU;
   Values ColumnTarget, ColumnGiven; ///< of one of several systems
 };

@@ -52,6 +52,20 @@ double TypicalRange(const Eigen::Ref<const Values>& u, const Reduction& reductio
   return std::max(typical, 1e-4 * ValueRange(u, reduction));
 }
 
+Values WithoutOutliers(const Values& u, const Reduction& reduction)
+{
+  Values clipped = u;
+  for (Eigen::Index k = 0; k < u.cols(); ++k)
+  {
+    const Vector column = u.col(k);
+    const double margin = TypicalRange(u.col(k), reduction);
+    const double low = reduction.Quantile(column, 0.005) - margin;
+    const double high = reduction.Quantile(column, 0.995) + margin;
+    clipped.col(k) = column.cwiseMax(low).cwiseMin(high);
+  }
+  return clipped;
+}
+
 double RangeOnTriangle(const TriangleMesh& mesh, const Eigen::Ref<const Values>& u, Index triangle)
 {
   const auto corners = mesh.TriangleVertices().row(triangle);
