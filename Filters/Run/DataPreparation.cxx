@@ -5,6 +5,8 @@
 #include "Core/Models/NoiseLevel.h"
 #include "Core/Operators/CotanWeights.h"
 
+#include <sstream>
+
 namespace SurfaceDiffusion
 {
 
@@ -42,19 +44,44 @@ CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& input
     : CornerWeights(settings.AlongDiffusivity * isotropic);
 }
 
-double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start,
-  const std::function<std::unique_ptr<Model>(double)>& makeModel)
+double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,
+  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result)
 {
-  const double noise = noiseLevel > 0.0
-    ? noiseLevel / inputs.Units.ValueUnit
-    : EstimateNoiseLevel(*inputs.Surface.SharedAssembler(), inputs.Data);
+  const double unit = inputs.Units.ValueUnit;
+  double noise = noiseLevel / unit;
+  if (noiseLevel == 0.0)
+  {
+    const NoiseEstimate estimate =
+      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data);
+    noise = estimate.Level();
+    if (estimate.IsCorrelated())
+    {
+      std::ostringstream text;
+      text << "the noise is correlated: its standard deviation is "
+           << estimate.BetweenNeighbours * unit << " between neighbours and " << noise * unit
+           << " farther apart, which AutomaticFidelity uses (to set another, use NoiseLevel)";
+      result.Warnings.push_back(text.str());
+    }
+  }
   const auto discrepancy = [&](double fidelity)
   {
     const std::unique_ptr<Model> model = makeModel(fidelity);
-    model->Advance(inputs.Progress.Part(0.5, 0.5));
+    for (int step = 0; step < steps; ++step)
+    {
+      model->Advance(inputs.Progress.Part(0.5, 0.5));
+    }
     return Discrepancy(inputs.Surface.Mesh(), inputs.Data, model->State());
   };
-  return FindFidelityByDiscrepancy(discrepancy, noise, start);
+  const FidelityChoice choice = FindFidelityByDiscrepancy(discrepancy, noise, start);
+  if (!choice.IsFound)
+  {
+    std::ostringstream text;
+    text << "AutomaticFidelity found no weight at which the result differs from the data by the "
+         << "noise, " << noise * unit << ": at the end of its search the difference is "
+         << choice.Discrepancy * unit;
+    result.Warnings.push_back(text.str());
+  }
+  return choice.Weight;
 }
 
 } // namespace SurfaceDiffusion

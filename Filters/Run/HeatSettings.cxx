@@ -102,7 +102,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
       return std::make_unique<LinearDiffusion>(
         inputs.Surface.SharedAssembler(), weights, inputs.Data, steady, solver, inputs.Parallel);
     };
-    settings.Fidelity = FindFidelity(inputs, this->NoiseLevel, 1.0 / (h * h), solve);
+    settings.Fidelity = FindFidelity(inputs, this->NoiseLevel, 1.0 / (h * h), 1, solve, result);
     result.EffectiveFidelityWeight = settings.Fidelity / fidelityUnit;
   }
   return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,

@@ -52,6 +52,7 @@ History Run::MakeHistory(int step) const
   }
   History history;
   history.CountsClamped = traits.CountsClamped;
+  history.BoundsError = traits.BoundsError;
   history.Records.resize(static_cast<std::size_t>(rows));
   history.Totals.assign(
     static_cast<std::size_t>(components), std::vector<double>(static_cast<std::size_t>(rows), 0.0));
@@ -76,6 +77,7 @@ History Run::MakeHistory(int step) const
       {
         sum.Iterations += record.Iterations;
         sum.Residual = std::max(sum.Residual, record.Residual);
+        sum.ErrorBound = std::max(sum.ErrorBound, units.FromCore(record.ErrorBound, 0.0, 1.0));
         sum.Seconds += record.Seconds;
       }
       for (Eigen::Index k = 0; k < path.State().cols(); ++k)

@@ -129,7 +129,8 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
                    "Whether lambda is chosen by the discrepancy principle (Morozov 1966)." },
     automatic);
   visitor.Number({ "NoiseLevel", "values",
-                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated." },
+                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated, for "
+                   "white noise." },
     noiseLevel, SettingRange::NonNegative());
 }
 

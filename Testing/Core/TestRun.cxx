@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Heat.h"
+#include "Meshes.h"
 #include "RunInput.h"
 
 #include "Run/DirectionFieldRun.h"
@@ -40,6 +42,76 @@ TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
   {
     EXPECT_NEAR(state(surface.VertexOf(i), 0), std::exp(-0.2) * input.Vertices(i, 2), 1e-3);
   }
+}
+
+TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
+{
+  RunInput input(Testing::Icosphere(3));
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    input.Data.Data(i, 0) =
+      (input.Vertices(i, 2) > 0.5 ? 1.0 : 0.0) + 0.2 * (2.0 * UniformRandom(3, 0, i) - 1.0);
+  }
+  TotalVariationSettings settings;
+  settings.AutomaticFidelity = true;
+  settings.NoiseLevel = 0.1;
+  for (const TotalVariationMode mode :
+    { TotalVariationMode::TimeSteps, TotalVariationMode::SteadyState })
+  {
+    for (const Discretization discretization :
+      { Discretization::Linear, Discretization::CrouzeixRaviart })
+    {
+      settings.Mode = mode;
+      settings.Discretization = discretization;
+      SurfaceDiffusion::Run run(SerialFor());
+      const Values state = StateOf(run, { input.Block() }, settings);
+      const TriangleMesh& mesh = run.GetBlock(0).Surface->Mesh();
+      Values difference = state;
+      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      {
+        difference(i, 0) -= input.Data.Data(mesh.InputVertex()[i], 0);
+      }
+      EXPECT_NEAR(Testing::RootMeanSquare(mesh, difference), 0.1, 0.002)
+        << static_cast<int>(mode) << static_cast<int>(discretization);
+      EXPECT_TRUE(run.FindWarnings(Alone).empty());
+    }
+  }
+}
+
+TEST(Run, AutomaticFidelityWarnsOfNoiseThatItCannotLeave)
+{
+  RunInput input(Testing::Icosphere(3));
+  HeatSettings settings;
+  settings.Mode = HeatMode::SteadyState;
+  settings.AutomaticFidelity = true;
+  settings.NoiseLevel = 100.0;
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  WarningLog log;
+  const std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("AutomaticFidelity found no weight"), std::string::npos);
+  EXPECT_NE(warnings[0].find("100"), std::string::npos);
+}
+
+TEST(Run, AutomaticFidelityWarnsOfCorrelatedNoise)
+{
+  RunInput input(Testing::Icosphere(4));
+  const auto mesh = Testing::MakeMesh(Testing::Icosphere(4));
+  Values noise = Testing::Noise(*mesh);
+  const double h = mesh->TotalEdgeLength() / mesh->NumberOfEdges() * mesh->LengthUnit();
+  noise = Testing::Diffuse(std::make_shared<Assembler>(mesh), PointData::FromValues(noise), h * h,
+    1, 0.0, Testing::Scheme::BackwardEuler);
+  input.Data.Data = Testing::ToInput(*mesh, noise, static_cast<Index>(input.Vertices.rows()));
+  TotalVariationSettings settings;
+  settings.Mode = TotalVariationMode::SteadyState;
+  settings.AutomaticFidelity = true;
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  WarningLog log;
+  const std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_NE(warnings[0].find("the noise is correlated"), std::string::npos);
 }
 
 TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
@@ -83,7 +155,7 @@ TEST(Run, AfterAnyEditEqualsANewRun)
 
 TEST(Run, FactorisesAgainOnlyIfTheMatrixChanges)
 {
-  Input input(Testing::Icosphere(4));
+  RunInput input(Testing::Icosphere(4));
   HeatSettings settings;
   settings.Solver = SolverMethod::Direct;
   SurfaceDiffusion::Run run(SerialFor());
