@@ -61,6 +61,7 @@ struct ModelTraits
   bool HoldsKnownValues = false;
   bool MaskHasEffect = true; ///< in mode Inpaint, if there are data
   bool CountsClamped = false;
+  bool UsesRandomNumbers = false;
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
 };
 
