@@ -3,8 +3,8 @@
 #include "HarmonicMaps.h"
 #include "Heat.h"
 #include "RunInput.h"
-#include "TotalVariation.h"
 
+#include "Core/Models/NonlinearDiffusion.h"
 #include "Core/Solvers/SolverChoice.h"
 #include "Run/TextureSettings.h"
 
@@ -77,8 +77,10 @@ TEST(ModelsAfterFailure, NonlinearDiffusionIsAsNew)
   ExpectSameBitsAfterFailure(Noise(assembler->Mesh()),
     [&](PointData data, std::shared_ptr<LinearSolver> solver)
     {
-      return MakeLagged(
-        assembler, std::move(data), LaggedSettings(assembler->Mesh(), 0.01), std::move(solver));
+      NonlinearDiffusion::Settings settings;
+      settings.TimeStep = 0.01;
+      return std::make_unique<NonlinearDiffusion>(
+        assembler, TangentVectors(), std::move(data), settings, std::move(solver), SerialFor());
     });
 }
 
