@@ -14,6 +14,7 @@ void DescribeData(const DataSettings& settings, ModelTraits& traits)
 {
   traits.NeedsDirections = settings.IsDirected();
   traits.HoldsKnownValues = settings.HoldKnownValues;
+  traits.UsesRandomNumbers = settings.InitialFill == InitialFill::Noise;
   traits.MaskHasEffect =
     settings.InitialFill != InitialFill::Input || traits.UsesFidelity || settings.HoldKnownValues;
 }
@@ -22,7 +23,26 @@ void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& r
 {
   FillMissing(
     inputs.Surface.Mesh(), inputs.Data, settings.InitialFill, settings.RandomSeed, inputs.Ids);
+  FillHarmonicallyIf(settings.InitialFill == InitialFill::Harmonic, inputs, result);
   ApplyHold(settings, inputs, result);
+}
+
+void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result)
+{
+  const Reduction& reduction = inputs.Surface.Mesh().GetReduction();
+  if (!harmonic || !reduction.Any(inputs.Data.Missing.any()))
+  {
+    return;
+  }
+  SolverTask task;
+  task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
+  task.DiffusionNumber.reset();
+  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  const StepReport report = FillHarmonically(inputs.Surface.SharedAssembler(), inputs.Data,
+    inputs.Solvers.Find(SolverPurpose::Fill, task), inputs.Parallel,
+    inputs.Progress.Part(0.0, 0.4));
+  inputs.Solvers.Release(SolverPurpose::Fill);
+  result.MissedResidual = report.MissedResidual;
 }
 
 void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result)

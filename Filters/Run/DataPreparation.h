@@ -17,7 +17,10 @@ void DescribeData(const DataSettings& settings, ModelTraits& traits);
 /// the settings say so.
 void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
 
-/// The second half of PrepareData(), for models that fill the start by themselves.
+/// The start on missing vertices becomes harmonic if `harmonic` is true and any is missing.
+void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result);
+
+/// The last part of PrepareData(), for models that fill the start by themselves.
 void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
 
 /// The cotan weights times the constant diffusivities of the settings: the weights of (12).

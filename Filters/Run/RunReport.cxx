@@ -22,7 +22,7 @@ std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
   }
   else
   {
-    text << "moving the vertices";
+    text << "filling in missing values or moving vertices";
   }
   text << "; the largest relative residual is " << found.MissedResidual;
   return text.str();
@@ -126,7 +126,8 @@ Shortfalls Run::FindShortfalls() const
     --found.Steps; // the initial state
     found.Inputs.Add(block->SurfaceVersion);
     found.Inputs.Add(block->FieldsVersion);
-    found.MissedResidual = std::max(found.MissedResidual, block->Result.Motion.MissedResidual);
+    found.MissedResidual = std::max(found.MissedResidual,
+      std::max(block->Result.MissedResidual, block->Result.Motion.MissedResidual));
   }
   return found;
 }

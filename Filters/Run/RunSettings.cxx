@@ -143,8 +143,9 @@ void DataSettings::Visit(SettingVisitor& visitor)
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Choice({ "InitialFill", "",
                    "The start on missing points: the input itself, the mean of the known values of "
-                   "the connected component, or uniform noise between the extreme known values." },
-    this->InitialFill, { "Input", "Mean", "Noise" });
+                   "the connected component, uniform noise between the extreme known values, or "
+                   "the harmonic function of the known values." },
+    this->InitialFill, { "Input", "Mean", "Noise", "Harmonic" });
   visitor.Switch({ "HoldKnownValues", "",
                    "Whether known points keep their value exactly, so that only missing points "
                    "change." },

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -314,6 +315,92 @@ TEST(Run, ATextureNeedsNoData)
   EXPECT_EQ(state.cols(), 2);
   EXPECT_TRUE(state.allFinite());
   EXPECT_GT(run.GetBlock(0).Result.Wavelength, 0.0);
+}
+
+TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)
+{
+  // A smooth map with 20 % missing in patches: started from the harmonic function of the known
+  // values, the result is near that of the full data.
+  RunInput input(Testing::Icosphere(5));
+  HeatSettings settings;
+  settings.FWHM = 0.15;
+  const auto patch = [&](Eigen::Index i)
+  {
+    const auto x = input.Vertices.row(i);
+    return std::cos(9.0 * x[0]) * std::cos(9.0 * x[1]) * std::cos(9.0 * x[2]) > 0.3;
+  };
+  input.Data.Mask.resize(static_cast<std::size_t>(input.Vertices.rows()));
+  double missing = 0.0;
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    input.Data.Data(i, 0) = input.Vertices(i, 2) + 0.3 * std::sin(3.0 * input.Vertices(i, 0));
+    input.Data.Mask[static_cast<std::size_t>(i)] = patch(i);
+    missing += patch(i);
+  }
+  EXPECT_NEAR(missing / static_cast<double>(input.Vertices.rows()), 0.2, 0.1);
+  RunInput whole = input;
+  whole.Data.Mask.clear();
+  const auto errorOf = [&](InitialFill fill)
+  {
+    SurfaceDiffusion::Run reference(SerialFor()), run(SerialFor());
+    const Values u = StateOf(reference, { whole.Block() }, settings);
+    settings.InitialFill = fill;
+    const Values v = StateOf(run, { input.Block() }, settings);
+    return Testing::RootMeanSquare(run.GetBlock(0).Surface->Mesh(), v - u);
+  };
+  const double mean = errorOf(InitialFill::Mean);
+  const double harmonic = errorOf(InitialFill::Harmonic);
+  std::printf("RMS to the full data: mean %.4f, harmonic %.4f\n", mean, harmonic);
+  EXPECT_LT(harmonic, 0.03 * mean);
+  EXPECT_EQ(HeatSettings().InitialFill, InitialFill::Harmonic);
+  EXPECT_EQ(TotalVariationSettings().InitialFill, InitialFill::Mean);
+}
+
+TEST(Run, RandomNumbersBelongToPlacesRegardlessOfTheNumbering)
+{
+  const Testing::Surface sphere = Testing::Icosphere(3);
+  const std::vector<Index> numbers = Testing::Permutation(sphere.NumberOfVertices(), 5);
+  const Testing::Surface renumbered = Testing::Renumbered(sphere, numbers);
+  TextureSettings settings;
+  settings.NumberOfTimeSteps = 0;
+  std::vector<Values> states;
+  for (const Testing::Surface& s : { sphere, renumbered })
+  {
+    RunInput input(s);
+    input.Data.Data.resize(0, 0);
+    SurfaceDiffusion::Run run(SerialFor());
+    const Values u = StateOf(run, { input.Block() }, settings);
+    Values ofPoints(s.NumberOfVertices(), 2);
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      ofPoints.row(i) = u.row(run.GetBlock(0).Surface->VertexOf(i));
+    }
+    states.push_back(ofPoints);
+  }
+  for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
+  {
+    const Index j = renumbered.Vertices.row(numbers[i]) == sphere.Vertices.row(i)
+      ? numbers[i]
+      : static_cast<Index>(std::find(numbers.begin(), numbers.end(), i) - numbers.begin());
+    ASSERT_EQ(renumbered.Vertices.row(j), sphere.Vertices.row(i));
+    EXPECT_EQ(states[1].row(j), states[0].row(i));
+  }
+}
+
+TEST(Run, CoincidentPointsHaveRandomNumbersOfTheirOwn)
+{
+  const Testing::Surface sphere = Testing::Icosphere(2);
+  RunInput input(Testing::Joined(sphere, sphere));
+  input.Data.Data.resize(0, 0);
+  TextureSettings settings;
+  settings.NumberOfTimeSteps = 0;
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values u = StateOf(run, { input.Block() }, settings);
+  const Surface& surface = *run.GetBlock(0).Surface;
+  for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
+  {
+    EXPECT_NE(u(surface.VertexOf(i), 0), u(surface.VertexOf(i + sphere.NumberOfVertices()), 0));
+  }
 }
 
 TEST(Run, InvalidArraysAreErrorsThatNameThem)
