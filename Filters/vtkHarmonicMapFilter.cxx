@@ -203,15 +203,16 @@ void vtkHarmonicMapFilter::WriteResult(
     const Values given = MakePointData(*block.Surface, colours, false, 1.0).Given;
     state.array().colwise() *= given.rowwise().norm().array(); // the input's brightness
   }
-  const int array = data->AddArray(
-    WritePointArray(*block.Surface, fields.Data, state, 1.0, type, this->FindResultName(fields)));
+  const std::string name = this->FindResultName(fields);
+  this->AddResult(
+    WritePointArray(*block.Surface, fields.Data, state, 1.0, type, name), fields, data);
   const bool isVector = fields.Data->GetNumberOfComponents() == 3 && !isColour;
   int attribute = isVector ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
   if (isNormals && this->UseAsNormals)
   {
     attribute = vtkDataSetAttributes::NORMALS; // only these: ParaView shades with no vectors
   }
-  data->SetActiveAttribute(array, attribute);
+  data->SetActiveAttribute(name.c_str(), attribute);
   if (block.Result.MovedPoints.rows() > 0)
   {
     output->SetPoints(WritePoints(block.Result.MovedPoints, output->GetPoints()));

@@ -13,26 +13,11 @@ using namespace SurfaceDiffusion;
 vtkStandardNewMacro(vtkIntrinsicTVFilter);
 
 using Self = vtkIntrinsicTVFilter;
-SURFACEDIFFUSION_MIRROR(Self::EDGE_FUNCTION_TOTAL_VARIATION, EdgeFunctionKind::TotalVariation);
-SURFACEDIFFUSION_MIRROR(
-  Self::EDGE_FUNCTION_PERONA_MALIK_EXPONENTIAL, EdgeFunctionKind::PeronaMalikExponential);
-SURFACEDIFFUSION_MIRROR(
-  Self::EDGE_FUNCTION_PERONA_MALIK_RATIONAL, EdgeFunctionKind::PeronaMalikRational);
-SURFACEDIFFUSION_MIRROR(Self::EDGE_FUNCTION_CHARBONNIER, EdgeFunctionKind::Charbonnier);
-SURFACEDIFFUSION_MIRROR(Self::EDGE_FUNCTION_WEICKERT, EdgeFunctionKind::Weickert);
-SURFACEDIFFUSION_MIRROR(Self::EDGE_FUNCTION_CONSTANT, EdgeFunctionKind::Constant);
-static_assert(Self::ACROSS_EDGE_FUNCTION_TOTAL_VARIATION == Self::EDGE_FUNCTION_TOTAL_VARIATION + 1,
-  "0 is Same");
-static_assert(Self::ACROSS_EDGE_FUNCTION_PERONA_MALIK_EXPONENTIAL ==
-    Self::EDGE_FUNCTION_PERONA_MALIK_EXPONENTIAL + 1,
-  "0 is Same");
-static_assert(
-  Self::ACROSS_EDGE_FUNCTION_PERONA_MALIK_RATIONAL == Self::EDGE_FUNCTION_PERONA_MALIK_RATIONAL + 1,
-  "0 is Same");
-static_assert(
-  Self::ACROSS_EDGE_FUNCTION_CHARBONNIER == Self::EDGE_FUNCTION_CHARBONNIER + 1, "0 is Same");
-static_assert(Self::ACROSS_EDGE_FUNCTION_WEICKERT == Self::EDGE_FUNCTION_WEICKERT + 1, "0 is Same");
-static_assert(Self::ACROSS_EDGE_FUNCTION_CONSTANT == Self::EDGE_FUNCTION_CONSTANT + 1, "0 is Same");
+#define MIRROR_EDGE_FUNCTION(word, WORD)                                                           \
+  SURFACEDIFFUSION_MIRROR(Self::EDGE_FUNCTION_##WORD, EdgeFunctionKind::word);                     \
+  static_assert(Self::ACROSS_EDGE_FUNCTION_##WORD == Self::EDGE_FUNCTION_##WORD + 1, "0 is Same");
+vtkIntrinsicTVFilterEdgeFunctions(MIRROR_EDGE_FUNCTION);
+static_assert(Self::ACROSS_EDGE_FUNCTION_SAME == 0, "the settings' number of Same");
 SURFACEDIFFUSION_MIRROR(Self::MODE_TIME_STEPS, TotalVariationMode::TimeSteps);
 SURFACEDIFFUSION_MIRROR(Self::MODE_STEADY_STATE, TotalVariationMode::SteadyState);
 SURFACEDIFFUSION_MIRROR(Self::CHANNEL_COUPLING_PER_CHANNEL, ChannelCoupling::PerChannel);

@@ -60,6 +60,31 @@
 
 #include "vtkSurfaceDataDiffusionAlgorithm.h"
 
+// The edge functions in the order of their numbers: the word of their setters and that of their
+// enumerators. Enumerators and setters of EdgeFunction and AcrossEdgeFunction are made from it.
+// clang-format off
+#define vtkIntrinsicTVFilterEdgeFunctions(entry)                                                   \
+  entry(TotalVariation, TOTAL_VARIATION)                                                           \
+  entry(PeronaMalikExponential, PERONA_MALIK_EXPONENTIAL)                                          \
+  entry(PeronaMalikRational, PERONA_MALIK_RATIONAL)                                                \
+  entry(Charbonnier, CHARBONNIER)                                                                  \
+  entry(Weickert, WEICKERT)                                                                        \
+  entry(Constant, CONSTANT)
+// clang-format on
+
+#define vtkIntrinsicTVFilterEdgeFunction(word, WORD) EDGE_FUNCTION_##WORD,
+#define vtkIntrinsicTVFilterAcrossEdgeFunction(word, WORD) ACROSS_EDGE_FUNCTION_##WORD,
+#define vtkIntrinsicTVFilterSetEdgeFunction(word, WORD)                                            \
+  void SetEdgeFunctionTo##word()                                                                   \
+  {                                                                                                \
+    this->SetEdgeFunction(EDGE_FUNCTION_##WORD);                                                   \
+  }
+#define vtkIntrinsicTVFilterSetAcrossEdgeFunction(word, WORD)                                      \
+  void SetAcrossEdgeFunctionTo##word()                                                             \
+  {                                                                                                \
+    this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_##WORD);                                      \
+  }
+
 class VTKSURFACEDIFFUSION_EXPORT vtkIntrinsicTVFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
@@ -90,12 +115,7 @@ public:
 
   enum EdgeFunctionType
   {
-    EDGE_FUNCTION_TOTAL_VARIATION = 0,
-    EDGE_FUNCTION_PERONA_MALIK_EXPONENTIAL = 1,
-    EDGE_FUNCTION_PERONA_MALIK_RATIONAL = 2,
-    EDGE_FUNCTION_CHARBONNIER = 3,
-    EDGE_FUNCTION_WEICKERT = 4,
-    EDGE_FUNCTION_CONSTANT = 5
+    vtkIntrinsicTVFilterEdgeFunctions(vtkIntrinsicTVFilterEdgeFunction)
   };
 
   ///@{
@@ -119,30 +139,14 @@ public:
    */
   vtkSetMacro(EdgeFunction, int);
   vtkGetMacro(EdgeFunction, int);
-  void SetEdgeFunctionToTotalVariation() { this->SetEdgeFunction(EDGE_FUNCTION_TOTAL_VARIATION); }
-  void SetEdgeFunctionToPeronaMalikExponential()
-  {
-    this->SetEdgeFunction(EDGE_FUNCTION_PERONA_MALIK_EXPONENTIAL);
-  }
-  void SetEdgeFunctionToPeronaMalikRational()
-  {
-    this->SetEdgeFunction(EDGE_FUNCTION_PERONA_MALIK_RATIONAL);
-  }
-  void SetEdgeFunctionToCharbonnier() { this->SetEdgeFunction(EDGE_FUNCTION_CHARBONNIER); }
-  void SetEdgeFunctionToWeickert() { this->SetEdgeFunction(EDGE_FUNCTION_WEICKERT); }
-  void SetEdgeFunctionToConstant() { this->SetEdgeFunction(EDGE_FUNCTION_CONSTANT); }
+  vtkIntrinsicTVFilterEdgeFunctions(vtkIntrinsicTVFilterSetEdgeFunction);
   const char* GetEdgeFunctionAsString();
   ///@}
 
   enum AcrossEdgeFunctionType
   {
-    ACROSS_EDGE_FUNCTION_SAME = 0,
-    ACROSS_EDGE_FUNCTION_TOTAL_VARIATION = 1,
-    ACROSS_EDGE_FUNCTION_PERONA_MALIK_EXPONENTIAL = 2,
-    ACROSS_EDGE_FUNCTION_PERONA_MALIK_RATIONAL = 3,
-    ACROSS_EDGE_FUNCTION_CHARBONNIER = 4,
-    ACROSS_EDGE_FUNCTION_WEICKERT = 5,
-    ACROSS_EDGE_FUNCTION_CONSTANT = 6
+    ACROSS_EDGE_FUNCTION_SAME,
+    vtkIntrinsicTVFilterEdgeFunctions(vtkIntrinsicTVFilterAcrossEdgeFunction)
   };
 
   ///@{
@@ -154,30 +158,7 @@ public:
   vtkSetMacro(AcrossEdgeFunction, int);
   vtkGetMacro(AcrossEdgeFunction, int);
   void SetAcrossEdgeFunctionToSame() { this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_SAME); }
-  void SetAcrossEdgeFunctionToTotalVariation()
-  {
-    this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_TOTAL_VARIATION);
-  }
-  void SetAcrossEdgeFunctionToPeronaMalikExponential()
-  {
-    this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_PERONA_MALIK_EXPONENTIAL);
-  }
-  void SetAcrossEdgeFunctionToPeronaMalikRational()
-  {
-    this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_PERONA_MALIK_RATIONAL);
-  }
-  void SetAcrossEdgeFunctionToCharbonnier()
-  {
-    this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_CHARBONNIER);
-  }
-  void SetAcrossEdgeFunctionToWeickert()
-  {
-    this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_WEICKERT);
-  }
-  void SetAcrossEdgeFunctionToConstant()
-  {
-    this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_CONSTANT);
-  }
+  vtkIntrinsicTVFilterEdgeFunctions(vtkIntrinsicTVFilterSetAcrossEdgeFunction);
   const char* GetAcrossEdgeFunctionAsString();
   ///@}
 

@@ -7,16 +7,16 @@
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
 #include "Conversion/SurfaceFilterInternals.h"
-#include "Conversion/SurfaceReader.h"
+#include "Conversion/TimeRequests.h"
 #include "Distributed/DistributedSolver.h"
 
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -40,13 +40,11 @@ SURFACEDIFFUSION_MIRROR(Self::SOLVER_MULTIGRID, SolverMethod::Multigrid);
 namespace
 {
 
-using Pipeline = vtkStreamingDemandDrivenPipeline;
-
 /// One process solves a surface with at most this many points as fast as several processes do, and
 /// needs less than a GiB.
 constexpr double MaxGatheredPoints = 1e6;
 
-const std::vector<const char*> WordsOfPrecision = { "Input", "Single", "Double" };
+const std::vector<const char*> WordsOfPrecision = { "Single", "Double", "Input" };
 
 } // namespace
 
@@ -161,17 +159,9 @@ int vtkSurfaceDiffusionAlgorithm::RequestInformation(
   const auto settings = this->MakeSettings();
   Problems problems;
   settings->Check(nullptr, problems);
-  if (!this->GenerateTimeSteps || !problems.empty())
+  if (this->GenerateTimeSteps && problems.empty()) // problems are reported at update
   {
-    return 1; // the input's own times pass through; problems are reported at update
-  }
-  const std::vector<double> times = settings->PublishedTimes();
-  const double range[2] = { times.front(), times.back() };
-  for (int port = 0; port < 2; ++port)
-  {
-    vtkInformation* info = outputs->GetInformationObject(port);
-    info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
-    info->Set(Pipeline::TIME_RANGE(), range, 2);
+    PublishTimes(*settings, outputs);
   }
   return 1;
 }
@@ -181,20 +171,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
 {
   if (this->GenerateTimeSteps)
   {
-    // The requested time is a diffusion time, which has no meaning upstream.
-    vtkInformation* info = inputs[0]->GetInformationObject(0);
-    if (info->Has(Pipeline::TIME_STEPS()) && info->Length(Pipeline::TIME_STEPS()) > 0)
-    {
-      info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_STEPS())[0]);
-    }
-    else if (info->Has(Pipeline::TIME_RANGE()))
-    {
-      info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_RANGE())[0]);
-    }
-    else
-    {
-      info->Remove(Pipeline::UPDATE_TIME_STEP());
-    }
+    RequestFirstTime(inputs[0]->GetInformationObject(0));
   }
   return 1;
 }
@@ -206,47 +183,32 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   table->Initialize();
   RunState& state = *this->State;
   state.Succeeded = false;
-  Problems problems; // reported with those of the arrays
-  this->MakeSettings()->Check(nullptr, problems);
-  if (problems.empty())
-  {
-    state.Step = this->TakeTime(request, outputs);
-  }
+  state.Settings = this->MakeSettings();
+  state.SettingProblems.clear(); // reported with those of the arrays
+  state.Settings->Check(nullptr, state.SettingProblems);
+  const bool valid = state.SettingProblems.empty();
+  state.Step = valid ? FindRequestedStep(*state.Settings, request, outputs) : 0;
+  const double time = valid ? state.Step * state.Settings->DescribeModel().TimeStep : 0.0;
   const int result = this->Superclass::RequestData(request, inputs, outputs);
   if (state.Succeeded)
   {
     WriteHistory(state.History, table);
   }
-  if (this->GenerateTimeSteps && problems.empty())
+  state.History = History();
+  if (this->GenerateTimeSteps && valid)
   {
-    for (const int port : { 0, 1 })
-    {
-      vtkDataObject::GetData(outputs, port)
-        ->GetInformation()
-        ->Set(vtkDataObject::DATA_TIME_STEP(), state.Step * this->GetEffectiveTimeStep());
-    }
+    SetDataTime(time, outputs);
   }
   return result;
 }
 
-/// The requested step.
-int vtkSurfaceDiffusionAlgorithm::TakeTime(vtkInformation* request, vtkInformationVector* outputs)
+void vtkSurfaceDiffusionAlgorithm::ReleaseCache()
 {
-  const auto settings = this->MakeSettings();
-  const ModelTraits traits = settings->DescribeModel();
-  int step = traits.NumberOfSteps;
-  if (this->GenerateTimeSteps)
-  {
-    const int port = request->Has(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT())
-      ? std::max(0, request->Get(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT()))
-      : 0;
-    vtkInformation* info = outputs->GetInformationObject(port);
-    if (info->Has(Pipeline::UPDATE_TIME_STEP()))
-    {
-      step = settings->FindStep(info->Get(Pipeline::UPDATE_TIME_STEP()));
-    }
-  }
-  return step;
+  this->Superclass::ReleaseCache();
+  RunState& state = *this->State;
+  state.Run.Clear();
+  state.Inputs = BlockInputs();
+  state.Normals = {};
 }
 
 bool vtkSurfaceDiffusionAlgorithm::SolvesInPieces(
@@ -274,46 +236,29 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
 {
   RunState& state = *this->State;
   const ProcessGroup& group = this->GetProcessGroup();
-  std::shared_ptr<RunSettings> settings = this->MakeSettings();
-  Problems problems;
-  settings->Check(nullptr, problems);
+  Problems problems = state.SettingProblems;
   this->CheckSurfaceProperties(problems);
   Require(this->OutputPrecision >= 0 && this->OutputPrecision < 3, "OutputPrecision",
     this->OutputPrecision, ListChoices(WordsOfPrecision).c_str(), problems);
 
   std::vector<SurfaceBlock> surfaces;
   std::vector<InputFields> fields;
-  this->FindAllFields(
-    this->SelectSurfaces(blocks, problems), *settings, surfaces, fields, problems);
+  this->FindAllFields(this->SelectSurfaces(blocks, problems), surfaces, fields, problems);
   if (this->ReportProblems(problems))
   {
     return;
   }
   try
   {
-    state.Run.Update(this->MakeInputs(surfaces, fields), settings, group, progress.Part(0.0, 0.25));
+    state.Run.Update(
+      this->MakeInputs(surfaces, fields), state.Settings, group, progress.Part(0.0, 0.25));
     progress.Report(0.25);
     // If at most one step is left to do, writing the result is much of the work.
     const double written = state.Run.NumberOfStepsTo(state.Step) > 1 ? 0.95 : 0.7;
     state.Run.Seek(state.Step, progress.Part(0.25, written));
     progress.Report(written);
     this->BeginWriting();
-    group.RunCollectively(
-      [&]
-      {
-        for (std::size_t b = 0; b < surfaces.size(); ++b)
-        {
-          if (!group.IsShared() || surfaces[b].Input->GetNumberOfPoints() > 0)
-          {
-            this->WriteResult(b, fields[b], surfaces[b].Output);
-          }
-        }
-      });
-    for (std::size_t b = 0; group.IsShared() && b < surfaces.size(); ++b)
-    {
-      state.Decomposition->UpdateCopies(
-        surfaces[b].Input->GetPointData(), surfaces[b].Output->GetPointData());
-    }
+    this->WriteResults(surfaces, fields);
   }
   catch (const Aborted&)
   {
@@ -327,14 +272,42 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   state.History = state.Run.MakeHistory(state.Step);
   state.Succeeded = group.IsRoot();
   this->TakeResults();
-  this->ReportWarnings(state.Run.TakeWarnings(group));
+  std::vector<Warning> warnings = state.Run.FindWarnings(group);
+  if (!state.ReplacedArrays.empty())
+  {
+    warnings.push_back({ DescribeReplacement(state.ReplacedArrays), Fingerprint() });
+  }
+  this->ReportWarnings(std::move(warnings));
+}
+
+void vtkSurfaceDiffusionAlgorithm::WriteResults(
+  const std::vector<SurfaceBlock>& surfaces, const std::vector<InputFields>& fields)
+{
+  RunState& state = *this->State;
+  const ProcessGroup& group = this->GetProcessGroup();
+  state.ReplacedArrays.clear();
+  group.RunCollectively(
+    [&]
+    {
+      for (std::size_t b = 0; b < surfaces.size(); ++b)
+      {
+        if (!group.IsShared() || surfaces[b].Input->GetNumberOfPoints() > 0)
+        {
+          this->WriteResult(b, fields[b], surfaces[b].Output);
+        }
+      }
+    });
+  for (std::size_t b = 0; group.IsShared() && b < surfaces.size(); ++b)
+  {
+    state.Inputs.GetDecomposition()->UpdateCopies(
+      surfaces[b].Input->GetPointData(), surfaces[b].Output->GetPointData());
+  }
 }
 
 /// The surfaces with data, their fields, and the problems of both. Blocks without data pass through
 /// if at least one block has data.
 void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& blocks,
-  RunSettings& settings, std::vector<SurfaceBlock>& surfaces, std::vector<InputFields>& fields,
-  Problems& problems)
+  std::vector<SurfaceBlock>& surfaces, std::vector<InputFields>& fields, Problems& problems)
 {
   Problems missingData;
   for (const SurfaceBlock& block : blocks)
@@ -349,10 +322,10 @@ void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>
     Problems here;
     const bool hasData = this->FindFields(block.Input, found, here);
     found.GlobalIds = block.Input->GetPointData()->GetGlobalIds();
-    if (hasData)
+    if (hasData && here.empty()) // an array that is not found would be reported as not set, too
     {
       const FieldSummary summary = found.Summarize();
-      settings.Check(&summary, here);
+      this->State->Settings->Check(&summary, here);
     }
     Problems& all = hasData ? problems : missingData;
     all.insert(all.end(), here.begin(), here.end());
@@ -371,72 +344,36 @@ void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>
 std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
   const std::vector<SurfaceBlock>& surfaces, const std::vector<InputFields>& fields)
 {
-  RunState& state = *this->State;
-  const bool shared = this->GetProcessGroup().IsShared();
-  if (!shared)
-  {
-    state.Decomposition.reset();
-  }
-  else if (!state.Decomposition)
-  {
-    state.Decomposition =
-      std::make_unique<PieceDecomposition>(this->GetController(), this->Private->AbortRequested);
-  }
-  state.Cells.resize(surfaces.size());
-  state.Versions.resize(surfaces.size());
-  std::vector<BlockInput> inputs(surfaces.size());
+  std::vector<SurfaceInput> inputs;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    vtkPolyData* const data = surfaces[b].Input;
-    const InputFields& arrays = fields[b];
-    vtkDataArray* const excluded = this->MaskMode == MASK_MODE_EXCLUDE ? arrays.Mask : nullptr;
-    std::vector<vtkIdType>& cells = state.Cells[b];
-    BlockInput& input = inputs[b];
-    RunState::Version& version = state.Versions[b];
-    const InputStamp stamp(data, arrays.List());
-    if (!(version.Stamp == stamp) || version.Excludes != (excluded != nullptr))
-    {
-      version = { stamp, excluded != nullptr, FingerprintSurface(data, excluded),
-        FingerprintFields(arrays) };
-    }
-    input.SurfaceVersion = version.Surface;
-    input.FieldsVersion = version.Fields;
-    input.ReadSurface = [data, excluded, &cells] { return ReadSurface(data, excluded, cells); };
-    input.ReadFields = [data, &arrays, &cells]
-    {
-      if (arrays.GlobalIds)
-      {
-        RequireTuples(arrays.GlobalIds, data->GetNumberOfPoints(), "point");
-      }
-      return ReadFields(arrays, cells);
-    };
-    if (shared)
-    {
-      state.Decomposition->SetPiece(data, this->SeamTolerance);
-      input.SurfaceVersion.AddNumber(this->SeamTolerance);
-      AddArray(input.SurfaceVersion, data->GetPointData()->GetGlobalIds());
-      AddArray(input.SurfaceVersion,
-        data->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
-      input.Decomposition = state.Decomposition.get();
-      input.ReadFields = [&arrays, &cells, decomposition = state.Decomposition.get()]
-      {
-        Fields read = ReadFields(arrays, cells);
-        read.Ids = decomposition->PointIds();
-        return read;
-      };
-    }
+    inputs.push_back({ surfaces[b].Input, &fields[b] });
   }
-  return inputs;
+  const bool excludes = this->MaskMode == MASK_MODE_EXCLUDE;
+  return this->GetProcessGroup().IsShared()
+    ? this->State->Inputs.MakeOfPieces(
+        inputs, excludes, this->SeamTolerance, this->GetController(), this->Private->AbortRequested)
+    : this->State->Inputs.Make(inputs, excludes);
+}
+
+void vtkSurfaceDiffusionAlgorithm::AddResult(
+  vtkDataArray* result, const InputFields& fields, vtkDataSetAttributes* attributes)
+{
+  if (ReplaceArray(result, fields.Data, attributes))
+  {
+    this->State->ReplacedArrays.emplace_back(result->GetName());
+  }
 }
 
 void vtkSurfaceDiffusionAlgorithm::WriteResult(
   std::size_t index, const InputFields& fields, vtkPolyData* output)
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
-  vtkPointData* const data = output->GetPointData();
-  const int array = data->AddArray(WritePointArray(*block.Surface, fields.Data, block.Path->State(),
-    block.Units.ValueUnit, this->FindResultType(fields), this->FindResultName(fields)));
-  data->SetActiveAttribute(array, vtkDataSetAttributes::SCALARS);
+  const std::string name = this->FindResultName(fields);
+  this->AddResult(WritePointArray(*block.Surface, fields.Data, block.Path->State(),
+                    block.Units.ValueUnit, this->FindResultType(fields), name),
+    fields, output->GetPointData());
+  output->GetPointData()->SetActiveScalars(name.c_str());
 }
 
 std::string vtkSurfaceDiffusionAlgorithm::FindResultName(const InputFields& fields) const

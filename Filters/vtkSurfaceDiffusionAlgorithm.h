@@ -47,7 +47,7 @@
  * **Invalid properties or arrays** are errors at update that name the property, its value and what
  * is allowed. The output then is the unchanged input. Defects of the surface (zero-area triangles,
  * non-manifold edges, unused or coincident points) are handled and reported in one warning with
- * counts.
+ * counts. A warning is repeated only if the arrays or the surface that it is about have changed.
  *
  * Results do not depend on the number of threads or on the order in which times are requested.
  *
@@ -64,6 +64,8 @@ struct BlockInput;
 struct InputFields;
 struct RunSettings;
 }
+class vtkDataArray;
+class vtkDataSetAttributes;
 class vtkPolyData;
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDiffusionAlgorithm : public vtkSurfaceFilter
@@ -83,7 +85,8 @@ public:
   ///@{
   /**
    * The number of time steps n. There are n + 1 states, from the initial one on. 0 to 1e9.
-   * Default: 10.
+   * Default: 10. If only this number is raised, the next update computes the new steps alone,
+   * unless a run of that length has another solver with Solver Automatic.
    */
   vtkSetMacro(NumberOfTimeSteps, int);
   vtkGetMacro(NumberOfTimeSteps, int);
@@ -231,16 +234,17 @@ public:
 
   enum OutputPrecisionType
   {
-    OUTPUT_PRECISION_INPUT = 0,
-    OUTPUT_PRECISION_SINGLE = 1,
-    OUTPUT_PRECISION_DOUBLE = 2
+    OUTPUT_PRECISION_SINGLE = vtkAlgorithm::SINGLE_PRECISION,
+    OUTPUT_PRECISION_DOUBLE = vtkAlgorithm::DOUBLE_PRECISION,
+    OUTPUT_PRECISION_INPUT = vtkAlgorithm::DEFAULT_PRECISION
   };
 
   ///@{
   /**
-   * The type of the result. All arithmetic is in double precision. Input (default): unsigned char
-   * gives unsigned char (rounded and clamped at the end, never between steps), float gives float,
-   * and all other types give double.
+   * The type of the result, with the numbers of vtkAlgorithm's precisions: Single 0, Double 1,
+   * Input 2. All arithmetic is in double precision. Input (default): unsigned char gives unsigned
+   * char (rounded and clamped at the end, never between steps), float gives float, and all other
+   * types give double.
    */
   vtkSetMacro(OutputPrecision, int);
   vtkGetMacro(OutputPrecision, int);
@@ -269,6 +273,8 @@ public:
    * The time step that the run uses, in the unit of TimeStep.
    */
   double GetEffectiveTimeStep();
+
+  void ReleaseCache() override;
 
   ///@{
   /**
@@ -301,7 +307,7 @@ protected:
   /// as far as this process knows, on these pieces.
   virtual bool CanSolveInPieces(const std::vector<SurfaceBlock>& pieces);
 
-  /// Add the result of block `index` of the run to its output.
+  /// Add the result of block `index` of the run to its output, with AddResult().
   virtual void WriteResult(
     std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output);
 
@@ -311,7 +317,10 @@ protected:
   /// The suffix of the result's name, if ResultArrayName is empty.
   virtual const char* GetResultSuffix() const = 0;
 
-  /// Helpers of WriteResult().
+  /// Helpers of WriteResult(). AddResult() replaces an array of that name and its roles, and keeps
+  /// a warning unless the array is the data.
+  void AddResult(vtkDataArray* result, const SurfaceDiffusion::InputFields& fields,
+    vtkDataSetAttributes* attributes);
   std::string FindResultName(const SurfaceDiffusion::InputFields& fields) const;
   int FindResultType(const SurfaceDiffusion::InputFields& fields) const;
 
@@ -352,10 +361,11 @@ private:
   vtkSurfaceDiffusionAlgorithm(const vtkSurfaceDiffusionAlgorithm&) = delete;
   void operator=(const vtkSurfaceDiffusionAlgorithm&) = delete;
 
-  int TakeTime(vtkInformation* request, vtkInformationVector* outputs);
   void FindAllFields(const std::vector<SurfaceBlock>& blocks,
-    SurfaceDiffusion::RunSettings& settings, std::vector<SurfaceBlock>& surfaces,
-    std::vector<SurfaceDiffusion::InputFields>& fields, Problems& problems);
+    std::vector<SurfaceBlock>& surfaces, std::vector<SurfaceDiffusion::InputFields>& fields,
+    Problems& problems);
+  void WriteResults(const std::vector<SurfaceBlock>& surfaces,
+    const std::vector<SurfaceDiffusion::InputFields>& fields);
   std::vector<SurfaceDiffusion::BlockInput> MakeInputs(const std::vector<SurfaceBlock>& surfaces,
     const std::vector<SurfaceDiffusion::InputFields>& fields);
 

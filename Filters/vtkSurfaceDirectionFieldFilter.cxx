@@ -97,7 +97,9 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     return;
   }
 
-  std::vector<std::string> warnings;
+  Index degenerate = 0;
+  std::vector<Warning> warnings;
+  Fingerprint versions;
   double length = 0.0;
   double edges = 0.0;
   this->State->Blocks.resize(surfaces.size());
@@ -122,20 +124,39 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     const TriangleMesh& mesh = block->Run.GetSurface().Mesh();
     length += mesh.TotalEdgeLength() * mesh.LengthUnit();
     edges += mesh.NumberOfEdges();
-    for (const std::string& warning : block->Run.TakeWarnings())
-    {
-      warnings.push_back(warning);
-    }
+    degenerate += block->Run.GetSurface().Diagnostics().DegenerateTriangles;
+    versions.Add(block->Run.GetSurfaceVersion());
+    const std::vector<Warning> found = block->Run.FindWarnings();
+    warnings.insert(warnings.end(), found.begin(), found.end());
   }
   this->BeginWriting();
+  std::vector<std::string> replaced;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
     vtkCellData* const cells = surfaces[b].Output->GetCellData();
-    cells->AddArray(results[b]);
+    if (ReplaceArray(results[b], fields[b].Direction, cells))
+    {
+      replaced.push_back(this->ResultArrayName);
+    }
     cells->SetActiveVectors(this->ResultArrayName.c_str());
   }
   this->MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
-  this->ReportWarnings(warnings);
+  if (degenerate > 0)
+  {
+    warnings.push_back(
+      { std::to_string(degenerate) + " triangles of zero area get no direction", versions });
+  }
+  if (!replaced.empty())
+  {
+    warnings.push_back({ DescribeReplacement(replaced), Fingerprint() });
+  }
+  this->ReportWarnings(std::move(warnings));
+}
+
+void vtkSurfaceDirectionFieldFilter::ReleaseCache()
+{
+  this->Superclass::ReleaseCache();
+  this->State->Blocks.clear();
 }
 
 void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)

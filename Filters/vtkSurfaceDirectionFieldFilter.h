@@ -61,6 +61,8 @@ public:
   vtkTypeMacro(vtkSurfaceDirectionFieldFilter, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  void ReleaseCache() override;
+
   enum MethodType
   {
     METHOD_PRINCIPAL_CURVATURE = 0,

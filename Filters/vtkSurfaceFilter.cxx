@@ -133,8 +133,9 @@ void vtkSurfaceFilter::ReportError(const std::string& text)
   }
 }
 
-void vtkSurfaceFilter::ReportWarnings(const std::vector<std::string>& sentences)
+void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 {
+  const std::vector<std::string> sentences = this->Private->Reported.Report(std::move(warnings));
   if (!sentences.empty() && this->GetProcessGroup().IsRoot())
   {
     vtkWarningMacro(<< JoinSentences(sentences));
@@ -238,7 +239,16 @@ int vtkSurfaceFilter::RequestData(
       [&](const std::vector<SurfacePiece>& surfaces) { this->ProcessGuarded(toBlocks(surfaces)); });
   }
   this->ShareReported();
+  if (this->GetReleaseDataFlag() != 0 || vtkDataObject::GetGlobalReleaseDataFlag() != 0)
+  {
+    this->ReleaseCache();
+  }
   return 1;
+}
+
+void vtkSurfaceFilter::ReleaseCache()
+{
+  this->Private->Gathered.reset();
 }
 
 void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)

@@ -41,6 +41,7 @@ namespace SurfaceDiffusion
 {
 class ProcessGroup;
 class ProgressMonitor;
+struct Warning;
 }
 class vtkMultiProcessController;
 class vtkPolyData;
@@ -100,6 +101,16 @@ public:
    */
   vtkGetMacro(MeanEdgeLength, double);
 
+  /**
+   * Free the memory that the filter keeps from one update to the next: the surface and its
+   * operators, factors and preconditioners of linear solvers, the current state, and the states
+   * kept for GenerateTimeSteps. They let an edit of a property, or a request of another time,
+   * repeat only the steps that depend on it. The next update computes all of them again, with the
+   * same result. If the release-data flag of output port 0 is on, or the global one, every update
+   * ends with this call. Not to be called during an update, by an observer.
+   */
+  virtual void ReleaseCache();
+
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -146,8 +157,8 @@ protected:
   /// The last chance to abort, before outputs change. Throws SurfaceDiffusion::Aborted.
   void BeginWriting();
 
-  /// Report sentences as one warning, unless there are none.
-  void ReportWarnings(const std::vector<std::string>& sentences);
+  /// Report, as one warning, those of the warnings that hold now that have not been reported yet.
+  void ReportWarnings(std::vector<SurfaceDiffusion::Warning> warnings);
 
   /// The processes that work on this update together: one, unless SolvesInPieces().
   const SurfaceDiffusion::ProcessGroup& GetProcessGroup() const;

@@ -124,11 +124,12 @@ void vtkTuringTextureFilter::WriteResult(
   for (int c = 0; c < 2; ++c)
   {
     const std::string name = this->ResultArrayName + (c == 0 ? "u1" : "u2");
-    points->AddArray(WriteScalars(surface, name, u.col(c), single, fields.Data, c));
+    this->AddResult(WriteScalars(surface, name, u.col(c), single, fields.Data, c), fields, points);
   }
   const Vector texture = StretchContrast(u.col(this->TextureChemical), block.Result.ContrastLimits);
-  points->AddArray(
-    WriteScalars(surface, this->ResultArrayName + "Texture", texture, single, nullptr, 0));
+  this->AddResult(
+    WriteScalars(surface, this->ResultArrayName + "Texture", texture, single, nullptr, 0), fields,
+    points);
   std::string active = this->ResultArrayName + "u1";
   if (this->ColorOutput)
   {
@@ -144,7 +145,7 @@ void vtkTuringTextureFilter::WriteResult(
       const Index v = surface.VertexOf(static_cast<Index>(i));
       colors->SetTypedTuple(i, v >= 0 ? vertexColors.row(v).data() : elsewhere.data());
     }
-    points->AddArray(colors);
+    this->AddResult(colors, fields, points);
   }
   points->SetActiveScalars(active.c_str());
 }

@@ -5,19 +5,36 @@
     from surfacediffusion.pyvista import heat
 
     smooth = heat(mesh, "thickness", FWHM=10)  # adds the point array "thicknessDiffused"
+    states = heat(mesh, "thickness", times=[0, 1, 2, 4])  # a list of four meshes
+    smooth, report = heat(mesh, "thickness", full_output=True)
+    report.history["Energy"], report.EffectiveFidelityWeight
 
-A mesh is a pyvista.PolyData with n points and m cells, or a pyvista.MultiBlock of such meshes. The
-input is not modified. Arrays are passed by name. Keywords that start with a capital are properties
-of the filter's class, for example TimeStep=2 or Mode="SteadyState" (an enumeration takes one of its
-words); help(vtkFVMHeatFilter) and its siblings list all of them with formula, unit, range and
-default. By default lengths are in mean edge lengths and values in the range of the data
-(Units="Natural"); Units="Absolute" takes them in the units of the coordinates and the data.
+A mesh is a pyvista.PolyData with n points and m cells, or a pyvista.MultiBlock of such meshes,
+whose blocks may be None or empty. The input is not modified. Arrays are passed by name. Keywords
+that start with a capital are properties of the filter's class, for example TimeStep=2 or
+Mode="SteadyState" (an enumeration takes one of its words); help(vtkFVMHeatFilter) and its siblings
+list all of them with formula, unit, range and default. By default lengths are in mean edge lengths
+and values in the range of the data (Units="Natural"); Units="Absolute" takes them in the units of
+the coordinates and the data.
 
-Errors: ValueError if the filter rejects a property or an array, with its message, which names the
-property, its value and what is allowed; TypeError if the filter has no such property.
+times (all functions but direction_field): times in the unit of TimeStep, in any order. The function
+then returns a list with the mesh at each of them. Time 0 is the initial state; between two time
+steps, the mesh is that of the earlier one.
+
+full_output: if True, the function returns a pair: the mesh or the list, and a Report of the run.
+
+Errors: TypeError if the mesh is not a surface (with the remedy) or if the filter has no such
+property; ValueError if the filter rejects a property or an array, with its message, which names the
+property, its value and what is allowed. Warnings of the filter, about defects of the mesh for
+instance, are Python warnings of the category UserWarning.
 """
 
+import re
+import types
+import warnings
+
 import pyvista
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import (
@@ -28,8 +45,28 @@ from . import (
 _POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
 
+# The read-only values of the classes. A report has those that the filter has.
+_REPORTED = (
+    "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
+    "EffectiveTimeStep", "EffectiveFidelityWeight", "Wavelength", "WavelengthGrowthRate",
+    "DiffusionRateFactor", "MeanDisplacement", "MaximumDisplacement", "VolumeBefore",
+    "VolumeAfter",
+)
 
-def heat(mesh, array=None, *, mask=None, direction=None, fixed=None, **properties):
+
+class Report(types.SimpleNamespace):
+    """The read-only values of the filter after a run, for example MeanEdgeLength or
+    EffectiveFidelityWeight, as attributes of the same names; and, except for direction fields,
+    `history`, a dictionary of NumPy arrays with one entry per step up to the last time, beginning
+    with the initial state: Step, Time, Total_0 ... (the integral of each component), Energy,
+    Iterations, Residual, Seconds.
+    """
+
+
+def heat(
+    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
+    **properties
+):
     """Smooth, denoise or inpaint a point array by linear diffusion (vtkFVMHeatFilter).
 
     Solves u_t = div(D grad u) + lambda chi (f - u), u(0) = f, with no flux across the boundary.
@@ -41,6 +78,7 @@ def heat(mesh, array=None, *, mask=None, direction=None, fixed=None, **propertie
     mask       point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
     direction  point or cell array (n, 3) or (m, 3): the direction that AlongDiffusivity acts along
     fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
+    times, full_output   see help(surfacediffusion.pyvista)
 
     Useful properties: FWHM (width of the blur in the unit of the coordinates, in place of TimeStep;
     default 0: off), TimeStep (above 0, default 1, in squared mean edge lengths), NumberOfTimeSteps
@@ -48,10 +86,14 @@ def heat(mesh, array=None, *, mask=None, direction=None, fixed=None, **propertie
 
     The result is the point array <array>Diffused, with the shape of the data.
     """
-    return _run(vtkFVMHeatFilter(), mesh, properties, array, mask, direction, fixed)
+    return _run(
+        vtkFVMHeatFilter(), mesh, properties, (array, mask, direction, fixed), times, full_output)
 
 
-def intrinsic_tv(mesh, array=None, *, mask=None, direction=None, fixed=None, **properties):
+def intrinsic_tv(
+    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
+    **properties
+):
     """Denoise or inpaint a point array and preserve its edges (vtkIntrinsicTVFilter).
 
     Solves u_t = div(g(|grad u|) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
@@ -63,10 +105,15 @@ def intrinsic_tv(mesh, array=None, *, mask=None, direction=None, fixed=None, **p
 
     The result is the point array <array>TV, with the shape of the data.
     """
-    return _run(vtkIntrinsicTVFilter(), mesh, properties, array, mask, direction, fixed)
+    return _run(
+        vtkIntrinsicTVFilter(), mesh, properties, (array, mask, direction, fixed), times,
+        full_output)
 
 
-def harmonic_map(mesh, array=None, *, mask=None, direction=None, fixed=None, **properties):
+def harmonic_map(
+    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
+    **properties
+):
     """Regularise normals or other unit vectors, or denoise the mesh (vtkHarmonicMapFilter).
 
     Solves u_t = div(g grad u) + u g |grad u|^2 + lambda chi (f - u), u(0) = f/|f|, with
@@ -79,11 +126,14 @@ def harmonic_map(mesh, array=None, *, mask=None, direction=None, fixed=None, **p
 
     The result is the point array <array>Harmonic (n, k); NormalsHarmonic for computed normals.
     """
-    return _run(vtkHarmonicMapFilter(), mesh, properties, array, mask, direction, fixed)
+    return _run(
+        vtkHarmonicMapFilter(), mesh, properties, (array, mask, direction, fixed), times,
+        full_output)
 
 
 def turing_texture(
-    mesh, initial=None, *, mask=None, direction=None, fixed=None, rates=None, **properties
+    mesh, initial=None, *, mask=None, direction=None, fixed=None, rates=None, times=None,
+    full_output=False, **properties
 ):
     """Grow a texture on the mesh by reaction and diffusion (vtkTuringTextureFilter).
 
@@ -94,53 +144,118 @@ def turing_texture(
     rates: cell array (m, 4) that replaces DiffusionRate1, DiffusionRateAcross1, DiffusionRate2 and
     DiffusionRateAcross2. The other arguments are those of heat(). Useful properties: FeatureSize
     (the wavelength in the unit of the coordinates, default 0: off), DiffusionRate1 and
-    DiffusionRate2 (default 21 and 2.6), NumberOfTimeSteps (default 640), StopTolerance (default 0).
+    DiffusionRate2 (default 21 and 2.6), NumberOfTimeSteps (default 640), StopTolerance.
 
     The results are the point arrays u1, u2 and Texture, (n,) each.
     """
     return _run(
-        vtkTuringTextureFilter(), mesh, properties, initial, mask, direction, fixed, rates)
+        vtkTuringTextureFilter(), mesh, properties, (initial, mask, direction, fixed, rates), times,
+        full_output)
 
 
-def direction_field(mesh, hints=None, **properties):
+def direction_field(mesh, hints=None, *, full_output=False, **properties):
     """Compute a line field on the mesh (vtkSurfaceDirectionFieldFilter).
 
     hints: point or cell array (n, 3) or (m, 3) of directions, for Method="Hints"; zero or NaN is no
     hint. Other values of Method: "PrincipalCurvature" (default), "CurvatureAligned", "Smooth".
+    full_output: see help(surfacediffusion.pyvista).
 
     The result is the cell array Direction (m, 3): unit vectors whose sign has no meaning, zero in
     cells that have no direction.
     """
-    return _run(vtkSurfaceDirectionFieldFilter(), mesh, properties, None, None, hints)
+    return _run(
+        vtkSurfaceDirectionFieldFilter(), mesh, properties, (None, None, hints), None, full_output)
 
 
-def _run(algorithm, mesh, properties, *arrays):
+def _run(algorithm, mesh, properties, arrays, times, full_output):
     """Runs the filter; `arrays` are the names of input arrays 0, 1, ... (None: not set)."""
+    surfaces = _surfaces(mesh)
     for index, name in enumerate(arrays):
         if name is not None:
-            algorithm.SetInputArrayToProcess(index, 0, 0, _association(mesh, index, name), name)
+            algorithm.SetInputArrayToProcess(index, 0, 0, _association(surfaces, index, name), name)
     for name, value in properties.items():
         _set(algorithm, name, value)
-    errors = []
-
-    def remember(_object, _event, text):
-        errors.append(text)
-
-    remember.CallDataType = "string0"
-    algorithm.AddObserver("ErrorEvent", remember)
     algorithm.SetInputDataObject(mesh)
-    algorithm.Update()
-    if errors:
-        raise ValueError(errors[0].strip())
-    return pyvista.wrap(algorithm.GetOutputDataObject(0))
+    messages = _Messages(algorithm, algorithm.GetExecutive())
+    if times is None:
+        algorithm.Update()
+        messages.deliver()
+        result = _output(algorithm)
+    else:
+        times = list(times)
+        algorithm.GenerateTimeStepsOn()
+        result = []
+        for time in times:
+            algorithm.UpdateTimeStep(float(time))
+            messages.deliver()
+            result.append(_output(algorithm))
+        if full_output and times:
+            algorithm.UpdateTimeStep(float(max(times)))  # the whole history
+    return (result, _report(algorithm)) if full_output else result
 
 
-def _association(mesh, index, name):
+class _Messages:
+    """Collects the errors and warnings of objects, which are then not printed."""
+
+    def __init__(self, *objects):
+        self.errors, self.warnings = [], []
+        for vtk_object in objects:
+            for event, texts in (("ErrorEvent", self.errors), ("WarningEvent", self.warnings)):
+                def remember(_object, _event, text, texts=texts):
+                    # "ERROR: In File.cxx, line 12\nvtkClass (0x1234): the message"
+                    texts.append(re.sub(r"^\w+: In [^\n]*\n\S+ \([^)]*\): ", "", text).strip())
+
+                remember.CallDataType = "string0"
+                vtk_object.AddObserver(event, remember)
+
+    def deliver(self):
+        """Raises the first error, and passes warnings on to the caller of the function."""
+        for text in self.warnings:
+            warnings.warn(text, stacklevel=4)
+        self.warnings.clear()
+        if self.errors:
+            raise ValueError(self.errors[0])
+
+
+def _output(algorithm):
+    """A mesh that the next update of the filter does not change."""
+    data = algorithm.GetOutputDataObject(0)
+    copy = data.NewInstance()
+    copy.ShallowCopy(data)
+    return pyvista.wrap(copy)
+
+
+def _report(algorithm):
+    report = Report()
+    for name in _REPORTED:
+        if hasattr(algorithm, f"Get{name}"):
+            setattr(report, name, getattr(algorithm, f"Get{name}")())
+    if algorithm.GetNumberOfOutputPorts() > 1:
+        columns = algorithm.GetOutputDataObject(1).GetRowData()
+        report.history = {
+            columns.GetArrayName(i): vtk_to_numpy(columns.GetArray(i))
+            for i in range(columns.GetNumberOfArrays())
+        }
+    return report
+
+
+def _surfaces(mesh):
+    """The surfaces of a mesh, without empty blocks. TypeError if there is anything else."""
+    if isinstance(mesh, pyvista.MultiBlock):
+        return [surface for block in mesh if block is not None for surface in _surfaces(block)]
+    if not isinstance(mesh, pyvista.PolyData):
+        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
+            mesh, "extract_surface") else ""
+        raise TypeError(
+            f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
+            f"pyvista.MultiBlock of it{remedy}")
+    return [mesh] if mesh.n_points > 0 else []
+
+
+def _association(surfaces, index, name):
     """Directions are on points or cells, rates are on cells, all other arrays are on points."""
-    block = mesh
-    while isinstance(block, pyvista.MultiBlock):
-        block = block[0]
-    on_cells = index == 4 or (index == 2 and name not in block.point_data)
+    on_cells = index == 4 or (
+        index == 2 and not any(name in surface.point_data for surface in surfaces))
     return _CELLS if on_cells else _POINTS
 
 

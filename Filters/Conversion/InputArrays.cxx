@@ -15,6 +15,77 @@
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+constexpr const char* Remedy =
+  "; the filter Cell Data to Point Data (vtkCellDataToPointData) makes point arrays of cell arrays";
+
+/// The array that SetInputArrayToProcess() chose: by its name or as an active attribute.
+struct Choice
+{
+  const char* Name = nullptr; ///< null or empty: by attribute
+  int Attribute = vtkDataSetAttributes::SCALARS;
+  int Association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  bool IsSet = true;
+
+  explicit Choice(vtkInformation* info)
+  {
+    this->Name =
+      info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+    const bool byAttribute = !this->Name && info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+    this->IsSet = byAttribute || this->HasName();
+    if (byAttribute)
+    {
+      this->Attribute = info->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+    }
+    if (info->Has(vtkDataObject::FIELD_ASSOCIATION()))
+    {
+      this->Association = info->Get(vtkDataObject::FIELD_ASSOCIATION());
+    }
+  }
+
+  bool HasName() const { return this->Name && *this->Name; }
+  bool MayBeOnPoints() const { return this->Association != vtkDataObject::FIELD_ASSOCIATION_CELLS; }
+  bool MayBeOnCells() const { return this->Association != vtkDataObject::FIELD_ASSOCIATION_POINTS; }
+  bool IsKnownAssociation() const
+  {
+    return this->Association == vtkDataObject::FIELD_ASSOCIATION_POINTS ||
+      this->Association == vtkDataObject::FIELD_ASSOCIATION_CELLS ||
+      this->Association == vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS;
+  }
+  vtkAbstractArray* FindIn(vtkDataSetAttributes* attributes) const
+  {
+    return this->HasName() ? attributes->GetAbstractArray(this->Name)
+                           : attributes->GetAbstractAttribute(this->Attribute);
+  }
+};
+
+/// The sentence of an array that is not there.
+std::string DescribeAbsence(const Choice& choice, bool allowCells, vtkPolyData* block)
+{
+  const bool onPoints = choice.MayBeOnPoints();
+  const bool onCells = allowCells && choice.MayBeOnCells();
+  const std::string kind = onPoints && onCells ? "point or cell" : (onCells ? "cell" : "point");
+  std::string text;
+  if (choice.HasName())
+  {
+    text = "is not among the " + kind + " arrays of the input; choose one of them";
+  }
+  else
+  {
+    text = "is not set and the input has no active " + kind + " " +
+      vtkDataSetAttributes::GetAttributeTypeAsString(choice.Attribute) + "; choose a " + kind +
+      " array";
+  }
+  const bool isCellArray = choice.HasName() ? block->GetCellData()->HasArray(choice.Name) != 0
+                                            : block->GetPointData()->GetNumberOfArrays() == 0 &&
+      block->GetCellData()->GetNumberOfArrays() > 0;
+  return !onCells && isCellArray ? text + Remedy : text;
+}
+
+} // namespace
+
 InputArrays::InputArrays(
   vtkAlgorithm* filter, vtkPolyData* block, std::vector<std::string>& problems)
   : Filter(filter)
@@ -38,68 +109,42 @@ vtkDataArray* InputArrays::FindOnPoints(int index, const char* property, int com
 vtkDataArray* InputArrays::FindAs(
   int index, const char* property, int components, bool allowCells, bool& onCells) const
 {
-  vtkInformation* info = this->Filter->GetInputArrayInformation(index);
-  const char* name =
-    info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  const bool byAttribute = !name && info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
-  if (!byAttribute && (!name || !*name))
+  const Choice choice(this->Filter->GetInputArrayInformation(index));
+  if (!choice.IsSet && index != 0)
   {
-    if (index != 0)
-    {
-      return nullptr;
-    }
+    return nullptr;
   }
   const auto report = [&](const std::string& what)
   {
     std::ostringstream text;
     text << property;
-    if (name && *name)
+    if (choice.HasName())
     {
-      text << " \"" << name << "\"";
+      text << " \"" << choice.Name << "\"";
     }
     text << ' ' << what;
     this->Problems.push_back(text.str());
     return nullptr;
   };
-
-  const int association = info->Has(vtkDataObject::FIELD_ASSOCIATION())
-    ? info->Get(vtkDataObject::FIELD_ASSOCIATION())
-    : static_cast<int>(vtkDataObject::FIELD_ASSOCIATION_POINTS);
-  onCells = allowCells && association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
-  if (!onCells && association != vtkDataObject::FIELD_ASSOCIATION_POINTS &&
-    association != vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS)
+  if (!choice.IsKnownAssociation() || !(allowCells || choice.MayBeOnPoints()))
   {
-    return report("has association " + std::to_string(association) + "; allowed: points (0)" +
-      (allowCells ? " or cells (1)" : ""));
+    const bool isCells = choice.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+    return report("has association " + std::to_string(choice.Association) +
+      (isCells ? " (cells)" : "") + "; allowed: points (0)" + (allowCells ? " or cells (1)" : "") +
+      (isCells ? Remedy : ""));
   }
-  vtkDataSetAttributes* attributes = this->Block->GetPointData();
+
+  vtkAbstractArray* found =
+    choice.MayBeOnPoints() ? choice.FindIn(this->Block->GetPointData()) : nullptr;
+  onCells = !found && allowCells && choice.MayBeOnCells();
   if (onCells)
   {
-    attributes = this->Block->GetCellData();
+    found = choice.FindIn(this->Block->GetCellData());
   }
-
-  vtkAbstractArray* found = nullptr;
-  if (name && *name)
+  if (!found)
   {
-    found = attributes->GetAbstractArray(name);
-    if (!found)
-    {
-      return report(std::string("is not among the ") + (onCells ? "cell" : "point") +
-        " arrays of the input; choose one of them");
-    }
+    return report(DescribeAbsence(choice, allowCells, this->Block));
   }
-  else
-  {
-    const int type = byAttribute ? info->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE())
-                                 : static_cast<int>(vtkDataSetAttributes::SCALARS);
-    found = attributes->GetAbstractAttribute(type);
-    if (!found)
-    {
-      return report(std::string("is not set and the input has no active point ") +
-        vtkDataSetAttributes::GetAttributeTypeAsString(type) + "; choose a point array");
-    }
-  }
-
   vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!array)
   {

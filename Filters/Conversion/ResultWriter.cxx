@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/ResultWriter.h"
 
-#include "Conversion/ConvertValue.h"
 #include "Conversion/NewArray.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/TupleRange.h"
-#include "Core/Surface/TangentVectors.h"
+#include "Run/CellDirections.h"
+#include "Run/ConvertValue.h"
 
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkIntArray.h"
@@ -16,7 +17,9 @@
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <Eigen/Eigenvalues>
+#include <cstdint>
+
+#include <algorithm>
 
 namespace SurfaceDiffusion
 {
@@ -131,38 +134,42 @@ vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
   const std::vector<vtkIdType>& cells, vtkPolyData* input, const TangentVectors& directions,
   const std::string& name, const ParallelFor& parallel)
 {
-  const TriangleMesh& mesh = surface.InputMesh();
-  const Points vectors =
-    VectorsInSpace(mesh, surface.Points(), surface.Triangles(), directions, parallel);
+  const Points vectors = DirectionsOfCells(
+    surface, directions, input->GetNumberOfCells(),
+    [&](Index t) { return static_cast<std::int64_t>(cells[static_cast<std::size_t>(t)]); },
+    parallel);
   auto array = NewArray<vtkDoubleArray>(name, 3, input->GetNumberOfCells());
-  array->Fill(0.0);
-
-  Vector areas = Vector::Zero(surface.Triangles().rows());
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
   {
-    areas[mesh.InputTriangle()[t]] = mesh.Shapes()[t].Area();
-  }
-  // The triangles of a cell follow one another.
-  for (Eigen::Index begin = 0, end = 0; begin < vectors.rows(); begin = end)
-  {
-    const vtkIdType cell = cells[surface.InputTriangle(static_cast<Index>(begin))];
-    Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
-    for (end = begin;
-         end < vectors.rows() && cells[surface.InputTriangle(static_cast<Index>(end))] == cell;
-         ++end)
-    {
-      tensor += areas[end] * vectors.row(end).transpose() * vectors.row(end);
-    }
-    Eigen::Vector3d direction = vectors.row(begin);
-    if (end - begin > 1)
-    {
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(tensor);
-      direction = axes.eigenvalues()[2] > 0.0 ? Eigen::Vector3d(axes.eigenvectors().col(2))
-                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
-    }
-    array->SetTuple(cell, direction.data());
+    array->SetTuple(cell, vectors.row(cell).data());
   }
   return array;
+}
+
+bool ReplaceArray(vtkDataArray* result, vtkDataArray* data, vtkDataSetAttributes* attributes)
+{
+  vtkAbstractArray* const former = attributes->GetAbstractArray(result->GetName());
+  const bool isAnother = former && former != data;
+  if (former)
+  {
+    attributes->RemoveArray(result->GetName());
+  }
+  attributes->AddArray(result);
+  return isAnother;
+}
+
+std::string DescribeReplacement(const std::vector<std::string>& names)
+{
+  std::vector<std::string> distinct = names; // blocks share their names
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  std::string list;
+  for (const std::string& name : distinct)
+  {
+    list += (list.empty() ? "\"" : ", \"") + name + "\"";
+  }
+  return "results replace arrays of the input: " + list +
+    "; to keep these, set another ResultArrayName";
 }
 
 void WriteHistory(const History& history, vtkTable* table)

@@ -11,6 +11,7 @@
 #include <vector>
 
 class vtkDataArray;
+class vtkDataSetAttributes;
 class vtkPoints;
 class vtkPolyData;
 class vtkTable;
@@ -37,6 +38,14 @@ vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like);
 vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
   const std::vector<vtkIdType>& cells, vtkPolyData* input, const TangentVectors& directions,
   const std::string& name, const ParallelFor& parallel);
+
+/// Add a result instead of an array of the same name, whose roles among the attributes are dropped,
+/// since the result may have another number of components. Returns whether that array was another
+/// one than `data`, the array that the result was computed from.
+bool ReplaceArray(vtkDataArray* result, vtkDataArray* data, vtkDataSetAttributes* attributes);
+
+/// The warning about arrays of the input that results have replaced.
+std::string DescribeReplacement(const std::vector<std::string>& names);
 
 /// The columns of the history.
 void WriteHistory(const History& history, vtkTable* table);

@@ -7,6 +7,7 @@
 #include "Conversion/SMPParallelFor.h"
 #include "Distributed/GatheredSurfaces.h"
 #include "Distributed/SharedProcessGroup.h"
+#include "Run/WarningLog.h"
 
 #include <memory>
 
@@ -14,6 +15,7 @@
 struct vtkSurfaceFilter::Internals
 {
   std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered;
+  SurfaceDiffusion::WarningLog Reported;
 
   /// During an update: the processes, if each works on its piece.
   std::unique_ptr<SurfaceDiffusion::SharedProcessGroup> Group;

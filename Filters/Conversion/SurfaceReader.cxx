@@ -3,6 +3,7 @@
 #include "Conversion/SurfaceReader.h"
 
 #include "Conversion/SMPParallelFor.h"
+#include "Run/Polygons.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -142,29 +143,12 @@ private:
     }
   }
 
-  /// Cut along the shorter diagonal that lies inside, regardless of the corner that comes first.
   void AddQuad(vtkIdType cell, const vtkIdType* ids)
   {
-    using Row3 = Eigen::RowVector3d;
-    const auto at = [&](int i) -> Row3 { return this->Coordinates.row(ids[i]); };
-    const auto normal = [&](int a, int b, int c) -> Row3
+    const auto at = [&](int i) -> Eigen::RowVector3d { return this->Coordinates.row(ids[i]); };
+    for (const Corners& corners : CutQuad({ at(0), at(1), at(2), at(3) }))
     {
-      const Row3 u = at(b) - at(a);
-      const Row3 v = at(c) - at(a);
-      return Row3(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
-    };
-    const bool firstInside = normal(0, 1, 2).dot(normal(0, 2, 3)) > 0.0;
-    const bool secondInside = normal(1, 2, 3).dot(normal(1, 3, 0)) > 0.0;
-    const bool firstShorter = (at(0) - at(2)).norm() <= (at(1) - at(3)).norm();
-    if (firstInside == secondInside ? firstShorter : firstInside)
-    {
-      this->Add(cell, ids[0], ids[1], ids[2]);
-      this->Add(cell, ids[0], ids[2], ids[3]);
-    }
-    else
-    {
-      this->Add(cell, ids[1], ids[2], ids[3]);
-      this->Add(cell, ids[1], ids[3], ids[0]);
+      this->Add(cell, ids[corners[0]], ids[corners[1]], ids[corners[2]]);
     }
   }
 

@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <tuple>
 
 namespace SurfaceDiffusion
@@ -29,9 +28,27 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The active attributes that filters read.
-constexpr int ReadAttributes[] = { vtkDataSetAttributes::SCALARS, vtkDataSetAttributes::VECTORS,
-  vtkDataSetAttributes::NORMALS };
+/// The active attributes that the filter reads: those of its defaults, and those that the user has
+/// selected as input arrays.
+std::vector<int> FindReadAttributes(vtkAlgorithm* filter)
+{
+  std::vector<int> types = { vtkDataSetAttributes::SCALARS, vtkDataSetAttributes::VECTORS,
+    vtkDataSetAttributes::NORMALS };
+  vtkInformationVector* const infos =
+    filter->GetInformation()->Get(vtkAlgorithm::INPUT_ARRAYS_TO_PROCESS());
+  for (int i = 0; infos && i < infos->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* const info = infos->GetInformationObject(i);
+    const int type = info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE())
+      ? info->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE())
+      : types.front();
+    if (std::find(types.begin(), types.end(), type) == types.end())
+    {
+      types.push_back(type);
+    }
+  }
+  return types;
+}
 
 /// Whether the user has selected the array as one of the filter's input arrays.
 bool IsSelected(vtkAlgorithm* filter, vtkAbstractArray* array)
@@ -51,9 +68,10 @@ bool IsSelected(vtkAlgorithm* filter, vtkAbstractArray* array)
   return false;
 }
 
-bool IsActive(vtkDataSetAttributes* attributes, vtkAbstractArray* array)
+bool IsActive(
+  const std::vector<int>& types, vtkDataSetAttributes* attributes, vtkAbstractArray* array)
 {
-  return std::any_of(std::begin(ReadAttributes), std::end(ReadAttributes),
+  return std::any_of(types.begin(), types.end(),
     [&](int type) { return attributes->GetAbstractAttribute(type) == array; });
 }
 
@@ -76,10 +94,11 @@ vtkSmartPointer<vtkAbstractArray> MakePackedArray(vtkAbstractArray* array, vtkId
 void PackAttributes(vtkAlgorithm* filter, vtkDataSetAttributes* from, vtkIdType first,
   vtkIdType count, vtkDataSetAttributes* to)
 {
+  const std::vector<int> types = FindReadAttributes(filter);
   for (int a = 0; a < from->GetNumberOfArrays(); ++a)
   {
     vtkAbstractArray* const array = from->GetAbstractArray(a);
-    if ((!IsSelected(filter, array) && !IsActive(from, array)) ||
+    if ((!IsSelected(filter, array) && !IsActive(types, from, array)) ||
       array->GetNumberOfTuples() < first + count)
     {
       continue;
@@ -87,7 +106,7 @@ void PackAttributes(vtkAlgorithm* filter, vtkDataSetAttributes* from, vtkIdType 
     const auto copy = MakePackedArray(array, count);
     copy->InsertTuples(0, count, first, array);
     const int index = to->AddArray(copy);
-    for (const int type : ReadAttributes)
+    for (const int type : types)
     {
       if (from->GetAbstractAttribute(type) == array)
       {
@@ -147,6 +166,8 @@ PieceVersion::PieceVersion(vtkAlgorithm* filter, const SurfacePiece& piece)
   : Surface(piece.Surface)
   , FirstCell(piece.Input->GetNumberOfVerts() + piece.Input->GetNumberOfLines())
 {
+  const std::vector<int> types = FindReadAttributes(filter);
+  this->Append(piece.Input); // an array that was edited in place may not be marked itself
   this->Append(piece.Input->GetPoints());
   for (vtkCellArray* const cells : { piece.Input->GetPolys(), piece.Input->GetStrips() })
   {
@@ -163,7 +184,7 @@ PieceVersion::PieceVersion(vtkAlgorithm* filter, const SurfacePiece& piece)
     for (int a = 0; a < attributes->GetNumberOfArrays(); ++a)
     {
       vtkAbstractArray* const array = attributes->GetAbstractArray(a);
-      const bool isActive = SurfaceDiffusion::IsActive(attributes, array);
+      const bool isActive = SurfaceDiffusion::IsActive(types, attributes, array);
       if (isActive || IsSelected(filter, array))
       {
         this->Append(array, isActive);

@@ -94,6 +94,7 @@ void AddResults(const std::vector<PieceResult>& results, vtkPolyData* output)
     {
       attributes = output->GetCellData();
     }
+    attributes->RemoveArray(result.Array->GetName()); // and its role, which it would keep
     const int index = attributes->AddArray(result.Array);
     if (result.Attribute >= 0)
     {

@@ -3,6 +3,7 @@
 #include "Run/DirectionFieldRun.h"
 
 #include <cmath>
+#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -74,7 +75,6 @@ void DirectionFieldRun::Update(
       input.ReadSurface(), options, this->Parallel, progress.Part(0.0, 0.1));
     this->SurfaceVersion = input.SurfaceVersion;
     this->SurfaceSettings = surfaceSettings;
-    this->WarnAgain = true;
   }
   if (this->HasField && this->FieldsVersion == input.FieldsVersion &&
     this->ModelSettings == modelSettings)
@@ -91,24 +91,36 @@ void DirectionFieldRun::Update(
     ? DefaultSmoothing * h
     : settings.SmoothingLength / mesh.LengthUnit();
   core.HintWeight = settings.HintWeight / (h * h);
+  core.MaximumNumberOfSteps = settings.MaximumNumberOfSteps;
   core.Angle = RadiansFromDegrees(settings.Angle);
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
-    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0));
+    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0), &this->Report);
   this->FieldsVersion = input.FieldsVersion;
   this->ModelSettings = modelSettings;
   this->HasField = true;
 }
 
-std::vector<std::string> DirectionFieldRun::TakeWarnings()
+std::vector<Warning> DirectionFieldRun::FindWarnings() const
 {
-  std::vector<std::string> warnings;
-  const Index degenerate = this->Domain->Diagnostics().DegenerateTriangles;
-  if (this->WarnAgain && degenerate > 0)
+  Fingerprint inputs = this->SurfaceVersion;
+  inputs.Add(this->FieldsVersion);
+  std::vector<Warning> warnings;
+  std::ostringstream text;
+  if (this->Report.MissedResidual > 0.0)
   {
-    warnings.push_back(std::to_string(degenerate) + " triangles of zero area get no direction");
+    text << "the linear solver missed its tolerance; the largest relative residual is "
+         << this->Report.MissedResidual;
+    warnings.push_back({ text.str(), inputs });
+    text.str("");
   }
-  this->WarnAgain = false;
+  if (this->Report.UnsettledChange > 0.0)
+  {
+    text << "the search for the smoothest field ended at its largest number of steps; the last "
+            "one changed an eigenvalue by "
+         << 100.0 * this->Report.UnsettledChange << " %";
+    warnings.push_back({ text.str(), inputs });
+  }
   return warnings;
 }
 

@@ -19,6 +19,7 @@ public:
   void AddBytes(const void* bytes, std::size_t size, const ParallelFor& parallel = SerialFor());
   void AddNumber(std::uint64_t number);
   void AddNumber(double number);
+  void Add(const Fingerprint& other) { this->AddNumber(other.Hash); }
 
   friend bool operator==(const Fingerprint& a, const Fingerprint& b) { return a.Hash == b.Hash; }
   friend bool operator!=(const Fingerprint& a, const Fingerprint& b) { return !(a == b); }

@@ -74,7 +74,6 @@ SolverTask HarmonicMapSettings::MakeTask(const ModelInputs& inputs, double timeS
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
   task.DiffusionNumber =
     this->LargestDiffusivity() * timeStep / std::pow(inputs.Units.CoreEdgeLength(), this->Exponent);
-  task.NumberOfSolves = this->Exponent == 2.0 ? this->NumberOfTimeSteps : 1.0;
   task.IsPreconditioner = this->Scheme != HarmonicMap::Scheme::ExplicitReaction;
   return task;
 }
@@ -99,6 +98,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   settings.Beta = inputs.Units.ToCore(this->Beta, -2.0, 0.0);
   settings.Fidelity = inputs.Units.ToCore(this->FidelityWeight, -p, 0.0);
   settings.TimeScheme = this->Scheme;
+  settings.MaximumNumberOfRepetitions = this->MaximumNumberOfRepetitions;
   settings.ConsistentReaction = this->ConsistentReaction;
   settings.ProjectToSphere = this->ProjectToSphere;
   settings.LineField = this->LineField;
@@ -115,8 +115,9 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   {
     settings.Method = HarmonicMap::Preconditioner::Jacobi;
   }
-  const auto solver =
-    inputs.Solvers.Find(SolverPurpose::Step, this->MakeTask(inputs, settings.TimeStep));
+  const double solvesPerStep = p == 2.0 ? 1.0 : 0.0; // with other exponents each step has a matrix
+  const auto solver = inputs.Solvers.Find(
+    SolverPurpose::Step, this->MakeTask(inputs, settings.TimeStep), solvesPerStep);
   return std::make_unique<HarmonicMap>(inputs.Surface.SharedAssembler(), MakeWeights(*this, inputs),
     std::move(inputs.Data), settings, solver, inputs.Parallel);
 }
@@ -135,8 +136,8 @@ void HarmonicMapSettings::Finish(const RunState& state, RunResult& result) const
   limits.Tolerance = this->Tolerance;
   limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   const Points moved = UpdateVerticesFromNormals(mesh, surface.Points(), state.Path.State(),
-    UpdateRange * state.Units.MeanEdgeLength, result.Motion, limits, state.Parallel,
-    state.Progress);
+    UpdateRange * state.Units.MeanEdgeLength, result.Motion, limits,
+    this->Solver != SolverMethod::ConjugateGradient, state.Parallel, state.Progress);
   result.MovedPoints = surface.Points();
   for (Eigen::Index i = 0; i < moved.rows(); ++i)
   {

@@ -83,7 +83,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   SolverTask task;
   task.NumberOfVertices = mesh.NumberOfVertices();
   task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
-  task.NumberOfSolves = secondOrder ? 2.0 * traits.NumberOfSteps : traits.NumberOfSteps;
+  const double solvesPerStep = secondOrder ? 2.0 : 1.0;
   if (this->Mode == HeatMode::SteadyState)
   {
     settings.TimeScheme = LinearDiffusion::Scheme::SteadyState;
@@ -93,7 +93,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   result.EffectiveFidelityWeight = this->FidelityWeight;
   if (this->AutomaticFidelity)
   {
-    const auto solver = inputs.Solvers.Find(SolverPurpose::Search, task);
+    const auto solver = inputs.Solvers.Find(SolverPurpose::Search, task, solvesPerStep);
     const auto solve = [&](double fidelity)
     {
       LinearDiffusion::Settings steady;
@@ -106,7 +106,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     result.EffectiveFidelityWeight = settings.Fidelity / fidelityUnit;
   }
   return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
-    std::move(inputs.Data), settings, inputs.Solvers.Find(SolverPurpose::Step, task),
+    std::move(inputs.Data), settings, inputs.Solvers.Find(SolverPurpose::Step, task, solvesPerStep),
     inputs.Parallel);
 }
 

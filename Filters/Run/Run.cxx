@@ -35,13 +35,13 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
   progress.Report(0.6);
 
   const SettingsSnapshot snapshot(*this->Settings, SettingScope::Model);
+  const ModelTraits traits = this->Settings->DescribeModel();
   const std::size_t count = this->Blocks.size();
   std::vector<std::unique_ptr<Fields>> fields(count);
   for (std::size_t b = 0; b < count; ++b)
   {
     Block& block = *this->Blocks[b];
-    if (processes.Any(!block.Path || block.FieldsVersion != inputs[b].FieldsVersion ||
-          block.ModelSettings != snapshot || block.NumberOfBlocks != count))
+    if (processes.Any(!this->IsModelCurrent(block, inputs[b], snapshot, traits)))
     {
       block.Path.reset();
       this->ReadFields(inputs[b], processes, block, fields[b]);
@@ -67,11 +67,22 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
       block.FieldsVersion = inputs[b].FieldsVersion;
       block.ModelSettings = snapshot;
       block.NumberOfBlocks = count;
-      this->WarnAgain = true;
+      block.TimeStep = traits.TimeStep;
     }
+    block.Path->Reserve(traits.NumberOfSteps);
     fields[b].reset();
   }
   this->CheckHold(processes);
+}
+
+/// Whether the states computed so far are also those of a run with these inputs and settings, whose
+/// number of steps may be another one.
+bool Run::IsModelCurrent(const Block& block, const BlockInput& input,
+  const SettingsSnapshot& settings, const ModelTraits& traits) const
+{
+  return block.Path && block.FieldsVersion == input.FieldsVersion &&
+    block.ModelSettings == settings && block.NumberOfBlocks == this->Blocks.size() &&
+    block.TimeStep == traits.TimeStep && block.Solvers.ServesRunOf(traits.NumberOfSteps);
 }
 
 void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
@@ -91,7 +102,6 @@ void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGro
       this->MakeSurface(inputs[b], processes, *block, progress.Part(b / share, (b + 1) / share));
       block->SurfaceVersion = inputs[b].SurfaceVersion;
       block->SurfaceSettings = snapshot;
-      this->WarnAgain = true;
     }
   }
 }
@@ -128,6 +138,8 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   block.HasMask = !fields->Mask.empty();
   block.HasMasked =
     std::any_of(fields->Mask.begin(), fields->Mask.end(), [](char masked) { return masked != 0; });
+  block.MaskVersion = Fingerprint();
+  block.MaskVersion.AddBytes(fields->Mask.data(), fields->Mask.size(), this->Parallel);
 }
 
 /// h and R of all surfaces together.
@@ -188,7 +200,6 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
   const std::size_t limit = this->CheckpointMemory(*model, processes);
   auto path = std::make_unique<Trajectory>(
     block.Surface->SharedMesh(), std::move(model), limit, this->Parallel);
-  path->Reserve(this->Settings->DescribeModel().NumberOfSteps);
   progress.Report(1.0);
   block.Path = std::move(path); // last: an aborted run must not look like a finished one
 }

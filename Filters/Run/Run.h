@@ -8,6 +8,7 @@
 #include "Run/History.h"
 #include "Run/ModelInputs.h"
 #include "Run/SolverStore.h"
+#include "Run/WarningLog.h"
 
 #include <functional>
 #include <memory>
@@ -41,6 +42,17 @@ struct BlockInput
   std::function<SurfaceArrays()> ReadSurface;
   std::function<Fields()> ReadFields;
   SurfaceDiffusion::Decomposition* Decomposition = nullptr; ///< null: the surface is whole
+};
+
+/// The steps, over all surfaces, whose solves or repetitions ended before they had converged.
+struct Shortfalls
+{
+  Index Steps = 0; ///< of all
+  Index MissedSteps = 0;
+  double MissedResidual = 0.0; ///< the largest; see StepReport
+  Index UnsettledSteps = 0;
+  double UnsettledDecrease = 0.0; ///< the largest; see StepReport
+  Fingerprint Inputs; ///< of all surfaces
 };
 
 /// A run of one model on several surfaces that share their units. A run is determined by its inputs
@@ -77,10 +89,12 @@ public:
     Fingerprint SurfaceVersion, FieldsVersion;
     SettingsSnapshot SurfaceSettings, ModelSettings;
     std::size_t NumberOfBlocks = 0;
+    double TimeStep = 0.0;
     ValueStatistics Statistics;
     bool HasData = false;
     bool HasMask = false;
     bool HasMasked = false; ///< a nonzero entry of the mask
+    Fingerprint MaskVersion;
     SolverStore Solvers;
     const SurfaceDiffusion::Decomposition* Decomposition = nullptr;
   };
@@ -97,10 +111,12 @@ public:
   /// The history up to a step.
   History MakeHistory(int step) const;
 
-  /// Warnings that were not taken before. They appear again if their surface or model is rebuilt.
-  std::vector<std::string> TakeWarnings(const ProcessGroup& processes);
+  /// The warnings that hold, with the inputs that each is about.
+  std::vector<Warning> FindWarnings(const ProcessGroup& processes) const;
 
 private:
+  bool IsModelCurrent(const Block& block, const BlockInput& input, const SettingsSnapshot& settings,
+    const ModelTraits& traits) const;
   void UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
     const ProgressMonitor& progress);
   void MakeSurface(const BlockInput& input, const ProcessGroup& processes, Block& block,
@@ -113,6 +129,7 @@ private:
   PointData MakeData(const Block& block, const Fields& fields, const ProcessGroup& processes) const;
   std::size_t CheckpointMemory(const Model& model, const ProcessGroup& processes) const;
   void CheckHold(const ProcessGroup& processes) const;
+  Shortfalls FindShortfalls() const;
   bool MaskChangesNothing(const ProcessGroup& processes) const;
 
   const ParallelFor& Parallel;
@@ -121,8 +138,6 @@ private:
   UnitSystem CommonUnits;
   double UnitOfTime = 1.0;
   long long StepsComputed = 0;
-  bool WarnAgain = true;
-  std::vector<std::string> Reported; ///< warnings taken since the last rebuild
 };
 
 } // namespace SurfaceDiffusion

@@ -26,9 +26,9 @@ void RunSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Number(
     { "TimeStep", "time", "The time step." }, this->TimeStep, SettingRange::Positive());
-  visitor.Integer(
-    { "NumberOfTimeSteps", "",
-      "The number of time steps n. There are n + 1 states, from the initial one on." },
+  visitor.Integer({ "NumberOfTimeSteps", "",
+                    "The number of time steps n. There are n + 1 states, from the initial one on.",
+                    SettingScope::Output }, // a longer run continues a shorter one
     this->NumberOfTimeSteps,
     SettingRange::Between(0.0, LargestNumberOfTimeSteps, "0 to 1000000000"));
   visitor.Choice({ "Units", "",

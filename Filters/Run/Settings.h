@@ -13,7 +13,7 @@ enum class SettingScope
 {
   Surface, ///< the mesh, and everything after it
   Model, ///< the model and its states
-  Output ///< nothing: the setting is used when a state is written
+  Output ///< nothing: no state depends on the setting
 };
 
 /// The allowed values of a number, and their wording in error messages.

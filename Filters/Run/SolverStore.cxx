@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/SolverStore.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace SurfaceDiffusion
@@ -10,12 +11,39 @@ namespace SurfaceDiffusion
 void SolverStore::Configure(const RunSettings& settings, const ParallelFor& parallel)
 {
   this->Method = settings.Solver;
+  this->NumberOfSteps = settings.DescribeModel().NumberOfSteps;
   this->Limits.Tolerance = settings.Tolerance;
   this->Limits.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
   this->Parallel = &parallel;
+  for (Kept& kept : this->Solvers)
+  {
+    kept.IsUsed = false;
+  }
 }
 
-std::shared_ptr<LinearSolver> SolverStore::Find(SolverPurpose purpose, SolverTask task)
+SolverChoice SolverStore::Choose(
+  const SolverTask& task, double solvesPerStep, int numberOfSteps) const
+{
+  SolverTask whole = task;
+  if (solvesPerStep > 0.0)
+  {
+    whole.NumberOfSolves = solvesPerStep * numberOfSteps;
+  }
+  return ChooseSolver(this->Method, whole);
+}
+
+bool SolverStore::ServesRunOf(int numberOfSteps) const
+{
+  return std::all_of(this->Solvers.begin(), this->Solvers.end(),
+    [&](const Kept& kept)
+    {
+      return this->Distributed || !kept.IsUsed ||
+        this->Choose(kept.Task, kept.SolvesPerStep, numberOfSteps) == kept.Choice;
+    });
+}
+
+std::shared_ptr<LinearSolver> SolverStore::Find(
+  SolverPurpose purpose, SolverTask task, double solvesPerStep)
 {
   task.Tolerance = this->Limits.Tolerance;
   Kept& kept = this->Solvers[static_cast<std::size_t>(purpose)];
@@ -25,13 +53,16 @@ std::shared_ptr<LinearSolver> SolverStore::Find(SolverPurpose purpose, SolverTas
   }
   else
   {
-    const SolverChoice choice = ChooseSolver(this->Method, task);
+    const SolverChoice choice = this->Choose(task, solvesPerStep, this->NumberOfSteps);
     if (!kept.Solver || kept.Choice != choice)
     {
       kept.Solver.reset(); // before another one takes memory
       kept.Solver = MakeSolver(choice, *this->Parallel);
       kept.Choice = choice;
     }
+    kept.Task = task;
+    kept.SolvesPerStep = solvesPerStep;
+    kept.IsUsed = true;
   }
   kept.Solver->SetLimits(this->Limits);
   return kept.Solver;

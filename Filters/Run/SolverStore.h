@@ -33,8 +33,15 @@ public:
   void Configure(const RunSettings& settings, const ParallelFor& parallel);
   void SetDistributedFactory(DistributedFactory factory) { this->Distributed = std::move(factory); }
 
-  /// The solver that the settings ask for. task.Tolerance is set here.
-  std::shared_ptr<LinearSolver> Find(SolverPurpose purpose, SolverTask task);
+  /// The solver that the settings ask for. task.Tolerance is set here. solvesPerStep: the number of
+  /// solves with one matrix in each step of the run, or 0 if task.NumberOfSolves does not depend on
+  /// the number of steps.
+  std::shared_ptr<LinearSolver> Find(
+    SolverPurpose purpose, SolverTask task, double solvesPerStep = 0.0);
+
+  /// Whether the solvers that Find() gave since Configure() are also those of a run of another
+  /// length, which then has the same states.
+  bool ServesRunOf(int numberOfSteps) const;
 
   /// The solver that is kept for a purpose; null if there is none.
   const LinearSolver* Get(SolverPurpose purpose) const
@@ -47,9 +54,15 @@ private:
   {
     std::shared_ptr<LinearSolver> Solver;
     SolverChoice Choice;
+    SolverTask Task;
+    double SolvesPerStep = 0.0;
+    bool IsUsed = false; ///< since Configure()
   };
 
+  SolverChoice Choose(const SolverTask& task, double solvesPerStep, int numberOfSteps) const;
+
   SolverMethod Method = SolverMethod::Automatic;
+  int NumberOfSteps = 0;
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;

@@ -18,6 +18,9 @@ struct SurfaceArrays
   SurfaceDiffusion::Points Points;
   SurfaceDiffusion::Triangles Triangles;
   std::vector<char> Excluded; ///< per point: triangles with a nonzero corner are ignored
+  /// Per point, above 0: multiplies the area of its control cell, for surfaces whose true areas are
+  /// known, such as averages of many. Empty: 1. Not together with IntrinsicDelaunay.
+  std::vector<double> AreaFactors = {};
 };
 
 /// Throws std::runtime_error if a coordinate is not finite.
@@ -38,6 +41,7 @@ struct SurfaceDiagnostics
   Index UnusedPoints = 0; ///< not in any participating triangle; excluded points do not count
   Index NonManifoldEdges = 0;
   Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
+  Index EdgesLeft = 0; ///< IntrinsicDelaunay::NumberOfEdgesLeft()
 };
 
 /// The surface that the numerics work on, and the way back to its points.

@@ -240,9 +240,8 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
     SolverTask task;
     task.NumberOfVertices = mesh.NumberOfVertices();
     task.DiffusionNumber = fastest * settings.TimeStep / (h * h);
-    task.NumberOfSolves = (secondOrder ? 2.0 : 1.0) * this->NumberOfTimeSteps;
-    chemicals[c].Solver =
-      inputs.Solvers.Find(c == 0 ? SolverPurpose::Step : SolverPurpose::SecondChemical, task);
+    const SolverPurpose purpose = c == 0 ? SolverPurpose::Step : SolverPurpose::SecondChemical;
+    chemicals[c].Solver = inputs.Solvers.Find(purpose, task, secondOrder ? 2.0 : 1.0);
     chemicals[c].Coefficients = AnisotropicWeights(
       mesh, isotropic, directions, rates.Along[c], rates.Across[c], inputs.Parallel);
   }

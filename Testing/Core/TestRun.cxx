@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Meshes.h"
+#include "RunInput.h"
 
 #include "Run/DirectionFieldRun.h"
 #include "Run/HeatSettings.h"
@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -20,63 +21,14 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-/// One surface with one scalar per point, as arrays.
-struct Input
-{
-  Points Vertices;
-  Triangles Faces;
-  Fields Data;
-
-  explicit Input(const Testing::Surface& surface)
-    : Vertices(surface.Vertices)
-    , Faces(surface.Faces)
-  {
-    this->Data.Data = Values(this->Vertices.rows(), 1);
-    for (Eigen::Index i = 0; i < this->Vertices.rows(); ++i)
-    {
-      this->Data.Data(i, 0) = this->Vertices(i, 2) + 0.1 * std::cos(7.0 * i);
-    }
-  }
-
-  BlockInput Block() const
-  {
-    BlockInput block;
-    const auto add = [](Fingerprint& fingerprint, const auto& matrix)
-    {
-      fingerprint.AddBytes(
-        matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(*matrix.data()));
-    };
-    add(block.SurfaceVersion, this->Vertices);
-    add(block.SurfaceVersion, this->Faces);
-    add(block.FieldsVersion, this->Data.Data);
-    add(block.FieldsVersion, this->Data.Directions);
-    block.FieldsVersion.AddBytes(this->Data.Mask.data(), this->Data.Mask.size());
-    block.ReadSurface = [this] { return SurfaceArrays{ this->Vertices, this->Faces, {} }; };
-    block.ReadFields = [this] { return this->Data; };
-    return block;
-  }
-};
-
-const ProcessGroup Alone;
-
-/// The state at the last step.
-template <typename ModelSettings>
-Values StateOf(Run& run, const std::vector<BlockInput>& inputs, const ModelSettings& settings)
-{
-  run.Update(inputs, std::make_shared<ModelSettings>(settings), Alone, ProgressMonitor());
-  run.Seek(settings.DescribeModel().NumberOfSteps, ProgressMonitor());
-  return run.GetBlock(0).Path->State();
-}
-
-} // namespace
+using Testing::Alone;
+using Testing::RunInput;
+using Testing::StateOf;
 
 TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 {
   // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2 z.
-  Input input(Testing::Icosphere(5));
+  RunInput input(Testing::Icosphere(5));
   input.Data.Data = input.Vertices.col(2);
   HeatSettings settings;
   settings.Units = UnitsMode::Absolute;
@@ -92,7 +44,7 @@ TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 
 TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   const Values first = StateOf(run, { input.Block() }, HeatSettings());
   EXPECT_EQ(run.NumberOfStepsComputed(), 10);
@@ -103,7 +55,7 @@ TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
 
 TEST(Run, AfterAnyEditEqualsANewRun)
 {
-  Input input(Testing::Icosphere(3));
+  RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   TotalVariationSettings settings;
   StateOf(run, { input.Block() }, settings);
@@ -153,7 +105,7 @@ TEST(Run, FactorisesAgainOnlyIfTheMatrixChanges)
 
 TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
   StateOf(run, { input.Block() }, settings);
@@ -162,10 +114,67 @@ TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
   EXPECT_EQ(run.NumberOfStepsComputed(), 10);
 }
 
+template <typename ModelSettings>
+void ExpectLongerRunsContinueShorterOnes(
+  const RunInput& input, ModelSettings settings, std::initializer_list<int> lengths)
+{
+  SurfaceDiffusion::Run run(SerialFor());
+  for (const int length : lengths)
+  {
+    settings.NumberOfTimeSteps = length;
+    const Values state = StateOf(run, { input.Block() }, settings);
+    SurfaceDiffusion::Run fresh(SerialFor());
+    EXPECT_TRUE((state.array() == StateOf(fresh, { input.Block() }, settings).array()).all())
+      << length << " steps, solver " << static_cast<int>(settings.Solver);
+    EXPECT_EQ(run.MakeHistory(length).Records.size(), static_cast<std::size_t>(length) + 1);
+  }
+}
+
+TEST(Run, ALongerRunComputesOnlyTheNewSteps)
+{
+  const RunInput input(Testing::Icosphere(3));
+  SurfaceDiffusion::Run run(SerialFor());
+  HeatSettings settings;
+  settings.NumberOfTimeSteps = 20;
+  StateOf(run, { input.Block() }, settings);
+  settings.NumberOfTimeSteps = 22;
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.NumberOfStepsComputed(), 22);
+  settings.NumberOfTimeSteps = 5;
+  settings.FWHM = 0.3;
+  StateOf(run, { input.Block() }, settings);
+  settings.NumberOfTimeSteps = 8; // other steps
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.NumberOfStepsComputed(), 22 + 5 + 8);
+}
+
+/// Automatic chooses by the number of steps, too, and the result is still that of a fresh run.
+TEST(Run, ALongerRunGivesTheBitsOfAFreshOne)
+{
+  const RunInput input(Testing::Icosphere(3));
+  RunInput nothing(Testing::Icosphere(3));
+  nothing.Data.Data.resize(0, 0);
+  for (const SolverMethod solver : { SolverMethod::Automatic, SolverMethod::Direct,
+         SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
+  {
+    HeatSettings heat;
+    heat.Solver = solver;
+    heat.TimeStep = 3.0;
+    ExpectLongerRunsContinueShorterOnes(input, heat, { 0, 1, 3, 40, 42, 2, 300 });
+    heat.FWHM = 0.3;
+    ExpectLongerRunsContinueShorterOnes(input, heat, { 1, 3, 2 });
+    TextureSettings texture;
+    texture.Solver = solver;
+    ExpectLongerRunsContinueShorterOnes(nothing, texture, { 2, 40, 10 });
+  }
+  TotalVariationSettings flow;
+  ExpectLongerRunsContinueShorterOnes(input, flow, { 1, 4, 2 });
+}
+
 TEST(Run, SurfacesShareTheirUnits)
 {
-  const Input small(Testing::Icosphere(3));
-  const Input large(Testing::Scaled(Testing::Icosphere(3), 3.0));
+  const RunInput small(Testing::Icosphere(3));
+  const RunInput large(Testing::Scaled(Testing::Icosphere(3), 3.0));
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { small.Block() }, HeatSettings());
   const double h = run.Units().MeanEdgeLength;
@@ -174,26 +183,42 @@ TEST(Run, SurfacesShareTheirUnits)
   EXPECT_NEAR(run.TimeUnit(), 4.0 * h * h, 1e-12);
 }
 
-TEST(Run, ReportsEachWarningOnceUntilSomethingIsMadeAgain)
+TEST(Run, EachWarningIsReportedOncePerCause)
 {
-  Input input(Testing::Icosphere(2));
+  RunInput input(Testing::Icosphere(2));
   input.Vertices.conservativeResize(input.Vertices.rows() + 1, 3);
   input.Vertices.bottomRows(1).setOnes();
   input.Data.Data = Values::Ones(input.Vertices.rows(), 1);
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
-  StateOf(run, { input.Block() }, settings);
-  EXPECT_EQ(run.TakeWarnings(Alone).size(), 1u);
+  WarningLog log;
+  const auto update = [&]
+  {
+    StateOf(run, { input.Block() }, settings);
+    return log.Report(run.FindWarnings(Alone));
+  };
+  EXPECT_EQ(update().size(), 1u); // an unused point
   run.Seek(3, ProgressMonitor());
-  EXPECT_TRUE(run.TakeWarnings(Alone).empty());
+  EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty());
   settings.TimeStep = 0.5;
-  StateOf(run, { input.Block() }, settings);
-  EXPECT_EQ(run.TakeWarnings(Alone).size(), 1u);
+  EXPECT_TRUE(update().empty());
+  input.Data.Data(3, 0) = 2.0;
+  EXPECT_TRUE(update().empty());
+  input.Data.Mask.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
+  EXPECT_EQ(update().size(), 1u); // a mask without effect
+  settings.TimeStep = 0.25;
+  EXPECT_TRUE(update().empty());
+  input.Data.Mask[5] = 1;
+  EXPECT_TRUE(update().empty());
+  input.Data.Mask[5] = 0;
+  EXPECT_EQ(update().size(), 1u); // the mask had an effect in between
+  input.Vertices.row(7) *= 1.1;
+  EXPECT_EQ(update().size(), 1u); // another surface with an unused point
 }
 
 TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { input.Block() }, HeatSettings());
   const History history = run.MakeHistory(10);
@@ -208,7 +233,7 @@ TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
 
 TEST(Run, ATextureNeedsNoData)
 {
-  Input input(Testing::Icosphere(3));
+  RunInput input(Testing::Icosphere(3));
   input.Data.Data.resize(0, 0);
   SurfaceDiffusion::Run run(SerialFor());
   TextureSettings settings;
@@ -221,7 +246,7 @@ TEST(Run, ATextureNeedsNoData)
 
 TEST(Run, InvalidArraysAreErrorsThatNameThem)
 {
-  Input input(Testing::Icosphere(2));
+  RunInput input(Testing::Icosphere(2));
   input.Data.Data(3, 0) = std::numeric_limits<double>::infinity();
   SurfaceDiffusion::Run run(SerialFor());
   try
@@ -239,7 +264,7 @@ TEST(Run, InvalidArraysAreErrorsThatNameThem)
 
 TEST(DirectionFieldRun, IsKeptUntilInputsOrSettingsChange)
 {
-  const Input input(Testing::Cylinder(24, 24));
+  const RunInput input(Testing::Cylinder(24, 24));
   DirectionFieldRun run(SerialFor());
   DirectionFieldSettings settings;
   int reads = 0;

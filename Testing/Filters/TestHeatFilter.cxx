@@ -87,12 +87,12 @@ TEST(HeatFilter, EnumsAreNumberedInOrderAndHaveTexts)
   expect(filter->GetSolver(), filter->GetSolverAsString(), 1, "Direct");
   filter->SetSolverToConjugateGradient();
   expect(filter->GetSolver(), filter->GetSolverAsString(), 2, "ConjugateGradient");
-  filter->SetOutputPrecisionToInput();
-  expect(filter->GetOutputPrecision(), filter->GetOutputPrecisionAsString(), 0, "Input");
   filter->SetOutputPrecisionToSingle();
-  expect(filter->GetOutputPrecision(), filter->GetOutputPrecisionAsString(), 1, "Single");
+  expect(filter->GetOutputPrecision(), filter->GetOutputPrecisionAsString(), 0, "Single");
   filter->SetOutputPrecisionToDouble();
-  expect(filter->GetOutputPrecision(), filter->GetOutputPrecisionAsString(), 2, "Double");
+  expect(filter->GetOutputPrecision(), filter->GetOutputPrecisionAsString(), 1, "Double");
+  filter->SetOutputPrecisionToInput();
+  expect(filter->GetOutputPrecision(), filter->GetOutputPrecisionAsString(), 2, "Input");
   filter->SetModeToSteadyState();
   expect(filter->GetMode(), filter->GetModeAsString(), 1, "SteadyState");
   filter->SetModeToTimeSteps();

@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
+#include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
+#include "vtkHarmonicMapFilter.h"
 #include "vtkIdTypeArray.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkSOADataArrayTemplate.h"
+#include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
 
@@ -361,4 +366,160 @@ TEST(InputArrays, AMaskWithoutEffectIsOneWarning)
   filter->Update();
   EXPECT_EQ(messages.Warnings.size(), 3u);
   EXPECT_TRUE(messages.Errors.empty());
+}
+
+TEST(InputArrays, MayBeOnPointsOrOtherwiseOnCells)
+{
+  const int either = vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS;
+  auto plane = Grid(10, 10);
+  AddRough(plane);
+  const auto east = [](vtkIdType, int k) { return k == 0; };
+  plane->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "east", plane->GetNumberOfCells(), 3, east));
+  const auto run = [&](int association)
+  {
+    auto filter = MakeFilter(plane);
+    filter->SetAcrossDiffusivity(0.0);
+    filter->SetInputArrayToProcess(0, 0, 0, either, "f");
+    filter->SetInputArrayToProcess(2, 0, 0, association, "east");
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty()) << association;
+    return vtkSmartPointer<vtkDataArray>(Result(filter));
+  };
+  const auto onCells = run(vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  EXPECT_TRUE(Identical(run(either), onCells));
+  AddPointArray(plane, "east", 3, [](vtkIdType, int k) { return k == 1; }); // points come first
+  EXPECT_FALSE(Identical(run(either), onCells));
+}
+
+TEST(InputArrays, AMissingArrayIsReportedOnce)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane);
+  auto filter = MakeFilter(plane);
+  filter->SetAlongDiffusivity(2.0);
+  SetInputArray(filter, 2, "nosuch");
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 1u);
+  EXPECT_NE(messages.Errors[0].find("DirectionArray \"nosuch\" is not among"), std::string::npos);
+  EXPECT_EQ(messages.Errors[0].find("not set"), std::string::npos) << messages.Errors[0];
+}
+
+/// A first Apply on a mesh without point arrays: the message names the remedy if there is one.
+TEST(InputArrays, OfCellsAloneAreAnErrorThatNamesTheRemedy)
+{
+  auto plane = Grid(10, 10);
+  const auto errorOf = [](vtkFVMHeatFilter* filter)
+  {
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(messages.Errors.size(), 1u);
+    return messages.Errors.empty() ? std::string() : messages.Errors[0];
+  };
+  auto filter = MakeFilter(plane);
+  EXPECT_EQ(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
+  const auto array = MakeArray(VTK_DOUBLE, "ofCells", plane->GetNumberOfCells(), 1, Rough);
+  plane->GetCellData()->SetScalars(array);
+  filter->Modified();
+  EXPECT_NE(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
+  SetInputArray(filter, 0, "ofCells");
+  EXPECT_NE(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
+  SetInputArray(filter, 0, "ofCells", true);
+  EXPECT_NE(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
+}
+
+/// The other filters need no array at all.
+TEST(InputArrays, AreNotNeededByTexturesHarmonicMapsAndDirectionFields)
+{
+  const auto sphere = Sphere(3);
+  const auto run = [&](vtkPolyDataAlgorithm* filter)
+  {
+    filter->SetInputData(sphere);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty() && messages.Warnings.empty()) << filter->GetClassName();
+  };
+  vtkNew<vtkTuringTextureFilter> texture;
+  texture->SetNumberOfTimeSteps(3);
+  vtkNew<vtkHarmonicMapFilter> map;
+  vtkNew<vtkSurfaceDirectionFieldFilter> field;
+  run(texture);
+  run(map);
+  run(field);
+  EXPECT_TRUE(AllFinite(Result(texture, "u1")));
+  EXPECT_TRUE(AllFinite(Result(map, "NormalsHarmonic")));
+  EXPECT_TRUE(AllFinite(field->GetOutput()->GetCellData()->GetArray("Direction")));
+}
+
+TEST(InputArrays, AreFoundByAnyAttributeInPieces)
+{
+  for (const int role : { vtkDataSetAttributes::TCOORDS, vtkDataSetAttributes::TENSORS })
+  {
+    const int components = role == vtkDataSetAttributes::TCOORDS ? 2 : 9;
+    const auto makePart = [&](double x)
+    {
+      auto part = Grid(4, 5);
+      vtkPoints* const points = part->GetPoints();
+      for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+      {
+        const double* p = points->GetPoint(i);
+        points->SetPoint(i, p[0] + x, p[1], p[2]);
+      }
+      AddPointArray(part, "role", components,
+        [&](vtkIdType i, int k) { return std::sin(points->GetPoint(i)[0] * (k + 1)); });
+      part->GetPointData()->SetActiveAttribute("role", role);
+      return part;
+    };
+    vtkNew<vtkPartitionedDataSet> partitions;
+    partitions->SetPartition(0, makePart(0.0));
+    partitions->SetPartition(1, makePart(3.0));
+    vtkNew<vtkFVMHeatFilter> filter;
+    filter->SetInputDataObject(partitions);
+    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, role);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty()) << role;
+    auto* const output = vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    for (int p = 0; p < 2; ++p)
+    {
+      vtkDataArray* const result =
+        output->GetPartition(p)->GetPointData()->GetArray("roleDiffused");
+      ASSERT_NE(result, nullptr) << role;
+      EXPECT_EQ(result->GetNumberOfComponents(), components);
+    }
+  }
+}
+
+/// As for a surface in one piece: numpy edits an array, and the user marks the polydata only.
+TEST(InputArrays, OfPiecesThatAreEditedInPlaceAreReadAgain)
+{
+  vtkNew<vtkPartitionedDataSet> partitions;
+  for (unsigned int p = 0; p < 2; ++p)
+  {
+    auto part = Grid(4, 5);
+    for (vtkIdType i = 0; i < 20; ++i)
+    {
+      const double* point = part->GetPoint(i);
+      part->GetPoints()->SetPoint(i, point[0] + 3.0 * p, point[1], 0.0);
+    }
+    AddRough(part);
+    partitions->SetPartition(p, part);
+  }
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputDataObject(partitions);
+  const auto resultAt = [&](unsigned int p)
+  {
+    filter->Update();
+    return vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+      ->GetPartition(p)
+      ->GetPointData()
+      ->GetArray("fDiffused");
+  };
+  const auto before = Copy(resultAt(1));
+  vtkDataSet* const second = partitions->GetPartition(1);
+  second->GetPointData()->GetScalars()->SetComponent(10, 0, 7.0);
+  second->vtkObject::Modified();
+  partitions->vtkObject::Modified();
+  EXPECT_FALSE(Identical(resultAt(1), before));
 }

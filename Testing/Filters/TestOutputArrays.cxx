@@ -224,3 +224,75 @@ TEST(OutputArrays, PointsWithoutTrianglesKeepTheirValueInEveryType)
     EXPECT_EQ(messages.Warnings.size(), 1u);
   }
 }
+
+TEST(OutputArrays, PrecisionsHaveTheNumbersOfVTK)
+{
+  auto plane = Grid(6, 5);
+  AddPointArray(plane, "f", 1, Rough, VTK_FLOAT);
+  auto filter = MakeFilter(plane);
+  SetInputArray(filter, 0, "f");
+  for (const auto& [precision, type] : { std::pair{ vtkAlgorithm::SINGLE_PRECISION, VTK_FLOAT },
+         std::pair{ vtkAlgorithm::DOUBLE_PRECISION, VTK_DOUBLE },
+         std::pair{ vtkAlgorithm::DEFAULT_PRECISION, VTK_FLOAT } })
+  {
+    filter->SetOutputPrecision(precision);
+    filter->Update();
+    EXPECT_EQ(Result(filter)->GetDataType(), type) << precision;
+  }
+}
+
+/// Mappers read three components of active normals and two of texture coordinates.
+TEST(OutputArrays, AResultDoesNotInheritTheRoleOfTheArrayThatItReplaces)
+{
+  for (const int role : { vtkDataSetAttributes::NORMALS, vtkDataSetAttributes::TCOORDS })
+  {
+    auto plane = Grid(6, 5);
+    AddPointArray(plane, "former", role == vtkDataSetAttributes::NORMALS ? 3 : 2, Rough);
+    plane->GetPointData()->SetActiveAttribute("former", role);
+    AddRough(plane);
+    auto filter = MakeFilter(plane);
+    filter->SetResultArrayName("former");
+    Messages messages(filter);
+    filter->Update();
+    vtkPointData* const data = filter->GetOutput()->GetPointData();
+    EXPECT_EQ(data->GetAttribute(role), nullptr);
+    EXPECT_EQ(data->GetScalars(), Result(filter, "former"));
+    EXPECT_EQ(data->GetNumberOfArrays(), 2);
+    EXPECT_EQ(plane->GetPointData()->GetArray("former")->GetNumberOfComponents(),
+      3 - (role == vtkDataSetAttributes::TCOORDS));
+    ASSERT_EQ(messages.Warnings.size(), 1u);
+    EXPECT_NE(messages.Warnings[0].find("\"former\""), std::string::npos);
+    filter->SetTimeStep(2.0);
+    filter->Update();
+    EXPECT_EQ(messages.Warnings.size(), 1u);
+  }
+}
+
+TEST(OutputArrays, ReplacingTheInputArrayItselfIsNoWarning)
+{
+  auto plane = Grid(6, 5);
+  AddRough(plane);
+  auto filter = MakeFilter(plane);
+  filter->SetResultArrayName("f");
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty());
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
+}
+
+TEST(OutputArrays, ATextureOverOtherArraysIsOneWarning)
+{
+  auto plane = Grid(6, 5);
+  AddPointArray(plane, "u1", 1, [](vtkIdType i, int) { return i == 3; });
+  AddPointArray(plane, "Texture", 3, Rough);
+  vtkNew<vtkTuringTextureFilter> filter;
+  filter->SetInputData(plane);
+  filter->SetNumberOfTimeSteps(1);
+  SetInputArray(filter, 1, "u1");
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("\"Texture\", \"u1\""), std::string::npos)
+    << messages.Warnings[0];
+  EXPECT_EQ(Result(filter, "Texture")->GetNumberOfComponents(), 1);
+}

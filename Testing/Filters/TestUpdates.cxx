@@ -158,6 +158,30 @@ TEST(Updates, ObeyAnAbortAndWorkAgainAfterwards)
   }
 }
 
+/// Taking the abort back is enough; scripts need not mark the filter as modified.
+TEST(Updates, AnAbortedUpdateIsRepeatedByTheNextOne)
+{
+  auto sphere = Sphere(4);
+  AddRough(sphere);
+  auto reference = MakeFilter(sphere);
+  reference->Update();
+  auto filter = MakeFilter(sphere);
+  const unsigned long tag = Listen(filter,
+    [&](double amount)
+    {
+      if (amount > 0.3)
+      {
+        filter->AbortExecuteOn();
+      }
+    });
+  filter->Update();
+  EXPECT_EQ(Result(filter), nullptr);
+  filter->RemoveObserver(tag);
+  filter->AbortExecuteOff();
+  filter->Update();
+  EXPECT_TRUE(Identical(Result(filter), Result(reference)));
+}
+
 TEST(Updates, AnAbortedRunIsNotReused)
 {
   auto sphere = Sphere(4);
@@ -278,6 +302,27 @@ TEST(Updates, ChangesOfInputsOfTheStepsRecomputeThem)
   sphere->GetPolys()->Modified();
   sphere->Modified();
   expectAgain("triangles");
+}
+
+TEST(Updates, MoreTimeStepsComputeOnlyTheNewOnes)
+{
+  auto sphere = Sphere(3);
+  AddRough(sphere);
+  for (const bool timeSteps : { false, true })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetGenerateTimeSteps(timeSteps);
+    filter->Update();
+    filter->SetNumberOfTimeSteps(12);
+    filter->Update();
+    EXPECT_EQ(filter->GetNumberOfStepsComputed(), 12);
+    auto fresh = MakeFilter(sphere);
+    fresh->SetNumberOfTimeSteps(12);
+    fresh->Update();
+    EXPECT_TRUE(Identical(Result(filter), Result(fresh)));
+    EXPECT_EQ(History(filter)->GetNumberOfRows(), 13);
+    EXPECT_EQ(HistoryAt(filter, 12, "Total_0"), HistoryAt(fresh, 12, "Total_0"));
+  }
 }
 
 /// numpy edits an array in place, and the user marks the polydata only.

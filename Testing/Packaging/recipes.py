@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the source distribution and checks the recipes of Packaging with it: they can be read, name
-this version, and pass CMake options that exist and with which the sources configure.
+"""Checks the recipes of Packaging: they can be read, name this version, and pass CMake options that
+exist and with which the sources configure. Wheels for PyPI's vtk pin its version.
 
     recipes.py SOURCE FOLDER CMAKE VTK_DIR
 
@@ -15,7 +15,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tarfile
 import types
 from contextlib import contextmanager
 from pathlib import Path
@@ -32,20 +31,13 @@ except ImportError:
     sys.exit(77)
 
 
-def make_sdist():
-    """The folder of the unpacked source distribution."""
+def load_build_backend():
+    """Unpacks scikit-build-core into the folder."""
     shutil.rmtree(folder, ignore_errors=True)
     subprocess.run([sys.executable, "-m", "pip", "--isolated", "install", "--quiet", "--no-index",
                     "--find-links", wheels, "--target", str(folder / "tools"), "scikit-build-core"],
                    check=True)
     sys.path.insert(0, str(folder / "tools"))
-    from scikit_build_core.build import build_sdist
-
-    os.chdir(source)
-    name = build_sdist(str(folder))
-    with tarfile.open(folder / name) as archive:
-        archive.extractall(folder)
-    return folder / name[: -len(".tar.gz")]
 
 
 def conda_options(sources):
@@ -116,6 +108,7 @@ def configure(sources, name, options):
 
 def check_dependencies():
     """The wheel for PyPI's vtk pins vtk and its SDK; the one for this machine's VTK pins nothing."""
+    os.chdir(source / "Packaging/VTK")
     from scikit_build_core.build import (
         get_requires_for_build_wheel, prepare_metadata_for_build_wheel,
     )
@@ -131,14 +124,9 @@ def check_dependencies():
     os.environ.pop("SURFACEDIFFUSION_PYPI_VTK")
 
 
-sources = make_sdist()
+load_build_backend()
 check_dependencies()
-for path in ("CMakeLists.txt", "LICENSE", "README.md", "CMake/SurfaceDiffusionConfig.cmake.in",
-             "Filters/vtk.module", "Filters/Core/CMakeLists.txt", "Plugin/paraview.plugin",
-             "Python/pyvista.py", "Packaging/conda-forge/recipe.yaml", "Examples/Cxx/heat.cxx",
-             "Testing/CMakeLists.txt"):
-    assert (sources / path).exists(), "the source distribution has no " + path
-configure(sources, "conda", conda_options(sources))
-for i, options in enumerate(spack_options(sources)):
-    configure(sources, "spack%d" % i, options)
-print("the recipes read and configure", sources.name)
+configure(source, "conda", conda_options(source))
+for i, options in enumerate(spack_options(source)):
+    configure(source, "spack%d" % i, options)
+print("the recipes can be read, and their options configure")

@@ -62,7 +62,7 @@ class TestHeatFilter(unittest.TestCase):
             "InitialFill": ["Input", "Mean", "Noise"],
             "TimeIntegrator": ["FirstOrder", "SecondOrder"],
             "Solver": ["Automatic", "Direct", "ConjugateGradient"],
-            "OutputPrecision": ["Input", "Single", "Double"],
+            "OutputPrecision": ["Single", "Double", "Input"],
             "Mode": ["TimeSteps", "SteadyState"],
         }.items():
             for value, text in enumerate(texts):

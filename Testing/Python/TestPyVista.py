@@ -4,6 +4,7 @@
 
 import sys
 import unittest
+import warnings
 
 try:
     import pyvista
@@ -82,6 +83,66 @@ class TestPyVista(unittest.TestCase):
             heat(mesh, "f", Fwhm=1)
         with self.assertRaisesRegex(TypeError, "no property Mode that can be 'Steady'"):
             heat(mesh, "f", Mode="Steady")
+
+
+    def test_a_mesh_that_is_no_surface_is_a_type_error_with_the_remedy(self):
+        grid = noisy_sphere().cast_to_unstructured_grid()
+        for mesh in (grid, pyvista.MultiBlock([noisy_sphere(), grid]), pyvista.ImageData()):
+            with self.assertRaisesRegex(TypeError, "extract_surface"):
+                heat(mesh, "f")
+        smooth = heat(grid.extract_surface(), "f")
+        self.assertIn("fDiffused", smooth.point_data)
+
+    def test_empty_blocks_are_kept(self):
+        field = direction_field(noisy_sphere())
+        blocks = pyvista.MultiBlock([None, pyvista.PolyData(), field])
+        smooth = heat(blocks, "f", direction="Direction", AcrossDiffusivity=0)
+        self.assertIsNone(smooth[0])
+        self.assertEqual(smooth[1].n_points, 0)
+        self.assertIn("fDiffused", smooth[2].point_data)
+
+    def test_warnings_are_python_warnings(self):
+        mesh = noisy_sphere()
+        mesh["clean"] = np.zeros(mesh.n_points)
+        with self.assertWarnsRegex(UserWarning, "^the mask changes nothing") as caught:
+            heat(mesh, "f", mask="clean")
+        self.assertEqual(caught.filename, __file__)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            heat(mesh, "f")
+
+    def test_messages_begin_with_the_property(self):
+        mesh = noisy_sphere()
+        with self.assertRaisesRegex(ValueError, "^TimeStep is -1; allowed"):
+            heat(mesh, "f", TimeStep=-1)
+        with self.assertRaisesRegex(ValueError, "Cell Data to Point Data"):
+            heat(mesh.point_data_to_cell_data(), "f")
+
+    def test_times_give_a_mesh_each(self):
+        mesh = noisy_sphere()
+        states = heat(mesh, "f", times=[0, 2, 1, 10], Solver="Direct")
+        np.testing.assert_array_equal(states[0]["fDiffused"], mesh["f"])
+        for steps, state in ((2, states[1]), (1, states[2]), (10, states[3])):
+            np.testing.assert_array_equal(
+                state["fDiffused"],
+                heat(mesh, "f", NumberOfTimeSteps=steps, Solver="Direct")["fDiffused"])
+
+    def test_the_report_has_the_history_and_the_read_only_values(self):
+        mesh = noisy_sphere()
+        smooth, report = intrinsic_tv(mesh, "f", AutomaticFidelity=True, full_output=True)
+        self.assertIn("fTV", smooth.point_data)
+        self.assertGreater(report.EffectiveFidelityWeight, 0.0)
+        self.assertGreater(report.MeanEdgeLength, 0.0)
+        self.assertEqual(len(report.history["Energy"]), 11)
+        np.testing.assert_allclose(report.history["Total_0"], report.history["Total_0"][0],
+                                   atol=1e-10)
+        states, report = turing_texture(
+            mesh, times=[0, 0.125], full_output=True, NumberOfTimeSteps=4)
+        self.assertEqual(len(states), 2)
+        self.assertGreater(report.Wavelength, 0.0)
+        _, report = direction_field(mesh, full_output=True)
+        self.assertGreater(report.MeanEdgeLength, 0.0)
+        self.assertFalse(hasattr(report, "history"))
 
 
 if __name__ == "__main__":

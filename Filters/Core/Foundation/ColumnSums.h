@@ -11,6 +11,50 @@
 namespace SurfaceDiffusion
 {
 
+/// totals[k] = the sum of f(i, k) over the rows i, for every column k: the bits of Sum(), in one pass
+/// over the rows of each panel of columns.
+template <typename F>
+void SumColumns(
+  const ParallelFor& parallel, Index rows, Eigen::Index columns, const F& f, double* totals)
+{
+  std::fill_n(totals, columns, 0.0);
+  constexpr Index blocks = 256; // partial sums on the stack, so that time steps do not allocate
+  for (Eigen::Index panel = 0; panel < columns; panel += ColumnPanel)
+  {
+    const Eigen::Index width = std::min<Eigen::Index>(ColumnPanel, columns - panel);
+    for (Index first = 0; first < rows; first += blocks * BlockSize)
+    {
+      double partial[blocks * ColumnPanel];
+      const Index chunk = std::min(rows - first, blocks * BlockSize);
+      ForEachBlock(parallel, chunk,
+        [&](Index block, Index begin, Index end)
+        {
+          ForColumns(width,
+            [&](auto number)
+            {
+              const ColumnCount<decltype(number)::value> k(width);
+              double sums[ColumnPanel] = {};
+              for (Index i = first + begin; i < first + end; ++i)
+              {
+                for (int c = 0; c < k; ++c)
+                {
+                  sums[c] += f(i, panel + c);
+                }
+              }
+              std::copy_n(sums, width, partial + block * ColumnPanel);
+            });
+        });
+      for (Index block = 0; block < NumberOfBlocks(chunk); ++block)
+      {
+        for (Eigen::Index c = 0; c < width; ++c)
+        {
+          totals[panel + c] += partial[block * ColumnPanel + c];
+        }
+      }
+    }
+  }
+}
+
 /// Sums over the rows of several columns, in the fixed order of blocks, without allocations.
 class ColumnSums
 {

@@ -28,11 +28,18 @@ decltype(auto) ForNumber(Eigen::Index number, const F& f)
   }
 }
 
-/// The same for the columns of point data: one, two and three are known to the compiler, and the
-/// template argument 0 stands for any number of them.
+/// Many columns are processed in panels of this number: a row of a panel is one line of the cache.
+constexpr int ColumnPanel = 8;
+
+/// The same for the columns of point data: one, two, three and a panel are known to the compiler,
+/// and the template argument 0 stands for any number of them.
 template <typename F>
 decltype(auto) ForColumns(Eigen::Index columns, const F& f)
 {
+  if (columns == ColumnPanel)
+  {
+    return f(std::integral_constant<int, ColumnPanel>());
+  }
   return ForNumber<3>(columns, f);
 }
 

@@ -53,25 +53,23 @@ void ImplicitSystem::SetUpSolver(const ProgressMonitor& progress)
 }
 
 void ImplicitSystem::Solve(
-  Values& b, Values& u, StepReport& report, const ProgressMonitor& progress)
+  Values& b, Values& u, StepReport& report, const ProgressMonitor& progress, Eigen::Index first)
 {
   for (const Index i : this->FixedRows)
   {
-    b.row(i) = this->Load.row(i);
+    b.row(i) = this->Load.row(i).segment(first, b.cols());
   }
   for (const Index i : this->CoupledRows)
   {
-    b.row(i) += this->Load.row(i);
+    b.row(i) += this->Load.row(i).segment(first, b.cols());
   }
   const SolveReport solve = this->Solver->Solve(b, u, progress);
-  if (!solve.Converged)
-  {
-    throw NotConverged(solve);
-  }
+  RequireAnswer(solve, this->Solver->GetLimits());
   report.Add(solve);
   for (Eigen::Index f = 0; f < this->FixedValues.rows(); ++f)
   {
-    u.row(this->FixedRows[f]) = this->FixedValues.row(f); // to the last bit
+    // to the last bit
+    u.row(this->FixedRows[f]) = this->FixedValues.row(f).segment(first, u.cols());
   }
 }
 

@@ -44,9 +44,9 @@ public:
 
   /// u: the start of an iterative method on entry, the solution on return, with the given values at
   /// fixed vertices. b: the right-hand side without Dirichlet conditions, which are put in here.
-  /// Throws NotConverged.
-  void Solve(
-    Values& b, Values& u, StepReport& report, const ProgressMonitor& progress = ProgressMonitor());
+  /// b and u may be a part of the columns of Constrain(), from `first` on. Throws NotConverged.
+  void Solve(Values& b, Values& u, StepReport& report,
+    const ProgressMonitor& progress = ProgressMonitor(), Eigen::Index first = 0);
 
   /// Row i of diag(d) u + s K u for a free vertex i and a single column u with the given values at
   /// fixed vertices.

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/LinearDiffusion.h"
 
+#include "Core/Foundation/Columns.h"
 #include "Core/Models/InitialState.h"
 #include "Core/Operators/DirichletEnergy.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -22,14 +24,15 @@ LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   , Parallel(parallel)
   , System(this->Assembly, std::move(solver), parallel)
   , Conserved(this->Assembly->Mesh(), this->Data, this->Fit.IsPresent(), parallel)
-  , RightHandSide(U.rows(), U.cols())
   , Origin(U.cols())
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const double area = mesh.GetReduction().Sum(mesh.ControlAreas().sum());
+  std::vector<double> totals;
+  Total(mesh, this->U, totals, parallel);
   for (Eigen::Index k = 0; k < this->U.cols(); ++k)
   {
-    const double mean = Total(mesh, this->U, k, parallel) / area;
+    const double mean = totals[k] / area;
     this->Origin[k] = std::isfinite(mean) ? mean : 0.0;
   }
 }
@@ -67,42 +70,63 @@ StepReport LinearDiffusion::Advance(const ProgressMonitor& progress)
   {
     this->Prepare(progress.Part(0.0, setup));
   }
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  // Values are measured from the mean: the errors of a solve are relative to the contrast then.
   const Eigen::Index columns = this->U.cols();
+  for (Eigen::Index first = 0; first < columns; first += ColumnPanel)
+  {
+    const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, columns - first);
+    for (Values* values : { &this->V, &this->Previous, &this->RightHandSide })
+    {
+      values->resize(this->U.rows(), count);
+    }
+    const double share = (1.0 - setup) / static_cast<double>(columns);
+    this->AdvanceColumns(first, report,
+      progress.Part(setup + share * static_cast<double>(first),
+        setup + share * static_cast<double>(first + count)));
+  }
+  return report;
+}
+
+void LinearDiffusion::AdvanceColumns(
+  Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const Eigen::Index columns = this->V.cols();
+  // Values are measured from the mean: the errors of a solve are relative to the contrast then.
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       for (Eigen::Index k = 0; k < columns; ++k)
       {
-        this->U(i, k) -= this->Origin[k];
+        this->V(i, k) = this->U(i, first + k) - this->Origin[first + k];
       }
     });
   if (this->Options.TimeScheme == Scheme::SDIRK2)
   {
-    this->SDIRK2Step(report, progress.Part(setup, 1.0));
+    this->SDIRK2Step(first, report, progress);
   }
   else
   {
-    this->BackwardEulerStep(report, progress.Part(setup, 1.0));
+    this->BackwardEulerStep(first, report, progress);
   }
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       for (Eigen::Index k = 0; k < columns; ++k)
       {
-        this->U(i, k) =
-          this->Data.Fixed[i] ? this->Data.Start(i, k) : this->U(i, k) + this->Origin[k];
+        this->V(i, k) = this->Data.Fixed[i] ? this->Data.Start(i, first + k)
+                                            : this->V(i, k) + this->Origin[first + k];
       }
     });
-  this->Conserved.Restore(mesh, this->U, this->Parallel);
-  return report;
+  this->Conserved.Restore(mesh, this->V, this->Parallel, first);
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i) { this->U.row(i).segment(first, columns) = this->V.row(i); });
 }
 
 /// (8), (14), with the fidelity of (16), (18):
 /// ((1 + lambda dt chi) M + dt K) u_new = M (u + lambda dt chi f); the limit dt -> infinity is
 /// (lambda chi M + K) u_new = lambda M chi f.
-void LinearDiffusion::BackwardEulerStep(StepReport& report, const ProgressMonitor& progress)
+void LinearDiffusion::BackwardEulerStep(
+  Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const bool limit = this->Options.TimeScheme == Scheme::SteadyState;
@@ -113,24 +137,25 @@ void LinearDiffusion::BackwardEulerStep(StepReport& report, const ProgressMonito
     {
       const double area = mesh.ControlAreas()[i];
       const double source = dt * this->Fit.Weight(i);
-      for (Eigen::Index k = 0; k < this->U.cols(); ++k)
+      for (Eigen::Index k = 0; k < this->V.cols(); ++k)
       {
         this->RightHandSide(i, k) =
-          area * (inertia * this->U(i, k) + source * (this->Data.Given(i, k) - this->Origin[k]));
+          area * (inertia * this->V(i, k) + this->Source(source, i, first + k));
       }
     });
-  this->Solve(report, progress);
+  this->Solve(first, report, progress);
 }
 
 /// With the source s = lambda M chi f in both stages, and lambda chi M in K,
 ///   (M + gamma dt K) y = M u + gamma dt s
 ///   (M + gamma dt K) u_new = M u + (1 - gamma) dt (s - K y) + gamma dt s,
 /// and the first stage gives dt (s - K y) = M (y - u) / gamma: no product with K is needed.
-void LinearDiffusion::SDIRK2Step(StepReport& report, const ProgressMonitor& progress)
+void LinearDiffusion::SDIRK2Step(
+  Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const double dt = this->Options.ImplicitStep();
-  this->Previous = this->U;
+  this->Previous = this->V;
   const double ratio = (1.0 - Gamma) / Gamma;
   for (const double second : { 0.0, ratio })
   {
@@ -139,22 +164,21 @@ void LinearDiffusion::SDIRK2Step(StepReport& report, const ProgressMonitor& prog
       {
         const double area = mesh.ControlAreas()[i];
         const double source = dt * this->Fit.Weight(i);
-        for (Eigen::Index k = 0; k < this->U.cols(); ++k)
+        for (Eigen::Index k = 0; k < this->V.cols(); ++k)
         {
           const double previous = this->Previous(i, k);
           this->RightHandSide(i, k) = area *
-            (previous + second * (this->U(i, k) - previous) +
-              source * (this->Data.Given(i, k) - this->Origin[k]));
+            (previous + second * (this->V(i, k) - previous) + this->Source(source, i, first + k));
         }
       });
-    this->Solve(report, second > 0.0 ? progress.Part(0.5, 1.0) : progress.Part(0.0, 0.5));
+    this->Solve(first, report, second > 0.0 ? progress.Part(0.5, 1.0) : progress.Part(0.0, 0.5));
   }
 }
 
-void LinearDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)
+void LinearDiffusion::Solve(Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
 {
-  this->System.Solve(this->RightHandSide, this->U, report, progress);
-  this->Balanced.Restore(this->Assembly->Mesh(), this->RightHandSide, this->U, this->Parallel);
+  this->System.Solve(this->RightHandSide, this->V, report, progress, first);
+  this->Balanced.Restore(this->Assembly->Mesh(), this->RightHandSide, this->V, this->Parallel);
 }
 
 double LinearDiffusion::Energy() const

@@ -140,12 +140,10 @@ void Trajectory::Record(const StepReport& report, double seconds)
   const auto columns = static_cast<std::size_t>(this->State().cols());
   this->Totals.resize(this->History.size() * columns); // an abort may have left some
   const double energy = this->Stepper->Energy();
-  for (std::size_t k = 0; k < columns; ++k)
-  {
-    this->Totals.push_back(
-      Total(*this->Surface, this->State(), static_cast<Eigen::Index>(k), this->Parallel));
-  }
-  this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped });
+  Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
+  this->Totals.insert(this->Totals.end(), this->StateTotals.begin(), this->StateTotals.end());
+  this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped,
+    report.MissedResidual, report.UnsettledDecrease });
 }
 
 } // namespace SurfaceDiffusion

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/MeanCorrection.h"
 
+#include "Core/Foundation/ColumnSums.h"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -11,13 +13,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-double RangeTotal(const TriangleMesh& mesh, const Values& u, Eigen::Index k, Index begin, Index end,
-  const ParallelFor& parallel)
-{
-  return Sum(parallel, end - begin,
-    [&](Index i) { return mesh.ControlAreas()[begin + i] * u(begin + i, k); });
-}
 
 /// Components of this mesh of which no process refuses its part.
 template <typename Refuses>
@@ -53,11 +48,38 @@ std::vector<double> SumEach(
   return std::vector<double>(sums.data(), sums.data() + sums.size());
 }
 
+/// Add shifts[k] to column k of u on a component.
+void Shift(const TriangleMesh& mesh, Index component, const double* shifts, Values& u,
+  const ParallelFor& parallel)
+{
+  const Index begin = mesh.ComponentsBegin()[component];
+  const Eigen::Index columns = u.cols();
+  ForEach(parallel, mesh.ComponentsBegin()[component + 1] - begin,
+    [&](Index i)
+    {
+      for (Eigen::Index k = 0; k < columns; ++k)
+      {
+        u(begin + i, k) += shifts[k];
+      }
+    });
+}
+
 } // namespace
 
 double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k, const ParallelFor& parallel)
 {
-  return mesh.GetReduction().Sum(RangeTotal(mesh, u, k, 0, mesh.NumberOfVertices(), parallel));
+  return mesh.GetReduction().Sum(Sum(
+    parallel, mesh.NumberOfVertices(), [&](Index i) { return mesh.ControlAreas()[i] * u(i, k); }));
+}
+
+void Total(const TriangleMesh& mesh, const Values& u, std::vector<double>& totals,
+  const ParallelFor& parallel)
+{
+  totals.resize(static_cast<std::size_t>(u.cols()));
+  SumColumns(
+    parallel, mesh.NumberOfVertices(), u.cols(),
+    [&](Index i, Eigen::Index k) { return mesh.ControlAreas()[i] * u(i, k); }, totals.data());
+  mesh.GetReduction().Sum(totals.data(), static_cast<Index>(totals.size()));
 }
 
 TotalCorrection::TotalCorrection(
@@ -79,36 +101,38 @@ TotalCorrection::TotalCorrection(
       return Sum(parallel, end - begin, [&](Index i) { return mesh.ControlAreas()[begin + i]; });
     });
   this->Totals.resize(static_cast<Eigen::Index>(this->Components.size()), data.Start.cols());
-  this->Total(mesh, data.Start, parallel);
+  this->SumComponents(mesh, data.Start, parallel);
   this->Targets = this->Totals;
 }
 
-void TotalCorrection::Total(const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel)
+void TotalCorrection::SumComponents(
+  const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel)
 {
+  this->Totals.resize(static_cast<Eigen::Index>(this->Components.size()), u.cols());
   for (Eigen::Index c = 0; c < this->Totals.rows(); ++c)
   {
-    const Index component = this->Components[c];
-    for (Eigen::Index k = 0; k < this->Totals.cols(); ++k)
-    {
-      this->Totals(c, k) = RangeTotal(mesh, u, k, mesh.ComponentsBegin()[component],
-        mesh.ComponentsBegin()[component + 1], parallel);
-    }
+    const Index begin = mesh.ComponentsBegin()[this->Components[c]];
+    const Index end = mesh.ComponentsBegin()[this->Components[c] + 1];
+    SumColumns(
+      parallel, end - begin, u.cols(),
+      [&](Index i, Eigen::Index k) { return mesh.ControlAreas()[begin + i] * u(begin + i, k); },
+      this->Totals.row(c).data());
   }
   mesh.GetReduction().SumComponents(this->Components, this->Totals);
 }
 
-void TotalCorrection::Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel)
+void TotalCorrection::Restore(
+  const TriangleMesh& mesh, Values& u, const ParallelFor& parallel, Eigen::Index first)
 {
-  this->Total(mesh, u, parallel);
+  this->SumComponents(mesh, u, parallel);
   for (Eigen::Index c = 0; c < this->Targets.rows(); ++c)
   {
-    const Index begin = mesh.ComponentsBegin()[this->Components[c]];
-    const Index end = mesh.ComponentsBegin()[this->Components[c] + 1];
-    for (Eigen::Index k = 0; k < this->Targets.cols(); ++k)
+    for (Eigen::Index k = 0; k < u.cols(); ++k)
     {
-      const double shift = (this->Targets(c, k) - this->Totals(c, k)) / this->Areas[c];
-      ForEach(parallel, end - begin, [&](Index i) { u(begin + i, k) += shift; });
+      double& shift = this->Totals(c, k);
+      shift = (this->Targets(c, first + k) - shift) / this->Areas[c];
     }
+    Shift(mesh, this->Components[c], this->Totals.row(c).data(), u, parallel);
   }
 }
 
@@ -127,30 +151,22 @@ void MeanCorrection::Restore(
   const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel)
 {
   this->Residuals.resize(static_cast<Eigen::Index>(this->Components.size()), x.cols());
-  const auto forEach = [&](const auto& body)
+  for (Eigen::Index c = 0; c < this->Residuals.rows(); ++c)
   {
-    for (Eigen::Index c = 0; c < this->Residuals.rows(); ++c)
-    {
-      const Index begin = mesh.ComponentsBegin()[this->Components[c]];
-      for (Eigen::Index k = 0; k < x.cols(); ++k)
-      {
-        body(c, k, begin, mesh.ComponentsBegin()[this->Components[c] + 1] - begin);
-      }
-    }
-  };
-  forEach(
-    [&](Eigen::Index c, Eigen::Index k, Index begin, Index count)
-    {
-      this->Residuals(c, k) = Sum(parallel, count,
-        [&](Index i) { return b(begin + i, k) - this->Weights[begin + i] * x(begin + i, k); });
-    });
+    const Index begin = mesh.ComponentsBegin()[this->Components[c]];
+    const Index end = mesh.ComponentsBegin()[this->Components[c] + 1];
+    SumColumns(
+      parallel, end - begin, x.cols(),
+      [&](Index i, Eigen::Index k)
+      { return b(begin + i, k) - this->Weights[begin + i] * x(begin + i, k); },
+      this->Residuals.row(c).data());
+  }
   mesh.GetReduction().SumComponents(this->Components, this->Residuals);
-  forEach(
-    [&](Eigen::Index c, Eigen::Index k, Index begin, Index count)
-    {
-      const double shift = this->Residuals(c, k) / this->Sums[c];
-      ForEach(parallel, count, [&](Index i) { x(begin + i, k) += shift; });
-    });
+  for (Eigen::Index c = 0; c < this->Residuals.rows(); ++c)
+  {
+    this->Residuals.row(c) /= this->Sums[c];
+    Shift(mesh, this->Components[c], this->Residuals.row(c).data(), x, parallel);
+  }
 }
 
 } // namespace SurfaceDiffusion

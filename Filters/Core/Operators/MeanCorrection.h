@@ -14,6 +14,9 @@ namespace SurfaceDiffusion
 /// Sum over the surface of A_i u_i for column k.
 double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k,
   const ParallelFor& parallel = SerialFor());
+/// The same for every column.
+void Total(const TriangleMesh& mesh, const Values& u, std::vector<double>& totals,
+  const ParallelFor& parallel = SerialFor());
 
 /// Conserves the total sum A u to round-off, independently of the tolerance of the solver: the
 /// error that a solve makes on a connected component is spread over it evenly. Acts on the
@@ -26,14 +29,16 @@ public:
   TotalCorrection(const TriangleMesh& mesh, const PointData& data, bool hasFidelity,
     const ParallelFor& parallel = SerialFor());
 
-  void Restore(const TriangleMesh& mesh, Values& u, const ParallelFor& parallel);
+  /// u: all columns of the start, or a part of them from `first` on.
+  void Restore(
+    const TriangleMesh& mesh, Values& u, const ParallelFor& parallel, Eigen::Index first = 0);
 
 private:
-  void Total(const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel);
+  void SumComponents(const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel);
 
   std::vector<Index> Components; ///< those that conserve
   std::vector<double> Areas;
-  Values Totals; ///< sum A u, component x column
+  Values Totals; ///< sum A u, component x column of u
   Values Targets; ///< sum A u at the start, component x column
 };
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/LinearSolver.h"
 
+#include "Core/Foundation/ColumnSums.h"
 #include "Core/Foundation/Columns.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Solvers/SparseFactor.h"
+#include "Core/Solvers/Substitution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,6 +85,8 @@ public:
         report.Residual = refined;
       }
     }
+    report.Converged = report.Residual <= this->Limits.Tolerance;
+    report.IsFinal = true;
     progress.Report(1.0);
     return report;
   }
@@ -102,42 +106,6 @@ public:
   long NumberOfFactorizations() const override { return this->Factorizations; }
 
 private:
-  /// Columns j .. j + Width - 1 of L, a panel of the factor.
-  template <int Width>
-  struct Panel
-  {
-    Panel(const SparseFactor& l, Index j)
-    {
-      for (int a = 0; a < Width; ++a)
-      {
-        this->Below[a] = l.Entries + l.Begin[j + a] + (Width - 1 - a);
-      }
-      const Index last = j + Width - 1;
-      this->Rows = l.Rows + l.Begin[last];
-      this->Count = l.Begin[last + 1] - l.Begin[last];
-    }
-    /// The entry in row j + b of column j + a.
-    double Within(int a, int b) const { return this->Below[a][b - Width]; }
-
-    const double* Below[Width]; ///< per column, the entries in the rows below the panel
-    const Index* Rows; ///< below the panel, the same for all columns
-    Index Count; ///< of these rows
-  };
-
-  /// Call work(width) with the width of a panel as a number known to the compiler.
-  template <typename Work>
-  static void ForWidth(Index width, const Work& work)
-  {
-    ForNumber<SparseFactor::WidestPanel>(width,
-      [&](auto number)
-      {
-        if constexpr (decltype(number)::value > 0)
-        {
-          work(number);
-        }
-      });
-  }
-
   /// x = P^T L^-T D^-1 L^-1 P b
   void Substitute(const Values& b, Values& x)
   {
@@ -160,17 +128,7 @@ private:
         this->Row(place[i], k)[c] = b(i, c);
       }
     }
-    const std::vector<Index>& panels = this->Factor->Panels;
-    for (std::size_t p = 0; p + 1 < panels.size(); ++p)
-    {
-      ForWidth(panels[p + 1] - panels[p],
-        [&](auto width) { this->Forward<K, decltype(width)::value>(panels[p], k); });
-    }
-    for (std::size_t p = panels.size() - 1; p > 0; --p)
-    {
-      ForWidth(panels[p] - panels[p - 1],
-        [&](auto width) { this->Backward<K, decltype(width)::value>(panels[p - 1], k); });
-    }
+    SubstituteRows<K>(*this->Factor, this->W.data(), k);
     for (Index i = 0; i < n; ++i)
     {
       for (int c = 0; c < k; ++c)
@@ -185,115 +143,58 @@ private:
     return this->W.data() + static_cast<std::ptrdiff_t>(i) * columns;
   }
 
-  /// The part of W = L^-1 W that belongs to the columns j .. j + Width - 1 of L.
-  template <int K, int Width>
-  void Forward(Index j, int columns)
-  {
-    const ColumnCount<K> k(columns);
-    const Panel<Width> panel(*this->Factor, j);
-    double* w = this->Row(j, k);
-    for (int a = 0; a < Width; ++a)
-    {
-      for (int b = a + 1; b < Width; ++b)
-      {
-        for (int c = 0; c < k; ++c)
-        {
-          w[b * k + c] -= panel.Within(a, b) * w[a * k + c];
-        }
-      }
-    }
-    ColumnRegisters<double, K, Width> registers;
-    if (K > 0)
-    {
-      double* const fast = registers.Or(w);
-      std::copy_n(w, Width * k, fast);
-      w = fast;
-    }
-    for (Index s = 0; s < panel.Count; ++s)
-    {
-      double* wi = this->Row(panel.Rows[s], k);
-      for (int c = 0; c < k; ++c)
-      {
-        double sum = wi[c];
-        for (int a = 0; a < Width; ++a)
-        {
-          sum -= panel.Below[a][s] * w[a * k + c];
-        }
-        wi[c] = sum;
-      }
-    }
-  }
-
-  /// The rows j .. j + Width - 1 of W = L^-T D^-1 W.
-  template <int K, int Width>
-  void Backward(Index j, int columns)
-  {
-    const ColumnCount<K> k(columns);
-    const Panel<Width> panel(*this->Factor, j);
-    double* result = this->Row(j, k);
-    ColumnRegisters<double, K, Width> registers;
-    double* w = registers.Or(result);
-    for (int a = 0; a < Width; ++a)
-    {
-      for (int c = 0; c < k; ++c)
-      {
-        w[a * k + c] = this->Factor->InverseD[j + a] * result[a * k + c];
-      }
-    }
-    for (Index s = 0; s < panel.Count; ++s)
-    {
-      const double* wi = this->Row(panel.Rows[s], k);
-      for (int a = 0; a < Width; ++a)
-      {
-        for (int c = 0; c < k; ++c)
-        {
-          w[a * k + c] -= panel.Below[a][s] * wi[c];
-        }
-      }
-    }
-    for (int a = Width - 1; a >= 0; --a)
-    {
-      for (int b = a + 1; b < Width; ++b)
-      {
-        for (int c = 0; c < k; ++c)
-        {
-          w[a * k + c] -= panel.Within(a, b) * w[b * k + c];
-        }
-      }
-      for (int c = 0; c < k; ++c)
-      {
-        result[a * k + c] = w[a * k + c];
-      }
-    }
-  }
-
   /// R = b - A x. Returns SolveReport::Residual.
   double ComputeResidual(const Values& b, const Values& x)
   {
     const Vector& weights = this->Factor->InverseDiagonal;
     const Index n = static_cast<Index>(b.rows());
     this->R.resize(b.rows(), b.cols());
+    this->OfR.resize(static_cast<std::size_t>(b.cols()));
+    this->OfB.resize(static_cast<std::size_t>(b.cols()));
     Multiply(*this->Matrix, x, this->R, this->Parallel);
-    double largest = 0.0;
-    for (Eigen::Index k = 0; k < b.cols(); ++k)
-    {
-      const double unit = ScaleOf(b, this->R, k, this->Parallel);
-      const double ofR = Sum(this->Parallel, n,
-        [&](Index i)
-        {
-          const double r = b(i, k) - this->R(i, k);
-          this->R(i, k) = r;
-          return weights[i] * (r / unit) * (r / unit);
-        });
-      const double ofB = Sum(this->Parallel, n,
-        [&](Index i) { return weights[i] * (b(i, k) / unit) * (b(i, k) / unit); });
-      if (!std::isfinite(ofR))
+    SumColumns(
+      this->Parallel, n, b.cols(),
+      [&](Index i, Eigen::Index k)
       {
-        throw std::runtime_error("the linear system has no finite solution");
-      }
-      largest = std::max(largest, ofB > 0.0 ? std::sqrt(ofR / ofB) : std::sqrt(ofR));
+        const double r = b(i, k) - this->R(i, k);
+        this->R(i, k) = r;
+        return weights[i] * r * r;
+      },
+      this->OfR.data());
+    SumColumns(
+      this->Parallel, n, b.cols(),
+      [&](Index i, Eigen::Index k) { return weights[i] * b(i, k) * b(i, k); }, this->OfB.data());
+    double largest = 0.0;
+    for (std::size_t k = 0; k < this->OfR.size(); ++k)
+    {
+      constexpr double small = 1e-250;
+      const bool isSafe = this->OfR[k] > small && this->OfB[k] > small &&
+        this->OfR[k] < 1.0 / small && this->OfB[k] < 1.0 / small;
+      const double squared = isSafe ? this->OfR[k] / this->OfB[k]
+                                    : this->ComputeScaledRatio(b, static_cast<Eigen::Index>(k));
+      largest = std::max(largest, std::sqrt(squared));
     }
     return largest;
+  }
+
+  /// |R|^2 / |b|^2 of a column whose squares may overflow or underflow; |R|^2 if b is zero.
+  double ComputeScaledRatio(const Values& b, Eigen::Index k)
+  {
+    const Vector& weights = this->Factor->InverseDiagonal;
+    const Index n = static_cast<Index>(b.rows());
+    const double unit = ScaleOf(b, this->R, k, this->Parallel);
+    const auto sum = [&](const Values& values)
+    {
+      return Sum(this->Parallel, n,
+        [&](Index i) { return weights[i] * (values(i, k) / unit) * (values(i, k) / unit); });
+    };
+    const double ofR = sum(this->R);
+    const double ofB = sum(b);
+    if (!std::isfinite(ofR))
+    {
+      throw std::runtime_error("the linear system has no finite solution");
+    }
+    return ofB > 0.0 ? ofR / ofB : ofR;
   }
 
   const ParallelFor& Parallel;
@@ -302,6 +203,7 @@ private:
   long Factorizations = 0;
   Values R, Correction;
   Values W; ///< in the order of the factor
+  std::vector<double> OfR, OfB; ///< weighted squares of the columns of R and b
 };
 
 } // namespace

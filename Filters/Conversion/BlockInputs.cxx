@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conversion/BlockInputs.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+namespace SurfaceDiffusion
+{
+
+std::vector<BlockInput> BlockInputs::Describe(
+  const std::vector<SurfaceInput>& surfaces, bool excludeMasked)
+{
+  this->Cells.resize(surfaces.size());
+  this->Versions.resize(surfaces.size());
+  std::vector<BlockInput> inputs(surfaces.size());
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  {
+    vtkPolyData* const data = surfaces[b].Data;
+    const InputFields& arrays = *surfaces[b].Fields;
+    vtkDataArray* const excluded = excludeMasked ? arrays.Mask : nullptr;
+    std::vector<vtkIdType>& cells = this->Cells[b];
+    Version& version = this->Versions[b];
+    const InputStamp stamp(data, arrays.List());
+    if (!(version.Stamp == stamp) || version.Excludes != (excluded != nullptr))
+    {
+      version = { stamp, excluded != nullptr, FingerprintSurface(data, excluded),
+        FingerprintFields(arrays) };
+    }
+    inputs[b].SurfaceVersion = version.Surface;
+    inputs[b].FieldsVersion = version.Fields;
+    inputs[b].ReadSurface = [data, excluded, &cells] { return ReadSurface(data, excluded, cells); };
+  }
+  return inputs;
+}
+
+std::vector<BlockInput> BlockInputs::Make(
+  const std::vector<SurfaceInput>& surfaces, bool excludeMasked)
+{
+  this->Decomposition.reset();
+  std::vector<BlockInput> inputs = this->Describe(surfaces, excludeMasked);
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  {
+    inputs[b].ReadFields = [surface = surfaces[b], &cells = this->Cells[b]]
+    {
+      if (surface.Fields->GlobalIds)
+      {
+        RequireTuples(surface.Fields->GlobalIds, surface.Data->GetNumberOfPoints(), "point");
+      }
+      return ReadFields(*surface.Fields, cells);
+    };
+  }
+  return inputs;
+}
+
+std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<SurfaceInput>& surfaces,
+  bool excludeMasked, double seamTolerance, vtkMultiProcessController* controller,
+  const std::shared_ptr<const bool>& abortRequested)
+{
+  if (!this->Decomposition)
+  {
+    this->Decomposition = std::make_unique<PieceDecomposition>(controller, abortRequested);
+  }
+  std::vector<BlockInput> inputs = this->Describe(surfaces, excludeMasked);
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  {
+    vtkPointData* const points = surfaces[b].Data->GetPointData();
+    this->Decomposition->SetPiece(surfaces[b].Data, seamTolerance);
+    inputs[b].SurfaceVersion.AddNumber(seamTolerance);
+    AddArray(inputs[b].SurfaceVersion, points->GetGlobalIds());
+    AddArray(inputs[b].SurfaceVersion, points->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    inputs[b].Decomposition = this->Decomposition.get();
+    inputs[b].ReadFields =
+      [surface = surfaces[b], &cells = this->Cells[b], decomposition = this->Decomposition.get()]
+    {
+      Fields read = ReadFields(*surface.Fields, cells);
+      read.Ids = decomposition->PointIds();
+      return read;
+    };
+  }
+  return inputs;
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Conversion/FieldReader.h"
+#include "Conversion/SurfaceReader.h"
+#include "Distributed/PieceDecomposition.h"
+#include "Run/Run.h"
+
+#include <memory>
+#include <vector>
+
+class vtkPolyData;
+
+namespace SurfaceDiffusion
+{
+
+/// A surface of the input with its arrays, which must live until the run has read them.
+struct SurfaceInput
+{
+  vtkPolyData* Data;
+  const InputFields* Fields;
+};
+
+/// Describes the surfaces of an update to a Run: hashes of their contents, and functions that read
+/// them.
+class BlockInputs
+{
+public:
+  /// The inputs of surfaces that this process has as a whole.
+  std::vector<BlockInput> Make(const std::vector<SurfaceInput>& surfaces, bool excludeMasked);
+
+  /// The same for surfaces of which every process has a piece. seamTolerance: see PointIdentity.
+  std::vector<BlockInput> MakeOfPieces(const std::vector<SurfaceInput>& surfaces,
+    bool excludeMasked, double seamTolerance, vtkMultiProcessController* controller,
+    const std::shared_ptr<const bool>& abortRequested);
+
+  /// Null unless the last inputs were pieces.
+  const PieceDecomposition* GetDecomposition() const { return this->Decomposition.get(); }
+
+private:
+  /// The hashes of a surface, and the state of the data that they were computed from. Requests of
+  /// other times need not hash the input again.
+  struct Version
+  {
+    InputStamp Stamp;
+    bool Excludes = false;
+    Fingerprint Surface, Fields;
+  };
+
+  std::vector<BlockInput> Describe(const std::vector<SurfaceInput>& surfaces, bool excludeMasked);
+
+  std::vector<std::vector<vtkIdType>> Cells; ///< per surface: the cell of each triangle
+  std::vector<Version> Versions;
+  std::unique_ptr<PieceDecomposition> Decomposition;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conversion/TimeRequests.h"
+
+#include "Run/RunSettings.h"
+
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+void PublishTimes(const RunSettings& settings, vtkInformationVector* outputs)
+{
+  const std::vector<double> times = settings.PublishedTimes();
+  const double range[2] = { times.front(), times.back() };
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* const info = outputs->GetInformationObject(port);
+    info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+}
+
+void RequestFirstTime(vtkInformation* input)
+{
+  if (input->Has(Pipeline::TIME_STEPS()) && input->Length(Pipeline::TIME_STEPS()) > 0)
+  {
+    input->Set(Pipeline::UPDATE_TIME_STEP(), input->Get(Pipeline::TIME_STEPS())[0]);
+  }
+  else if (input->Has(Pipeline::TIME_RANGE()))
+  {
+    input->Set(Pipeline::UPDATE_TIME_STEP(), input->Get(Pipeline::TIME_RANGE())[0]);
+  }
+  else
+  {
+    input->Remove(Pipeline::UPDATE_TIME_STEP());
+  }
+}
+
+int FindRequestedStep(
+  const RunSettings& settings, vtkInformation* request, vtkInformationVector* outputs)
+{
+  if (settings.GenerateTimeSteps)
+  {
+    const int port = request->Has(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT())
+      ? std::max(0, request->Get(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT()))
+      : 0;
+    vtkInformation* const info = outputs->GetInformationObject(port);
+    if (info->Has(Pipeline::UPDATE_TIME_STEP()))
+    {
+      return settings.FindStep(info->Get(Pipeline::UPDATE_TIME_STEP()));
+    }
+  }
+  return settings.DescribeModel().NumberOfSteps;
+}
+
+void SetDataTime(double time, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkDataObject::GetData(outputs, port)
+      ->GetInformation()
+      ->Set(vtkDataObject::DATA_TIME_STEP(), time);
+  }
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Solvers/SparseFactor.h"
+
+namespace SurfaceDiffusion
+{
+
+/// w = L^-T D^-1 L^-1 w for K columns, or `columns` of them if K is 0, in one pass over the factor.
+/// w: row-major, in the order of the factor. Every column has the bits that it has alone, on any
+/// processor. Instantiated for the numbers of ForColumns().
+template <int K>
+void SubstituteRows(const SparseFactor& factor, double* w, int columns);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "InputData.h"
+
+#include "Run/Polygons.h"
+#include "Threads.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace nb = nanobind;
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+template <typename Array>
+void AddArray(Fingerprint& fingerprint, const std::optional<Array>& array)
+{
+  fingerprint.AddNumber(std::uint64_t{ array ? 1U : 0U });
+  if (!array)
+  {
+    return;
+  }
+  fingerprint.AddNumber(std::uint64_t{ array->dtype().bits });
+  for (std::size_t axis = 0; axis < array->ndim(); ++axis)
+  {
+    fingerprint.AddNumber(static_cast<std::uint64_t>(array->shape(axis)));
+  }
+  if (array->nbytes() > 0)
+  {
+    fingerprint.AddBytes(array->data(), array->nbytes(), PythonThreads::Instance());
+  }
+}
+
+std::vector<char> ReadFlags(const std::optional<FlagArray>& array)
+{
+  return array ? std::vector<char>(array->data(), array->data() + array->size())
+               : std::vector<char>();
+}
+
+/// The rows of an array that the triangles of the surface belong to.
+template <typename Matrix>
+Matrix ReadOnTriangles(const InputSurface& surface, const DoubleArray& array)
+{
+  const auto columns = static_cast<Eigen::Index>(array.shape(1));
+  Matrix rows(surface.GetTriangles().rows(), columns);
+  for (Eigen::Index t = 0; t < rows.rows(); ++t)
+  {
+    const double* const from = array.data() + surface.FaceOf(static_cast<Index>(t)) * columns;
+    rows.row(t) = Eigen::Map<const Eigen::RowVectorXd>(from, columns);
+  }
+  return rows;
+}
+
+} // namespace
+
+InputSurface::InputSurface(
+  const DoubleArray& points, const LongArray& connectivity, const LongArray& offsets)
+  : Coordinates(
+      Eigen::Map<const Points>(points.data(), static_cast<Eigen::Index>(points.shape(0)), 3))
+  , FaceCount(offsets.size() - 1)
+{
+  RequireFiniteCoordinates(this->Coordinates);
+  std::vector<Corners> triangles;
+  std::vector<Eigen::RowVector3d> polygon;
+  std::vector<Index> cut;
+  cut.reserve(3 * this->FaceCount);
+  bool onlyTriangles = true;
+  for (std::size_t p = 0; p < this->FaceCount; ++p)
+  {
+    const std::int64_t* const corners = connectivity.data() + offsets.data()[p];
+    const auto size = static_cast<std::size_t>(offsets.data()[p + 1] - offsets.data()[p]);
+    onlyTriangles = onlyTriangles && size == 3;
+    if (size == 3)
+    {
+      triangles.assign({ { 0, 1, 2 } });
+    }
+    else
+    {
+      polygon.clear();
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        polygon.emplace_back(this->Coordinates.row(static_cast<Eigen::Index>(corners[i])));
+      }
+      triangles = CutPolygon(polygon);
+    }
+    for (const Corners& triangle : triangles)
+    {
+      for (const int corner : triangle)
+      {
+        cut.push_back(static_cast<Index>(corners[corner]));
+      }
+      this->Faces.push_back(static_cast<std::int64_t>(p));
+    }
+  }
+  if (onlyTriangles)
+  {
+    this->Faces = std::vector<std::int64_t>();
+  }
+  this->TriangleRows =
+    Eigen::Map<const Triangles>(cut.data(), static_cast<Eigen::Index>(cut.size() / 3), 3);
+  const auto add = [this](const void* data, std::size_t size)
+  { this->Contents.AddBytes(data, size, PythonThreads::Instance()); };
+  add(
+    this->Coordinates.data(), sizeof(double) * static_cast<std::size_t>(this->Coordinates.size()));
+  add(
+    this->TriangleRows.data(), sizeof(Index) * static_cast<std::size_t>(this->TriangleRows.size()));
+}
+
+void InputSurface::SetAreaFactors(const FactorArray& factors)
+{
+  this->AreaFactors.assign(factors.data(), factors.data() + factors.size());
+  this->Contents.AddBytes(
+    this->AreaFactors.data(), sizeof(double) * this->AreaFactors.size(), PythonThreads::Instance());
+}
+
+SurfaceArrays InputSurface::Read(const std::optional<FlagArray>& excluded) const
+{
+  return { this->Coordinates, this->TriangleRows, ReadFlags(excluded), this->AreaFactors };
+}
+
+Fingerprint InputSurface::Version(const std::optional<FlagArray>& excluded) const
+{
+  Fingerprint version = this->Contents;
+  AddArray(version, excluded);
+  return version;
+}
+
+FieldSummary InputFields::Summarize() const
+{
+  FieldSummary summary;
+  summary.Data = this->Data.has_value();
+  summary.DataComponents = this->Components;
+  summary.Directions = this->Directions.has_value();
+  summary.Fixed = this->Fixed.has_value();
+  summary.Rates = this->Rates.has_value();
+  return summary;
+}
+
+Fields InputFields::Read() const
+{
+  Fields fields;
+  if (this->Data)
+  {
+    fields.DataName = "InputArray";
+    fields.Data.resize(static_cast<Eigen::Index>(this->Data->shape(0)), this->Components);
+    const auto stride = static_cast<Eigen::Index>(this->Data->shape(1));
+    VisitElements(*this->Data,
+      [&](const auto* from)
+      {
+        ForEach(PythonThreads::Instance(), static_cast<Index>(fields.Data.rows()),
+          [&](Index i)
+          {
+            for (Eigen::Index k = 0; k < fields.Data.cols(); ++k)
+            {
+              fields.Data(i, k) = static_cast<double>(from[i * stride + k]);
+            }
+          });
+      });
+  }
+  fields.Mask = ReadFlags(this->Mask);
+  fields.Fixed = ReadFlags(this->Fixed);
+  if (this->Directions)
+  {
+    fields.DirectionsOnTriangles = this->DirectionsOnFaces;
+    fields.Directions = this->DirectionsOnFaces
+      ? ReadOnTriangles<Points>(*this->Surface, *this->Directions)
+      : Points(Eigen::Map<const Points>(
+          this->Directions->data(), static_cast<Eigen::Index>(this->Directions->shape(0)), 3));
+  }
+  if (this->Rates)
+  {
+    fields.Rates = ReadOnTriangles<Values>(*this->Surface, *this->Rates);
+  }
+  return fields;
+}
+
+Fingerprint InputFields::Version() const
+{
+  Fingerprint version;
+  AddArray(version, this->Data);
+  AddArray(version, this->Mask);
+  AddArray(version, this->Fixed);
+  AddArray(version, this->Directions);
+  AddArray(version, this->Rates);
+  version.AddNumber(std::uint64_t{ this->DirectionsOnFaces ? 1U : 0U });
+  return version;
+}
+
+} // namespace SurfaceDiffusion

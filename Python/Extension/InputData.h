@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/Fields.h"
+#include "Run/Fingerprint.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+using InputArray = nanobind::ndarray<nanobind::ro, nanobind::device::cpu, nanobind::c_contig>;
+using OutputArray = nanobind::ndarray<nanobind::device::cpu, nanobind::c_contig>;
+using DoubleArray =
+  nanobind::ndarray<const double, nanobind::ndim<2>, nanobind::device::cpu, nanobind::c_contig>;
+using LongArray = nanobind::ndarray<const std::int64_t, nanobind::ndim<1>, nanobind::device::cpu,
+  nanobind::c_contig>;
+using FactorArray =
+  nanobind::ndarray<const double, nanobind::ndim<1>, nanobind::device::cpu, nanobind::c_contig>;
+using FlagArray = nanobind::ndarray<const std::uint8_t, nanobind::ndim<1>, nanobind::device::cpu,
+  nanobind::c_contig>;
+
+/// Call f(pointer to the elements of an array of one of the types that a result can have).
+template <typename Array, typename F>
+void VisitElements(const Array& array, const F& f)
+{
+  constexpr bool readOnly = std::is_same_v<Array, InputArray>;
+  const auto call = [&](auto example)
+  {
+    using T = decltype(example);
+    using Pointer = std::conditional_t<readOnly, const T*, T*>;
+    f(static_cast<Pointer>(array.data()));
+  };
+  if (array.dtype() == nanobind::dtype<double>())
+  {
+    call(double());
+  }
+  else if (array.dtype() == nanobind::dtype<float>())
+  {
+    call(float());
+  }
+  else if (array.dtype() == nanobind::dtype<std::uint8_t>())
+  {
+    call(std::uint8_t());
+  }
+  else
+  {
+    throw nanobind::type_error("an array is not of type float64, float32 or uint8");
+  }
+}
+
+/// The arrays of a surface, with its polygons cut into triangles.
+class InputSurface
+{
+public:
+  /// Polygon p has the points connectivity[offsets[p]] to connectivity[offsets[p + 1] - 1].
+  InputSurface(const DoubleArray& points, const LongArray& connectivity, const LongArray& offsets);
+
+  std::size_t NumberOfPoints() const { return static_cast<std::size_t>(this->Coordinates.rows()); }
+  std::size_t NumberOfFaces() const { return this->FaceCount; }
+  const Triangles& GetTriangles() const { return this->TriangleRows; }
+  /// The polygon that triangle t was cut from.
+  std::int64_t FaceOf(Index t) const
+  {
+    return this->Faces.empty() ? t : this->Faces[static_cast<std::size_t>(t)];
+  }
+
+  /// See SurfaceArrays::AreaFactors; one per point.
+  void SetAreaFactors(const FactorArray& factors);
+
+  SurfaceArrays Read(const std::optional<FlagArray>& excluded) const;
+  Fingerprint Version(const std::optional<FlagArray>& excluded) const;
+
+private:
+  Points Coordinates;
+  Triangles TriangleRows;
+  std::vector<std::int64_t> Faces; ///< per triangle; empty if all polygons are triangles
+  std::size_t FaceCount = 0;
+  std::vector<double> AreaFactors;
+  Fingerprint Contents;
+};
+
+/// References to the input arrays of a run on one surface. Sizes have been checked in Python.
+class InputFields
+{
+public:
+  std::shared_ptr<const InputSurface> Surface;
+  std::optional<InputArray> Data; ///< points x components
+  int Components = 0; ///< of the data, alpha not counted
+  std::optional<FlagArray> Mask;
+  std::optional<FlagArray> Fixed;
+  std::optional<DoubleArray> Directions; ///< points or faces x 3
+  bool DirectionsOnFaces = false;
+  std::optional<DoubleArray> Rates; ///< faces x 4
+
+  FieldSummary Summarize() const;
+  Fields Read() const;
+  Fingerprint Version() const;
+};
+
+} // namespace SurfaceDiffusion

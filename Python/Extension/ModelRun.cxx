@@ -1,0 +1,324 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ModelRun.h"
+
+#include "Core/Models/TextureColors.h"
+#include "PythonProgress.h"
+#include "Run/CellDirections.h"
+#include "Run/ConvertValue.h"
+#include "Run/TextureSettings.h"
+#include "SettingsTable.h"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
+namespace nb = nanobind;
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+template <typename Matrix>
+void WriteMatrix(const Matrix& from, const OutputArray& output)
+{
+  VisitElements(output,
+    [&](auto* to)
+    {
+      using T = std::remove_pointer_t<decltype(to)>;
+      WithValueErrors(
+        [&]
+        {
+          std::transform(from.data(), from.data() + from.size(), to,
+            [](double x) { return ConvertValue<T>(x); });
+        });
+    });
+}
+
+/// Write value(v, k) at the points of vertices, and other(i, k) at all other points.
+template <typename Value, typename Other>
+void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index components,
+  const Value& value, const Other& other)
+{
+  const auto columns = static_cast<Eigen::Index>(output.shape(1));
+  VisitElements(output,
+    [&](auto* to)
+    {
+      using T = std::remove_pointer_t<decltype(to)>;
+      const auto writeRow = [&](Index i)
+      {
+        const Index v = surface.VertexOf(i);
+        for (Eigen::Index k = 0; k < columns; ++k)
+        {
+          to[i * columns + k] =
+            ConvertValue<T>(v >= 0 && k < components ? value(v, k) : other(i, k));
+        }
+      };
+      WithValueErrors(
+        [&] { ForEach(PythonThreads::Instance(), static_cast<Index>(output.shape(0)), writeRow); });
+    });
+}
+
+template <typename T>
+nb::list MakeList(const std::vector<StepRecord>& records, T StepRecord::*member)
+{
+  nb::list list;
+  for (const StepRecord& record : records)
+  {
+    list.append(record.*member);
+  }
+  return list;
+}
+
+nb::list MakeList(const std::vector<double>& numbers)
+{
+  nb::list list;
+  for (const double number : numbers)
+  {
+    list.append(number);
+  }
+  return list;
+}
+
+const TextureSettings& AsTexture(const RunSettings& settings)
+{
+  const auto* const texture = dynamic_cast<const TextureSettings*>(&settings);
+  if (!texture)
+  {
+    throw nb::type_error("only turing_texture has a texture");
+  }
+  return *texture;
+}
+
+/// The units of the runs of later updates must not depend on a run that failed.
+template <typename Work>
+void ClearOnFailure(Run& run, const Work& work)
+{
+  try
+  {
+    work();
+  }
+  catch (const Aborted&)
+  {
+    throw; // a later update continues
+  }
+  catch (...)
+  {
+    run.Clear();
+    throw;
+  }
+}
+
+} // namespace
+
+void ModelRun::Update(const nb::list& list, const nb::dict& settings, const nb::object& progress)
+{
+  std::vector<const InputFields*> blocks;
+  for (const nb::handle& block : list)
+  {
+    blocks.push_back(nb::cast<const InputFields*>(block));
+  }
+  std::shared_ptr<RunSettings> own = MakeRunSettings(this->Name);
+  AssignSettings(*own, settings);
+  Problems problems;
+  for (const InputFields* fields : blocks)
+  {
+    const FieldSummary summary = fields->Summarize();
+    own->Check(&summary, problems);
+  }
+  ThrowProblems(std::move(problems));
+  this->Settings = std::move(own);
+
+  const bool excludes = this->Settings->MaskMode == MaskMode::Exclude;
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      std::vector<BlockInput> inputs(blocks.size());
+      for (std::size_t b = 0; b < blocks.size(); ++b)
+      {
+        const InputFields& fields = *blocks[b];
+        const auto excluded = excludes ? fields.Mask : std::nullopt;
+        inputs[b].SurfaceVersion = fields.Surface->Version(excluded);
+        inputs[b].FieldsVersion = fields.Version();
+        inputs[b].ReadSurface = [&fields, excluded] { return fields.Surface->Read(excluded); };
+        inputs[b].ReadFields = [&fields] { return fields.Read(); };
+      }
+      ClearOnFailure(this->Model,
+        [&] { this->Model.Update(inputs, this->Settings, this->Alone, monitor.Part(0.0, 0.25)); });
+    });
+}
+
+void ModelRun::Seek(int step, const nb::object& progress)
+{
+  this->Step = step < 0 ? this->NumberOfSteps() : step;
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor) {
+      ClearOnFailure(this->Model, [&] { this->Model.Seek(this->Step, monitor.Part(0.25, 1.0)); });
+    });
+}
+
+std::vector<std::string> ModelRun::GetWarnings() const
+{
+  std::vector<std::string> sentences;
+  for (const Warning& warning : this->Model.FindWarnings(this->Alone))
+  {
+    sentences.push_back(warning.Sentence);
+  }
+  return sentences;
+}
+
+nb::dict ModelRun::GetHistory() const
+{
+  const History history = this->Model.MakeHistory(this->Step);
+  nb::dict columns;
+  columns["Time"] = MakeList(history.Time);
+  for (std::size_t k = 0; k < history.Totals.size(); ++k)
+  {
+    columns[("Total_" + std::to_string(k)).c_str()] = MakeList(history.Totals[k]);
+  }
+  columns["Energy"] = MakeList(history.Records, &StepRecord::Energy);
+  columns["Iterations"] = MakeList(history.Records, &StepRecord::Iterations);
+  columns["Residual"] = MakeList(history.Records, &StepRecord::Residual);
+  columns["Seconds"] = MakeList(history.Records, &StepRecord::Seconds);
+  if (history.CountsClamped)
+  {
+    columns["Clamped"] = MakeList(history.Records, &StepRecord::Clamped);
+  }
+  return columns;
+}
+
+nb::dict ModelRun::GetResults(std::size_t block) const
+{
+  const RunResult& result = this->Model.GetBlock(block).Result;
+  nb::dict numbers;
+  numbers["time_unit"] = this->Model.TimeUnit();
+  numbers["mean_edge_length"] = this->Model.Units().MeanEdgeLength;
+  numbers["value_range"] = this->Model.Units().ValueRange;
+  numbers["effective_fidelity_weight"] = result.EffectiveFidelityWeight;
+  numbers["wavelength"] = result.Wavelength;
+  numbers["wavelength_growth_rate"] = result.WavelengthGrowthRate;
+  numbers["diffusion_rate_factor"] = result.DiffusionRateFactor;
+  numbers["mean_displacement"] = result.Motion.MeanDisplacement;
+  numbers["maximum_displacement"] = result.Motion.MaximumDisplacement;
+  numbers["volume_before"] = result.Motion.VolumeBefore;
+  numbers["volume_after"] = result.Motion.VolumeAfter;
+  return numbers;
+}
+
+void ModelRun::WriteState(
+  std::size_t block, const OutputArray& output, const std::optional<InputArray>& source) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  const Values& state = from.Path->State();
+  const double unit = from.Units.ValueUnit;
+  const auto value = [&](Index v, Eigen::Index k) { return state(v, k) * unit; };
+  if (!source)
+  {
+    WritePoints(
+      *from.Surface, output, state.cols(), value, [](Index, Eigen::Index) { return 0.0; });
+    return;
+  }
+  const auto columns = static_cast<Eigen::Index>(source->shape(1));
+  VisitElements(*source,
+    [&](const auto* old)
+    {
+      WritePoints(*from.Surface, output, state.cols(), value,
+        [&](Index i, Eigen::Index k) { return static_cast<double>(old[i * columns + k]); });
+    });
+}
+
+void ModelRun::WriteColorsOfVectors(
+  std::size_t block, const OutputArray& output, const InputFields& source) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  Fields colors;
+  colors.Data = source.Read().Data;
+  const Values given = MakePointData(*from.Surface, colors, false, 1.0).Given;
+  Values state = from.Path->State();
+  state.array().colwise() *= given.rowwise().norm().array();
+  const auto columns = static_cast<Eigen::Index>(source.Data->shape(1));
+  VisitElements(*source.Data,
+    [&](const auto* old)
+    {
+      WritePoints(
+        *from.Surface, output, state.cols(), [&](Index v, Eigen::Index k) { return state(v, k); },
+        [&](Index i, Eigen::Index k) { return static_cast<double>(old[i * columns + k]); });
+    });
+}
+
+void ModelRun::WriteTexture(std::size_t block, const OutputArray& output) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  const Vector texture = StretchContrast(
+    from.Path->State().col(AsTexture(*this->Settings).TextureChemical), from.Result.ContrastLimits);
+  WritePoints(
+    *from.Surface, output, 1, [&](Index v, Eigen::Index) { return texture[v]; },
+    [](Index, Eigen::Index) { return 0.0; });
+}
+
+void ModelRun::WriteTextureColors(std::size_t block, const OutputArray& output,
+  const std::array<double, 3>& low, const std::array<double, 3>& high) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  const Vector texture = StretchContrast(
+    from.Path->State().col(AsTexture(*this->Settings).TextureChemical), from.Result.ContrastLimits);
+  const Colors colors = MixColors(texture, low, high);
+  const Colors elsewhere = MixColors(Vector::Zero(1), low, high);
+  WritePoints(
+    *from.Surface, output, 3,
+    [&](Index v, Eigen::Index k) { return static_cast<double>(colors(v, k)); },
+    [&](Index, Eigen::Index k) { return static_cast<double>(elsewhere(0, k)); });
+}
+
+bool ModelRun::WriteMovedPoints(std::size_t block, const OutputArray& output) const
+{
+  const Points& moved = this->Model.GetBlock(block).Result.MovedPoints;
+  if (moved.rows() == 0)
+  {
+    return false;
+  }
+  VisitElements(output,
+    [&](auto* to)
+    {
+      using T = std::remove_pointer_t<decltype(to)>;
+      std::transform(
+        moved.data(), moved.data() + moved.size(), to, [](double x) { return ConvertValue<T>(x); });
+    });
+  return true;
+}
+
+//------------------------------------------------------------------------------------------------
+void DirectionRun::Update(
+  const InputFields& input, const nb::dict& values, const nb::object& progress)
+{
+  DirectionFieldSettings settings;
+  AssignSettings(settings, values);
+  const FieldSummary summary = input.Summarize();
+  Problems problems;
+  settings.Check(&summary, problems);
+  ThrowProblems(std::move(problems));
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      BlockInput block;
+      block.SurfaceVersion = input.Surface->Version(std::nullopt);
+      block.FieldsVersion = input.Version();
+      block.ReadSurface = [&] { return input.Surface->Read(std::nullopt); };
+      block.ReadFields = [&] { return input.Read(); };
+      this->Field.Update(block, settings, monitor);
+    });
+}
+
+void DirectionRun::Write(const InputSurface& surface, const OutputArray& output) const
+{
+  const Points directions = DirectionsOfCells(
+    this->Field.GetSurface(), this->Field.Directions(),
+    static_cast<std::int64_t>(surface.NumberOfFaces()), [&](Index t) { return surface.FaceOf(t); },
+    PythonThreads::Instance());
+  WriteMatrix(directions, output);
+}
+
+} // namespace SurfaceDiffusion

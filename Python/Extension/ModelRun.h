@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "InputData.h"
+#include "Run/DirectionFieldRun.h"
+#include "Run/Run.h"
+#include "Threads.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// A run of a time-dependent model on one or more surfaces, which Python drives. Surfaces, orderings
+/// and factors are kept from update to update as far as they do not change.
+class ModelRun
+{
+public:
+  explicit ModelRun(std::string model)
+    : Name(std::move(model))
+  {
+  }
+  ModelRun(const ModelRun&) = delete;
+  ModelRun& operator=(const ModelRun&) = delete;
+
+  /// Check and take settings and inputs, a list of InputFields. Throws nanobind::value_error.
+  void Update(
+    const nanobind::list& blocks, const nanobind::dict& settings, const nanobind::object& progress);
+  /// Move to a step, or to the last one if that is -1.
+  void Seek(int step, const nanobind::object& progress);
+
+  int NumberOfSteps() const { return this->Settings->DescribeModel().NumberOfSteps; }
+  double TimeStep() const { return this->Settings->DescribeModel().TimeStep; }
+  /// The sentences of all warnings that hold.
+  std::vector<std::string> GetWarnings() const;
+  nanobind::dict GetHistory() const;
+  /// Numbers that describe the run on one surface.
+  nanobind::dict GetResults(std::size_t block) const;
+
+  /// Write the current state at the points of a surface. `source` gives the values of points that
+  /// take no part and of alpha; without it they are 0.
+  void WriteState(
+    std::size_t block, const OutputArray& output, const std::optional<InputArray>& source) const;
+  /// The same for unit vectors of colours, with the brightness of the input.
+  void WriteColorsOfVectors(
+    std::size_t block, const OutputArray& output, const InputFields& source) const;
+  /// The texture, stretched to [0, 1].
+  void WriteTexture(std::size_t block, const OutputArray& output) const;
+  void WriteTextureColors(std::size_t block, const OutputArray& output,
+    const std::array<double, 3>& low, const std::array<double, 3>& high) const;
+  /// The moved points (float64 or float32); false if no point was moved.
+  bool WriteMovedPoints(std::size_t block, const OutputArray& output) const;
+
+private:
+  std::string Name;
+  std::shared_ptr<RunSettings> Settings;
+  SurfaceDiffusion::Run Model{ PythonThreads::Instance() };
+  ProcessGroup Alone;
+  int Step = 0;
+};
+
+/// The line field of one surface.
+class DirectionRun
+{
+public:
+  DirectionRun() = default;
+  DirectionRun(const DirectionRun&) = delete;
+  DirectionRun& operator=(const DirectionRun&) = delete;
+
+  void Update(
+    const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
+  double MeanEdgeLength() const { return this->Field.MeanEdgeLength(); }
+  Index NumberOfDegenerateTriangles() const
+  {
+    return this->Field.GetSurface().Diagnostics().DegenerateTriangles;
+  }
+  /// Per polygon of the surface.
+  void Write(const InputSurface& surface, const OutputArray& output) const;
+
+private:
+  DirectionFieldRun Field{ PythonThreads::Instance() };
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The extension module surfacediffusion._core: runs, surfaces and settings for the functions in
+// Python, which check types and shapes and word the errors.
+
+#include "InputData.h"
+#include "ModelRun.h"
+#include "Run/RunSettings.h"
+#include "SettingsTable.h"
+#include "Threads.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace nb = nanobind;
+using namespace SurfaceDiffusion;
+using namespace nanobind::literals;
+
+namespace
+{
+
+InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optional<InputArray> data,
+  int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
+  std::optional<DoubleArray> directions, bool directionsOnFaces, std::optional<DoubleArray> rates)
+{
+  InputFields fields;
+  fields.Surface = std::move(surface);
+  fields.Data = std::move(data);
+  fields.Components = components;
+  fields.Mask = std::move(mask);
+  fields.Fixed = std::move(fixed);
+  fields.Directions = std::move(directions);
+  fields.DirectionsOnFaces = directionsOnFaces;
+  fields.Rates = std::move(rates);
+  return fields;
+}
+
+nb::object GetTriangles(const std::shared_ptr<InputSurface>& surface)
+{
+  const Triangles& triangles = surface->GetTriangles();
+  return nb::cast(nb::ndarray<nb::numpy, const Index, nb::shape<-1, 3>>(
+    triangles.data(), { static_cast<std::size_t>(triangles.rows()), 3 }, nb::cast(surface)));
+}
+
+} // namespace
+
+NB_MODULE(_core, m)
+{
+  m.doc() = "Runs of the numerics on arrays.";
+
+  m.def(
+    "list_settings", [](const std::string& model) { return ListSettings(*MakeSettings(model)); },
+    "model"_a);
+  m.def("number_of_threads", [] { return PythonThreads::Instance().NumberOfThreads(); });
+  m.def(
+    "set_number_of_threads",
+    [](int number)
+    {
+      const nb::gil_scoped_release released;
+      PythonThreads::Instance().SetNumberOfThreads(number);
+    },
+    "number"_a);
+  m.def("after_fork", [] { PythonThreads::Instance().AfterFork(); });
+
+  nb::class_<InputSurface>(m, "Surface")
+    .def(nb::init<const DoubleArray&, const LongArray&, const LongArray&>(), "points"_a,
+      "connectivity"_a, "offsets"_a)
+    .def("set_area_factors", &InputSurface::SetAreaFactors, "factors"_a)
+    .def("triangles", &GetTriangles);
+
+  nb::class_<InputFields>(m, "Fields")
+    .def(
+      "__init__",
+      [](InputFields* self, std::shared_ptr<InputSurface> surface, std::optional<InputArray> data,
+        int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
+        std::optional<DoubleArray> directions, bool directionsOnFaces,
+        std::optional<DoubleArray> rates)
+      {
+        new (self)
+          InputFields(MakeFields(std::move(surface), std::move(data), components, std::move(mask),
+            std::move(fixed), std::move(directions), directionsOnFaces, std::move(rates)));
+      },
+      "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
+      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none());
+
+  nb::class_<ModelRun>(m, "ModelRun")
+    .def(nb::init<std::string>(), "model"_a)
+    .def("update", &ModelRun::Update, "blocks"_a, "settings"_a, "progress"_a.none())
+    .def("seek", &ModelRun::Seek, "step"_a, "progress"_a.none())
+    .def("number_of_steps", &ModelRun::NumberOfSteps)
+    .def("time_step", &ModelRun::TimeStep)
+    .def("warnings", &ModelRun::GetWarnings)
+    .def("history", &ModelRun::GetHistory)
+    .def("results", &ModelRun::GetResults, "block"_a)
+    .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none())
+    .def(
+      "write_colors_of_vectors", &ModelRun::WriteColorsOfVectors, "block"_a, "output"_a, "source"_a)
+    .def("write_texture", &ModelRun::WriteTexture, "block"_a, "output"_a)
+    .def("write_texture_colors", &ModelRun::WriteTextureColors, "block"_a, "output"_a, "low"_a,
+      "high"_a)
+    .def("write_moved_points", &ModelRun::WriteMovedPoints, "block"_a, "output"_a);
+
+  nb::class_<DirectionRun>(m, "DirectionRun")
+    .def(nb::init<>())
+    .def("update", &DirectionRun::Update, "fields"_a, "settings"_a, "progress"_a.none())
+    .def("mean_edge_length", &DirectionRun::MeanEdgeLength)
+    .def("number_of_degenerate_triangles", &DirectionRun::NumberOfDegenerateTriangles)
+    .def("write", &DirectionRun::Write, "surface"_a, "output"_a);
+}

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SettingsTable.h"
+
+#include "Run/DirectionFieldRun.h"
+#include "Run/HarmonicMapSettings.h"
+#include "Run/HeatSettings.h"
+#include "Run/TextureSettings.h"
+#include "Run/TotalVariationSettings.h"
+
+#include <algorithm>
+
+namespace nb = nanobind;
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+class Lister : public SettingVisitor
+{
+public:
+  using SettingVisitor::Choice;
+
+  void Number(const SettingInfo& info, double& value, const SettingRange& range) override
+  {
+    nb::dict entry = this->Add(info, "number");
+    entry["default"] = value;
+    entry["allowed"] = range.Restricted ? range.Text : "finite numbers";
+  }
+  void Integer(const SettingInfo& info, int& value, const SettingRange& range) override
+  {
+    nb::dict entry = this->Add(info, "integer");
+    entry["default"] = value;
+    entry["allowed"] = range.Low < range.High ? range.Text : "integers of 32 bits";
+  }
+  void Switch(const SettingInfo& info, bool& value) override
+  {
+    nb::dict entry = this->Add(info, "switch");
+    entry["default"] = value;
+    entry["allowed"] = "True or False";
+  }
+  void Choice(const SettingInfo& info, int& value, const std::vector<const char*>& words,
+    const std::vector<bool>& allowed) override
+  {
+    nb::dict entry = this->Add(info, "choice");
+    nb::list all;
+    nb::list usable;
+    for (std::size_t w = 0; w < words.size(); ++w)
+    {
+      all.append(words[w]);
+      if (allowed.empty() || allowed[w])
+      {
+        usable.append(words[w]);
+      }
+    }
+    entry["words"] = all;
+    entry["usable"] = usable;
+    entry["default"] = all[static_cast<std::size_t>(value)];
+    entry["allowed"] = nb::str(", ").attr("join")(usable);
+  }
+
+  nb::list Entries;
+
+private:
+  nb::dict Add(const SettingInfo& info, const char* kind)
+  {
+    nb::dict entry;
+    entry["name"] = info.Name;
+    entry["unit"] = info.Unit;
+    entry["documentation"] = info.Documentation;
+    entry["kind"] = kind;
+    this->Entries.append(entry);
+    return entry;
+  }
+};
+
+class Assigner : public SettingVisitor
+{
+public:
+  using SettingVisitor::Choice;
+  explicit Assigner(const nb::dict& values)
+    : Given(values)
+  {
+  }
+
+  void Number(const SettingInfo& info, double& value, const SettingRange&) override
+  {
+    this->Assign(info, value);
+  }
+  void Integer(const SettingInfo& info, int& value, const SettingRange&) override
+  {
+    this->Assign(info, value);
+  }
+  void Switch(const SettingInfo& info, bool& value) override { this->Assign(info, value); }
+  void Choice(const SettingInfo& info, int& value, const std::vector<const char*>&,
+    const std::vector<bool>&) override
+  {
+    this->Assign(info, value);
+  }
+
+private:
+  template <typename T>
+  void Assign(const SettingInfo& info, T& value)
+  {
+    if (this->Given.contains(info.Name))
+    {
+      value = nb::cast<T>(this->Given[info.Name]);
+    }
+  }
+
+  const nb::dict& Given;
+};
+
+} // namespace
+
+std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
+{
+  if (model == "heat")
+  {
+    return std::make_unique<HeatSettings>();
+  }
+  if (model == "intrinsic_tv")
+  {
+    return std::make_unique<TotalVariationSettings>();
+  }
+  if (model == "harmonic_map")
+  {
+    return std::make_unique<HarmonicMapSettings>();
+  }
+  if (model == "turing_texture")
+  {
+    return std::make_unique<TextureSettings>();
+  }
+  throw nb::key_error(model.c_str());
+}
+
+std::unique_ptr<Settings> MakeSettings(const std::string& model)
+{
+  if (model == "direction_field")
+  {
+    return std::make_unique<DirectionFieldSettings>();
+  }
+  return MakeRunSettings(model);
+}
+
+nb::list ListSettings(Settings& settings)
+{
+  Lister lister;
+  settings.Visit(lister);
+  return lister.Entries;
+}
+
+void AssignSettings(Settings& settings, const nb::dict& values)
+{
+  Assigner assigner(values);
+  settings.Visit(assigner);
+}
+
+void ThrowProblems(Problems problems)
+{
+  std::sort(problems.begin(), problems.end());
+  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
+  std::string text;
+  for (const std::string& problem : problems)
+  {
+    text += (text.empty() ? "" : "; ") + problem;
+  }
+  if (!text.empty())
+  {
+    throw nb::value_error(text.c_str());
+  }
+}
+
+} // namespace SurfaceDiffusion

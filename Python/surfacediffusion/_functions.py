@@ -1,0 +1,486 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The models as functions of arrays. Their signatures and the parts of their docstrings that list
+keywords are made from the settings that the C++ library declares."""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from dataclasses import replace
+from typing import Any, Callable, Iterator, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._models import (
+    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_harmonic_map, make_texture,
+)
+from ._result import DiffusionResult, HarmonicMapResult, TextureResult
+from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
+from ._settings import settings_of, shorten, translate
+from ._surface import SurfaceLike, as_data, as_surface
+
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+#: The documentation that functions share, by the name in braces.
+SHARED = {
+    "surface": """\
+surface : Surface or tuple (points, faces)
+    The surface. A :class:`Surface` keeps mesh, ordering and factors between calls.""",
+    "mask": """\
+mask : array_like, shape (n,), optional
+    Nonzero is missing, or excluded with ``mask_mode="Exclude"``.""",
+    "directions": """\
+directions : array_like, shape (n, 3) or (m, 3), optional
+    The direction e1 at each point or face, of any length and sign; zero or NaN is none.""",
+    "fixed": """\
+fixed : array_like, shape (n,), optional
+    Nonzero holds the value (Dirichlet condition).""",
+    "steps": """\
+steps : bool, default False
+    Return an iterator over the states at steps 0, k, 2k, ... and the last, with
+    k = `output_interval`.""",
+    "full_output": """\
+full_output : bool, default False
+    Return a :class:`DiffusionResult` in place of its `values`.""",
+    "dtype": """\
+dtype : float32 or float64, optional
+    The type of the result; default: float32 for float32, uint8 for uint8 (rounded at the end),
+    float64 for all other types.""",
+    "progress": """\
+progress : bool or callable, default False
+    True: a bar (needs tqdm). A callable takes the fraction done; an exception that it raises
+    ends the run.""",
+    "errors": """\
+ValueError
+    For settings and arrays that are not allowed; the message names the argument, what was found
+    and what is allowed.
+KeyboardInterrupt
+    Within a block of work after Ctrl-C. The surface can be used again.""",
+    "warns": """\
+SurfaceDiffusionWarning
+    For degenerate triangles, unused points, solves above their tolerance, masks without effect.""",
+}
+
+
+def _with_settings(function: F) -> F:
+    """Give a function the signature and the documentation of its settings."""
+    table = settings_of(function.__name__)
+    parameters, entries = [], []
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.kind is not inspect.Parameter.VAR_KEYWORD:
+            parameters.append(parameter)
+    for setting in table.values():
+        kind = {"number": "float", "integer": "int", "switch": "bool"}.get(setting.kind, "")
+        if setting.kind == "choice":
+            kind = "Literal[" + ", ".join(f'"{word}"' for word in setting.usable) + "]"
+        parameters.append(inspect.Parameter(
+            setting.keyword, inspect.Parameter.KEYWORD_ONLY, default=setting.default,
+            annotation=kind))
+        allowed = "{" + setting.allowed + "}" if setting.kind == "choice" else kind
+        if setting.kind in ("number", "integer"):
+            allowed += ", " + setting.allowed
+        unit = f", in {setting.unit}" if setting.unit else ""
+        text = textwrap.fill(translate(function.__name__, setting.documentation, {}), 92, initial_indent="    ",
+                             subsequent_indent="    ")
+        entries.append(f"{setting.keyword} : {allowed}{unit}, default {setting.default}\n{text}")
+    function.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+        parameters, return_annotation=inspect.signature(function).return_annotation)
+    text = inspect.cleandoc(function.__doc__ or "")
+    for name, part in {**SHARED, "settings": "\n".join(entries)}.items():
+        text = text.replace("{" + name + "}", part)
+    function.__doc__ = text
+    return function
+
+
+def _run(
+    name: str,
+    given: Input,
+    runner: Runner,
+    make: Callable[[Any, dict[str, Any]], Any],
+    steps: bool,
+    progress: Progress,
+) -> Any:
+    """The result, or the iterator over states, which has a run of its own."""
+    if not isinstance(steps, (bool, np.bool_)):
+        raise ValueError(f"steps is {shorten(steps)}; allowed: True or False")
+    if steps:
+        run = _core.ModelRun(name)
+        return runner.iterate(run, given, progress, lambda found: make(run, found))
+    with given.surface._lock:
+        run = given.surface._runs.setdefault(name, _core.ModelRun(name))
+        return make(run, runner.finish(run, [given], progress)[0])
+
+
+def _diffusion(
+    name: str, surface: Any, values: Any, mask: Any, directions: Any, fixed: Any, steps: bool,
+    full_output: bool, dtype: Any, progress: Progress, properties: dict[str, Any],
+) -> Any:
+    if not isinstance(full_output, (bool, np.bool_)):
+        raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
+    surface = as_surface(surface)
+    data = as_data("values", values, surface.n_points)
+    shape = np.shape(values)
+    find_result_type(data, dtype)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    runner = Runner(name, properties, ARRAYS)
+
+    def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
+        result = make_diffusion(run, 0, given, runner, dtype, found)
+        return replace(result, values=result.values.reshape(shape))
+
+    result = _run(name, given, runner, make, steps, progress)
+    return result if steps or full_output else result.values
+
+
+@_with_settings
+def heat(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    *,
+    mask: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
+    steps: bool = False,
+    full_output: bool = False,
+    dtype: Any = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> NDArray[Any] | DiffusionResult | Iterator[DiffusionResult]:
+    """Smooth, denoise or inpaint data on a surface by linear diffusion.
+
+    Solves u_t = div(D grad u) + lambda chi (f - u), u(0) = f, with no flux across the boundary. D
+    has the eigenvalues `along_diffusivity` and `across_diffusivity`, lambda is `fidelity_weight`,
+    and chi is 1 where f is known and 0 where it is missing. With D = 1, div grad is the
+    Laplace-Beltrami operator. The integral of u over the surface is conserved if lambda is 0.
+
+    Parameters
+    ----------
+    {surface}
+    values : array_like, shape (n,) or (n, k)
+        The data f, one row per point. NaN in any component is missing. uint8 with 2 or 4 components
+        is a colour with alpha, which is not changed.
+    {mask}
+    {directions}
+    {fixed}
+    {steps}
+    {full_output}
+    {dtype}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    ndarray of the shape of `values`, or DiffusionResult, or iterator of DiffusionResult
+
+    Raises
+    ------
+    {errors}
+
+    Warns
+    -----
+    {warns}
+
+    Notes
+    -----
+    The discretisation is the finite volume method of Wu, Deng and Chen (IEEE TVCG 14(3), 2008) with
+    the lumped mass matrix and the cotan weights. Times and weights are by default in natural units:
+    lengths in the mean edge length h, values in their range R. `fwhm` is in coordinate units.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import heat, sphere
+    >>> surface = sphere(4, radius=100.0)
+    >>> noise = np.random.default_rng(0).normal(size=surface.n_points)
+    >>> smooth = heat(surface, noise, fwhm=30.0)
+    >>> smooth.shape, bool(smooth.std() < 0.3 * noise.std())
+    ((2562,), True)
+    >>> result = heat(surface, noise, fwhm=30.0, full_output=True)
+    >>> bool(np.array_equal(result.values, smooth)), result.step
+    (True, 10)
+    >>> [state.step for state in heat(surface, noise, steps=True, output_interval=4)]
+    [0, 4, 8, 10]
+    """
+    return _diffusion("heat", surface, values, mask, directions, fixed, steps, full_output, dtype,
+                      progress, properties)
+
+
+@_with_settings
+def intrinsic_tv(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    *,
+    mask: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
+    steps: bool = False,
+    full_output: bool = False,
+    dtype: Any = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> NDArray[Any] | DiffusionResult | Iterator[DiffusionResult]:
+    """Denoise or inpaint data on a surface and preserve their edges.
+
+    Solves u_t = div(g(abs(grad u)) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
+    total variation, 1/sqrt(abs(grad u)^2 + beta). With ``mode="SteadyState"`` it minimises the
+    energy, integral of abs(grad u) + lambda/2 chi (f - u)^2.
+
+    Parameters
+    ----------
+    {surface}
+    values : array_like, shape (n,) or (n, k)
+        The data f, one row per point. NaN in any component is missing. uint8 with 2 or 4 components
+        is a colour with alpha, which is not changed.
+    {mask}
+    {directions}
+    {fixed}
+    {steps}
+    {full_output}
+    {dtype}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    ndarray of the shape of `values`, or DiffusionResult, or iterator of DiffusionResult
+
+    Raises
+    ------
+    {errors}
+
+    Warns
+    -----
+    {warns}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import intrinsic_tv, sphere
+    >>> surface = sphere(4)
+    >>> clean = np.sign(surface.points[:, 2])
+    >>> noisy = clean + np.random.default_rng(0).normal(scale=0.3, size=clean.size)
+    >>> result = intrinsic_tv(surface, noisy, automatic_fidelity=True, mode="SteadyState",
+    ...                       full_output=True)
+    >>> bool(np.abs(result.values - clean).mean() < 0.5 * np.abs(noisy - clean).mean())
+    True
+    >>> bool(result.effective_fidelity_weight > 0)
+    True
+    """
+    return _diffusion("intrinsic_tv", surface, values, mask, directions, fixed, steps, full_output,
+                      dtype, progress, properties)
+
+
+@_with_settings
+def harmonic_map(
+    surface: SurfaceLike,
+    vectors: ArrayLike | None = None,
+    *,
+    mask: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
+    steps: bool = False,
+    dtype: Any = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> HarmonicMapResult | Iterator[HarmonicMapResult]:
+    """Regularise normals or other unit vectors, or denoise the points of the surface.
+
+    Solves u_t = div(g grad u) + u g abs(grad u)^2 + lambda chi (f - u), u(0) = f/abs(f), with
+    g = (abs(grad u)^2 + beta)^((p - 2)/2), where p is `exponent`; abs(u) = 1 at every point.
+
+    Parameters
+    ----------
+    {surface}
+    vectors : array_like, shape (n, k) with k > 1, optional
+        The vectors f, which are normalised first. Zero and NaN are missing. Default: the normals of
+        the points, in single precision.
+    {mask}
+    {directions}
+    {fixed}
+    {steps}
+    {dtype}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    HarmonicMapResult, or iterator of HarmonicMapResult
+        `values` are the vectors, `points` the points, moved if ``move_vertices=True``.
+
+    Raises
+    ------
+    {errors}
+
+    Warns
+    -----
+    {warns}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import Surface, harmonic_map, sphere
+    >>> clean = sphere(4)
+    >>> noise = np.random.default_rng(0).normal(scale=0.01, size=(clean.n_points, 1))
+    >>> noisy = Surface(clean.points * (1 + noise), clean.triangles)
+    >>> points = harmonic_map(noisy, move_vertices=True).points
+    >>> bool(np.linalg.norm(points, axis=1).std() < 0.5 * noise.std())
+    True
+    """
+    surface = as_surface(surface)
+    data = as_vectors(surface, vectors, properties)
+    find_result_type(data, dtype)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
+    return _run("harmonic_map", given, runner,
+                lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),
+                steps, progress)
+
+
+@_with_settings
+def turing_texture(
+    surface: SurfaceLike,
+    initial: ArrayLike | None = None,
+    *,
+    mask: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
+    rates: ArrayLike | None = None,
+    low_color: tuple[float, float, float] = (0.16, 0.09, 0.05),
+    high_color: tuple[float, float, float] = (0.93, 0.80, 0.58),
+    steps: bool = False,
+    dtype: Any = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> TextureResult | Iterator[TextureResult]:
+    """Grow a texture on a surface by reaction and diffusion.
+
+    Solves du1/dt = D1 Lap u1 + s F(u1, u2), du2/dt = D2 Lap u2 + s G(u1, u2), where Lap is the
+    Laplace-Beltrami operator, `kinetics` selects F and G, and s is `reaction_rate`.
+
+    Parameters
+    ----------
+    {surface}
+    initial : array_like, shape (n, 2), optional
+        The initial u1 and u2; default: the uniform steady state of the kinetics with noise.
+    {mask}
+    {directions}
+    {fixed}
+    rates : array_like, shape (m, 4), optional
+        Per face, in place of `diffusion_rate1`, `diffusion_rate_across1`, `diffusion_rate2` and
+        `diffusion_rate_across2`.
+    low_color, high_color : three floats in [0, 1]
+        Red, green and blue of the texture's 0 and 1, for ``color_output=True``.
+    {steps}
+    {dtype}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    TextureResult, or iterator of TextureResult
+        `values` are u1 and u2, `texture` is one of them stretched to [0, 1].
+
+    Raises
+    ------
+    {errors}
+
+    Warns
+    -----
+    {warns}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import sphere, turing_texture
+    >>> result = turing_texture(sphere(4), feature_size=0.6, seed=1)
+    >>> result.values.shape, float(result.texture.min()), float(result.texture.max())
+    ((2562, 2), 0.0, 1.0)
+    """
+    surface = as_surface(surface)
+    data = as_initial(surface, initial)
+    find_result_type(data, dtype)
+    colors = as_colors(low_color, high_color)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, rates=rates)
+    runner = Runner("turing_texture", properties, {**ARRAYS, "InputArray": "initial"})
+    if not runner.settings.get("ColorOutput", False):
+        colors = []
+    return _run("turing_texture", given, runner,
+                lambda run, found: make_texture(run, 0, given, runner, dtype, found, colors),
+                steps, progress)
+
+
+@_with_settings
+def direction_field(
+    surface: SurfaceLike,
+    hints: ArrayLike | None = None,
+    *,
+    progress: Progress = False,
+    **properties: Any,
+) -> NDArray[np.float64]:
+    """Compute a line field on a surface: principal curvature, the smoothest field, or from hints.
+
+    Parameters
+    ----------
+    {surface}
+    hints : array_like, shape (n, 3) or (m, 3), optional
+        Directions at points or faces for ``method="Hints"``; zero or NaN is no hint.
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    ndarray, shape (m, 3)
+        Unit vectors in the faces, whose sign has no meaning; zero in faces without direction.
+
+    Raises
+    ------
+    {errors}
+
+    Warns
+    -----
+    {warns}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import direction_field, sphere
+    >>> field = direction_field(sphere(3), method="Smooth")
+    >>> field.shape, bool(np.allclose(np.linalg.norm(field, axis=1), 1))
+    ((1280, 3), True)
+    """
+    surface = as_surface(surface)
+    runner = Runner("direction_field", properties, {"DirectionArray": "hints"})
+    method = properties.get("method", settings_of("direction_field")["method"].default)
+    if hints is not None and method != "Hints":
+        raise ValueError(f'hints is given but method is {method}; allowed: method="Hints", or no hints')
+    inputs = Input(surface, directions=hints, directions_name="hints")
+    with surface._lock, ProgressReporter(progress) as reporter:
+        run = surface._runs.setdefault("direction_field", _core.DirectionRun())
+        runner.call(run.update, inputs.core, runner.settings, reporter.callable)
+        reporter.finish_part()
+        output = np.empty((surface.n_faces, 3))
+        runner.call(run.write, surface._core, output)
+        degenerate = run.number_of_degenerate_triangles()
+    if degenerate:
+        warn([f"{degenerate} triangles of zero area get no direction"])
+    return output

@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The results of runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Result:
+    """A state of a run. ``numpy.asarray(result)`` is `values`.
+
+    Attributes
+    ----------
+    values : ndarray
+        The result at the points, with the shape of the input.
+    step : int
+        The number of time steps done.
+    time : float
+        The time of the state, in the unit of `time_step`.
+    times : ndarray, shape (step + 1,)
+        The time of each step, the initial state first.
+    history : dict of ndarray, shape (step + 1,)
+        One column per name: ``"Time"``; ``"Total_0"``, ... (the integral of each component over the
+        surface, sum of A_i u_i, in coordinate and array units); ``"Energy"``; ``"Iterations"``,
+        ``"Residual"`` and ``"Seconds"`` of each step; for textures ``"Clamped"``.
+    warnings : list of str
+        Everything that was also given as a Python warning.
+    time_unit : float
+        The unit of times in coordinate and array units; 1 if times are absolute.
+    mean_edge_length : float
+        h, in coordinate units.
+    value_range : float
+        R, in array units.
+    """
+
+    values: NDArray[Any]
+    step: int
+    time: float
+    history: dict[str, NDArray[Any]] = field(repr=False)
+    warnings: list[str] = field(repr=False)
+    time_unit: float = field(repr=False)
+    mean_edge_length: float = field(repr=False)
+    value_range: float = field(repr=False)
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """The time of each step."""
+        return self.history["Time"]
+
+    @property
+    def number_of_iterations(self) -> int:
+        """The iterations of all solves together; 0 for direct solvers."""
+        return int(self.history["Iterations"].sum())
+
+    @property
+    def residual(self) -> float:
+        """The largest relative residual of a solve."""
+        return float(self.history["Residual"].max())
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+
+@dataclass(frozen=True)
+class DiffusionResult(Result):
+    """A state of :func:`heat` or :func:`intrinsic_tv`: a :class:`Result` with
+
+    Attributes
+    ----------
+    effective_fidelity_weight : float
+        The lambda of the run, found if ``automatic_fidelity=True``, in the unit of
+        `fidelity_weight`.
+    """
+
+    effective_fidelity_weight: float = 0.0
+
+
+@dataclass(frozen=True)
+class HarmonicMapResult(Result):
+    """A state of :func:`harmonic_map`: a :class:`Result` whose `values` are unit vectors, with
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 3)
+        The points; moved if ``move_vertices=True``.
+    mean_displacement, maximum_displacement : float
+        Of the moved points, in coordinate units.
+    volume_before, volume_after : float
+        The enclosed volumes, in coordinate units; of no meaning for open surfaces.
+    """
+
+    points: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)), repr=False)
+    mean_displacement: float = 0.0
+    maximum_displacement: float = 0.0
+    volume_before: float = field(default=0.0, repr=False)
+    volume_after: float = field(default=0.0, repr=False)
+
+
+@dataclass(frozen=True)
+class TextureResult(Result):
+    """A state of :func:`turing_texture`: a :class:`Result` whose `values` (n, 2) are the
+    concentrations u1 and u2, with
+
+    Attributes
+    ----------
+    texture : ndarray, shape (n,)
+        The concentration of `texture_chemical`, stretched to [0, 1] between its 1st and 99th
+        percentile.
+    colors : ndarray of uint8, shape (n, 3), or None
+        The texture between `low_color` and `high_color`, if ``color_output=True``.
+    wavelength : float
+        The fastest-growing wavelength of the kinetics, in coordinate units; 0 if none grows.
+    wavelength_growth_rate : float
+        The growth rate of that wavelength.
+    diffusion_rate_factor : float
+        The factor by which `feature_size` has scaled the diffusion rates.
+    """
+
+    texture: NDArray[Any] = field(default_factory=lambda: np.empty(0), repr=False)
+    colors: NDArray[np.uint8] | None = field(default=None, repr=False)
+    wavelength: float = 0.0
+    wavelength_growth_rate: float = field(default=0.0, repr=False)
+    diffusion_rate_factor: float = field(default=1.0, repr=False)

@@ -1,0 +1,206 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs of the library: from checked arrays to results, with warnings and progress."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from pathlib import Path
+from typing import Any, Callable, Iterator, Mapping, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._settings import convert_all, settings_of, shorten, translate
+from ._surface import Surface, as_flags, as_numbers, as_rows, data_components
+
+Progress = Union[None, bool, Callable[[float], Any]]
+
+
+class SurfaceDiffusionWarning(UserWarning):
+    """The input was computed, but something in it may not be intended."""
+
+
+def warn(sentences: list[str]) -> None:
+    """One warning for all sentences, at the line that called this package."""
+    if not sentences:
+        return
+    folder = str(Path(__file__).parent)
+    level, frame = 1, sys._getframe(0)
+    while frame is not None and frame.f_code.co_filename.startswith(folder):
+        level, frame = level + 1, frame.f_back  # type: ignore[assignment]
+    warnings.warn("; ".join(sentences), SurfaceDiffusionWarning, stacklevel=level)
+
+
+class ProgressReporter:
+    """The callable for C++, and a bar that is closed at the end."""
+
+    def __init__(self, progress: Progress, parts: int = 1) -> None:
+        self._bar = None
+        self._call: Callable[[float], Any] | None = None
+        self._parts, self._part = parts, 0
+        if progress is True:
+            try:
+                from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
+            except ImportError:
+                raise ValueError("progress is True, but tqdm is not installed; allowed: a callable, "
+                                 "or True after: pip install tqdm") from None
+            self._bar = tqdm(total=1.0, bar_format="{percentage:3.0f}%|{bar}| {elapsed}")
+            self._call = lambda fraction: self._bar.update(fraction - self._bar.n)
+        elif callable(progress):
+            self._call = progress
+        elif progress not in (None, False):
+            raise ValueError(f"progress is {shorten(progress)}; allowed: True, False or a callable "
+                             "that takes the fraction done")
+
+    @property
+    def callable(self) -> Callable[[float], Any] | None:
+        """For C++: called with the fraction of the present part."""
+        if self._call is None:
+            return None
+        return lambda fraction: self._call((self._part + fraction) / self._parts)
+
+    def finish_part(self) -> None:
+        self._part += 1
+        if self._call is not None:
+            self._call(self._part / self._parts)
+
+    def __enter__(self) -> ProgressReporter:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
+    """The type of a result: that of the data, or float64 if there are none, unless `dtype` is
+    given."""
+    if dtype is None:
+        return np.dtype(np.float64) if data is None else data.dtype
+    try:
+        found = np.dtype(dtype)
+    except TypeError:
+        found = np.dtype(object)
+    if found not in (np.float32, np.float64):
+        raise ValueError(f"dtype is {shorten(dtype)}; allowed: None, float32 or float64")
+    return found
+
+
+class Input:
+    """The input of a run on one surface. on_faces: where the directions are; None: by their number."""
+
+    def __init__(
+        self,
+        surface: Surface,
+        data: NDArray[Any] | None = None,
+        *,
+        mask: Any = None,
+        fixed: Any = None,
+        directions: Any = None,
+        directions_name: str = "directions",
+        on_faces: bool | None = None,
+        rates: Any = None,
+    ) -> None:
+        n, m = surface.n_points, surface.n_faces
+        self.surface, self.data = surface, data
+        if directions is not None:
+            array = as_numbers(directions_name, directions)
+            if array.shape not in ((n, 3), (m, 3)):
+                raise ValueError(f"{directions_name} has shape {array.shape}; allowed: ({n}, 3), one "
+                                 f"row per point, or ({m}, 3), one row per face")
+            if n == m and on_faces is None:
+                raise ValueError(f"{directions_name} has one row per point and per face, of which "
+                                 f"there are {n} each; allowed: surfaces where they differ")
+            on_faces = array.shape[0] == m if on_faces is None else on_faces
+            infinite = np.isinf(array).any(axis=1)
+            if infinite.any():
+                raise ValueError(f"{directions_name} is infinite in row {int(np.argmax(infinite))}; "
+                                 "allowed: finite values and NaN")
+            directions = np.ascontiguousarray(array, dtype=np.float64)
+        if rates is not None:
+            rates = as_rows("rates", rates, m, 4, "face")
+            bad = ~(np.isfinite(rates) & (rates >= 0.0)).all(axis=1)
+            if bad.any():
+                row = int(np.argmax(bad))
+                raise ValueError(f"rates has {rates[row].tolist()} in row {row}; allowed: finite "
+                                 "numbers, 0 or more")
+        self.core = _core.Fields(
+            surface._core, data, 0 if data is None else data_components(data),
+            as_flags("mask", mask, n), as_flags("fixed", fixed, n), directions,
+            bool(on_faces), rates)
+
+
+class Runner:
+    """Runs of a model with given settings, and the wording of their errors."""
+
+    def __init__(self, function: str, properties: Mapping[str, Any], arrays: Mapping[str, str]):
+        self.function, self.arrays = function, arrays
+        self.settings = convert_all(function, properties)
+        interval = settings_of(function).get("output_interval")
+        self.interval = self.settings.get("OutputInterval", interval.default if interval else 1)
+
+    def call(self, work: Callable[..., Any], *arguments: Any) -> Any:
+        """work(*arguments), whose ValueError is put in the words of Python."""
+        try:
+            return work(*arguments)
+        except ValueError as error:
+            raise ValueError(translate(self.function, str(error), self.arrays)) from None
+
+    def _warnings(self, run: Any) -> list[str]:
+        return [translate(self.function, text, self.arrays) for text in run.warnings()]
+
+    def finish(self, run: Any, inputs: list[Input], progress: Progress) -> list[dict[str, Any]]:
+        """Run to the last step. The common attributes of the result on each surface."""
+        with ProgressReporter(progress) as reporter:
+            self.call(run.update, [i.core for i in inputs], self.settings, reporter.callable)
+            self.call(run.seek, -1, reporter.callable)
+            reporter.finish_part()
+        sentences = self._warnings(run)
+        warn(sentences)
+        return self._attributes(run, inputs, sentences)
+
+    def iterate(
+        self, run: Any, given: Input, progress: Progress, make: Callable[..., Any]
+    ) -> Iterator[Any]:
+        """make(attributes) at steps 0, k, 2k, ... and the last; errors of the input come at once."""
+        self.call(run.update, [given.core], self.settings, None)
+        steps = [*range(0, run.number_of_steps(), self.interval), run.number_of_steps()]
+        states = self.visit(run, [given], steps, progress)
+
+        def results() -> Iterator[Any]:
+            for step, (attributes,) in zip(steps, states):
+                yield make(attributes)
+                if attributes["step"] < step:
+                    return  # the run has ended by itself
+
+        return results()
+
+    def visit(
+        self, run: Any, inputs: list[Input], steps: list[int], progress: Progress
+    ) -> Iterator[list[dict[str, Any]]]:
+        """The attributes of the result on each surface, at steps of a run that has been updated."""
+        known: list[str] = []
+        with ProgressReporter(progress, max(1, len(steps))) as reporter:
+            for step in steps:
+                self.call(run.seek, step, reporter.callable)
+                reporter.finish_part()
+                sentences = self._warnings(run)
+                warn([sentence for sentence in sentences if sentence not in known])
+                known = sentences
+                yield self._attributes(run, inputs, sentences)
+
+    def _attributes(
+        self, run: Any, inputs: list[Input], sentences: list[str]
+    ) -> list[dict[str, Any]]:
+        history = {name: np.array(column) for name, column in run.history().items()}
+        step = len(history["Time"]) - 1
+        attributes = []
+        for block in range(len(inputs)):
+            results = run.results(block)
+            results.update(history=history, step=step, warnings=sentences,
+                           time=float(history["Time"][-1]))
+            attributes.append(results)
+        return attributes

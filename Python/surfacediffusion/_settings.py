@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The settings of each function, as the C++ library declares them: one table for names, types,
+ranges, defaults and documentation of the keywords, and for the wording of errors."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import math
+import numbers
+import operator
+import re
+from dataclasses import dataclass
+from typing import Any, Mapping
+
+import numpy as np
+
+from . import _core
+
+#: Settings of pipelines: an iterator over time steps needs no requests of times.
+HIDDEN = {"GenerateTimeSteps", "CheckpointMemoryLimit"}
+
+RENAMED = {"RandomSeed": "seed"}
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One keyword of a function."""
+
+    name: str  #: in C++, VTK and ParaView
+    keyword: str
+    kind: str  #: "number", "integer", "switch" or "choice"
+    unit: str
+    documentation: str
+    default: Any
+    allowed: str
+    words: tuple[str, ...] = ()  #: of a choice
+    usable: tuple[str, ...] = ()  #: the words that may be chosen
+
+    def convert(self, value: Any) -> Any:
+        """The value for C++. ValueError if it has another type or is no word."""
+        if self.kind == "choice":
+            if isinstance(value, str) and value in self.usable:
+                return self.words.index(value)
+        elif self.kind == "switch":
+            if isinstance(value, (bool, np.bool_)):
+                return bool(value)
+        elif isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_)):
+            if self.kind == "number":
+                return float(value)
+            if math.isfinite(value) and value == int(value) and abs(value) < 2**31:
+                return operator.index(int(value))
+        elif isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "iuf":
+            return self.convert(value[()])
+        raise ValueError(f"{self.keyword} is {shorten(value)}; allowed: {self.allowed}")
+
+
+def shorten(value: Any) -> str:
+    """The value as one short line."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def snake_case(name: str) -> str:
+    """The keyword of a C++ name: "NumberOfTimeSteps" is "number_of_time_steps"."""
+    words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name)
+    return RENAMED.get(name, words.lower())
+
+
+@functools.lru_cache(maxsize=None)
+def settings_of(function: str) -> dict[str, Setting]:
+    """The settings of a function by keyword, in the order of C++."""
+    table = {}
+    for entry in _core.list_settings(function):
+        if entry["name"] not in HIDDEN:
+            for list_name in ("words", "usable"):
+                entry[list_name] = tuple(entry.get(list_name, ()))
+            setting = Setting(keyword=snake_case(entry["name"]), **entry)
+            table[setting.keyword] = setting
+    return table
+
+
+def convert_all(function: str, properties: Mapping[str, Any]) -> dict[str, Any]:
+    """The values for C++ by C++ name. TypeError for a keyword that the function does not have, as
+    for any Python function."""
+    table = settings_of(function)
+    for keyword in properties:
+        if keyword not in table:
+            close = difflib.get_close_matches(keyword, table, 1)
+            hint = f"; did you mean {close[0]!r}?" if close else ""
+            raise TypeError(f"{function}() has no keyword {keyword!r}{hint}")
+    return {table[k].name: table[k].convert(value) for k, value in properties.items()}
+
+
+def translate(function: str, message: str, arrays: Mapping[str, str]) -> str:
+    """A message of the library in the words of Python: keywords for properties, words for the
+    numbers of choices. `arrays`: the keywords of input arrays."""
+    for setting in settings_of(function).values():
+        if setting.kind == "choice" and re.search(rf"\b{setting.name}\b", message):
+            for number, word in enumerate(setting.words):
+                message = message.replace(f"{number} {word}", word)
+                message = re.sub(rf"\b{setting.name} is {number}\b", f"{setting.name} is {word}",
+                                 message)
+        elif setting.kind == "switch":
+            message = re.sub(rf"\b{setting.name} is (1|on)\b(; allowed: 0)?",
+                             lambda m: f"{setting.name} is True"
+                             + ("; allowed: False" if m.group(2) else ""), message)
+    names = {setting.name: setting.keyword for setting in settings_of(function).values()}
+    names.update(arrays)
+    message = message.replace("OutputPrecision to Double", "dtype to float64")
+    pattern = r"\b(" + "|".join(sorted(names, key=len, reverse=True)) + r")\b"
+    return re.sub(pattern, lambda m: names[m.group(1)], message)

@@ -1,0 +1,305 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces, and the checks of arrays."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._settings import shorten
+
+_NUMBERS = "biuf"  #: kinds of numpy types: bool, integer, unsigned integer, float
+
+
+def as_numbers(name: str, values: Any) -> NDArray[Any]:
+    """An array of numbers. Masked entries are NaN. ValueError if it is none."""
+    try:
+        if isinstance(values, np.ma.MaskedArray):
+            return values.astype(float).filled(np.nan)
+        array = np.asarray(values)
+    except (ValueError, TypeError):
+        raise ValueError(f"{name} is {shorten(values)}; allowed: an array of numbers") from None
+    if array.dtype.kind not in _NUMBERS:
+        raise ValueError(f"{name} has elements of type {array.dtype}; allowed: real numbers")
+    return array
+
+
+def as_rows(name: str, values: Any, rows: int, columns: int, row_name: str) -> NDArray[np.float64]:
+    """A float64 array of the given shape."""
+    array = as_numbers(name, values)
+    if array.shape != (rows, columns):
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({rows}, {columns}), "
+                         f"one row per {row_name}")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def as_flags(name: str, values: Any, points: int) -> NDArray[np.uint8] | None:
+    """One flag per point, nonzero is set; None stays."""
+    if values is None:
+        return None
+    array = np.ma.getdata(as_numbers(name, values))
+    if array.shape != (points,):
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},), one flag per point")
+    return np.ascontiguousarray(array != 0, dtype=np.uint8)
+
+
+def as_data(name: str, values: Any, points: int) -> NDArray[Any]:
+    """The data as float64, float32 or uint8, with one row per point and one column per component."""
+    array = as_numbers(name, values)
+    if array.ndim not in (1, 2) or array.shape[0] != points or array.size == 0:
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},) or ({points}, k), "
+                         "one row per point")
+    kept = array.dtype.kind == "f" and array.dtype.itemsize == 4
+    dtype: Any = np.float32 if kept else np.uint8 if array.dtype == np.uint8 else np.float64
+    return np.ascontiguousarray(array.reshape(points, -1), dtype=dtype)
+
+
+def data_components(array: NDArray[Any]) -> int:
+    """The number of components without the alpha of colours."""
+    columns = int(array.shape[1])
+    return columns - 1 if array.dtype == np.uint8 and columns in (2, 4) else columns
+
+
+def _as_points(points: Any) -> NDArray[np.float64]:
+    array = as_numbers("points", points)
+    if array.ndim != 2 or array.shape[1] != 3 or array.shape[0] == 0:
+        raise ValueError(f"points has shape {array.shape}; allowed: (n, 3) with n > 0")
+    infinite = ~np.isfinite(array).all(axis=1)
+    if infinite.any():
+        row = int(np.argmax(infinite))
+        raise ValueError(f"points has {array[row].tolist()} in row {row}; allowed: finite numbers")
+    return np.array(array, dtype=np.float64, order="C")
+
+
+def _as_polygons(faces: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The points of all polygons in a row, and where each polygon begins."""
+    allowed = "allowed: an (m, 3) array of rows of points, or a list of polygons"
+    if isinstance(faces, np.ndarray) and faces.dtype != object:
+        array = faces
+        if array.ndim != 2 or array.shape[1] < 3:
+            raise ValueError(f"faces has shape {array.shape}; {allowed}")
+        sizes = np.full(array.shape[0], array.shape[1])
+        flat = array.reshape(-1)
+    else:
+        try:
+            rows = [np.asarray(face) for face in faces]
+        except (TypeError, ValueError):
+            raise ValueError(f"faces is {shorten(faces)}; {allowed}") from None
+        for number, row in enumerate(rows):
+            if row.ndim != 1 or row.size < 3:
+                raise ValueError(f"faces has {shorten(faces[number])} in row {number}; "
+                                 "allowed: three or more rows of points")
+        sizes = np.array([row.size for row in rows], dtype=np.int64)
+        flat = np.concatenate(rows) if rows else np.empty(0, dtype=np.int64)
+    if flat.size == 0:
+        raise ValueError(f"faces is empty; {allowed}")
+    if flat.dtype.kind not in "iu":
+        raise ValueError(f"faces has elements of type {flat.dtype}; allowed: integers")
+    offsets = np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(sizes, dtype=np.int64)])
+    return flat, offsets
+
+
+class Surface:
+    """A triangulated surface, which keeps its mesh, ordering and factors between calls.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Coordinates in any unit of length, all finite. They are copied.
+    faces : array_like of int, shape (m, 3), or sequence of sequences
+        Rows of `points`, from 0, of each triangle or polygon. Quadrilaterals are cut along the
+        shorter diagonal that lies inside, larger polygons by ear cutting. The surface may have
+        several components, boundaries, edges with more than two triangles, and points without
+        triangle.
+    areas : array_like, shape (n,), optional
+        The areas of the points' control cells, above 0, in place of those of `faces` (a third of the
+        triangles at each point). For an average of many surfaces, which is smaller than they are:
+        the lumped mass matrix has these areas, so that widths are those on a surface with these
+        areas and the angles of this one. Not with ``intrinsic_delaunay=True``.
+
+    Examples
+    --------
+    >>> from surfacediffusion import Surface, heat
+    >>> tetrahedron = Surface([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    ...                       [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> tetrahedron
+    <Surface: 4 points, 4 faces>
+    >>> heat(tetrahedron, [1.0, 0.0, 0.0, 0.0], mode="SteadyState").round(3)
+    array([0.211, 0.211, 0.211, 0.211])
+    """
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        faces: ArrayLike | Sequence[Sequence[int]],
+        areas: ArrayLike | None = None,
+    ) -> None:
+        self._points = _as_points(points)
+        flat, offsets = _as_polygons(faces)
+        outside = (flat < 0) | (flat >= self.n_points)
+        if outside.any():
+            at = int(np.argmax(outside))
+            face = int(np.searchsorted(offsets, at, side="right")) - 1
+            raise ValueError(f"faces has {flat[at]} in row {face}; allowed: 0 to "
+                             f"{self.n_points - 1}, the rows of points")
+        self._connectivity = np.ascontiguousarray(flat, dtype=np.int64)
+        self._offsets = offsets
+        self._core = _core.Surface(self._points, self._connectivity, self._offsets)
+        self._areas = None if areas is None else self._set_areas(areas)
+        self._points.setflags(write=False)
+        self._runs: dict[str, Any] = {}
+        self._lock = threading.RLock()  # of a run: one call at a time
+
+    def _set_areas(self, areas: ArrayLike) -> NDArray[np.float64]:
+        """Pass the areas on as factors of those of the triangles."""
+        given = np.array(as_numbers("areas", areas), dtype=np.float64)
+        if given.shape != (self.n_points,):
+            raise ValueError(f"areas has shape {given.shape}; allowed: ({self.n_points},), one per "
+                             "point")
+        found = self._triangle_areas()
+        used = found > 0
+        wrong = used & ~(np.isfinite(given) & (given > 0))
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise ValueError(f"areas has {given[row]} at point {row}; allowed: finite numbers above 0")
+        factors = np.ones(self.n_points)
+        factors[used] = given[used] / found[used]
+        self._core.set_area_factors(factors)
+        return given
+
+    def _triangle_areas(self) -> NDArray[np.float64]:
+        """A third of the triangles at each point (n,)."""
+        triangles = self.triangles
+        a, b, c = (self._points[triangles[:, i]] for i in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        return np.bincount(triangles.ravel(), np.repeat(area / 3, 3), self.n_points)
+
+    @property
+    def n_points(self) -> int:
+        """The number n of points."""
+        return int(self._points.shape[0])
+
+    @property
+    def n_faces(self) -> int:
+        """The number m of faces."""
+        return int(self._offsets.size - 1)
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The coordinates (n, 3), read-only."""
+        return self._points
+
+    @property
+    def triangles(self) -> NDArray[np.int32]:
+        """The triangles (t, 3) that the faces were cut into, read-only."""
+        triangles: NDArray[np.int32] = self._core.triangles()
+        return triangles
+
+    @property
+    def faces(self) -> list[NDArray[np.int64]]:
+        """The faces as given, as a list of arrays."""
+        return np.split(self._connectivity, self._offsets[1:-1])
+
+    def __repr__(self) -> str:
+        return f"<Surface: {self.n_points} points, {self.n_faces} faces>"
+
+    def __reduce__(self) -> Any:
+        return _restore, (self._points, self._connectivity, self._offsets, self._areas)
+
+    def _point_normals(self) -> NDArray[np.float32]:
+        """The normalised sums of the unit normals of the faces at each point, in single precision;
+        zero at points without face."""
+        sums = np.zeros((self.n_points, 3))
+        normals, faces = self._face_normals()
+        for axis in range(3):
+            weights = np.repeat(normals[:, axis], np.diff(self._offsets)[faces])
+            sums[:, axis] = np.bincount(self._connectivity, weights, minlength=self.n_points)
+        lengths = np.sqrt(sums[:, 0] * sums[:, 0] + sums[:, 1] * sums[:, 1] + sums[:, 2] * sums[:, 2])
+        sums[lengths > 0] /= lengths[lengths > 0, None]
+        return sums.astype(np.float32)
+
+    def _face_normals(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Unit normals of all faces by Newell's sum, and the numbers 0, 1, ... of the faces."""
+        sizes = np.diff(self._offsets)
+        normals = np.zeros((self.n_faces, 3))
+        for size in np.unique(sizes):
+            chosen = np.flatnonzero(sizes == size)
+            rows = self._connectivity[self._offsets[chosen, None] + np.arange(size)]
+            corners = self._points[rows]
+            if size == 3:
+                a, b = corners[:, 2] - corners[:, 1], corners[:, 0] - corners[:, 1]
+                normals[chosen] = _cross(a, b)
+                continue
+            for i in range(size):
+                at = corners[:, (i + 1) % size]
+                normals[chosen] += _cross(corners[:, (i + 2) % size] - at, corners[:, i] - at)
+        lengths = np.sqrt((normals[:, 0] * normals[:, 0] + normals[:, 1] * normals[:, 1])
+                          + normals[:, 2] * normals[:, 2])
+        normals[lengths > 0] /= lengths[lengths > 0, None]
+        return normals, np.arange(self.n_faces)
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.stack([a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
+                     a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
+                     a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]], axis=1)
+
+
+def _restore(points: Any, connectivity: Any, offsets: Any, areas: Any = None) -> Surface:
+    return Surface(points, np.split(connectivity, offsets[1:-1]), areas)
+
+
+SurfaceLike = Union[Surface, Tuple[ArrayLike, Any]]
+
+
+def as_surface(surface: Any) -> Surface:
+    """A Surface, or one of a tuple (points, faces)."""
+    if isinstance(surface, Surface):
+        return surface
+    if isinstance(surface, (tuple, list)) and len(surface) == 2:
+        return Surface(*surface)
+    raise ValueError(f"surface is {shorten(surface)}; allowed: a Surface or a tuple (points, faces)")
+
+
+def sphere(subdivisions: int = 4, radius: float = 1.0) -> Surface:
+    """A sphere of 10 * 4**subdivisions + 2 points, for examples: a subdivided icosahedron.
+
+    Parameters
+    ----------
+    subdivisions : int, 0 to 9
+    radius : float, above 0
+
+    Examples
+    --------
+    >>> from surfacediffusion import sphere
+    >>> sphere(3)
+    <Surface: 642 points, 1280 faces>
+    """
+    if not (isinstance(subdivisions, (int, np.integer)) and 0 <= subdivisions <= 9):
+        raise ValueError(f"subdivisions is {shorten(subdivisions)}; allowed: 0 to 9")
+    if not (isinstance(radius, (int, float)) and 0.0 < radius < np.inf):
+        raise ValueError(f"radius is {shorten(radius)}; allowed: finite numbers above 0")
+    g = (1.0 + 5.0**0.5) / 2.0
+    points = np.array([[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0], [0, -1, g], [0, 1, g],
+                       [0, -1, -g], [0, 1, -g], [g, 0, -1], [g, 0, 1], [-g, 0, -1], [-g, 0, 1]])
+    faces = np.array([[0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11], [1, 5, 9],
+                      [5, 11, 4], [11, 10, 2], [10, 7, 6], [7, 1, 8], [3, 9, 4], [3, 4, 2],
+                      [3, 2, 6], [3, 6, 8], [3, 8, 9], [4, 9, 5], [2, 4, 11], [6, 2, 10],
+                      [8, 6, 7], [9, 8, 1]])
+    for _ in range(subdivisions):
+        edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        unique, inverse = np.unique(edges[:, 0] * len(points) + edges[:, 1], return_inverse=True)
+        a, b, c = (len(points) + inverse.reshape(-1, 3)).T
+        ends = np.divmod(unique, len(points))
+        points = np.concatenate([points, points[ends[0]] + points[ends[1]]])
+        points /= np.linalg.norm(points, axis=1)[:, None]
+        i, j, k = faces.T
+        faces = np.concatenate([np.stack(t, axis=1) for t in
+                                ((i, a, c), (a, j, b), (c, b, k), (a, b, c))])
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    return Surface(radius * points, faces)

@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command `surfacediffusion`: smoothing, denoising, inpainting and textures for files.
+
+main() runs a command line. Exit codes: 0 success, 1 the computation failed or was interrupted,
+2 arguments or files are wrong. Errors are one line on standard error.
+"""
+from __future__ import annotations
+
+import sys
+
+from ..files import FileError
+from .arguments import parse
+from .inputs import ArgumentProblem
+from .report import Report
+
+
+def main(argv=None) -> int:
+    """Run the command line `argv` (default: that of the process); returns the exit code."""
+    argv = sys.argv[1:] if argv is None else list(argv)
+    try:
+        arguments = parse(argv)
+    except SystemExit as finished:  # --help and --version; argparse's own errors
+        return int(finished.code or 0)
+    report = Report(arguments)
+    try:
+        with report.collecting_warnings():
+            arguments.run(arguments, report)
+    except (FileError, ArgumentProblem, ValueError) as error:
+        return report.fail(error, 2)
+    except KeyboardInterrupt:
+        return report.fail("interrupted", 1)
+    except MemoryError:
+        return report.fail("out of memory", 1)
+    except (ArithmeticError, RuntimeError, OSError) as error:
+        return report.fail(error, 1)
+    except Exception as error:  # a defect of this program; the user still gets one line
+        return report.fail(f"internal error: {type(error).__name__}: {error}", 1)
+    report.finish()
+    return 0

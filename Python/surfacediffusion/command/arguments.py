@@ -1,0 +1,268 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The arguments of each command."""
+from __future__ import annotations
+
+import argparse
+import math
+import re
+import textwrap
+
+from . import tasks
+
+__all__ = ["parse"]
+
+PROGRAM = "surfacediffusion"
+
+FILES = """
+SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
+DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left and --right
+instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .label), NumPy (.npy), or a PLY or VTK file with
+data at its vertices. Files are recognised by their content. OUTPUT has the format and the metadata
+of DATA. NaN means missing: the value is not used, and the output has a value there.
+"""
+
+
+def parse(argv):
+    """The arguments of the command line, with the function that carries them out as `run`."""
+    # A CIFTI file has a surface per hemisphere, by --left and --right instead of SURFACE.
+    hemispheres = any(word.split("=")[0] in ("--left", "--right", "-left-surface",
+                                             "-right-surface") for word in argv)
+    return make_parser(hemispheres).parse_args(argv)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors are one line; the usage is in --help."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def make_parser(hemispheres=False):
+    parser = _Parser(
+        prog=PROGRAM, allow_abbrev=False,
+        description="Diffusion equations on surfaces, for files.",
+        epilog=f"{PROGRAM} COMMAND --help shows the arguments of a command and an example.")
+    parser.add_argument("--version", action="version", version=_version())
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
+                                     parser_class=_Parser)
+    for add in (_smooth, _denoise, _inpaint, _texture, _directions, _normals, _fwhm, _info):
+        add(_Commands(commands, hemispheres))
+    return parser
+
+
+def _version():
+    from importlib import metadata
+
+    try:
+        return f"{PROGRAM} {metadata.version('surfacediffusion')}"
+    except metadata.PackageNotFoundError:
+        return PROGRAM
+
+
+class _Commands:
+    """Adds commands with their common arguments."""
+
+    def __init__(self, commands, hemispheres):
+        self.commands = commands
+        self.hemispheres = hemispheres
+
+    def add(self, name, run, text, example, epilog=FILES):
+        lines = "\n".join(f"  {line}" for line in example)
+        parser = self.commands.add_parser(
+            name, help=re.split(r"[.:,] ", text)[0].rstrip("."), allow_abbrev=False,
+            description=textwrap.fill(text, 98),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            epilog=f"Example:\n{lines}\n{epilog}")
+        parser.set_defaults(run=run)
+        parser.add_argument("--json", action="store_true",
+                            help="print a report as JSON: times, widths, totals, warnings")
+        parser.add_argument("--quiet", action="store_true",
+                            help="print nothing but errors: no progress bar, no summary")
+        return parser
+
+    def surface(self, parser, required=True):
+        if self.hemispheres:
+            parser.set_defaults(surface=None)
+            parser.add_argument("--left", "-left-surface", metavar="FILE",
+                                help="the surface of the left hemisphere, for CIFTI files")
+            parser.add_argument("--right", "-right-surface", metavar="FILE",
+                                help="the surface of the right hemisphere")
+        else:
+            parser.set_defaults(left=None, right=None)
+            parser.add_argument("surface", metavar="SURFACE", help="the surface")
+
+    def data(self, parser, output=True):
+        self.surface(parser)
+        parser.add_argument("data", metavar="DATA", help="the values at its vertices")
+        return parser
+
+    @staticmethod
+    def choices(parser):
+        parser.add_argument("--roi", "-roi", metavar="FILE",
+                            help="work inside this region alone, where its first column is above "
+                                 "0: nothing flows across its boundary; outside, OUTPUT is 0")
+        parser.add_argument("--fix-zeros", "-fix-zeros", action="store_true",
+                            help="zeros mean missing, as NaN does")
+        parser.add_argument("--column", "-column", action="append", metavar="N|NAME", default=[],
+                            help="a column of DATA by number (from 1) or name; can be repeated. "
+                                 "Default: all")
+
+
+def _positive(text):
+    return _number(text, lambda value: value > 0, "a number above 0")
+
+
+def _not_negative(text):
+    return _number(text, lambda value: value >= 0, "a number of at least 0")
+
+
+def _count(text):
+    return int(_number(text, lambda value: value >= 1 and value == int(value) and value < 2**31,
+                       "a whole number of at least 1"))
+
+
+def _whole(text):
+    return int(_number(text, lambda value: value == int(value) and abs(value) < 2**31,
+                       "a whole number"))
+
+
+def _exponent(text):
+    return _number(text, lambda value: 1 <= value <= 2, "a number from 1 to 2")
+
+
+def _number(text, holds, allowed):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value) or not holds(value):
+        raise argparse.ArgumentTypeError(f"is {text!r}; allowed: {allowed}")
+    return value
+
+
+def _smooth(commands):
+    text = ("Smooth data by diffusion for a given width. The result is the convolution with a "
+            "Gaussian on the surface whose full width at half maximum is FWHM; the integral of "
+            "the data over the surface is kept. The order of the arguments is that of "
+            "wb_command -metric-smoothing, whose kernel is a standard deviation unless -fwhm is "
+            "given (here: --sigma).")
+    parser = commands.add(
+        "smooth", tasks.smooth, text,
+        [f"{PROGRAM} smooth lh.midthickness.surf.gii lh.thickness.shape.gii 10 lh.smooth.shape.gii",
+         f"{PROGRAM} smooth bold.dtseries.nii 4 smooth.dtseries.nii --left L.surf.gii "
+         "--right R.surf.gii"])
+    commands.data(parser)
+    parser.add_argument("fwhm", metavar="FWHM", type=_positive,
+                        help="the width in the unit of the surface's coordinates (mm)")
+    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.choices(parser)
+    parser.add_argument("--areas", "-corrected-areas", metavar="FILE",
+                        help="the areas of the vertices in the first column, in place of those of "
+                             "SURFACE: for a surface that is the average of many")
+    width = parser.add_mutually_exclusive_group()
+    width.add_argument("--sigma", action="store_true",
+                       help="FWHM is given as a standard deviation: FWHM = 2.3548 sigma")
+    width.add_argument("-fwhm", dest="is_fwhm", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--steps", metavar="N", type=_count, default=3,
+                        help="number of time steps (default 3, which is within about 0.1 %% of "
+                             "the solution at 10 mm on a cortex)")
+
+
+def _denoise(commands):
+    text = ("Remove noise and keep edges, by minimising total variation. Without --weight, the "
+            "weight is chosen so that the noise removed has the estimated (or given) level.")
+    parser = commands.add(
+        "denoise", tasks.denoise, text,
+        [f"{PROGRAM} denoise scan.ply scan.ply clean.ply",
+         f"{PROGRAM} denoise lh.white lh.curv lh.curv.clean --weight 3"])
+    commands.data(parser)
+    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.choices(parser)
+    level = parser.add_mutually_exclusive_group()
+    level.add_argument("--weight", metavar="W", type=_positive,
+                       help="the fidelity weight, in natural units; smaller removes more")
+    level.add_argument("--noise", metavar="SD", type=_positive,
+                       help="the standard deviation of the noise, in the unit of the data")
+
+
+def _inpaint(commands):
+    text = ("Fill in missing values and keep all others exactly. Missing are NaN, zeros with "
+            "--fix-zeros, and vertices where the first column of --missing is above 0.")
+    parser = commands.add(
+        "inpaint", tasks.inpaint, text,
+        [f"{PROGRAM} inpaint lh.pial lh.thickness lh.thickness.full --fix-zeros"])
+    commands.data(parser)
+    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.choices(parser)
+    parser.add_argument("--missing", metavar="FILE", help="data whose nonzero values mark vertices "
+                                                          "with a missing value")
+    parser.add_argument("--model", choices=("heat", "tv"), default="heat",
+                        help="heat: harmonic functions, smooth (default); tv: total variation, "
+                             "which continues edges")
+
+
+NEW = """
+The name of OUTPUT announces its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk,
+.vtp if SURFACE is such a file.
+"""
+
+
+def _texture(commands):
+    text = "Grow spots, stripes or labyrinths on a surface by reaction and diffusion."
+    parser = commands.add(
+        "texture", tasks.texture, text,
+        [f"{PROGRAM} texture lh.pial.surf.gii 8 lh.spots.shape.gii --seed 1"], NEW)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("size", metavar="FEATURE_SIZE", type=_positive,
+                        help="the wavelength of the pattern, in the unit of the coordinates")
+    parser.add_argument("output", metavar="OUTPUT", help="the pattern, values at the vertices")
+    parser.add_argument("--kinetics", metavar="NAME", help="the reaction (default Turing)")
+    parser.add_argument("--seed", metavar="N", type=_whole, default=0,
+                        help="of the initial noise (default 0)")
+    parser.add_argument("--steps", metavar="N", type=_count, help="largest number of time steps")
+
+
+def _directions(commands):
+    text = "Compute a direction on every triangle, for instance of largest curvature."
+    parser = commands.add(
+        "directions", tasks.directions, text,
+        [f"{PROGRAM} directions lh.pial directions.npy --method CurvatureAligned"],
+        "\nThe directions are a .npy array, one row per face, or cell data of a .vtk or .vtp file "
+        "if SURFACE is\nsuch a file. Their sign has no meaning.\n")
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("output", metavar="OUTPUT", help="unit vectors, or 0, on the faces")
+    parser.add_argument("--method", metavar="NAME", default="PrincipalCurvature",
+                        help="PrincipalCurvature (default), CurvatureAligned, Smooth")
+
+
+def _normals(commands):
+    text = ("Regularise the normals of a surface by harmonic maps. With --move, denoise the "
+            "surface: its points are moved to fit these normals, and OUTPUT is a surface.")
+    parser = commands.add(
+        "normals", tasks.normals, text,
+        [f"{PROGRAM} normals scan.ply clean.ply --move"], NEW)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("output", metavar="OUTPUT", help="three columns, or with --move a surface "
+                                                         "in the format of SURFACE")
+    parser.add_argument("--move", action="store_true", help="move the points")
+    parser.add_argument("--exponent", metavar="P", type=_exponent, default=1.0,
+                        help="1 keeps creases (default), 2 smooths evenly")
+    parser.add_argument("--time-step", metavar="T", type=_positive, help="in natural units")
+    parser.add_argument("--steps", metavar="N", type=_count, help="number of time steps")
+
+
+def _fwhm(commands):
+    text = ("Estimate the smoothness of noise: the full width at half maximum of the Gaussian that "
+            "would make white noise as smooth as these maps. DATA must be residuals, without "
+            "anatomy.")
+    parser = commands.add(
+        "fwhm", tasks.fwhm, text, [f"{PROGRAM} fwhm lh.pial residuals.mgh --json"])
+    commands.data(parser)
+    commands.choices(parser)
+
+
+def _info(commands):
+    text = "Describe files: kind, counts, columns, values."
+    parser = commands.add("info", tasks.info, text, [f"{PROGRAM} info lh.pial lh.thickness"], "")
+    parser.add_argument("files", metavar="FILE", nargs="+", help="surfaces and data")

@@ -1,0 +1,209 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The surfaces, regions and columns that a command line names, checked against each other."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
+
+
+class ArgumentProblem(ValueError):
+    """Arguments that contradict each other or the files; one line that names them."""
+
+
+@dataclass
+class Patch:
+    """The values of one part of the data on its surface, one row per vertex of the surface.
+
+    values   (n, k) float, NaN is missing; 0 where excluded
+    excluded (n,) bool: outside the region, or without data in the file
+    """
+
+    surface: SurfaceFile
+    part: Part
+    values: np.ndarray
+    excluded: np.ndarray
+
+    def to_part(self, values):
+        """The rows of the part. Outside the region the values are 0."""
+        values = np.where(self.excluded[:, None], 0, values)
+        return values if self.part.vertices is None else values[self.part.vertices]
+
+
+def read_surfaces(arguments):
+    """{structure: surface}; the structure is "" for SURFACE, which takes any data."""
+    if arguments.surface is not None:
+        return {"": read_surface(arguments.surface)}
+    surfaces = {}
+    for side in ("left", "right"):
+        path = getattr(arguments, side)
+        if path is not None:
+            surface = read_surface(path)
+            structure = f"Cortex{side.capitalize()}"
+            if surface.structure.startswith("Cortex") and surface.structure != structure:
+                raise FileError(f"{path}: a surface of {surface.structure}; allowed for --{side}: "
+                                f"{structure}")
+            surfaces[structure] = surface
+    return surfaces
+
+
+def choose_columns(data: Data, choices):
+    """The numbers of the chosen columns, in the order of the file."""
+    if not choices:
+        return list(data.usual)
+    chosen = set()
+    for choice in choices:
+        named = [i for i, name in enumerate(data.names) if name == choice]
+        if not named and choice.isdigit() and 1 <= int(choice) <= len(data.names):
+            named = [int(choice) - 1]
+        if not named:
+            raise ArgumentProblem(f"--column is {choice!r}; {data.path} has columns "
+                                  f"{_range_text(data.names)}")
+        chosen.update(named)
+    return sorted(chosen)
+
+
+def _range_text(names):
+    numbers = "1" if len(names) == 1 else f"1 to {len(names)}"
+    shown = list(dict.fromkeys(name for name in names if name and not name.isdigit()))
+    more = ", ..." if len(shown) > 6 else ""
+    return numbers + (f" ({', '.join(shown[:6])}{more})" if shown else "")
+
+
+def make_patches(surfaces, data: Data, columns, arguments):
+    """The values on each surface, with what is missing and what is excluded."""
+    if data.labels:
+        raise FileError(f"{data.path}: labels, which have no mean; allowed: real values")
+    regions = {}
+    if arguments.roi is not None:
+        regions = dict(_regions(arguments, surfaces))
+    patches = []
+    for part in data.parts:
+        surface = _surface_for(part, surfaces, data)
+        values = np.array(part.values[:, columns], order="C", dtype=_float_type(part.values))
+        _require_finite(values, data, part, columns)
+        if arguments.fix_zeros:
+            values[values == 0] = np.nan
+        values, excluded = _on_surface(part, values, surface, data.path)
+        if arguments.roi is not None:
+            excluded |= ~regions[id(surface)]
+        if excluded.all():
+            raise FileError(f"{arguments.roi or data.path}: no vertex of {surface.path} is in the "
+                            "region; allowed: at least one")
+        values[excluded] = 0
+        patches.append(Patch(surface, part, values, excluded))
+    return patches
+
+
+def read_marks(path, surfaces):
+    """For each surface, a bool per vertex: whether the first column is above 0."""
+    data = read_data(path)
+    for part in data.parts:
+        surface = _surface_for(part, surfaces, data)
+        if data.kind == "label":
+            inside = np.ones((len(part.values), 1), dtype=bool)
+        else:
+            with np.errstate(invalid="ignore"):
+                inside = part.values[:, :1] > 0
+        marks, _ = _on_surface(part, inside, surface, data.path)
+        yield id(surface), marks[:, 0].astype(bool)
+
+
+def read_areas(path, surfaces):
+    """{id of the surface: areas of its vertices} from the first column; empty without a file."""
+    if path is None:
+        return {}
+    data, found = read_data(path), {}
+    for part in data.parts:
+        surface = _surface_for(part, surfaces, data)
+        areas, absent = _on_surface(part, part.values[:, :1].astype(float), surface, path)
+        areas = np.where(absent, vertex_areas(surface), areas[:, 0])
+        wrong = ~(np.isfinite(areas) & (areas > 0))
+        if wrong.any():
+            vertex = int(np.argmax(wrong))
+            raise FileError(f"{path}: the area of vertex {vertex} is {areas[vertex]:g}; allowed: "
+                            "finite numbers above 0")
+        found[id(surface)] = areas
+    return found
+
+
+def _regions(arguments, surfaces):
+    found = dict(read_marks(arguments.roi, surfaces))
+    for surface in surfaces.values():
+        if id(surface) not in found:
+            raise FileError(f"{arguments.roi}: nothing for {surface.path}; allowed: a region on "
+                            "each surface")
+    return found
+
+
+def _surface_for(part, surfaces, data):
+    if "" not in surfaces:
+        if data.kind != "cifti":
+            raise ArgumentProblem(f"--left and --right are for CIFTI files; {data.path} has one "
+                                  "surface: give SURFACE")
+        if part.structure not in surfaces:
+            side = part.structure.replace("Cortex", "").lower()
+            raise ArgumentProblem(f"--{side} is missing: {data.path} has data of {part.structure}")
+        return surfaces[part.structure]
+    surface = surfaces[""]
+    if len(data.parts) > 1:
+        structures = " and ".join(p.structure for p in data.parts)
+        raise ArgumentProblem(f"{data.path} has data of {structures}; give --left and --right "
+                              "instead of SURFACE")
+    if part.structure and surface.structure and part.structure != surface.structure:
+        raise FileError(f"{data.path}: data of {part.structure}, but {surface.path} is of "
+                        f"{surface.structure}; allowed: the same structure")
+    return surface
+
+
+def _on_surface(part, values, surface, path):
+    """Values (n, k) with 0 where the file has none, and a bool per vertex: whether it has none."""
+    count = len(surface.points)
+    if part.vertices is None or part.size is not None:
+        size = len(part.values) if part.size is None else part.size
+        if size != count:
+            raise FileError(f"{path}: {size} values per column, but {surface.path} has {count} "
+                            f"points; allowed: {count} values")
+    if part.vertices is None:
+        return values, np.zeros(count, dtype=bool)
+    if len(part.vertices) and not 0 <= part.vertices.min() <= part.vertices.max() < count:
+        raise FileError(f"{path}: vertices {part.vertices.min()} to {part.vertices.max()}, but "
+                        f"{surface.path} has points 0 to {count - 1}")
+    full = np.zeros((count, values.shape[1]), dtype=values.dtype)
+    full[part.vertices] = values
+    absent = np.ones(count, dtype=bool)
+    absent[part.vertices] = False
+    return full, absent
+
+
+def _float_type(values):
+    return np.float32 if values.dtype.kind == "f" and values.dtype.itemsize <= 4 else np.float64
+
+
+def _require_finite(values, data, part, columns):
+    bad = np.argwhere(np.isinf(values))
+    if len(bad):
+        row, column = bad[0]
+        vertex = row if part.vertices is None else part.vertices[row]
+        raise FileError(f"{data.path}: column {columns[column] + 1} is {values[row, column]} at "
+                        f"vertex {vertex}; allowed: finite values, or NaN for missing")
+
+
+def vertex_areas(surface: SurfaceFile):
+    """The areas of the barycentric control cells (n,): a third of those of the triangles."""
+    points = np.asarray(surface.points, dtype=float)
+    faces = triangles(surface)
+    a, b, c = (points[faces[:, i]] for i in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    return np.bincount(faces.ravel(), np.repeat(areas / 3, 3), minlength=len(points))
+
+
+def triangles(surface: SurfaceFile):
+    """The faces, with polygons cut into fans."""
+    if isinstance(surface.faces, np.ndarray):
+        return surface.faces.astype(np.int64, copy=False)
+    return np.array([(face[0], face[i], face[i + 1]) for face in surface.faces
+                     for i in range(1, len(face) - 1)], dtype=np.int64)

@@ -1,0 +1,102 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a run says: progress, summary, warnings, errors, and a report as JSON."""
+from __future__ import annotations
+
+import contextlib
+import json
+import sys
+import time
+import warnings
+
+import numpy as np
+
+
+class Report:
+    """Collects facts of a run; `facts` becomes the JSON object."""
+
+    def __init__(self, arguments):
+        self.arguments = arguments
+        self.facts = {"command": arguments.command}
+        self.seconds = {}
+        self.warnings = []
+        self.lines = []
+
+    @contextlib.contextmanager
+    def timed(self, phase):
+        """Adds wall-clock and processor time to the phase: read, compute or write."""
+        wall, processor = time.perf_counter(), time.process_time()
+        yield
+        entry = self.seconds.setdefault(phase, {"wall": 0.0, "cpu": 0.0})
+        entry["wall"] += time.perf_counter() - wall
+        entry["cpu"] += time.process_time() - processor
+
+    @contextlib.contextmanager
+    def collecting_warnings(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", UserWarning)
+            warnings.simplefilter("always", RuntimeWarning)
+            warnings.showwarning = self._show_warning
+            yield
+
+    def _show_warning(self, message, category, filename, lineno, file=None, line=None):
+        text = " ".join(str(message).split())
+        if issubclass(category, (UserWarning, RuntimeWarning)) and text not in self.warnings:
+            self.warn(text)
+
+    def warn(self, text):
+        self.warnings.append(text)
+        if not self.arguments.quiet:
+            print(f"surfacediffusion: warning: {text}", file=sys.stderr)
+
+    @contextlib.contextmanager
+    def progress(self, text):
+        """A callable that takes the fraction done, and draws a bar if a person looks."""
+        if self.arguments.quiet or not sys.stderr.isatty():
+            yield None
+            return
+        try:
+            from tqdm import tqdm
+        except ImportError:
+            yield None
+            return
+        form = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
+        with tqdm(total=1.0, desc=text, leave=False, bar_format=form) as bar:
+            def update(fraction, *_):
+                bar.update(max(0.0, min(fraction, 1.0) - bar.n))
+
+            yield update
+
+    def say(self, line):
+        self.lines.append(line)
+
+    def finish(self):
+        if self.arguments.json:
+            self.facts["seconds"] = self.seconds
+            self.facts["warnings"] = self.warnings
+            print(json.dumps(self.facts, indent=2, default=_plain, allow_nan=False))
+        elif not self.arguments.quiet:
+            for line in self.lines:
+                print(line)
+
+    def fail(self, error, code):
+        text = " ".join(str(error).split()) or type(error).__name__
+        print(f"surfacediffusion: {text}", file=sys.stderr)
+        if self.arguments.json:
+            self.facts.update(error=text, warnings=self.warnings)
+            print(json.dumps(self.facts, indent=2, default=_plain))
+        return code
+
+
+def _plain(value):
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} is not JSON")
+
+
+def number(value):
+    """A number for JSON, which has no NaN: None instead."""
+    value = float(value)
+    return value if np.isfinite(value) else None

@@ -1,0 +1,353 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The commands: each reads its files, calls a function of the package, and writes the result."""
+from __future__ import annotations
+
+import io
+import math
+
+import numpy as np
+
+from ..files import FileError, new_data, read_data, read_surface
+from ..files.content import check_output_folder, check_output_name, kind_of_name
+from . import inputs
+from .inputs import choose_columns, make_patches, read_surfaces
+from .report import number
+
+SIGMA_TO_FWHM = math.sqrt(8 * math.log(2))
+
+
+def smooth(arguments, report):
+    from .. import heat
+
+    width = arguments.fwhm * (SIGMA_TO_FWHM if arguments.sigma else 1)
+    report.facts.update(fwhm=width, sigma=width / SIGMA_TO_FWHM, steps=arguments.steps)
+
+    def compute(surface, values, mask, progress):
+        return heat(surface, values, mask=mask, mask_mode="Exclude", fwhm=width,
+                    number_of_time_steps=arguments.steps, progress=progress)
+
+    _change_data(arguments, report, "Smoothing", compute, _groups_of_missing)
+
+
+def denoise(arguments, report):
+    from .. import intrinsic_tv
+
+    options = {"fidelity_weight": arguments.weight} if arguments.weight else {
+        "automatic_fidelity": True, "noise_level": arguments.noise or 0.0}
+    weights = report.facts.setdefault("fidelity_weights", [])
+
+    def compute(surface, values, mask, progress):
+        result = intrinsic_tv(surface, values, mask=mask, mask_mode="Exclude", mode="SteadyState",
+                              progress=progress, full_output=True, **options)
+        weights.append(number(result.effective_fidelity_weight))
+        return result.values
+
+    _change_data(arguments, report, "Denoising", compute, _groups_of_arrays)
+
+
+def inpaint(arguments, report):
+    from .. import heat, intrinsic_tv
+
+    model = {"heat": heat, "tv": intrinsic_tv}[arguments.model]
+    report.facts["model"] = arguments.model
+
+    def compute(surface, values, mask, progress):
+        if not np.isnan(values).any():
+            return values
+        return model(surface, values, mask=mask, mask_mode="Exclude", mode="SteadyState",
+                     hold_known_values=True, progress=progress)
+
+    groups = _groups_of_missing if arguments.model == "heat" else _groups_of_arrays
+    _change_data(arguments, report, "Inpainting", compute, groups, arguments.missing)
+
+
+def texture(arguments, report):
+    surface = _read_surface_for_output(arguments, report)
+    target = new_data(surface, arguments.output, ["Texture"])
+    from .. import Surface, turing_texture
+
+    options = {}
+    if arguments.kinetics:
+        options["kinetics"] = arguments.kinetics
+    if arguments.steps:
+        options["number_of_time_steps"] = arguments.steps
+    with report.timed("compute"), report.progress("Texture") as progress:
+        result = turing_texture(Surface(surface.points, surface.faces), progress=progress,
+                                feature_size=arguments.size, seed=arguments.seed, **options)
+    report.facts.update(feature_size=arguments.size, seed=arguments.seed, steps=result.step,
+                        wavelength=number(result.wavelength))
+    _write_new(arguments, report, target, result.texture[:, None].astype(np.float32))
+
+
+def directions(arguments, report):
+    from .. import Surface, direction_field
+    from ..files import vtk_files, write_atomically
+
+    kind = kind_of_name(arguments.output)
+    surface = _read_surface_for_output(arguments, report)
+    if kind != "npy" and not (kind in ("vtk", "vtp") and kind == surface.kind):
+        raise FileError(f"{arguments.output}: the name announces no format for directions on "
+                        "faces; allowed: .npy, or .vtk or .vtp as the surface")
+    with report.timed("compute"), report.progress("Directions"):
+        field = direction_field(Surface(surface.points, surface.faces), method=arguments.method)
+    report.facts.update(method=arguments.method, faces=len(surface.faces))
+    with report.timed("write"):
+        if kind == "npy":
+            file = io.BytesIO()
+            np.save(file, field)
+            write_atomically(arguments.output, file.getvalue())
+        else:
+            write_atomically(arguments.output, vtk_files.write(
+                kind, surface.image, cell_data={"Direction": field}))
+    _say_written(arguments, report, f"{len(surface.faces)} directions")
+
+
+def normals(arguments, report):
+    from .. import Surface, harmonic_map
+
+    surface = _read_surface_for_output(arguments, report)
+    if arguments.move:
+        check_output_name(arguments.output, surface.kind)
+    else:
+        target = new_data(surface, arguments.output, ["nx", "ny", "nz"])
+    options = {"exponent": arguments.exponent, "move_vertices": arguments.move}
+    if arguments.time_step:
+        options["time_step"] = arguments.time_step
+    if arguments.steps:
+        options["number_of_time_steps"] = arguments.steps
+    with report.timed("compute"), report.progress("Normals") as progress:
+        result = harmonic_map(Surface(surface.points, surface.faces), progress=progress, **options)
+    report.facts.update(exponent=arguments.exponent, moved=arguments.move, steps=result.step)
+    if not arguments.move:
+        _write_new(arguments, report, target, np.asarray(result.values, dtype=np.float32))
+        return
+    with report.timed("write"):
+        surface.save(arguments.output, result.points)
+    report.facts.update(mean_displacement=number(result.mean_displacement),
+                        maximum_displacement=number(result.maximum_displacement),
+                        volume_before=number(result.volume_before),
+                        volume_after=number(result.volume_after))
+    _say_written(arguments, report,
+                 f"points moved by {result.mean_displacement:.4g} on average, at most "
+                 f"{result.maximum_displacement:.4g}")
+
+
+def fwhm(arguments, report):
+    from .. import Surface, estimate_fwhm
+
+    with report.timed("read"):
+        surfaces, data, columns, patches = _read(arguments)
+    for patch in patches:
+        known = ~(patch.excluded | np.isnan(patch.values).any(axis=1))
+        with report.timed("compute"):
+            result = estimate_fwhm(Surface(patch.surface.points, patch.surface.faces),
+                                   patch.values, mask=~known)
+        entry = {"surface": patch.surface.path, "structure": patch.part.structure,
+                 "pooled": number(result.pooled),
+                 "columns": [{"name": data.names[c], "fwhm": number(width)}
+                             for c, width in zip(columns, result.columns)]}
+        report.facts.setdefault("surfaces", []).append(entry)
+        where = f"{patch.part.structure}: " if len(patches) > 1 else ""
+        for column, row in zip(columns, entry["columns"]):
+            if len(columns) > 1:
+                report.say(f"{where}{column + 1} {row['name']}: {_text(row['fwhm'])}")
+        report.say(f"{where}FWHM {_text(entry['pooled'])}")
+
+
+def _text(value):
+    return "unknown" if value is None else f"{value:.4g}"
+
+
+def info(arguments, report):
+    entries = report.facts.setdefault("files", [])
+    for path in arguments.files:
+        entry = {"file": path}
+        surface_problem = data_problem = None
+        try:
+            entry.update(_surface_info(read_surface(path)))
+        except FileError as error:
+            surface_problem = error
+        try:
+            entry.update(_data_info(read_data(path)))
+        except FileError as error:
+            data_problem = error
+        if surface_problem and data_problem:
+            raise surface_problem if "has no surface" not in str(surface_problem) else data_problem
+        entries.append(entry)
+        report.say(_info_line(entry))
+
+
+def _surface_info(surface):
+    areas = inputs.vertex_areas(surface)
+    faces = inputs.triangles(surface)
+    edges = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]),
+                              axis=1), axis=0)
+    points = np.asarray(surface.points, dtype=float)
+    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    return {"format": surface.kind, "points": len(points), "faces": len(surface.faces),
+            "structure": surface.structure, "area": number(areas.sum()),
+            "mean_edge_length": number(lengths.mean())}
+
+
+def _data_info(data):
+    columns = []
+    for i, name in enumerate(data.names):
+        values = np.concatenate([part.values[:, i] for part in data.parts]).astype(float)
+        known = values[np.isfinite(values)]
+        columns.append({
+            "name": name, "values": len(values), "missing": int(np.isnan(values).sum()),
+            "zeros": int((values == 0).sum()),
+            "minimum": number(known.min()) if len(known) else None,
+            "mean": number(known.mean()) if len(known) else None,
+            "maximum": number(known.max()) if len(known) else None})
+    return {"format": data.kind, "columns": columns,
+            "structures": [part.structure for part in data.parts if part.structure]}
+
+
+def _info_line(entry):
+    words = [f"{entry['file']}: {entry['format']}"]
+    if "points" in entry:
+        words.append(f"{entry['points']} points, {entry['faces']} faces, area {entry['area']:.6g}, "
+                     f"mean edge {entry['mean_edge_length']:.4g}")
+    lines = [", ".join(words)]
+    columns = entry.get("columns", [])
+    for i, column in enumerate(columns[:8], start=1):
+        lines.append(f"  {i} {column['name']}: {column['values']} values, "
+                     f"{column['missing']} missing, {column['zeros']} zeros, "
+                     f"{_text(column['minimum'])} to {_text(column['maximum'])}, "
+                     f"mean {_text(column['mean'])}")
+    if len(columns) > 8:
+        lines.append(f"  ... {len(columns)} columns")
+    return "\n".join(lines)
+
+
+# ---- common parts --------------------------------------------------------------------------------
+
+def _read(arguments, missing=None):
+    surfaces = read_surfaces(arguments)
+    data = read_data(arguments.data)
+    columns = choose_columns(data, arguments.column)
+    patches = make_patches(surfaces, data, columns, arguments)
+    if missing is not None:
+        marks = dict(inputs.read_marks(missing, surfaces))
+        for patch in patches:
+            patch.values[marks[id(patch.surface)] & ~patch.excluded] = np.nan
+    return surfaces, data, columns, patches
+
+
+def _change_data(arguments, report, title, compute, groups, missing=None):
+    """Applies compute(surface, values, mask, progress) to the groups of columns of each surface
+    and writes the result in the format of DATA."""
+    check_output_folder(arguments.output)
+    with report.timed("read"):
+        surfaces, data, columns, patches = _read(arguments, missing)
+        areas = inputs.read_areas(getattr(arguments, "areas", None), surfaces)
+        check_output_name(arguments.output, data.kind)
+    if data.extra:
+        report.warn(f"{data.path}: {data.extra}")
+    results = []
+    total = sum(len(columns) for _ in patches)
+    done = 0
+    with report.progress(title) as progress:
+        for patch in patches:
+            surface = _make_surface(patch, areas)
+            mask = patch.excluded if patch.excluded.any() else None
+            new = np.empty_like(patch.values)
+            for group in groups(data, columns, patch):
+                _require_known(patch, group, data, columns)
+                chosen = slice(None) if len(group) == len(columns) else group
+                with report.timed("compute"):
+                    new[:, chosen] = compute(
+                        surface, patch.values[:, chosen], mask,
+                        _part_of(progress, done / total, len(group) / total))
+                done += len(group)
+            results.append(patch.to_part(new))
+            _add_totals(report, data, columns, patch, new, areas)
+    with report.timed("write"):
+        data.save(arguments.output, results, columns)
+    report.facts.update(data=data.path, output=arguments.output)
+    _say_written(arguments, report, f"{len(columns)} column{'s' * (len(columns) > 1)}")
+
+
+def _make_surface(patch, areas):
+    """The surface, with the areas that were given for it."""
+    from .. import Surface
+
+    try:
+        return Surface(patch.surface.points, patch.surface.faces, areas.get(id(patch.surface)))
+    except ValueError as error:
+        raise FileError(f"{patch.surface.path}: {error}") from error
+
+
+def _part_of(progress, start, share):
+    if progress is None:
+        return None
+    return lambda fraction, *_: progress(start + share * fraction)
+
+
+def _groups_of_missing(data, columns, patch):
+    """Columns whose missing values are at the same vertices are solved together."""
+    missing = np.isnan(patch.values)
+    if not missing.any():
+        return [list(range(len(columns)))]
+    groups = {}
+    for i in range(len(columns)):
+        groups.setdefault(np.packbits(missing[:, i]).tobytes(), []).append(i)
+    return list(groups.values())
+
+
+def _groups_of_arrays(data, columns, patch):
+    """Edges are common to the channels of a colour or a vector, and to no other columns."""
+    colour = {"red", "green", "blue"}
+    groups = {}
+    for i, column in enumerate(columns):
+        name = data.names[column]
+        if data.kind == "ply" and name in colour:
+            key = "colour"
+        else:
+            key = name if data.kind in ("vtk", "vtp") else i
+        groups.setdefault(key, []).append(i)
+    return list(groups.values())
+
+
+def _require_known(patch, group, data, columns):
+    missing = np.isnan(patch.values[:, group]).any(axis=1)
+    if (missing | patch.excluded).all():
+        raise FileError(f"{data.path}: column {columns[group[0]] + 1} has no known value in the "
+                        "region; allowed: at least one")
+
+
+def _add_totals(report, data, columns, patch, new, areas):
+    """The integrals over the region before (known values alone) and after."""
+    areas = areas.get(id(patch.surface), inputs.vertex_areas(patch.surface))
+    areas = np.where(patch.excluded, 0, areas)
+    missing = np.isnan(patch.values).sum(axis=0)
+    before = areas @ np.nan_to_num(patch.values.astype(float))
+    after = areas @ np.nan_to_num(new.astype(float))
+    rows = report.facts.setdefault("columns", [])
+    for i, column in enumerate(columns):
+        rows.append({"column": column + 1, "name": data.names[column],
+                     "structure": patch.part.structure or patch.surface.structure,
+                     "missing": int(missing[i]), "excluded": int(patch.excluded.sum()),
+                     "total_before": number(before[i]), "total_after": number(after[i])})
+
+
+def _read_surface_for_output(arguments, report):
+    check_output_folder(arguments.output)
+    with report.timed("read"):
+        surface = read_surface(arguments.surface)
+    report.facts.update(surface=arguments.surface, output=arguments.output)
+    return surface
+
+
+def _write_new(arguments, report, target, values):
+    with report.timed("write"):
+        target.save(arguments.output, [values])
+    count = len(target.names)
+    _say_written(arguments, report, f"{count} column{'s' * (count > 1)}")
+
+
+def _say_written(arguments, report, what):
+    seconds = sum(entry["wall"] for entry in report.seconds.values())
+    report.say(f"{arguments.output}: {what}, {seconds:.2f} s")

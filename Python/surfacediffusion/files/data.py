@@ -1,0 +1,323 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads and writes data at the vertices of surfaces: read_data(), new_data() and Data."""
+from __future__ import annotations
+
+import contextlib
+import io
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import freesurfer_data, gifti_data, meshio_files, vtk_files
+from .content import check_output_name, import_reader, kind_of_name, read_content, reading
+from .content import FileError, write_atomically
+
+ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
+           "FreeSurfer (curv, .mgh, .mgz, .label), PLY, VTK polydata, NumPy (.npy)")
+
+
+@dataclass
+class Part:
+    """The values on one surface.
+
+    values     (v, k): one row per vertex that has data, one column per map
+    vertices   (v,) the numbers of these vertices; None: all, in order
+    size       number of vertices of the surface; None if the file does not say
+    structure  "CortexLeft", "CortexRight", ...; empty if the file does not say
+    """
+
+    values: np.ndarray
+    vertices: np.ndarray | None = None
+    size: int | None = None
+    structure: str = ""
+
+
+@dataclass
+class Data:
+    """The data of a file.
+
+    names   of the k columns; columns of one array of VTK have one name
+    parts   one, or one per surface of a CIFTI file
+    labels  the values are numbers of labels, which have no mean
+    usual   the columns to work on if nobody chooses (all but normals and the like)
+    extra   a remark about values that are carried over unchanged, or empty
+    """
+
+    path: str
+    kind: str
+    names: list[str]
+    parts: list[Part]
+    labels: bool = False
+    usual: Sequence[int] = ()
+    extra: str = ""
+    image: Any = None
+
+    def save(self, path, values, columns=None):
+        """Write other values in the same format, with the metadata of the file.
+
+        values   for each part, an array (v, number of columns)
+        columns  the numbers of these columns; default: all. Files of meshes keep their other
+                 columns, other files then hold these alone
+        """
+        check_output_name(path, self.kind)
+        columns = list(range(len(self.names))) if columns is None else list(columns)
+        for part, new in zip(self.parts, values):
+            if np.shape(new) != (len(part.values), len(columns)):
+                raise ValueError(f"values have shape {np.shape(new)}; allowed: "
+                                 f"{(len(part.values), len(columns))}")
+        write_atomically(path, _WRITERS[self.kind](self, values, columns))
+
+
+def read_data(path) -> Data:
+    """Read the data at vertices from a file of one of the formats in ALLOWED."""
+    content = read_content(path)
+    if content.kind not in _READERS:
+        raise content.error(f"a {content.name} file, which has no data at vertices; "
+                            f"allowed: {ALLOWED}")
+    with reading(content):
+        data = _READERS[content.kind](content)
+        if not data.names or not data.parts:
+            raise content.error("no data at vertices; allowed: at least one column")
+        for part in data.parts:
+            if part.values.dtype.kind not in "fiub":
+                raise content.error(f"values of type {part.values.dtype}; allowed: real numbers")
+    if not data.usual:
+        data.usual = range(len(data.names))
+    return data
+
+
+def new_data(surface, path, names) -> Data:
+    """Data for columns that no file holds yet, zero at first, in the format that the name of the
+    output announces; without an extension, FreeSurfer's curv for one column."""
+    values = np.zeros((len(surface.points), len(names)), dtype=np.float32)
+    kind = kind_of_name(path)
+    if kind is None and surface.kind == "freesurfer" and len(names) == 1:
+        kind = "curv"
+    if kind in ("ply", "vtk", "vtp") and kind == surface.kind:
+        usual = list(range(len(names)))
+        return Data(surface.path, kind, list(names), [Part(values)], usual=usual,
+                    image=(surface.image, [(name, 0) for name in names]))
+    makers = {"gifti": gifti_data.new, "mgh": freesurfer_data.new_mgh, "npy": _new_npy,
+              "curv": freesurfer_data.new_curv}
+    if kind not in makers:
+        allowed = ".func.gii, .shape.gii, .mgh, .mgz, .npy"
+        if surface.kind in ("ply", "vtk", "vtp"):
+            allowed += f", .{surface.kind} as the surface"
+        raise FileError(f"{path}: the name announces no format for {len(names)} column(s) at "
+                        f"vertices; allowed: {allowed}")
+    return Data(surface.path, kind, list(names), [Part(values)], usual=range(len(names)),
+                image=makers[kind](surface, names))
+
+
+# ---- GIFTI ---------------------------------------------------------------------------------------
+
+def _read_gifti(content):
+    image, columns, structure = gifti_data.read(content)
+    arrays = [gifti_data.column(image, column) for column in columns]
+    lengths = sorted({len(array) for array in arrays})
+    if len(lengths) > 1:
+        raise content.error(f"arrays of {lengths[0]} and {lengths[-1]} values; allowed: one length")
+    names = [gifti_data.name(image, column) for column in columns]
+    return Data(content.path, content.kind, names,
+                [Part(np.column_stack(arrays), structure=structure)] if arrays else [],
+                labels=gifti_data.has_labels(image), image=(image, columns))
+
+
+def _write_gifti(data, values, columns):
+    image, places = data.image
+    return gifti_data.write(image, [places[i] for i in columns], values[0])
+
+
+# ---- CIFTI ---------------------------------------------------------------------------------------
+
+def _read_cifti(content):
+    cifti2 = import_reader("nibabel.cifti2", content)
+    with _silent_log("nibabel.global"):  # it reports headers that it mends, on standard error
+        image = cifti2.Cifti2Image.from_bytes(content.bytes)
+    axes = [image.header.get_axis(i) for i in range(image.ndim)]
+    if len(axes) != 2 or not isinstance(axes[1], cifti2.BrainModelAxis) or not isinstance(
+            axes[0], (cifti2.ScalarAxis, cifti2.SeriesAxis, cifti2.LabelAxis)):
+        kinds = " by ".join(type(axis).__name__.replace("Axis", "") for axis in axes)
+        raise content.error(f"a CIFTI file of {kinds}; allowed: dscalar, dtseries")
+    values = np.asanyarray(image.dataobj)
+    parts, slices, volumes = [], [], 0
+    for name, block, model in axes[1].iter_structures():
+        if model.volume_mask.any():
+            volumes += len(model)
+            continue
+        rows = range(*block.indices(len(axes[1])))
+        parts.append(Part(values[:, rows.start:rows.stop].T, np.asarray(model.vertex),
+                          int(axes[1].nvertices[name]), _structure(name)))
+        slices.append(slice(rows.start, rows.stop))
+    extra = f"{volumes} voxels are copied unchanged" if volumes else ""
+    series = isinstance(axes[0], cifti2.SeriesAxis)
+    names = [str(i + 1) for i in range(len(axes[0]))] if series else [str(n) for n in axes[0].name]
+    return Data(content.path, content.kind, names, parts,
+                labels=isinstance(axes[0], cifti2.LabelAxis), extra=extra,
+                image=(image, values, slices))
+
+
+@contextlib.contextmanager
+def _silent_log(name):
+    logger = logging.getLogger(name)
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+
+
+def _structure(name):
+    """"CortexLeft" for CIFTI_STRUCTURE_CORTEX_LEFT, as GIFTI has it."""
+    return "".join(word.capitalize() for word in name.replace("CIFTI_STRUCTURE_", "").split("_"))
+
+
+def _write_cifti(data, values, columns):
+    from nibabel import cifti2
+
+    image, before, slices = data.image
+    rows = np.array(before[columns], dtype=np.float32)
+    for place, new in zip(slices, values):
+        rows[:, place] = np.asarray(new).T
+    header = image.header
+    if columns != list(range(len(data.names))):
+        axes = [header.get_axis(i) for i in range(2)]
+        if isinstance(axes[0], cifti2.SeriesAxis):
+            raise FileError(f"{data.path}: single columns of a time series cannot be written; "
+                            "allowed: all columns")
+        first = cifti2.ScalarAxis(axes[0].name[columns], axes[0].meta[columns])
+        metadata = header.matrix.metadata
+        header = cifti2.Cifti2Header.from_axes((first, axes[1]))
+        header.matrix.metadata = metadata
+    new_image = cifti2.Cifti2Image(rows, header, image.nifti_header)
+    new_image.nifti_header.set_data_dtype(np.float32)
+    new_image.update_headers()
+    return new_image.to_bytes()
+
+
+# ---- FreeSurfer and NumPy ------------------------------------------------------------------------
+
+def _read_curv(content):
+    values, faces = freesurfer_data.read_curv(content)
+    return Data(content.path, content.kind, ["curv"], [Part(values[:, None])], image=faces)
+
+
+def _write_curv(data, values, columns):
+    return freesurfer_data.write_curv(values[0], data.image)
+
+
+def _read_mgh(content):
+    values, image = freesurfer_data.read_mgh(content)
+    names = [str(i + 1) for i in range(values.shape[1])]
+    return Data(content.path, content.kind, names, [Part(values)], image=image)
+
+
+def _write_mgh(data, values, columns):
+    return freesurfer_data.write_mgh(values[0], data.image)
+
+
+def _read_label(content):
+    vertices, values, lines = freesurfer_data.read_label(content)
+    return Data(content.path, content.kind, ["label"], [Part(values[:, None], vertices)],
+                image=lines)
+
+
+def _write_label(data, values, columns):
+    return freesurfer_data.write_label(values[0], data.image)
+
+
+def _read_npy(content):
+    array = np.lib.format.read_array(io.BytesIO(content.bytes), allow_pickle=False)
+    if array.ndim not in (1, 2):
+        raise content.error(f"an array of shape {array.shape}; allowed: (n,) or (n, k)")
+    values = array.reshape(len(array), -1)
+    names = [str(i + 1) for i in range(values.shape[1])]
+    return Data(content.path, content.kind, names, [Part(values)], image=array.ndim)
+
+
+def _new_npy(surface, names):
+    return 1 if len(names) == 1 else 2
+
+
+def _write_npy(data, values, columns):
+    array = np.asarray(values[0])
+    if data.parts[0].values.dtype.kind == "f":
+        array = array.astype(data.parts[0].values.dtype)
+    file = io.BytesIO()
+    np.lib.format.write_array(file, array[:, 0] if data.image == 1 else array, allow_pickle=False)
+    return file.getvalue()
+
+
+# ---- meshes with data ----------------------------------------------------------------------------
+
+# Vertex properties of PLY that are no data: normals, texture coordinates and opacity.
+_NOT_DATA = {"nx", "ny", "nz", "s", "t", "u", "v", "texture_u", "texture_v", "alpha"}
+
+
+def _mesh_data(content, mesh, arrays, usual_names):
+    columns, places = [], []
+    for name, array in arrays.items():
+        array = np.asarray(array)
+        for component in range(1 if array.ndim == 1 else array.shape[1]):
+            columns.append(array if array.ndim == 1 else array[:, component])
+            places.append((name, component))
+    names = [name for name, _ in places]
+    usual = [i for i, name in enumerate(names) if name in usual_names]
+    parts = [Part(np.column_stack(columns))] if columns else []
+    return Data(content.path, content.kind, names, parts, usual=usual, image=(mesh, places))
+
+
+def _read_ply(content):
+    mesh = meshio_files.read(content)
+    return _mesh_data(content, mesh, mesh.point_data, set(mesh.point_data) - _NOT_DATA)
+
+
+def _read_vtk(content):
+    mesh = vtk_files.read(content)
+    arrays = vtk_files.point_arrays(mesh)
+    active = mesh.GetPointData().GetScalars()
+    usual = {active.GetName()} if active is not None else set(arrays)
+    return _mesh_data(content, mesh, arrays, usual)
+
+
+def _changed_arrays(data, values, columns, arrays):
+    """The arrays of a mesh in which these columns have new values. Integers are rounded."""
+    _, places = data.image
+    changed = dict(arrays)
+    for column, new in zip(columns, np.asarray(values[0]).T):
+        name, component = places[column]
+        before = np.array(changed[name]) if name in changed else np.array(new)
+        if before.dtype.kind in "iu":
+            limits = np.iinfo(before.dtype)
+            new = np.clip(np.rint(new), limits.min, limits.max)
+        if before.ndim == 1:
+            before[:] = new
+        else:
+            before[:, component] = new
+        changed[name] = before
+    return changed
+
+
+def _write_ply(data, values, columns):
+    mesh = data.image[0]
+    arrays = _changed_arrays(data, values, columns, mesh.point_data)
+    return meshio_files.write("ply", mesh, point_data=arrays)
+
+
+def _write_vtk(data, values, columns):
+    mesh = data.image[0]
+    arrays = _changed_arrays(data, values, columns, vtk_files.point_arrays(mesh))
+    return vtk_files.write(data.kind, mesh, point_data=arrays)
+
+
+_READERS = {"gifti": _read_gifti, "cifti": _read_cifti, "curv": _read_curv, "mgh": _read_mgh,
+            "label": _read_label, "npy": _read_npy, "ply": _read_ply, "vtk": _read_vtk,
+            "vtp": _read_vtk}
+_WRITERS = {"gifti": _write_gifti, "cifti": _write_cifti, "curv": _write_curv, "mgh": _write_mgh,
+            "label": _write_label, "npy": _write_npy, "ply": _write_ply, "vtk": _write_vtk,
+            "vtp": _write_vtk}

@@ -1,0 +1,321 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command gives the results of the functions, keeps what it is not asked to change, and says
+what it did."""
+
+import json
+import os
+import pty
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import samples
+from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
+
+from surfacediffusion import Surface, heat, intrinsic_tv
+from surfacediffusion.command.inputs import vertex_areas
+from surfacediffusion.files import read_data, read_surface
+
+INSIDE = POINTS[:, 2] > -6
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+        samples.write_surface("lh.surf.gii")
+        samples.write_gifti("lh.func.gii", {"one": NOISE, "two": SMOOTH})
+        # The functions get the coordinates that the file has.
+        self.surface = Surface(read_surface("lh.surf.gii").points, FACES)
+
+    def succeed(self, line):
+        code, out, error = run(*line.split())
+        self.assertEqual((code, error), (0, ""), line)
+        return out
+
+    def report(self, line):
+        return json.loads(self.succeed(line + " --json"))
+
+    def column(self, path, column=0):
+        return read_data(path).parts[0].values[:, column]
+
+
+class Smooth(CommandTest):
+    def test_the_result_is_that_of_heat(self):
+        self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii")
+        expected = heat(self.surface, np.column_stack([NOISE, SMOOTH]), fwhm=5,
+                        number_of_time_steps=3)
+        np.testing.assert_array_equal(read_data("out.func.gii").parts[0].values, expected)
+
+    def test_words_of_workbench_are_understood(self):
+        samples.write_gifti("roi.func.gii", {"roi": INSIDE})
+        words = "-fwhm -roi roi.func.gii -fix-zeros -column two"
+        self.succeed(f"smooth lh.surf.gii lh.func.gii 5 a.func.gii {words}")
+        self.succeed("smooth --roi=roi.func.gii lh.surf.gii lh.func.gii --column 2 5 b.func.gii "
+                     "--fix-zeros")
+        self.assertEqual(Path("a.func.gii").read_bytes(), Path("b.func.gii").read_bytes())
+
+    def test_sigma_is_a_standard_deviation(self):
+        self.succeed("smooth lh.surf.gii lh.func.gii 2 a.func.gii --sigma")
+        self.succeed(f"smooth lh.surf.gii lh.func.gii {2 * (8 * np.log(2))**0.5} b.func.gii")
+        np.testing.assert_allclose(self.column("a.func.gii"), self.column("b.func.gii"), 1e-6)
+
+    def test_the_integral_is_kept(self):
+        for row in self.report("smooth lh.surf.gii lh.func.gii 5 out.func.gii")["columns"]:
+            self.assertAlmostEqual(row["total_after"] / row["total_before"], 1, delta=1e-6)
+
+    def test_nan_and_zeros_are_missing(self):
+        holes = np.arange(N) % 5 == 0
+        samples.write_gifti("nan.func.gii", {"one": np.where(holes, np.nan, SMOOTH)})
+        samples.write_gifti("zero.func.gii", {"one": np.where(holes, 0, SMOOTH)})
+        self.succeed("smooth lh.surf.gii nan.func.gii 5 a.func.gii")
+        self.succeed("smooth lh.surf.gii zero.func.gii 5 b.func.gii --fix-zeros")
+        self.succeed("smooth lh.surf.gii zero.func.gii 5 c.func.gii")
+        full = heat(self.surface, SMOOTH, fwhm=5, number_of_time_steps=3)
+        found = self.column("a.func.gii")
+        np.testing.assert_array_equal(found, self.column("b.func.gii"))
+        self.assertLess(np.abs(found - full).max(), 0.05)
+        self.assertGreater(np.abs(self.column("c.func.gii") - full).max(), 0.2)
+
+    def test_columns_may_miss_values_at_different_vertices(self):
+        columns = {"one": NOISE.copy(), "two": SMOOTH.copy(), "three": NOISE.copy()}
+        columns["one"][:9] = np.nan
+        columns["two"][20:30] = np.nan
+        samples.write_gifti("all.func.gii", columns)
+        self.succeed("smooth lh.surf.gii all.func.gii 5 all.out.func.gii")
+        for i, (name, values) in enumerate(columns.items()):
+            samples.write_gifti("one.func.gii", {name: values})
+            self.succeed("smooth lh.surf.gii one.func.gii 5 one.out.func.gii")
+            np.testing.assert_array_equal(self.column("all.out.func.gii", i),
+                                          self.column("one.out.func.gii"))
+
+    def test_nothing_flows_across_the_boundary_of_the_region(self):
+        samples.write_gifti("roi.func.gii", {"roi": INSIDE})
+        wild = np.where(INSIDE, NOISE, 1e6)
+        samples.write_gifti("wild.func.gii", {"one": wild})
+        self.succeed("smooth lh.surf.gii lh.func.gii 5 a.func.gii --roi roi.func.gii --column 1")
+        self.succeed("smooth lh.surf.gii wild.func.gii 5 b.func.gii --roi roi.func.gii")
+        np.testing.assert_array_equal(self.column("a.func.gii"), self.column("b.func.gii"))
+        np.testing.assert_array_equal(self.column("a.func.gii")[~INSIDE], 0)
+
+    def test_a_region_may_be_a_freesurfer_label(self):
+        samples.write_label("a.label", np.flatnonzero(INSIDE), np.zeros(INSIDE.sum()))
+        samples.write_gifti("roi.func.gii", {"roi": INSIDE})
+        self.succeed("smooth lh.surf.gii lh.func.gii 5 a.func.gii --roi a.label")
+        self.succeed("smooth lh.surf.gii lh.func.gii 5 b.func.gii --roi roi.func.gii")
+        self.assertEqual(Path("a.func.gii").read_bytes(), Path("b.func.gii").read_bytes())
+
+    def test_values_of_a_label_are_smoothed_within_it(self):
+        vertices = np.flatnonzero(INSIDE)
+        samples.write_label("a.label", vertices, NOISE[vertices])
+        self.succeed("smooth lh.surf.gii a.label 5 b.label")
+        expected = heat(self.surface, np.where(INSIDE, NOISE, 0), mask=~INSIDE,
+                        mask_mode="Exclude", fwhm=5, number_of_time_steps=3)
+        np.testing.assert_allclose(self.column("b.label"), expected[vertices], atol=1e-5)
+
+    def test_each_hemisphere_of_cifti_has_its_surface(self):
+        samples.write_surface("rh.surf.gii", POINTS * 0.7, FACES, "CortexRight")
+        left = np.flatnonzero(INSIDE)
+        rows = np.stack([np.concatenate([NOISE[left], NOISE])] * 2)
+        samples.write_cifti("a.dscalar.nii", rows, left=left)
+        self.succeed("smooth --left lh.surf.gii --right rh.surf.gii a.dscalar.nii 5 b.dscalar.nii")
+        found = np.asarray(nib.load("b.dscalar.nii").dataobj)
+        expected = heat(self.surface, np.where(INSIDE, NOISE, 0), mask=~INSIDE,
+                        mask_mode="Exclude", fwhm=5, number_of_time_steps=3)[left]
+        np.testing.assert_array_equal(found[0, :len(left)], expected)
+        right = Surface(read_surface("rh.surf.gii").points, FACES)
+        expected = heat(right, NOISE, fwhm=5, number_of_time_steps=3)
+        np.testing.assert_array_equal(found[1, len(left):], expected)
+
+    def test_freesurfer_files(self):
+        samples.write_surface("lh.white")
+        samples.write_curv("lh.thickness", NOISE)
+        samples.write_mgh("lh.mgz", NOISE)
+        for name in ("lh.thickness", "lh.mgz"):
+            self.succeed(f"smooth lh.white {name} 5 new.{name}")
+        np.testing.assert_array_equal(self.column("new.lh.thickness"), self.column("new.lh.mgz"))
+
+    def test_given_areas_widen_or_narrow_the_kernel(self):
+        areas = vertex_areas(read_surface("lh.surf.gii"))
+        samples.write_gifti("areas.func.gii", {"areas": 4 * areas})
+        samples.write_surface("large.surf.gii", 2 * POINTS)
+        for word in ("--areas", "-corrected-areas"):
+            self.succeed(f"smooth lh.surf.gii lh.func.gii 8 a.func.gii {word} areas.func.gii")
+            self.succeed("smooth large.surf.gii lh.func.gii 8 b.func.gii")
+            np.testing.assert_allclose(self.column("a.func.gii"), self.column("b.func.gii"), 1e-5)
+
+    def test_the_integral_with_given_areas_is_kept(self):
+        random = np.random.default_rng(8).uniform(3, 12, N)
+        samples.write_gifti("areas.func.gii", {"areas": random})
+        line = "smooth lh.surf.gii lh.func.gii 8 out.func.gii --areas areas.func.gii"
+        for row in self.report(line)["columns"]:
+            self.assertAlmostEqual(row["total_after"] / row["total_before"], 1, delta=1e-6)
+
+    def test_more_steps_approach_the_solution(self):
+        errors = []
+        exact = heat(self.surface, NOISE, fwhm=5, number_of_time_steps=300)
+        for steps in (1, 3, 30):
+            self.succeed(f"smooth lh.surf.gii lh.func.gii 5 out.func.gii --steps {steps}")
+            errors.append(np.abs(self.column("out.func.gii") - exact).max())
+        self.assertGreater(errors[0], 3 * errors[1])
+        self.assertGreater(errors[1], 3 * errors[2])
+
+
+class OtherCommands(CommandTest):
+    def test_denoise_takes_channels_of_a_colour_together(self):
+        Path("a.ply").write_bytes(samples.ply_bytes())
+        self.succeed("denoise a.ply a.ply b.ply --weight 3")
+        surface = Surface(read_surface("a.ply").points, FACES)
+        colours = intrinsic_tv(surface, COLOURS.astype(float), fidelity_weight=3,
+                               mode="SteadyState")
+        quality = intrinsic_tv(surface, SMOOTH, fidelity_weight=3, mode="SteadyState")
+        found = read_data("b.ply").parts[0].values
+        np.testing.assert_array_equal(found[:, :3], np.clip(np.rint(colours), 0, 255))
+        np.testing.assert_array_equal(found[:, 3], quality)
+
+    def test_denoise_removes_noise_and_keeps_an_edge(self):
+        clean = np.where(POINTS[:, 0] > 0, 1.0, -1.0)
+        noisy = clean + np.random.default_rng(3).normal(0, 0.2, N)
+        samples.write_gifti("noisy.func.gii", {"one": noisy})
+        for option in ("", " --noise 0.2"):
+            report = self.report("denoise lh.surf.gii noisy.func.gii out.func.gii" + option)
+            self.assertGreater(report["fidelity_weights"][0], 0)
+            left = np.abs(self.column("out.func.gii") - clean).mean()
+            self.assertLess(left, 0.5 * np.abs(noisy - clean).mean())
+
+    def test_inpaint_keeps_known_values_and_fills_the_others(self):
+        holes = np.zeros(N, bool)
+        holes[[3, 20, 77]] = True
+        samples.write_gifti("holes.func.gii", {"one": np.where(holes, np.nan, SMOOTH)})
+        samples.write_gifti("where.func.gii", {"one": holes})
+        for model in ("heat", "tv"):
+            self.succeed(f"inpaint lh.surf.gii holes.func.gii a.func.gii --model {model}")
+            found = self.column("a.func.gii")
+            np.testing.assert_array_equal(found[~holes], SMOOTH[~holes])
+            self.assertLess(np.abs(found - SMOOTH).max(), 0.2)
+            self.succeed("inpaint lh.surf.gii lh.func.gii b.func.gii --column two "
+                         f"--missing where.func.gii --model {model}")
+            np.testing.assert_array_equal(self.column("b.func.gii"), found)
+
+    def test_texture_has_the_same_bits_for_the_same_seed(self):
+        for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+            self.succeed(f"texture lh.surf.gii 8 {name}.shape.gii --seed {seed}")
+        a, b, c = (self.column(f"{name}.shape.gii") for name in "abc")
+        np.testing.assert_array_equal(a, b)
+        self.assertGreater(np.abs(a - c).max(), 0.1)
+        self.assertEqual((a.min(), a.max()), (0, 1))
+        self.assertEqual(read_data("a.shape.gii").parts[0].structure, "CortexLeft")
+
+    def test_directions_are_unit_vectors_in_the_faces(self):
+        self.succeed("directions lh.surf.gii out.npy --method Smooth")
+        field = np.load("out.npy")
+        corners = POINTS[FACES]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        np.testing.assert_allclose(np.linalg.norm(field, axis=1), 1)
+        np.testing.assert_allclose((field * normals).sum(axis=1), 0, atol=1e-5)
+
+    def test_normals_of_a_sphere_and_a_denoised_sphere(self):
+        self.succeed("normals lh.surf.gii out.func.gii")
+        np.testing.assert_allclose(read_data("out.func.gii").parts[0].values, POINTS / 10,
+                                   atol=0.02)
+        noise = np.random.default_rng(6).normal(0, 0.01, (N, 1))
+        samples.write_surface("noisy.surf.gii", POINTS * (1 + noise))
+        report = self.report("normals noisy.surf.gii clean.surf.gii --move")
+        radii = np.linalg.norm(read_surface("clean.surf.gii").points, axis=1)
+        self.assertLess(radii.std(), 0.07)
+        self.assertGreater(report["maximum_displacement"], 0)
+
+    def test_fwhm_of_smoothed_noise(self):
+        samples.write_surface("fine.surf.gii", *samples.sphere(4))
+        surface = Surface(read_surface("fine.surf.gii").points, samples.sphere(4)[1])
+        noise = np.random.default_rng(7).normal(size=(surface.n_points, 20))
+        samples.write_gifti("noise.func.gii", {
+            str(i): column for i, column in enumerate(heat(surface, noise, fwhm=4).T)})
+        report = self.report("fwhm fine.surf.gii noise.func.gii")
+        self.assertEqual(len(report["surfaces"][0]["columns"]), 20)
+        self.assertAlmostEqual(report["surfaces"][0]["pooled"], 4, delta=0.3)
+
+    def test_info_counts(self):
+        report = self.report("info lh.surf.gii lh.func.gii")
+        surface, data = report["files"]
+        self.assertEqual((surface["points"], surface["faces"]), (N, len(FACES)))
+        self.assertAlmostEqual(surface["area"], 4 * np.pi * 100, delta=60)
+        self.assertEqual([column["name"] for column in data["columns"]], ["one", "two"])
+        self.assertAlmostEqual(data["columns"][0]["mean"], NOISE.mean(), delta=1e-5)
+
+    @unittest.skipUnless(HAS_VTK, "needs vtk")
+    def test_vtk_files(self):
+        samples.write_vtk("a.vtp", arrays={"f": NOISE.astype(float), "g": SMOOTH})
+        self.succeed("smooth a.vtp a.vtp 5 b.vtp --column f")
+        found = read_data("b.vtp")
+        self.assertEqual(found.names, ["f", "g"])
+        expected = heat((POINTS, FACES), NOISE.astype(float), fwhm=5, number_of_time_steps=3)
+        np.testing.assert_array_equal(found.parts[0].values[:, 0], expected)
+        np.testing.assert_array_equal(found.parts[0].values[:, 1], SMOOTH)
+        self.succeed("directions a.vtp c.vtp")
+        self.succeed("texture a.vtp 8 d.vtp")
+        self.assertEqual(read_data("d.vtp").names, ["f", "g", "Texture"])
+
+
+class Reports(CommandTest):
+    def test_json_has_times_widths_totals_and_warnings(self):
+        report = self.report("smooth lh.surf.gii lh.func.gii 5 out.func.gii")
+        self.assertEqual(set(report["seconds"]), {"read", "compute", "write"})
+        self.assertEqual((report["command"], report["fwhm"], report["warnings"]),
+                         ("smooth", 5.0, []))
+        self.assertEqual([row["name"] for row in report["columns"]], ["one", "two"])
+
+    def test_warnings_of_the_library_are_lines_and_in_the_report(self):
+        # Point N is in no face.
+        samples.write_surface("extra.surf.gii", np.vstack([POINTS, [0, 0, 0]]))
+        samples.write_gifti("extra.func.gii", {"one": np.append(NOISE, 1)})
+        code, out, error = run("smooth", "extra.surf.gii", "extra.func.gii", 5, "out.func.gii",
+                               "--json")
+        self.assertEqual(code, 0)
+        self.assertRegex(error, "^surfacediffusion: warning: .*point")
+        self.assertEqual(len(json.loads(out)["warnings"]), 1)
+
+    def test_errors_are_in_the_report(self):
+        code, out, _ = run("smooth", "none", "lh.func.gii", 5, "out.func.gii", "--json")
+        self.assertEqual(code, 2)
+        self.assertIn("none: cannot be read", json.loads(out)["error"])
+
+    def test_quiet_prints_nothing(self):
+        self.assertEqual(self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii --quiet"), "")
+
+    def test_one_line_says_what_was_written(self):
+        out = self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii")
+        self.assertRegex(out, r"^out.func.gii: 2 columns, \d+\.\d\d s\n$")
+
+    def test_help_of_every_command_shows_an_example(self):
+        _, out, _ = run("--help")
+        commands = ("smooth", "denoise", "inpaint", "texture", "directions", "normals", "fwhm",
+                    "info")
+        for command in commands:
+            self.assertIn(command, out)
+            code, text, _ = run(command, "--help")
+            self.assertEqual(code, 0)
+            self.assertRegex(text, rf"Example:\n  surfacediffusion {command} ")
+
+    def test_a_terminal_gets_a_progress_bar(self):
+        try:
+            import tqdm  # noqa: F401
+        except ImportError:
+            self.skipTest("needs tqdm")
+        command = [sys.executable, "-m", "surfacediffusion.command", "smooth", "lh.surf.gii",
+                   "lh.func.gii", "5", "out.func.gii"]
+        master, slave = pty.openpty()
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=slave)
+        os.close(slave)
+        self.assertIn(b"Smoothing: 100%", os.read(master, 100000))
+        os.close(master)
+
+
+if __name__ == "__main__":
+    unittest.main()

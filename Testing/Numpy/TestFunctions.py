@@ -1,0 +1,485 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The functions on arrays: values, units, keywords, results, interruption, threads."""
+
+import copy
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import threading
+import time
+import unittest
+import warnings
+
+import numpy as np
+
+import surfacediffusion as sd
+
+
+def bands(surface, degree=2):
+    """An eigenfunction of the unit sphere's Laplace-Beltrami operator, of eigenvalue 6."""
+    x, y, z = surface.points.T
+    return x * y if degree == 2 else z
+
+
+class Heat(unittest.TestCase):
+    def test_spherical_harmonic_decays_at_its_eigenvalue(self):
+        surface = sd.sphere(5)
+        start = bands(surface)
+        time_end = 0.1
+        end = sd.heat(surface, start, time_step=time_end / 20, number_of_time_steps=20,
+                      units="Absolute")
+        decay = np.dot(end, start) / np.dot(start, start)
+        self.assertAlmostEqual(decay, np.exp(-6 * time_end), delta=1e-3)
+
+    def test_fwhm_gives_the_gaussian_of_that_width(self):
+        # A harmonic of eigenvalue 6/r^2 decays by exp(-6 t/r^2), where t = FWHM^2 / (16 ln 2).
+        surface = sd.sphere(5, radius=10.0)
+        start = bands(surface)
+        end = sd.heat(surface, start, fwhm=4.0)
+        decay = np.dot(end, start) / np.dot(start, start)
+        self.assertAlmostEqual(decay, np.exp(-6 * 16 / (16 * np.log(2)) / 100), delta=1e-4)
+
+    def test_integral_is_conserved(self):
+        surface = sd.sphere(4)
+        noise = np.random.default_rng(1).normal(size=(surface.n_points, 3))
+        history = sd.heat(surface, noise, fwhm=0.3, full_output=True).history
+        for k in range(3):
+            totals = history[f"Total_{k}"]
+            self.assertLess(np.abs(totals - totals[0]).max(), 1e-12 * np.abs(noise).sum())
+
+    def test_columns_together_are_columns_alone(self):
+        surface = sd.sphere(4)
+        noise = np.random.default_rng(1).normal(size=(surface.n_points, 5))
+        together = sd.heat(surface, noise, fwhm=0.3)
+        self.assertEqual(together.shape, noise.shape)
+        for k in range(5):
+            np.testing.assert_allclose(sd.heat(surface, noise[:, k], fwhm=0.3), together[:, k],
+                                       rtol=0, atol=1e-12)
+
+    def test_nan_and_mask_are_missing(self):
+        surface = sd.sphere(4)
+        values = surface.points[:, 2] + 5.0
+        hole = surface.points[:, 0] > 0.9
+        with_nan = np.where(hole, np.nan, values)
+        filled = sd.heat(surface, with_nan, mode="SteadyState", hold_known_values=True)
+        np.testing.assert_array_equal(
+            filled, sd.heat(surface, values, mask=hole, mode="SteadyState", hold_known_values=True))
+        np.testing.assert_array_equal(filled[~hole], values[~hole])
+        self.assertLess(np.abs(filled - values)[hole].max(), 0.01)
+
+    def test_excluded_points_keep_their_value(self):
+        surface = sd.sphere(4)
+        values = np.random.default_rng(1).normal(size=surface.n_points)
+        wall = surface.points[:, 2] > 0.5
+        smooth = sd.heat(surface, values, fwhm=0.3, mask=wall, mask_mode="Exclude")
+        np.testing.assert_array_equal(smooth[wall], values[wall])
+        self.assertLess(smooth[~wall].std(), 0.6 * values.std())
+
+    def test_fixed_values_stay(self):
+        surface = sd.sphere(3)
+        values = np.random.default_rng(1).normal(size=surface.n_points)
+        fixed = np.zeros(surface.n_points, dtype=int)
+        fixed[:7] = 3
+        smooth = sd.heat(surface, values, fwhm=1.0, fixed=fixed)
+        np.testing.assert_array_equal(smooth[:7], values[:7])
+        self.assertTrue((smooth[7:] != values[7:]).all())
+
+    def test_directions_at_points_and_faces_smear(self):
+        surface = sd.sphere(4)
+        x, y, z = surface.points.T
+        around = np.stack([-y, x, 0 * z], axis=1)
+        on_faces = around[surface.triangles].mean(axis=1)
+        noise = np.random.default_rng(1).normal(size=surface.n_points)
+        for directions in (around, on_faces):
+            smeared = sd.heat(surface, noise, directions=directions, across_diffusivity=0.0,
+                              time_step=50.0)
+            north = sd.heat(surface, noise, directions=directions, along_diffusivity=0.0,
+                            time_step=50.0)
+            rough = [np.mean((np.asarray(u)[surface.triangles[:, 0]]
+                              - np.asarray(u)[surface.triangles[:, 1]]) ** 2)
+                     for u in (noise, smeared, north)]
+            self.assertLess(rough[1], rough[0])
+            self.assertGreater(np.abs(smeared - north).max(), 0.1)
+
+
+class Types(unittest.TestCase):
+    def setUp(self):
+        self.surface = sd.sphere(3)
+        self.values = np.random.default_rng(1).normal(size=self.surface.n_points)
+
+    def test_single_precision_stays_single(self):
+        single = self.values.astype(np.float32)
+        smooth = sd.heat(self.surface, single, fwhm=0.4)
+        self.assertEqual(smooth.dtype, np.float32)
+        exact = sd.heat(self.surface, single.astype(np.float64), fwhm=0.4)
+        np.testing.assert_array_equal(smooth, exact.astype(np.float32))
+        np.testing.assert_array_equal(sd.heat(self.surface, single, fwhm=0.4, dtype=float), exact)
+
+    def test_colours_are_rounded_at_the_end_and_keep_their_alpha(self):
+        colours = np.random.default_rng(1).integers(0, 256, (self.surface.n_points, 4), np.uint8)
+        smooth = sd.heat(self.surface, colours, fwhm=0.4)
+        self.assertEqual(smooth.dtype, np.uint8)
+        np.testing.assert_array_equal(smooth[:, 3], colours[:, 3])
+        exact = sd.heat(self.surface, colours[:, :3].astype(float), fwhm=0.4)
+        np.testing.assert_array_equal(smooth[:, :3], np.floor(exact + 0.5))
+
+    def test_other_types_become_double(self):
+        for dtype in (np.int16, np.int64, np.uint32, np.bool_, np.float16, np.longdouble):
+            smooth = sd.heat(self.surface, (self.values > 0).astype(dtype), fwhm=0.4)
+            self.assertEqual(smooth.dtype, np.float64)
+            np.testing.assert_array_equal(
+                smooth, sd.heat(self.surface, (self.values > 0).astype(float), fwhm=0.4))
+
+    def test_layout_and_byte_order_do_not_matter(self):
+        columns = np.random.default_rng(1).normal(size=(self.surface.n_points, 6))
+        expected = sd.heat(self.surface, columns, fwhm=0.4)
+        for same in (np.asfortranarray(columns), columns.astype(">f8"),
+                     np.repeat(columns, 2, axis=1)[:, ::2], columns.tolist()):
+            np.testing.assert_array_equal(sd.heat(self.surface, same, fwhm=0.4), expected)
+        self.assertEqual(sd.heat(self.surface, columns.astype(">f4"), fwhm=0.4).dtype, np.float32)
+
+    def test_masked_arrays_are_missing_where_masked(self):
+        hole = self.surface.points[:, 0] > 0.8
+        masked = np.ma.array(self.values, mask=hole)
+        expected = sd.heat(self.surface, np.where(hole, np.nan, self.values), fwhm=0.4)
+        np.testing.assert_array_equal(sd.heat(self.surface, masked, fwhm=0.4), expected)
+
+    def test_inputs_are_not_changed(self):
+        before = self.values.copy()
+        sd.heat(self.surface, self.values, fwhm=0.4)
+        sd.intrinsic_tv(self.surface, self.values)
+        np.testing.assert_array_equal(self.values, before)
+
+
+class Surfaces(unittest.TestCase):
+    def test_tuple_is_a_surface(self):
+        surface = sd.sphere(3)
+        z = surface.points[:, 2]
+        np.testing.assert_array_equal(
+            sd.heat((surface.points, surface.triangles), z, fwhm=0.5), sd.heat(surface, z, fwhm=0.5))
+
+    def test_polygons_are_cut(self):
+        points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0.5, 0], [3, 0, 0], [3, 1, 0]]
+        surface = sd.Surface(points, [[0, 1, 2, 3], [1, 4, 2], [4, 5, 6, 2, 1]])
+        self.assertEqual((surface.n_faces, len(surface.triangles)), (3, 2 + 1 + 3))
+        field = sd.direction_field(surface, method="Smooth")
+        self.assertEqual(field.shape, (3, 3))
+        self.assertEqual([len(face) for face in surface.faces], [4, 3, 5])
+
+    def test_later_calls_keep_the_mesh(self):
+        # Measured in work, not in time: the second call of a run with the same input does no step.
+        surface = sd.sphere(4)
+        values = surface.points[:, 2]
+        first = sd.heat(surface, values, fwhm=0.5, full_output=True)
+        again = sd.heat(surface, values, fwhm=0.5, full_output=True)
+        np.testing.assert_array_equal(first.values, again.values)
+        np.testing.assert_array_equal(first.history["Seconds"], again.history["Seconds"])
+
+    def test_array_edited_in_place_is_read_again(self):
+        surface = sd.sphere(3)
+        values = surface.points[:, 2].copy()
+        sd.heat(surface, values, fwhm=0.5)
+        values[:10] += 1.0
+        np.testing.assert_array_equal(
+            sd.heat(surface, values, fwhm=0.5), sd.heat(sd.sphere(3), values, fwhm=0.5))
+
+    def test_copies_and_pickles_are_equal(self):
+        surface = sd.sphere(2)
+        z = surface.points[:, 2]
+        for twin in (copy.deepcopy(surface), pickle.loads(pickle.dumps(surface))):
+            np.testing.assert_array_equal(sd.heat(twin, z, fwhm=1), sd.heat(surface, z, fwhm=1))
+
+    def test_points_can_be_changed_after_construction(self):
+        points = sd.sphere(2).points.copy()
+        surface = sd.Surface(points, sd.sphere(2).triangles)
+        points[:] = 0.0
+        self.assertEqual(surface.points.max(), sd.sphere(2).points.max())
+        with self.assertRaises(ValueError):
+            surface.points[0] = 0.0
+
+
+class Keywords(unittest.TestCase):
+    def test_defaults_are_those_of_the_library(self):
+        from surfacediffusion import _core
+        import inspect
+
+        for function in (sd.heat, sd.intrinsic_tv, sd.harmonic_map, sd.turing_texture,
+                         sd.direction_field):
+            parameters = inspect.signature(function).parameters
+            known = {entry["name"]: entry for entry in _core.list_settings(function.__name__)}
+            self.assertGreater(len(known), 5)
+            for name in set(known) - {"GenerateTimeSteps", "CheckpointMemoryLimit"}:
+                keyword = sd._settings.snake_case(name)
+                self.assertEqual(parameters[keyword].default, known[name]["default"], keyword)
+                self.assertIn(f"\n{keyword} : ", function.__doc__)
+                text = sd._settings.translate(
+                    function.__name__, known[name]["documentation"], {})
+                self.assertIn(" ".join(text.split()), " ".join(function.__doc__.split()))
+                self.assertNotIn("MergeTolerance", function.__doc__)
+
+    def test_every_keyword_takes_its_default(self):
+        surface = sd.sphere(2)
+        z = surface.points[:, 2]
+        for name in ("heat", "intrinsic_tv", "turing_texture", "harmonic_map", "direction_field"):
+            table = sd._settings.settings_of(name)
+            defaults = {keyword: setting.default for keyword, setting in table.items()}
+            function = getattr(sd, name)
+            values = [z] if name in ("heat", "intrinsic_tv") else []
+            if name == "turing_texture":
+                defaults["number_of_time_steps"] = 3
+                expected = np.asarray(function(surface, *values, number_of_time_steps=3))
+            else:
+                expected = np.asarray(function(surface, *values))
+            np.testing.assert_array_equal(np.asarray(function(surface, *values, **defaults)),
+                                          expected)
+
+    def test_unknown_keyword_is_a_type_error_with_the_nearest(self):
+        with self.assertRaisesRegex(TypeError, "'fhwm'; did you mean 'fwhm'"):
+            sd.heat(sd.sphere(1), np.zeros(42), fhwm=1)
+
+    def test_numbers_of_numpy_are_numbers(self):
+        surface = sd.sphere(2)
+        z = surface.points[:, 2]
+        expected = sd.heat(surface, z, fwhm=1.0, number_of_time_steps=4)
+        for fwhm, steps in ((np.float32(1), np.int8(4)), (np.array(1.0), 4.0), (1, np.uint64(4))):
+            np.testing.assert_array_equal(
+                sd.heat(surface, z, fwhm=fwhm, number_of_time_steps=steps), expected)
+
+
+class Results(unittest.TestCase):
+    def setUp(self):
+        self.surface = sd.sphere(3)
+        self.values = np.random.default_rng(1).normal(size=self.surface.n_points)
+
+    def test_steps_are_the_states_of_runs_of_that_length(self):
+        states = list(sd.heat(self.surface, self.values, steps=True, number_of_time_steps=5))
+        self.assertEqual([state.step for state in states], list(range(6)))
+        np.testing.assert_array_equal(states[0].values, self.values)
+        for state in states:
+            self.assertAlmostEqual(state.time, state.step * 1.0)
+        last = sd.heat(self.surface, self.values, number_of_time_steps=5, full_output=True)
+        np.testing.assert_array_equal(states[-1].values, last.values)
+        np.testing.assert_array_equal(states[-1].history["Energy"], last.history["Energy"])
+
+    def test_iterators_do_not_disturb_other_calls(self):
+        one = sd.heat(self.surface, self.values, steps=True)
+        two = sd.heat(self.surface, 2 * self.values, steps=True)
+        expected = list(sd.heat(self.surface, self.values, steps=True))
+        for a, b, wanted in zip(one, two, expected):
+            sd.heat(self.surface, self.values, fwhm=0.5)
+            np.testing.assert_array_equal(a.values, wanted.values)
+            np.testing.assert_allclose(b.values, 2 * wanted.values, rtol=0, atol=1e-12)
+
+    def test_errors_of_iterators_come_at_once(self):
+        with self.assertRaisesRegex(ValueError, "time_step is 0"):
+            sd.heat(self.surface, self.values, steps=True, time_step=0)
+
+    def test_energy_falls_and_times_grow(self):
+        result = sd.heat(self.surface, self.values, number_of_time_steps=4, full_output=True)
+        self.assertEqual(len(result.times), 5)
+        self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
+        self.assertTrue((np.diff(result.times) > 0).all())
+
+    def test_automatic_fidelity_reports_its_weight(self):
+        result = sd.heat(self.surface, self.values + 3 * self.surface.points[:, 2],
+                         automatic_fidelity=True, mode="SteadyState", full_output=True)
+        self.assertGreater(result.effective_fidelity_weight, 0.0)
+        same = sd.heat(self.surface, self.values + 3 * self.surface.points[:, 2],
+                       fidelity_weight=result.effective_fidelity_weight, mode="SteadyState")
+        np.testing.assert_allclose(result.values, same, rtol=0, atol=1e-6)
+
+    def test_result_is_an_array_for_numpy(self):
+        result = sd.turing_texture(self.surface, number_of_time_steps=2)
+        np.testing.assert_array_equal(np.asarray(result), result.values)
+        self.assertEqual(np.asarray(result, dtype=np.float32).dtype, np.float32)
+
+    def test_texture_is_made_of_its_seed(self):
+        a, b, c = (sd.turing_texture(self.surface, number_of_time_steps=20, seed=seed).values
+                   for seed in (1, 1, 2))
+        np.testing.assert_array_equal(a, b)
+        self.assertGreater(np.abs(a - c).max(), 0.0)
+
+    def test_texture_has_the_colours_asked_for(self):
+        result = sd.turing_texture(self.surface, number_of_time_steps=20, color_output=True,
+                                   low_color=(1, 0, 0), high_color=(0, 0, 1))
+        np.testing.assert_array_equal(result.colors[result.texture == 0][0], [255, 0, 0])
+        np.testing.assert_array_equal(result.colors[result.texture == 1][0], [0, 0, 255])
+
+    def test_texture_that_stands_ends_the_iterator(self):
+        states = list(sd.turing_texture(self.surface, feature_size=1.0, stop_tolerance=0.1,
+                                        number_of_time_steps=5000, steps=True, output_interval=50))
+        self.assertLess(len(states), 20)
+        self.assertLess(states[-1].step, 1000)
+
+    def test_normals_of_a_noisy_sphere_are_radial_again(self):
+        noise = np.random.default_rng(1).normal(scale=0.01, size=(self.surface.n_points, 1))
+        noisy = sd.Surface(self.surface.points * (1 + noise), self.surface.triangles)
+        result = sd.harmonic_map(noisy, move_vertices=True)
+        before = np.einsum("ij,ij->i", noisy._point_normals(), self.surface.points)
+        after = np.einsum("ij,ij->i", result.values, self.surface.points)
+        self.assertLess(np.mean(1 - after), 0.5 * np.mean(1 - before))
+        self.assertGreater(result.mean_displacement, 0.0)
+        self.assertLess(np.linalg.norm(result.points, axis=1).std(), 0.5 * noise.std())
+
+    def test_principal_directions_of_a_cylinder_follow_its_axis(self):
+        angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 40, endpoint=False),
+                                    np.linspace(0, 4, 30), indexing="ij")
+        points = np.stack([np.cos(angle), np.sin(angle), height], axis=-1).reshape(-1, 3)
+        index = np.arange(1200).reshape(40, 30)
+        a, b = index[:, :-1].ravel(), np.roll(index, -1, axis=0)[:, :-1].ravel()
+        surface = sd.Surface(points, np.stack([a, b, b + 1, a + 1], axis=1))
+        field = sd.direction_field(surface)
+        inside = np.abs(points[a][:, 2] - 2) < 1
+        self.assertGreater(np.abs(field[inside, 2]).min(), 0.99)
+
+
+class Warnings(unittest.TestCase):
+    def test_warning_names_the_line_of_the_caller(self):
+        surface = sd.Surface(np.vstack([sd.sphere(2).points, [[5, 5, 5]]]), sd.sphere(2).triangles)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            result = sd.heat(surface, np.zeros(163), fwhm=1, full_output=True)
+        self.assertEqual(len(caught), 1)
+        self.assertIs(caught[0].category, sd.SurfaceDiffusionWarning)
+        self.assertEqual(caught[0].filename, __file__)
+        self.assertEqual(str(caught[0].message), "1 points that no triangle uses keep their values")
+        self.assertEqual(result.warnings, [str(caught[0].message)])
+
+    def test_warning_uses_the_words_of_python(self):
+        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]])
+        surface = sd.Surface(points, [[0, 1, 2], [3, 5, 4]])
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "set merge_coincident_points"):
+            sd.heat(surface, np.zeros(6))
+
+
+class Interruption(unittest.TestCase):
+    def long_run(self, **keywords):
+        surface = sd.sphere(6)
+        noise = np.random.default_rng(1).normal(size=surface.n_points)
+        return sd.intrinsic_tv(surface, noise, number_of_time_steps=1000000, **keywords)
+
+    def test_ctrl_c_ends_a_run(self):
+        timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            self.long_run()  # all steps would take days
+        timer.join()
+
+    def test_surface_can_be_used_after_an_interruption(self):
+        surface = sd.sphere(4)
+        z = surface.points[:, 2]
+        expected = sd.heat(surface, z, fwhm=0.5)
+
+        def stop(_fraction):
+            raise RuntimeError("of the callable")
+
+        with self.assertRaisesRegex(RuntimeError, "of the callable"):
+            sd.intrinsic_tv(surface, z, number_of_time_steps=1000000, progress=stop)
+        np.testing.assert_array_equal(sd.heat(surface, z, fwhm=0.5), expected)
+        tv = sd.intrinsic_tv(surface, z)
+        np.testing.assert_array_equal(sd.intrinsic_tv(sd.sphere(4), z), tv)
+
+    def test_progress_grows_to_one(self):
+        seen = []
+        surface = sd.sphere(5)
+        sd.intrinsic_tv(surface, surface.points[:, 2], progress=seen.append)
+        self.assertEqual(seen, sorted(seen))
+        self.assertEqual(seen[-1], 1.0)
+        seen.clear()
+        for _ in sd.heat(surface, surface.points[:, 2], steps=True, progress=seen.append):
+            pass
+        self.assertEqual(seen, sorted(seen))
+        self.assertEqual((len(seen) >= 11, seen[-1]), (True, 1.0))
+
+    def test_other_threads_of_python_run_meanwhile(self):
+        counts = []
+
+        def count_and_stop(_fraction):
+            counts.append(counter[0])
+            if len(counts) > 3:
+                raise StopIteration
+
+        counter, ended = [0], threading.Event()
+
+        def count():
+            while not ended.is_set():
+                counter[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        try:
+            with self.assertRaises(StopIteration):
+                self.long_run(progress=count_and_stop)
+        finally:
+            ended.set()
+            thread.join()
+        self.assertGreater(counts[-1], counts[0] + 3)
+
+
+def smooth_in_child(surface, values, queue):
+    queue.put(sd.heat(surface, values, fwhm=0.5))
+
+
+class Threads(unittest.TestCase):
+    def test_bits_do_not_depend_on_the_number_of_threads(self):
+        surface = sd.sphere(6)  # 40962 points: more blocks than one thread takes
+        values = np.random.default_rng(1).normal(size=(surface.n_points, 2))
+        points, faces = surface.points, surface.triangles
+        before = sd.get_number_of_threads()
+        results = []
+        try:
+            for number in (1, 2, 5):
+                sd.set_number_of_threads(number)
+                self.assertEqual(sd.get_number_of_threads(), number)
+                fresh = sd.Surface(points, faces)
+                results.append((
+                    sd.heat(fresh, values, fwhm=0.05, solver="ConjugateGradient"),
+                    sd.intrinsic_tv(fresh, values, number_of_time_steps=2),
+                    sd.turing_texture(fresh, number_of_time_steps=3).values))
+        finally:
+            sd.set_number_of_threads(before)
+        for other in results[1:]:
+            for a, b in zip(results[0], other):
+                np.testing.assert_array_equal(a, b)
+
+    def test_one_surface_serves_several_threads(self):
+        surface = sd.sphere(4)
+        inputs = [np.random.default_rng(seed).normal(size=surface.n_points) for seed in range(4)]
+        expected = [sd.heat(surface, values, fwhm=0.5) for values in inputs]
+        results = [None] * 4
+
+        def work(i):
+            for _ in range(5):
+                results[i] = sd.heat(surface, inputs[i], fwhm=0.5)
+
+        threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for result, wanted in zip(results, expected):
+            np.testing.assert_array_equal(result, wanted)
+
+    @unittest.skipUnless(hasattr(os, "fork"), "needs fork")
+    def test_forked_process_has_threads_of_its_own(self):
+        surface = sd.sphere(6)
+        values = np.random.default_rng(1).normal(size=surface.n_points)
+        sd.set_number_of_threads(max(2, sd.get_number_of_threads()))
+        expected = sd.heat(surface, values, fwhm=0.5)
+        context = multiprocessing.get_context("fork")
+        queue = context.Queue()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of fork with threads
+            child = context.Process(target=smooth_in_child, args=(surface, 2 * values, queue))
+            child.start()
+        result = queue.get(timeout=300)
+        child.join()
+        np.testing.assert_allclose(result, 2 * expected, rtol=0, atol=1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2, argv=sys.argv)

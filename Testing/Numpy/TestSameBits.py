@@ -1,0 +1,155 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The functions on arrays give the bits of the VTK filters, which run in another Python:
+SURFACEDIFFUSION_VTK_PYTHON, with the package for VTK in SURFACEDIFFUSION_VTK_PATH."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import surfacediffusion as sd
+from surfacediffusion._settings import snake_case
+
+VTK_PYTHON = os.environ.get("SURFACEDIFFUSION_VTK_PYTHON")
+if not VTK_PYTHON:
+    print("SURFACEDIFFUSION_VTK_PYTHON is not set")
+    sys.exit(77)
+
+FILTERS = {
+    "heat": "vtkFVMHeatFilter",
+    "intrinsic_tv": "vtkIntrinsicTVFilter",
+    "harmonic_map": "vtkHarmonicMapFilter",
+    "turing_texture": "vtkTuringTextureFilter",
+    "direction_field": "vtkSurfaceDirectionFieldFilter",
+}
+
+#: Index of each input array of the filters.
+INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
+         "rates": 4}
+
+
+def rough_sphere():
+    """A sphere with noise, a hole, and quadrilaterals beside triangles."""
+    random = np.random.default_rng(1)
+    sphere = sd.sphere(5)
+    points = sphere.points * random.normal(1.0, 0.004, size=(sphere.n_points, 1)) * [1.0, 1.2, 0.8]
+    faces = sphere.triangles[sphere.points[sphere.triangles].mean(axis=1)[:, 2] < 0.9].tolist()
+    # Pairs of triangles that share an edge become quadrilaterals.
+    quads, merged = [], set()
+    edges = {}
+    for number, (a, b, c) in enumerate(faces):
+        for start, end, opposite in ((a, b, c), (b, c, a), (c, a, b)):
+            twin = edges.get((end, start))
+            if twin and number % 5 == 0 and not merged & {number, twin[0]}:
+                merged |= {number, twin[0]}
+                quads.append([start, twin[1], end, opposite])
+            edges[start, end] = (number, opposite)
+    quads += [face for number, face in enumerate(faces) if number not in merged]
+    return points, quads
+
+
+class SameBits(unittest.TestCase):
+    def setUp(self):
+        self.points, self.faces = rough_sphere()
+        self.surface = sd.Surface(self.points, self.faces)
+        self.random = np.random.default_rng(2)
+        n, m = self.surface.n_points, self.surface.n_faces
+        x, y, z = self.points.T
+        self.values = np.sign(x) + 0.2 * self.random.normal(size=n)
+        self.columns = self.random.normal(size=(n, 3))
+        self.mask = ((x - 0.5) ** 2 + y**2 < 0.05).astype(np.uint8)
+        self.around = np.stack([-y, x, 0 * z], axis=1)
+        self.normals = self.points + 0.1 * self.random.normal(size=(n, 3))
+        self.rates = np.tile([30.0, 20.0, 3.0, 2.0], (m, 1))
+
+    def test_all_functions(self):
+        nan = np.where(self.mask != 0, np.nan, self.values)
+        colours = self.random.integers(0, 256, (len(self.points), 4), np.uint8)
+        cases = [
+            ("heat", {"values": self.values}, {"FWHM": 0.2}),
+            ("heat", {"values": self.columns.astype(np.float32)}, {"FWHM": 0.1}),
+            ("heat", {"values": colours}, {"TimeStep": 2.0, "TimeIntegrator": "FirstOrder"}),
+            ("heat", {"values": nan}, {"FidelityWeight": 2.0, "InitialFill": "Noise",
+                                       "RandomSeed": 3, "Solver": "ConjugateGradient"}),
+            ("heat", {"values": self.values, "mask": self.mask, "fixed": (self.points[:, 0] > 1.0)
+                      .astype(np.uint8)}, {"Mode": "SteadyState", "HoldKnownValues": True}),
+            ("heat", {"values": self.columns, "directions": self.around},
+             {"AcrossDiffusivity": 0.1, "Units": "Absolute", "TimeStep": 0.002}),
+            ("heat", {"values": self.values, "mask": self.mask},
+             {"MaskMode": "Exclude", "FWHM": 0.2, "Solver": "Multigrid"}),
+            ("heat", {"values": self.values}, {"AutomaticFidelity": True, "Mode": "SteadyState"}),
+            ("heat", {"values": self.values}, {"IntrinsicDelaunay": True}),
+            ("intrinsic_tv", {"values": self.values}, {}),
+            ("intrinsic_tv", {"values": colours, "mask": self.mask}, {"Mode": "SteadyState"}),
+            ("intrinsic_tv", {"values": self.values},
+             {"EdgeFunction": "PeronaMalikRational", "EdgeThreshold": 0.2}),
+            ("intrinsic_tv", {"values": self.columns},
+             {"Discretization": "CrouzeixRaviart", "NumberOfTimeSteps": 3}),
+            ("harmonic_map", {}, {"MoveVertices": True}),
+            ("harmonic_map", {"vectors": self.normals}, {"Exponent": 2.0}),
+            ("harmonic_map", {"vectors": self.normals.astype(np.float32)}, {"LineField": True}),
+            ("harmonic_map", {"vectors": colours[:, :3]}, {}),
+            ("turing_texture", {}, {"NumberOfTimeSteps": 30, "RandomSeed": 4, "ColorOutput": True}),
+            ("turing_texture", {}, {"NumberOfTimeSteps": 20, "Kinetics": "GrayScott",
+                                    "TimeIntegrator": "FirstOrder"}),
+            ("turing_texture", {"rates": self.rates, "directions": self.around},
+             {"NumberOfTimeSteps": 10}),
+            ("turing_texture", {"initial": np.abs(self.columns[:, :2].astype(np.float32))},
+             {"NumberOfTimeSteps": 10, "FeatureSize": 0.3}),
+            ("direction_field", {}, {}),
+            ("direction_field", {}, {"Method": "Smooth", "Angle": 30.0}),
+            ("direction_field", {"hints": self.around}, {"Method": "Hints"}),
+        ]
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            listed = []
+            flat = np.concatenate([np.asarray(face) for face in self.faces])
+            sizes = np.array([len(face) for face in self.faces])
+            for number, (function, arrays, properties) in enumerate(cases):
+                np.savez(folder / f"case{number}.npz", points=self.points, faces=flat, sizes=sizes,
+                         **arrays)
+                listed.append([FILTERS[function], properties, {key: INDEX[key] for key in arrays}])
+            (folder / "cases.json").write_text(json.dumps(listed))
+            environment = dict(os.environ, PYTHONPATH=os.environ["SURFACEDIFFUSION_VTK_PATH"])
+            script = pathlib.Path(__file__).with_name("run_filters.py")
+            subprocess.run([VTK_PYTHON, script, folder], env=environment, check=True)
+            for number, (function, arrays, properties) in enumerate(cases):
+                with self.subTest(number=number, function=function, properties=properties):
+                    with np.load(folder / f"result{number}.npz") as expected:
+                        self.compare(function, arrays, properties, dict(expected))
+
+    def compare(self, function, arrays, properties, expected):
+        keywords = {snake_case(name): value for name, value in properties.items()}
+        if function in ("heat", "intrinsic_tv"):
+            keywords["full_output"] = True
+        result = getattr(sd, function)(self.surface, **arrays, **keywords)
+        if function == "direction_field":
+            found = {"Direction": result}
+        elif function == "turing_texture":
+            found = {"u1": result.values[:, 0], "u2": result.values[:, 1], "Texture": result.texture}
+            if result.colors is not None:
+                found["TextureColor"] = result.colors
+        else:
+            suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic"}[function]
+            base = next(iter(arrays), "Normals")
+            found = {base + suffix: result.values}
+        if function == "harmonic_map":
+            found["points"] = result.points
+        if function != "direction_field":
+            found.update({"history " + key: column for key, column in result.history.items()
+                          if key != "Seconds"})
+        self.assertEqual(set(expected) - {"points", "history Step"}, set(found) - {"points"})
+        for key, array in found.items():
+            if not key.startswith("history"):
+                self.assertEqual(expected[key].dtype, array.dtype, key)
+            np.testing.assert_array_equal(expected[key], array, err_msg=key)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2, argv=sys.argv)
