@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: wheel.sh SOURCE FOLDER WHEELS
 # Makes a source distribution of SOURCE, from it a wheel, and installs this into a new virtual
-# environment without VTK in FOLDER/environment, all without a network and without Eigen of the
-# system. WHEELS has what is needed (.ci/fetch-test-data).
+# environment without VTK in FOLDER/environment, all without a network. WHEELS has what is needed
+# (.ci/fetch-test-data).
 set -eu
 source=$1
 folder=$2
