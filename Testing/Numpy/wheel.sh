@@ -22,7 +22,7 @@ from scikit_build_core.build import build_sdist
 print('made', build_sdist('$folder/dist'))"
 "$folder/environment/bin/pip" uninstall --quiet --yes scikit-build-core
 cd "$folder"
-size=$(wc -c < dist/*.tar.gz)
+size=$(cat dist/*.tar.gz | wc -c)
 if [ "$size" -gt 2000000 ]; then
   echo "the source distribution has $size bytes: it contains more than the package needs"
   exit 1
