@@ -480,7 +480,5 @@ def direction_field(
         reporter.finish_part()
         output = np.empty((surface.n_faces, 3))
         runner.call(run.write, surface._core, output)
-        degenerate = run.number_of_degenerate_triangles()
-    if degenerate:
-        warn([f"{degenerate} triangles of zero area get no direction"])
+        warn(runner.warnings(run))
     return output
