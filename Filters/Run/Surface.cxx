@@ -26,6 +26,7 @@ struct Construction
 {
   Points Coordinates;
   Triangles Corners;
+  std::vector<double> AreaFactors;
   std::shared_ptr<TriangleMesh> Input;
   std::shared_ptr<const IntrinsicDelaunay> Delaunay;
   std::shared_ptr<const TriangleMesh> Working;
@@ -36,6 +37,10 @@ struct Construction
   {
     this->Input = std::make_shared<TriangleMesh>(
       this->Coordinates, this->Corners, parallel, progress.Part(0.0, 0.5), options.LengthUnit);
+    if (!this->AreaFactors.empty())
+    {
+      this->Input->ScaleControlAreas(this->AreaFactors);
+    }
     this->Working = this->Input;
     if (options.IntrinsicDelaunay)
     {
@@ -47,7 +52,7 @@ struct Construction
   }
 };
 
-void CheckArrays(const SurfaceArrays& arrays)
+void CheckArrays(const SurfaceArrays& arrays, const SurfaceOptions& options)
 {
   if (arrays.Points.rows() > LargestCount)
   {
@@ -58,6 +63,10 @@ void CheckArrays(const SurfaceArrays& arrays)
     throw std::runtime_error("the input has more triangles than this library can number");
   }
   RequireFiniteCoordinates(arrays.Points);
+  if (options.IntrinsicDelaunay && !arrays.AreaFactors.empty())
+  {
+    throw std::runtime_error("IntrinsicDelaunay is on; allowed: off on surfaces with given areas");
+  }
   for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
   {
     for (int a = 0; a < 3; ++a)
@@ -93,7 +102,7 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   const ProgressMonitor& progress)
   : Arrays(std::move(arrays))
 {
-  CheckArrays(this->Arrays);
+  CheckArrays(this->Arrays, options);
   this->SelectTriangles(options);
   progress.Report(0.1);
   this->Build(options, parallel, progress.Part(0.1, 1.0));
@@ -145,6 +154,7 @@ void Surface::Build(
   const auto construction = std::make_shared<Construction>();
   construction->Coordinates.swap(this->Arrays.Points);
   construction->Corners.swap(this->Arrays.Triangles);
+  construction->AreaFactors = this->Arrays.AreaFactors;
   if (construction->Coordinates.rows() < SmallSurface)
   {
     construction->Run(options, parallel, progress);

@@ -18,6 +18,9 @@ struct SurfaceArrays
   SurfaceDiffusion::Points Points;
   SurfaceDiffusion::Triangles Triangles;
   std::vector<char> Excluded; ///< per point: triangles with a nonzero corner are ignored
+  /// Per point, above 0: multiplies the area of its control cell, for surfaces whose true areas are
+  /// known, such as averages of many. Empty: 1. Not together with IntrinsicDelaunay.
+  std::vector<double> AreaFactors = {};
 };
 
 /// Throws std::runtime_error if a coordinate is not finite.

@@ -112,9 +112,16 @@ InputSurface::InputSurface(
     this->TriangleRows.data(), sizeof(Index) * static_cast<std::size_t>(this->TriangleRows.size()));
 }
 
+void InputSurface::SetAreaFactors(const FactorArray& factors)
+{
+  this->AreaFactors.assign(factors.data(), factors.data() + factors.size());
+  this->Contents.AddBytes(
+    this->AreaFactors.data(), sizeof(double) * this->AreaFactors.size(), PythonThreads::Instance());
+}
+
 SurfaceArrays InputSurface::Read(const std::optional<FlagArray>& excluded) const
 {
-  return { this->Coordinates, this->TriangleRows, ReadFlags(excluded) };
+  return { this->Coordinates, this->TriangleRows, ReadFlags(excluded), this->AreaFactors };
 }
 
 Fingerprint InputSurface::Version(const std::optional<FlagArray>& excluded) const

@@ -23,6 +23,8 @@ using DoubleArray =
   nanobind::ndarray<const double, nanobind::ndim<2>, nanobind::device::cpu, nanobind::c_contig>;
 using LongArray = nanobind::ndarray<const std::int64_t, nanobind::ndim<1>, nanobind::device::cpu,
   nanobind::c_contig>;
+using FactorArray =
+  nanobind::ndarray<const double, nanobind::ndim<1>, nanobind::device::cpu, nanobind::c_contig>;
 using FlagArray = nanobind::ndarray<const std::uint8_t, nanobind::ndim<1>, nanobind::device::cpu,
   nanobind::c_contig>;
 
@@ -71,6 +73,9 @@ public:
     return this->Faces.empty() ? t : this->Faces[static_cast<std::size_t>(t)];
   }
 
+  /// See SurfaceArrays::AreaFactors; one per point.
+  void SetAreaFactors(const FactorArray& factors);
+
   SurfaceArrays Read(const std::optional<FlagArray>& excluded) const;
   Fingerprint Version(const std::optional<FlagArray>& excluded) const;
 
@@ -79,6 +84,7 @@ private:
   Triangles TriangleRows;
   std::vector<std::int64_t> Faces; ///< per triangle; empty if all polygons are triangles
   std::size_t FaceCount = 0;
+  std::vector<double> AreaFactors;
   Fingerprint Contents;
 };
 

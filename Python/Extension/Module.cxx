@@ -71,6 +71,7 @@ NB_MODULE(_core, m)
   nb::class_<InputSurface>(m, "Surface")
     .def(nb::init<const DoubleArray&, const LongArray&, const LongArray&>(), "points"_a,
       "connectivity"_a, "offsets"_a)
+    .def("set_area_factors", &InputSurface::SetAreaFactors, "factors"_a)
     .def("triangles", &GetTriangles);
 
   nb::class_<InputFields>(m, "Fields")

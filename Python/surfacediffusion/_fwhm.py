@@ -149,6 +149,12 @@ class _Edges:
             ends[:, 0].astype(np.int64) * surface.n_points + ends[:, 1], return_inverse=True)
         self.ends = np.divmod(unique, surface.n_points)
         squares = ((points[self.ends[0]] - points[self.ends[1]]) ** 2).sum(axis=1)
+        if surface.areas is not None:  # lengths grow as the roots of areas
+            factors = np.divide(surface.areas, self.areas, out=np.ones_like(self.areas),
+                                where=self.areas > 0)
+            squares *= 0.5 * (factors[self.ends[0]] + factors[self.ends[1]])
+            area = area * factors[triangles].mean(axis=1)
+            self.areas = self.areas * factors
         areas = np.bincount(inverse.ravel(), np.repeat(area, 3), len(unique))
         kept = (squares > 0) & (areas > 0)
         self.ends = (self.ends[0][kept], self.ends[1][kept])

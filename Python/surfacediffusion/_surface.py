@@ -116,6 +116,11 @@ class Surface:
         shorter diagonal that lies inside, larger polygons by ear cutting. The surface may have
         several components, boundaries, edges with more than two triangles, and points without
         triangle.
+    areas : array_like, shape (n,), optional
+        The areas of the points' control cells, above 0, in place of those of `faces` (a third of the
+        triangles at each point). For an average of many surfaces, which is smaller than they are:
+        the lumped mass matrix has these areas, so that widths are those on a surface with these
+        areas and the angles of this one. Not with ``intrinsic_delaunay=True``.
 
     Examples
     --------
@@ -128,7 +133,12 @@ class Surface:
     array([0.211, 0.211, 0.211, 0.211])
     """
 
-    def __init__(self, points: ArrayLike, faces: ArrayLike | Sequence[Sequence[int]]) -> None:
+    def __init__(
+        self,
+        points: ArrayLike,
+        faces: ArrayLike | Sequence[Sequence[int]],
+        areas: ArrayLike | None = None,
+    ) -> None:
         self._points = _as_points(points)
         flat, offsets = _as_polygons(faces)
         outside = (flat < 0) | (flat >= self.n_points)
@@ -140,9 +150,34 @@ class Surface:
         self._connectivity = np.ascontiguousarray(flat, dtype=np.int64)
         self._offsets = offsets
         self._core = _core.Surface(self._points, self._connectivity, self._offsets)
+        self._areas = None if areas is None else self._set_areas(areas)
         self._points.setflags(write=False)
         self._runs: dict[str, Any] = {}
         self._lock = threading.RLock()  # of a run: one call at a time
+
+    def _set_areas(self, areas: ArrayLike) -> NDArray[np.float64]:
+        """Pass the areas on as factors of those of the triangles."""
+        given = np.array(as_numbers("areas", areas), dtype=np.float64)
+        if given.shape != (self.n_points,):
+            raise ValueError(f"areas has shape {given.shape}; allowed: ({self.n_points},), one per "
+                             "point")
+        found = self._triangle_areas()
+        used = found > 0
+        wrong = used & ~(np.isfinite(given) & (given > 0))
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise ValueError(f"areas has {given[row]} at point {row}; allowed: finite numbers above 0")
+        factors = np.ones(self.n_points)
+        factors[used] = given[used] / found[used]
+        self._core.set_area_factors(factors)
+        return given
+
+    def _triangle_areas(self) -> NDArray[np.float64]:
+        """A third of the triangles at each point (n,)."""
+        triangles = self.triangles
+        a, b, c = (self._points[triangles[:, i]] for i in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        return np.bincount(triangles.ravel(), np.repeat(area / 3, 3), self.n_points)
 
     @property
     def n_points(self) -> int:
@@ -160,6 +195,11 @@ class Surface:
         return self._points
 
     @property
+    def areas(self) -> NDArray[np.float64] | None:
+        """The given areas (n,); None for those of the triangles."""
+        return self._areas
+
+    @property
     def triangles(self) -> NDArray[np.int32]:
         """The triangles (t, 3) that the faces were cut into, read-only."""
         triangles: NDArray[np.int32] = self._core.triangles()
@@ -174,7 +214,7 @@ class Surface:
         return f"<Surface: {self.n_points} points, {self.n_faces} faces>"
 
     def __reduce__(self) -> Any:
-        return _restore, (self._points, self._connectivity, self._offsets)
+        return _restore, (self._points, self._connectivity, self._offsets, self._areas)
 
     def _point_normals(self) -> NDArray[np.float32]:
         """The normalised sums of the unit normals of the faces at each point, in single precision;
@@ -215,8 +255,8 @@ def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64
                      a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]], axis=1)
 
 
-def _restore(points: Any, connectivity: Any, offsets: Any) -> Surface:
-    return Surface(points, np.split(connectivity, offsets[1:-1]))
+def _restore(points: Any, connectivity: Any, offsets: Any, areas: Any = None) -> Surface:
+    return Surface(points, np.split(connectivity, offsets[1:-1]), areas)
 
 
 SurfaceLike = Union[Surface, Tuple[ArrayLike, Any]]

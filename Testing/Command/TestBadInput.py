@@ -12,10 +12,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import nibabel as nib
 import numpy as np
 import samples
-from samples import FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, run
+from samples import FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
 
 def make_files(folder):
@@ -189,6 +188,8 @@ CASES = [
     (DATA.format("lh.func.gii") + " --column 3", r"--column is '3'; .* columns 1 to 2 \(one, two"),
     (DATA.format("lh.func.gii") + " --column 0", "--column is '0'"),
     (DATA.format("lh.func.gii") + " --column three", "--column is 'three'; lh.func.gii has"),
+    (DATA.format("lh.func.gii") + " --areas zeros.func.gii", "zeros.func.gii: the area of vertex 0 "
+                                                              "is 0; allowed: finite numbers above"),
     # numbers and words
     ("smooth lh.surf.gii lh.func.gii 0 out", "argument FWHM: is '0'; allowed: a number above 0"),
     ("smooth lh.surf.gii lh.func.gii nan out", "argument FWHM: is 'nan'"),

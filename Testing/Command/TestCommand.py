@@ -12,12 +12,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import nibabel as nib
 import numpy as np
 import samples
-from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, run
+from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
 from surfacediffusion import Surface, heat, intrinsic_tv
+from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
 INSIDE = POINTS[:, 2] > -6
@@ -140,6 +140,22 @@ class Smooth(CommandTest):
         for name in ("lh.thickness", "lh.mgz"):
             self.succeed(f"smooth lh.white {name} 5 new.{name}")
         np.testing.assert_array_equal(self.column("new.lh.thickness"), self.column("new.lh.mgz"))
+
+    def test_given_areas_widen_or_narrow_the_kernel(self):
+        areas = vertex_areas(read_surface("lh.surf.gii"))
+        samples.write_gifti("areas.func.gii", {"areas": 4 * areas})
+        samples.write_surface("large.surf.gii", 2 * POINTS)
+        for word in ("--areas", "-corrected-areas"):
+            self.succeed(f"smooth lh.surf.gii lh.func.gii 8 a.func.gii {word} areas.func.gii")
+            self.succeed("smooth large.surf.gii lh.func.gii 8 b.func.gii")
+            np.testing.assert_allclose(self.column("a.func.gii"), self.column("b.func.gii"), 1e-5)
+
+    def test_the_integral_with_given_areas_is_kept(self):
+        random = np.random.default_rng(8).uniform(3, 12, N)
+        samples.write_gifti("areas.func.gii", {"areas": random})
+        line = "smooth lh.surf.gii lh.func.gii 8 out.func.gii --areas areas.func.gii"
+        for row in self.report(line)["columns"]:
+            self.assertAlmostEqual(row["total_after"] / row["total_before"], 1, delta=1e-6)
 
     def test_more_steps_approach_the_solution(self):
         errors = []

@@ -10,11 +10,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import nibabel as nib
 import numpy as np
 import samples
-from nibabel import freesurfer
-from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH
+from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, freesurfer, nib
 
 from surfacediffusion.files import FileError, new_data, read_data, read_surface
 

@@ -6,11 +6,18 @@ import contextlib
 import importlib.util
 import io
 import struct
+import sys
 from pathlib import Path
 
-import nibabel as nib
 import numpy as np
-from nibabel import cifti2, freesurfer, gifti
+
+try:
+    import meshio  # noqa: F401
+    import nibabel as nib
+    from nibabel import cifti2, freesurfer, gifti
+except ImportError as missing:
+    print(missing)
+    sys.exit(77)  # skipped
 
 HAS_VTK = importlib.util.find_spec("vtkmodules") is not None
 

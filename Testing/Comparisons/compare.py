@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import platform
 import sys
 import tempfile
@@ -23,27 +24,27 @@ WIDTHS = (6, 10, 20)
 MISSING = 0.2
 
 
-def measure_widths(samples, results):
-    """The width that each program realises, by the decay of 30 eigenfunctions."""
+def measure_widths(samples, chosen, results):
+    """The width that each program realises, by the decay of 12 eigenfunctions."""
     for sample in samples:
-        eigenvalues, functions, mass = reference.eigenfunctions(sample.points, sample.faces, 30)
+        eigenvalues, functions, mass = reference.eigenfunctions(sample.points, sample.faces, 12)
         for fwhm in WIDTHS:
-            for peer in PEERS:
+            for peer in chosen:
                 smoothed = peers.smooth(peer, sample, functions, fwhm)
                 widths = reference.realised_widths(smoothed, eigenvalues, functions, mass)
                 results.append({"surface": sample.name, "fwhm": fwhm, "peer": peer,
                                 "width": np.median(widths),
-                                "low": np.percentile(widths, 5), "high": np.percentile(widths, 95)})
+                                "low": widths.min(), "high": widths.max()})
 
 
-def measure_errors(samples, results):
+def measure_errors(samples, chosen, results):
     """Relative error in L2 against a fine solution, and the change of the integral."""
     for sample in samples:
         _, areas = reference.matrices(sample.points, sample.faces)
         values = np.column_stack(list(sample.maps.values()))
         for fwhm in WIDTHS:
             exact = reference.diffuse(sample.points, sample.faces, values, fwhm)
-            for peer in PEERS:
+            for peer in chosen:
                 smoothed = peers.smooth(peer, sample, values, fwhm)
                 for i, name in enumerate(sample.maps):
                     error = np.sqrt(areas @ (smoothed - exact)[:, i]**2 / (areas @ exact[:, i]**2))
@@ -53,7 +54,7 @@ def measure_errors(samples, results):
                                     "peer": peer, "error": error, "integral": integral})
 
 
-def measure_missing(samples, results, fwhm=10):
+def measure_missing(samples, chosen, results, fwhm=10):
     """A fifth of the values of each map, chosen at random, is missing. Compared inside the region
     with what the same program gives for all values."""
     for sample in samples:
@@ -62,7 +63,7 @@ def measure_missing(samples, results, fwhm=10):
         lost = sample.region & (np.random.default_rng(5).random(len(sample.points)) < MISSING)
         for name, values in sample.maps.items():
             holes = np.where(lost, np.nan, values)
-            for peer in PEERS:
+            for peer in chosen:
                 full, part = _smooth_with_holes(peer, sample, values, holes, lost, fwhm)
                 inside = sample.region
                 results.append({
@@ -88,14 +89,14 @@ def _smooth_with_holes(peer, sample, values, holes, lost, fwhm):
     return [peers.smooth(peer, sample, data, fwhm) for data in (values, holes)]
 
 
-def measure_costs(sample, columns, results, folder, fwhm=10):
+def measure_costs(sample, chosen, columns, results, folder, fwhm=10):
     """Time and memory of whole processes, and processor time without input and output."""
     data = folder / "columns.func.gii"
     output = folder / "out.func.gii"
     random = np.random.default_rng(6)
     for count in (1, columns):
         write_columns(data, random.normal(size=(len(sample.points), count)))
-        for peer in PEERS:
+        for peer in chosen:
             cost = peers.run(peers.process_command(peer, sample.path, data, fwhm, output))
             if peer == "Workbench":
                 # A process that reads and writes the same columns.
@@ -114,6 +115,8 @@ def main():
     parser.add_argument("--columns", type=int, default=1200, help="of the time series")
     parser.add_argument("--only", action="append", choices=("widths", "errors", "missing", "costs"),
                         help="measure these parts; the others keep their last results")
+    parser.add_argument("--peer", action="append", choices=PEERS,
+                        help="measure these programs; the others keep their last results")
     parser.add_argument("--results", type=Path, default=Path("build-comparisons/results.json"),
                         help="where the measurements are kept")
     parser.add_argument("--page", type=Path, default=Path(__file__).parent / "README.md")
@@ -121,6 +124,7 @@ def main():
                         default=Path(__file__).parents[2] / "Examples/Gallery/comparison.png")
     arguments = parser.parse_args()
 
+    chosen = arguments.peer or PEERS
     results = {}
     if arguments.results.exists():
         results = json.loads(arguments.results.read_text())
@@ -128,20 +132,25 @@ def main():
         folder = Path(name)
         samples = make_samples(folder)
         parts = {
-            "widths": lambda rows: measure_widths(samples, rows),
-            "errors": lambda rows: measure_errors(samples, rows),
-            "missing": lambda rows: measure_missing(samples, rows),
-            "costs": lambda rows: measure_costs(samples[2], arguments.columns, rows, folder)}
+            "widths": lambda rows: measure_widths(samples, chosen, rows),
+            "errors": lambda rows: measure_errors(samples, chosen, rows),
+            "missing": lambda rows: measure_missing(samples, chosen, rows),
+            "costs": lambda rows: measure_costs(
+                samples[2], chosen, arguments.columns, rows, folder)}
         for part in arguments.only or parts:
             print(f"measuring {part}", file=sys.stderr)
-            rows = []
+            rows = [row for row in results.get(part, []) if row["peer"] not in chosen]
             parts[part](rows)
             results[part] = rows
             results["machine"] = _machine()
             arguments.results.parent.mkdir(parents=True, exist_ok=True)
             arguments.results.write_text(json.dumps(results, indent=1, default=float))
-    page.write_page(results, arguments.page)
-    page.draw(results, arguments.picture)
+    if all(any(row["peer"] == peer for row in results.get(part, []))
+           for part in parts for peer in PEERS):
+        page.write_page(results, arguments.page)
+        page.draw(results, arguments.picture)
+    else:
+        print("no page: not every program was measured in every part", file=sys.stderr)
 
 
 def _machine():
@@ -149,12 +158,11 @@ def _machine():
 
     workbench = peers.run(["wb_command", "-version"]).output
     version = next(line.split()[-1] for line in workbench.splitlines() if "Version:" in line)
-    versions = {name: metadata.version(package) for name, package in (
+    installed = {found.metadata["Name"]: found.version for found in metadata.distributions()}
+    versions = {name: installed.get(package, "") for name, package in (
         ("SurfaceDiffusion", "surfacediffusion"), ("CAT", "cat-surf"), ("nilearn", "nilearn"))}
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo")
                   if line.startswith("model name")), platform.processor())
-    import os
-
     return {"processor": model, "cores": os.cpu_count(),
             "versions": {**versions, "Workbench": version}}
 

@@ -33,10 +33,10 @@ and sulcal depth.
 ## Realised width
 
 Diffusion with a Gaussian of full width at half maximum w multiplies an eigenfunction of the
-Laplace-Beltrami operator by exp(-λ w²/(16 ln 2)). From the decay of the first 30 eigenfunctions
+Laplace-Beltrami operator by exp(-λ w²/(16 ln 2)). From the decay of the first 12 eigenfunctions
 (finite elements of LaPy) follows the width that a program realises. The table gives the median in
-mm, and the range that holds nine tenths of the eigenfunctions: a narrow one means that the program
-is a Gaussian filter, the same for all directions and places.
+mm, and the smallest and the largest: if they are equal, the program is a Gaussian filter, the same
+in all directions and places.
 
 {widths}
 

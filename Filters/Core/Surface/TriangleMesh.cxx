@@ -154,6 +154,14 @@ void TriangleMesh::SumAreas(const ParallelFor& parallel)
     [&](Index i) { this->Given.ControlAreas[i] = this->ThirdOfTriangles(i); });
 }
 
+void TriangleMesh::ScaleControlAreas(const std::vector<double>& factors)
+{
+  for (Index i = 0; i < this->NumberOfVertices(); ++i)
+  {
+    this->Given.ControlAreas[i] *= factors[static_cast<std::size_t>(this->InputVertex()[i])];
+  }
+}
+
 void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
 {
   Contents& mesh = this->Given;

@@ -119,6 +119,10 @@ public:
   const Vector& ControlAreas() const { return this->Given.ControlAreas; }
   /// A third of the triangles of this mesh around vertex i.
   double ThirdOfTriangles(Index i) const;
+  /// Multiply A_i by a positive factor per input point. The stiffness matrix does not change under
+  /// a conformal change of the metric in two dimensions, so this is such a change: lengths near v_i
+  /// grow by the square root of the factor, and functions of lengths of edges do not notice.
+  void ScaleControlAreas(const std::vector<double>& factors);
 
   /// Connected component c has the vertices ComponentsBegin()[c] .. [c + 1].
   const std::vector<Index>& ComponentsBegin() const { return this->Given.ComponentsBegin; }

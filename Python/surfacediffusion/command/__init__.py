@@ -10,7 +10,8 @@ from __future__ import annotations
 import sys
 
 from ..files import FileError
-from .arguments import ArgumentProblem, parse
+from .arguments import parse
+from .inputs import ArgumentProblem
 from .report import Report
 
 
@@ -33,5 +34,7 @@ def main(argv=None) -> int:
         return report.fail("out of memory", 1)
     except (ArithmeticError, RuntimeError, OSError) as error:
         return report.fail(error, 1)
+    except Exception as error:  # a defect of this program; the user still gets one line
+        return report.fail(f"internal error: {type(error).__name__}: {error}", 1)
     report.finish()
     return 0

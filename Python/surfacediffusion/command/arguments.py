@@ -9,9 +9,8 @@ import re
 import textwrap
 
 from . import tasks
-from .tasks import ArgumentProblem
 
-__all__ = ["ArgumentProblem", "parse"]
+__all__ = ["parse"]
 
 PROGRAM = "surfacediffusion"
 
@@ -158,6 +157,9 @@ def _smooth(commands):
                         help="the width in the unit of the surface's coordinates (mm)")
     parser.add_argument("output", metavar="OUTPUT", help="the result")
     commands.choices(parser)
+    parser.add_argument("--areas", "-corrected-areas", metavar="FILE",
+                        help="the areas of the vertices in the first column, in place of those of "
+                             "SURFACE: for a surface that is the average of many")
     width = parser.add_mutually_exclusive_group()
     width.add_argument("--sigma", action="store_true",
                        help="FWHM is given as a standard deviation: FWHM = 2.3548 sigma")

@@ -112,6 +112,24 @@ def read_marks(path, surfaces):
         yield id(surface), marks[:, 0].astype(bool)
 
 
+def read_areas(path, surfaces):
+    """{id of the surface: areas of its vertices} from the first column; empty without a file."""
+    if path is None:
+        return {}
+    data, found = read_data(path), {}
+    for part in data.parts:
+        surface = _surface_for(part, surfaces, data)
+        areas, absent = _on_surface(part, part.values[:, :1].astype(float), surface, path)
+        areas = np.where(absent, vertex_areas(surface), areas[:, 0])
+        wrong = ~(np.isfinite(areas) & (areas > 0))
+        if wrong.any():
+            vertex = int(np.argmax(wrong))
+            raise FileError(f"{path}: the area of vertex {vertex} is {areas[vertex]:g}; allowed: "
+                            "finite numbers above 0")
+        found[id(surface)] = areas
+    return found
+
+
 def _regions(arguments, surfaces):
     found = dict(read_marks(arguments.roi, surfaces))
     for surface in surfaces.values():

@@ -11,7 +11,7 @@ import numpy as np
 from ..files import FileError, new_data, read_data, read_surface
 from ..files.content import check_output_folder, check_output_name, kind_of_name
 from . import inputs
-from .inputs import ArgumentProblem, choose_columns, make_patches, read_surfaces
+from .inputs import choose_columns, make_patches, read_surfaces
 from .report import number
 
 SIGMA_TO_FWHM = math.sqrt(8 * math.log(2))
@@ -239,11 +239,10 @@ def _read(arguments, missing=None):
 def _change_data(arguments, report, title, compute, groups, missing=None):
     """Applies compute(surface, values, mask, progress) to the groups of columns of each surface
     and writes the result in the format of DATA."""
-    from .. import Surface
-
     check_output_folder(arguments.output)
     with report.timed("read"):
-        _, data, columns, patches = _read(arguments, missing)
+        surfaces, data, columns, patches = _read(arguments, missing)
+        areas = inputs.read_areas(getattr(arguments, "areas", None), surfaces)
         check_output_name(arguments.output, data.kind)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
@@ -252,7 +251,7 @@ def _change_data(arguments, report, title, compute, groups, missing=None):
     done = 0
     with report.progress(title) as progress:
         for patch in patches:
-            surface = Surface(patch.surface.points, patch.surface.faces)
+            surface = _make_surface(patch, areas)
             mask = patch.excluded if patch.excluded.any() else None
             new = np.empty_like(patch.values)
             for group in groups(data, columns, patch):
@@ -264,11 +263,21 @@ def _change_data(arguments, report, title, compute, groups, missing=None):
                         _part_of(progress, done / total, len(group) / total))
                 done += len(group)
             results.append(patch.to_part(new))
-            _add_totals(report, data, columns, patch, new)
+            _add_totals(report, data, columns, patch, new, areas)
     with report.timed("write"):
         data.save(arguments.output, results, columns)
     report.facts.update(data=data.path, output=arguments.output)
     _say_written(arguments, report, f"{len(columns)} column{'s' * (len(columns) > 1)}")
+
+
+def _make_surface(patch, areas):
+    """The surface, with the areas that were given for it."""
+    from .. import Surface
+
+    try:
+        return Surface(patch.surface.points, patch.surface.faces, areas.get(id(patch.surface)))
+    except ValueError as error:
+        raise FileError(f"{patch.surface.path}: {error}") from error
 
 
 def _part_of(progress, start, share):
@@ -309,9 +318,10 @@ def _require_known(patch, group, data, columns):
                         "region; allowed: at least one")
 
 
-def _add_totals(report, data, columns, patch, new):
+def _add_totals(report, data, columns, patch, new, areas):
     """The integrals over the region before (known values alone) and after."""
-    areas = np.where(patch.excluded, 0, inputs.vertex_areas(patch.surface))
+    areas = areas.get(id(patch.surface), inputs.vertex_areas(patch.surface))
+    areas = np.where(patch.excluded, 0, areas)
     missing = np.isnan(patch.values).sum(axis=0)
     before = areas @ np.nan_to_num(patch.values.astype(float))
     after = areas @ np.nan_to_num(new.astype(float))

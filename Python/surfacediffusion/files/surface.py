@@ -3,16 +3,16 @@
 """Reads and writes surfaces: read_surface() and SurfaceFile."""
 from __future__ import annotations
 
-import io
+import tempfile
+import warnings
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from . import mesh_text, meshio_files, vtk_files
-from .content import (
-    Content, FileError, check_output_name, import_reader, read_content, reading, write_atomically,
-)
+from .content import check_output_name, import_reader, read_content, reading, write_atomically
 
 KINDS = ("gifti", "freesurfer", "off", "obj", "ply", "stl", "vtk", "vtp")
 ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, VTK polydata"
@@ -117,8 +117,6 @@ def _write_gifti(surface, points):
 def _read_freesurfer(content):
     freesurfer = import_reader("nibabel.freesurfer", content)
     # nibabel takes a path here, and warns about files without a footer, which are allowed.
-    import warnings
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         points, faces, info = freesurfer.read_geometry(content.path, read_metadata=True)
@@ -132,9 +130,6 @@ def _freesurfer_structure(path):
 
 
 def _write_freesurfer(surface, points):
-    import tempfile
-    from pathlib import Path
-
     from nibabel import freesurfer
 
     with tempfile.TemporaryDirectory() as folder:
