@@ -2,7 +2,7 @@
 # Usage: wheel.sh SOURCE FOLDER WHEELS
 # Makes a source distribution of SOURCE, from it a wheel, and installs this into a new virtual
 # environment without VTK in FOLDER/environment, all without a network. WHEELS has what is needed
-# (.ci/fetch-test-data).
+# (.ci/fetch-test-data). FOLDER/system gets the wheel, too, with numpy and VTK of the system.
 set -eu
 source=$1
 folder=$2
@@ -39,3 +39,9 @@ environment/bin/pip install --quiet tqdm mypy
 # For the tests of files and of PyVista, whose VTK is that of PyPI. They are optional.
 environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist ||
   echo "no nibabel, meshio or PyVista: their tests are skipped"
+
+rm -rf system
+"${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages system
+system/bin/pip install --quiet --no-deps dist/*.whl
+system/bin/pip install --quiet --no-deps --find-links "$wheels/.." \
+  pyvista==0.44.2 pooch scooby platformdirs typing_extensions
