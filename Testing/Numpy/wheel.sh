@@ -10,10 +10,11 @@ wheels=$3
 unset PYTHONPATH LD_LIBRARY_PATH
 export PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1
 export PIP_FIND_LINKS="$wheels"
-export CCACHE_BASEDIR="$folder/build"
+export CCACHE_BASEDIR="$folder" # see Testing/run-tests.sh
 export CMAKE_ARGS="-DSURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON ${CMAKE_ARGS:-}"
 
-rm -rf "$folder/environment" "$folder/dist"
+rm -rf "$folder/environment" "$folder/dist" "$folder/source"
+mkdir -p "$folder/source"
 "${PYTHON:-/usr/bin/python3}" -m venv "$folder/environment"
 cd "$source"
 "$folder/environment/bin/pip" install --quiet scikit-build-core
@@ -27,8 +28,9 @@ if [ "$size" -gt 2000000 ]; then
   echo "the source distribution has $size bytes: it contains more than the package needs"
   exit 1
 fi
+tar -xzf dist/*.tar.gz -C source --strip-components 1
 environment/bin/pip wheel --quiet --no-deps --wheel-dir dist \
-  --config-settings=build-dir="$folder/build" dist/*.tar.gz
+  --config-settings=build-dir="$folder/build" "$folder/source"
 environment/bin/pip install --quiet dist/*.whl
 if environment/bin/python -c "import vtkmodules" 2>/dev/null; then
   echo "there is a VTK in the environment"
