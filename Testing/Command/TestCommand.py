@@ -203,6 +203,12 @@ class OtherCommands(CommandTest):
                          f"--missing where.func.gii --model {model}")
             np.testing.assert_array_equal(self.column("b.func.gii"), found)
 
+    def test_inpaint_says_if_nothing_is_missing(self):
+        code, _, error = run("inpaint", "lh.surf.gii", "lh.func.gii", "out.func.gii")
+        self.assertEqual(code, 0)
+        self.assertIn("lh.func.gii: nothing is missing", error)
+        np.testing.assert_array_equal(self.column("out.func.gii"), NOISE)
+
     def test_texture_has_the_same_bits_for_the_same_seed(self):
         for name, seed in (("a", 1), ("b", 1), ("c", 2)):
             self.succeed(f"texture lh.surf.gii 8 {name}.shape.gii --seed {seed}")

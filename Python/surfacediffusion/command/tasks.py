@@ -60,6 +60,8 @@ def inpaint(arguments, report):
 
     groups = _groups_of_missing if arguments.model == "heat" else _groups_of_arrays
     _change_data(arguments, report, "Inpainting", compute, groups, arguments.missing)
+    if not any(row["missing"] for row in report.facts["columns"]):
+        report.warn(f"{arguments.data}: nothing is missing, the values are unchanged")
 
 
 def texture(arguments, report):
@@ -89,8 +91,9 @@ def directions(arguments, report):
     if kind != "npy" and not (kind in ("vtk", "vtp") and kind == surface.kind):
         raise FileError(f"{arguments.output}: the name announces no format for directions on "
                         "faces; allowed: .npy, or .vtk or .vtp as the surface")
-    with report.timed("compute"), report.progress("Directions"):
-        field = direction_field(Surface(surface.points, surface.faces), method=arguments.method)
+    with report.timed("compute"), report.progress("Directions") as progress:
+        field = direction_field(Surface(surface.points, surface.faces), method=arguments.method,
+                                progress=progress)
     report.facts.update(method=arguments.method, faces=len(surface.faces))
     with report.timed("write"):
         if kind == "npy":
