@@ -98,6 +98,7 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   }
 
   Index degenerate = 0;
+  std::vector<Warning> warnings;
   Fingerprint versions;
   double length = 0.0;
   double edges = 0.0;
@@ -125,6 +126,8 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     edges += mesh.NumberOfEdges();
     degenerate += block->Run.GetSurface().Diagnostics().DegenerateTriangles;
     versions.Add(block->Run.GetSurfaceVersion());
+    const std::vector<Warning> found = block->Run.FindWarnings();
+    warnings.insert(warnings.end(), found.begin(), found.end());
   }
   this->BeginWriting();
   std::vector<std::string> replaced;
@@ -138,7 +141,6 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     cells->SetActiveVectors(this->ResultArrayName.c_str());
   }
   this->MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
-  std::vector<Warning> warnings;
   if (degenerate > 0)
   {
     warnings.push_back(

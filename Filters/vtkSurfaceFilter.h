@@ -107,7 +107,7 @@ public:
    * kept for GenerateTimeSteps. They let an edit of a property, or a request of another time,
    * repeat only the steps that depend on it. The next update computes all of them again, with the
    * same result. If the release-data flag of output port 0 is on, or the global one, every update
-   * ends with this call.
+   * ends with this call. Not to be called during an update, by an observer.
    */
   virtual void ReleaseCache();
 

@@ -22,7 +22,7 @@ from ._result import DiffusionResult, HarmonicMapResult, TextureResult
 from ._run import Progress
 from ._surface import SurfaceLike
 
-ARRAYS: dict[str, str]
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
 """
 
 #: The return types of a function for the values of its switches.

@@ -1,25 +1,30 @@
 #!/bin/sh
-# Installs what is needed, builds, and runs every test. The last lines are ctest's summary.
+# Installs what is needed, builds, and runs every test. The last lines are ctest's summary, with the
+# seconds of processor time per label. In CI (CI is set) it is an error if test data are missing.
 set -eu
 cd "$(dirname "$0")/.."
 
 .ci/install-packages
 data="$PWD/build/data"
-.ci/fetch-test-data "$data" || echo "no test data: tests that need it are skipped or left out" >&2
-meshes="$data/meshes"
-[ -d "$meshes" ] || meshes=
-vtk91="$data/vtk91"
-[ -d "$vtk91" ] || vtk91=
-wheels="$data/wheels"
-[ -d "$wheels" ] || wheels=
+if ! .ci/fetch-test-data "$data"; then
+  [ -z "${CI:-}" ] || exit 1
+  echo "no test data: tests that need it are skipped or left out" >&2
+fi
+folder()
+{
+  [ ! -d "$data/$1" ] || echo "$data/$1"
+}
 
-# Some tests build the project once more: what does not differ is not compiled again.
+# Some tests build the project once more: what does not differ is not compiled again. Paths below the
+# build folder are relative in the cache, so that they do not differ either.
 export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+export CCACHE_BASEDIR="$PWD/build"
 
 cmake --preset build \
-  -D SURFACEDIFFUSION_MESH_DIR="$meshes" \
-  -D SURFACEDIFFUSION_VTK91_PREFIX="$vtk91" \
-  -D SURFACEDIFFUSION_WHEEL_DIR="$wheels"
+  -D SURFACEDIFFUSION_MESH_DIR="$(folder meshes)" \
+  -D SURFACEDIFFUSION_VTK91_PREFIX="$(folder vtk91)" \
+  -D SURFACEDIFFUSION_CURRENT_VTK_DIR="$(folder vtk-current)" \
+  -D SURFACEDIFFUSION_WHEEL_DIR="$(folder wheels)"
 cmake --build --preset build
 
 # One display for all tests; -noreset: it outlives its first client.

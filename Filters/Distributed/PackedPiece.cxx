@@ -167,6 +167,7 @@ PieceVersion::PieceVersion(vtkAlgorithm* filter, const SurfacePiece& piece)
   , FirstCell(piece.Input->GetNumberOfVerts() + piece.Input->GetNumberOfLines())
 {
   const std::vector<int> types = FindReadAttributes(filter);
+  this->Append(piece.Input); // an array that was edited in place may not be marked itself
   this->Append(piece.Input->GetPoints());
   for (vtkCellArray* const cells : { piece.Input->GetPolys(), piece.Input->GetStrips() })
   {

@@ -3,6 +3,7 @@
 #include "Run/DirectionFieldRun.h"
 
 #include <cmath>
+#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -90,13 +91,37 @@ void DirectionFieldRun::Update(
     ? DefaultSmoothing * h
     : settings.SmoothingLength / mesh.LengthUnit();
   core.HintWeight = settings.HintWeight / (h * h);
+  core.MaximumNumberOfSteps = settings.MaximumNumberOfSteps;
   core.Angle = RadiansFromDegrees(settings.Angle);
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
-    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0));
+    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0), &this->Report);
   this->FieldsVersion = input.FieldsVersion;
   this->ModelSettings = modelSettings;
   this->HasField = true;
+}
+
+std::vector<Warning> DirectionFieldRun::FindWarnings() const
+{
+  Fingerprint inputs = this->SurfaceVersion;
+  inputs.Add(this->FieldsVersion);
+  std::vector<Warning> warnings;
+  std::ostringstream text;
+  if (this->Report.MissedResidual > 0.0)
+  {
+    text << "the linear solver missed its tolerance; the largest relative residual is "
+         << this->Report.MissedResidual;
+    warnings.push_back({ text.str(), inputs });
+    text.str("");
+  }
+  if (this->Report.UnsettledChange > 0.0)
+  {
+    text << "the search for the smoothest field ended at its largest number of steps; the last "
+            "one changed an eigenvalue by "
+         << 100.0 * this->Report.UnsettledChange << " %";
+    warnings.push_back({ text.str(), inputs });
+  }
+  return warnings;
 }
 
 } // namespace SurfaceDiffusion

@@ -4,6 +4,7 @@
 
 #include "Core/Geometry/DirectionField.h"
 #include "Run/Run.h"
+#include "Run/WarningLog.h"
 
 #include <memory>
 
@@ -20,6 +21,7 @@ struct DirectionFieldSettings : Settings
   double Angle = 0.0;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
+  int MaximumNumberOfSteps = 50; ///< of the inverse iteration of Smooth; no property
 
   void Visit(SettingVisitor& visitor) override;
   /// Problems of the settings, and with `fields` those of settings and arrays together.
@@ -44,6 +46,8 @@ public:
   const TangentVectors& Directions() const { return this->Field; }
   /// In coordinate units.
   double MeanEdgeLength() const;
+  /// The warnings about the line field that hold.
+  std::vector<Warning> FindWarnings() const;
   /// The surface that the line field belongs to.
   const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
 
@@ -53,6 +57,7 @@ private:
   SettingsSnapshot SurfaceSettings, ModelSettings;
   std::unique_ptr<Surface> Domain;
   TangentVectors Field;
+  LineFieldReport Report;
   bool HasField = false;
 };
 

@@ -98,6 +98,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   settings.Beta = inputs.Units.ToCore(this->Beta, -2.0, 0.0);
   settings.Fidelity = inputs.Units.ToCore(this->FidelityWeight, -p, 0.0);
   settings.TimeScheme = this->Scheme;
+  settings.MaximumNumberOfRepetitions = this->MaximumNumberOfRepetitions;
   settings.ConsistentReaction = this->ConsistentReaction;
   settings.ProjectToSphere = this->ProjectToSphere;
   settings.LineField = this->LineField;
@@ -135,8 +136,8 @@ void HarmonicMapSettings::Finish(const RunState& state, RunResult& result) const
   limits.Tolerance = this->Tolerance;
   limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   const Points moved = UpdateVerticesFromNormals(mesh, surface.Points(), state.Path.State(),
-    UpdateRange * state.Units.MeanEdgeLength, result.Motion, limits, state.Parallel,
-    state.Progress);
+    UpdateRange * state.Units.MeanEdgeLength, result.Motion, limits,
+    this->Solver != SolverMethod::ConjugateGradient, state.Parallel, state.Progress);
   result.MovedPoints = surface.Points();
   for (Eigen::Index i = 0; i < moved.rows(); ++i)
   {

@@ -19,6 +19,7 @@ struct HarmonicMapSettings : DataSettings
   bool ProjectToSphere = true;
   bool LineField = false;
   bool MoveVertices = false;
+  int MaximumNumberOfRepetitions = 50; ///< of MinimizingMovement; no property
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;

@@ -44,6 +44,17 @@ struct BlockInput
   SurfaceDiffusion::Decomposition* Decomposition = nullptr; ///< null: the surface is whole
 };
 
+/// The steps, over all surfaces, whose solves or repetitions ended before they had converged.
+struct Shortfalls
+{
+  Index Steps = 0; ///< of all
+  Index MissedSteps = 0;
+  double MissedResidual = 0.0; ///< the largest; see StepReport
+  Index UnsettledSteps = 0;
+  double UnsettledDecrease = 0.0; ///< the largest; see StepReport
+  Fingerprint Inputs; ///< of all surfaces
+};
+
 /// A run of one model on several surfaces that share their units. A run is determined by its inputs
 /// and settings: Update() recomputes only the parts that depend on a changed input or setting.
 class Run
@@ -118,6 +129,7 @@ private:
   PointData MakeData(const Block& block, const Fields& fields, const ProcessGroup& processes) const;
   std::size_t CheckpointMemory(const Model& model, const ProcessGroup& processes) const;
   void CheckHold(const ProcessGroup& processes) const;
+  Shortfalls FindShortfalls() const;
   bool MaskChangesNothing(const ProcessGroup& processes) const;
 
   const ParallelFor& Parallel;

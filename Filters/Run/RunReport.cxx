@@ -4,9 +4,41 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <sstream>
 
 namespace SurfaceDiffusion
 {
+
+namespace
+{
+
+std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
+{
+  std::ostringstream text;
+  text << "the linear solver missed its Tolerance " << tolerance << " in ";
+  if (found.MissedSteps > 0)
+  {
+    text << found.MissedSteps << " of " << found.Steps << " steps";
+  }
+  else
+  {
+    text << "moving the vertices";
+  }
+  text << "; the largest relative residual is " << found.MissedResidual;
+  return text.str();
+}
+
+std::string DescribeUnsettledSteps(const Shortfalls& found)
+{
+  std::ostringstream text;
+  text << "the repetitions ended at their largest number in " << found.UnsettledSteps << " of "
+       << found.Steps << " steps of MinimizingMovement; the last one still made up to "
+       << 100.0 * found.UnsettledDecrease
+       << " % of the decrease of the energy (smaller time steps need fewer)";
+  return text.str();
+}
+
+} // namespace
 
 History Run::MakeHistory(int step) const
 {
@@ -75,6 +107,28 @@ bool Run::MaskChangesNothing(const ProcessGroup& processes) const
   return anyMask && (!anyMasked || inert);
 }
 
+/// Over all steps computed so far.
+Shortfalls Run::FindShortfalls() const
+{
+  Shortfalls found;
+  for (const auto& block : this->Blocks)
+  {
+    for (const StepRecord& record : block->Path->Records())
+    {
+      ++found.Steps;
+      found.MissedSteps += record.MissedResidual > 0.0;
+      found.MissedResidual = std::max(found.MissedResidual, record.MissedResidual);
+      found.UnsettledSteps += record.UnsettledDecrease > 0.0;
+      found.UnsettledDecrease = std::max(found.UnsettledDecrease, record.UnsettledDecrease);
+    }
+    --found.Steps; // the initial state
+    found.Inputs.Add(block->SurfaceVersion);
+    found.Inputs.Add(block->FieldsVersion);
+    found.MissedResidual = std::max(found.MissedResidual, block->Result.Motion.MissedResidual);
+  }
+  return found;
+}
+
 std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
 {
   SurfaceDiagnostics sum;
@@ -91,6 +145,7 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
     }
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
+    sum.EdgesLeft += found.EdgesLeft;
     surfaces.Add(block->SurfaceVersion);
     masks.Add(block->MaskVersion);
   }
@@ -110,6 +165,10 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
   addCount(sum.CoincidentBoundaryPoints,
     " boundary points coincide with others and nothing flows between them (to join them, set "
     "MergeCoincidentPoints)");
+  addCount(sum.EdgesLeft,
+    " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
+    "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "
+    "data there");
   for (const auto& block : this->Blocks)
   {
     Fingerprint inputs = block->SurfaceVersion;
@@ -118,6 +177,17 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
     {
       warnings.push_back({ sentence, inputs });
     }
+  }
+  const Shortfalls shortfalls = this->FindShortfalls();
+  if (shortfalls.MissedResidual > 0.0)
+  {
+    warnings.push_back({ DescribeMissedTolerance(shortfalls, this->Settings->Tolerance),
+      shortfalls.Inputs, "MissedResidual" });
+  }
+  if (shortfalls.UnsettledDecrease > 0.0)
+  {
+    warnings.push_back(
+      { DescribeUnsettledSteps(shortfalls), shortfalls.Inputs, "UnsettledDecrease" });
   }
   masks.AddNumber(static_cast<std::uint64_t>(this->Settings->MaskMode));
   if (this->MaskChangesNothing(processes))

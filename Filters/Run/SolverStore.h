@@ -7,6 +7,7 @@
 #include "Run/RunSettings.h"
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
 
@@ -41,6 +42,12 @@ public:
   /// Whether the solvers that Find() gave since Configure() are also those of a run of another
   /// length, which then has the same states.
   bool ServesRunOf(int numberOfSteps) const;
+
+  /// The solver that is kept for a purpose; null if there is none.
+  const LinearSolver* Get(SolverPurpose purpose) const
+  {
+    return this->Solvers[static_cast<std::size_t>(purpose)].Solver.get();
+  }
 
 private:
   struct Kept

@@ -109,6 +109,7 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   this->FindVertices();
   this->Found.DegenerateTriangles = this->Working->Diagnostics().DegenerateTriangles;
   this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
+  this->Found.EdgesLeft = this->Flipped ? this->Flipped->NumberOfEdgesLeft() : 0;
   if (!options.MergeCoincidentPoints)
   {
     this->Found.CoincidentBoundaryPoints = this->CountCoincidentBoundaryPoints();

@@ -41,6 +41,7 @@ struct SurfaceDiagnostics
   Index UnusedPoints = 0; ///< not in any participating triangle; excluded points do not count
   Index NonManifoldEdges = 0;
   Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
+  Index EdgesLeft = 0; ///< IntrinsicDelaunay::NumberOfEdgesLeft()
 };
 
 /// The surface that the numerics work on, and the way back to its points.

@@ -15,10 +15,12 @@ struct Warning
 {
   std::string Sentence;
   Fingerprint Cause;
+  /// Not empty: warnings of one kind count as the same, although figures in their sentences differ.
+  std::string Kind = {};
 
   friend bool operator==(const Warning& a, const Warning& b)
   {
-    return a.Sentence == b.Sentence && a.Cause == b.Cause;
+    return a.Cause == b.Cause && a.Kind == b.Kind && (!a.Kind.empty() || a.Sentence == b.Sentence);
   }
 };
 

@@ -7,16 +7,22 @@ from __future__ import annotations
 
 import inspect
 import textwrap
+from dataclasses import replace
 from typing import Any, Callable, Iterator, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._models import (
+    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_harmonic_map, make_texture,
+)
 from ._result import DiffusionResult, HarmonicMapResult, TextureResult
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, translate
-from ._surface import SurfaceLike, as_data, as_numbers, as_surface, data_components
+from ._surface import SurfaceLike, as_data, as_surface
+
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -92,12 +98,10 @@ def _with_settings(function: F) -> F:
 
 
 def _run(
-    surface: Any,
     name: str,
-    data: Any,
+    given: Input,
     runner: Runner,
     make: Callable[[Any, dict[str, Any]], Any],
-    inputs: Input,
     steps: bool,
     progress: Progress,
 ) -> Any:
@@ -106,10 +110,10 @@ def _run(
         raise ValueError(f"steps is {shorten(steps)}; allowed: True or False")
     if steps:
         run = _core.ModelRun(name)
-        return runner.iterate(run, [inputs], progress, lambda found: make(run, found))
-    with inputs.surface._lock:
-        run = inputs.surface._runs.setdefault(name, _core.ModelRun(name))
-        return make(run, runner.finish(run, [inputs], progress)[0])
+        return runner.iterate(run, given, progress, lambda found: make(run, found))
+    with given.surface._lock:
+        run = given.surface._runs.setdefault(name, _core.ModelRun(name))
+        return make(run, runner.finish(run, [given], progress)[0])
 
 
 def _diffusion(
@@ -121,27 +125,16 @@ def _diffusion(
     surface = as_surface(surface)
     data = as_data("values", values, surface.n_points)
     shape = np.shape(values)
-    inputs = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    find_result_type(data, dtype)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
     runner = Runner(name, properties, ARRAYS)
-    result_type = find_result_type(data, dtype)
 
     def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
-        output = np.empty(data.shape, dtype=result_type)
-        runner.call(run.write_state, 0, output, data)
-        return DiffusionResult(output.reshape(shape), **_pick(DiffusionResult, run, found))
+        result = make_diffusion(run, 0, given, runner, dtype, found)
+        return replace(result, values=result.values.reshape(shape))
 
-    result = _run(surface, name, data, runner, make, inputs, steps, progress)
+    result = _run(name, given, runner, make, steps, progress)
     return result if steps or full_output else result.values
-
-
-def _pick(result_class: type, run: Any, found: dict[str, Any]) -> dict[str, Any]:
-    """The attributes that a class of results has."""
-    return {name: found[name] for name in result_class.__dataclass_fields__ if name in found}
-
-
-#: The keywords of input arrays, by their names in messages.
-ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
-          "FixedArray": "fixed", "DiffusionRateArray": "rates"}
 
 
 @_with_settings
@@ -348,34 +341,13 @@ def harmonic_map(
     True
     """
     surface = as_surface(surface)
-    n = surface.n_points
-    if vectors is None:
-        data: NDArray[Any] = surface._point_normals()
-    else:
-        found = as_numbers("vectors", vectors)
-        columns = data_components(found) if found.ndim == 2 else 0
-        if found.ndim != 2 or found.shape[0] != n or columns < 2:
-            raise ValueError(f"vectors has shape {found.shape}; allowed: ({n}, k), one row per point "
-                             "and k > 1, alpha of colours not counted")
-        data = as_data("vectors", vectors, n)
-    if properties.get("move_vertices", False) is True and data.shape[1] != 3:
-        raise ValueError(f"vectors has shape {data.shape}; allowed with move_vertices: ({n}, 3)")
-    inputs = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    data = as_vectors(surface, vectors, properties)
+    find_result_type(data, dtype)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
     runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
-    result_type = find_result_type(data, dtype)
-
-    def make(run: Any, found: dict[str, Any]) -> HarmonicMapResult:
-        output = np.empty(data.shape, dtype=result_type)
-        if result_type == np.uint8:
-            runner.call(run.write_colors_of_vectors, 0, output, inputs.core)
-        else:
-            runner.call(run.write_state, 0, output, data)
-        points = np.array(surface.points)
-        runner.call(run.write_moved_points, 0, points)
-        return HarmonicMapResult(
-            output, points=points, **_pick(HarmonicMapResult, run, found))
-
-    return _run(surface, "harmonic_map", data, runner, make, inputs, steps, progress)
+    return _run("harmonic_map", given, runner,
+                lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),
+                steps, progress)
 
 
 @_with_settings
@@ -442,37 +414,16 @@ def turing_texture(
     ((2562, 2), 0.0, 1.0)
     """
     surface = as_surface(surface)
-    n = surface.n_points
-    data = None
-    if initial is not None:
-        found = as_numbers("initial", initial)
-        if found.shape != (n, 2):
-            raise ValueError(f"initial has shape {found.shape}; allowed: ({n}, 2), one row per point")
-        data = as_data("initial", initial, n)
-    colors = {"low_color": low_color, "high_color": high_color}
-    for name, color in colors.items():
-        parts = as_numbers(name, color)
-        if parts.shape != (3,) or not ((parts >= 0.0) & (parts <= 1.0)).all():
-            raise ValueError(f"{name} is {shorten(color)}; allowed: three numbers from 0 to 1")
-        colors[name] = tuple(float(part) for part in parts)
-    inputs = Input(surface, data, mask=mask, fixed=fixed, directions=directions, rates=rates)
+    data = as_initial(surface, initial)
+    find_result_type(data, dtype)
+    colors = as_colors(low_color, high_color)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, rates=rates)
     runner = Runner("turing_texture", properties, {**ARRAYS, "InputArray": "initial"})
-    result_type = find_result_type(data, dtype)
-    colored = runner.settings.get("ColorOutput", False)
-
-    def make(run: Any, found: dict[str, Any]) -> TextureResult:
-        concentrations = np.empty((n, 2), dtype=result_type)
-        runner.call(run.write_state, 0, concentrations, data)
-        texture = np.empty((n, 1), dtype=result_type)
-        runner.call(run.write_texture, 0, texture)
-        painted = None
-        if colored:
-            painted = np.empty((n, 3), dtype=np.uint8)
-            runner.call(run.write_texture_colors, 0, painted, *colors.values())
-        return TextureResult(concentrations, texture=texture[:, 0], colors=painted,
-                             **_pick(TextureResult, run, found))
-
-    return _run(surface, "turing_texture", data, runner, make, inputs, steps, progress)
+    if not runner.settings.get("ColorOutput", False):
+        colors = []
+    return _run("turing_texture", given, runner,
+                lambda run, found: make_texture(run, 0, given, runner, dtype, found, colors),
+                steps, progress)
 
 
 @_with_settings

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._functions import ARRAYS, heat
-from ._run import Input, find_result_type
+from ._functions import heat
+from ._run import find_result_type
 from ._settings import shorten
 from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, data_components
 

@@ -90,7 +90,7 @@ def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
 
 
 class Input:
-    """The input of a run on one surface."""
+    """The input of a run on one surface. on_faces: where the directions are; None: by their number."""
 
     def __init__(
         self,
@@ -101,20 +101,20 @@ class Input:
         fixed: Any = None,
         directions: Any = None,
         directions_name: str = "directions",
+        on_faces: bool | None = None,
         rates: Any = None,
     ) -> None:
         n, m = surface.n_points, surface.n_faces
         self.surface, self.data = surface, data
-        on_faces = False
         if directions is not None:
             array = as_numbers(directions_name, directions)
             if array.shape not in ((n, 3), (m, 3)):
                 raise ValueError(f"{directions_name} has shape {array.shape}; allowed: ({n}, 3), one "
                                  f"row per point, or ({m}, 3), one row per face")
-            if n == m:
+            if n == m and on_faces is None:
                 raise ValueError(f"{directions_name} has one row per point and per face, of which "
                                  f"there are {n} each; allowed: surfaces where they differ")
-            on_faces = array.shape[0] == m
+            on_faces = array.shape[0] == m if on_faces is None else on_faces
             infinite = np.isinf(array).any(axis=1)
             if infinite.any():
                 raise ValueError(f"{directions_name} is infinite in row {int(np.argmax(infinite))}; "
@@ -129,14 +129,12 @@ class Input:
                                  "numbers, 0 or more")
         self.core = _core.Fields(
             surface._core, data, 0 if data is None else data_components(data),
-            as_flags("mask", mask, n), as_flags("fixed", fixed, n), directions, on_faces, rates)
+            as_flags("mask", mask, n), as_flags("fixed", fixed, n), directions,
+            bool(on_faces), rates)
 
 
 class Runner:
-    """A run of a model, and the wording of its errors.
-
-    make_result: from the core's run, the number of a surface, and the common attributes of a result.
-    """
+    """Runs of a model with given settings, and the wording of their errors."""
 
     def __init__(self, function: str, properties: Mapping[str, Any], arrays: Mapping[str, str]):
         self.function, self.arrays = function, arrays
@@ -165,28 +163,34 @@ class Runner:
         return self._attributes(run, inputs, sentences)
 
     def iterate(
-        self, run: Any, inputs: list[Input], progress: Progress, make: Callable[..., Any]
+        self, run: Any, given: Input, progress: Progress, make: Callable[..., Any]
     ) -> Iterator[Any]:
         """make(attributes) at steps 0, k, 2k, ... and the last; errors of the input come at once."""
-        self.call(run.update, [i.core for i in inputs], self.settings, None)
+        self.call(run.update, [given.core], self.settings, None)
         steps = [*range(0, run.number_of_steps(), self.interval), run.number_of_steps()]
-        reporter = ProgressReporter(progress, len(steps))
+        states = self.visit(run, [given], steps, progress)
 
-        def states() -> Iterator[Any]:
-            known: list[str] = []
-            with reporter:
-                for step in steps:
-                    self.call(run.seek, step, reporter.callable)
-                    reporter.finish_part()
-                    sentences = self._warnings(run)
-                    warn([sentence for sentence in sentences if sentence not in known])
-                    known = sentences
-                    attributes = self._attributes(run, inputs, sentences)
-                    yield make(attributes[0])
-                    if attributes[0]["step"] < step:
-                        return  # the run has ended by itself
+        def results() -> Iterator[Any]:
+            for step, (attributes,) in zip(steps, states):
+                yield make(attributes)
+                if attributes["step"] < step:
+                    return  # the run has ended by itself
 
-        return states()
+        return results()
+
+    def visit(
+        self, run: Any, inputs: list[Input], steps: list[int], progress: Progress
+    ) -> Iterator[list[dict[str, Any]]]:
+        """The attributes of the result on each surface, at steps of a run that has been updated."""
+        known: list[str] = []
+        with ProgressReporter(progress, max(1, len(steps))) as reporter:
+            for step in steps:
+                self.call(run.seek, step, reporter.callable)
+                reporter.finish_part()
+                sentences = self._warnings(run)
+                warn([sentence for sentence in sentences if sentence not in known])
+                known = sentences
+                yield self._attributes(run, inputs, sentences)
 
     def _attributes(
         self, run: Any, inputs: list[Input], sentences: list[str]

@@ -155,6 +155,22 @@ TEST(CotanWeights, DirectionsAtRightAnglesAddUpToIsotropic)
   EXPECT_LT((sum - CotanWeights(*mesh)).cwiseAbs().maxCoeff(), 1e-14);
 }
 
+TEST(CotanWeights, DiffusionAcrossAHeightOfANeedleKeepsItsDigits)
+{
+  for (const double height : { 1e-4, 1e-6, 1e-8 })
+  {
+    const Surface needle = OneTriangle({ 0, 0 }, { 1, 0 }, { 0.4, height });
+    const auto mesh = MakeMesh(needle);
+    const TriangleMesh::Shape& s = mesh->Shapes()[0];
+    TangentVectors e1(1, 2);
+    e1 << 0.0, 1.0; // along the height: only the differences along corners 0 and 1 diffuse
+    const CornerWeights c2 = AnisotropicWeights(*mesh, CotanWeights(*mesh), e1, 0.0, 1.0);
+    const double expected = s.Area() / (s.Length * s.Length);
+    EXPECT_NEAR(c2(0, 2) / expected, 1.0, 1e-12) << height;
+    EXPECT_LT(c2.leftCols(2).cwiseAbs().maxCoeff(), 1e-12 * expected) << height;
+  }
+}
+
 TEST(CotanWeights, SignOfTheDirectionDoesNotMatter)
 {
   const auto mesh = MakeMesh(Icosphere(1));

@@ -99,6 +99,48 @@ TEST(ImplicitSystem, ReportsAddUp)
   EXPECT_EQ(twice.Residual, once.Residual);
 }
 
+TEST(ImplicitSystem, TakesAnAnswerWithinTenTimesTheToleranceAndReportsIt)
+{
+  const Problem problem;
+  constexpr double tolerance = 1e-8;
+  double missed = 0.0;
+  for (int iterations = 1; missed == 0.0 && iterations < 500; ++iterations)
+  {
+    std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
+    solver->SetLimits({ tolerance, iterations });
+    ImplicitSystem system = problem.MakeSystem(solver, problem.Given);
+    Values b = problem.B;
+    Values u = Values::Zero(b.rows(), b.cols());
+    StepReport report;
+    try
+    {
+      system.Solve(b, u, report);
+    }
+    catch (const NotConverged&)
+    {
+      continue;
+    }
+    missed = report.MissedResidual;
+    ASSERT_GT(missed, 0.0) << "it converged before an answer was taken";
+  }
+  EXPECT_GT(missed, tolerance);
+  EXPECT_LE(missed, 10.0 * tolerance);
+}
+
+TEST(ImplicitSystem, ADirectAnswerAboveTheToleranceIsReportedAndTaken)
+{
+  const Problem problem;
+  std::shared_ptr<LinearSolver> solver = MakeCholeskySolver();
+  solver->SetLimits({ 1e-30, 1 });
+  ImplicitSystem system = problem.MakeSystem(solver, problem.Given);
+  Values b = problem.B;
+  Values u = Values::Zero(b.rows(), b.cols());
+  StepReport report;
+  system.Solve(b, u, report);
+  EXPECT_GT(report.MissedResidual, 0.0);
+  EXPECT_LT(report.MissedResidual, 1e-13);
+}
+
 TEST(ImplicitSystem, ThrowsIfTheSolverDoesNotConverge)
 {
   const Problem problem;

@@ -6,9 +6,13 @@
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
+#include "Core/Surface/MedialMesh.h"
 #include "Core/Surface/TangentVectors.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -95,9 +99,65 @@ TEST(IntrinsicDelaunay, KeepsTheArea)
   {
     const auto mesh = MakeMesh(surface);
     const auto flipped = IntrinsicDelaunay(mesh).Mesh();
-    EXPECT_NEAR(flipped->ControlAreas().sum() / mesh->ControlAreas().sum(), 1.0, 1e-12) << name;
-    EXPECT_GT(flipped->ControlAreas().minCoeff(), 0.0) << name;
+    double area = 0.0;
+    for (const TriangleMesh::Shape& shape : flipped->Shapes())
+    {
+      area += shape.Area();
+    }
+    EXPECT_NEAR(area / mesh->ControlAreas().sum(), 1.0, 1e-12) << name;
+    // The integral over the drawn surface: a third of its triangles at each vertex.
+    EXPECT_EQ(flipped->ControlAreas(), mesh->ControlAreas()) << name;
     EXPECT_EQ(flipped->InputVertex(), mesh->InputVertex()) << name;
+  }
+}
+
+TEST(IntrinsicDelaunay, ASmallComponentKeepsItsShapeBesideALargeOneWithNeedles)
+{
+  Surface small = Pressed(Icosphere(2), 0.2);
+  const Surface large = MakeSurface({ { 9, 0, 0 }, { 10, 0, 0 }, { 9.5, 1e-9, 0 }, { 9.5, 1, 0 } },
+    { { 0, 1, 2 }, { 0, 2, 3 }, { 2, 1, 3 } });
+  const SparseMatrix alone = Stiffness(Assembler(IntrinsicDelaunay(MakeMesh(small)).Mesh()));
+  const auto joined = MakeMesh(Joined(Scaled(small, 1e-7), large));
+  const auto flipped = IntrinsicDelaunay(joined).Mesh();
+  const SparseMatrix both = Stiffness(Assembler(flipped));
+  const Index n = static_cast<Index>(alone.rows());
+  const Index first = joined->InputVertex()[0] < n ? 0 : 4;
+  ASSERT_EQ(both.rows(), n + 4);
+  // The weights are those of the shape alone. Vertices can be numbered in another order.
+  std::vector<double> expected, found;
+  for (Index i = 0; i < n; ++i)
+  {
+    expected.push_back(alone.coeff(i, i));
+    found.push_back(both.coeff(first + i, first + i));
+  }
+  std::sort(expected.begin(), expected.end());
+  std::sort(found.begin(), found.end());
+  for (Index i = 0; i < n; ++i)
+  {
+    EXPECT_NEAR(found[i] / expected[i], 1.0, 1e-6);
+  }
+}
+
+TEST(IntrinsicDelaunay, EveryEdgeIsOneVertexOfTheMedialMesh)
+{
+  for (const auto& [name, surface] : BadSurfaces())
+  {
+    const auto flipped = IntrinsicDelaunay(MakeMesh(surface)).Mesh();
+    const MedialMesh medial(*flipped);
+    const Triangles& edges = medial.Edges()->TriangleVertices();
+    std::vector<std::vector<double>> lengths(medial.Ends().size());
+    for (Index t = 0; t < flipped->NumberOfTriangles(); ++t)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        lengths[edges(t, a)].push_back(flipped->Shapes()[t].EdgeLength(a));
+      }
+    }
+    for (const std::vector<double>& uses : lengths)
+    {
+      ASSERT_EQ(uses.size(), 2u) << name; // the sheets are closed
+      EXPECT_NEAR(uses[0] / uses[1], 1.0, 1e-6) << name;
+    }
   }
 }
 

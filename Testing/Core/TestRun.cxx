@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Meshes.h"
+#include "RunInput.h"
 
 #include "Run/DirectionFieldRun.h"
 #include "Run/HeatSettings.h"
@@ -21,63 +21,14 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-/// One surface with one scalar per point, as arrays.
-struct Input
-{
-  Points Vertices;
-  Triangles Faces;
-  Fields Data;
-
-  explicit Input(const Testing::Surface& surface)
-    : Vertices(surface.Vertices)
-    , Faces(surface.Faces)
-  {
-    this->Data.Data = Values(this->Vertices.rows(), 1);
-    for (Eigen::Index i = 0; i < this->Vertices.rows(); ++i)
-    {
-      this->Data.Data(i, 0) = this->Vertices(i, 2) + 0.1 * std::cos(7.0 * i);
-    }
-  }
-
-  BlockInput Block() const
-  {
-    BlockInput block;
-    const auto add = [](Fingerprint& fingerprint, const auto& matrix)
-    {
-      fingerprint.AddBytes(
-        matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(*matrix.data()));
-    };
-    add(block.SurfaceVersion, this->Vertices);
-    add(block.SurfaceVersion, this->Faces);
-    add(block.FieldsVersion, this->Data.Data);
-    add(block.FieldsVersion, this->Data.Directions);
-    block.FieldsVersion.AddBytes(this->Data.Mask.data(), this->Data.Mask.size());
-    block.ReadSurface = [this] { return SurfaceArrays{ this->Vertices, this->Faces, {} }; };
-    block.ReadFields = [this] { return this->Data; };
-    return block;
-  }
-};
-
-const ProcessGroup Alone;
-
-/// The state at the last step.
-template <typename ModelSettings>
-Values StateOf(Run& run, const std::vector<BlockInput>& inputs, const ModelSettings& settings)
-{
-  run.Update(inputs, std::make_shared<ModelSettings>(settings), Alone, ProgressMonitor());
-  run.Seek(settings.DescribeModel().NumberOfSteps, ProgressMonitor());
-  return run.GetBlock(0).Path->State();
-}
-
-} // namespace
+using Testing::Alone;
+using Testing::RunInput;
+using Testing::StateOf;
 
 TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 {
   // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2 z.
-  Input input(Testing::Icosphere(5));
+  RunInput input(Testing::Icosphere(5));
   input.Data.Data = input.Vertices.col(2);
   HeatSettings settings;
   settings.Units = UnitsMode::Absolute;
@@ -93,7 +44,7 @@ TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 
 TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   const Values first = StateOf(run, { input.Block() }, HeatSettings());
   EXPECT_EQ(run.NumberOfStepsComputed(), 10);
@@ -104,7 +55,7 @@ TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
 
 TEST(Run, AfterAnyEditEqualsANewRun)
 {
-  Input input(Testing::Icosphere(3));
+  RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   TotalVariationSettings settings;
   StateOf(run, { input.Block() }, settings);
@@ -130,9 +81,31 @@ TEST(Run, AfterAnyEditEqualsANewRun)
   expectAsNew("Mode");
 }
 
+TEST(Run, FactorisesAgainOnlyIfTheMatrixChanges)
+{
+  Input input(Testing::Icosphere(4));
+  HeatSettings settings;
+  settings.Solver = SolverMethod::Direct;
+  SurfaceDiffusion::Run run(SerialFor());
+  const auto factorizationsAfterARun = [&]
+  {
+    StateOf(run, { input.Block() }, settings);
+    return run.GetBlock(0).Solvers.Get(SolverPurpose::Step)->NumberOfFactorizations();
+  };
+  EXPECT_EQ(factorizationsAfterARun(), 1);
+  input.Data.Data(7, 0) += 1.0;
+  EXPECT_EQ(factorizationsAfterARun(), 1);
+  settings.NumberOfTimeSteps += 2;
+  EXPECT_EQ(factorizationsAfterARun(), 1);
+  settings.TimeStep *= 2.0;
+  EXPECT_EQ(factorizationsAfterARun(), 2);
+  input.Data.Data(8, 0) += 1.0;
+  EXPECT_EQ(factorizationsAfterARun(), 2);
+}
+
 TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
   StateOf(run, { input.Block() }, settings);
@@ -143,7 +116,7 @@ TEST(Run, SettingsOfTheOutputAloneKeepTheRun)
 
 template <typename ModelSettings>
 void ExpectLongerRunsContinueShorterOnes(
-  const Input& input, ModelSettings settings, std::initializer_list<int> lengths)
+  const RunInput& input, ModelSettings settings, std::initializer_list<int> lengths)
 {
   SurfaceDiffusion::Run run(SerialFor());
   for (const int length : lengths)
@@ -159,7 +132,7 @@ void ExpectLongerRunsContinueShorterOnes(
 
 TEST(Run, ALongerRunComputesOnlyTheNewSteps)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
   settings.NumberOfTimeSteps = 20;
@@ -178,8 +151,8 @@ TEST(Run, ALongerRunComputesOnlyTheNewSteps)
 /// Automatic chooses by the number of steps, too, and the result is still that of a fresh run.
 TEST(Run, ALongerRunGivesTheBitsOfAFreshOne)
 {
-  const Input input(Testing::Icosphere(3));
-  Input nothing(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
+  RunInput nothing(Testing::Icosphere(3));
   nothing.Data.Data.resize(0, 0);
   for (const SolverMethod solver : { SolverMethod::Automatic, SolverMethod::Direct,
          SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
@@ -200,8 +173,8 @@ TEST(Run, ALongerRunGivesTheBitsOfAFreshOne)
 
 TEST(Run, SurfacesShareTheirUnits)
 {
-  const Input small(Testing::Icosphere(3));
-  const Input large(Testing::Scaled(Testing::Icosphere(3), 3.0));
+  const RunInput small(Testing::Icosphere(3));
+  const RunInput large(Testing::Scaled(Testing::Icosphere(3), 3.0));
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { small.Block() }, HeatSettings());
   const double h = run.Units().MeanEdgeLength;
@@ -212,7 +185,7 @@ TEST(Run, SurfacesShareTheirUnits)
 
 TEST(Run, EachWarningIsReportedOncePerCause)
 {
-  Input input(Testing::Icosphere(2));
+  RunInput input(Testing::Icosphere(2));
   input.Vertices.conservativeResize(input.Vertices.rows() + 1, 3);
   input.Vertices.bottomRows(1).setOnes();
   input.Data.Data = Values::Ones(input.Vertices.rows(), 1);
@@ -245,7 +218,7 @@ TEST(Run, EachWarningIsReportedOncePerCause)
 
 TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
 {
-  const Input input(Testing::Icosphere(3));
+  const RunInput input(Testing::Icosphere(3));
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { input.Block() }, HeatSettings());
   const History history = run.MakeHistory(10);
@@ -260,7 +233,7 @@ TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
 
 TEST(Run, ATextureNeedsNoData)
 {
-  Input input(Testing::Icosphere(3));
+  RunInput input(Testing::Icosphere(3));
   input.Data.Data.resize(0, 0);
   SurfaceDiffusion::Run run(SerialFor());
   TextureSettings settings;
@@ -273,7 +246,7 @@ TEST(Run, ATextureNeedsNoData)
 
 TEST(Run, InvalidArraysAreErrorsThatNameThem)
 {
-  Input input(Testing::Icosphere(2));
+  RunInput input(Testing::Icosphere(2));
   input.Data.Data(3, 0) = std::numeric_limits<double>::infinity();
   SurfaceDiffusion::Run run(SerialFor());
   try
@@ -291,7 +264,7 @@ TEST(Run, InvalidArraysAreErrorsThatNameThem)
 
 TEST(DirectionFieldRun, IsKeptUntilInputsOrSettingsChange)
 {
-  const Input input(Testing::Cylinder(24, 24));
+  const RunInput input(Testing::Cylinder(24, 24));
   DirectionFieldRun run(SerialFor());
   DirectionFieldSettings settings;
   int reads = 0;

@@ -32,9 +32,10 @@ Field Smoothest(const Surface& s, const Eigen::RowVector3d& axis = Eigen::RowVec
   const TangentVectors start =
     TangentVectorsFromTriangleVectors(*field.Mesh, s.Vertices, s.Faces, along);
   const auto solver = MakeCholeskySolver();
+  LineFieldReport report;
   const TangentVectors tangents = SmoothestLineField(lines, start,
-    Vector::Ones(field.Mesh->NumberOfTriangles()), *solver, ProgressMonitor(), &field.Eigenvalue);
-  field.Eigenvalue /= field.Mesh->LengthUnit() * field.Mesh->LengthUnit();
+    Vector::Ones(field.Mesh->NumberOfTriangles()), *solver, ProgressMonitor(), &report);
+  field.Eigenvalue = report.Lambda / (field.Mesh->LengthUnit() * field.Mesh->LengthUnit());
   field.Vectors = VectorsInSpace(*field.Mesh, s.Vertices, s.Faces, tangents);
   return field;
 }

@@ -74,7 +74,50 @@ TEST(VertexUpdating, ReportsThatItDidNotConverge)
   normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
   VertexMotion motion;
   EXPECT_THROW(
-    UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }), NotConverged);
+    UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }, false),
+    NotConverged);
+}
+
+TEST(VertexUpdating, FactorisesIfConjugateGradientsDoNotConverge)
+{
+  const Surface s = Noisy(Strip(20, 20), 0.01);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  Values normals(mesh.NumberOfVertices(), 3);
+  normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+  VertexMotion motion;
+  const Points iterated = UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion);
+  EXPECT_EQ(motion.MissedResidual, 0.0);
+  const Points factorised =
+    UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-10, 2 });
+  EXPECT_EQ(motion.MissedResidual, 0.0);
+  EXPECT_LT((factorised - iterated).cwiseAbs().maxCoeff(), 1e-7);
+}
+
+TEST(VertexUpdating, TakesAnAnswerWithinTenTimesTheTolerance)
+{
+  const Surface s = Noisy(Strip(20, 20), 0.01);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  Values normals(mesh.NumberOfVertices(), 3);
+  normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+  VertexMotion motion;
+  // The first number of iterations after which the residual is near enough.
+  double missed = 0.0;
+  for (int iterations = 2; missed == 0.0 && iterations < 500; ++iterations)
+  {
+    try
+    {
+      UpdateVerticesFromNormals(
+        mesh, s.Vertices, normals, 10.0, motion, { 1e-8, iterations }, false);
+      missed = motion.MissedResidual;
+      ASSERT_GT(missed, 0.0) << "it converged before an answer was taken";
+    }
+    catch (const NotConverged&)
+    {
+      continue;
+    }
+  }
+  EXPECT_GT(missed, 1e-8);
+  EXPECT_LE(missed, 1e-7);
 }
 
 TEST(VertexUpdating, NoisySphereIsSmoothedAtConstantVolume)

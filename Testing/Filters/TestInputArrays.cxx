@@ -490,3 +490,36 @@ TEST(InputArrays, AreFoundByAnyAttributeInPieces)
     }
   }
 }
+
+/// As for a surface in one piece: numpy edits an array, and the user marks the polydata only.
+TEST(InputArrays, OfPiecesThatAreEditedInPlaceAreReadAgain)
+{
+  vtkNew<vtkPartitionedDataSet> partitions;
+  for (unsigned int p = 0; p < 2; ++p)
+  {
+    auto part = Grid(4, 5);
+    for (vtkIdType i = 0; i < 20; ++i)
+    {
+      const double* point = part->GetPoint(i);
+      part->GetPoints()->SetPoint(i, point[0] + 3.0 * p, point[1], 0.0);
+    }
+    AddRough(part);
+    partitions->SetPartition(p, part);
+  }
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputDataObject(partitions);
+  const auto resultAt = [&](unsigned int p)
+  {
+    filter->Update();
+    return vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+      ->GetPartition(p)
+      ->GetPointData()
+      ->GetArray("fDiffused");
+  };
+  const auto before = Copy(resultAt(1));
+  vtkDataSet* const second = partitions->GetPartition(1);
+  second->GetPointData()->GetScalars()->SetComponent(10, 0, 7.0);
+  second->vtkObject::Modified();
+  partitions->vtkObject::Modified();
+  EXPECT_FALSE(Identical(resultAt(1), before));
+}

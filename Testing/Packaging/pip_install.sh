@@ -1,6 +1,7 @@
 #!/bin/sh
-# Usage: pip_install.sh SOURCE FOLDER Runs "pip install SOURCE" in a new virtual environment in
-# FOLDER, without a network, and checks the installed package. Build dependencies come from
+# Usage: pip_install.sh SOURCE FOLDER
+# Runs "pip install SOURCE" in a new virtual environment in FOLDER, without a network, and checks the
+# installed package, also with another VTK than it was built for. Build dependencies come from
 # SURFACEDIFFUSION_WHEEL_DIR; without it the exit code is 77 (skipped).
 set -eu
 source=$1
@@ -10,10 +11,12 @@ if [ -z "${SURFACEDIFFUSION_WHEEL_DIR:-}" ]; then
   exit 77
 fi
 unset PYTHONPATH LD_LIBRARY_PATH
+export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
 
 rm -rf "$folder"
 "${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages "$folder"
-PIP_CONFIG_FILE=/dev/null "$folder/bin/pip" install \
+PIP_CONFIG_FILE=/dev/null "$folder/bin/pip" install --config-settings=build-dir="$folder/build" \
+  --config-settings=cmake.define.SURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON \
   --no-index --find-links "$SURFACEDIFFUSION_WHEEL_DIR" "$source"
 cd "$folder"
 bin/python - <<'SCRIPT'
@@ -39,6 +42,29 @@ heat.Update()
 data = heat.GetOutput().GetPointData()
 assert data.GetArray("ElevationDiffused").GetRange() != data.GetArray("Elevation").GetRange()
 print("surfacediffusion", surfacediffusion.__version__, "in", package)
+SCRIPT
+# With another VTK the import is one sentence with both versions and the remedy.
+bin/python - <<'SCRIPT'
+import vtkmodules.vtkCommonCore as core
+
+built_for = core.vtkVersion.GetVTKVersion()
+
+
+class OtherVersion:
+    @staticmethod
+    def GetVTKVersion():
+        return "9.99.1"
+
+
+core.vtkVersion = OtherVersion
+try:
+    import surfacediffusion
+except ImportError as error:
+    for part in ("VTK " + built_for, "VTK 9.99.1", "pip install"):
+        assert part in str(error), (part, str(error))
+    print(error)
+else:
+    raise AssertionError("imported with a foreign VTK")
 SCRIPT
 bin/pip uninstall -q -y surfacediffusion
 if bin/python -c "import surfacediffusion" 2>/dev/null; then

@@ -5,12 +5,17 @@ documentation."""
 
 import glob
 import os
+import random
 import unittest
 import xml.etree.ElementTree
 
+import numpy as np
 import surfacediffusion
 from paraview import make_name_valid, servermanager, simple
+from paraview.modules.vtkRemotingServerManager import vtkSMOrderedPropertyIterator
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkPolyDataAlgorithm
+from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 GROUPS = ("Data", "Model", "Time", "Constraints", "Solver")
 PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
@@ -39,6 +44,102 @@ def properties():
     for name, proxy, cxx in proxies():
         for key in proxy.ListProperties():
             yield "%s.%s" % (name, key), key, proxy.SMProxy.GetProperty(key), cxx
+
+
+def holds(proxy, element):
+    """Whether a decorator of the panel, or a combination of some, lets its property be edited."""
+    children = [element.GetNestedElement(i) for i in range(element.GetNumberOfNestedElements())]
+    if element.GetName() == "Expression":
+        return (all if element.GetAttribute("type") == "and" else any)(
+            holds(proxy, child) for child in children)
+    if element.GetAttribute("type") == "CompositeDecorator":
+        return all(holds(proxy, child) for child in children)
+    other = proxy.SMProxy.GetProperty(element.GetAttribute("property"))
+    if other is None:
+        return True  # a property that this filter does not have
+    value = other.GetElement(int(element.GetAttribute("index") or 0)) or 0
+    wanted = element.GetAttribute("value")
+    equal = (value or "") == wanted if isinstance(value, str) or not wanted else (
+        float(value) == float(wanted))
+    if value == 0 and not wanted:
+        equal = True  # no array
+    return equal != (element.GetAttribute("inverse") == "1")
+
+
+def offered(proxy):
+    """The properties that the panel lets the user edit now, in its order."""
+    iterator = vtkSMOrderedPropertyIterator()
+    iterator.SetProxy(proxy.SMProxy)
+    iterator.Begin()
+    while not iterator.IsAtEnd():
+        prop = iterator.GetProperty()
+        hints = prop.GetHints()
+        decorators = [] if hints is None else [
+            hints.GetNestedElement(n) for n in range(hints.GetNumberOfNestedElements())]
+        if iterator.GetKey() != "Input" and not prop.GetInformationOnly() and all(
+                holds(proxy, element) for element in decorators
+                if element.GetName() == "PropertyWidgetDecorator"):
+            yield iterator.GetKey()
+        iterator.Next()
+
+
+def is_advanced(proxy, key):
+    return proxy.SMProxy.GetProperty(key).GetPanelVisibility() == "advanced"
+
+
+# What a user may type or select. Switches and menus are clicked without a list.
+VALUES = {
+    "FWHM": (0.0, 0.4), "FidelityWeight": (0.0, 2.0), "AlongDiffusivity": (1.0, 0.5),
+    "AcrossDiffusivity": (1.0, 0.2), "NoiseLevel": (0.0, 0.1), "FeatureSize": (0.0, 0.5),
+    "DiffusionRateAcross1": (-1.0, 3.0), "DiffusionRateAcross2": (-1.0, 3.0),
+    "TimeStep": (0.02, 0.05), "Exponent": (1.0, 2.0), "OutputInterval": (1, 2),
+    "MaskArray": (["POINTS", "hole"],), "FixedArray": (["POINTS", "ends"],),
+    "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (-1.0, 0.2),
+    "DiffusionRateArray": (["CELLS", "rates"],),
+}
+
+
+def click(filter, dice, clicked):
+    """Changes one property that the panel offers; appends it to `clicked`."""
+    keys = [key for key in offered(filter) if key != "Kinetics"]
+    key = dice.choice(keys)
+    prop = filter.SMProxy.GetProperty(key)
+    entries = prop.FindDomain("vtkSMEnumerationDomain")
+    if key in VALUES:
+        value = dice.choice(VALUES[key])
+    elif entries is not None:
+        value = entries.GetEntryText(dice.randrange(entries.GetNumberOfEntries()))
+    elif prop.FindDomain("vtkSMBooleanDomain") is not None:
+        value = dice.randrange(2)
+    else:
+        return
+    setattr(filter, key, value)
+    clicked.append((key, value))
+
+
+def sphere_with_arrays():
+    sphere = vtkSphereSource()
+    sphere.SetThetaResolution(12)
+    sphere.SetPhiResolution(9)
+    sphere.Update()
+    data = sphere.GetOutput()
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    cells = data.GetNumberOfCells()
+
+    def add(attributes, name, values):
+        array = numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=True)
+        array.SetName(name)
+        attributes.AddArray(array)
+
+    add(data.GetPointData(), "f", points[:, 2] + 0.1 * np.cos(50 * points[:, 0]))
+    add(data.GetPointData(), "hole", points[:, 0] > 0.3)
+    add(data.GetPointData(), "ends", points[:, 2] < -0.4)
+    add(data.GetPointData(), "east", np.tile([1.0, 0.0, 0.0], (len(points), 1)))
+    add(data.GetCellData(), "up", np.tile([0.0, 0.0, 1.0], (cells, 1)))
+    add(data.GetCellData(), "rates", np.tile([21.0, 21.0, 2.6, 2.6], (cells, 1)))
+    source = servermanager.sources.TrivialProducer()
+    source.SMProxy.GetClientSideObject().SetOutput(data)
+    return source
 
 
 class TestProxies(unittest.TestCase):
@@ -131,6 +232,95 @@ class TestProxies(unittest.TestCase):
                 if key != "Input" and not proxy.SMProxy.GetProperty(key).GetInformationOnly()
             ]
             self.assertEqual(sorted(grouped), sorted(shown), name)
+
+
+    def test_the_properties_that_decide_come_first(self):
+        """Among the model's properties that the panel shows, those of the class precede those that
+        it shares with others and that depend on them."""
+        for name, first in (
+            ("FVMHeatFilter", ["Mode", "FWHM", "AutomaticFidelity", "FidelityWeight"]),
+            ("HarmonicMapFilter", ["Exponent", "LineField", "MoveVertices", "FidelityWeight"]),
+            ("IntrinsicTVFilter",
+             ["Mode", "EdgeFunction", "FidelityNorm", "AutomaticFidelity", "FidelityWeight"]),
+            ("SurfaceDirectionFieldFilter",
+             ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
+            ("TuringTextureFilter",
+             ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
+              "DecayRate"]),
+        ):
+            proxy = getattr(servermanager.filters, name)()
+            model = set()
+            for i in range(proxy.SMProxy.GetNumberOfPropertyGroups()):
+                group = proxy.SMProxy.GetPropertyGroup(i)
+                if group.GetXMLLabel() == "Model":
+                    model |= {group.GetProperty(k).GetXMLName()
+                              for k in range(group.GetNumberOfProperties())}
+            shown = [key for key in offered(proxy) if key in model and not is_advanced(proxy, key)]
+            self.assertEqual(shown, first, name)
+
+    def test_at_most_ten_properties_are_shown_without_the_advanced_ones(self):
+        for name, proxy, _ in proxies():
+            found = [key for key in offered(proxy) if not is_advanced(proxy, key)]
+            self.assertLessEqual(len(found), 10, (name, found))
+            self.assertGreaterEqual(len(found), 3, (name, found))
+
+    def test_lengths_have_a_domain_with_a_reset_button_and_are_off_at_first(self):
+        lengths = {"FWHM", "FeatureSize", "SmoothingLength", "MergeTolerance"}
+        found = set()
+        for name, proxy, _ in proxies():
+            for key in lengths & set(proxy.ListProperties()):
+                found.add(key)
+                prop = proxy.SMProxy.GetProperty(key)
+                self.assertIsNotNone(prop.FindDomain("vtkSMBoundsDomain"), (name, key))
+                self.assertIsNotNone(prop.GetHints().FindNestedElementByName("NoDefault"), key)
+        self.assertEqual(found, lengths)
+
+    def test_properties_that_exclude_each_other_are_not_offered_together(self):
+        fwhm = dict(FWHM=0.5)
+        for name, values, hidden in (
+            ("FVMHeatFilter", fwhm, {"FidelityWeight", "AutomaticFidelity", "Mode", "TimeStep"}),
+            ("FVMHeatFilter", dict(FidelityWeight=1.0), {"FWHM"}),
+            ("FVMHeatFilter", dict(AutomaticFidelity=1), {"FWHM", "FidelityWeight"}),
+            ("FVMHeatFilter", dict(Mode=1), {"FWHM", "TimeStep", "NumberOfTimeSteps"}),
+            ("FVMHeatFilter", {}, {"HoldKnownValues", "MaskMode", "AlongDiffusivity"}),
+            ("IntrinsicTVFilter", dict(EdgeFunction=1), {"Mode", "AutomaticFidelity"}),
+            ("IntrinsicTVFilter", dict(AutomaticFidelity=1), {"FidelityNorm", "EdgeFunction"}),
+            ("TuringTextureFilter", {}, {"FixedArray", "DiffusionRateAcross1"}),
+            ("TuringTextureFilter", dict(IntrinsicDelaunay=1), {"DiffusionRateArray"}),
+        ):
+            proxy = getattr(servermanager.filters, name)()
+            for key, value in values.items():
+                proxy.SMProxy.GetProperty(key).SetElement(0, value)
+            self.assertEqual(set(offered(proxy)) & hidden, set(), (name, values))
+            # A state that a script has set can be left again.
+            self.assertLessEqual(set(values), set(offered(proxy)), (name, values))
+
+    def test_what_is_clicked_is_never_refused(self):
+        """Any sequence of clicks on properties that the panel offers gives a run without error."""
+        dice = random.Random(7)
+        for name, _, _ in proxies():
+            for _ in range(40):
+                filter = getattr(servermanager.filters, name)(Input=sphere_with_arrays())
+                clicked = []
+                if name in ("FVMHeatFilter", "IntrinsicTVFilter"):
+                    filter.InputArray = ["POINTS", "f"]
+                if "NumberOfTimeSteps" in filter.ListProperties():
+                    filter.NumberOfTimeSteps = 2
+                for _ in range(8):
+                    click(filter, dice, clicked)
+                if name == "SurfaceDirectionFieldFilter" and filter.Method == "Hints":
+                    filter.DirectionArray = ["CELLS", "up"]  # the hints, which the panel then shows
+                errors = []
+                algorithm = filter.SMProxy.GetClientSideObject()
+                filter.SMProxy.UpdateVTKObjects()
+
+                def remember(_object, _event, text):
+                    errors.append(text)
+
+                remember.CallDataType = "string0"
+                algorithm.AddObserver("ErrorEvent", remember)
+                filter.UpdatePipeline()
+                self.assertEqual(errors, [], (name, clicked))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include "Core/Geometry/SmoothLineField.h"
 #include "Core/Solvers/SolverChoice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -50,8 +51,10 @@ void Rotate(TangentVectors& lines, double angle, const ParallelFor& parallel)
 TangentVectors MakeDirectionField(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
   const Eigen::Ref<const TangentVectors>& hints, const DirectionSettings& settings,
-  const ParallelFor& parallel, const ProgressMonitor& progress)
+  const ParallelFor& parallel, const ProgressMonitor& progress, LineFieldReport* report)
 {
+  LineFieldReport found;
+  double missed = 0.0;
   const TriangleMesh& mesh = assembler.Mesh();
   const double quarterTurn = 0.5 * std::acos(-1.0);
   TangentVectors lines = hints;
@@ -61,6 +64,7 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
     const auto solver = MakeSolverFor(mesh.NumberOfVertices(), 4.0, true, parallel);
     PrincipalDirections principal = FindPrincipalDirections(assembler, points, triangles,
       settings.SmoothingLength, *solver, parallel, progress.Part(0.0, 0.3));
+    missed = principal.MissedResidual;
     lines = std::move(principal.MinimumCurvature);
     Rotate(lines, settings.Perpendicular ? quarterTurn : 0.0, parallel);
     const double mean = principal.Difference.size() > 0 ? principal.Difference.mean() : 0.0;
@@ -72,12 +76,18 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
     progress.Report(0.4);
     const auto solver = MakeSolverFor(laplacian.Mass().size(), 10.0, false, parallel);
     lines = settings.Method == DirectionMethod::Smooth
-      ? SmoothestLineField(laplacian, lines, weights, *solver, progress.Part(0.4, 1.0))
-      : LineFieldFromHints(
-          laplacian, lines, settings.HintWeight * weights, *solver, progress.Part(0.4, 1.0));
+      ? SmoothestLineField(laplacian, lines, weights, *solver, progress.Part(0.4, 1.0), &found,
+          settings.MaximumNumberOfSteps)
+      : LineFieldFromHints(laplacian, lines, settings.HintWeight * weights, *solver,
+          progress.Part(0.4, 1.0), &found);
   }
   Rotate(lines, settings.Angle, parallel);
   progress.Report(1.0);
+  if (report)
+  {
+    *report = found;
+    report->MissedResidual = std::max(missed, found.MissedResidual);
+  }
   return lines;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Geometry/SmoothLineField.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Solvers/LinearSolver.h"
 
@@ -25,6 +26,7 @@ struct DirectionSettings
   double SmoothingLength = 0.0; ///< of the normals: full width at half maximum, in LengthUnit()
   double HintWeight = 1.0; ///< in 1/LengthUnit()^2
   double Angle = 0.0; ///< by which the field is rotated at the end, in radians
+  int MaximumNumberOfSteps = 50; ///< of SmoothestLineField()
 };
 
 /// hints: tangent vectors for DirectionMethod::Hints, a zero row for a triangle without hint.
@@ -32,6 +34,7 @@ struct DirectionSettings
 TangentVectors MakeDirectionField(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
   const Eigen::Ref<const TangentVectors>& hints, const DirectionSettings& settings,
-  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor(),
+  LineFieldReport* report = nullptr);
 
 } // namespace SurfaceDiffusion

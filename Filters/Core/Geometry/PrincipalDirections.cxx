@@ -44,8 +44,9 @@ Values NormalTensors(const TriangleMesh& mesh, const Points& normals, const Para
   return tensors;
 }
 
-/// The heat equation (8) by backward Euler, until the Gaussian has this full width at half maximum.
-void Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& solver,
+/// The heat equation (8) by backward Euler, until the Gaussian has this full width at half maximum. Returns
+/// PrincipalDirections::MissedResidual.
+double Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& solver,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = assembler.Mesh();
@@ -55,16 +56,16 @@ void Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& so
   TakePattern(assembler.Pattern(), matrix, parallel);
   assembler.Fill(matrix, mesh.ControlAreas(), dt, CotanWeights(mesh, parallel), nullptr, parallel);
   solver.SetMatrix(matrix, progress.Part(0.0, 0.5));
+  double missed = 0.0;
   for (int step = 0; step < steps; ++step)
   {
     const Values b = mesh.ControlAreas().asDiagonal() * u;
     const double part = 0.5 + 0.5 * step / steps;
     const SolveReport report = solver.Solve(b, u, progress.Part(part, part + 0.5 / steps));
-    if (!report.Converged)
-    {
-      throw NotConverged(report);
-    }
+    RequireAnswer(report, solver.GetLimits());
+    missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
   }
+  return missed;
 }
 
 Eigen::RowVector3d MainNormal(const Values& tensors, Index i)
@@ -122,16 +123,17 @@ PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
   const TriangleMesh& mesh = assembler.Mesh();
   const Points normals = TriangleNormals(mesh, points, triangles, parallel);
   Values tensors = NormalTensors(mesh, normals, parallel);
+  PrincipalDirections principal;
   if (fwhm > 0.0)
   {
-    Smooth(assembler, fwhm, tensors, solver, parallel, progress.Part(0.0, 0.9));
+    principal.MissedResidual =
+      Smooth(assembler, fwhm, tensors, solver, parallel, progress.Part(0.0, 0.9));
   }
   Points vertexNormals(mesh.NumberOfVertices(), 3);
   ForEach(parallel, mesh.NumberOfVertices(),
     [&](Index i) { vertexNormals.row(i) = MainNormal(tensors, i); });
 
   constexpr double roundOff = 1e-9; // of curvatures, on a surface of about unit size
-  PrincipalDirections principal;
   principal.MinimumCurvature.resize(mesh.NumberOfTriangles(), 2);
   principal.Difference.resize(mesh.NumberOfTriangles());
   ForEach(parallel, mesh.NumberOfTriangles(),

@@ -16,6 +16,8 @@ struct PrincipalDirections
   TangentVectors MinimumCurvature;
   /// ||kappa_1| - |kappa_2||, in 1/LengthUnit().
   Vector Difference;
+  /// The largest relative residual of the solves that missed the tolerance, otherwise 0.
+  double MissedResidual = 0.0;
 };
 
 /// From the shape operator, the derivative of the surface normal, on each triangle. The normal at a

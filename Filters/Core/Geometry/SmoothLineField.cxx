@@ -27,13 +27,12 @@ Eigen::Vector2d Square(double x, double y)
                       : Eigen::Vector2d(Eigen::Vector2d::Zero());
 }
 
-void SolveWith(LinearSolver& solver, const Values& b, Values& x, const ProgressMonitor& progress)
+/// Returns the relative residual if it missed the tolerance, otherwise 0.
+double SolveWith(LinearSolver& solver, const Values& b, Values& x, const ProgressMonitor& progress)
 {
   const SolveReport report = solver.Solve(b, x, progress);
-  if (!report.Converged)
-  {
-    throw NotConverged(report);
-  }
+  RequireAnswer(report, solver.GetLimits());
+  return report.Converged ? 0.0 : report.Residual;
 }
 
 using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
@@ -128,15 +127,16 @@ public:
     this->Image.col(0) = b;
   }
 
-  /// One step; false while the eigenvalues change.
-  bool Step(LinearSolver& solver, Values& z, const ProgressMonitor& progress)
+  /// One step. Updates the report; its UnsettledChange is 0 if the eigenvalues no longer change.
+  void Step(
+    LinearSolver& solver, Values& z, LineFieldReport& report, const ProgressMonitor& progress)
   {
     const Values b = this->Mass.cwiseProduct(this->Basis.col(0));
-    SolveWith(solver, b, z, progress);
+    report.MissedResidual = std::max(report.MissedResidual, SolveWith(solver, b, z, progress));
     this->Basis.col(1) = z;
     this->Image.col(1) = b;
     constexpr double tolerance = 1e-4;
-    bool settled = true;
+    double largest = 0.0;
     for (std::size_t c = 0; c < this->Eigenvalues.size(); ++c)
     {
       const Index begin = 2 * this->Components[c];
@@ -145,18 +145,14 @@ public:
         Improve(this->Basis.middleRows(begin, count), this->Image.middleRows(begin, count),
           this->Mass.segment(begin, count)) -
         this->Shift;
-      settled =
-        settled && std::abs(this->Eigenvalues[c] - next) <= tolerance * (next + this->Shift);
+      largest = std::max(largest, std::abs(this->Eigenvalues[c] - next) / (next + this->Shift));
       this->Eigenvalues[c] = next;
     }
-    return settled;
+    report.UnsettledChange = largest <= tolerance ? 0.0 : largest;
+    report.Lambda = *std::max_element(this->Eigenvalues.begin(), this->Eigenvalues.end());
   }
 
   Vector Mode() const { return this->Basis.col(0); }
-  double LargestEigenvalue() const
-  {
-    return *std::max_element(this->Eigenvalues.begin(), this->Eigenvalues.end());
-  }
 
 private:
   const Vector& Mass;
@@ -293,7 +289,8 @@ TangentVectors LineFieldOperator::Lines(const Eigen::Ref<const Vector>& z) const
 
 TangentVectors SmoothestLineField(const LineFieldOperator& laplacian,
   const Eigen::Ref<const TangentVectors>& start, const Eigen::Ref<const Vector>& weights,
-  LinearSolver& solver, const ProgressMonitor& progress, double* lambda)
+  LinearSolver& solver, const ProgressMonitor& progress, LineFieldReport* report,
+  int maximumNumberOfSteps)
 {
   // Far below the smallest eigenvalue that curvature causes (2 on the unit sphere), and keeps the
   // matrix of a flat surface, whose smallest eigenvalue is 0, definite.
@@ -307,25 +304,24 @@ TangentVectors SmoothestLineField(const LineFieldOperator& laplacian,
 
   const Values b = StartLoad(laplacian, start, weights);
   Values z = Values::Zero(b.rows(), 1);
-  SolveWith(solver, b, z, progress.Part(0.7, 0.72));
+  LineFieldReport found;
+  found.MissedResidual = SolveWith(solver, b, z, progress.Part(0.7, 0.72));
   InverseIteration iteration(laplacian, shift, z, b);
-  constexpr int maxIterations = 50;
-  bool settled = false;
-  for (int i = 0; i < maxIterations && !settled; ++i)
+  for (int i = 0; i < maximumNumberOfSteps && (i == 0 || found.UnsettledChange > 0.0); ++i)
   {
-    settled = iteration.Step(solver, z, progress.Part(0.72, 0.72));
-    progress.Report(0.72 + 0.28 * i / maxIterations);
+    iteration.Step(solver, z, found, progress.Part(0.72, 0.72));
+    progress.Report(0.72 + 0.28 * i / maximumNumberOfSteps);
   }
-  if (lambda)
+  if (report)
   {
-    *lambda = iteration.LargestEigenvalue();
+    *report = found;
   }
   return laplacian.Lines(iteration.Mode());
 }
 
 TangentVectors LineFieldFromHints(const LineFieldOperator& laplacian,
   const Eigen::Ref<const TangentVectors>& hints, const Eigen::Ref<const Vector>& weights,
-  LinearSolver& solver, const ProgressMonitor& progress)
+  LinearSolver& solver, const ProgressMonitor& progress, LineFieldReport* report)
 {
   constexpr double regularisation = 1e-9; // see the header
   Vector load, diagonal;
@@ -336,7 +332,11 @@ TangentVectors LineFieldFromHints(const LineFieldOperator& laplacian,
   solver.SetMatrix(matrix, progress.Part(0.0, 0.8));
   const Values b = load;
   Values z = Values::Zero(b.rows(), 1);
-  SolveWith(solver, b, z, progress.Part(0.8, 1.0));
+  const double missed = SolveWith(solver, b, z, progress.Part(0.8, 1.0));
+  if (report)
+  {
+    report->MissedResidual = missed;
+  }
   return laplacian.Lines(z.col(0));
 }
 

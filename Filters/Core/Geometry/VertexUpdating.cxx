@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <stdexcept>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -79,9 +81,9 @@ public:
   }
 
   /// x with (K_N + M/range^2) x = -K_N start, from x = 0. The residual is relative to that of x =
-  /// 0.
-  Values Solve(
-    const Values& start, const IterationLimits& limits, const ProgressMonitor& progress) const
+  /// 0. factorize: whether a factorisation follows if conjugate gradients do not converge.
+  Values Solve(const Values& start, const IterationLimits& limits, bool factorize,
+    SolveReport& report, const ProgressMonitor& progress) const
   {
     const Index n = this->Mesh.NumberOfVertices();
     Values x = Values::Zero(n, 3);
@@ -95,17 +97,80 @@ public:
         return (residual.row(i) * this->InverseBlocks[i]).dot(residual.row(i));
       });
     work.Reference[0] = square > 0.0 ? square : 1.0;
-    const SolveReport report =
-      ConjugateGradients<3, NormalFit>(*this, residual, work, this->Parallel)
-        .Solve(x, limits, progress);
-    if (!report.Converged)
+    const Values b = factorize ? residual : Values();
+    report = ConjugateGradients<3, NormalFit>(*this, residual, work, this->Parallel)
+               .Solve(x, limits, progress.Part(0.0, factorize ? 0.5 : 1.0));
+    constexpr Index largest = 800000; // vertices, whose factor takes several gigabytes
+    if (!report.Converged && factorize && n <= largest)
     {
-      throw NotConverged(report);
+      this->SolveDirectly(b, x, limits, report, progress.Part(0.5, 1.0));
     }
+    RequireAnswer(report, limits);
     return x;
   }
 
 private:
+  /// Replaces x by the solution for b from a factorisation, if it comes closer.
+  void SolveDirectly(const Values& b, Values& x, const IterationLimits& limits, SolveReport& report,
+    const ProgressMonitor& progress) const
+  {
+    const SparseMatrix matrix = this->Matrix();
+    const std::unique_ptr<LinearSolver> solver = MakeCholeskySolver(this->Parallel);
+    solver->SetLimits(limits);
+    try
+    {
+      solver->SetMatrix(matrix, progress.Part(0.0, 0.9));
+      const Values load = Eigen::Map<const Values>(b.data(), b.size(), 1);
+      Values direct(load.rows(), 1);
+      const SolveReport other = solver->Solve(load, direct, progress.Part(0.9, 1.0));
+      if (other.Residual < report.Residual)
+      {
+        x = Eigen::Map<const Values>(direct.data(), x.rows(), 3);
+        report.Residual = other.Residual;
+        report.Converged = other.Converged;
+      }
+    }
+    catch (const std::runtime_error&)
+    {
+      // It cannot be factorised: the other answer stays.
+    }
+    report.IsFinal = true;
+  }
+
+  /// K_N + M/range^2, three rows per vertex.
+  SparseMatrix Matrix() const
+  {
+    const Triangles& corners = this->Mesh.TriangleVertices();
+    std::vector<Eigen::Triplet<double, Index>> entries;
+    const auto add = [&](Index i, Index j, const Eigen::Matrix3d& block)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        for (int l = 0; l < 3; ++l)
+        {
+          entries.emplace_back(3 * i + k, 3 * j + l, block(k, l));
+        }
+      }
+    };
+    for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
+    {
+      add(i, i, this->Pull[i] * Eigen::Matrix3d::Identity());
+      this->ForEachCorner(i,
+        [&](Index t, int, int next, int last)
+        {
+          const Row3 n = this->Normals.row(t);
+          const Eigen::Matrix3d onto = n.transpose() * n;
+          add(i, i, (this->Coefficients(t, last) + this->Coefficients(t, next)) * onto);
+          add(i, corners(t, next), -this->Coefficients(t, last) * onto);
+          add(i, corners(t, last), -this->Coefficients(t, next) * onto);
+        });
+    }
+    const Index size = 3 * this->Mesh.NumberOfVertices();
+    SparseMatrix matrix(size, size);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+  }
+
   /// Row i of (K_N + pull M/range^2) x.
   Row3 Product(Index i, const Values& x, double pull) const
   {
@@ -176,7 +241,7 @@ double EnclosedVolume(
 
 Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
   const Values& normals, double range, VertexMotion& motion, const IterationLimits& limits,
-  const ParallelFor& parallel, const ProgressMonitor& progress)
+  bool factorize, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const Index n = mesh.NumberOfVertices();
   Points moved = points;
@@ -192,7 +257,9 @@ Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<cons
   ForEach(parallel, n,
     [&](Index i) { start.row(i) = (points.row(mesh.InputVertex()[i]) - origin) / unit; });
   const NormalFit fit(mesh, normals, range / unit, parallel);
-  const Values step = fit.Solve(start, limits, progress);
+  SolveReport report;
+  const Values step = fit.Solve(start, limits, factorize, report, progress);
+  motion.MissedResidual = report.Converged ? 0.0 : report.Residual;
   for (Index i = 0; i < n; ++i)
   {
     moved.row(mesh.InputVertex()[i]) += unit * step.row(i);

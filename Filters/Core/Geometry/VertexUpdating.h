@@ -17,6 +17,8 @@ struct VertexMotion
   /// oriented.
   double VolumeBefore = 0.0;
   double VolumeAfter = 0.0;
+  /// The relative residual of the fit if it missed the tolerance, otherwise 0.
+  double MissedResidual = 0.0;
 };
 
 /// Vertex updating: move the vertices of a surface so that the triangle normals match given
@@ -28,10 +30,12 @@ struct VertexMotion
 /// than `range` are preserved.
 ///
 /// points: those that the mesh was made from; normals: n x 3 unit vectors, per mesh vertex. Points
-/// that are not vertices of the mesh stay. Throws Aborted, NotConverged.
+/// that are not vertices of the mesh stay. The linear system is solved by conjugate gradients;
+/// factorize: whether a factorisation follows if they do not converge. Throws Aborted,
+/// NotConverged.
 Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
   const Values& normals, double range, VertexMotion& motion,
-  const IterationLimits& limits = IterationLimits(), const ParallelFor& parallel = SerialFor(),
-  const ProgressMonitor& progress = ProgressMonitor());
+  const IterationLimits& limits = IterationLimits(), bool factorize = true,
+  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 
 } // namespace SurfaceDiffusion

@@ -35,7 +35,7 @@ void Spread(const TriangleMesh& mesh, Values& x, Values& means, const ParallelFo
       {
         x.row(i) += means.row(mesh.VertexCorners()[c] / 3);
       }
-      x.row(i) /= mesh.ControlAreas()[i];
+      x.row(i) /= mesh.ThirdOfTriangles(i);
     });
 }
 
@@ -78,7 +78,7 @@ Values MeanDifference(const TriangleMesh& mesh, const Values& u, const ParallelF
       for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
       {
         const Index t = mesh.VertexCorners()[c] / 3;
-        const double share = mesh.Shapes()[t].Area() / (9.0 * mesh.ControlAreas()[i]);
+        const double share = mesh.Shapes()[t].Area() / (9.0 * mesh.ThirdOfTriangles(i));
         for (int a = 0; a < 3; ++a)
         {
           differences.row(i) +=
@@ -134,7 +134,7 @@ void VerticesFromEdges(const TriangleMesh& mesh, const MedialMesh& edges, const 
         u.row(i) += (mesh.Shapes()[t].Area() / 3.0) *
           (w.row(corners(t, (a + 1) % 3)) + w.row(corners(t, (a + 2) % 3)) - w.row(corners(t, a)));
       }
-      u.row(i) /= mesh.ControlAreas()[i];
+      u.row(i) /= mesh.ThirdOfTriangles(i);
     });
 }
 

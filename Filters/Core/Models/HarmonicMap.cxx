@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
@@ -167,14 +168,14 @@ void HarmonicMap::TangentPlaneStep(StepReport& report, const ProgressMonitor& pr
 
 void HarmonicMap::MinimizingMovementStep(StepReport& report, const ProgressMonitor& progress)
 {
-  constexpr int maximumNumberOfRepetitions = 50;
   constexpr double stopTolerance = 1e-4; // on the last decrease, relative to that of the step
   this->Anchor = this->U;
   const double start = this->Energy();
   double objective = start;
-  for (int k = 0; k < maximumNumberOfRepetitions; ++k)
+  double before = start;
+  for (int k = 0; k < this->Options.MaximumNumberOfRepetitions; ++k)
   {
-    const double before = objective;
+    before = objective;
     // Each repetition is expected to take half of the time left.
     objective = this->Descend(
       before, report, progress.Part(1.0 - std::pow(0.5, k), 1.0 - std::pow(0.5, k + 1)));
@@ -183,6 +184,7 @@ void HarmonicMap::MinimizingMovementStep(StepReport& report, const ProgressMonit
       return;
     }
   }
+  report.UnsettledDecrease = (before - objective) / (start - objective);
 }
 
 /// One step from u that does not raise Objective(), whose value at u is `objective`; returns the
@@ -202,13 +204,19 @@ double HarmonicMap::Descend(double objective, StepReport& report, const Progress
             (dt * this->Fit.Weight(i) * this->Fit.Sign(i, this->U)) * this->Data.Given.row(i)) -
         this->RightHandSide.row(i);
     });
-  this->FindDamping();
   double damped = 0.0;
   double done = 0.0;
   for (const double share : { 0.0, 1.0 / 16.0, 1.0 })
   {
-    this->System.AddToDiagonal(share - damped, this->Damping);
-    damped = share;
+    if (share > 0.0)
+    {
+      if (damped == 0.0)
+      {
+        this->FindDamping();
+      }
+      this->System.AddToDiagonal(share - damped, this->Damping);
+      damped = share;
+    }
     const SolveReport solve =
       this->SolveInTangentSpaces(progress.Part(done, done + 0.5 * (1.0 - done)));
     done += 0.5 * (1.0 - done);
@@ -274,23 +282,33 @@ void HarmonicMap::FindDamping()
 
 SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
 {
-  const bool jacobiAlone = this->Options.Method == Preconditioner::Jacobi;
   const bool factor = this->Options.Method == Preconditioner::Factor;
   SolveReport report = this->TrySolve(factor, this->Step, progress.Part(0.0, 0.5));
-  if (!report.Converged && jacobiAlone)
+  if (report.Converged)
   {
-    throw NotConverged(report);
+    return report;
   }
-  if (!report.Converged)
+  if (this->Options.Method == Preconditioner::Jacobi)
   {
-    // If triangles are so bad that neither converges, the better of the two is a step, too.
+    RequireAnswer(report, this->Options.Limits);
+    return report;
+  }
+  // If triangles are so bad that neither converges, the better of the two is a step, too.
+  report.IsFinal = true;
+  try
+  {
     const SolveReport other = this->TrySolve(!factor, this->Other, progress.Part(0.5, 1.0));
+    report.Iterations += other.Iterations;
     if (other.Residual < report.Residual)
     {
       report.Residual = other.Residual;
+      report.Converged = other.Converged;
       this->Step.swap(this->Other);
     }
-    report.Iterations += other.Iterations;
+  }
+  catch (const std::runtime_error&)
+  {
+    // The matrix cannot be factorised, which is no reason to give up the step.
   }
   return report;
 }

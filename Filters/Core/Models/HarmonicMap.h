@@ -70,8 +70,8 @@ public:
   /// The preconditioner of the conjugate gradients in the tangent spaces. Factor is the factorised
   /// matrix without the projections (over several processes a multigrid cycle): good for smooth
   /// maps and large steps, while for noise Jacobi is never far behind. If one does not converge,
-  /// the other follows; if neither does, the step has the residual in the report. Jacobi alone
-  /// throws NotConverged.
+  /// the other follows; if neither does, the better one is the step, and the report says so. Jacobi
+  /// alone throws NotConverged unless it is within AnswerFactor of the tolerance.
   enum class Preconditioner
   {
     Automatic, ///< Jacobi first
@@ -89,6 +89,7 @@ public:
     bool ConsistentReaction = false; ///< of ExplicitReaction
     bool ProjectToSphere = true; ///< normalise after each step
     bool LineField = false;
+    int MaximumNumberOfRepetitions = 50; ///< per step of MinimizingMovement
     double LargestDiffusivity = 1.0; ///< d of anisotropic coefficients
     Preconditioner Method = Preconditioner::Automatic;
     IterationLimits Limits; ///< of the tangent spaces

@@ -64,10 +64,7 @@ void ImplicitSystem::Solve(
     b.row(i) += this->Load.row(i).segment(first, b.cols());
   }
   const SolveReport solve = this->Solver->Solve(b, u, progress);
-  if (!solve.Converged)
-  {
-    throw NotConverged(solve);
-  }
+  RequireAnswer(solve, this->Solver->GetLimits());
   report.Add(solve);
   for (Eigen::Index f = 0; f < this->FixedValues.rows(); ++f)
   {

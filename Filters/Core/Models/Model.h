@@ -19,11 +19,21 @@ struct StepReport
   int Iterations = 0; ///< linear (or outer) iterations of the step
   double Residual = 0.0; ///< largest relative residual of its solves
   Index Clamped = 0; ///< number of values clamped at zero (reaction-diffusion)
+  /// The largest relative residual of the solves that missed the tolerance of the linear solver; 0
+  /// if none did.
+  double MissedResidual = 0.0;
+  /// If repetitions of a step ended at their largest number: the decrease by the last one, relative
+  /// to that by all. Otherwise 0.
+  double UnsettledDecrease = 0.0;
 
   void Add(const SolveReport& solve)
   {
     this->Iterations += solve.Iterations;
     this->Residual = std::max(this->Residual, solve.Residual);
+    if (!solve.Converged)
+    {
+      this->MissedResidual = std::max(this->MissedResidual, solve.Residual);
+    }
   }
 };
 

@@ -64,6 +64,9 @@ NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assemble
   if (this->Frames.rows() > 0)
   {
     this->Directional = DirectionalWeights(this->Assembly->Mesh(), this->Frames, parallel);
+    TangentVectors across(this->Frames.rows(), 2);
+    across << -this->Frames.col(1), this->Frames.col(0);
+    this->Perpendicular = DirectionalWeights(this->Assembly->Mesh(), across, parallel);
   }
   const Eigen::Index columns = settings.Coupling == ChannelCoupling::Joint ? U.cols() : 1;
   this->Change.resize(this->U.rows(), columns);
@@ -134,8 +137,8 @@ void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
         return;
       }
       const double g2 = this->Options.AcrossDiffusivity * this->Options.Across(squared);
-      this->Weighted.row(t) = AnisotropicWeights(
-        HasDirection(this->Frames, t), this->Isotropic.row(t), this->Directional.row(t), g1, g2);
+      this->Weighted.row(t) = AnisotropicWeights(HasDirection(this->Frames, t),
+        this->Isotropic.row(t), this->Directional.row(t), this->Perpendicular.row(t), g1, g2);
     });
 }
 

@@ -69,7 +69,8 @@ private:
   ImplicitSystem System;
   TotalCorrection Conserved;
   CornerWeights Isotropic; ///< cotan weights (10)
-  CornerWeights Directional; ///< (13), no rows if g1 = g2
+  CornerWeights Directional; ///< (13) along e1, no rows if g1 = g2
+  CornerWeights Perpendicular; ///< the same along e2
   CornerWeights Weighted; ///< of g1 and g2 at the old level (12)
   Vector Diagonal;
   Values Change, RightHandSide;

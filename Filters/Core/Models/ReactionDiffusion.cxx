@@ -283,6 +283,7 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
     }
     report.Iterations += solution.Report.Iterations;
     report.Residual = std::max(report.Residual, solution.Report.Residual);
+    report.MissedResidual = std::max(report.MissedResidual, solution.Report.MissedResidual);
   }
 }
 

@@ -142,7 +142,8 @@ void Trajectory::Record(const StepReport& report, double seconds)
   const double energy = this->Stepper->Energy();
   Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
   this->Totals.insert(this->Totals.end(), this->StateTotals.begin(), this->StateTotals.end());
-  this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped });
+  this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped,
+    report.MissedResidual, report.UnsettledDecrease });
 }
 
 } // namespace SurfaceDiffusion

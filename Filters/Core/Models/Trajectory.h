@@ -48,6 +48,8 @@ struct StepRecord
   double Residual = 0.0;
   double Seconds = 0.0;
   Index Clamped = 0;
+  double MissedResidual = 0.0; ///< as in StepReport
+  double UnsettledDecrease = 0.0; ///< as in StepReport
 };
 
 /// A model that can be moved to any step, forwards and backwards, with the same bits in any order.

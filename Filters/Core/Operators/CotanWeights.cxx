@@ -26,17 +26,7 @@ CornerWeights DirectionalWeights(const TriangleMesh& mesh,
 {
   CornerWeights c(mesh.NumberOfTriangles(), 3);
   ForEach(parallel, mesh.NumberOfTriangles(),
-    [&](Index t)
-    {
-      const TriangleMesh::Shape& s = mesh.Shapes()[t];
-      const double d1 = frames.row(t).dot(Gradient(s, 0.0, 1.0, 0.0)); // grad(phi_1) . e1
-      const double d2 = frames.row(t).dot(Gradient(s, 0.0, 0.0, 1.0));
-      const double d0 = -d1 - d2;
-      const double area = s.Area();
-      c(t, 0) = -area * d1 * d2;
-      c(t, 1) = -area * d2 * d0;
-      c(t, 2) = -area * d0 * d1;
-    });
+    [&](Index t) { c.row(t) = DirectionalWeights(mesh.Shapes()[t], frames(t, 0), frames(t, 1)); });
   return c;
 }
 
@@ -51,12 +41,14 @@ CornerWeights AnisotropicWeights(const TriangleMesh& mesh, const CornerWeights& 
   const Eigen::Ref<const TangentVectors>& frames, const Eigen::Ref<const Vector>& g1,
   const Eigen::Ref<const Vector>& g2, const ParallelFor& parallel)
 {
-  CornerWeights c = DirectionalWeights(mesh, frames, parallel);
+  CornerWeights c(mesh.NumberOfTriangles(), 3);
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      c.row(t) =
-        AnisotropicWeights(HasDirection(frames, t), isotropic.row(t), c.row(t), g1[t], g2[t]);
+      const TriangleMesh::Shape& s = mesh.Shapes()[t];
+      c.row(t) = AnisotropicWeights(HasDirection(frames, t), isotropic.row(t),
+        DirectionalWeights(s, frames(t, 0), frames(t, 1)),
+        DirectionalWeights(s, -frames(t, 1), frames(t, 0)), g1[t], g2[t]);
     });
   return c;
 }

@@ -28,8 +28,20 @@ inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double 
 /// The cotan weights (10): c_ij = 1/2 cot(angle at v_k), D = 1.
 CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
-/// The weights of the diffusion along a direction (13): D = e1 e1^T. Zero if e1 is zero. Those of
-/// the diffusion across it are the cotan weights minus these.
+/// The weights of the diffusion along a direction (13): D = e e^T. Zero if e is zero.
+inline Eigen::RowVector3d DirectionalWeights(const TriangleMesh::Shape& s, double ex, double ey)
+{
+  const Eigen::Vector2d e(ex, ey);
+  const double d1 = e.dot(Gradient(s, 0.0, 1.0, 0.0)); // grad(phi_1) . e
+  const double d2 = e.dot(Gradient(s, 0.0, 0.0, 1.0));
+  const double d0 = -d1 - d2;
+  const double area = s.Area();
+  return { -area * d1 * d2, -area * d2 * d0, -area * d0 * d1 };
+}
+
+/// The same for e1 of all triangles. The weights across e1 are those along e2, which is
+/// perpendicular to it. They add up to the cotan weights, but on needles no digit of theirs may be
+/// left in the difference.
 CornerWeights DirectionalWeights(const TriangleMesh& mesh,
   const Eigen::Ref<const TangentVectors>& frames, const ParallelFor& parallel = SerialFor());
 
@@ -56,15 +68,15 @@ inline double IsotropicMean(double g1, double g2)
   return std::sqrt(g1) * std::sqrt(g2);
 }
 
-/// The weights of D = g1 e1 e1^T + g2 e2 e2^T on one triangle, from its cotan weights and its
-/// directional ones.
-template <typename Isotropic, typename Directional>
-Eigen::RowVector3d AnisotropicWeights(
-  bool directed, const Isotropic& isotropic, const Directional& directional, double g1, double g2)
+/// The weights of D = g1 e1 e1^T + g2 e2 e2^T on one triangle, from its cotan weights and those
+/// along e1 and e2.
+template <typename Isotropic, typename Along, typename Across>
+Eigen::RowVector3d AnisotropicWeights(bool directed, const Isotropic& isotropic, const Along& along,
+  const Across& across, double g1, double g2)
 {
   if (directed)
   {
-    return g1 * directional + g2 * (isotropic - directional);
+    return g1 * along + g2 * across;
   }
   return IsotropicMean(g1, g2) * isotropic;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Foundation/Columns.h"
 #include "Core/Operators/SparseProduct.h"
+#include "Core/Foundation/Columns.h"
 
 namespace SurfaceDiffusion
 {
@@ -51,7 +51,6 @@ template void MultiplyRows<0>(const SparseMatrix&, const Values&, Values&, Index
 template void MultiplyRows<1>(const SparseMatrix&, const Values&, Values&, Index, Index);
 template void MultiplyRows<2>(const SparseMatrix&, const Values&, Values&, Index, Index);
 template void MultiplyRows<3>(const SparseMatrix&, const Values&, Values&, Index, Index);
-template void MultiplyRows<ColumnPanel>(
-  const SparseMatrix&, const Values&, Values&, Index, Index);
+template void MultiplyRows<ColumnPanel>(const SparseMatrix&, const Values&, Values&, Index, Index);
 
 } // namespace SurfaceDiffusion

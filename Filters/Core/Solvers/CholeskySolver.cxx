@@ -45,6 +45,7 @@ public:
       factor = std::make_shared<SparseFactor>();
     }
     factor->SetMatrix(matrix);
+    ++this->Factorizations;
     constexpr Eigen::Index quick = 5000; // vertices, whose factorisation is not worth a thread
     if (matrix.rows() < quick)
     {
@@ -84,6 +85,8 @@ public:
         report.Residual = refined;
       }
     }
+    report.Converged = report.Residual <= this->Limits.Tolerance;
+    report.IsFinal = true;
     progress.Report(1.0);
     return report;
   }
@@ -99,6 +102,8 @@ public:
   }
 
   bool RunsOnOneThread() const override { return true; }
+
+  long NumberOfFactorizations() const override { return this->Factorizations; }
 
 private:
   /// x = P^T L^-T D^-1 L^-1 P b
@@ -195,6 +200,7 @@ private:
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
   std::shared_ptr<SparseFactor> Factor;
+  long Factorizations = 0;
   Values R, Correction;
   Values W; ///< in the order of the factor
   std::vector<double> OfR, OfB; ///< weighted squares of the columns of R and b

@@ -28,6 +28,15 @@ NotConverged::NotConverged(const SolveReport& report)
 {
 }
 
+void RequireAnswer(const SolveReport& report, const IterationLimits& limits)
+{
+  // Negated: a residual that is not a number is no answer.
+  if (!report.Converged && !report.IsFinal && !(report.Residual <= AnswerFactor * limits.Tolerance))
+  {
+    throw NotConverged(report);
+  }
+}
+
 double LinearSolver::ScaleOf(
   const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel)
 {

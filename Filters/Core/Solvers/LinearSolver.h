@@ -18,9 +18,11 @@ struct SolveReport
   /// Largest over the columns of |b - A x| / |b| in the norm of diag(A)^-1, in which the equations
   /// of small and of badly shaped cells count alike.
   double Residual = 0.0;
-  /// Whether an iterative method reached its tolerance. Always true for a direct one, of which
-  /// Residual says what it reached.
+  /// Whether Residual is within the tolerance.
   bool Converged = true;
+  /// Whether no method is left that could come closer: a direct one does not, and Automatic has
+  /// tried them all. The answer is then used as it is.
+  bool IsFinal = false;
 };
 
 struct IterationLimits
@@ -34,11 +36,18 @@ struct IterationLimits
 /// step would have no bounds.
 constexpr double ResolvedShare = 2e-15;
 
-/// Thrown by models if a solver ended at its iteration limit.
+/// Thrown by RequireAnswer() if a solver ended at its iteration limit.
 struct NotConverged : std::runtime_error
 {
   explicit NotConverged(const SolveReport& report);
 };
+
+/// An answer within AnswerFactor times the tolerance is used, and the run says so in a warning.
+constexpr double AnswerFactor = 10.0;
+
+/// Throws NotConverged unless the residual is within AnswerFactor times the tolerance or the report
+/// is final.
+void RequireAnswer(const SolveReport& report, const IterationLimits& limits);
 
 /// Solves A x = b for symmetric positive definite matrices of one pattern. After a solve that
 /// failed it gives the same results as a new one.
@@ -48,6 +57,7 @@ public:
   virtual ~LinearSolver() = default;
 
   void SetLimits(const IterationLimits& limits) { this->Limits = limits; }
+  const IterationLimits& GetLimits() const { return this->Limits; }
 
   /// Take the matrix, which must stay as it is until the next call. An ordering is kept from call
   /// to call while the pattern is the same, a factor while the values are the same too.
@@ -67,6 +77,9 @@ public:
   /// Whether Solve() leaves the other threads idle, so that another solver can run beside it.
   virtual bool RunsOnOneThread() const { return false; }
 
+  /// The number of factorisations that a direct method has computed so far.
+  virtual long NumberOfFactorizations() const { return 0; }
+
 protected:
   /// A power of two near the largest entry of two columns. The squares of entries divided by it
   /// neither overflow nor underflow, and the division is exact.
@@ -77,7 +90,7 @@ protected:
 };
 
 /// Sparse Cholesky factorisation L D L^T, and one step of iterative refinement if the residual is
-/// above the tolerance. A nearly singular matrix is regularised: see SparseFactor.
+/// above the tolerance. Its reports are final. A nearly singular matrix is regularised: see SparseFactor.
 std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = SerialFor());
 
 /// Conjugate gradients with Jacobi preconditioner, all columns in one pass over the matrix, each

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <limits>
+#include <stdexcept>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -78,44 +82,117 @@ SolverMethod FindFastest(const SolverTask& task)
   return iterative < conjugateGradient ? SolverMethod::Multigrid : SolverMethod::ConjugateGradient;
 }
 
-/// An iterative solver, and a factorisation for the systems on which it does not converge.
+/// Several methods: the first, and the next ones for the systems on which those before fail.
 class FallBackSolver : public LinearSolver
 {
 public:
-  FallBackSolver(std::unique_ptr<LinearSolver> iterative, const ParallelFor& parallel)
-    : Iterative(std::move(iterative))
-    , Cholesky(MakeCholeskySolver(parallel))
+  explicit FallBackSolver(std::vector<std::unique_ptr<LinearSolver>> methods)
+    : Methods(std::move(methods))
   {
   }
 
   void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress) override
   {
     this->Matrix = &matrix;
-    this->Iterative->SetMatrix(matrix, progress);
+    for (this->First = 0;; ++this->First)
+    {
+      try
+      {
+        this->Methods[this->First]->SetMatrix(matrix, progress);
+        return;
+      }
+      catch (const std::runtime_error&)
+      {
+        if (this->First + 1 == this->Methods.size())
+        {
+          throw;
+        }
+      }
+    }
   }
 
+  // The next solve tries the first method again: if the failure were remembered, the bits of a step
+  // would depend on the steps computed before it.
   SolveReport Solve(const Values& b, Values& x, const ProgressMonitor& progress) override
   {
-    this->Iterative->SetLimits(this->Limits);
-    const SolveReport report = this->Iterative->Solve(b, x, progress.Part(0.0, 0.5));
-    if (report.Converged)
+    SolveReport best;
+    best.Residual = std::numeric_limits<double>::infinity();
+    std::exception_ptr failure;
+    double done = 0.0;
+    for (std::size_t m = this->First; m < this->Methods.size(); ++m)
     {
-      progress.Report(1.0);
-      return report;
+      const double end = m + 1 < this->Methods.size() ? 0.5 * (1.0 + done) : 1.0;
+      try
+      {
+        const SolveReport report = this->TrySolve(m, b, x, progress.Part(done, end));
+        if (report.Converged)
+        {
+          progress.Report(1.0);
+          return report;
+        }
+        if (report.Residual < best.Residual)
+        {
+          best = report;
+          this->Best = x;
+        }
+      }
+      catch (const std::runtime_error&)
+      {
+        if (!b.allFinite())
+        {
+          throw; // no method has an answer
+        }
+        failure = failure ? failure : std::current_exception();
+        x.setZero(b.rows(), b.cols());
+      }
+      done = end;
     }
-    // The next solve tries the iteration again: if the failure were remembered, the bits of a step
-    // would depend on the steps computed before it.
-    this->Cholesky->SetLimits(this->Limits);
-    this->Cholesky->SetMatrix(*this->Matrix, progress.Part(0.5, 0.9));
-    return this->Cholesky->Solve(b, x, progress.Part(0.9, 1.0));
+    if (!std::isfinite(best.Residual))
+    {
+      std::rethrow_exception(failure);
+    }
+    x = this->Best;
+    return best;
   }
 
-  void Precondition(const Values& r, Values& z) override { this->Iterative->Precondition(r, z); }
+  void Precondition(const Values& r, Values& z) override
+  {
+    this->Methods[this->First]->Precondition(r, z);
+  }
+
+  bool RunsOnOneThread() const override { return this->Methods[this->First]->RunsOnOneThread(); }
 
 private:
-  std::unique_ptr<LinearSolver> Iterative, Cholesky;
+  SolveReport TrySolve(std::size_t m, const Values& b, Values& x, const ProgressMonitor& progress)
+  {
+    LinearSolver& method = *this->Methods[m];
+    method.SetLimits(this->Limits);
+    const double begin = m > this->First ? 0.8 : 0.0;
+    if (m > this->First)
+    {
+      method.SetMatrix(*this->Matrix, progress.Part(0.0, begin));
+    }
+    return method.Solve(b, x, progress.Part(begin, 1.0));
+  }
+
+  std::vector<std::unique_ptr<LinearSolver>> Methods;
+  std::size_t First = 0; ///< the first that took the matrix
   const SparseMatrix* Matrix = nullptr;
+  Values Best;
 };
+
+std::unique_ptr<LinearSolver> MakeOne(SolverMethod method, const ParallelFor& parallel)
+{
+  switch (method)
+  {
+    case SolverMethod::Direct:
+      return MakeCholeskySolver(parallel);
+    case SolverMethod::Multigrid:
+      return MakeMultigridSolver(parallel);
+    default:
+      return MakeConjugateGradientSolver(parallel);
+  }
+}
 
 } // namespace
 
@@ -126,25 +203,27 @@ SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task)
   if (method == SolverMethod::Automatic)
   {
     choice.Method = task.IsPreconditioner ? SolverMethod::Direct : FindFastest(task);
-    choice.FallsBack = choice.Method != SolverMethod::Direct;
+    choice.FallsBack = !task.IsPreconditioner;
   }
   return choice;
 }
 
 std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const ParallelFor& parallel)
 {
-  if (choice.Method == SolverMethod::Direct)
-  {
-    return MakeCholeskySolver(parallel);
-  }
-  std::unique_ptr<LinearSolver> iterative = choice.Method == SolverMethod::Multigrid
-    ? MakeMultigridSolver(parallel)
-    : MakeConjugateGradientSolver(parallel);
   if (!choice.FallsBack)
   {
-    return iterative;
+    return MakeOne(choice.Method, parallel);
   }
-  return std::make_unique<FallBackSolver>(std::move(iterative), parallel);
+  std::vector<std::unique_ptr<LinearSolver>> methods;
+  methods.push_back(MakeOne(choice.Method, parallel));
+  for (const SolverMethod next : { SolverMethod::Direct, SolverMethod::ConjugateGradient })
+  {
+    if (next != choice.Method)
+    {
+      methods.push_back(MakeOne(next, parallel));
+    }
+  }
+  return std::make_unique<FallBackSolver>(std::move(methods));
 }
 
 bool PreferDistributedMultigrid(SolverMethod method, const SolverTask& task)

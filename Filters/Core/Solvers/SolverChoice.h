@@ -36,8 +36,8 @@ struct SolverTask
   bool IsPreconditioner = false;
 };
 
-/// A method, and whether a factorisation follows if it does not converge. Solvers of equal choices
-/// can stand in for each other.
+/// A method, and whether others follow if it fails: a factorisation, then conjugate gradients.
+/// Solvers of equal choices can stand in for each other.
 struct SolverChoice
 {
   SolverMethod Method = SolverMethod::Direct; ///< not Automatic
@@ -51,7 +51,8 @@ struct SolverChoice
 };
 
 /// The method asked for, or instead of Automatic the one that is expected to be fastest by a model
-/// of measured times. Automatic falls back on a factorisation.
+/// of measured times. Automatic falls back on the other methods, and if none converges takes the
+/// answer that is closest.
 SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task);
 
 std::unique_ptr<LinearSolver> MakeSolver(

@@ -44,6 +44,10 @@ IntrinsicDelaunay::IntrinsicDelaunay(std::shared_ptr<const TriangleMesh> mesh,
   IntrinsicTriangulation triangulation(*this->Input);
   this->FlipEdges(triangulation, progress);
   this->EdgeFlips.shrink_to_fit();
+  for (Index side = 0; side < triangulation.NumberOfSides(); ++side)
+  {
+    this->EdgesLeft += triangulation.Twin(side) > side && !triangulation.IsDelaunay(side);
+  }
   this->Triangulation = triangulation.MakeMesh(*this->Input, parallel);
 }
 
@@ -54,8 +58,8 @@ void IntrinsicDelaunay::FlipEdges(
   std::iota(queue.begin(), queue.end(), 0);
   std::vector<char> queued(queue.size(), 1);
   // Flips end: each lowers an energy of finitely many triangulations (Bobenko and Springborn).
-  // Round-off in the lengths of needles can still flip some edges in circles. They stay as they are
-  // after far more flips than any surface needs.
+  // Round-off in the lengths of needles can still flip some edges in circles, and a strip of n
+  // needles needs of the order of n^2 flips. The edges that are left are counted.
   constexpr std::size_t maxChecksPerSide = 50;
   constexpr std::size_t checksBetweenReports = 65536;
   const std::size_t maxChecks = maxChecksPerSide * queue.size();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -85,7 +86,7 @@ IntrinsicTriangulation::IntrinsicTriangulation(const TriangleMesh& mesh)
   this->TwoSheets = !oneSheet;
   this->MakeSheets(mesh);
   this->JoinSheets(uses, mesh.NumberOfTriangles());
-  this->Mollify(mesh);
+  this->Mollify();
 }
 
 /// Sorted by edge.
@@ -160,27 +161,65 @@ void IntrinsicTriangulation::Join(Index side, Index other)
   this->Triangles[other / 3].Twins[other % 3] = side;
 }
 
-/// Add one length to all edges, so that all triangle inequalities hold by a margin.
-void IntrinsicTriangulation::Mollify(const TriangleMesh& mesh)
+/// Lengthen edges so that the triangle inequalities hold by a margin, relative to the size of each
+/// triangle. Only the two shorter sides of a triangle that is too flat are lengthened, and as this
+/// can make a neighbour too flat, its sides in turn. No edge grows by more than the largest margin:
+/// if all grew by that, all inequalities would hold.
+void IntrinsicTriangulation::Mollify()
 {
-  constexpr double relativeMargin = 1e-6; // of the mean edge length
-  const double margin =
-    relativeMargin * mesh.TotalEdgeLength() / std::max<Index>(1, mesh.NumberOfEdges());
-  double extra = 0.0;
-  for (const Triangle& t : this->Triangles)
+  std::vector<Index> queue(this->Triangles.size());
+  std::iota(queue.begin(), queue.end(), 0);
+  std::vector<char> queued(queue.size(), 1);
+  std::vector<double> added(3 * queue.size(), 0.0);
+  const auto raise = [&](Index side, double to)
   {
+    if (to <= added[side])
+    {
+      return;
+    }
+    for (const Index same : { side, this->Twin(side) })
+    {
+      this->Triangles[same / 3].Lengths[same % 3] += to - added[same];
+      added[same] = to;
+      if (!queued[same / 3])
+      {
+        queued[same / 3] = 1;
+        queue.push_back(same / 3);
+      }
+    }
+  };
+  while (!queue.empty())
+  {
+    const Index t = queue.back();
+    queue.pop_back();
+    queued[t] = 0;
     for (int a = 0; a < 3; ++a)
     {
-      extra = std::max(extra, margin + t.Lengths[a] - t.Lengths[Next(a)] - t.Lengths[Last(a)]);
+      const double lack = this->LackOfSlack(t, a);
+      if (lack > 0.0)
+      {
+        // Both up to one level, or the lower one alone.
+        const Index next = 3 * t + Next(a);
+        const Index last = 3 * t + Last(a);
+        const double sum = added[next] + added[last] + lack;
+        const double higher = std::max(added[next], added[last]);
+        const double level = 0.5 * sum >= higher ? 0.5 * sum : sum - higher;
+        raise(next, level);
+        raise(last, level);
+      }
     }
   }
-  for (Triangle& t : this->Triangles)
-  {
-    for (double& length : t.Lengths)
-    {
-      length += extra;
-    }
-  }
+}
+
+/// The length that the other two sides lack to be longer than side a by the margin; 0 if they are
+/// by half of it, which is enough.
+double IntrinsicTriangulation::LackOfSlack(Index t, int a) const
+{
+  constexpr double relativeMargin = 1e-6; // of the longest side
+  const std::array<double, 3>& l = this->Triangles[t].Lengths;
+  const double margin = relativeMargin * std::max({ l[0], l[1], l[2] });
+  const double slack = (l[Next(a)] - l[a]) + l[Last(a)];
+  return slack < 0.5 * margin ? margin - slack : 0.0;
 }
 
 double IntrinsicTriangulation::Cotangent(Index side) const
@@ -278,6 +317,7 @@ std::shared_ptr<TriangleMesh> IntrinsicTriangulation::MakeMesh(
   TriangleMesh::Contents contents;
   const auto count = static_cast<Index>(this->Triangles.size());
   contents.TriangleVertices.resize(count, 3);
+  contents.TriangleEdges.resize(count, 3);
   contents.Shapes.resize(count);
   for (Index t = 0; t < count; ++t)
   {
@@ -286,10 +326,15 @@ std::shared_ptr<TriangleMesh> IntrinsicTriangulation::MakeMesh(
     contents.Shapes[t] = { triangle.Lengths[2], apex[0], apex[1], this->TwoSheets ? 0.5 : 1.0 };
     contents.TriangleVertices.row(t) << triangle.Vertices[0], triangle.Vertices[1],
       triangle.Vertices[2];
+    for (int a = 0; a < 3; ++a)
+    {
+      contents.TriangleEdges(t, a) = std::min(3 * t + a, triangle.Twins[a]);
+    }
   }
   contents.InputVertex = mesh.InputVertex();
   contents.ComponentsBegin = mesh.ComponentsBegin();
   contents.BoundaryVertices = mesh.BoundaryVertices();
+  contents.ControlAreas = mesh.ControlAreas();
   contents.LengthUnit = mesh.LengthUnit();
   contents.TotalEdgeLength = mesh.TotalEdgeLength();
   contents.NumberOfEdges = mesh.NumberOfEdges();

@@ -21,9 +21,10 @@ namespace SurfaceDiffusion
 /// over a boundary then (the Neumann condition), and boundary edges flip like others, so that no
 /// vertex has to be added.
 ///
-/// If there are nearly degenerate triangles, all edges are first made longer by one length, at most
-/// 1e-6 of the mean edge, so that every triangle inequality holds in floating point (mollification,
-/// ibid.).
+/// The edges of nearly degenerate triangles are first made longer, by about 1e-6 of the longest of
+/// their triangle, so that every triangle inequality holds in floating point (mollification, ibid.,
+/// but with a length per edge, so that small parts of a surface keep their shape beside large ones).
+/// Control areas stay those of the surface.
 class IntrinsicTriangulation
 {
 public:
@@ -84,7 +85,8 @@ private:
   void MakeSheets(const TriangleMesh& mesh);
   void JoinSheets(const std::vector<EdgeUse>& uses, Index triangleCount);
   void Join(Index side, Index other);
-  void Mollify(const TriangleMesh& mesh);
+  void Mollify();
+  double LackOfSlack(Index t, int a) const;
   double Cotangent(Index side) const;
   void Relink(Index side, Index twin);
 

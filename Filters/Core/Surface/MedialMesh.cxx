@@ -14,49 +14,56 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The distinct edges as pairs of vertices, the smaller one first, in ascending order: edges that
-/// are neighbours on the surface stay neighbours in memory.
-std::vector<std::array<Index, 2>> ListEdges(const TriangleMesh& mesh)
+/// An edge: its vertices, the smaller one first, and its number if these do not determine it.
+using Edge = std::array<Index, 3>;
+
+/// The edge opposite corner a of triangle t.
+Edge OppositeEdge(const TriangleMesh& mesh, Index t, int a)
 {
-  std::vector<std::array<Index, 2>> edges;
+  const Index i = mesh.TriangleVertices()(t, (a + 1) % 3);
+  const Index j = mesh.TriangleVertices()(t, (a + 2) % 3);
+  const Index number = mesh.TriangleEdges().rows() > 0 ? mesh.TriangleEdges()(t, a) : 0;
+  return { std::min(i, j), std::max(i, j), number };
+}
+
+/// The distinct edges in ascending order: edges that are neighbours on the surface stay neighbours
+/// in memory.
+std::vector<Edge> ListEdges(const TriangleMesh& mesh)
+{
+  std::vector<Edge> edges;
   edges.reserve(mesh.NumberOfEdges());
-  std::vector<Index> ends;
+  std::vector<Edge> here;
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
-    ends.clear();
+    here.clear();
     for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
     {
-      for (const int step : { 1, 2 })
+      const Index corner = mesh.VertexCorners()[c];
+      for (const int a : { (corner + 1) % 3, (corner + 2) % 3 })
       {
-        const Index j = mesh.OtherCorner(mesh.VertexCorners()[c], step);
-        if (j >= i)
+        const Edge edge = OppositeEdge(mesh, corner / 3, a);
+        if (edge[0] == i)
         {
-          ends.push_back(j);
+          here.push_back(edge);
         }
       }
     }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    for (const Index j : ends)
-    {
-      edges.push_back({ i, j });
-    }
+    std::sort(here.begin(), here.end());
+    here.erase(std::unique(here.begin(), here.end()), here.end());
+    edges.insert(edges.end(), here.begin(), here.end());
   }
   return edges;
 }
 
 /// For every corner of a triangle the place of the opposite edge in the list.
-Triangles OppositeEdges(const TriangleMesh& mesh, const std::vector<std::array<Index, 2>>& edges)
+Triangles OppositeEdges(const TriangleMesh& mesh, const std::vector<Edge>& edges)
 {
-  const Triangles& vertices = mesh.TriangleVertices();
   Triangles opposite(mesh.NumberOfTriangles(), 3);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     for (int a = 0; a < 3; ++a)
     {
-      const Index i = vertices(t, (a + 1) % 3);
-      const Index j = vertices(t, (a + 2) % 3);
-      const std::array<Index, 2> edge = { std::min(i, j), std::max(i, j) };
+      const Edge edge = OppositeEdge(mesh, t, a);
       opposite(t, a) =
         static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
     }
@@ -81,7 +88,7 @@ std::vector<Index> ComponentOfEdges(const Triangles& corners, Index edgeCount)
 
 MedialMesh::MedialMesh(const TriangleMesh& mesh)
 {
-  const std::vector<std::array<Index, 2>> edges = ListEdges(mesh);
+  const std::vector<Edge> edges = ListEdges(mesh);
   const auto edgeCount = static_cast<Index>(edges.size());
   const Triangles corners = OppositeEdges(mesh, edges);
   const std::vector<Index> component = ComponentOfEdges(corners, edgeCount);
@@ -97,7 +104,7 @@ MedialMesh::MedialMesh(const TriangleMesh& mesh)
   for (Index e = 0; e < edgeCount; ++e)
   {
     number[order[e]] = e;
-    this->EdgeEnds[e] = edges[order[e]];
+    this->EdgeEnds[e] = { edges[order[e]][0], edges[order[e]][1] };
     if (e == 0 || component[order[e]] != component[order[e - 1]])
     {
       medial.ComponentsBegin.push_back(e);

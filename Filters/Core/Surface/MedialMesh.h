@@ -30,8 +30,8 @@ public:
   /// two have the same axes up to sign, so that tangent vectors are the same on both.
   std::shared_ptr<const TriangleMesh> Edges() const { return this->Medial; }
 
-  /// The two vertices of the edge whose midpoint is vertex e of the medial mesh. Several edges
-  /// between the same two vertices, which intrinsic triangulations can have, count as one.
+  /// The two vertices of the edge whose midpoint is vertex e of the medial mesh. Intrinsic
+  /// triangulations can have several edges between the same two vertices.
   const std::vector<std::array<Index, 2>>& Ends() const { return this->EdgeEnds; }
 
 private:

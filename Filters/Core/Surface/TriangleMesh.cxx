@@ -133,26 +133,32 @@ void TriangleMesh::ListCorners()
   }
 }
 
+double TriangleMesh::ThirdOfTriangles(Index i) const
+{
+  double area = 0.0;
+  for (Index c = this->CornersBegin[i]; c < this->CornersBegin[i + 1]; ++c)
+  {
+    area += this->Given.Shapes[this->CornerList[c] / 3].Area() / 3.0;
+  }
+  return area;
+}
+
 void TriangleMesh::SumAreas(const ParallelFor& parallel)
 {
-  this->Areas.resize(this->NumberOfVertices());
+  if (this->Given.ControlAreas.size() > 0)
+  {
+    return;
+  }
+  this->Given.ControlAreas.resize(this->NumberOfVertices());
   ForEach(parallel, this->NumberOfVertices(),
-    [&](Index i)
-    {
-      double area = 0.0;
-      for (Index c = this->CornersBegin[i]; c < this->CornersBegin[i + 1]; ++c)
-      {
-        area += this->Given.Shapes[this->CornerList[c] / 3].Area() / 3.0;
-      }
-      this->Areas[i] = area;
-    });
+    [&](Index i) { this->Given.ControlAreas[i] = this->ThirdOfTriangles(i); });
 }
 
 void TriangleMesh::ScaleControlAreas(const std::vector<double>& factors)
 {
   for (Index i = 0; i < this->NumberOfVertices(); ++i)
   {
-    this->Areas[i] *= factors[static_cast<std::size_t>(this->InputVertex()[i])];
+    this->Given.ControlAreas[i] *= factors[static_cast<std::size_t>(this->InputVertex()[i])];
   }
 }
 

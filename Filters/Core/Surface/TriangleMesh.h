@@ -63,9 +63,11 @@ public:
     std::vector<Index> InputVertex;
     std::vector<Index> InputTriangle;
     Triangles TriangleVertices;
+    Triangles TriangleEdges; ///< no row: an edge is known by its two vertices
     std::vector<Shape> Shapes;
     std::vector<Index> ComponentsBegin;
     std::vector<Index> BoundaryVertices;
+    Vector ControlAreas; ///< no entries: a third of the triangles around each vertex
     double LengthUnit = 1.0;
     double TotalEdgeLength = 0.0;
     Index NumberOfEdges = 0;
@@ -95,6 +97,9 @@ public:
 
   /// m x 3 vertex numbers.
   const Triangles& TriangleVertices() const { return this->Given.TriangleVertices; }
+  /// m x 3 numbers of the edges opposite the corners, below 3 m, if two edges of an intrinsic
+  /// triangulation can have the same two vertices. Otherwise no row.
+  const Triangles& TriangleEdges() const { return this->Given.TriangleEdges; }
   const std::vector<Shape>& Shapes() const { return this->Given.Shapes; }
 
   /// The triangles around vertex i are entries VertexCornersBegin()[i] .. [i + 1] of
@@ -109,8 +114,11 @@ public:
   }
 
   /// A_i, the area of the control cell of v_i, a third of the triangles around it: the diagonal of
-  /// the lumped mass matrix.
-  const Vector& ControlAreas() const { return this->Areas; }
+  /// the lumped mass matrix. An intrinsic Delaunay triangulation has those of the surface's own
+  /// triangles, so that the sum of A_i u_i is the integral over the drawn surface.
+  const Vector& ControlAreas() const { return this->Given.ControlAreas; }
+  /// A third of the triangles of this mesh around vertex i.
+  double ThirdOfTriangles(Index i) const;
   /// Multiply A_i by a positive factor per input point. The stiffness matrix does not change under
   /// a conformal change of the metric in two dimensions, so this is such a change: lengths near v_i
   /// grow by the square root of the factor, and functions of lengths of edges do not notice.
@@ -154,7 +162,6 @@ private:
   Contents Given;
   std::vector<Index> CornersBegin;
   std::vector<Index> CornerList;
-  Vector Areas;
   std::shared_ptr<const Reduction> OverProcesses;
 };
 

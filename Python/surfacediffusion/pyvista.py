@@ -1,0 +1,418 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The functions of this package for PyVista meshes: each takes a mesh and returns a new one.
+
+    from surfacediffusion.pyvista import heat
+
+    smooth = heat(mesh, "thickness", fwhm=10)  # adds the point array "thicknessDiffused"
+    states = heat(mesh, "thickness", times=[0, 1, 2, 4])  # a list of four meshes
+    smooth, result = heat(mesh, "thickness", full_output=True)
+    result.history["Energy"]
+
+With PyVista 0.48 or newer they are also methods, without an import: mesh.diffusion.heat("thickness",
+fwhm=10). Any VTK will do, since no class of this package is compiled for one.
+
+A mesh is a pyvista.PolyData with n points and m cells, or a pyvista.MultiBlock of such meshes, whose
+blocks may be None or empty; its surfaces share their natural units, and blocks without the array
+are returned as they are. The input is not modified. Arrays are passed by name:
+
+array      the data: point array (n,) or (n, k) of any numeric type, NaN is missing; default: the
+           active scalars
+mask       point array (n,), nonzero is missing (or excluded with mask_mode="Exclude")
+direction  point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along
+fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
+
+times: times in the unit of time_step, in any order. The function then returns a list with the mesh
+at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
+one. full_output: if True, the function returns a pair: the mesh or the list, and the Result (of a
+MultiBlock, or with times, the list of them). progress: True or a callable, as for arrays.
+result_array_name: in place of the default. All other keywords are those of the functions on arrays,
+also in the spelling of VTK and ParaView: FWHM=10 is fwhm=10.
+
+Errors: TypeError if the mesh is not a surface, with the remedy; ValueError if an array or a keyword
+is not allowed, with a message that names it, what was found and what is allowed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Iterator, Sequence
+
+import numpy as np
+import pyvista
+from numpy.typing import NDArray
+
+from . import _core
+from ._functions import direction_field as _direction_field
+from ._models import (
+    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_harmonic_map, make_texture,
+)
+from ._result import Result
+from ._run import Input, Progress, Runner, find_result_type
+from ._settings import settings_of, shorten
+from ._surface import Surface, as_data
+
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
+
+_ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
+
+
+def heat(
+    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
+    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
+    progress: Progress = False, **properties: Any,
+) -> Any:
+    """Smooth, denoise or inpaint a point array by linear diffusion.
+
+    The arguments are described in help(surfacediffusion.pyvista), the equation and all other keywords
+    in help(surfacediffusion.heat). The result is the point array <array>Diffused, with the shape of
+    the data.
+    """
+    return _run("heat", mesh, array, (mask, direction, fixed, None), times, full_output, progress,
+                properties)
+
+
+def intrinsic_tv(
+    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
+    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
+    progress: Progress = False, **properties: Any,
+) -> Any:
+    """Denoise or inpaint a point array and preserve its edges.
+
+    The arguments are described in help(surfacediffusion.pyvista), the equation and all other keywords
+    in help(surfacediffusion.intrinsic_tv). The result is the point array <array>TV, with the shape of
+    the data.
+    """
+    return _run("intrinsic_tv", mesh, array, (mask, direction, fixed, None), times, full_output,
+                progress, properties)
+
+
+def harmonic_map(
+    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
+    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
+    progress: Progress = False, **properties: Any,
+) -> Any:
+    """Regularise normals or other unit vectors, or denoise the mesh.
+
+    array: the vectors, a point array (n, k) with k > 1; default: the active normals, which are
+    computed if there are none. The other arguments are described in help(surfacediffusion.pyvista),
+    the equation and all other keywords in help(surfacediffusion.harmonic_map). The result is the
+    point array <array>Harmonic (n, k); NormalsHarmonic for computed normals. With move_vertices=True
+    the points are moved.
+    """
+    return _run("harmonic_map", mesh, array, (mask, direction, fixed, None), times, full_output,
+                progress, properties)
+
+
+def turing_texture(
+    mesh: Any, initial: str | None = None, *, mask: str | None = None, direction: str | None = None,
+    fixed: str | None = None, rates: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
+) -> Any:
+    """Grow a texture on the mesh by reaction and diffusion.
+
+    initial: point array (n, 2), the initial state; default: the uniform steady state with noise.
+    rates: cell array (m, 4). The other arguments are described in help(surfacediffusion.pyvista), the
+    equation and all other keywords in help(surfacediffusion.turing_texture). The results are the
+    point arrays u1, u2 and Texture (n,), and TextureColor (n, 3) with color_output=True.
+    """
+    return _run("turing_texture", mesh, initial, (mask, direction, fixed, rates), times, full_output,
+                progress, properties)
+
+
+def direction_field(
+    mesh: Any, hints: str | None = None, *, progress: Progress = False, **properties: Any
+) -> Any:
+    """Compute a line field on the mesh.
+
+    hints: point or cell array (n, 3) or (m, 3) of directions, for method="Hints". All other keywords
+    are those of surfacediffusion.direction_field. The result is the cell array Direction (m, 3):
+    unit vectors whose sign has no meaning, zero in cells that have no direction.
+    """
+    properties, name = _keywords("direction_field", properties)
+    surfaces = _find_surfaces(mesh)
+    for block in surfaces:
+        if block.has_strips:
+            raise TypeError("the mesh has triangle strips, which have no single direction; allowed: "
+                            "polygons, for example mesh.triangulate()")
+        given = None if hints is None else block.find("hints", hints, faces=True)[0]
+        field = _direction_field(block.surface, given, progress=progress, **properties)
+        cells = np.zeros((block.mesh.n_cells, 3))
+        cells[block.face_cells] = field
+        block.mesh.cell_data[name or "Direction"] = cells
+        block.mesh.GetCellData().SetActiveVectors(name or "Direction")
+    return _rebuild(mesh, iter(surfaces))
+
+
+class _Block:
+    """One surface of the input, and the mesh of its results."""
+
+    def __init__(self, mesh: pyvista.PolyData) -> None:
+        self.input = mesh
+        self.mesh = mesh.copy(deep=False)
+        faces, self.face_cells = _find_faces(mesh)
+        self.has_strips = len(mesh.strips) > 0
+        self.empty = len(faces) == 0
+        if not self.empty:
+            self.surface = Surface(mesh.points, faces)
+        self.given: Input | None = None
+        self.name = ""  #: of the data
+
+    def find(
+        self, argument: str, name: str | None, points: bool = True, faces: bool = False
+    ) -> tuple[NDArray[Any] | None, bool]:
+        """An array by name, and whether it is on faces."""
+        if name is None:
+            return None, False
+        if points and name in self.mesh.point_data:
+            return np.asarray(self.mesh.point_data[name]), False
+        if faces and name in self.mesh.cell_data:
+            return np.asarray(self.mesh.cell_data[name])[self.face_cells], True
+        names = (self.mesh.point_data.keys() if points else []) + (
+            self.mesh.cell_data.keys() if faces else [])
+        where = " or ".join(["point"] * points + ["cell"] * faces)
+        listed = ", ".join(repr(other) for other in names) or "of which there are none"
+        raise ValueError(f"{argument} is {shorten(name)}; allowed: {where} arrays, {listed}")
+
+    def fresh(self) -> _Block:
+        """The same surface, with a mesh for other results."""
+        block = object.__new__(_Block)
+        block.__dict__.update(self.__dict__, mesh=self.input.copy(deep=False))
+        return block
+
+
+def _find_faces(mesh: pyvista.PolyData) -> tuple[Any, NDArray[np.int64]]:
+    """The polygons, and strips as triangles, without hidden and ghost cells; the cell of each."""
+    padded = np.asarray(mesh.faces)
+    before = mesh.n_verts + mesh.n_lines
+    regular = int(padded[0]) + 1 if padded.size else 4
+    cells: Any
+    if padded.size % regular == 0 and (padded[::regular] == regular - 1).all() and regular > 3:
+        faces: Any = padded.reshape(-1, regular)[:, 1:]
+        cells = before + np.arange(len(faces))
+    else:
+        faces, cells, cell = [], [], before
+        for polygon in _split(padded):
+            if len(polygon) > 2:
+                faces.append(polygon)
+                cells.append(cell)
+            cell += 1
+    strips = np.asarray(mesh.strips)
+    if strips.size:
+        faces, cells, cell = list(faces), list(cells), before + mesh.GetNumberOfPolys()
+        for strip in _split(strips):
+            for i in range(len(strip) - 2):
+                faces.append(strip[[i, i + 1 + i % 2, i + 2 - i % 2]])
+                cells.append(cell)
+            cell += 1
+    cells = np.asarray(cells, dtype=np.int64)
+    if "vtkGhostType" in mesh.cell_data:
+        present = (np.asarray(mesh.cell_data["vtkGhostType"])[cells] & _ABSENT) == 0
+        cells = cells[present]
+        faces = (faces[present] if isinstance(faces, np.ndarray)
+                 else [face for face, kept in zip(faces, present) if kept])
+    return faces, cells
+
+
+def _split(padded: NDArray[Any]) -> Iterator[NDArray[Any]]:
+    """The cells of an array [size, point, point, ..., size, ...]."""
+    begin = 0
+    while begin < len(padded):
+        size = int(padded[begin])
+        yield padded[begin + 1 : begin + 1 + size]
+        begin += 1 + size
+
+
+def _leaves(mesh: Any) -> Iterator[pyvista.PolyData]:
+    if isinstance(mesh, pyvista.MultiBlock):
+        for block in mesh:
+            if block is not None:
+                yield from _leaves(block)
+    elif isinstance(mesh, pyvista.PolyData):
+        yield mesh
+    else:
+        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
+            mesh, "extract_surface") else ""
+        raise TypeError(f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
+                        f"pyvista.MultiBlock of it{remedy}")
+
+
+def _find_surfaces(mesh: Any) -> list[_Block]:
+    """The surfaces of a mesh, without empty blocks."""
+    leaves = list(_leaves(mesh))
+    blocks = [block for block in map(_Block, leaves) if not block.empty]
+    if not any(leaf.n_points > 0 for leaf in leaves):
+        raise ValueError("the mesh is empty; allowed: a surface of polygons or strips")
+    if not blocks:
+        raise ValueError("the mesh has no polygons or strips; allowed: a surface")
+    return blocks
+
+
+def _rebuild(mesh: Any, blocks: Iterator[_Block]) -> Any:
+    """The input with the meshes of the blocks in their places."""
+    following = next(blocks, None)
+
+    def build(part: Any) -> Any:
+        nonlocal following
+        if isinstance(part, pyvista.MultiBlock):
+            copy = part.copy(deep=False)
+            for index in range(part.n_blocks):
+                if part[index] is not None:
+                    copy.replace(index, build(part[index]))
+            return copy
+        if following is not None and following.input is part:
+            built, following = following.mesh, next(blocks, None)
+            return built
+        return part.copy(deep=False)
+
+    return build(mesh)
+
+
+def _keywords(function: str, properties: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
+    """The keywords, also in the spelling of VTK, and the name of the result."""
+    names = {setting.name: setting.keyword for setting in settings_of(function).values()}
+    names["ResultArrayName"] = "result_array_name"
+    found = {names.get(name, name): value for name, value in properties.items()}
+    return found, found.pop("result_array_name", None)
+
+
+def _prepare(
+    function: str, block: _Block, array: str | None, names: Sequence[str | None],
+    properties: dict[str, Any],
+) -> None:
+    """The input of a block."""
+    mesh, surface = block.mesh, block.surface
+    data: Any = None
+    if function == "harmonic_map":
+        name = array or mesh.point_data.active_normals_name
+        data = as_vectors(surface, block.find("array", name)[0], properties)
+        block.name = name or "Normals"
+    elif function == "turing_texture":
+        data = as_initial(surface, block.find("initial", array)[0])
+    else:
+        name = array or mesh.point_data.active_scalars_name
+        if name is None:
+            raise ValueError("array is None, and there are no active point scalars; allowed: the name "
+                             "of a point array")
+        data = as_data(name, block.find("array", name)[0], surface.n_points)
+        block.name = name
+    mask, direction, fixed, rates = names
+    directions, on_faces = block.find("direction", direction, faces=True)
+    block.given = Input(
+        surface, data, mask=block.find("mask", mask)[0], fixed=block.find("fixed", fixed)[0],
+        directions=directions, directions_name="direction", on_faces=on_faces,
+        rates=block.find("rates", rates, points=False, faces=True)[0])
+
+
+def _write(function: str, block: _Block, result: Any, name: str | None, colors: bool) -> None:
+    """Add the result to the mesh, and make it active."""
+    points = block.mesh.point_data
+    values = result.values
+    if function == "turing_texture":
+        prefix = name or ""
+        points[prefix + "u1"], points[prefix + "u2"] = values[:, 0], values[:, 1]
+        points[prefix + "Texture"] = result.texture
+        active = prefix + "u1"
+        if colors:
+            active = prefix + "TextureColor"
+            points[active] = result.colors
+        block.mesh.set_active_scalars(active, preference="point")
+        return
+    suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic"}[function]
+    active = name or block.name + suffix
+    given = block.input.point_data
+    single = block.name in given and given[block.name].ndim == 1
+    points[active] = values[:, 0] if single else values
+    if function != "harmonic_map":
+        block.mesh.set_active_scalars(active, preference="point")
+    elif block.name in ("Normals", given.active_normals_name):
+        block.mesh.GetPointData().SetActiveNormals(active)
+    if function == "harmonic_map" and result.mean_displacement > 0.0:
+        # Other points: those of the copy are the input's own.
+        block.mesh.SetPoints(pyvista.vtk_points(result.points.astype(block.input.points.dtype)))
+
+
+def _run(
+    function: str, mesh: Any, array: str | None, names: Sequence[str | None],
+    times: Sequence[float] | None, full_output: bool, progress: Progress, properties: dict[str, Any],
+) -> Any:
+    properties, result_name = _keywords(function, properties)
+    dtype = properties.pop("dtype", None)
+    colors = as_colors(properties.pop("low_color", (0.16, 0.09, 0.05)),
+                       properties.pop("high_color", (0.93, 0.80, 0.58)))
+    runner = Runner(function, properties, {
+        **ARRAYS, "DirectionArray": "direction",
+        "InputArray": "initial" if function == "turing_texture" else "array"})
+    blocks, failures = [], []
+    for block in _find_surfaces(mesh):
+        try:
+            _prepare(function, block, array, names, properties)
+            find_result_type(block.given.data if block.given else None, dtype)
+            blocks.append(block)
+        except ValueError as error:
+            if array is not None and array in block.mesh.point_data:
+                raise
+            failures.append(error)
+    if not blocks:
+        raise failures[0]
+    painted = bool(runner.settings.get("ColorOutput", False))
+    make: Callable[..., Any] = {"harmonic_map": make_harmonic_map, "turing_texture": make_texture}.get(
+        function, make_diffusion)
+    extra = (colors if painted else [],) if function == "turing_texture" else ()
+    inputs = [block.given for block in blocks if block.given]
+    run = _core.ModelRun(function)
+
+    def build(state: list[dict[str, Any]]) -> tuple[Any, Any]:
+        results: list[Result] = []
+        written = [block.fresh() for block in blocks]
+        for number, block in enumerate(written):
+            result = make(run, number, block.given, runner, dtype, state[number], *extra)
+            _write(function, block, result, result_name, painted)
+            results.append(result)
+        whole = _rebuild(mesh, iter(written))
+        return whole, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+    if times is None:
+        output, reports = build(runner.finish(run, inputs, progress))
+        return (output, reports) if full_output else output
+    runner.call(run.update, [given.core for given in inputs], runner.settings, None)
+    steps = [_find_step(time, run, runner.interval) for time in times]
+    ordered = sorted(set(steps))
+    built = dict(zip(ordered, map(build, runner.visit(run, inputs, ordered, progress))))
+    outputs = [built[step][0] for step in steps]
+    return (outputs, [built[step][1] for step in steps]) if full_output else outputs
+
+
+def _find_step(time: Any, run: Any, interval: int) -> int:
+    """The last step at or before a time whose state is published."""
+    if not isinstance(time, (int, float, np.number)) or math.isnan(float(time)):
+        raise ValueError(f"times has {shorten(time)}; allowed: numbers")
+    last = run.number_of_steps()
+    step = float(time) / run.time_step() + 1e-9  # it may have lost its last bits
+    if step >= last:
+        return int(last)
+    return max(0, int(step) // interval * interval)
+
+
+class _Accessor:
+    """The functions of surfacediffusion.pyvista as methods of a mesh: mesh.diffusion.heat("f",
+    fwhm=10) is heat(mesh, "f", fwhm=10)."""
+
+    def __init__(self, mesh: Any) -> None:
+        self._mesh = mesh
+
+
+def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
+    def method(self: _Accessor, *arguments: Any, **keywords: Any) -> Any:
+        return function(self._mesh, *arguments, **keywords)
+
+    method.__name__, method.__doc__ = function.__name__, function.__doc__
+    return method
+
+
+for _function in (heat, intrinsic_tv, harmonic_map, turing_texture, direction_field):
+    setattr(_Accessor, _function.__name__, _as_method(_function))
+
+if hasattr(pyvista, "register_dataset_accessor"):
+    for _class in (pyvista.PolyData, pyvista.MultiBlock):
+        pyvista.register_dataset_accessor("diffusion", _class)(_Accessor)

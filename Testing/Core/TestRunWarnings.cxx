@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RunInput.h"
+
+#include "Run/DirectionFieldRun.h"
+#include "Run/HarmonicMapSettings.h"
+#include "Run/HeatSettings.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+// An iteration that ends before it has converged is one warning, with figures.
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+using Testing::Alone;
+using Testing::RunInput;
+using Testing::StateOf;
+
+/// A noisy sphere whose data are its noisy normals.
+RunInput NoisyNormals()
+{
+  RunInput input(Testing::Icosphere(3));
+  input.Data.Data = Values(input.Vertices.rows(), 3);
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      input.Data.Data(i, k) = input.Vertices(i, k) + std::cos(37.0 * (3.0 * i + k));
+    }
+  }
+  return input;
+}
+
+template <typename ModelSettings>
+std::vector<std::string> WarningsOf(const RunInput& input, const ModelSettings& settings)
+{
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  WarningLog log;
+  std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  run.Seek(0, ProgressMonitor());
+  run.Seek(settings.NumberOfTimeSteps + 1, ProgressMonitor());
+  EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty()) << "warned twice";
+  return warnings;
+}
+
+void ExpectOne(const std::vector<std::string>& warnings, const std::vector<std::string>& parts)
+{
+  ASSERT_EQ(warnings.size(), 1u) << (warnings.size() > 1 ? warnings[1] : "no warning");
+  for (const std::string& part : parts)
+  {
+    EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0] << "\nlacks: " << part;
+  }
+}
+
+/// A plane strip between two rows of points, as a fan around one end of the upper row and one
+/// around an end of the lower row: its Delaunay triangulation is of the order of points^2 flips
+/// away.
+Testing::Surface FanStrip(Index points)
+{
+  Testing::Surface s{ Points(2 * points, 3), Triangles(2 * points - 2, 3) };
+  for (Index i = 0; i < points; ++i)
+  {
+    s.Vertices.row(i) << i, 0.0, 0.0;
+    s.Vertices.row(points + i) << i, 1.0, 0.0;
+  }
+  for (Index i = 0; i + 1 < points; ++i)
+  {
+    s.Faces.row(i) << i, i + 1, points;
+    s.Faces.row(points - 1 + i) << points - 1, points + i + 1, points + i;
+  }
+  return s;
+}
+
+} // namespace
+
+TEST(RunWarnings, AFactorisationAboveTheToleranceIsReported)
+{
+  HeatSettings settings;
+  settings.Solver = SolverMethod::Direct;
+  settings.Tolerance = 1e-30;
+  ExpectOne(WarningsOf(RunInput(Testing::Icosphere(3)), settings),
+    { "linear solver missed its Tolerance 1e-30 in 10 of 10 steps", "largest relative residual" });
+}
+
+TEST(RunWarnings, AConvergedRunIsSilent)
+{
+  EXPECT_TRUE(WarningsOf(RunInput(Testing::Icosphere(3)), HeatSettings()).empty());
+  EXPECT_TRUE(WarningsOf(NoisyNormals(), HarmonicMapSettings()).empty());
+}
+
+TEST(RunWarnings, TangentSpacesInWhichNeitherPreconditionerConvergesAreReported)
+{
+  HarmonicMapSettings settings;
+  settings.NumberOfTimeSteps = 2;
+  settings.TimeStep = 10.0;
+  settings.MaximumNumberOfIterations = 2;
+  ExpectOne(
+    WarningsOf(NoisyNormals(), settings), { "linear solver missed its Tolerance", "2 of 2 steps" });
+}
+
+TEST(RunWarnings, AStepOfMinimizingMovementThatDoesNotSettleIsReported)
+{
+  HarmonicMapSettings settings;
+  settings.Scheme = HarmonicMap::Scheme::MinimizingMovement;
+  settings.NumberOfTimeSteps = 1;
+  settings.TimeStep = 10.0;
+  settings.MaximumNumberOfRepetitions = 2;
+  ExpectOne(WarningsOf(NoisyNormals(), settings),
+    { "repetitions ended at their largest number in 1 of 1 steps", "%" });
+}
+
+TEST(RunWarnings, AVertexFitThatMissesTheToleranceIsReported)
+{
+  HarmonicMapSettings settings;
+  settings.NumberOfTimeSteps = 0;
+  settings.MoveVertices = true;
+  settings.Tolerance = 1e-30;
+  settings.MaximumNumberOfIterations = 5;
+  ExpectOne(WarningsOf(NoisyNormals(), settings),
+    { "linear solver missed its Tolerance 1e-30 in moving the vertices",
+      "largest relative residual" });
+}
+
+TEST(RunWarnings, ASmoothestFieldThatDoesNotSettleIsReported)
+{
+  RunInput input(Testing::Icosphere(3));
+  DirectionFieldSettings settings;
+  settings.Method = DirectionMethod::Smooth;
+  DirectionFieldRun run(SerialFor());
+  run.Update(input.Block(), settings, ProgressMonitor());
+  EXPECT_TRUE(run.FindWarnings().empty());
+
+  settings.MaximumNumberOfSteps = 1;
+  DirectionFieldRun unfinished(SerialFor());
+  unfinished.Update(input.Block(), settings, ProgressMonitor());
+  WarningLog log;
+  ExpectOne(log.Report(unfinished.FindWarnings()),
+    { "largest number of steps", "changed an eigenvalue by", "%" });
+}
+
+TEST(RunWarnings, EdgesLeftByTheIntrinsicDelaunayTriangulationAreReported)
+{
+  HeatSettings settings;
+  settings.IntrinsicDelaunay = true;
+  settings.NumberOfTimeSteps = 1;
+  settings.Tolerance = 1e-8; // the needles that are left are ill-conditioned
+  EXPECT_TRUE(WarningsOf(RunInput(FanStrip(50)), settings).empty());
+  ExpectOne(WarningsOf(RunInput(FanStrip(1500)), settings),
+    { "edges of the intrinsic Delaunay triangulation could not be flipped" });
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The examples in the docstrings, the types, and what is in the installed package."""
+
+import doctest
+import importlib.metadata
+import importlib.util
+import pathlib
+import pkgutil
+import subprocess
+import sys
+import tempfile
+import textwrap
+import unittest
+
+import surfacediffusion as sd
+
+FOLDER = pathlib.Path(sd.__file__).parent
+
+GOOD = """
+    import numpy as np
+    from surfacediffusion import Surface, heat, intrinsic_tv, harmonic_map, turing_texture, sphere
+
+    surface = Surface(np.zeros((3, 3)), [[0, 1, 2]])
+    array = heat(surface, np.zeros(3), fwhm=2.0, mode="TimeSteps", intrinsic_delaunay=True)
+    mean: float = float(array.mean())
+    weight: float = intrinsic_tv(surface, [1, 2, 3], full_output=True).effective_fidelity_weight
+    times = [state.time for state in heat((surface.points, surface.triangles), array, steps=True)]
+    moved = harmonic_map(sphere(), move_vertices=True).points
+    texture = turing_texture(sphere(), kinetics="GrayScott", seed=1).texture
+"""
+
+BAD = {
+    'heat(sphere(), [1.0], fwhm="10")': "fwhm",
+    'heat(sphere(), [1.0], mode="Steady")': "mode",
+    "heat(sphere(), [1.0], intrinsic_delaunay=1.5)": "intrinsic_delaunay",
+    "heat(sphere(), [1.0]).history": "history",
+    "harmonic_map(sphere(), steps=True).points": "points",
+}
+
+
+class Package(unittest.TestCase):
+    def test_examples_in_docstrings_hold(self):
+        names = ["_functions", "_fwhm", "_surface", "_threads", "_result"]
+        examples = 0
+        for name in names:
+            results = doctest.testmod(importlib.import_module(f"surfacediffusion.{name}"))
+            self.assertEqual(results.failed, 0)
+            examples += results.attempted
+        self.assertGreater(examples, 30)
+
+    def test_every_public_name_is_documented(self):
+        for name in sd.__all__:
+            self.assertGreater(len(getattr(sd, name).__doc__ or ""), 40, name)
+
+    def test_package_has_its_types_and_no_vtk(self):
+        self.assertTrue((FOLDER / "py.typed").exists())
+        self.assertTrue((FOLDER / "_functions.pyi").exists())
+        self.assertEqual(sd.__version__, importlib.metadata.version("surfacediffusion"))
+        self.assertFalse([path for path in FOLDER.rglob("*") if "vtkSurface" in path.name])
+        code = "import sys, surfacediffusion; sys.exit(any('vtk' in name for name in sys.modules))"
+        subprocess.run([sys.executable, "-c", code], check=True)
+
+    def test_numpy_is_the_only_requirement(self):
+        required = importlib.metadata.requires("surfacediffusion")
+        self.assertEqual([line for line in required if "extra" not in line], ["numpy>=1.21"])
+
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    def test_types_hold_and_catch_mistakes(self):
+        with tempfile.TemporaryDirectory() as name:
+            def check(program):
+                path = pathlib.Path(name) / "program.py"
+                path.write_text(textwrap.dedent(program))
+                return subprocess.run(
+                    [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", str(path)],
+                    capture_output=True, text=True, cwd=name)
+
+            good = check(GOOD)
+            self.assertEqual(good.returncode, 0, good.stdout + good.stderr)
+            imports = "from surfacediffusion import heat, harmonic_map, sphere\n"
+            found = check(imports + "\n".join(BAD)).stdout
+            for line, (statement, word) in enumerate(BAD.items(), 2):
+                of_line = [text for text in found.splitlines() if f"program.py:{line}:" in text]
+                self.assertTrue(of_line, f"{statement} is accepted: {found}")
+
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    def test_stubs_agree_with_the_module(self):
+        modules = [f"surfacediffusion.{module.name}" for module in pkgutil.iter_modules([str(FOLDER)])
+                   if module.name.startswith("_") and module.name != "_core"]
+        self.assertIn("surfacediffusion._functions", modules)
+        found = subprocess.run(
+            [sys.executable, "-m", "mypy.stubtest", "--concise", "surfacediffusion._functions"],
+            capture_output=True, text=True)
+        self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2, argv=sys.argv)

@@ -1,0 +1,177 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The functions for PyVista meshes, with any VTK."""
+
+import sys
+import unittest
+
+try:
+    import pyvista
+except ImportError:
+    print("PyVista is not available")
+    sys.exit(77)
+
+import numpy as np
+
+import surfacediffusion as sd
+from surfacediffusion.pyvista import (
+    direction_field, harmonic_map, heat, intrinsic_tv, turing_texture,
+)
+
+
+def noisy_sphere(center=(0.0, 0.0, 0.0)):
+    mesh = pyvista.Icosphere(nsub=3, center=center)
+    z = mesh.points[:, 2] - center[2]
+    mesh["f"] = z + np.random.default_rng(1).normal(scale=0.1, size=mesh.n_points)
+    mesh["hole"] = (z > 0.4).astype(np.uint8)
+    return mesh
+
+
+def as_surface(mesh):
+    return sd.Surface(mesh.points, mesh.faces.reshape(-1, 4)[:, 1:])
+
+
+class Meshes(unittest.TestCase):
+    def test_heat_is_that_of_the_arrays(self):
+        mesh = noisy_sphere()
+        before = mesh.active_scalars_name
+        smooth = heat(mesh, "f", fwhm=0.4)
+        self.assertIsInstance(smooth, pyvista.PolyData)
+        np.testing.assert_array_equal(
+            smooth["fDiffused"], sd.heat(as_surface(mesh), mesh["f"], fwhm=0.4))
+        self.assertEqual(smooth.active_scalars_name, "fDiffused")
+        self.assertNotIn("fDiffused", mesh.array_names)
+        self.assertEqual(mesh.active_scalars_name, before)
+
+    def test_both_spellings_of_keywords(self):
+        mesh = noisy_sphere()
+        np.testing.assert_array_equal(
+            heat(mesh, "f", FWHM=0.4, NumberOfTimeSteps=3)["fDiffused"],
+            heat(mesh, "f", fwhm=0.4, number_of_time_steps=3)["fDiffused"])
+        self.assertIn("g", heat(mesh, "f", ResultArrayName="g").array_names)
+
+    def test_every_function(self):
+        mesh = noisy_sphere()
+        mesh.point_data["east"] = np.cross([0.0, 0.0, 1.0], mesh.points)
+        mesh.cell_data["flow"] = np.cross([0.0, 0.0, 1.0], mesh.cell_centers().points)
+        mesh.cell_data["rates"] = np.tile([21.0, 10.0, 2.6, 1.0], (mesh.n_cells, 1))
+        self.assertIn("fTV", intrinsic_tv(mesh, "f", mask="hole").array_names)
+        for name in ("east", "flow"):
+            self.assertIn("fDiffused", heat(mesh, "f", direction=name, along_diffusivity=3.0,
+                                            fixed="hole").array_names)
+        texture = turing_texture(mesh, rates="rates", direction="flow", number_of_time_steps=3,
+                                 color_output=True)
+        self.assertEqual(texture["TextureColor"].dtype, np.uint8)
+        self.assertEqual(texture["u1"].shape, (mesh.n_points,))
+        field = direction_field(mesh, "flow", method="Hints")
+        self.assertEqual(field["Direction"].shape, (mesh.n_cells, 3))
+        aligned = np.abs(np.einsum("ij,ij->i", field["Direction"], mesh["flow"]))
+        lengths = np.linalg.norm(mesh["flow"], axis=1)
+        self.assertGreater(np.median(aligned / lengths), 0.9)
+        vectors = harmonic_map(mesh, "east")
+        self.assertEqual(vectors["eastHarmonic"].shape, (mesh.n_points, 3))
+
+    def test_normals_and_moved_points(self):
+        mesh = pyvista.Icosphere(nsub=3)
+        mesh.clear_data()
+        noise = 1 + np.random.default_rng(1).normal(scale=0.02, size=(mesh.n_points, 1))
+        mesh.points = (mesh.points * noise).astype(np.float32)
+        before = mesh.points.copy()
+        moved = harmonic_map(mesh, move_vertices=True)
+        np.testing.assert_array_equal(mesh.points, before)
+        self.assertEqual(moved.points.dtype, np.float32)
+        self.assertLess(np.linalg.norm(moved.points, axis=1).std(),
+                        0.6 * np.linalg.norm(mesh.points, axis=1).std())
+        self.assertEqual(moved.point_data.active_normals_name, "NormalsHarmonic")
+
+    def test_times_and_history(self):
+        mesh = noisy_sphere()
+        states, results = heat(mesh, "f", times=[3.0, 0.0, 1.5, 99.0], full_output=True)
+        np.testing.assert_array_equal(states[1]["fDiffused"], mesh["f"])
+        for state, steps in zip(states, (3, 0, 1, 10)):
+            np.testing.assert_array_equal(
+                state["fDiffused"], heat(mesh, "f", number_of_time_steps=steps)["fDiffused"])
+        self.assertEqual([result.step for result in results], [3, 0, 1, 10])
+        _, result = heat(mesh, "f", full_output=True)
+        self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
+
+    def test_blocks_share_their_units_and_empty_ones_pass(self):
+        far = noisy_sphere(center=(5.0, 0.0, 0.0))
+        blocks = pyvista.MultiBlock({"a": noisy_sphere(), "none": None, "empty": pyvista.PolyData(),
+                                     "nested": pyvista.MultiBlock({"b": far}),
+                                     "bare": pyvista.Plane()})
+        blocks["a"].points *= 2.0
+        output, results = heat(blocks, "f", full_output=True)
+        self.assertEqual(list(output.keys()), list(blocks.keys()))
+        self.assertEqual(len(results), 2)
+        self.assertEqual(results[0].mean_edge_length, results[1].mean_edge_length)
+        self.assertIn("fDiffused", output["nested"]["b"].array_names)
+        self.assertNotIn("fDiffused", output["bare"].array_names)
+        self.assertEqual(output["empty"].n_points, 0)
+        self.assertIsNone(output["none"])
+        self.assertNotIn("fDiffused", blocks["a"].array_names)
+
+    def test_polygons_strips_lines_and_hidden_cells(self):
+        quads = pyvista.Plane(i_resolution=8, j_resolution=6)
+        quads["f"] = np.sin(5 * quads.points[:, 0])
+        smooth = heat(quads, "f", fwhm=0.2)
+        np.testing.assert_array_equal(
+            smooth["fDiffused"], sd.heat(sd.Surface(quads.points, quads.regular_faces), quads["f"],
+                                         fwhm=0.2))
+        triangles = quads.triangulate()
+        strips = triangles.strip()
+        self.assertGreater(strips.n_strips, 0)
+        np.testing.assert_allclose(heat(strips, "f", fwhm=0.2)["fDiffused"],
+                                   heat(triangles, "f", fwhm=0.2)["fDiffused"], rtol=0, atol=1e-9)
+        with self.assertRaisesRegex(TypeError, "strips.*mesh.triangulate"):
+            direction_field(strips)
+        mixed = pyvista.PolyData(
+            np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0.5, 0.0]]),
+            faces=[4, 0, 1, 2, 3, 3, 1, 4, 2], lines=[2, 0, 4], verts=[1, 3])
+        field = direction_field(mixed, method="Smooth")["Direction"]
+        np.testing.assert_allclose(np.linalg.norm(field, axis=1), [0, 0, 1, 1])
+        quads.cell_data["vtkGhostType"] = np.where(np.arange(48) < 24, 0, 32).astype(np.uint8)
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "no triangle uses"):
+            hidden = heat(quads, "f", fwhm=0.2)
+        np.testing.assert_array_equal(hidden["fDiffused"][-9:], quads["f"][-9:])
+
+    @unittest.skipUnless(hasattr(pyvista, "register_dataset_accessor"), "needs PyVista 0.48")
+    def test_functions_are_methods_of_meshes(self):
+        mesh = noisy_sphere()
+        np.testing.assert_array_equal(mesh.diffusion.heat("f", fwhm=0.4)["fDiffused"],
+                                      heat(mesh, "f", fwhm=0.4)["fDiffused"])
+        self.assertIn("fDiffused", pyvista.MultiBlock([mesh]).diffusion.heat("f")[0].array_names)
+
+    def test_answers_to_other_data(self):
+        mesh = noisy_sphere()
+        for other in (pyvista.ImageData(dimensions=(3, 3, 3)),
+                      mesh.cast_to_unstructured_grid(),
+                      pyvista.MultiBlock([mesh, mesh.cast_to_unstructured_grid()])):
+            with self.assertRaisesRegex(TypeError, "allowed: pyvista.PolyData.*extract_surface"):
+                heat(other, "f")
+        with self.assertRaisesRegex(TypeError, "the mesh is a (pyvista_)?ndarray; allowed: pyvista.PolyData"):
+            heat(np.asarray(mesh.points), "f")
+        with self.assertRaisesRegex(ValueError, "array is 'g'; allowed: point arrays, 'f', 'hole'"):
+            heat(mesh, "g")
+        with self.assertRaisesRegex(ValueError, "mask is 'h'; allowed: point arrays"):
+            heat(mesh, "f", mask="h")
+        with self.assertRaisesRegex(ValueError, "the mesh is empty"):
+            heat(pyvista.PolyData(), "f")
+        with self.assertRaisesRegex(ValueError, "the mesh has no polygons"):
+            heat(pyvista.Line(), "f")
+        with self.assertRaisesRegex(ValueError, "fwhm is -1; allowed: finite numbers, 0 or more"):
+            heat(mesh, "f", fwhm=-1)
+        with self.assertRaisesRegex(ValueError, "direction is not set"):
+            heat(mesh, "f", along_diffusivity=2)
+        with self.assertRaisesRegex(TypeError, "no keyword 'fhwm'; did you mean 'fwhm'"):
+            heat(mesh, "f", fhwm=1)
+        with self.assertRaisesRegex(ValueError, "times has 'end'; allowed: numbers"):
+            heat(mesh, "f", times=["end"])
+        bad = mesh.copy()
+        bad["f"][3] = np.inf
+        with self.assertRaisesRegex(ValueError, "array is infinite at point 3"):
+            heat(bad, "f")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2, argv=sys.argv)

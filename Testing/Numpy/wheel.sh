@@ -1,0 +1,41 @@
+#!/bin/sh
+# Usage: wheel.sh SOURCE FOLDER WHEELS
+# Makes a source distribution of SOURCE, from it a wheel, and installs this into a new virtual
+# environment without VTK in FOLDER/environment, all without a network and without Eigen of the
+# system. WHEELS has what is needed (.ci/fetch-test-data).
+set -eu
+source=$1
+folder=$2
+wheels=$3
+unset PYTHONPATH LD_LIBRARY_PATH
+export PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1
+export PIP_FIND_LINKS="$wheels"
+export CCACHE_BASEDIR="$folder/build"
+export CMAKE_ARGS="-DSURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON ${CMAKE_ARGS:-}"
+
+rm -rf "$folder/environment" "$folder/dist"
+"${PYTHON:-/usr/bin/python3}" -m venv "$folder/environment"
+cd "$source"
+"$folder/environment/bin/pip" install --quiet scikit-build-core
+"$folder/environment/bin/python" -c "
+from scikit_build_core.build import build_sdist
+print('made', build_sdist('$folder/dist'))"
+"$folder/environment/bin/pip" uninstall --quiet --yes scikit-build-core
+cd "$folder"
+size=$(wc -c < dist/*.tar.gz)
+if [ "$size" -gt 2000000 ]; then
+  echo "the source distribution has $size bytes: it contains more than the package needs"
+  exit 1
+fi
+environment/bin/pip wheel --quiet --no-deps --wheel-dir dist \
+  --config-settings=build-dir="$folder/build" dist/*.tar.gz
+environment/bin/pip install --quiet dist/*.whl
+if environment/bin/python -c "import vtkmodules" 2>/dev/null; then
+  echo "there is a VTK in the environment"
+  exit 1
+fi
+environment/bin/python -c "import surfacediffusion as s; print('installed', s.__version__)"
+environment/bin/pip install --quiet tqdm mypy
+# For the tests of files and of PyVista, whose VTK is that of PyPI. They are optional.
+environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist ||
+  echo "no nibabel, meshio or PyVista: their tests are skipped"
