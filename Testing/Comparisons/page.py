@@ -65,7 +65,8 @@ CAT returns NaN near missing values. nilearn takes them as 0.
 
 conte69, 10 mm: seconds of the whole process, its processor time and its largest memory; and the
 processor time of the smoothing without reading and writing files. For Workbench the latter is the
-difference to `wb_command -metric-math x`, which reads and writes the same files.
+difference to `wb_command -metric-math x`, which reads and writes the same files. CAT smooths one map
+at a time; its time for many is that for a tenth of them, times ten, and its memory that for a tenth.
 
 {costs}
 """

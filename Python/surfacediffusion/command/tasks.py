@@ -323,8 +323,11 @@ def _require_known(patch, group, data, columns):
 
 def _add_totals(report, data, columns, patch, new, areas):
     """The integrals over the region before (known values alone) and after."""
-    areas = areas.get(id(patch.surface), inputs.vertex_areas(patch.surface))
-    areas = np.where(patch.excluded, 0, areas)
+    given = areas.get(id(patch.surface))
+    areas = inputs.vertex_areas(patch.surface, patch.excluded)
+    if given is not None:
+        whole = inputs.vertex_areas(patch.surface)
+        areas = np.divide(areas * given, whole, out=areas, where=whole > 0)
     missing = np.isnan(patch.values).sum(axis=0)
     before = areas @ np.nan_to_num(patch.values.astype(float))
     after = areas @ np.nan_to_num(new.astype(float))
