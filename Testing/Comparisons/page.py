@@ -110,7 +110,7 @@ def _cases(rows, *keys):
 def _widths(rows):
     table = []
     for surface, fwhm in _cases(rows, "surface", "fwhm"):
-        line = [surface, f"{fwhm} mm"]
+        line = [surface, f"{fwhm:g} mm"]
         for peer in PEERS:
             row = _find(rows, surface=surface, fwhm=fwhm, peer=peer)
             line.append(f"{row['width']:.2f} ({row['low']:.2f} to {row['high']:.2f})")
@@ -125,7 +125,7 @@ def _percent(value):
 def _errors(rows):
     table = []
     for surface, name, fwhm in _cases(rows, "surface", "map", "fwhm"):
-        line = [surface, name, f"{fwhm} mm"]
+        line = [surface, name, f"{fwhm:g} mm"]
         for peer in PEERS:
             row = _find(rows, surface=surface, map=name, fwhm=fwhm, peer=peer)
             line.append(f"{_percent(row['error'])}, {_percent(row['integral'])}")
