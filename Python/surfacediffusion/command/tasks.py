@@ -60,6 +60,8 @@ def inpaint(arguments, report):
 
     groups = _groups_of_missing if arguments.model == "heat" else _groups_of_arrays
     _change_data(arguments, report, "Inpainting", compute, groups, arguments.missing)
+    if not any(row["missing"] for row in report.facts["columns"]):
+        report.warn(f"{arguments.data}: nothing is missing, the values are unchanged")
 
 
 def texture(arguments, report):
@@ -89,8 +91,9 @@ def directions(arguments, report):
     if kind != "npy" and not (kind in ("vtk", "vtp") and kind == surface.kind):
         raise FileError(f"{arguments.output}: the name announces no format for directions on "
                         "faces; allowed: .npy, or .vtk or .vtp as the surface")
-    with report.timed("compute"), report.progress("Directions"):
-        field = direction_field(Surface(surface.points, surface.faces), method=arguments.method)
+    with report.timed("compute"), report.progress("Directions") as progress:
+        field = direction_field(Surface(surface.points, surface.faces), method=arguments.method,
+                                progress=progress)
     report.facts.update(method=arguments.method, faces=len(surface.faces))
     with report.timed("write"):
         if kind == "npy":
@@ -320,17 +323,25 @@ def _require_known(patch, group, data, columns):
 
 def _add_totals(report, data, columns, patch, new, areas):
     """The integrals over the region before (known values alone) and after."""
-    areas = areas.get(id(patch.surface), inputs.vertex_areas(patch.surface))
-    areas = np.where(patch.excluded, 0, areas)
+    given = areas.get(id(patch.surface))
+    areas = inputs.vertex_areas(patch.surface, patch.excluded)
+    if given is not None:
+        whole = inputs.vertex_areas(patch.surface)
+        areas = np.divide(areas * given, whole, out=areas, where=whole > 0)
     missing = np.isnan(patch.values).sum(axis=0)
-    before = areas @ np.nan_to_num(patch.values.astype(float))
-    after = areas @ np.nan_to_num(new.astype(float))
+    before, after = _integrals(areas, patch.values), _integrals(areas, new)
     rows = report.facts.setdefault("columns", [])
     for i, column in enumerate(columns):
         rows.append({"column": column + 1, "name": data.names[column],
                      "structure": patch.part.structure or patch.surface.structure,
                      "missing": int(missing[i]), "excluded": int(patch.excluded.sum()),
                      "total_before": number(before[i]), "total_after": number(after[i])})
+
+
+def _integrals(areas, values):
+    """Of each column, missing values left out; in panels, since copies in double are large."""
+    return np.concatenate([areas @ np.nan_to_num(values[:, i:i + 32].astype(float))
+                           for i in range(0, values.shape[1], 32)])
 
 
 def _read_surface_for_output(arguments, report):
