@@ -73,6 +73,16 @@ nb::list MakeList(const std::vector<StepRecord>& records, T StepRecord::*member)
   return list;
 }
 
+std::vector<std::string> SentencesOf(const std::vector<Warning>& warnings)
+{
+  std::vector<std::string> sentences;
+  for (const Warning& warning : warnings)
+  {
+    sentences.push_back(warning.Sentence);
+  }
+  return sentences;
+}
+
 nb::list MakeList(const std::vector<double>& numbers)
 {
   nb::list list;
@@ -162,12 +172,7 @@ void ModelRun::Seek(int step, const nb::object& progress)
 
 std::vector<std::string> ModelRun::GetWarnings() const
 {
-  std::vector<std::string> sentences;
-  for (const Warning& warning : this->Model.FindWarnings(this->Alone))
-  {
-    sentences.push_back(warning.Sentence);
-  }
-  return sentences;
+  return SentencesOf(this->Model.FindWarnings(this->Alone));
 }
 
 nb::dict ModelRun::GetHistory() const
@@ -310,6 +315,17 @@ void DirectionRun::Update(
       block.ReadFields = [&] { return input.Read(); };
       this->Field.Update(block, settings, monitor);
     });
+}
+
+std::vector<std::string> DirectionRun::GetWarnings() const
+{
+  std::vector<std::string> sentences = SentencesOf(this->Field.FindWarnings());
+  const Index degenerate = this->Field.GetSurface().Diagnostics().DegenerateTriangles;
+  if (degenerate > 0)
+  {
+    sentences.push_back(std::to_string(degenerate) + " triangles of zero area get no direction");
+  }
+  return sentences;
 }
 
 void DirectionRun::Write(const InputSurface& surface, const OutputArray& output) const

@@ -73,10 +73,8 @@ public:
   void Update(
     const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
   double MeanEdgeLength() const { return this->Field.MeanEdgeLength(); }
-  Index NumberOfDegenerateTriangles() const
-  {
-    return this->Field.GetSurface().Diagnostics().DegenerateTriangles;
-  }
+  /// The sentences of all warnings that hold.
+  std::vector<std::string> GetWarnings() const;
   /// Per polygon of the surface.
   void Write(const InputSurface& surface, const OutputArray& output) const;
 

@@ -110,6 +110,6 @@ NB_MODULE(_core, m)
     .def(nb::init<>())
     .def("update", &DirectionRun::Update, "fields"_a, "settings"_a, "progress"_a.none())
     .def("mean_edge_length", &DirectionRun::MeanEdgeLength)
-    .def("number_of_degenerate_triangles", &DirectionRun::NumberOfDegenerateTriangles)
+    .def("warnings", &DirectionRun::GetWarnings)
     .def("write", &DirectionRun::Write, "surface"_a, "output"_a);
 }

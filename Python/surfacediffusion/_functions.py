@@ -85,8 +85,8 @@ def _with_settings(function: F) -> F:
         if setting.kind in ("number", "integer"):
             allowed += ", " + setting.allowed
         unit = f", in {setting.unit}" if setting.unit else ""
-        text = textwrap.fill(translate(function.__name__, setting.documentation, {}), 92, initial_indent="    ",
-                             subsequent_indent="    ")
+        text = textwrap.fill(translate(function.__name__, setting.documentation, {}), 92,
+                             initial_indent="    ", subsequent_indent="    ")
         entries.append(f"{setting.keyword} : {allowed}{unit}, default {setting.default}\n{text}")
     function.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         parameters, return_annotation=inspect.signature(function).return_annotation)
@@ -480,7 +480,5 @@ def direction_field(
         reporter.finish_part()
         output = np.empty((surface.n_faces, 3))
         runner.call(run.write, surface._core, output)
-        degenerate = run.number_of_degenerate_triangles()
-    if degenerate:
-        warn([f"{degenerate} triangles of zero area get no direction"])
+        warn(runner.warnings(run))
     return output

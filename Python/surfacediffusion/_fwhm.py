@@ -68,11 +68,14 @@ def estimate_fwhm(
 
     over the edges e = ij, of length d_e and weight w_e, the area of the triangles of the edge over
     d_e^2. If the mean is subtracted, which takes the part q = 4 pi sigma^2 / area of the variance,
-    rho - q and 1 - q stand in place of rho and 1. This is the estimator of Forman et al. (1995), FWHM = d sqrt(-2 ln 2 / ln(1 - V(ds) /
-    (2 V(s)))), which AFNI's SurfFWHM and Workbench's -metric-estimate-fwhm apply with the mean edge
-    length as d; here each edge has its own length, and a variance that differs from place to place
-    does not matter. As with any estimator of this kind, the width of noise whose correlation is not
-    Gaussian is that of its shortest distances.
+    rho - q and 1 - q stand in place of rho and 1.
+
+    For edges of one length d this is the estimator of Forman et al. (1995),
+    FWHM = d sqrt(-2 ln 2 / ln(1 - V(ds) / (2 V(s)))), to whose family AFNI's SurfFWHM and Workbench's
+    -metric-estimate-fwhm belong, too. Here each edge has its own length, and a variance that differs
+    from place to place does not matter. As with any estimator of this kind, the width of noise whose
+    correlation is not Gaussian is that of its shortest distances. Noise on vertices alone has a
+    width of half an edge, and widths below two edges are found too small, by 4 % at 1.5 edges.
 
     References
     ----------
@@ -149,6 +152,12 @@ class _Edges:
             ends[:, 0].astype(np.int64) * surface.n_points + ends[:, 1], return_inverse=True)
         self.ends = np.divmod(unique, surface.n_points)
         squares = ((points[self.ends[0]] - points[self.ends[1]]) ** 2).sum(axis=1)
+        if surface.areas is not None:  # lengths grow as the roots of areas
+            factors = np.divide(surface.areas, self.areas, out=np.ones_like(self.areas),
+                                where=self.areas > 0)
+            squares *= 0.5 * (factors[self.ends[0]] + factors[self.ends[1]])
+            area = area * factors[triangles].mean(axis=1)
+            self.areas = self.areas * factors
         areas = np.bincount(inverse.ravel(), np.repeat(area, 3), len(unique))
         kept = (squares > 0) & (areas > 0)
         self.ends = (self.ends[0][kept], self.ends[1][kept])

@@ -149,7 +149,8 @@ class Runner:
         except ValueError as error:
             raise ValueError(translate(self.function, str(error), self.arrays)) from None
 
-    def _warnings(self, run: Any) -> list[str]:
+    def warnings(self, run: Any) -> list[str]:
+        """The warnings that hold, in the words of Python."""
         return [translate(self.function, text, self.arrays) for text in run.warnings()]
 
     def finish(self, run: Any, inputs: list[Input], progress: Progress) -> list[dict[str, Any]]:
@@ -158,7 +159,7 @@ class Runner:
             self.call(run.update, [i.core for i in inputs], self.settings, reporter.callable)
             self.call(run.seek, -1, reporter.callable)
             reporter.finish_part()
-        sentences = self._warnings(run)
+        sentences = self.warnings(run)
         warn(sentences)
         return self._attributes(run, inputs, sentences)
 
@@ -187,7 +188,7 @@ class Runner:
             for step in steps:
                 self.call(run.seek, step, reporter.callable)
                 reporter.finish_part()
-                sentences = self._warnings(run)
+                sentences = self.warnings(run)
                 warn([sentence for sentence in sentences if sentence not in known])
                 known = sentences
                 yield self._attributes(run, inputs, sentences)

@@ -195,6 +195,11 @@ class Surface:
         return self._points
 
     @property
+    def areas(self) -> NDArray[np.float64] | None:
+        """The given areas (n,); None for those of the triangles."""
+        return self._areas
+
+    @property
     def triangles(self) -> NDArray[np.int32]:
         """The triangles (t, 3) that the faces were cut into, read-only."""
         triangles: NDArray[np.int32] = self._core.triangles()

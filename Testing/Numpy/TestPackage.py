@@ -90,7 +90,7 @@ class Package(unittest.TestCase):
         self.assertIn("surfacediffusion._functions", modules)
         found = subprocess.run(
             [sys.executable, "-m", "mypy.stubtest", "--concise", "surfacediffusion._functions"],
-            capture_output=True, text=True)
+            capture_output=True, text=True, cwd=tempfile.gettempdir())
         self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
 
 

@@ -98,6 +98,14 @@ class Estimate(unittest.TestCase):
         uneven = noise * (3.0 + 2.0 * surface.points[:, 2] / RADIUS)[:, None]
         self.assert_within(sd.estimate_fwhm(surface, uneven).pooled, 4 * h, 0.03)
 
+    def test_given_areas_scale_the_lengths(self):
+        surface = uneven_sphere()
+        noise = gaussian_noise(surface, 20.0, columns=5)
+        expected = sd.estimate_fwhm(surface, noise)
+        average = sd.Surface(0.5 * surface.points, surface.triangles,
+                             areas=sd._fwhm._Edges(surface).areas)
+        self.assert_within(sd.estimate_fwhm(average, noise).pooled, expected.pooled, 1e-4)
+
     def test_missing_points_and_masked_points_are_left_out(self):
         surface = even_sphere()
         h = edge_length(surface)

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: wheel.sh SOURCE FOLDER WHEELS
 # Makes a source distribution of SOURCE, from it a wheel, and installs this into a new virtual
-# environment without VTK in FOLDER/environment, all without a network and without Eigen of the
-# system. WHEELS has what is needed (.ci/fetch-test-data).
+# environment without VTK in FOLDER/environment, all without a network. WHEELS has what is needed
+# (.ci/fetch-test-data). FOLDER/system gets the wheel, too, with numpy and VTK of the system.
 set -eu
 source=$1
 folder=$2
@@ -10,10 +10,11 @@ wheels=$3
 unset PYTHONPATH LD_LIBRARY_PATH
 export PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1
 export PIP_FIND_LINKS="$wheels"
-export CCACHE_BASEDIR="$folder/build"
+export CCACHE_BASEDIR="$folder" # see Testing/run-tests.sh
 export CMAKE_ARGS="-DSURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON ${CMAKE_ARGS:-}"
 
-rm -rf "$folder/environment" "$folder/dist"
+rm -rf "$folder/environment" "$folder/dist" "$folder/source"
+mkdir -p "$folder/source"
 "${PYTHON:-/usr/bin/python3}" -m venv "$folder/environment"
 cd "$source"
 "$folder/environment/bin/pip" install --quiet scikit-build-core
@@ -22,13 +23,14 @@ from scikit_build_core.build import build_sdist
 print('made', build_sdist('$folder/dist'))"
 "$folder/environment/bin/pip" uninstall --quiet --yes scikit-build-core
 cd "$folder"
-size=$(wc -c < dist/*.tar.gz)
+size=$(cat dist/*.tar.gz | wc -c)
 if [ "$size" -gt 2000000 ]; then
   echo "the source distribution has $size bytes: it contains more than the package needs"
   exit 1
 fi
+tar -xzf dist/*.tar.gz -C source --strip-components 1
 environment/bin/pip wheel --quiet --no-deps --wheel-dir dist \
-  --config-settings=build-dir="$folder/build" dist/*.tar.gz
+  --config-settings=build-dir="$folder/build" "$folder/source"
 environment/bin/pip install --quiet dist/*.whl
 if environment/bin/python -c "import vtkmodules" 2>/dev/null; then
   echo "there is a VTK in the environment"
@@ -39,3 +41,9 @@ environment/bin/pip install --quiet tqdm mypy
 # For the tests of files and of PyVista, whose VTK is that of PyPI. They are optional.
 environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist ||
   echo "no nibabel, meshio or PyVista: their tests are skipped"
+
+rm -rf system
+"${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages system
+system/bin/pip install --quiet --no-deps dist/*.whl
+system/bin/pip install --quiet --no-deps --find-links "$wheels/.." \
+  pyvista==0.44.2 pooch scooby platformdirs typing_extensions
