@@ -27,6 +27,29 @@ if (TARGET VTK::mpi AND NOT TARGET MPI::MPI_C)
   find_package(MPI REQUIRED COMPONENTS C) # VTK's targets name it without looking for it
 endif ()
 
+# PyPI's vtk for Linux has been compiled with the older of libstdc++'s two binary interfaces. A
+# wheel takes the one that its VTK has.
+if (SURFACEDIFFUSION_PYPI_VTK AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  if (NOT VTK_VERSION MATCHES "^${SURFACEDIFFUSION_PYPI_VTK}[.]")
+    message(FATAL_ERROR "SURFACEDIFFUSION_PYPI_VTK is ${SURFACEDIFFUSION_PYPI_VTK}, but VTK "
+      "${VTK_VERSION} was found in ${VTK_DIR}; install vtk-sdk ${SURFACEDIFFUSION_PYPI_VTK}")
+  endif ()
+  include(CheckCXXSourceCompiles)
+  set(CMAKE_REQUIRED_LIBRARIES VTK::CommonCore)
+  check_cxx_source_compiles([[
+    #include <string>
+    #include <vtkInformation.h>
+    int main()
+    {
+      vtkInformationStringKey* key = nullptr;
+      vtkInformation::New()->Set(key, std::string());
+    }]] SURFACEDIFFUSION_VTK_HAS_DEFAULT_ABI)
+  unset(CMAKE_REQUIRED_LIBRARIES)
+  if (NOT SURFACEDIFFUSION_VTK_HAS_DEFAULT_ABI)
+    add_compile_definitions(_GLIBCXX_USE_CXX11_ABI=0)
+  endif ()
+endif ()
+
 # hypre, for surfaces larger than one process
 set(use_hypre OFF)
 if (SURFACEDIFFUSION_USE_HYPRE AND NOT SKBUILD)

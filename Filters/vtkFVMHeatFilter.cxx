@@ -18,6 +18,7 @@ SURFACEDIFFUSION_MIRROR(vtkFVMHeatFilter::MODE_STEADY_STATE, HeatMode::SteadySta
 vtkFVMHeatFilter::vtkFVMHeatFilter()
 {
   this->TimeIntegrator = TIME_INTEGRATOR_SECOND_ORDER;
+  this->InitialFill = INITIAL_FILL_HARMONIC;
 }
 
 const char* vtkFVMHeatFilter::GetModeAsString()

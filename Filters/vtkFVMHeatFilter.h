@@ -99,7 +99,9 @@ public:
   /**
    * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
-   * the mean of its neighbours.
+   * a linear fit to its neighbours. The estimate assumes white noise, independent from point to
+   * point. If points farther apart differ by 15 % more, as in data that were interpolated or
+   * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);

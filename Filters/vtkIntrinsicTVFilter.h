@@ -51,7 +51,12 @@
  * FidelityNorm L1 the second term is lambda int chi |u - f|. psi is defined by psi'(s) = s g(s) and
  * psi(0) = 0. For TotalVariation it is sqrt(s^2 + beta) - sqrt(beta), or s with Implicit and
  * SteadyState. The energy is in (length unit)(array unit) for TotalVariation and in (array unit)^2
- * for the others. The column `Residual` is the duality gap with Implicit and SteadyState.
+ * for the others. The column `Residual` is the duality gap with Implicit and SteadyState, relative
+ * to the energy. The additional column `ErrorBound` is then sqrt(2 gap/(mu A)) in the array's unit,
+ * gap the duality gap itself, mu = lambda chi (+ 1/dt with Implicit) and A the area where mu > 0:
+ * since the energy is strongly convex, the root mean square over A of the difference from the exact
+ * minimiser is not larger. It is that of the step alone; errors of several steps add up at most.
+ * With CrouzeixRaviart it is that of the edge values. It is left out where mu = 0.
  *
  * @sa vtkFVMHeatFilter vtkHarmonicMapFilter vtkTuringTextureFilter
  */
@@ -225,7 +230,9 @@ public:
   ///@{
   /**
    * On: lambda is chosen by the discrepancy principle (V. Morozov, 1966), so that the area-weighted
-   * root mean square of the difference between the steady state and the data is that of the noise.
+   * root mean square of the difference between the last state of the run and the data is that of
+   * the noise, with the mode, steps and discretisation of the run. A warning reports it if no
+   * weight does, as in runs too short to remove the noise.
    * FidelityWeight is ignored. AutomaticFidelity has the requirements of SteadyState and needs
    * FidelityNorm L2. The principle errs on the smooth side: on photographs with noise of 5 to 80 %
    * its result was 1 to 3 dB from that of the best lambda, which leaves 0.88 to 0.99 of the noise
@@ -240,7 +247,9 @@ public:
   /**
    * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
-   * the mean of its neighbours.
+   * a linear fit to its neighbours. The estimate assumes white noise, independent from point to
+   * point. If points farther apart differ by 15 % more, as in data that were interpolated or
+   * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);

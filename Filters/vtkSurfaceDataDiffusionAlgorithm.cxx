@@ -11,6 +11,8 @@ SURFACEDIFFUSION_MIRROR(
   vtkSurfaceDataDiffusionAlgorithm::INITIAL_FILL_MEAN, SurfaceDiffusion::InitialFill::Mean);
 SURFACEDIFFUSION_MIRROR(
   vtkSurfaceDataDiffusionAlgorithm::INITIAL_FILL_NOISE, SurfaceDiffusion::InitialFill::Noise);
+SURFACEDIFFUSION_MIRROR(
+  vtkSurfaceDataDiffusionAlgorithm::INITIAL_FILL_HARMONIC, SurfaceDiffusion::InitialFill::Harmonic);
 
 void vtkSurfaceDataDiffusionAlgorithm::UsePaperScheme()
 {

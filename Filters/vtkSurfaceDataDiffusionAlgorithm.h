@@ -42,21 +42,25 @@ public:
   {
     INITIAL_FILL_INPUT = 0,
     INITIAL_FILL_MEAN = 1,
-    INITIAL_FILL_NOISE = 2
+    INITIAL_FILL_NOISE = 2,
+    INITIAL_FILL_HARMONIC = 3
   };
 
   ///@{
   /**
    * The initial values at missing points. Input: the damaged values themselves, as in the paper, or
-   * Mean if they are NaN. Mean (default): the mean of the known values of the connected component.
-   * Noise: the paper's random guess, uniform between the smallest and largest known value of the
-   * component of the data.
+   * Mean if they are NaN. Mean: the mean of the known values of the connected component. Noise: the
+   * paper's random guess, uniform between the smallest and largest known value of the component of
+   * the data. Harmonic: the harmonic function of the known values, which satisfies Laplace's
+   * equation of the surface at missing points, so that smoothing is not biased at holes (unit
+   * vectors are normalised; line fields take Mean). Default: Mean; of vtkFVMHeatFilter Harmonic.
    */
   vtkSetMacro(InitialFill, int);
   vtkGetMacro(InitialFill, int);
   void SetInitialFillToInput() { this->SetInitialFill(INITIAL_FILL_INPUT); }
   void SetInitialFillToMean() { this->SetInitialFill(INITIAL_FILL_MEAN); }
   void SetInitialFillToNoise() { this->SetInitialFill(INITIAL_FILL_NOISE); }
+  void SetInitialFillToHarmonic() { this->SetInitialFill(INITIAL_FILL_HARMONIC); }
   const char* GetInitialFillAsString();
   ///@}
 

@@ -156,7 +156,8 @@ public:
   ///@{
   /**
    * The seed of all random numbers. A random number is a hash of the seed, the component and the
-   * point's global id (its index without global ids), so that it is the same on all machines.
+   * point's global id. Without global ids, its coordinates take the place of the id, and the rank
+   * among coincident points. So it is the same on all machines, in one process and in several.
    * Default: 0.
    */
   vtkSetMacro(RandomSeed, int);

@@ -29,14 +29,19 @@ from pathlib import Path
 
 import numpy as np
 from pictures import Panel, display_missing, save_picture
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from surface_data import (
     array_of, mean_edge_length, pebble, points_of, read_mesh, refined, triangles_of)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from surfacediffusion import vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter
+
+try:
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+except ImportError:
+    print("turing_texture.py needs scipy (Debian: python3-scipy)")
+    sys.exit(77)
 
 
 @dataclass

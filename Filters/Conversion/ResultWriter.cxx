@@ -189,6 +189,11 @@ void WriteHistory(const History& history, vtkTable* table)
   AddColumn<vtkDoubleArray>(
     table, "Residual", rows, [&](int row) { return records[row].Residual; });
   AddColumn<vtkDoubleArray>(table, "Seconds", rows, [&](int row) { return records[row].Seconds; });
+  if (history.BoundsError)
+  {
+    AddColumn<vtkDoubleArray>(
+      table, "ErrorBound", rows, [&](int row) { return records[row].ErrorBound; });
+  }
   if (history.CountsClamped)
   {
     AddColumn<vtkIntArray>(table, "Clamped", rows, [&](int row) { return records[row].Clamped; });

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 namespace SurfaceDiffusion
@@ -37,20 +36,6 @@ double ToleranceOf(const std::vector<PieceEntry>& list, double tolerance)
   return all.IsValid() ? DefaultTolerance * all.GetDiagonalLength() : 0.0;
 }
 
-/// Not negative; 52 bits, which a double holds too.
-std::int64_t HashCoordinates(const double* coordinates)
-{
-  std::uint64_t hash = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    const double x = coordinates[k] + 0.0; // -0 becomes 0
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &x, sizeof(bits));
-    hash = MixBits(hash ^ bits);
-  }
-  return static_cast<std::int64_t>(hash >> 12);
-}
-
 PointIdentity MakeIdentity(vtkPolyData* data, vtkIdType firstLabel, bool byId)
 {
   const vtkIdType count = data->GetNumberOfPoints();
@@ -58,11 +43,14 @@ PointIdentity MakeIdentity(vtkPolyData* data, vtkIdType firstLabel, bool byId)
   identity.FirstLabel = firstLabel;
   identity.Labels.resize(count);
   std::iota(identity.Labels.begin(), identity.Labels.end(), firstLabel);
-  identity.Ids.resize(count);
-  const auto ids = AsIdTypeArray(byId ? FindGlobalPointIds(data) : nullptr);
-  for (vtkIdType i = 0; i < count; ++i)
+  if (const auto ids = AsIdTypeArray(byId ? FindGlobalPointIds(data) : nullptr))
   {
-    identity.Ids[i] = ids ? ids->GetValue(i) : HashCoordinates(data->GetPoint(i));
+    identity.Ids.assign(ids->GetPointer(0), ids->GetPointer(0) + count);
+  }
+  else
+  {
+    identity.Ids = IdsOfPlaces(static_cast<std::size_t>(count),
+      [&](std::size_t i, double* x) { data->GetPoint(static_cast<vtkIdType>(i), x); });
   }
   return identity;
 }
@@ -96,7 +84,14 @@ std::vector<PointIdentity> FindIdentity(
     if (piece >= first && piece < first + pieces.size())
     {
       PointIdentity& identity = identities[piece - first];
-      identity.Labels[points[i].Label - identity.FirstLabel] = points[owners[i]].Label;
+      const vtkIdType point = points[i].Label - identity.FirstLabel;
+      const InterfacePoint& owner = points[owners[i]];
+      identity.Labels[point] = owner.Label;
+      if (!byId && owner.Label != points[i].Label) // its place can differ by the tolerance
+      {
+        identity.Ids[point] = IdsOfPlaces(
+          1, [&](std::size_t, double* x) { std::copy_n(owner.Coordinates.begin(), 3, x); })[0];
+      }
     }
   }
   return identities;

@@ -35,7 +35,7 @@ struct PointIdentity
   std::vector<vtkIdType> Labels;
   vtkIdType FirstLabel = 0;
   /// Per point a number that does not depend on the partition, for random numbers: the global id,
-  /// or a hash of the coordinates.
+  /// or a hash of the coordinates; see IdsOfPlaces().
   std::vector<std::int64_t> Ids;
 };
 

@@ -5,6 +5,8 @@
 #include "Core/Models/NoiseLevel.h"
 #include "Core/Operators/CotanWeights.h"
 
+#include <sstream>
+
 namespace SurfaceDiffusion
 {
 
@@ -12,6 +14,7 @@ void DescribeData(const DataSettings& settings, ModelTraits& traits)
 {
   traits.NeedsDirections = settings.IsDirected();
   traits.HoldsKnownValues = settings.HoldKnownValues;
+  traits.UsesRandomNumbers = settings.InitialFill == InitialFill::Noise;
   traits.MaskHasEffect =
     settings.InitialFill != InitialFill::Input || traits.UsesFidelity || settings.HoldKnownValues;
 }
@@ -20,7 +23,26 @@ void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& r
 {
   FillMissing(
     inputs.Surface.Mesh(), inputs.Data, settings.InitialFill, settings.RandomSeed, inputs.Ids);
+  FillHarmonicallyIf(settings.InitialFill == InitialFill::Harmonic, inputs, result);
   ApplyHold(settings, inputs, result);
+}
+
+void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result)
+{
+  const Reduction& reduction = inputs.Surface.Mesh().GetReduction();
+  if (!harmonic || !reduction.Any(inputs.Data.Missing.any()))
+  {
+    return;
+  }
+  SolverTask task;
+  task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
+  task.DiffusionNumber.reset();
+  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  const StepReport report = FillHarmonically(inputs.Surface.SharedAssembler(), inputs.Data,
+    inputs.Solvers.Find(SolverPurpose::Fill, task), inputs.Parallel,
+    inputs.Progress.Part(0.0, 0.4));
+  inputs.Solvers.Release(SolverPurpose::Fill);
+  result.MissedResidual = report.MissedResidual;
 }
 
 void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result)
@@ -42,19 +64,44 @@ CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& input
     : CornerWeights(settings.AlongDiffusivity * isotropic);
 }
 
-double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start,
-  const std::function<std::unique_ptr<Model>(double)>& makeModel)
+double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,
+  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result)
 {
-  const double noise = noiseLevel > 0.0
-    ? noiseLevel / inputs.Units.ValueUnit
-    : EstimateNoiseLevel(*inputs.Surface.SharedAssembler(), inputs.Data);
+  const double unit = inputs.Units.ValueUnit;
+  double noise = noiseLevel / unit;
+  if (noiseLevel == 0.0)
+  {
+    const NoiseEstimate estimate =
+      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data);
+    noise = estimate.Level();
+    if (estimate.IsCorrelated())
+    {
+      std::ostringstream text;
+      text << "the noise is correlated: its standard deviation is "
+           << estimate.BetweenNeighbours * unit << " between neighbours and " << noise * unit
+           << " farther apart, which AutomaticFidelity uses (to set another, use NoiseLevel)";
+      result.Warnings.push_back(text.str());
+    }
+  }
   const auto discrepancy = [&](double fidelity)
   {
     const std::unique_ptr<Model> model = makeModel(fidelity);
-    model->Advance(inputs.Progress.Part(0.5, 0.5));
+    for (int step = 0; step < steps; ++step)
+    {
+      model->Advance(inputs.Progress.Part(0.5, 0.5));
+    }
     return Discrepancy(inputs.Surface.Mesh(), inputs.Data, model->State());
   };
-  return FindFidelityByDiscrepancy(discrepancy, noise, start);
+  const FidelityChoice choice = FindFidelityByDiscrepancy(discrepancy, noise, start);
+  if (!choice.IsFound)
+  {
+    std::ostringstream text;
+    text << "AutomaticFidelity found no weight at which the result differs from the data by the "
+         << "noise, " << noise * unit << ": at the end of its search the difference is "
+         << choice.Discrepancy * unit;
+    result.Warnings.push_back(text.str());
+  }
+  return choice.Weight;
 }
 
 } // namespace SurfaceDiffusion

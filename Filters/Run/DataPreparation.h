@@ -17,16 +17,20 @@ void DescribeData(const DataSettings& settings, ModelTraits& traits);
 /// the settings say so.
 void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
 
-/// The second half of PrepareData(), for models that fill the start by themselves.
+/// The start on missing vertices becomes harmonic if `harmonic` is true and any is missing.
+void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result);
+
+/// The last part of PrepareData(), for models that fill the start by themselves.
 void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
 
 /// The cotan weights times the constant diffusivities of the settings: the weights of (12).
 CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& inputs);
 
-/// The fidelity weight, in units of the numerics, at which the steady state differs from the data
-/// by the noise (discrepancy principle). noiseLevel: in array units; 0: estimated. makeModel: the
-/// model that reaches the steady state of a fidelity weight in one step.
-double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start,
-  const std::function<std::unique_ptr<Model>(double)>& makeModel);
+/// The fidelity weight, in units of the numerics, at which the state after `steps` steps differs
+/// from the data by the noise (discrepancy principle). noiseLevel: in array units; 0: estimated.
+/// makeModel: the model of a fidelity weight. Warns in `result` if the noise is correlated, and if
+/// no weight leaves the noise.
+double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,
+  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result);
 
 } // namespace SurfaceDiffusion

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Fields.h"
 
+#include "Core/Foundation/Random.h"
 #include "Core/Surface/TangentVectors.h"
 
 #include <algorithm>
@@ -185,11 +186,16 @@ TangentVectors MakeDirections(
 std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields)
 {
   const TriangleMesh& mesh = surface.Mesh();
+  const SurfaceDiffusion::Points& points = surface.Points();
+  const std::vector<std::int64_t> ofPoints = !fields.Ids.empty()
+    ? fields.Ids
+    : IdsOfPlaces(static_cast<std::size_t>(points.rows()),
+        [&](std::size_t i, double* x)
+        { std::copy_n(&points(static_cast<Eigen::Index>(i), 0), 3, x); });
   std::vector<std::int64_t> ids(static_cast<std::size_t>(mesh.NumberOfVertices()));
   for (std::size_t v = 0; v < ids.size(); ++v)
   {
-    const Index point = mesh.InputVertex()[v];
-    ids[v] = fields.Ids.empty() ? point : fields.Ids[static_cast<std::size_t>(point)];
+    ids[v] = ofPoints[static_cast<std::size_t>(mesh.InputVertex()[v])];
   }
   return ids;
 }

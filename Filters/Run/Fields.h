@@ -28,7 +28,7 @@ struct Fields
   bool DirectionsOnTriangles = false;
   /// Diffusion rates of a texture, per input triangle; no row if there are none.
   Values Rates;
-  std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: the point's index
+  std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: by coordinates
 };
 
 /// The extreme known values of each component, over several surfaces and processes.

@@ -82,6 +82,12 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
 {
   FillMissingUnitVectors(inputs.Surface.Mesh(), inputs.Data, this->LineField, this->InitialFill,
     this->RandomSeed, inputs.Ids);
+  if (this->InitialFill == SurfaceDiffusion::InitialFill::Harmonic && !this->LineField)
+  {
+    const Values means = inputs.Data.Start;
+    FillHarmonicallyIf(true, inputs, result);
+    NormalizeFilled(inputs.Data, means);
+  }
   if (inputs.Processes.Any((inputs.Data.Fixed && inputs.Data.Missing).any()))
   {
     throw std::runtime_error("InputArray has a vector of length zero where FixedArray holds it; "

@@ -82,6 +82,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;
   task.NumberOfVertices = mesh.NumberOfVertices();
+  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
   task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
   const double solvesPerStep = secondOrder ? 2.0 : 1.0;
   if (this->Mode == HeatMode::SteadyState)
@@ -102,7 +103,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
       return std::make_unique<LinearDiffusion>(
         inputs.Surface.SharedAssembler(), weights, inputs.Data, steady, solver, inputs.Parallel);
     };
-    settings.Fidelity = FindFidelity(inputs, this->NoiseLevel, 1.0 / (h * h), solve);
+    settings.Fidelity = FindFidelity(inputs, this->NoiseLevel, 1.0 / (h * h), 1, solve, result);
     result.EffectiveFidelityWeight = settings.Fidelity / fidelityUnit;
   }
   return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,

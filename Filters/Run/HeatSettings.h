@@ -21,7 +21,11 @@ struct HeatSettings : DataSettings
   bool AutomaticFidelity = false;
   double NoiseLevel = 0.0;
 
-  HeatSettings() { this->TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder; }
+  HeatSettings()
+  {
+    this->TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder;
+    this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic;
+  }
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;

@@ -18,6 +18,7 @@ struct History
   std::vector<std::vector<double>> Totals; ///< per component, per step: sum of A_i u_i
   std::vector<StepRecord> Records; ///< Residual: the largest
   bool CountsClamped = false;
+  bool BoundsError = false;
 
   long long NumberOfIterations() const
   {

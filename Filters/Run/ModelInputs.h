@@ -51,6 +51,7 @@ struct RunResult
   std::array<double, 2> ContrastLimits = { 0.0, 1.0 }; ///< of a texture, at the current step
   Points MovedPoints; ///< per input point, if vertices were moved; otherwise no row
   VertexMotion Motion;
+  double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<std::string> Warnings;
 };

@@ -193,8 +193,10 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
   block.Result = RunResult();
   block.Solvers.Configure(*this->Settings, this->Parallel);
   ModelInputs inputs{ *block.Surface, block.Units, this->MakeData(block, fields, processes),
-    std::move(directions), fields.Rates, MakeVertexIds(*block.Surface, fields), this->Parallel,
-    progress.Part(0.2, 1.0), block.Solvers, processes };
+    std::move(directions), fields.Rates,
+    this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)
+                                                      : std::vector<std::int64_t>(),
+    this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes };
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const std::size_t limit = this->CheckpointMemory(*model, processes);

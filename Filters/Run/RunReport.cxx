@@ -22,7 +22,7 @@ std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
   }
   else
   {
-    text << "moving the vertices";
+    text << "filling in missing values or moving vertices";
   }
   text << "; the largest relative residual is " << found.MissedResidual;
   return text.str();
@@ -52,6 +52,7 @@ History Run::MakeHistory(int step) const
   }
   History history;
   history.CountsClamped = traits.CountsClamped;
+  history.BoundsError = traits.BoundsError;
   history.Records.resize(static_cast<std::size_t>(rows));
   history.Totals.assign(
     static_cast<std::size_t>(components), std::vector<double>(static_cast<std::size_t>(rows), 0.0));
@@ -76,6 +77,7 @@ History Run::MakeHistory(int step) const
       {
         sum.Iterations += record.Iterations;
         sum.Residual = std::max(sum.Residual, record.Residual);
+        sum.ErrorBound = std::max(sum.ErrorBound, units.FromCore(record.ErrorBound, 0.0, 1.0));
         sum.Seconds += record.Seconds;
       }
       for (Eigen::Index k = 0; k < path.State().cols(); ++k)
@@ -124,7 +126,8 @@ Shortfalls Run::FindShortfalls() const
     --found.Steps; // the initial state
     found.Inputs.Add(block->SurfaceVersion);
     found.Inputs.Add(block->FieldsVersion);
-    found.MissedResidual = std::max(found.MissedResidual, block->Result.Motion.MissedResidual);
+    found.MissedResidual = std::max(found.MissedResidual,
+      std::max(block->Result.MissedResidual, block->Result.Motion.MissedResidual));
   }
   return found;
 }

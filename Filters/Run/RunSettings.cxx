@@ -129,7 +129,8 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
                    "Whether lambda is chosen by the discrepancy principle (Morozov 1966)." },
     automatic);
   visitor.Number({ "NoiseLevel", "values",
-                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated." },
+                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated, for "
+                   "white noise." },
     noiseLevel, SettingRange::NonNegative());
 }
 
@@ -142,8 +143,9 @@ void DataSettings::Visit(SettingVisitor& visitor)
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Choice({ "InitialFill", "",
                    "The start on missing points: the input itself, the mean of the known values of "
-                   "the connected component, or uniform noise between the extreme known values." },
-    this->InitialFill, { "Input", "Mean", "Noise" });
+                   "the connected component, uniform noise between the extreme known values, or "
+                   "the harmonic function of the known values." },
+    this->InitialFill, { "Input", "Mean", "Noise", "Harmonic" });
   visitor.Switch({ "HoldKnownValues", "",
                    "Whether known points keep their value exactly, so that only missing points "
                    "change." },

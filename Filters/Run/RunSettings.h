@@ -61,6 +61,8 @@ struct ModelTraits
   bool HoldsKnownValues = false;
   bool MaskHasEffect = true; ///< in mode Inpaint, if there are data
   bool CountsClamped = false;
+  bool BoundsError = false; ///< steps report a bound of their error
+  bool UsesRandomNumbers = false;
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
 };
 

@@ -19,7 +19,8 @@ enum class SolverPurpose
 {
   Step, ///< the time steps
   SecondChemical, ///< those of a texture's second chemical
-  Search ///< the search for a fidelity weight
+  Search, ///< the search for a fidelity weight
+  Fill ///< the harmonic start on missing vertices
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -38,6 +39,8 @@ public:
   /// the number of steps.
   std::shared_ptr<LinearSolver> Find(
     SolverPurpose purpose, SolverTask task, double solvesPerStep = 0.0);
+  /// Free the solver of a purpose that ends here.
+  void Release(SolverPurpose purpose) { this->Solvers[static_cast<std::size_t>(purpose)] = Kept(); }
 
   /// Whether the solvers that Find() gave since Configure() are also those of a run of another
   /// length, which then has the same states.
@@ -66,7 +69,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 3> Solvers;
+  std::array<Kept, 4> Solvers;
 };
 
 } // namespace SurfaceDiffusion

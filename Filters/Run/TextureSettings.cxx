@@ -189,6 +189,7 @@ ModelTraits TextureSettings::DescribeModel() const
   traits.Energy = { 2.0, 0.0 };
   traits.HasValueRange = false;
   traits.CountsClamped = true;
+  traits.UsesRandomNumbers = true;
   return traits;
 }
 

@@ -23,7 +23,7 @@ struct TextureSettings : RunSettings
   double InitialNoise = 0.1;
   bool ClampToNonNegative = true;
   bool AutomaticTimeStep = false;
-  double StopTolerance = 0.0;
+  double StopTolerance = 0.02; ///< measured: the pattern stands
   /// Those of each kinetics, in the order of its list of parameters.
   std::array<KineticsParameters, NumberOfKinetics> Parameters;
   int TextureChemical = 0; ///< 0: u1, 1: u2

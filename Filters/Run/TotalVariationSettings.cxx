@@ -20,7 +20,7 @@ namespace
 /// L1 fidelity of the lagged scheme is rounded below this distance, in R.
 constexpr double L1Rounding = 1e-3;
 
-/// The duality gap of the minimisers that the search for lambda computes.
+/// The smallest duality gap of the minimisers that the search for lambda computes.
 constexpr double SearchTolerance = 1e-3;
 
 /// The gradient at which the diffusivity is judged for the choice of a solver, in R/h.
@@ -64,31 +64,73 @@ public:
     return this->Units.ToCore(1.0, -this->Time.Length, l1 - this->Time.Value);
   }
 
-  /// The lambda of AutomaticFidelity, in units of the numerics.
-  double FindFidelityWeight() const
+  /// The lambda of AutomaticFidelity, in units of the numerics: that of the model and steps of the
+  /// run itself.
+  double FindFidelityWeight(RunResult& result) const
   {
     const double h = this->Units.CoreEdgeLength();
     const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
     const double start = 1.0 / (h * (dimensionless ? h : this->Units.CoreValueRange()));
-    return FindFidelity(this->Inputs, this->Options.NoiseLevel, start,
-      [&](double fidelity)
-      {
-        return this->MakeMinimizing(this->Inputs.Surface.SharedAssembler(), this->Inputs.Data,
-          fidelity, true, SearchTolerance);
-      });
+    const double tolerance = std::max(SearchTolerance, this->Options.StopTolerance);
+    return FindFidelity(
+      this->Inputs, this->Options.NoiseLevel, start, this->Options.DescribeModel().NumberOfSteps,
+      [&](double fidelity) { return this->Make(this->Inputs.Data, fidelity, tolerance); }, result);
   }
 
-  /// The model on the mesh of the assembler.
-  std::unique_ptr<Model> Make(
-    std::shared_ptr<const Assembler> assembler, PointData data, double fidelity) const
+  /// Prepares the edges for CrouzeixRaviart. This takes seconds for a million vertices. In the
+  /// background it does not delay an abort.
+  void MakeEdges()
   {
-    return this->Options.Minimizes()
-      ? this->MakeMinimizing(std::move(assembler), std::move(data), fidelity,
-          this->Options.Mode == TotalVariationMode::SteadyState, this->Options.StopTolerance)
-      : this->MakeLagged(std::move(assembler), std::move(data), fidelity);
+    const auto edges = std::make_shared<EdgeUnknowns>();
+    RunInBackground(
+      [edges, mesh = this->Inputs.Surface.SharedMesh(), &parallel = this->Inputs.Parallel]
+      {
+        edges->Mesh = std::make_shared<MedialMesh>(*mesh);
+        edges->Operators = std::make_shared<Assembler>(edges->Mesh->Edges(), parallel);
+      },
+      this->Inputs.Progress.Part(0.1, 0.5));
+    this->Edges = edges;
+  }
+
+  /// The model of the settings, with its steady states and implicit steps to the tolerance.
+  std::unique_ptr<Model> Make(PointData data, double fidelity, double tolerance) const
+  {
+    if (!this->Edges)
+    {
+      return this->MakeOn(
+        this->Inputs.Surface.SharedAssembler(), std::move(data), fidelity, tolerance);
+    }
+    TotalCorrection conserved;
+    if (this->Options.FidelityNorm == FidelityNorm::L2 || fidelity == 0.0)
+    {
+      conserved =
+        TotalCorrection(this->Inputs.Surface.Mesh(), data, fidelity > 0.0, this->Inputs.Parallel);
+    }
+    return std::make_unique<CrouzeixRaviartModel>(
+      this->Inputs.Surface.SharedAssembler(), this->Edges->Mesh, std::move(data),
+      std::move(conserved),
+      [&](PointData onEdges)
+      { return this->MakeOn(this->Edges->Operators, std::move(onEdges), fidelity, tolerance); },
+      this->Inputs.Parallel);
   }
 
 private:
+  struct EdgeUnknowns
+  {
+    std::shared_ptr<const MedialMesh> Mesh;
+    std::shared_ptr<const Assembler> Operators;
+  };
+
+  /// The model on the mesh of the assembler.
+  std::unique_ptr<Model> MakeOn(std::shared_ptr<const Assembler> assembler, PointData data,
+    double fidelity, double tolerance) const
+  {
+    return this->Options.Minimizes()
+      ? this->MakeMinimizing(std::move(assembler), std::move(data), fidelity,
+          this->Options.Mode == TotalVariationMode::SteadyState, tolerance)
+      : this->MakeLagged(std::move(assembler), std::move(data), fidelity);
+  }
+
   std::unique_ptr<Model> MakeMinimizing(std::shared_ptr<const Assembler> assembler, PointData data,
     double fidelity, bool steady, double tolerance) const
   {
@@ -163,6 +205,7 @@ private:
   ModelInputs& Inputs;
   const UnitSystem& Units;
   const Dimension Time;
+  std::shared_ptr<const EdgeUnknowns> Edges; ///< of CrouzeixRaviart
 };
 
 } // namespace
@@ -253,6 +296,9 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
   traits.CanBeDistributed =
     !this->AutomaticFidelity && this->Discretization == SurfaceDiffusion::Discretization::Linear;
+  traits.BoundsError = this->Minimizes() &&
+    !(this->Mode == TotalVariationMode::SteadyState &&
+      (this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L1 || !traits.UsesFidelity));
   DescribeData(*this, traits);
   traits.NeedsDirections = traits.NeedsDirections || this->AcrossEdgeFunction != 0;
   return traits;
@@ -261,33 +307,15 @@ ModelTraits TotalVariationSettings::DescribeModel() const
 std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
-  const ModelMaker maker(*this, inputs);
-  const double fidelity = this->AutomaticFidelity ? maker.FindFidelityWeight()
+  ModelMaker maker(*this, inputs);
+  if (this->Discretization == SurfaceDiffusion::Discretization::CrouzeixRaviart)
+  {
+    maker.MakeEdges();
+  }
+  const double fidelity = this->AutomaticFidelity ? maker.FindFidelityWeight(result)
                                                   : this->FidelityWeight * maker.FidelityUnit();
   result.EffectiveFidelityWeight = fidelity / maker.FidelityUnit();
-
-  if (this->Discretization == SurfaceDiffusion::Discretization::Linear)
-  {
-    return maker.Make(inputs.Surface.SharedAssembler(), std::move(inputs.Data), fidelity);
-  }
-  // This takes seconds for a million vertices. In the background it does not delay an abort.
-  struct EdgeUnknowns
-  {
-    std::shared_ptr<const MedialMesh> Mesh;
-    std::shared_ptr<const Assembler> Operators;
-  };
-  const auto edges = std::make_shared<EdgeUnknowns>();
-  RunInBackground(
-    [edges, mesh = inputs.Surface.SharedMesh(), &parallel = inputs.Parallel]
-    {
-      edges->Mesh = std::make_shared<MedialMesh>(*mesh);
-      edges->Operators = std::make_shared<Assembler>(edges->Mesh->Edges(), parallel);
-    },
-    inputs.Progress.Part(0.5, 0.95));
-  return std::make_unique<CrouzeixRaviartModel>(
-    inputs.Surface.SharedAssembler(), edges->Mesh, std::move(inputs.Data),
-    [&](PointData data) { return maker.Make(edges->Operators, std::move(data), fidelity); },
-    inputs.Parallel);
+  return maker.Make(std::move(inputs.Data), fidelity, this->StopTolerance);
 }
 
 void TotalVariationSettings::Finish(const RunState& state, RunResult& result) const

@@ -109,6 +109,65 @@ TEST(CrouzeixRaviart, CapFlowsToHalfAPercentOnAnyTurnOfTheMesh)
   }
 }
 
+TEST(CrouzeixRaviart, SteadyPlateausAreExactToHalfAPercent)
+{
+  const double angle = Pi / 3.0;
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(Cap(mesh, s, angle));
+  const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.0, 10.0));
+  flow->Advance(ProgressMonitor());
+  EXPECT_LT(
+    PlateauError(MeasurePlateaus(mesh, s, flow->State(), angle), ExactPlateaus(angle, 0.1)), 0.005);
+  EXPECT_NEAR(Total(mesh, flow->State(), 0), Total(mesh, data.Start, 0), 1e-12);
+}
+
+TEST(CrouzeixRaviart, NothingOfAJumpIsLeftInTheEnd)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  Values caps(mesh.NumberOfVertices(), 2);
+  caps << Cap(mesh, s, Pi / 3.0), 0.1 * Cap(mesh, s, 1.4) + 0.01 * Noise(mesh);
+  for (const bool masked : { false, true })
+  {
+    PointData data = PointData::FromValues(caps);
+    if (masked)
+    {
+      data.Missing.head(200) = true;
+    }
+    for (const ChannelCoupling coupling : { ChannelCoupling::Joint, ChannelCoupling::PerChannel })
+    {
+      auto settings = ExactSettings(mesh, 100.0);
+      settings.Coupling = coupling;
+      const auto flow = MakeOnEdges(assembler, data, settings);
+      flow->Advance(ProgressMonitor());
+      for (Eigen::Index k = 0; k < 2; ++k)
+      {
+        const double mean = Total(mesh, caps, k) / mesh.ControlAreas().sum();
+        EXPECT_LT((flow->State().col(k).array() - mean).abs().maxCoeff(), 1e-6) << k << masked;
+        EXPECT_NEAR(Total(mesh, flow->State(), k), Total(mesh, caps, k), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(CrouzeixRaviart, EdgesKeepTheSumOfAJump)
+{
+  for (const double turn : { 0.0, 0.7, 1.9 })
+  {
+    const Surface s = Rotated(Icosphere(4), turn);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const MedialMesh edges(mesh);
+    const Values cap = Cap(mesh, s, Pi / 3.0);
+    const double perimeterTimesEdge = 2.0 * Pi * std::sin(Pi / 3.0) * MeanEdge(mesh);
+    EXPECT_NEAR(EdgeTotal(edges, EdgesFromVertices(*assembler, edges, cap)), Total(mesh, cap, 0),
+      0.03 * perimeterTimesEdge); // means have no error, but no edge; 0.1 without balance
+  }
+}
+
 TEST(CrouzeixRaviart, NoiseDoesNotComeBack)
 {
   const Surface s = Icosphere(4);

@@ -386,6 +386,30 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
   EXPECT_EQ(choice(1000000, 0.1, 200), SolverMethod::ConjugateGradient);
 }
 
+TEST(Automatic, FactorisesForManyColumnsWhoseSubstitutionsShareTheFactor)
+{
+  SolverTask task;
+  task.NumberOfVertices = 41000;
+  task.DiffusionNumber = 1.0;
+  task.NumberOfSolves = 3.0;
+  EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::ConjugateGradient);
+  task.NumberOfColumns = 50;
+  EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Direct);
+}
+
+TEST(Automatic, TriesConjugateGradientsIfAFactorisationFails)
+{
+  // Indefinite by one entry that the solution hardly has: no pivot is positive enough for a
+  // factorisation, and Automatic goes on.
+  const auto assembler = MakeAssembler(Icosphere(2));
+  SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+  matrix.coeffRef(3, 3) = -1.0;
+  const auto direct = MakeSolver(SolverChoice{ SolverMethod::Direct, false });
+  EXPECT_THROW(direct->SetMatrix(matrix), std::runtime_error);
+  const auto solver = MakeSolver(SolverChoice{ SolverMethod::Direct, true });
+  EXPECT_NO_THROW(solver->SetMatrix(matrix));
+}
+
 TEST(Automatic, ChoosesMultigridOnlyWhereAllowed)
 {
   SolverTask task;

@@ -27,6 +27,11 @@ Values GaussianNoise(const TriangleMesh& mesh, Eigen::Index columns)
   return u;
 }
 
+double Level(const Surface& s, const Assembler& assembler, const PointData& data)
+{
+  return EstimateNoise(assembler, s.Vertices, data).Level();
+}
+
 /// Smooth parts and edges, values in 0 .. 1.
 Values Picture(const TriangleMesh& mesh, const Surface& s)
 {
@@ -46,40 +51,43 @@ TEST(NoiseLevel, IsEstimatedWithinFivePercentUnderAPicture)
   {
     Values f = sigma * GaussianNoise(mesh, 1);
     f += Picture(mesh, s);
-    EXPECT_NEAR(EstimateNoiseLevel(*assembler, PointData::FromValues(f)), sigma, 0.05 * sigma);
+    EXPECT_NEAR(Level(s, *assembler, PointData::FromValues(f)), sigma, 0.05 * sigma);
   }
 }
 
 TEST(NoiseLevel, IsTheRootMeanSquareOverTheColumns)
 {
-  const auto assembler = MakeAssembler(Icosphere(5));
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
   Values f = GaussianNoise(assembler->Mesh(), 2);
   f.col(1) *= 7.0;
-  EXPECT_NEAR(EstimateNoiseLevel(*assembler, PointData::FromValues(f)), 5.0, 0.25);
+  EXPECT_NEAR(Level(s, *assembler, PointData::FromValues(f)), 5.0, 0.25);
 }
 
 TEST(NoiseLevel, MissingValuesAreNotLookedAt)
 {
-  const auto assembler = MakeAssembler(Icosphere(5));
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
   PointData data = PointData::FromValues(GaussianNoise(assembler->Mesh(), 1));
   for (Index i = 0; i < assembler->Mesh().NumberOfVertices(); i += 20)
   {
     data.Missing[i] = true;
     data.Given(i, 0) = 1e9;
   }
-  EXPECT_NEAR(EstimateNoiseLevel(*assembler, data), 1.0, 0.06);
+  EXPECT_NEAR(Level(s, *assembler, data), 1.0, 0.06);
 }
 
 TEST(NoiseLevel, IsZeroWhereNothingCanBeSaid)
 {
-  const auto assembler = MakeAssembler(Icosphere(2));
+  const Surface s = Icosphere(2);
+  const auto assembler = MakeAssembler(s);
   PointData data = PointData::FromValues(Values::Constant(162, 2, 4.0));
-  EXPECT_EQ(EstimateNoiseLevel(*assembler, data), 0.0);
+  EXPECT_EQ(Level(s, *assembler, data), 0.0);
   data.Missing.fill(true);
-  EXPECT_EQ(EstimateNoiseLevel(*assembler, data), 0.0);
+  EXPECT_EQ(Level(s, *assembler, data), 0.0);
   const auto empty =
     std::make_shared<Assembler>(std::make_shared<TriangleMesh>(Points(0, 3), Triangles(0, 3)));
-  EXPECT_EQ(EstimateNoiseLevel(*empty, PointData::FromValues(Values(0, 1))), 0.0);
+  EXPECT_EQ(EstimateNoise(*empty, Points(0, 3), PointData::FromValues(Values(0, 1))).Level(), 0.0);
 }
 
 TEST(NoiseLevel, DiscrepancyIsTheWeightedRootMeanSquareOfWhatIsKnown)
@@ -106,17 +114,59 @@ TEST(NoiseLevel, FidelityIsFoundToOnePercent)
       ++calls;
       return 2.0 * exact / (lambda + exact);
     };
-    EXPECT_NEAR(FindFidelityByDiscrepancy(discrepancy, 1.0, 1.0), exact, 0.01 * exact);
+    const FidelityChoice found = FindFidelityByDiscrepancy(discrepancy, 1.0, 1.0);
+    EXPECT_TRUE(found.IsFound);
+    EXPECT_NEAR(found.Weight, exact, 0.01 * exact);
+    EXPECT_NEAR(found.Discrepancy, 1.0, 0.01);
     EXPECT_LT(calls, 30);
   }
 }
 
-TEST(NoiseLevel, SearchEndsAtItsLimits)
+TEST(NoiseLevel, SearchSaysThatItEndedAtItsLimits)
 {
-  EXPECT_NEAR(
-    std::log10(FindFidelityByDiscrepancy([](double) { return 0.1; }, 1.0, 5.0) / 5.0), -8.0, 0.7);
-  EXPECT_NEAR(
-    std::log10(FindFidelityByDiscrepancy([](double) { return 3.0; }, 1.0, 5.0) / 5.0), 8.0, 0.7);
+  const FidelityChoice low = FindFidelityByDiscrepancy([](double) { return 0.1; }, 1.0, 5.0);
+  EXPECT_FALSE(low.IsFound);
+  EXPECT_NEAR(low.Discrepancy, 0.1, 1e-12);
+  EXPECT_NEAR(std::log10(low.Weight / 5.0), -8.0, 0.7);
+  const FidelityChoice high = FindFidelityByDiscrepancy([](double) { return 3.0; }, 1.0, 5.0);
+  EXPECT_FALSE(high.IsFound);
+  EXPECT_NEAR(high.Discrepancy, 3.0, 1e-12);
+  EXPECT_NEAR(std::log10(high.Weight / 5.0), 8.0, 0.7);
+}
+
+TEST(NoiseLevel, SlopesOnIrregularMeshesAreNoNoise)
+{
+  const Surface s = Jittered(Strip(100, 100), 0.35 / 100.0, 0.001, 0.999, 0.001, 0.999);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  for (const double sigma : { 0.001, 0.01 })
+  {
+    Values f = sigma * GaussianNoise(mesh, 1);
+    f += Sample(mesh, s, [](const Eigen::RowVector3d& x) { return 0.5 * x[0] - 0.2 * x[1]; });
+    const NoiseEstimate noise = EstimateNoise(*assembler, s.Vertices, PointData::FromValues(f));
+    EXPECT_FALSE(noise.IsCorrelated());
+    EXPECT_NEAR(noise.Level(), sigma, 0.05 * sigma);
+  }
+}
+
+TEST(NoiseLevel, CorrelatedNoiseIsFoundOrMeasuredAcrossItsCorrelation)
+{
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges() * mesh.LengthUnit();
+  for (const double c : { 0.0, 0.1, 0.3, 1.0, 3.0 }) // one heat step of c h^2
+  {
+    Values f = GaussianNoise(mesh, 1);
+    if (c > 0.0)
+    {
+      f = Diffuse(assembler, PointData::FromValues(f), c * h * h, 1, 0.0, Scheme::BackwardEuler);
+    }
+    f /= RootMeanSquare(mesh, f);
+    const NoiseEstimate noise = EstimateNoise(*assembler, s.Vertices, PointData::FromValues(f));
+    EXPECT_EQ(noise.IsCorrelated(), c >= 0.3) << c << ' ' << noise.BetweenNeighbours;
+    EXPECT_NEAR(noise.Level(), 1.0, 0.1) << c << ' ' << noise.BetweenNeighbours;
+  }
 }
 
 TEST(NoiseLevel, SteadyStateAtTheFoundFidelityLeavesTheNoise)
@@ -135,7 +185,8 @@ TEST(NoiseLevel, SteadyStateAtTheFoundFidelityLeavesTheNoise)
     return heat->State();
   };
   const double lambda = FindFidelityByDiscrepancy(
-    [&](double trial) { return Discrepancy(mesh, data, solve(trial)); }, sigma, 10.0);
+    [&](double trial) { return Discrepancy(mesh, data, solve(trial)); }, sigma, 10.0)
+                          .Weight;
   const Values u = solve(lambda);
   EXPECT_NEAR(Discrepancy(mesh, data, u), sigma, 0.01 * sigma);
   EXPECT_LT(RootMeanSquare(mesh, u - clean), 0.5 * sigma); // and denoises

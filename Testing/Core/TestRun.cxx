@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Heat.h"
+#include "Meshes.h"
 #include "RunInput.h"
 
 #include "Run/DirectionFieldRun.h"
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -40,6 +43,76 @@ TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
   {
     EXPECT_NEAR(state(surface.VertexOf(i), 0), std::exp(-0.2) * input.Vertices(i, 2), 1e-3);
   }
+}
+
+TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
+{
+  RunInput input(Testing::Icosphere(3));
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    input.Data.Data(i, 0) =
+      (input.Vertices(i, 2) > 0.5 ? 1.0 : 0.0) + 0.2 * (2.0 * UniformRandom(3, 0, i) - 1.0);
+  }
+  TotalVariationSettings settings;
+  settings.AutomaticFidelity = true;
+  settings.NoiseLevel = 0.1;
+  for (const TotalVariationMode mode :
+    { TotalVariationMode::TimeSteps, TotalVariationMode::SteadyState })
+  {
+    for (const Discretization discretization :
+      { Discretization::Linear, Discretization::CrouzeixRaviart })
+    {
+      settings.Mode = mode;
+      settings.Discretization = discretization;
+      SurfaceDiffusion::Run run(SerialFor());
+      const Values state = StateOf(run, { input.Block() }, settings);
+      const TriangleMesh& mesh = run.GetBlock(0).Surface->Mesh();
+      Values difference = state;
+      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      {
+        difference(i, 0) -= input.Data.Data(mesh.InputVertex()[i], 0);
+      }
+      EXPECT_NEAR(Testing::RootMeanSquare(mesh, difference), 0.1, 0.002)
+        << static_cast<int>(mode) << static_cast<int>(discretization);
+      EXPECT_TRUE(run.FindWarnings(Alone).empty());
+    }
+  }
+}
+
+TEST(Run, AutomaticFidelityWarnsOfNoiseThatItCannotLeave)
+{
+  RunInput input(Testing::Icosphere(3));
+  HeatSettings settings;
+  settings.Mode = HeatMode::SteadyState;
+  settings.AutomaticFidelity = true;
+  settings.NoiseLevel = 100.0;
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  WarningLog log;
+  const std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("AutomaticFidelity found no weight"), std::string::npos);
+  EXPECT_NE(warnings[0].find("100"), std::string::npos);
+}
+
+TEST(Run, AutomaticFidelityWarnsOfCorrelatedNoise)
+{
+  RunInput input(Testing::Icosphere(4));
+  const auto mesh = Testing::MakeMesh(Testing::Icosphere(4));
+  Values noise = Testing::Noise(*mesh);
+  const double h = mesh->TotalEdgeLength() / mesh->NumberOfEdges() * mesh->LengthUnit();
+  noise = Testing::Diffuse(std::make_shared<Assembler>(mesh), PointData::FromValues(noise), h * h,
+    1, 0.0, Testing::Scheme::BackwardEuler);
+  input.Data.Data = Testing::ToInput(*mesh, noise, static_cast<Index>(input.Vertices.rows()));
+  TotalVariationSettings settings;
+  settings.Mode = TotalVariationMode::SteadyState;
+  settings.AutomaticFidelity = true;
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  WarningLog log;
+  const std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_NE(warnings[0].find("the noise is correlated"), std::string::npos);
 }
 
 TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
@@ -83,7 +156,7 @@ TEST(Run, AfterAnyEditEqualsANewRun)
 
 TEST(Run, FactorisesAgainOnlyIfTheMatrixChanges)
 {
-  Input input(Testing::Icosphere(4));
+  RunInput input(Testing::Icosphere(4));
   HeatSettings settings;
   settings.Solver = SolverMethod::Direct;
   SurfaceDiffusion::Run run(SerialFor());
@@ -242,6 +315,92 @@ TEST(Run, ATextureNeedsNoData)
   EXPECT_EQ(state.cols(), 2);
   EXPECT_TRUE(state.allFinite());
   EXPECT_GT(run.GetBlock(0).Result.Wavelength, 0.0);
+}
+
+TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)
+{
+  // A smooth map with 20 % missing in patches: started from the harmonic function of the known
+  // values, the result is near that of the full data.
+  RunInput input(Testing::Icosphere(5));
+  HeatSettings settings;
+  settings.FWHM = 0.15;
+  const auto patch = [&](Eigen::Index i)
+  {
+    const auto x = input.Vertices.row(i);
+    return std::cos(9.0 * x[0]) * std::cos(9.0 * x[1]) * std::cos(9.0 * x[2]) > 0.3;
+  };
+  input.Data.Mask.resize(static_cast<std::size_t>(input.Vertices.rows()));
+  double missing = 0.0;
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    input.Data.Data(i, 0) = input.Vertices(i, 2) + 0.3 * std::sin(3.0 * input.Vertices(i, 0));
+    input.Data.Mask[static_cast<std::size_t>(i)] = patch(i);
+    missing += patch(i);
+  }
+  EXPECT_NEAR(missing / static_cast<double>(input.Vertices.rows()), 0.2, 0.1);
+  RunInput whole = input;
+  whole.Data.Mask.clear();
+  const auto errorOf = [&](InitialFill fill)
+  {
+    SurfaceDiffusion::Run reference(SerialFor()), run(SerialFor());
+    const Values u = StateOf(reference, { whole.Block() }, settings);
+    settings.InitialFill = fill;
+    const Values v = StateOf(run, { input.Block() }, settings);
+    return Testing::RootMeanSquare(run.GetBlock(0).Surface->Mesh(), v - u);
+  };
+  const double mean = errorOf(InitialFill::Mean);
+  const double harmonic = errorOf(InitialFill::Harmonic);
+  std::printf("RMS to the full data: mean %.4f, harmonic %.4f\n", mean, harmonic);
+  EXPECT_LT(harmonic, 0.03 * mean);
+  EXPECT_EQ(HeatSettings().InitialFill, InitialFill::Harmonic);
+  EXPECT_EQ(TotalVariationSettings().InitialFill, InitialFill::Mean);
+}
+
+TEST(Run, RandomNumbersBelongToPlacesRegardlessOfTheNumbering)
+{
+  const Testing::Surface sphere = Testing::Icosphere(3);
+  const std::vector<Index> numbers = Testing::Permutation(sphere.NumberOfVertices(), 5);
+  const Testing::Surface renumbered = Testing::Renumbered(sphere, numbers);
+  TextureSettings settings;
+  settings.NumberOfTimeSteps = 0;
+  std::vector<Values> states;
+  for (const Testing::Surface& s : { sphere, renumbered })
+  {
+    RunInput input(s);
+    input.Data.Data.resize(0, 0);
+    SurfaceDiffusion::Run run(SerialFor());
+    const Values u = StateOf(run, { input.Block() }, settings);
+    Values ofPoints(s.NumberOfVertices(), 2);
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      ofPoints.row(i) = u.row(run.GetBlock(0).Surface->VertexOf(i));
+    }
+    states.push_back(ofPoints);
+  }
+  for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
+  {
+    const Index j = renumbered.Vertices.row(numbers[i]) == sphere.Vertices.row(i)
+      ? numbers[i]
+      : static_cast<Index>(std::find(numbers.begin(), numbers.end(), i) - numbers.begin());
+    ASSERT_EQ(renumbered.Vertices.row(j), sphere.Vertices.row(i));
+    EXPECT_EQ(states[1].row(j), states[0].row(i));
+  }
+}
+
+TEST(Run, CoincidentPointsHaveRandomNumbersOfTheirOwn)
+{
+  const Testing::Surface sphere = Testing::Icosphere(2);
+  RunInput input(Testing::Joined(sphere, sphere));
+  input.Data.Data.resize(0, 0);
+  TextureSettings settings;
+  settings.NumberOfTimeSteps = 0;
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values u = StateOf(run, { input.Block() }, settings);
+  const Surface& surface = *run.GetBlock(0).Surface;
+  for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
+  {
+    EXPECT_NE(u(surface.VertexOf(i), 0), u(surface.VertexOf(i + sphere.NumberOfVertices()), 0));
+  }
 }
 
 TEST(Run, InvalidArraysAreErrorsThatNameThem)

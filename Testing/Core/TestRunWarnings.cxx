@@ -125,7 +125,7 @@ TEST(RunWarnings, AVertexFitThatMissesTheToleranceIsReported)
   settings.Tolerance = 1e-30;
   settings.MaximumNumberOfIterations = 5;
   ExpectOne(WarningsOf(NoisyNormals(), settings),
-    { "linear solver missed its Tolerance 1e-30 in moving the vertices",
+    { "linear solver missed its Tolerance 1e-30 in filling in missing values or moving vertices",
       "largest relative residual" });
 }
 

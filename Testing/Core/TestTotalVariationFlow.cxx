@@ -341,6 +341,121 @@ TEST(TotalVariationFlow, NeverBlowsUp)
   }
 }
 
+TEST(TotalVariationFlow, ConstantsWithAHoleNeedNoIteration)
+{
+  // The mean that fills the hole differs from the constant by round-off.
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const Index n = assembler->Mesh().NumberOfVertices();
+  PointData data = PointData::FromValues(Values::Constant(n, 1, 7.3));
+  data.Missing.head(40) = true;
+  data.Start.topRows(40).setConstant(7.3 * (1.0 + 4e-16));
+  for (const double timeStep : { 0.0, 1.0 })
+  {
+    const auto flow = MakeExact(assembler, data, ExactSettings(assembler->Mesh(), timeStep, 1.0));
+    EXPECT_EQ(flow->Advance(ProgressMonitor()).Iterations, 0);
+  }
+}
+
+TEST(TotalVariationFlow, OutliersAtMostDoubleTheIterations)
+{
+  const CapProblem cap;
+  const auto iterations = [&](FidelityNorm norm, double outlier)
+  {
+    PointData data = PointData::FromValues(cap.Data.Start + 0.1 * Noise(cap.Mesh));
+    data.Given(1234, 0) += outlier;
+    data.Start(1234, 0) += outlier;
+    auto settings = ExactSettings(cap.Mesh, 0.0, norm == FidelityNorm::L1 ? 30.0 : 10.0);
+    settings.Norm = norm;
+    const auto flow = MakeExact(cap.Operators, data, settings);
+    const StepReport report = flow->Advance(ProgressMonitor());
+    EXPECT_LE(report.Residual, settings.StopTolerance);
+    return report.Iterations;
+  };
+  for (const FidelityNorm norm : { FidelityNorm::L2, FidelityNorm::L1 })
+  {
+    const int without = iterations(norm, 0.0);
+    for (const double outlier : { 10.0, 100.0, 1e3, 1e4 })
+    {
+      EXPECT_LE(iterations(norm, outlier), 2 * without) << outlier;
+    }
+  }
+}
+
+TEST(TotalVariationFlow, ShortStepsCostLessEachThanLongOnes)
+{
+  const CapProblem cap;
+  const auto iterationsPerStep = [&](int steps)
+  {
+    const auto flow = MakeExact(cap.Operators, cap.Data, ExactSettings(cap.Mesh, 0.2 / steps));
+    int sum = 0;
+    for (int step = 0; step < steps; ++step)
+    {
+      sum += flow->Advance(ProgressMonitor()).Iterations;
+    }
+    EXPECT_LT(PlateauError(cap.Measure(flow->State()), ExactPlateaus(CapAngle, 0.2)), 0.05);
+    return static_cast<double>(sum) / steps;
+  };
+  const double few = iterationsPerStep(4);
+  EXPECT_LT(few, 100.0);
+  EXPECT_LT(iterationsPerStep(64), 0.4 * few);
+}
+
+TEST(TotalVariationFlow, EachOfSeveralChannelsComesOutAsIfAlone)
+{
+  const CapProblem cap;
+  Values channels(cap.Mesh.NumberOfVertices(), 3);
+  channels << cap.Data.Start + 0.1 * Noise(cap.Mesh), 1e-3 * Noise(cap.Mesh, 1, 8),
+    1e-6 * cap.Data.Start;
+  const PointData all = PointData::FromValues(channels);
+  for (const double timeStep : { 0.0, 0.1 })
+  {
+    for (const FidelityNorm norm : { FidelityNorm::L2, FidelityNorm::L1 })
+    {
+      auto settings = ExactSettings(cap.Mesh, timeStep, 10.0, 1e-3);
+      settings.Norm = norm;
+      settings.Coupling = ChannelCoupling::PerChannel;
+      const auto together = MakeExact(cap.Operators, all, settings);
+      together->Advance(ProgressMonitor());
+      for (Eigen::Index k = 0; k < 3; ++k)
+      {
+        const auto alone =
+          MakeExact(cap.Operators, PointData::FromValues(channels.col(k)), settings);
+        alone->Advance(ProgressMonitor());
+        EXPECT_TRUE(alone->State().col(0) == together->State().col(k)) << k;
+      }
+    }
+  }
+}
+
+TEST(TotalVariationFlow, ErrorBoundIsNotBelowTheError)
+{
+  const CapProblem cap;
+  PointData data = PointData::FromValues(cap.Data.Start + 0.1 * Noise(cap.Mesh));
+  for (const double timeStep : { 0.0, 0.02 })
+  {
+    const auto run = [&](double tolerance)
+    {
+      const auto flow =
+        MakeExact(cap.Operators, data, ExactSettings(cap.Mesh, timeStep, 10.0, tolerance));
+      const double bound = flow->Advance(ProgressMonitor()).ErrorBound;
+      return std::make_pair(flow->State(), bound);
+    };
+    const auto [exact, least] = run(1e-8);
+    EXPECT_LT(least, 1e-3);
+    for (const double tolerance : { 1e-1, 1e-2, 1e-3 })
+    {
+      const auto [u, bound] = run(tolerance);
+      const double error = RootMeanSquare(cap.Mesh, u - exact);
+      EXPECT_GE(bound + least, error);
+      EXPECT_LT(bound, 30.0 * error + least);
+    }
+  }
+  auto settings = ExactSettings(cap.Mesh, 0.0, 10.0, 1e-1);
+  settings.Norm = FidelityNorm::L1; // not strongly convex
+  EXPECT_TRUE(
+    std::isinf(MakeExact(cap.Operators, data, settings)->Advance(ProgressMonitor()).ErrorBound));
+}
+
 TEST(TotalVariationFlow, RestoresEveryBit)
 {
   const CapProblem cap;

@@ -14,6 +14,11 @@ namespace
 
 using Kind = EdgeFunctionKind;
 
+std::shared_ptr<const std::vector<GradientMap>> Gradients(const TriangleMesh& mesh)
+{
+  return std::make_shared<const std::vector<GradientMap>>(PlainGradients(mesh, SerialFor()));
+}
+
 /// A minimisation and all it needs: noise on a small sphere.
 struct Problem
 {
@@ -44,9 +49,9 @@ struct Problem
   {
     this->Settings.StopTolerance = tolerance;
     const Index n = this->Mesh.NumberOfVertices();
-    TotalVariationMinimizer minimizer(this->Operators, PlainGradients(this->Mesh, SerialFor()),
+    TotalVariationMinimizer minimizer(this->Operators, Gradients(this->Mesh),
       Vector::Constant(n, this->Quadratic), Vector::Constant(n, this->Absolute), this->Fixed,
-      this->Settings);
+      this->Data, this->Settings);
     Values u = this->Data;
     const auto report = minimizer.Minimize(this->Data, this->Data, u);
     return { this->Energy(minimizer, u), report };
@@ -91,9 +96,9 @@ TEST(TotalVariationMinimizer, NoSmallChangeLowersTheEnergy)
     problem.Absolute = absolute; // together with the quadratic term, as in a time step with L1
     problem.Settings.StopTolerance = 1e-7;
     const Index n = problem.Mesh.NumberOfVertices();
-    TotalVariationMinimizer minimizer(problem.Operators, PlainGradients(problem.Mesh, SerialFor()),
+    TotalVariationMinimizer minimizer(problem.Operators, Gradients(problem.Mesh),
       Vector::Constant(n, problem.Quadratic), Vector::Constant(n, absolute), problem.Fixed,
-      problem.Settings);
+      problem.Data, problem.Settings);
     Values u = problem.Data;
     minimizer.Minimize(problem.Data, problem.Data, u);
     const double minimum = problem.Energy(minimizer, u);
@@ -115,8 +120,9 @@ TEST(TotalVariationMinimizer, FindsTheConstantBelowTheThresholdOfFidelity)
   problem.Quadratic = 1e-3;
   problem.Settings.StopTolerance = 1e-6;
   const Index n = problem.Mesh.NumberOfVertices();
-  TotalVariationMinimizer minimizer(problem.Operators, PlainGradients(problem.Mesh, SerialFor()),
-    Vector::Constant(n, problem.Quadratic), Vector::Zero(n), problem.Fixed, problem.Settings);
+  TotalVariationMinimizer minimizer(problem.Operators, Gradients(problem.Mesh),
+    Vector::Constant(n, problem.Quadratic), Vector::Zero(n), problem.Fixed, problem.Data,
+    problem.Settings);
   Values u = problem.Data;
   minimizer.Minimize(problem.Data, problem.Data, u);
   const Eigen::RowVectorXd mean =
@@ -148,8 +154,8 @@ TEST(TotalVariationMinimizer, SliversAndVeryUnevenTrianglesNeedFewIterationsToo)
     const TriangleMesh& mesh = assembler->Mesh();
     const Values f = Noise(mesh);
     const Vector mu = (10.0 * mesh.ControlAreas().array().rsqrt()).matrix();
-    TotalVariationMinimizer minimizer(assembler, PlainGradients(mesh, SerialFor()), mu,
-      Vector::Zero(mesh.NumberOfVertices()), Flags::Constant(mesh.NumberOfVertices(), false),
+    TotalVariationMinimizer minimizer(assembler, Gradients(mesh), mu,
+      Vector::Zero(mesh.NumberOfVertices()), Flags::Constant(mesh.NumberOfVertices(), false), f,
       { {}, ChannelCoupling::Joint, 2.0, 1e-4, 10000 });
     Values u = f;
     const auto report = minimizer.Minimize(f, f, u);
@@ -162,8 +168,8 @@ TEST(TotalVariationMinimizer, AbortsWithinAnIteration)
 {
   Problem problem;
   const Index n = problem.Mesh.NumberOfVertices();
-  TotalVariationMinimizer minimizer(problem.Operators, PlainGradients(problem.Mesh, SerialFor()),
-    Vector::Constant(n, 10.0), Vector::Zero(n), problem.Fixed, problem.Settings);
+  TotalVariationMinimizer minimizer(problem.Operators, Gradients(problem.Mesh),
+    Vector::Constant(n, 10.0), Vector::Zero(n), problem.Fixed, problem.Data, problem.Settings);
   int calls = 0;
   double last = 0.0;
   const ProgressMonitor::Callback stop = [&](double progress)

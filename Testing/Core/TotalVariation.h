@@ -69,8 +69,13 @@ inline std::unique_ptr<Model> MakeOnEdges(std::shared_ptr<const Assembler> assem
 {
   const auto edges = std::make_shared<MedialMesh>(assembler->Mesh());
   const auto onEdges = std::make_shared<Assembler>(edges->Edges(), parallel);
+  TotalCorrection conserved;
+  if (settings.Norm == FidelityNorm::L2 || settings.Fidelity == 0.0)
+  {
+    conserved = TotalCorrection(assembler->Mesh(), data, settings.Fidelity > 0.0, parallel);
+  }
   return std::make_unique<CrouzeixRaviartModel>(
-    std::move(assembler), edges, std::move(data),
+    std::move(assembler), edges, std::move(data), std::move(conserved),
     [&](PointData edgeData) { return MakeExact(onEdges, std::move(edgeData), settings, parallel); },
     parallel);
 }

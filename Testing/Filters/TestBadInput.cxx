@@ -283,7 +283,7 @@ TEST(BadInput, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
     "CheckpointMemoryLimit", &Filter::SetCheckpointMemoryLimit, { { -1, "-1" } });
   ExpectPropertyError<int>("Units", &Filter::SetUnits, { { 2, "2" }, { -1, "-1" } });
   ExpectPropertyError<int>("MaskMode", &Filter::SetMaskMode, { { 2, "2" } });
-  ExpectPropertyError<int>("InitialFill", &Filter::SetInitialFill, { { 3, "3" } });
+  ExpectPropertyError<int>("InitialFill", &Filter::SetInitialFill, { { 4, "4" } });
   ExpectPropertyError<int>("Solver", &Filter::SetSolver, { { 4, "4" } });
   ExpectPropertyError<int>("OutputPrecision", &Filter::SetOutputPrecision, { { 3, "3" } });
   ExpectPropertyError<int>("Mode", &Filter::SetMode, { { 2, "2" } });

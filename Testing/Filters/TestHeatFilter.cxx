@@ -35,7 +35,7 @@ TEST(HeatFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetOutputInterval(), 1);
   EXPECT_EQ(filter->GetFidelityWeight(), 0.0);
   EXPECT_EQ(filter->GetMaskMode(), vtkFVMHeatFilter::MASK_MODE_INPAINT);
-  EXPECT_EQ(filter->GetInitialFill(), vtkFVMHeatFilter::INITIAL_FILL_MEAN);
+  EXPECT_EQ(filter->GetInitialFill(), vtkFVMHeatFilter::INITIAL_FILL_HARMONIC);
   EXPECT_FALSE(filter->GetHoldKnownValues());
   EXPECT_EQ(filter->GetRandomSeed(), 0);
   EXPECT_EQ(filter->GetAlongDiffusivity(), 1.0);
@@ -77,6 +77,8 @@ TEST(HeatFilter, EnumsAreNumberedInOrderAndHaveTexts)
   expect(filter->GetInitialFill(), filter->GetInitialFillAsString(), 1, "Mean");
   filter->SetInitialFillToNoise();
   expect(filter->GetInitialFill(), filter->GetInitialFillAsString(), 2, "Noise");
+  filter->SetInitialFillToHarmonic();
+  expect(filter->GetInitialFill(), filter->GetInitialFillAsString(), 3, "Harmonic");
   filter->SetTimeIntegratorToFirstOrder();
   expect(filter->GetTimeIntegrator(), filter->GetTimeIntegratorAsString(), 0, "FirstOrder");
   filter->SetTimeIntegratorToSecondOrder();

@@ -270,6 +270,13 @@ TEST(InputArrays, NoiseDependsOnTheGlobalIds)
   {
     ids->InsertNextValue(i == 66 ? 57 : i == 57 ? 66 : i); // two missing points exchange their ids
   }
+  vtkNew<vtkIdTypeArray> indices;
+  indices->SetName("indices");
+  for (vtkIdType i = 0; i < 100; ++i)
+  {
+    indices->InsertNextValue(i);
+  }
+  plane->GetPointData()->SetGlobalIds(indices);
   auto filter = MakeFilter(plane);
   SetInputArray(filter, 0, "f");
   filter->SetNumberOfTimeSteps(0);

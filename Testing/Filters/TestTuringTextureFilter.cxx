@@ -118,7 +118,7 @@ TEST(TuringTextureFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetInitialNoise(), 0.1);
   EXPECT_TRUE(filter->GetClampToNonNegative());
   EXPECT_EQ(filter->GetFeatureSize(), 0.0);
-  EXPECT_EQ(filter->GetStopTolerance(), 0.0);
+  EXPECT_EQ(filter->GetStopTolerance(), 0.02);
   EXPECT_FALSE(filter->GetColorOutput());
 }
 
@@ -650,7 +650,7 @@ TEST(TuringTextureFilter, PrintsEveryProperty)
   for (const char* property : { "Kinetics: Turing", "ReactionRate: 1", "DiffusionRate1: 21",
          "DiffusionRate2: 2.6", "DiffusionRateAcross1: -1", "DiffusionRateAcross2: -1",
          "FeatureSize: 0", "InitialNoise: 0.1", "ClampToNonNegative: On", "AutomaticTimeStep: Off",
-         "StopTolerance: 0", "GrowthRate: 16", "DecayRate: 12", "ActivatorSupply: 0.01",
+         "StopTolerance: 0.02", "GrowthRate: 16", "DecayRate: 12", "ActivatorSupply: 0.01",
          "SubstrateSupply: 1", "FeedRate: 0.05", "KillRate: 0.06", "ReactantA: 2", "ReactantB: 4",
          "InhibitorDecayRate: 1.05", "Saturation: 0", "RecoveryRate: 1.2", "RecoveryDamping: 0.9",
          "Stimulus: 0", "TextureChemical: U1", "ColorOutput: Off", "LowColor: ", "HighColor: ",

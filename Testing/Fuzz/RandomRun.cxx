@@ -287,7 +287,8 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
     {
       return; // its start solves another system
     }
-    CrouzeixRaviartModel model(assembler, edges, std::move(data),
+    TotalCorrection conserved(mesh, data, settings.Fidelity > 0.0);
+    CrouzeixRaviartModel model(assembler, edges, std::move(data), std::move(conserved),
       [&](PointData ofEdges)
       {
         settings.Across = settings.Along;

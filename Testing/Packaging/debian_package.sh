@@ -80,6 +80,7 @@ install_into_root()
   root="$copy/root"
   mkdir -p "$root/var/lib/dpkg/info" "$root/var/lib/dpkg/updates"
   cp /var/lib/dpkg/status "$root/var/lib/dpkg" # dependencies are those of this system
+  dpkg-query -W -f "$root/var/lib/dpkg/info/\${binary:Package}.list\n" | xargs touch
   as_root=
   [ "$(id -u)" -eq 0 ] || as_root=fakeroot
   dpkg="$as_root dpkg --root=$root --force-script-chrootless --force-not-root --log=$copy/log"
@@ -94,7 +95,7 @@ install_into_root()
     export LD_LIBRARY_PATH PYTHONPATH
     sh "$copy/use.sh")
   $dpkg --purge surfacediffusion
-  if [ -n "$(find "$root/usr" "$root/etc" ! -type d)" ]; then
+  if find "$root" ! -type d ! -path "$root/var/*" | grep .; then
     echo "files are left after the purge"
     exit 1
   fi

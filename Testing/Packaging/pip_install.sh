@@ -12,6 +12,7 @@ if [ -z "${SURFACEDIFFUSION_WHEEL_DIR:-}" ]; then
 fi
 unset PYTHONPATH LD_LIBRARY_PATH
 export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
+export CC="${CC:-cc}" CXX="${CXX:-c++}" # the compilers of CMake, not those of Python
 
 rm -rf "$folder"
 "${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages "$folder"

@@ -299,7 +299,7 @@ class TestProxies(unittest.TestCase):
         """Any sequence of clicks on properties that the panel offers gives a run without error."""
         dice = random.Random(7)
         for name, _, _ in proxies():
-            for _ in range(40):
+            for _ in range(20):
                 filter = getattr(servermanager.filters, name)(Input=sphere_with_arrays())
                 clicked = []
                 if name in ("FVMHeatFilter", "IntrinsicTVFilter"):

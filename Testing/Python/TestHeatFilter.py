@@ -59,7 +59,7 @@ class TestHeatFilter(unittest.TestCase):
         for name, texts in {
             "Units": ["Natural", "Absolute"],
             "MaskMode": ["Inpaint", "Exclude"],
-            "InitialFill": ["Input", "Mean", "Noise"],
+            "InitialFill": ["Input", "Mean", "Noise", "Harmonic"],
             "TimeIntegrator": ["FirstOrder", "SecondOrder"],
             "Solver": ["Automatic", "Direct", "ConjugateGradient"],
             "OutputPrecision": ["Single", "Double", "Input"],

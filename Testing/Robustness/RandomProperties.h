@@ -167,7 +167,7 @@ List OfDataDiffusion(int timeIntegrators)
   List list = OfDiffusion<F>(timeIntegrators);
   for (const RandomProperty& property : {
          RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)),
-         RANDOM_PROPERTY(F, InitialFill, Choice(dice, 3)),
+         RANDOM_PROPERTY(F, InitialFill, Choice(dice, 4)),
          RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
          RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
          RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -25,6 +30,39 @@ inline double UniformRandom(std::int64_t seed, std::int64_t component, std::int6
     static_cast<std::uint64_t>(id));
   constexpr double unit = 0x1.0p-53; // the 53 high bits fill the mantissa of a double
   return static_cast<double>(bits >> 11) * unit;
+}
+
+/// A number for each of `count` points from its coordinates, place(i, x) with double x[3], and its
+/// rank among the points at the same place: an id that does not depend on the numbering of other
+/// points, nor on the pieces that a surface is divided into. 52 bits, which a double holds.
+template <typename Place>
+std::vector<std::int64_t> IdsOfPlaces(std::size_t count, const Place& place)
+{
+  std::vector<std::pair<std::uint64_t, std::size_t>> hashes(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    double x[3];
+    place(i, x);
+    std::uint64_t hash = 0;
+    for (const double coordinate : x)
+    {
+      const double number = coordinate + 0.0; // -0 becomes 0
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &number, sizeof(bits));
+      hash = MixBits(hash ^ bits);
+    }
+    hashes[i] = { hash, i };
+  }
+  std::sort(hashes.begin(), hashes.end());
+  std::vector<std::int64_t> ids(count);
+  std::uint64_t rank = 0;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    rank = k > 0 && hashes[k].first == hashes[k - 1].first ? rank + 1 : 0;
+    const std::uint64_t id = rank > 0 ? MixBits(hashes[k].first ^ rank) : hashes[k].first;
+    ids[hashes[k].second] = static_cast<std::int64_t>(id >> 12);
+  }
+  return ids;
 }
 
 } // namespace SurfaceDiffusion

@@ -4,6 +4,7 @@
 
 #include "Core/Models/Model.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "Core/Surface/MedialMesh.h"
 
 #include <functional>
@@ -15,7 +16,8 @@ namespace SurfaceDiffusion
 /// Values at edges from values at vertices: their means, except at clear jumps. There the means
 /// would form a band of intermediate values, which biases the perimeter of the jump; so an edge
 /// takes the value of the end on whose side of the jump its midpoint lies, according to the data
-/// smoothed over one ring. An edge is at a jump if its difference is 3.5 times the mean difference
+/// smoothed over two to three rings; sum A w is that of the means as nearly as whole edges allow. An
+/// edge is at a jump if its difference is 3.5 times the mean difference
 /// around it (4 to 5 times at a straight jump between smooth parts, seldom in noise); from 2.5
 /// times on, the value of the end starts to count.
 Values EdgesFromVertices(const Assembler& vertices, const MedialMesh& edges, const Values& u,
@@ -32,17 +34,20 @@ void VerticesFromEdges(const TriangleMesh& vertices, const MedialMesh& edges, co
 /// are fixed.
 ///
 /// The state is v = VerticesFromEdges(w), limited by the edges around each vertex, since the
-/// corner values overshoot next to jumps. The error in sum A u of the limits, and of the start on
-/// its way to the edges and back, is spread over a few neighbours, so that the total is conserved
-/// exactly and nothing of the finest scale of the start remains.
+/// corner values overshoot next to jumps. The error in sum A u of the limits is spread over a few
+/// neighbours. So is the residue, which the start loses at jumps on its way to the edges and back;
+/// it belongs to the jumps of the start and falls with them, in proportion to the range of w around
+/// each vertex. The part of the total that it leaves behind is spread evenly over the connected
+/// component, so that the total is conserved to round-off and flat states are flat.
 class CrouzeixRaviartModel : public Model
 {
 public:
   using ModelMaker = std::function<std::unique_ptr<Model>(PointData edges)>;
 
+  /// conserved: the components whose total the model conserves.
   CrouzeixRaviartModel(std::shared_ptr<const Assembler> vertices,
-    std::shared_ptr<const MedialMesh> edges, PointData data, const ModelMaker& makeModel,
-    const ParallelFor& parallel = SerialFor());
+    std::shared_ptr<const MedialMesh> edges, PointData data, TotalCorrection conserved,
+    const ModelMaker& makeModel, const ParallelFor& parallel = SerialFor());
 
   const Values& State() const override { return this->U; }
   StepReport Advance(const ProgressMonitor& progress) override;
@@ -62,6 +67,8 @@ private:
   const ParallelFor& Parallel;
   std::unique_ptr<Model> EdgeModel;
   Values StartResidue; ///< of the start on the way to the edges and back
+  Values StartRange; ///< of the edges around each vertex
+  TotalCorrection Conserved;
   bool Started = false;
   Values U, Residue, TriangleMeans;
 };

@@ -19,11 +19,18 @@ namespace
 /// gap of 1e-3, 28 to 50 to 1e-5, the more so the more vertices.
 constexpr double PenaltyFactor = 28.0;
 
+/// The largest |S grad phi|^2 of the basis functions.
+double SquaredSteepest(const GradientMap& map)
+{
+  return std::max({ map.OfCorner(0).squaredNorm(), map.OfCorner(1).squaredNorm(),
+    map.OfCorner(2).squaredNorm() });
+}
+
 } // namespace
 
 GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
-  std::vector<GradientMap> gradients, const EdgeFunction& function, ChannelCoupling coupling,
-  double range, double unknowns, const ParallelFor& parallel)
+  std::shared_ptr<const std::vector<GradientMap>> gradients, const EdgeFunction& function,
+  ChannelCoupling coupling, const Vector& ranges, double unknowns, const ParallelFor& parallel)
   : Mesh(std::move(mesh))
   , Gradients(std::move(gradients))
   , Function(function)
@@ -36,10 +43,7 @@ GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   ForEach(parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
     {
-      const GradientMap& map = this->Gradients[t];
-      const double steepest = std::max({ map.OfCorner(0).squaredNorm(),
-        map.OfCorner(1).squaredNorm(), map.OfCorner(2).squaredNorm() });
-      const double g = function(range * range * steepest);
+      const double g = function(ranges[t] * ranges[t] * SquaredSteepest((*this->Gradients)[t]));
       this->Penalty[t] = PenaltyFactor * perUnknown * g * this->Mesh->Shapes()[t].Area();
     });
 }
@@ -50,7 +54,7 @@ CornerWeights GradientSplitting::MakeCoefficients() const
   ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
     {
-      const GradientMap& map = this->Gradients[t];
+      const GradientMap& map = (*this->Gradients)[t];
       for (int a = 0; a < 3; ++a)
       {
         coefficients(t, a) =
@@ -64,16 +68,37 @@ CornerWeights GradientSplitting::MakeCoefficients() const
 Eigen::Vector2d GradientSplitting::GradientOf(const Values& u, Index t, Eigen::Index k) const
 {
   const Triangles& corners = this->Mesh->TriangleVertices();
-  const GradientMap& map = this->Gradients[t];
+  const GradientMap& map = (*this->Gradients)[t];
   const double u0 = u(corners(t, 0), k);
   return (u(corners(t, 1), k) - u0) * map.First + (u(corners(t, 2), k) - u0) * map.Second;
 }
 
-void GradientSplitting::Start(const Values& u)
+double GradientSplitting::Stiffness() const
+{
+  return this->Mesh->GetReduction().Sum(Sum(this->Parallel, this->Mesh->NumberOfTriangles(),
+    [&](Index t) { return this->Penalty[t] * SquaredSteepest((*this->Gradients)[t]); }));
+}
+
+void GradientSplitting::SetGrowth(double growth)
+{
+  if (growth != this->PenaltyGrowth)
+  {
+    const double factor = this->PenaltyGrowth / growth;
+    ForEach(this->Parallel, static_cast<Index>(this->B.rows()),
+      [&](Index t) { this->B.row(t) *= factor; });
+    this->PenaltyGrowth = growth;
+  }
+}
+
+void GradientSplitting::Start(const Values& u, bool keepMultipliers)
 {
   const Eigen::Index triangles = this->Mesh->NumberOfTriangles();
+  this->PenaltyGrowth = 1.0; // an abort may have left another
   this->P.resize(triangles, 2 * u.cols());
-  this->B.setZero(triangles, 2 * u.cols());
+  if (!keepMultipliers || this->B.cols() != 2 * u.cols())
+  {
+    this->B.setZero(triangles, 2 * u.cols());
+  }
   this->Corners.resize(3 * triangles, u.cols());
   ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
@@ -102,7 +127,7 @@ void GradientSplitting::UpdateColumns(const Values& values, double relaxation)
     [&](Index t)
     {
       const ColumnCount<K> count(values.cols());
-      const GradientMap map = this->Gradients[t];
+      const GradientMap map = (*this->Gradients)[t];
       const double* u0 = u + static_cast<std::ptrdiff_t>(vertices[3 * t]) * count;
       const double* u1 = u + static_cast<std::ptrdiff_t>(vertices[3 * t + 1]) * count;
       const double* u2 = u + static_cast<std::ptrdiff_t>(vertices[3 * t + 2]) * count;
@@ -115,7 +140,7 @@ void GradientSplitting::UpdateColumns(const Values& values, double relaxation)
         b[2 * k] += gradient[0] + (1.0 - relaxation) * p[2 * k];
         b[2 * k + 1] += gradient[1] + (1.0 - relaxation) * p[2 * k + 1];
       }
-      const double scale = this->Penalty[t];
+      const double scale = this->PenaltyGrowth * this->Penalty[t];
       const double r = scale / this->Mesh->Shapes()[t].Area();
       ForEachNorm(this->Coupling, count,
         [&](int first, int last)
@@ -151,6 +176,7 @@ void GradientSplitting::GatherMultipliers(Values& divergence) const
   const auto& begin = this->Mesh->VertexCornersBegin();
   const auto& corners = this->Mesh->VertexCorners();
   const Eigen::Index columns = divergence.cols();
+  const double growth = this->PenaltyGrowth;
   ForEach(this->Parallel, this->Mesh->NumberOfVertices(),
     [&](Index i)
     {
@@ -159,7 +185,8 @@ void GradientSplitting::GatherMultipliers(Values& divergence) const
       for (Index c = begin[i]; c < begin[i + 1]; ++c)
       {
         const Index t = corners[c] / 3;
-        const Eigen::Vector2d v = this->Penalty[t] * this->Gradients[t].OfCorner(corners[c] % 3);
+        const Eigen::Vector2d v =
+          growth * this->Penalty[t] * (*this->Gradients)[t].OfCorner(corners[c] % 3);
         const double* b = &this->B(t, 0);
         for (Eigen::Index k = 0; k < columns; ++k)
         {
@@ -195,7 +222,7 @@ double GradientSplitting::ConjugateEnergy() const
     [&](Index t)
     {
       const double area = this->Mesh->Shapes()[t].Area();
-      const double r = this->Penalty[t] / area;
+      const double r = this->PenaltyGrowth * this->Penalty[t] / area;
       double density = 0.0;
       ForEachNorm(this->Coupling, static_cast<int>(this->Corners.cols()),
         [&](int first, int last)

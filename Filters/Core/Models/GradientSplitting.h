@@ -21,17 +21,29 @@ namespace SurfaceDiffusion
 class GradientSplitting
 {
 public:
-  /// function: of a convex psi, without beta. range: largest max - min of the data over the
-  /// channels. unknowns: number of vertices of the surface.
-  GradientSplitting(std::shared_ptr<const TriangleMesh> mesh, std::vector<GradientMap> gradients,
-    const EdgeFunction& function, ChannelCoupling coupling, double range, double unknowns,
-    const ParallelFor& parallel);
+  /// function: of a convex psi, without beta. ranges: typical range of the values on each triangle.
+  /// unknowns: number of vertices of the surface.
+  GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
+    std::shared_ptr<const std::vector<GradientMap>> gradients, const EdgeFunction& function,
+    ChannelCoupling coupling, const Vector& ranges, double unknowns, const ParallelFor& parallel);
 
-  /// The coefficients of int r/2 |S grad u|^2 for Assembler.
+  /// The coefficients of int r/2 |S grad u|^2 for Assembler, at the first penalty.
   CornerWeights MakeCoefficients() const;
 
-  /// p = S grad u, b = 0.
-  void Start(const Values& u);
+  /// Sum over the triangles of the surface of r A |grad phi|^2, at the first penalty and for the
+  /// steepest basis function phi of each.
+  double Stiffness() const;
+
+  /// Multiplies the first penalty of all triangles by `growth`. The multipliers y = r b stay.
+  void SetGrowth(double growth);
+  double Growth() const { return this->PenaltyGrowth; }
+
+  /// p = S grad u, and b = 0 unless there are multipliers to start from.
+  void Start(const Values& u, bool keepMultipliers);
+
+  /// b at the first penalty, one row per triangle; to be changed only when the growth is 1.
+  Values& Multipliers() { return this->B; }
+  const Values& Multipliers() const { return this->B; }
 
   /// p and b from the present u, over-relaxed, and what they give to the equation for u.
   void Update(const Values& u, double relaxation);
@@ -70,11 +82,12 @@ private:
   Eigen::Vector2d GradientOf(const Values& u, Index t, Eigen::Index k) const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
-  std::vector<GradientMap> Gradients;
+  std::shared_ptr<const std::vector<GradientMap>> Gradients;
   EdgeFunction Function;
   ChannelCoupling Coupling;
   const ParallelFor& Parallel;
-  Vector Penalty; ///< r per triangle, times its area
+  Vector Penalty; ///< r per triangle at the start, times its area
+  double PenaltyGrowth = 1.0; ///< r over that of the start
   Values P, B; ///< per triangle: x and y of the first column, x and y of the second, ...
   Values Corners; ///< per triangle corner: what the triangle gives to the equation of a vertex
 };

@@ -3,6 +3,8 @@
 #include "Core/Models/InitialState.h"
 
 #include "Core/Foundation/Random.h"
+#include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include <cmath>
 #include <limits>
@@ -96,7 +98,7 @@ void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, st
           const double random = UniformRandom(seed, k, ids[i]);
           start = (1.0 - random) * low + random * high;
         }
-        else if (fill == InitialFill::Mean || std::isnan(start))
+        else if (fill != InitialFill::Input || std::isnan(start))
         {
           start = mean;
         }
@@ -107,6 +109,27 @@ void FillMissing(const TriangleMesh& mesh, PointData& data, InitialFill fill, st
       }
     }
   }
+}
+
+StepReport FillHarmonically(const std::shared_ptr<const Assembler>& assembler, PointData& data,
+  const std::shared_ptr<LinearSolver>& solver, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
+{
+  PointData known = PointData::FromValues(data.Start);
+  known.Fixed = !data.Missing;
+  LinearDiffusion::Settings settings;
+  settings.TimeScheme = LinearDiffusion::Scheme::SteadyState;
+  LinearDiffusion harmonic(assembler, CotanWeights(assembler->Mesh(), parallel), std::move(known),
+    settings, solver, parallel);
+  const StepReport report = harmonic.Advance(progress);
+  for (Index i = 0; i < static_cast<Index>(data.Start.rows()); ++i)
+  {
+    if (data.Missing[i])
+    {
+      data.Start.row(i) = harmonic.State().row(i);
+    }
+  }
+  return report;
 }
 
 void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelity)

@@ -18,6 +18,7 @@ struct StepReport
 {
   int Iterations = 0; ///< linear (or outer) iterations of the step
   double Residual = 0.0; ///< largest relative residual of its solves
+  double ErrorBound = 0.0; ///< of a minimisation: bound of the root mean square error of u
   Index Clamped = 0; ///< number of values clamped at zero (reaction-diffusion)
   /// The largest relative residual of the solves that missed the tolerance of the linear solver; 0
   /// if none did.

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/NoiseLevel.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -9,41 +12,160 @@
 namespace SurfaceDiffusion
 {
 
-double EstimateNoiseLevel(const Assembler& assembler, const PointData& data)
+namespace
 {
-  const SparseMatrix& pattern = assembler.Pattern();
-  const Index n = static_cast<Index>(pattern.rows());
-  const Index* outer = pattern.outerIndexPtr();
-  const Index* inner = pattern.innerIndexPtr();
-  double variance = 0.0;
-  std::vector<double> deviations;
-  for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
+
+constexpr Index LargestSample = 20000;
+constexpr int FarthestRing = 8;
+
+/// The vertices at a distance of a number of edges.
+class Rings
+{
+public:
+  explicit Rings(const SparseMatrix& pattern)
+    : Outer(pattern.outerIndexPtr())
+    , Inner(pattern.innerIndexPtr())
+    , VisitedBy(static_cast<std::size_t>(pattern.rows()), -1)
   {
-    deviations.clear();
-    for (Index i = 0; i < n; ++i)
+  }
+
+  const std::vector<Index>& Find(Index centre, int edges)
+  {
+    this->Ring.assign(1, centre);
+    this->VisitedBy[centre] = centre; // each centre is asked for once
+    for (int edge = 0; edge < edges; ++edge)
     {
-      const Index valence = outer[i + 1] - outer[i] - 1;
-      double sum = 0.0;
-      bool known = valence > 0;
-      for (Index slot = outer[i]; slot < outer[i + 1] && known; ++slot)
+      this->Next.clear();
+      for (const Index i : this->Ring)
       {
-        known = !data.Missing[inner[slot]];
-        sum += data.Given(inner[slot], k);
+        for (Index slot = this->Outer[i]; slot < this->Outer[i + 1]; ++slot)
+        {
+          const Index j = this->Inner[slot];
+          if (this->VisitedBy[j] != centre)
+          {
+            this->VisitedBy[j] = centre;
+            this->Next.push_back(j);
+          }
+        }
       }
-      if (known)
+      this->Ring.swap(this->Next);
+    }
+    return this->Ring;
+  }
+
+private:
+  const Index* Outer;
+  const Index* Inner;
+  std::vector<Index> VisitedBy, Ring, Next;
+};
+
+/// The weights of the values at `offsets` in the linear fit at the origin, in the plane of the
+/// offsets; none if they do not determine one.
+Vector WeightsOfFit(const Eigen::Ref<const Points>& offsets)
+{
+  if (offsets.rows() < 3)
+  {
+    return Vector();
+  }
+  const Eigen::Matrix3d spread = offsets.transpose() * offsets;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
+  const double size = std::sqrt(axes.eigenvalues()[2]);
+  if (!(axes.eigenvalues()[1] > 1e-6 * axes.eigenvalues()[2]) || !(size > 0.0))
+  {
+    return Vector();
+  }
+  Eigen::Matrix<double, Eigen::Dynamic, 3> basis(offsets.rows(), 3);
+  basis.col(0).setOnes();
+  basis.rightCols(2) = offsets * axes.eigenvectors().rightCols(2) / size;
+  const Eigen::Matrix3d normal = basis.transpose() * basis;
+  const Eigen::Vector3d one = normal.ldlt().solve(Eigen::Vector3d::UnitX());
+  const Vector weights = basis * one;
+  return std::abs(weights.sum() - 1.0) < 1e-6 ? weights : Vector();
+}
+
+double MedianDeviation(std::vector<double>& deviations)
+{
+  if (deviations.empty())
+  {
+    return 0.0;
+  }
+  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
+  std::nth_element(deviations.begin(), middle, deviations.end());
+  return 1.4826 * *middle;
+}
+
+/// The estimate from the vertices at a distance of `edges` edges.
+double EstimateAt(int edges, const Assembler& assembler, const Eigen::Ref<const Points>& points,
+  const PointData& data)
+{
+  const std::vector<Index>& row = assembler.Mesh().InputVertex();
+  const Index n = assembler.Mesh().NumberOfVertices();
+  const Eigen::Index columns = data.Given.cols();
+  const Index stride = 1 + n / LargestSample;
+  Rings rings(assembler.Pattern());
+  std::vector<std::vector<double>> deviations(static_cast<std::size_t>(columns));
+  std::vector<Index> known;
+  Points offsets;
+  for (Index i = 0; i < n; i += stride)
+  {
+    if (data.Missing[i])
+    {
+      continue;
+    }
+    known.clear();
+    for (const Index j : rings.Find(i, edges))
+    {
+      if (!data.Missing[j])
       {
-        const double mean = (sum - data.Given(i, k)) / valence;
-        deviations.push_back(std::abs(data.Given(i, k) - mean) / std::sqrt(1.0 + 1.0 / valence));
+        known.push_back(j);
       }
     }
-    if (!deviations.empty())
+    offsets.resize(static_cast<Eigen::Index>(known.size()), 3);
+    for (std::size_t j = 0; j < known.size(); ++j)
     {
-      const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-      std::nth_element(deviations.begin(), middle, deviations.end());
-      variance += std::pow(1.4826 * *middle, 2) / static_cast<double>(data.Given.cols());
+      offsets.row(static_cast<Eigen::Index>(j)) =
+        points.row(row[static_cast<std::size_t>(known[j])]) -
+        points.row(row[static_cast<std::size_t>(i)]);
+    }
+    const Vector weights = WeightsOfFit(offsets);
+    for (Eigen::Index k = 0; k < columns && weights.size() > 0; ++k)
+    {
+      double residual = 0.0;
+      for (std::size_t j = 0; j < known.size(); ++j)
+      {
+        residual +=
+          weights[static_cast<Eigen::Index>(j)] * (data.Given(known[j], k) - data.Given(i, k));
+      }
+      deviations[static_cast<std::size_t>(k)].push_back(
+        std::abs(residual) / std::sqrt(1.0 + weights.squaredNorm()));
     }
   }
+  double variance = 0.0;
+  for (std::vector<double>& ofColumn : deviations)
+  {
+    variance += std::pow(MedianDeviation(ofColumn), 2) / static_cast<double>(columns);
+  }
   return std::sqrt(variance);
+}
+
+} // namespace
+
+NoiseEstimate EstimateNoise(
+  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data)
+{
+  NoiseEstimate estimate;
+  estimate.BetweenNeighbours = EstimateAt(1, assembler, points, data);
+  estimate.Apart = estimate.BetweenNeighbours;
+  for (int edges = 2; edges <= FarthestRing; edges *= 2)
+  {
+    const double next = EstimateAt(edges, assembler, points, data);
+    if (!(next > 1.15 * estimate.Apart))
+    {
+      break;
+    }
+    estimate.Apart = next;
+  }
+  return estimate;
 }
 
 double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values& u)
@@ -61,7 +183,7 @@ double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values
   return area > 0.0 ? std::sqrt(sum / (area * static_cast<double>(u.cols()))) : 0.0;
 }
 
-double FindFidelityByDiscrepancy(
+FidelityChoice FindFidelityByDiscrepancy(
   const std::function<double(double)>& discrepancy, double noiseLevel, double start)
 {
   // Bracket the root in log(lambda) by factors of 4, then regula falsi (Illinois) inside.
@@ -77,7 +199,7 @@ double FindFidelityByDiscrepancy(
   {
     if (std::abs(b - origin) > limit)
     {
-      return std::exp(b);
+      return { std::exp(b), fb + noiseLevel, false };
     }
     a = b;
     fa = fb;
@@ -105,7 +227,7 @@ double FindFidelityByDiscrepancy(
       break;
     }
   }
-  return std::exp(b);
+  return { std::exp(b), fb + noiseLevel, true };
 }
 
 } // namespace SurfaceDiffusion

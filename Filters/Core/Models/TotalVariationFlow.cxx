@@ -3,6 +3,7 @@
 #include "Core/Models/TotalVariationFlow.h"
 
 #include "Core/Models/InitialState.h"
+#include "Core/Models/ValueRange.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,28 +11,6 @@
 
 namespace SurfaceDiffusion
 {
-
-namespace
-{
-
-/// The largest max - min over the columns; 1 for constants and without values.
-double ValueRange(const Values& u, const Reduction& reduction)
-{
-  constexpr double none = -std::numeric_limits<double>::infinity();
-  Eigen::RowVectorXd high = Eigen::RowVectorXd::Constant(u.cols(), none);
-  Eigen::RowVectorXd minusLow = high;
-  if (u.rows() > 0)
-  {
-    high = u.colwise().maxCoeff();
-    minusLow = -u.colwise().minCoeff();
-  }
-  reduction.Max(high.data(), static_cast<Index>(u.cols()));
-  reduction.Max(minusLow.data(), static_cast<Index>(u.cols()));
-  const double range = u.cols() > 0 ? (high + minusLow).maxCoeff() : 0.0;
-  return range > 0.0 ? range : 1.0;
-}
-
-} // namespace
 
 TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assembler,
   const TangentVectors& frames, PointData data, const Settings& settings,
@@ -62,9 +41,9 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
     along = std::sqrt(along);
     across = std::sqrt(across);
   }
-  std::vector<GradientMap> gradients = frames.rows() > 0
-    ? StretchedGradients(mesh, frames, along, across, parallel)
-    : PlainGradients(mesh, parallel);
+  const auto gradients = std::make_shared<const std::vector<GradientMap>>(frames.rows() > 0
+      ? StretchedGradients(mesh, frames, along, across, parallel)
+      : PlainGradients(mesh, parallel));
 
   // The minimiser's energy is E over Diffusivity, the step's term with it.
   const Index n = mesh.NumberOfVertices();
@@ -79,22 +58,87 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
       quadratic[i] = inertia + (squared ? fidelity : 0.0);
       absolute[i] = squared ? 0.0 : fidelity;
     });
-  TotalVariationMinimizer::Settings minimizer;
-  minimizer.Function = settings.Function;
-  minimizer.Coupling = settings.Coupling;
-  minimizer.Range = ValueRange(this->Data.Start, mesh.GetReduction());
-  minimizer.StopTolerance = settings.StopTolerance;
-  minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
-  this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Assembly, std::move(gradients),
-    std::move(quadratic), std::move(absolute), this->Data.Fixed, minimizer, parallel);
+  this->MeasureWeights(quadratic);
+
+  if (settings.SteadyState && settings.Norm == FidelityNorm::L1)
+  {
+    this->SteadyStart = WithoutOutliers(this->Data.Start, mesh.GetReduction());
+  }
+  const Values& values = this->SteadyStart.size() > 0 ? this->SteadyStart : this->Data.Start;
+  const Eigen::Index all = this->U.cols();
+  const Eigen::Index columns = settings.Coupling == ChannelCoupling::Joint ? all : 1;
+  for (Eigen::Index first = 0; first < all; first += columns)
+  {
+    const auto start = values.middleCols(first, columns);
+    TotalVariationMinimizer::Settings minimizer;
+    minimizer.Function = settings.Function;
+    minimizer.Coupling = settings.Coupling;
+    minimizer.Range = ValueRange(this->Data.Start.middleCols(first, columns), mesh.GetReduction());
+    minimizer.StopTolerance = settings.StopTolerance;
+    minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
+    this->Systems.push_back({ first, columns,
+      std::make_unique<TotalVariationMinimizer>(this->Assembly, gradients, quadratic, absolute,
+        this->Data.Fixed, start, minimizer, parallel) });
+  }
+  if (this->Systems.size() > 1)
+  {
+    this->ColumnU.resize(n, columns);
+    this->ColumnTarget.resize(n, columns);
+    this->ColumnGiven.resize(n, columns);
+  }
+}
+
+void TotalVariationFlow::MeasureWeights(const Vector& quadratic)
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  double largestInverse = 0.0;
+  double area = 0.0;
+  for (Eigen::Index i = 0; i < quadratic.size(); ++i)
+  {
+    if (quadratic[i] > 0.0)
+    {
+      largestInverse = std::max(largestInverse, 1.0 / quadratic[i]);
+      area += mesh.ControlAreas()[i];
+    }
+  }
+  mesh.GetReduction().Max(&largestInverse, 1);
+  this->LargestInverseWeight = largestInverse;
+  this->WeightedArea = mesh.GetReduction().Sum(area);
 }
 
 StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
+  this->SetTarget();
+  StepReport report;
+  double gap = 0.0;
+  const auto systems = static_cast<double>(this->Systems.size());
+  double done = 0.0;
+  for (const System& system : this->Systems)
+  {
+    const TotalVariationMinimizer::Report result =
+      this->Minimize(system, progress.Part(done / systems, (done + 1.0) / systems));
+    report.Iterations += result.Iterations;
+    report.Residual = std::max(report.Residual, result.Gap);
+    gap += result.AbsoluteGap;
+    done += 1.0;
+  }
+  this->Conserved.Restore(this->Assembly->Mesh(), this->U, this->Parallel);
+  report.ErrorBound = this->WeightedArea > 0.0
+    ? std::sqrt(2.0 * gap * this->LargestInverseWeight / this->WeightedArea)
+    : std::numeric_limits<double>::infinity();
+  return report;
+}
+
+void TotalVariationFlow::SetTarget()
+{
+  const Index n = this->Assembly->Mesh().NumberOfVertices();
   if (this->Options.SteadyState)
   {
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
+    if (this->SteadyStart.size() > 0)
+    {
+      this->U = this->SteadyStart;
+    }
+    ForEach(this->Parallel, n,
       [&](Index i)
       {
         if (this->Data.Fixed[i])
@@ -102,32 +146,97 @@ StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
           this->U.row(i) = this->Data.Start.row(i);
         }
       });
+    return;
   }
-  else
+  // lambda/2 |u - f|^2 + |u - u_old|^2/(2 dt) has its minimum at their weighted mean.
+  const bool squared = this->Options.Norm == FidelityNorm::L2;
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      const double pull = squared ? this->Options.TimeStep * this->Fit.Weight(i) : 0.0;
+      this->Target.row(i) =
+        this->U.row(i) + (pull / (1.0 + pull)) * (this->Data.Given.row(i) - this->U.row(i));
+    });
+}
+
+TotalVariationMinimizer::Report TotalVariationFlow::Minimize(
+  const System& system, const ProgressMonitor& progress)
+{
+  const bool keepMultipliers = !this->Options.SteadyState;
+  if (this->Systems.size() == 1)
   {
-    // lambda/2 |u - f|^2 + |u - u_old|^2/(2 dt) has its minimum at their weighted mean.
-    const bool squared = this->Options.Norm == FidelityNorm::L2;
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        const double pull = squared ? this->Options.TimeStep * this->Fit.Weight(i) : 0.0;
-        this->Target.row(i) =
-          this->U.row(i) + (pull / (1.0 + pull)) * (this->Data.Given.row(i) - this->U.row(i));
-      });
+    return system.Minimizer->Minimize(
+      this->Target, this->Data.Given, this->U, progress, keepMultipliers);
   }
-  const TotalVariationMinimizer::Report result =
-    this->Minimizer->Minimize(this->Target, this->Data.Given, this->U, progress);
-  this->Conserved.Restore(mesh, this->U, this->Parallel);
-  StepReport report;
-  report.Iterations = result.Iterations;
-  report.Residual = result.Gap;
+  this->ColumnTarget = this->Target.middleCols(system.First, system.Columns);
+  this->ColumnGiven = this->Data.Given.middleCols(system.First, system.Columns);
+  this->ColumnU = this->U.middleCols(system.First, system.Columns);
+  const TotalVariationMinimizer::Report report = system.Minimizer->Minimize(
+    this->ColumnTarget, this->ColumnGiven, this->ColumnU, progress, keepMultipliers);
+  this->U.middleCols(system.First, system.Columns) = this->ColumnU;
   return report;
+}
+
+std::size_t TotalVariationFlow::CheckpointSize() const
+{
+  std::size_t size = StateModel::CheckpointSize();
+  if (!this->Options.SteadyState)
+  {
+    for (const System& system : this->Systems)
+    {
+      size += system.Minimizer->NumberOfMultipliers(system.Columns);
+    }
+  }
+  return size;
+}
+
+void TotalVariationFlow::Save(double* checkpoint) const
+{
+  StateModel::Save(checkpoint);
+  if (this->Options.SteadyState)
+  {
+    return;
+  }
+  checkpoint += this->U.size();
+  for (const System& system : this->Systems)
+  {
+    system.Minimizer->SaveMultipliers(checkpoint, system.Columns);
+    checkpoint += system.Minimizer->NumberOfMultipliers(system.Columns);
+  }
+}
+
+void TotalVariationFlow::Restore(const double* checkpoint)
+{
+  StateModel::Restore(checkpoint);
+  if (this->Options.SteadyState)
+  {
+    return;
+  }
+  checkpoint += this->U.size();
+  for (const System& system : this->Systems)
+  {
+    system.Minimizer->RestoreMultipliers(checkpoint, system.Columns);
+    checkpoint += system.Minimizer->NumberOfMultipliers(system.Columns);
+  }
 }
 
 double TotalVariationFlow::Energy() const
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  return this->Diffusivity * this->Minimizer->GradientEnergy(this->U) +
+  double energy = 0.0;
+  if (this->Systems.size() == 1)
+  {
+    energy = this->Systems.front().Minimizer->GradientEnergy(this->U);
+  }
+  else
+  {
+    for (const System& system : this->Systems)
+    {
+      this->ColumnU = this->U.middleCols(system.First, system.Columns);
+      energy += system.Minimizer->GradientEnergy(this->ColumnU);
+    }
+  }
+  return this->Diffusivity * energy +
     mesh.GetReduction().Sum(this->Fit.Energy(mesh, this->U, this->Parallel));
 }
 

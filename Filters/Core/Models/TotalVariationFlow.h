@@ -8,6 +8,7 @@
 #include "Core/Operators/MeanCorrection.h"
 
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -26,6 +27,9 @@ namespace SurfaceDiffusion
 ///   total variation: sqrt((g1 grad u . e1)^2 + (g2 grad u . e2)^2);
 ///   others: g psi(sqrt((g1/g) (grad u . e1)^2 + (g2/g) (grad u . e2)^2)), g the larger of the two:
 /// for gradients along e1 or e2, and always if g1 = g2, the flux is that of (4).
+///
+/// A time step starts from the multipliers of the last one, so that short steps cost less than long
+/// ones.
 class TotalVariationFlow : public StateModel
 {
 public:
@@ -47,14 +51,35 @@ public:
   TotalVariationFlow(std::shared_ptr<const Assembler> assembler, const TangentVectors& frames,
     PointData data, const Settings& settings, const ParallelFor& parallel = SerialFor());
 
-  /// Reports the iterations of the minimiser and, as the residual, its duality gap, which is above
-  /// the tolerance if the largest number of iterations was reached.
+  /// Reports the iterations of the minimiser; as the residual its relative duality gap, which is
+  /// above the tolerance if the largest number of iterations was reached; and as the error bound
+  ///   sqrt(2 gap/(mu A)),
+  /// where gap is the duality gap itself over the diffusivity, mu the weight of the quadratic terms (lambda, 1/dt and
+  /// their sum) and A the area where they act: the root mean square of u - u* is not larger, since
+  /// the energy is strongly convex. Infinite if there are no such terms.
   StepReport Advance(const ProgressMonitor& progress) override;
 
   /// E(u).
   double Energy() const override;
 
+  /// With time steps also the multipliers, from which the next step starts.
+  std::size_t CheckpointSize() const override;
+  void Save(double* checkpoint) const override;
+  void Restore(const double* checkpoint) override;
+
 private:
+  /// Columns whose energies do not depend on each other are minimised one after the other: each
+  /// comes out as if it were alone.
+  struct System
+  {
+    Eigen::Index First, Columns;
+    std::unique_ptr<TotalVariationMinimizer> Minimizer;
+  };
+
+  TotalVariationMinimizer::Report Minimize(const System& system, const ProgressMonitor& progress);
+  void MeasureWeights(const Vector& quadratic);
+  void SetTarget();
+
   std::shared_ptr<const Assembler> Assembly;
   PointData Data;
   Fidelity Fit;
@@ -62,8 +87,13 @@ private:
   const ParallelFor& Parallel;
   TotalCorrection Conserved;
   double Diffusivity; ///< the larger of the two, the factor of the first integral of E
-  std::unique_ptr<TotalVariationMinimizer> Minimizer;
+  double LargestInverseWeight = 0.0; ///< 1/mu where mu > 0, times Diffusivity
+  double WeightedArea = 0.0; ///< of the control cells with mu > 0
+  std::vector<System> Systems;
   Values Target;
+  Values SteadyStart; ///< from which the steady state of L1 is sought, which removes outliers
+  mutable Values ColumnU;
+  Values ColumnTarget, ColumnGiven; ///< of one of several systems
 };
 
 } // namespace SurfaceDiffusion

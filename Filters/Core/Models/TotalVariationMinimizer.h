@@ -23,7 +23,10 @@ namespace SurfaceDiffusion
 /// The method is the alternating direction method of multipliers (ADMM; S. Boyd et al., Foundations
 /// and Trends in Machine Learning 3, 2011; for total variation T. Goldstein, S. Osher, SIAM J.
 /// Imaging Sci. 2, 2009) on p = S grad u and q = u - f, over-relaxed by 1.7; the quadratic problem
-/// for u is not solved but improved by a few conjugate gradient iterations from the last u. The
+/// for u is not solved but improved by a few conjugate gradient iterations from the last u. With
+/// mu > 0 the energy is strongly convex, and the penalty of the gradients grows linearly with the
+/// iterations as long as the gap falls (accelerated ADMM; A. Chambolle, T. Pock, J. Math. Imaging
+/// Vis. 40, 2011, algorithm 2; Y. Xu, SIAM J. Optim. 27, 2017). The
 /// multipliers are feasible for the dual problem at every iteration, so that the duality gap bounds
 /// E(u) - min E from above: it is the stopping criterion. At vertices with mu_i = 0 the bound is
 /// that over all u within Range of the data.
@@ -40,10 +43,13 @@ public:
   };
 
   /// quadratic, absolute: mu and nu >= 0 per vertex; in every connected component one of them must
-  /// be positive somewhere, or a vertex fixed.
+  /// be positive somewhere, or a vertex fixed. typical: values of the size of the data. They
+  /// determine the penalty, and so the number of iterations; outliers act on it only around
+  /// themselves.
   TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-    std::vector<GradientMap> gradients, Vector quadratic, Vector absolute, Flags fixed,
-    const Settings& settings, const ParallelFor& parallel = SerialFor());
+    std::shared_ptr<const std::vector<GradientMap>> gradients, Vector quadratic, Vector absolute,
+    Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
+    const ParallelFor& parallel = SerialFor());
 
   struct Report
   {
@@ -52,25 +58,41 @@ public:
     /// millionth of the energy of noise of the whole Range: below it data are constant up to
     /// round-off.
     double Gap = 0.0;
+    /// Upper bound of E(u) - min E, the duality gap itself.
+    double AbsoluteGap = 0.0;
   };
 
   /// u: the start on entry, the minimiser on return, and never of more energy than the start. The
-  /// result depends on the arguments alone.
+  /// result depends on the arguments alone, and on the multipliers of the last call if they are
+  /// kept: near the last minimum they save most of the iterations.
   Report Minimize(const Values& g, const Values& f, Values& u,
-    const ProgressMonitor& progress = ProgressMonitor());
+    const ProgressMonitor& progress = ProgressMonitor(), bool keepMultipliers = false);
+
+  /// The multipliers after Minimize() for u with `columns` columns, which restore its next call:
+  /// NumberOfMultipliers() numbers.
+  std::size_t NumberOfMultipliers(Eigen::Index columns) const;
+  void SaveMultipliers(double* numbers, Eigen::Index columns) const;
+  void RestoreMultipliers(const double* numbers, Eigen::Index columns);
 
   /// int psi(|S grad u|).
   double GradientEnergy(const Values& u) const;
 
 private:
+  /// ranges: typical ones of the values on each triangle.
+  TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
+    std::shared_ptr<const std::vector<GradientMap>> gradients, Vector quadratic, Vector absolute,
+    Flags fixed, const Settings& settings, const Vector& ranges, const ParallelFor& parallel);
+
   double NoiseEnergy() const;
   void Prepare(const Values& u);
+  void AssembleMatrix(const Values& u);
+  void SetGrowth(double growth, const Values& u);
   void UpdateResidual();
   template <int K>
   void UpdateColumns();
   double Energy(const Values& u) const;
   double DualEnergy(const Values& u);
-  double MeasureGap(const Values& u, double negligible);
+  void MeasureGap(const Values& u, double negligible, Report& report);
 
   std::shared_ptr<const Assembler> Assembly;
   const Reduction& OverProcesses;
@@ -81,6 +103,9 @@ private:
   const Vector& Areas; ///< of the control cells, consistent
   GradientSplitting Gradients;
   VertexSplitting Vertices;
+  CornerWeights Weights; ///< of the quadratic problem for u, at the first penalty
+  Vector Diagonal; ///< likewise
+  double GrowthRate; ///< of the penalty per iteration, in first penalties
   SparseMatrix Matrix; ///< of the quadratic problem for u
   QuadraticDescent Descent;
   Values RightHandSide, Load;

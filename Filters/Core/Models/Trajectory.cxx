@@ -143,7 +143,7 @@ void Trajectory::Record(const StepReport& report, double seconds)
   Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
   this->Totals.insert(this->Totals.end(), this->StateTotals.begin(), this->StateTotals.end());
   this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped,
-    report.MissedResidual, report.UnsettledDecrease });
+    report.MissedResidual, report.UnsettledDecrease, report.ErrorBound });
 }
 
 } // namespace SurfaceDiffusion

@@ -50,6 +50,7 @@ struct StepRecord
   Index Clamped = 0;
   double MissedResidual = 0.0; ///< as in StepReport
   double UnsettledDecrease = 0.0; ///< as in StepReport
+  double ErrorBound = 0.0;
 };
 
 /// A model that can be moved to any step, forwards and backwards, with the same bits in any order.

@@ -191,4 +191,15 @@ void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool line
   }
 }
 
+void NormalizeFilled(PointData& data, const Values& instead)
+{
+  for (Index i = 0; i < static_cast<Index>(data.Start.rows()); ++i)
+  {
+    if (data.Missing[i] && !Normalize(data.Start.row(i)))
+    {
+      data.Start.row(i) = instead.row(i);
+    }
+  }
+}
+
 } // namespace SurfaceDiffusion

@@ -43,4 +43,8 @@ bool Normalize(Row&& row)
 void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField,
   InitialFill fill, std::int64_t seed, const std::vector<std::int64_t>& ids);
 
+/// Normalise data.Start at the missing vertices; vectors without a direction are replaced by those
+/// of `instead`.
+void NormalizeFilled(PointData& data, const Values& instead);
+
 } // namespace SurfaceDiffusion

@@ -20,7 +20,7 @@ constexpr double PenaltyOfFidelity = 0.1;
 } // namespace
 
 VertexSplitting::VertexSplitting(const Vector& areas, Vector quadratic, Vector absolute,
-  Flags fixed, const Settings& settings, const ParallelFor& parallel)
+  Flags fixed, const Vector& ranges, const Settings& settings, const ParallelFor& parallel)
   : Areas(areas)
   , Quadratic(std::move(quadratic))
   , Absolute(std::move(absolute))
@@ -35,8 +35,8 @@ VertexSplitting::VertexSplitting(const Vector& areas, Vector quadratic, Vector a
     {
       const double nu = this->Absolute[i] * areas[i];
       this->Penalty[i] = nu > 0.0
-        ? PenaltyOfGradients * settings.Function(settings.Range * settings.Range / areas[i]) +
-          PenaltyOfFidelity * nu / settings.Range
+        ? PenaltyOfGradients * settings.Function(ranges[i] * ranges[i] / areas[i]) +
+          PenaltyOfFidelity * nu / ranges[i]
         : 0.0;
     });
 }
@@ -46,14 +46,23 @@ Vector VertexSplitting::MakeDiagonal() const
   return this->Areas.cwiseProduct(this->Quadratic) + this->Penalty;
 }
 
-void VertexSplitting::Start(const Values& g, const Values& f, const Values& u)
+double VertexSplitting::QuadraticWeight(const Reduction& reduction) const
+{
+  return reduction.SumOverVertices(this->Parallel, static_cast<Index>(this->Areas.size()),
+    [&](Index i) { return this->Areas[i] * this->Quadratic[i]; });
+}
+
+void VertexSplitting::Start(const Values& g, const Values& f, const Values& u, bool keepMultipliers)
 {
   this->G = &g;
   this->F = &f;
   if (this->HasAbsolute)
   {
     this->Q = u - f;
-    this->C.setZero(u.rows(), u.cols());
+    if (!keepMultipliers || this->C.cols() != u.cols())
+    {
+      this->C.setZero(u.rows(), u.cols());
+    }
   }
 }
 
@@ -116,6 +125,25 @@ double VertexSplitting::DualEnergy(
         [&](int first, int last) { value += this->DualAt(i, d, u, first, last); });
       return value;
     });
+}
+
+double VertexSplitting::FeasibleShare(const Values& d, const Reduction& reduction) const
+{
+  double excess = Max(this->Parallel, static_cast<Index>(d.rows()),
+    [&](Index i)
+    {
+      const double nu = this->Areas[i] * this->Absolute[i];
+      double largest = 0.0;
+      if (nu > 0.0 && this->Quadratic[i] == 0.0 && !this->Fixed[i])
+      {
+        ForEachNorm(this->Options.Coupling, static_cast<int>(d.cols()),
+          [&](int first, int last)
+          { largest = std::max(largest, d.row(i).segment(first, last - first).norm() / nu); });
+      }
+      return largest;
+    });
+  reduction.Max(&excess, 1);
+  return excess > 1.0 ? 1.0 / excess : 1.0;
 }
 
 /// The part of vertex i: the minimum over u_i of d . u_i + mu A/2 |u_i - g|^2 + nu A |u_i - f|.

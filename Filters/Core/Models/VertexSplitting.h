@@ -23,17 +23,29 @@ public:
     double Range; ///< largest max - min of the data over the channels
   };
 
-  /// areas: consistent, must outlive it. quadratic, absolute: mu, nu.
+  /// areas: consistent, must outlive it. quadratic, absolute: mu, nu. ranges: typical range of the
+  /// values around each vertex, consistent.
   VertexSplitting(const Vector& areas, Vector quadratic, Vector absolute, Flags fixed,
-    const Settings& settings, const ParallelFor& parallel);
+    const Vector& ranges, const Settings& settings, const ParallelFor& parallel);
 
   /// The diagonal A (mu + rho) of the equation for u, consistent.
   Vector MakeDiagonal() const;
 
+  /// Sum of A mu over the vertices of the surface.
+  double QuadraticWeight(const Reduction& reduction) const;
+
+  /// Whether nu > 0 somewhere, so that there are multipliers c.
+  bool IsSplit() const { return this->HasAbsolute; }
+
   const Flags& GetFixed() const { return this->Fixed; }
 
-  /// q = u - f, c = 0. g and f must stay as they are until the next start.
-  void Start(const Values& g, const Values& f, const Values& u);
+  /// q = u - f, and c = 0 unless there are multipliers to start from. g and f must stay as they are
+  /// until the next start.
+  void Start(const Values& g, const Values& f, const Values& u, bool keepMultipliers);
+
+  /// c, one row per vertex; no row if nu = 0 everywhere.
+  Values& Multipliers() { return this->C; }
+  const Values& Multipliers() const { return this->C; }
 
   /// q and c from the present u, over-relaxed.
   void Update(const Values& u, double relaxation);
@@ -53,6 +65,10 @@ public:
   /// given d, consistent. u: of fixed vertices, and the centre of the ball of radius Range in which
   /// the minimum is sought if mu_i = 0.
   double DualEnergy(const Values& d, const Values& u, const Reduction& reduction) const;
+
+  /// The largest s <= 1 for which |s d| <= nu A at all vertices with mu = 0 < nu that are not
+  /// fixed.
+  double FeasibleShare(const Values& d, const Reduction& reduction) const;
 
 private:
   double DualAt(Index i, const Values& d, const Values& u, int first, int last) const;

@@ -26,6 +26,7 @@ struct SolverTask
   /// time step bounds the distance over which values diffuse.
   std::optional<double> DiffusionNumber = 1.0;
   double NumberOfSolves = 1.0; ///< with one matrix
+  int NumberOfColumns = 1; ///< of each solve
   double Tolerance = 1e-10;
   /// False where multigrid was measured to be slower: connection Laplacians of direction fields,
   /// which do not map constants to zero, and diffusivities that change in every step and by orders

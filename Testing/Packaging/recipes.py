@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks the recipes of Packaging: they can be read, name this version, and pass CMake options that
+exist and with which the sources configure. Wheels for PyPI's vtk pin its version.
+
+    recipes.py SOURCE FOLDER CMAKE VTK_DIR
+
+Needs scikit-build-core (its wheels are in SURFACEDIFFUSION_WHEEL_DIR) and PyYAML; without them the
+exit code is 77 (skipped)."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import types
+from contextlib import contextmanager
+from pathlib import Path
+
+source, folder, cmake, vtk_dir = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3], sys.argv[4]
+wheels = os.environ.get("SURFACEDIFFUSION_WHEEL_DIR")
+if not wheels:
+    print("SURFACEDIFFUSION_WHEEL_DIR is not set")
+    sys.exit(77)
+try:
+    import yaml
+except ImportError:
+    print("PyYAML is not available (Debian: python3-yaml)")
+    sys.exit(77)
+
+
+def load_build_backend():
+    """Unpacks scikit-build-core into the folder."""
+    shutil.rmtree(folder, ignore_errors=True)
+    subprocess.run([sys.executable, "-m", "pip", "--isolated", "install", "--quiet", "--no-index",
+                    "--find-links", wheels, "--target", str(folder / "tools"), "scikit-build-core"],
+                   check=True)
+    sys.path.insert(0, str(folder / "tools"))
+
+
+def conda_options(sources):
+    """The CMake options of the recipe for conda-forge."""
+    recipe = yaml.safe_load((sources / "Packaging/conda-forge/recipe.yaml").read_text())
+    version = re.search(r"VERSION (\S+)", (sources / "CMakeLists.txt").read_text().split("project(")[1])
+    assert recipe["context"]["version"] == version.group(1), recipe["context"]
+    assert (sources / recipe["about"]["license_file"]).exists()
+    command = recipe["build"]["script"][0]
+    return dict(re.findall(r"-D (\w+)=(\S+)", command))
+
+
+def spack_options(sources):
+    """The CMake options of the recipe for Spack with each host."""
+    spack = types.ModuleType("spack.package")
+
+    class CMakePackage:
+        def __init__(self, **variants):
+            self.values = variants
+            self.spec = types.SimpleNamespace(variants={
+                name: types.SimpleNamespace(value=value) for name, value in variants.items()})
+
+        def define(self, name, value):
+            return "-D%s=%s" % (name, value if isinstance(value, str) else "ON" if value else "OFF")
+
+        def define_from_variant(self, name, variant):
+            assert variant in variants, variant
+            return self.define(name, self.values[variant])
+
+    variants, versions = {}, []
+    spack.CMakePackage = CMakePackage
+    spack.variant = lambda name, **arguments: variants.update({name: arguments["default"]})
+    spack.version = lambda name, **_: versions.append(name)
+    for name in ("license", "depends_on", "conflicts", "extends", "generator"):
+        setattr(spack, name, lambda *_, **__: None)
+
+    @contextmanager
+    def when(_):
+        yield
+
+    spack.when = when
+    sys.modules["spack"] = types.ModuleType("spack")
+    sys.modules["spack.package"] = spack
+    path = sources / "Packaging/spack/packages/surfacediffusion/package.py"
+    names = {"__file__": str(path)}
+    exec(compile(path.read_text(), str(path), "exec"), names)
+    assert versions == ["main"] and variants["host"] == "vtk", (versions, variants)
+    return [
+        dict(re.findall(r"-D(\w+)=(\S+)", " ".join(names["Surfacediffusion"](**chosen).cmake_args())))
+        for chosen in ({**variants}, {**variants, "host": "none", "python": False})
+    ]
+
+
+def configure(sources, name, options):
+    """Configures the sources; CMake warns of options that it does not use."""
+    fixed = {"CMAKE_INSTALL_PREFIX": folder / "prefix", "Python3_EXECUTABLE": sys.executable,
+             "SURFACEDIFFUSION_PYTHON_DIR": "lib/python3/site-packages"}
+    command = [cmake, "-S", sources, "-B", folder / name, "-G", "Ninja", "-D", "VTK_DIR=" + vtk_dir]
+    for option, value in options.items():
+        command += ["-D", "%s=%s" % (option, fixed.get(option, value))]
+    print(shlex.join(map(str, command)), flush=True)
+    done = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    print(done.stdout)
+    assert done.returncode == 0, name
+    unused = re.search(r"Manually-specified variables were not used.*", done.stdout, re.DOTALL)
+    assert not unused or not re.search(r"SURFACEDIFFUSION_", unused.group(0)), unused.group(0)
+
+
+def check_dependencies():
+    """The wheel for PyPI's vtk pins vtk and its SDK; the one for this machine's VTK pins nothing."""
+    os.chdir(source / "Packaging/VTK")
+    from scikit_build_core.build import (
+        get_requires_for_build_wheel, prepare_metadata_for_build_wheel,
+    )
+
+    for version, sdk, vtk in (("9.7", ["vtk-sdk==9.7.*"], ["vtk==9.7.*"]), ("", [], [])):
+        os.environ["SURFACEDIFFUSION_PYPI_VTK"] = version
+        requires = [each for each in get_requires_for_build_wheel() if "vtk" in each]
+        assert requires == sdk, requires
+        (folder / version).mkdir(exist_ok=True)
+        name = prepare_metadata_for_build_wheel(str(folder / version))
+        metadata = (folder / version / name / "METADATA").read_text()
+        assert re.findall(r"Requires-Dist: (\S+)", metadata) == vtk, metadata[:600]
+    os.environ.pop("SURFACEDIFFUSION_PYPI_VTK")
+
+
+load_build_backend()
+check_dependencies()
+configure(source, "conda", conda_options(source))
+for i, options in enumerate(spack_options(source)):
+    configure(source, "spack%d" % i, options)
+print("the recipes can be read, and their options configure")
