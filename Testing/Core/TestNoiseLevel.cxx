@@ -169,6 +169,23 @@ TEST(NoiseLevel, CorrelatedNoiseIsFoundOrMeasuredAcrossItsCorrelation)
   }
 }
 
+TEST(NoiseLevel, SmoothSignalsAreNoCorrelatedNoise)
+{
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  for (const double frequency : { 2.0, 4.0, 8.0 })
+  {
+    const double sigma = 0.05;
+    const Values wave =
+      Sample(mesh, s, [&](const Eigen::RowVector3d& x) { return std::sin(frequency * x[2]); });
+    const NoiseEstimate noise = EstimateNoise(
+      *assembler, s.Vertices, PointData::FromValues(wave + sigma * GaussianNoise(mesh, 1)));
+    EXPECT_FALSE(noise.IsCorrelated()) << frequency;
+    EXPECT_NEAR(noise.Level(), sigma, 0.1 * sigma) << frequency;
+  }
+}
+
 TEST(NoiseLevel, SteadyStateAtTheFoundFidelityLeavesTheNoise)
 {
   const Surface s = Icosphere(4);

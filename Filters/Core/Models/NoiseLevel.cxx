@@ -17,6 +17,10 @@ namespace
 
 constexpr Index LargestSample = 20000;
 constexpr int FarthestRing = 8;
+/// Twice as far apart, the residuals of a smooth signal are up to four times as large, and grow
+/// faster with every ring. Those of noise that heat flow has smoothed grow less with every ring.
+constexpr double MostGrowth = 3.0;
+constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 
 /// The vertices at a distance of a number of edges.
 class Rings
@@ -156,14 +160,26 @@ NoiseEstimate EstimateNoise(
   NoiseEstimate estimate;
   estimate.BetweenNeighbours = EstimateAt(1, assembler, points, data);
   estimate.Apart = estimate.BetweenNeighbours;
-  for (int edges = 2; edges <= FarthestRing; edges *= 2)
+  double apart = estimate.BetweenNeighbours;
+  double growth = MostGrowth;
+  for (int edges = 2; edges <= FarthestRing && apart > 0.0; edges *= 2)
   {
     const double next = EstimateAt(edges, assembler, points, data);
-    if (!(next > 1.15 * estimate.Apart))
+    if (next <= 1.15 * apart)
     {
-      break;
+      estimate.Apart = apart;
+      return estimate;
     }
-    estimate.Apart = next;
+    if (next > growth * apart)
+    {
+      return estimate;
+    }
+    growth = next / apart;
+    apart = next;
+  }
+  if (growth < SettledGrowth)
+  {
+    estimate.Apart = apart;
   }
   return estimate;
 }

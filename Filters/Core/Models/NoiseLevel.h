@@ -24,7 +24,9 @@ struct NoiseEstimate
 
 /// Estimates the noise from the residuals r_i of local linear fits: the difference of f_i and the
 /// value at vertex i of the linear function, in the tangent plane, fitted to the known vertices at
-/// a distance of 1 edge from i, and then of 2, 4 and 8 edges while the result grows by 15 %. The
+/// a distance of 1 edge from i, and then of 2, 4 and 8 edges while the result grows by more than
+/// 15 %, each time less than before: the noise is correlated. If it grows faster, or by more than
+/// 30 % at the end, then the signal bends and the first result is taken. The
 /// deviation is 1.4826 times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the
 /// fit: robust to edges and exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf.
 /// Theory 41, 1995). At most 20,000 vertices are used. Root mean square over the columns; 0 if no

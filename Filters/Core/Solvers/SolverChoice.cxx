@@ -161,6 +161,7 @@ public:
       std::rethrow_exception(failure);
     }
     x = this->Best;
+    best.IsFinal = true;
     return best;
   }
 
