@@ -174,10 +174,10 @@ def draw(results, path):
     _bars(panels[0], "Width realised when 10 mm is asked",
           [_find(widths, surface=surface, fwhm=10, peer=peer)["width"] for peer in PEERS], "{:.2f}")
     panels[0].axvline(10, color="black", linewidth=1, linestyle=":")
-    _bars(panels[1], "Error if 20 % of a thickness map is missing [mm]",
+    _bars(panels[1], "Error, 20 % of thickness missing [mm]",
           [_find(missing, surface=surface, map="thickness", peer=peer)["rms"] for peer in PEERS],
           "{:.4f}", log=True)
-    _bars(panels[2], f"Processor time, {most:,} maps of 32,492 vertices [s]",
+    _bars(panels[2], f"Processor time for {most:,} maps [s]",
           [_find(results["costs"], columns=most, peer=peer)["alone"] for peer in PEERS],
           "{:.1f}", log=True)
     buffer = io.BytesIO()
