@@ -192,6 +192,10 @@ nb::dict ModelRun::GetHistory() const
   {
     columns["Clamped"] = MakeList(history.Records, &StepRecord::Clamped);
   }
+  if (history.BoundsError)
+  {
+    columns["ErrorBound"] = MakeList(history.Records, &StepRecord::ErrorBound);
+  }
   return columns;
 }
 

@@ -28,7 +28,8 @@ class Result:
     history : dict of ndarray, shape (step + 1,)
         One column per name: ``"Time"``; ``"Total_0"``, ... (the integral of each component over the
         surface, sum of A_i u_i, in coordinate and array units); ``"Energy"``; ``"Iterations"``,
-        ``"Residual"`` and ``"Seconds"`` of each step; for textures ``"Clamped"``.
+        ``"Residual"`` and ``"Seconds"`` of each step; for textures ``"Clamped"``; for minimisers of
+        total variation ``"ErrorBound"``, a bound of the RMS error of the values.
     warnings : list of str
         Everything that was also given as a Python warning.
     time_unit : float
