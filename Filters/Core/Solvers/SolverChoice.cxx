@@ -36,11 +36,11 @@ constexpr double Cycle = 2.9e-3; // x s
 constexpr double Cycles = 9.5; // x digits, at c = 1
 constexpr double CyclesPerDecade = 2.7; // x digits log10(c)
 
-// What a further column costs of the first one, with 41,000 vertices and 50 columns: they share a
-// pass over the matrix or the factor.
-constexpr double SubstitutionColumn = 0.3;
-constexpr double IterationColumn = 0.85;
-constexpr double CycleColumn = 0.42;
+// What a further column costs of the first one, with 41,000 vertices and 8 to 48 columns: those of a
+// panel share a pass over the matrix or the factor.
+constexpr double SubstitutionColumn = 0.2;
+constexpr double IterationColumn = 0.3;
+constexpr double CycleColumn = 0.4;
 
 constexpr double SmallestDiffusionNumber = 1e-2; // below, nothing changes
 constexpr double SteadyState = 1e4; // the diffusion number that a steady state is as long as
