@@ -362,9 +362,8 @@ private:
   vtkSurfaceDiffusionAlgorithm(const vtkSurfaceDiffusionAlgorithm&) = delete;
   void operator=(const vtkSurfaceDiffusionAlgorithm&) = delete;
 
-  void FindAllFields(const std::vector<SurfaceBlock>& blocks,
-    std::vector<SurfaceBlock>& surfaces, std::vector<SurfaceDiffusion::InputFields>& fields,
-    Problems& problems);
+  void FindAllFields(const std::vector<SurfaceBlock>& blocks, std::vector<SurfaceBlock>& surfaces,
+    std::vector<SurfaceDiffusion::InputFields>& fields, Problems& problems);
   void WriteResults(const std::vector<SurfaceBlock>& surfaces,
     const std::vector<SurfaceDiffusion::InputFields>& fields);
   std::vector<SurfaceDiffusion::BlockInput> MakeInputs(const std::vector<SurfaceBlock>& surfaces,
