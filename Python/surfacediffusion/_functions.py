@@ -55,13 +55,21 @@ dtype : float32 or float64, optional
 progress : bool or callable, default False
     True: a bar (needs tqdm). A callable takes the fraction done; an exception that it raises
     ends the run.""",
-    "errors": """\
+    "values": """\
+values : array_like, shape (n,) or (n, k)
+    The data f, one row per point. NaN in any component is missing. uint8 with 2 or 4 components
+    is a colour with alpha, which is not changed.""",
+    "problems": """\
+Raises
+------
 ValueError
     For settings and arrays that are not allowed; the message names the argument, what was found
     and what is allowed.
 KeyboardInterrupt
-    Within a block of work after Ctrl-C. The surface can be used again.""",
-    "warns": """\
+    Within a block of work after Ctrl-C. The surface can be used again.
+
+Warns
+-----
 SurfaceDiffusionWarning
     For degenerate triangles, unused points, solves above their tolerance, masks without effect.""",
 }
@@ -161,9 +169,7 @@ def heat(
     Parameters
     ----------
     {surface}
-    values : array_like, shape (n,) or (n, k)
-        The data f, one row per point. NaN in any component is missing. uint8 with 2 or 4 components
-        is a colour with alpha, which is not changed.
+    {values}
     {mask}
     {directions}
     {fixed}
@@ -180,13 +186,7 @@ def heat(
     -------
     ndarray of the shape of `values`, or DiffusionResult, or iterator of DiffusionResult
 
-    Raises
-    ------
-    {errors}
-
-    Warns
-    -----
-    {warns}
+    {problems}
 
     Notes
     -----
@@ -236,9 +236,7 @@ def intrinsic_tv(
     Parameters
     ----------
     {surface}
-    values : array_like, shape (n,) or (n, k)
-        The data f, one row per point. NaN in any component is missing. uint8 with 2 or 4 components
-        is a colour with alpha, which is not changed.
+    {values}
     {mask}
     {directions}
     {fixed}
@@ -255,13 +253,7 @@ def intrinsic_tv(
     -------
     ndarray of the shape of `values`, or DiffusionResult, or iterator of DiffusionResult
 
-    Raises
-    ------
-    {errors}
-
-    Warns
-    -----
-    {warns}
+    {problems}
 
     Examples
     --------
@@ -321,13 +313,7 @@ def harmonic_map(
     HarmonicMapResult, or iterator of HarmonicMapResult
         `values` are the vectors, `points` the points, moved if ``move_vertices=True``.
 
-    Raises
-    ------
-    {errors}
-
-    Warns
-    -----
-    {warns}
+    {problems}
 
     Examples
     --------
@@ -397,13 +383,7 @@ def turing_texture(
     TextureResult, or iterator of TextureResult
         `values` are u1 and u2, `texture` is one of them stretched to [0, 1].
 
-    Raises
-    ------
-    {errors}
-
-    Warns
-    -----
-    {warns}
+    {problems}
 
     Examples
     --------
@@ -452,13 +432,7 @@ def direction_field(
     ndarray, shape (m, 3)
         Unit vectors in the faces, whose sign has no meaning; zero in faces without direction.
 
-    Raises
-    ------
-    {errors}
-
-    Warns
-    -----
-    {warns}
+    {problems}
 
     Examples
     --------

@@ -38,6 +38,18 @@ struct Problem
     system.SetUpSolver(ProgressMonitor());
     return system;
   }
+
+  /// Solve once with Given at the fixed vertices.
+  StepReport Solve(std::shared_ptr<LinearSolver> solver, const IterationLimits& limits) const
+  {
+    solver->SetLimits(limits);
+    ImplicitSystem system = this->MakeSystem(std::move(solver), this->Given);
+    Values b = this->B;
+    Values u = Values::Zero(b.rows(), b.cols());
+    StepReport report;
+    system.Solve(b, u, report);
+    return report;
+  }
 };
 
 } // namespace
@@ -106,21 +118,15 @@ TEST(ImplicitSystem, TakesAnAnswerWithinTenTimesTheToleranceAndReportsIt)
   double missed = 0.0;
   for (int iterations = 1; missed == 0.0 && iterations < 500; ++iterations)
   {
-    std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
-    solver->SetLimits({ tolerance, iterations });
-    ImplicitSystem system = problem.MakeSystem(solver, problem.Given);
-    Values b = problem.B;
-    Values u = Values::Zero(b.rows(), b.cols());
-    StepReport report;
     try
     {
-      system.Solve(b, u, report);
+      missed =
+        problem.Solve(MakeConjugateGradientSolver(), { tolerance, iterations }).MissedResidual;
     }
     catch (const NotConverged&)
     {
       continue;
     }
-    missed = report.MissedResidual;
     ASSERT_GT(missed, 0.0) << "it converged before an answer was taken";
   }
   EXPECT_GT(missed, tolerance);
@@ -129,26 +135,12 @@ TEST(ImplicitSystem, TakesAnAnswerWithinTenTimesTheToleranceAndReportsIt)
 
 TEST(ImplicitSystem, ADirectAnswerAboveTheToleranceIsReportedAndTaken)
 {
-  const Problem problem;
-  std::shared_ptr<LinearSolver> solver = MakeCholeskySolver();
-  solver->SetLimits({ 1e-30, 1 });
-  ImplicitSystem system = problem.MakeSystem(solver, problem.Given);
-  Values b = problem.B;
-  Values u = Values::Zero(b.rows(), b.cols());
-  StepReport report;
-  system.Solve(b, u, report);
+  const StepReport report = Problem().Solve(MakeCholeskySolver(), { 1e-30, 1 });
   EXPECT_GT(report.MissedResidual, 0.0);
   EXPECT_LT(report.MissedResidual, 1e-13);
 }
 
 TEST(ImplicitSystem, ThrowsIfTheSolverDoesNotConverge)
 {
-  const Problem problem;
-  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
-  solver->SetLimits({ 1e-12, 1 });
-  ImplicitSystem system = problem.MakeSystem(solver, problem.Given);
-  Values b = problem.B;
-  Values u = Values::Zero(b.rows(), b.cols());
-  StepReport report;
-  EXPECT_THROW(system.Solve(b, u, report), NotConverged);
+  EXPECT_THROW(Problem().Solve(MakeConjugateGradientSolver(), { 1e-12, 1 }), NotConverged);
 }

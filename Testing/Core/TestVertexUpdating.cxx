@@ -66,39 +66,43 @@ TEST(VertexUpdating, NoisyPlaneWithExactNormalsBecomesFlat)
   EXPECT_EQ(motion.VolumeBefore, 0.0); // open
 }
 
+/// A noisy strip whose points follow normals that it does not have: many iterations.
+struct TiltedStrip
+{
+  const Surface Noise = Noisy(Strip(20, 20), 0.01);
+  const TriangleMesh Mesh{ Noise.Vertices, Noise.Faces };
+
+  Points Update(VertexMotion& motion, const IterationLimits& limits = IterationLimits(),
+    bool factorize = true) const
+  {
+    Values normals(this->Mesh.NumberOfVertices(), 3);
+    normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+    return UpdateVerticesFromNormals(
+      this->Mesh, this->Noise.Vertices, normals, 10.0, motion, limits, factorize);
+  }
+};
+
 TEST(VertexUpdating, ReportsThatItDidNotConverge)
 {
-  const Surface s = Noisy(Strip(20, 20), 0.01);
-  const TriangleMesh mesh(s.Vertices, s.Faces);
-  Values normals(mesh.NumberOfVertices(), 3);
-  normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+  const TiltedStrip strip;
   VertexMotion motion;
-  EXPECT_THROW(
-    UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-12, 2 }, false),
-    NotConverged);
+  EXPECT_THROW(strip.Update(motion, { 1e-12, 2 }, false), NotConverged);
 }
 
 TEST(VertexUpdating, FactorisesIfConjugateGradientsDoNotConverge)
 {
-  const Surface s = Noisy(Strip(20, 20), 0.01);
-  const TriangleMesh mesh(s.Vertices, s.Faces);
-  Values normals(mesh.NumberOfVertices(), 3);
-  normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+  const TiltedStrip strip;
   VertexMotion motion;
-  const Points iterated = UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion);
+  const Points iterated = strip.Update(motion);
   EXPECT_EQ(motion.MissedResidual, 0.0);
-  const Points factorised =
-    UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion, { 1e-10, 2 });
+  const Points factorised = strip.Update(motion, { 1e-10, 2 });
   EXPECT_EQ(motion.MissedResidual, 0.0);
   EXPECT_LT((factorised - iterated).cwiseAbs().maxCoeff(), 1e-7);
 }
 
 TEST(VertexUpdating, TakesAnAnswerWithinTenTimesTheTolerance)
 {
-  const Surface s = Noisy(Strip(20, 20), 0.01);
-  const TriangleMesh mesh(s.Vertices, s.Faces);
-  Values normals(mesh.NumberOfVertices(), 3);
-  normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
+  const TiltedStrip strip;
   VertexMotion motion;
   // The first number of iterations after which the residual is near enough.
   double missed = 0.0;
@@ -106,8 +110,7 @@ TEST(VertexUpdating, TakesAnAnswerWithinTenTimesTheTolerance)
   {
     try
     {
-      UpdateVerticesFromNormals(
-        mesh, s.Vertices, normals, 10.0, motion, { 1e-8, iterations }, false);
+      strip.Update(motion, { 1e-8, iterations }, false);
       missed = motion.MissedResidual;
       ASSERT_GT(missed, 0.0) << "it converged before an answer was taken";
     }

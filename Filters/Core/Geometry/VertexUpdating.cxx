@@ -4,6 +4,7 @@
 
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Solvers/ConjugateGradients.h"
+#include "Core/Solvers/SolverChoice.h"
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
@@ -100,8 +101,7 @@ public:
     const Values b = factorize ? residual : Values();
     report = ConjugateGradients<3, NormalFit>(*this, residual, work, this->Parallel)
                .Solve(x, limits, progress.Part(0.0, factorize ? 0.5 : 1.0));
-    constexpr Index largest = 800000; // vertices, whose factor takes several gigabytes
-    if (!report.Converged && factorize && n <= largest)
+    if (!report.Converged && factorize && n <= LargestFactor)
     {
       this->SolveDirectly(b, x, limits, report, progress.Part(0.5, 1.0));
     }

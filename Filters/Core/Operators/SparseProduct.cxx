@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/SparseProduct.h"
+
 #include "Core/Foundation/Columns.h"
 
 namespace SurfaceDiffusion

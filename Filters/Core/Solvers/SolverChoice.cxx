@@ -48,8 +48,6 @@ constexpr double SteadyState = 1e4; // the diffusion number that a steady state 
 // Iterations run on all threads, and a factorisation on one. This is their share of the time on one
 // thread, between that of one thread and of two.
 constexpr double Threads = 0.75;
-// A factor takes 1 kB per vertex and, on regular meshes, up to ten times as long as on scans.
-constexpr Index LargestFactor = 800000;
 // Over several processes, with hypre: longer steps are cheaper with multigrid.
 constexpr double LargestDistributedJacobi = 10.0;
 } // namespace Measured

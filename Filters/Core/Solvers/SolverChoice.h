@@ -18,6 +18,10 @@ enum class SolverMethod
   Multigrid
 };
 
+/// The largest number of vertices for which a factorisation is chosen: it takes 1 kB per vertex and,
+/// on regular meshes, up to ten times as long as on scans.
+constexpr Index LargestFactor = 800000;
+
 /// The linear systems a solver is made for, as far as the choice of the method depends on them.
 struct SolverTask
 {
