@@ -18,11 +18,11 @@ from typing import Any, Iterator, Literal, overload
 from numpy.typing import ArrayLike, NDArray
 import numpy as np
 
-from ._result import DiffusionResult, HarmonicMapResult, TextureResult
+from ._result import DiffusionResult, HarmonicMapResult, SegmentationResult, TextureResult
 from ._run import Progress
 from ._surface import SurfaceLike
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "segment", "turing_texture"]
 """
 
 #: The return types of a function for the values of its switches.
@@ -31,6 +31,7 @@ RETURNS = {
              ({"steps": True}, "Iterator[DiffusionResult]")],
     "harmonic_map": [({}, "HarmonicMapResult"), ({"steps": True}, "Iterator[HarmonicMapResult]")],
     "turing_texture": [({}, "TextureResult"), ({"steps": True}, "Iterator[TextureResult]")],
+    "segment": [({}, "SegmentationResult")],
     "direction_field": [({}, "NDArray[np.float64]")],
 }
 RETURNS["intrinsic_tv"] = RETURNS["heat"]

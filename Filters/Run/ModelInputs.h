@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Geometry/RegionBoundaries.h"
 #include "Core/Geometry/VertexUpdating.h"
 #include "Core/Models/Trajectory.h"
 #include "Run/Fields.h"
@@ -9,6 +10,7 @@
 #include "Run/Units.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,23 @@ struct ModelInputs
   ProgressMonitor Progress;
   SolverStore& Solvers;
   const ProcessGroup& Processes;
+  bool DataAreTerms = false; ///< as in Fields
+  std::vector<Index> Seeds; ///< per vertex, see MakeSeeds()
+};
+
+/// The regions of a segmentation at the current step, in coordinate and array units.
+struct RegionResults
+{
+  std::vector<Index> Labels; ///< 1 .. K per vertex
+  Values Means; ///< c, a row per region; no row if data terms are given
+  Values DataMeans; ///< of the data over the known vertices of each region, likewise
+  Vector Areas; ///< within the boundaries
+  Vector BoundaryLengths;
+  std::vector<Index> Components; ///< the number of connected ones
+  RegionBoundaries Boundaries;
+  double Gap = 0.0; ///< of the relaxed problem, see Segmentation
+  double LabelGap = 0.0;
+  int NumberOfAlternations = 0;
 };
 
 /// A run on one surface at its current step.
@@ -51,6 +70,7 @@ struct RunResult
   std::array<double, 2> ContrastLimits = { 0.0, 1.0 }; ///< of a texture, at the current step
   Points MovedPoints; ///< per input point, if vertices were moved; otherwise no row
   VertexMotion Motion;
+  std::shared_ptr<const RegionResults> Regions; ///< of a segmentation
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<std::string> Warnings;

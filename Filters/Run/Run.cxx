@@ -196,7 +196,8 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
     std::move(directions), fields.Rates,
     this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)
                                                       : std::vector<std::int64_t>(),
-    this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes };
+    this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes, fields.DataAreTerms,
+    MakeSeeds(*block.Surface, fields) };
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const std::size_t limit = this->CheckpointMemory(*model, processes);

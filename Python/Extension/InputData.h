@@ -100,6 +100,8 @@ public:
   std::optional<DoubleArray> Directions; ///< points or faces x 3
   bool DirectionsOnFaces = false;
   std::optional<DoubleArray> Rates; ///< faces x 4
+  std::optional<LongArray> Seeds; ///< labels of points, 0 = free
+  bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
   FieldSummary Summarize() const;
   Fields Read() const;

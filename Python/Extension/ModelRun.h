@@ -51,6 +51,10 @@ public:
   void WriteTexture(std::size_t block, const OutputArray& output) const;
   void WriteTextureColors(std::size_t block, const OutputArray& output,
     const std::array<double, 3>& low, const std::array<double, 3>& high) const;
+  /// The regions of a segmentation: lists with an entry per region, and their boundaries.
+  nanobind::dict GetRegions(std::size_t block) const;
+  /// The labels of the points; 0 at points that take no part.
+  void WriteLabels(std::size_t block, const OutputArray& output) const;
   /// The moved points (float64 or float32); false if no point was moved.
   bool WriteMovedPoints(std::size_t block, const OutputArray& output) const;
 

@@ -27,7 +27,8 @@ namespace
 
 InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optional<InputArray> data,
   int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
-  std::optional<DoubleArray> directions, bool directionsOnFaces, std::optional<DoubleArray> rates)
+  std::optional<DoubleArray> directions, bool directionsOnFaces, std::optional<DoubleArray> rates,
+  std::optional<LongArray> seeds, bool dataAreTerms)
 {
   InputFields fields;
   fields.Surface = std::move(surface);
@@ -38,6 +39,8 @@ InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optiona
   fields.Directions = std::move(directions);
   fields.DirectionsOnFaces = directionsOnFaces;
   fields.Rates = std::move(rates);
+  fields.Seeds = std::move(seeds);
+  fields.DataAreTerms = dataAreTerms;
   return fields;
 }
 
@@ -80,14 +83,16 @@ NB_MODULE(_core, m)
       [](InputFields* self, std::shared_ptr<InputSurface> surface, std::optional<InputArray> data,
         int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
         std::optional<DoubleArray> directions, bool directionsOnFaces,
-        std::optional<DoubleArray> rates)
+        std::optional<DoubleArray> rates, std::optional<LongArray> seeds, bool dataAreTerms)
       {
         new (self)
           InputFields(MakeFields(std::move(surface), std::move(data), components, std::move(mask),
-            std::move(fixed), std::move(directions), directionsOnFaces, std::move(rates)));
+            std::move(fixed), std::move(directions), directionsOnFaces, std::move(rates),
+            std::move(seeds), dataAreTerms));
       },
       "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
-      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none());
+      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none(),
+      "seeds"_a.none(), "data_are_terms"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")
     .def(nb::init<std::string>(), "model"_a)
@@ -104,6 +109,8 @@ NB_MODULE(_core, m)
     .def("write_texture", &ModelRun::WriteTexture, "block"_a, "output"_a)
     .def("write_texture_colors", &ModelRun::WriteTextureColors, "block"_a, "output"_a, "low"_a,
       "high"_a)
+    .def("regions", &ModelRun::GetRegions, "block"_a)
+    .def("write_labels", &ModelRun::WriteLabels, "block"_a, "output"_a)
     .def("write_moved_points", &ModelRun::WriteMovedPoints, "block"_a, "output"_a);
 
   nb::class_<DirectionRun>(m, "DirectionRun")

@@ -27,9 +27,11 @@ import os as _os
 from importlib.metadata import version as _version
 
 from . import _core
-from ._functions import direction_field, harmonic_map, heat, intrinsic_tv, turing_texture
+from ._functions import direction_field, harmonic_map, heat, intrinsic_tv, segment, turing_texture
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
-from ._result import DiffusionResult, HarmonicMapResult, Result, TextureResult
+from ._result import (
+    DiffusionResult, HarmonicMapResult, RegionBoundary, Result, SegmentationResult, TextureResult,
+)
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
@@ -37,9 +39,11 @@ from ._threads import get_number_of_threads, set_number_of_threads
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "DiffusionResult", "FWHMEstimate", "HarmonicMapResult", "Result", "Surface",
+    "DiffusionResult", "FWHMEstimate", "HarmonicMapResult", "RegionBoundary", "Result",
+    "SegmentationResult", "Surface",
     "SurfaceDiffusionWarning", "TextureResult", "direction_field", "estimate_fwhm",
-    "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "set_number_of_threads",
+    "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "segment",
+    "set_number_of_threads",
     "smooth_to_fwhm", "sphere", "turing_texture",
 ]
 

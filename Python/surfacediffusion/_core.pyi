@@ -27,6 +27,8 @@ class Fields:
         directions: Optional[NDArray[Any]],
         directions_on_faces: bool,
         rates: Optional[NDArray[Any]],
+        seeds: Optional[NDArray[Any]],
+        data_are_terms: bool,
     ) -> None: ...
 
 class ModelRun:
@@ -48,6 +50,8 @@ class ModelRun:
     def write_texture_colors(
         self, block: int, output: NDArray[Any], low: Sequence[float], high: Sequence[float]
     ) -> None: ...
+    def regions(self, block: int) -> dict[str, Any]: ...
+    def write_labels(self, block: int, output: NDArray[Any]) -> None: ...
     def write_moved_points(self, block: int, output: NDArray[Any]) -> bool: ...
 
 class DirectionRun:

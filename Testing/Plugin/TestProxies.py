@@ -22,8 +22,10 @@ PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
 # All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
-    "TimestepValues",
+    "SeedArray", "DataTermArray", "TimestepValues",
+    "Mean",  # a list: SetMean(region, component, value)
 }
+PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"]}
 
 
 def filters():
@@ -161,7 +163,7 @@ class TestProxies(unittest.TestCase):
 
     def test_ports_have_names(self):
         for name, proxy, cxx in proxies():
-            ports = ["Surface", "History"][: cxx().GetNumberOfOutputPorts()]
+            ports = PORTS.get(name, ["Surface", "History"])[: cxx().GetNumberOfOutputPorts()]
             found = [proxy.SMProxy.GetOutputPortName(i) for i in range(len(ports))]
             self.assertEqual(found, ports, name)
 
@@ -244,6 +246,7 @@ class TestProxies(unittest.TestCase):
              ["Mode", "EdgeFunction", "FidelityNorm", "AutomaticFidelity", "FidelityWeight"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
+            ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean"]),
             ("TuringTextureFilter",
              ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
               "DecayRate"]),
@@ -302,7 +305,7 @@ class TestProxies(unittest.TestCase):
             for _ in range(20):
                 filter = getattr(servermanager.filters, name)(Input=sphere_with_arrays())
                 clicked = []
-                if name in ("FVMHeatFilter", "IntrinsicTVFilter"):
+                if name in ("FVMHeatFilter", "IntrinsicTVFilter", "SurfaceSegmentationFilter"):
                     filter.InputArray = ["POINTS", "f"]
                 if "NumberOfTimeSteps" in filter.ListProperties():
                     filter.NumberOfTimeSteps = 2

@@ -146,13 +146,14 @@ StepReport Segmentation::Advance(const ProgressMonitor& progress)
     last = this->Minimize(progress.Part(done, next), alternation == 0);
     done = next;
     report.Iterations += last.Iterations;
+    this->Alternations = alternation + 1;
     if (!this->Options.UpdateMeans ||
       alternation + 1 == this->Options.MaximumNumberOfAlternations || !this->UpdateMeans())
     {
       break;
     }
   }
-  report.Residual = last.Gap;
+  report.Residual = this->GapOfState = last.Gap;
   this->MeasureLabels(last);
   return report;
 }
@@ -306,6 +307,28 @@ std::vector<Index> Segmentation::Labels() const
       labels[i] = static_cast<Index>(best) + 1;
     });
   return labels;
+}
+
+Values Segmentation::DataMeans() const
+{
+  const Vector& areas = this->Assembly->Mesh().ControlAreas();
+  const std::vector<Index> labels = this->Labels();
+  Values means = Values::Zero(this->C.rows(), this->C.cols());
+  Vector weights = Vector::Zero(this->C.rows());
+  for (std::size_t i = 0; i < labels.size() && this->C.rows() > 0; ++i)
+  {
+    const auto v = static_cast<Index>(i);
+    if (!this->Given.Data.Missing[v])
+    {
+      weights[labels[i] - 1] += areas[v];
+      means.row(labels[i] - 1) += areas[v] * this->Given.Data.Given.row(v);
+    }
+  }
+  for (Eigen::Index k = 0; k < means.rows(); ++k)
+  {
+    means.row(k) = weights[k] > 0.0 ? (means.row(k) / weights[k]).eval() : this->C.row(k).eval();
+  }
+  return means;
 }
 
 std::size_t Segmentation::CheckpointSize() const

@@ -66,8 +66,15 @@ public:
 
   /// c, a row per region; no row if the r_k are given.
   const Values& Means() const { return this->C; }
+  /// The mean of f over the known vertices of each label, c for one without; no row if the r_k are
+  /// given.
+  Values DataMeans() const;
+  /// Minimisations over u in the last step; 0 at the start.
+  int NumberOfAlternations() const { return this->Alternations; }
   /// The labels 1 .. K of the largest u_k.
   std::vector<Index> Labels() const;
+  /// The relative duality gap of the last minimisation; 0 at the start.
+  double Gap() const { return this->GapOfState; }
   /// E after each minimisation of the last step, and each update of the means.
   const std::vector<double>& Energies() const { return this->EnergiesOfStep; }
   /// E of the labels as functions on the mesh, above the lower bound of E that the minimisation
@@ -99,6 +106,8 @@ private:
   Values Sums; ///< of UpdateMeans()
   std::unique_ptr<TotalVariationMinimizer> Minimizer;
   std::vector<double> EnergiesOfStep;
+  int Alternations = 0;
+  double GapOfState = 0.0;
   double GapOfLabels = 0.0;
 };
 
