@@ -13,6 +13,7 @@ import surfacediffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, Sphere, SurfaceDirectionFieldFilter,
+    SurfaceSegmentationFilter,
     TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -53,6 +54,7 @@ CASES = (
      "vectorsHarmonic"),
     ("harmonic, paper", HarmonicMapFilter,
      dict(InputArray=["POINTS", "vectors"], Scheme="ExplicitReaction"), "vectorsHarmonic"),
+    ("segmentation", SurfaceSegmentationFilter, dict(FidelityWeight=2.0), "RegionId"),
     ("turing", TuringTextureFilter, LABYRINTH, "u1"),
     ("turing, rates", TuringTextureFilter,
      dict(DiffusionRateArray=["CELLS", "rates"], **LABYRINTH), "u2"),

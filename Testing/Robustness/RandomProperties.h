@@ -200,13 +200,13 @@ inline List OfSegmentation()
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-4, 0.5)),
     { "Mean",
       [](vtkPolyDataAlgorithm* filter, Dice& dice)
-      { static_cast<F*>(filter)->SetMean(1 + dice.Below(3), dice.Below(2), dice.Unit()); },
+      { static_cast<F*>(filter)->SetMean(1 + dice.Below(2), dice.Below(3), 1.0 + 2.0 * dice.Unit()); },
       [](vtkPolyDataAlgorithm* from, vtkPolyDataAlgorithm* to)
       {
         static_cast<F*>(to)->RemoveAllMeans();
-        for (int region = 1; region <= 3; ++region)
+        for (int region = 1; region <= 2; ++region)
         {
-          for (int component = 0; component < 2; ++component)
+          for (int component = 0; component < 3; ++component)
           {
             const double mean = static_cast<F*>(from)->GetMean(region, component);
             if (mean == mean) // it is set
@@ -220,8 +220,8 @@ inline List OfSegmentation()
       {
         for (int entry = 0; entry < 6; ++entry)
         {
-          const double x = static_cast<F*>(a)->GetMean(1 + entry / 2, entry % 2);
-          const double y = static_cast<F*>(b)->GetMean(1 + entry / 2, entry % 2);
+          const double x = static_cast<F*>(a)->GetMean(1 + entry / 3, entry % 3);
+          const double y = static_cast<F*>(b)->GetMean(1 + entry / 3, entry % 3);
           if (!(x == y || (x != x && y != y)))
           {
             return false;

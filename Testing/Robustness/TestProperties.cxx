@@ -31,6 +31,10 @@ const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controll
   "SeamTolerance", "Solver", "Tolerance", "MaximumNumberOfIterations", "ClampToNonNegative" };
 const std::set<std::string> WithoutEffectInClass = {
   "vtkHarmonicMapFilter TimeIntegrator", // it has only one
+  "vtkSurfaceSegmentationFilter TimeIntegrator", // a steady state
+  "vtkSurfaceSegmentationFilter TimeStep", "vtkSurfaceSegmentationFilter NumberOfTimeSteps",
+  "vtkSurfaceSegmentationFilter OutputInterval",
+  "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
 };
 
 /// An ellipsoid with obtuse triangles. One patch has points of its own: the others are at most 0.01
@@ -90,6 +94,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Harmonic = vtkHarmonicMapFilter;
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
+  using Segmentation = vtkSurfaceSegmentationFilter;
   std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
   needed["MergeTolerance"] = With<Surface>([](Surface* f) { f->MergeCoincidentPointsOn(); });
   needed["OutputInterval"] = With<Diffusion>([](Diffusion* f) { f->GenerateTimeStepsOn(); });
@@ -131,6 +136,18 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   needed["RecoveryRate"] = needed["RecoveryDamping"] = needed["Stimulus"] =
     With<Turing>([](Turing* f) { f->SetKineticsToFitzHughNagumo(); });
   needed["LowColor"] = needed["HighColor"] = With<Turing>([](Turing* f) { f->ColorOutputOn(); });
+  needed["Mean"] = needed["AutomaticMeans"] = With<Segmentation>(
+    [](Segmentation* f)
+    {
+      f->AutomaticMeansOff();
+      for (int component = 0; component < 3; ++component)
+      {
+        f->SetMean(1, component, 1.3);
+        f->SetMean(2, component, 2.1);
+      }
+    });
+  needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
+    With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
   needed["SmoothingLength"] =
     With<Direction>([](Direction* f) { f->SetMethodToCurvatureAligned(); });
   needed["HintWeight"] = With<Direction>([](Direction* f) { f->SetMethodToHints(); });
