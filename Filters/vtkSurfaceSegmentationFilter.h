@@ -100,7 +100,8 @@ public:
    * On (default): the means c_k are found. The start are clusters of the values by k-means++ with
    * RandomSeed, then the means of the regions and the regions are computed in turn. Regions are
    * numbered by ascending mean (by its first component, then the next ones), unless there are
-   * seeds, whose labels they then have. Off: the means are those of SetMean(). Not used with given
+   * seeds, whose labels they then have. Off: the means are those of SetMean(), or the clusters of
+   * the values if none is set. Not used with given
    * data terms.
    */
   vtkSetMacro(AutomaticMeans, bool);
@@ -111,7 +112,7 @@ public:
   ///@{
   /**
    * The mean of a region, in array units: of region 1 ... NumberOfRegions, component 0, 1, ... of
-   * the data. With AutomaticMeans off all of them have to be set. GetMean() gives NaN for one that
+   * the data. With AutomaticMeans off all of them have to be set, or none. GetMean() gives NaN for one that
    * is not set.
    */
   void SetMean(int region, int component, double value);

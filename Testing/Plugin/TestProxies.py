@@ -246,7 +246,7 @@ class TestProxies(unittest.TestCase):
              ["Mode", "EdgeFunction", "FidelityNorm", "AutomaticFidelity", "FidelityWeight"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
-            ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean"]),
+            ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean", "AutomaticMeans"]),
             ("TuringTextureFilter",
              ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
               "DecayRate"]),
