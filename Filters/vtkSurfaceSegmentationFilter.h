@@ -89,7 +89,7 @@ public:
   ///@{
   /**
    * lambda, the weight of the data terms. The larger it is, the smaller are the regions that are
-   * kept. Above 0, in 1/(h R^2) in natural units, or 1/(h R) with given data terms. Default: 0.3.
+   * kept. 0 or more (0: seeds alone), in 1/(h R^2) in natural units, or 1/(h R) with given data terms. Default: 0.3.
    */
   vtkSetMacro(FidelityWeight, double);
   vtkGetMacro(FidelityWeight, double);

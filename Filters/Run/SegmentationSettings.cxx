@@ -112,7 +112,7 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
     SettingRange::Between(2.0, LargestNumberOfRegions, "2 to 1000"));
   visitor.Number({ "FidelityWeight", "1/(h R^2)",
                    "lambda, the weight of the data terms; 1/(h R) for given data terms." },
-    this->FidelityWeight, SettingRange::Positive());
+    this->FidelityWeight, SettingRange::NonNegative());
   visitor.Switch({ "AutomaticMeans", "",
                    "Whether the means of the regions are found: k-means++ clusters of the data at "
                    "first, then the means of the regions." },

@@ -301,7 +301,7 @@ TEST(SegmentationFilter, ErrorsNameThePropertyItsValueAndTheAllowedOnes)
   const auto expect = [&](const std::string& text, const std::function<void(Filter*)>& set)
   { EXPECT_NE(errorOf(set).find(text), std::string::npos) << errorOf(set); };
   expect("NumberOfRegions is 1; allowed: 2 to 1000", [](Filter* f) { f->SetNumberOfRegions(1); });
-  expect("FidelityWeight is 0", [](Filter* f) { f->SetFidelityWeight(0.0); });
+  expect("FidelityWeight is -1", [](Filter* f) { f->SetFidelityWeight(-1.0); });
   expect("StopTolerance is 1", [](Filter* f) { f->SetStopTolerance(1.0); });
   expect("the number of Means is 1; allowed: 2",
     [](Filter* f)
