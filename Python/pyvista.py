@@ -64,8 +64,8 @@ class Report(types.SimpleNamespace):
 
 
 def heat(
-    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
-    **properties
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
 ):
     """Smooth, denoise or inpaint a point array by linear diffusion (vtkFVMHeatFilter).
 
@@ -78,6 +78,7 @@ def heat(
     mask       point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
     direction  point or cell array (n, 3) or (m, 3): the direction that AlongDiffusivity acts along
     fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
+    fidelity   point array (n,): factors of FidelityWeight, 0 or more
     times, full_output   see help(surfacediffusion.pyvista)
 
     Useful properties: FWHM (width of the blur in the unit of the coordinates, in place of TimeStep;
@@ -87,12 +88,13 @@ def heat(
     The result is the point array <array>Diffused, with the shape of the data.
     """
     return _run(
-        vtkFVMHeatFilter(), mesh, properties, (array, mask, direction, fixed), times, full_output)
+        vtkFVMHeatFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
 
 
 def intrinsic_tv(
-    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
-    **properties
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
 ):
     """Denoise or inpaint a point array and preserve its edges (vtkIntrinsicTVFilter).
 
@@ -106,13 +108,13 @@ def intrinsic_tv(
     The result is the point array <array>TV, with the shape of the data.
     """
     return _run(
-        vtkIntrinsicTVFilter(), mesh, properties, (array, mask, direction, fixed), times,
-        full_output)
+        vtkIntrinsicTVFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
 
 
 def harmonic_map(
-    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
-    **properties
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
 ):
     """Regularise normals or other unit vectors, or denoise the mesh (vtkHarmonicMapFilter).
 
@@ -127,8 +129,8 @@ def harmonic_map(
     The result is the point array <array>Harmonic (n, k); NormalsHarmonic for computed normals.
     """
     return _run(
-        vtkHarmonicMapFilter(), mesh, properties, (array, mask, direction, fixed), times,
-        full_output)
+        vtkHarmonicMapFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
 
 
 def turing_texture(

@@ -82,12 +82,14 @@ FieldSummary InputFields::Summarize() const
   summary.Directions = this->Direction != nullptr;
   summary.Fixed = this->Fixed != nullptr;
   summary.Rates = this->Rates != nullptr;
+  summary.FidelityFactors = this->Fidelity != nullptr;
   return summary;
 }
 
 std::vector<vtkDataArray*> InputFields::List() const
 {
-  return { this->Data, this->Mask, this->Direction, this->Fixed, this->Rates, this->GlobalIds };
+  return { this->Data, this->Mask, this->Direction, this->Fixed, this->Rates, this->Fidelity,
+    this->GlobalIds };
 }
 
 int NumberOfDataComponents(vtkDataArray* array)
@@ -138,6 +140,10 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
   }
   fields.Mask = ReadFlags(arrays.Mask);
   fields.Fixed = ReadFlags(arrays.Fixed);
+  for (vtkIdType i = 0; arrays.Fidelity && i < arrays.Fidelity->GetNumberOfTuples(); ++i)
+  {
+    fields.FidelityFactors.push_back(arrays.Fidelity->GetComponent(i, 0));
+  }
   if (arrays.Direction)
   {
     const Points vectors = ReadDirections(arrays.Direction);

@@ -28,6 +28,7 @@ struct InputFields
   bool DirectionOnCells = false;
   vtkDataArray* Fixed = nullptr; ///< index 3
   vtkDataArray* Rates = nullptr; ///< index 4
+  vtkDataArray* Fidelity = nullptr; ///< index 5
   vtkDataArray* GlobalIds = nullptr; ///< of the points
 
   FieldSummary Summarize() const;

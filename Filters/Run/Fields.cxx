@@ -32,6 +32,31 @@ std::runtime_error PointError(
   return std::runtime_error(text.str());
 }
 
+/// The mean factor of each vertex over its participating points.
+Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& ofPoints)
+{
+  const Index n = surface.Mesh().NumberOfVertices();
+  Vector factors = Vector::Zero(n);
+  Vector counts = Vector::Zero(n);
+  for (std::size_t i = 0; i < ofPoints.size(); ++i)
+  {
+    if (!(std::isfinite(ofPoints[i]) && ofPoints[i] >= 0.0))
+    {
+      std::ostringstream text;
+      text << "FidelityArray is " << ofPoints[i] << " at point " << i
+           << "; allowed: finite numbers, 0 or more";
+      throw std::runtime_error(text.str());
+    }
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0)
+    {
+      factors[v] += ofPoints[i];
+      counts[v] += 1.0;
+    }
+  }
+  return factors.cwiseQuotient(counts);
+}
+
 } // namespace
 
 void ValueStatistics::Widen(std::size_t component, double low, double high)
@@ -156,6 +181,10 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
     {
       data.Given.row(v) /= count;
     }
+  }
+  if (!fields.FidelityFactors.empty())
+  {
+    data.FidelityFactors = MakeFidelityFactors(surface, fields.FidelityFactors);
   }
   return data;
 }

@@ -231,15 +231,25 @@ PointData Run::MakeData(
     reduction.Max(&components, 1);
     const auto columns = static_cast<Eigen::Index>(components);
     const Eigen::Index n = block.Surface->Mesh().NumberOfVertices();
-    Values all = Values::Zero(n, columns + 2);
+    const bool hasFactors = processes.Any(data.FidelityFactors.size() > 0);
+    Values all = Values::Ones(n, columns + 3);
     if (n > 0)
     {
-      all << data.Given, data.Missing.cast<double>(), data.Fixed.cast<double>();
+      all.leftCols(columns + 2) << data.Given, data.Missing.cast<double>(),
+        data.Fixed.cast<double>();
+    }
+    if (data.FidelityFactors.size() > 0)
+    {
+      all.col(columns + 2) = data.FidelityFactors;
     }
     reduction.UpdateFromOwners(all);
     data.Given = all.leftCols(columns);
     data.Missing = all.col(columns).array() != 0.0;
     data.Fixed = all.col(columns + 1).array() != 0.0;
+    if (hasFactors)
+    {
+      data.FidelityFactors = all.col(columns + 2);
+    }
   }
   return data;
 }

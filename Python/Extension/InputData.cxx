@@ -139,6 +139,7 @@ FieldSummary InputFields::Summarize() const
   summary.Directions = this->Directions.has_value();
   summary.Fixed = this->Fixed.has_value();
   summary.Rates = this->Rates.has_value();
+  summary.FidelityFactors = this->FidelityFactors.has_value();
   return summary;
 }
 
@@ -177,6 +178,11 @@ Fields InputFields::Read() const
   {
     fields.Rates = ReadOnTriangles<Values>(*this->Surface, *this->Rates);
   }
+  if (this->FidelityFactors)
+  {
+    const double* const begin = this->FidelityFactors->data();
+    fields.FidelityFactors.assign(begin, begin + this->FidelityFactors->size());
+  }
   return fields;
 }
 
@@ -188,6 +194,7 @@ Fingerprint InputFields::Version() const
   AddArray(version, this->Fixed);
   AddArray(version, this->Directions);
   AddArray(version, this->Rates);
+  AddArray(version, this->FidelityFactors);
   version.AddNumber(std::uint64_t{ this->DirectionsOnFaces ? 1U : 0U });
   return version;
 }

@@ -100,6 +100,7 @@ public:
   std::optional<DoubleArray> Directions; ///< points or faces x 3
   bool DirectionsOnFaces = false;
   std::optional<DoubleArray> Rates; ///< faces x 4
+  std::optional<FactorArray> FidelityFactors;
 
   FieldSummary Summarize() const;
   Fields Read() const;

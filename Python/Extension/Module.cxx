@@ -27,7 +27,8 @@ namespace
 
 InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optional<InputArray> data,
   int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
-  std::optional<DoubleArray> directions, bool directionsOnFaces, std::optional<DoubleArray> rates)
+  std::optional<DoubleArray> directions, bool directionsOnFaces, std::optional<DoubleArray> rates,
+  std::optional<FactorArray> fidelity)
 {
   InputFields fields;
   fields.Surface = std::move(surface);
@@ -38,6 +39,7 @@ InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optiona
   fields.Directions = std::move(directions);
   fields.DirectionsOnFaces = directionsOnFaces;
   fields.Rates = std::move(rates);
+  fields.FidelityFactors = std::move(fidelity);
   return fields;
 }
 
@@ -80,14 +82,14 @@ NB_MODULE(_core, m)
       [](InputFields* self, std::shared_ptr<InputSurface> surface, std::optional<InputArray> data,
         int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
         std::optional<DoubleArray> directions, bool directionsOnFaces,
-        std::optional<DoubleArray> rates)
+        std::optional<DoubleArray> rates, std::optional<FactorArray> fidelity)
       {
-        new (self)
-          InputFields(MakeFields(std::move(surface), std::move(data), components, std::move(mask),
-            std::move(fixed), std::move(directions), directionsOnFaces, std::move(rates)));
+        new (self) InputFields(MakeFields(std::move(surface), std::move(data), components,
+          std::move(mask), std::move(fixed), std::move(directions), directionsOnFaces,
+          std::move(rates), std::move(fidelity)));
       },
       "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
-      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none());
+      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none(), "fidelity"_a.none());
 
   nb::class_<ModelRun>(m, "ModelRun")
     .def(nb::init<std::string>(), "model"_a)

@@ -27,6 +27,7 @@ class Fields:
         directions: Optional[NDArray[Any]],
         directions_on_faces: bool,
         rates: Optional[NDArray[Any]],
+        fidelity: Optional[NDArray[Any]],
     ) -> None: ...
 
 class ModelRun:

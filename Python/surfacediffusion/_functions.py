@@ -40,6 +40,10 @@ directions : array_like, shape (n, 3) or (m, 3), optional
     "fixed": """\
 fixed : array_like, shape (n,), optional
     Nonzero holds the value (Dirichlet condition).""",
+    "fidelity": """\
+fidelity : array_like, shape (n,), optional
+    Factors w >= 0 of `fidelity_weight` at each point, such as 1/s^2 for noise of standard
+    deviation s.""",
     "steps": """\
 steps : bool, default False
     Return an iterator over the states at steps 0, k, 2k, ... and the last, with
@@ -125,8 +129,8 @@ def _run(
 
 
 def _diffusion(
-    name: str, surface: Any, values: Any, mask: Any, directions: Any, fixed: Any, steps: bool,
-    full_output: bool, dtype: Any, progress: Progress, properties: dict[str, Any],
+    name: str, surface: Any, values: Any, mask: Any, directions: Any, fixed: Any, fidelity: Any,
+    steps: bool, full_output: bool, dtype: Any, progress: Progress, properties: dict[str, Any],
 ) -> Any:
     if not isinstance(full_output, (bool, np.bool_)):
         raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
@@ -134,7 +138,7 @@ def _diffusion(
     data = as_data("values", values, surface.n_points)
     shape = np.shape(values)
     find_result_type(data, dtype)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
     runner = Runner(name, properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
@@ -153,6 +157,7 @@ def heat(
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
     steps: bool = False,
     full_output: bool = False,
     dtype: Any = None,
@@ -173,6 +178,7 @@ def heat(
     {mask}
     {directions}
     {fixed}
+    {fidelity}
     {steps}
     {full_output}
     {dtype}
@@ -209,8 +215,8 @@ def heat(
     >>> [state.step for state in heat(surface, noise, steps=True, output_interval=4)]
     [0, 4, 8, 10]
     """
-    return _diffusion("heat", surface, values, mask, directions, fixed, steps, full_output, dtype,
-                      progress, properties)
+    return _diffusion("heat", surface, values, mask, directions, fixed, fidelity, steps, full_output,
+                      dtype, progress, properties)
 
 
 @_with_settings
@@ -221,6 +227,7 @@ def intrinsic_tv(
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
     steps: bool = False,
     full_output: bool = False,
     dtype: Any = None,
@@ -240,6 +247,7 @@ def intrinsic_tv(
     {mask}
     {directions}
     {fixed}
+    {fidelity}
     {steps}
     {full_output}
     {dtype}
@@ -269,8 +277,8 @@ def intrinsic_tv(
     >>> bool(result.effective_fidelity_weight > 0)
     True
     """
-    return _diffusion("intrinsic_tv", surface, values, mask, directions, fixed, steps, full_output,
-                      dtype, progress, properties)
+    return _diffusion("intrinsic_tv", surface, values, mask, directions, fixed, fidelity, steps,
+                      full_output, dtype, progress, properties)
 
 
 @_with_settings
@@ -281,6 +289,7 @@ def harmonic_map(
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
     steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
@@ -300,6 +309,7 @@ def harmonic_map(
     {mask}
     {directions}
     {fixed}
+    {fidelity}
     {steps}
     {dtype}
     {progress}
@@ -329,7 +339,7 @@ def harmonic_map(
     surface = as_surface(surface)
     data = as_vectors(surface, vectors, properties)
     find_result_type(data, dtype)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
     runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
     return _run("harmonic_map", given, runner,
                 lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),

@@ -17,7 +17,7 @@ from ._surface import Surface, as_data, as_numbers, data_components
 
 #: The keywords of input arrays, by their names in messages.
 ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
-          "FixedArray": "fixed", "DiffusionRateArray": "rates"}
+          "FixedArray": "fixed", "DiffusionRateArray": "rates", "FidelityArray": "fidelity"}
 
 
 def make_diffusion(

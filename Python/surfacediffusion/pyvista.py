@@ -21,6 +21,7 @@ array      the data: point array (n,) or (n, k) of any numeric type, NaN is miss
 mask       point array (n,), nonzero is missing (or excluded with mask_mode="Exclude")
 direction  point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along
 fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
+fidelity   point array (n,), factors of fidelity_weight, 0 or more
 
 times: times in the unit of time_step, in any order. The function then returns a list with the mesh
 at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
@@ -59,8 +60,8 @@ _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
 def heat(
     mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
-    progress: Progress = False, **properties: Any,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Smooth, denoise or inpaint a point array by linear diffusion.
 
@@ -68,14 +69,14 @@ def heat(
     in help(surfacediffusion.heat). The result is the point array <array>Diffused, with the shape of
     the data.
     """
-    return _run("heat", mesh, array, (mask, direction, fixed, None), times, full_output, progress,
-                properties)
+    return _run("heat", mesh, array, (mask, direction, fixed, None, fidelity), times, full_output,
+                progress, properties)
 
 
 def intrinsic_tv(
     mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
-    progress: Progress = False, **properties: Any,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Denoise or inpaint a point array and preserve its edges.
 
@@ -83,14 +84,14 @@ def intrinsic_tv(
     in help(surfacediffusion.intrinsic_tv). The result is the point array <array>TV, with the shape of
     the data.
     """
-    return _run("intrinsic_tv", mesh, array, (mask, direction, fixed, None), times, full_output,
-                progress, properties)
+    return _run("intrinsic_tv", mesh, array, (mask, direction, fixed, None, fidelity), times,
+                full_output, progress, properties)
 
 
 def harmonic_map(
     mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
-    progress: Progress = False, **properties: Any,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Regularise normals or other unit vectors, or denoise the mesh.
 
@@ -100,8 +101,8 @@ def harmonic_map(
     point array <array>Harmonic (n, k); NormalsHarmonic for computed normals. With move_vertices=True
     the points are moved.
     """
-    return _run("harmonic_map", mesh, array, (mask, direction, fixed, None), times, full_output,
-                progress, properties)
+    return _run("harmonic_map", mesh, array, (mask, direction, fixed, None, fidelity), times,
+                full_output, progress, properties)
 
 
 def turing_texture(
@@ -116,8 +117,8 @@ def turing_texture(
     equation and all other keywords in help(surfacediffusion.turing_texture). The results are the
     point arrays u1, u2 and Texture (n,), and TextureColor (n, 3) with color_output=True.
     """
-    return _run("turing_texture", mesh, initial, (mask, direction, fixed, rates), times, full_output,
-                progress, properties)
+    return _run("turing_texture", mesh, initial, (mask, direction, fixed, rates, None), times,
+                full_output, progress, properties)
 
 
 def direction_field(
@@ -296,12 +297,13 @@ def _prepare(
                              "of a point array")
         data = as_data(name, block.find("array", name)[0], surface.n_points)
         block.name = name
-    mask, direction, fixed, rates = names
+    mask, direction, fixed, rates, fidelity = names
     directions, on_faces = block.find("direction", direction, faces=True)
     block.given = Input(
         surface, data, mask=block.find("mask", mask)[0], fixed=block.find("fixed", fixed)[0],
         directions=directions, directions_name="direction", on_faces=on_faces,
-        rates=block.find("rates", rates, points=False, faces=True)[0])
+        rates=block.find("rates", rates, points=False, faces=True)[0],
+        fidelity=block.find("fidelity", fidelity)[0])
 
 
 def _write(function: str, block: _Block, result: Any, name: str | None, colors: bool) -> None:

@@ -169,6 +169,28 @@ TEST(BadInput, ArraysThatCannotBeUsedAreErrors)
       input->GetCellData()->AddArray(MakeArray(VTK_INT, "mask", 50, 1, Rough));
       SetInputArray(filter, 1, "mask", true);
     });
+  ExpectError({ "FidelityArray", "\"w\"", "2 components", "1" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      AddPointArray(input, "w", 2, Rough);
+      SetInputArray(filter, 5, "w");
+    });
+  for (const double bad : { -1.0, std::nan("") })
+  {
+    ExpectError({ "FidelityArray", "point 7", "0 or more" },
+      [bad](vtkFVMHeatFilter* filter, vtkPolyData* input)
+      {
+        AddPointArray(input, "w", 1, [bad](vtkIdType i, int) { return i == 7 ? bad : 1.0; });
+        SetInputArray(filter, 5, "w");
+        filter->SetFidelityWeight(1.0);
+      });
+  }
+  ExpectError({ "FidelityArray", "FidelityWeight is 0", "above 0" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      AddPointArray(input, "w", 1, [](vtkIdType, int) { return 1.0; });
+      SetInputArray(filter, 5, "w");
+    });
   ExpectError({ "DirectionArray", "\"e1\"", "2 components", "3" },
     [](vtkFVMHeatFilter* filter, vtkPolyData* input)
     {

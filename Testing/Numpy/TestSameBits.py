@@ -31,7 +31,7 @@ FILTERS = {
 
 #: Index of each input array of the filters.
 INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
-         "rates": 4}
+         "rates": 4, "fidelity": 5}
 
 
 def rough_sphere():
@@ -85,6 +85,8 @@ class SameBits(unittest.TestCase):
              {"MaskMode": "Exclude", "FWHM": 0.2, "Solver": "Multigrid"}),
             ("heat", {"values": self.values}, {"AutomaticFidelity": True, "Mode": "SteadyState"}),
             ("heat", {"values": self.values}, {"IntrinsicDelaunay": True}),
+            ("heat", {"values": self.values, "fidelity": 1.0 + self.points[:, 2] ** 2},
+             {"FidelityWeight": 0.5}),
             ("intrinsic_tv", {"values": self.values}, {}),
             ("intrinsic_tv", {"values": colours, "mask": self.mask}, {"Mode": "SteadyState"}),
             ("intrinsic_tv", {"values": self.values},

@@ -92,7 +92,9 @@ TotalCorrection::TotalCorrection(
       for (Index i = begin; i < end && conserves; ++i)
       {
         conserves = !data.Fixed[i] &&
-          !(hasFidelity && (data.Missing[i] || data.Given.row(i) != data.Start.row(i)));
+          !(hasFidelity &&
+            (data.Missing[i] || data.Given.row(i) != data.Start.row(i) ||
+              data.FidelityFactor(i) != data.FidelityFactor(begin)));
       }
       return !conserves;
     });
