@@ -13,7 +13,7 @@
  *
  * **Fidelity per point.** Input array 5, FidelityArray, is an optional point array of one component
  * whose values w >= 0 multiply lambda, for data that are not equally reliable: with noise of
- * standard deviation s_i at point i, w_i is proportional to 1/s_i^2. It needs lambda > 0. A point
+ * standard deviation s_i at point i, w_i is proportional to 1/s_i^2. A point
  * with w = 0 starts from its value, which has no further effect. If w varies, the sum of A_i u_i is
  * not conserved. With AutomaticFidelity the discrepancy is the mean over the surface weighted by w.
  *

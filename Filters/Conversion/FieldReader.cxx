@@ -82,7 +82,6 @@ FieldSummary InputFields::Summarize() const
   summary.Directions = this->Direction != nullptr;
   summary.Fixed = this->Fixed != nullptr;
   summary.Rates = this->Rates != nullptr;
-  summary.FidelityFactors = this->Fidelity != nullptr;
   return summary;
 }
 

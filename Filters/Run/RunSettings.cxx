@@ -172,12 +172,6 @@ void DataSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
          << "an array of directions";
     problems.push_back(text.str());
   }
-  if (fields && fields->FidelityFactors && !this->DescribeModel().UsesFidelity)
-  {
-    problems.emplace_back(
-      "FidelityArray is set but FidelityWeight is 0; allowed: a weight above 0, "
-      "or no array");
-  }
 }
 
 } // namespace SurfaceDiffusion

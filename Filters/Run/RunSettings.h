@@ -44,7 +44,6 @@ struct FieldSummary
   bool Directions = false;
   bool Fixed = false;
   bool Rates = false;
-  bool FidelityFactors = false;
 };
 
 /// The properties of a model that a run needs before it makes the model.

@@ -139,7 +139,6 @@ FieldSummary InputFields::Summarize() const
   summary.Directions = this->Directions.has_value();
   summary.Fixed = this->Fixed.has_value();
   summary.Rates = this->Rates.has_value();
-  summary.FidelityFactors = this->FidelityFactors.has_value();
   return summary;
 }
 

@@ -107,6 +107,26 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->AutomaticFidelityOn();
       f->SetStopTolerance(0.1);
     });
+  needed["vtkFVMHeatFilter BlurFWHM"] = With<Heat>(
+    [](Heat* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetFidelityWeight(1.0);
+    });
+  needed["vtkFVMHeatFilter BlurSteps"] = With<Heat>(
+    [](Heat* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetFidelityWeight(1.0);
+      f->SetBlurFWHM(0.2);
+    });
+  needed["vtkIntrinsicTVFilter BlurFWHM"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
+  needed["vtkIntrinsicTVFilter BlurSteps"] = With<TV>(
+    [](TV* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetBlurFWHM(0.2);
+    });
   needed["EdgeThreshold"] = With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
   needed["vtkIntrinsicTVFilter StopTolerance"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
   needed["vtkHarmonicMapFilter Beta"] = With<Harmonic>([](Harmonic* f) { f->SetExponent(1.2); });

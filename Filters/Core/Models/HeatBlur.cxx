@@ -55,10 +55,15 @@ HeatBlur::HeatBlur(std::shared_ptr<const Assembler> assembler, double width, int
 void HeatBlur::Prepare(const ProgressMonitor& progress)
 {
   this->System.SetUpSolver(progress);
+  this->Prepared = true;
 }
 
 void HeatBlur::Apply(Values& u, StepReport& report)
 {
+  if (!this->Prepared)
+  {
+    this->Prepare();
+  }
   this->RightHandSide.resize(u.rows(), u.cols());
   for (int step = 0; step < this->Steps; ++step)
   {
@@ -66,6 +71,13 @@ void HeatBlur::Apply(Values& u, StepReport& report)
       [&](Index i) { this->RightHandSide.row(i) = this->Mesh.ControlAreas()[i] * u.row(i); });
     this->System.Solve(this->RightHandSide, u, report);
   }
+}
+
+void HeatBlur::ApplyToWeighted(const Fidelity& fidelity, Values& v, StepReport& report)
+{
+  ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
+    [&](Index i) { v.row(i) *= fidelity.Weight(i); });
+  this->Apply(v, report);
 }
 
 } // namespace SurfaceDiffusion

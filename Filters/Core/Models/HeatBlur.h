@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/Fidelity.h"
 #include "Core/Models/ImplicitSystem.h"
 
 #include <memory>
@@ -27,16 +28,21 @@ public:
   /// width^2/(16 ln 2), as N grows, and is 1.64 times as large at N = 4.
   static double TimeOfWidth(double width, int steps);
 
-  /// Take the matrix to the solver.
-  void Prepare(const ProgressMonitor& progress);
+  /// Factorise the matrix, or prepare the solver in another way. The first Apply() does it otherwise.
+  void Prepare(const ProgressMonitor& progress = ProgressMonitor());
 
-  /// u becomes H u. The report adds up.
+  /// u becomes H u. The solves are added to the report.
   void Apply(Values& u, StepReport& report);
+
+  /// v becomes H (lambda w chi v): the derivative of lambda/2 int w chi (H u - f)^2 in the inner
+  /// product of M for v = H u - f.
+  void ApplyToWeighted(const Fidelity& fidelity, Values& v, StepReport& report);
 
 private:
   const TriangleMesh& Mesh;
   const ParallelFor& Parallel;
   int Steps;
+  bool Prepared = false;
   ImplicitSystem System;
   Values RightHandSide;
 };

@@ -6,7 +6,6 @@
 #include "Core/Models/HeatBlur.h"
 #include "Core/Models/Model.h"
 #include "Core/Operators/MeanCorrection.h"
-#include "Core/Solvers/ConjugateGradientSystem.h"
 
 #include <memory>
 
@@ -35,18 +34,19 @@ public:
   /// E(u).
   double Energy() const override;
 
-  /// H u.
-  const Values& Blurred() const { return this->BlurredState; }
-
 private:
-  SolveReport Solve(const Values& b, StepReport& report, const ProgressMonitor& progress);
-  /// v becomes M H w chi v.
+  void Prepare(const ProgressMonitor& progress);
+  /// v becomes lambda M H w chi v.
   void ApplyAdjoint(Values& v, StepReport& report) const;
+  SolveReport Solve(Values& x, StepReport& blurs, const ProgressMonitor& progress);
+  template <int K>
+  SolveReport SolveColumns(Values& x, StepReport& blurs, const ProgressMonitor& progress);
 
   std::shared_ptr<const Assembler> Assembly;
   CornerWeights Coefficients;
   PointData Data;
   Fidelity Fit;
+  double FidelityWeight;
   std::unique_ptr<HeatBlur> Blur;
   std::shared_ptr<LinearSolver> Solver;
   IterationLimits Limits;
@@ -54,9 +54,6 @@ private:
   TotalCorrection Conserved;
   SparseMatrix Stiffness, Preconditioner;
   Vector InverseDiagonal; ///< of the preconditioner's matrix
-  Values BlurredState;
-  Values Residual;
-  ConjugateGradientWork Work;
 };
 
 } // namespace SurfaceDiffusion

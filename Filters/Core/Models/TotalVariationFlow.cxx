@@ -25,7 +25,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   , Target(this->Data.Given)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  if (this->Fit.CanConserve())
+  if (this->Fit.CanConserve() && settings.ConservesTotal)
   {
     this->Conserved = TotalCorrection(mesh, this->Data, this->Fit.IsPresent(), parallel);
   }
@@ -85,6 +85,14 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
     this->ColumnU.resize(n, columns);
     this->ColumnTarget.resize(n, columns);
     this->ColumnGiven.resize(n, columns);
+  }
+}
+
+void TotalVariationFlow::SetLimits(double stopTolerance, int maximumNumberOfIterations)
+{
+  for (const System& system : this->Systems)
+  {
+    system.Minimizer->SetLimits(stopTolerance, maximumNumberOfIterations);
   }
 }
 

@@ -45,6 +45,7 @@ public:
     FidelityNorm Norm = FidelityNorm::L2;
     double StopTolerance = 1e-4; ///< relative duality gap, see TotalVariationMinimizer
     int MaximumNumberOfIterations = 10000;
+    bool ConservesTotal = true; ///< whether states without fidelity keep the total of the start
   };
 
   /// frames: e1 per triangle (see TangentVectors.h), without rows if g1 = g2.
@@ -58,6 +59,12 @@ public:
   /// their sum) and A the area where they act: the root mean square of u - u* is not larger, since
   /// the energy is strongly convex. Infinite if there are no such terms.
   StepReport Advance(const ProgressMonitor& progress) override;
+
+  /// Replace the state. The multipliers stay: the next step starts from them.
+  void SetState(const Values& u) { this->U = u; }
+
+  /// StopTolerance and MaximumNumberOfIterations of later steps.
+  void SetLimits(double stopTolerance, int maximumNumberOfIterations);
 
   /// E(u).
   double Energy() const override;

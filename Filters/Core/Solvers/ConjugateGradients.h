@@ -140,6 +140,7 @@ public:
     const ColumnCount<K> k(this->Columns);
     const double* const p = this->W.P.data();
     double* const q = this->W.Q.data();
+    this->S.PrepareProduct(this->W.P);
     const auto multiply = [this](Index begin, Index end)
     { this->S.template MultiplyRows<K>(this->W.P, this->W.Q, begin, end); };
     if (System::IsProjected && !this->S.OverProcesses.IsSerial())
