@@ -89,7 +89,7 @@ StepReport TotalVariationDeblurring::Advance(const ProgressMonitor& progress)
     ++report.Iterations;
     const double gap = FirstGap * std::pow(report.Iterations, -GapExponent);
     this->Shrinkage->SetLimits(std::max(gap, leastGap / u.Energy), IterationsPerShrinkage);
-    this->Shrink(y, blurredY, z, blurs, progress.Part(fraction, fraction));
+    this->Shrink(y, blurredY, z, report.Iterations > 1, blurs, progress.Part(fraction, fraction));
     report.Residual = this->RootMeanSquare(z.U, y) / this->Range;
     const Point last = u;
     if (z.Energy <= u.Energy)
@@ -112,7 +112,7 @@ StepReport TotalVariationDeblurring::Advance(const ProgressMonitor& progress)
 }
 
 void TotalVariationDeblurring::Shrink(const Values& y, const Values& blurredY, Point& z,
-  StepReport& report, const ProgressMonitor& progress)
+  bool keepMultipliers, StepReport& report, const ProgressMonitor& progress)
 {
   z.U = blurredY - this->Data.Given;
   this->Blur->ApplyToWeighted(this->Fit, z.U, report);
@@ -125,7 +125,7 @@ void TotalVariationDeblurring::Shrink(const Values& y, const Values& blurredY, P
         z.U.row(i) = this->Data.Start.row(i);
       }
     });
-  this->Shrinkage->SetState(z.U);
+  this->Shrinkage->SetState(z.U, keepMultipliers);
   this->Shrinkage->Advance(progress);
   z.U = this->Shrinkage->State();
   this->Measure(z, report);

@@ -58,8 +58,8 @@ private:
   double FidelityEnergy(const Values& blurred) const;
   void Measure(Point& point, StepReport& report) const;
   /// z_k+1 from y, whose blur is given.
-  void Shrink(const Values& y, const Values& blurredY, Point& z, StepReport& report,
-    const ProgressMonitor& progress);
+  void Shrink(const Values& y, const Values& blurredY, Point& z, bool keepMultipliers,
+    StepReport& report, const ProgressMonitor& progress);
   double RootMeanSquare(const Values& a, const Values& b) const;
 
   std::shared_ptr<const Assembler> Assembly;

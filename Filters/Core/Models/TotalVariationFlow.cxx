@@ -130,6 +130,7 @@ StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
     gap += result.AbsoluteGap;
     done += 1.0;
   }
+  this->KeepsMultipliers = true;
   this->Conserved.Restore(this->Assembly->Mesh(), this->U, this->Parallel);
   report.ErrorBound = this->WeightedArea > 0.0
     ? std::sqrt(2.0 * gap * this->LargestInverseWeight / this->WeightedArea)
@@ -170,7 +171,7 @@ void TotalVariationFlow::SetTarget()
 TotalVariationMinimizer::Report TotalVariationFlow::Minimize(
   const System& system, const ProgressMonitor& progress)
 {
-  const bool keepMultipliers = !this->Options.SteadyState;
+  const bool keepMultipliers = !this->Options.SteadyState && this->KeepsMultipliers;
   if (this->Systems.size() == 1)
   {
     return system.Minimizer->Minimize(

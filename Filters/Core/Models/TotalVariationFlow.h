@@ -60,8 +60,12 @@ public:
   /// the energy is strongly convex. Infinite if there are no such terms.
   StepReport Advance(const ProgressMonitor& progress) override;
 
-  /// Replace the state. The multipliers stay: the next step starts from them.
-  void SetState(const Values& u) { this->U = u; }
+  /// Replace the state. The next step starts from the multipliers of the last one, or from none.
+  void SetState(const Values& u, bool keepMultipliers = true)
+  {
+    this->U = u;
+    this->KeepsMultipliers = keepMultipliers;
+  }
 
   /// StopTolerance and MaximumNumberOfIterations of later steps.
   void SetLimits(double stopTolerance, int maximumNumberOfIterations);
@@ -97,6 +101,7 @@ private:
   double LargestInverseWeight = 0.0; ///< 1/mu where mu > 0, times Diffusivity
   double WeightedArea = 0.0; ///< of the control cells with mu > 0
   std::vector<System> Systems;
+  bool KeepsMultipliers = true; ///< in the next step
   Values Target;
   Values SteadyStart; ///< from which the steady state of L1 is sought, which removes outliers
   mutable Values ColumnU;

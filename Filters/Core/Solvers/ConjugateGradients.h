@@ -309,7 +309,7 @@ private:
     const Numbers step(this->W.Step);
     const Numbers beta(this->W.Beta);
     ForEach(this->Parallel, this->Rows,
-      [k, u, p, step, beta, &z](Index i)
+      [=](Index i)
       {
         const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
         for (int c = 0; c < k; ++c)
