@@ -20,7 +20,8 @@ enum class SolverPurpose
   Step, ///< the time steps
   SecondChemical, ///< those of a texture's second chemical
   Search, ///< the search for a fidelity weight
-  Fill ///< the harmonic start on missing vertices
+  Fill, ///< the harmonic start on missing vertices
+  Edges ///< v of the Mumford-Shah model
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -69,7 +70,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 4> Solvers;
+  std::array<Kept, 5> Solvers;
 };
 
 } // namespace SurfaceDiffusion

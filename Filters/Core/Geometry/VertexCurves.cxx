@@ -46,6 +46,7 @@ public:
         this->Order.push_back(i);
       }
     }
+    this->OpenWholeComponents(values);
     std::stable_sort(this->Order.begin(), this->Order.end(),
       [&](Index a, Index b) { return values[a] < values[b]; });
     const auto kept = std::partition_point(
@@ -66,6 +67,24 @@ public:
 
 private:
   bool Has(Index i) const { return this->Set[i] != 0; }
+
+  /// Thinning cannot begin on a closed surface that is in the set as a whole: its smallest value is
+  /// removed first.
+  void OpenWholeComponents(const Vector& values)
+  {
+    const std::vector<Index>& begin = this->Mesh.ComponentsBegin();
+    for (std::size_t c = 0; c + 1 < begin.size(); ++c)
+    {
+      const auto first = this->Set.begin() + begin[c];
+      const auto last = this->Set.begin() + begin[c + 1];
+      if (std::find(first, last, 0) == last)
+      {
+        Eigen::Index smallest = 0;
+        values.segment(begin[c], begin[c + 1] - begin[c]).minCoeff(&smallest);
+        this->Set[begin[c] + smallest] = 0;
+      }
+    }
+  }
 
   /// Remove vertices among the first `count`, until no more can be.
   void Remove(std::size_t count, bool keepEnds)
