@@ -18,11 +18,11 @@ from typing import Any, Iterator, Literal, overload
 from numpy.typing import ArrayLike, NDArray
 import numpy as np
 
-from ._result import DiffusionResult, HarmonicMapResult, TextureResult
+from ._result import DiffusionResult, EdgeResult, HarmonicMapResult, TextureResult
 from ._run import Progress
 from ._surface import SurfaceLike
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "turing_texture"]
 """
 
 #: The return types of a function for the values of its switches.
@@ -30,6 +30,7 @@ RETURNS = {
     "heat": [({}, "NDArray[Any]"), ({"full_output": True}, "DiffusionResult"),
              ({"steps": True}, "Iterator[DiffusionResult]")],
     "harmonic_map": [({}, "HarmonicMapResult"), ({"steps": True}, "Iterator[HarmonicMapResult]")],
+    "mumford_shah": [({}, "EdgeResult"), ({"steps": True}, "Iterator[EdgeResult]")],
     "turing_texture": [({}, "TextureResult"), ({"steps": True}, "Iterator[TextureResult]")],
     "direction_field": [({}, "NDArray[np.float64]")],
 }

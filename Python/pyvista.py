@@ -38,8 +38,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import (
-    vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkSurfaceDirectionFieldFilter,
-    vtkTuringTextureFilter,
+    vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
+    vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter,
 )
 
 _POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
@@ -50,7 +50,7 @@ _REPORTED = (
     "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
     "EffectiveTimeStep", "EffectiveFidelityWeight", "Wavelength", "WavelengthGrowthRate",
     "DiffusionRateFactor", "MeanDisplacement", "MaximumDisplacement", "VolumeBefore",
-    "VolumeAfter",
+    "VolumeAfter", "EdgeLength",
 )
 
 
@@ -59,7 +59,7 @@ class Report(types.SimpleNamespace):
     EffectiveFidelityWeight, as attributes of the same names; and, except for direction fields,
     `history`, a dictionary of NumPy arrays with one entry per step up to the last time, beginning
     with the initial state: Step, Time, Total_0 ... (the integral of each component), Energy,
-    Iterations, Residual, Seconds.
+    Iterations, Residual, Seconds. That of mumford_shah() has `curves`, a pyvista.PolyData of lines.
     """
 
 
@@ -130,6 +130,27 @@ def harmonic_map(
     """
     return _run(
         vtkHarmonicMapFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
+
+
+def mumford_shah(
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
+):
+    """Find the edges of a point array, and smooth or inpaint the data between them
+    (vtkMumfordShahFilter).
+
+    Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli.
+
+    The arguments are those of heat(). Useful properties: EdgeThreshold (the jump from which on an
+    edge costs less than smoothing, default 0.2 of the range of the data), SmoothingLength (default
+    8 mean edge lengths), EdgeWidth (default 2 mean edge lengths).
+
+    The results are the point arrays <array>MumfordShah, with the shape of the data, and Edges (n,),
+    which is 1 on edges. With full_output=True the report has the edges as `curves`.
+    """
+    return _run(
+        vtkMumfordShahFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
         times, full_output)
 
 
@@ -219,9 +240,9 @@ class _Messages:
             raise ValueError(self.errors[0])
 
 
-def _output(algorithm):
+def _output(algorithm, port=0):
     """A mesh that the next update of the filter does not change."""
-    data = algorithm.GetOutputDataObject(0)
+    data = algorithm.GetOutputDataObject(port)
     copy = data.NewInstance()
     copy.ShallowCopy(data)
     return pyvista.wrap(copy)
@@ -238,6 +259,8 @@ def _report(algorithm):
             columns.GetArrayName(i): vtk_to_numpy(columns.GetArray(i))
             for i in range(columns.GetNumberOfArrays())
         }
+    if algorithm.GetNumberOfOutputPorts() > 2:
+        report.curves = _output(algorithm, 2)
     return report
 
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Geometry/RidgeCurves.h"
 #include "Core/Geometry/VertexUpdating.h"
 #include "Core/Models/Trajectory.h"
 #include "Run/Fields.h"
@@ -51,6 +52,8 @@ struct RunResult
   std::array<double, 2> ContrastLimits = { 0.0, 1.0 }; ///< of a texture, at the current step
   Points MovedPoints; ///< per input point, if vertices were moved; otherwise no row
   VertexMotion Motion;
+  Vector Edges; ///< 1 - v of the Mumford-Shah model, per vertex
+  Polylines EdgeCurves; ///< its ridges, in coordinate units
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<std::string> Warnings;

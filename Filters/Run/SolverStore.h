@@ -21,7 +21,8 @@ enum class SolverPurpose
   SecondChemical, ///< those of a texture's second chemical
   Search, ///< the search for a fidelity weight
   Fill, ///< the harmonic start on missing vertices
-  Blur ///< the blur that is removed
+  Blur, ///< the blur that is removed
+  Edges ///< v of the Mumford-Shah model
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -70,7 +71,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 5> Solvers;
+  std::array<Kept, 6> Solvers;
 };
 
 } // namespace SurfaceDiffusion

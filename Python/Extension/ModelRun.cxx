@@ -282,6 +282,31 @@ void ModelRun::WriteTextureColors(std::size_t block, const OutputArray& output,
     [&](Index, Eigen::Index k) { return static_cast<double>(elsewhere(0, k)); });
 }
 
+void ModelRun::WriteEdges(std::size_t block, const OutputArray& output) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  const Vector& edges = from.Result.Edges;
+  WritePoints(
+    *from.Surface, output, 1, [&](Index v, Eigen::Index) { return edges[v]; },
+    [](Index, Eigen::Index) { return 0.0; });
+}
+
+std::vector<Index> ModelRun::GetCurveSizes(std::size_t block) const
+{
+  const Polylines& curves = this->Model.GetBlock(block).Result.EdgeCurves;
+  std::vector<Index> sizes;
+  for (Index l = 0; l < curves.NumberOfLines(); ++l)
+  {
+    sizes.push_back(curves.Begin[l + 1] - curves.Begin[l]);
+  }
+  return sizes;
+}
+
+void ModelRun::WriteCurves(std::size_t block, const OutputArray& output) const
+{
+  WriteMatrix(this->Model.GetBlock(block).Result.EdgeCurves.Points, output);
+}
+
 bool ModelRun::WriteMovedPoints(std::size_t block, const OutputArray& output) const
 {
   const Points& moved = this->Model.GetBlock(block).Result.MovedPoints;

@@ -51,6 +51,11 @@ public:
   void WriteTexture(std::size_t block, const OutputArray& output) const;
   void WriteTextureColors(std::size_t block, const OutputArray& output,
     const std::array<double, 3>& low, const std::array<double, 3>& high) const;
+  /// 1 - v of the Mumford-Shah model; 0 at points that take no part.
+  void WriteEdges(std::size_t block, const OutputArray& output) const;
+  /// The number of points of each curve along its edges, and the points of all curves.
+  std::vector<Index> GetCurveSizes(std::size_t block) const;
+  void WriteCurves(std::size_t block, const OutputArray& output) const;
   /// The moved points (float64 or float32); false if no point was moved.
   bool WriteMovedPoints(std::size_t block, const OutputArray& output) const;
 

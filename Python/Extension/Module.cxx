@@ -106,6 +106,9 @@ NB_MODULE(_core, m)
     .def("write_texture", &ModelRun::WriteTexture, "block"_a, "output"_a)
     .def("write_texture_colors", &ModelRun::WriteTextureColors, "block"_a, "output"_a, "low"_a,
       "high"_a)
+    .def("write_edges", &ModelRun::WriteEdges, "block"_a, "output"_a)
+    .def("curve_sizes", &ModelRun::GetCurveSizes, "block"_a)
+    .def("write_curves", &ModelRun::WriteCurves, "block"_a, "output"_a)
     .def("write_moved_points", &ModelRun::WriteMovedPoints, "block"_a, "output"_a);
 
   nb::class_<DirectionRun>(m, "DirectionRun")

@@ -5,6 +5,7 @@
 #include "Run/DirectionFieldRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/MumfordShahSettings.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
 
@@ -128,6 +129,10 @@ std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
   if (model == "harmonic_map")
   {
     return std::make_unique<HarmonicMapSettings>();
+  }
+  if (model == "mumford_shah")
+  {
+    return std::make_unique<MumfordShahSettings>();
   }
   if (model == "turing_texture")
   {

@@ -15,14 +15,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._models import (
-    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_harmonic_map, make_texture,
+    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
+    make_texture,
 )
-from ._result import DiffusionResult, HarmonicMapResult, TextureResult
+from ._result import DiffusionResult, EdgeResult, HarmonicMapResult, TextureResult
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, translate
 from ._surface import SurfaceLike, as_data, as_surface
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "turing_texture"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -279,6 +280,82 @@ def intrinsic_tv(
     """
     return _diffusion("intrinsic_tv", surface, values, mask, directions, fixed, fidelity, steps,
                       full_output, dtype, progress, properties)
+
+
+@_with_settings
+def mumford_shah(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    *,
+    mask: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
+    steps: bool = False,
+    dtype: Any = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> EdgeResult | Iterator[EdgeResult]:
+    """Find the edges of data on a surface, and smooth or inpaint the data between them.
+
+    Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli
+    (CPAM 43, 1990), over u, which is smooth between edges, and v, which is near 0 on them and 1
+    elsewhere: the integral of lambda/2 chi abs(u - f)^2 + 1/2 (v^2 + kappa) abs(grad u)^2
+    + beta (eps abs(grad v)^2 + (1 - v)^2/(4 eps)). chi is 1 where f is known and 0 where it is
+    missing: there u and v are continued. The columns of the data have their edges in common.
+
+    The coefficients are lambda = `fidelity_weight`/`smoothing_length`^2, eps = `edge_width`, kappa =
+    1e-6 and beta = `edge_threshold`^2/(4 `smoothing_length`)/(1 + h/(4 eps)), so that a jump of
+    `edge_threshold` costs as much as an edge as if it is smoothed. The result is a local minimum.
+
+    Parameters
+    ----------
+    {surface}
+    {values}
+    {mask}
+    {directions}
+    {fixed}
+    {fidelity}
+    {steps}
+    {dtype}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    EdgeResult, or iterator of EdgeResult
+        `values` are u, `edges` is 1 - v, and `curves` are the edges as polylines.
+
+    {problems}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import mumford_shah, sphere
+    >>> surface = sphere(5)
+    >>> clean = np.where(surface.points[:, 2] > 0.5, 1.0, 0.0)
+    >>> noisy = clean + np.random.default_rng(0).normal(scale=0.04, size=clean.size)
+    >>> result = mumford_shah(surface, noisy)
+    >>> len(result.curves), round(result.edge_length / (2 * np.pi * np.sqrt(0.75)), 2)
+    (1, 1.0)
+    >>> bool(np.abs(result.values - clean).mean() < 0.2 * np.abs(noisy - clean).mean())
+    True
+    """
+    surface = as_surface(surface)
+    data = as_data("values", values, surface.n_points)
+    shape = np.shape(values)
+    find_result_type(data, dtype)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
+    runner = Runner("mumford_shah", properties, ARRAYS)
+
+    def make(run: Any, found: dict[str, Any]) -> EdgeResult:
+        result = make_edges(run, 0, given, runner, dtype, found)
+        return replace(result, values=result.values.reshape(shape))
+
+    return _run("mumford_shah", given, runner, make, steps, progress)
 
 
 @_with_settings

@@ -10,7 +10,7 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ._result import DiffusionResult, HarmonicMapResult, TextureResult
+from ._result import DiffusionResult, EdgeResult, HarmonicMapResult, TextureResult
 from ._run import Input, Runner, find_result_type
 from ._settings import shorten
 from ._surface import Surface, as_data, as_numbers, data_components
@@ -43,6 +43,24 @@ def make_harmonic_map(
     points = np.array(given.surface.points)
     runner.call(run.write_moved_points, block, points)
     return HarmonicMapResult(output, points=points, **_pick(HarmonicMapResult, found))
+
+
+def make_edges(
+    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any]
+) -> EdgeResult:
+    """The result of mumford_shah on one surface, with columns for components."""
+    assert given.data is not None
+    result_type = find_result_type(given.data, dtype)
+    output = np.empty(given.data.shape, dtype=result_type)
+    runner.call(run.write_state, block, output, given.data)
+    single = result_type == np.float32
+    edges = np.empty((given.surface.n_points, 1), dtype=np.float32 if single else np.float64)
+    runner.call(run.write_edges, block, edges)
+    sizes = run.curve_sizes(block)
+    points = np.empty((sum(sizes), 3))
+    runner.call(run.write_curves, block, points)
+    return EdgeResult(output, edges=edges[:, 0], curves=np.split(points, np.cumsum(sizes))[:-1],
+                      **_pick(EdgeResult, found))
 
 
 def make_texture(

@@ -46,14 +46,15 @@ from numpy.typing import NDArray
 from . import _core
 from ._functions import direction_field as _direction_field
 from ._models import (
-    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_harmonic_map, make_texture,
+    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
+    make_texture,
 )
 from ._result import Result
 from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
 from ._surface import Surface, as_data
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "turing_texture"]
+__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "turing_texture"]
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
@@ -102,6 +103,22 @@ def harmonic_map(
     the points are moved.
     """
     return _run("harmonic_map", mesh, array, (mask, direction, fixed, None, fidelity), times,
+                full_output, progress, properties)
+
+
+def mumford_shah(
+    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
+) -> Any:
+    """Find the edges of a point array, and smooth or inpaint the data between them.
+
+    The arguments are those of heat(); the functional and all other keywords are in
+    help(surfacediffusion.mumford_shah). The results are the point arrays <array>MumfordShah, with
+    the shape of the data, and Edges (n,). The curves along the edges are `curves` of the report that
+    full_output=True returns, a list of arrays of points.
+    """
+    return _run("mumford_shah", mesh, array, (mask, direction, fixed, None, fidelity), times,
                 full_output, progress, properties)
 
 
@@ -320,7 +337,10 @@ def _write(function: str, block: _Block, result: Any, name: str | None, colors: 
             points[active] = result.colors
         block.mesh.set_active_scalars(active, preference="point")
         return
-    suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic"}[function]
+    suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
+              "mumford_shah": "MumfordShah"}[function]
+    if function == "mumford_shah":
+        points["Edges"] = result.edges
     active = name or block.name + suffix
     given = block.input.point_data
     single = block.name in given and given[block.name].ndim == 1
@@ -358,8 +378,9 @@ def _run(
     if not blocks:
         raise failures[0]
     painted = bool(runner.settings.get("ColorOutput", False))
-    make: Callable[..., Any] = {"harmonic_map": make_harmonic_map, "turing_texture": make_texture}.get(
-        function, make_diffusion)
+    make: Callable[..., Any] = {
+        "harmonic_map": make_harmonic_map, "mumford_shah": make_edges,
+        "turing_texture": make_texture}.get(function, make_diffusion)
     extra = (colors if painted else [],) if function == "turing_texture" else ()
     inputs = [block.given for block in blocks if block.given]
     run = _core.ModelRun(function)
@@ -412,7 +433,8 @@ def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
     return method
 
 
-for _function in (heat, intrinsic_tv, harmonic_map, turing_texture, direction_field):
+for _function in (
+        heat, intrinsic_tv, harmonic_map, mumford_shah, turing_texture, direction_field):
     setattr(_Accessor, _function.__name__, _as_method(_function))
 
 if hasattr(pyvista, "register_dataset_accessor"):

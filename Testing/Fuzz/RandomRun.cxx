@@ -7,6 +7,7 @@
 #include "Core/Models/HarmonicMap.h"
 #include "Core/Models/InitialState.h"
 #include "Core/Models/LinearDiffusion.h"
+#include "Core/Models/MumfordShah.h"
 #include "Core/Models/NonlinearDiffusion.h"
 #include "Core/Models/ReactionDiffusion.h"
 #include "Core/Models/TikhonovDeblurring.h"
@@ -376,6 +377,21 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   Run(assembler->Mesh(), model, promises);
 }
 
+void RunMumfordShah(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+{
+  MumfordShah::Settings settings;
+  settings.Fidelity = bytes.Flip() ? bytes.Size(4.0) : 0.0;
+  settings.EdgeCost = bytes.Size(4.0);
+  settings.EdgeWidth = bytes.Size(2.0);
+  settings.StopTolerance = 0.01;
+  const TriangleMesh& mesh = assembler->Mesh();
+  Promises promises;
+  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed) && !HasFlatTriangles(mesh);
+  MumfordShah model(
+    assembler, CotanWeights(mesh), std::move(data), settings, ReadSolver(bytes), ReadSolver(bytes));
+  Run(mesh, model, promises);
+}
+
 void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
 {
   const TriangleMesh& mesh = assembler->Mesh();
@@ -455,7 +471,7 @@ void RunDirections(Bytes& bytes, const Assembler& assembler, const Points& point
 void RunFromBytes(const std::uint8_t* begin, std::size_t count)
 {
   Bytes bytes(begin, count);
-  const int model = bytes.Below(6);
+  const int model = bytes.Below(7);
   const Points points = ReadPoints(bytes);
   const Triangles triangles = ReadTriangles(bytes, static_cast<int>(points.rows()));
   const auto original = std::make_shared<TriangleMesh>(points, triangles);
@@ -499,6 +515,9 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
       break;
     case 1:
       RunNonlinear(bytes, assembler, std::move(data), frames);
+      break;
+    case 6:
+      RunMumfordShah(bytes, assembler, std::move(data));
       break;
     default:
       RunMinimizing(bytes, assembler, std::move(data), frames);

@@ -8,6 +8,7 @@
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
+#include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkTuringTextureFilter.h"
 
@@ -226,6 +227,18 @@ inline List OfHarmonicMap()
   };
 }
 
+inline List OfMumfordShah()
+{
+  using F = vtkMumfordShahFilter;
+  return {
+    RANDOM_PROPERTY(F, SmoothingLength, Positive(dice)),
+    RANDOM_PROPERTY(F, EdgeThreshold, Positive(dice)),
+    RANDOM_PROPERTY(F, EdgeWidth, Positive(dice)),
+    RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 1.0 : dice.Logarithmic(1e-6, 0.5)),
+    RANDOM_PROPERTY(F, EdgeCurves, dice.Flip()),
+  };
+}
+
 inline List OfTexture()
 {
   using F = vtkTuringTextureFilter;
@@ -296,6 +309,7 @@ inline std::vector<FilterClass> AllFilterClasses()
   using Heat = vtkFVMHeatFilter;
   using TV = vtkIntrinsicTVFilter;
   using Harmonic = vtkHarmonicMapFilter;
+  using Shah = vtkMumfordShahFilter;
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   return {
@@ -303,6 +317,7 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<TV>({ OfSurface<TV>(), OfDataDiffusion<TV>(0b101), OfTotalVariation() }),
     MakeClass<Harmonic>(
       { OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(0b001), OfHarmonicMap() }),
+    MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
   };

@@ -31,6 +31,7 @@ const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controll
   "SeamTolerance", "Solver", "Tolerance", "MaximumNumberOfIterations", "ClampToNonNegative" };
 const std::set<std::string> WithoutEffectInClass = {
   "vtkHarmonicMapFilter TimeIntegrator", // it has only one
+  "vtkMumfordShahFilter TimeIntegrator",
 };
 
 /// An ellipsoid with obtuse triangles. One patch has points of its own: the others are at most 0.01
@@ -88,12 +89,14 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Heat = vtkFVMHeatFilter;
   using TV = vtkIntrinsicTVFilter;
   using Harmonic = vtkHarmonicMapFilter;
+  using Shah = vtkMumfordShahFilter;
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
   needed["MergeTolerance"] = With<Surface>([](Surface* f) { f->MergeCoincidentPointsOn(); });
   needed["OutputInterval"] = With<Diffusion>([](Diffusion* f) { f->GenerateTimeStepsOn(); });
-  for (const char* name : { "vtkFVMHeatFilter", "vtkIntrinsicTVFilter", "vtkHarmonicMapFilter" })
+  for (const char* name :
+    { "vtkFVMHeatFilter", "vtkIntrinsicTVFilter", "vtkHarmonicMapFilter", "vtkMumfordShahFilter" })
   {
     needed[name + std::string(" RandomSeed")] =
       With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
@@ -127,7 +130,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->SetModeToSteadyState();
       f->SetBlurFWHM(0.2);
     });
-  needed["EdgeThreshold"] = With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
+  needed["vtkIntrinsicTVFilter EdgeThreshold"] =
+    With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
   needed["vtkIntrinsicTVFilter StopTolerance"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
   needed["vtkHarmonicMapFilter Beta"] = With<Harmonic>([](Harmonic* f) { f->SetExponent(1.2); });
   needed["ConsistentReaction"] = needed["ProjectToSphere"] =
@@ -151,7 +155,13 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   needed["RecoveryRate"] = needed["RecoveryDamping"] = needed["Stimulus"] =
     With<Turing>([](Turing* f) { f->SetKineticsToFitzHughNagumo(); });
   needed["LowColor"] = needed["HighColor"] = With<Turing>([](Turing* f) { f->ColorOutputOn(); });
-  needed["SmoothingLength"] =
+  needed["vtkMumfordShahFilter EdgeCurves"] = With<Shah>(
+    [](Shah* f)
+    {
+      f->SetEdgeThreshold(0.5);
+      f->SetEdgeWidth(0.2);
+    });
+  needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =
     With<Direction>([](Direction* f) { f->SetMethodToCurvatureAligned(); });
   needed["HintWeight"] = With<Direction>([](Direction* f) { f->SetMethodToHints(); });
   return needed;

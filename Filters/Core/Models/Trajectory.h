@@ -73,6 +73,8 @@ public:
 
   Index Step() const { return this->Current; }
   const Values& State() const { return this->Stepper->State(); }
+  /// The model in that state, for what it has beside it.
+  const Model& CurrentModel() const { return *this->Stepper; }
   const TriangleMesh& Mesh() const { return *this->Surface; }
 
   /// Records of steps 0 .. the furthest computed, and sum A u of each: row step, column component.
