@@ -167,7 +167,8 @@ def turing_texture(
     rates: cell array (m, 4) that replaces DiffusionRate1, DiffusionRateAcross1, DiffusionRate2 and
     DiffusionRateAcross2. The other arguments are those of heat(). Useful properties: FeatureSize
     (the wavelength in the unit of the coordinates, default 0: off), DiffusionRate1 and
-    DiffusionRate2 (default 21 and 2.6), NumberOfTimeSteps (default 640), StopTolerance.
+    DiffusionRate2 (default 21 and 2.6), NumberOfTimeSteps (default 640), StopTolerance,
+    CoarseStartSize (default 50000; 0: all steps run on the mesh itself, however large it is).
 
     The results are the point arrays u1, u2 and Texture, (n,) each.
     """

@@ -254,6 +254,7 @@ inline List OfTexture()
     RANDOM_PROPERTY(F, ClampToNonNegative, dice.Flip()),
     RANDOM_PROPERTY(F, AutomaticTimeStep, dice.Flip()),
     RANDOM_PROPERTY(F, StopTolerance, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, CoarseStartSize, dice.Flip() ? 1 : 50000),
     RANDOM_PROPERTY(F, GrowthRate, Near(dice, 16.0)),
     RANDOM_PROPERTY(F, DecayRate, Near(dice, 12.0)),
     RANDOM_PROPERTY(F, ActivatorSupply, Near(dice, 0.01)),

@@ -51,11 +51,13 @@ public:
   };
 
   /// The diffusion of one chemical: the coefficients of D (CotanWeights.h) in LengthUnit()^2/time,
-  /// and the solver of its matrix, kept by the caller from run to run.
+  /// and the solver of its matrix, kept by the caller from run to run. In a CoarseSpace, Stiffness
+  /// is the stiffness matrix in place of the coefficients, and no vertex may be fixed.
   struct Chemical
   {
     CornerWeights Coefficients;
     std::shared_ptr<LinearSolver> Solver;
+    SparseMatrix Stiffness;
   };
 
   /// data.Start: u1, u2 at t = 0.
@@ -101,6 +103,7 @@ private:
   std::shared_ptr<const Assembler> Assembly;
   Reaction Terms;
   std::array<CornerWeights, 2> Coefficients;
+  std::array<SparseMatrix, 2> Stiffness; ///< empty, or in place of Coefficients
   PointData Data;
   Settings Options;
   const ParallelFor& Parallel;

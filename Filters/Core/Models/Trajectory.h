@@ -81,7 +81,8 @@ public:
   const std::vector<StepRecord>& Records() const { return this->History; }
   double TotalAt(Index step, Index component) const
   {
-    return this->Totals[static_cast<std::size_t>(step) * this->State().cols() + component];
+    return this->Totals[static_cast<std::size_t>(step) * this->NumberOfColumns +
+      static_cast<std::size_t>(component)];
   }
 
   /// The number of steps computed in all: a measure of the cost of seeking.
@@ -92,6 +93,7 @@ private:
 
   std::shared_ptr<const TriangleMesh> Surface;
   std::unique_ptr<Model> Stepper;
+  std::size_t NumberOfColumns; ///< of the state
   const ParallelFor& Parallel;
   CheckpointStore Checkpoints;
   std::vector<StepRecord> History;

@@ -28,4 +28,24 @@ double DirichletEnergy(const TriangleMesh& mesh, const CornerWeights& coefficien
       });
 }
 
+double DirichletEnergy(const SparseMatrix& stiffness, const Values& u, const ParallelFor& parallel)
+{
+  return 0.5 *
+    Sum(parallel, static_cast<Index>(u.rows()),
+      [&](Index i)
+      {
+        double sum = 0.0;
+        for (Eigen::Index k = 0; k < u.cols(); ++k)
+        {
+          double product = 0.0;
+          for (SparseMatrix::InnerIterator entry(stiffness, i); entry; ++entry)
+          {
+            product += entry.value() * u(entry.index(), k);
+          }
+          sum += u(i, k) * product;
+        }
+        return sum;
+      });
+}
+
 } // namespace SurfaceDiffusion
