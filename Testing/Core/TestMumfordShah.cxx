@@ -27,11 +27,6 @@ using Settings = MumfordShah::Settings;
 constexpr double Tight = 1e-12; // tolerance of exact half steps
 constexpr double Loose = 0.1; // the default of the library
 
-double MeanEdge(const TriangleMesh& mesh)
-{
-  return mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-}
-
 /// The defaults of the library: lengths 8 h and 2 h, and edges from a jump of `threshold` on.
 Settings NaturalSettings(const TriangleMesh& mesh, double threshold)
 {
