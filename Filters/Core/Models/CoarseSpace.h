@@ -29,9 +29,10 @@ struct CoarseSpace
   void Prolong(const Values& coarse, Values& u, const ParallelFor& parallel) const;
 };
 
-/// The coarsest space that resolves waves with this squared wave number, in LengthUnit()^-2, with
-/// about 3.4 vertices per wavelength; empty if the first level is too coarse. The second chemical,
-/// whose diffusion gives the pattern its width, determines the aggregates.
+/// The coarsest space that resolves waves with this squared wave number, in LengthUnit()^-2, by 3.4
+/// vertices per wavelength on the first level, or 6 on further levels; empty if the first level is
+/// too coarse. The second chemical, whose diffusion gives the pattern its width, determines the
+/// aggregates.
 ///
 /// coefficients: of the diffusion tensors (CotanWeights.h). The stiffness matrices are corrected so
 /// that waves of this wave number keep it within a few percent. A projected long wave is too stiff,
