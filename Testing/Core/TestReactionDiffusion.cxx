@@ -29,11 +29,6 @@ std::vector<std::int64_t> Ids(const TriangleMesh& mesh)
   return { mesh.InputVertex().begin(), mesh.InputVertex().end() };
 }
 
-double MeanEdge(const TriangleMesh& mesh)
-{
-  return mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-}
-
 /// A model with isotropic rates d1, d2, in LengthUnit()^2/time.
 std::unique_ptr<ReactionDiffusion> MakeModel(std::shared_ptr<const Assembler> assembler,
   PointData data, double d1, double d2, const Settings& settings,

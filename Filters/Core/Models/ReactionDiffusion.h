@@ -57,7 +57,7 @@ public:
   {
     CornerWeights Coefficients;
     std::shared_ptr<LinearSolver> Solver;
-    SparseMatrix Stiffness;
+    SparseMatrix Stiffness = {};
   };
 
   /// data.Start: u1, u2 at t = 0.
