@@ -6,6 +6,7 @@
 #include "Core/Models/Model.h"
 #include "Core/Models/Reaction.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Operators/MeanCorrection.h"
 
 #include <array>
 #include <exception>
@@ -57,7 +58,7 @@ public:
   {
     CornerWeights Coefficients;
     std::shared_ptr<LinearSolver> Solver;
-    SparseMatrix Stiffness;
+    SparseMatrix Stiffness = {};
   };
 
   /// data.Start: u1, u2 at t = 0.
@@ -111,6 +112,7 @@ private:
   std::array<ImplicitSystem, 2> Systems;
   Vector AccumulatedAreas;
   const Vector& Areas; ///< of the control cells, consistent
+  MeanCorrection Means; ///< the sums of the equations hold to round-off, on needles too
   bool Prepared = false;
   bool Done = false;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;
