@@ -203,7 +203,7 @@ public:
    * wavelength or more, or at least 3.4 if it has a ninth of the surface's vertices. They end when
    * the relative change per unit of time is 2.5 StopTolerance. The last two steps run on the surface
    * itself and remove the traces of interpolation. A warning gives the size of the coarser mesh. The
-   * history has all steps, and all states can be requested. With 655,362 vertices, a run takes 10 s
+   * history has all steps, and all states can be requested. With 655,362 vertices, a run takes 12 s
    * of processor time instead of several minutes.
    *
    * Growing waves are within 5 % of their wavelength on the surface, but the pattern differs in

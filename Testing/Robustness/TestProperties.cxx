@@ -142,7 +142,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed["vtkTuringTextureFilter OutputInterval"] =
       needed["vtkTuringTextureFilter StopTolerance"] =
         With<Turing>([](Turing* f) { f->SetTimeStep(0.5); });
-  needed["CoarseStartSize"] = With<Turing>([](Turing* f) { f->SetFeatureSize(3.0); });
+  needed["CoarseStartSize"] = With<Turing>([](Turing* f) { f->SetFeatureSize(8.0); });
   needed["AutomaticTimeStep"] = With<Turing>([](Turing* f) { f->SetTimeStep(0.01); });
   needed["ReactionRate"] = With<Turing>([](Turing* f) { f->SetUnitsToAbsolute(); });
   needed["ActivatorSupply"] = needed["SubstrateSupply"] =

@@ -3,7 +3,6 @@
 #include "Core/Models/ReactionDiffusion.h"
 
 #include "Core/Operators/DirichletEnergy.h"
-#include "Core/Operators/MeanCorrection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,6 +101,7 @@ void ReactionDiffusion::Prepare(const ProgressMonitor& progress)
     }
     system.SetUpSolver(progress.Part(0.5 * c, 0.5 * c + 0.5));
   }
+  this->Means = MeanCorrection(this->Assembly->Mesh(), areas, this->Data.Fixed, this->Parallel);
   this->Prepared = true;
 }
 
@@ -289,6 +289,8 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
     {
       std::rethrow_exception(solution.Failure);
     }
+    this->Means.Restore(
+      this->Assembly->Mesh(), this->RightHandSide[c], this->New[c], this->Parallel);
     report.Iterations += solution.Report.Iterations;
     report.Residual = std::max(report.Residual, solution.Report.Residual);
     report.MissedResidual = std::max(report.MissedResidual, solution.Report.MissedResidual);

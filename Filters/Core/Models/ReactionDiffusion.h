@@ -6,6 +6,7 @@
 #include "Core/Models/Model.h"
 #include "Core/Models/Reaction.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Operators/MeanCorrection.h"
 
 #include <array>
 #include <exception>
@@ -111,6 +112,7 @@ private:
   std::array<ImplicitSystem, 2> Systems;
   Vector AccumulatedAreas;
   const Vector& Areas; ///< of the control cells, consistent
+  MeanCorrection Means; ///< the sums of the equations hold to round-off, on needles too
   bool Prepared = false;
   bool Done = false;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;
