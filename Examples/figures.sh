@@ -44,4 +44,5 @@ cd build/figures
 "${display[@]}" "$python" "$examples/deblurring.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
   --photos "$photos" --output .
 "${display[@]}" "$python" "$examples/harmonic_map.py"
+"${display[@]}" "$python" "$examples/mumford_shah.py"
 "${display[@]}" "$python" "$examples/turing_texture.py"

@@ -79,6 +79,7 @@ vtkMumfordShahFilter::vtkMumfordShahFilter()
   this->FidelityWeight = 1.0;
   this->NumberOfTimeSteps = 1000;
   this->Tolerance = 0.1;
+  this->InitialFill = INITIAL_FILL_HARMONIC;
 }
 
 vtkMumfordShahFilter::~vtkMumfordShahFilter() = default;

@@ -26,13 +26,15 @@
  * - EdgeWidth: eps, the width of the transition of v, which is 1 - exp(-d/(2 eps)) at the distance d
  *   from an edge.
  *
- * Noise with a standard deviation above a third of EdgeThreshold makes edges everywhere, and a
- * warning says so.
+ * Noise with a standard deviation above a third of EdgeThreshold, in the Euclidean norm over all
+ * components, makes edges everywhere, and a warning says so.
  *
- * Missing data are filled in with edges that continue through the hole. Fixed values act on u.
+ * Missing data are filled in with edges that continue through the hole; the start there is harmonic
+ * (InitialFill), since a start with jumps at the hole would keep them. Fixed values act on u.
  *
  * A time step minimises E over u, then over v. Both are linear systems, which are solved for the
- * change up to Tolerance, a part of the residual at the start of the solve. The energy falls in
+ * change up to Tolerance (default: 0.1), a part of the residual at the start of the solve; to 1e-3 at
+ * most if data are missing. The energy falls in
  * every half step on any mesh and with any tolerance. The steps start with eps = 4 EdgeWidth, which
  * is halved twice; the last stage ends when a step lowers the energy by less than StopTolerance,
  * those before at 100 times that. Some 30 steps are usual, and up to 300 if jumps are near

@@ -59,7 +59,8 @@ public:
    * paper's random guess, uniform between the smallest and largest known value of the component of
    * the data. Harmonic: the harmonic function of the known values, which satisfies Laplace's
    * equation of the surface at missing points, so that smoothing is not biased at holes (unit
-   * vectors are normalised; line fields take Mean). Default: Mean; of vtkFVMHeatFilter Harmonic.
+   * vectors are normalised; line fields take Mean). Default: Mean; of vtkFVMHeatFilter
+   * and vtkMumfordShahFilter Harmonic.
    */
   vtkSetMacro(InitialFill, int);
   vtkGetMacro(InitialFill, int);

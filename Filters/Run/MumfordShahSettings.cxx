@@ -22,6 +22,9 @@ constexpr double ShortestCurve = 4.0;
 /// Noise above the threshold makes edges nearly everywhere, and patterns hardly on so much.
 constexpr double LargestShare = 0.8;
 
+/// A part of a hole that edges enclose hangs on kappa alone. With larger tolerances its values drift.
+constexpr double ToleranceInHoles = 1e-3;
+
 void Warn(const std::string& sentence, RunResult& result)
 {
   auto& all = result.Warnings;
@@ -52,8 +55,8 @@ void MumfordShahSettings::Visit(SettingVisitor& visitor)
     this->SmoothingLength, SettingRange::Positive());
   visitor.Number(
     { "EdgeThreshold", "R",
-      "The jump from which on an edge costs less than smoothing. Noise with a standard "
-      "deviation above a third of it makes edges everywhere." },
+      "The jump from which on an edge costs less than smoothing. Noise with a standard deviation "
+      "above a third of it, over all components together, makes edges everywhere." },
     this->EdgeThreshold, SettingRange::Positive());
   visitor.Number({ "EdgeWidth", "h",
                    "eps, the distance over which v rises beside an edge, at least the mean edge "
@@ -106,6 +109,13 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
   task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
   task.DiffusionNumber = this->LargestDiffusivity() * length * length / (h * h);
   const auto smoothing = inputs.Solvers.Find(SolverPurpose::Step, task);
+  const bool hasHoles = inputs.Surface.Mesh().GetReduction().Any(inputs.Data.Missing.any());
+  if (hasHoles || !(this->FidelityWeight > 0.0))
+  {
+    IterationLimits limits = smoothing->GetLimits();
+    limits.Tolerance = std::min(limits.Tolerance, ToleranceInHoles);
+    smoothing->SetLimits(limits);
+  }
   task.NumberOfColumns = 1;
   task.DiffusionNumber = 4.0 * settings.EdgeWidth * settings.EdgeWidth / (h * h);
   const auto edges = inputs.Solvers.Find(SolverPurpose::Edges, task);

@@ -27,6 +27,7 @@ struct MumfordShahSettings : DataSettings
     this->FidelityWeight = 1.0;
     this->NumberOfTimeSteps = 1000;
     this->Tolerance = 0.1;
+    this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic; // edges would form at others
   }
 
   void Visit(SettingVisitor& visitor) override;

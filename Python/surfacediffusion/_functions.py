@@ -339,7 +339,7 @@ def mumford_shah(
     >>> clean = np.where(surface.points[:, 2] > 0.5, 1.0, 0.0)
     >>> noisy = clean + np.random.default_rng(0).normal(scale=0.04, size=clean.size)
     >>> result = mumford_shah(surface, noisy)
-    >>> len(result.curves), round(result.edge_length / (2 * np.pi * np.sqrt(0.75)), 2)
+    >>> len(result.curves), round(float(result.edge_length / (2 * np.pi * np.sqrt(0.75))), 2)
     (1, 1.0)
     >>> bool(np.abs(result.values - clean).mean() < 0.2 * np.abs(noisy - clean).mean())
     True

@@ -57,6 +57,7 @@ TEST(MumfordShahFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetFidelityWeight(), 1.0);
   EXPECT_EQ(filter->GetNumberOfTimeSteps(), 1000);
   EXPECT_EQ(filter->GetTolerance(), 0.1);
+  EXPECT_EQ(filter->GetInitialFill(), vtkMumfordShahFilter::INITIAL_FILL_HARMONIC);
   EXPECT_EQ(filter->GetTimeIntegrator(), vtkMumfordShahFilter::TIME_INTEGRATOR_FIRST_ORDER);
 }
 

@@ -94,7 +94,7 @@ VALUES = {
     "DiffusionRateAcross1": (-1.0, 3.0), "DiffusionRateAcross2": (-1.0, 3.0),
     "TimeStep": (0.02, 0.05), "Exponent": (1.0, 2.0), "OutputInterval": (1, 2),
     "MaskArray": (["POINTS", "hole"],), "FixedArray": (["POINTS", "ends"],),
-    "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (-1.0, 0.2),
+    "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (0.2, 0.5),
     "DiffusionRateArray": (["CELLS", "rates"],), "FidelityArray": (["POINTS", "weight"],),
     "BlurFWHM": (0.0, 0.3),
 }
