@@ -53,14 +53,19 @@ void Shift(const TriangleMesh& mesh, Index component, const double* shifts, Valu
   const ParallelFor& parallel)
 {
   const Index begin = mesh.ComponentsBegin()[component];
-  const Eigen::Index columns = u.cols();
-  ForEach(parallel, mesh.ComponentsBegin()[component + 1] - begin,
-    [&](Index i)
+  ForColumns(u.cols(),
+    [&](auto number)
     {
-      for (Eigen::Index k = 0; k < columns; ++k)
-      {
-        u(begin + i, k) += shifts[k];
-      }
+      const ColumnCount<decltype(number)::value> columns(u.cols());
+      ForEach(parallel, mesh.ComponentsBegin()[component + 1] - begin,
+        [&](Index i)
+        {
+          double* const row = &u(begin + i, 0);
+          for (int k = 0; k < columns; ++k)
+          {
+            row[k] += shifts[k];
+          }
+        });
     });
 }
 
