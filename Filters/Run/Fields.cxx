@@ -50,7 +50,8 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
   const Values& values = fields.Data;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
-    if (surface.VertexOf(static_cast<Index>(i)) < 0 || !values.row(i).allFinite())
+    if (surface.VertexOf(static_cast<Index>(i)) < 0 || IsSet(fields.Missing, i) ||
+      !values.row(i).allFinite())
     {
       continue;
     }
@@ -130,7 +131,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
       continue;
     }
     const bool isFixed = IsSet(fields.Fixed, i);
-    const bool isNaN = values.row(i).hasNaN();
+    const bool isNaN = IsSet(fields.Missing, i) || values.row(i).hasNaN();
     if (isFixed && isNaN)
     {
       throw PointError(

@@ -70,11 +70,12 @@ const double* CheckpointStore::At(Index step) const
 }
 
 Trajectory::Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> model,
-  std::size_t memoryLimit, const ParallelFor& parallel)
+  std::size_t memoryLimit, const ParallelFor& parallel, bool keepsHistory)
   : Surface(std::move(mesh))
   , Stepper(std::move(model))
   , Parallel(parallel)
   , Checkpoints(this->Stepper->CheckpointSize(), memoryLimit)
+  , IsHistoryKept(keepsHistory)
 {
   this->Checkpoints.Reserve(0);
   this->Checkpoints.Offer(0, *this->Stepper);
@@ -139,8 +140,13 @@ void Trajectory::Record(const StepReport& report, double seconds)
 {
   const auto columns = static_cast<std::size_t>(this->State().cols());
   this->Totals.resize(this->History.size() * columns); // an abort may have left some
-  const double energy = this->Stepper->Energy();
-  Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
+  double energy = 0.0;
+  this->StateTotals.assign(columns, 0.0);
+  if (this->IsHistoryKept)
+  {
+    energy = this->Stepper->Energy();
+    Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
+  }
   this->Totals.insert(this->Totals.end(), this->StateTotals.begin(), this->StateTotals.end());
   this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped,
     report.MissedResidual, report.UnsettledDecrease, report.ErrorBound });
