@@ -117,7 +117,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   data.Given = Values::Zero(n, values.cols());
   data.Missing = Flags::Constant(n, true);
   data.Fixed = Flags::Constant(n, false);
-  Values damaged = data.Given; // the value of a vertex without any known point
+  Values damaged; // the values of vertices without any known point, if there are such
   std::vector<Index> known(static_cast<std::size_t>(n), 0);
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
@@ -138,18 +138,23 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
         fields, i, "is NaN where FixedArray holds it", "allowed there: finite values");
     }
     data.Fixed[v] = data.Fixed[v] || isFixed;
-    damaged.row(v) = values.row(i) / unit;
     if (isFixed || !(isNaN || (inpaint && IsSet(fields.Mask, i))))
     {
       data.Given.row(v) += values.row(i) / unit;
       data.Missing[v] = false;
       ++known[static_cast<std::size_t>(v)];
+      continue;
     }
+    if (damaged.rows() == 0)
+    {
+      damaged.setZero(n, values.cols());
+    }
+    damaged.row(v) = values.row(i) / unit;
   }
   for (Index v = 0; v < n; ++v)
   {
     const Index count = known[static_cast<std::size_t>(v)];
-    if (count == 0)
+    if (count == 0 && damaged.rows() > 0)
     {
       data.Given.row(v) = damaged.row(v);
     }

@@ -146,6 +146,19 @@ void LinearDiffusion::StartStep(Eigen::Index first)
     });
 }
 
+template <typename Body>
+void LinearDiffusion::ForEachShifted(const Body& body) const
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const Index begin = mesh.ComponentsBegin()[c];
+    const double* const shifts = this->Shifts.data() + c * this->Shifts.cols();
+    ForEach(this->Parallel, mesh.ComponentsBegin()[c + 1] - begin,
+      [&](Index i) { body(begin + i, shifts); });
+  }
+}
+
 /// The right-hand side of the second stage, from V, the result y of the first one.
 template <int K>
 void LinearDiffusion::StartSecondStage(Eigen::Index first)
@@ -155,17 +168,18 @@ void LinearDiffusion::StartSecondStage(Eigen::Index first)
   const double dt = this->Options.ImplicitStep();
   const double ratio = (1.0 - Gamma) / Gamma;
   const double* const origin = this->Origin.data() + first;
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
+  this->ForEachShifted(
+    [&](Index i, const double* shifts)
     {
       const double area = mesh.ControlAreas()[i];
       const double source = dt * this->Fit.Weight(i);
       const double* const u = &this->U(i, first);
-      const double* const v = &this->V(i, 0);
+      double* const v = &this->V(i, 0);
       double* const b = &this->RightHandSide(i, 0);
       for (int k = 0; k < columns; ++k)
       {
         const double previous = u[k] - origin[k];
+        v[k] += shifts[k];
         b[k] = previous + ratio * (v[k] - previous);
       }
       if (source > 0.0)
@@ -187,27 +201,39 @@ template <int K>
 void LinearDiffusion::FinishStep(Eigen::Index first)
 {
   const ColumnCount<K> columns(this->V.cols());
-  const TriangleMesh& mesh = this->Assembly->Mesh();
   const double* const origin = this->Origin.data() + first;
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
+  this->ForEachShifted(
+    [&](Index i, const double* shifts)
     {
       double* const v = &this->V(i, 0);
-      const bool isFixed = this->Data.Fixed[i];
+      if (this->Data.Fixed[i])
+      {
+        CopyColumns<K>(&this->Data.Start(i, first), v, columns);
+        return;
+      }
       for (int k = 0; k < columns; ++k)
       {
-        v[k] = isFixed ? this->Data.Start(i, first + k) : v[k] + origin[k];
+        v[k] = v[k] + shifts[k] + origin[k];
       }
     });
-  this->Conserved.Restore(mesh, this->V, this->Parallel, first);
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i) { CopyColumns<K>(&this->V(i, 0), &this->U(i, first), columns); });
+  this->Conserved.FindShifts(this->Assembly->Mesh(), this->V, this->Parallel, first, this->Shifts);
+  this->ForEachShifted(
+    [&](Index i, const double* shifts)
+    {
+      const double* const v = &this->V(i, 0);
+      double* const u = &this->U(i, first);
+      for (int k = 0; k < columns; ++k)
+      {
+        u[k] = v[k] + shifts[k];
+      }
+    });
 }
 
 void LinearDiffusion::Solve(Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
 {
   this->System.Solve(this->RightHandSide, this->V, report, progress, first);
-  this->Balanced.Restore(this->Assembly->Mesh(), this->RightHandSide, this->V, this->Parallel);
+  this->Balanced.FindShifts(
+    this->Assembly->Mesh(), this->RightHandSide, this->V, this->Parallel, this->Shifts);
 }
 
 double LinearDiffusion::Energy() const

@@ -58,6 +58,9 @@ public:
 
 private:
   void Prepare(const ProgressMonitor& progress);
+  /// Call body(i, Shifts of the component) for every vertex i.
+  template <typename Body>
+  void ForEachShifted(const Body& body) const;
   /// One step of the columns from `first` on that V has room for.
   void AdvanceColumns(Eigen::Index first, StepReport& report, const ProgressMonitor& progress);
   /// The loops over the vertices in a step of K columns, or of any number of them if K is 0.
@@ -82,6 +85,8 @@ private:
   /// A few columns at a time go through a step, so that their rows stay in the cache: u minus
   /// Origin, and the right-hand side.
   Values V, RightHandSide;
+  /// What the corrections add, component x column: loops over V that follow add it, too.
+  Values Shifts;
   Eigen::RowVectorXd Origin; ///< mean of the start, from which values are measured in a step
 };
 
