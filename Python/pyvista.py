@@ -41,6 +41,7 @@ from . import (
     vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
     vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter,
 )
+from ._meshes import find_polydata
 
 _POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
@@ -193,7 +194,7 @@ def direction_field(mesh, hints=None, *, full_output=False, **properties):
 
 def _run(algorithm, mesh, properties, arrays, times, full_output):
     """Runs the filter; `arrays` are the names of input arrays 0, 1, ... (None: not set)."""
-    surfaces = _surfaces(mesh)
+    surfaces = [surface for surface in find_polydata(mesh) if surface.n_points > 0]
     for index, name in enumerate(arrays):
         if name is not None:
             algorithm.SetInputArrayToProcess(index, 0, 0, _association(surfaces, index, name), name)
@@ -263,19 +264,6 @@ def _report(algorithm):
     if algorithm.GetNumberOfOutputPorts() > 2:
         report.curves = _output(algorithm, 2)
     return report
-
-
-def _surfaces(mesh):
-    """The surfaces of a mesh, without empty blocks. TypeError if there is anything else."""
-    if isinstance(mesh, pyvista.MultiBlock):
-        return [surface for block in mesh if block is not None for surface in _surfaces(block)]
-    if not isinstance(mesh, pyvista.PolyData):
-        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
-            mesh, "extract_surface") else ""
-        raise TypeError(
-            f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
-            f"pyvista.MultiBlock of it{remedy}")
-    return [mesh] if mesh.n_points > 0 else []
 
 
 def _association(surfaces, index, name):

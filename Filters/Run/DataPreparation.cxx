@@ -38,11 +38,14 @@ void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result)
   SolverTask task;
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
   task.DiffusionNumber.reset();
-  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.NumberOfColumns = static_cast<int>(inputs.Columns);
   const StepReport report = FillHarmonically(inputs.Surface.SharedAssembler(), inputs.Data,
     inputs.Solvers.Find(SolverPurpose::Fill, task), inputs.Parallel,
     inputs.Progress.Part(0.0, 0.4));
-  inputs.Solvers.Release(SolverPurpose::Fill);
+  if (inputs.IsLastPanel)
+  {
+    inputs.Solvers.Release(SolverPurpose::Fill);
+  }
   result.MissedResidual = report.MissedResidual;
 }
 

@@ -21,6 +21,11 @@ struct Fields
   /// in any component of a point means that the point is missing.
   Values Data;
   std::string DataName = "InputArray"; ///< for error messages
+  /// Data may be a panel of the columns of the input, from FirstColumn of AllColumns on. Then NaN in
+  /// columns outside of the panel is known by Missing: per point, nonzero: NaN in any column.
+  Eigen::Index FirstColumn = 0;
+  Eigen::Index AllColumns = 0; ///< 0: Data has all columns
+  std::vector<char> Missing; ///< may be empty
   std::vector<char> Mask; ///< per point, nonzero: missing or excluded; may be empty
   std::vector<char> Fixed; ///< per point, nonzero: Dirichlet; may be empty
   std::vector<double> FidelityFactors; ///< per point, 0 or more; empty: 1 everywhere

@@ -123,7 +123,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;
   task.NumberOfVertices = mesh.NumberOfVertices();
-  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
   const double solvesPerStep = secondOrder ? 2.0 : 1.0;
   if (this->Mode == HeatMode::SteadyState)

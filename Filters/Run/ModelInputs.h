@@ -29,6 +29,8 @@ struct ModelInputs
   ProgressMonitor Progress;
   SolverStore& Solvers;
   const ProcessGroup& Processes;
+  Eigen::Index Columns = 0; ///< of all panels of the data together; see Fields
+  bool IsLastPanel = true; ///< of them
 };
 
 /// A run on one surface at its current step.

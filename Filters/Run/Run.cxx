@@ -81,8 +81,9 @@ bool Run::IsModelCurrent(const Block& block, const BlockInput& input,
   const SettingsSnapshot& settings, const ModelTraits& traits) const
 {
   return block.Path && block.FieldsVersion == input.FieldsVersion &&
-    block.ModelSettings == settings && block.NumberOfBlocks == this->Blocks.size() &&
-    block.TimeStep == traits.TimeStep && block.Solvers.ServesRunOf(traits.NumberOfSteps);
+    block.ModelSettings == settings && (block.Path->KeepsHistory() || !this->KeepsHistory) &&
+    block.NumberOfBlocks == this->Blocks.size() && block.TimeStep == traits.TimeStep &&
+    block.Solvers.ServesRunOf(traits.NumberOfSteps);
 }
 
 void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
@@ -196,12 +197,14 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
     std::move(directions), fields.Rates,
     this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)
                                                       : std::vector<std::int64_t>(),
-    this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes };
+    this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
+    std::max(fields.AllColumns, fields.Data.cols()),
+    fields.FirstColumn + fields.Data.cols() >= fields.AllColumns };
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const std::size_t limit = this->CheckpointMemory(*model, processes);
   auto path = std::make_unique<Trajectory>(
-    block.Surface->SharedMesh(), std::move(model), limit, this->Parallel);
+    block.Surface->SharedMesh(), std::move(model), limit, this->Parallel, this->KeepsHistory);
   progress.Report(1.0);
   block.Path = std::move(path); // last: an aborted run must not look like a finished one
 }

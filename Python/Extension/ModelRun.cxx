@@ -38,12 +38,15 @@ void WriteMatrix(const Matrix& from, const OutputArray& output)
     });
 }
 
-/// Write value(v, k) at the points of vertices, and other(i, k) at all other points.
+/// Write value(v, k) at the points of vertices, and other(i, k) at all other points. With
+/// first >= 0, only `components` columns from there on are written.
 template <typename Value, typename Other>
 void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index components,
-  const Value& value, const Other& other)
+  const Value& value, const Other& other, Eigen::Index first = -1)
 {
-  const auto columns = static_cast<Eigen::Index>(output.shape(1));
+  const auto stride = static_cast<Eigen::Index>(output.shape(1));
+  const Eigen::Index columns = first < 0 ? stride : components;
+  const Eigen::Index start = std::max<Eigen::Index>(first, 0);
   VisitElements(output,
     [&](auto* to)
     {
@@ -53,7 +56,7 @@ void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index
         const Index v = surface.VertexOf(i);
         for (Eigen::Index k = 0; k < columns; ++k)
         {
-          to[i * columns + k] =
+          to[i * stride + start + k] =
             ConvertValue<T>(v >= 0 && k < components ? value(v, k) : other(i, k));
         }
       };
@@ -124,7 +127,8 @@ void ClearOnFailure(Run& run, const Work& work)
 
 } // namespace
 
-void ModelRun::Update(const nb::list& list, const nb::dict& settings, const nb::object& progress)
+void ModelRun::Update(
+  const nb::list& list, const nb::dict& settings, const nb::object& progress, bool history)
 {
   std::vector<const InputFields*> blocks;
   for (const nb::handle& block : list)
@@ -141,6 +145,7 @@ void ModelRun::Update(const nb::list& list, const nb::dict& settings, const nb::
   }
   ThrowProblems(std::move(problems));
   this->Settings = std::move(own);
+  this->Model.SetKeepsHistory(history);
 
   const bool excludes = this->Settings->MaskMode == MaskMode::Exclude;
   PythonProgress(progress).Run(
@@ -217,8 +222,8 @@ nb::dict ModelRun::GetResults(std::size_t block) const
   return numbers;
 }
 
-void ModelRun::WriteState(
-  std::size_t block, const OutputArray& output, const std::optional<InputArray>& source) const
+void ModelRun::WriteState(std::size_t block, const OutputArray& output,
+  const std::optional<InputArray>& source, int first) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
   const Values& state = from.Path->State();
@@ -227,15 +232,18 @@ void ModelRun::WriteState(
   if (!source)
   {
     WritePoints(
-      *from.Surface, output, state.cols(), value, [](Index, Eigen::Index) { return 0.0; });
+      *from.Surface, output, state.cols(), value, [](Index, Eigen::Index) { return 0.0; }, first);
     return;
   }
   const auto columns = static_cast<Eigen::Index>(source->shape(1));
   VisitElements(*source,
     [&](const auto* old)
     {
-      WritePoints(*from.Surface, output, state.cols(), value,
-        [&](Index i, Eigen::Index k) { return static_cast<double>(old[i * columns + k]); });
+      WritePoints(
+        *from.Surface, output, state.cols(), value,
+        [&](Index i, Eigen::Index k)
+        { return static_cast<double>(old[i * columns + std::max(first, 0) + k]); },
+        first);
     });
 }
 

@@ -89,18 +89,21 @@ NB_MODULE(_core, m)
           std::move(rates), std::move(fidelity)));
       },
       "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
-      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none(), "fidelity"_a.none());
+      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none(), "fidelity"_a.none())
+    .def("columns", &InputFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")
     .def(nb::init<std::string>(), "model"_a)
-    .def("update", &ModelRun::Update, "blocks"_a, "settings"_a, "progress"_a.none())
+    .def("update", &ModelRun::Update, "blocks"_a, "settings"_a, "progress"_a.none(),
+      "history"_a = true)
     .def("seek", &ModelRun::Seek, "step"_a, "progress"_a.none())
     .def("number_of_steps", &ModelRun::NumberOfSteps)
     .def("time_step", &ModelRun::TimeStep)
     .def("warnings", &ModelRun::GetWarnings)
     .def("history", &ModelRun::GetHistory)
     .def("results", &ModelRun::GetResults, "block"_a)
-    .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none())
+    .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none(),
+      "first"_a = -1)
     .def(
       "write_colors_of_vectors", &ModelRun::WriteColorsOfVectors, "block"_a, "output"_a, "source"_a)
     .def("write_texture", &ModelRun::WriteTexture, "block"_a, "output"_a)

@@ -25,6 +25,9 @@ from ._surface import SurfaceLike, as_data, as_surface
 
 __all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "turing_texture"]
 
+#: The number of columns of data that a run holds in double precision, if they are independent.
+PANEL = 32
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 #: The documentation that functions share, by the name in braces.
@@ -117,8 +120,10 @@ def _run(
     make: Callable[[Any, dict[str, Any]], Any],
     steps: bool,
     progress: Progress,
+    history: bool = True,
 ) -> Any:
-    """The result, or the iterator over states, which has a run of its own."""
+    """The result, or the iterator over states, which has a run of its own. history: whether the
+    result needs the energy and the totals of the states."""
     if not isinstance(steps, (bool, np.bool_)):
         raise ValueError(f"steps is {shorten(steps)}; allowed: True or False")
     if steps:
@@ -126,7 +131,15 @@ def _run(
         return runner.iterate(run, given, progress, lambda found: make(run, found))
     with given.surface._lock:
         run = given.surface._runs.setdefault(name, _core.ModelRun(name))
-        return make(run, runner.finish(run, [given], progress)[0])
+        return make(run, runner.finish(run, [given], progress, history)[0])
+
+
+def _are_independent(name: str, runner: Runner) -> bool:
+    """Whether no column of the data depends on the others or on its number, given the points that
+    are missing."""
+    noise = settings_of(name)["initial_fill"].words.index("Noise")
+    return name == "heat" and not runner.settings.get("AutomaticFidelity") and (
+        runner.settings.get("InitialFill") != noise)
 
 
 def _diffusion(
@@ -146,7 +159,13 @@ def _diffusion(
         result = make_diffusion(run, 0, given, runner, dtype, found)
         return replace(result, values=result.values.reshape(shape))
 
-    result = _run(name, given, runner, make, steps, progress)
+    if data.shape[1] > PANEL and not (steps or full_output) and _are_independent(name, runner):
+        output = np.empty(data.shape, dtype=find_result_type(data, dtype))
+        with surface._lock:
+            run = surface._runs.setdefault(name, _core.ModelRun(name))
+            runner.finish_panels(run, given, output, PANEL, progress)
+        return output
+    result = _run(name, given, runner, make, steps, progress, full_output)
     return result if steps or full_output else result.values
 
 
@@ -200,6 +219,10 @@ def heat(
     The discretisation is the finite volume method of Wu, Deng and Chen (IEEE TVCG 14(3), 2008) with
     the lumped mass matrix and the cotan weights. Times and weights are by default in natural units:
     lengths in the mean edge length h, values in their range R. `fwhm` is in coordinate units.
+
+    More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
+    in double precision does not grow with their number. This does not hold with `full_output`,
+    `steps`, `automatic_fidelity` and ``initial_fill="Noise"``, which need all columns at once.
 
     Examples
     --------

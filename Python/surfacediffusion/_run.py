@@ -154,15 +154,35 @@ class Runner:
         """The warnings that hold, in the words of Python."""
         return [translate(self.function, text, self.arrays) for text in run.warnings()]
 
-    def finish(self, run: Any, inputs: list[Input], progress: Progress) -> list[dict[str, Any]]:
-        """Run to the last step. The common attributes of the result on each surface."""
+    def finish(
+        self, run: Any, inputs: list[Input], progress: Progress, history: bool = True
+    ) -> list[dict[str, Any]]:
+        """Run to the last step. The common attributes of the result on each surface. history: whether
+        energy and totals of the states are measured, too."""
         with ProgressReporter(progress) as reporter:
-            self.call(run.update, [i.core for i in inputs], self.settings, reporter.callable)
+            self.call(run.update, [i.core for i in inputs], self.settings, reporter.callable, history)
             self.call(run.seek, -1, reporter.callable)
             reporter.finish_part()
         sentences = self.warnings(run)
         warn(sentences)
         return self._attributes(run, inputs, sentences)
+
+    def finish_panels(
+        self, run: Any, given: Input, output: NDArray[Any], columns: int, progress: Progress
+    ) -> None:
+        """Run to the last step with a few columns of the data after another, and write `output`."""
+        assert given.data is not None
+        starts = range(0, output.shape[1], columns)
+        known: list[str] = []
+        with ProgressReporter(progress, len(starts)) as reporter:
+            for first in starts:
+                panel = given.core.columns(first, min(columns, output.shape[1] - first))
+                self.call(run.update, [panel], self.settings, reporter.callable, False)
+                self.call(run.seek, -1, reporter.callable)
+                reporter.finish_part()
+                self.call(run.write_state, 0, output, given.data, first)
+                known += [text for text in self.warnings(run) if text not in known]
+        warn(known)
 
     def iterate(
         self, run: Any, given: Input, progress: Progress, make: Callable[..., Any]

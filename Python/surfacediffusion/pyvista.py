@@ -45,6 +45,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._functions import direction_field as _direction_field
+from ._meshes import find_polydata
 from ._models import (
     ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
     make_texture,
@@ -241,23 +242,9 @@ def _split(padded: NDArray[Any]) -> Iterator[NDArray[Any]]:
         begin += 1 + size
 
 
-def _leaves(mesh: Any) -> Iterator[pyvista.PolyData]:
-    if isinstance(mesh, pyvista.MultiBlock):
-        for block in mesh:
-            if block is not None:
-                yield from _leaves(block)
-    elif isinstance(mesh, pyvista.PolyData):
-        yield mesh
-    else:
-        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
-            mesh, "extract_surface") else ""
-        raise TypeError(f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
-                        f"pyvista.MultiBlock of it{remedy}")
-
-
 def _find_surfaces(mesh: Any) -> list[_Block]:
     """The surfaces of a mesh, without empty blocks."""
-    leaves = list(_leaves(mesh))
+    leaves = list(find_polydata(mesh))
     blocks = [block for block in map(_Block, leaves) if not block.empty]
     if not any(leaf.n_points > 0 for leaf in leaves):
         raise ValueError("the mesh is empty; allowed: a surface of polygons or strips")

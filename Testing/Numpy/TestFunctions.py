@@ -59,6 +59,43 @@ class Heat(unittest.TestCase):
             np.testing.assert_allclose(sd.heat(surface, noise[:, k], fwhm=0.3), together[:, k],
                                        rtol=0, atol=1e-12)
 
+    def test_many_columns_have_the_bits_of_a_run_of_all_of_them(self):
+        # Without full_output, many columns are solved in panels, which share their missing points.
+        surface = sd.sphere(3)
+        random = np.random.default_rng(1)
+        noise = random.normal(size=(surface.n_points, 150)).astype(np.float32)
+        noise[random.random(surface.n_points) < 0.1, 149] = np.nan
+        mask = random.random(surface.n_points) < 0.1
+        for options in ({"fwhm": 0.3}, {"fwhm": 0.3, "mask_mode": "Exclude", "mask": mask},
+                        {"fidelity_weight": 1.0, "initial_fill": "Input", "mask": mask},
+                        {"mode": "SteadyState", "hold_known_values": True},
+                        {"initial_fill": "Noise"}, {"dtype": np.float64, "fixed": ~mask & False}):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                panels = sd.heat(surface, noise, **options)
+                whole = sd.heat(surface, noise, full_output=True, **options).values
+            self.assertEqual(panels.dtype, whole.dtype)
+            np.testing.assert_array_equal(panels, whole, str(options))
+
+    def test_many_columns_give_each_warning_and_error_once(self):
+        surface = sd.sphere(3)
+        noise = np.random.default_rng(1).normal(size=(surface.n_points, 150))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            sd.heat(surface, noise, mask=np.zeros(surface.n_points))
+        self.assertEqual(["the mask changes nothing with these settings"],
+                         [str(warning.message) for warning in caught])
+        noise[7, 140] = np.inf
+        with self.assertRaisesRegex(ValueError, "values is infinite at point 7"):
+            sd.heat(surface, noise)
+
+    def test_progress_of_many_columns_grows_to_one(self):
+        surface = sd.sphere(3)
+        fractions = []
+        sd.heat(surface, np.ones((surface.n_points, 150)), progress=fractions.append)
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertEqual(fractions[-1], 1.0)
+
     def test_nan_and_mask_are_missing(self):
         surface = sd.sphere(4)
         values = surface.points[:, 2] + 5.0

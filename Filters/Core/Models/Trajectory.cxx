@@ -70,12 +70,13 @@ const double* CheckpointStore::At(Index step) const
 }
 
 Trajectory::Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> model,
-  std::size_t memoryLimit, const ParallelFor& parallel)
+  std::size_t memoryLimit, const ParallelFor& parallel, bool keepsHistory)
   : Surface(std::move(mesh))
   , Stepper(std::move(model))
   , NumberOfColumns(static_cast<std::size_t>(this->Stepper->State().cols()))
   , Parallel(parallel)
   , Checkpoints(this->Stepper->CheckpointSize(), memoryLimit)
+  , IsHistoryKept(keepsHistory)
 {
   this->Checkpoints.Reserve(0);
   this->Checkpoints.Offer(0, *this->Stepper);
@@ -140,10 +141,15 @@ void Trajectory::Record(const StepReport& report, double seconds)
 {
   const std::size_t columns = this->NumberOfColumns;
   this->Totals.resize(this->History.size() * columns); // an abort may have left some
-  const double energy = this->Stepper->Energy();
-  if (!this->Stepper->SumState(this->StateTotals))
+  double energy = 0.0;
+  this->StateTotals.assign(columns, 0.0);
+  if (this->IsHistoryKept)
   {
-    Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
+    energy = this->Stepper->Energy();
+    if (!this->Stepper->SumState(this->StateTotals))
+    {
+      Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
+    }
   }
   this->Totals.insert(this->Totals.end(), this->StateTotals.begin(), this->StateTotals.end());
   this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped,
