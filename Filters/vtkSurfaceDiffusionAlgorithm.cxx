@@ -192,7 +192,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   const int result = this->Superclass::RequestData(request, inputs, outputs);
   if (state.Succeeded)
   {
-    WriteHistory(state.History, table);
+    this->WriteTable(table);
   }
   state.History = History();
   if (this->GenerateTimeSteps && valid)
@@ -200,6 +200,11 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
     SetDataTime(time, outputs);
   }
   return result;
+}
+
+void vtkSurfaceDiffusionAlgorithm::WriteTable(vtkTable* table)
+{
+  WriteHistory(this->State->History, table);
 }
 
 void vtkSurfaceDiffusionAlgorithm::ReleaseCache()

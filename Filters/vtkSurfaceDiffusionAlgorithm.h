@@ -67,6 +67,7 @@ struct RunSettings;
 class vtkDataArray;
 class vtkDataSetAttributes;
 class vtkPolyData;
+class vtkTable;
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDiffusionAlgorithm : public vtkSurfaceFilter
 {
@@ -311,6 +312,9 @@ protected:
   /// Add the result of block `index` of the run to its output, with AddResult().
   virtual void WriteResult(
     std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output);
+
+  /// Write the table of output port 1. The default writes the history.
+  virtual void WriteTable(vtkTable* table);
 
   /// Take the results of the run other than its states. The default takes the values above.
   virtual void TakeResults();

@@ -10,6 +10,7 @@
 #include "vtkPolyData.h"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -32,6 +33,24 @@ std::vector<char> ReadFlags(vtkDataArray* array)
     flags.push_back(array->GetComponent(i, 0) != 0.0);
   }
   return flags;
+}
+
+std::vector<Index> ReadSeeds(vtkDataArray* array)
+{
+  std::vector<Index> seeds;
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    const double label = array->GetComponent(i, 0);
+    if (!(label >= 0.0 && label <= std::numeric_limits<Index>::max() && label == std::floor(label)))
+    {
+      std::ostringstream text;
+      text << "SeedArray \"" << NameOf(array) << "\" is " << label << " at point " << i
+           << "; allowed: the labels 1 to NumberOfRegions, and 0 for points that are free";
+      throw std::runtime_error(text.str());
+    }
+    seeds.push_back(static_cast<Index>(label));
+  }
+  return seeds;
 }
 
 Points ReadDirections(vtkDataArray* array)
@@ -82,13 +101,15 @@ FieldSummary InputFields::Summarize() const
   summary.Directions = this->Direction != nullptr;
   summary.Fixed = this->Fixed != nullptr;
   summary.Rates = this->Rates != nullptr;
+  summary.DataAreTerms = this->DataAreTerms;
+  summary.Seeds = this->Seeds != nullptr;
   return summary;
 }
 
 std::vector<vtkDataArray*> InputFields::List() const
 {
   return { this->Data, this->Mask, this->Direction, this->Fixed, this->Rates, this->Fidelity,
-    this->GlobalIds };
+    this->Seeds, this->GlobalIds };
 }
 
 int NumberOfDataComponents(vtkDataArray* array)
@@ -126,6 +147,7 @@ Fingerprint FingerprintFields(const InputFields& arrays)
     AddArray(fingerprint, array);
   }
   fingerprint.AddNumber(std::uint64_t{ arrays.DirectionOnCells ? 1u : 0u });
+  fingerprint.AddNumber(std::uint64_t{ arrays.DataAreTerms ? 1u : 0u });
   return fingerprint;
 }
 
@@ -135,7 +157,9 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
   if (arrays.Data)
   {
     fields.Data = ReadValues(arrays.Data);
-    fields.DataName = "InputArray \"" + NameOf(arrays.Data) + "\"";
+    fields.DataName = std::string(arrays.DataAreTerms ? "DataTermArray" : "InputArray") + " \"" +
+      NameOf(arrays.Data) + "\"";
+    fields.DataAreTerms = arrays.DataAreTerms;
   }
   fields.Mask = ReadFlags(arrays.Mask);
   fields.Fixed = ReadFlags(arrays.Fixed);
@@ -143,6 +167,7 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
   {
     fields.FidelityFactors.push_back(arrays.Fidelity->GetComponent(i, 0));
   }
+  fields.Seeds = ReadSeeds(arrays.Seeds);
   if (arrays.Direction)
   {
     const Points vectors = ReadDirections(arrays.Direction);

@@ -29,6 +29,8 @@ struct InputFields
   vtkDataArray* Fixed = nullptr; ///< index 3
   vtkDataArray* Rates = nullptr; ///< index 4
   vtkDataArray* Fidelity = nullptr; ///< index 5
+  vtkDataArray* Seeds = nullptr; ///< index 6
+  bool DataAreTerms = false; ///< Data is index 7
   vtkDataArray* GlobalIds = nullptr; ///< of the points
 
   FieldSummary Summarize() const;

@@ -218,6 +218,34 @@ TangentVectors MakeDirections(
       surface.InputMesh(), surface.Points(), surface.Triangles(), ofTriangles, parallel));
 }
 
+std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields)
+{
+  if (fields.Seeds.empty())
+  {
+    return {};
+  }
+  std::vector<Index> seeds(static_cast<std::size_t>(surface.Mesh().NumberOfVertices()), 0);
+  for (std::size_t i = 0; i < fields.Seeds.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v < 0 || fields.Seeds[i] == 0)
+    {
+      continue;
+    }
+    Index& seed = seeds[static_cast<std::size_t>(v)];
+    if (seed != 0 && seed != fields.Seeds[i])
+    {
+      std::ostringstream text;
+      text << "SeedArray is " << seed << " and " << fields.Seeds[i]
+           << " at points that are merged into one, point " << i
+           << " among them; allowed: one label there";
+      throw std::runtime_error(text.str());
+    }
+    seed = fields.Seeds[i];
+  }
+  return seeds;
+}
+
 std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields)
 {
   const TriangleMesh& mesh = surface.Mesh();

@@ -35,6 +35,8 @@ struct Fields
   /// Diffusion rates of a texture, per input triangle; no row if there are none.
   Values Rates;
   std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: by coordinates
+  bool DataAreTerms = false; ///< Data are the data terms of a segmentation
+  std::vector<Index> Seeds; ///< per point, the label 1, 2, ... that it keeps, or 0; may be empty
 };
 
 /// The extreme known values of each component, over several surfaces and processes.
@@ -68,6 +70,10 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
 /// e1 on the triangles of surface.Mesh(); no row if there are no directions.
 TangentVectors MakeDirections(
   const Surface& surface, const Fields& fields, const ParallelFor& parallel);
+
+/// The label that each vertex keeps, or 0; empty if there are no seeds. Throws std::runtime_error if
+/// points of different labels are merged into one vertex.
+std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields);
 
 /// A number per vertex that identifies it in random numbers.
 std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Geometry/RegionBoundaries.h"
 #include "Core/Geometry/RidgeCurves.h"
 #include "Core/Geometry/VertexUpdating.h"
 #include "Core/Models/Trajectory.h"
@@ -10,6 +11,7 @@
 #include "Run/Units.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,23 @@ struct ModelInputs
   const ProcessGroup& Processes;
   Eigen::Index Columns = 0; ///< of all panels of the data together; see Fields
   bool IsLastPanel = true; ///< of them
+  bool DataAreTerms = false; ///< as in Fields
+  std::vector<Index> Seeds; ///< per vertex, see MakeSeeds()
+};
+
+/// The regions of a segmentation at the current step, in coordinate and array units.
+struct RegionResults
+{
+  std::vector<Index> Labels; ///< 1 .. K per vertex
+  Values Means; ///< c, a row per region; no row if data terms are given
+  Values DataMeans; ///< of the data over the known vertices of each region, likewise
+  Vector Areas; ///< within the boundaries
+  Vector BoundaryLengths;
+  std::vector<Index> Components; ///< the number of connected ones
+  RegionBoundaries Boundaries;
+  double Gap = 0.0; ///< of the relaxed problem, see Segmentation
+  double LabelGap = 0.0;
+  int NumberOfAlternations = 0;
 };
 
 /// A run on one surface at its current step.
@@ -56,6 +75,7 @@ struct RunResult
   VertexMotion Motion;
   Vector Edges; ///< 1 - v of the Mumford-Shah model, per vertex
   Polylines EdgeCurves; ///< its ridges, in coordinate units
+  std::shared_ptr<const RegionResults> Regions; ///< of a segmentation
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<std::string> Warnings;

@@ -199,7 +199,8 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
                                                       : std::vector<std::int64_t>(),
     this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
     std::max(fields.AllColumns, fields.Data.cols()),
-    fields.FirstColumn + fields.Data.cols() >= fields.AllColumns };
+    fields.FirstColumn + fields.Data.cols() >= fields.AllColumns, fields.DataAreTerms,
+    MakeSeeds(*block.Surface, fields) };
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const std::size_t limit = this->CheckpointMemory(*model, processes);

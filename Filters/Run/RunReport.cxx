@@ -83,7 +83,8 @@ History Run::MakeHistory(int step) const
       for (Eigen::Index k = 0; k < path.State().cols(); ++k)
       {
         history.Totals[static_cast<std::size_t>(k)][static_cast<std::size_t>(row)] +=
-          units.FromCore(path.TotalAt(std::min(row, last), static_cast<Index>(k)), 2.0, 1.0);
+          units.FromCore(path.TotalAt(std::min(row, last), static_cast<Index>(k)), 2.0,
+            traits.StateHasUnitOfValues ? 1.0 : 0.0);
       }
     }
   }

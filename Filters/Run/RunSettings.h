@@ -44,6 +44,8 @@ struct FieldSummary
   bool Directions = false;
   bool Fixed = false;
   bool Rates = false;
+  bool DataAreTerms = false; ///< the data are the data terms of a segmentation, one per region
+  bool Seeds = false;
 };
 
 /// The properties of a model that a run needs before it makes the model.
@@ -56,6 +58,7 @@ struct ModelTraits
   double TimeFactor = 1.0; ///< of the natural unit of time, beyond its dimension
   Dimension Energy;
   bool HasValueRange = true; ///< false: R is 1
+  bool StateHasUnitOfValues = true; ///< false: u is a pure number
   bool UsesFidelity = false;
   bool NeedsDirections = false; ///< diffusivities along and across differ
   bool HoldsKnownValues = false;

@@ -58,6 +58,15 @@ public:
   virtual ~SettingVisitor() = default;
   virtual void Number(const SettingInfo& info, double& value, const SettingRange& range) = 0;
   virtual void Integer(const SettingInfo& info, int& value, const SettingRange& range) = 0;
+  /// A list of any length. Unless overridden, each entry is visited as a number.
+  virtual void Numbers(
+    const SettingInfo& info, std::vector<double>& values, const SettingRange& range)
+  {
+    for (double& value : values)
+    {
+      this->Number(info, value, range);
+    }
+  }
   virtual void Switch(const SettingInfo& info, bool& value) = 0;
   /// `value` is the index of one of the words. Only those with a true entry in `allowed` may be
   /// chosen; an empty list allows all.

@@ -160,6 +160,8 @@ FieldSummary InputFields::Summarize() const
   summary.Directions = this->Directions.has_value();
   summary.Fixed = this->Fixed.has_value();
   summary.Rates = this->Rates.has_value();
+  summary.Seeds = this->Seeds.has_value();
+  summary.DataAreTerms = this->DataAreTerms;
   return summary;
 }
 
@@ -168,7 +170,8 @@ Fields InputFields::Read() const
   Fields fields;
   if (this->Data)
   {
-    fields.DataName = "InputArray";
+    fields.DataName = this->DataAreTerms ? "DataTermArray" : "InputArray";
+    fields.DataAreTerms = this->DataAreTerms;
     fields.Data.resize(static_cast<Eigen::Index>(this->Data->shape(0)), this->Components);
     const auto stride = static_cast<Eigen::Index>(this->Data->shape(1));
     VisitElements(*this->Data,
@@ -209,6 +212,10 @@ Fields InputFields::Read() const
     const double* const begin = this->FidelityFactors->data();
     fields.FidelityFactors.assign(begin, begin + this->FidelityFactors->size());
   }
+  if (this->Seeds)
+  {
+    fields.Seeds.assign(this->Seeds->data(), this->Seeds->data() + this->Seeds->size());
+  }
   return fields;
 }
 
@@ -241,6 +248,8 @@ Fingerprint InputFields::Version() const
   AddArray(version, this->Directions);
   AddArray(version, this->Rates);
   AddArray(version, this->FidelityFactors);
+  AddArray(version, this->Seeds);
+  version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
   version.AddNumber(std::uint64_t{ this->DirectionsOnFaces ? 1U : 0U });
   return version;
 }

@@ -104,6 +104,8 @@ public:
 
   /// The same with a panel of the data's columns, which Components counts.
   InputFields Columns(int first, int count) const;
+  std::optional<LongArray> Seeds; ///< labels of points, 0 = free
+  bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
   FieldSummary Summarize() const;
   Fields Read() const;

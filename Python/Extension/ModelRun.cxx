@@ -315,6 +315,49 @@ void ModelRun::WriteCurves(std::size_t block, const OutputArray& output) const
   WriteMatrix(this->Model.GetBlock(block).Result.EdgeCurves.Points, output);
 }
 
+nb::dict ModelRun::GetRegions(std::size_t block) const
+{
+  const RegionResults& found = *this->Model.GetBlock(block).Result.Regions;
+  const auto rowsOf = [](const auto& matrix)
+  {
+    std::vector<std::vector<double>> rows;
+    for (Eigen::Index r = 0; r < matrix.rows(); ++r)
+    {
+      rows.emplace_back(matrix.row(r).data(), matrix.row(r).data() + matrix.cols());
+    }
+    return rows;
+  };
+  nb::dict regions;
+  regions["means"] = nb::cast(rowsOf(found.Means));
+  regions["areas"] =
+    nb::cast(std::vector<double>(found.Areas.data(), found.Areas.data() + found.Areas.size()));
+  regions["boundary_lengths"] = nb::cast(std::vector<double>(
+    found.BoundaryLengths.data(), found.BoundaryLengths.data() + found.BoundaryLengths.size()));
+  regions["components"] = nb::cast(found.Components);
+  regions["gap"] = found.Gap;
+  regions["label_gap"] = found.LabelGap;
+  regions["number_of_alternations"] = found.NumberOfAlternations;
+  regions["points"] = nb::cast(rowsOf(found.Boundaries.Points));
+  nb::list curves;
+  for (const RegionBoundary& curve : found.Boundaries.Curves)
+  {
+    curves.append(
+      nb::make_tuple(curve.Regions[0], curve.Regions[1], curve.Length, nb::cast(curve.Points)));
+  }
+  regions["curves"] = curves;
+  return regions;
+}
+
+void ModelRun::WriteLabels(std::size_t block, const OutputArray& output) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  const std::vector<Index>& labels = from.Result.Regions->Labels;
+  WritePoints(
+    *from.Surface, output, 1,
+    [&](Index v, Eigen::Index) { return static_cast<double>(labels[static_cast<std::size_t>(v)]); },
+    [](Index, Eigen::Index) { return 0.0; });
+}
+
 bool ModelRun::WriteMovedPoints(std::size_t block, const OutputArray& output) const
 {
   const Points& moved = this->Model.GetBlock(block).Result.MovedPoints;

@@ -58,6 +58,10 @@ public:
   /// The number of points of each curve along its edges, and the points of all curves.
   std::vector<Index> GetCurveSizes(std::size_t block) const;
   void WriteCurves(std::size_t block, const OutputArray& output) const;
+  /// The regions of a segmentation: lists with an entry per region, and their boundaries.
+  nanobind::dict GetRegions(std::size_t block) const;
+  /// The labels of the points; 0 at points that take no part.
+  void WriteLabels(std::size_t block, const OutputArray& output) const;
   /// The moved points (float64 or float32); false if no point was moved.
   bool WriteMovedPoints(std::size_t block, const OutputArray& output) const;
 

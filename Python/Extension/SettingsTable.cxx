@@ -6,8 +6,11 @@
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
 #include "Run/MumfordShahSettings.h"
+#include "Run/SegmentationSettings.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
+
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 
@@ -35,6 +38,12 @@ public:
     nb::dict entry = this->Add(info, "integer");
     entry["default"] = value;
     entry["allowed"] = range.Low < range.High ? range.Text : "integers of 32 bits";
+  }
+  void Numbers(const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
+  {
+    nb::dict entry = this->Add(info, "numbers");
+    entry["default"] = nb::cast(values);
+    entry["allowed"] = "finite numbers";
   }
   void Switch(const SettingInfo& info, bool& value) override
   {
@@ -94,6 +103,10 @@ public:
   {
     this->Assign(info, value);
   }
+  void Numbers(const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
+  {
+    this->Assign(info, values);
+  }
   void Switch(const SettingInfo& info, bool& value) override { this->Assign(info, value); }
   void Choice(const SettingInfo& info, int& value, const std::vector<const char*>&,
     const std::vector<bool>&) override
@@ -125,6 +138,10 @@ std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
   if (model == "intrinsic_tv")
   {
     return std::make_unique<TotalVariationSettings>();
+  }
+  if (model == "segment")
+  {
+    return std::make_unique<SegmentationSettings>();
   }
   if (model == "harmonic_map")
   {

@@ -29,10 +29,13 @@ from importlib.metadata import version as _version
 
 from . import _core
 from ._functions import (
-    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, turing_texture,
+    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, turing_texture,
 )
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
-from ._result import DiffusionResult, EdgeResult, HarmonicMapResult, Result, TextureResult
+from ._result import (
+    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, Result, SegmentationResult,
+    TextureResult,
+)
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
@@ -40,10 +43,10 @@ from ._threads import get_number_of_threads, set_number_of_threads
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "DiffusionResult", "EdgeResult", "FWHMEstimate", "HarmonicMapResult", "Result", "Surface",
-    "SurfaceDiffusionWarning", "TextureResult", "direction_field", "estimate_fwhm",
-    "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah",
-    "set_number_of_threads", "smooth_to_fwhm", "sphere", "turing_texture",
+    "DiffusionResult", "EdgeResult", "FWHMEstimate", "HarmonicMapResult", "RegionBoundary", "Result",
+    "SegmentationResult", "Surface", "SurfaceDiffusionWarning", "TextureResult", "direction_field",
+    "estimate_fwhm", "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah",
+    "segment", "set_number_of_threads", "smooth_to_fwhm", "sphere", "turing_texture",
 ]
 
 if hasattr(_os, "register_at_fork"):

@@ -16,14 +16,19 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._models import (
     ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
-    make_texture,
+    make_segmentation, make_texture,
 )
-from ._result import DiffusionResult, EdgeResult, HarmonicMapResult, TextureResult
+from ._result import (
+    DiffusionResult, EdgeResult, HarmonicMapResult, SegmentationResult, TextureResult,
+)
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, translate
 from ._surface import SurfaceLike, as_data, as_surface
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "turing_texture"]
+__all__ = [
+    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "turing_texture",
+]
 
 #: The number of columns of data that a run holds in double precision, if they are independent.
 PANEL = 32
@@ -91,7 +96,8 @@ def _with_settings(function: F) -> F:
         if parameter.kind is not inspect.Parameter.VAR_KEYWORD:
             parameters.append(parameter)
     for setting in table.values():
-        kind = {"number": "float", "integer": "int", "switch": "bool"}.get(setting.kind, "")
+        kind = {"number": "float", "integer": "int", "switch": "bool",
+                "numbers": "array_like"}.get(setting.kind, "")
         if setting.kind == "choice":
             kind = "Literal[" + ", ".join(f'"{word}"' for word in setting.usable) + "]"
         parameters.append(inspect.Parameter(
@@ -444,6 +450,74 @@ def harmonic_map(
     return _run("harmonic_map", given, runner,
                 lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),
                 steps, progress)
+
+
+@_with_settings
+def segment(
+    surface: SurfaceLike,
+    values: ArrayLike | None = None,
+    *,
+    terms: ArrayLike | None = None,
+    seeds: ArrayLike | None = None,
+    mask: ArrayLike | None = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> SegmentationResult:
+    """Divide a surface into regions with short boundaries.
+
+    Minimises 1/2 sum_k int abs(grad u_k) + lambda sum_k int u_k r_k over the probabilities u_k >= 0
+    with sum 1 of K regions, the convex models of Chan and Vese (K = 2; Chan, Esedoglu, Nikolova
+    2006) and of Potts. The data terms are r_k = abs(f - c_k)^2 with the means c_k, or given.
+
+    Parameters
+    ----------
+    {surface}
+    values : array_like, shape (n,) or (n, k), optional
+        The data f. NaN in any component is missing.
+    terms : array_like, shape (n, K), optional
+        The data terms r_k in place of `values`. NaN in any component is missing.
+    seeds : array_like of int, shape (n,), optional
+        Labels 1 to K that points keep; 0: free.
+    {mask}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    SegmentationResult
+        `values` are the labels. If `means` are given, `automatic_means` is off unless it is given,
+        too.
+
+    {problems}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import segment, sphere
+    >>> ball = sphere(5)
+    >>> noise = np.random.default_rng(0).normal(scale=0.5, size=ball.n_points)
+    >>> result = segment(ball, (ball.points[:, 2] > 0.5) + noise, fidelity_weight=0.1)
+    >>> bool(abs(result.areas[1] - np.pi) < 0.05 * np.pi), len(result.boundaries)
+    (True, 1)
+    """
+    surface = as_surface(surface)
+    if (values is None) == (terms is None):
+        raise ValueError("values and terms are " + ("both" if values is not None else "not") +
+                         " given; allowed: one of them")
+    name = "values" if terms is None else "terms"
+    data = as_data(name, values if terms is None else terms, surface.n_points)
+    if "means" in properties:
+        properties.setdefault("automatic_means", False)
+    given = Input(surface, data, mask=mask, seeds=seeds,
+                  data_are_terms=terms is not None)
+    runner = Runner("segment", properties, ARRAYS)
+    result: SegmentationResult = _run(
+        "segment", given, runner,
+        lambda run, found: make_segmentation(run, 0, given, runner, found), False, progress)
+    return result
 
 
 @_with_settings

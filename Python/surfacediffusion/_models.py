@@ -10,14 +10,17 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ._result import DiffusionResult, EdgeResult, HarmonicMapResult, TextureResult
+from ._result import (
+    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, SegmentationResult, TextureResult,
+)
 from ._run import Input, Runner, find_result_type
 from ._settings import shorten
 from ._surface import Surface, as_data, as_numbers, data_components
 
 #: The keywords of input arrays, by their names in messages.
 ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
-          "FixedArray": "fixed", "DiffusionRateArray": "rates", "FidelityArray": "fidelity"}
+          "FixedArray": "fixed", "DiffusionRateArray": "rates", "FidelityArray": "fidelity",
+          "SeedArray": "seeds", "DataTermArray": "terms"}
 
 
 def make_diffusion(
@@ -79,6 +82,27 @@ def make_texture(
         runner.call(run.write_texture_colors, block, painted, *colors)
     return TextureResult(concentrations, texture=texture[:, 0], colors=painted,
                          **_pick(TextureResult, found))
+
+
+def make_segmentation(
+    run: Any, block: int, given: Input, runner: Runner, found: dict[str, Any]
+) -> SegmentationResult:
+    """The result of segment on one surface."""
+    n = given.surface.n_points
+    regions = run.regions(block)
+    labels = np.empty((n, 1))
+    runner.call(run.write_labels, block, labels)
+    probabilities = np.empty((n, len(regions["areas"])))
+    runner.call(run.write_state, block, probabilities, None)
+    points = np.array(regions.pop("points"), dtype=float).reshape(-1, 3)
+    boundaries = [RegionBoundary((first, second), points[curve], length)
+                  for first, second, length, curve in regions.pop("curves")]
+    means = np.array(regions.pop("means"), dtype=float).reshape(probabilities.shape[1], -1)
+    for name in ("areas", "boundary_lengths", "components"):
+        regions[name] = np.array(regions[name])
+    return SegmentationResult(
+        labels[:, 0].astype(np.int32), probabilities=probabilities, means=means,
+        boundaries=boundaries, **regions, **_pick(SegmentationResult, found))
 
 
 def as_vectors(surface: Surface, vectors: Any, properties: Mapping[str, Any]) -> NDArray[Any]:

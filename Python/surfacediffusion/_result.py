@@ -153,3 +153,57 @@ class TextureResult(Result):
     wavelength: float = 0.0
     wavelength_growth_rate: float = field(default=0.0, repr=False)
     diffusion_rate_factor: float = field(default=1.0, repr=False)
+
+
+@dataclass(frozen=True)
+class RegionBoundary:
+    """A curve between two regions.
+
+    Attributes
+    ----------
+    regions : tuple of int
+        The two labels, ascending.
+    points : ndarray, shape (p, 3)
+        The curve as a polyline that cuts triangles; a closed one ends where it starts.
+    length : float
+    """
+
+    regions: tuple[int, int]
+    points: NDArray[np.float64] = field(repr=False)
+    length: float
+
+
+@dataclass(frozen=True)
+class SegmentationResult(Result):
+    """A state of :func:`segment`: a :class:`Result` whose `values` (n,) are the labels 1 to K of the
+    points, 0 at points that take no part, with
+
+    Attributes
+    ----------
+    probabilities : ndarray, shape (n, K)
+        u of the relaxed problem.
+    means : ndarray, shape (K, k)
+        The means c of the regions, given or found; shape (K, 0) with given data terms.
+    areas, boundary_lengths : ndarray, shape (K,)
+        Of the regions within `boundaries`.
+    components : ndarray of int, shape (K,)
+        The number of connected components of each region.
+    boundaries : list of RegionBoundary
+        The curves on which the two largest of the probabilities are equal.
+    gap : float
+        The certified relative duality gap of the probabilities.
+    label_gap : float
+        That of the labels as functions on the mesh, whose boundaries are too long by a tenth.
+    number_of_alternations : int
+        The number of minimisations; more than 1 if the means were found.
+    """
+
+    probabilities: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    means: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
+    areas: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    boundary_lengths: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    components: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    boundaries: list[RegionBoundary] = field(default_factory=list, repr=False)
+    gap: float = 0.0
+    label_gap: float = field(default=0.0, repr=False)
+    number_of_alternations: int = field(default=0, repr=False)

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._settings import convert_all, settings_of, shorten, translate
-from ._surface import Surface, as_factors, as_flags, as_numbers, as_rows, data_components
+from ._surface import (
+    Surface, as_factors, as_flags, as_labels, as_numbers, as_rows, data_components,
+)
 
 Progress = Union[None, bool, Callable[[float], Any]]
 
@@ -104,6 +106,8 @@ class Input:
         on_faces: bool | None = None,
         rates: Any = None,
         fidelity: Any = None,
+        seeds: Any = None,
+        data_are_terms: bool = False,
     ) -> None:
         n, m = surface.n_points, surface.n_faces
         self.surface, self.data = surface, data
@@ -131,7 +135,8 @@ class Input:
         self.core = _core.Fields(
             surface._core, data, 0 if data is None else data_components(data),
             as_flags("mask", mask, n), as_flags("fixed", fixed, n), directions,
-            bool(on_faces), rates, as_factors("fidelity", fidelity, n))
+            bool(on_faces), rates, as_factors("fidelity", fidelity, n), as_labels("seeds", seeds, n),
+            data_are_terms)
 
 
 class Runner:

@@ -21,6 +21,12 @@ from . import _core
 #: Settings of pipelines: an iterator over time steps needs no requests of times.
 HIDDEN = {"GenerateTimeSteps", "CheckpointMemoryLimit"}
 
+#: Settings that a function does not use.
+UNUSED = {
+    "segment": {"TimeStep", "NumberOfTimeSteps", "OutputInterval", "TimeIntegrator", "Solver",
+                "Tolerance", "MaximumNumberOfIterations"},
+}
+
 RENAMED = {"RandomSeed": "seed"}
 
 
@@ -30,7 +36,7 @@ class Setting:
 
     name: str  #: in C++, VTK and ParaView
     keyword: str
-    kind: str  #: "number", "integer", "switch" or "choice"
+    kind: str  #: "number", "numbers", "integer", "switch" or "choice"
     unit: str
     documentation: str
     default: Any
@@ -46,6 +52,10 @@ class Setting:
         elif self.kind == "switch":
             if isinstance(value, (bool, np.bool_)):
                 return bool(value)
+        elif self.kind == "numbers":
+            found = np.asarray(value)
+            if found.dtype.kind in "iuf" and np.isfinite(found).all():
+                return [float(number) for number in found.ravel()]
         elif isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_)):
             if self.kind == "number":
                 return float(value)
@@ -73,7 +83,7 @@ def settings_of(function: str) -> dict[str, Setting]:
     """The settings of a function by keyword, in the order of C++."""
     table = {}
     for entry in _core.list_settings(function):
-        if entry["name"] not in HIDDEN:
+        if entry["name"] not in HIDDEN | UNUSED.get(function, set()):
             for list_name in ("words", "usable"):
                 entry[list_name] = tuple(entry.get(list_name, ()))
             setting = Setting(keyword=snake_case(entry["name"]), **entry)

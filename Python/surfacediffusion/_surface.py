@@ -38,6 +38,21 @@ def as_rows(name: str, values: Any, rows: int, columns: int, row_name: str) -> N
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
+def as_labels(name: str, values: Any, n: int) -> NDArray[np.int64] | None:
+    """Labels 1, 2, ... of points, 0 for none; None stays."""
+    if values is None:
+        return None
+    array = as_numbers(name, values)
+    if array.shape != (n,):
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},), one label per point")
+    bad = ~((array >= 0) & (array == np.floor(array)) & (array < 2**31))
+    if bad.any():
+        row = int(np.argmax(bad))
+        raise ValueError(f"{name} is {array[row]} in row {row}; allowed: the labels 1 to "
+                         "number_of_regions, and 0 for points that are free")
+    return np.ascontiguousarray(array, dtype=np.int64)
+
+
 def as_flags(name: str, values: Any, points: int) -> NDArray[np.uint8] | None:
     """One flag per point, nonzero is set; None stays."""
     if values is None:

@@ -37,6 +37,10 @@ inline Surface ReadOff(const std::string& path)
   for (auto& v : vertices)
   {
     text >> v[0] >> v[1] >> v[2];
+    if (format == "COFF")
+    {
+      text.ignore(1000, '\n'); // colours
+    }
   }
   std::vector<std::array<Index, 3>> faces;
   for (std::size_t p = 0; p < polygons; ++p)
@@ -54,7 +58,7 @@ inline Surface ReadOff(const std::string& path)
     }
     text.ignore(1000, '\n'); // colours
   }
-  if (format != "OFF" || !text)
+  if ((format != "OFF" && format != "COFF") || !text)
   {
     throw std::runtime_error("cannot read the mesh " + path);
   }

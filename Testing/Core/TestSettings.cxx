@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/SegmentationSettings.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
 
@@ -81,7 +82,13 @@ using Maker = std::function<std::unique_ptr<RunSettings>()>;
 const std::vector<Maker> AllModels = { [] { return std::make_unique<HeatSettings>(); },
   [] { return std::make_unique<TotalVariationSettings>(); },
   [] { return std::make_unique<HarmonicMapSettings>(); },
-  [] { return std::make_unique<TextureSettings>(); } };
+  [] { return std::make_unique<TextureSettings>(); },
+  []
+  {
+    auto settings = std::make_unique<SegmentationSettings>();
+    settings->Means = { 0.0, 1.0 };
+    return settings;
+  } };
 
 bool HasProblem(RunSettings& settings, const std::string& start)
 {

@@ -13,6 +13,7 @@ import surfacediffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDirectionFieldFilter,
+    SurfaceSegmentationFilter,
     TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -54,6 +55,7 @@ CASES = (
     ("harmonic, paper", HarmonicMapFilter,
      dict(InputArray=["POINTS", "vectors"], Scheme="ExplicitReaction"), "vectorsHarmonic"),
     ("edges", MumfordShahFilter, dict(Tolerance=1e-10), "fMumfordShah"),
+    ("segmentation", SurfaceSegmentationFilter, dict(FidelityWeight=2.0), "RegionId"),
     ("turing", TuringTextureFilter, LABYRINTH, "u1"),
     ("turing, rates", TuringTextureFilter,
      dict(DiffusionRateArray=["CELLS", "rates"], **LABYRINTH), "u2"),

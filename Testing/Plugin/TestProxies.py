@@ -22,8 +22,10 @@ PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
 # All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
-    "TimestepValues",
+    "SeedArray", "DataTermArray", "TimestepValues",
+    "Mean",  # a list: SetMean(region, component, value)
 }
+PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"]}
 
 
 def filters():
@@ -163,7 +165,7 @@ class TestProxies(unittest.TestCase):
 
     def test_ports_have_names(self):
         for name, proxy, cxx in proxies():
-            ports = ["Surface", "History"][: cxx().GetNumberOfOutputPorts()]
+            ports = PORTS.get(name, ["Surface", "History"])[: cxx().GetNumberOfOutputPorts()]
             found = [proxy.SMProxy.GetOutputPortName(i) for i in range(len(ports))]
             self.assertEqual(found, ports, name)
 
@@ -248,6 +250,7 @@ class TestProxies(unittest.TestCase):
              ["EdgeThreshold", "SmoothingLength", "EdgeWidth"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
+            ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean"]),
             ("TuringTextureFilter",
              ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
               "DecayRate"]),
@@ -308,7 +311,7 @@ class TestProxies(unittest.TestCase):
             for _ in range(20):
                 filter = getattr(servermanager.filters, name)(Input=sphere_with_arrays())
                 clicked = []
-                if name in ("FVMHeatFilter", "IntrinsicTVFilter"):
+                if name in ("FVMHeatFilter", "IntrinsicTVFilter", "SurfaceSegmentationFilter"):
                     filter.InputArray = ["POINTS", "f"]
                 if "NumberOfTimeSteps" in filter.ListProperties():
                     filter.NumberOfTimeSteps = 2

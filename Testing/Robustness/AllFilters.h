@@ -10,6 +10,7 @@
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
@@ -95,6 +96,9 @@ inline std::vector<FilterKind> AllFilters()
         f->SetTimeIntegratorToFirstOrder();
         f->ColorOutputOn();
       }),
+    MakeKind<vtkSurfaceSegmentationFilter>("Segmentation", "RegionId", 1),
+    MakeKind<vtkSurfaceSegmentationFilter>("SegmentationOfThree", "RegionId", 1,
+      [](vtkSurfaceSegmentationFilter* f) { f->SetNumberOfRegions(3); }),
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

@@ -10,6 +10,7 @@
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include <algorithm>
@@ -192,6 +193,48 @@ inline List OfHeat()
   };
 }
 
+inline List OfSegmentation()
+{
+  using F = vtkSurfaceSegmentationFilter;
+  return {
+    RANDOM_PROPERTY(F, NumberOfRegions, 2 + dice.Below(4) - (dice.Flip(24) ? 2 : 0)),
+    RANDOM_PROPERTY(F, FidelityWeight, Positive(dice)),
+    RANDOM_PROPERTY(F, AutomaticMeans, !dice.Flip(12)),
+    RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-4, 0.5)),
+    { "Mean",
+      [](vtkPolyDataAlgorithm* filter, Dice& dice)
+      { static_cast<F*>(filter)->SetMean(1 + dice.Below(2), dice.Below(3), 1.0 + 2.0 * dice.Unit()); },
+      [](vtkPolyDataAlgorithm* from, vtkPolyDataAlgorithm* to)
+      {
+        static_cast<F*>(to)->RemoveAllMeans();
+        for (int region = 1; region <= 2; ++region)
+        {
+          for (int component = 0; component < 3; ++component)
+          {
+            const double mean = static_cast<F*>(from)->GetMean(region, component);
+            if (mean == mean) // it is set
+            {
+              static_cast<F*>(to)->SetMean(region, component, mean);
+            }
+          }
+        }
+      },
+      [](vtkPolyDataAlgorithm* a, vtkPolyDataAlgorithm* b)
+      {
+        for (int entry = 0; entry < 6; ++entry)
+        {
+          const double x = static_cast<F*>(a)->GetMean(1 + entry / 3, entry % 3);
+          const double y = static_cast<F*>(b)->GetMean(1 + entry / 3, entry % 3);
+          if (!(x == y || (x != x && y != y)))
+          {
+            return false;
+          }
+        }
+        return true;
+      } },
+  };
+}
+
 inline List OfTotalVariation()
 {
   using F = vtkIntrinsicTVFilter;
@@ -321,6 +364,8 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
+    MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),
+      OfDiffusion<vtkSurfaceSegmentationFilter>(0b001), OfSegmentation() }),
   };
 }
 

@@ -32,6 +32,10 @@ const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controll
 const std::set<std::string> WithoutEffectInClass = {
   "vtkHarmonicMapFilter TimeIntegrator", // it has only one
   "vtkMumfordShahFilter TimeIntegrator",
+  "vtkSurfaceSegmentationFilter TimeIntegrator", // a steady state
+  "vtkSurfaceSegmentationFilter TimeStep", "vtkSurfaceSegmentationFilter NumberOfTimeSteps",
+  "vtkSurfaceSegmentationFilter OutputInterval",
+  "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
 };
 
 /// An ellipsoid with obtuse triangles. One patch has points of its own: the others are at most 0.01
@@ -92,6 +96,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Shah = vtkMumfordShahFilter;
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
+  using Segmentation = vtkSurfaceSegmentationFilter;
   std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
   needed["MergeTolerance"] = With<Surface>([](Surface* f) { f->MergeCoincidentPointsOn(); });
   needed["OutputInterval"] = With<Diffusion>([](Diffusion* f) { f->GenerateTimeStepsOn(); });
@@ -162,6 +167,18 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->SetEdgeThreshold(0.5);
       f->SetEdgeWidth(0.2);
     });
+  needed["Mean"] = needed["AutomaticMeans"] = With<Segmentation>(
+    [](Segmentation* f)
+    {
+      f->AutomaticMeansOff();
+      for (int component = 0; component < 3; ++component)
+      {
+        f->SetMean(1, component, 1.3);
+        f->SetMean(2, component, 2.1);
+      }
+    });
+  needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
+    With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
   needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =
     With<Direction>([](Direction* f) { f->SetMethodToCurvatureAligned(); });
   needed["HintWeight"] = With<Direction>([](Direction* f) { f->SetMethodToHints(); });

@@ -3,6 +3,7 @@
 #include "Core/Models/TotalVariationMinimizer.h"
 
 #include "Core/Models/ValueRange.h"
+#include "Core/Models/VertexSplitting.h"
 #include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
@@ -43,9 +44,11 @@ Vector RangesOfTriangles(const TriangleMesh& mesh, const Eigen::Ref<const Values
 }
 
 /// Their means around each vertex.
-Vector RangesOfVertices(const TriangleMesh& mesh, const Vector& ofTriangles,
-  const Vector& consistentAreas, const ParallelFor& parallel)
+Vector RangesOfVertices(
+  const TriangleMesh& mesh, const Vector& ofTriangles, const ParallelFor& parallel)
 {
+  Vector storage;
+  const Vector& areas = mesh.GetReduction().Accumulated(mesh.ControlAreas(), storage);
   Vector ranges(mesh.NumberOfVertices());
   ForEach(parallel, mesh.NumberOfVertices(),
     [&](Index i)
@@ -58,7 +61,7 @@ Vector RangesOfVertices(const TriangleMesh& mesh, const Vector& ofTriangles,
       }
     });
   mesh.GetReduction().Accumulate(ranges);
-  return ranges.cwiseQuotient(consistentAreas);
+  return ranges.cwiseQuotient(areas);
 }
 
 EdgeFunction WithoutBeta(EdgeFunction function)
@@ -82,19 +85,29 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
   std::shared_ptr<const std::vector<GradientMap>> gradients, Vector quadratic, Vector absolute,
   Flags fixed, const Settings& settings, const Vector& ranges, const ParallelFor& parallel)
+  : TotalVariationMinimizer(assembler, std::move(gradients),
+      std::make_unique<VertexSplitting>(assembler->SharedMesh(), std::move(quadratic),
+        std::move(absolute), std::move(fixed),
+        RangesOfVertices(assembler->Mesh(), ranges, parallel),
+        VertexSplitting::Settings{
+          WithoutBeta(settings.Function), settings.Coupling, settings.Range },
+        parallel),
+      ranges, settings, parallel)
+{
+}
+
+TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
+  std::shared_ptr<const std::vector<GradientMap>> gradients, std::unique_ptr<VertexTerms> terms,
+  const Vector& ranges, const Settings& settings, const ParallelFor& parallel)
   : Assembly(std::move(assembler))
   , OverProcesses(this->Assembly->Mesh().GetReduction())
   , Options(settings)
   , Parallel(parallel)
   , NumberOfVertices(this->OverProcesses.SumOverVertices(
       parallel, this->Assembly->Mesh().NumberOfVertices(), [](Index) { return 1.0; }))
-  , Areas(this->OverProcesses.Accumulated(
-      this->Assembly->Mesh().ControlAreas(), this->AccumulatedAreas))
   , Gradients(this->Assembly->SharedMesh(), std::move(gradients), WithoutBeta(settings.Function),
       settings.Coupling, ranges, this->NumberOfVertices, parallel)
-  , Vertices(this->Areas, std::move(quadratic), std::move(absolute), std::move(fixed),
-      RangesOfVertices(this->Assembly->Mesh(), ranges, this->Areas, parallel),
-      { WithoutBeta(settings.Function), settings.Coupling, settings.Range }, parallel)
+  , Vertices(std::move(terms))
   , Weights(Gradients.MakeCoefficients())
   , Descent(parallel)
 {
@@ -104,11 +117,11 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
       GetEdgeFunction(settings.Function.Kind).Name + " is not convex");
   }
   Vector owned;
-  this->Diagonal = this->OverProcesses.OwnedPart(this->Vertices.MakeDiagonal(), owned);
+  this->Diagonal = this->OverProcesses.OwnedPart(this->Vertices->MakeDiagonal(), owned);
   const double stiffness = this->Gradients.Stiffness();
-  this->GrowthRate = stiffness > 0.0 ? GrowthFactor * SquaredEdgeOverHeight *
-      this->Vertices.QuadraticWeight(this->OverProcesses) / stiffness
-                                     : 0.0;
+  this->GrowthRate = stiffness > 0.0
+    ? GrowthFactor * SquaredEdgeOverHeight * this->Vertices->QuadraticWeight() / stiffness
+    : 0.0;
   TakePattern(this->Assembly->Pattern(), this->Matrix, parallel);
 }
 
@@ -116,10 +129,10 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   Values& u, const ProgressMonitor& progress, bool keepMultipliers)
 {
   this->Gradients.Start(u, keepMultipliers);
-  this->Vertices.Start(g, f, u, keepMultipliers);
+  this->Vertices->Start(g, f, u, keepMultipliers);
   this->Prepare(u);
-  this->Initial = u;
-  const double startEnergy = this->Energy(u);
+  this->Initial = this->Vertices->Admissible(u);
+  const double startEnergy = this->Energy(this->Initial);
   const double negligible = std::max(1e-3 * startEnergy, 1e-6 * this->NoiseEnergy());
   Report report;
   double fraction = 0.0;
@@ -146,10 +159,11 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
     this->SetGrowth(growth, u);
     ++report.Iterations;
     this->Gradients.Update(u, OverRelaxation);
-    this->Vertices.Update(u, OverRelaxation);
+    this->Vertices->Update(u, OverRelaxation);
     this->UpdateResidual();
     this->Descent.Improve(u, InnerIterations);
   }
+  u = this->Vertices->Admissible(u);
   // On nearly degenerate triangles the few inner iterations may not suffice.
   if (report.Gap > this->Options.StopTolerance && this->Energy(u) > startEnergy)
   {
@@ -179,10 +193,10 @@ void TotalVariationMinimizer::AssembleMatrix(const Values& u)
 {
   this->Assembly->Fill(
     this->Matrix, this->Diagonal, this->Gradients.Growth(), this->Weights, nullptr, this->Parallel);
-  if (this->Vertices.GetFixed().any())
+  if (this->Vertices->GetFixed().any())
   {
     this->Assembly->Constrain(
-      this->Matrix, this->Vertices.GetFixed(), u, this->Load, this->Parallel);
+      this->Matrix, this->Vertices->GetFixed(), u, this->Load, this->Parallel);
   }
   this->Descent.SetMatrix(this->Matrix, this->OverProcesses);
   Multiply(this->Matrix, u, this->Descent.Residual, this->Parallel);
@@ -205,13 +219,13 @@ std::size_t TotalVariationMinimizer::NumberOfMultipliers(Eigen::Index columns) c
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const auto ofTriangles = static_cast<std::size_t>(2 * columns * mesh.NumberOfTriangles());
   const auto ofVertices = static_cast<std::size_t>(columns * mesh.NumberOfVertices());
-  return ofTriangles + (this->Vertices.IsSplit() ? ofVertices : 0);
+  return ofTriangles + (this->Vertices->IsSplit() ? ofVertices : 0);
 }
 
 void TotalVariationMinimizer::SaveMultipliers(double* numbers, Eigen::Index columns) const
 {
   const Values& b = this->Gradients.Multipliers();
-  const Values& c = this->Vertices.Multipliers();
+  const Values& c = this->Vertices->Multipliers();
   if (b.size() == 0) // before the first call of Minimize()
   {
     std::fill_n(numbers, this->NumberOfMultipliers(columns), 0.0);
@@ -226,9 +240,9 @@ void TotalVariationMinimizer::RestoreMultipliers(const double* numbers, Eigen::I
   Values& b = this->Gradients.Multipliers();
   b.resize(mesh.NumberOfTriangles(), 2 * columns);
   std::copy(numbers, numbers + b.size(), b.data());
-  if (this->Vertices.IsSplit())
+  if (this->Vertices->IsSplit())
   {
-    Values& c = this->Vertices.Multipliers();
+    Values& c = this->Vertices->Multipliers();
     c.resize(mesh.NumberOfVertices(), columns);
     std::copy(numbers + b.size(), numbers + b.size() + c.size(), c.data());
   }
@@ -249,17 +263,18 @@ void TotalVariationMinimizer::UpdateColumns()
     [&](Index i) { this->Gradients.GatherRightHandSide<K>(i, &this->Gathered(i, 0)); },
     [&](Index i)
     {
-      if (this->Vertices.GetFixed()[i])
+      if (this->Vertices->GetFixed()[i])
       {
         return;
       }
+      double* sum = &this->Gathered(i, 0);
       double* side = &this->RightHandSide(i, 0);
       double* residual = &this->Descent.Residual(i, 0);
+      this->Vertices->AddRightHandSide(i, sum);
       for (int k = 0; k < columns; ++k)
       {
-        const double sum = this->Vertices.RightHandSide(i, k) + this->Gathered(i, k);
-        residual[k] += sum - side[k];
-        side[k] = sum;
+        residual[k] += sum[k] - side[k];
+        side[k] = sum[k];
       }
     });
 }
@@ -267,7 +282,7 @@ void TotalVariationMinimizer::UpdateColumns()
 /// The duality gap of the present u and multipliers, also relative to E or to `negligible`.
 void TotalVariationMinimizer::MeasureGap(const Values& u, double negligible, Report& report)
 {
-  const double energy = this->Energy(u);
+  const double energy = this->Energy(this->Vertices->Admissible(u));
   const double scale = std::max(energy, negligible);
   report.AbsoluteGap = std::max(0.0, energy - this->DualEnergy(u));
   report.Gap = scale > 0.0 ? report.AbsoluteGap / scale : 0.0;
@@ -279,7 +294,7 @@ void TotalVariationMinimizer::MeasureGap(const Values& u, double negligible, Rep
 
 double TotalVariationMinimizer::Energy(const Values& u) const
 {
-  return this->GradientEnergy(u) + this->Vertices.Energy(u, this->OverProcesses);
+  return this->GradientEnergy(u) + this->Vertices->Energy(u);
 }
 
 /// The dual function at the present multipliers y: the minimum over u of
@@ -290,15 +305,14 @@ double TotalVariationMinimizer::DualEnergy(const Values& u)
   this->Gradients.GatherMultipliers(this->Gathered);
   this->OverProcesses.Accumulate(this->Gathered);
   const double conjugate = this->OverProcesses.Sum(this->Gradients.ConjugateEnergy());
-  const double dual = this->Vertices.DualEnergy(this->Gathered, u, this->OverProcesses) - conjugate;
-  const double share = this->Vertices.FeasibleShare(this->Gathered, this->OverProcesses);
+  const double dual = this->Vertices->DualEnergy(this->Gathered, u) - conjugate;
+  const double share = this->Vertices->FeasibleShare(this->Gathered);
   if (share == 1.0)
   {
     return dual;
   }
   this->Gathered *= share;
-  return std::max(
-    dual, this->Vertices.DualEnergy(this->Gathered, u, this->OverProcesses) - share * conjugate);
+  return std::max(dual, this->Vertices->DualEnergy(this->Gathered, u) - share * conjugate);
 }
 
 /// int psi for gradients of one Range per vertex spacing.

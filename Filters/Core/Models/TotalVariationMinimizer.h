@@ -5,7 +5,7 @@
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Models/EdgeFunctions.h"
 #include "Core/Models/GradientSplitting.h"
-#include "Core/Models/VertexSplitting.h"
+#include "Core/Models/VertexTerms.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Solvers/QuadraticDescent.h"
 
@@ -18,7 +18,8 @@ namespace SurfaceDiffusion
 /// Finds the minimum over u of
 ///   E(u) = int psi(|S grad u|) + sum_i A_i (mu_i/2 |u_i - g_i|^2 + nu_i |u_i - f_i|)
 /// with some u_i fixed, for a convex psi: total variation psi(s) = s, exactly, without beta;
-/// Charbonnier; or s^2/2.
+/// Charbonnier; or s^2/2. The terms at the vertices may be others (VertexTerms), for instance
+/// costs with u_i in a convex set (SimplexSplitting).
 ///
 /// The method is the alternating direction method of multipliers (ADMM; S. Boyd et al., Foundations
 /// and Trends in Machine Learning 3, 2011; for total variation T. Goldstein, S. Osher, SIAM J.
@@ -51,6 +52,11 @@ public:
     Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
     const ParallelFor& parallel = SerialFor());
 
+  /// The same with other terms at the vertices. ranges: typical ones of u on each triangle.
+  TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
+    std::shared_ptr<const std::vector<GradientMap>> gradients, std::unique_ptr<VertexTerms> terms,
+    const Vector& ranges, const Settings& settings, const ParallelFor& parallel = SerialFor());
+
   struct Report
   {
     int Iterations = 0;
@@ -62,9 +68,10 @@ public:
     double AbsoluteGap = 0.0;
   };
 
-  /// u: the start on entry, the minimiser on return, and never of more energy than the start. The
-  /// result depends on the arguments alone, and on the multipliers of the last call if they are
-  /// kept: near the last minimum they save most of the iterations.
+  /// g, f: the data of the terms at the vertices, as VertexTerms::Start() takes them. u: the start
+  /// on entry, the minimiser on return, and never of more energy than the start. The result depends
+  /// on the arguments alone, and on the multipliers of the last call if they are kept: near the last
+  /// minimum they save most of the iterations.
   Report Minimize(const Values& g, const Values& f, Values& u,
     const ProgressMonitor& progress = ProgressMonitor(), bool keepMultipliers = false);
 
@@ -106,10 +113,8 @@ private:
   Settings Options;
   const ParallelFor& Parallel;
   double NumberOfVertices; ///< of the surface
-  Vector AccumulatedAreas;
-  const Vector& Areas; ///< of the control cells, consistent
   GradientSplitting Gradients;
-  VertexSplitting Vertices;
+  std::unique_ptr<VertexTerms> Vertices;
   CornerWeights Weights; ///< of the quadratic problem for u, at the first penalty
   Vector Diagonal; ///< likewise
   double GrowthRate; ///< of the penalty per iteration, in first penalties

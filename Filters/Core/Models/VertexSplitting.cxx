@@ -19,23 +19,21 @@ constexpr double PenaltyOfFidelity = 0.1;
 
 } // namespace
 
-VertexSplitting::VertexSplitting(const Vector& areas, Vector quadratic, Vector absolute,
-  Flags fixed, const Vector& ranges, const Settings& settings, const ParallelFor& parallel)
-  : Areas(areas)
+VertexSplitting::VertexSplitting(std::shared_ptr<const TriangleMesh> mesh, Vector quadratic,
+  Vector absolute, Flags fixed, const Vector& ranges, const Settings& settings,
+  const ParallelFor& parallel)
+  : VertexTerms(std::move(mesh), std::move(fixed), parallel)
   , Quadratic(std::move(quadratic))
   , Absolute(std::move(absolute))
-  , Fixed(std::move(fixed))
   , Options(settings)
-  , Parallel(parallel)
   , HasAbsolute((this->Absolute.array() > 0.0).any())
-  , Penalty(areas.size())
 {
-  ForEach(parallel, static_cast<Index>(areas.size()),
+  ForEach(parallel, this->NumberOfVertices(),
     [&](Index i)
     {
-      const double nu = this->Absolute[i] * areas[i];
+      const double nu = this->Absolute[i] * this->Areas[i];
       this->Penalty[i] = nu > 0.0
-        ? PenaltyOfGradients * settings.Function(ranges[i] * ranges[i] / areas[i]) +
+        ? PenaltyOfGradients * settings.Function(ranges[i] * ranges[i] / this->Areas[i]) +
           PenaltyOfFidelity * nu / ranges[i]
         : 0.0;
     });
@@ -46,9 +44,9 @@ Vector VertexSplitting::MakeDiagonal() const
   return this->Areas.cwiseProduct(this->Quadratic) + this->Penalty;
 }
 
-double VertexSplitting::QuadraticWeight(const Reduction& reduction) const
+double VertexSplitting::QuadraticWeight() const
 {
-  return reduction.SumOverVertices(this->Parallel, static_cast<Index>(this->Areas.size()),
+  return this->OverProcesses.SumOverVertices(this->Parallel, this->NumberOfVertices(),
     [&](Index i) { return this->Areas[i] * this->Quadratic[i]; });
 }
 
@@ -95,9 +93,9 @@ void VertexSplitting::Update(const Values& u, double relaxation)
     });
 }
 
-double VertexSplitting::Energy(const Values& u, const Reduction& reduction) const
+double VertexSplitting::Energy(const Values& u) const
 {
-  return reduction.SumOverVertices(this->Parallel, static_cast<Index>(u.rows()),
+  return this->OverProcesses.SumOverVertices(this->Parallel, this->NumberOfVertices(),
     [&](Index i)
     {
       double density = 0.5 * this->Quadratic[i] * (u.row(i) - this->G->row(i)).squaredNorm();
@@ -114,10 +112,9 @@ double VertexSplitting::Energy(const Values& u, const Reduction& reduction) cons
     });
 }
 
-double VertexSplitting::DualEnergy(
-  const Values& d, const Values& u, const Reduction& reduction) const
+double VertexSplitting::DualEnergy(const Values& d, const Values& u) const
 {
-  return reduction.SumOverVertices(this->Parallel, static_cast<Index>(u.rows()),
+  return this->OverProcesses.SumOverVertices(this->Parallel, this->NumberOfVertices(),
     [&](Index i)
     {
       double value = 0.0;
@@ -127,7 +124,7 @@ double VertexSplitting::DualEnergy(
     });
 }
 
-double VertexSplitting::FeasibleShare(const Values& d, const Reduction& reduction) const
+double VertexSplitting::FeasibleShare(const Values& d) const
 {
   double excess = Max(this->Parallel, static_cast<Index>(d.rows()),
     [&](Index i)
@@ -142,7 +139,7 @@ double VertexSplitting::FeasibleShare(const Values& d, const Reduction& reductio
       }
       return largest;
     });
-  reduction.Max(&excess, 1);
+  this->OverProcesses.Max(&excess, 1);
   return excess > 1.0 ? 1.0 / excess : 1.0;
 }
 

@@ -46,7 +46,8 @@ def make_parser(hemispheres=False):
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
-    for add in (_smooth, _denoise, _inpaint, _edges, _texture, _directions, _normals, _fwhm, _info):
+    for add in (_smooth, _denoise, _inpaint, _edges, _segment, _texture, _directions, _normals, _fwhm,
+                _info):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -120,6 +121,15 @@ def _not_negative(text):
 def _count(text):
     return int(_number(text, lambda value: value >= 1 and value == int(value) and value < 2**31,
                        "a whole number of at least 1"))
+
+
+def _regions(text):
+    return int(_number(text, lambda value: 2 <= value <= 1000 and value == int(value),
+                       "a whole number from 2 to 1000"))
+
+
+def _finite(text):
+    return _number(text, lambda value: True, "a finite number")
 
 
 def _whole(text):
@@ -227,6 +237,29 @@ def _edges(commands):
                              "(default 8)")
     parser.add_argument("--width", metavar="E", type=_positive,
                         help="the width of an edge, in mean edge lengths (default 2)")
+
+
+def _segment(commands):
+    text = ("Divide a surface into regions with short boundaries, by the convex models of Chan and "
+            "Vese and of Potts. The result is the label of the region of each vertex, 1, 2, ... in "
+            "the order of the means, or in that of --means.")
+    parser = commands.add(
+        "segment", tasks.segment, text,
+        [f"{PROGRAM} segment lh.midthickness.surf.gii lh.myelin.func.gii lh.regions.func.gii "
+         "--regions 3 --weight 0.5"])
+    commands.data(parser)
+    parser.add_argument("output", metavar="OUTPUT", help="the labels")
+    commands.choices(parser)
+    parser.add_argument("--regions", metavar="K", type=_regions, default=2,
+                        help="the number of regions (default 2)")
+    parser.add_argument("--weight", metavar="W", type=_positive,
+                        help="the weight of the data, in natural units (default 0.3); smaller gives "
+                             "shorter boundaries and fewer small regions")
+    parser.add_argument("--means", metavar="C", type=_finite, nargs="+",
+                        help="the mean of each region, for data of one component, in place of "
+                             "--regions. Default: they are found")
+    parser.add_argument("--seed", metavar="N", type=_whole, default=0,
+                        help="of the search for means (default 0)")
 
 
 NEW = """

@@ -111,6 +111,35 @@ def _write_curves(path, curves):
     write_atomically(path, file.getvalue())
 
 
+def segment(arguments, report):
+    from .. import segment as find_regions
+
+    options = {"number_of_regions": arguments.regions}
+    if arguments.weight:
+        options["fidelity_weight"] = arguments.weight
+    if arguments.means:
+        options.update(means=arguments.means, number_of_regions=len(arguments.means))
+    found = report.facts.setdefault("segmentations", [])
+
+    def compute(surface, values, mask, progress):
+        result = find_regions(surface, values, mask=mask, mask_mode="Exclude", seed=arguments.seed,
+                              progress=progress, **options)
+        rows = [{"region": k + 1, "area": number(result.areas[k]),
+                 "boundary_length": number(result.boundary_lengths[k]),
+                 "components": int(result.components[k]),
+                 "mean": [number(mean) for mean in result.means[k]]}
+                for k in range(len(result.areas))]
+        found.append({"gap": number(result.gap), "regions": rows})
+        return np.repeat(result.values[:, None].astype(float), values.shape[1], axis=1)
+
+    _change_data(arguments, report, "Segmentation", compute, _groups_of_arrays)
+    for entry in found:
+        for row in entry["regions"]:
+            report.say(f"region {row['region']}: mean {', '.join(_text(m) for m in row['mean'])}, "
+                       f"area {_text(row['area'])}, boundary {_text(row['boundary_length'])}, "
+                       f"{row['components']} connected")
+
+
 def texture(arguments, report):
     surface = _read_surface_for_output(arguments, report)
     target = new_data(surface, arguments.output, ["Texture"])

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/SegmentationSettings.h"
+
+#include "Core/Models/RegionMeans.h"
+#include "Core/Models/Segmentation.h"
+#include "Run/ModelInputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr double LargestNumberOfRegions = 1000;
+
+void CheckSeeds(const std::vector<Index>& seeds, int regions)
+{
+  for (const Index seed : seeds)
+  {
+    if (seed > regions)
+    {
+      throw std::runtime_error("SeedArray has the label " + std::to_string(seed) +
+        "; allowed: 0 to NumberOfRegions " + std::to_string(regions));
+    }
+  }
+}
+
+/// u at the input's points; 0 at points of no triangle.
+Values StateOfPoints(const Surface& surface, const Values& state)
+{
+  Values u = Values::Zero(surface.Points().rows(), state.cols());
+  for (Index i = 0; i < static_cast<Index>(u.rows()); ++i)
+  {
+    const Index v = surface.VertexOf(i);
+    if (v >= 0)
+    {
+      u.row(i) = state.row(v);
+    }
+  }
+  return u;
+}
+
+/// The areas of control cells over those of the drawn surface, per point.
+Vector AreaFactorsOfPoints(const Surface& surface)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  Vector factors = Vector::Ones(surface.Points().rows());
+  for (Index i = 0; i < static_cast<Index>(factors.size()); ++i)
+  {
+    const Index v = surface.VertexOf(i);
+    if (v >= 0)
+    {
+      factors[i] = mesh.ControlAreas()[v] / mesh.ThirdOfTriangles(v);
+    }
+  }
+  return factors;
+}
+
+std::shared_ptr<RegionResults> MeasureRegions(
+  const Surface& surface, const Segmentation& model, const ParallelFor& parallel)
+{
+  auto regions = std::make_shared<RegionResults>();
+  const auto count = static_cast<Index>(model.State().cols());
+  regions->Labels = model.Labels();
+  const Values u = StateOfPoints(surface, model.State());
+  regions->Areas =
+    RegionAreas(surface.Points(), surface.Triangles(), u, AreaFactorsOfPoints(surface), parallel);
+  regions->Boundaries = FindRegionBoundaries(surface.Points(), surface.Triangles(), u);
+  regions->BoundaryLengths = Vector::Zero(count);
+  for (const RegionBoundary& curve : regions->Boundaries.Curves)
+  {
+    for (const Index region : curve.Regions)
+    {
+      regions->BoundaryLengths[region - 1] += curve.Length;
+    }
+  }
+  regions->Components =
+    CountRegionComponents(surface.InputMesh().TriangleVertices(), regions->Labels, count);
+  return regions;
+}
+
+void DescribeEmptyRegions(const RegionResults& regions, std::vector<std::string>& warnings)
+{
+  std::string empty;
+  for (std::size_t k = 0; k < regions.Components.size(); ++k)
+  {
+    if (regions.Components[k] == 0)
+    {
+      empty += (empty.empty() ? "" : ", ") + std::to_string(k + 1);
+    }
+  }
+  const std::string text =
+    "no point is in the regions " + empty + " (to keep smaller regions, raise FidelityWeight)";
+  if (!empty.empty() && std::find(warnings.begin(), warnings.end(), text) == warnings.end())
+  {
+    warnings.push_back(text);
+  }
+}
+
+} // namespace
+
+void SegmentationSettings::Visit(SettingVisitor& visitor)
+{
+  this->RunSettings::Visit(visitor);
+  visitor.Integer({ "NumberOfRegions", "", "K, the number of regions." }, this->NumberOfRegions,
+    SettingRange::Between(2.0, LargestNumberOfRegions, "2 to 1000"));
+  visitor.Number({ "FidelityWeight", "1/(h R^2)",
+                   "lambda, the weight of the data terms; 1/(h R) for given data terms." },
+    this->FidelityWeight, SettingRange::Positive());
+  visitor.Switch({ "AutomaticMeans", "",
+                   "Whether the means of the regions are found: k-means++ clusters of the data at "
+                   "first, then the means of the regions." },
+    this->AutomaticMeans);
+  visitor.Numbers(
+    { "Means", "values",
+      "The means c_1, c_2, ... of the regions with AutomaticMeans off, all components of the first "
+      "region before those of the second." },
+    this->Means,
+    this->AutomaticMeans ? SettingRange::Anything()
+                         : SettingRange::Between(-1e300, 1e300, "finite numbers, all of them set"));
+  visitor.Number({ "StopTolerance", "",
+                   "The duality gap at which the minimisation stops, relative to the energy above "
+                   "lambda int min_k r_k." },
+    this->StopTolerance, SettingRange::OpenUnitInterval());
+}
+
+void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
+{
+  this->RunSettings::CheckTogether(fields, problems);
+  if (!fields)
+  {
+    return;
+  }
+  const int components = fields->DataComponents;
+  if (fields->DataAreTerms)
+  {
+    Require(components == this->NumberOfRegions, "DataTermArray's number of components", components,
+      (std::to_string(this->NumberOfRegions) + ", one per region of NumberOfRegions").c_str(),
+      problems);
+    return;
+  }
+  const auto needed = static_cast<std::size_t>(this->NumberOfRegions) *
+    static_cast<std::size_t>(std::max(components, 1));
+  Require(this->AutomaticMeans || this->Means.size() == needed, "the number of Means",
+    static_cast<double>(this->Means.size()),
+    (std::to_string(needed) +
+      ", one per region and component of InputArray, or any with AutomaticMeans on")
+      .c_str(),
+    problems);
+}
+
+ModelTraits SegmentationSettings::DescribeModel() const
+{
+  ModelTraits traits;
+  traits.NumberOfSteps = 1;
+  traits.TimeStep = this->TimeStep;
+  traits.AbsoluteTime = true; // no model time
+  traits.Energy = { 1.0, 0.0 };
+  traits.StateHasUnitOfValues = false;
+  traits.UsesFidelity = true;
+  traits.UsesRandomNumbers = true;
+  traits.CanBeDistributed = false;
+  return traits;
+}
+
+std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult& result) const
+{
+  CheckSeeds(inputs.Seeds, this->NumberOfRegions);
+  result.HasMissing = inputs.Data.Missing.any();
+  result.EffectiveFidelityWeight = this->FidelityWeight;
+  inputs.Data.Given =
+    inputs.Data.Given.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });
+  Segmentation::Settings settings;
+  settings.Fidelity =
+    this->FidelityWeight * inputs.Units.ToCore(1.0, -1.0, inputs.DataAreTerms ? -1.0 : -2.0);
+  settings.StopTolerance = this->StopTolerance;
+  settings.UpdateMeans = this->AutomaticMeans && !inputs.DataAreTerms;
+  Segmentation::Input input;
+  input.Data = std::move(inputs.Data);
+  input.Seeds = std::move(inputs.Seeds);
+  if (settings.UpdateMeans)
+  {
+    input.Means = FindRegionMeans(inputs.Surface.Mesh(), input.Data, this->NumberOfRegions,
+      input.Seeds, this->RandomSeed, inputs.Ids, inputs.Parallel);
+  }
+  else if (!inputs.DataAreTerms)
+  {
+    input.Means =
+      Eigen::Map<const Values>(this->Means.data(), this->NumberOfRegions, input.Data.Given.cols());
+    input.Means /= inputs.Units.ValueUnit;
+  }
+  return std::make_unique<Segmentation>(
+    inputs.Surface.SharedAssembler(), std::move(input), settings, inputs.Parallel);
+}
+
+void SegmentationSettings::Finish(const RunState& state, RunResult& result) const
+{
+  const auto& model = dynamic_cast<const Segmentation&>(state.Path.CurrentModel());
+  const auto regions = MeasureRegions(state.Surface, model, state.Parallel);
+  if (state.Path.Step() > 0)
+  {
+    regions->Gap = model.Gap();
+    regions->LabelGap = model.LabelGap();
+    regions->NumberOfAlternations = model.NumberOfAlternations();
+  }
+  regions->Means = model.Means() * state.Units.ValueUnit;
+  regions->DataMeans = model.DataMeans() * state.Units.ValueUnit;
+  if (state.Path.Step() > 0)
+  {
+    DescribeEmptyRegions(*regions, result.Warnings);
+  }
+  if (regions->Gap > this->StopTolerance && !result.HasUnfinishedMinimum)
+  {
+    result.HasUnfinishedMinimum = true; // reported once, not at every requested time
+    std::ostringstream text;
+    text << "the minimisation ended at its largest number of iterations with a relative duality "
+         << "gap of " << regions->Gap << ", above StopTolerance";
+    result.Warnings.push_back(text.str());
+  }
+  result.Regions = regions;
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,340 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSurfaceSegmentationFilter.h"
+
+#include "Conversion/InputArrays.h"
+#include "Conversion/NewArray.h"
+#include "Conversion/ResultWriter.h"
+#include "Conversion/RunState.h"
+#include "Run/SegmentationSettings.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <limits>
+
+using namespace SurfaceDiffusion;
+
+vtkStandardNewMacro(vtkSurfaceSegmentationFilter);
+
+namespace
+{
+
+constexpr double NotSet = std::numeric_limits<double>::quiet_NaN();
+
+double FindMean(const std::map<std::pair<int, int>, double>& means, int region, int component)
+{
+  const auto entry = means.find({ region, component });
+  return entry == means.end() ? NotSet : entry->second;
+}
+
+template <typename Array>
+vtkSmartPointer<vtkDataArray> MakeProbabilities(const Surface& surface, const Values& u)
+{
+  const auto count = static_cast<vtkIdType>(surface.Points().rows());
+  const int regions = static_cast<int>(u.cols());
+  auto array = NewArray<Array>("RegionProbability", regions, count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    for (int k = 0; k < regions; ++k)
+    {
+      array->SetTypedComponent(
+        i, k, static_cast<typename Array::ValueType>(v >= 0 ? u(v, k) : 0.0));
+    }
+  }
+  return array;
+}
+
+} // namespace
+
+vtkSurfaceSegmentationFilter::vtkSurfaceSegmentationFilter()
+{
+  this->SetNumberOfOutputPorts(3);
+}
+
+void vtkSurfaceSegmentationFilter::SetMean(int region, int component, double value)
+{
+  const auto entry = this->Means.find({ region, component });
+  if (entry == this->Means.end() || entry->second != value)
+  {
+    this->Means[{ region, component }] = value;
+    this->Modified();
+  }
+}
+
+double vtkSurfaceSegmentationFilter::GetMean(int region, int component)
+{
+  return FindMean(this->Means, region, component);
+}
+
+void vtkSurfaceSegmentationFilter::RemoveAllMeans()
+{
+  if (!this->Means.empty())
+  {
+    this->Means.clear();
+    this->Modified();
+  }
+}
+
+void vtkSurfaceSegmentationFilter::AddMean(double region, double component, double value)
+{
+  this->SetMean(static_cast<int>(region), static_cast<int>(component), value);
+}
+
+double vtkSurfaceSegmentationFilter::GetEffectiveMean(int region, int component)
+{
+  return FindMean(this->EffectiveMeans, region, component);
+}
+
+std::unique_ptr<RunSettings> vtkSurfaceSegmentationFilter::MakeSettings() const
+{
+  auto settings = std::make_unique<SegmentationSettings>();
+  this->CopyProperties(*settings);
+  settings->NumberOfRegions = this->NumberOfRegions;
+  settings->FidelityWeight = this->FidelityWeight;
+  settings->AutomaticMeans = this->AutomaticMeans;
+  settings->StopTolerance = this->StopTolerance;
+  int components = 0;
+  int regions = 0;
+  for (const auto& [place, value] : this->Means)
+  {
+    regions = std::max(regions, place.first);
+    components = std::max(components, place.second + 1);
+  }
+  for (int region = 1; region <= regions; ++region)
+  {
+    for (int component = 0; component < components; ++component)
+    {
+      settings->Means.push_back(FindMean(this->Means, region, component));
+    }
+  }
+  return settings;
+}
+
+bool vtkSurfaceSegmentationFilter::FindFields(
+  vtkPolyData* block, InputFields& fields, Problems& problems)
+{
+  const InputArrays inputs(this, block, problems);
+  const std::size_t before = problems.size();
+  fields.Data = inputs.FindOnPoints(7, "DataTermArray", InputArrays::AnyNumberOfComponents);
+  fields.DataAreTerms = fields.Data != nullptr;
+  if (!fields.DataAreTerms && problems.size() == before)
+  {
+    fields.Data = inputs.FindOnPoints(0, "InputArray", InputArrays::AnyNumberOfComponents);
+  }
+  fields.Mask = inputs.FindOnPoints(1, "MaskArray", 1);
+  fields.Seeds = inputs.FindOnPoints(6, "SeedArray", 1);
+  return fields.Data != nullptr;
+}
+
+void vtkSurfaceSegmentationFilter::WriteResult(
+  std::size_t index, const InputFields& fields, vtkPolyData* output)
+{
+  const Run::Block& block = this->State->Run.GetBlock(index);
+  const Surface& surface = *block.Surface;
+  const RegionResults& regions = *block.Result.Regions;
+  vtkPointData* const points = output->GetPointData();
+  const int type = this->FindResultType(fields);
+  if (regions.Means.rows() > 0)
+  {
+    Values segmented(static_cast<Eigen::Index>(regions.Labels.size()), regions.Means.cols());
+    for (std::size_t i = 0; i < regions.Labels.size(); ++i)
+    {
+      segmented.row(static_cast<Eigen::Index>(i)) = regions.Means.row(regions.Labels[i] - 1);
+    }
+    this->AddResult(
+      WritePointArray(surface, fields.Data, segmented, 1.0, type, this->FindResultName(fields)),
+      fields, points);
+  }
+  const Values& u = block.Path->State();
+  this->AddResult(type == VTK_FLOAT || this->OutputPrecision == OUTPUT_PRECISION_SINGLE
+      ? MakeProbabilities<vtkFloatArray>(surface, u)
+      : MakeProbabilities<vtkDoubleArray>(surface, u),
+    fields, points);
+  const auto ids = NewArray<vtkIntArray>("RegionId", 1, output->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    ids->SetValue(i, v >= 0 ? regions.Labels[static_cast<std::size_t>(v)] : 0);
+  }
+  this->AddResult(ids, fields, points);
+  points->SetActiveScalars("RegionId");
+}
+
+/// The rows of all blocks, one after the other.
+void vtkSurfaceSegmentationFilter::WriteTable(vtkTable* table)
+{
+  const auto addColumn = [table](auto column, const std::string& name)
+  {
+    column->SetName(name.c_str());
+    table->AddColumn(column);
+    return column;
+  };
+  const auto blocks = addColumn(vtkSmartPointer<vtkIntArray>::New(), "Block");
+  const auto numbers = addColumn(vtkSmartPointer<vtkIntArray>::New(), "Region");
+  const auto areas = addColumn(vtkSmartPointer<vtkDoubleArray>::New(), "Area");
+  const auto lengths = addColumn(vtkSmartPointer<vtkDoubleArray>::New(), "BoundaryLength");
+  const auto components = addColumn(vtkSmartPointer<vtkIntArray>::New(), "Components");
+  std::vector<vtkSmartPointer<vtkDoubleArray>> means;
+  for (std::size_t b = 0; b < this->Regions.size(); ++b)
+  {
+    const RegionResults& regions = *this->Regions[b];
+    while (static_cast<Eigen::Index>(means.size()) < regions.DataMeans.cols())
+    {
+      means.push_back(
+        addColumn(vtkSmartPointer<vtkDoubleArray>::New(), "Mean_" + std::to_string(means.size())));
+      for (vtkIdType row = 0; row < blocks->GetNumberOfTuples(); ++row)
+      {
+        means.back()->InsertNextValue(NotSet);
+      }
+    }
+    for (Eigen::Index k = 0; k < regions.Areas.size(); ++k)
+    {
+      blocks->InsertNextValue(static_cast<int>(b));
+      numbers->InsertNextValue(static_cast<int>(k) + 1);
+      areas->InsertNextValue(regions.Areas[k]);
+      lengths->InsertNextValue(regions.BoundaryLengths[k]);
+      components->InsertNextValue(regions.Components[static_cast<std::size_t>(k)]);
+      for (std::size_t c = 0; c < means.size(); ++c)
+      {
+        const auto column = static_cast<Eigen::Index>(c);
+        means[c]->InsertNextValue(
+          column < regions.DataMeans.cols() ? regions.DataMeans(k, column) : NotSet);
+      }
+    }
+  }
+}
+
+void vtkSurfaceSegmentationFilter::WriteBoundaries(vtkPolyData* boundaries)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkIntArray> regions, blocks;
+  vtkNew<vtkDoubleArray> lengths;
+  regions->SetName("Regions");
+  regions->SetNumberOfComponents(2);
+  lengths->SetName("Length");
+  blocks->SetName("Block");
+  for (std::size_t b = 0; b < this->Regions.size(); ++b)
+  {
+    const RegionBoundaries& found = this->Regions[b]->Boundaries;
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (const auto& point : found.Points.rowwise())
+    {
+      points->InsertNextPoint(point.data());
+    }
+    for (const RegionBoundary& curve : found.Curves)
+    {
+      lines->InsertNextCell(static_cast<int>(curve.Points.size()));
+      for (const Index point : curve.Points)
+      {
+        lines->InsertCellPoint(first + point);
+      }
+      regions->InsertNextTuple2(curve.Regions[0], curve.Regions[1]);
+      lengths->InsertNextValue(curve.Length);
+      blocks->InsertNextValue(static_cast<int>(b));
+    }
+  }
+  boundaries->SetPoints(points);
+  boundaries->SetLines(lines);
+  boundaries->GetCellData()->AddArray(regions);
+  boundaries->GetCellData()->AddArray(lengths);
+  boundaries->GetCellData()->AddArray(blocks);
+}
+
+void vtkSurfaceSegmentationFilter::TakeResults()
+{
+  this->Superclass::TakeResults();
+  this->Gap = this->LabelGap = 0.0;
+  this->NumberOfAlternations = 0;
+  this->EffectiveMeans.clear();
+  this->Regions.clear();
+  for (std::size_t b = 0; b < this->State->Run.NumberOfBlocks(); ++b)
+  {
+    this->Regions.push_back(this->State->Run.GetBlock(b).Result.Regions);
+    const RegionResults& regions = *this->Regions.back();
+    this->Gap = std::max(this->Gap, regions.Gap);
+    this->LabelGap = std::max(this->LabelGap, regions.LabelGap);
+    this->NumberOfAlternations = std::max(this->NumberOfAlternations, regions.NumberOfAlternations);
+    for (Eigen::Index k = 0; k < regions.Means.rows(); ++k)
+    {
+      for (Eigen::Index c = 0; c < regions.Means.cols(); ++c)
+      {
+        this->EffectiveMeans.insert(
+          { { static_cast<int>(k) + 1, static_cast<int>(c) }, regions.Means(k, c) });
+      }
+    }
+  }
+}
+
+void vtkSurfaceSegmentationFilter::VisitReported(const std::function<void(double&)>& visit)
+{
+  this->Superclass::VisitReported(visit);
+  visit(this->Gap);
+  visit(this->LabelGap);
+  double alternations = this->NumberOfAlternations;
+  visit(alternations);
+  this->NumberOfAlternations = static_cast<int>(alternations);
+}
+
+//------------------------------------------------------------------------------------------------
+int vtkSurfaceSegmentationFilter::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  if (port < 2)
+  {
+    return this->Superclass::FillOutputPortInformation(port, info);
+  }
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
+  return 1;
+}
+
+int vtkSurfaceSegmentationFilter::RequestDataObject(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (!this->Superclass::RequestDataObject(request, inputs, outputs))
+  {
+    return 0;
+  }
+  if (!vtkPolyData::GetData(outputs, 2))
+  {
+    vtkNew<vtkPolyData> boundaries;
+    outputs->GetInformationObject(2)->Set(vtkDataObject::DATA_OBJECT(), boundaries);
+  }
+  return 1;
+}
+
+int vtkSurfaceSegmentationFilter::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkPolyData* const boundaries = vtkPolyData::GetData(outputs, 2);
+  boundaries->Initialize();
+  const int result = this->Superclass::RequestData(request, inputs, outputs);
+  if (this->State->Succeeded)
+  {
+    this->WriteBoundaries(boundaries);
+  }
+  this->Regions.clear();
+  return result;
+}
+
+void vtkSurfaceSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Gap: " << this->Gap << "\n";
+  os << indent << "LabelGap: " << this->LabelGap << "\n";
+  os << indent << "NumberOfAlternations: " << this->NumberOfAlternations << "\n";
+}

@@ -1,0 +1,306 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IntrinsicTVTest.h"
+
+#include "vtkCellData.h"
+#include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSurfaceSegmentationFilter.h"
+
+#include <gtest/gtest.h>
+
+using namespace FilterTest;
+using IntrinsicTVTest::AddCap;
+using IntrinsicTVTest::Height;
+
+namespace
+{
+
+using Filter = vtkSurfaceSegmentationFilter;
+
+const double Pi = std::acos(-1.0);
+
+vtkSmartPointer<Filter> MakeFilter(vtkDataObject* surface)
+{
+  auto filter = vtkSmartPointer<Filter>::New();
+  filter->SetInputDataObject(surface);
+  return filter;
+}
+
+vtkDataArray* Labels(Filter* filter)
+{
+  return Result(filter, "RegionId");
+}
+
+double TableAt(Filter* filter, vtkIdType row, const char* column)
+{
+  return vtkTable::SafeDownCast(filter->GetOutputDataObject(1))
+    ->GetValueByName(row, column)
+    .ToDouble();
+}
+
+vtkPolyData* Boundaries(Filter* filter)
+{
+  return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(2));
+}
+
+/// The first error of an update; empty if there is none.
+std::string ErrorOf(Filter* filter)
+{
+  const Messages messages(filter);
+  filter->Update();
+  return messages.Errors.empty() ? "" : messages.Errors[0];
+}
+
+/// A sphere with a cap of 60 degrees, 2 in a field of -1.
+vtkSmartPointer<vtkPolyData> SphereWithCap(int levels)
+{
+  auto sphere = Sphere(levels);
+  AddPointArray(sphere, "f", 1,
+    [&](vtkIdType i, int) { return Height(sphere->GetPoint(i)) > 0.5 ? 2.0 : -1.0; });
+  sphere->GetPointData()->SetActiveScalars("f");
+  return sphere;
+}
+
+} // namespace
+
+TEST(SegmentationFilter, FindsTheCapWithItsAreaAndBoundary)
+{
+  auto filter = MakeFilter(SphereWithCap(5));
+  filter->SetFidelityWeight(0.2);
+  filter->Update();
+  EXPECT_LE(filter->GetGap(), 1e-3);
+  EXPECT_LT(filter->GetLabelGap(), 0.15);
+  EXPECT_GE(filter->GetNumberOfAlternations(), 1);
+  EXPECT_NEAR(filter->GetEffectiveMean(1, 0), -1.0, 0.03);
+  EXPECT_NEAR(filter->GetEffectiveMean(2, 0), 2.0, 0.06);
+  EXPECT_TRUE(std::isnan(filter->GetEffectiveMean(3, 0)));
+  vtkTable* const table = vtkTable::SafeDownCast(filter->GetOutputDataObject(1));
+  ASSERT_EQ(table->GetNumberOfRows(), 2);
+  EXPECT_EQ(TableAt(filter, 0, "Region"), 1.0);
+  EXPECT_EQ(TableAt(filter, 1, "Region"), 2.0);
+  EXPECT_NEAR(TableAt(filter, 1, "Area"), Pi, 0.02 * Pi);
+  EXPECT_NEAR(TableAt(filter, 0, "Area"), 3.0 * Pi, 0.02 * Pi);
+  const double length = 2.0 * Pi * std::sqrt(0.75);
+  EXPECT_NEAR(TableAt(filter, 1, "BoundaryLength"), length, 0.03 * length);
+  EXPECT_EQ(TableAt(filter, 0, "BoundaryLength"), TableAt(filter, 1, "BoundaryLength"));
+  EXPECT_EQ(TableAt(filter, 1, "Components"), 1.0);
+  EXPECT_NEAR(TableAt(filter, 1, "Mean_0"), 2.0, 0.06);
+
+  vtkPolyData* const curves = Boundaries(filter);
+  ASSERT_EQ(curves->GetNumberOfLines(), 1);
+  EXPECT_EQ(curves->GetCellData()->GetArray("Regions")->GetComponent(0, 0), 1.0);
+  EXPECT_EQ(curves->GetCellData()->GetArray("Regions")->GetComponent(0, 1), 2.0);
+  EXPECT_EQ(curves->GetCellData()->GetArray("Length")->GetComponent(0, 0),
+    TableAt(filter, 0, "BoundaryLength"));
+  for (vtkIdType i = 0; i < curves->GetNumberOfPoints(); ++i)
+  {
+    EXPECT_NEAR(Height(curves->GetPoint(i)), 0.5, 0.05);
+  }
+
+  vtkDataArray* const segmented = Result(filter, "fSegmented");
+  vtkDataArray* const u = Result(filter, "RegionProbability");
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), Labels(filter));
+  EXPECT_TRUE(vtkIntArray::SafeDownCast(Labels(filter)));
+  for (vtkIdType i = 0; i < segmented->GetNumberOfTuples(); ++i)
+  {
+    const int label = static_cast<int>(Labels(filter)->GetComponent(i, 0));
+    EXPECT_EQ(segmented->GetComponent(i, 0), filter->GetEffectiveMean(label, 0));
+    EXPECT_NEAR(u->GetComponent(i, 0) + u->GetComponent(i, 1), 1.0, 1e-12);
+    EXPECT_EQ(label == 2, u->GetComponent(i, 1) > u->GetComponent(i, 0));
+  }
+}
+
+TEST(SegmentationFilter, NaturalUnitsSuitAnyScale)
+{
+  auto filter = MakeFilter(SphereWithCap(4));
+  filter->Update();
+  const auto labels = Copy(Labels(filter));
+  for (const auto& [length, value] : { std::pair(1e-3, 1e6), std::pair(1e80, 1e-120) })
+  {
+    auto scaled = SphereWithCap(4);
+    for (vtkIdType i = 0; i < scaled->GetNumberOfPoints(); ++i)
+    {
+      double p[3];
+      scaled->GetPoint(i, p);
+      scaled->GetPoints()->SetPoint(i, length * p[0], length * p[1], length * p[2]);
+      scaled->GetPointData()->GetArray("f")->SetComponent(
+        i, 0, value * scaled->GetPointData()->GetArray("f")->GetComponent(i, 0));
+    }
+    auto other = MakeFilter(scaled);
+    other->Update();
+    EXPECT_TRUE(Identical(Labels(other), labels)) << length;
+    EXPECT_NEAR(
+      TableAt(other, 1, "BoundaryLength") / length, TableAt(filter, 1, "BoundaryLength"), 1e-6);
+    EXPECT_NEAR(other->GetEffectiveMean(2, 0) / value, filter->GetEffectiveMean(2, 0), 1e-6);
+  }
+  // lambda = w/(h R^2) in absolute units
+  filter->SetUnitsToAbsolute();
+  filter->SetFidelityWeight(0.3 / (filter->GetMeanEdgeLength() * 9.0));
+  filter->Update();
+  EXPECT_TRUE(Identical(Labels(filter), labels));
+}
+
+TEST(SegmentationFilter, GivenMeansAreUsedAsTheyAre)
+{
+  auto filter = MakeFilter(SphereWithCap(4));
+  filter->AutomaticMeansOff();
+  filter->SetMean(1, 0, 2.0);
+  filter->SetMean(2, 0, -1.0);
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfAlternations(), 1);
+  EXPECT_EQ(filter->GetEffectiveMean(1, 0), 2.0);
+  EXPECT_NEAR(TableAt(filter, 0, "Area"), Pi, 0.05 * Pi); // the cap is region 1
+  filter->SetMean(2, 0, -7.0);
+  EXPECT_EQ(filter->GetMean(2, 0), -7.0);
+  EXPECT_TRUE(std::isnan(filter->GetMean(2, 1)));
+  filter->RemoveAllMeans();
+  EXPECT_TRUE(std::isnan(filter->GetMean(2, 0)));
+}
+
+TEST(SegmentationFilter, DataTermsReplaceTheData)
+{
+  auto sphere = SphereWithCap(4);
+  AddPointArray(sphere, "r", 3,
+    [&](vtkIdType i, int k)
+    {
+      const double z = sphere->GetPoint(i)[2];
+      const int nearest = z < -0.3 ? 0 : (z < 0.4 ? 1 : 2);
+      return k == nearest ? -5.0 : -4.0; // only differences count
+    });
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 7, "r");
+  filter->SetNumberOfRegions(3);
+  filter->Update();
+  EXPECT_EQ(filter->GetValueRange(), 1.0);
+  EXPECT_FALSE(Result(filter, "fSegmented"));
+  EXPECT_FALSE(Result(filter, "rSegmented"));
+  const double lower = 2.0 * Pi * std::sqrt(1.0 - 0.09);
+  const double upper = 2.0 * Pi * std::sqrt(1.0 - 0.16);
+  EXPECT_NEAR(TableAt(filter, 0, "BoundaryLength"), lower, 0.06 * lower);
+  EXPECT_NEAR(TableAt(filter, 1, "BoundaryLength"), lower + upper, 0.06 * (lower + upper));
+  EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 2);
+  filter->SetNumberOfRegions(2);
+  EXPECT_NE(ErrorOf(filter).find("components is 3; allowed: 2"), std::string::npos);
+}
+
+TEST(SegmentationFilter, SeedsAloneGiveTheShortestBoundary)
+{
+  // Between two opposite caps as seeds: the belt is free, and any circle around it is longer than
+  // one near the smaller cap.
+  auto sphere = SphereWithCap(4);
+  AddPointArray(sphere, "r", 2, [](vtkIdType, int) { return 0.0; });
+  AddPointArray(sphere, "seeds", 1,
+    [&](vtkIdType i, int)
+    {
+      const double z = sphere->GetPoint(i)[2];
+      return z > 0.9 ? 2.0 : (z < 0.1 ? 1.0 : 0.0);
+    });
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 7, "r");
+  SetInputArray(filter, 6, "seeds");
+  filter->Update();
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    const double z = sphere->GetPoint(i)[2];
+    if (std::abs(z - 0.85) > 0.05)
+    {
+      EXPECT_EQ(Labels(filter)->GetComponent(i, 0), z > 0.9 ? 2.0 : 1.0) << z;
+    }
+  }
+}
+
+TEST(SegmentationFilter, ExcludedPointsHaveTheLabelZeroAndMissingOnesARegion)
+{
+  auto sphere = SphereWithCap(4);
+  AddPointArray(
+    sphere, "mask", 1, [&](vtkIdType i, int) { return sphere->GetPoint(i)[0] > 0.7 ? 1.0 : 0.0; });
+  auto filter = MakeFilter(sphere);
+  SetInputArray(filter, 1, "mask");
+  filter->Update();
+  double low = 3.0;
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    low = std::min(low, Labels(filter)->GetComponent(i, 0));
+  }
+  EXPECT_EQ(low, 1.0);
+  filter->SetMaskModeToExclude();
+  filter->Update();
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    EXPECT_EQ(Labels(filter)->GetComponent(i, 0) == 0.0, sphere->GetPoint(i)[0] > 0.7);
+  }
+}
+
+TEST(SegmentationFilter, BlocksHaveRowsAndCurvesOfTheirOwn)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, SphereWithCap(3));
+  blocks->SetBlock(1, SphereWithCap(4));
+  auto filter = MakeFilter(blocks);
+  filter->Update();
+  EXPECT_EQ(vtkTable::SafeDownCast(filter->GetOutputDataObject(1))->GetNumberOfRows(), 4);
+  EXPECT_EQ(TableAt(filter, 2, "Block"), 1.0);
+  EXPECT_EQ(TableAt(filter, 2, "Region"), 1.0);
+  EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 2);
+  EXPECT_EQ(Boundaries(filter)->GetCellData()->GetArray("Block")->GetComponent(1, 0), 1.0);
+}
+
+TEST(SegmentationFilter, FirstTimeIsTheLabelOfTheNearestMean)
+{
+  auto sphere = SphereWithCap(4);
+  vtkDataArray* const f = sphere->GetPointData()->GetArray("f");
+  f->SetComponent(0, 0, f->GetComponent(0, 0) > 0.0 ? -1.0 : 2.0); // one wrong value
+  auto filter = MakeFilter(sphere);
+  filter->AutomaticMeansOff();
+  filter->SetMean(1, 0, -1.0);
+  filter->SetMean(2, 0, 2.0);
+  filter->GenerateTimeStepsOn();
+  filter->UpdateInformation();
+  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0, 1.0 }));
+  UpdateAt(filter, 0.0);
+  EXPECT_EQ(Labels(filter)->GetComponent(0, 0), f->GetComponent(0, 0) > 0.0 ? 2.0 : 1.0);
+  EXPECT_EQ(filter->GetGap(), 0.0);
+  UpdateAt(filter, 1.0);
+  EXPECT_EQ(Labels(filter)->GetComponent(0, 0), f->GetComponent(0, 0) > 0.0 ? 1.0 : 2.0);
+}
+
+TEST(SegmentationFilter, PortsKeepTheirResultsIfMemoryIsReleased)
+{
+  auto filter = MakeFilter(SphereWithCap(4));
+  filter->ReleaseDataFlagOn();
+  filter->Update();
+  EXPECT_EQ(vtkTable::SafeDownCast(filter->GetOutputDataObject(1))->GetNumberOfRows(), 2);
+  EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 1);
+}
+
+TEST(SegmentationFilter, ErrorsNameThePropertyItsValueAndTheAllowedOnes)
+{
+  auto sphere = SphereWithCap(3);
+  AddPointArray(sphere, "half", 1, [](vtkIdType, int) { return 0.5; });
+  AddPointArray(sphere, "five", 1, [](vtkIdType i, int) { return i == 3 ? 5.0 : 0.0; });
+  const auto errorOf = [&](const std::function<void(Filter*)>& set)
+  {
+    auto filter = MakeFilter(sphere);
+    set(filter);
+    const std::string error = ErrorOf(filter);
+    EXPECT_FALSE(Labels(filter));
+    EXPECT_EQ(Boundaries(filter)->GetNumberOfPoints(), 0);
+    return error;
+  };
+  const auto expect = [&](const std::string& text, const std::function<void(Filter*)>& set)
+  { EXPECT_NE(errorOf(set).find(text), std::string::npos) << errorOf(set); };
+  expect("NumberOfRegions is 1; allowed: 2 to 1000", [](Filter* f) { f->SetNumberOfRegions(1); });
+  expect("FidelityWeight is 0", [](Filter* f) { f->SetFidelityWeight(0.0); });
+  expect("StopTolerance is 1", [](Filter* f) { f->SetStopTolerance(1.0); });
+  expect("the number of Means is 0; allowed: 2", [](Filter* f) { f->AutomaticMeansOff(); });
+  expect("Means is nan",
+    [](Filter* f)
+    {
+      f->AutomaticMeansOff();
+      f->SetMean(2, 0, 1.0);
+    });
+  expect("SeedArray \"half\" is 0.5 at point 0", [](Filter* f) { SetInputArray(f, 6, "half"); });
+  expect("SeedArray has the label 5; allowed: 0 to NumberOfRegions 2",
+    [](Filter* f) { SetInputArray(f, 6, "five"); });
+}
