@@ -238,13 +238,42 @@ class Surfaces(unittest.TestCase):
             surface.points[0] = 0.0
 
 
+class Edges(unittest.TestCase):
+    def test_a_cap_has_one_closed_curve_of_its_length(self):
+        for level in (5, 6):
+            surface = sd.sphere(level)
+            clean = np.where(surface.points[:, 2] > 0.5, 7.0, 3.0)
+            result = sd.mumford_shah(surface, clean[:, None])
+            self.assertEqual(result.values.shape, (surface.n_points, 1))
+            self.assertEqual(result.edges.shape, (surface.n_points,))
+            self.assertEqual(len(result.curves), 1)
+            np.testing.assert_array_equal(result.curves[0][0], result.curves[0][-1])
+            self.assertAlmostEqual(result.edge_length / (2 * np.pi * np.sqrt(0.75)), 1, delta=0.01)
+            self.assertLess(np.abs(result.values[:, 0] - clean).max(), 0.1)
+
+    def test_steps_lower_the_energy_between_stages(self):
+        surface = sd.sphere(4)
+        states = list(sd.mumford_shah(surface, np.sign(bands(surface)), steps=True))
+        energies = [state.history["Energy"][-1] for state in states]
+        self.assertLessEqual(sum(np.diff(energies) > 0), 2)  # where the width is halved
+        self.assertEqual(states[0].edges.max(), 0.0)
+        self.assertEqual(states[0].curves, [])
+        self.assertGreater(states[-1].edges.max(), 0.9)
+
+    def test_curves_are_optional(self):
+        surface = sd.sphere(4)
+        result = sd.mumford_shah(surface, np.sign(bands(surface, 1)), edge_curves=False)
+        self.assertEqual(result.curves, [])
+        self.assertEqual(result.edge_length, 0.0)
+
+
 class Keywords(unittest.TestCase):
     def test_defaults_are_those_of_the_library(self):
         from surfacediffusion import _core
         import inspect
 
-        for function in (sd.heat, sd.intrinsic_tv, sd.harmonic_map, sd.turing_texture,
-                         sd.direction_field):
+        for function in (sd.heat, sd.intrinsic_tv, sd.harmonic_map, sd.mumford_shah,
+                         sd.turing_texture, sd.direction_field):
             parameters = inspect.signature(function).parameters
             known = {entry["name"]: entry for entry in _core.list_settings(function.__name__)}
             self.assertGreater(len(known), 5)
@@ -260,11 +289,12 @@ class Keywords(unittest.TestCase):
     def test_every_keyword_takes_its_default(self):
         surface = sd.sphere(2)
         z = surface.points[:, 2]
-        for name in ("heat", "intrinsic_tv", "turing_texture", "harmonic_map", "direction_field"):
+        for name in ("heat", "intrinsic_tv", "mumford_shah", "turing_texture", "harmonic_map",
+                     "direction_field"):
             table = sd._settings.settings_of(name)
             defaults = {keyword: setting.default for keyword, setting in table.items()}
             function = getattr(sd, name)
-            values = [z] if name in ("heat", "intrinsic_tv") else []
+            values = [z] if name in ("heat", "intrinsic_tv", "mumford_shah") else []
             if name == "turing_texture":
                 defaults["number_of_time_steps"] = 3
                 expected = np.asarray(function(surface, *values, number_of_time_steps=3))

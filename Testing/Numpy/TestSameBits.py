@@ -25,6 +25,7 @@ FILTERS = {
     "heat": "vtkFVMHeatFilter",
     "intrinsic_tv": "vtkIntrinsicTVFilter",
     "harmonic_map": "vtkHarmonicMapFilter",
+    "mumford_shah": "vtkMumfordShahFilter",
     "turing_texture": "vtkTuringTextureFilter",
     "direction_field": "vtkSurfaceDirectionFieldFilter",
 }
@@ -96,6 +97,8 @@ class SameBits(unittest.TestCase):
              {"EdgeFunction": "PeronaMalikRational", "EdgeThreshold": 0.2}),
             ("intrinsic_tv", {"values": self.columns},
              {"Discretization": "CrouzeixRaviart", "NumberOfTimeSteps": 3}),
+            ("mumford_shah", {"values": self.normals}, {"EdgeThreshold": 0.4}),
+            ("mumford_shah", {"values": self.normals[:, 0].astype(np.float32)}, {}),
             ("harmonic_map", {}, {"MoveVertices": True}),
             ("harmonic_map", {"vectors": self.normals}, {"Exponent": 2.0}),
             ("harmonic_map", {"vectors": self.normals.astype(np.float32)}, {"LineField": True}),
@@ -141,9 +144,12 @@ class SameBits(unittest.TestCase):
             if result.colors is not None:
                 found["TextureColor"] = result.colors
         else:
-            suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic"}[function]
+            suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
+                      "mumford_shah": "MumfordShah"}[function]
             base = next(iter(arrays), "Normals")
             found = {base + suffix: result.values}
+        if function == "mumford_shah":
+            found["Edges"] = result.edges
         if function == "harmonic_map":
             found["points"] = result.points
         if function != "direction_field":

@@ -66,6 +66,7 @@ MumfordShah::MumfordShah(std::shared_ptr<const Assembler> assembler, CornerWeigh
     this->NoEdgeChange = Values::Zero(this->U.rows(), 1);
     this->V.col(0).array() *= (!this->Cuts).cast<double>();
   }
+  this->SquareGradients();
   this->CurrentEnergy = this->MeasureEnergy();
 }
 
@@ -74,6 +75,7 @@ StepReport MumfordShah::Advance(const ProgressMonitor& progress)
   if (this->IsSettled && !this->IsLastStage())
   {
     ++this->Stage;
+    this->SquareGradients();
     this->CurrentEnergy = this->MeasureEnergy();
   }
   StepReport report;
@@ -133,8 +135,7 @@ void MumfordShah::FindEdges(StepReport& report, const ProgressMonitor& progress)
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const double eps = this->CurrentEdgeWidth();
   const double restoring = this->Options.EdgeCost / (2.0 * eps);
-  ForEach(this->Parallel, mesh.NumberOfTriangles(),
-    [&](Index t) { this->OfTriangles[t] = this->GradientSquare(t); });
+  this->SquareGradients();
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
@@ -164,15 +165,19 @@ void MumfordShah::FindEdges(StepReport& report, const ProgressMonitor& progress)
     [&](Index i) { this->V(i, 0) += this->EdgeChange(i, 0); });
 }
 
-/// int D grad u . grad u over triangle t, the sum of c_ij |u_i - u_j|^2 over its edges.
-double MumfordShah::GradientSquare(Index t) const
+/// OfTriangles: int D grad u . grad u over triangle t, the sum of c_ij |u_i - u_j|^2 over its edges.
+void MumfordShah::SquareGradients()
 {
   const Triangles& corners = this->Assembly->Mesh().TriangleVertices();
-  const auto u = [&](int a) { return this->U.row(corners(t, a)); };
-  const double sum = this->Coefficients(t, 0) * (u(1) - u(2)).squaredNorm() +
-    this->Coefficients(t, 1) * (u(2) - u(0)).squaredNorm() +
-    this->Coefficients(t, 2) * (u(0) - u(1)).squaredNorm();
-  return std::max(sum, 0.0); // of obtuse triangles round-off may be left
+  ForEach(this->Parallel, static_cast<Index>(this->OfTriangles.size()),
+    [&](Index t)
+    {
+      const auto u = [&](int a) { return this->U.row(corners(t, a)); };
+      const double sum = this->Coefficients(t, 0) * (u(1) - u(2)).squaredNorm() +
+        this->Coefficients(t, 1) * (u(2) - u(0)).squaredNorm() +
+        this->Coefficients(t, 2) * (u(0) - u(1)).squaredNorm();
+      this->OfTriangles[t] = std::max(sum, 0.0); // of obtuse triangles round-off may be left
+    });
 }
 
 /// w_t.
@@ -185,12 +190,13 @@ double MumfordShah::Weight(Index t) const
   return this->Options.Leakage + (v0 * v0 + v1 * v1 + v2 * v2) / 3.0;
 }
 
+/// E, after SquareGradients().
 double MumfordShah::MeasureEnergy() const
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const double ofGradients = 0.5 *
     Sum(this->Parallel, mesh.NumberOfTriangles(),
-      [&](Index t) { return this->Weight(t) * this->GradientSquare(t); });
+      [&](Index t) { return this->Weight(t) * this->OfTriangles[t]; });
   return this->EdgeEnergy() +
     mesh.GetReduction().Sum(ofGradients + this->Fit.Energy(mesh, this->U, this->Parallel));
 }

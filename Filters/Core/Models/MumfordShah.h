@@ -82,7 +82,7 @@ private:
   bool IsLastStage() const { return this->Stage + 1 >= this->Options.NumberOfStages; }
   void SmoothData(StepReport& report, const ProgressMonitor& progress);
   void FindEdges(StepReport& report, const ProgressMonitor& progress);
-  double GradientSquare(Index t) const;
+  void SquareGradients();
   double Weight(Index t) const;
   double MeasureEnergy() const;
 
