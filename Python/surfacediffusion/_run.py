@@ -179,6 +179,10 @@ class Runner:
         assert given.data is not None
         starts = range(0, output.shape[1], columns)
         known: list[str] = []
+        # The C library of Linux keeps freed blocks up to the size of the largest one that was freed,
+        # at most 32 MiB. Without this one, each panel would get its memory from the system again,
+        # which takes a fifth of the time.
+        np.empty(31 << 20, dtype=np.uint8)
         with ProgressReporter(progress, len(starts)) as reporter:
             for first in starts:
                 panel = given.core.columns(first, min(columns, output.shape[1] - first))
