@@ -32,7 +32,9 @@
  * **Units.** In natural units FidelityWeight is in 1/(h R^2), and in 1/(h R) with given data terms,
  * R their range. A disk of radius r is kept if lambda > 2/r for data of two values with R = 1: with
  * the default 0.3 from a radius of about 7 h on. A cap of the angle theta on the unit sphere is
- * kept if lambda > cot(theta/2).
+ * kept if lambda > cot(theta/2). R is the range of the given data, noise included: under normal
+ * noise of half the difference of two values it is about five times that difference, so that
+ * lambda has to be 25 times larger.
  *
  * **Scheme.** ADMM as in vtkIntrinsicTVFilter, with the projection onto the simplex, or the clamp to
  * [0, 1] for K = 2, until the duality gap certifies E up to StopTolerance. The means and u are
@@ -98,7 +100,8 @@ public:
    * On (default): the means c_k are found. The start are clusters of the values by k-means++ with
    * RandomSeed, then the means of the regions and the regions are computed in turn. Regions are
    * numbered by ascending mean (by its first component, then the next ones), unless there are
-   * seeds, whose labels they then have. Off: the means are those of SetMean(). Not used with given
+   * seeds, whose labels they then have. Off: the means are those of SetMean(), or the clusters of
+   * the values if none is set. Not used with given
    * data terms.
    */
   vtkSetMacro(AutomaticMeans, bool);
@@ -109,7 +112,7 @@ public:
   ///@{
   /**
    * The mean of a region, in array units: of region 1 ... NumberOfRegions, component 0, 1, ... of
-   * the data. With AutomaticMeans off all of them have to be set. GetMean() gives NaN for one that
+   * the data. With AutomaticMeans off all of them have to be set, or none. GetMean() gives NaN for one that
    * is not set.
    */
   void SetMean(int region, int component, double value);

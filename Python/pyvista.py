@@ -39,7 +39,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import (
     vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
-    vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter,
+    vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter, vtkTuringTextureFilter,
 )
 from ._meshes import find_polydata
 
@@ -51,7 +51,7 @@ _REPORTED = (
     "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
     "EffectiveTimeStep", "EffectiveFidelityWeight", "Wavelength", "WavelengthGrowthRate",
     "DiffusionRateFactor", "MeanDisplacement", "MaximumDisplacement", "VolumeBefore",
-    "VolumeAfter", "EdgeLength",
+    "VolumeAfter", "EdgeLength", "Gap", "LabelGap", "NumberOfAlternations",
 )
 
 
@@ -176,6 +176,42 @@ def turing_texture(
     return _run(
         vtkTuringTextureFilter(), mesh, properties, (initial, mask, direction, fixed, rates), times,
         full_output)
+
+
+def segment(
+    mesh, array=None, *, terms=None, seeds=None, mask=None, means=None, full_output=False,
+    **properties
+):
+    """Divide the mesh into regions with short boundaries (vtkSurfaceSegmentationFilter).
+
+    Minimises 1/2 sum_k int |grad u_k| + lambda sum_k int u_k |f - c_k|^2 over the probabilities u_k
+    of the regions.
+
+    array   the data f: point array (n,) or (n, k), NaN is missing; default: the active scalars
+    terms   point array (n, K) of data terms in place of |f - c_k|^2
+    seeds   point array (n,) of labels 1 ... K that points keep, 0: free
+    mask    point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
+    means   the means c, one row per region, with AutomaticMeans off; default: they are found
+    full_output   see help(surfacediffusion.pyvista); `history` then has one entry per region: Area,
+                  BoundaryLength, Components, Mean_0 ..., and `boundaries` is a mesh of polylines
+
+    Useful properties: NumberOfRegions (default 2), FidelityWeight (lambda, default 0.3).
+
+    The results are the point arrays RegionId, RegionProbability and <array>Segmented.
+    """
+    algorithm = vtkSurfaceSegmentationFilter()
+    if means is not None:
+        algorithm.AutomaticMeansOff()
+        rows = [list(row) if hasattr(row, "__len__") else [row] for row in means]
+        algorithm.SetNumberOfRegions(len(rows))
+        for region, row in enumerate(rows, start=1):
+            for component, value in enumerate(row):
+                algorithm.SetMean(region, component, float(value))
+    arrays = (array, mask, None, None, None, None, seeds, terms)
+    result = _run(algorithm, mesh, properties, arrays, None, full_output)
+    if full_output:
+        result[1].boundaries = _output(algorithm, 2)
+    return result
 
 
 def direction_field(mesh, hints=None, *, full_output=False, **properties):

@@ -120,7 +120,7 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
   visitor.Numbers(
     { "Means", "values",
       "The means c_1, c_2, ... of the regions with AutomaticMeans off, all components of the first "
-      "region before those of the second." },
+      "region before those of the second. None: the clusters of the data." },
     this->Means,
     this->AutomaticMeans ? SettingRange::Anything()
                          : SettingRange::Between(-1e300, 1e300, "finite numbers, all of them set"));
@@ -147,8 +147,8 @@ void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& p
   }
   const auto needed = static_cast<std::size_t>(this->NumberOfRegions) *
     static_cast<std::size_t>(std::max(components, 1));
-  Require(this->AutomaticMeans || this->Means.size() == needed, "the number of Means",
-    static_cast<double>(this->Means.size()),
+  Require(this->AutomaticMeans || this->Means.empty() || this->Means.size() == needed,
+    "the number of Means", static_cast<double>(this->Means.size()),
     (std::to_string(needed) +
       ", one per region and component of InputArray, or any with AutomaticMeans on")
       .c_str(),
@@ -184,7 +184,7 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   Segmentation::Input input;
   input.Data = std::move(inputs.Data);
   input.Seeds = std::move(inputs.Seeds);
-  if (settings.UpdateMeans)
+  if (!inputs.DataAreTerms && (this->AutomaticMeans || this->Means.empty()))
   {
     input.Means = FindRegionMeans(inputs.Surface.Mesh(), input.Data, this->NumberOfRegions,
       input.Seeds, this->RandomSeed, inputs.Ids, inputs.Parallel);

@@ -499,7 +499,7 @@ def segment(
     >>> from surfacediffusion import segment, sphere
     >>> ball = sphere(5)
     >>> noise = np.random.default_rng(0).normal(scale=0.5, size=ball.n_points)
-    >>> result = segment(ball, (ball.points[:, 2] > 0.5) + noise, fidelity_weight=0.1)
+    >>> result = segment(ball, (ball.points[:, 2] > 0.5) + noise, fidelity_weight=2.0)
     >>> bool(abs(result.areas[1] - np.pi) < 0.05 * np.pi), len(result.boundaries)
     (True, 1)
     """

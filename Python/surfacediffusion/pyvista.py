@@ -45,6 +45,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._functions import direction_field as _direction_field
+from ._functions import segment as _segment
 from ._meshes import find_polydata
 from ._models import (
     ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
@@ -55,7 +56,10 @@ from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
 from ._surface import Surface, as_data
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "turing_texture"]
+__all__ = [
+    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "turing_texture",
+]
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
@@ -137,6 +141,47 @@ def turing_texture(
     """
     return _run("turing_texture", mesh, initial, (mask, direction, fixed, rates, None), times,
                 full_output, progress, properties)
+
+
+def segment(
+    mesh: Any, array: str | None = None, *, terms: str | None = None, seeds: str | None = None,
+    mask: str | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
+) -> Any:
+    """Divide the mesh into regions with short boundaries.
+
+    array: the data; terms: point array (n, K) of data terms in their place; seeds: point array (n,)
+    of labels that points keep, 0 is free. The equation and all other keywords are described in
+    help(surfacediffusion.segment). The blocks of a MultiBlock are segmented one by one, each with
+    its own natural units. The results are the point arrays RegionId (active), RegionProbability
+    (n, K) and, with data, <array>Segmented: the mean of the region. full_output: if True, the
+    function returns a pair: the mesh, and the SegmentationResult, of a MultiBlock the list of them.
+    """
+    properties, result_name = _keywords("segment", properties)
+    blocks, results = _find_surfaces(mesh), []
+    for block in blocks:
+        name = array or block.mesh.point_data.active_scalars_name
+        if terms is None and name is None:
+            raise ValueError("array is None and the mesh has no active scalars; allowed: the name of "
+                             "a point array")
+        values = None if terms is not None else block.find("array", name)[0]
+        result = _segment(
+            block.surface, values, terms=block.find("terms", terms)[0],
+            seeds=block.find("seeds", seeds)[0], mask=block.find("mask", mask)[0],
+            progress=progress, **properties)
+        results.append(result)
+        points = block.mesh.point_data
+        if values is not None:
+            means = np.vstack([np.full((1, result.means.shape[1]), np.nan), result.means])
+            points[result_name or f"{name}Segmented"] = means[result.values].reshape(
+                values.shape if values.ndim == 1 else (len(values), -1))
+        points["RegionProbability"] = result.probabilities
+        points["RegionId"] = result.values
+        block.mesh.set_active_scalars("RegionId")
+    segmented = _rebuild(mesh, iter(blocks))
+    if not full_output:
+        return segmented
+    return segmented, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 
 
 def direction_field(
@@ -421,7 +466,7 @@ def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 for _function in (
-        heat, intrinsic_tv, harmonic_map, mumford_shah, turing_texture, direction_field):
+        heat, intrinsic_tv, harmonic_map, mumford_shah, segment, turing_texture, direction_field):
     setattr(_Accessor, _function.__name__, _as_method(_function))
 
 if hasattr(pyvista, "register_dataset_accessor"):

@@ -234,6 +234,16 @@ class OtherCommands(CommandTest):
         self.assertEqual(code, 2)
         self.assertIn("curves.func.gii: the name announces no format for curves", error)
 
+    def test_segment_labels_the_sides_of_a_step(self):
+        step = np.where(SMOOTH > SMOOTH.mean(), 5.0, 2.0)
+        samples.write_gifti("step.func.gii", {"one": step})
+        report = self.report(
+            "segment lh.surf.gii step.func.gii labels.func.gii --means 5 2 --weight 10")
+        np.testing.assert_array_equal(self.column("labels.func.gii"), np.where(step > 3, 1, 2))
+        regions = report["segmentations"][0]["regions"]
+        self.assertEqual([row["mean"] for row in regions], [[5.0], [2.0]])
+        self.assertGreater(regions[0]["boundary_length"], 0)
+
     def test_texture_has_the_same_bits_for_the_same_seed(self):
         for name, seed in (("a", 1), ("b", 1), ("c", 2)):
             self.succeed(f"texture lh.surf.gii 20 {name}.shape.gii --seed {seed}")
@@ -326,8 +336,8 @@ class Reports(CommandTest):
 
     def test_help_of_every_command_shows_an_example(self):
         _, out, _ = run("--help")
-        commands = ("smooth", "denoise", "inpaint", "texture", "directions", "normals", "fwhm",
-                    "info")
+        commands = ("smooth", "denoise", "inpaint", "segment", "texture", "directions",
+                    "normals", "fwhm", "info")
         for command in commands:
             self.assertIn(command, out)
             code, text, _ = run(command, "--help")

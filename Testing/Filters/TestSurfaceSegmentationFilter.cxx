@@ -158,6 +158,16 @@ TEST(SegmentationFilter, GivenMeansAreUsedAsTheyAre)
   EXPECT_TRUE(std::isnan(filter->GetMean(2, 0)));
 }
 
+TEST(SegmentationFilter, WithoutMeansTheClustersOfTheValuesAreUsedAsTheyAre)
+{
+  auto filter = MakeFilter(SphereWithCap(4));
+  filter->AutomaticMeansOff();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfAlternations(), 1);
+  EXPECT_NEAR(filter->GetEffectiveMean(1, 0), -1.0, 1e-12);
+  EXPECT_NEAR(filter->GetEffectiveMean(2, 0), 2.0, 1e-12);
+}
+
 TEST(SegmentationFilter, DataTermsReplaceTheData)
 {
   auto sphere = SphereWithCap(4);
@@ -293,7 +303,12 @@ TEST(SegmentationFilter, ErrorsNameThePropertyItsValueAndTheAllowedOnes)
   expect("NumberOfRegions is 1; allowed: 2 to 1000", [](Filter* f) { f->SetNumberOfRegions(1); });
   expect("FidelityWeight is 0", [](Filter* f) { f->SetFidelityWeight(0.0); });
   expect("StopTolerance is 1", [](Filter* f) { f->SetStopTolerance(1.0); });
-  expect("the number of Means is 0; allowed: 2", [](Filter* f) { f->AutomaticMeansOff(); });
+  expect("the number of Means is 1; allowed: 2",
+    [](Filter* f)
+    {
+      f->AutomaticMeansOff();
+      f->SetMean(1, 0, 1.0);
+    });
   expect("Means is nan",
     [](Filter* f)
     {

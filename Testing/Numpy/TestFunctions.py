@@ -548,5 +548,50 @@ class Threads(unittest.TestCase):
         np.testing.assert_allclose(result, 2 * expected, rtol=0, atol=1e-12)
 
 
+class Segment(unittest.TestCase):
+    def test_cap_under_noise_has_its_area_and_boundary(self):
+        surface = sd.sphere(5)
+        noise = np.random.default_rng(0).normal(scale=0.5, size=surface.n_points)
+        values = (surface.points[:, 2] > 0.5) + noise
+        for options in (dict(means=[0, 1]), dict(seed=3)):
+            result = sd.segment(surface, values, units="Absolute", fidelity_weight=2.6, **options)
+            self.assertLessEqual(result.gap, 1e-3)
+            self.assertAlmostEqual(result.areas[1], np.pi, delta=0.02 * np.pi)
+            length = 2 * np.pi * np.sqrt(0.75)
+            self.assertAlmostEqual(result.boundary_lengths[1], length, delta=0.03 * length)
+            curve, = result.boundaries
+            self.assertEqual(curve.regions, (1, 2))
+            np.testing.assert_array_equal(curve.points[0], curve.points[-1])
+            steps = np.linalg.norm(np.diff(curve.points, axis=0), axis=1)
+            self.assertAlmostEqual(steps.sum(), curve.length, places=12)
+            np.testing.assert_array_equal(result.values, 1 + result.probabilities.argmax(axis=1))
+            np.testing.assert_allclose(result.means.ravel(), [0, 1], atol=0.05)
+
+    def test_terms_and_seeds(self):
+        surface = sd.sphere(4)
+        x = surface.points[:, 0]
+        result = sd.segment(surface, terms=np.stack([x, -x], axis=1))
+        self.assertAlmostEqual(result.areas[0], 2 * np.pi, delta=0.1)
+        self.assertEqual(result.means.shape, (2, 0))
+        seeded = sd.segment(surface, terms=np.stack([x, -x], axis=1), seeds=np.where(x > 0.9, 1, 0))
+        self.assertTrue((seeded.values[x > 0.9] == 1).all())
+
+    def test_what_is_not_allowed_is_named(self):
+        surface = sd.sphere(2)
+        x = surface.points[:, 0]
+        for text, options in (
+                ("number_of_regions is 1", dict(values=x, number_of_regions=1)),
+                ("the number of means is 1; allowed: 2", dict(values=x, means=[1.0])),
+                ("means is 'a'", dict(values=x, means="a")),
+                ("seeds is 0.5", dict(values=x, seeds=np.full(len(x), 0.5))),
+                ("label 3; allowed: 0 to number_of_regions 2",
+                 dict(values=x, seeds=np.full(len(x), 3))),
+                ("values and terms are both", dict(values=x, terms=np.zeros((len(x), 2)))),
+                ("number of components is 3", dict(terms=np.zeros((len(x), 3))))):
+            with self.assertRaises(ValueError) as caught:
+                sd.segment(surface, **options)
+            self.assertIn(text, str(caught.exception))
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2, argv=sys.argv)

@@ -250,7 +250,7 @@ class TestProxies(unittest.TestCase):
              ["EdgeThreshold", "SmoothingLength", "EdgeWidth"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
-            ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean"]),
+            ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean", "AutomaticMeans"]),
             ("TuringTextureFilter",
              ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
               "DecayRate"]),
