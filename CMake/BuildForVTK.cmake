@@ -113,7 +113,9 @@ if (SURFACEDIFFUSION_WRAP_PYTHON)
   set(python_dir "${CMAKE_BINARY_DIR}/${python_destination}/surfacediffusion")
   configure_file(CMake/__init__.py.in "${python_dir}/__init__.py" @ONLY)
   configure_file(Python/pyvista.py "${python_dir}/pyvista.py" COPYONLY)
-  set(python_files "${python_dir}/__init__.py" "${python_dir}/pyvista.py")
+  configure_file(Python/surfacediffusion/_meshes.py "${python_dir}/_meshes.py" COPYONLY)
+  set(python_files
+    "${python_dir}/__init__.py" "${python_dir}/pyvista.py" "${python_dir}/_meshes.py")
 
   # Types and documentation for editors, if this VTK has the generator. The generator loads the
   # module, which sanitizers do not allow.

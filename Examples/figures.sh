@@ -1,7 +1,7 @@
 #!/bin/bash
-# Draws figures 4 to 8 of the paper on scanned surfaces with photographs: installs the required
-# packages (Debian 12), fetches the data, builds the library, draws into build/figures, and prints
-# errors and run times.
+# Draws figures 4 to 8 of the paper, and deblurring, on scanned surfaces with photographs: installs
+# the required packages (Debian 12), fetches the data, builds the library, draws into build/figures,
+# and prints errors and run times.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -41,5 +41,8 @@ mkdir -p build/figures
 cd build/figures
 "${display[@]}" "$python" "$examples/paper_figures.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
   --photos "$photos" --output .
+"${display[@]}" "$python" "$examples/deblurring.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
+  --photos "$photos" --output .
 "${display[@]}" "$python" "$examples/harmonic_map.py"
+"${display[@]}" "$python" "$examples/mumford_shah.py"
 "${display[@]}" "$python" "$examples/turing_texture.py"

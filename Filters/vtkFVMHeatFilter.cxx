@@ -40,6 +40,8 @@ std::unique_ptr<RunSettings> vtkFVMHeatFilter::MakeSettings() const
   settings->FWHM = this->FWHM;
   settings->AutomaticFidelity = this->AutomaticFidelity;
   settings->NoiseLevel = this->NoiseLevel;
+  settings->Blur.FWHM = this->BlurFWHM;
+  settings->Blur.Steps = this->BlurSteps;
   return settings;
 }
 

@@ -88,6 +88,8 @@ std::unique_ptr<RunSettings> vtkIntrinsicTVFilter::MakeSettings() const
   settings->FidelityNorm = static_cast<SurfaceDiffusion::FidelityNorm>(this->FidelityNorm);
   settings->AutomaticFidelity = this->AutomaticFidelity;
   settings->NoiseLevel = this->NoiseLevel;
+  settings->Blur.FWHM = this->BlurFWHM;
+  settings->Blur.Steps = this->BlurSteps;
   settings->Discretization = static_cast<SurfaceDiffusion::Discretization>(this->Discretization);
   settings->StopTolerance = this->StopTolerance;
   return settings;

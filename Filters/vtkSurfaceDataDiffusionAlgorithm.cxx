@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDataDiffusionAlgorithm.h"
 
+#include "Conversion/FieldReader.h"
+#include "Conversion/InputArrays.h"
 #include "Conversion/MirroredEnum.h"
 #include "Run/RunSettings.h"
 
@@ -24,6 +26,15 @@ void vtkSurfaceDataDiffusionAlgorithm::UsePaperScheme()
 const char* vtkSurfaceDataDiffusionAlgorithm::GetInitialFillAsString()
 {
   return this->FindSettingWord("InitialFill");
+}
+
+bool vtkSurfaceDataDiffusionAlgorithm::FindFields(
+  vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems)
+{
+  const bool hasData = this->Superclass::FindFields(block, fields, problems);
+  const SurfaceDiffusion::InputArrays inputs(this, block, problems);
+  fields.Fidelity = inputs.FindOnPoints(5, "FidelityArray", 1);
+  return hasData;
 }
 
 void vtkSurfaceDataDiffusionAlgorithm::CopyProperties(

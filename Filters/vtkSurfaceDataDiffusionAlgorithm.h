@@ -11,6 +11,12 @@
  * with the diffusion tensor D of each model and the indicator chi of the known part: 0 where data
  * are missing, 1 elsewhere. See vtkSurfaceDiffusionAlgorithm for arrays, units and time.
  *
+ * **Fidelity per point.** Input array 5, FidelityArray, is an optional point array of one component
+ * whose values w >= 0 multiply lambda, for data that are not equally reliable: with noise of
+ * standard deviation s_i at point i, w_i is proportional to 1/s_i^2. A point
+ * with w = 0 starts from its value, which has no further effect. If w varies, the sum of A_i u_i is
+ * not conserved. With AutomaticFidelity the discrepancy is the mean over the surface weighted by w.
+ *
  * @sa vtkFVMHeatFilter vtkIntrinsicTVFilter vtkHarmonicMapFilter
  */
 #ifndef vtkSurfaceDataDiffusionAlgorithm_h
@@ -32,7 +38,7 @@ public:
   ///@{
   /**
    * The weight lambda of the fidelity term lambda chi (f - u) of (16) to (19), in 1/(unit of time).
-   * 0 or more. Default: 0.
+   * Input array 5 multiplies it point by point. 0 or more. Default: 0.
    */
   vtkSetMacro(FidelityWeight, double);
   vtkGetMacro(FidelityWeight, double);
@@ -53,7 +59,8 @@ public:
    * paper's random guess, uniform between the smallest and largest known value of the component of
    * the data. Harmonic: the harmonic function of the known values, which satisfies Laplace's
    * equation of the surface at missing points, so that smoothing is not biased at holes (unit
-   * vectors are normalised; line fields take Mean). Default: Mean; of vtkFVMHeatFilter Harmonic.
+   * vectors are normalised; line fields take Mean). Default: Mean; of vtkFVMHeatFilter
+   * and vtkMumfordShahFilter Harmonic.
    */
   vtkSetMacro(InitialFill, int);
   vtkGetMacro(InitialFill, int);
@@ -92,6 +99,9 @@ public:
   void UsePaperScheme() override;
 
 protected:
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
+
   vtkSurfaceDataDiffusionAlgorithm() = default;
   ~vtkSurfaceDataDiffusionAlgorithm() override = default;
 

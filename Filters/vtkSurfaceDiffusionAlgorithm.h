@@ -34,8 +34,8 @@
  * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid (hypre's BoomerAMG),
  * or Automatic with more than a million points. An abort is then obeyed by all processes within a
  * few iterations. Some features are always computed in process 0, which then holds the whole
- * surface: AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, and
- * MoveVertices, computed normals and line fields with missing values of vtkHarmonicMapFilter.
+ * surface: AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves of
+ * vtkMumfordShahFilter, and MoveVertices, computed normals and line fields with missing values of vtkHarmonicMapFilter.
  * Random numbers are those of one process if there are global ids; otherwise they depend on the
  * coordinates.
  *

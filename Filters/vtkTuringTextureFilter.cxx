@@ -70,6 +70,7 @@ std::unique_ptr<RunSettings> vtkTuringTextureFilter::MakeSettings() const
   settings->ClampToNonNegative = this->ClampToNonNegative;
   settings->AutomaticTimeStep = this->AutomaticTimeStep;
   settings->StopTolerance = this->StopTolerance;
+  settings->CoarseStartSize = this->CoarseStartSize;
   settings->TextureChemical = this->TextureChemical;
   settings->ColorOutput = this->ColorOutput;
   // The order is that of KineticsName, and that of the parameters of each kinetics.

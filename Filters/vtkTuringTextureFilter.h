@@ -198,6 +198,28 @@ public:
 
   ///@{
   /**
+   * On a surface with more vertices than this, the pattern grows on a coarser mesh first (nested
+   * iteration). The steps run in a Galerkin space of smoothed aggregation with 6 vertices per
+   * wavelength or more, or at least 3.4 if it has a ninth of the surface's vertices. They end when
+   * the relative change per unit of time is 2.5 StopTolerance. The last two steps run on the surface
+   * itself and remove the traces of interpolation. A warning gives the size of the coarser mesh. The
+   * history has all steps, and all states can be requested. With 655,362 vertices, a run takes 12 s
+   * of processor time instead of several minutes.
+   *
+   * Growing waves are within 5 % of their wavelength on the surface, but the pattern differs in
+   * detail and is less settled: with the default rates, which give 3.4 vertices per wavelength, it
+   * has more spots and fewer stripes. 0: all steps run on the surface. They also do over several
+   * processes, from a given initial state (input array 0), with StopTolerance 0, and if the
+   * wavelength is shorter than about 10 mean edge lengths. The coarser mesh has no Solver to choose
+   * (conjugate gradients), and Tolerance is at least 1e-4 in all steps. 0 or more. Default: 50000,
+   * the size up to which a run on the surface takes about 10 s on two cores.
+   */
+  vtkSetMacro(CoarseStartSize, int);
+  vtkGetMacro(CoarseStartSize, int);
+  ///@}
+
+  ///@{
+  /**
    * The parameters of Turing: gamma and mu, above 0. A steady state needs gamma > mu. Default: 16,
    * 12.
    */
@@ -331,6 +353,7 @@ protected:
   bool ClampToNonNegative = true;
   bool AutomaticTimeStep = false;
   double StopTolerance = 0.02;
+  int CoarseStartSize = 50000;
   double GrowthRate = 16.0;
   double DecayRate = 12.0;
   double ActivatorSupply = 0.01;

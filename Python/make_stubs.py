@@ -18,11 +18,16 @@ from typing import Any, Iterator, Literal, overload
 from numpy.typing import ArrayLike, NDArray
 import numpy as np
 
-from ._result import DiffusionResult, HarmonicMapResult, SegmentationResult, TextureResult
+from ._result import (
+    DiffusionResult, EdgeResult, HarmonicMapResult, SegmentationResult, TextureResult,
+)
 from ._run import Progress
 from ._surface import SurfaceLike
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "segment", "turing_texture"]
+__all__ = [
+    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "turing_texture",
+]
 """
 
 #: The return types of a function for the values of its switches.
@@ -30,6 +35,7 @@ RETURNS = {
     "heat": [({}, "NDArray[Any]"), ({"full_output": True}, "DiffusionResult"),
              ({"steps": True}, "Iterator[DiffusionResult]")],
     "harmonic_map": [({}, "HarmonicMapResult"), ({"steps": True}, "Iterator[HarmonicMapResult]")],
+    "mumford_shah": [({}, "EdgeResult"), ({"steps": True}, "Iterator[EdgeResult]")],
     "turing_texture": [({}, "TextureResult"), ({"steps": True}, "Iterator[TextureResult]")],
     "segment": [({}, "SegmentationResult")],
     "direction_field": [({}, "NDArray[np.float64]")],

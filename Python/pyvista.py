@@ -38,9 +38,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import (
-    vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkSurfaceDirectionFieldFilter,
-    vtkSurfaceSegmentationFilter, vtkTuringTextureFilter,
+    vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
+    vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter, vtkTuringTextureFilter,
 )
+from ._meshes import find_polydata
 
 _POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
@@ -50,7 +51,7 @@ _REPORTED = (
     "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
     "EffectiveTimeStep", "EffectiveFidelityWeight", "Wavelength", "WavelengthGrowthRate",
     "DiffusionRateFactor", "MeanDisplacement", "MaximumDisplacement", "VolumeBefore",
-    "VolumeAfter", "Gap", "LabelGap", "NumberOfAlternations",
+    "VolumeAfter", "EdgeLength", "Gap", "LabelGap", "NumberOfAlternations",
 )
 
 
@@ -59,13 +60,13 @@ class Report(types.SimpleNamespace):
     EffectiveFidelityWeight, as attributes of the same names; and, except for direction fields,
     `history`, a dictionary of NumPy arrays with one entry per step up to the last time, beginning
     with the initial state: Step, Time, Total_0 ... (the integral of each component), Energy,
-    Iterations, Residual, Seconds.
+    Iterations, Residual, Seconds. That of mumford_shah() has `curves`, a pyvista.PolyData of lines.
     """
 
 
 def heat(
-    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
-    **properties
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
 ):
     """Smooth, denoise or inpaint a point array by linear diffusion (vtkFVMHeatFilter).
 
@@ -78,6 +79,7 @@ def heat(
     mask       point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
     direction  point or cell array (n, 3) or (m, 3): the direction that AlongDiffusivity acts along
     fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
+    fidelity   point array (n,): factors of FidelityWeight, 0 or more
     times, full_output   see help(surfacediffusion.pyvista)
 
     Useful properties: FWHM (width of the blur in the unit of the coordinates, in place of TimeStep;
@@ -87,12 +89,13 @@ def heat(
     The result is the point array <array>Diffused, with the shape of the data.
     """
     return _run(
-        vtkFVMHeatFilter(), mesh, properties, (array, mask, direction, fixed), times, full_output)
+        vtkFVMHeatFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
 
 
 def intrinsic_tv(
-    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
-    **properties
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
 ):
     """Denoise or inpaint a point array and preserve its edges (vtkIntrinsicTVFilter).
 
@@ -106,13 +109,13 @@ def intrinsic_tv(
     The result is the point array <array>TV, with the shape of the data.
     """
     return _run(
-        vtkIntrinsicTVFilter(), mesh, properties, (array, mask, direction, fixed), times,
-        full_output)
+        vtkIntrinsicTVFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
 
 
 def harmonic_map(
-    mesh, array=None, *, mask=None, direction=None, fixed=None, times=None, full_output=False,
-    **properties
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
 ):
     """Regularise normals or other unit vectors, or denoise the mesh (vtkHarmonicMapFilter).
 
@@ -127,8 +130,29 @@ def harmonic_map(
     The result is the point array <array>Harmonic (n, k); NormalsHarmonic for computed normals.
     """
     return _run(
-        vtkHarmonicMapFilter(), mesh, properties, (array, mask, direction, fixed), times,
-        full_output)
+        vtkHarmonicMapFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
+
+
+def mumford_shah(
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
+):
+    """Find the edges of a point array, and smooth or inpaint the data between them
+    (vtkMumfordShahFilter).
+
+    Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli.
+
+    The arguments are those of heat(). Useful properties: EdgeThreshold (the jump from which on an
+    edge costs less than smoothing, default 0.2 of the range of the data), SmoothingLength (default
+    8 mean edge lengths), EdgeWidth (default 2 mean edge lengths).
+
+    The results are the point arrays <array>MumfordShah, with the shape of the data, and Edges (n,),
+    which is 1 on edges. With full_output=True the report has the edges as `curves`.
+    """
+    return _run(
+        vtkMumfordShahFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
 
 
 def turing_texture(
@@ -144,7 +168,8 @@ def turing_texture(
     rates: cell array (m, 4) that replaces DiffusionRate1, DiffusionRateAcross1, DiffusionRate2 and
     DiffusionRateAcross2. The other arguments are those of heat(). Useful properties: FeatureSize
     (the wavelength in the unit of the coordinates, default 0: off), DiffusionRate1 and
-    DiffusionRate2 (default 21 and 2.6), NumberOfTimeSteps (default 640), StopTolerance.
+    DiffusionRate2 (default 21 and 2.6), NumberOfTimeSteps (default 640), StopTolerance,
+    CoarseStartSize (default 50000; 0: all steps run on the mesh itself, however large it is).
 
     The results are the point arrays u1, u2 and Texture, (n,) each.
     """
@@ -205,7 +230,7 @@ def direction_field(mesh, hints=None, *, full_output=False, **properties):
 
 def _run(algorithm, mesh, properties, arrays, times, full_output):
     """Runs the filter; `arrays` are the names of input arrays 0, 1, ... (None: not set)."""
-    surfaces = _surfaces(mesh)
+    surfaces = [surface for surface in find_polydata(mesh) if surface.n_points > 0]
     for index, name in enumerate(arrays):
         if name is not None:
             algorithm.SetInputArrayToProcess(index, 0, 0, _association(surfaces, index, name), name)
@@ -272,20 +297,9 @@ def _report(algorithm):
             columns.GetArrayName(i): vtk_to_numpy(columns.GetArray(i))
             for i in range(columns.GetNumberOfArrays())
         }
+    if algorithm.GetNumberOfOutputPorts() > 2:
+        report.curves = _output(algorithm, 2)
     return report
-
-
-def _surfaces(mesh):
-    """The surfaces of a mesh, without empty blocks. TypeError if there is anything else."""
-    if isinstance(mesh, pyvista.MultiBlock):
-        return [surface for block in mesh if block is not None for surface in _surfaces(block)]
-    if not isinstance(mesh, pyvista.PolyData):
-        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
-            mesh, "extract_surface") else ""
-        raise TypeError(
-            f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
-            f"pyvista.MultiBlock of it{remedy}")
-    return [mesh] if mesh.n_points > 0 else []
 
 
 def _association(surfaces, index, name):

@@ -108,8 +108,8 @@ FieldSummary InputFields::Summarize() const
 
 std::vector<vtkDataArray*> InputFields::List() const
 {
-  return { this->Data, this->Mask, this->Direction, this->Fixed, this->Rates, this->Seeds,
-    this->GlobalIds };
+  return { this->Data, this->Mask, this->Direction, this->Fixed, this->Rates, this->Fidelity,
+    this->Seeds, this->GlobalIds };
 }
 
 int NumberOfDataComponents(vtkDataArray* array)
@@ -163,6 +163,10 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
   }
   fields.Mask = ReadFlags(arrays.Mask);
   fields.Fixed = ReadFlags(arrays.Fixed);
+  for (vtkIdType i = 0; arrays.Fidelity && i < arrays.Fidelity->GetNumberOfTuples(); ++i)
+  {
+    fields.FidelityFactors.push_back(arrays.Fidelity->GetComponent(i, 0));
+  }
   fields.Seeds = ReadSeeds(arrays.Seeds);
   if (arrays.Direction)
   {

@@ -28,6 +28,7 @@ struct InputFields
   bool DirectionOnCells = false;
   vtkDataArray* Fixed = nullptr; ///< index 3
   vtkDataArray* Rates = nullptr; ///< index 4
+  vtkDataArray* Fidelity = nullptr; ///< index 5
   vtkDataArray* Seeds = nullptr; ///< index 6
   bool DataAreTerms = false; ///< Data is index 7
   vtkDataArray* GlobalIds = nullptr; ///< of the points

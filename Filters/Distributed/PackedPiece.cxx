@@ -8,6 +8,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -15,6 +16,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -116,6 +118,19 @@ void PackAttributes(vtkAlgorithm* filter, vtkDataSetAttributes* from, vtkIdType 
   }
 }
 
+/// The names of all arrays, which results may replace.
+vtkSmartPointer<vtkStringArray> PackNames(const char* name, vtkDataSetAttributes* attributes)
+{
+  auto names = vtkSmartPointer<vtkStringArray>::New();
+  names->SetName(name);
+  for (int a = 0; a < attributes->GetNumberOfArrays(); ++a)
+  {
+    const char* const arrayName = attributes->GetAbstractArray(a)->GetName();
+    names->InsertNextValue(arrayName ? arrayName : "");
+  }
+  return names;
+}
+
 template <typename Array>
 void PackCellArray(const char* name, vtkDataArray* array, vtkIdType first, vtkPolyData* packed)
 {
@@ -148,6 +163,8 @@ vtkSmartPointer<vtkPolyData> PackPiece(
   std::copy(identity.Ids.begin(), identity.Ids.end(), ids->GetPointer(0));
   packed->GetPointData()->AddArray(labels);
   packed->GetPointData()->SetGlobalIds(ids);
+  packed->GetFieldData()->AddArray(PackNames(PackedArrays::PointArrayNames, input->GetPointData()));
+  packed->GetFieldData()->AddArray(PackNames(PackedArrays::CellArrayNames, input->GetCellData()));
   vtkUnsignedCharArray* const ghosts = input->GetCellGhostArray();
   if (ghosts && ghosts->GetNumberOfTuples() == input->GetNumberOfCells())
   {

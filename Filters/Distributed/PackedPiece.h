@@ -20,7 +20,7 @@ namespace SurfaceDiffusion
 
 /// The parts of a piece that a filter reads, as it is sent to process 0: points, polygons, strips,
 /// the arrays and active attributes that the filter processes, cell ghosts, and as arrays of these
-/// names labels and ids.
+/// names labels, ids, and (as field data) the names of all arrays of points and of cells.
 vtkSmartPointer<vtkPolyData> PackPiece(
   vtkAlgorithm* filter, vtkPolyData* input, const PointIdentity& identity);
 
@@ -29,6 +29,8 @@ namespace PackedArrays
 constexpr const char* Labels = "surface diffusion label"; ///< of points
 constexpr const char* PointIds = "surface diffusion point id";
 constexpr const char* CellIds = "surface diffusion cell id"; ///< absent without global cell ids
+constexpr const char* PointArrayNames = "surface diffusion point arrays";
+constexpr const char* CellArrayNames = "surface diffusion cell arrays";
 }
 
 /// An array with the type, name and component names of another, and `count` tuples.

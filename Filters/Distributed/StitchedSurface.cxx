@@ -7,15 +7,18 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -28,6 +31,23 @@ namespace
 vtkTypeInt64Array* GetIds(vtkDataSetAttributes* attributes, const char* name)
 {
   return vtkTypeInt64Array::SafeDownCast(attributes->GetAbstractArray(name));
+}
+
+/// Arrays of the pieces that the surface does not have become arrays without tuples, so that a
+/// result that replaces one is noticed.
+void KeepNames(vtkFieldData* fields, const char* list, vtkDataSetAttributes* attributes)
+{
+  auto* const names = vtkStringArray::SafeDownCast(fields->GetAbstractArray(list));
+  for (vtkIdType i = 0; names && i < names->GetNumberOfValues(); ++i)
+  {
+    const std::string name = names->GetValue(i);
+    if (!name.empty() && !attributes->HasArray(name.c_str()))
+    {
+      vtkNew<vtkUnsignedCharArray> placeholder;
+      placeholder->SetName(name.c_str());
+      attributes->AddArray(placeholder);
+    }
+  }
 }
 
 } // namespace
@@ -57,6 +77,12 @@ void StitchedSurface::StitchPieces()
   vtkNew<vtkPolyData> surface;
   this->StitchPoints(surface);
   this->StitchCells(surface);
+  for (const GatheredPiece& piece : this->Pieces)
+  {
+    vtkFieldData* const fields = piece.Data->GetFieldData();
+    KeepNames(fields, PackedArrays::PointArrayNames, surface->GetPointData());
+    KeepNames(fields, PackedArrays::CellArrayNames, surface->GetCellData());
+  }
   this->Data = surface;
   for (GatheredPiece& piece : this->Pieces)
   {

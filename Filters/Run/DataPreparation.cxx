@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/DataPreparation.h"
 
+#include "Core/Models/HeatBlur.h"
 #include "Core/Models/NoiseLevel.h"
 #include "Core/Operators/CotanWeights.h"
 
@@ -24,7 +25,7 @@ void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& r
   FillMissing(
     inputs.Surface.Mesh(), inputs.Data, settings.InitialFill, settings.RandomSeed, inputs.Ids);
   FillHarmonicallyIf(settings.InitialFill == InitialFill::Harmonic, inputs, result);
-  ApplyHold(settings, inputs, result);
+  CompletePreparation(settings, inputs, result);
 }
 
 void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result)
@@ -37,17 +38,24 @@ void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result)
   SolverTask task;
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
   task.DiffusionNumber.reset();
-  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.NumberOfColumns = static_cast<int>(inputs.Columns);
   const StepReport report = FillHarmonically(inputs.Surface.SharedAssembler(), inputs.Data,
     inputs.Solvers.Find(SolverPurpose::Fill, task), inputs.Parallel,
     inputs.Progress.Part(0.0, 0.4));
-  inputs.Solvers.Release(SolverPurpose::Fill);
+  if (inputs.IsLastPanel)
+  {
+    inputs.Solvers.Release(SolverPurpose::Fill);
+  }
   result.MissedResidual = report.MissedResidual;
 }
 
-void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result)
+void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunResult& result)
 {
   result.HasMissing = inputs.Data.Missing.any();
+  if (inputs.Data.FidelityFactors.size() > 0 && !settings.DescribeModel().UsesFidelity)
+  {
+    result.Warnings.emplace_back("FidelityArray has no effect, since FidelityWeight is 0");
+  }
   if (settings.HoldKnownValues)
   {
     inputs.Data.Fixed = inputs.Data.Fixed || !inputs.Data.Missing;
@@ -65,7 +73,7 @@ CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& input
 }
 
 double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,
-  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result)
+  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result, HeatBlur* blur)
 {
   const double unit = inputs.Units.ValueUnit;
   double noise = noiseLevel / unit;
@@ -90,7 +98,13 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
     {
       model->Advance(inputs.Progress.Part(0.5, 0.5));
     }
-    return Discrepancy(inputs.Surface.Mesh(), inputs.Data, model->State());
+    Values predicted = model->State();
+    if (blur)
+    {
+      StepReport unused;
+      blur->Apply(predicted, unused);
+    }
+    return Discrepancy(inputs.Surface.Mesh(), inputs.Data, predicted);
   };
   const FidelityChoice choice = FindFidelityByDiscrepancy(discrepancy, noise, start);
   if (!choice.IsFound)

@@ -10,6 +10,8 @@
 namespace SurfaceDiffusion
 {
 
+class HeatBlur;
+
 /// The traits that models of given data share.
 void DescribeData(const DataSettings& settings, ModelTraits& traits);
 
@@ -21,7 +23,7 @@ void PrepareData(const DataSettings& settings, ModelInputs& inputs, RunResult& r
 void FillHarmonicallyIf(bool harmonic, ModelInputs& inputs, RunResult& result);
 
 /// The last part of PrepareData(), for models that fill the start by themselves.
-void ApplyHold(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
+void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunResult& result);
 
 /// The cotan weights times the constant diffusivities of the settings: the weights of (12).
 CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& inputs);
@@ -29,8 +31,10 @@ CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& input
 /// The fidelity weight, in units of the numerics, at which the state after `steps` steps differs
 /// from the data by the noise (discrepancy principle). noiseLevel: in array units; 0: estimated.
 /// makeModel: the model of a fidelity weight. Warns in `result` if the noise is correlated, and if
-/// no weight leaves the noise.
+/// no weight leaves the noise. blur: applied to the state before it is compared with the data; may
+/// be null.
 double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,
-  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result);
+  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result,
+  HeatBlur* blur = nullptr);
 
 } // namespace SurfaceDiffusion

@@ -32,6 +32,31 @@ std::runtime_error PointError(
   return std::runtime_error(text.str());
 }
 
+/// The mean factor of each vertex over its participating points.
+Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& ofPoints)
+{
+  const Index n = surface.Mesh().NumberOfVertices();
+  Vector factors = Vector::Zero(n);
+  Vector counts = Vector::Zero(n);
+  for (std::size_t i = 0; i < ofPoints.size(); ++i)
+  {
+    if (!(std::isfinite(ofPoints[i]) && ofPoints[i] >= 0.0))
+    {
+      std::ostringstream text;
+      text << "FidelityArray is " << ofPoints[i] << " at point " << i
+           << "; allowed: finite numbers, 0 or more";
+      throw std::runtime_error(text.str());
+    }
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0)
+    {
+      factors[v] += ofPoints[i];
+      counts[v] += 1.0;
+    }
+  }
+  return factors.cwiseQuotient(counts);
+}
+
 } // namespace
 
 void ValueStatistics::Widen(std::size_t component, double low, double high)
@@ -50,7 +75,8 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
   const Values& values = fields.Data;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
-    if (surface.VertexOf(static_cast<Index>(i)) < 0 || !values.row(i).allFinite())
+    if (surface.VertexOf(static_cast<Index>(i)) < 0 || IsSet(fields.Missing, i) ||
+      !values.row(i).allFinite())
     {
       continue;
     }
@@ -116,7 +142,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   data.Given = Values::Zero(n, values.cols());
   data.Missing = Flags::Constant(n, true);
   data.Fixed = Flags::Constant(n, false);
-  Values damaged = data.Given; // the value of a vertex without any known point
+  Values damaged; // the values of vertices without any known point, if there are such
   std::vector<Index> known(static_cast<std::size_t>(n), 0);
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
@@ -130,25 +156,30 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
       continue;
     }
     const bool isFixed = IsSet(fields.Fixed, i);
-    const bool isNaN = values.row(i).hasNaN();
+    const bool isNaN = IsSet(fields.Missing, i) || values.row(i).hasNaN();
     if (isFixed && isNaN)
     {
       throw PointError(
         fields, i, "is NaN where FixedArray holds it", "allowed there: finite values");
     }
     data.Fixed[v] = data.Fixed[v] || isFixed;
-    damaged.row(v) = values.row(i) / unit;
     if (isFixed || !(isNaN || (inpaint && IsSet(fields.Mask, i))))
     {
       data.Given.row(v) += values.row(i) / unit;
       data.Missing[v] = false;
       ++known[static_cast<std::size_t>(v)];
+      continue;
     }
+    if (damaged.rows() == 0)
+    {
+      damaged.setZero(n, values.cols());
+    }
+    damaged.row(v) = values.row(i) / unit;
   }
   for (Index v = 0; v < n; ++v)
   {
     const Index count = known[static_cast<std::size_t>(v)];
-    if (count == 0)
+    if (count == 0 && damaged.rows() > 0)
     {
       data.Given.row(v) = damaged.row(v);
     }
@@ -156,6 +187,10 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
     {
       data.Given.row(v) /= count;
     }
+  }
+  if (!fields.FidelityFactors.empty())
+  {
+    data.FidelityFactors = MakeFidelityFactors(surface, fields.FidelityFactors);
   }
   return data;
 }

@@ -21,8 +21,14 @@ struct Fields
   /// in any component of a point means that the point is missing.
   Values Data;
   std::string DataName = "InputArray"; ///< for error messages
+  /// Data may be a panel of the columns of the input, from FirstColumn of AllColumns on. Then NaN in
+  /// columns outside of the panel is known by Missing: per point, nonzero: NaN in any column.
+  Eigen::Index FirstColumn = 0;
+  Eigen::Index AllColumns = 0; ///< 0: Data has all columns
+  std::vector<char> Missing; ///< may be empty
   std::vector<char> Mask; ///< per point, nonzero: missing or excluded; may be empty
   std::vector<char> Fixed; ///< per point, nonzero: Dirichlet; may be empty
+  std::vector<double> FidelityFactors; ///< per point, 0 or more; empty: 1 everywhere
   /// e1, per point or per input triangle; no row if there are no directions. Finite or NaN.
   SurfaceDiffusion::Points Directions;
   bool DirectionsOnTriangles = false;
@@ -56,8 +62,9 @@ private:
 };
 
 /// Given, Missing and Fixed of the vertices, with values divided by `unit`. Points that are merged
-/// into one vertex give it the mean of the known ones. Throws std::runtime_error on infinite values
-/// and on points that are fixed at NaN.
+/// into one vertex give it the mean of the known ones, and their mean fidelity factor. Throws
+/// std::runtime_error on infinite values, on points that are fixed at NaN, and on fidelity factors
+/// that are negative or not finite.
 PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit);
 
 /// e1 on the triangles of surface.Mesh(); no row if there are no directions.

@@ -93,7 +93,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
     throw std::runtime_error("InputArray has a vector of length zero where FixedArray holds it; "
                              "fixed vectors must have a direction");
   }
-  ApplyHold(*this, inputs, result);
+  CompletePreparation(*this, inputs, result);
   result.EffectiveFidelityWeight = this->FidelityWeight;
 
   const double p = this->Exponent;

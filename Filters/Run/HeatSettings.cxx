@@ -4,6 +4,7 @@
 
 #include "Core/Models/LinearDiffusion.h"
 #include "Core/Models/NoiseLevel.h"
+#include "Core/Models/TikhonovDeblurring.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 
@@ -26,11 +27,14 @@ void HeatSettings::Visit(SettingVisitor& visitor)
                    "with; 0: off. The run takes the time FWHM^2 / (16 ln 2)." },
     this->FWHM, SettingRange::NonNegative());
   VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
+  this->Blur.Visit(visitor);
 }
 
 void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->DataSettings::CheckTogether(fields, problems);
+  Require(!this->Blur.IsOn() || this->Mode == HeatMode::SteadyState, "Mode", 0.0,
+    "1 SteadyState together with BlurFWHM", problems);
   if (!(this->FWHM > 0.0))
   {
     return;
@@ -57,14 +61,51 @@ ModelTraits HeatSettings::DescribeModel() const
   traits.Time = { 2.0, 0.0 };
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
-  traits.CanBeDistributed = !this->AutomaticFidelity;
+  traits.CanBeDistributed = !this->AutomaticFidelity && !this->Blur.IsOn();
   DescribeData(*this, traits);
   return traits;
+}
+
+/// TikhonovDeblurring: the steady state with a blur.
+std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResult& result) const
+{
+  const CornerWeights weights = MakeWeights(*this, inputs);
+  UnitSystem units = inputs.Units;
+  units.Natural = !this->IsAbsolute();
+  const double unit = units.ToCore(1.0, -2.0, 0.0);
+  const double h = inputs.Units.CoreEdgeLength();
+  SolverTask task;
+  task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
+  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.IsPreconditioner = true;
+  const auto make = [&](PointData data, double fidelity)
+  {
+    task.DiffusionNumber = this->LargestDiffusivity() / (fidelity * h * h);
+    const auto solver = inputs.Solvers.Find(SolverPurpose::Step, task);
+    const IterationLimits limits = solver->GetLimits();
+    return std::make_unique<TikhonovDeblurring>(inputs.Surface.SharedAssembler(), weights,
+      std::move(data), fidelity, this->Blur.Make(inputs, limits), solver, limits, inputs.Parallel);
+  };
+  this->Blur.Warn(inputs, result);
+  double fidelity = this->FidelityWeight * unit;
+  if (this->AutomaticFidelity)
+  {
+    const auto blur = this->Blur.Make(inputs, {});
+    fidelity = FindFidelity(
+      inputs, this->NoiseLevel, 1.0 / (h * h), 1,
+      [&](double weight) { return make(inputs.Data, weight); }, result, blur.get());
+  }
+  result.EffectiveFidelityWeight = fidelity / unit;
+  return make(std::move(inputs.Data), fidelity);
 }
 
 std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
+  if (this->Blur.IsOn() && this->DescribeModel().UsesFidelity)
+  {
+    return this->MakeDeblurring(inputs, result);
+  }
   const TriangleMesh& mesh = inputs.Surface.Mesh();
   const CornerWeights weights = MakeWeights(*this, inputs);
   const ModelTraits traits = this->DescribeModel();
@@ -82,7 +123,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;
   task.NumberOfVertices = mesh.NumberOfVertices();
-  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
   const double solvesPerStep = secondOrder ? 2.0 : 1.0;
   if (this->Mode == HeatMode::SteadyState)

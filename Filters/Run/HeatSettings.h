@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Run/BlurSettings.h"
 #include "Run/RunSettings.h"
 
 namespace SurfaceDiffusion
@@ -20,6 +21,7 @@ struct HeatSettings : DataSettings
   double FWHM = 0.0; ///< in coordinate units; 0: TimeStep is used
   bool AutomaticFidelity = false;
   double NoiseLevel = 0.0;
+  BlurSettings Blur;
 
   HeatSettings()
   {
@@ -34,6 +36,9 @@ struct HeatSettings : DataSettings
 protected:
   std::vector<bool> AllowedIntegrators() const override { return { true, true, false }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
+
+private:
+  std::unique_ptr<Model> MakeDeblurring(ModelInputs& inputs, RunResult& result) const;
 };
 
 } // namespace SurfaceDiffusion

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Geometry/RegionBoundaries.h"
+#include "Core/Geometry/RidgeCurves.h"
 #include "Core/Geometry/VertexUpdating.h"
 #include "Core/Models/Trajectory.h"
 #include "Run/Fields.h"
@@ -30,6 +31,8 @@ struct ModelInputs
   ProgressMonitor Progress;
   SolverStore& Solvers;
   const ProcessGroup& Processes;
+  Eigen::Index Columns = 0; ///< of all panels of the data together; see Fields
+  bool IsLastPanel = true; ///< of them
   bool DataAreTerms = false; ///< as in Fields
   std::vector<Index> Seeds; ///< per vertex, see MakeSeeds()
 };
@@ -70,6 +73,8 @@ struct RunResult
   std::array<double, 2> ContrastLimits = { 0.0, 1.0 }; ///< of a texture, at the current step
   Points MovedPoints; ///< per input point, if vertices were moved; otherwise no row
   VertexMotion Motion;
+  Vector Edges; ///< 1 - v of the Mumford-Shah model, per vertex
+  Polylines EdgeCurves; ///< its ridges, in coordinate units
   std::shared_ptr<const RegionResults> Regions; ///< of a segmentation
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance

@@ -81,8 +81,9 @@ bool Run::IsModelCurrent(const Block& block, const BlockInput& input,
   const SettingsSnapshot& settings, const ModelTraits& traits) const
 {
   return block.Path && block.FieldsVersion == input.FieldsVersion &&
-    block.ModelSettings == settings && block.NumberOfBlocks == this->Blocks.size() &&
-    block.TimeStep == traits.TimeStep && block.Solvers.ServesRunOf(traits.NumberOfSteps);
+    block.ModelSettings == settings && (block.Path->KeepsHistory() || !this->KeepsHistory) &&
+    block.NumberOfBlocks == this->Blocks.size() && block.TimeStep == traits.TimeStep &&
+    block.Solvers.ServesRunOf(traits.NumberOfSteps);
 }
 
 void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
@@ -196,13 +197,15 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
     std::move(directions), fields.Rates,
     this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)
                                                       : std::vector<std::int64_t>(),
-    this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes, fields.DataAreTerms,
+    this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
+    std::max(fields.AllColumns, fields.Data.cols()),
+    fields.FirstColumn + fields.Data.cols() >= fields.AllColumns, fields.DataAreTerms,
     MakeSeeds(*block.Surface, fields) };
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const std::size_t limit = this->CheckpointMemory(*model, processes);
   auto path = std::make_unique<Trajectory>(
-    block.Surface->SharedMesh(), std::move(model), limit, this->Parallel);
+    block.Surface->SharedMesh(), std::move(model), limit, this->Parallel, this->KeepsHistory);
   progress.Report(1.0);
   block.Path = std::move(path); // last: an aborted run must not look like a finished one
 }
@@ -232,15 +235,25 @@ PointData Run::MakeData(
     reduction.Max(&components, 1);
     const auto columns = static_cast<Eigen::Index>(components);
     const Eigen::Index n = block.Surface->Mesh().NumberOfVertices();
-    Values all = Values::Zero(n, columns + 2);
+    const bool hasFactors = processes.Any(data.FidelityFactors.size() > 0);
+    Values all = Values::Ones(n, columns + 3);
     if (n > 0)
     {
-      all << data.Given, data.Missing.cast<double>(), data.Fixed.cast<double>();
+      all.leftCols(columns + 2) << data.Given, data.Missing.cast<double>(),
+        data.Fixed.cast<double>();
+    }
+    if (data.FidelityFactors.size() > 0)
+    {
+      all.col(columns + 2) = data.FidelityFactors;
     }
     reduction.UpdateFromOwners(all);
     data.Given = all.leftCols(columns);
     data.Missing = all.col(columns).array() != 0.0;
     data.Fixed = all.col(columns + 1).array() != 0.0;
+    if (hasFactors)
+    {
+      data.FidelityFactors = all.col(columns + 2);
+    }
   }
   return data;
 }

@@ -75,6 +75,10 @@ public:
   /// Move all surfaces to a step, and finish their results there.
   void Seek(int step, const ProgressMonitor& progress);
 
+  /// Whether the history has the energy and the totals of each state, for which every state is read
+  /// once more. Default: true. Counts from the next Update() on.
+  void SetKeepsHistory(bool keeps) { this->KeepsHistory = keeps; }
+
   void Clear() { this->Blocks.clear(); }
 
   /// One surface of the run.
@@ -138,6 +142,7 @@ private:
   UnitSystem CommonUnits;
   double UnitOfTime = 1.0;
   long long StepsComputed = 0;
+  bool KeepsHistory = true;
 };
 
 } // namespace SurfaceDiffusion

@@ -201,7 +201,7 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
 
 void SegmentationSettings::Finish(const RunState& state, RunResult& result) const
 {
-  const auto& model = dynamic_cast<const Segmentation&>(state.Path.GetModel());
+  const auto& model = dynamic_cast<const Segmentation&>(state.Path.CurrentModel());
   const auto regions = MeasureRegions(state.Surface, model, state.Parallel);
   if (state.Path.Step() > 0)
   {

@@ -20,7 +20,9 @@ enum class SolverPurpose
   Step, ///< the time steps
   SecondChemical, ///< those of a texture's second chemical
   Search, ///< the search for a fidelity weight
-  Fill ///< the harmonic start on missing vertices
+  Fill, ///< the harmonic start on missing vertices
+  Blur, ///< the blur that is removed
+  Edges ///< v of the Mumford-Shah model
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -69,7 +71,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 4> Solvers;
+  std::array<Kept, 6> Solvers;
 };
 
 } // namespace SurfaceDiffusion

@@ -166,6 +166,24 @@ void TextureSettings::ScaleToFeatureSize(
     forecast.GrowthRate * (this->IsAbsolute() ? this->ReactionRate : 1.0);
 }
 
+double TextureSettings::FindSquaredWaveNumber(const Rates& rates) const
+{
+  const Eigen::Matrix2d jacobian = this->JacobianAtRest();
+  double product = 1.0;
+  int count = 0;
+  for (const auto* mean : { &rates.MeanAlong, &rates.MeanAcross })
+  {
+    const PatternForecast wave = ForecastPattern(jacobian, (*mean)[0], (*mean)[1]);
+    if (wave.Obstacle == PatternObstacle::None && wave.SquaredWaveNumber > 0.0)
+    {
+      product *= wave.SquaredWaveNumber;
+      ++count;
+    }
+  }
+  // Aggregates are as anisotropic as the diffusion: their area counts, and the geometric mean.
+  return count == 2 ? std::sqrt(product) : count * product;
+}
+
 void TextureSettings::WarnOfObstacles(
   const ModelInputs& inputs, const Rates& rates, RunResult& result) const
 {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/TextureSettings.h"
 
+#include "Core/Models/CoarseStart.h"
 #include "Core/Models/DispersionRelation.h"
 #include "Core/Models/ReactionDiffusion.h"
 #include "Core/Models/TextureColors.h"
@@ -11,7 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -36,6 +39,30 @@ SettingRange RangeOf(const Kinetics::Parameter& parameter)
     return SettingRange::Positive();
   }
   return std::isfinite(parameter.Minimum) ? SettingRange::NonNegative() : SettingRange::AnyFinite();
+}
+
+/// Relative residual that suffices in a coarse space, whose own error is much larger.
+constexpr double CoarseTolerance = 1e-4;
+/// The factor of StopTolerance there: the pattern looks finished, and the step to the surface
+/// changes it more than the time that is left would.
+constexpr double CoarseStopFactor = 2.5;
+
+/// The model in the space, from the initial state on the surface. Takes the matrices of the space.
+std::unique_ptr<ReactionDiffusion> MakeCoarseModel(CoarseSpace& space, const ModelInputs& inputs,
+  const Reaction& reaction, ReactionDiffusion::Settings settings, const IterationLimits& limits)
+{
+  settings.StopTolerance *= CoarseStopFactor;
+  std::array<ReactionDiffusion::Chemical, 2> chemicals;
+  for (std::size_t c = 0; c < 2; ++c)
+  {
+    // Few iterations, because a wavelength has few vertices.
+    chemicals[c].Solver = MakeSolver({ SolverMethod::ConjugateGradient, true }, inputs.Parallel);
+    chemicals[c].Solver->SetLimits(limits);
+    chemicals[c].Stiffness = std::move(space.Stiffness[c]);
+  }
+  return std::make_unique<ReactionDiffusion>(space.Assembly, reaction, std::move(chemicals),
+    PointData::FromValues(space.Restrict(inputs.Surface.Mesh(), inputs.Data.Start)), settings,
+    inputs.Parallel);
 }
 
 } // namespace
@@ -75,6 +102,10 @@ void TextureSettings::Visit(SettingVisitor& visitor)
   visitor.Number({ "StopTolerance", "1/time",
                    "The relative change per unit of time at which the run ends; 0: never." },
     this->StopTolerance, SettingRange::NonNegative());
+  visitor.Integer({ "CoarseStartSize", "vertices",
+                    "Above this number of vertices the pattern grows on a coarser mesh, and only "
+                    "the last steps run on the surface itself; 0: never." },
+    this->CoarseStartSize, SettingRange::AtLeast(0.0, "0 or more vertices"));
 
   for (int k = 0; k < NumberOfKinetics; ++k)
   {
@@ -195,17 +226,62 @@ ModelTraits TextureSettings::DescribeModel() const
 
 std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
-  const TriangleMesh& mesh = inputs.Surface.Mesh();
   Rates rates = this->MakeRates(inputs);
   this->ScaleToFeatureSize(inputs, rates, result);
   this->WarnOfObstacles(inputs, rates, result);
 
-  Reaction reaction; // in units of 1/ReactionRate
+  const bool fromNoise = inputs.Data.Given.cols() == 0;
+  const Reaction reaction = this->MakeStart(inputs, fromNoise);
+  result.HasMissing = inputs.Data.Missing.any();
+
+  const double perTime = this->IsAbsolute() ? this->ReactionRate : 1.0;
+  ReactionDiffusion::Settings settings;
+  settings.TimeStep = this->EffectiveTimeStep() * perTime;
+  settings.TimeScheme = this->TimeIntegrator == SurfaceDiffusion::TimeIntegrator::SecondOrder
+    ? ReactionDiffusion::Scheme::SecondOrder
+    : ReactionDiffusion::Scheme::FirstOrder;
+  settings.KeepNonNegative = this->ClampToNonNegative && reaction.Terms->NonNegative;
+  settings.StopTolerance = this->StopTolerance / perTime;
+
+  std::array<CornerWeights, 2> coefficients = MakeCoefficients(inputs, rates);
+  const double squaredWaveNumber = fromNoise ? this->FindSquaredWaveNumber(rates) : 0.0;
+  std::optional<CoarseSpace> space;
+  if (this->MayStartCoarse(inputs) && squaredWaveNumber > 0.0)
+  {
+    space = MakeCoarseSpace(
+      *inputs.Surface.SharedAssembler(), coefficients, squaredWaveNumber, inputs.Parallel);
+  }
+  std::unique_ptr<ReactionDiffusion> coarse;
+  if (space)
+  {
+    coarse = MakeCoarseModel(*space, inputs, reaction, settings, this->CoarseLimits());
+    result.Warnings.push_back("the pattern grows on a coarser mesh of " +
+      std::to_string(space->NumberOfVertices()) + " vertices, and only the last " +
+      std::to_string(CoarseStart::StepsOnSurface) +
+      " steps run on the surface itself (to run all of them there, set CoarseStartSize to 0)");
+  }
+  auto chemicals =
+    MakeChemicals(inputs, rates, std::move(coefficients), settings, space.has_value());
+  auto model = std::make_unique<ReactionDiffusion>(inputs.Surface.SharedAssembler(), reaction,
+    std::move(chemicals), std::move(inputs.Data), settings, inputs.Parallel);
+  if (!space)
+  {
+    return model;
+  }
+  return std::make_unique<CoarseStart>(
+    std::move(*space), std::move(coarse), std::move(model), inputs.Parallel);
+}
+
+/// The reaction, in units of 1/ReactionRate, and the initial state, which is put into inputs.Data.
+Reaction TextureSettings::MakeStart(ModelInputs& inputs, bool fromNoise) const
+{
+  Reaction reaction;
   reaction.Terms = &GetKinetics(this->Kinetics);
   reaction.Parameters = this->ChosenParameters();
-  if (inputs.Data.Given.cols() > 0)
+  if (!fromNoise)
   {
-    FillMissing(mesh, inputs.Data, InitialFill::Mean, this->RandomSeed, inputs.Ids);
+    FillMissing(
+      inputs.Surface.Mesh(), inputs.Data, InitialFill::Mean, this->RandomSeed, inputs.Ids);
   }
   else if (!reaction.Terms->SteadyState(reaction.Parameters).allFinite())
   {
@@ -218,36 +294,65 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
     inputs.Data = PointData::FromValues(
       NoisySteadyState(reaction, this->InitialNoise, this->RandomSeed, inputs.Ids));
   }
-  result.HasMissing = inputs.Data.Missing.any();
+  return reaction;
+}
 
-  const double perTime = this->IsAbsolute() ? this->ReactionRate : 1.0;
-  const bool secondOrder = this->TimeIntegrator == SurfaceDiffusion::TimeIntegrator::SecondOrder;
-  ReactionDiffusion::Settings settings;
-  settings.TimeStep = this->EffectiveTimeStep() * perTime;
-  settings.TimeScheme =
-    secondOrder ? ReactionDiffusion::Scheme::SecondOrder : ReactionDiffusion::Scheme::FirstOrder;
-  settings.KeepNonNegative = this->ClampToNonNegative && reaction.Terms->NonNegative;
-  settings.StopTolerance = this->StopTolerance / perTime;
+/// Of a large surface that is whole, on which the pattern grows until it is stationary.
+bool TextureSettings::MayStartCoarse(const ModelInputs& inputs) const
+{
+  const TriangleMesh& mesh = inputs.Surface.Mesh();
+  return this->CoarseStartSize > 0 && mesh.NumberOfVertices() > this->CoarseStartSize &&
+    mesh.GetReduction().IsSerial() && this->StopTolerance > 0.0;
+}
 
-  const double h = inputs.Units.CoreEdgeLength();
+/// Of all solves of a run that starts coarse: the last steps only remove traces of interpolation.
+IterationLimits TextureSettings::CoarseLimits() const
+{
+  return { std::max(this->Tolerance, CoarseTolerance), this->MaximumNumberOfIterations };
+}
+
+std::array<CornerWeights, 2> TextureSettings::MakeCoefficients(
+  const ModelInputs& inputs, const Rates& rates)
+{
+  const TriangleMesh& mesh = inputs.Surface.Mesh();
   const CornerWeights isotropic = CotanWeights(mesh, inputs.Parallel);
   const TangentVectors directions = inputs.Directions.rows() > 0
     ? inputs.Directions
     : TangentVectors(TangentVectors::Zero(mesh.NumberOfTriangles(), 2));
+  std::array<CornerWeights, 2> coefficients;
+  for (std::size_t c = 0; c < 2; ++c)
+  {
+    coefficients[c] = AnisotropicWeights(
+      mesh, isotropic, directions, rates.Along[c], rates.Across[c], inputs.Parallel);
+  }
+  return coefficients;
+}
+
+/// The chemicals on the surface. startsCoarse: only the last steps run there.
+std::array<ReactionDiffusion::Chemical, 2> TextureSettings::MakeChemicals(ModelInputs& inputs,
+  const Rates& rates, std::array<CornerWeights, 2> coefficients,
+  const ReactionDiffusion::Settings& settings, bool startsCoarse) const
+{
+  const double h = inputs.Units.CoreEdgeLength();
+  const double solvesPerStep =
+    settings.TimeScheme == ReactionDiffusion::Scheme::SecondOrder ? 2.0 : 1.0;
   std::array<ReactionDiffusion::Chemical, 2> chemicals;
-  for (int c = 0; c < 2; ++c)
+  for (std::size_t c = 0; c < 2; ++c)
   {
     const double fastest = std::max(rates.MeanAlong[c], rates.MeanAcross[c]);
     SolverTask task;
-    task.NumberOfVertices = mesh.NumberOfVertices();
+    task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
     task.DiffusionNumber = fastest * settings.TimeStep / (h * h);
+    task.NumberOfSolves = solvesPerStep * CoarseStart::StepsOnSurface;
     const SolverPurpose purpose = c == 0 ? SolverPurpose::Step : SolverPurpose::SecondChemical;
-    chemicals[c].Solver = inputs.Solvers.Find(purpose, task, secondOrder ? 2.0 : 1.0);
-    chemicals[c].Coefficients = AnisotropicWeights(
-      mesh, isotropic, directions, rates.Along[c], rates.Across[c], inputs.Parallel);
+    chemicals[c].Solver = inputs.Solvers.Find(purpose, task, startsCoarse ? 0.0 : solvesPerStep);
+    if (startsCoarse)
+    {
+      chemicals[c].Solver->SetLimits(this->CoarseLimits());
+    }
+    chemicals[c].Coefficients = std::move(coefficients[c]);
   }
-  return std::make_unique<ReactionDiffusion>(inputs.Surface.SharedAssembler(), reaction,
-    std::move(chemicals), std::move(inputs.Data), settings, inputs.Parallel);
+  return chemicals;
 }
 
 void TextureSettings::Finish(const RunState& state, RunResult& result) const

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/Kinetics.h"
+#include "Core/Models/ReactionDiffusion.h"
 #include "Run/RunSettings.h"
 
 #include <array>
@@ -24,6 +24,7 @@ struct TextureSettings : RunSettings
   bool ClampToNonNegative = true;
   bool AutomaticTimeStep = false;
   double StopTolerance = 0.02; ///< measured: the pattern stands
+  int CoarseStartSize = 50000; ///< the largest surface whose first run takes about 10 s
   /// Those of each kinetics, in the order of its list of parameters.
   std::array<KineticsParameters, NumberOfKinetics> Parameters;
   int TextureChemical = 0; ///< 0: u1, 1: u2
@@ -52,8 +53,18 @@ private:
   /// Whether a rate across differs from the rate along.
   bool HasDirectedRates() const;
   Rates MakeRates(const ModelInputs& inputs) const;
+  Reaction MakeStart(ModelInputs& inputs, bool fromNoise) const;
+  bool MayStartCoarse(const ModelInputs& inputs) const;
+  static std::array<CornerWeights, 2> MakeCoefficients(
+    const ModelInputs& inputs, const Rates& rates);
+  IterationLimits CoarseLimits() const;
+  std::array<ReactionDiffusion::Chemical, 2> MakeChemicals(ModelInputs& inputs, const Rates& rates,
+    std::array<CornerWeights, 2> coefficients, const ReactionDiffusion::Settings& settings,
+    bool startsCoarse) const;
   void ReadRates(const ModelInputs& inputs, Rates& rates) const;
   void ScaleToFeatureSize(const ModelInputs& inputs, Rates& rates, RunResult& result) const;
+  /// Of the pattern on a surface with these rates, in the mesh's LengthUnit()^-2; 0 if none grows.
+  double FindSquaredWaveNumber(const Rates& rates) const;
   void WarnOfObstacles(const ModelInputs& inputs, const Rates& rates, RunResult& result) const;
 };
 

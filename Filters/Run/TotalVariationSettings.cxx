@@ -4,6 +4,7 @@
 
 #include "Core/Models/CrouzeixRaviart.h"
 #include "Core/Models/NonlinearDiffusion.h"
+#include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Models/TotalVariationFlow.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
@@ -72,9 +73,12 @@ public:
     const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
     const double start = 1.0 / (h * (dimensionless ? h : this->Units.CoreValueRange()));
     const double tolerance = std::max(SearchTolerance, this->Options.StopTolerance);
+    const auto blur =
+      this->Options.Blur.IsOn() ? this->Options.Blur.Make(this->Inputs, {}) : nullptr;
     return FindFidelity(
       this->Inputs, this->Options.NoiseLevel, start, this->Options.DescribeModel().NumberOfSteps,
-      [&](double fidelity) { return this->Make(this->Inputs.Data, fidelity, tolerance); }, result);
+      [&](double fidelity) { return this->Make(this->Inputs.Data, fidelity, tolerance); }, result,
+      blur.get());
   }
 
   /// Prepares the edges for CrouzeixRaviart. This takes seconds for a million vertices. In the
@@ -144,6 +148,16 @@ private:
     settings.Coupling = this->Options.ChannelCoupling;
     settings.Norm = this->Options.FidelityNorm;
     settings.StopTolerance = tolerance;
+    if (this->Options.Blur.IsOn() && fidelity > 0.0)
+    {
+      TotalVariationDeblurring::Settings deblurring;
+      deblurring.Regularization = settings;
+      deblurring.Fidelity = fidelity;
+      deblurring.StopTolerance = tolerance;
+      return std::make_unique<TotalVariationDeblurring>(std::move(assembler), this->Directions(),
+        std::move(data), deblurring, this->Options.Blur.Make(this->Inputs, {}),
+        this->Inputs.Parallel);
+    }
     return std::make_unique<TotalVariationFlow>(
       std::move(assembler), this->Directions(), std::move(data), settings, this->Inputs.Parallel);
   }
@@ -236,13 +250,17 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
   VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
   visitor.Choice({ "Discretization", "", "Linear: vertex values. CrouzeixRaviart: edge values." },
     this->Discretization, { "Linear", "CrouzeixRaviart" });
-  visitor.Number({ "StopTolerance", "", "The relative duality gap at which a minimisation stops." },
+  visitor.Number({ "StopTolerance", "",
+                   "The relative duality gap at which a minimisation stops; with BlurFWHM the "
+                   "change of an iteration in the range of the data." },
     this->StopTolerance, SettingRange::OpenUnitInterval());
+  this->Blur.Visit(visitor);
 }
 
 void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->DataSettings::CheckTogether(fields, problems);
+  this->CheckBlur(problems);
   if (this->Mode == TotalVariationMode::SteadyState)
   {
     this->RequireConvexEnergy("Mode SteadyState", problems);
@@ -263,6 +281,19 @@ void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems&
     text << "AcrossEdgeFunction is " << this->AcrossEdgeFunction
          << " but DirectionArray is not set; allowed: 0 Same, or an array of directions";
     problems.push_back(text.str());
+  }
+}
+
+void TotalVariationSettings::CheckBlur(Problems& problems) const
+{
+  if (this->Blur.IsOn())
+  {
+    Require(this->Mode == TotalVariationMode::SteadyState, "Mode", 0.0,
+      "1 SteadyState together with BlurFWHM", problems);
+    Require(this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L2, "FidelityNorm",
+      static_cast<double>(this->FidelityNorm), "0 L2 together with BlurFWHM", problems);
+    Require(this->Discretization == SurfaceDiffusion::Discretization::Linear, "Discretization",
+      static_cast<double>(this->Discretization), "0 Linear together with BlurFWHM", problems);
   }
 }
 
@@ -294,9 +325,9 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   traits.Time = dimensionless ? Dimension{ 2.0, 0.0 } : Dimension{ 1.0, 1.0 };
   traits.Energy = dimensionless ? Dimension{ 0.0, 2.0 } : Dimension{ 1.0, 1.0 };
   traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
-  traits.CanBeDistributed =
-    !this->AutomaticFidelity && this->Discretization == SurfaceDiffusion::Discretization::Linear;
-  traits.BoundsError = this->Minimizes() &&
+  traits.CanBeDistributed = !this->AutomaticFidelity &&
+    this->Discretization == SurfaceDiffusion::Discretization::Linear && !this->Blur.IsOn();
+  traits.BoundsError = this->Minimizes() && !this->Blur.IsOn() &&
     !(this->Mode == TotalVariationMode::SteadyState &&
       (this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L1 || !traits.UsesFidelity));
   DescribeData(*this, traits);
@@ -308,6 +339,10 @@ std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResu
 {
   PrepareData(*this, inputs, result);
   ModelMaker maker(*this, inputs);
+  if (this->Blur.IsOn())
+  {
+    this->Blur.Warn(inputs, result);
+  }
   if (this->Discretization == SurfaceDiffusion::Discretization::CrouzeixRaviart)
   {
     maker.MakeEdges();
@@ -329,8 +364,9 @@ void TotalVariationSettings::Finish(const RunState& state, RunResult& result) co
   {
     result.HasUnfinishedMinimum = true; // reported once, not at every requested time
     std::ostringstream text;
-    text << "the minimisation ended at its largest number of iterations with a relative duality "
-         << "gap of " << gap << ", above StopTolerance";
+    text << "the minimisation ended at its largest number of iterations with a "
+         << (this->Blur.IsOn() ? "relative change" : "relative duality gap") << " of " << gap
+         << ", above StopTolerance";
     result.Warnings.push_back(text.str());
   }
 }

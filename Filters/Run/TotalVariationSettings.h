@@ -4,6 +4,7 @@
 
 #include "Core/Models/EdgeFunctions.h"
 #include "Core/Models/Fidelity.h"
+#include "Run/BlurSettings.h"
 #include "Run/RunSettings.h"
 
 namespace SurfaceDiffusion
@@ -36,6 +37,7 @@ struct TotalVariationSettings : DataSettings
   double NoiseLevel = 0.0;
   SurfaceDiffusion::Discretization Discretization = SurfaceDiffusion::Discretization::Linear;
   double StopTolerance = 1e-4;
+  BlurSettings Blur;
 
   TotalVariationSettings()
   {
@@ -60,6 +62,7 @@ protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:
+  void CheckBlur(Problems& problems) const;
   void RequireConvexEnergy(const char* purpose, Problems& problems) const;
 };
 

@@ -5,6 +5,8 @@
 #include "Run/Polygons.h"
 #include "Threads.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -35,6 +37,25 @@ void AddArray(Fingerprint& fingerprint, const std::optional<Array>& array)
   {
     fingerprint.AddBytes(array->data(), array->nbytes(), PythonThreads::Instance());
   }
+}
+
+/// Per row, whether any number is NaN.
+std::vector<char> FindMissing(const InputArray& array)
+{
+  const auto columns = static_cast<Eigen::Index>(array.shape(1));
+  std::vector<char> missing(array.shape(0));
+  VisitElements(array,
+    [&](const auto* numbers)
+    {
+      ForEach(PythonThreads::Instance(), static_cast<Index>(missing.size()),
+        [&](Index i)
+        {
+          const auto* const row = numbers + i * columns;
+          missing[static_cast<std::size_t>(i)] =
+            std::any_of(row, row + columns, [](auto number) { return number != number; });
+        });
+    });
+  return missing;
 }
 
 std::vector<char> ReadFlags(const std::optional<FlagArray>& array)
@@ -161,10 +182,16 @@ Fields InputFields::Read() const
           {
             for (Eigen::Index k = 0; k < fields.Data.cols(); ++k)
             {
-              fields.Data(i, k) = static_cast<double>(from[i * stride + k]);
+              fields.Data(i, k) = static_cast<double>(from[i * stride + this->FirstColumn + k]);
             }
           });
       });
+  }
+  if (this->Missing)
+  {
+    fields.FirstColumn = this->FirstColumn;
+    fields.AllColumns = this->AllColumns;
+    fields.Missing = *this->Missing;
   }
   fields.Mask = ReadFlags(this->Mask);
   fields.Fixed = ReadFlags(this->Fixed);
@@ -180,6 +207,11 @@ Fields InputFields::Read() const
   {
     fields.Rates = ReadOnTriangles<Values>(*this->Surface, *this->Rates);
   }
+  if (this->FidelityFactors)
+  {
+    const double* const begin = this->FidelityFactors->data();
+    fields.FidelityFactors.assign(begin, begin + this->FidelityFactors->size());
+  }
   if (this->Seeds)
   {
     fields.Seeds.assign(this->Seeds->data(), this->Seeds->data() + this->Seeds->size());
@@ -187,14 +219,35 @@ Fields InputFields::Read() const
   return fields;
 }
 
+InputFields InputFields::Columns(int first, int count) const
+{
+  static std::atomic<std::uint64_t> panels{ 0 };
+  if (!this->Found)
+  {
+    this->Found = std::make_shared<const std::vector<char>>(FindMissing(*this->Data));
+  }
+  InputFields panel = *this;
+  panel.FirstColumn = first;
+  panel.AllColumns = this->Components;
+  panel.Components = count;
+  panel.Missing = this->Found;
+  panel.PanelNumber = ++panels;
+  return panel;
+}
+
 Fingerprint InputFields::Version() const
 {
   Fingerprint version;
-  AddArray(version, this->Data);
+  version.AddNumber(this->PanelNumber);
+  if (this->PanelNumber == 0)
+  {
+    AddArray(version, this->Data);
+  }
   AddArray(version, this->Mask);
   AddArray(version, this->Fixed);
   AddArray(version, this->Directions);
   AddArray(version, this->Rates);
+  AddArray(version, this->FidelityFactors);
   AddArray(version, this->Seeds);
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
   version.AddNumber(std::uint64_t{ this->DirectionsOnFaces ? 1U : 0U });

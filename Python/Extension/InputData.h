@@ -100,12 +100,24 @@ public:
   std::optional<DoubleArray> Directions; ///< points or faces x 3
   bool DirectionsOnFaces = false;
   std::optional<DoubleArray> Rates; ///< faces x 4
+  std::optional<FactorArray> FidelityFactors;
+
+  /// The same with a panel of the data's columns, which Components counts.
+  InputFields Columns(int first, int count) const;
   std::optional<LongArray> Seeds; ///< labels of points, 0 = free
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
   FieldSummary Summarize() const;
   Fields Read() const;
   Fingerprint Version() const;
+
+private:
+  int FirstColumn = 0;
+  int AllColumns = 0; ///< 0: no panel
+  std::shared_ptr<const std::vector<char>> Missing; ///< as in Fields
+  std::uint64_t PanelNumber = 0; ///< of all panels of this process: arrays are not compared
+  // Of the input that a panel was taken from: found once.
+  mutable std::shared_ptr<const std::vector<char>> Found;
 };
 
 } // namespace SurfaceDiffusion

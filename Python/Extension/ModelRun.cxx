@@ -38,12 +38,15 @@ void WriteMatrix(const Matrix& from, const OutputArray& output)
     });
 }
 
-/// Write value(v, k) at the points of vertices, and other(i, k) at all other points.
+/// Write value(v, k) at the points of vertices, and other(i, k) at all other points. With
+/// first >= 0, only `components` columns from there on are written.
 template <typename Value, typename Other>
 void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index components,
-  const Value& value, const Other& other)
+  const Value& value, const Other& other, Eigen::Index first = -1)
 {
-  const auto columns = static_cast<Eigen::Index>(output.shape(1));
+  const auto stride = static_cast<Eigen::Index>(output.shape(1));
+  const Eigen::Index columns = first < 0 ? stride : components;
+  const Eigen::Index start = std::max<Eigen::Index>(first, 0);
   VisitElements(output,
     [&](auto* to)
     {
@@ -53,7 +56,7 @@ void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index
         const Index v = surface.VertexOf(i);
         for (Eigen::Index k = 0; k < columns; ++k)
         {
-          to[i * columns + k] =
+          to[i * stride + start + k] =
             ConvertValue<T>(v >= 0 && k < components ? value(v, k) : other(i, k));
         }
       };
@@ -124,7 +127,8 @@ void ClearOnFailure(Run& run, const Work& work)
 
 } // namespace
 
-void ModelRun::Update(const nb::list& list, const nb::dict& settings, const nb::object& progress)
+void ModelRun::Update(
+  const nb::list& list, const nb::dict& settings, const nb::object& progress, bool history)
 {
   std::vector<const InputFields*> blocks;
   for (const nb::handle& block : list)
@@ -141,6 +145,7 @@ void ModelRun::Update(const nb::list& list, const nb::dict& settings, const nb::
   }
   ThrowProblems(std::move(problems));
   this->Settings = std::move(own);
+  this->Model.SetKeepsHistory(history);
 
   const bool excludes = this->Settings->MaskMode == MaskMode::Exclude;
   PythonProgress(progress).Run(
@@ -217,8 +222,8 @@ nb::dict ModelRun::GetResults(std::size_t block) const
   return numbers;
 }
 
-void ModelRun::WriteState(
-  std::size_t block, const OutputArray& output, const std::optional<InputArray>& source) const
+void ModelRun::WriteState(std::size_t block, const OutputArray& output,
+  const std::optional<InputArray>& source, int first) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
   const Values& state = from.Path->State();
@@ -227,15 +232,18 @@ void ModelRun::WriteState(
   if (!source)
   {
     WritePoints(
-      *from.Surface, output, state.cols(), value, [](Index, Eigen::Index) { return 0.0; });
+      *from.Surface, output, state.cols(), value, [](Index, Eigen::Index) { return 0.0; }, first);
     return;
   }
   const auto columns = static_cast<Eigen::Index>(source->shape(1));
   VisitElements(*source,
     [&](const auto* old)
     {
-      WritePoints(*from.Surface, output, state.cols(), value,
-        [&](Index i, Eigen::Index k) { return static_cast<double>(old[i * columns + k]); });
+      WritePoints(
+        *from.Surface, output, state.cols(), value,
+        [&](Index i, Eigen::Index k)
+        { return static_cast<double>(old[i * columns + std::max(first, 0) + k]); },
+        first);
     });
 }
 
@@ -282,6 +290,31 @@ void ModelRun::WriteTextureColors(std::size_t block, const OutputArray& output,
     [&](Index, Eigen::Index k) { return static_cast<double>(elsewhere(0, k)); });
 }
 
+void ModelRun::WriteEdges(std::size_t block, const OutputArray& output) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  const Vector& edges = from.Result.Edges;
+  WritePoints(
+    *from.Surface, output, 1, [&](Index v, Eigen::Index) { return edges[v]; },
+    [](Index, Eigen::Index) { return 0.0; });
+}
+
+std::vector<Index> ModelRun::GetCurveSizes(std::size_t block) const
+{
+  const Polylines& curves = this->Model.GetBlock(block).Result.EdgeCurves;
+  std::vector<Index> sizes;
+  for (Index l = 0; l < curves.NumberOfLines(); ++l)
+  {
+    sizes.push_back(curves.Begin[l + 1] - curves.Begin[l]);
+  }
+  return sizes;
+}
+
+void ModelRun::WriteCurves(std::size_t block, const OutputArray& output) const
+{
+  WriteMatrix(this->Model.GetBlock(block).Result.EdgeCurves.Points, output);
+}
+
 nb::dict ModelRun::GetRegions(std::size_t block) const
 {
   const RegionResults& found = *this->Model.GetBlock(block).Result.Regions;
@@ -298,8 +331,8 @@ nb::dict ModelRun::GetRegions(std::size_t block) const
   regions["means"] = nb::cast(rowsOf(found.Means));
   regions["areas"] =
     nb::cast(std::vector<double>(found.Areas.data(), found.Areas.data() + found.Areas.size()));
-  regions["boundary_lengths"] = nb::cast(std::vector<double>(found.BoundaryLengths.data(),
-    found.BoundaryLengths.data() + found.BoundaryLengths.size()));
+  regions["boundary_lengths"] = nb::cast(std::vector<double>(
+    found.BoundaryLengths.data(), found.BoundaryLengths.data() + found.BoundaryLengths.size()));
   regions["components"] = nb::cast(found.Components);
   regions["gap"] = found.Gap;
   regions["label_gap"] = found.LabelGap;
@@ -308,8 +341,8 @@ nb::dict ModelRun::GetRegions(std::size_t block) const
   nb::list curves;
   for (const RegionBoundary& curve : found.Boundaries.Curves)
   {
-    curves.append(nb::make_tuple(
-      curve.Regions[0], curve.Regions[1], curve.Length, nb::cast(curve.Points)));
+    curves.append(
+      nb::make_tuple(curve.Regions[0], curve.Regions[1], curve.Length, nb::cast(curve.Points)));
   }
   regions["curves"] = curves;
   return regions;

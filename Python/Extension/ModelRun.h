@@ -26,9 +26,10 @@ public:
   ModelRun(const ModelRun&) = delete;
   ModelRun& operator=(const ModelRun&) = delete;
 
-  /// Check and take settings and inputs, a list of InputFields. Throws nanobind::value_error.
-  void Update(
-    const nanobind::list& blocks, const nanobind::dict& settings, const nanobind::object& progress);
+  /// Check and take settings and inputs, a list of InputFields. history: whether the history has
+  /// energy and totals. Throws nanobind::value_error.
+  void Update(const nanobind::list& blocks, const nanobind::dict& settings,
+    const nanobind::object& progress, bool history);
   /// Move to a step, or to the last one if that is -1.
   void Seek(int step, const nanobind::object& progress);
 
@@ -41,9 +42,10 @@ public:
   nanobind::dict GetResults(std::size_t block) const;
 
   /// Write the current state at the points of a surface. `source` gives the values of points that
-  /// take no part and of alpha; without it they are 0.
-  void WriteState(
-    std::size_t block, const OutputArray& output, const std::optional<InputArray>& source) const;
+  /// take no part and of alpha; without it they are 0. first: the column of `output` that the panel
+  /// of columns begins at; columns outside of it are left as they are. -1: all columns are written.
+  void WriteState(std::size_t block, const OutputArray& output,
+    const std::optional<InputArray>& source, int first) const;
   /// The same for unit vectors of colours, with the brightness of the input.
   void WriteColorsOfVectors(
     std::size_t block, const OutputArray& output, const InputFields& source) const;
@@ -51,6 +53,11 @@ public:
   void WriteTexture(std::size_t block, const OutputArray& output) const;
   void WriteTextureColors(std::size_t block, const OutputArray& output,
     const std::array<double, 3>& low, const std::array<double, 3>& high) const;
+  /// 1 - v of the Mumford-Shah model; 0 at points that take no part.
+  void WriteEdges(std::size_t block, const OutputArray& output) const;
+  /// The number of points of each curve along its edges, and the points of all curves.
+  std::vector<Index> GetCurveSizes(std::size_t block) const;
+  void WriteCurves(std::size_t block, const OutputArray& output) const;
   /// The regions of a segmentation: lists with an entry per region, and their boundaries.
   nanobind::dict GetRegions(std::size_t block) const;
   /// The labels of the points; 0 at points that take no part.

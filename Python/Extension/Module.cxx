@@ -28,7 +28,7 @@ namespace
 InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optional<InputArray> data,
   int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
   std::optional<DoubleArray> directions, bool directionsOnFaces, std::optional<DoubleArray> rates,
-  std::optional<LongArray> seeds, bool dataAreTerms)
+  std::optional<FactorArray> fidelity, std::optional<LongArray> seeds, bool dataAreTerms)
 {
   InputFields fields;
   fields.Surface = std::move(surface);
@@ -39,6 +39,7 @@ InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optiona
   fields.Directions = std::move(directions);
   fields.DirectionsOnFaces = directionsOnFaces;
   fields.Rates = std::move(rates);
+  fields.FidelityFactors = std::move(fidelity);
   fields.Seeds = std::move(seeds);
   fields.DataAreTerms = dataAreTerms;
   return fields;
@@ -83,32 +84,38 @@ NB_MODULE(_core, m)
       [](InputFields* self, std::shared_ptr<InputSurface> surface, std::optional<InputArray> data,
         int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
         std::optional<DoubleArray> directions, bool directionsOnFaces,
-        std::optional<DoubleArray> rates, std::optional<LongArray> seeds, bool dataAreTerms)
+        std::optional<DoubleArray> rates, std::optional<FactorArray> fidelity,
+        std::optional<LongArray> seeds, bool dataAreTerms)
       {
-        new (self)
-          InputFields(MakeFields(std::move(surface), std::move(data), components, std::move(mask),
-            std::move(fixed), std::move(directions), directionsOnFaces, std::move(rates),
-            std::move(seeds), dataAreTerms));
+        new (self) InputFields(MakeFields(std::move(surface), std::move(data), components,
+          std::move(mask), std::move(fixed), std::move(directions), directionsOnFaces,
+          std::move(rates), std::move(fidelity), std::move(seeds), dataAreTerms));
       },
       "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
-      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none(),
-      "seeds"_a.none(), "data_are_terms"_a);
+      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none(), "fidelity"_a.none(),
+      "seeds"_a.none(), "data_are_terms"_a)
+    .def("columns", &InputFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")
     .def(nb::init<std::string>(), "model"_a)
-    .def("update", &ModelRun::Update, "blocks"_a, "settings"_a, "progress"_a.none())
+    .def("update", &ModelRun::Update, "blocks"_a, "settings"_a, "progress"_a.none(),
+      "history"_a = true)
     .def("seek", &ModelRun::Seek, "step"_a, "progress"_a.none())
     .def("number_of_steps", &ModelRun::NumberOfSteps)
     .def("time_step", &ModelRun::TimeStep)
     .def("warnings", &ModelRun::GetWarnings)
     .def("history", &ModelRun::GetHistory)
     .def("results", &ModelRun::GetResults, "block"_a)
-    .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none())
+    .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none(),
+      "first"_a = -1)
     .def(
       "write_colors_of_vectors", &ModelRun::WriteColorsOfVectors, "block"_a, "output"_a, "source"_a)
     .def("write_texture", &ModelRun::WriteTexture, "block"_a, "output"_a)
     .def("write_texture_colors", &ModelRun::WriteTextureColors, "block"_a, "output"_a, "low"_a,
       "high"_a)
+    .def("write_edges", &ModelRun::WriteEdges, "block"_a, "output"_a)
+    .def("curve_sizes", &ModelRun::GetCurveSizes, "block"_a)
+    .def("write_curves", &ModelRun::WriteCurves, "block"_a, "output"_a)
     .def("regions", &ModelRun::GetRegions, "block"_a)
     .def("write_labels", &ModelRun::WriteLabels, "block"_a, "output"_a)
     .def("write_moved_points", &ModelRun::WriteMovedPoints, "block"_a, "output"_a);

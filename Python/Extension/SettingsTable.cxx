@@ -5,6 +5,7 @@
 #include "Run/DirectionFieldRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/MumfordShahSettings.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
@@ -38,8 +39,7 @@ public:
     entry["default"] = value;
     entry["allowed"] = range.Low < range.High ? range.Text : "integers of 32 bits";
   }
-  void Numbers(
-    const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
+  void Numbers(const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
   {
     nb::dict entry = this->Add(info, "numbers");
     entry["default"] = nb::cast(values);
@@ -103,8 +103,7 @@ public:
   {
     this->Assign(info, value);
   }
-  void Numbers(
-    const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
+  void Numbers(const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
   {
     this->Assign(info, values);
   }
@@ -147,6 +146,10 @@ std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
   if (model == "harmonic_map")
   {
     return std::make_unique<HarmonicMapSettings>();
+  }
+  if (model == "mumford_shah")
+  {
+    return std::make_unique<MumfordShahSettings>();
   }
   if (model == "turing_texture")
   {

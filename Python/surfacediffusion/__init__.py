@@ -11,6 +11,7 @@
 `heat`               smoothing, denoising and inpainting by linear diffusion
 `intrinsic_tv`       denoising and inpainting that preserves edges
 `harmonic_map`       regularised normals and unit vectors, and denoised points
+`mumford_shah`       edges as curves, and data that are smooth between them
 `turing_texture`     textures by reaction and diffusion
 `direction_field`    line fields: principal curvature, the smoothest one, from hints
 `estimate_fwhm`      the smoothness of noise maps
@@ -18,8 +19,8 @@
 ==================== ============================================================================
 
 `heat`, `intrinsic_tv`, `direction_field` and `smooth_to_fwhm` return an array; with
-``full_output=True`` the first two return a result with history and times. `harmonic_map` and
-`turing_texture` return a result, since theirs is more than one array. Keywords are the properties
+``full_output=True`` the first two return a result with history and times. `harmonic_map`,
+`mumford_shah` and `turing_texture` return a result, since theirs is more than one array. Keywords are the properties
 of the filters for VTK and ParaView in snake_case. The results have the same bits.
 """
 
@@ -27,10 +28,13 @@ import os as _os
 from importlib.metadata import version as _version
 
 from . import _core
-from ._functions import direction_field, harmonic_map, heat, intrinsic_tv, segment, turing_texture
+from ._functions import (
+    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, turing_texture,
+)
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._result import (
-    DiffusionResult, HarmonicMapResult, RegionBoundary, Result, SegmentationResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, Result, SegmentationResult,
+    TextureResult,
 )
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
@@ -39,12 +43,10 @@ from ._threads import get_number_of_threads, set_number_of_threads
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "DiffusionResult", "FWHMEstimate", "HarmonicMapResult", "RegionBoundary", "Result",
-    "SegmentationResult", "Surface",
-    "SurfaceDiffusionWarning", "TextureResult", "direction_field", "estimate_fwhm",
-    "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "segment",
-    "set_number_of_threads",
-    "smooth_to_fwhm", "sphere", "turing_texture",
+    "DiffusionResult", "EdgeResult", "FWHMEstimate", "HarmonicMapResult", "RegionBoundary", "Result",
+    "SegmentationResult", "Surface", "SurfaceDiffusionWarning", "TextureResult", "direction_field",
+    "estimate_fwhm", "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah",
+    "segment", "set_number_of_threads", "smooth_to_fwhm", "sphere", "turing_texture",
 ]
 
 if hasattr(_os, "register_at_fork"):

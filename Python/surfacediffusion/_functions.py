@@ -15,15 +15,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._models import (
-    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_harmonic_map, make_segmentation,
-    make_texture,
+    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
+    make_segmentation, make_texture,
 )
-from ._result import DiffusionResult, HarmonicMapResult, SegmentationResult, TextureResult
+from ._result import (
+    DiffusionResult, EdgeResult, HarmonicMapResult, SegmentationResult, TextureResult,
+)
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, translate
 from ._surface import SurfaceLike, as_data, as_surface
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "segment", "turing_texture"]
+__all__ = [
+    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "turing_texture",
+]
+
+#: The number of columns of data that a run holds in double precision, if they are independent.
+PANEL = 32
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -41,6 +49,10 @@ directions : array_like, shape (n, 3) or (m, 3), optional
     "fixed": """\
 fixed : array_like, shape (n,), optional
     Nonzero holds the value (Dirichlet condition).""",
+    "fidelity": """\
+fidelity : array_like, shape (n,), optional
+    Factors w >= 0 of `fidelity_weight` at each point, such as 1/s^2 for noise of standard
+    deviation s.""",
     "steps": """\
 steps : bool, default False
     Return an iterator over the states at steps 0, k, 2k, ... and the last, with
@@ -114,8 +126,10 @@ def _run(
     make: Callable[[Any, dict[str, Any]], Any],
     steps: bool,
     progress: Progress,
+    history: bool = True,
 ) -> Any:
-    """The result, or the iterator over states, which has a run of its own."""
+    """The result, or the iterator over states, which has a run of its own. history: whether the
+    result needs the energy and the totals of the states."""
     if not isinstance(steps, (bool, np.bool_)):
         raise ValueError(f"steps is {shorten(steps)}; allowed: True or False")
     if steps:
@@ -123,12 +137,20 @@ def _run(
         return runner.iterate(run, given, progress, lambda found: make(run, found))
     with given.surface._lock:
         run = given.surface._runs.setdefault(name, _core.ModelRun(name))
-        return make(run, runner.finish(run, [given], progress)[0])
+        return make(run, runner.finish(run, [given], progress, history)[0])
+
+
+def _are_independent(name: str, runner: Runner) -> bool:
+    """Whether no column of the data depends on the others or on its number, given the points that
+    are missing."""
+    noise = settings_of(name)["initial_fill"].words.index("Noise")
+    return name == "heat" and not runner.settings.get("AutomaticFidelity") and (
+        runner.settings.get("InitialFill") != noise)
 
 
 def _diffusion(
-    name: str, surface: Any, values: Any, mask: Any, directions: Any, fixed: Any, steps: bool,
-    full_output: bool, dtype: Any, progress: Progress, properties: dict[str, Any],
+    name: str, surface: Any, values: Any, mask: Any, directions: Any, fixed: Any, fidelity: Any,
+    steps: bool, full_output: bool, dtype: Any, progress: Progress, properties: dict[str, Any],
 ) -> Any:
     if not isinstance(full_output, (bool, np.bool_)):
         raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
@@ -136,14 +158,20 @@ def _diffusion(
     data = as_data("values", values, surface.n_points)
     shape = np.shape(values)
     find_result_type(data, dtype)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
     runner = Runner(name, properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
         result = make_diffusion(run, 0, given, runner, dtype, found)
         return replace(result, values=result.values.reshape(shape))
 
-    result = _run(name, given, runner, make, steps, progress)
+    if data.shape[1] > PANEL and not (steps or full_output) and _are_independent(name, runner):
+        output = np.empty(data.shape, dtype=find_result_type(data, dtype))
+        with surface._lock:
+            run = surface._runs.setdefault(name, _core.ModelRun(name))
+            runner.finish_panels(run, given, output, PANEL, progress)
+        return output
+    result = _run(name, given, runner, make, steps, progress, full_output)
     return result if steps or full_output else result.values
 
 
@@ -155,6 +183,7 @@ def heat(
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
     steps: bool = False,
     full_output: bool = False,
     dtype: Any = None,
@@ -175,6 +204,7 @@ def heat(
     {mask}
     {directions}
     {fixed}
+    {fidelity}
     {steps}
     {full_output}
     {dtype}
@@ -196,6 +226,10 @@ def heat(
     the lumped mass matrix and the cotan weights. Times and weights are by default in natural units:
     lengths in the mean edge length h, values in their range R. `fwhm` is in coordinate units.
 
+    More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
+    in double precision does not grow with their number. This does not hold with `full_output`,
+    `steps`, `automatic_fidelity` and ``initial_fill="Noise"``, which need all columns at once.
+
     Examples
     --------
     >>> import numpy as np
@@ -211,8 +245,8 @@ def heat(
     >>> [state.step for state in heat(surface, noise, steps=True, output_interval=4)]
     [0, 4, 8, 10]
     """
-    return _diffusion("heat", surface, values, mask, directions, fixed, steps, full_output, dtype,
-                      progress, properties)
+    return _diffusion("heat", surface, values, mask, directions, fixed, fidelity, steps, full_output,
+                      dtype, progress, properties)
 
 
 @_with_settings
@@ -223,6 +257,7 @@ def intrinsic_tv(
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
     steps: bool = False,
     full_output: bool = False,
     dtype: Any = None,
@@ -242,6 +277,7 @@ def intrinsic_tv(
     {mask}
     {directions}
     {fixed}
+    {fidelity}
     {steps}
     {full_output}
     {dtype}
@@ -271,8 +307,84 @@ def intrinsic_tv(
     >>> bool(result.effective_fidelity_weight > 0)
     True
     """
-    return _diffusion("intrinsic_tv", surface, values, mask, directions, fixed, steps, full_output,
-                      dtype, progress, properties)
+    return _diffusion("intrinsic_tv", surface, values, mask, directions, fixed, fidelity, steps,
+                      full_output, dtype, progress, properties)
+
+
+@_with_settings
+def mumford_shah(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    *,
+    mask: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
+    steps: bool = False,
+    dtype: Any = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> EdgeResult | Iterator[EdgeResult]:
+    """Find the edges of data on a surface, and smooth or inpaint the data between them.
+
+    Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli
+    (CPAM 43, 1990), over u, which is smooth between edges, and v, which is near 0 on them and 1
+    elsewhere: the integral of lambda/2 chi abs(u - f)^2 + 1/2 (v^2 + kappa) abs(grad u)^2
+    + beta (eps abs(grad v)^2 + (1 - v)^2/(4 eps)). chi is 1 where f is known and 0 where it is
+    missing: there u and v are continued. The columns of the data have their edges in common.
+
+    The coefficients are lambda = `fidelity_weight`/`smoothing_length`^2, eps = `edge_width`, kappa =
+    1e-6 and beta = `edge_threshold`^2/(4 `smoothing_length`)/(1 + h/(4 eps)), so that a jump of
+    `edge_threshold` costs as much as an edge as if it is smoothed. The result is a local minimum.
+
+    Parameters
+    ----------
+    {surface}
+    {values}
+    {mask}
+    {directions}
+    {fixed}
+    {fidelity}
+    {steps}
+    {dtype}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    EdgeResult, or iterator of EdgeResult
+        `values` are u, `edges` is 1 - v, and `curves` are the edges as polylines.
+
+    {problems}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import mumford_shah, sphere
+    >>> surface = sphere(5)
+    >>> clean = np.where(surface.points[:, 2] > 0.5, 1.0, 0.0)
+    >>> noisy = clean + np.random.default_rng(0).normal(scale=0.04, size=clean.size)
+    >>> result = mumford_shah(surface, noisy)
+    >>> len(result.curves), round(float(result.edge_length / (2 * np.pi * np.sqrt(0.75))), 2)
+    (1, 1.0)
+    >>> bool(np.abs(result.values - clean).mean() < 0.2 * np.abs(noisy - clean).mean())
+    True
+    """
+    surface = as_surface(surface)
+    data = as_data("values", values, surface.n_points)
+    shape = np.shape(values)
+    find_result_type(data, dtype)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
+    runner = Runner("mumford_shah", properties, ARRAYS)
+
+    def make(run: Any, found: dict[str, Any]) -> EdgeResult:
+        result = make_edges(run, 0, given, runner, dtype, found)
+        return replace(result, values=result.values.reshape(shape))
+
+    return _run("mumford_shah", given, runner, make, steps, progress)
 
 
 @_with_settings
@@ -283,6 +395,7 @@ def harmonic_map(
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
     steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
@@ -302,6 +415,7 @@ def harmonic_map(
     {mask}
     {directions}
     {fixed}
+    {fidelity}
     {steps}
     {dtype}
     {progress}
@@ -331,7 +445,7 @@ def harmonic_map(
     surface = as_surface(surface)
     data = as_vectors(surface, vectors, properties)
     find_result_type(data, dtype)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
     runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
     return _run("harmonic_map", given, runner,
                 lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._result import (
-    DiffusionResult, HarmonicMapResult, RegionBoundary, SegmentationResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, SegmentationResult, TextureResult,
 )
 from ._run import Input, Runner, find_result_type
 from ._settings import shorten
@@ -19,8 +19,8 @@ from ._surface import Surface, as_data, as_numbers, data_components
 
 #: The keywords of input arrays, by their names in messages.
 ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
-          "FixedArray": "fixed", "DiffusionRateArray": "rates", "SeedArray": "seeds",
-          "DataTermArray": "terms"}
+          "FixedArray": "fixed", "DiffusionRateArray": "rates", "FidelityArray": "fidelity",
+          "SeedArray": "seeds", "DataTermArray": "terms"}
 
 
 def make_diffusion(
@@ -46,6 +46,24 @@ def make_harmonic_map(
     points = np.array(given.surface.points)
     runner.call(run.write_moved_points, block, points)
     return HarmonicMapResult(output, points=points, **_pick(HarmonicMapResult, found))
+
+
+def make_edges(
+    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any]
+) -> EdgeResult:
+    """The result of mumford_shah on one surface, with columns for components."""
+    assert given.data is not None
+    result_type = find_result_type(given.data, dtype)
+    output = np.empty(given.data.shape, dtype=result_type)
+    runner.call(run.write_state, block, output, given.data)
+    single = result_type == np.float32
+    edges = np.empty((given.surface.n_points, 1), dtype=np.float32 if single else np.float64)
+    runner.call(run.write_edges, block, edges)
+    sizes = run.curve_sizes(block)
+    points = np.empty((sum(sizes), 3))
+    runner.call(run.write_curves, block, points)
+    return EdgeResult(output, edges=edges[:, 0], curves=np.split(points, np.cumsum(sizes))[:-1],
+                      **_pick(EdgeResult, found))
 
 
 def make_texture(

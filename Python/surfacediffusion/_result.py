@@ -105,6 +105,30 @@ class HarmonicMapResult(Result):
 
 
 @dataclass(frozen=True)
+class EdgeResult(Result):
+    """A state of :func:`mumford_shah`: a :class:`Result` whose `values` are smooth between edges,
+    with
+
+    Attributes
+    ----------
+    edges : ndarray, shape (n,)
+        1 - v: 1 on edges, 0 far from them.
+    curves : list of ndarray, shape (k, 3)
+        The edges, one array of points per edge between its ends and junctions, along the ridge of
+        `edges`. A closed curve repeats its first point.
+    """
+
+    edges: NDArray[Any] = field(default_factory=lambda: np.empty(0), repr=False)
+    curves: list[NDArray[np.float64]] = field(default_factory=list, repr=False)
+
+    @property
+    def edge_length(self) -> float:
+        """The length of all curves, in coordinate units."""
+        steps = [np.diff(curve, axis=0) for curve in self.curves]
+        return float(sum(np.linalg.norm(step, axis=1).sum() for step in steps))
+
+
+@dataclass(frozen=True)
 class TextureResult(Result):
     """A state of :func:`turing_texture`: a :class:`Result` whose `values` (n, 2) are the
     concentrations u1 and u2, with

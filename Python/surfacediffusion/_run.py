@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._settings import convert_all, settings_of, shorten, translate
 from ._surface import (
-    Surface, as_flags, as_labels, as_numbers, as_rows, data_components,
+    Surface, as_factors, as_flags, as_labels, as_numbers, as_rows, data_components,
 )
 
 Progress = Union[None, bool, Callable[[float], Any]]
@@ -105,6 +105,7 @@ class Input:
         directions_name: str = "directions",
         on_faces: bool | None = None,
         rates: Any = None,
+        fidelity: Any = None,
         seeds: Any = None,
         data_are_terms: bool = False,
     ) -> None:
@@ -134,7 +135,8 @@ class Input:
         self.core = _core.Fields(
             surface._core, data, 0 if data is None else data_components(data),
             as_flags("mask", mask, n), as_flags("fixed", fixed, n), directions,
-            bool(on_faces), rates, as_labels("seeds", seeds, n), data_are_terms)
+            bool(on_faces), rates, as_factors("fidelity", fidelity, n), as_labels("seeds", seeds, n),
+            data_are_terms)
 
 
 class Runner:
@@ -157,15 +159,39 @@ class Runner:
         """The warnings that hold, in the words of Python."""
         return [translate(self.function, text, self.arrays) for text in run.warnings()]
 
-    def finish(self, run: Any, inputs: list[Input], progress: Progress) -> list[dict[str, Any]]:
-        """Run to the last step. The common attributes of the result on each surface."""
+    def finish(
+        self, run: Any, inputs: list[Input], progress: Progress, history: bool = True
+    ) -> list[dict[str, Any]]:
+        """Run to the last step. The common attributes of the result on each surface. history: whether
+        energy and totals of the states are measured, too."""
         with ProgressReporter(progress) as reporter:
-            self.call(run.update, [i.core for i in inputs], self.settings, reporter.callable)
+            self.call(run.update, [i.core for i in inputs], self.settings, reporter.callable, history)
             self.call(run.seek, -1, reporter.callable)
             reporter.finish_part()
         sentences = self.warnings(run)
         warn(sentences)
         return self._attributes(run, inputs, sentences)
+
+    def finish_panels(
+        self, run: Any, given: Input, output: NDArray[Any], columns: int, progress: Progress
+    ) -> None:
+        """Run to the last step with a few columns of the data after another, and write `output`."""
+        assert given.data is not None
+        starts = range(0, output.shape[1], columns)
+        known: list[str] = []
+        # The C library of Linux keeps freed blocks up to the size of the largest one that was freed,
+        # at most 32 MiB. Without this one, each panel would get its memory from the system again,
+        # which takes a fifth of the time.
+        np.empty(31 << 20, dtype=np.uint8)
+        with ProgressReporter(progress, len(starts)) as reporter:
+            for first in starts:
+                panel = given.core.columns(first, min(columns, output.shape[1] - first))
+                self.call(run.update, [panel], self.settings, reporter.callable, False)
+                self.call(run.seek, -1, reporter.callable)
+                reporter.finish_part()
+                self.call(run.write_state, 0, output, given.data, first)
+                known += [text for text in self.warnings(run) if text not in known]
+        warn(known)
 
     def iterate(
         self, run: Any, given: Input, progress: Progress, make: Callable[..., Any]

@@ -63,6 +63,16 @@ def as_flags(name: str, values: Any, points: int) -> NDArray[np.uint8] | None:
     return np.ascontiguousarray(array != 0, dtype=np.uint8)
 
 
+def as_factors(name: str, values: Any, points: int) -> NDArray[np.float64] | None:
+    """One number, 0 or more, per point; None stays."""
+    if values is None:
+        return None
+    array = as_numbers(name, values)
+    if array.shape != (points,):
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},), one number per point")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
 def as_data(name: str, values: Any, points: int) -> NDArray[Any]:
     """The data as float64, float32 or uint8, with one row per point and one column per component."""
     array = as_numbers(name, values)

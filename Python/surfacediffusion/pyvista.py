@@ -21,6 +21,7 @@ array      the data: point array (n,) or (n, k) of any numeric type, NaN is miss
 mask       point array (n,), nonzero is missing (or excluded with mask_mode="Exclude")
 direction  point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along
 fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
+fidelity   point array (n,), factors of fidelity_weight, 0 or more
 
 times: times in the unit of time_step, in any order. The function then returns a list with the mesh
 at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
@@ -45,23 +46,28 @@ from numpy.typing import NDArray
 from . import _core
 from ._functions import direction_field as _direction_field
 from ._functions import segment as _segment
+from ._meshes import find_polydata
 from ._models import (
-    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_harmonic_map, make_texture,
+    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
+    make_texture,
 )
 from ._result import Result
 from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
 from ._surface import Surface, as_data
 
-__all__ = ["direction_field", "harmonic_map", "heat", "intrinsic_tv", "segment", "turing_texture"]
+__all__ = [
+    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "turing_texture",
+]
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
 
 def heat(
     mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
-    progress: Progress = False, **properties: Any,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Smooth, denoise or inpaint a point array by linear diffusion.
 
@@ -69,14 +75,14 @@ def heat(
     in help(surfacediffusion.heat). The result is the point array <array>Diffused, with the shape of
     the data.
     """
-    return _run("heat", mesh, array, (mask, direction, fixed, None), times, full_output, progress,
-                properties)
+    return _run("heat", mesh, array, (mask, direction, fixed, None, fidelity), times, full_output,
+                progress, properties)
 
 
 def intrinsic_tv(
     mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
-    progress: Progress = False, **properties: Any,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Denoise or inpaint a point array and preserve its edges.
 
@@ -84,14 +90,14 @@ def intrinsic_tv(
     in help(surfacediffusion.intrinsic_tv). The result is the point array <array>TV, with the shape of
     the data.
     """
-    return _run("intrinsic_tv", mesh, array, (mask, direction, fixed, None), times, full_output,
-                progress, properties)
+    return _run("intrinsic_tv", mesh, array, (mask, direction, fixed, None, fidelity), times,
+                full_output, progress, properties)
 
 
 def harmonic_map(
     mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, times: Sequence[float] | None = None, full_output: bool = False,
-    progress: Progress = False, **properties: Any,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Regularise normals or other unit vectors, or denoise the mesh.
 
@@ -101,8 +107,24 @@ def harmonic_map(
     point array <array>Harmonic (n, k); NormalsHarmonic for computed normals. With move_vertices=True
     the points are moved.
     """
-    return _run("harmonic_map", mesh, array, (mask, direction, fixed, None), times, full_output,
-                progress, properties)
+    return _run("harmonic_map", mesh, array, (mask, direction, fixed, None, fidelity), times,
+                full_output, progress, properties)
+
+
+def mumford_shah(
+    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
+) -> Any:
+    """Find the edges of a point array, and smooth or inpaint the data between them.
+
+    The arguments are those of heat(); the functional and all other keywords are in
+    help(surfacediffusion.mumford_shah). The results are the point arrays <array>MumfordShah, with
+    the shape of the data, and Edges (n,). The curves along the edges are `curves` of the report that
+    full_output=True returns, a list of arrays of points.
+    """
+    return _run("mumford_shah", mesh, array, (mask, direction, fixed, None, fidelity), times,
+                full_output, progress, properties)
 
 
 def turing_texture(
@@ -117,8 +139,8 @@ def turing_texture(
     equation and all other keywords in help(surfacediffusion.turing_texture). The results are the
     point arrays u1, u2 and Texture (n,), and TextureColor (n, 3) with color_output=True.
     """
-    return _run("turing_texture", mesh, initial, (mask, direction, fixed, rates), times, full_output,
-                progress, properties)
+    return _run("turing_texture", mesh, initial, (mask, direction, fixed, rates, None), times,
+                full_output, progress, properties)
 
 
 def segment(
@@ -265,23 +287,9 @@ def _split(padded: NDArray[Any]) -> Iterator[NDArray[Any]]:
         begin += 1 + size
 
 
-def _leaves(mesh: Any) -> Iterator[pyvista.PolyData]:
-    if isinstance(mesh, pyvista.MultiBlock):
-        for block in mesh:
-            if block is not None:
-                yield from _leaves(block)
-    elif isinstance(mesh, pyvista.PolyData):
-        yield mesh
-    else:
-        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
-            mesh, "extract_surface") else ""
-        raise TypeError(f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
-                        f"pyvista.MultiBlock of it{remedy}")
-
-
 def _find_surfaces(mesh: Any) -> list[_Block]:
     """The surfaces of a mesh, without empty blocks."""
-    leaves = list(_leaves(mesh))
+    leaves = list(find_polydata(mesh))
     blocks = [block for block in map(_Block, leaves) if not block.empty]
     if not any(leaf.n_points > 0 for leaf in leaves):
         raise ValueError("the mesh is empty; allowed: a surface of polygons or strips")
@@ -338,12 +346,13 @@ def _prepare(
                              "of a point array")
         data = as_data(name, block.find("array", name)[0], surface.n_points)
         block.name = name
-    mask, direction, fixed, rates = names
+    mask, direction, fixed, rates, fidelity = names
     directions, on_faces = block.find("direction", direction, faces=True)
     block.given = Input(
         surface, data, mask=block.find("mask", mask)[0], fixed=block.find("fixed", fixed)[0],
         directions=directions, directions_name="direction", on_faces=on_faces,
-        rates=block.find("rates", rates, points=False, faces=True)[0])
+        rates=block.find("rates", rates, points=False, faces=True)[0],
+        fidelity=block.find("fidelity", fidelity)[0])
 
 
 def _write(function: str, block: _Block, result: Any, name: str | None, colors: bool) -> None:
@@ -360,7 +369,10 @@ def _write(function: str, block: _Block, result: Any, name: str | None, colors: 
             points[active] = result.colors
         block.mesh.set_active_scalars(active, preference="point")
         return
-    suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic"}[function]
+    suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
+              "mumford_shah": "MumfordShah"}[function]
+    if function == "mumford_shah":
+        points["Edges"] = result.edges
     active = name or block.name + suffix
     given = block.input.point_data
     single = block.name in given and given[block.name].ndim == 1
@@ -398,8 +410,9 @@ def _run(
     if not blocks:
         raise failures[0]
     painted = bool(runner.settings.get("ColorOutput", False))
-    make: Callable[..., Any] = {"harmonic_map": make_harmonic_map, "turing_texture": make_texture}.get(
-        function, make_diffusion)
+    make: Callable[..., Any] = {
+        "harmonic_map": make_harmonic_map, "mumford_shah": make_edges,
+        "turing_texture": make_texture}.get(function, make_diffusion)
     extra = (colors if painted else [],) if function == "turing_texture" else ()
     inputs = [block.given for block in blocks if block.given]
     run = _core.ModelRun(function)
@@ -452,7 +465,8 @@ def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
     return method
 
 
-for _function in (heat, intrinsic_tv, harmonic_map, segment, turing_texture, direction_field):
+for _function in (
+        heat, intrinsic_tv, harmonic_map, mumford_shah, segment, turing_texture, direction_field):
     setattr(_Accessor, _function.__name__, _as_method(_function))
 
 if hasattr(pyvista, "register_dataset_accessor"):

@@ -41,7 +41,7 @@ STAGES = {
     "Filter100Steps": "the same in the filter",
     "TimeSeek": "seek to another time of that run",
 }
-MODELS = "MinimizeToGap|LaggedStep/.*:3$|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
+MODELS = "MinimizeToGap|FindEdges|ExtractCurves|LaggedStep/.*:3$|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
 NOTED = {"vertices", "Gap", "Iterations", "steps", "time", "step_over_solves",
          "degrees_before", "degrees_after"}
 
@@ -236,8 +236,8 @@ def main():
             + "## Linear solves from noise to a residual of 1e-10\n\n" + solvers(results)
             + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser; LaggedStep: one "
             "step of the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 "
-            "vertices, textures (Step: one step, Stands: until the pattern is stationary) on a "
-            "scanned surface.\n\n" + models(of_models["benchmarks"])
+            "vertices, edges (FindEdges: the whole run, ExtractCurves) and textures (Step: one step, "
+            "Stands: until the pattern is stationary) on a scanned surface.\n\n" + models(of_models["benchmarks"])
             + "## The solver that Automatic selects\n\nRuns of backward Euler steps: the selected "
             "solver (D: Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the "
             "fastest.\n\n"

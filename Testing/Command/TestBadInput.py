@@ -93,7 +93,7 @@ def make_files(folder):
     samples.write_label(path("far.label"), [1, 2], [1, 2])
     path("far.label").write_text(path("far.label").read_text().replace("\n2 ", f"\n{N} "))
     samples.write_cifti(path("labels.dlabel.nii"), np.zeros((1, 2 * N)), labels=True)
-    samples.write_cifti(path("series.dtseries.nii"), np.ones((3, 2 * N)), series=True)
+    samples.write_cifti(path("series.dtseries.nii"), np.ones((4, 2 * N)), series=True)
     nib.save(nib.Nifti1Image(np.zeros((3, 3, 3)), np.eye(4)), path("volume.nii"))
     samples.write_mgh(path("volume.mgh"), np.zeros(12))
     nib.save(nib.freesurfer.MGHImage(np.zeros((2, 3, 2), np.float32), np.eye(4)),
@@ -172,8 +172,9 @@ CASES = [
     (CIFTI.format("cut.dscalar.nii"), "cut.dscalar.nii: damaged CIFTI file"),
     (CIFTI.format("labels.dlabel.nii"), "labels.dlabel.nii: labels, which have no mean"),
     (CIFTI.format("lh.func.gii"), "--left and --right are for CIFTI files"),
-    ("smooth series.dtseries.nii 5 out.nii --left lh.surf.gii --right rh.surf.gii --column 2",
-     "series.dtseries.nii: single columns of a time series"),
+    ("smooth series.dtseries.nii 5 out.nii --left lh.surf.gii --right rh.surf.gii "
+     "--column 1 --column 2 --column 4",
+     "series.dtseries.nii: the columns 1, 2, 4 of a time series; allowed: columns at equal"),
     ("smooth lh.surf.gii a.dscalar.nii 5 out.nii", "a.dscalar.nii .*; give --left and --right"),
     ("smooth a.dscalar.nii 5 out.dscalar.nii --left lh.surf.gii", "--right is missing"),
     ("smooth a.dscalar.nii 5 out.nii --left rh.surf.gii --right lh.surf.gii",

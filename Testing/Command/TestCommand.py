@@ -214,6 +214,26 @@ class OtherCommands(CommandTest):
         self.assertIn("lh.func.gii: nothing is missing", error)
         np.testing.assert_array_equal(self.column("out.func.gii"), NOISE)
 
+    def test_edges_are_written_as_a_map_and_as_curves(self):
+        jump = np.where(POINTS[:, 2] > 0.1 * np.ptp(POINTS[:, 2]), 1.0, 0.0)
+        samples.write_gifti("jump.func.gii", {"one": jump})
+        self.succeed("edges lh.surf.gii jump.func.gii out.func.gii --map map.shape.gii "
+                     "--curves curves.npy --threshold 0.3 --length 4 --width 1")
+        edges = self.column("map.shape.gii")
+        self.assertGreaterEqual(edges.min(), 0)
+        self.assertGreater(edges.max(), 0.9)
+        self.assertLess(np.abs(self.column("out.func.gii") - jump)[edges < 0.5].max(), 0.2)
+        curves = np.load("curves.npy")
+        self.assertEqual(curves.shape[1], 4)
+        self.assertEqual(set(curves[:, 0]), {0})  # one closed curve
+        np.testing.assert_array_equal(curves[0], curves[-1])
+
+    def test_edges_refuse_other_formats_of_curves(self):
+        code, _, error = run("edges", "lh.surf.gii", "lh.func.gii", "out.func.gii", "--curves",
+                             "curves.func.gii")
+        self.assertEqual(code, 2)
+        self.assertIn("curves.func.gii: the name announces no format for curves", error)
+
     def test_segment_labels_the_sides_of_a_step(self):
         step = np.where(SMOOTH > SMOOTH.mean(), 5.0, 2.0)
         samples.write_gifti("step.func.gii", {"one": step})

@@ -221,6 +221,19 @@ class DataFiles(FileTest):
         axis = nib.load(self.path("b.dscalar.nii")).header.get_axis(0)
         self.assertEqual((list(axis.name), axis.meta[0]), (["map 1"], {"Palette": "palette 1"}))
 
+    def test_columns_of_a_time_series_at_equal_intervals_keep_their_times(self):
+        rows = np.arange(12 * N, dtype=np.float32).reshape(6, 2 * N)
+        data = read_data(samples.write_cifti(self.path("a.dtseries.nii"), rows, series=True))
+        for columns, start, step in (([1], 0.72, 0.72), ([1, 3, 5], 0.72, 1.44),
+                                     ([2, 3], 1.44, 0.72)):
+            data.save(self.path("b.dtseries.nii"),
+                      [part.values[:, columns] for part in data.parts], columns)
+            image = nib.load(self.path("b.dtseries.nii"))
+            axis = image.header.get_axis(0)
+            self.assertEqual((len(axis), axis.unit), (len(columns), "SECOND"))
+            np.testing.assert_allclose([axis.start, axis.step], [start, step], rtol=1e-12)
+            np.testing.assert_array_equal(np.asarray(image.dataobj), rows[columns])
+
     def test_new_columns_have_the_format_of_the_name(self):
         surface = read_surface(samples.write_surface(self.path("lh.surf.gii")))
         for name, kind in (("a.func.gii", "gifti"), ("a.mgz", "mgh"), ("a.npy", "npy")):

@@ -17,11 +17,6 @@ namespace SurfaceDiffusion::Testing
 using MapScheme = HarmonicMap::Scheme;
 
 /// h in the mesh's units.
-inline double MeanEdge(const TriangleMesh& mesh)
-{
-  return mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-}
-
 /// Time step and beta in coordinate units, as the exact solutions are.
 inline HarmonicMap::Settings MapSettings(const TriangleMesh& mesh, double exponent, double timeStep,
   double beta = 1e-8, MapScheme scheme = MapScheme::TangentPlane)

@@ -437,4 +437,10 @@ inline double ObservedOrder(double coarseError, double fineError, double factor 
   return std::log(coarseError / fineError) / std::log(factor);
 }
 
+/// The mean edge length, in coordinate units over LengthUnit().
+inline double MeanEdge(const TriangleMesh& mesh)
+{
+  return mesh.TotalEdgeLength() / mesh.NumberOfEdges();
+}
+
 } // namespace SurfaceDiffusion::Testing

@@ -7,6 +7,8 @@
 #include "Heat.h"
 #include "TotalVariation.h"
 
+#include "Core/Surface/TangentVectors.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -120,4 +122,47 @@ TEST(Convergence, NonlinearDiffusionIsOfSecondOrderInTheEdgeLength)
         << GetEdgeFunction(g.Kind).Name << ' ' << coarse << ' ' << fine;
     }
   }
+}
+
+// Radial data on a disk do not vary along circles. With e1 along the circles only the function
+// across them acts, in a direction that turns from triangle to triangle.
+TEST(Convergence, DirectionsThatVarySeparateTheFunctions)
+{
+  const auto differ = [](Index rings, double turn)
+  {
+    const Surface s = Disk(rings);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const double unit = mesh.LengthUnit();
+    Points directions(s.NumberOfTriangles(), 3);
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      const Eigen::RowVector3d x = (s.Vertices.row(s.Faces(t, 0)) + s.Vertices.row(s.Faces(t, 1)) +
+                                     s.Vertices.row(s.Faces(t, 2))) /
+        3.0;
+      const double angle = std::atan2(x[1], x[0]) + turn;
+      directions.row(t) << std::cos(angle), std::sin(angle), 0.0;
+    }
+    NonlinearDiffusion::Settings settings;
+    settings.TimeStep = TimeStep / (unit * unit);
+    settings.Across = { Kind::Charbonnier, 0.0, 1.0 * unit };
+    settings.Along = settings.Across;
+    const PointData data = PointData::FromValues(
+      Sample(mesh, s, [](const Eigen::RowVector3d& x) { return InitialValue(x.norm()); }));
+    const auto isotropic = MakeLagged(assembler, data, settings);
+    settings.Along = { Kind::Constant, 0.0, 1.0 };
+    settings.AlongDiffusivity = 4.0;
+    NonlinearDiffusion directed(assembler,
+      TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions), data, settings,
+      MakeCholeskySolver());
+    Advance(*isotropic, Steps);
+    Advance(directed, Steps);
+    return RootMeanSquare(mesh, isotropic->State() - directed.State());
+  };
+  const double around = 0.5 * Pi;
+  const double coarse = differ(12, around);
+  const double fine = differ(48, around);
+  EXPECT_LT(fine, 2e-3);
+  EXPECT_GT(ObservedOrder(coarse, fine, 4.0), 1.6) << coarse << ' ' << fine;
+  EXPECT_GT(differ(48, 0.0), 20.0 * fine); // along the radii
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <utility>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -123,8 +124,10 @@ TEST(HarmonicMap, IdentityOfTheSphereRestsAndHasEnergyFourPi)
 
 TEST(HarmonicMap, PerturbedIdentityDecaysAtTheEigenvalueOfTheJacobiOperator)
 {
-  // Of the gradient of a harmonic of degree l: l (l + 1) - 2, so 4 for l = 2. And 0 for l = 1, the
-  // directions of the conformal maps, all of which have the same energy.
+  // |grad u|^2 = 2 for the identity, so that its energy is 4 pi 2^(p/2) / p. The second variation of
+  // the energy in the direction of the gradient of a harmonic of degree l has the eigenvalue
+  // 2^(p/2 - 1) (l (l + 1) - 2 + (p/2 - 1) l (l + 1)). For p = 2 it is 0 for l = 1, the directions of
+  // the conformal maps, all of which have the same energy; for p < 2 they grow.
   const double size = 1e-3;
   const double time = 0.2;
   const int steps = 100;
@@ -132,16 +135,18 @@ TEST(HarmonicMap, PerturbedIdentityDecaysAtTheEigenvalueOfTheJacobiOperator)
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
   const auto identity = [](const Eigen::RowVector3d& x) { return x; };
-  for (const int degree : { 1, 2 })
+  for (const auto& [degree, exponent] : { std::pair{ 1, 2.0 }, std::pair{ 2, 2.0 },
+         std::pair{ 1, 1.5 }, std::pair{ 2, 1.5 }, std::pair{ 2, 1.2 }, std::pair{ 2, 1.0 } })
   {
+    const bool first = degree == 1;
     const auto gradient = [&](const Eigen::RowVector3d& x)
     {
       const Eigen::RowVector3d g =
-        degree == 1 ? Eigen::RowVector3d(0.0, 0.0, 1.0) : Eigen::RowVector3d(x[1], x[0], 0.0);
+        first ? Eigen::RowVector3d(0.0, 0.0, 1.0) : Eigen::RowVector3d(x[1], x[0], 0.0);
       return Eigen::RowVector3d(g - g.dot(x) * x);
     };
     const Values rest = SampleUnit(mesh, s, 3, identity);
-    const auto settings = MapSettings(mesh, 2.0, time / steps);
+    const auto settings = MapSettings(mesh, exponent, time / steps);
     const auto still = MakeMap(assembler, PointData::FromValues(rest), settings);
     const auto moved = MakeMap(assembler,
       PointData::FromValues(SampleUnit(mesh, s, 3,
@@ -152,8 +157,13 @@ TEST(HarmonicMap, PerturbedIdentityDecaysAtTheEigenvalueOfTheJacobiOperator)
     Advance(*moved, steps);
     const double after = RootMeanSquare(mesh, moved->State() - still->State());
     const double rate = std::log(before / after) / time;
-    std::printf("degree %d: rate %.4f\n", degree, rate);
-    EXPECT_NEAR(rate, degree * (degree + 1) - 2.0, 0.1);
+    const double half = 0.5 * exponent;
+    const double l = degree * (degree + 1.0);
+    const double exact = std::pow(2.0, half - 1.0) * (l - 2.0 + (half - 1.0) * l);
+    std::printf("p = %.1f, degree %d: rate %.4f, exact %.4f\n", exponent, degree, rate, exact);
+    EXPECT_NEAR(rate, exact, 0.1);
+    EXPECT_NEAR(still->Energy() * std::pow(mesh.LengthUnit(), 2.0 - exponent),
+      4.0 * Pi * std::pow(2.0, half) / exponent, 0.02 * 4.0 * Pi);
   }
 }
 

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <vector>
 
 using namespace SurfaceDiffusion;
@@ -90,6 +91,30 @@ TEST(IntrinsicDelaunay, MakesNoWeightNegative)
     }
     EXPECT_GT(worstBefore, 0.01) << name << ": the surface is no test";
     EXPECT_LT(worstAfter, 1e-8) << name;
+  }
+}
+
+// Edges that go far around, as on a twisted tube: every flip of all of them straightens by one turn.
+TEST(IntrinsicDelaunay, SpiralsAreUnwound)
+{
+  for (const double turns : { 3.0, 10.0, 30.0 })
+  {
+    const Index cells = 100;
+    const auto mesh = MakeMesh(Slanted(Strip(cells, 1, cells, 1.0), turns));
+    const IntrinsicDelaunay delaunay(mesh);
+    EXPECT_EQ(delaunay.NumberOfEdgesLeft(), 0) << turns;
+    const SparseMatrix stiffness = Stiffness(Assembler(delaunay.Mesh()));
+    const double diagonal = stiffness.diagonal().maxCoeff();
+    for (int j = 0; j < stiffness.outerSize(); ++j)
+    {
+      for (SparseMatrix::InnerIterator entry(stiffness, j); entry; ++entry)
+      {
+        EXPECT_TRUE(entry.row() == j || entry.value() <= 1e-8 * diagonal) << turns;
+      }
+    }
+    const auto flips = static_cast<double>(delaunay.Flips().size());
+    std::printf("%g turns: %g flips per cell\n", turns, flips / cells);
+    EXPECT_GT(flips, (turns - 1.0) * cells);
   }
 }
 

@@ -29,11 +29,6 @@ std::vector<std::int64_t> Ids(const TriangleMesh& mesh)
   return { mesh.InputVertex().begin(), mesh.InputVertex().end() };
 }
 
-double MeanEdge(const TriangleMesh& mesh)
-{
-  return mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-}
-
 /// A model with isotropic rates d1, d2, in LengthUnit()^2/time.
 std::unique_ptr<ReactionDiffusion> MakeModel(std::shared_ptr<const Assembler> assembler,
   PointData data, double d1, double d2, const Settings& settings,
@@ -628,4 +623,39 @@ TEST(ReactionDiffusion, InitialNoiseDependsOnTheIdsAlone)
   EXPECT_LE(noise.cwiseAbs().maxCoeff(), 0.1);
   EXPECT_NEAR(noise.mean(), 0.0, 2e-3);
   EXPECT_NEAR(std::sqrt(noise.squaredNorm() / noise.size()), 0.1 / std::sqrt(3.0), 1e-3);
+}
+
+// The diffusion moves both chemicals about, and the reaction alone changes their integrals.
+TEST(ReactionDiffusion, NeedlesDoNotChangeTheIntegrals)
+{
+  for (const double height : { 1e-6, 1e-8, 1e-10, 1e-12 })
+  {
+    // A needle on one side of a square, and the hole that it leaves.
+    const Surface s = Joined(Plate(6, 1.0),
+      MakeSurface({ { 3, 0, 0 }, { 4, 0, 0 }, { 3.5, height, 0 }, { 3.5, 1, 0 } },
+        { { 0, 1, 2 }, { 1, 3, 2 }, { 3, 0, 2 } }));
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    Settings settings;
+    settings.TimeScheme = Scheme::FirstOrder;
+    const auto model = MakeTexture(assembler, settings);
+    const Kinetics& kinetics = GetKinetics(KineticsName::Turing);
+    for (int step = 0; step < 5; ++step)
+    {
+      const Values u = model->State();
+      Values f(u.rows(), 2);
+      for (Eigen::Index i = 0; i < u.rows(); ++i)
+      {
+        kinetics.React(kinetics.Defaults(), 1, &u(i, 0), &u(i, 1), &f(i, 0), &f(i, 1));
+      }
+      EXPECT_EQ(model->Advance(ProgressMonitor()).Clamped, 0);
+      const Vector& areas = mesh.ControlAreas();
+      for (int c = 0; c < 2; ++c)
+      {
+        const double expected = areas.dot(u.col(c) + settings.TimeStep * f.col(c));
+        EXPECT_NEAR(areas.dot(model->State().col(c)), expected, 1e-14 * expected)
+          << height << ' ' << c;
+      }
+    }
+  }
 }

@@ -304,6 +304,29 @@ TEST(Run, HistoryHasARowPerStepAndAConstantTotal)
   }
 }
 
+TEST(Run, WithoutHistoryTheStatesAreTheSameAndTheHistoryComesWhenItIsWanted)
+{
+  const RunInput input(Testing::Icosphere(2));
+  HeatSettings settings;
+  SurfaceDiffusion::Run with(SerialFor());
+  const Values state = StateOf(with, { input.Block() }, settings);
+  SurfaceDiffusion::Run without(SerialFor());
+  without.SetKeepsHistory(false);
+  EXPECT_EQ(StateOf(without, { input.Block() }, settings), state);
+  EXPECT_EQ(without.MakeHistory(10).Records.back().Energy, 0.0);
+
+  without.SetKeepsHistory(true);
+  EXPECT_EQ(StateOf(without, { input.Block() }, settings), state);
+  EXPECT_EQ(
+    without.MakeHistory(10).Records.back().Energy, with.MakeHistory(10).Records.back().Energy);
+  EXPECT_GT(with.MakeHistory(10).Records.back().Energy, 0.0);
+
+  const long long computed = without.NumberOfStepsComputed();
+  without.SetKeepsHistory(false); // what is known stays
+  EXPECT_EQ(StateOf(without, { input.Block() }, settings), state);
+  EXPECT_EQ(without.NumberOfStepsComputed(), computed);
+}
+
 TEST(Run, ATextureNeedsNoData)
 {
   RunInput input(Testing::Icosphere(3));

@@ -157,4 +157,18 @@ TEST(RunWarnings, EdgesLeftByTheIntrinsicDelaunayTriangulationAreReported)
     { "edges of the intrinsic Delaunay triangulation could not be flipped" });
 }
 
+TEST(RunWarnings, SettingsWithoutEffectOrOutsideTheirRangeAreReported)
+{
+  RunInput input = NoisyNormals();
+  input.Data.FidelityFactors.assign(static_cast<std::size_t>(input.Vertices.rows()), 2.0);
+  HeatSettings heat;
+  ExpectOne(WarningsOf(input, heat), { "FidelityArray has no effect", "FidelityWeight is 0" });
+
+  input.Data.FidelityFactors.clear();
+  heat.Mode = HeatMode::SteadyState;
+  heat.FidelityWeight = 1.0;
+  heat.Blur.FWHM = 4.0;
+  ExpectOne(WarningsOf(input, heat), { "BlurFWHM is 4", "from 2 to 8 mean edge lengths" });
+}
+
 } // namespace SurfaceDiffusion

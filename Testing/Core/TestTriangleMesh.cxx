@@ -25,11 +25,6 @@ double SurfaceArea(const Surface& s)
   return area;
 }
 
-double MeanEdge(const TriangleMesh& mesh)
-{
-  return mesh.LengthUnit() * mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-}
-
 class AnySurface : public ::testing::TestWithParam<std::pair<const char*, Surface>>
 {
 };
@@ -137,8 +132,8 @@ TEST(TriangleMesh, CountsBoundaryAndNonManifoldEdges)
 TEST(TriangleMesh, MeanEdgeCountsSharedEdgesOnce)
 {
   // Two right triangles on the square of side 3: four sides and one diagonal.
-  EXPECT_NEAR(
-    MeanEdge(*MakeMesh(Strip(1, 1, 3.0, 3.0))), (12.0 + 3.0 * std::sqrt(2.0)) / 5.0, 1e-14);
+  const auto mesh = MakeMesh(Strip(1, 1, 3.0, 3.0));
+  EXPECT_NEAR(mesh->LengthUnit() * MeanEdge(*mesh), (12.0 + 3.0 * std::sqrt(2.0)) / 5.0, 1e-14);
 }
 
 TEST(TriangleMesh, LeavesOutDegenerateTrianglesAndUnusedVertices)

@@ -14,11 +14,6 @@
 namespace SurfaceDiffusion::Testing
 {
 
-inline double MeanEdge(const TriangleMesh& mesh)
-{
-  return mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-}
-
 /// Settings of NonlinearDiffusion for total variation, with times and weights in coordinate units
 /// and beta in (1/h)^2.
 inline NonlinearDiffusion::Settings LaggedSettings(

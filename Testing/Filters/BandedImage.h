@@ -4,13 +4,18 @@
 
 #include "ImageTest.h"
 
+#include "vtkFVMHeatFilter.h"
+
 #include "vtkActor.h"
 #include "vtkCamera.h"
+#include "vtkDataObject.h"
 #include "vtkLookupTable.h"
+#include "vtkPolyData.h"
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
+#include "vtkSmartPointer.h"
 
 #include <cmath>
 #include <random>
@@ -54,6 +59,18 @@ inline double Error(vtkPolyDataAlgorithm* filter, double low, double high,
 inline double Signal(const double* p)
 {
   return std::sin(5.0 * p[0] + 1.0) + std::cos(6.0 * p[1]) + std::sin(4.0 * p[2]);
+}
+
+/// Data that were blurred: the surface with the result "f" of linear diffusion of the width.
+inline vtkSmartPointer<vtkPolyData> Blurred(vtkPolyData* surface, const char* name, double width)
+{
+  vtkNew<vtkFVMHeatFilter> blur;
+  blur->SetInputData(surface);
+  blur->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+  blur->SetFWHM(width);
+  blur->SetResultArrayName("f");
+  blur->Update();
+  return blur->GetOutput();
 }
 
 /// White noise, uniform in [-1, 1).

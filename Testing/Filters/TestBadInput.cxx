@@ -83,7 +83,7 @@ void ExpectError(const std::vector<std::string>& words, const Change& change)
   filter->SetFWHM(0.0);
   filter->SetAutomaticFidelity(false);
   filter->SetNoiseLevel(0.0);
-  for (int index = 0; index < 4; ++index)
+  for (int index = 0; index < 6; ++index)
   {
     SetInputArray(filter, index, index == 0 ? "f" : "");
   }
@@ -169,6 +169,22 @@ TEST(BadInput, ArraysThatCannotBeUsedAreErrors)
       input->GetCellData()->AddArray(MakeArray(VTK_INT, "mask", 50, 1, Rough));
       SetInputArray(filter, 1, "mask", true);
     });
+  ExpectError({ "FidelityArray", "\"w\"", "2 components", "1" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      AddPointArray(input, "w", 2, Rough);
+      SetInputArray(filter, 5, "w");
+    });
+  for (const double bad : { -1.0, std::nan("") })
+  {
+    ExpectError({ "FidelityArray", "point 7", "0 or more" },
+      [bad](vtkFVMHeatFilter* filter, vtkPolyData* input)
+      {
+        AddPointArray(input, "w", 1, [bad](vtkIdType i, int) { return i == 7 ? bad : 1.0; });
+        SetInputArray(filter, 5, "w");
+        filter->SetFidelityWeight(1.0);
+      });
+  }
   ExpectError({ "DirectionArray", "\"e1\"", "2 components", "3" },
     [](vtkFVMHeatFilter* filter, vtkPolyData* input)
     {

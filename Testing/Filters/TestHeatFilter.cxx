@@ -53,6 +53,8 @@ TEST(HeatFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetFWHM(), 0.0);
   EXPECT_FALSE(filter->GetAutomaticFidelity());
   EXPECT_EQ(filter->GetNoiseLevel(), 0.0);
+  EXPECT_EQ(filter->GetBlurFWHM(), 0.0);
+  EXPECT_EQ(filter->GetBlurSteps(), 4);
 }
 
 TEST(HeatFilter, EnumsAreNumberedInOrderAndHaveTexts)
@@ -108,13 +110,13 @@ TEST(HeatFilter, PrintSelfNamesEveryProperty)
   vtkNew<vtkFVMHeatFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* property :
-    { "TimeStep", "NumberOfTimeSteps", "Units", "GenerateTimeSteps", "OutputInterval",
-      "FidelityWeight", "MaskMode", "InitialFill", "HoldKnownValues", "RandomSeed",
-      "AlongDiffusivity", "AcrossDiffusivity", "TimeIntegrator", "Solver", "Tolerance",
-      "MaximumNumberOfIterations", "MergeCoincidentPoints", "MergeTolerance", "ResultArrayName",
-      "OutputPrecision", "CheckpointMemoryLimit", "TimeUnit", "MeanEdgeLength", "ValueRange",
-      "NumberOfIterations", "Residual", "FWHM", "AutomaticFidelity", "NoiseLevel", "Mode" })
+  for (const char* property : { "TimeStep", "NumberOfTimeSteps", "Units", "GenerateTimeSteps",
+         "OutputInterval", "FidelityWeight", "MaskMode", "InitialFill", "HoldKnownValues",
+         "RandomSeed", "AlongDiffusivity", "AcrossDiffusivity", "TimeIntegrator", "Solver",
+         "Tolerance", "MaximumNumberOfIterations", "MergeCoincidentPoints", "MergeTolerance",
+         "ResultArrayName", "OutputPrecision", "CheckpointMemoryLimit", "TimeUnit",
+         "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual", "FWHM",
+         "AutomaticFidelity", "NoiseLevel", "Mode", "BlurFWHM", "BlurSteps" })
   {
     EXPECT_NE(text.str().find(std::string(property) + ": "), std::string::npos) << property;
   }

@@ -40,6 +40,22 @@ TEST(HeatImages, NoiseIsRemovedFromASignal)
   EXPECT_GT(Error(filter, -2.5, 2.5, "HeatDenoised", "HeatDenoisedTwin"), ImageTest::Tolerance);
 }
 
+TEST(HeatImages, ABlurredSignalGetsItsHeightBack)
+{
+  auto sphere = Sphere(5);
+  AddPointArray(sphere, "clean", 1, [&](vtkIdType i, int) { return Signal(sphere->GetPoint(i)); });
+  const auto blurred = Blurred(sphere, "clean", 0.25);
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(blurred);
+  SetInputArray(filter, 0, "f");
+  filter->SetModeToSteadyState();
+  filter->SetFidelityWeight(100.0);
+  filter->SetBlurFWHM(0.25);
+  EXPECT_LE(Error(filter, -2.5, 2.5, "HeatDeblurred"), ImageTest::Tolerance);
+  filter->SetBlurFWHM(0.25 / 1.2);
+  EXPECT_GT(Error(filter, -2.5, 2.5, "HeatDeblurred", "HeatDeblurredTwin"), ImageTest::Tolerance);
+}
+
 TEST(HeatImages, AHoleIsFilled)
 {
   auto sphere = Sphere(5);

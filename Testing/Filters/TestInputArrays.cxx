@@ -112,6 +112,31 @@ TEST(InputArrays, MasksOfAnyNumericTypeHaveTheSameEffect)
   }
 }
 
+TEST(InputArrays, FidelityIsMultipliedPointByPoint)
+{
+  auto plane = Grid(10, 10);
+  AddRough(plane);
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
+  AddPointArray(
+    plane, "two", 1, [](vtkIdType, int) { return 2.0; }, VTK_INT);
+  AddPointArray(
+    plane, "known", 1, [](vtkIdType i, int) { return InHole(i) ? 0.0 : 1.0; }, VTK_FLOAT);
+  const auto run = [&](const char* mask, const char* fidelity, double weight)
+  {
+    auto filter = MakeFilter(plane);
+    SetInputArray(filter, 1, mask);
+    SetInputArray(filter, 5, fidelity);
+    filter->SetInitialFillToInput();
+    filter->SetFidelityWeight(weight);
+    filter->Update();
+    return Copy(Result(filter));
+  };
+  const auto twice = run("", "", 2.0);
+  EXPECT_TRUE(Identical(run("", "two", 1.0), twice));
+  EXPECT_FALSE(Identical(run("", "", 1.0), twice));
+  EXPECT_TRUE(Identical(run("", "known", 2.0), run("mask", "", 2.0)));
+}
+
 TEST(InputArrays, NaNInAnyComponentIsMissing)
 {
   auto plane = Grid(10, 10);

@@ -28,6 +28,8 @@ TEST(IntrinsicTVFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetFidelityNorm(), Filter::FIDELITY_NORM_L2);
   EXPECT_FALSE(filter->GetAutomaticFidelity());
   EXPECT_EQ(filter->GetNoiseLevel(), 0.0);
+  EXPECT_EQ(filter->GetBlurFWHM(), 0.0);
+  EXPECT_EQ(filter->GetBlurSteps(), 4);
   EXPECT_EQ(filter->GetDiscretization(), Filter::DISCRETIZATION_LINEAR);
   EXPECT_EQ(filter->GetStopTolerance(), 1e-4);
   EXPECT_EQ(filter->GetTolerance(), 1e-3);
@@ -112,7 +114,7 @@ TEST(IntrinsicTVFilter, PrintSelfNamesEveryProperty)
   for (const char* property :
     { "TimeStep", "FidelityWeight", "Mode", "EdgeFunction", "AcrossEdgeFunction", "Beta",
       "EdgeThreshold", "ChannelCoupling", "FidelityNorm", "AutomaticFidelity", "NoiseLevel",
-      "EffectiveFidelityWeight", "Discretization", "StopTolerance" })
+      "EffectiveFidelityWeight", "Discretization", "StopTolerance", "BlurFWHM", "BlurSteps" })
   {
     EXPECT_NE(text.str().find(std::string(property) + ": "), std::string::npos) << property;
   }
@@ -157,6 +159,9 @@ TEST(IntrinsicTVFilter, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
     { [](Filter* f) { f->SetBeta(std::nan("")); }, "Beta is nan" },
     { [](Filter* f) { f->SetEdgeThreshold(-1.0); }, "EdgeThreshold is -1; allowed" },
     { [](Filter* f) { f->SetNoiseLevel(-0.5); }, "NoiseLevel is -0.5; allowed" },
+    { [](Filter* f) { f->SetBlurFWHM(-1.0); }, "BlurFWHM is -1; allowed" },
+    { [](Filter* f) { f->SetBlurSteps(1); }, "BlurSteps is 1; allowed: 2 to 64" },
+    { [](Filter* f) { f->SetBlurFWHM(1.0); }, "Mode is 0; allowed: 1 SteadyState together with" },
     { [](Filter* f) { f->SetStopTolerance(1.0); }, "StopTolerance is 1; allowed" },
     { [](Filter* f) { f->SetMode(2); }, "Mode is 2; allowed: 0 TimeSteps, 1 SteadyState" },
     { [](Filter* f) { f->SetEdgeFunction(6); }, "EdgeFunction is 6; allowed: 0 TotalVariation" },

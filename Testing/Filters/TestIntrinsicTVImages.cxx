@@ -82,6 +82,20 @@ TEST(IntrinsicTVImages, ImpulsesAreReplaced)
   EXPECT_GT(Error(filter, -3.0, 2.5, "TVImpulses", "TVImpulsesTwin"), ImageTest::Tolerance);
 }
 
+TEST(IntrinsicTVImages, BlurredPatchesGetTheirEdgesBack)
+{
+  auto sphere = Sphere(5);
+  AddPointArray(sphere, "clean", 1, [&](vtkIdType i, int) { return Patches(sphere->GetPoint(i)); });
+  const auto blurred = Blurred(sphere, "clean", 0.15);
+  const auto filter = MakeFilter(blurred);
+  filter->SetModeToSteadyState();
+  filter->SetFidelityWeight(100.0);
+  filter->SetBlurFWHM(0.15);
+  EXPECT_LE(Error(filter, -3.0, 2.5, "TVDeblurred"), ImageTest::Tolerance);
+  filter->SetBlurFWHM(0.15 / 1.2);
+  EXPECT_GT(Error(filter, -3.0, 2.5, "TVDeblurred", "TVDeblurredTwin"), ImageTest::Tolerance);
+}
+
 TEST(IntrinsicTVImages, ChannelsAreDenoisedTogether)
 {
   auto sphere = Sphere(5);

@@ -5,6 +5,7 @@
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
 #include "vtkFieldData.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
@@ -278,6 +279,43 @@ TEST(OutputArrays, ReplacingTheInputArrayItselfIsNoWarning)
   filter->Update();
   EXPECT_TRUE(messages.Warnings.empty());
   EXPECT_EQ(filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
+}
+
+// Process 0 receives only the arrays that the filter reads.
+TEST(OutputArrays, ReplacingAnArrayOfPiecesIsOneWarning)
+{
+  vtkNew<vtkPartitionedDataSet> pieces;
+  for (unsigned int p = 0; p < 2; ++p)
+  {
+    auto piece = Grid(4, 5);
+    for (vtkIdType i = 0; i < piece->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      piece->GetPoint(i, x);
+      piece->GetPoints()->SetPoint(i, x[0] + 3.0 * p, x[1], x[2]);
+    }
+    AddRough(piece);
+    AddPointArray(piece, "former", 2, Rough);
+    piece->GetPointData()->SetActiveScalars("f");
+    pieces->SetPartition(p, piece);
+  }
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputDataObject(pieces);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty());
+  filter->SetResultArrayName("former");
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("\"former\""), std::string::npos);
+  auto* output = vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  for (unsigned int p = 0; p < 2; ++p)
+  {
+    vtkPointData* const data = output->GetPartition(p)->GetPointData();
+    EXPECT_EQ(data->GetNumberOfArrays(), 2);
+    EXPECT_EQ(data->GetArray("former")->GetNumberOfComponents(), 1);
+    EXPECT_EQ(data->GetArray("former")->GetNumberOfTuples(), 20);
+  }
 }
 
 TEST(OutputArrays, ATextureOverOtherArraysIsOneWarning)

@@ -119,6 +119,7 @@ TEST(TuringTextureFilter, HasTheDocumentedDefaults)
   EXPECT_TRUE(filter->GetClampToNonNegative());
   EXPECT_EQ(filter->GetFeatureSize(), 0.0);
   EXPECT_EQ(filter->GetStopTolerance(), 0.02);
+  EXPECT_EQ(filter->GetCoarseStartSize(), 50000);
   EXPECT_FALSE(filter->GetColorOutput());
 }
 
@@ -232,6 +233,7 @@ TEST(TuringTextureFilter, RejectsInvalidSettings)
     { [](auto* f) { f->SetFeatureSize(-1.0); }, "FeatureSize is -1" },
     { [](auto* f) { f->SetInitialNoise(-0.1); }, "InitialNoise is -0.1" },
     { [](auto* f) { f->SetStopTolerance(-1.0); }, "StopTolerance is -1" },
+    { [](auto* f) { f->SetCoarseStartSize(-1); }, "CoarseStartSize is -1" },
     { [](auto* f) { f->SetKinetics(6); }, "Kinetics is 6" },
     { [](auto* f) { f->SetGrowthRate(0.0); }, "GrowthRate is 0" },
     { [](auto* f) { f->SetDecayRate(17.0); }, "no steady state" },
@@ -647,14 +649,15 @@ TEST(TuringTextureFilter, PrintsEveryProperty)
   vtkNew<vtkTuringTextureFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* property : { "Kinetics: Turing", "ReactionRate: 1", "DiffusionRate1: 21",
-         "DiffusionRate2: 2.6", "DiffusionRateAcross1: -1", "DiffusionRateAcross2: -1",
-         "FeatureSize: 0", "InitialNoise: 0.1", "ClampToNonNegative: On", "AutomaticTimeStep: Off",
-         "StopTolerance: 0.02", "GrowthRate: 16", "DecayRate: 12", "ActivatorSupply: 0.01",
-         "SubstrateSupply: 1", "FeedRate: 0.05", "KillRate: 0.06", "ReactantA: 2", "ReactantB: 4",
-         "InhibitorDecayRate: 1.05", "Saturation: 0", "RecoveryRate: 1.2", "RecoveryDamping: 0.9",
-         "Stimulus: 0", "TextureChemical: U1", "ColorOutput: Off", "LowColor: ", "HighColor: ",
-         "Wavelength: ", "WavelengthGrowthRate: ", "DiffusionRateFactor: " })
+  for (const char* property :
+    { "Kinetics: Turing", "ReactionRate: 1", "DiffusionRate1: 21", "DiffusionRate2: 2.6",
+      "DiffusionRateAcross1: -1", "DiffusionRateAcross2: -1", "FeatureSize: 0", "InitialNoise: 0.1",
+      "ClampToNonNegative: On", "AutomaticTimeStep: Off", "StopTolerance: 0.02",
+      "CoarseStartSize: 50000", "GrowthRate: 16", "DecayRate: 12", "ActivatorSupply: 0.01",
+      "SubstrateSupply: 1", "FeedRate: 0.05", "KillRate: 0.06", "ReactantA: 2", "ReactantB: 4",
+      "InhibitorDecayRate: 1.05", "Saturation: 0", "RecoveryRate: 1.2", "RecoveryDamping: 0.9",
+      "Stimulus: 0", "TextureChemical: U1", "ColorOutput: Off", "LowColor: ", "HighColor: ",
+      "Wavelength: ", "WavelengthGrowthRate: ", "DiffusionRateFactor: " })
   {
     EXPECT_TRUE(Contains(text.str(), property)) << property;
   }

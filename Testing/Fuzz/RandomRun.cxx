@@ -7,8 +7,11 @@
 #include "Core/Models/HarmonicMap.h"
 #include "Core/Models/InitialState.h"
 #include "Core/Models/LinearDiffusion.h"
+#include "Core/Models/MumfordShah.h"
 #include "Core/Models/NonlinearDiffusion.h"
 #include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/TikhonovDeblurring.h"
+#include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Models/TotalVariationFlow.h"
 #include "Core/Models/UnitVectors.h"
 #include "Core/Operators/CotanWeights.h"
@@ -118,6 +121,19 @@ PointData ReadData(Bytes& bytes, const TriangleMesh& mesh, double span)
     }
   }
   return data;
+}
+
+/// Read last, so that the bytes of earlier findings keep their meaning.
+void ReadFidelityFactors(Bytes& bytes, PointData& data)
+{
+  if (bytes.Flip(4))
+  {
+    data.FidelityFactors.resize(data.Given.rows());
+    for (double& factor : data.FidelityFactors)
+    {
+      factor = bytes.Flip(3) ? 0.0 : bytes.Size(2.0);
+    }
+  }
 }
 
 std::vector<std::int64_t> Ids(const TriangleMesh& mesh)
@@ -260,7 +276,9 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   // On flat triangles the remaining error of a solver has much energy.
   promises.Energy =
     settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed) && !HasFlatTriangles(mesh);
-  LinearDiffusion model(assembler, coefficients, std::move(data), settings, ReadSolver(bytes));
+  std::shared_ptr<LinearSolver> solver = ReadSolver(bytes);
+  ReadFidelityFactors(bytes, data);
+  LinearDiffusion model(assembler, coefficients, std::move(data), settings, std::move(solver));
   Run(mesh, model, promises);
 }
 
@@ -303,6 +321,32 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
   Run(mesh, model, promises);
 }
 
+void RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  auto blur =
+    std::make_unique<HeatBlur>(assembler, bytes.Size(2.0), 2 + bytes.Below(4), ReadSolver(bytes));
+  const double fidelity = bytes.Size(4.0);
+  Promises promises;
+  promises.Energy = !HasFlatTriangles(mesh);
+  promises.Solution = false; // products with the blur may be inexact
+  if (bytes.Flip())
+  {
+    TikhonovDeblurring model(assembler, CotanWeights(mesh), std::move(data), fidelity,
+      std::move(blur), ReadSolver(bytes), { 1e-10, 1000 });
+    Run(mesh, model, promises);
+    return;
+  }
+  TotalVariationDeblurring::Settings settings;
+  settings.Fidelity = fidelity;
+  settings.Regularization.Coupling =
+    bytes.Flip() ? ChannelCoupling::Joint : ChannelCoupling::PerChannel;
+  settings.MaximumNumberOfIterations = 20;
+  TotalVariationDeblurring model(
+    assembler, TangentVectors(0, 2), std::move(data), settings, std::move(blur));
+  Run(mesh, model, promises);
+}
+
 void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames)
 {
@@ -323,8 +367,29 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   // The minimisation can then pass through values so large that the sum is lost in round-off.
   promises.Sum =
     settings.Fidelity == 0.0 && !Any(data.Fixed) && !HasFlatTriangles(assembler->Mesh());
+  ReadFidelityFactors(bytes, data);
+  if (bytes.Flip(4))
+  {
+    RunDeblurring(bytes, assembler, std::move(data));
+    return;
+  }
   TotalVariationFlow model(assembler, frames, std::move(data), settings);
   Run(assembler->Mesh(), model, promises);
+}
+
+void RunMumfordShah(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+{
+  MumfordShah::Settings settings;
+  settings.Fidelity = bytes.Flip() ? bytes.Size(4.0) : 0.0;
+  settings.EdgeCost = bytes.Size(4.0);
+  settings.EdgeWidth = bytes.Size(2.0);
+  settings.StopTolerance = 0.01;
+  const TriangleMesh& mesh = assembler->Mesh();
+  Promises promises;
+  promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed) && !HasFlatTriangles(mesh);
+  MumfordShah model(
+    assembler, CotanWeights(mesh), std::move(data), settings, ReadSolver(bytes), ReadSolver(bytes));
+  Run(mesh, model, promises);
 }
 
 void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
@@ -406,7 +471,7 @@ void RunDirections(Bytes& bytes, const Assembler& assembler, const Points& point
 void RunFromBytes(const std::uint8_t* begin, std::size_t count)
 {
   Bytes bytes(begin, count);
-  const int model = bytes.Below(6);
+  const int model = bytes.Below(7);
   const Points points = ReadPoints(bytes);
   const Triangles triangles = ReadTriangles(bytes, static_cast<int>(points.rows()));
   const auto original = std::make_shared<TriangleMesh>(points, triangles);
@@ -450,6 +515,9 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
       break;
     case 1:
       RunNonlinear(bytes, assembler, std::move(data), frames);
+      break;
+    case 6:
+      RunMumfordShah(bytes, assembler, std::move(data));
       break;
     default:
       RunMinimizing(bytes, assembler, std::move(data), frames);

@@ -59,6 +59,43 @@ class Heat(unittest.TestCase):
             np.testing.assert_allclose(sd.heat(surface, noise[:, k], fwhm=0.3), together[:, k],
                                        rtol=0, atol=1e-12)
 
+    def test_many_columns_have_the_bits_of_a_run_of_all_of_them(self):
+        # Without full_output, many columns are solved in panels, which share their missing points.
+        surface = sd.sphere(3)
+        random = np.random.default_rng(1)
+        noise = random.normal(size=(surface.n_points, 150)).astype(np.float32)
+        noise[random.random(surface.n_points) < 0.1, 149] = np.nan
+        mask = random.random(surface.n_points) < 0.1
+        for options in ({"fwhm": 0.3}, {"fwhm": 0.3, "mask_mode": "Exclude", "mask": mask},
+                        {"fidelity_weight": 1.0, "initial_fill": "Input", "mask": mask},
+                        {"mode": "SteadyState", "hold_known_values": True},
+                        {"initial_fill": "Noise"}, {"dtype": np.float64, "fixed": ~mask & False}):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                panels = sd.heat(surface, noise, **options)
+                whole = sd.heat(surface, noise, full_output=True, **options).values
+            self.assertEqual(panels.dtype, whole.dtype)
+            np.testing.assert_array_equal(panels, whole, str(options))
+
+    def test_many_columns_give_each_warning_and_error_once(self):
+        surface = sd.sphere(3)
+        noise = np.random.default_rng(1).normal(size=(surface.n_points, 150))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            sd.heat(surface, noise, mask=np.zeros(surface.n_points))
+        self.assertEqual(["the mask changes nothing with these settings"],
+                         [str(warning.message) for warning in caught])
+        noise[7, 140] = np.inf
+        with self.assertRaisesRegex(ValueError, "values is infinite at point 7"):
+            sd.heat(surface, noise)
+
+    def test_progress_of_many_columns_grows_to_one(self):
+        surface = sd.sphere(3)
+        fractions = []
+        sd.heat(surface, np.ones((surface.n_points, 150)), progress=fractions.append)
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertEqual(fractions[-1], 1.0)
+
     def test_nan_and_mask_are_missing(self):
         surface = sd.sphere(4)
         values = surface.points[:, 2] + 5.0
@@ -201,13 +238,42 @@ class Surfaces(unittest.TestCase):
             surface.points[0] = 0.0
 
 
+class Edges(unittest.TestCase):
+    def test_a_cap_has_one_closed_curve_of_its_length(self):
+        for level in (5, 6):
+            surface = sd.sphere(level)
+            clean = np.where(surface.points[:, 2] > 0.5, 7.0, 3.0)
+            result = sd.mumford_shah(surface, clean[:, None])
+            self.assertEqual(result.values.shape, (surface.n_points, 1))
+            self.assertEqual(result.edges.shape, (surface.n_points,))
+            self.assertEqual(len(result.curves), 1)
+            np.testing.assert_array_equal(result.curves[0][0], result.curves[0][-1])
+            self.assertAlmostEqual(result.edge_length / (2 * np.pi * np.sqrt(0.75)), 1, delta=0.01)
+            self.assertLess(np.abs(result.values[:, 0] - clean).max(), 0.1)
+
+    def test_steps_lower_the_energy_between_stages(self):
+        surface = sd.sphere(4)
+        states = list(sd.mumford_shah(surface, np.sign(bands(surface)), steps=True))
+        energies = [state.history["Energy"][-1] for state in states]
+        self.assertLessEqual(sum(np.diff(energies) > 0), 2)  # where the width is halved
+        self.assertEqual(states[0].edges.max(), 0.0)
+        self.assertEqual(states[0].curves, [])
+        self.assertGreater(states[-1].edges.max(), 0.9)
+
+    def test_curves_are_optional(self):
+        surface = sd.sphere(4)
+        result = sd.mumford_shah(surface, np.sign(bands(surface, 1)), edge_curves=False)
+        self.assertEqual(result.curves, [])
+        self.assertEqual(result.edge_length, 0.0)
+
+
 class Keywords(unittest.TestCase):
     def test_defaults_are_those_of_the_library(self):
         from surfacediffusion import _core
         import inspect
 
-        for function in (sd.heat, sd.intrinsic_tv, sd.harmonic_map, sd.turing_texture,
-                         sd.direction_field):
+        for function in (sd.heat, sd.intrinsic_tv, sd.harmonic_map, sd.mumford_shah,
+                         sd.turing_texture, sd.direction_field):
             parameters = inspect.signature(function).parameters
             known = {entry["name"]: entry for entry in _core.list_settings(function.__name__)}
             self.assertGreater(len(known), 5)
@@ -223,11 +289,12 @@ class Keywords(unittest.TestCase):
     def test_every_keyword_takes_its_default(self):
         surface = sd.sphere(2)
         z = surface.points[:, 2]
-        for name in ("heat", "intrinsic_tv", "turing_texture", "harmonic_map", "direction_field"):
+        for name in ("heat", "intrinsic_tv", "mumford_shah", "turing_texture", "harmonic_map",
+                     "direction_field"):
             table = sd._settings.settings_of(name)
             defaults = {keyword: setting.default for keyword, setting in table.items()}
             function = getattr(sd, name)
-            values = [z] if name in ("heat", "intrinsic_tv") else []
+            values = [z] if name in ("heat", "intrinsic_tv", "mumford_shah") else []
             if name == "turing_texture":
                 defaults["number_of_time_steps"] = 3
                 expected = np.asarray(function(surface, *values, number_of_time_steps=3))

@@ -15,7 +15,7 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    direction_field, harmonic_map, heat, intrinsic_tv, turing_texture,
+    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, turing_texture,
 )
 
 
@@ -68,6 +68,10 @@ class Meshes(unittest.TestCase):
         aligned = np.abs(np.einsum("ij,ij->i", field["Direction"], mesh["flow"]))
         lengths = np.linalg.norm(mesh["flow"], axis=1)
         self.assertGreater(np.median(aligned / lengths), 0.9)
+        edges, report = mumford_shah(mesh, "f", mask="hole", full_output=True, edge_threshold=0.5)
+        self.assertEqual(edges["Edges"].shape, (mesh.n_points,))
+        self.assertEqual(edges.point_data.active_scalars_name, "fMumfordShah")
+        self.assertIsInstance(report.curves, list)
         vectors = harmonic_map(mesh, "east")
         self.assertEqual(vectors["eastHarmonic"].shape, (mesh.n_points, 3))
 

@@ -25,13 +25,14 @@ FILTERS = {
     "heat": "vtkFVMHeatFilter",
     "intrinsic_tv": "vtkIntrinsicTVFilter",
     "harmonic_map": "vtkHarmonicMapFilter",
+    "mumford_shah": "vtkMumfordShahFilter",
     "turing_texture": "vtkTuringTextureFilter",
     "direction_field": "vtkSurfaceDirectionFieldFilter",
 }
 
 #: Index of each input array of the filters.
 INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
-         "rates": 4}
+         "rates": 4, "fidelity": 5}
 
 
 def rough_sphere():
@@ -85,12 +86,19 @@ class SameBits(unittest.TestCase):
              {"MaskMode": "Exclude", "FWHM": 0.2, "Solver": "Multigrid"}),
             ("heat", {"values": self.values}, {"AutomaticFidelity": True, "Mode": "SteadyState"}),
             ("heat", {"values": self.values}, {"IntrinsicDelaunay": True}),
+            ("heat", {"values": self.values, "fidelity": 1.0 + self.points[:, 2] ** 2},
+             {"FidelityWeight": 0.5}),
             ("intrinsic_tv", {"values": self.values}, {}),
             ("intrinsic_tv", {"values": colours, "mask": self.mask}, {"Mode": "SteadyState"}),
+            ("intrinsic_tv", {"values": self.values}, {"Mode": "SteadyState", "BlurFWHM": 0.2}),
+            ("heat", {"values": self.columns},
+             {"Mode": "SteadyState", "BlurFWHM": 0.2, "FidelityWeight": 9.0, "BlurSteps": 3}),
             ("intrinsic_tv", {"values": self.values},
              {"EdgeFunction": "PeronaMalikRational", "EdgeThreshold": 0.2}),
             ("intrinsic_tv", {"values": self.columns},
              {"Discretization": "CrouzeixRaviart", "NumberOfTimeSteps": 3}),
+            ("mumford_shah", {"values": self.normals}, {"EdgeThreshold": 0.4}),
+            ("mumford_shah", {"values": self.normals[:, 0].astype(np.float32)}, {}),
             ("harmonic_map", {}, {"MoveVertices": True}),
             ("harmonic_map", {"vectors": self.normals}, {"Exponent": 2.0}),
             ("harmonic_map", {"vectors": self.normals.astype(np.float32)}, {"LineField": True}),
@@ -136,9 +144,12 @@ class SameBits(unittest.TestCase):
             if result.colors is not None:
                 found["TextureColor"] = result.colors
         else:
-            suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic"}[function]
+            suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
+                      "mumford_shah": "MumfordShah"}[function]
             base = next(iter(arrays), "Normals")
             found = {base + suffix: result.values}
+        if function == "mumford_shah":
+            found["Edges"] = result.edges
         if function == "harmonic_map":
             found["points"] = result.points
         if function != "direction_field":

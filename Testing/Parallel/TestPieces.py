@@ -12,7 +12,7 @@ import pieces
 import surfacediffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
-    IntrinsicTVFilter, ExtractSurface, Sphere, SurfaceDirectionFieldFilter,
+    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDirectionFieldFilter,
     SurfaceSegmentationFilter,
     TrivialProducer, TuringTextureFilter,
 )
@@ -54,6 +54,7 @@ CASES = (
      "vectorsHarmonic"),
     ("harmonic, paper", HarmonicMapFilter,
      dict(InputArray=["POINTS", "vectors"], Scheme="ExplicitReaction"), "vectorsHarmonic"),
+    ("edges", MumfordShahFilter, dict(Tolerance=1e-10), "fMumfordShah"),
     ("segmentation", SurfaceSegmentationFilter, dict(FidelityWeight=2.0), "RegionId"),
     ("turing", TuringTextureFilter, LABYRINTH, "u1"),
     ("turing, rates", TuringTextureFilter,

@@ -6,6 +6,7 @@
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
+#include "vtkMumfordShahFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include "vtkCellData.h"
@@ -165,6 +166,23 @@ AnyFilter HarmonicMinimizingMovement()
   return map;
 }
 
+AnyFilter Edges()
+{
+  auto shah = Make<vtkMumfordShahFilter>("v", 12);
+  shah->EdgeCurvesOff();
+  shah->SetEdgeThreshold(0.8);
+  return shah;
+}
+
+AnyFilter EdgesInpainting()
+{
+  auto shah = Make<vtkMumfordShahFilter>("rough", 12);
+  SetInputArray(shah, 1, "hole");
+  SetInputArray(shah, 3, "edge");
+  shah->EdgeCurvesOff();
+  return shah;
+}
+
 AnyFilter Minimum()
 {
   auto tv = Make<vtkIntrinsicTVFilter>("f", 1);
@@ -314,6 +332,8 @@ INSTANTIATE_TEST_SUITE_P(Pieces, Together,
     Case{ "harmonic, lines", "vHarmonic", HarmonicLines },
     Case{ "harmonic, paper", "vHarmonic", HarmonicPaper },
     Case{ "harmonic, minimizing movement", "vHarmonic", HarmonicMinimizingMovement },
+    Case{ "edges", "Edges", Edges }, Case{ "edges, values", "vMumfordShah", Edges },
+    Case{ "edges, inpainting", "roughMumfordShah", EdgesInpainting },
     Case{ "minimum", "fTV", Minimum, 1e-5 },
     Case{ "minimum, inpainting", "roughTV", MinimumInpainting },
     Case{ "minimum, L1", "vTV", MinimumL1 },

@@ -9,7 +9,7 @@ import unittest
 
 from paraview import servermanager
 from paraview.simple import (
-    FVMHeatFilter, GroupDatasets, HarmonicMapFilter, IntrinsicTVFilter,
+    FVMHeatFilter, GroupDatasets, HarmonicMapFilter, IntrinsicTVFilter, MumfordShahFilter,
     SurfaceDirectionFieldFilter, TuringTextureFilter,
 )
 from plugin_testing import read_sphere, values
@@ -17,7 +17,8 @@ from plugin_testing import read_sphere, values
 # The arrays that each filter adds.
 FILTERS = (
     (FVMHeatFilter, "noisyDiffused"), (IntrinsicTVFilter, "noisyTV"),
-    (HarmonicMapFilter, "NormalsHarmonic"), (TuringTextureFilter, "u1"),
+    (HarmonicMapFilter, "NormalsHarmonic"), (MumfordShahFilter, "noisyMumfordShah"),
+    (TuringTextureFilter, "u1"),
     (SurfaceDirectionFieldFilter, "Direction"),
 )
 KINDS = ("vtkMultiBlockDataSet", "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection")

@@ -96,8 +96,9 @@ VALUES = {
     "DiffusionRateAcross1": (-1.0, 3.0), "DiffusionRateAcross2": (-1.0, 3.0),
     "TimeStep": (0.02, 0.05), "Exponent": (1.0, 2.0), "OutputInterval": (1, 2),
     "MaskArray": (["POINTS", "hole"],), "FixedArray": (["POINTS", "ends"],),
-    "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (-1.0, 0.2),
-    "DiffusionRateArray": (["CELLS", "rates"],),
+    "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (0.2, 0.5),
+    "DiffusionRateArray": (["CELLS", "rates"],), "FidelityArray": (["POINTS", "weight"],),
+    "BlurFWHM": (0.0, 0.3),
 }
 
 
@@ -136,6 +137,7 @@ def sphere_with_arrays():
     add(data.GetPointData(), "f", points[:, 2] + 0.1 * np.cos(50 * points[:, 0]))
     add(data.GetPointData(), "hole", points[:, 0] > 0.3)
     add(data.GetPointData(), "ends", points[:, 2] < -0.4)
+    add(data.GetPointData(), "weight", 1.0 + points[:, 1] ** 2)
     add(data.GetPointData(), "east", np.tile([1.0, 0.0, 0.0], (len(points), 1)))
     add(data.GetCellData(), "up", np.tile([0.0, 0.0, 1.0], (cells, 1)))
     add(data.GetCellData(), "rates", np.tile([21.0, 21.0, 2.6, 2.6], (cells, 1)))
@@ -244,6 +246,8 @@ class TestProxies(unittest.TestCase):
             ("HarmonicMapFilter", ["Exponent", "LineField", "MoveVertices", "FidelityWeight"]),
             ("IntrinsicTVFilter",
              ["Mode", "EdgeFunction", "FidelityNorm", "AutomaticFidelity", "FidelityWeight"]),
+            ("MumfordShahFilter",
+             ["EdgeThreshold", "SmoothingLength", "EdgeWidth"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
             ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean", "AutomaticMeans"]),
@@ -272,6 +276,8 @@ class TestProxies(unittest.TestCase):
         found = set()
         for name, proxy, _ in proxies():
             for key in lengths & set(proxy.ListProperties()):
+                if name == "MumfordShahFilter" and key == "SmoothingLength":
+                    continue  # in the unit that Units selects
                 found.add(key)
                 prop = proxy.SMProxy.GetProperty(key)
                 self.assertIsNotNone(prop.FindDomain("vtkSMBoundsDomain"), (name, key))

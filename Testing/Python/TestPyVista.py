@@ -16,7 +16,7 @@ import numpy as np
 
 from surfacediffusion import vtkFVMHeatFilter
 from surfacediffusion.pyvista import (
-    direction_field, harmonic_map, heat, intrinsic_tv, turing_texture,
+    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, turing_texture,
 )
 
 
@@ -57,6 +57,9 @@ class TestPyVista(unittest.TestCase):
         mesh = noisy_sphere()
         self.assertIn("fTV", intrinsic_tv(mesh, "f", FidelityWeight=1).point_data)
         self.assertIn("NormalsHarmonic", harmonic_map(mesh).point_data)
+        edges, report = mumford_shah(mesh, "f", full_output=True)
+        self.assertIn("Edges", edges.point_data)
+        self.assertEqual(report.curves.n_lines > 0, report.EdgeLength > 0)
         moved = harmonic_map(mesh, NumberOfTimeSteps=1, MoveVertices=True)
         self.assertFalse((moved.points == mesh.points).all())
         field = direction_field(mesh, Method="Smooth")

@@ -8,6 +8,7 @@
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
+#include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTuringTextureFilter.h"
@@ -51,6 +52,7 @@ inline std::vector<FilterKind> AllFilters()
   using Heat = vtkFVMHeatFilter;
   using TV = vtkIntrinsicTVFilter;
   using Harmonic = vtkHarmonicMapFilter;
+  using Shah = vtkMumfordShahFilter;
   using Turing = vtkTuringTextureFilter;
   return {
     MakeKind<Heat>("Heat", "fDiffused", 3),
@@ -80,6 +82,13 @@ inline std::vector<FilterKind> AllFilters()
       "HarmonicMoved", "NormalsHarmonic", 2, [](Harmonic* f) { f->MoveVerticesOn(); }),
     MakeKind<Harmonic>("HarmonicExplicit", "NormalsHarmonic", 2,
       [](Harmonic* f) { f->SetSchemeToExplicitReaction(); }),
+    MakeKind<Shah>("MumfordShah", "fMumfordShah", 4),
+    MakeKind<Shah>("MumfordShahDirect", "fMumfordShah", 3,
+      [](Shah* f)
+      {
+        f->SetSolverToDirect();
+        f->IntrinsicDelaunayOn();
+      }),
     MakeKind<Turing>("Turing", "u1", 4),
     MakeKind<Turing>("TuringFirstOrder", "u1", 4,
       [](Turing* f)

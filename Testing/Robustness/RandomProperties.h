@@ -8,6 +8,7 @@
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
+#include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTuringTextureFilter.h"
@@ -187,6 +188,8 @@ inline List OfHeat()
     RANDOM_PROPERTY(F, FWHM, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, AutomaticFidelity, dice.Flip(3)),
     RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, BlurFWHM, dice.Flip(3) ? Positive(dice) : 0.0),
+    RANDOM_PROPERTY(F, BlurSteps, dice.Flip(24) ? 1 : 2 + dice.Below(5)),
   };
 }
 
@@ -245,6 +248,8 @@ inline List OfTotalVariation()
     RANDOM_PROPERTY(F, FidelityNorm, dice.Flip(3)),
     RANDOM_PROPERTY(F, AutomaticFidelity, dice.Flip(4)),
     RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, BlurFWHM, dice.Flip(3) ? Positive(dice) : 0.0),
+    RANDOM_PROPERTY(F, BlurSteps, dice.Flip(24) ? 1 : 2 + dice.Below(5)),
     RANDOM_PROPERTY(F, Discretization, dice.Flip(3)),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 1.0 : dice.Logarithmic(1e-6, 0.5)),
   };
@@ -265,6 +270,18 @@ inline List OfHarmonicMap()
   };
 }
 
+inline List OfMumfordShah()
+{
+  using F = vtkMumfordShahFilter;
+  return {
+    RANDOM_PROPERTY(F, SmoothingLength, Positive(dice)),
+    RANDOM_PROPERTY(F, EdgeThreshold, Positive(dice)),
+    RANDOM_PROPERTY(F, EdgeWidth, Positive(dice)),
+    RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 1.0 : dice.Logarithmic(1e-6, 0.5)),
+    RANDOM_PROPERTY(F, EdgeCurves, dice.Flip()),
+  };
+}
+
 inline List OfTexture()
 {
   using F = vtkTuringTextureFilter;
@@ -280,6 +297,7 @@ inline List OfTexture()
     RANDOM_PROPERTY(F, ClampToNonNegative, dice.Flip()),
     RANDOM_PROPERTY(F, AutomaticTimeStep, dice.Flip()),
     RANDOM_PROPERTY(F, StopTolerance, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, CoarseStartSize, dice.Flip() ? 1 : 50000),
     RANDOM_PROPERTY(F, GrowthRate, Near(dice, 16.0)),
     RANDOM_PROPERTY(F, DecayRate, Near(dice, 12.0)),
     RANDOM_PROPERTY(F, ActivatorSupply, Near(dice, 0.01)),
@@ -335,6 +353,7 @@ inline std::vector<FilterClass> AllFilterClasses()
   using Heat = vtkFVMHeatFilter;
   using TV = vtkIntrinsicTVFilter;
   using Harmonic = vtkHarmonicMapFilter;
+  using Shah = vtkMumfordShahFilter;
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   return {
@@ -342,6 +361,7 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<TV>({ OfSurface<TV>(), OfDataDiffusion<TV>(0b101), OfTotalVariation() }),
     MakeClass<Harmonic>(
       { OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(0b001), OfHarmonicMap() }),
+    MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),

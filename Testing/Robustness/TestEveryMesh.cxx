@@ -208,6 +208,14 @@ TEST_P(EveryMesh, HasItsNormalsRegularised)
   this->Run(harmonic, "NormalsHarmonic");
 }
 
+TEST_P(EveryMesh, HasItsEdgesFound)
+{
+  vtkNew<vtkMumfordShahFilter> shah;
+  SetSteps(shah, 40);
+  shah->SetEdgeThreshold(0.8);
+  this->Run(shah, "fMumfordShah");
+}
+
 TEST_P(EveryMesh, HasATextureGrown)
 {
   vtkNew<vtkTuringTextureFilter> turing;

@@ -31,6 +31,7 @@ const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controll
   "SeamTolerance", "Solver", "Tolerance", "MaximumNumberOfIterations", "ClampToNonNegative" };
 const std::set<std::string> WithoutEffectInClass = {
   "vtkHarmonicMapFilter TimeIntegrator", // it has only one
+  "vtkMumfordShahFilter TimeIntegrator",
   "vtkSurfaceSegmentationFilter TimeIntegrator", // a steady state
   "vtkSurfaceSegmentationFilter TimeStep", "vtkSurfaceSegmentationFilter NumberOfTimeSteps",
   "vtkSurfaceSegmentationFilter OutputInterval",
@@ -92,13 +93,15 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Heat = vtkFVMHeatFilter;
   using TV = vtkIntrinsicTVFilter;
   using Harmonic = vtkHarmonicMapFilter;
+  using Shah = vtkMumfordShahFilter;
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   using Segmentation = vtkSurfaceSegmentationFilter;
   std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
   needed["MergeTolerance"] = With<Surface>([](Surface* f) { f->MergeCoincidentPointsOn(); });
   needed["OutputInterval"] = With<Diffusion>([](Diffusion* f) { f->GenerateTimeStepsOn(); });
-  for (const char* name : { "vtkFVMHeatFilter", "vtkIntrinsicTVFilter", "vtkHarmonicMapFilter" })
+  for (const char* name :
+    { "vtkFVMHeatFilter", "vtkIntrinsicTVFilter", "vtkHarmonicMapFilter", "vtkMumfordShahFilter" })
   {
     needed[name + std::string(" RandomSeed")] =
       With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
@@ -112,7 +115,28 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->AutomaticFidelityOn();
       f->SetStopTolerance(0.1);
     });
-  needed["EdgeThreshold"] = With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
+  needed["vtkFVMHeatFilter BlurFWHM"] = With<Heat>(
+    [](Heat* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetFidelityWeight(1.0);
+    });
+  needed["vtkFVMHeatFilter BlurSteps"] = With<Heat>(
+    [](Heat* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetFidelityWeight(1.0);
+      f->SetBlurFWHM(0.2);
+    });
+  needed["vtkIntrinsicTVFilter BlurFWHM"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
+  needed["vtkIntrinsicTVFilter BlurSteps"] = With<TV>(
+    [](TV* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetBlurFWHM(0.2);
+    });
+  needed["vtkIntrinsicTVFilter EdgeThreshold"] =
+    With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
   needed["vtkIntrinsicTVFilter StopTolerance"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
   needed["vtkHarmonicMapFilter Beta"] = With<Harmonic>([](Harmonic* f) { f->SetExponent(1.2); });
   needed["ConsistentReaction"] = needed["ProjectToSphere"] =
@@ -123,6 +147,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed["vtkTuringTextureFilter OutputInterval"] =
       needed["vtkTuringTextureFilter StopTolerance"] =
         With<Turing>([](Turing* f) { f->SetTimeStep(0.5); });
+  needed["CoarseStartSize"] = With<Turing>([](Turing* f) { f->SetFeatureSize(8.0); });
   needed["AutomaticTimeStep"] = With<Turing>([](Turing* f) { f->SetTimeStep(0.01); });
   needed["ReactionRate"] = With<Turing>([](Turing* f) { f->SetUnitsToAbsolute(); });
   needed["ActivatorSupply"] = needed["SubstrateSupply"] =
@@ -136,6 +161,12 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   needed["RecoveryRate"] = needed["RecoveryDamping"] = needed["Stimulus"] =
     With<Turing>([](Turing* f) { f->SetKineticsToFitzHughNagumo(); });
   needed["LowColor"] = needed["HighColor"] = With<Turing>([](Turing* f) { f->ColorOutputOn(); });
+  needed["vtkMumfordShahFilter EdgeCurves"] = With<Shah>(
+    [](Shah* f)
+    {
+      f->SetEdgeThreshold(0.5);
+      f->SetEdgeWidth(0.2);
+    });
   needed["Mean"] = needed["AutomaticMeans"] = With<Segmentation>(
     [](Segmentation* f)
     {
@@ -148,7 +179,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     });
   needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
     With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
-  needed["SmoothingLength"] =
+  needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =
     With<Direction>([](Direction* f) { f->SetMethodToCurvatureAligned(); });
   needed["HintWeight"] = With<Direction>([](Direction* f) { f->SetMethodToHints(); });
   return needed;

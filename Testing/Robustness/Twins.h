@@ -90,6 +90,16 @@ inline std::string Difference(vtkPolyDataAlgorithm* a, vtkPolyDataAlgorithm* b)
     }
     different += DifferentArrays(History(a)->GetRowData(), History(b)->GetRowData());
   }
+  if (a->GetNumberOfOutputPorts() > 2)
+  {
+    vtkPolyData* const lines = vtkPolyData::SafeDownCast(a->GetOutputDataObject(2));
+    vtkPolyData* const others = vtkPolyData::SafeDownCast(b->GetOutputDataObject(2));
+    const bool same = lines->GetNumberOfPoints() == others->GetNumberOfPoints() &&
+      (lines->GetNumberOfPoints() == 0 ||
+        SameValues(lines->GetPoints()->GetData(), others->GetPoints()->GetData()));
+    different += same ? "" : "curves ";
+    different += DifferentArrays(lines->GetCellData(), others->GetCellData());
+  }
   return different;
 }
 

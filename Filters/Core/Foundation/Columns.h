@@ -4,7 +4,18 @@
 
 #include "Core/Foundation/Types.h"
 
+#include <algorithm>
 #include <type_traits>
+
+// A function with this attribute, and all that is inlined into it, is compiled for several widths of
+// vectors, of which the widest that the processor has is used. Products and sums are rounded one by
+// one (no fused operations), so that the bits do not depend on the processor.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__)
+#define SURFACEDIFFUSION_ANY_VECTORS                                                               \
+  __attribute__((target_clones("avx512f", "avx2", "default"), optimize("fp-contract=off"), flatten))
+#else
+#define SURFACEDIFFUSION_ANY_VECTORS
+#endif
 
 namespace SurfaceDiffusion
 {
@@ -28,17 +39,23 @@ decltype(auto) ForNumber(Eigen::Index number, const F& f)
   }
 }
 
-/// Many columns are processed in panels of this number: a row of a panel is one line of the cache.
-constexpr int ColumnPanel = 8;
+/// Many columns are processed in panels of this number. A wider panel shares each pass over a matrix
+/// or a factor among more columns, but its rows stay in the cache for a shorter time.
+constexpr int ColumnPanel = 16;
+constexpr int HalfPanel = ColumnPanel / 2;
 
-/// The same for the columns of point data: one, two, three and a panel are known to the compiler,
-/// and the template argument 0 stands for any number of them.
+/// The same for the columns of point data: one, two, three, half a panel and a panel are known to
+/// the compiler, and the template argument 0 stands for any number of them.
 template <typename F>
 decltype(auto) ForColumns(Eigen::Index columns, const F& f)
 {
   if (columns == ColumnPanel)
   {
     return f(std::integral_constant<int, ColumnPanel>());
+  }
+  if (columns == HalfPanel)
+  {
+    return f(std::integral_constant<int, HalfPanel>());
   }
   return ForNumber<3>(columns, f);
 }
@@ -62,6 +79,26 @@ struct ColumnCount<0>
 
   int Columns;
 };
+
+/// Copy K numbers, or `count` of them if K is 0. The compiler need not know that the arrays are apart.
+template <int K>
+void CopyColumns(const double* from, double* to, int count)
+{
+  if (K == 0)
+  {
+    std::copy_n(from, count, to);
+    return;
+  }
+  double numbers[K > 0 ? K : 1]; // std::copy_n is a call here
+  for (int k = 0; k < K; ++k)
+  {
+    numbers[k] = from[k];
+  }
+  for (int k = 0; k < K; ++k)
+  {
+    to[k] = numbers[k];
+  }
+}
 
 /// Room in registers for Rows x K numbers. For any number of columns (K = 0) the numbers stay in
 /// memory.

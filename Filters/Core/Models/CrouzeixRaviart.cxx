@@ -252,6 +252,7 @@ CrouzeixRaviartModel::CrouzeixRaviartModel(std::shared_ptr<const Assembler> vert
   onEdges.Start = EdgesFromVertices(*this->Assembly, *this->Edges, this->Start, parallel);
   onEdges.Missing.resize(onEdges.Start.rows());
   onEdges.Fixed.resize(onEdges.Start.rows());
+  onEdges.FidelityFactors.resize(data.FidelityFactors.size() > 0 ? onEdges.Start.rows() : 0);
   ForEach(parallel, static_cast<Index>(onEdges.Start.rows()),
     [&](Index e)
     {
@@ -259,6 +260,13 @@ CrouzeixRaviartModel::CrouzeixRaviartModel(std::shared_ptr<const Assembler> vert
       const Index j = this->Edges->Ends()[e][1];
       onEdges.Missing[e] = data.Missing[i] || data.Missing[j];
       onEdges.Fixed[e] = this->Fixed[i] && this->Fixed[j];
+      if (onEdges.FidelityFactors.size() > 0)
+      {
+        // The harmonic mean: 0 if one end is, as for missing data.
+        const double product = data.FidelityFactor(i) * data.FidelityFactor(j);
+        onEdges.FidelityFactors[e] =
+          product > 0.0 ? 2.0 * product / (data.FidelityFactor(i) + data.FidelityFactor(j)) : 0.0;
+      }
     });
   this->StartResidue.resize(this->U.rows(), this->U.cols());
   VerticesFromEdges(

@@ -44,7 +44,7 @@ double Fidelity::Energy(
   return Sum(parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
-      if (this->Data.Missing[i])
+      if (this->Weight(i) == 0.0) // the data are not read where they are missing
       {
         return 0.0;
       }
@@ -53,7 +53,7 @@ double Fidelity::Energy(
       ForEachNorm(coupling, static_cast<int>(u.cols()),
         [&](int first, int last)
         { density += this->Density(distance.segment(first, last - first).squaredNorm()); });
-      return mesh.ControlAreas()[i] * this->Options.Weight * density;
+      return mesh.ControlAreas()[i] * this->Weight(i) * density;
     });
 }
 

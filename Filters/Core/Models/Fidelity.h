@@ -16,11 +16,12 @@ enum class FidelityNorm
   L1 ///< for impulse noise
 };
 
-/// The fidelity term lambda chi (f - u) of a diffusion equation and its energy,
-///   L2: lambda/2 int chi |u - f|^2,
-///   L1: lambda int chi (sqrt(|u - f|^2 + delta^2) - delta), whose term is
-///       lambda chi (f - u) / sqrt(|u - f|^2 + delta^2),
-/// with the indicator chi of the known part of the surface: chi = 0 where data are missing.
+/// The fidelity term lambda w chi (f - u) of a diffusion equation and its energy,
+///   L2: lambda/2 int w chi |u - f|^2,
+///   L1: lambda int w chi (sqrt(|u - f|^2 + delta^2) - delta), whose term is
+///       lambda w chi (f - u) / sqrt(|u - f|^2 + delta^2),
+/// with the factors w of the data, and the indicator chi of the known part of the surface: chi = 0
+/// where data are missing.
 class Fidelity
 {
 public:
@@ -45,8 +46,8 @@ public:
   /// False for L1, which does not conserve the total of u.
   bool CanConserve() const { return this->Options.Norm == FidelityNorm::L2 || !this->IsPresent(); }
 
-  /// lambda chi at vertex i.
-  double Weight(Index i) const { return this->Data.Missing[i] ? 0.0 : this->Options.Weight; }
+  /// lambda w chi at vertex i.
+  double Weight(Index i) const { return this->Options.Weight * this->Data.FidelityFactor(i); }
 
   /// The factor of f - u in channels first .. last - 1 at vertex i: Weight(i), with L1 over the
   /// rounded distance.

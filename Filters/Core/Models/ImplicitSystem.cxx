@@ -17,6 +17,14 @@ void ImplicitSystem::Assemble(const Eigen::Ref<const Vector>& diagonal, double s
   this->Assembly->Fill(this->Matrix, diagonal, scale, coefficients, weights, this->Parallel, signs);
 }
 
+void ImplicitSystem::Assemble(
+  const Eigen::Ref<const Vector>& diagonal, double scale, const SparseMatrix& stiffness)
+{
+  this->Matrix = stiffness;
+  this->Matrix *= scale;
+  this->AddToDiagonal(1.0, diagonal);
+}
+
 void ImplicitSystem::AddToDiagonal(double factor, const Vector& x)
 {
   ForEach(this->Parallel, static_cast<Index>(x.size()),

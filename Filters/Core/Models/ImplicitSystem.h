@@ -33,6 +33,11 @@ public:
     const CornerWeights& coefficients, const double* weights = nullptr,
     const CornerWeights* signs = nullptr);
 
+  /// The matrix diag(diagonal) + scale K with a given stiffness matrix K, whose pattern has all
+  /// diagonal entries. Dirichlet conditions are not available.
+  void Assemble(
+    const Eigen::Ref<const Vector>& diagonal, double scale, const SparseMatrix& stiffness);
+
   /// Add factor x to the diagonal of the matrix.
   void AddToDiagonal(double factor, const Vector& x);
 

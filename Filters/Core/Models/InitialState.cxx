@@ -144,7 +144,7 @@ void FixFreeComponents(const TriangleMesh& mesh, PointData& data, double fidelit
     bool bound = false;
     for (Index i = begin; i < begin + size && !bound; ++i)
     {
-      bound = data.Fixed[i] || (fidelity > 0.0 && !data.Missing[i]);
+      bound = data.Fixed[i] || fidelity * data.FidelityFactor(i) > 0.0;
     }
     const auto areas = mesh.ControlAreas().segment(begin, size);
     sums.row(c).head(columns) = areas.transpose() * data.Start.middleRows(begin, size);

@@ -74,10 +74,8 @@ StepReport LinearDiffusion::Advance(const ProgressMonitor& progress)
   for (Eigen::Index first = 0; first < columns; first += ColumnPanel)
   {
     const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, columns - first);
-    for (Values* values : { &this->V, &this->Previous, &this->RightHandSide })
-    {
-      values->resize(this->U.rows(), count);
-    }
+    this->V.resize(this->U.rows(), count);
+    this->RightHandSide.resize(this->U.rows(), count);
     const double share = (1.0 - setup) / static_cast<double>(columns);
     this->AdvanceColumns(first, report,
       progress.Part(setup + share * static_cast<double>(first),
@@ -86,99 +84,156 @@ StepReport LinearDiffusion::Advance(const ProgressMonitor& progress)
   return report;
 }
 
+/// SDIRK2, with the source s = lambda M chi f in both stages, and lambda chi M in K:
+///   (M + gamma dt K) y = M u + gamma dt s
+///   (M + gamma dt K) u_new = M u + (1 - gamma) dt (s - K y) + gamma dt s,
+/// and the first stage gives dt (s - K y) = M (y - u) / gamma: no product with K is needed.
 void LinearDiffusion::AdvanceColumns(
   Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const Eigen::Index columns = this->V.cols();
-  // Values are measured from the mean: the errors of a solve are relative to the contrast then.
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
+  ForColumns(this->V.cols(),
+    [&](auto number)
     {
-      for (Eigen::Index k = 0; k < columns; ++k)
+      constexpr int columns = decltype(number)::value;
+      this->StartStep<columns>(first);
+      if (this->Options.TimeScheme == Scheme::SDIRK2)
       {
-        this->V(i, k) = this->U(i, first + k) - this->Origin[first + k];
+        this->Solve(first, report, progress.Part(0.0, 0.5));
+        this->StartSecondStage<columns>(first);
+        this->Solve(first, report, progress.Part(0.5, 1.0));
       }
-    });
-  if (this->Options.TimeScheme == Scheme::SDIRK2)
-  {
-    this->SDIRK2Step(first, report, progress);
-  }
-  else
-  {
-    this->BackwardEulerStep(first, report, progress);
-  }
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      for (Eigen::Index k = 0; k < columns; ++k)
+      else
       {
-        this->V(i, k) = this->Data.Fixed[i] ? this->Data.Start(i, first + k)
-                                            : this->V(i, k) + this->Origin[first + k];
+        this->Solve(first, report, progress);
       }
+      this->FinishStep<columns>(first);
     });
-  this->Conserved.Restore(mesh, this->V, this->Parallel, first);
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i) { this->U.row(i).segment(first, columns) = this->V.row(i); });
 }
 
-/// (8), (14), with the fidelity of (16), (18):
+/// The right-hand side of a backward Euler step (8), (14), with the fidelity of (16), (18):
 /// ((1 + lambda dt chi) M + dt K) u_new = M (u + lambda dt chi f); the limit dt -> infinity is
-/// (lambda chi M + K) u_new = lambda M chi f.
-void LinearDiffusion::BackwardEulerStep(
-  Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
+/// (lambda chi M + K) u_new = lambda M chi f. The first stage of SDIRK2 is such a step of gamma dt.
+/// Values are measured from the mean: the errors of a solve are relative to the contrast then.
+template <int K>
+void LinearDiffusion::StartStep(Eigen::Index first)
 {
+  const ColumnCount<K> columns(this->V.cols());
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const bool limit = this->Options.TimeScheme == Scheme::SteadyState;
   const double inertia = limit ? 0.0 : 1.0;
-  const double dt = limit ? 1.0 : this->Options.TimeStep;
+  const double dt = limit ? 1.0 : this->Options.ImplicitStep();
+  const double* const origin = this->Origin.data() + first;
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       const double area = mesh.ControlAreas()[i];
       const double source = dt * this->Fit.Weight(i);
-      for (Eigen::Index k = 0; k < this->V.cols(); ++k)
+      const double* const u = &this->U(i, first);
+      double* const v = &this->V(i, 0);
+      double* const b = &this->RightHandSide(i, 0);
+      for (int k = 0; k < columns; ++k)
       {
-        this->RightHandSide(i, k) =
-          area * (inertia * this->V(i, k) + this->Source(source, i, first + k));
+        v[k] = u[k] - origin[k];
+        b[k] = area * (inertia * v[k]);
+      }
+      if (source > 0.0) // f is not read without a weight, which would cost many columns time
+      {
+        for (int k = 0; k < columns; ++k)
+        {
+          b[k] = area * (inertia * v[k] + source * (this->Data.Given(i, first + k) - origin[k]));
+        }
       }
     });
-  this->Solve(first, report, progress);
 }
 
-/// With the source s = lambda M chi f in both stages, and lambda chi M in K,
-///   (M + gamma dt K) y = M u + gamma dt s
-///   (M + gamma dt K) u_new = M u + (1 - gamma) dt (s - K y) + gamma dt s,
-/// and the first stage gives dt (s - K y) = M (y - u) / gamma: no product with K is needed.
-void LinearDiffusion::SDIRK2Step(
-  Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
+template <typename Body>
+void LinearDiffusion::ForEachShifted(const Body& body) const
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  const double dt = this->Options.ImplicitStep();
-  this->Previous = this->V;
-  const double ratio = (1.0 - Gamma) / Gamma;
-  for (const double second : { 0.0, ratio })
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        const double area = mesh.ControlAreas()[i];
-        const double source = dt * this->Fit.Weight(i);
-        for (Eigen::Index k = 0; k < this->V.cols(); ++k)
-        {
-          const double previous = this->Previous(i, k);
-          this->RightHandSide(i, k) = area *
-            (previous + second * (this->V(i, k) - previous) + this->Source(source, i, first + k));
-        }
-      });
-    this->Solve(first, report, second > 0.0 ? progress.Part(0.5, 1.0) : progress.Part(0.0, 0.5));
+    const Index begin = mesh.ComponentsBegin()[c];
+    const double* const shifts = this->Shifts.data() + c * this->Shifts.cols();
+    ForEach(this->Parallel, mesh.ComponentsBegin()[c + 1] - begin,
+      [&](Index i) { body(begin + i, shifts); });
   }
+}
+
+/// The right-hand side of the second stage, from V, the result y of the first one.
+template <int K>
+void LinearDiffusion::StartSecondStage(Eigen::Index first)
+{
+  const ColumnCount<K> columns(this->V.cols());
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const double dt = this->Options.ImplicitStep();
+  const double ratio = (1.0 - Gamma) / Gamma;
+  const double* const origin = this->Origin.data() + first;
+  this->ForEachShifted(
+    [&](Index i, const double* shifts)
+    {
+      const double area = mesh.ControlAreas()[i];
+      const double source = dt * this->Fit.Weight(i);
+      const double* const u = &this->U(i, first);
+      double* const v = &this->V(i, 0);
+      double* const b = &this->RightHandSide(i, 0);
+      for (int k = 0; k < columns; ++k)
+      {
+        const double previous = u[k] - origin[k];
+        v[k] += shifts[k];
+        b[k] = previous + ratio * (v[k] - previous);
+      }
+      if (source > 0.0)
+      {
+        for (int k = 0; k < columns; ++k)
+        {
+          b[k] += source * (this->Data.Given(i, first + k) - origin[k]);
+        }
+      }
+      for (int k = 0; k < columns; ++k)
+      {
+        b[k] *= area;
+      }
+    });
+}
+
+/// From V to U.
+template <int K>
+void LinearDiffusion::FinishStep(Eigen::Index first)
+{
+  const ColumnCount<K> columns(this->V.cols());
+  const double* const origin = this->Origin.data() + first;
+  this->ForEachShifted(
+    [&](Index i, const double* shifts)
+    {
+      double* const v = &this->V(i, 0);
+      if (this->Data.Fixed[i])
+      {
+        CopyColumns<K>(&this->Data.Start(i, first), v, columns);
+        return;
+      }
+      for (int k = 0; k < columns; ++k)
+      {
+        v[k] = v[k] + shifts[k] + origin[k];
+      }
+    });
+  this->Conserved.FindShifts(this->Assembly->Mesh(), this->V, this->Parallel, first, this->Shifts);
+  this->ForEachShifted(
+    [&](Index i, const double* shifts)
+    {
+      const double* const v = &this->V(i, 0);
+      double* const u = &this->U(i, first);
+      for (int k = 0; k < columns; ++k)
+      {
+        u[k] = v[k] + shifts[k];
+      }
+    });
 }
 
 void LinearDiffusion::Solve(Eigen::Index first, StepReport& report, const ProgressMonitor& progress)
 {
   this->System.Solve(this->RightHandSide, this->V, report, progress, first);
-  this->Balanced.Restore(this->Assembly->Mesh(), this->RightHandSide, this->V, this->Parallel);
+  this->Balanced.FindShifts(
+    this->Assembly->Mesh(), this->RightHandSide, this->V, this->Parallel, this->Shifts);
 }
 
 double LinearDiffusion::Energy() const

@@ -58,17 +58,19 @@ public:
 
 private:
   void Prepare(const ProgressMonitor& progress);
+  /// Call body(i, Shifts of the component) for every vertex i.
+  template <typename Body>
+  void ForEachShifted(const Body& body) const;
   /// One step of the columns from `first` on that V has room for.
   void AdvanceColumns(Eigen::Index first, StepReport& report, const ProgressMonitor& progress);
-  void BackwardEulerStep(Eigen::Index first, StepReport& report, const ProgressMonitor& progress);
-  void SDIRK2Step(Eigen::Index first, StepReport& report, const ProgressMonitor& progress);
+  /// The loops over the vertices in a step of K columns, or of any number of them if K is 0.
+  template <int K>
+  void StartStep(Eigen::Index first);
+  template <int K>
+  void StartSecondStage(Eigen::Index first);
+  template <int K>
+  void FinishStep(Eigen::Index first);
   void Solve(Eigen::Index first, StepReport& report, const ProgressMonitor& progress);
-
-  /// weight (f - Origin); does not read f without a weight, which would cost many columns time.
-  double Source(double weight, Index i, Eigen::Index k) const
-  {
-    return weight > 0.0 ? weight * (this->Data.Given(i, k) - this->Origin[k]) : 0.0;
-  }
 
   std::shared_ptr<const Assembler> Assembly;
   CornerWeights Coefficients;
@@ -81,8 +83,10 @@ private:
   MeanCorrection Balanced;
   bool Prepared = false;
   /// A few columns at a time go through a step, so that their rows stay in the cache: u minus
-  /// Origin, the same at the start of the step, and the right-hand side.
-  Values V, Previous, RightHandSide;
+  /// Origin, and the right-hand side.
+  Values V, RightHandSide;
+  /// What the corrections add, component x column: loops over V that follow add it, too.
+  Values Shifts;
   Eigen::RowVectorXd Origin; ///< mean of the start, from which values are measured in a step
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -47,6 +48,10 @@ public:
 
   /// u, n x k, at the current step.
   virtual const Values& State() const = 0;
+
+  /// True if the model knows the integrals of State() over the surface, per column, without making
+  /// State(), which may cost more than a step.
+  virtual bool SumState(std::vector<double>& /*totals*/) const { return false; }
 
   /// One time step. On an exception the state is not defined until Restore().
   virtual StepReport Advance(const ProgressMonitor& progress) = 0;

@@ -190,10 +190,11 @@ double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values
   double area = 0.0;
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
-    if (!data.Missing[i])
+    const double weight = mesh.ControlAreas()[i] * data.FidelityFactor(i);
+    if (weight > 0.0)
     {
-      sum += mesh.ControlAreas()[i] * (u.row(i) - data.Given.row(i)).squaredNorm();
-      area += mesh.ControlAreas()[i];
+      sum += weight * (u.row(i) - data.Given.row(i)).squaredNorm();
+      area += weight;
     }
   }
   return area > 0.0 ? std::sqrt(sum / (area * static_cast<double>(u.cols()))) : 0.0;

@@ -50,7 +50,8 @@ struct FidelityChoice
 FidelityChoice FindFidelityByDiscrepancy(
   const std::function<double(double)>& discrepancy, double noiseLevel, double start);
 
-/// Root of the area-weighted mean over the known vertices, and the columns, of (u - f)^2.
+/// Root of the area-weighted mean of w (u - f)^2 over the known vertices and the columns, divided by
+/// that of the fidelity factors w.
 double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values& u);
 
 } // namespace SurfaceDiffusion

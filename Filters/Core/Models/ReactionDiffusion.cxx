@@ -3,7 +3,6 @@
 #include "Core/Models/ReactionDiffusion.h"
 
 #include "Core/Operators/DirichletEnergy.h"
-#include "Core/Operators/MeanCorrection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +39,7 @@ ReactionDiffusion::ReactionDiffusion(std::shared_ptr<const Assembler> assembler,
   , Assembly(std::move(assembler))
   , Terms(reaction)
   , Coefficients{ std::move(chemicals[0].Coefficients), std::move(chemicals[1].Coefficients) }
+  , Stiffness{ std::move(chemicals[0].Stiffness), std::move(chemicals[1].Stiffness) }
   , Data(std::move(data))
   , Options(settings)
   , Parallel(parallel)
@@ -87,13 +87,21 @@ void ReactionDiffusion::Prepare(const ProgressMonitor& progress)
   for (int c = 0; c < 2; ++c)
   {
     ImplicitSystem& system = this->Systems[c];
-    system.Assemble(areas, this->ImplicitTime, this->Coefficients[c]);
+    if (this->Stiffness[c].rows() > 0)
+    {
+      system.Assemble(areas, this->ImplicitTime, this->Stiffness[c]);
+    }
+    else
+    {
+      system.Assemble(areas, this->ImplicitTime, this->Coefficients[c]);
+    }
     if (this->Data.Fixed.any())
     {
       system.Constrain(this->Data.Fixed, this->Data.Start.col(c));
     }
     system.SetUpSolver(progress.Part(0.5 * c, 0.5 * c + 0.5));
   }
+  this->Means = MeanCorrection(this->Assembly->Mesh(), areas, this->Data.Fixed, this->Parallel);
   this->Prepared = true;
 }
 
@@ -281,6 +289,8 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
     {
       std::rethrow_exception(solution.Failure);
     }
+    this->Means.Restore(
+      this->Assembly->Mesh(), this->RightHandSide[c], this->New[c], this->Parallel);
     report.Iterations += solution.Report.Iterations;
     report.Residual = std::max(report.Residual, solution.Report.Residual);
     report.MissedResidual = std::max(report.MissedResidual, solution.Report.MissedResidual);
@@ -368,9 +378,14 @@ void ReactionDiffusion::FinishStep()
 double ReactionDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  return mesh.GetReduction().Sum(
-    DirichletEnergy(mesh, this->Coefficients[0], this->New[0], this->Parallel) +
-    DirichletEnergy(mesh, this->Coefficients[1], this->New[1], this->Parallel));
+  double energy = 0.0;
+  for (int c = 0; c < 2; ++c)
+  {
+    energy += this->Stiffness[c].rows() > 0
+      ? DirichletEnergy(this->Stiffness[c], this->New[c], this->Parallel)
+      : DirichletEnergy(mesh, this->Coefficients[c], this->New[c], this->Parallel);
+  }
+  return mesh.GetReduction().Sum(energy);
 }
 
 } // namespace SurfaceDiffusion

@@ -6,6 +6,7 @@
 #include "Core/Models/Model.h"
 #include "Core/Models/Reaction.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Operators/MeanCorrection.h"
 
 #include <array>
 #include <exception>
@@ -51,11 +52,13 @@ public:
   };
 
   /// The diffusion of one chemical: the coefficients of D (CotanWeights.h) in LengthUnit()^2/time,
-  /// and the solver of its matrix, kept by the caller from run to run.
+  /// and the solver of its matrix, kept by the caller from run to run. In a CoarseSpace, Stiffness
+  /// is the stiffness matrix in place of the coefficients, and no vertex may be fixed.
   struct Chemical
   {
     CornerWeights Coefficients;
     std::shared_ptr<LinearSolver> Solver;
+    SparseMatrix Stiffness = {};
   };
 
   /// data.Start: u1, u2 at t = 0.
@@ -101,6 +104,7 @@ private:
   std::shared_ptr<const Assembler> Assembly;
   Reaction Terms;
   std::array<CornerWeights, 2> Coefficients;
+  std::array<SparseMatrix, 2> Stiffness; ///< empty, or in place of Coefficients
   PointData Data;
   Settings Options;
   const ParallelFor& Parallel;
@@ -108,6 +112,7 @@ private:
   std::array<ImplicitSystem, 2> Systems;
   Vector AccumulatedAreas;
   const Vector& Areas; ///< of the control cells, consistent
+  MeanCorrection Means; ///< the sums of the equations hold to round-off, on needles too
   bool Prepared = false;
   bool Done = false;
   Pair Old, New, Rates, Force, Explicit, RightHandSide;

@@ -25,7 +25,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   , Target(this->Data.Given)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  if (this->Fit.CanConserve())
+  if (this->Fit.CanConserve() && settings.ConservesTotal)
   {
     this->Conserved = TotalCorrection(mesh, this->Data, this->Fit.IsPresent(), parallel);
   }
@@ -88,6 +88,14 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   }
 }
 
+void TotalVariationFlow::SetLimits(double stopTolerance, int maximumNumberOfIterations)
+{
+  for (const System& system : this->Systems)
+  {
+    system.Minimizer->SetLimits(stopTolerance, maximumNumberOfIterations);
+  }
+}
+
 void TotalVariationFlow::MeasureWeights(const Vector& quadratic)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
@@ -122,6 +130,7 @@ StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
     gap += result.AbsoluteGap;
     done += 1.0;
   }
+  this->KeepsMultipliers = true;
   this->Conserved.Restore(this->Assembly->Mesh(), this->U, this->Parallel);
   report.ErrorBound = this->WeightedArea > 0.0
     ? std::sqrt(2.0 * gap * this->LargestInverseWeight / this->WeightedArea)
@@ -162,7 +171,7 @@ void TotalVariationFlow::SetTarget()
 TotalVariationMinimizer::Report TotalVariationFlow::Minimize(
   const System& system, const ProgressMonitor& progress)
 {
-  const bool keepMultipliers = !this->Options.SteadyState;
+  const bool keepMultipliers = !this->Options.SteadyState && this->KeepsMultipliers;
   if (this->Systems.size() == 1)
   {
     return system.Minimizer->Minimize(

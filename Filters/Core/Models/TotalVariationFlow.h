@@ -45,6 +45,7 @@ public:
     FidelityNorm Norm = FidelityNorm::L2;
     double StopTolerance = 1e-4; ///< relative duality gap, see TotalVariationMinimizer
     int MaximumNumberOfIterations = 10000;
+    bool ConservesTotal = true; ///< whether states without fidelity keep the total of the start
   };
 
   /// frames: e1 per triangle (see TangentVectors.h), without rows if g1 = g2.
@@ -58,6 +59,16 @@ public:
   /// their sum) and A the area where they act: the root mean square of u - u* is not larger, since
   /// the energy is strongly convex. Infinite if there are no such terms.
   StepReport Advance(const ProgressMonitor& progress) override;
+
+  /// Replace the state. The next step starts from the multipliers of the last one, or from none.
+  void SetState(const Values& u, bool keepMultipliers = true)
+  {
+    this->U = u;
+    this->KeepsMultipliers = keepMultipliers;
+  }
+
+  /// StopTolerance and MaximumNumberOfIterations of later steps.
+  void SetLimits(double stopTolerance, int maximumNumberOfIterations);
 
   /// E(u).
   double Energy() const override;
@@ -90,6 +101,7 @@ private:
   double LargestInverseWeight = 0.0; ///< 1/mu where mu > 0, times Diffusivity
   double WeightedArea = 0.0; ///< of the control cells with mu > 0
   std::vector<System> Systems;
+  bool KeepsMultipliers = true; ///< in the next step
   Values Target;
   Values SteadyStart; ///< from which the steady state of L1 is sought, which removes outliers
   mutable Values ColumnU;

@@ -81,6 +81,13 @@ public:
   void SaveMultipliers(double* numbers, Eigen::Index columns) const;
   void RestoreMultipliers(const double* numbers, Eigen::Index columns);
 
+  /// The tolerance and the largest number of iterations of later calls of Minimize().
+  void SetLimits(double stopTolerance, int maximumNumberOfIterations)
+  {
+    this->Options.StopTolerance = stopTolerance;
+    this->Options.MaximumNumberOfIterations = maximumNumberOfIterations;
+  }
+
   /// int psi(|S grad u|).
   double GradientEnergy(const Values& u) const;
 

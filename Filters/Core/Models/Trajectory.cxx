@@ -70,11 +70,13 @@ const double* CheckpointStore::At(Index step) const
 }
 
 Trajectory::Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> model,
-  std::size_t memoryLimit, const ParallelFor& parallel)
+  std::size_t memoryLimit, const ParallelFor& parallel, bool keepsHistory)
   : Surface(std::move(mesh))
   , Stepper(std::move(model))
+  , NumberOfColumns(static_cast<std::size_t>(this->Stepper->State().cols()))
   , Parallel(parallel)
   , Checkpoints(this->Stepper->CheckpointSize(), memoryLimit)
+  , IsHistoryKept(keepsHistory)
 {
   this->Checkpoints.Reserve(0);
   this->Checkpoints.Offer(0, *this->Stepper);
@@ -87,7 +89,7 @@ void Trajectory::Reserve(Index steps)
   // A run of unknown or enormous length grows its history as it goes.
   const std::size_t rows = static_cast<std::size_t>(std::min(steps, Index(1000000))) + 1;
   this->History.reserve(rows);
-  this->Totals.reserve(rows * static_cast<std::size_t>(this->State().cols()));
+  this->Totals.reserve(rows * this->NumberOfColumns);
 }
 
 Index Trajectory::NumberOfStepsTo(Index step) const
@@ -137,10 +139,18 @@ void Trajectory::Seek(Index step, const ProgressMonitor& progress)
 
 void Trajectory::Record(const StepReport& report, double seconds)
 {
-  const auto columns = static_cast<std::size_t>(this->State().cols());
+  const std::size_t columns = this->NumberOfColumns;
   this->Totals.resize(this->History.size() * columns); // an abort may have left some
-  const double energy = this->Stepper->Energy();
-  Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
+  double energy = 0.0;
+  this->StateTotals.assign(columns, 0.0);
+  if (this->IsHistoryKept)
+  {
+    energy = this->Stepper->Energy();
+    if (!this->Stepper->SumState(this->StateTotals))
+    {
+      Total(*this->Surface, this->State(), this->StateTotals, this->Parallel);
+    }
+  }
   this->Totals.insert(this->Totals.end(), this->StateTotals.begin(), this->StateTotals.end());
   this->History.push_back({ energy, report.Iterations, report.Residual, seconds, report.Clamped,
     report.MissedResidual, report.UnsettledDecrease, report.ErrorBound });

@@ -57,9 +57,10 @@ struct StepRecord
 class Trajectory
 {
 public:
-  /// memoryLimit: bytes for checkpoints; 0 if only forward steps are expected.
+  /// memoryLimit: bytes for checkpoints; 0 if only forward steps are expected. keepsHistory: whether
+  /// energy and totals of each state are recorded; without, they are 0.
   Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> model,
-    std::size_t memoryLimit, const ParallelFor& parallel = SerialFor());
+    std::size_t memoryLimit, const ParallelFor& parallel = SerialFor(), bool keepsHistory = true);
 
   /// Announce that steps up to this one may be asked for.
   void Reserve(Index steps);
@@ -73,15 +74,17 @@ public:
 
   Index Step() const { return this->Current; }
   const Values& State() const { return this->Stepper->State(); }
-  /// The model at the current step.
-  const Model& GetModel() const { return *this->Stepper; }
+  /// The model in that state, for what it has beside it.
+  const Model& CurrentModel() const { return *this->Stepper; }
   const TriangleMesh& Mesh() const { return *this->Surface; }
+  bool KeepsHistory() const { return this->IsHistoryKept; }
 
   /// Records of steps 0 .. the furthest computed, and sum A u of each: row step, column component.
   const std::vector<StepRecord>& Records() const { return this->History; }
   double TotalAt(Index step, Index component) const
   {
-    return this->Totals[static_cast<std::size_t>(step) * this->State().cols() + component];
+    return this->Totals[static_cast<std::size_t>(step) * this->NumberOfColumns +
+      static_cast<std::size_t>(component)];
   }
 
   /// The number of steps computed in all: a measure of the cost of seeking.
@@ -92,6 +95,7 @@ private:
 
   std::shared_ptr<const TriangleMesh> Surface;
   std::unique_ptr<Model> Stepper;
+  std::size_t NumberOfColumns; ///< of the state
   const ParallelFor& Parallel;
   CheckpointStore Checkpoints;
   std::vector<StepRecord> History;
@@ -99,6 +103,7 @@ private:
   std::vector<double> StateTotals; ///< of the last row of Totals
   Index Current = 0;
   Index Advances = 0;
+  bool IsHistoryKept = true;
 };
 
 } // namespace SurfaceDiffusion

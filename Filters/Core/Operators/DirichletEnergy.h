@@ -14,4 +14,8 @@ namespace SurfaceDiffusion
 double DirichletEnergy(const TriangleMesh& mesh, const CornerWeights& coefficients, const Values& u,
   const ParallelFor& parallel = SerialFor());
 
+/// 1/2 u . K u, summed over the columns of u, with a stiffness matrix K.
+double DirichletEnergy(
+  const SparseMatrix& stiffness, const Values& u, const ParallelFor& parallel = SerialFor());
+
 } // namespace SurfaceDiffusion

@@ -48,19 +48,35 @@ std::vector<double> SumEach(
   return std::vector<double>(sums.data(), sums.data() + sums.size());
 }
 
+/// From rows of some components to one row for each component of the mesh, zero for the others.
+void Spread(
+  const TriangleMesh& mesh, const std::vector<Index>& components, const Values& rows, Values& all)
+{
+  all.setZero(mesh.NumberOfComponents(), rows.cols());
+  for (std::size_t c = 0; c < components.size(); ++c)
+  {
+    all.row(components[c]) = rows.row(static_cast<Eigen::Index>(c));
+  }
+}
+
 /// Add shifts[k] to column k of u on a component.
 void Shift(const TriangleMesh& mesh, Index component, const double* shifts, Values& u,
   const ParallelFor& parallel)
 {
   const Index begin = mesh.ComponentsBegin()[component];
-  const Eigen::Index columns = u.cols();
-  ForEach(parallel, mesh.ComponentsBegin()[component + 1] - begin,
-    [&](Index i)
+  ForColumns(u.cols(),
+    [&](auto number)
     {
-      for (Eigen::Index k = 0; k < columns; ++k)
-      {
-        u(begin + i, k) += shifts[k];
-      }
+      const ColumnCount<decltype(number)::value> columns(u.cols());
+      ForEach(parallel, mesh.ComponentsBegin()[component + 1] - begin,
+        [&](Index i)
+        {
+          double* const row = &u(begin + i, 0);
+          for (int k = 0; k < columns; ++k)
+          {
+            row[k] += shifts[k];
+          }
+        });
     });
 }
 
@@ -92,7 +108,9 @@ TotalCorrection::TotalCorrection(
       for (Index i = begin; i < end && conserves; ++i)
       {
         conserves = !data.Fixed[i] &&
-          !(hasFidelity && (data.Missing[i] || data.Given.row(i) != data.Start.row(i)));
+          !(hasFidelity &&
+            (data.Missing[i] || data.Given.row(i) != data.Start.row(i) ||
+              data.FidelityFactor(i) != data.FidelityFactor(begin)));
       }
       return !conserves;
     });
@@ -121,8 +139,9 @@ void TotalCorrection::SumComponents(
   mesh.GetReduction().SumComponents(this->Components, this->Totals);
 }
 
-void TotalCorrection::Restore(
-  const TriangleMesh& mesh, Values& u, const ParallelFor& parallel, Eigen::Index first)
+/// Totals becomes the numbers to add.
+void TotalCorrection::FindErrors(
+  const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel, Eigen::Index first)
 {
   this->SumComponents(mesh, u, parallel);
   for (Eigen::Index c = 0; c < this->Targets.rows(); ++c)
@@ -132,8 +151,24 @@ void TotalCorrection::Restore(
       double& shift = this->Totals(c, k);
       shift = (this->Targets(c, first + k) - shift) / this->Areas[c];
     }
+  }
+}
+
+void TotalCorrection::Restore(
+  const TriangleMesh& mesh, Values& u, const ParallelFor& parallel, Eigen::Index first)
+{
+  this->FindErrors(mesh, u, parallel, first);
+  for (Eigen::Index c = 0; c < this->Targets.rows(); ++c)
+  {
     Shift(mesh, this->Components[c], this->Totals.row(c).data(), u, parallel);
   }
+}
+
+void TotalCorrection::FindShifts(const TriangleMesh& mesh, const Values& u,
+  const ParallelFor& parallel, Eigen::Index first, Values& shifts)
+{
+  this->FindErrors(mesh, u, parallel, first);
+  Spread(mesh, this->Components, this->Totals, shifts);
 }
 
 MeanCorrection::MeanCorrection(
@@ -147,8 +182,8 @@ MeanCorrection::MeanCorrection(
     { return Sum(parallel, end - begin, [&](Index i) { return this->Weights[begin + i]; }); });
 }
 
-void MeanCorrection::Restore(
-  const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel)
+void MeanCorrection::FindMeans(
+  const TriangleMesh& mesh, const Values& b, const Values& x, const ParallelFor& parallel)
 {
   this->Residuals.resize(static_cast<Eigen::Index>(this->Components.size()), x.cols());
   for (Eigen::Index c = 0; c < this->Residuals.rows(); ++c)
@@ -165,8 +200,24 @@ void MeanCorrection::Restore(
   for (Eigen::Index c = 0; c < this->Residuals.rows(); ++c)
   {
     this->Residuals.row(c) /= this->Sums[c];
+  }
+}
+
+void MeanCorrection::Restore(
+  const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel)
+{
+  this->FindMeans(mesh, b, x, parallel);
+  for (Eigen::Index c = 0; c < this->Residuals.rows(); ++c)
+  {
     Shift(mesh, this->Components[c], this->Residuals.row(c).data(), x, parallel);
   }
+}
+
+void MeanCorrection::FindShifts(const TriangleMesh& mesh, const Values& b, const Values& x,
+  const ParallelFor& parallel, Values& shifts)
+{
+  this->FindMeans(mesh, b, x, parallel);
+  Spread(mesh, this->Components, this->Residuals, shifts);
 }
 
 } // namespace SurfaceDiffusion

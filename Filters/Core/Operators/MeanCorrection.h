@@ -32,9 +32,14 @@ public:
   /// u: all columns of the start, or a part of them from `first` on.
   void Restore(
     const TriangleMesh& mesh, Values& u, const ParallelFor& parallel, Eigen::Index first = 0);
+  /// The numbers that Restore() adds, component of the mesh x column of u.
+  void FindShifts(const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel,
+    Eigen::Index first, Values& shifts);
 
 private:
   void SumComponents(const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel);
+  void FindErrors(
+    const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel, Eigen::Index first);
 
   std::vector<Index> Components; ///< those that conserve
   std::vector<double> Areas;
@@ -55,12 +60,18 @@ public:
     const ParallelFor& parallel = SerialFor());
 
   void Restore(const TriangleMesh& mesh, const Values& b, Values& x, const ParallelFor& parallel);
+  /// The numbers that Restore() adds, component of the mesh x column of x.
+  void FindShifts(const TriangleMesh& mesh, const Values& b, const Values& x,
+    const ParallelFor& parallel, Values& shifts);
 
 private:
+  void FindMeans(
+    const TriangleMesh& mesh, const Values& b, const Values& x, const ParallelFor& parallel);
+
   std::vector<Index> Components; ///< those with no fixed vertex
   std::vector<double> Sums; ///< of their weights
   Vector Weights; ///< w
-  Values Residuals; ///< sum b - sum w x, component x column
+  Values Residuals; ///< (sum b - sum w x) / sum w, component x column
 };
 
 } // namespace SurfaceDiffusion

@@ -52,6 +52,7 @@ template void MultiplyRows<0>(const SparseMatrix&, const Values&, Values&, Index
 template void MultiplyRows<1>(const SparseMatrix&, const Values&, Values&, Index, Index);
 template void MultiplyRows<2>(const SparseMatrix&, const Values&, Values&, Index, Index);
 template void MultiplyRows<3>(const SparseMatrix&, const Values&, Values&, Index, Index);
+template void MultiplyRows<HalfPanel>(const SparseMatrix&, const Values&, Values&, Index, Index);
 template void MultiplyRows<ColumnPanel>(const SparseMatrix&, const Values&, Values&, Index, Index);
 
 } // namespace SurfaceDiffusion

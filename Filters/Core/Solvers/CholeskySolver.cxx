@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/LinearSolver.h"
 
-#include "Core/Foundation/ColumnSums.h"
 #include "Core/Foundation/Columns.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Operators/ResidualSquares.h"
 #include "Core/Solvers/SparseFactor.h"
 #include "Core/Solvers/Substitution.h"
 
@@ -73,18 +73,12 @@ public:
       return report;
     }
     this->Substitute(b, x);
-    report.Residual = this->ComputeResidual(b, x);
-    if (report.Residual > this->Limits.Tolerance)
+    this->MeasureResiduals(b, x, this->Residuals);
+    if (LargestOf(this->Residuals) > this->Limits.Tolerance)
     {
-      this->Substitute(this->R, this->Correction);
-      this->Correction += x;
-      const double refined = this->ComputeResidual(b, this->Correction);
-      if (refined < report.Residual)
-      {
-        x.swap(this->Correction);
-        report.Residual = refined;
-      }
+      this->Refine(b, x);
     }
+    report.Residual = LargestOf(this->Residuals);
     report.Converged = report.Residual <= this->Limits.Tolerance;
     report.IsFinal = true;
     progress.Report(1.0);
@@ -110,86 +104,125 @@ private:
   void Substitute(const Values& b, Values& x)
   {
     x.resize(b.rows(), b.cols());
-    this->W.resize(b.rows(), b.cols());
-    ForColumns(b.cols(), [&](auto k) { this->SubstituteColumns<decltype(k)::value>(b, x); });
+    const auto columns = static_cast<int>(b.cols());
+    for (int first = 0; first < columns; first += ColumnPanel)
+    {
+      const int count = std::min(ColumnPanel, columns - first);
+      ForColumns(WidthFor(count),
+        [&](auto number)
+        {
+          constexpr int width = decltype(number)::value;
+          if constexpr (width > 0)
+          {
+            this->SubstituteColumns<width>(b, x, first, count);
+          }
+        });
+    }
   }
 
-  /// K columns, or any number of them if K is 0, in one pass over the factor.
+  /// The smallest number of columns, known to the compiler, that `count` columns fit in.
+  static int WidthFor(int count)
+  {
+    constexpr int alone = 3;
+    return count <= alone ? count : count <= HalfPanel ? HalfPanel : ColumnPanel;
+  }
+
+  /// `count` columns from `first` on, and zeros up to K.
   template <int K>
-  void SubstituteColumns(const Values& b, Values& x)
+  void SubstituteColumns(const Values& b, Values& x, int first, int count)
   {
-    const ColumnCount<K> k(b.cols());
     const Index n = static_cast<Index>(b.rows());
-    const Index* place = this->Factor->Place;
+    const Index* const place = this->Factor->Place;
+    this->W.resize(n, K);
+    double* const w = this->W.data();
     for (Index i = 0; i < n; ++i)
     {
-      for (int c = 0; c < k; ++c)
+      double* const to = w + static_cast<std::ptrdiff_t>(place[i]) * K;
+      const double* const from = &b(i, first);
+      if (count == K)
       {
-        this->Row(place[i], k)[c] = b(i, c);
+        CopyColumns<K>(from, to, K);
+        continue;
       }
+      std::fill(std::copy_n(from, count, to), to + K, 0.0);
     }
-    SubstituteRows<K>(*this->Factor, this->W.data(), k);
+    SubstituteRows<K>(*this->Factor, w);
     for (Index i = 0; i < n; ++i)
     {
-      for (int c = 0; c < k; ++c)
+      const double* const from = w + static_cast<std::ptrdiff_t>(place[i]) * K;
+      double* const to = &x(i, first);
+      if (count == K)
       {
-        x(i, c) = this->Row(place[i], k)[c];
+        CopyColumns<K>(from, to, K);
+        continue;
       }
+      std::copy_n(from, count, to);
     }
   }
 
-  double* Row(Index i, int columns)
+  /// One step of iterative refinement for the columns that missed the tolerance, as far as it
+  /// improves them. Each column has the bits that it has alone.
+  void Refine(const Values& b, Values& x)
   {
-    return this->W.data() + static_cast<std::ptrdiff_t>(i) * columns;
-  }
-
-  /// R = b - A x. Returns SolveReport::Residual.
-  double ComputeResidual(const Values& b, const Values& x)
-  {
-    const Vector& weights = this->Factor->InverseDiagonal;
-    const Index n = static_cast<Index>(b.rows());
     this->R.resize(b.rows(), b.cols());
-    this->OfR.resize(static_cast<std::size_t>(b.cols()));
-    this->OfB.resize(static_cast<std::size_t>(b.cols()));
     Multiply(*this->Matrix, x, this->R, this->Parallel);
-    SumColumns(
-      this->Parallel, n, b.cols(),
-      [&](Index i, Eigen::Index k)
-      {
-        const double r = b(i, k) - this->R(i, k);
-        this->R(i, k) = r;
-        return weights[i] * r * r;
-      },
-      this->OfR.data());
-    SumColumns(
-      this->Parallel, n, b.cols(),
-      [&](Index i, Eigen::Index k) { return weights[i] * b(i, k) * b(i, k); }, this->OfB.data());
-    double largest = 0.0;
-    for (std::size_t k = 0; k < this->OfR.size(); ++k)
+    this->R = b - this->R;
+    this->Substitute(this->R, this->Correction);
+    this->Correction += x;
+    this->MeasureResiduals(b, this->Correction, this->Refined);
+    for (std::size_t k = 0; k < this->Residuals.size(); ++k)
     {
-      constexpr double small = 1e-250;
-      const bool isSafe = this->OfR[k] > small && this->OfB[k] > small &&
-        this->OfR[k] < 1.0 / small && this->OfB[k] < 1.0 / small;
-      const double squared = isSafe ? this->OfR[k] / this->OfB[k]
-                                    : this->ComputeScaledRatio(b, static_cast<Eigen::Index>(k));
-      largest = std::max(largest, std::sqrt(squared));
+      const double before = this->Residuals[k];
+      if (before > this->Limits.Tolerance && this->Refined[k] < before)
+      {
+        const auto column = static_cast<Eigen::Index>(k);
+        x.col(column) = this->Correction.col(column);
+        this->Residuals[k] = this->Refined[k];
+      }
     }
-    return largest;
   }
 
-  /// |R|^2 / |b|^2 of a column whose squares may overflow or underflow; |R|^2 if b is zero.
-  double ComputeScaledRatio(const Values& b, Eigen::Index k)
+  /// 0 without columns.
+  static double LargestOf(const std::vector<double>& residuals)
+  {
+    const auto largest = std::max_element(residuals.begin(), residuals.end());
+    return largest == residuals.end() ? 0.0 : *largest;
+  }
+
+  /// SolveReport::Residual of each column of x.
+  void MeasureResiduals(const Values& b, const Values& x, std::vector<double>& residuals)
+  {
+    const auto columns = static_cast<std::size_t>(b.cols());
+    ResidualSquares(
+      *this->Matrix, b, x, this->Factor->InverseDiagonal, this->Squares, this->Parallel);
+    residuals.resize(columns);
+    for (std::size_t k = 0; k < columns; ++k)
+    {
+      const double ofR = this->Squares[2 * k];
+      const double ofB = this->Squares[2 * k + 1];
+      constexpr double small = 1e-250;
+      const bool isSafe = ofR > small && ofB > small && ofR < 1.0 / small && ofB < 1.0 / small;
+      residuals[k] = std::sqrt(
+        isSafe ? ofR / ofB : this->ComputeScaledRatio(b, x, static_cast<Eigen::Index>(k)));
+    }
+  }
+
+  /// |b - A x|^2 / |b|^2 of a column whose squares may overflow or underflow; |b - A x|^2 if b is
+  /// zero.
+  double ComputeScaledRatio(const Values& b, const Values& x, Eigen::Index k)
   {
     const Vector& weights = this->Factor->InverseDiagonal;
     const Index n = static_cast<Index>(b.rows());
-    const double unit = ScaleOf(b, this->R, k, this->Parallel);
+    Values r = b.col(k) - *this->Matrix * x.col(k);
+    const Values ofColumn = b.col(k);
+    const double unit = ScaleOf(ofColumn, r, 0, this->Parallel);
     const auto sum = [&](const Values& values)
     {
       return Sum(this->Parallel, n,
-        [&](Index i) { return weights[i] * (values(i, k) / unit) * (values(i, k) / unit); });
+        [&](Index i) { return weights[i] * (values(i, 0) / unit) * (values(i, 0) / unit); });
     };
-    const double ofR = sum(this->R);
-    const double ofB = sum(b);
+    const double ofR = sum(r);
+    const double ofB = sum(ofColumn);
     if (!std::isfinite(ofR))
     {
       throw std::runtime_error("the linear system has no finite solution");
@@ -203,7 +236,8 @@ private:
   long Factorizations = 0;
   Values R, Correction;
   Values W; ///< in the order of the factor
-  std::vector<double> OfR, OfB; ///< weighted squares of the columns of R and b
+  std::vector<double> Squares; ///< of ResidualSquares()
+  std::vector<double> Residuals, Refined; ///< per column
 };
 
 } // namespace

@@ -28,6 +28,9 @@ struct SystemDefaults
 
   const Reduction& OverProcesses = Reduction::Serial(); ///< over which A is accumulated
 
+  /// Called before MultiplyRows() for the rows of A x, by systems whose product is not local.
+  void PrepareProduct(const Values& /*x*/) const {}
+
   /// Whether Precondition() replaces D^-1 as preconditioner.
   bool HasPreconditioner() const { return false; }
   /// z = B r with B symmetric, linear and positive definite. squares: of the systems of r, in the

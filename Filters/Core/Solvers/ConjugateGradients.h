@@ -140,6 +140,7 @@ public:
     const ColumnCount<K> k(this->Columns);
     const double* const p = this->W.P.data();
     double* const q = this->W.Q.data();
+    this->S.PrepareProduct(this->W.P);
     const auto multiply = [this](Index begin, Index end)
     { this->S.template MultiplyRows<K>(this->W.P, this->W.Q, begin, end); };
     if (System::IsProjected && !this->S.OverProcesses.IsSerial())
@@ -308,7 +309,7 @@ private:
     const Numbers step(this->W.Step);
     const Numbers beta(this->W.Beta);
     ForEach(this->Parallel, this->Rows,
-      [k, u, p, step, beta, &z](Index i)
+      [=](Index i)
       {
         const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
         for (int c = 0; c < k; ++c)

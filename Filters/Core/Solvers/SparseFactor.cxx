@@ -69,6 +69,7 @@ void SparseFactor::Compute()
     this->InverseD = this->D.cwiseInverse();
     this->DropNegligible();
     this->FindPanels();
+    this->OrderPanels();
   }
 }
 
@@ -115,18 +116,20 @@ void SparseFactor::DropNegligible()
 {
   constexpr double lastPlace = 1e-16;
   const auto n = static_cast<Index>(this->D.size());
+  Index* const rows = this->LDL->L().innerIndexPtr();
+  double* const entries = this->LDL->L().valuePtr();
   Index kept = 0;
   for (Index j = 0, begin = 0; j < n; ++j)
   {
     const Index end = this->Begin[j + 1];
     for (Index slot = begin; slot < end; ++slot)
     {
-      const Index i = this->Rows[slot];
-      const double value = this->Entries[slot];
+      const Index i = rows[slot];
+      const double value = entries[slot];
       if (!(value * value * std::abs(this->D[j]) < lastPlace * lastPlace * std::abs(this->D[i])))
       {
-        this->Rows[kept] = i;
-        this->Entries[kept] = value;
+        rows[kept] = i;
+        entries[kept] = value;
         ++kept;
       }
     }
@@ -158,6 +161,30 @@ void SparseFactor::FindPanels()
     j += width;
   }
   this->Panels.push_back(n);
+}
+
+/// From column by column to the order of SparseFactor::Begin, in place: substitution then reads the
+/// factor as one stream.
+void SparseFactor::OrderPanels()
+{
+  double* const entries = this->LDL->L().valuePtr();
+  std::vector<double> columns;
+  for (std::size_t p = 0; p + 1 < this->Panels.size(); ++p)
+  {
+    const Index first = this->Panels[p];
+    const Index width = this->Panels[p + 1] - first;
+    const Index begin = this->Begin[first];
+    columns.assign(entries + begin, entries + this->Begin[first + width]);
+    const Index rows = width + this->Begin[first + width] - this->Begin[first + width - 1];
+    double* next = entries + begin;
+    for (Index row = 1; row < rows; ++row)
+    {
+      for (Index a = 0; a < std::min(row, width); ++a)
+      {
+        *next++ = columns[static_cast<std::size_t>(this->Begin[first + a] - begin + row - a - 1)];
+      }
+    }
+  }
 }
 
 } // namespace SurfaceDiffusion

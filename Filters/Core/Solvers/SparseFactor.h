@@ -45,15 +45,18 @@ public:
   const Index* Place = nullptr; ///< per row of A, its row of L
   Vector InverseDiagonal; ///< of A
   Vector InverseD;
-  /// Column j of L below the diagonal has the entries Entries[slot] in the rows Rows[slot], for
-  /// slot from Begin[j] to Begin[j + 1].
-  std::vector<Index> Begin;
-  Index* Rows = nullptr;
-  double* Entries = nullptr;
   /// First columns of panels, and the number of columns at the end. A panel is up to WidestPanel
-  /// columns that follow each other, each of which has the rows of the next one and the next one
-  /// itself: substitution reads their rows, and the right-hand side in these rows, once for all.
+  /// columns of L that follow each other, each of which has the rows of the next one and the next
+  /// one itself below its diagonal: substitution reads the rows, and the right-hand side in them,
+  /// once for all columns.
   std::vector<Index> Panels;
+  /// The entries of the columns of L from j to next - 1, a panel, are at Entries + Begin[j], in the
+  /// order in which substitution needs them: first those in the panel's own rows below the diagonal,
+  /// row by row, then those in the rows below the panel, row by row, whose numbers are at
+  /// Rows + Begin[next - 1], up to Rows + Begin[next].
+  std::vector<Index> Begin;
+  const Index* Rows = nullptr;
+  const double* Entries = nullptr;
 
 private:
   struct Decomposition;
@@ -62,6 +65,7 @@ private:
   bool HasPivotsAbove(double bound) const;
   void DropNegligible();
   void FindPanels();
+  void OrderPanels();
 
   SparseMatrix Matrix;
   std::unique_ptr<Decomposition> LDL;

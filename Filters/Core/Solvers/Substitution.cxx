@@ -6,40 +6,29 @@
 
 #include <algorithm>
 
-// A panel of columns is substituted with the widest vectors of the processor. Products and sums are
-// rounded one by one (no fused operations), so that the bits do not depend on the processor.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__)
-#define SURFACEDIFFUSION_ANY_VECTORS                                                               \
-  __attribute__((target_clones("avx512f", "avx2", "default"), optimize("fp-contract=off"), flatten))
-#else
-#define SURFACEDIFFUSION_ANY_VECTORS
-#endif
-
 namespace SurfaceDiffusion
 {
 
 namespace
 {
 
-/// Columns j .. j + Width - 1 of L, a panel of the factor.
+/// Columns j .. j + Width - 1 of L; see SparseFactor::Begin.
 template <int Width>
 struct Panel
 {
   Panel(const SparseFactor& l, Index j)
+    : Within(l.Entries + l.Begin[j])
+    , Below(this->Within + Width * (Width - 1) / 2)
+    , Rows(l.Rows + l.Begin[j + Width - 1])
+    , Count(l.Begin[j + Width] - l.Begin[j + Width - 1])
   {
-    for (int a = 0; a < Width; ++a)
-    {
-      this->Below[a] = l.Entries + l.Begin[j + a] + (Width - 1 - a);
-    }
-    const Index last = j + Width - 1;
-    this->Rows = l.Rows + l.Begin[last];
-    this->Count = l.Begin[last + 1] - l.Begin[last];
   }
-  /// The entry in row j + b of column j + a.
-  double Within(int a, int b) const { return this->Below[a][b - Width]; }
+  /// The entry in row j + b of column j + a, a < b.
+  double At(int b, int a) const { return this->Within[b * (b - 1) / 2 + a]; }
 
-  const double* Below[Width]; ///< per column, the entries in the rows below the panel
-  const Index* Rows; ///< below the panel, the same for all columns
+  const double* Within; ///< the entries in the panel's own rows
+  const double* Below; ///< those in the rows below
+  const Index* Rows; ///< below the panel
   Index Count; ///< of these rows
 };
 
@@ -57,49 +46,55 @@ void ForWidth(Index width, const Work& work)
     });
 }
 
-double* Row(double* w, Index i, int columns)
+template <int K>
+double* Row(double* w, Index i)
 {
-  return w + static_cast<std::ptrdiff_t>(i) * columns;
+  return w + static_cast<std::ptrdiff_t>(i) * K;
 }
 
 /// The part of W = L^-1 W that belongs to the columns j .. j + Width - 1 of L.
 template <int K, int Width>
-void Forward(const SparseFactor& factor, double* all, Index j, int columns)
+void Forward(const SparseFactor& factor, double* all, Index j)
 {
-  const ColumnCount<K> k(columns);
   const Panel<Width> panel(factor, j);
-  double* w = Row(all, j, k);
-  for (int a = 0; a < Width; ++a)
+  double* const result = Row<K>(all, j);
+  double w[Width * K];
+  for (int c = 0; c < Width * K; ++c)
   {
-    for (int b = a + 1; b < Width; ++b)
+    w[c] = result[c];
+  }
+  for (int b = 1; b < Width; ++b)
+  {
+    for (int a = 0; a < b; ++a)
     {
-      for (int c = 0; c < k; ++c)
+      const double l = panel.At(b, a);
+      for (int c = 0; c < K; ++c)
       {
-        w[b * k + c] -= panel.Within(a, b) * w[a * k + c];
+        w[b * K + c] -= l * w[a * K + c];
       }
     }
   }
-  ColumnRegisters<double, K, Width> registers;
-  if (K > 0)
+  if (Width > 1)
   {
-    double* const fast = registers.Or(w);
-    std::copy_n(w, Width * k, fast);
-    w = fast;
+    for (int c = 0; c < Width * K; ++c)
+    {
+      result[c] = w[c];
+    }
   }
   for (Index s = 0; s < panel.Count; ++s)
   {
-    double* wi = Row(all, panel.Rows[s], k);
+    double* const wi = Row<K>(all, panel.Rows[s]);
     double l[Width];
     for (int a = 0; a < Width; ++a)
     {
-      l[a] = panel.Below[a][s];
+      l[a] = panel.Below[static_cast<std::ptrdiff_t>(s) * Width + a];
     }
-    for (int c = 0; c < k; ++c)
+    for (int c = 0; c < K; ++c)
     {
       double sum = wi[c];
       for (int a = 0; a < Width; ++a)
       {
-        sum -= l[a] * w[a * k + c];
+        sum -= l[a] * w[a * K + c];
       }
       wi[c] = sum;
     }
@@ -108,29 +103,27 @@ void Forward(const SparseFactor& factor, double* all, Index j, int columns)
 
 /// The rows j .. j + Width - 1 of W = L^-T D^-1 W.
 template <int K, int Width>
-void Backward(const SparseFactor& factor, double* all, Index j, int columns)
+void Backward(const SparseFactor& factor, double* all, Index j)
 {
-  const ColumnCount<K> k(columns);
   const Panel<Width> panel(factor, j);
-  double* result = Row(all, j, k);
-  ColumnRegisters<double, K, Width> registers;
-  double* w = registers.Or(result);
+  double* const result = Row<K>(all, j);
+  double w[Width * K];
   for (int a = 0; a < Width; ++a)
   {
-    for (int c = 0; c < k; ++c)
+    for (int c = 0; c < K; ++c)
     {
-      w[a * k + c] = factor.InverseD[j + a] * result[a * k + c];
+      w[a * K + c] = factor.InverseD[j + a] * result[a * K + c];
     }
   }
   for (Index s = 0; s < panel.Count; ++s)
   {
-    const double* wi = Row(all, panel.Rows[s], k);
+    const double* const wi = Row<K>(all, panel.Rows[s]);
     for (int a = 0; a < Width; ++a)
     {
-      const double l = panel.Below[a][s];
-      for (int c = 0; c < k; ++c)
+      const double l = panel.Below[static_cast<std::ptrdiff_t>(s) * Width + a];
+      for (int c = 0; c < K; ++c)
       {
-        w[a * k + c] -= l * wi[c];
+        w[a * K + c] -= l * wi[c];
       }
     }
   }
@@ -138,58 +131,69 @@ void Backward(const SparseFactor& factor, double* all, Index j, int columns)
   {
     for (int b = a + 1; b < Width; ++b)
     {
-      for (int c = 0; c < k; ++c)
+      const double l = panel.At(b, a);
+      for (int c = 0; c < K; ++c)
       {
-        w[a * k + c] -= panel.Within(a, b) * w[b * k + c];
+        w[a * K + c] -= l * w[b * K + c];
       }
     }
-    for (int c = 0; c < k; ++c)
-    {
-      result[a * k + c] = w[a * k + c];
-    }
+  }
+  for (int c = 0; c < Width * K; ++c)
+  {
+    result[c] = w[c];
   }
 }
 
 template <int K>
-void Substitute(const SparseFactor& factor, double* w, int columns)
+void Substitute(const SparseFactor& factor, double* w)
 {
   const std::vector<Index>& panels = factor.Panels;
   for (std::size_t p = 0; p + 1 < panels.size(); ++p)
   {
     ForWidth(panels[p + 1] - panels[p],
-      [&](auto width) { Forward<K, decltype(width)::value>(factor, w, panels[p], columns); });
+      [&](auto width) { Forward<K, decltype(width)::value>(factor, w, panels[p]); });
   }
   for (std::size_t p = panels.size() - 1; p > 0; --p)
   {
     ForWidth(panels[p] - panels[p - 1],
-      [&](auto width) { Backward<K, decltype(width)::value>(factor, w, panels[p - 1], columns); });
+      [&](auto width) { Backward<K, decltype(width)::value>(factor, w, panels[p - 1]); });
   }
+}
+
+// An attribute of a template is not portable: a function for each number of columns.
+SURFACEDIFFUSION_ANY_VECTORS void SubstituteHalfPanel(const SparseFactor& factor, double* w)
+{
+  Substitute<HalfPanel>(factor, w);
 }
 
 SURFACEDIFFUSION_ANY_VECTORS void SubstituteColumnPanel(const SparseFactor& factor, double* w)
 {
-  Substitute<ColumnPanel>(factor, w, ColumnPanel);
+  Substitute<ColumnPanel>(factor, w);
 }
 
 } // namespace
 
 template <int K>
-void SubstituteRows(const SparseFactor& factor, double* w, int columns)
+void SubstituteRows(const SparseFactor& factor, double* w)
 {
   if constexpr (K == ColumnPanel)
   {
     SubstituteColumnPanel(factor, w);
   }
+  else if constexpr (K == HalfPanel)
+  {
+    SubstituteHalfPanel(factor, w);
+  }
   else
   {
-    Substitute<K>(factor, w, columns);
+    Substitute<K>(factor, w);
   }
 }
 
-template void SubstituteRows<0>(const SparseFactor&, double*, int);
-template void SubstituteRows<1>(const SparseFactor&, double*, int);
-template void SubstituteRows<2>(const SparseFactor&, double*, int);
-template void SubstituteRows<3>(const SparseFactor&, double*, int);
-template void SubstituteRows<ColumnPanel>(const SparseFactor&, double*, int);
+template void SubstituteRows<1>(const SparseFactor&, double*);
+template void SubstituteRows<2>(const SparseFactor&, double*);
+template void SubstituteRows<3>(const SparseFactor&, double*);
+template void SubstituteRows<HalfPanel>(const SparseFactor&, double*);
+template void SubstituteRows<ColumnPanel>(const SparseFactor&, double*);
 
 } // namespace SurfaceDiffusion

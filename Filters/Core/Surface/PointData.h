@@ -18,6 +18,17 @@ struct PointData
   Values Start; ///< u at t = 0, n x k
   Flags Missing; ///< the hole of the data, where chi = 0: no fidelity term
   Flags Fixed; ///< Dirichlet condition: u keeps its Start
+  Vector FidelityFactors; ///< w >= 0, by which lambda is multiplied; empty: 1 everywhere
+
+  /// w chi at vertex i.
+  double FidelityFactor(Index i) const
+  {
+    if (this->Missing[i])
+    {
+      return 0.0;
+    }
+    return this->FidelityFactors.size() > 0 ? this->FidelityFactors[i] : 1.0;
+  }
 
   /// Data that are known everywhere, without Dirichlet conditions.
   static PointData FromValues(Values f)

@@ -46,7 +46,8 @@ def make_parser(hemispheres=False):
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
-    for add in (_smooth, _denoise, _inpaint, _segment, _texture, _directions, _normals, _fwhm, _info):
+    for add in (_smooth, _denoise, _inpaint, _edges, _segment, _texture, _directions, _normals, _fwhm,
+                _info):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -209,6 +210,33 @@ def _inpaint(commands):
     parser.add_argument("--model", choices=("heat", "tv"), default="heat",
                         help="heat: harmonic functions, smooth (default); tv: total variation, "
                              "which continues edges")
+
+
+def _edges(commands):
+    text = ("Find the edges of data, and smooth the data between them, by the functional of Mumford "
+            "and Shah. NaN is filled in, with edges that continue. The channels of a colour have "
+            "their edges in common, all other columns have their own.")
+    parser = commands.add(
+        "edges", tasks.edges, text,
+        [f"{PROGRAM} edges scan.ply scan.ply smooth.ply --map edges.npy --curves curves.npy"])
+    commands.data(parser)
+    parser.add_argument("output", metavar="OUTPUT", help="the data, smooth between edges")
+    commands.choices(parser)
+    parser.add_argument("--map", metavar="FILE",
+                        help="write 1 - v, which is 1 on edges, at the vertices: .func.gii, "
+                             ".shape.gii, .mgh, .mgz, .npy, or .ply, .vtk, .vtp if SURFACE is such "
+                             "a file")
+    parser.add_argument("--curves", metavar="FILE",
+                        help="write the points of curves along the edges, a .npy array with rows of "
+                             "the number of the curve and x, y, z")
+    parser.add_argument("--threshold", metavar="J", type=_positive,
+                        help="the jump from which on an edge is kept, in the range of the data "
+                             "(default 0.2); at least three times the noise")
+    parser.add_argument("--length", metavar="L", type=_positive,
+                        help="the length over which data are smoothed, in mean edge lengths "
+                             "(default 8)")
+    parser.add_argument("--width", metavar="E", type=_positive,
+                        help="the width of an edge, in mean edge lengths (default 2)")
 
 
 def _segment(commands):

@@ -64,6 +64,53 @@ def inpaint(arguments, report):
         report.warn(f"{arguments.data}: nothing is missing, the values are unchanged")
 
 
+def edges(arguments, report):
+    from .. import mumford_shah
+
+    options = {name: value for name, value in (
+        ("edge_threshold", arguments.threshold), ("smoothing_length", arguments.length),
+        ("edge_width", arguments.width)) if value}
+    for name in (arguments.map, arguments.curves):
+        if name is not None:
+            check_output_folder(name)
+    if arguments.curves is not None and kind_of_name(arguments.curves) != "npy":
+        raise FileError(f"{arguments.curves}: the name announces no format for curves; allowed: .npy")
+    if (arguments.map or arguments.curves) and not arguments.surface:
+        raise FileError("--map and --curves need one surface; allowed: without --left and --right")
+    maps, curves = [], []
+
+    def compute(surface, values, mask, progress):
+        result = mumford_shah(surface, values, mask=mask, mask_mode="Exclude", progress=progress,
+                              **options)
+        maps.append(result.edges)
+        curves.extend(result.curves)
+        report.facts["edge_length"] = number(
+            (report.facts.get("edge_length") or 0.0) + result.edge_length)
+        return result.values
+
+    _change_data(arguments, report, "Edges", compute, _groups_of_arrays)
+    report.facts["curves"] = len(curves)
+    report.say(f"{len(curves)} edge{'s' * (len(curves) != 1)} of length "
+               f"{report.facts['edge_length']:.4g}")
+    with report.timed("write"):
+        if arguments.map is not None:
+            target = new_data(read_surface(arguments.surface), arguments.map,
+                              [f"Edges{k + 1}" for k in range(len(maps))])
+            target.save(arguments.map, [np.column_stack(maps).astype(np.float32)])
+        if arguments.curves is not None:
+            _write_curves(arguments.curves, curves)
+
+
+def _write_curves(path, curves):
+    """Rows of the number of the curve and the coordinates."""
+    from ..files import write_atomically
+
+    rows = [np.column_stack([np.full(len(curve), k), curve]) for k, curve in enumerate(curves)]
+    file = io.BytesIO()
+    np.save(file, np.concatenate(rows) if rows else np.empty((0, 4)))
+    write_atomically(path, file.getvalue())
+
+
 def segment(arguments, report):
     from .. import segment as find_regions
 

@@ -177,6 +177,17 @@ def _structure(name):
     return "".join(word.capitalize() for word in name.replace("CIFTI_STRUCTURE_", "").split("_"))
 
 
+def _choose_times(data, axis, columns):
+    """The times of some columns of a series."""
+    strides = set(np.diff(columns)) or {1}
+    if len(strides) > 1 or min(strides) < 1:
+        chosen = ", ".join(str(column + 1) for column in columns)
+        raise FileError(f"{data.path}: the columns {chosen} of a time series; allowed: columns at "
+                        "equal intervals, or all")
+    return type(axis)(axis.start + columns[0] * axis.step, axis.step * min(strides), len(columns),
+                      axis.unit)
+
+
 def _write_cifti(data, values, columns):
     from nibabel import cifti2
 
@@ -188,9 +199,9 @@ def _write_cifti(data, values, columns):
     if columns != list(range(len(data.names))):
         axes = [header.get_axis(i) for i in range(2)]
         if isinstance(axes[0], cifti2.SeriesAxis):
-            raise FileError(f"{data.path}: single columns of a time series cannot be written; "
-                            "allowed: all columns")
-        first = cifti2.ScalarAxis(axes[0].name[columns], axes[0].meta[columns])
+            first = _choose_times(data, axes[0], columns)
+        else:
+            first = cifti2.ScalarAxis(axes[0].name[columns], axes[0].meta[columns])
         metadata = header.matrix.metadata
         header = cifti2.Cifti2Header.from_axes((first, axes[1]))
         header.matrix.metadata = metadata

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/BlurSettings.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// The widths, in mean edge lengths, that the mesh resolves and that leave enough to restore.
+constexpr double LeastWidth = 2.0;
+constexpr double LargestWidth = 8.0;
+
+/// The number of products with H that the choice of a solver counts on.
+constexpr double ExpectedProducts = 100.0;
+
+/// H has to be symmetric for the methods that use it.
+constexpr double LargestTolerance = 1e-10;
+
+} // namespace
+
+void BlurSettings::Visit(SettingVisitor& visitor)
+{
+  visitor.Number({ "BlurFWHM", "coordinates",
+                   "The full width at half maximum of the blur that the data have gone through and "
+                   "that SteadyState removes; 0: none." },
+    this->FWHM, SettingRange::NonNegative());
+  visitor.Integer({ "BlurSteps", "",
+                    "The number of implicit steps of the heat equation that model the blur: the "
+                    "more, the closer it is to a Gaussian." },
+    this->Steps, SettingRange::Between(2.0, 64.0, "2 to 64"));
+}
+
+void BlurSettings::Warn(const ModelInputs& inputs, RunResult& result) const
+{
+  const double edges = this->FWHM / inputs.Units.MeanEdgeLength;
+  if (edges < LeastWidth || edges > LargestWidth)
+  {
+    std::ostringstream text;
+    text << "BlurFWHM is " << this->FWHM << ", " << edges << " mean edge lengths; a restoration is "
+         << "reliable from " << LeastWidth << " to " << LargestWidth << " mean edge lengths";
+    result.Warnings.push_back(text.str());
+  }
+}
+
+std::unique_ptr<HeatBlur> BlurSettings::Make(
+  ModelInputs& inputs, const IterationLimits& limits) const
+{
+  const double width = this->FWHM / inputs.Units.LengthUnit;
+  const double h = inputs.Units.CoreEdgeLength();
+  SolverTask task;
+  task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
+  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.DiffusionNumber = HeatBlur::TimeOfWidth(width, this->Steps) / this->Steps / (h * h);
+  task.NumberOfSolves = ExpectedProducts * this->Steps;
+  std::shared_ptr<LinearSolver> solver = inputs.Solvers.Find(SolverPurpose::Blur, task);
+  solver->SetLimits(
+    { std::min(limits.Tolerance, LargestTolerance), limits.MaximumNumberOfIterations });
+  return std::make_unique<HeatBlur>(
+    inputs.Surface.SharedAssembler(), width, this->Steps, std::move(solver), inputs.Parallel);
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkMumfordShahFilter
+ * @brief   edges and piecewise smooth approximation of point data on a triangulated surface
+ *
+ * Minimises the functional of Mumford and Shah (CPAM 42, 1989) in the approximation of L. Ambrosio
+ * and V. Tortorelli (CPAM 43, 1990); on meshes N. Bonneel, D. Coeurjolly, P. Gueth and J.-O.
+ * Lachaud (Computer Graphics Forum 37(7), 2018):
+ *
+ *     E(u, v) = lambda/2 int chi |u - f|^2 + 1/2 int (v^2 + kappa) D grad u . grad u
+ *               + beta int (eps |grad v|^2 + (1 - v)^2 / (4 eps)),
+ *
+ * over u, which is smooth between its edges, and v in (0, 1], which is near 0 on edges and 1
+ * elsewhere. chi is the indicator of the known part: 0 where data are missing, 1 elsewhere. D has
+ * the factors AlongDiffusivity and AcrossDiffusivity, 1 by default. kappa is 1e-6. All components
+ * of the data, as the channels of a colour, share v.
+ *
+ * The coefficients follow from three quantities that have a meaning for the data:
+ *
+ * - SmoothingLength: data are smoothed over this length between edges, lambda =
+ *   FidelityWeight/SmoothingLength^2;
+ * - EdgeThreshold: a smaller jump is smoothed, a larger one is an edge, beta = EdgeThreshold^2/(4
+ *   SmoothingLength)/(1 + h/(4 EdgeWidth)); the last factor is what an edge costs too much on a
+ *   mesh, on which two vertices have v = 0 across it;
+ * - EdgeWidth: eps, the width of the transition of v, which is 1 - exp(-d/(2 eps)) at the distance d
+ *   from an edge.
+ *
+ * Noise with a standard deviation above a third of EdgeThreshold, in the Euclidean norm over all
+ * components, makes edges everywhere, and a warning says so.
+ *
+ * Missing data are filled in with edges that continue through the hole; the start there is harmonic
+ * (InitialFill), since a start with jumps at the hole would keep them. Fixed values act on u.
+ *
+ * A time step minimises E over u, then over v. Both are linear systems, which are solved for the
+ * change up to Tolerance (default: 0.1), a part of the residual at the start of the solve; to 1e-3 at
+ * most if data are missing. The energy falls in
+ * every half step on any mesh and with any tolerance. The steps start with eps = 4 EdgeWidth, which
+ * is halved twice; the last stage ends when a step lowers the energy by less than StopTolerance,
+ * those before at 100 times that. Some 30 steps are usual, and up to 300 if jumps are near
+ * EdgeThreshold. The unit of time is 1: steps have no physical time.
+ *
+ * E is not convex. The result is a local minimum, which the start with a large eps makes a good one.
+ * 0 <= v <= 1 holds for the exact v on Delaunay meshes (IntrinsicDelaunay); on others v may leave
+ * the interval, and `Edges` is clamped.
+ *
+ * **Output port 0**: the result, named as the data with the suffix `MumfordShah`, and the point
+ * array `Edges`, 1 - v. **Output port 1**: the history; its energy is E with the eps of the step,
+ * in (units of the array)^2: it can rise in the two steps where eps is halved. **Output port 2**:
+ * the edges as polylines (vtkPolyData), one per edge between its ends and junctions, along the
+ * ridge of 1 - v; a closed edge repeats its first point. It has the point array `Edges` and the
+ * cell array `Length`, in coordinate units. Edges shorter than 4 EdgeWidth are left out. Curves of
+ * all blocks of composite data are in one output. They need the whole surface: with EdgeCurves on,
+ * surfaces in pieces are gathered and solved in process 0, whose port 2 has the curves.
+ *
+ * Without missing, fixed or held values the sum of A_i u_i is conserved to a relative error of
+ * 1e-12.
+ *
+ * @sa vtkIntrinsicTVFilter vtkFVMHeatFilter
+ */
+#ifndef vtkMumfordShahFilter_h
+#define vtkMumfordShahFilter_h
+
+#include "vtkSurfaceDataDiffusionAlgorithm.h"
+
+#include "vtkSmartPointer.h" // member
+
+class VTKSURFACEDIFFUSION_EXPORT vtkMumfordShahFilter : public vtkSurfaceDataDiffusionAlgorithm
+{
+public:
+  static vtkMumfordShahFilter* New();
+  vtkTypeMacro(vtkMumfordShahFilter, vtkSurfaceDataDiffusionAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The length over which data are smoothed between edges. Natural units: in h. Positive. Default:
+   * 8. FidelityWeight (default: 1) is a factor of lambda beside it.
+   */
+  vtkSetMacro(SmoothingLength, double);
+  vtkGetMacro(SmoothingLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * The jump from which on an edge costs less than smoothing: jumps below 0.9 of it are smoothed,
+   * jumps above 1.25 of it are kept. Natural units: in R. Positive. Default: 0.2.
+   */
+  vtkSetMacro(EdgeThreshold, double);
+  vtkGetMacro(EdgeThreshold, double);
+  ///@}
+
+  ///@{
+  /**
+   * eps, the width of the transition of v beside an edge. Natural units: in h. Positive; below h
+   * the triangles do not resolve it, which gives a warning. Default: 2.
+   */
+  vtkSetMacro(EdgeWidth, double);
+  vtkGetMacro(EdgeWidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * The relative decrease of the energy in one step at which the run ends, before
+   * NumberOfTimeSteps (default: 1000). In (0, 1). Default: 1e-5.
+   */
+  vtkSetMacro(StopTolerance, double);
+  vtkGetMacro(StopTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * On (default): output port 2 has the edges as curves.
+   */
+  vtkSetMacro(EdgeCurves, bool);
+  vtkGetMacro(EdgeCurves, bool);
+  vtkBooleanMacro(EdgeCurves, bool);
+  ///@}
+
+  /**
+   * The length of all curves of the last update, in coordinate units.
+   */
+  vtkGetMacro(EdgeLength, double);
+
+protected:
+  vtkMumfordShahFilter();
+  ~vtkMumfordShahFilter() override;
+
+  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
+  void WriteResult(
+    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
+  void TakeResults() override;
+  void VisitReported(const std::function<void(double&)>& visit) override;
+  const char* GetResultSuffix() const override { return "MumfordShah"; }
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  double SmoothingLength = 8.0;
+  double EdgeThreshold = 0.2;
+  double EdgeWidth = 2.0;
+  double StopTolerance = 1e-5;
+  bool EdgeCurves = true;
+  double EdgeLength = 0.0;
+
+private:
+  vtkMumfordShahFilter(const vtkMumfordShahFilter&) = delete;
+  void operator=(const vtkMumfordShahFilter&) = delete;
+
+  vtkSmartPointer<vtkPolyData> Curves; ///< of the update that is under way
+};
+
+#endif
