@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMumfordShahFilter.h"
 
+#include "Conversion/LineWriter.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
 #include "Run/MumfordShahSettings.h"
 
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -16,7 +16,6 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 using namespace SurfaceDiffusion;
@@ -28,47 +27,39 @@ namespace
 
 constexpr const char* EdgesName = "Edges";
 
-/// The curves of one surface, appended to those of others.
-void AppendCurves(const RunResult& result, vtkPolyData* output)
+/// The edges of all surfaces as polylines.
+vtkSmartPointer<vtkPolyData> MakeCurves(const Run& run)
 {
-  const Polylines& curves = result.EdgeCurves;
-  vtkPoints* const points = output->GetPoints();
-  vtkDataArray* const edges = output->GetPointData()->GetArray(EdgesName);
-  vtkDataArray* const lengths = output->GetCellData()->GetArray("Length");
-  for (Index l = 0; l < curves.NumberOfLines(); ++l)
+  LineWriter lines;
+  std::vector<double> edges, lengths;
+  for (std::size_t b = 0; b < run.NumberOfBlocks(); ++b)
   {
-    const bool closed =
-      curves.Vertices[curves.Begin[l]] == curves.Vertices[curves.Begin[l + 1] - 1];
-    const vtkIdType first = points->GetNumberOfPoints();
-    output->GetLines()->InsertNextCell(curves.Begin[l + 1] - curves.Begin[l]);
-    for (Index k = curves.Begin[l]; k < curves.Begin[l + 1]; ++k)
+    const RunResult& result = run.GetBlock(b).Result;
+    const Polylines& curves = result.EdgeCurves;
+    for (Index l = 0; l < curves.NumberOfLines(); ++l)
     {
-      if (closed && k + 1 == curves.Begin[l + 1])
+      const Index last = curves.Begin[l + 1] - 1;
+      const bool closed = curves.Vertices[curves.Begin[l]] == curves.Vertices[last];
+      const vtkTypeInt64 first = lines.NumberOfPoints();
+      for (Index k = curves.Begin[l]; k < last || (k == last && !closed); ++k)
       {
-        output->GetLines()->InsertCellPoint(first);
-        break;
+        lines.Connectivity.push_back(lines.NumberOfPoints());
+        lines.AddPoint(curves.Points.row(k).data());
+        edges.push_back(result.Edges[curves.Vertices[k]]);
       }
-      output->GetLines()->InsertCellPoint(points->InsertNextPoint(curves.Points.row(k).data()));
-      edges->InsertNextTuple1(result.Edges[curves.Vertices[k]]);
+      if (closed)
+      {
+        lines.Connectivity.push_back(first);
+      }
+      lines.EndLine();
+      lengths.push_back(curves.Length(l));
     }
-    lengths->InsertNextTuple1(curves.Length(l));
   }
-}
-
-vtkSmartPointer<vtkPolyData> MakeEmptyCurves()
-{
-  auto curves = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  curves->SetPoints(points);
-  curves->SetLines(vtkNew<vtkCellArray>());
-  vtkNew<vtkDoubleArray> edges;
-  edges->SetName(EdgesName);
-  curves->GetPointData()->AddArray(edges);
-  vtkNew<vtkDoubleArray> lengths;
-  lengths->SetName("Length");
-  curves->GetCellData()->AddArray(lengths);
-  return curves;
+  auto output = vtkSmartPointer<vtkPolyData>::New();
+  lines.Write(output);
+  output->GetPointData()->AddArray(CopyToArray<vtkDoubleArray>(EdgesName, 1, edges));
+  output->GetCellData()->AddArray(CopyToArray<vtkDoubleArray>("Length", 1, lengths));
+  return output;
 }
 
 } // namespace
@@ -149,12 +140,11 @@ void vtkMumfordShahFilter::WriteResult(
 void vtkMumfordShahFilter::TakeResults()
 {
   this->Superclass::TakeResults();
-  this->Curves = MakeEmptyCurves();
+  this->Curves = MakeCurves(this->State->Run);
   this->EdgeLength = 0.0;
   for (std::size_t b = 0; b < this->State->Run.NumberOfBlocks(); ++b)
   {
     const RunResult& result = this->State->Run.GetBlock(b).Result;
-    AppendCurves(result, this->Curves);
     for (Index l = 0; l < result.EdgeCurves.NumberOfLines(); ++l)
     {
       this->EdgeLength += result.EdgeCurves.Length(l);

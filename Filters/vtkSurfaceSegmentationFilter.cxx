@@ -3,12 +3,12 @@
 #include "vtkSurfaceSegmentationFilter.h"
 
 #include "Conversion/InputArrays.h"
+#include "Conversion/LineWriter.h"
 #include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
 #include "Run/SegmentationSettings.h"
 
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -18,7 +18,6 @@
 #include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
 
@@ -220,40 +219,33 @@ void vtkSurfaceSegmentationFilter::WriteTable(vtkTable* table)
 
 void vtkSurfaceSegmentationFilter::WriteBoundaries(vtkPolyData* boundaries)
 {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> lines;
-  vtkNew<vtkIntArray> regions, blocks;
-  vtkNew<vtkDoubleArray> lengths;
-  regions->SetName("Regions");
-  regions->SetNumberOfComponents(2);
-  lengths->SetName("Length");
-  blocks->SetName("Block");
+  LineWriter lines;
+  std::vector<int> regions, blocks;
+  std::vector<double> lengths;
   for (std::size_t b = 0; b < this->Regions.size(); ++b)
   {
     const RegionBoundaries& found = this->Regions[b]->Boundaries;
-    const vtkIdType first = points->GetNumberOfPoints();
+    const vtkTypeInt64 first = lines.NumberOfPoints();
     for (const auto& point : found.Points.rowwise())
     {
-      points->InsertNextPoint(point.data());
+      lines.AddPoint(point.data());
     }
     for (const RegionBoundary& curve : found.Curves)
     {
-      lines->InsertNextCell(static_cast<int>(curve.Points.size()));
       for (const Index point : curve.Points)
       {
-        lines->InsertCellPoint(first + point);
+        lines.Connectivity.push_back(first + point);
       }
-      regions->InsertNextTuple2(curve.Regions[0], curve.Regions[1]);
-      lengths->InsertNextValue(curve.Length);
-      blocks->InsertNextValue(static_cast<int>(b));
+      lines.EndLine();
+      regions.insert(regions.end(), { curve.Regions[0], curve.Regions[1] });
+      lengths.push_back(curve.Length);
+      blocks.push_back(static_cast<int>(b));
     }
   }
-  boundaries->SetPoints(points);
-  boundaries->SetLines(lines);
-  boundaries->GetCellData()->AddArray(regions);
-  boundaries->GetCellData()->AddArray(lengths);
-  boundaries->GetCellData()->AddArray(blocks);
+  lines.Write(boundaries);
+  boundaries->GetCellData()->AddArray(CopyToArray<vtkIntArray>("Regions", 2, regions));
+  boundaries->GetCellData()->AddArray(CopyToArray<vtkDoubleArray>("Length", 1, lengths));
+  boundaries->GetCellData()->AddArray(CopyToArray<vtkIntArray>("Block", 1, blocks));
 }
 
 void vtkSurfaceSegmentationFilter::TakeResults()

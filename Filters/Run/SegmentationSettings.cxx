@@ -17,6 +17,11 @@ namespace SurfaceDiffusion
 namespace
 {
 
+/// Data with regions take 50 to 200 iterations and up to 10 alternations. Noise without any region
+/// takes far more, and its minimum is of no use.
+constexpr int LargestNumberOfIterations = 1000;
+constexpr int LargestNumberOfAlternations = 20;
+
 constexpr double LargestNumberOfRegions = 1000;
 
 void CheckSeeds(const std::vector<Index>& seeds, int regions)
@@ -180,6 +185,8 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   settings.Fidelity =
     this->FidelityWeight * inputs.Units.ToCore(1.0, -1.0, inputs.DataAreTerms ? -1.0 : -2.0);
   settings.StopTolerance = this->StopTolerance;
+  settings.MaximumNumberOfIterations = LargestNumberOfIterations;
+  settings.MaximumNumberOfAlternations = LargestNumberOfAlternations;
   settings.UpdateMeans = this->AutomaticMeans && !inputs.DataAreTerms;
   Segmentation::Input input;
   input.Data = std::move(inputs.Data);

@@ -86,7 +86,7 @@ const std::vector<Maker> AllModels = { [] { return std::make_unique<HeatSettings
   []
   {
     auto settings = std::make_unique<SegmentationSettings>();
-    settings->Means = { 0.0, 1.0 };
+    settings->Means = { 1.0 };
     return settings;
   } };
 

@@ -324,8 +324,10 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
 void RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
 {
   const TriangleMesh& mesh = assembler->Mesh();
-  auto blur =
-    std::make_unique<HeatBlur>(assembler, bytes.Size(2.0), 2 + bytes.Below(4), ReadSolver(bytes));
+  const double width = bytes.Size(2.0);
+  const int steps = 2 + bytes.Below(4);
+  // Conjugate gradients may fail on flat triangles, in the energy of the start already.
+  auto blur = std::make_unique<HeatBlur>(assembler, width, steps, MakeCholeskySolver());
   const double fidelity = bytes.Size(4.0);
   Promises promises;
   promises.Energy = !HasFlatTriangles(mesh);

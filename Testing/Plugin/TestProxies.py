@@ -22,7 +22,7 @@ PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
 # All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
-    "SeedArray", "DataTermArray", "TimestepValues",
+    "FidelityArray", "SeedArray", "DataTermArray", "TimestepValues",
     "Mean",  # a list: SetMean(region, component, value)
 }
 PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"]}

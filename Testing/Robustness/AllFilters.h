@@ -53,6 +53,7 @@ inline std::vector<FilterKind> AllFilters()
   using TV = vtkIntrinsicTVFilter;
   using Harmonic = vtkHarmonicMapFilter;
   using Shah = vtkMumfordShahFilter;
+  using Segmentation = vtkSurfaceSegmentationFilter;
   using Turing = vtkTuringTextureFilter;
   return {
     MakeKind<Heat>("Heat", "fDiffused", 3),
@@ -96,9 +97,15 @@ inline std::vector<FilterKind> AllFilters()
         f->SetTimeIntegratorToFirstOrder();
         f->ColorOutputOn();
       }),
-    MakeKind<vtkSurfaceSegmentationFilter>("Segmentation", "RegionId", 1),
-    MakeKind<vtkSurfaceSegmentationFilter>("SegmentationOfThree", "RegionId", 1,
-      [](vtkSurfaceSegmentationFilter* f) { f->SetNumberOfRegions(3); }),
+    MakeKind<Segmentation>(
+      "Segmentation", "RegionId", 1, [](Segmentation* f) { f->SetStopTolerance(0.1); }),
+    MakeKind<Segmentation>("SegmentationOfThree", "RegionId", 1,
+      [](Segmentation* f)
+      {
+        f->SetNumberOfRegions(3);
+        f->SetFidelityWeight(5.0); // there are three regions
+        f->SetStopTolerance(0.1);
+      }),
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

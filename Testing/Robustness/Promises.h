@@ -229,6 +229,31 @@ inline std::string ExpectReactionBalance(vtkTuringTextureFilter* filter, vtkPoly
   return Text("balance to %.1e", largest);
 }
 
+/// Labels are 1 .. K, and 0 at points that take no part. Probabilities are in [0, 1], and their sum
+/// is 1 at the others.
+inline std::string ExpectLabelsAndProbabilities(
+  vtkSurfaceSegmentationFilter* filter, vtkDataArray* labels)
+{
+  vtkDataArray* const probabilities = ResultOf(filter, "RegionProbability");
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < labels->GetNumberOfTuples(); ++i)
+  {
+    const double label = labels->GetComponent(i, 0);
+    EXPECT_TRUE(label >= 0.0 && label <= filter->GetNumberOfRegions()) << "point " << i;
+    double sum = 0.0;
+    for (int k = 0; k < probabilities->GetNumberOfComponents(); ++k)
+    {
+      const double u = probabilities->GetComponent(i, k);
+      EXPECT_TRUE(u >= 0.0 && u <= 1.0) << "point " << i << ": " << u;
+      sum += u;
+    }
+    largest = std::max(largest, label > 0.0 ? std::abs(sum - 1.0) : 0.0);
+  }
+  EXPECT_LE(largest, 1e-6);
+  EXPECT_GE(filter->GetGap(), 0.0);
+  return Text("sum of probabilities to %.1e", largest);
+}
+
 /// Check the promises of an updated filter. The return value describes the findings.
 inline std::string ExpectPromises(
   vtkPolyDataAlgorithm* filter, vtkPolyData* input, const char* name)
@@ -284,6 +309,10 @@ inline std::string ExpectPromises(
       found += ", " + ExpectReactionBalance(turing, input);
     }
     return found;
+  }
+  if (auto* segmentation = vtkSurfaceSegmentationFilter::SafeDownCast(filter))
+  {
+    return ExpectLabelsAndProbabilities(segmentation, u);
   }
   return ExpectTangentialUnitOrZero(input, u);
 }

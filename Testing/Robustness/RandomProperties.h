@@ -202,8 +202,9 @@ inline List OfSegmentation()
     RANDOM_PROPERTY(F, AutomaticMeans, !dice.Flip(12)),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-4, 0.5)),
     { "Mean",
-      [](vtkPolyDataAlgorithm* filter, Dice& dice)
-      { static_cast<F*>(filter)->SetMean(1 + dice.Below(2), dice.Below(3), 1.0 + 2.0 * dice.Unit()); },
+      [](vtkPolyDataAlgorithm* filter, Dice& dice) {
+        static_cast<F*>(filter)->SetMean(1 + dice.Below(2), dice.Below(3), 1.0 + 2.0 * dice.Unit());
+      },
       [](vtkPolyDataAlgorithm* from, vtkPolyDataAlgorithm* to)
       {
         static_cast<F*>(to)->RemoveAllMeans();

@@ -20,7 +20,7 @@ HideAll(view)
 display = Show(result, view)
 display.SetScalarBarVisibility(view, True)
 curves = Show(OutputPort(result, 2), view)
-ColorBy(curves, None)
+curves.ColorArrayName = ["POINTS", ""]
 curves.LineWidth = 3.0
 curves.AmbientColor = curves.DiffuseColor = [0.0, 0.0, 0.0]
 ResetCamera(view)

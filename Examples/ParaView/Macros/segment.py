@@ -20,7 +20,7 @@ HideAll(view)
 display = Show(result, view)
 display.SetScalarBarVisibility(view, True)
 boundaries = Show(OutputPort(result, 2), view)
-ColorBy(boundaries, None)
+boundaries.ColorArrayName = ["POINTS", ""]
 boundaries.LineWidth = 3.0
 boundaries.AmbientColor = boundaries.DiffuseColor = [0.0, 0.0, 0.0]
 ResetCamera(view)

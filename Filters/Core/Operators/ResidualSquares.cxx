@@ -94,7 +94,7 @@ void ResidualSquares(const SparseMatrix& matrix, const Values& b, const Values& 
   ForEachBlock(parallel, rows,
     [&](Index block, Index begin, Index end)
     {
-      double* const sums = squares.data() + width * static_cast<std::size_t>(1 + block);
+      double* const sums = squares.data() + static_cast<std::size_t>(1 + block) * width;
       ForColumns(b.cols(),
         [&](auto number)
         {
