@@ -217,7 +217,7 @@ void vtkSurfaceSegmentationFilter::WriteTable(vtkTable* table)
   }
 }
 
-void vtkSurfaceSegmentationFilter::WriteBoundaries(vtkPolyData* boundaries)
+vtkSmartPointer<vtkPolyData> vtkSurfaceSegmentationFilter::MakeBoundaries() const
 {
   LineWriter lines;
   std::vector<int> regions, blocks;
@@ -242,10 +242,12 @@ void vtkSurfaceSegmentationFilter::WriteBoundaries(vtkPolyData* boundaries)
       blocks.push_back(static_cast<int>(b));
     }
   }
+  auto boundaries = vtkSmartPointer<vtkPolyData>::New();
   lines.Write(boundaries);
   boundaries->GetCellData()->AddArray(CopyToArray<vtkIntArray>("Regions", 2, regions));
   boundaries->GetCellData()->AddArray(CopyToArray<vtkDoubleArray>("Length", 1, lengths));
   boundaries->GetCellData()->AddArray(CopyToArray<vtkIntArray>("Block", 1, blocks));
+  return boundaries;
 }
 
 void vtkSurfaceSegmentationFilter::TakeResults()
@@ -271,6 +273,7 @@ void vtkSurfaceSegmentationFilter::TakeResults()
       }
     }
   }
+  this->Boundaries = this->MakeBoundaries();
 }
 
 void vtkSurfaceSegmentationFilter::VisitReported(const std::function<void(double&)>& visit)
@@ -317,8 +320,9 @@ int vtkSurfaceSegmentationFilter::RequestData(
   const int result = this->Superclass::RequestData(request, inputs, outputs);
   if (this->State->Succeeded)
   {
-    this->WriteBoundaries(boundaries);
+    boundaries->ShallowCopy(this->Boundaries);
   }
+  this->Boundaries = nullptr;
   this->Regions.clear();
   return result;
 }

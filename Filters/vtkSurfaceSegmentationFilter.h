@@ -61,6 +61,7 @@
 #ifndef vtkSurfaceSegmentationFilter_h
 #define vtkSurfaceSegmentationFilter_h
 
+#include "vtkSmartPointer.h" // for boundaries
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
 #include <map> // for means
@@ -175,12 +176,13 @@ private:
   vtkSurfaceSegmentationFilter(const vtkSurfaceSegmentationFilter&) = delete;
   void operator=(const vtkSurfaceSegmentationFilter&) = delete;
 
-  void WriteBoundaries(vtkPolyData* boundaries);
+  vtkSmartPointer<vtkPolyData> MakeBoundaries() const;
 
   std::map<std::pair<int, int>, double> Means; ///< by region and component
   std::map<std::pair<int, int>, double> EffectiveMeans;
   /// Of the blocks, during an update.
   std::vector<std::shared_ptr<const SurfaceDiffusion::RegionResults>> Regions;
+  vtkSmartPointer<vtkPolyData> Boundaries; ///< likewise
   double Gap = 0.0;
   double LabelGap = 0.0;
   int NumberOfAlternations = 0;

@@ -97,13 +97,18 @@ inline std::vector<FilterKind> AllFilters()
         f->SetTimeIntegratorToFirstOrder();
         f->ColorOutputOn();
       }),
-    MakeKind<Segmentation>(
-      "Segmentation", "RegionId", 1, [](Segmentation* f) { f->SetStopTolerance(0.1); }),
+    MakeKind<Segmentation>("Segmentation", "RegionId", 1,
+      [](Segmentation* f)
+      {
+        f->SetFidelityWeight(50.0); // noise has no regions if the weight is small
+        f->SetStopTolerance(0.1);
+      }),
     MakeKind<Segmentation>("SegmentationOfThree", "RegionId", 1,
       [](Segmentation* f)
       {
         f->SetNumberOfRegions(3);
-        f->SetFidelityWeight(5.0); // there are three regions
+        f->AutomaticMeansOff();
+        f->SetFidelityWeight(50.0);
         f->SetStopTolerance(0.1);
       }),
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
