@@ -153,7 +153,8 @@ void LinearDiffusion::ForEachShifted(const Body& body) const
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
     const Index begin = mesh.ComponentsBegin()[c];
-    const double* const shifts = this->Shifts.data() + c * this->Shifts.cols();
+    const double* const shifts =
+      this->Shifts.data() + static_cast<std::ptrdiff_t>(c) * this->Shifts.cols();
     ForEach(this->Parallel, mesh.ComponentsBegin()[c + 1] - begin,
       [&](Index i) { body(begin + i, shifts); });
   }
