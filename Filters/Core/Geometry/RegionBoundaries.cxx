@@ -149,13 +149,9 @@ Index SegmentCollector::AddJunction(
   regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
   if (regions.size() == 3 && crossings.size() == 3)
   {
-    Eigen::Matrix3d system;
-    for (int c = 0; c < 3; ++c)
-    {
-      system(0, c) = this->U(corners[c], regions[0]) - this->U(corners[c], regions[1]);
-      system(1, c) = this->U(corners[c], regions[0]) - this->U(corners[c], regions[2]);
-      system(2, c) = 1.0;
-    }
+    Eigen::Matrix3d system = Eigen::Matrix3d::Ones();
+    system.row(0) = this->U(corners, regions[0]) - this->U(corners, regions[1]);
+    system.row(1) = this->U(corners, regions[0]) - this->U(corners, regions[2]);
     const Eigen::Vector3d share = system.partialPivLu().solve(Eigen::Vector3d(0.0, 0.0, 1.0));
     if (share.allFinite() && share.minCoeff() >= 0.0)
     {
@@ -338,15 +334,15 @@ Vector RegionAreas(const Eigen::Ref<const Points>& points,
     areas[k] = Sum(parallel, static_cast<Index>(triangles.rows()),
       [&](Index t)
       {
-        const auto corners = triangles.row(t);
+        const std::array<Index, 3> corners = { triangles(t, 0), triangles(t, 1), triangles(t, 2) };
         const Eigen::RowVector3d origin = points.row(corners[0]);
         const Eigen::RowVector3d first = points.row(corners[1]) - origin;
         const Eigen::RowVector3d second = points.row(corners[2]) - origin;
         const double area = 0.5 * first.cross(second).norm();
         Eigen::Vector3d weight = Eigen::Vector3d::Ones();
-        for (int c = 0; c < 3 && weights.size() > 0; ++c)
+        if (weights.size() > 0)
         {
-          weight[c] = weights[corners[c]];
+          weight = weights(corners);
         }
         const Index label = LargestAt(u, corners[0]);
         if (label == LargestAt(u, corners[1]) && label == LargestAt(u, corners[2]))
@@ -357,15 +353,14 @@ Vector RegionAreas(const Eigen::Ref<const Points>& points,
           Eigen::Vector3d::UnitZ() };
         for (Eigen::Index j = 0; j < regions && !polygon.empty(); ++j)
         {
-          Eigen::Vector3d difference;
-          for (int c = 0; c < 3; ++c)
+          const Eigen::Vector3d difference = u(corners, k) - u(corners, j);
+          if (difference.cwiseAbs().maxCoeff() > 0.0)
           {
-            difference[c] = u(corners[c], k) - u(corners[c], j);
+            polygon = Clip(polygon, difference);
           }
-          if (j != k && (j < k || difference.cwiseAbs().maxCoeff() > 0.0))
+          else if (j < k) // the first of equal ones counts
           {
-            polygon =
-              difference.cwiseAbs().maxCoeff() > 0.0 ? Clip(polygon, difference) : Polygon();
+            polygon.clear();
           }
         }
         return area * WeightedShare(polygon, weight);
