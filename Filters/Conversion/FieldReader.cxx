@@ -102,7 +102,6 @@ FieldSummary InputFields::Summarize() const
   summary.Fixed = this->Fixed != nullptr;
   summary.Rates = this->Rates != nullptr;
   summary.DataAreTerms = this->DataAreTerms;
-  summary.Seeds = this->Seeds != nullptr;
   return summary;
 }
 

@@ -55,7 +55,7 @@ std::unique_ptr<HeatBlur> BlurSettings::Make(
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
-  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.DiffusionNumber = HeatBlur::TimeOfWidth(width, this->Steps) / this->Steps / (h * h);
   task.NumberOfSolves = ExpectedProducts * this->Steps;
   std::shared_ptr<LinearSolver> solver = inputs.Solvers.Find(SolverPurpose::Blur, task);

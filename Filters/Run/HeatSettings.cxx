@@ -76,7 +76,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
-  task.NumberOfColumns = static_cast<int>(inputs.Data.Start.cols());
+  task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.IsPreconditioner = true;
   const auto make = [&](PointData data, double fidelity)
   {

@@ -45,7 +45,6 @@ struct FieldSummary
   bool Fixed = false;
   bool Rates = false;
   bool DataAreTerms = false; ///< the data are the data terms of a segmentation, one per region
-  bool Seeds = false;
 };
 
 /// The properties of a model that a run needs before it makes the model.

@@ -160,7 +160,6 @@ FieldSummary InputFields::Summarize() const
   summary.Directions = this->Directions.has_value();
   summary.Fixed = this->Fixed.has_value();
   summary.Rates = this->Rates.has_value();
-  summary.Seeds = this->Seeds.has_value();
   summary.DataAreTerms = this->DataAreTerms;
   return summary;
 }

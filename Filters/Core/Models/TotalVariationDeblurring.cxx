@@ -23,7 +23,7 @@ constexpr double GapExponent = 4.5;
 constexpr double NegligibleError = 0.1;
 constexpr int IterationsPerShrinkage = 200;
 
-double LargestFactor(const PointData& data)
+double LargestFidelityFactor(const PointData& data)
 {
   double largest = 0.0;
   for (Index i = 0; i < static_cast<Index>(data.Missing.size()); ++i)
@@ -50,7 +50,7 @@ TotalVariationDeblurring::TotalVariationDeblurring(std::shared_ptr<const Assembl
   , Fit(this->Data, { settings.Fidelity })
   , Options(settings)
   , Parallel(parallel)
-  , Step(1.0 / (settings.Fidelity * LargestFactor(this->Data)))
+  , Step(1.0 / (settings.Fidelity * LargestFidelityFactor(this->Data)))
   , Range(ValueRange(this->Data.Start, this->Assembly->Mesh().GetReduction()))
   , Blur(std::move(blur))
   , Conserved(this->Assembly->Mesh(), this->Data, true, parallel)
