@@ -10,6 +10,7 @@
 #include "Run/SolverStore.h"
 #include "Run/Units.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -79,6 +80,15 @@ struct RunResult
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<std::string> Warnings;
+
+  /// Add a warning that other steps may have added already.
+  void WarnOnce(const std::string& text)
+  {
+    if (std::find(this->Warnings.begin(), this->Warnings.end(), text) == this->Warnings.end())
+    {
+      this->Warnings.push_back(text);
+    }
+  }
 };
 
 } // namespace SurfaceDiffusion

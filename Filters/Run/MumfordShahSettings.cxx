@@ -25,15 +25,6 @@ constexpr double LargestShare = 0.8;
 /// A part of a hole that edges enclose hangs on kappa alone. With larger tolerances its values drift.
 constexpr double ToleranceInHoles = 1e-3;
 
-void Warn(const std::string& sentence, RunResult& result)
-{
-  auto& all = result.Warnings;
-  if (std::find(all.begin(), all.end(), sentence) == all.end())
-  {
-    all.push_back(sentence);
-  }
-}
-
 /// The share of the surface where v is below a half.
 double ShareOfEdges(const TriangleMesh& mesh, const Vector& edges, const ParallelFor& parallel)
 {
@@ -100,7 +91,7 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
     std::ostringstream text;
     text << "EdgeWidth is below the mean edge length, " << inputs.Units.MeanEdgeLength
          << ": the triangles do not resolve the edges, which then cost more";
-    Warn(text.str(), result);
+    result.WarnOnce(text.str());
   }
 
   SolverTask task;
@@ -131,9 +122,9 @@ void MumfordShahSettings::Finish(const RunState& state, RunResult& result) const
   if (model.Finished() &&
     ShareOfEdges(state.Surface.Mesh(), result.Edges, state.Parallel) > LargestShare)
   {
-    Warn("most of the surface is an edge, as if the standard deviation of the noise were above a "
-         "third of EdgeThreshold (to keep noise from making edges, raise EdgeThreshold)",
-      result);
+    result.WarnOnce(
+      "most of the surface is an edge, as if the standard deviation of the noise were above a "
+      "third of EdgeThreshold (to keep noise from making edges, raise EdgeThreshold)");
   }
   if (this->EdgeCurves)
   {

@@ -90,7 +90,7 @@ std::shared_ptr<RegionResults> MeasureRegions(
   return regions;
 }
 
-void DescribeEmptyRegions(const RegionResults& regions, std::vector<std::string>& warnings)
+void WarnOfEmptyRegions(const RegionResults& regions, RunResult& result)
 {
   std::string empty;
   for (std::size_t k = 0; k < regions.Components.size(); ++k)
@@ -100,11 +100,10 @@ void DescribeEmptyRegions(const RegionResults& regions, std::vector<std::string>
       empty += (empty.empty() ? "" : ", ") + std::to_string(k + 1);
     }
   }
-  const std::string text =
-    "no point is in the regions " + empty + " (to keep smaller regions, raise FidelityWeight)";
-  if (!empty.empty() && std::find(warnings.begin(), warnings.end(), text) == warnings.end())
+  if (!empty.empty())
   {
-    warnings.push_back(text);
+    result.WarnOnce(
+      "no point is in the regions " + empty + " (to keep smaller regions, raise FidelityWeight)");
   }
 }
 
@@ -220,7 +219,7 @@ void SegmentationSettings::Finish(const RunState& state, RunResult& result) cons
   regions->DataMeans = model.DataMeans() * state.Units.ValueUnit;
   if (state.Path.Step() > 0)
   {
-    DescribeEmptyRegions(*regions, result.Warnings);
+    WarnOfEmptyRegions(*regions, result);
   }
   if (regions->Gap > this->StopTolerance && !result.HasUnfinishedMinimum)
   {
