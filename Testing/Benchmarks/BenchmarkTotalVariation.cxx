@@ -5,12 +5,13 @@
 // 0 and 1 and 25 % noise, with lambda = 3 in natural units: the minimiser to a given duality gap,
 // and a step of the paper's scheme compared with a step of the heat equation with a new factor. The
 // counter Gap is the duality gap that was reached, Iterations the number of iterations. Deblurring
-// removes a blur of 4 mean edge lengths.
+// removes a blur of 4 mean edge lengths. The segmentation has two labels with the means 0 and 1.
 
 #include "Meshes.h"
 
 #include "Core/Models/LinearDiffusion.h"
 #include "Core/Models/NonlinearDiffusion.h"
+#include "Core/Models/Segmentation.h"
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Models/TotalVariationFlow.h"
@@ -82,6 +83,26 @@ BENCHMARK(MinimizeToGap)
   ->ArgNames({ "s", "digits", "channels" })
   ->ArgsProduct({ { 6, 7 }, { 3, 5 }, { 1, 3 } })
   ->Unit(benchmark::kMillisecond);
+
+void SegmentToGap(benchmark::State& state)
+{
+  const NoisyPattern pattern(static_cast<int>(state.range(0)), 1);
+  Segmentation::Settings settings;
+  settings.Fidelity = 3.0 / pattern.MeanEdge;
+  settings.StopTolerance = 1e-3;
+  Segmentation::Input input;
+  input.Data = pattern.Data;
+  input.Means = Eigen::Vector2d(0.0, 1.0);
+  StepReport report;
+  for (auto _ : state)
+  {
+    Segmentation model(pattern.Operators, input, settings);
+    report = model.Advance(ProgressMonitor());
+  }
+  state.counters["Gap"] = report.Residual;
+  state.counters["Iterations"] = report.Iterations;
+}
+BENCHMARK(SegmentToGap)->ArgName("s")->Arg(6)->Arg(7)->Unit(benchmark::kMillisecond);
 
 /// The pattern, blurred by 4 mean edge lengths, with a tenth of the noise.
 PointData Blurred(const NoisyPattern& pattern, HeatBlur& blur)

@@ -10,6 +10,7 @@
 #include "Core/Models/MumfordShah.h"
 #include "Core/Models/NonlinearDiffusion.h"
 #include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/Segmentation.h"
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Models/TotalVariationFlow.h"
@@ -349,6 +350,56 @@ void RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   Run(mesh, model, promises);
 }
 
+/// Every row of u is a probability, and seeds keep their labels.
+void CheckProbabilities(const Values& u, const std::vector<Index>& seeds)
+{
+  for (Eigen::Index i = 0; i < u.rows(); ++i)
+  {
+    Require(u.row(i).minCoeff() >= 0.0, "a probability is negative");
+    Require(std::abs(u.row(i).sum() - 1.0) < 1e-9, "probabilities do not have the sum 1");
+    const Index seed = seeds.empty() ? 0 : seeds[static_cast<std::size_t>(i)];
+    Require(seed == 0 || u(i, seed - 1) == 1.0, "a seed has changed");
+  }
+}
+
+/// The values are data of K means, or K given data terms if there are at least two columns.
+void RunSegmentation(
+  Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Eigen::Index channels = data.Given.cols();
+  const bool hasMeans = channels < 2 || bytes.Flip();
+  const Eigen::Index regions = hasMeans ? 2 + bytes.Below(4) : channels;
+  Segmentation::Settings settings;
+  settings.Fidelity = bytes.Flip(4) ? 0.0 : bytes.Size(4.0);
+  settings.UpdateMeans = hasMeans && bytes.Flip();
+  settings.UseSimplex = bytes.Flip();
+  settings.MaximumNumberOfIterations = 200; // may end far from the minimum
+  settings.MaximumNumberOfAlternations = 5;
+  Segmentation::Input input;
+  input.Means.resize(hasMeans ? regions : 0, channels);
+  for (Eigen::Index k = 0; k < input.Means.rows(); ++k)
+  {
+    for (Eigen::Index c = 0; c < channels; ++c)
+    {
+      input.Means(k, c) = bytes.Short();
+    }
+  }
+  if (bytes.Flip())
+  {
+    input.Seeds.resize(static_cast<std::size_t>(mesh.NumberOfVertices()));
+    for (Index& seed : input.Seeds)
+    {
+      seed = bytes.Flip(4) ? 1 + bytes.Below(static_cast<int>(regions)) : 0;
+    }
+  }
+  input.Data = std::move(data);
+  const std::vector<Index> seeds = input.Seeds;
+  Segmentation model(assembler, std::move(input), settings);
+  Run(mesh, model, Promises());
+  CheckProbabilities(model.State(), seeds);
+}
+
 void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames)
 {
@@ -373,6 +424,11 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   if (bytes.Flip(4))
   {
     RunDeblurring(bytes, assembler, std::move(data));
+    return;
+  }
+  if (bytes.Flip(4))
+  {
+    RunSegmentation(bytes, assembler, std::move(data));
     return;
   }
   TotalVariationFlow model(assembler, frames, std::move(data), settings);
