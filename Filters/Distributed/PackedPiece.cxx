@@ -118,7 +118,7 @@ void PackAttributes(vtkAlgorithm* filter, vtkDataSetAttributes* from, vtkIdType 
   }
 }
 
-/// The names of all arrays, which results may replace.
+/// The names of all arrays that results may replace. The surface has no flags of ghosts.
 vtkSmartPointer<vtkStringArray> PackNames(const char* name, vtkDataSetAttributes* attributes)
 {
   auto names = vtkSmartPointer<vtkStringArray>::New();
@@ -126,7 +126,10 @@ vtkSmartPointer<vtkStringArray> PackNames(const char* name, vtkDataSetAttributes
   for (int a = 0; a < attributes->GetNumberOfArrays(); ++a)
   {
     const char* const arrayName = attributes->GetAbstractArray(a)->GetName();
-    names->InsertNextValue(arrayName ? arrayName : "");
+    if (arrayName && strcmp(arrayName, vtkDataSetAttributes::GhostArrayName()) != 0)
+    {
+      names->InsertNextValue(arrayName);
+    }
   }
   return names;
 }

@@ -41,7 +41,7 @@ void KeepNames(vtkFieldData* fields, const char* list, vtkDataSetAttributes* att
   for (vtkIdType i = 0; names && i < names->GetNumberOfValues(); ++i)
   {
     const std::string name = names->GetValue(i);
-    if (!name.empty() && !attributes->HasArray(name.c_str()))
+    if (!attributes->HasArray(name.c_str()))
     {
       vtkNew<vtkUnsignedCharArray> placeholder;
       placeholder->SetName(name.c_str());
