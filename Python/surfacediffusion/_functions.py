@@ -102,7 +102,7 @@ def _with_settings(function: F) -> F:
             kind = "Literal[" + ", ".join(f'"{word}"' for word in setting.usable) + "]"
         parameters.append(inspect.Parameter(
             setting.keyword, inspect.Parameter.KEYWORD_ONLY, default=setting.default,
-            annotation=kind))
+            annotation="ArrayLike" if kind == "array_like" else kind))
         allowed = "{" + setting.allowed + "}" if setting.kind == "choice" else kind
         if setting.kind in ("number", "integer"):
             allowed += ", " + setting.allowed
