@@ -26,7 +26,7 @@ HAS_HYPRE = os.environ.get("SURFACEDIFFUSION_HAS_HYPRE") == "1"
 RANK, COUNT = CONTROLLER.GetLocalProcessId(), CONTROLLER.GetNumberOfProcesses()
 LABYRINTH = dict(NumberOfTimeSteps=30)
 
-# Name, filter, properties, result. Random numbers equal those of one process only with global ids.
+# Name, filter, properties, result
 CASES = (
     ("heat", FVMHeatFilter, {}, "fDiffused"),
     ("heat, inpainting", FVMHeatFilter,
@@ -141,18 +141,24 @@ class TestPieces(unittest.TestCase):
     def setUpClass(cls):
         cls.plain = pieces.make_surface()
         cls.numbered = pieces.give_ids(cls.plain)
-        cls.expected = {}
-        for name, make, properties, result in CASES:
-            alone = run(make, properties, producer(cls.numbered))
-            alone.GetClientSideObject().SetController(None)
-            alone.UpdatePipeline()
-            output = alone.GetClientSideObject().GetOutputDataObject(0)
-            cls.expected[name] = values(output, result)
+        cls.with_ids = {name: cls.alone(cls.numbered, *case) for name, *case in CASES}
+        # Random numbers come from the global ids, or from the coordinates if there are none.
+        cls.without_ids = {**cls.with_ids, **{
+            name: cls.alone(cls.plain, *case) for name, *case in CASES if name in SEEDED}}
 
-    def check(self, partition, source, exact_ids, names=None):
+    @staticmethod
+    def alone(surface, make, properties, result):
+        """The values that one process finds."""
+        filter = run(make, properties, producer(surface))
+        filter.GetClientSideObject().SetController(None)
+        filter.UpdatePipeline()
+        return values(filter.GetClientSideObject().GetOutputDataObject(0), result)
+
+    def check(self, partition, source, has_ids, names=None):
         """Runs all filters on the source, in all processes together."""
+        expected = self.with_ids if has_ids else self.without_ids
         for name, make, properties, result in CASES:
-            if (name in SEEDED and not exact_ids) or (names and name not in names):
+            if names and name not in names:
                 continue
             filter = run(make, properties, source)
             algorithm = filter.GetClientSideObject()
@@ -166,7 +172,7 @@ class TestPieces(unittest.TestCase):
                 if piece and piece.GetNumberOfPoints() > 0:
                     found.update(values(piece, result))
             worst = max(
-                (np.abs(row - self.expected[name][key]).max() for key, row in found.items()),
+                (np.abs(row - expected[name][key]).max() for key, row in found.items()),
                 default=0.0)
             worst = largest_of_all(worst)
             LARGEST[partition, name] = worst
@@ -179,7 +185,14 @@ class TestPieces(unittest.TestCase):
         self.check("slabs, ids", producer(pieces.split(self.numbered, COUNT, "slabs")[RANK]), True)
 
     def test_slabs_matched_by_coordinates(self):
-        self.check("slabs", producer(pieces.split(self.plain, COUNT, "slabs")[RANK]), False, FEW)
+        self.check("slabs", producer(pieces.split(self.plain, COUNT, "slabs")[RANK]), False, FEW + SEEDED)
+
+    def test_random_numbers_need_no_ids(self):
+        """They are those of the points' coordinates, so the seeded cases above mean something."""
+        name = "turing"
+        difference = max(np.abs(row - self.without_ids[name][key]).max()
+                         for key, row in self.with_ids[name].items())
+        self.assertGreater(difference, 1e-3)
 
     def test_cells_at_random(self):
         mine = pieces.split(self.plain, COUNT, "random")[RANK]
