@@ -139,6 +139,10 @@ TEST(Segmentation, ProjectionOntoTheSimplexIsTheNearestPoint)
       }
     }
   }
+  Eigen::RowVector3d large(1e9 + 0.25, 1e9, 1e9);
+  ProjectOntoSimplex(large.data(), 3);
+  EXPECT_NEAR(large.sum(), 1.0, 1e-15);
+  EXPECT_NEAR(large[0], 0.5, 1e-15);
   double outside[3] = { -0.5, 0.25, 1.5 };
   for (double& x : outside)
   {

@@ -33,6 +33,13 @@ void ProjectOntoSimplex(double* row, int columns)
     row[0] = std::clamp(row[0], 0.0, 1.0);
     return;
   }
+  // The projection ignores a common summand. Without it the values that stay above 0 are in [-1, 0],
+  // and their sum keeps its digits even if the row is large.
+  const double largest = *std::max_element(row, row + columns);
+  for (int k = 0; k < columns; ++k)
+  {
+    row[k] -= largest;
+  }
   // Every pass leaves out the values that are not above the shift of the others. The shift only
   // rises; if round-off let it fall, the loop might not end.
   double shift = -std::numeric_limits<double>::infinity();
