@@ -111,9 +111,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   settings.LargestDiffusivity = fastest > 0.0 ? fastest : 1.0;
   settings.Limits.Tolerance = this->Tolerance;
   settings.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
-  const bool distributed = !inputs.Surface.Mesh().GetReduction().IsSerial();
-  if (this->Solver == SolverMethod::Direct ||
-    (this->Solver == SolverMethod::Multigrid && distributed))
+  if (this->Solver == SolverMethod::Direct || this->Solver == SolverMethod::Multigrid)
   {
     settings.Method = HarmonicMap::Preconditioner::Factor;
   }

@@ -123,8 +123,8 @@ TEST(HarmonicMap, PreconditionersAgree)
   const Values f = RandomUnitVectors(mesh, 3);
   auto settings = MapSettings(mesh, 1.0, 0.3, 1e-4);
   std::vector<Values> results;
-  for (const auto method :
-    { HarmonicMap::Preconditioner::Jacobi, HarmonicMap::Preconditioner::Factor })
+  for (const auto method : { HarmonicMap::Preconditioner::Jacobi,
+         HarmonicMap::Preconditioner::Factor, HarmonicMap::Preconditioner::Multigrid })
   {
     settings.Method = method;
     const auto map = MakeMap(assembler, PointData::FromValues(f), settings);
@@ -132,6 +132,38 @@ TEST(HarmonicMap, PreconditionersAgree)
     results.push_back(map->State());
   }
   EXPECT_LT((results[0] - results[1]).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LT((results[0] - results[2]).cwiseAbs().maxCoeff(), 1e-7);
+}
+
+TEST(HarmonicMap, MultigridIsChosenWhereDiffusionDominates)
+{
+  const Surface sphere = Icosphere(4);
+  const auto assembler = MakeAssembler(sphere);
+  const TriangleMesh& mesh = assembler->Mesh();
+  Values normals = sphere.Vertices + 0.1 * RandomUnitVectors(mesh, 3);
+  normals.rowwise().normalize();
+  for (const bool dominates : { false, true })
+  {
+    const double h = mesh.TotalEdgeLength() / (3.0 * mesh.NumberOfVertices());
+    auto settings = MapSettings(mesh, 1.0, dominates ? 10.0 * h : 0.1 * h, 1e-6);
+    int iterations[2];
+    for (const bool automatic : { false, true })
+    {
+      settings.Method =
+        automatic ? HarmonicMap::Preconditioner::Automatic : HarmonicMap::Preconditioner::Jacobi;
+      const auto map = MakeMap(assembler, PointData::FromValues(normals), settings);
+      Advance(*map, 2); // the noise is gone
+      iterations[automatic] = map->Advance(ProgressMonitor()).Iterations;
+    }
+    if (dominates)
+    {
+      EXPECT_LT(4 * iterations[1], iterations[0]);
+    }
+    else
+    {
+      EXPECT_EQ(iterations[1], iterations[0]);
+    }
+  }
 }
 
 TEST(HarmonicMap, JacobiAloneTellsThatItDidNotConverge)

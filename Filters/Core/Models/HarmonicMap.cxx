@@ -3,10 +3,13 @@
 #include "Core/Models/HarmonicMap.h"
 
 #include "Core/Models/UnitVectors.h"
+#include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -280,49 +283,110 @@ void HarmonicMap::FindDamping()
     [&](Index i) { this->Damping[i] = reduction.Owns(i) ? std::max(this->Damping[i], 0.0) : 0.0; });
 }
 
-SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
+/// Whether a multigrid cycle is expected to need fewer seconds than Jacobi. The iterations with
+/// Jacobi grow with the square root of the ratio between the entries of the diagonal and the part
+/// that has no diffusion. On icospheres of 16,000 to 262,000 vertices both took the same time at a
+/// ratio near 200, at which Jacobi needed 160 iterations and the cycle 12.
+bool HarmonicMap::PrefersMultigrid() const
 {
-  const bool factor = this->Options.Method == Preconditioner::Factor;
-  SolveReport report = this->TrySolve(factor, this->Step, progress.Part(0.0, 0.5));
-  if (report.Converged)
-  {
-    return report;
-  }
-  if (this->Options.Method == Preconditioner::Jacobi)
-  {
-    RequireAnswer(report, this->Options.Limits);
-    return report;
-  }
-  // If triangles are so bad that neither converges, the better of the two is a step, too.
-  report.IsFinal = true;
-  try
-  {
-    const SolveReport other = this->TrySolve(!factor, this->Other, progress.Part(0.5, 1.0));
-    report.Iterations += other.Iterations;
-    if (other.Residual < report.Residual)
-    {
-      report.Residual = other.Residual;
-      report.Converged = other.Converged;
-      this->Step.swap(this->Other);
-    }
-  }
-  catch (const std::runtime_error&)
-  {
-    // The matrix cannot be factorised, which is no reason to give up the step.
-  }
-  return report;
+  constexpr double ratio = 200.0;
+  const SparseMatrix& matrix = this->System.GetMatrix();
+  const auto count = static_cast<Index>(matrix.rows());
+  const double stiff = Sum(this->Parallel, count,
+    [&](Index i) { return DiagonalEntry(matrix, i) > ratio * this->Diagonal[i] ? 1.0 : 0.0; });
+  return this->Assembly->Mesh().GetReduction().IsSerial() && stiff > 0.5 * count;
 }
 
-SolveReport HarmonicMap::TrySolve(bool factor, Values& step, const ProgressMonitor& progress)
+/// The methods to try, in this order.
+const std::vector<HarmonicMap::Preconditioner>& HarmonicMap::Methods() const
 {
-  if (factor)
+  using Method = Preconditioner;
+  static const std::vector<Method> multigrid{ Method::Multigrid, Method::Jacobi, Method::Factor };
+  static const std::vector<Method> noise{ Method::Jacobi, Method::Factor };
+  static const std::vector<Method> factor{ Method::Factor, Method::Jacobi };
+  static const std::vector<Method> jacobi{ Method::Jacobi };
+  switch (this->Options.Method)
   {
-    this->System.SetUpSolver(progress.Part(0.0, 0.5));
+    case Method::Factor:
+      return factor;
+    case Method::Jacobi:
+      return jacobi;
+    case Method::Multigrid:
+      return multigrid;
+    default:
+      return this->PrefersMultigrid() ? multigrid : noise;
+  }
+}
+
+SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
+{
+  const std::vector<Preconditioner>& methods = this->Methods();
+  // If triangles are so bad that none converges, the best of the answers is a step, too.
+  SolveReport best;
+  best.Residual = std::numeric_limits<double>::infinity();
+  double done = 0.0;
+  for (const Preconditioner method : methods)
+  {
+    const double end = method == methods.back() ? 1.0 : 0.5 * (1.0 + done);
+    try
+    {
+      SolveReport report = this->TrySolve(method, this->Other, progress.Part(done, end));
+      report.Iterations += best.Iterations;
+      if (report.Residual < best.Residual)
+      {
+        best = report;
+        this->Step.swap(this->Other);
+      }
+      best.Iterations = report.Iterations;
+    }
+    catch (const std::runtime_error&)
+    {
+      // The matrix cannot be factorised. The other methods need no factor.
+      if (method == methods.back() && !std::isfinite(best.Residual))
+      {
+        throw;
+      }
+    }
+    if (best.Converged)
+    {
+      return best;
+    }
+    done = end;
+  }
+  if (methods.size() == 1)
+  {
+    RequireAnswer(best, this->Options.Limits);
+    return best;
+  }
+  best.IsFinal = true;
+  return best;
+}
+
+SolveReport HarmonicMap::TrySolve(
+  Preconditioner method, Values& step, const ProgressMonitor& progress)
+{
+  LinearSolver* preconditioner = nullptr;
+  double begin = 0.0;
+  if (method == Preconditioner::Factor)
+  {
+    begin = 0.5;
+    this->System.SetUpSolver(progress.Part(0.0, begin));
+    preconditioner = &this->System.GetSolver();
+  }
+  else if (method == Preconditioner::Multigrid)
+  {
+    begin = 0.5;
+    if (!this->Cycle)
+    {
+      this->Cycle = MakeMultigridSolver(this->Parallel);
+    }
+    this->Cycle->SetMatrix(this->System.GetMatrix(), progress.Part(0.0, begin));
+    preconditioner = this->Cycle.get();
   }
   const TangentSystem system{ this->System.GetMatrix(), this->Previous, this->Data.Fixed,
     this->RightHandSide, this->Diagonal, this->Assembly->Mesh().GetReduction() };
-  return this->Tangent.Solve(system, step, factor ? &this->System.GetSolver() : nullptr,
-    this->Options.Limits, factor ? progress.Part(0.5, 1.0) : progress);
+  return this->Tangent.Solve(
+    system, step, preconditioner, this->Options.Limits, progress.Part(begin, 1.0));
 }
 
 } // namespace SurfaceDiffusion

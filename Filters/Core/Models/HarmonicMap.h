@@ -67,15 +67,17 @@ public:
     MinimizingMovement
   };
 
-  /// The preconditioner of the conjugate gradients in the tangent spaces. Factor is the factorised
-  /// matrix without the projections (over several processes a multigrid cycle): good for smooth
-  /// maps and large steps, while for noise Jacobi is never far behind. If one does not converge,
-  /// the other follows; if neither does, the better one is the step, and the report says so. Jacobi
-  /// alone throws NotConverged unless it is within AnswerFactor of the tolerance.
+  /// The preconditioner of the conjugate gradients in the tangent spaces. Factor takes the solver
+  /// of the constructor with the matrix without the projections: a factorisation, or multigrid.
+  /// Multigrid is a cycle for the same matrix. Both are good for smooth maps and large steps, while
+  /// for noise Jacobi is fast. If a method does not converge, the next one follows; if none does,
+  /// the best answer is the step, and the report says so. Jacobi alone throws NotConverged unless
+  /// it is within AnswerFactor of the tolerance.
   enum class Preconditioner
   {
-    Automatic, ///< Jacobi first
-    Factor, ///< Factor first
+    Automatic, ///< as Multigrid in one process if diffusion dominates, else Jacobi, Factor
+    Factor, ///< Factor, Jacobi
+    Multigrid, ///< Multigrid, Jacobi, Factor
     Jacobi
   };
 
@@ -113,7 +115,9 @@ private:
   void MinimizingMovementStep(StepReport& report, const ProgressMonitor& progress);
   double Descend(double objective, StepReport& report, const ProgressMonitor& progress);
   SolveReport SolveInTangentSpaces(const ProgressMonitor& progress);
-  SolveReport TrySolve(bool factor, Values& step, const ProgressMonitor& progress);
+  bool PrefersMultigrid() const;
+  const std::vector<Preconditioner>& Methods() const;
+  SolveReport TrySolve(Preconditioner method, Values& step, const ProgressMonitor& progress);
   void FindDamping();
   void ProjectToSphere();
   double Objective() const;
@@ -127,6 +131,7 @@ private:
   HarmonicEnergy GradientEnergy;
   ImplicitSystem System;
   TangentSolver Tangent;
+  std::unique_ptr<LinearSolver> Cycle; ///< of Multigrid
   Vector Diagonal; ///< (1 + lambda dt chi) M
   Vector Damping; ///< D, times dt; of an interface vertex in its owner only
   std::vector<double> InterfaceEntries; ///< matrix entries of the edges on interfaces
