@@ -77,6 +77,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
   SolverTask task;
   task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
   task.NumberOfColumns = static_cast<int>(inputs.Columns);
+  task.Anisotropy = this->Anisotropy();
   task.IsPreconditioner = true;
   const auto make = [&](PointData data, double fidelity)
   {
@@ -125,6 +126,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   task.NumberOfVertices = mesh.NumberOfVertices();
   task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
+  task.Anisotropy = this->Anisotropy();
   const double solvesPerStep = secondOrder ? 2.0 : 1.0;
   if (this->Mode == HeatMode::SteadyState)
   {

@@ -161,6 +161,13 @@ double DataSettings::LargestDiffusivity() const
   return std::max(this->AlongDiffusivity, this->AcrossDiffusivity);
 }
 
+double DataSettings::Anisotropy() const
+{
+  return this->IsDirected()
+    ? this->LargestDiffusivity() / std::min(this->AlongDiffusivity, this->AcrossDiffusivity)
+    : 1.0;
+}
+
 void DataSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->RunSettings::CheckTogether(fields, problems);

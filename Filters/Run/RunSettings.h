@@ -131,6 +131,7 @@ struct DataSettings : RunSettings
 
   bool IsDirected() const { return this->AlongDiffusivity != this->AcrossDiffusivity; }
   double LargestDiffusivity() const;
+  double Anisotropy() const; ///< of SolverTask
 
 protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;

@@ -343,6 +343,8 @@ std::array<ReactionDiffusion::Chemical, 2> TextureSettings::MakeChemicals(ModelI
     SolverTask task;
     task.NumberOfVertices = inputs.Surface.Mesh().NumberOfVertices();
     task.DiffusionNumber = fastest * settings.TimeStep / (h * h);
+    task.Anisotropy =
+      fastest > 0.0 ? fastest / std::min(rates.MeanAlong[c], rates.MeanAcross[c]) : 1.0;
     task.NumberOfSolves = solvesPerStep * CoarseStart::StepsOnSurface;
     const SolverPurpose purpose = c == 0 ? SolverPurpose::Step : SolverPurpose::SecondChemical;
     chemicals[c].Solver = inputs.Solvers.Find(purpose, task, startsCoarse ? 0.0 : solvesPerStep);

@@ -455,6 +455,16 @@ TEST(Automatic, ChoosesMultigridOnlyWhereAllowed)
   EXPECT_NE(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
 }
 
+TEST(Automatic, KnowsThatAnisotropyCostsCycles)
+{
+  SolverTask task;
+  task.NumberOfVertices = 262000;
+  task.DiffusionNumber = 10.0;
+  EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
+  task.Anisotropy = 100.0;
+  EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::ConjugateGradient);
+}
+
 TEST(Automatic, TakesASteadyStateForALongStep)
 {
   SolverTask task;

@@ -35,6 +35,7 @@ constexpr double Hierarchy = 0.036; // of multigrid, x s
 constexpr double Cycle = 2.9e-3; // x s
 constexpr double Cycles = 9.5; // x digits, at c = 1
 constexpr double CyclesPerDecade = 2.7; // x digits log10(c)
+constexpr double AnisotropicCycles = 0.2; // x min(anisotropy, c) to this power
 
 // What a further column costs of the first one, with 41,000 vertices and 8 to 48 columns: those of a
 // panel share a pass over the matrix or the factor.
@@ -75,7 +76,8 @@ SolverMethod FindFastest(const SolverTask& task)
   const double conjugateGradient =
     columns(IterationColumn) * Threads * task.NumberOfSolves * iterations * Iteration * s;
 
-  const double cycles = digits * (Cycles + CyclesPerDecade * std::log10(c));
+  const double cycles = digits * (Cycles + CyclesPerDecade * std::log10(c)) *
+    std::pow(std::min(task.Anisotropy, std::max(c, 1.0)), AnisotropicCycles);
   const double multigrid =
     Threads * (Hierarchy * s + columns(CycleColumn) * task.NumberOfSolves * cycles * Cycle * s);
 

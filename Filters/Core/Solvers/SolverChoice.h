@@ -29,6 +29,8 @@ struct SolverTask
   /// (largest diffusivity) x (time step) / h^2 of one step. Empty for a steady state, in which no
   /// time step bounds the distance over which values diffuse.
   std::optional<double> DiffusionNumber = 1.0;
+  double Anisotropy =
+    1.0; ///< the larger diffusivity of a triangle over the smaller, may be infinite
   double NumberOfSolves = 1.0; ///< with one matrix
   int NumberOfColumns = 1; ///< of each solve
   double Tolerance = 1e-10;
