@@ -55,7 +55,7 @@ CASES = (
     ("harmonic, paper", HarmonicMapFilter,
      dict(InputArray=["POINTS", "vectors"], Scheme="ExplicitReaction"), "vectorsHarmonic"),
     ("edges", MumfordShahFilter, dict(Tolerance=1e-10), "fMumfordShah"),
-    ("segmentation", SurfaceSegmentationFilter, dict(FidelityWeight=2.0), "RegionId"),
+    ("segmentation", SurfaceSegmentationFilter, {}, "RegionId"),
     ("turing", TuringTextureFilter, LABYRINTH, "u1"),
     ("turing, rates", TuringTextureFilter,
      dict(DiffusionRateArray=["CELLS", "rates"], **LABYRINTH), "u2"),

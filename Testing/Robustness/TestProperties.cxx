@@ -171,6 +171,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
         f->SetMean(2, component, 2.1);
       }
     });
+  needed["vtkSurfaceSegmentationFilter FidelityWeight"] =
+    With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
   needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
     With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
   needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =
