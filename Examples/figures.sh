@@ -1,7 +1,7 @@
 #!/bin/bash
-# Draws figures 4 to 8 of the paper, and deblurring, on scanned surfaces with photographs: installs
-# the required packages (Debian 12), fetches the data, builds the library, draws into build/figures,
-# and prints errors and run times.
+# Draws figures 4 to 8 of the paper, deblurring, edges and regions on scanned surfaces with
+# photographs and on cortices: installs the required packages (Debian 12), fetches the data, builds
+# the library, draws into build/figures, and prints errors and run times.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -35,6 +35,7 @@ fi
 modules=$(dirname "$(find build/lib -type d -name surfacediffusion -path '*-packages/*' | head -1)")
 export PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH}
 export SURFACEDIFFUSION_MESH_DIR=$PWD/$data/meshes
+export SURFACEDIFFUSION_BRAIN_DIR=$PWD/$data/wheels/brains
 examples=$PWD/Examples/Python
 photos=$PWD/$data/photos
 mkdir -p build/figures
@@ -43,6 +44,8 @@ cd build/figures
   --photos "$photos" --output .
 "${display[@]}" "$python" "$examples/deblurring.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
   --photos "$photos" --output .
+"${display[@]}" "$python" "$examples/deblurring_cortex.py" || [ $? -eq 77 ] # without wb_command
 "${display[@]}" "$python" "$examples/harmonic_map.py"
 "${display[@]}" "$python" "$examples/mumford_shah.py"
+"${display[@]}" "$python" "$examples/segmentation.py"
 "${display[@]}" "$python" "$examples/turing_texture.py"

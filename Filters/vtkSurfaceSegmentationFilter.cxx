@@ -103,6 +103,7 @@ std::unique_ptr<RunSettings> vtkSurfaceSegmentationFilter::MakeSettings() const
   auto settings = std::make_unique<SegmentationSettings>();
   this->CopyProperties(*settings);
   settings->NumberOfRegions = this->NumberOfRegions;
+  settings->AutomaticFidelity = this->AutomaticFidelity;
   settings->FidelityWeight = this->FidelityWeight;
   settings->AutomaticMeans = this->AutomaticMeans;
   settings->StopTolerance = this->StopTolerance;
@@ -135,6 +136,7 @@ bool vtkSurfaceSegmentationFilter::FindFields(
     fields.Data = inputs.FindOnPoints(0, "InputArray", InputArrays::AnyNumberOfComponents);
   }
   fields.Mask = inputs.FindOnPoints(1, "MaskArray", 1);
+  fields.Fidelity = inputs.FindOnPoints(5, "FidelityArray", 1);
   fields.Seeds = inputs.FindOnPoints(6, "SeedArray", 1);
   return fields.Data != nullptr;
 }
@@ -253,6 +255,7 @@ vtkSmartPointer<vtkPolyData> vtkSurfaceSegmentationFilter::MakeBoundaries() cons
 void vtkSurfaceSegmentationFilter::TakeResults()
 {
   this->Superclass::TakeResults();
+  this->EffectiveFidelityWeight = this->State->Run.GetBlock(0).Result.EffectiveFidelityWeight;
   this->Gap = this->LabelGap = 0.0;
   this->NumberOfAlternations = 0;
   this->EffectiveMeans.clear();
@@ -279,6 +282,7 @@ void vtkSurfaceSegmentationFilter::TakeResults()
 void vtkSurfaceSegmentationFilter::VisitReported(const std::function<void(double&)>& visit)
 {
   this->Superclass::VisitReported(visit);
+  visit(this->EffectiveFidelityWeight);
   visit(this->Gap);
   visit(this->LabelGap);
   double alternations = this->NumberOfAlternations;
@@ -330,6 +334,7 @@ int vtkSurfaceSegmentationFilter::RequestData(
 void vtkSurfaceSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "EffectiveFidelityWeight: " << this->EffectiveFidelityWeight << "\n";
   os << indent << "Gap: " << this->Gap << "\n";
   os << indent << "LabelGap: " << this->LabelGap << "\n";
   os << indent << "NumberOfAlternations: " << this->NumberOfAlternations << "\n";

@@ -9,36 +9,46 @@
  * surfaces C. Wu, J. Zhang, Y. Duan, X.-C. Tai, J. Sci. Comput. 50, 2012): the minimum over u, a
  * probability of each region at each point, of
  *
- *     E(u) = 1/2 sum_k int |grad u_k| + lambda sum_k int chi u_k r_k,   u_k >= 0,   sum_k u_k = 1,
+ *     E(u) = 1/2 sum_k int |grad u_k| + lambda sum_k int chi w u_k r_k,   u_k >= 0,   sum_k u_k = 1,
  *
  * the length of the boundaries plus lambda times the data terms r_k = |f - c_k|^2, where c_k is the
- * mean of region k. chi is the indicator of the known part. A point belongs to the region of its
- * largest u_k. The means are given (SetMean) or found (AutomaticMeans). Instead of f, the data terms
- * r_k themselves can be given as a point array with one component per region, so that any feature
- * can drive the segmentation: probabilities of a classifier (r_k = -log p_k), distances from
- * prototypes, and so on. Seeds are points whose label is given. They suit interactive use: without
- * any data term, the regions are those with the shortest boundaries between the seeds.
+ * mean of region k. chi is the indicator of the known part, and w the fidelity of each point, 1 by
+ * default. A point belongs to the region of its largest u_k. The means are given (SetMean) or found
+ * (AutomaticMeans). Instead of f, the data terms r_k themselves can be given as a point array with
+ * one component per region, so that any feature can drive the segmentation: probabilities of a
+ * classifier (r_k = -log p_k), distances from prototypes, and so on. Seeds are points whose label is
+ * given. They suit interactive use: without any data term, the regions are those with the shortest
+ * boundaries between the seeds.
  *
  * **Input arrays** in addition to those of the superclass (0, the data f, and 1, the mask):
  *
  * | idx | association | meaning |
  * | --- | --- | --- |
+ * | 5 | points | FidelityArray: w, one component, 0 or more. 0: missing |
  * | 6 | points | seeds, one component: the labels 1 ... K, 0 = free |
  * | 7 | points | the data terms r_k, K components, in place of f; NaN in any component: missing |
  *
  * Input arrays 2 and 3 are not used. Missing points (mask, NaN) take the region that makes the
  * boundaries shortest. Points excluded by MaskMode Exclude have the label 0.
  *
+ * **The weight.** A disk of radius r is kept if lambda > 2/(r d^2) for data of two values with the
+ * difference d. A cap of the angle theta on the unit sphere is kept if lambda d^2 > cot(theta/2).
+ * By default (AutomaticFidelity) lambda is found from the data,
+ *
+ *     lambda = 0.6/(h D),   D = the mean of r_(2) - r_(1) over the known points where they differ,
+ *
+ * where r_(1) and r_(2) are the smallest two data terms of a point for the given means or, with
+ * AutomaticMeans, for the clusters of the values. D is the contrast of the data, d^2 for two values
+ * without noise. Noise hardly changes it, or raises it. So regions are kept from a radius of about 3
+ * h on, while noise of up to the distance of the means makes none. The mean has weights A w.
+ *
  * **Units.** In natural units FidelityWeight is in 1/(h R^2), and in 1/(h R) with given data terms,
- * R their range. A disk of radius r is kept if lambda > 2/r for data of two values with R = 1: with
- * the default 0.3 from a radius of about 7 h on. A cap of the angle theta on the unit sphere is
- * kept if lambda > cot(theta/2). R is the range of the given data, noise included: under normal
- * noise of half the difference of two values it is about five times that difference, so that
- * lambda has to be 25 times larger.
+ * R their range. R includes the noise: under normal noise of half the difference of two values it is
+ * about five times that difference, so that the same lambda has a number 25 times larger.
  *
  * **Scheme.** ADMM as in vtkIntrinsicTVFilter, with the projection onto the simplex, or the clamp to
  * [0, 1] for K = 2, until the duality gap certifies E up to StopTolerance. The means and u are
- * minimised over in turn until no mean changes by more than a thousandth of the range. E never
+ * minimised over in turn until no mean changes by more than a thousandth of their range. E never
  * rises. For given means or data terms u is the global minimiser up to the tolerance. The relaxation
  * is exact for K = 2. With AutomaticMeans the result is a local minimum. The result is a steady
  * state, in one step: TimeStep and NumberOfTimeSteps have no effect, and with GenerateTimeSteps the
@@ -50,9 +60,10 @@
  * a row per region: `Block`, `Region`, `Area`, `BoundaryLength`, `Components` (the number of
  * connected ones), and `Mean_0` ... of the data. Port 2: the boundaries as polylines that cut
  * triangles, level lines of u, with the cell arrays `Regions` (the two labels), `Length` and
- * `Block`. Areas and lengths are those of these lines. Their length is right to 1 % at
- * lambda h R^2 = 0.1; it is 3.5 % too long at 0.3 and 11 % at 0.7. The edges between points of
- * different labels would be 10 to 12 % too long at any mesh size.
+ * `Block`. Areas and lengths are those of these lines. The smaller lambda is, the better is their
+ * length: for data of two values with the difference d it is right to 1 % at lambda h d^2 = 0.1, 3.5 %
+ * too long at 0.3, and 11 % at 0.7. AutomaticFidelity makes it 6 to 11 % too long. The edges between
+ * points of different labels would be 10 to 12 % too long at any lambda and mesh size.
  *
  * The energy of a surface in pieces is minimised in process 0, which has ports 1 and 2 alone.
  *
@@ -89,8 +100,19 @@ public:
 
   ///@{
   /**
-   * lambda, the weight of the data terms. The larger it is, the smaller are the regions that are
-   * kept. 0 or more (0: seeds alone), in 1/(h R^2) in natural units, or 1/(h R) with given data terms. Default: 0.3.
+   * On (default): lambda is found from the contrast of the data, see above. FidelityWeight has no
+   * effect.
+   */
+  vtkSetMacro(AutomaticFidelity, bool);
+  vtkGetMacro(AutomaticFidelity, bool);
+  vtkBooleanMacro(AutomaticFidelity, bool);
+  ///@}
+
+  ///@{
+  /**
+   * lambda, the weight of the data terms, with AutomaticFidelity off. The larger it is, the smaller
+   * are the regions that are kept. 0 or more (0: seeds alone), in 1/(h R^2) in natural units, or
+   * 1/(h R) with given data terms. Default: 0.3.
    */
   vtkSetMacro(FidelityWeight, double);
   vtkGetMacro(FidelityWeight, double);
@@ -102,8 +124,7 @@ public:
    * RandomSeed, then the means of the regions and the regions are computed in turn. Regions are
    * numbered by ascending mean (by its first component, then the next ones), unless there are
    * seeds, whose labels they then have. Off: the means are those of SetMean(), or the clusters of
-   * the values if none is set. Not used with given
-   * data terms.
+   * the values if none is set. Not used with given data terms.
    */
   vtkSetMacro(AutomaticMeans, bool);
   vtkGetMacro(AutomaticMeans, bool);
@@ -113,8 +134,8 @@ public:
   ///@{
   /**
    * The mean of a region, in array units: of region 1 ... NumberOfRegions, component 0, 1, ... of
-   * the data. With AutomaticMeans off all of them have to be set, or none. GetMean() gives NaN for one that
-   * is not set.
+   * the data. With AutomaticMeans off all of them have to be set, or none. GetMean() gives NaN for
+   * one that is not set.
    */
   void SetMean(int region, int component, double value);
   double GetMean(int region, int component);
@@ -145,6 +166,12 @@ public:
   ///@}
 
   /**
+   * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
+   * AutomaticFidelity found. For composite data that of the first block.
+   */
+  vtkGetMacro(EffectiveFidelityWeight, double);
+
+  /**
    * The mean c of a region in the last update, in array units: the one that was given or found.
    * NaN if there is none. For composite data that of the first block.
    */
@@ -168,6 +195,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int NumberOfRegions = 2;
+  bool AutomaticFidelity = true;
   double FidelityWeight = 0.3;
   bool AutomaticMeans = true;
   double StopTolerance = 1e-3;
@@ -183,6 +211,7 @@ private:
   /// Of the blocks, during an update.
   std::vector<std::shared_ptr<const SurfaceDiffusion::RegionResults>> Regions;
   vtkSmartPointer<vtkPolyData> Boundaries; ///< likewise
+  double EffectiveFidelityWeight = 0.0;
   double Gap = 0.0;
   double LabelGap = 0.0;
   int NumberOfAlternations = 0;

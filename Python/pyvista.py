@@ -179,8 +179,8 @@ def turing_texture(
 
 
 def segment(
-    mesh, array=None, *, terms=None, seeds=None, mask=None, means=None, full_output=False,
-    **properties
+    mesh, array=None, *, terms=None, seeds=None, mask=None, fidelity=None, means=None,
+    full_output=False, **properties
 ):
     """Divide the mesh into regions with short boundaries (vtkSurfaceSegmentationFilter).
 
@@ -191,15 +191,19 @@ def segment(
     terms   point array (n, K) of data terms in place of |f - c_k|^2
     seeds   point array (n,) of labels 1 ... K that points keep, 0: free
     mask    point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
+    fidelity   point array (n,) of factors w >= 0 of the data terms; 0 is missing
     means   the means c, one row per region, with AutomaticMeans off; default: they are found
     full_output   see help(surfacediffusion.pyvista); `history` then has one entry per region: Area,
                   BoundaryLength, Components, Mean_0 ..., and `boundaries` is a mesh of polylines
 
-    Useful properties: NumberOfRegions (default 2), FidelityWeight (lambda, default 0.3).
+    Useful properties: NumberOfRegions (default 2), FidelityWeight (lambda, which turns AutomaticFidelity
+    off).
 
     The results are the point arrays RegionId, RegionProbability and <array>Segmented.
     """
     algorithm = vtkSurfaceSegmentationFilter()
+    if "FidelityWeight" in properties:
+        algorithm.AutomaticFidelityOff()
     if means is not None:
         algorithm.AutomaticMeansOff()
         rows = [list(row) if hasattr(row, "__len__") else [row] for row in means]
@@ -207,7 +211,7 @@ def segment(
         for region, row in enumerate(rows, start=1):
             for component, value in enumerate(row):
                 algorithm.SetMean(region, component, float(value))
-    arrays = (array, mask, None, None, None, None, seeds, terms)
+    arrays = (array, mask, None, None, None, fidelity, seeds, terms)
     result = _run(algorithm, mesh, properties, arrays, None, full_output)
     if full_output:
         result[1].boundaries = _output(algorithm, 2)

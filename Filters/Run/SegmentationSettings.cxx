@@ -24,6 +24,10 @@ constexpr int LargestNumberOfAlternations = 20;
 
 constexpr double LargestNumberOfRegions = 1000;
 
+/// lambda of AutomaticFidelity times h and the contrast of the data terms: a disk of uniform data is
+/// kept from a radius of 3 h on, and noise of the size of the contrast's root is not.
+constexpr double AutomaticWeight = 0.6;
+
 void CheckSeeds(const std::vector<Index>& seeds, int regions)
 {
   for (const Index seed : seeds)
@@ -90,6 +94,14 @@ std::shared_ptr<RegionResults> MeasureRegions(
   return regions;
 }
 
+/// The lambda of AutomaticFidelity, in units of the numerics. Data without contrast need none.
+double FindFidelity(const ModelInputs& inputs, const Segmentation::Input& input)
+{
+  const double contrast =
+    MeanContrast(inputs.Surface.Mesh(), input.Data, input.Means, inputs.Parallel);
+  return contrast > 0.0 ? AutomaticWeight / (inputs.Units.CoreEdgeLength() * contrast) : 0.0;
+}
+
 void WarnOfEmptyRegions(const RegionResults& regions, RunResult& result)
 {
   std::string empty;
@@ -114,8 +126,13 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
   this->RunSettings::Visit(visitor);
   visitor.Integer({ "NumberOfRegions", "", "K, the number of regions." }, this->NumberOfRegions,
     SettingRange::Between(2.0, LargestNumberOfRegions, "2 to 1000"));
+  visitor.Switch({ "AutomaticFidelity", "",
+                   "Whether FidelityWeight is found: lambda = 0.6/(h D) with the contrast D of the "
+                   "data terms, the mean difference between the smallest two of a point." },
+    this->AutomaticFidelity);
   visitor.Number({ "FidelityWeight", "1/(h R^2)",
-                   "lambda, the weight of the data terms; 1/(h R) for given data terms." },
+                   "lambda, the weight of the data terms, with AutomaticFidelity off; 1/(h R) for "
+                   "given data terms." },
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Switch({ "AutomaticMeans", "",
                    "Whether the means of the regions are found: k-means++ clusters of the data at "
@@ -177,12 +194,9 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
 {
   CheckSeeds(inputs.Seeds, this->NumberOfRegions);
   result.HasMissing = inputs.Data.Missing.any();
-  result.EffectiveFidelityWeight = this->FidelityWeight;
   inputs.Data.Given =
     inputs.Data.Given.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });
   Segmentation::Settings settings;
-  settings.Fidelity =
-    this->FidelityWeight * inputs.Units.ToCore(1.0, -1.0, inputs.DataAreTerms ? -1.0 : -2.0);
   settings.StopTolerance = this->StopTolerance;
   settings.MaximumNumberOfIterations = LargestNumberOfIterations;
   settings.MaximumNumberOfAlternations = LargestNumberOfAlternations;
@@ -201,6 +215,10 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
       Eigen::Map<const Values>(this->Means.data(), this->NumberOfRegions, input.Data.Given.cols());
     input.Means /= inputs.Units.ValueUnit;
   }
+  const double unit = inputs.Units.ToCore(1.0, -1.0, inputs.DataAreTerms ? -1.0 : -2.0);
+  settings.Fidelity =
+    this->AutomaticFidelity ? FindFidelity(inputs, input) : this->FidelityWeight * unit;
+  result.EffectiveFidelityWeight = settings.Fidelity / unit;
   return std::make_unique<Segmentation>(
     inputs.Surface.SharedAssembler(), std::move(input), settings, inputs.Parallel);
 }

@@ -14,6 +14,7 @@ namespace SurfaceDiffusion
 struct SegmentationSettings : RunSettings
 {
   int NumberOfRegions = 2;
+  bool AutomaticFidelity = true;
   double FidelityWeight = 0.3;
   bool AutomaticMeans = true;
   /// c_1, then c_2, ... with all components of each; NaN: not set.

@@ -460,12 +460,13 @@ def segment(
     terms: ArrayLike | None = None,
     seeds: ArrayLike | None = None,
     mask: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
     progress: Progress = False,
     **properties: Any,
 ) -> SegmentationResult:
     """Divide a surface into regions with short boundaries.
 
-    Minimises 1/2 sum_k int abs(grad u_k) + lambda sum_k int u_k r_k over the probabilities u_k >= 0
+    Minimises 1/2 sum_k int abs(grad u_k) + lambda sum_k int w u_k r_k over the probabilities u_k >= 0
     with sum 1 of K regions, the convex models of Chan and Vese (K = 2; Chan, Esedoglu, Nikolova
     2006) and of Potts. The data terms are r_k = abs(f - c_k)^2 with the means c_k, or given.
 
@@ -479,6 +480,9 @@ def segment(
     seeds : array_like of int, shape (n,), optional
         Labels 1 to K that points keep; 0: free.
     {mask}
+    fidelity : array_like, shape (n,), optional
+        Factors w >= 0 of the data terms at each point, such as 1/s^2 for noise of standard
+        deviation s; 0 is missing.
     {progress}
 
     Other Parameters
@@ -488,8 +492,8 @@ def segment(
     Returns
     -------
     SegmentationResult
-        `values` are the labels. If `means` are given, `automatic_means` is off unless it is given,
-        too.
+        `values` are the labels. If `means` or `fidelity_weight` are given, `automatic_means` or
+        `automatic_fidelity` is off unless it is given, too.
 
     {problems}
 
@@ -499,7 +503,7 @@ def segment(
     >>> from surfacediffusion import segment, sphere
     >>> ball = sphere(5)
     >>> noise = np.random.default_rng(0).normal(scale=0.5, size=ball.n_points)
-    >>> result = segment(ball, (ball.points[:, 2] > 0.5) + noise, fidelity_weight=2.0)
+    >>> result = segment(ball, (ball.points[:, 2] > 0.5) + noise)
     >>> bool(abs(result.areas[1] - np.pi) < 0.05 * np.pi), len(result.boundaries)
     (True, 1)
     """
@@ -509,9 +513,10 @@ def segment(
                          " given; allowed: one of them")
     name = "values" if terms is None else "terms"
     data = as_data(name, values if terms is None else terms, surface.n_points)
-    if "means" in properties:
-        properties.setdefault("automatic_means", False)
-    given = Input(surface, data, mask=mask, seeds=seeds,
+    for name, switch in (("means", "automatic_means"), ("fidelity_weight", "automatic_fidelity")):
+        if name in properties:
+            properties.setdefault(switch, False)
+    given = Input(surface, data, mask=mask, fidelity=fidelity, seeds=seeds,
                   data_are_terms=terms is not None)
     runner = Runner("segment", properties, ARRAYS)
     result: SegmentationResult = _run(

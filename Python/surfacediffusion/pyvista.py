@@ -145,13 +145,14 @@ def turing_texture(
 
 def segment(
     mesh: Any, array: str | None = None, *, terms: str | None = None, seeds: str | None = None,
-    mask: str | None = None, full_output: bool = False, progress: Progress = False,
-    **properties: Any,
+    mask: str | None = None, fidelity: str | None = None, full_output: bool = False,
+    progress: Progress = False, **properties: Any,
 ) -> Any:
     """Divide the mesh into regions with short boundaries.
 
     array: the data; terms: point array (n, K) of data terms in their place; seeds: point array (n,)
-    of labels that points keep, 0 is free. The equation and all other keywords are described in
+    of labels that points keep, 0 is free; fidelity: point array (n,) of factors of the data terms,
+    0 is missing. The equation and all other keywords are described in
     help(surfacediffusion.segment). The blocks of a MultiBlock are segmented one by one, each with
     its own natural units. The results are the point arrays RegionId (active), RegionProbability
     (n, K) and, with data, <array>Segmented: the mean of the region. full_output: if True, the
@@ -168,7 +169,7 @@ def segment(
         result = _segment(
             block.surface, values, terms=block.find("terms", terms)[0],
             seeds=block.find("seeds", seeds)[0], mask=block.find("mask", mask)[0],
-            progress=progress, **properties)
+            fidelity=block.find("fidelity", fidelity)[0], progress=progress, **properties)
         results.append(result)
         points = block.mesh.point_data
         if values is not None:

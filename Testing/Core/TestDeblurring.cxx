@@ -3,6 +3,7 @@
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Operators/CotanWeights.h"
+#include "EveryMeshFile.h"
 #include "Heat.h"
 #include "TotalVariation.h"
 
@@ -21,7 +22,8 @@ namespace
 constexpr int Steps = 4;
 const double CapAngle = Pi / 3.0;
 
-/// A unit sphere, its blur of `edges` mean edge lengths, and what tests measure on it.
+/// A unit sphere, or another surface, its blur of `edges` mean edge lengths, and what tests measure
+/// on it.
 struct BlurredSphere
 {
   Surface Sphere;
@@ -30,7 +32,11 @@ struct BlurredSphere
   double Width;
 
   explicit BlurredSphere(int level, double edges = 4.0)
-    : Sphere(Icosphere(level))
+    : BlurredSphere(Icosphere(level), edges)
+  {
+  }
+  explicit BlurredSphere(Surface surface, double edges = 4.0)
+    : Sphere(std::move(surface))
     , Operators(MakeAssembler(Sphere))
     , Mesh(Operators->Mesh())
     , Width(edges * MeanEdge(Mesh))
@@ -277,6 +283,24 @@ TEST(TotalVariationDeblurring, EnergyNeverRises)
     EXPECT_EQ(model->State().topRows(5), data.Start.topRows(5));
     last = model->Energy();
   }
+}
+
+TEST(TotalVariationDeblurring, EnergyNeverRisesOnScannedMeshes)
+{
+  ForEachMeshFile(
+    [](const Surface& surface)
+    {
+      const BlurredSphere s(surface);
+      const PointData data = PointData::FromValues(Noise(s.Mesh));
+      double last = s.MakeTotalVariation(data, 10.0)->Energy();
+      for (const int iterations : { 1, 4 })
+      {
+        const auto model = s.MakeTotalVariation(data, 10.0, 1e-6, iterations);
+        Advance(*model, 1);
+        EXPECT_LE(model->Energy(), last * (1.0 + 1e-12)) << iterations;
+        last = model->Energy();
+      }
+    });
 }
 
 TEST(TotalVariationDeblurring, WithoutBlurItIsTheMinimiserWithoutBlur)

@@ -6,6 +6,7 @@
 #include "Core/Models/Trajectory.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
+#include "EveryMeshFile.h"
 #include "Heat.h"
 #include "Meshes.h"
 #include "ThreadedFor.h"
@@ -56,11 +57,11 @@ std::unique_ptr<MumfordShah> MakeModel(std::shared_ptr<const Assembler> assemble
     std::move(cuts));
 }
 
-/// Steps to the end. Within a stage no step raises the energy.
-int Finish(MumfordShah& model)
+/// Steps to the end, or so many. Within a stage no step raises the energy.
+int TakeSteps(MumfordShah& model, int limit)
 {
   int steps = 0;
-  for (; !model.Finished() && steps < 2000; ++steps)
+  for (; !model.Finished() && steps < limit; ++steps)
   {
     const double energy = model.Energy();
     const double width = model.CurrentEdgeWidth();
@@ -70,6 +71,12 @@ int Finish(MumfordShah& model)
       EXPECT_LE(model.Energy(), energy * (1.0 + 1e-12)) << "step " << steps;
     }
   }
+  return steps;
+}
+
+int Finish(MumfordShah& model)
+{
+  const int steps = TakeSteps(model, 2000);
   EXPECT_TRUE(model.Finished());
   return steps;
 }
@@ -302,6 +309,19 @@ TEST(MumfordShah, EnergyFallsOnObtuseMeshesWithLooseSolves)
     EXPECT_GT(Finish(*model), 8);
     EXPECT_GT(model->Edges().maxCoeff(), 0.9);
   }
+}
+
+TEST(MumfordShah, EnergyFallsOnScannedMeshes)
+{
+  ForEachMeshFile(
+    [](const Surface& s)
+    {
+      const auto assembler = MakeAssembler(s);
+      const TriangleMesh& mesh = assembler->Mesh();
+      const auto model =
+        MakeModel(assembler, PointData::FromValues(0.3 * Noise(mesh)), NaturalSettings(mesh, 0.4));
+      EXPECT_GT(TakeSteps(*model, 12), 3);
+    });
 }
 
 TEST(MumfordShah, RotatedColorsHaveTheSameEdges)

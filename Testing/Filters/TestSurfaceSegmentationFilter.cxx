@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "BandedImage.h"
 #include "IntrinsicTVTest.h"
 
 #include "vtkCellData.h"
@@ -67,6 +68,7 @@ vtkSmartPointer<vtkPolyData> SphereWithCap(int levels)
 TEST(SegmentationFilter, FindsTheCapWithItsAreaAndBoundary)
 {
   auto filter = MakeFilter(SphereWithCap(5));
+  filter->AutomaticFidelityOff();
   filter->SetFidelityWeight(0.2);
   filter->Update();
   EXPECT_LE(filter->GetGap(), 1e-3);
@@ -136,9 +138,86 @@ TEST(SegmentationFilter, NaturalUnitsSuitAnyScale)
   }
   // lambda = w/(h R^2) in absolute units
   filter->SetUnitsToAbsolute();
-  filter->SetFidelityWeight(0.3 / (filter->GetMeanEdgeLength() * 9.0));
+  filter->AutomaticFidelityOff();
+  filter->SetFidelityWeight(0.6 / (filter->GetMeanEdgeLength() * 9.0));
   filter->Update();
   EXPECT_TRUE(Identical(Labels(filter), labels));
+}
+
+TEST(SegmentationFilter, DefaultsFindTheCapWithAndWithoutNoise)
+{
+  const double length = 2.0 * Pi * std::sqrt(0.75);
+  for (const double amplitude : { 0.0, 1.0, 2.0, 3.0 })
+  {
+    auto sphere = SphereWithCap(5);
+    vtkDataArray* const f = sphere->GetPointData()->GetArray("f");
+    BandedImage::Noise noise;
+    for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
+    {
+      f->SetComponent(i, 0, f->GetComponent(i, 0) + amplitude * noise(i, 0));
+    }
+    auto filter = MakeFilter(sphere);
+    filter->Update();
+    EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 1) << amplitude;
+    EXPECT_NEAR(TableAt(filter, 1, "Area"), Pi, 0.03 * Pi) << amplitude;
+    EXPECT_NEAR(TableAt(filter, 1, "BoundaryLength"), length, 0.12 * length) << amplitude;
+    EXPECT_NEAR(TableAt(filter, 1, "Mean_0"), 2.0, 0.1) << amplitude;
+    if (amplitude == 0.0)
+    {
+      EXPECT_NEAR(filter->GetEffectiveFidelityWeight(), 0.6, 1e-12);
+    }
+    else
+    {
+      EXPECT_GT(filter->GetEffectiveFidelityWeight(), 1.2);
+    }
+  }
+}
+
+TEST(SegmentationFilter, AutomaticFidelityReplacesFidelityWeight)
+{
+  auto filter = MakeFilter(SphereWithCap(4));
+  filter->SetFidelityWeight(0.001);
+  filter->Update();
+  EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 1);
+  filter->AutomaticFidelityOff();
+  filter->Update();
+  EXPECT_EQ(filter->GetEffectiveFidelityWeight(), 0.001);
+  EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 0);
+}
+
+TEST(SegmentationFilter, FidelityOfZeroIsAMaskAndOfTwoTwiceTheWeight)
+{
+  auto sphere = SphereWithCap(4);
+  BandedImage::Noise noise;
+  vtkDataArray* const f = sphere->GetPointData()->GetArray("f");
+  for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
+  {
+    f->SetComponent(i, 0, f->GetComponent(i, 0) + noise(i, 0));
+  }
+  const auto inHole = [&](vtkIdType i) { return std::abs(sphere->GetPoint(i)[0] - 0.4) < 0.2; };
+  AddPointArray(sphere, "hole", 1, [&](vtkIdType i, int) { return inHole(i) ? 1.0 : 0.0; });
+  AddPointArray(sphere, "w", 1, [&](vtkIdType i, int) { return inHole(i) ? 0.0 : 1.0; });
+  AddPointArray(sphere, "2w", 1, [&](vtkIdType i, int) { return inHole(i) ? 0.0 : 2.0; });
+  auto masked = MakeFilter(sphere);
+  SetInputArray(masked, 1, "hole");
+  masked->Update();
+  const auto expected = Copy(Result(masked, "RegionProbability"));
+  auto weighted = MakeFilter(sphere);
+  SetInputArray(weighted, 5, "w");
+  weighted->Update();
+  EXPECT_TRUE(Identical(Result(weighted, "RegionProbability"), expected));
+  masked->AutomaticFidelityOff();
+  masked->SetUnitsToAbsolute(); // R is that of the points without a mask
+  masked->SetFidelityWeight(4.0);
+  masked->Update();
+  EXPECT_FALSE(Identical(Result(masked, "RegionProbability"), expected));
+  SetInputArray(weighted, 5, "2w");
+  weighted->AutomaticFidelityOff();
+  weighted->SetUnitsToAbsolute();
+  weighted->SetFidelityWeight(2.0);
+  weighted->Update();
+  EXPECT_TRUE(
+    Identical(Result(weighted, "RegionProbability"), Result(masked, "RegionProbability")));
 }
 
 TEST(SegmentationFilter, GivenMeansAreUsedAsTheyAre)
@@ -180,6 +259,8 @@ TEST(SegmentationFilter, DataTermsReplaceTheData)
     });
   auto filter = MakeFilter(sphere);
   SetInputArray(filter, 7, "r");
+  filter->AutomaticFidelityOff();
+  filter->SetFidelityWeight(0.3);
   filter->SetNumberOfRegions(3);
   filter->Update();
   EXPECT_EQ(filter->GetValueRange(), 1.0);
@@ -189,6 +270,10 @@ TEST(SegmentationFilter, DataTermsReplaceTheData)
   const double upper = 2.0 * Pi * std::sqrt(1.0 - 0.16);
   EXPECT_NEAR(TableAt(filter, 0, "BoundaryLength"), lower, 0.06 * lower);
   EXPECT_NEAR(TableAt(filter, 1, "BoundaryLength"), lower + upper, 0.06 * (lower + upper));
+  EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 2);
+  filter->AutomaticFidelityOn(); // from the terms: their contrast is 1
+  filter->Update();
+  EXPECT_NEAR(filter->GetEffectiveFidelityWeight(), 0.6, 1e-12);
   EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 2);
   filter->SetNumberOfRegions(2);
   EXPECT_NE(ErrorOf(filter).find("components is 3; allowed: 2"), std::string::npos);
@@ -302,6 +387,7 @@ TEST(SegmentationFilter, ErrorsNameThePropertyItsValueAndTheAllowedOnes)
   { EXPECT_NE(errorOf(set).find(text), std::string::npos) << errorOf(set); };
   expect("NumberOfRegions is 1; allowed: 2 to 1000", [](Filter* f) { f->SetNumberOfRegions(1); });
   expect("FidelityWeight is -1", [](Filter* f) { f->SetFidelityWeight(-1.0); });
+  expect("FidelityArray is -1 at point", [](Filter* f) { SetInputArray(f, 5, "f"); });
   expect("StopTolerance is 1", [](Filter* f) { f->SetStopTolerance(1.0); });
   expect("the number of Means is 1; allowed: 2",
     [](Filter* f)

@@ -567,6 +567,30 @@ class Segment(unittest.TestCase):
             np.testing.assert_array_equal(result.values, 1 + result.probabilities.argmax(axis=1))
             np.testing.assert_allclose(result.means.ravel(), [0, 1], atol=0.05)
 
+    def test_the_default_weight_suits_clean_and_noisy_data(self):
+        surface = sd.sphere(5)
+        cap = surface.points[:, 2] > 0.5
+        for deviation in (0.0, 0.25, 0.5):
+            noise = np.random.default_rng(0).normal(scale=deviation, size=surface.n_points)
+            result = sd.segment(surface, cap + noise)
+            self.assertAlmostEqual(result.areas[1], np.pi, delta=0.03 * np.pi)
+            self.assertEqual(len(result.boundaries), 1)
+            given = sd.segment(
+                surface, cap + noise, fidelity_weight=result.effective_fidelity_weight)
+            np.testing.assert_array_equal(given.values, result.values)
+        none = sd.segment(surface, cap + noise, fidelity_weight=0.01)
+        self.assertEqual(len(none.boundaries), 0)
+
+    def test_fidelity_of_zero_is_missing(self):
+        surface = sd.sphere(4)
+        values = (surface.points[:, 2] > 0.5) + surface.points[:, 0]
+        hole = surface.points[:, 1] > 0.6
+        expected = sd.segment(surface, np.where(hole, 9.0, values), mask=hole)
+        found = sd.segment(surface, np.where(hole, 9.0, values), fidelity=np.where(hole, 0.0, 1.0))
+        np.testing.assert_array_equal(found.probabilities, expected.probabilities)
+        self.assertFalse(np.array_equal(
+            sd.segment(surface, values).probabilities, expected.probabilities))
+
     def test_terms_and_seeds(self):
         surface = sd.sphere(4)
         x = surface.points[:, 0]

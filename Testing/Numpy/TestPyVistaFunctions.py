@@ -15,7 +15,7 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, turing_texture,
+    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, turing_texture,
 )
 
 
@@ -72,8 +72,31 @@ class Meshes(unittest.TestCase):
         self.assertEqual(edges["Edges"].shape, (mesh.n_points,))
         self.assertEqual(edges.point_data.active_scalars_name, "fMumfordShah")
         self.assertIsInstance(report.curves, list)
+        mesh.point_data["seeds"] = np.where(mesh.points[:, 2] > 0.9, 2, 0)
+        regions, report = segment(mesh, "f", mask="hole", seeds="seeds", full_output=True)
+        self.assertEqual(regions.point_data.active_scalars_name, "RegionId")
+        np.testing.assert_array_equal(regions["RegionId"], report.values)
+        np.testing.assert_array_equal(regions["fSegmented"], report.means[report.values - 1, 0])
+        self.assertEqual(regions["RegionProbability"].shape, (mesh.n_points, 2))
+        self.assertTrue((regions["RegionId"][mesh["seeds"] == 2] == 2).all())
         vectors = harmonic_map(mesh, "east")
         self.assertEqual(vectors["eastHarmonic"].shape, (mesh.n_points, 3))
+
+    def test_blocks_are_segmented_one_by_one(self):
+        mesh = noisy_sphere()
+        mesh["terms"] = np.stack([mesh.points[:, 0], -mesh.points[:, 0]], axis=1)
+        mesh["w"] = np.where(mesh.points[:, 1] > 0.5, 0.0, 1.0)
+        blocks = pyvista.MultiBlock([mesh, mesh.scale(2.0, inplace=False)])
+        regions, reports = segment(blocks, terms="terms", fidelity="w", full_output=True)
+        self.assertEqual(len(reports), 2)
+        for block in regions:
+            self.assertNotIn("fSegmented", block.array_names)
+            np.testing.assert_array_equal(
+                block["RegionId"][np.abs(mesh.points[:, 0]) > 0.2],
+                np.where(mesh.points[:, 0] > 0.2, 2, 1)[np.abs(mesh.points[:, 0]) > 0.2])
+        self.assertAlmostEqual(reports[1].areas[0] / reports[0].areas[0], 4.0, places=6)
+        with self.assertRaisesRegex(ValueError, "array is None"):
+            segment(pyvista.Sphere())
 
     def test_normals_and_moved_points(self):
         mesh = pyvista.Icosphere(nsub=3)

@@ -26,13 +26,14 @@ FILTERS = {
     "intrinsic_tv": "vtkIntrinsicTVFilter",
     "harmonic_map": "vtkHarmonicMapFilter",
     "mumford_shah": "vtkMumfordShahFilter",
+    "segment": "vtkSurfaceSegmentationFilter",
     "turing_texture": "vtkTuringTextureFilter",
     "direction_field": "vtkSurfaceDirectionFieldFilter",
 }
 
 #: Index of each input array of the filters.
 INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
-         "rates": 4, "fidelity": 5}
+         "rates": 4, "fidelity": 5, "seeds": 6, "terms": 7}
 
 
 def rough_sphere():
@@ -99,6 +100,11 @@ class SameBits(unittest.TestCase):
              {"Discretization": "CrouzeixRaviart", "NumberOfTimeSteps": 3}),
             ("mumford_shah", {"values": self.normals}, {"EdgeThreshold": 0.4}),
             ("mumford_shah", {"values": self.normals[:, 0].astype(np.float32)}, {}),
+            ("segment", {"values": self.values, "mask": self.mask}, {}),
+            ("segment", {"values": self.columns, "fidelity": 1.0 + self.points[:, 2] ** 2},
+             {"NumberOfRegions": 3, "AutomaticFidelity": False, "FidelityWeight": 2.0}),
+            ("segment", {"terms": self.columns, "seeds": np.where(self.mask, 2, 0)},
+             {"NumberOfRegions": 3, "StopTolerance": 0.01}),
             ("harmonic_map", {}, {"MoveVertices": True}),
             ("harmonic_map", {"vectors": self.normals}, {"Exponent": 2.0}),
             ("harmonic_map", {"vectors": self.normals.astype(np.float32)}, {"LineField": True}),
@@ -145,14 +151,18 @@ class SameBits(unittest.TestCase):
                 found["TextureColor"] = result.colors
         else:
             suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
-                      "mumford_shah": "MumfordShah"}[function]
+                      "mumford_shah": "MumfordShah", "segment": "Segmented"}[function]
             base = next(iter(arrays), "Normals")
             found = {base + suffix: result.values}
+        if function == "segment":
+            found = self.regions(result, arrays)
+            expected = {key: array for key, array in expected.items()
+                        if key != "history Block" and not key.startswith("history Mean_")}
         if function == "mumford_shah":
             found["Edges"] = result.edges
         if function == "harmonic_map":
             found["points"] = result.points
-        if function != "direction_field":
+        if function not in ("direction_field", "segment"):
             found.update({"history " + key: column for key, column in result.history.items()
                           if key != "Seconds"})
         self.assertEqual(set(expected) - {"points", "history Step"}, set(found) - {"points"})
@@ -160,6 +170,16 @@ class SameBits(unittest.TestCase):
             if not key.startswith("history"):
                 self.assertEqual(expected[key].dtype, array.dtype, key)
             np.testing.assert_array_equal(expected[key], array, err_msg=key)
+
+    def regions(self, result, arrays):
+        found = {"RegionId": result.values, "RegionProbability": result.probabilities,
+                 "history Region": np.arange(1, 1 + len(result.areas)),
+                 "history Area": result.areas, "history BoundaryLength": result.boundary_lengths,
+                 "history Components": result.components}
+        if "values" in arrays:
+            columns = arrays["values"].shape[1:]
+            found["valuesSegmented"] = result.means[result.values - 1].reshape(-1, *columns)
+        return found
 
 
 if __name__ == "__main__":

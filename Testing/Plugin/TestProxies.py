@@ -250,7 +250,7 @@ class TestProxies(unittest.TestCase):
              ["EdgeThreshold", "SmoothingLength", "EdgeWidth"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
-            ("SurfaceSegmentationFilter", ["NumberOfRegions", "FidelityWeight", "Mean", "AutomaticMeans"]),
+            ("SurfaceSegmentationFilter", ["NumberOfRegions", "AutomaticFidelity", "Mean", "AutomaticMeans"]),
             ("TuringTextureFilter",
              ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
               "DecayRate"]),

@@ -16,7 +16,7 @@ import numpy as np
 
 from surfacediffusion import vtkFVMHeatFilter
 from surfacediffusion.pyvista import (
-    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, turing_texture,
+    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, turing_texture,
 )
 
 
@@ -60,6 +60,12 @@ class TestPyVista(unittest.TestCase):
         edges, report = mumford_shah(mesh, "f", full_output=True)
         self.assertIn("Edges", edges.point_data)
         self.assertEqual(report.curves.n_lines > 0, report.EdgeLength > 0)
+        regions, report = segment(mesh, "f", means=[-1.0, 1.0], FidelityWeight=5, full_output=True)
+        self.assertEqual(set(regions["RegionId"]), {1, 2})
+        self.assertEqual(report.EffectiveFidelityWeight, 5)
+        self.assertGreater(report.boundaries.n_lines, 0)
+        self.assertNotEqual(
+            segment(mesh, "f", full_output=True)[1].EffectiveFidelityWeight, 0.3)
         moved = harmonic_map(mesh, NumberOfTimeSteps=1, MoveVertices=True)
         self.assertFalse((moved.points == mesh.points).all())
         field = direction_field(mesh, Method="Smooth")

@@ -100,6 +100,7 @@ inline std::vector<FilterKind> AllFilters()
     MakeKind<Segmentation>("Segmentation", "RegionId", 1,
       [](Segmentation* f)
       {
+        f->AutomaticFidelityOff();
         f->SetFidelityWeight(50.0); // noise has no regions if the weight is small
         f->SetStopTolerance(0.1);
       }),
@@ -108,6 +109,7 @@ inline std::vector<FilterKind> AllFilters()
       {
         f->SetNumberOfRegions(3);
         f->AutomaticMeansOff();
+        f->AutomaticFidelityOff();
         f->SetFidelityWeight(50.0);
         f->SetStopTolerance(0.1);
       }),

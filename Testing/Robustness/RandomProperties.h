@@ -198,6 +198,7 @@ inline List OfSegmentation()
   using F = vtkSurfaceSegmentationFilter;
   return {
     RANDOM_PROPERTY(F, NumberOfRegions, 2 + dice.Below(4) - (dice.Flip(24) ? 2 : 0)),
+    RANDOM_PROPERTY(F, AutomaticFidelity, dice.Flip(2)),
     RANDOM_PROPERTY(F, FidelityWeight, Positive(dice)),
     RANDOM_PROPERTY(F, AutomaticMeans, !dice.Flip(12)),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-4, 0.5)),

@@ -171,6 +171,9 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
         f->SetMean(2, component, 2.1);
       }
     });
+  needed["vtkSurfaceSegmentationFilter FidelityWeight"] =
+    needed["vtkSurfaceSegmentationFilter Units"] =
+    With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
   needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
     With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
   needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =

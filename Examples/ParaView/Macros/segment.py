@@ -12,7 +12,7 @@ if surface is None:
         sphere, Function="sin(8*coordsX)*sin(8*coordsY)+0.3*sin(200*coordsX+170*coordsY*coordsZ)",
         ResultArrayName="patches")
 
-result = SurfaceSegmentationFilter(surface, NumberOfRegions=3, FidelityWeight=3.0)
+result = SurfaceSegmentationFilter(surface, NumberOfRegions=3)
 RenameSource("Regions", result)
 
 view = GetActiveViewOrCreate("RenderView")

@@ -100,7 +100,11 @@ public:
   }
 
 private:
-  bool Counts(Index i) const { return !this->Data.Missing[i]; }
+  bool Counts(Index i) const { return this->Data.FidelityFactor(i) > 0.0; }
+  double Weight(Index i) const
+  {
+    return this->Mesh.ControlAreas()[i] * this->Data.FidelityFactor(i);
+  }
 
   void AddMean(const Eigen::Ref<const Eigen::RowVectorXd>& mean)
   {
@@ -122,7 +126,7 @@ private:
     double shortest = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
     {
-      const double weight = this->Mesh.ControlAreas()[i] * (first ? 1.0 : this->Distance[i]);
+      const double weight = this->Weight(i) * (first ? 1.0 : this->Distance[i]);
       if (this->Counts(i) && weight > 0.0)
       {
         const double time =
@@ -159,33 +163,33 @@ private:
             nearest = k;
           }
         }
-        return this->Mesh.ControlAreas()[i] * least;
+        return this->Weight(i) * least;
       });
   }
 
-  /// The means of the clusters, and their areas. Empty ones keep their mean.
+  /// The means of the clusters, and their weights. Empty ones keep their mean.
   Vector TakeMeans(Values& means)
   {
     const Values& f = this->Data.Given;
-    Vector areas = Vector::Zero(means.rows());
+    Vector weights = Vector::Zero(means.rows());
     Values sums = Values::Zero(means.rows(), means.cols());
     for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
     {
       const Index k = this->Nearest[static_cast<std::size_t>(i)];
       if (k >= 0 && this->Counts(i))
       {
-        areas[k] += this->Mesh.ControlAreas()[i];
-        sums.row(k) += this->Mesh.ControlAreas()[i] * f.row(i);
+        weights[k] += this->Weight(i);
+        sums.row(k) += this->Weight(i) * f.row(i);
       }
     }
     for (Eigen::Index k = 0; k < means.rows(); ++k)
     {
-      if (areas[k] > 0.0)
+      if (weights[k] > 0.0)
       {
-        means.row(k) = sums.row(k) / areas[k];
+        means.row(k) = sums.row(k) / weights[k];
       }
     }
-    return areas;
+    return weights;
   }
 
   const TriangleMesh& Mesh;
@@ -244,6 +248,36 @@ Values FindRegionMeans(const TriangleMesh& mesh, const PointData& data, Index re
     SortRows(best);
   }
   return best;
+}
+
+double MeanContrast(
+  const TriangleMesh& mesh, const PointData& data, const Values& means, const ParallelFor& parallel)
+{
+  const Values& f = data.Given;
+  const Eigen::Index regions = means.rows() > 0 ? means.rows() : f.cols();
+  const auto contrastOf = [&](Index i)
+  {
+    double least = std::numeric_limits<double>::infinity();
+    double second = least;
+    for (Eigen::Index k = 0; k < regions; ++k)
+    {
+      const double term = means.rows() > 0 ? (f.row(i) - means.row(k)).squaredNorm() : f(i, k);
+      second = std::min(second, std::max(least, term));
+      least = std::min(least, term);
+    }
+    return second - least;
+  };
+  const auto sumOf = [&](const auto& function)
+  {
+    return mesh.GetReduction().Sum(Sum(parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double factor = data.FidelityFactor(i);
+        return factor > 0.0 ? mesh.ControlAreas()[i] * factor * function(contrastOf(i)) : 0.0;
+      }));
+  };
+  const double weight = sumOf([](double contrast) { return contrast > 0.0 ? 1.0 : 0.0; });
+  return weight > 0.0 ? sumOf([](double contrast) { return contrast; }) / weight : 0.0;
 }
 
 } // namespace SurfaceDiffusion

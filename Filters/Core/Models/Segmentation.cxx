@@ -14,7 +14,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Means have settled if none has moved by more than this share of the range of the data.
+/// Means have settled if none has moved by more than this share of their range.
 constexpr double SettledMeans = 1e-3;
 
 /// The size of u that sets the penalty of the gradients. u has the range 1, but jumps in a belt of
@@ -77,12 +77,14 @@ Segmentation::Segmentation(std::shared_ptr<const Assembler> assembler, Input inp
 
 double Segmentation::DataTerm(Index i, Index region) const
 {
-  if (this->Given.Data.Missing[i])
+  const double factor = this->Given.Data.FidelityFactor(i);
+  if (factor == 0.0)
   {
     return 0.0;
   }
   const Values& f = this->Given.Data.Given;
-  return this->C.rows() > 0 ? (f.row(i) - this->C.row(region)).squaredNorm() : f(i, region);
+  return factor *
+    (this->C.rows() > 0 ? (f.row(i) - this->C.row(region)).squaredNorm() : f(i, region));
 }
 
 /// The label of the smallest data term.
@@ -93,7 +95,7 @@ void Segmentation::SetStart()
     [&](Index i)
     {
       const Index seed = this->Given.Seeds.empty() ? 0 : this->Given.Seeds[i];
-      if (seed == 0 && this->Given.Data.Missing[i])
+      if (seed == 0 && this->Given.Data.FidelityFactor(i) == 0.0)
       {
         this->U.row(i).setConstant(1.0 / regions);
         return;
@@ -206,9 +208,10 @@ bool Segmentation::UpdateMeans()
     const auto sumOf = [&](const auto& value)
     {
       return Sum(this->Parallel, mesh.NumberOfVertices(),
-        [&](Index i) {
-          return this->Given.Data.Missing[i] ? 0.0
-                                             : mesh.ControlAreas()[i] * this->U(i, k) * value(i);
+        [&](Index i)
+        {
+          const double factor = this->Given.Data.FidelityFactor(i);
+          return factor > 0.0 ? mesh.ControlAreas()[i] * factor * this->U(i, k) * value(i) : 0.0;
         });
     };
     this->Sums(k, components) = sumOf([](Index) { return 1.0; });
@@ -232,7 +235,7 @@ bool Segmentation::UpdateMeans()
       this->Sums.row(k).head(components) = this->C.row(k);
     }
   }
-  if (!(change > SettledMeans * ValueRange(f, reduction)))
+  if (!(change > SettledMeans * ValueRange(this->C, reduction)))
   {
     return false;
   }
@@ -318,7 +321,7 @@ Values Segmentation::DataMeans() const
   for (std::size_t i = 0; i < labels.size() && this->C.rows() > 0; ++i)
   {
     const auto v = static_cast<Index>(i);
-    if (!this->Given.Data.Missing[v])
+    if (this->Given.Data.FidelityFactor(v) > 0.0)
     {
       weights[labels[i] - 1] += areas[v];
       means.row(labels[i] - 1) += areas[v] * this->Given.Data.Given.row(v);

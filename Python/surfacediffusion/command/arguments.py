@@ -246,15 +246,15 @@ def _segment(commands):
     parser = commands.add(
         "segment", tasks.segment, text,
         [f"{PROGRAM} segment lh.midthickness.surf.gii lh.myelin.func.gii lh.regions.func.gii "
-         "--regions 3 --weight 0.5"])
+         "--regions 3"])
     commands.data(parser)
     parser.add_argument("output", metavar="OUTPUT", help="the labels")
     commands.choices(parser)
     parser.add_argument("--regions", metavar="K", type=_regions, default=2,
                         help="the number of regions (default 2)")
     parser.add_argument("--weight", metavar="W", type=_positive,
-                        help="the weight of the data, in natural units (default 0.3); smaller gives "
-                             "shorter boundaries and fewer small regions")
+                        help="the weight of the data, in natural units; smaller gives shorter "
+                             "boundaries and fewer small regions (default: found from the data)")
     parser.add_argument("--means", metavar="C", type=_finite, nargs="+",
                         help="the mean of each region, for data of one component, in place of "
                              "--regions. Default: they are found")
