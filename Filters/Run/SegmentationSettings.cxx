@@ -114,8 +114,9 @@ void WarnOfEmptyRegions(const RegionResults& regions, RunResult& result)
   }
   if (!empty.empty())
   {
-    result.WarnOnce(
-      "no point is in the regions " + empty + " (to keep smaller regions, raise FidelityWeight)");
+    result.WarnOnce("no point is in the regions " + empty +
+      " (to keep smaller regions, turn off "
+      "AutomaticFidelity and raise FidelityWeight)");
   }
 }
 
@@ -219,6 +220,13 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   settings.Fidelity =
     this->AutomaticFidelity ? FindFidelity(inputs, input) : this->FidelityWeight * unit;
   result.EffectiveFidelityWeight = settings.Fidelity / unit;
+  if (this->AutomaticFidelity && this->FidelityWeight != SegmentationSettings().FidelityWeight)
+  {
+    std::ostringstream text;
+    text << "FidelityWeight is " << this->FidelityWeight
+         << " but AutomaticFidelity finds the weight (to use the given one, turn it off)";
+    result.WarnOnce(text.str());
+  }
   return std::make_unique<Segmentation>(
     inputs.Surface.SharedAssembler(), std::move(input), settings, inputs.Parallel);
 }

@@ -177,8 +177,12 @@ TEST(SegmentationFilter, AutomaticFidelityReplacesFidelityWeight)
 {
   auto filter = MakeFilter(SphereWithCap(4));
   filter->SetFidelityWeight(0.001);
+  const Messages messages(filter);
   filter->Update();
   EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 1);
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("FidelityWeight is 0.001 but AutomaticFidelity finds the"),
+    std::string::npos);
   filter->AutomaticFidelityOff();
   filter->Update();
   EXPECT_EQ(filter->GetEffectiveFidelityWeight(), 0.001);

@@ -14,8 +14,8 @@ namespace SurfaceDiffusion
 /// Means of `regions` regions, a row each, from which Segmentation starts: the cluster centres of
 /// the known values of f, by Lloyd's algorithm (S. Lloyd, IEEE Trans. Inf. Theory 28, 1982) from the
 /// best of several starts of k-means++ (D. Arthur, S. Vassilvitskii, SODA 2007), each vertex with
-/// the weight of its control area times its fidelity factor. Rows are in ascending order of the first component, then of the
-/// next ones, so that the numbers of the regions do not depend on the random numbers.
+/// the weight of its control area times its fidelity factor. Rows are in ascending order of the
+/// first component, then of the next ones, so that the numbers of the regions do not depend on the random numbers.
 ///
 /// seeds: per vertex the label 1 .. K of a region that it belongs to, or 0; may be empty. With seeds
 /// the rows stay in the order of the labels: a label with seeds starts at the mean of its seeds.
