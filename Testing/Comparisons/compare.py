@@ -98,11 +98,11 @@ def measure_costs(sample, chosen, columns, rounds, results, folder, fwhm=10):
     random = np.random.default_rng(6)
     for count in (1, columns):
         values = random.normal(size=(len(sample.points), count))
+        # CAT smooths one map at a time: its time for many is that for a tenth, times ten.
+        shares = {peer: 10 if peer == "CAT" and count >= 100 else 1 for peer in chosen}
         measured = {peer: [] for peer in chosen}
         for _ in range(rounds):
-            for peer in chosen:
-                # CAT smooths one map at a time: its time for many is that for a tenth, times ten.
-                share = 10 if peer == "CAT" and count >= 100 else 1
+            for peer, share in shares.items():
                 write_columns(data, values[:, :count // share])
                 cost = peers.run(peers.process_command(peer, sample.path, data, fwhm, output))
                 if peer == "Workbench":
@@ -116,7 +116,7 @@ def measure_costs(sample, chosen, columns, rounds, results, folder, fwhm=10):
                 output.unlink()
         for peer, found in measured.items():
             medians = {name: statistics.median(row[name] for row in found) for name in found[0]}
-            results.append({"columns": count, "peer": peer, **medians,
+            results.append({"columns": count, "peer": peer, "share": shares[peer], **medians,
                             "rounds": [row["alone"] for row in found]})
     data.unlink()
 

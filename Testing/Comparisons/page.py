@@ -173,7 +173,8 @@ def _losses(results):
         ("missing", ("surface", "map"), "missing data", lambda row: row["rms"]),
         ("costs", ("columns",), "time", lambda row: row["wall"]),
         ("costs", ("columns",), "processor time", lambda row: row["cpu"]),
-        ("costs", ("columns",), "memory", lambda row: row["memory"]),
+        ("costs", ("columns",), "memory",
+         lambda row: math.inf if row["share"] > 1 else row["memory"]),
         ("costs", ("columns",), "processor time of smoothing", lambda row: row["alone"]))
     lines = []
     for part, keys, title, measure in kinds:

@@ -14,7 +14,6 @@ import resource
 import subprocess
 import sys
 import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -118,7 +117,7 @@ def process_command(peer, surface, data, fwhm, output):
 def main():
     peer, surface, data, fwhm, output = sys.argv[1:]
     points, faces = read_surface(surface)
-    values = read_columns(data).astype(np.float32)
+    values = read_columns(data, np.float32)
     importlib.import_module(MODULES[peer])  # not counted
     before = resource.getrusage(resource.RUSAGE_SELF)
     result = FUNCTIONS[peer](points, faces, values, float(fwhm))
