@@ -68,7 +68,8 @@ conte69, 10 mm: seconds of the whole process, its processor time and its largest
 processor time of the smoothing without reading and writing files. For Workbench the latter is the
 difference to `wb_command -metric-math x`, which reads and writes the same files. CAT smooths one map
 at a time; its time for many is that for a tenth of them, times ten, and its memory that for a tenth.
-The programs run after another in several rounds, and the numbers are medians.
+The programs run after another in several rounds, and the numbers are medians. Other work on the
+machine lengthens processor times, too. {rounds}
 
 {costs}
 
@@ -89,7 +90,8 @@ def write_page(results, path):
         programs=programs, date=machine["date"], processor=machine["processor"] or "unknown processor",
         cores=machine["cores"], widths=_widths(results.get("widths", [])),
         errors=_errors(results.get("errors", [])), missing=_missing(results.get("missing", [])),
-        costs=_costs(results.get("costs", [])), losses=_losses(results))
+        costs=_costs(results.get("costs", [])), losses=_losses(results),
+        rounds=_rounds(results.get("costs", [])))
     _replace(path, text.encode())
 
 
@@ -162,6 +164,14 @@ def _costs(rows):
                           f"{row['memory'] / 2**20:.0f} MiB", f"{row['alone']:.2f} s"])
     return _table(["columns", "program", "time", "processor time", "memory",
                    "processor time of smoothing"], table)
+
+
+def _rounds(rows):
+    most = max(row["columns"] for row in rows)
+    ours, theirs = (_find(rows, columns=most, peer=peer)["rounds"] for peer in PEERS[:2])
+    shares = ", ".join(f"{a / b:.2f}" for a, b in zip(ours, theirs))
+    return (f"The processor time of\nsmoothing {most:,} columns, as a share of that of {PEERS[1]}, in "
+            f"each round:\n{shares}.")
 
 
 def _losses(results):
