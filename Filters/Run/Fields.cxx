@@ -73,6 +73,10 @@ void ValueStatistics::Widen(std::size_t component, double low, double high)
 void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint)
 {
   const Values& values = fields.Data;
+  const Eigen::Index columns = values.cols();
+  Eigen::Array<double, 1, Eigen::Dynamic> low, high;
+  low.setConstant(columns, Infinity);
+  high.setConstant(columns, -Infinity);
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
     if (surface.VertexOf(static_cast<Index>(i)) < 0 || IsSet(fields.Missing, i) ||
@@ -85,10 +89,12 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
     {
       continue;
     }
-    for (Eigen::Index k = 0; k < values.cols(); ++k)
-    {
-      this->Widen(static_cast<std::size_t>(k), values(i, k), values(i, k));
-    }
+    low = low.min(values.row(i).array());
+    high = high.max(values.row(i).array());
+  }
+  for (Eigen::Index k = 0; k < columns; ++k)
+  {
+    this->Widen(static_cast<std::size_t>(k), low[k], high[k]);
   }
 }
 

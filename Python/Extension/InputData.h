@@ -101,12 +101,11 @@ public:
   bool DirectionsOnFaces = false;
   std::optional<DoubleArray> Rates; ///< faces x 4
   std::optional<FactorArray> FidelityFactors;
-
-  /// The same with a panel of the data's columns, which Components counts.
-  InputFields Columns(int first, int count) const;
   std::optional<LongArray> Seeds; ///< labels of points, 0 = free
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
+  /// The same with a panel of the data's columns, which Components counts.
+  InputFields Columns(int first, int count) const;
   FieldSummary Summarize() const;
   Fields Read() const;
   Fingerprint Version() const;

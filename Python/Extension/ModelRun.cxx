@@ -54,10 +54,15 @@ void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index
       const auto writeRow = [&](Index i)
       {
         const Index v = surface.VertexOf(i);
-        for (Eigen::Index k = 0; k < columns; ++k)
+        T* const row = to + i * stride + start;
+        const Eigen::Index known = v >= 0 ? std::min(components, columns) : 0;
+        for (Eigen::Index k = 0; k < known; ++k)
         {
-          to[i * stride + start + k] =
-            ConvertValue<T>(v >= 0 && k < components ? value(v, k) : other(i, k));
+          row[k] = ConvertValue<T>(value(v, k));
+        }
+        for (Eigen::Index k = known; k < columns; ++k)
+        {
+          row[k] = ConvertValue<T>(other(i, k));
         }
       };
       WithValueErrors(

@@ -197,6 +197,9 @@ def heat(
     and chi is 1 where f is known and 0 where it is missing. With D = 1, div grad is the
     Laplace-Beltrami operator. The integral of u over the surface is conserved if lambda is 0.
 
+    With ``mode="SteadyState"`` and `blur_fwhm` it restores data that were blurred on the surface: u
+    minimises the integral of 1/2 D grad u . grad u + lambda/2 chi (H u - f)^2, where H is the blur.
+
     Parameters
     ----------
     {surface}
@@ -268,7 +271,9 @@ def intrinsic_tv(
 
     Solves u_t = div(g(abs(grad u)) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
     total variation, 1/sqrt(abs(grad u)^2 + beta). With ``mode="SteadyState"`` it minimises the
-    energy, integral of abs(grad u) + lambda/2 chi (f - u)^2.
+    energy, integral of abs(grad u) + lambda/2 chi (f - u)^2. With `blur_fwhm`, too, it restores data
+    that were blurred on the surface: H u stands in place of u in the second term, where H is the
+    blur.
 
     Parameters
     ----------

@@ -50,6 +50,7 @@ def make_files(folder):
     write("text.txt", "a letter\n")
     write("page.xml", "<?xml version='1.0'?><html></html>")
     path("folder").mkdir()
+    os.mkfifo(path("pipe.func.gii"))
     # truncated
     cut("lh.surf.gii", "cut.surf.gii")
     cut("lh.func.gii", "cut.func.gii")
@@ -219,6 +220,8 @@ CASES = [
     ("smooth lh.surf.gii lh.func.gii 5 no/out.func.gii", "no/out.func.gii: cannot be written: "
                                                          "there is no folder"),
     ("smooth lh.surf.gii lh.func.gii 5 folder", "folder: cannot be written: it is a folder"),
+    ("smooth lh.surf.gii lh.func.gii 5 pipe.func.gii", "pipe.func.gii: cannot be written: "
+                                                       "it is not a regular file"),
 ]
 if HAS_VTK:
     CASES += [

@@ -6,8 +6,10 @@ and the picture of the project's README. compare.sh installs what it needs and r
 from __future__ import annotations
 
 import argparse
+import datetime
 import json
 import os
+import statistics
 import platform
 import sys
 import tempfile
@@ -88,34 +90,41 @@ def _smooth_with_holes(peer, sample, values, holes, lost, fwhm):
     return [peers.smooth(peer, sample, data, fwhm) for data in (values, holes)]
 
 
-def measure_costs(sample, chosen, columns, results, folder, fwhm=10):
-    """Time and memory of whole processes, and processor time without input and output."""
+def measure_costs(sample, chosen, columns, rounds, results, folder, fwhm=10):
+    """Time and memory of whole processes, and processor time without input and output: the medians
+    over rounds, in each of which all programs run after another."""
     data = folder / "columns.func.gii"
     output = folder / "out.func.gii"
     random = np.random.default_rng(6)
     for count in (1, columns):
         values = random.normal(size=(len(sample.points), count))
-        for peer in chosen:
-            # CAT smooths one map at a time: its time for many is that for a tenth, times ten.
-            share = 10 if peer == "CAT" and count >= 100 else 1
-            write_columns(data, values[:, :count // share])
-            cost = peers.run(peers.process_command(peer, sample.path, data, fwhm, output))
-            if peer == "Workbench":
-                # A process that reads and writes the same columns.
-                copy = peers.run(["wb_command", "-metric-math", "x", output, "-var", "x", data])
-                alone = cost.cpu - copy.cpu
-            else:
-                alone = float(cost.output.split()[-1])
-            results.append({"columns": count, "peer": peer, "wall": share * cost.wall,
-                            "cpu": share * cost.cpu, "memory": cost.memory,
-                            "alone": share * alone})
-            output.unlink()
+        # CAT smooths one map at a time: its time for many is that for a tenth, times ten.
+        shares = {peer: 10 if peer == "CAT" and count >= 100 else 1 for peer in chosen}
+        measured = {peer: [] for peer in chosen}
+        for _ in range(rounds):
+            for peer, share in shares.items():
+                write_columns(data, values[:, :count // share])
+                cost = peers.run(peers.process_command(peer, sample.path, data, fwhm, output))
+                if peer == "Workbench":
+                    # A process that reads and writes the same columns.
+                    copy = peers.run(["wb_command", "-metric-math", "x", output, "-var", "x", data])
+                    alone = cost.cpu - copy.cpu
+                else:
+                    alone = float(cost.output.split()[-1])
+                measured[peer].append({"wall": share * cost.wall, "cpu": share * cost.cpu,
+                                       "memory": cost.memory, "alone": share * alone})
+                output.unlink()
+        for peer, found in measured.items():
+            medians = {name: statistics.median(row[name] for row in found) for name in found[0]}
+            results.append({"columns": count, "peer": peer, "share": shares[peer], **medians,
+                            "rounds": [row["alone"] for row in found]})
     data.unlink()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--columns", type=int, default=1200, help="of the time series")
+    parser.add_argument("--rounds", type=int, default=3, help="of the measurement of times")
     parser.add_argument("--widths", type=float, nargs="+", default=[6, 10, 20], metavar="MM",
                         help="asked for; 10 must be among them")
     parser.add_argument("--only", action="append", choices=("widths", "errors", "missing", "costs"),
@@ -141,7 +150,7 @@ def main():
             "errors": lambda rows: measure_errors(samples, chosen, arguments.widths, rows),
             "missing": lambda rows: measure_missing(samples, chosen, rows),
             "costs": lambda rows: measure_costs(
-                samples[2], chosen, arguments.columns, rows, folder)}
+                samples[2], chosen, arguments.columns, arguments.rounds, rows, folder)}
         for part in arguments.only or parts:
             print(f"measuring {part}", file=sys.stderr)
             rows = [row for row in results.get(part, []) if row["peer"] not in chosen]
@@ -169,6 +178,7 @@ def _machine():
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo")
                   if line.startswith("model name")), platform.processor())
     return {"processor": model, "cores": os.cpu_count(),
+            "date": datetime.date.today().isoformat(),
             "versions": {**versions, "Workbench": version}}
 
 

@@ -13,7 +13,8 @@ COLOURS = ("#1b6ca8", "#c9702c", "#8a8a8a", "#5d8a4a")
 TEXT = """# Comparison with other programs
 
 This page is written by `Testing/Comparisons/compare.sh`, which installs the programs, measures them
-side by side, and draws the picture. {programs}
+side by side, and draws the picture. Measured on {date}:
+{programs}.
 Machine: {processor}, {cores} cores.
 
 The same files go to every program: a sphere of radius 100 mm, the left hemisphere of fsaverage5
@@ -45,8 +46,8 @@ in all directions and places.
 The relative error in L2 of smoothed maps, against 200 Crank-Nicolson steps of the same finite
 elements, for which a program of its own is used. These steps solve the diffusion equation on the
 triangulated surface, which this library solves too, with 3 steps; the other programs approximate it
-by other means. The smaller number is the change of the integral of the map, relative to the
-integral of its magnitude.
+by other means. The second number is the change of the integral of the map, relative to the
+integral of its magnitude; 0 stands for less than 0.0001 %.
 
 {errors}
 
@@ -67,21 +68,30 @@ conte69, 10 mm: seconds of the whole process, its processor time and its largest
 processor time of the smoothing without reading and writing files. For Workbench the latter is the
 difference to `wb_command -metric-math x`, which reads and writes the same files. CAT smooths one map
 at a time; its time for many is that for a tenth of them, times ten, and its memory that for a tenth.
+The programs run after another in several rounds, and the numbers are medians. Other work on the
+machine lengthens processor times, too. {rounds}
 
 {costs}
+
+## Where another program is better
+
+Found by the program that writes this page, in all rows of the tables above:
+
+{losses}
 """
 
 
 def write_page(results, path):
     machine = results["machine"]
     versions = machine["versions"]
-    programs = ", ".join(f"{name} {versions[name]}" for name in PEERS) + "."
+    programs = ", ".join(f"{name} {versions[name]}" for name in PEERS)
     # The name of the processor is not always known to the machine.
     text = TEXT.format(
-        programs=f"Measured: {programs}", processor=machine["processor"] or "unknown processor",
+        programs=programs, date=machine["date"], processor=machine["processor"] or "unknown processor",
         cores=machine["cores"], widths=_widths(results.get("widths", [])),
         errors=_errors(results.get("errors", [])), missing=_missing(results.get("missing", [])),
-        costs=_costs(results.get("costs", [])))
+        costs=_costs(results.get("costs", [])), losses=_losses(results),
+        rounds=_rounds(results.get("costs", [])))
     _replace(path, text.encode())
 
 
@@ -119,7 +129,7 @@ def _widths(rows):
 
 
 def _percent(value):
-    return f"{100 * value:.2g} %" if abs(value) >= 1e-7 else "0"
+    return f"{100 * value:.2g} %" if abs(value) >= 1e-6 else "0"
 
 
 def _errors(rows):
@@ -156,6 +166,40 @@ def _costs(rows):
                    "processor time of smoothing"], table)
 
 
+def _rounds(rows):
+    most = max(row["columns"] for row in rows)
+    ours, theirs = (_find(rows, columns=most, peer=peer)["rounds"] for peer in PEERS[:2])
+    shares = ", ".join(f"{a / b:.2f}" for a, b in zip(ours, theirs))
+    return (f"The processor time of\nsmoothing {most:,} columns, as a share of that of {PEERS[1]}, in "
+            f"each round:\n{shares}.")
+
+
+def _losses(results):
+    """The measurements in which another program is nearer to the truth, faster or smaller."""
+    kinds = (
+        ("widths", ("surface", "fwhm"), "width realised", lambda row: abs(row["width"] - row["fwhm"])),
+        ("errors", ("surface", "map", "fwhm"), "error", lambda row: row["error"]),
+        ("errors", ("surface", "map", "fwhm"), "integral", lambda row: abs(row["integral"])),
+        ("missing", ("surface", "map"), "missing data", lambda row: row["rms"]),
+        ("costs", ("columns",), "time", lambda row: row["wall"]),
+        ("costs", ("columns",), "processor time", lambda row: row["cpu"]),
+        ("costs", ("columns",), "memory",
+         lambda row: math.inf if row["share"] > 1 else row["memory"]),
+        ("costs", ("columns",), "processor time of smoothing", lambda row: row["alone"]))
+    lines = []
+    for part, keys, title, measure in kinds:
+        rows = results.get(part, [])
+        for case in _cases(rows, *keys):
+            found = {peer: measure(_find(rows, peer=peer, **dict(zip(keys, case)))) for peer in PEERS}
+            better = [peer for peer in PEERS if found[peer] < found[PEERS[0]]]
+            if better:
+                words = [f"{key} {value:,}" if isinstance(value, (int, float)) else value
+                         for key, value in zip(keys, case)]
+                shares = [f"{peer} ({found[PEERS[0]] / found[peer]:.2g} times)" for peer in better]
+                lines.append(f"- {title}, {', '.join(words)}: {', '.join(shares)}")
+    return "\n".join(lines or ["- nowhere"])
+
+
 def draw(results, path):
     """Three panels of bars: width realised, error with missing data, processor time."""
     import io
@@ -172,9 +216,9 @@ def draw(results, path):
     most = max(row["columns"] for row in results["costs"])
     surface = "conte69 32k"
     _bars(panels[0], "Width realised when 10 mm is asked",
-          [_find(widths, surface=surface, fwhm=10, peer=peer)["width"] for peer in PEERS], "{:.2f}")
+          [_find(widths, surface=surface, fwhm=10, peer=peer)["width"] for peer in PEERS], "{:.2f} mm", inside=True)
     panels[0].axvline(10, color="black", linewidth=1, linestyle=":")
-    _bars(panels[1], "Error, 20 % of thickness missing [mm]",
+    _bars(panels[1], "RMS error with 20 % of thickness missing [mm]",
           [_find(missing, surface=surface, map="thickness", peer=peer)["rms"] for peer in PEERS],
           "{:.4f}", log=True)
     _bars(panels[2], f"Processor time for {most:,} maps [s]",
@@ -186,7 +230,7 @@ def draw(results, path):
     _replace(path, buffer.getvalue())
 
 
-def _bars(panel, title, values, form, log=False):
+def _bars(panel, title, values, form, log=False, inside=False):
     heights = [0 if math.isnan(value) else value for value in values]
     panel.barh(range(len(PEERS)), heights, color=COLOURS, height=0.7)
     panel.set_yticks(range(len(PEERS)), PEERS)
@@ -198,7 +242,10 @@ def _bars(panel, title, values, form, log=False):
         panel.set_xlim(min(known) / 3, max(known) * 8)
     else:
         panel.set_xlim(0, max(known) * 1.2)
+    left = panel.get_xlim()[0]
     for place, value in enumerate(values):
-        left = panel.get_xlim()[0]
         text = "NaN" if math.isnan(value) else form.format(value)
-        panel.text(max(heights[place], left), place, f" {text}", va="center")
+        if inside:
+            panel.text(0.3, place, text, va="center", color="white")
+        else:
+            panel.text(max(heights[place], left), place, f" {text}", va="center")

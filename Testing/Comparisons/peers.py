@@ -14,7 +14,6 @@ import resource
 import subprocess
 import sys
 import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,18 +31,28 @@ class Cost:
     output: str
 
 
+#: Starts a process and prints its exit code and costs on the last line. Linux counts the memory of
+#: the process that starts another one to the other one: a small one has to do it.
+LAUNCHER = """
+import os, sys, time
+start = time.perf_counter()
+child = os.posix_spawnp(sys.argv[1], sys.argv[1:], os.environ)
+_, status, usage = os.wait4(child, 0)
+print(f"\\n{os.waitstatus_to_exitcode(status)} {time.perf_counter() - start} "
+      f"{usage.ru_utime + usage.ru_stime} {usage.ru_maxrss * 1024}")
+"""
+
+
 def run(command):
     """Run a process to its end and measure it."""
-    start = time.perf_counter()
-    with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, text=True,
-                          env=dict(os.environ, PYTHONWARNINGS="ignore")) as process:
-        output = process.stdout.read()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
+    words = [sys.executable, "-I", "-S", "-c", LAUNCHER, *[str(word) for word in command]]
+    output, _, last = subprocess.run(
+        words, stdout=subprocess.PIPE, text=True, check=True,
+        env=dict(os.environ, PYTHONWARNINGS="ignore")).stdout.rstrip("\n").rpartition("\n")
+    code, *costs = map(float, last.split())
+    if code:
         raise RuntimeError(f"{command} failed: {output}")
-    return Cost(time.perf_counter() - start, usage.ru_utime + usage.ru_stime,
-                usage.ru_maxrss * 1024, output)
+    return Cost(*costs, output)
 
 
 # ---- the functions of Python ---------------------------------------------------------------------
@@ -108,7 +117,7 @@ def process_command(peer, surface, data, fwhm, output):
 def main():
     peer, surface, data, fwhm, output = sys.argv[1:]
     points, faces = read_surface(surface)
-    values = read_columns(data).astype(np.float32)
+    values = read_columns(data, np.float32)
     importlib.import_module(MODULES[peer])  # not counted
     before = resource.getrusage(resource.RUSAGE_SELF)
     result = FUNCTIONS[peer](points, faces, values, float(fwhm))

@@ -110,5 +110,9 @@ def write_columns(path, values):
     return path
 
 
-def read_columns(path):
-    return np.column_stack([array.data for array in nib.load(path).darrays]).astype(float)
+def read_columns(path, dtype=float):
+    arrays = nib.load(path).darrays
+    values = np.empty((len(arrays[0].data), len(arrays)), dtype)
+    for column, array in zip(values.T, arrays):
+        column[:] = array.data
+    return values

@@ -429,6 +429,9 @@ class Interruption(unittest.TestCase):
         return sd.intrinsic_tv(surface, noise, number_of_time_steps=1000000, **keywords)
 
     def test_ctrl_c_ends_a_run(self):
+        # A shell starts programs in the background with this signal ignored.
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
         timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
         with self.assertRaises(KeyboardInterrupt):

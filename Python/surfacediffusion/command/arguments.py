@@ -71,7 +71,7 @@ class _Commands:
     def add(self, name, run, text, example, epilog=FILES):
         lines = "\n".join(f"  {line}" for line in example)
         parser = self.commands.add_parser(
-            name, help=re.split(r"[.:,] ", text)[0].rstrip("."), allow_abbrev=False,
+            name, help=re.split(r"[.:] ", text)[0].rstrip("."), allow_abbrev=False,
             description=textwrap.fill(text, 98),
             formatter_class=argparse.RawDescriptionHelpFormatter,
             epilog=f"Example:\n{lines}\n{epilog}")
@@ -205,8 +205,7 @@ def _inpaint(commands):
     commands.data(parser)
     parser.add_argument("output", metavar="OUTPUT", help="the result")
     commands.choices(parser)
-    parser.add_argument("--missing", metavar="FILE", help="data whose nonzero values mark vertices "
-                                                          "with a missing value")
+    parser.add_argument("--missing", metavar="FILE", help="missing where the first column is above 0")
     parser.add_argument("--model", choices=("heat", "tv"), default="heat",
                         help="heat: harmonic functions, smooth (default); tv: total variation, "
                              "which continues edges")
@@ -263,7 +262,7 @@ def _segment(commands):
 
 
 NEW = """
-The name of OUTPUT announces its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk,
+The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk,
 .vtp if SURFACE is such a file.
 """
 
@@ -277,10 +276,12 @@ def _texture(commands):
     parser.add_argument("size", metavar="FEATURE_SIZE", type=_positive,
                         help="the wavelength of the pattern, in the unit of the coordinates")
     parser.add_argument("output", metavar="OUTPUT", help="the pattern, values at the vertices")
-    parser.add_argument("--kinetics", metavar="NAME", help="the reaction (default Turing)")
+    parser.add_argument("--kinetics", metavar="NAME",
+                        help="the reaction: Turing (default), Schnakenberg, GrayScott, Brusselator, "
+                             "GiererMeinhardt or FitzHughNagumo")
     parser.add_argument("--seed", metavar="N", type=_whole, default=0,
                         help="of the initial noise (default 0)")
-    parser.add_argument("--steps", metavar="N", type=_count, help="largest number of time steps")
+    parser.add_argument("--steps", metavar="N", type=_count, help="largest number of time steps (default 640)")
 
 
 def _directions(commands):
@@ -293,7 +294,7 @@ def _directions(commands):
     parser.add_argument("surface", metavar="SURFACE", help="the surface")
     parser.add_argument("output", metavar="OUTPUT", help="unit vectors, or 0, on the faces")
     parser.add_argument("--method", metavar="NAME", default="PrincipalCurvature",
-                        help="PrincipalCurvature (default), CurvatureAligned, Smooth")
+                        help="PrincipalCurvature (default), CurvatureAligned or Smooth")
 
 
 def _normals(commands):

@@ -154,6 +154,8 @@ def check_output_folder(path):
         raise FileError(f"{path}: cannot be written: there is no folder {folder}")
     if os.path.isdir(path):
         raise FileError(f"{path}: cannot be written: it is a folder")
+    if os.path.exists(path) and not os.path.isfile(path):  # a device or a pipe would be replaced
+        raise FileError(f"{path}: cannot be written: it is not a regular file")
     if not os.access(folder, os.W_OK):
         raise FileError(f"{path}: cannot be written: no permission to write in {folder}")
 
