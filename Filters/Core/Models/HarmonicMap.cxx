@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -324,6 +325,7 @@ SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
   // If triangles are so bad that none converges, the best of the answers is a step, too.
   SolveReport best;
   best.Residual = std::numeric_limits<double>::infinity();
+  std::exception_ptr failure;
   double done = 0.0;
   for (const Preconditioner method : methods)
   {
@@ -341,11 +343,11 @@ SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
     }
     catch (const std::runtime_error&)
     {
-      // The matrix cannot be factorised. The other methods need no factor.
-      if (method == methods.back() && !std::isfinite(best.Residual))
+      if (method == methods.front() && method != Preconditioner::Multigrid)
       {
         throw;
       }
+      failure = std::current_exception(); // of a factorisation, which the other methods do not need
     }
     if (best.Converged)
     {
@@ -353,7 +355,11 @@ SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
     }
     done = end;
   }
-  if (methods.size() == 1)
+  if (failure && !std::isfinite(best.Residual))
+  {
+    std::rethrow_exception(failure);
+  }
+  if (methods.size() == 1 || !std::isfinite(best.Residual))
   {
     RequireAnswer(best, this->Options.Limits);
     return best;
