@@ -196,6 +196,9 @@ class SegmentationResult(Result):
         That of the labels as functions on the mesh, whose boundaries are too long by a tenth.
     number_of_alternations : int
         The number of minimisations; more than 1 if the means were found.
+    effective_fidelity_weight : float
+        The lambda of the run, found if ``automatic_fidelity=True``, in the unit of
+        `fidelity_weight`.
     """
 
     probabilities: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)), repr=False)
@@ -207,3 +210,4 @@ class SegmentationResult(Result):
     gap: float = 0.0
     label_gap: float = field(default=0.0, repr=False)
     number_of_alternations: int = field(default=0, repr=False)
+    effective_fidelity_weight: float = 0.0

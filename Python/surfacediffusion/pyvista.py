@@ -155,8 +155,9 @@ def segment(
     0 is missing. The equation and all other keywords are described in
     help(surfacediffusion.segment). The blocks of a MultiBlock are segmented one by one, each with
     its own natural units. The results are the point arrays RegionId (active), RegionProbability
-    (n, K) and, with data, <array>Segmented: the mean of the region. full_output: if True, the
-    function returns a pair: the mesh, and the SegmentationResult, of a MultiBlock the list of them.
+    (n, K) and, with data, <array>Segmented: the mean of the region, or the data of points that take
+    no part. full_output: if True, the function returns a pair: the mesh, and the
+    SegmentationResult, of a MultiBlock the list of them.
     """
     properties, result_name = _keywords("segment", properties)
     blocks, results = _find_surfaces(mesh), []
@@ -173,9 +174,9 @@ def segment(
         results.append(result)
         points = block.mesh.point_data
         if values is not None:
-            means = np.vstack([np.full((1, result.means.shape[1]), np.nan), result.means])
-            points[result_name or f"{name}Segmented"] = means[result.values].reshape(
-                values.shape if values.ndim == 1 else (len(values), -1))
+            means = result.means[result.values - 1].reshape(len(values), *values.shape[1:])
+            means[result.values == 0] = values[result.values == 0]
+            points[result_name or f"{name}Segmented"] = means
         points["RegionProbability"] = result.probabilities
         points["RegionId"] = result.values
         block.mesh.set_active_scalars("RegionId")

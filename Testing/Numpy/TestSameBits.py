@@ -177,8 +177,10 @@ class SameBits(unittest.TestCase):
                  "history Area": result.areas, "history BoundaryLength": result.boundary_lengths,
                  "history Components": result.components}
         if "values" in arrays:
-            columns = arrays["values"].shape[1:]
-            found["valuesSegmented"] = result.means[result.values - 1].reshape(-1, *columns)
+            given = arrays["values"]
+            means = result.means[result.values - 1].reshape(-1, *given.shape[1:])
+            found["valuesSegmented"] = np.where(
+                result.values.reshape(-1, *[1] * (given.ndim - 1)) == 0, given, means)
         return found
 
 
