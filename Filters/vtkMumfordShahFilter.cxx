@@ -87,46 +87,6 @@ std::unique_ptr<RunSettings> vtkMumfordShahFilter::MakeSettings() const
   return settings;
 }
 
-int vtkMumfordShahFilter::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  if (port == 2)
-  {
-    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
-    return 1;
-  }
-  return this->Superclass::FillOutputPortInformation(port, info);
-}
-
-int vtkMumfordShahFilter::RequestDataObject(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  if (!this->Superclass::RequestDataObject(request, inputs, outputs))
-  {
-    return 0;
-  }
-  if (!vtkPolyData::GetData(outputs, 2))
-  {
-    vtkNew<vtkPolyData> curves;
-    outputs->GetInformationObject(2)->Set(vtkDataObject::DATA_OBJECT(), curves);
-  }
-  return 1;
-}
-
-int vtkMumfordShahFilter::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  vtkPolyData* const output = vtkPolyData::GetData(outputs, 2);
-  output->Initialize();
-  this->Curves = nullptr;
-  const int result = this->Superclass::RequestData(request, inputs, outputs);
-  if (this->Curves)
-  {
-    output->ShallowCopy(this->Curves);
-    this->Curves = nullptr;
-  }
-  return result;
-}
-
 void vtkMumfordShahFilter::WriteResult(
   std::size_t index, const InputFields& fields, vtkPolyData* output)
 {

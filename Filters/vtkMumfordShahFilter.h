@@ -63,8 +63,6 @@
 
 #include "vtkSurfaceDataDiffusionAlgorithm.h"
 
-#include "vtkSmartPointer.h" // member
-
 class VTKSURFACEDIFFUSION_EXPORT vtkMumfordShahFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
@@ -132,9 +130,6 @@ protected:
   void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   const char* GetResultSuffix() const override { return "MumfordShah"; }
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   double SmoothingLength = 8.0;
   double EdgeThreshold = 0.2;
@@ -146,8 +141,6 @@ protected:
 private:
   vtkMumfordShahFilter(const vtkMumfordShahFilter&) = delete;
   void operator=(const vtkMumfordShahFilter&) = delete;
-
-  vtkSmartPointer<vtkPolyData> Curves; ///< of the update that is under way
 };
 
 #endif

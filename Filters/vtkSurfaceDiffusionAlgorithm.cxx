@@ -134,7 +134,8 @@ bool vtkSurfaceDiffusionAlgorithm::FindFields(
 //------------------------------------------------------------------------------------------------
 int vtkSurfaceDiffusionAlgorithm::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkTable");
+  const char* const types[] = { "vtkDataObject", "vtkTable", "vtkPolyData" };
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), types[port]);
   return 1;
 }
 
@@ -149,6 +150,11 @@ int vtkSurfaceDiffusionAlgorithm::RequestDataObject(
   {
     vtkNew<vtkTable> table;
     outputs->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), table);
+  }
+  if (this->GetNumberOfOutputPorts() > 2 && !vtkPolyData::GetData(outputs, 2))
+  {
+    vtkNew<vtkPolyData> curves;
+    outputs->GetInformationObject(2)->Set(vtkDataObject::DATA_OBJECT(), curves);
   }
   return 1;
 }
@@ -181,6 +187,12 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
 {
   vtkTable* const table = vtkTable::GetData(outputs, 1);
   table->Initialize();
+  vtkPolyData* const curves =
+    this->GetNumberOfOutputPorts() > 2 ? vtkPolyData::GetData(outputs, 2) : nullptr;
+  if (curves)
+  {
+    curves->Initialize();
+  }
   RunState& state = *this->State;
   state.Succeeded = false;
   state.Settings = this->MakeSettings();
@@ -193,7 +205,12 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   if (state.Succeeded)
   {
     this->WriteTable(table);
+    if (curves && this->Curves)
+    {
+      curves->ShallowCopy(this->Curves);
+    }
   }
+  this->Curves = nullptr;
   state.History = History();
   if (this->GenerateTimeSteps && valid)
   {

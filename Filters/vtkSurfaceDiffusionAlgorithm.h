@@ -56,6 +56,7 @@
 #ifndef vtkSurfaceDiffusionAlgorithm_h
 #define vtkSurfaceDiffusionAlgorithm_h
 
+#include "vtkSmartPointer.h" // for Curves
 #include "vtkSurfaceFilter.h"
 
 namespace SurfaceDiffusion
@@ -317,6 +318,7 @@ protected:
   virtual void WriteTable(vtkTable* table);
 
   /// Take the results of the run other than its states. The default takes the values above.
+  /// Filters with a third output port, polylines, set Curves here.
   virtual void TakeResults();
 
   /// The suffix of the result's name, if ResultArrayName is empty.
@@ -361,6 +363,8 @@ protected:
   /// The run, kept between updates.
   struct RunState;
   const std::unique_ptr<RunState> State;
+
+  vtkSmartPointer<vtkPolyData> Curves; ///< for port 2 of the update that is under way
 
 private:
   vtkSurfaceDiffusionAlgorithm(const vtkSurfaceDiffusionAlgorithm&) = delete;

@@ -217,6 +217,7 @@ void vtkSurfaceSegmentationFilter::WriteTable(vtkTable* table)
       }
     }
   }
+  this->Regions.clear();
 }
 
 vtkSmartPointer<vtkPolyData> vtkSurfaceSegmentationFilter::MakeBoundaries() const
@@ -276,7 +277,7 @@ void vtkSurfaceSegmentationFilter::TakeResults()
       }
     }
   }
-  this->Boundaries = this->MakeBoundaries();
+  this->Curves = this->MakeBoundaries();
 }
 
 void vtkSurfaceSegmentationFilter::VisitReported(const std::function<void(double&)>& visit)
@@ -291,46 +292,6 @@ void vtkSurfaceSegmentationFilter::VisitReported(const std::function<void(double
 }
 
 //------------------------------------------------------------------------------------------------
-int vtkSurfaceSegmentationFilter::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  if (port < 2)
-  {
-    return this->Superclass::FillOutputPortInformation(port, info);
-  }
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
-  return 1;
-}
-
-int vtkSurfaceSegmentationFilter::RequestDataObject(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  if (!this->Superclass::RequestDataObject(request, inputs, outputs))
-  {
-    return 0;
-  }
-  if (!vtkPolyData::GetData(outputs, 2))
-  {
-    vtkNew<vtkPolyData> boundaries;
-    outputs->GetInformationObject(2)->Set(vtkDataObject::DATA_OBJECT(), boundaries);
-  }
-  return 1;
-}
-
-int vtkSurfaceSegmentationFilter::RequestData(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  vtkPolyData* const boundaries = vtkPolyData::GetData(outputs, 2);
-  boundaries->Initialize();
-  const int result = this->Superclass::RequestData(request, inputs, outputs);
-  if (this->State->Succeeded)
-  {
-    boundaries->ShallowCopy(this->Boundaries);
-  }
-  this->Boundaries = nullptr;
-  this->Regions.clear();
-  return result;
-}
-
 void vtkSurfaceSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -190,9 +190,6 @@ protected:
   void TakeResults() override;
   const char* GetResultSuffix() const override { return "Segmented"; }
   void VisitReported(const std::function<void(double&)>& visit) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int NumberOfRegions = 2;
   bool AutomaticFidelity = true;
@@ -210,7 +207,6 @@ private:
   std::map<std::pair<int, int>, double> EffectiveMeans;
   /// Of the blocks, during an update.
   std::vector<std::shared_ptr<const SurfaceDiffusion::RegionResults>> Regions;
-  vtkSmartPointer<vtkPolyData> Boundaries; ///< likewise
   double EffectiveFidelityWeight = 0.0;
   double Gap = 0.0;
   double LabelGap = 0.0;
