@@ -173,7 +173,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     });
   needed["vtkSurfaceSegmentationFilter FidelityWeight"] =
     needed["vtkSurfaceSegmentationFilter Units"] =
-    With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
+      With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
   needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
     With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
   needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =
