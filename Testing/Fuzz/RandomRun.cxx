@@ -176,6 +176,7 @@ struct Promises
   bool Energy = false; ///< does not grow
   bool Length = false; ///< every row is one long
   bool Solution = true; ///< the systems have one
+  double Fidelity = 0.0; ///< lambda, in the unit of the energy
 };
 
 /// Cotangents so large that nothing is left of the numbers to which they are added.
@@ -192,9 +193,10 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
   Require(u.allFinite(), "a state is not finite");
   const double energy = model.Energy();
   Require(std::isfinite(energy) || !promises.Energy, "an energy is not finite");
-  // Even a constant has energy, by round-off.
+  // Even a constant has energy, by round-off, which the fidelity weight multiplies.
   const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0.0;
-  const double roundOff = 1e-9 * energyAtStart + 1e-26 * largest * largest;
+  const double roundOff =
+    1e-9 * energyAtStart + 1e-26 * (1.0 + promises.Fidelity) * largest * largest;
   Require(!promises.Energy || energy <= energyBefore + roundOff, "an energy grows");
   for (Eigen::Index k = 0; k < u.cols(); ++k)
   {
@@ -277,6 +279,7 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   // On flat triangles the remaining error of a solver has much energy.
   promises.Energy =
     settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed) && !HasFlatTriangles(mesh);
+  promises.Fidelity = settings.Fidelity;
   std::shared_ptr<LinearSolver> solver = ReadSolver(bytes);
   ReadFidelityFactors(bytes, data);
   LinearDiffusion model(assembler, coefficients, std::move(data), settings, std::move(solver));
