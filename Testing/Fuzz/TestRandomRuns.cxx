@@ -46,6 +46,12 @@ TEST(RandomRuns, StayAsTheyWereMended)
     "090140000101403f000060575757a9a65757820000310a0100ff7fffff26dfffffff002c00000015a24e3161636544"
     "69a2a2a200090201000060575757a9a65757820000310a0100ff7fffff26dfffffffff05ffaa080cff820000310a01"
     "00ff7fffff26dfffffffff05ffaa09e104f23001000109ffa2fbff0dfff204045d04aa0e04",
+    // probabilities that lost digits in the projection of large values onto the simplex
+    "2c0000000009129a7600f0f20000102b2b2b2b2b008001005180010051022b2b3d3d3d3d3d3dd9d9d9d9d9d9"
+    "0000000000000003d8d9010054805501005102eccd000000cd4d21ff",
+    // a large fidelity weight, which multiplies the round-off of the energy
+    "006e7fffff00022afffffb0000215801fb329a76fffb0d0002fd0009028d2da176a8005801fb129a76fff9f9"
+    "f9f90700000000000000f9f9f9fff9f9f9f9f9f9f9f9f9f9f9f9f90201f9f900",
   };
   for (const std::string& digits : found)
   {
