@@ -95,7 +95,7 @@ std::shared_ptr<RegionResults> MeasureRegions(
 }
 
 /// The lambda of AutomaticFidelity, in units of the numerics. Data without contrast need none.
-double FindFidelity(const ModelInputs& inputs, const Segmentation::Input& input)
+double FidelityOfContrast(const ModelInputs& inputs, const Segmentation::Input& input)
 {
   const double contrast =
     MeanContrast(inputs.Surface.Mesh(), input.Data, input.Means, inputs.Parallel);
@@ -115,8 +115,7 @@ void WarnOfEmptyRegions(const RegionResults& regions, RunResult& result)
   if (!empty.empty())
   {
     result.WarnOnce("no point is in the regions " + empty +
-      " (to keep smaller regions, turn off "
-      "AutomaticFidelity and raise FidelityWeight)");
+      " (to keep smaller regions, turn off AutomaticFidelity and raise FidelityWeight)");
   }
 }
 
@@ -218,7 +217,7 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   }
   const double unit = inputs.Units.ToCore(1.0, -1.0, inputs.DataAreTerms ? -1.0 : -2.0);
   settings.Fidelity =
-    this->AutomaticFidelity ? FindFidelity(inputs, input) : this->FidelityWeight * unit;
+    this->AutomaticFidelity ? FidelityOfContrast(inputs, input) : this->FidelityWeight * unit;
   result.EffectiveFidelityWeight = settings.Fidelity / unit;
   if (this->AutomaticFidelity && this->FidelityWeight != SegmentationSettings().FidelityWeight)
   {

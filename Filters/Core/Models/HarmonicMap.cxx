@@ -290,12 +290,16 @@ void HarmonicMap::FindDamping()
 /// ratio near 200, at which Jacobi needed 160 iterations and the cycle 12.
 bool HarmonicMap::PrefersMultigrid() const
 {
+  if (!this->Assembly->Mesh().GetReduction().IsSerial())
+  {
+    return false;
+  }
   constexpr double ratio = 200.0;
   const SparseMatrix& matrix = this->System.GetMatrix();
   const auto count = static_cast<Index>(matrix.rows());
   const double stiff = Sum(this->Parallel, count,
     [&](Index i) { return DiagonalEntry(matrix, i) > ratio * this->Diagonal[i] ? 1.0 : 0.0; });
-  return this->Assembly->Mesh().GetReduction().IsSerial() && stiff > 0.5 * count;
+  return stiff > 0.5 * count;
 }
 
 /// The methods to try, in this order.
@@ -359,12 +363,8 @@ SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
   {
     std::rethrow_exception(failure);
   }
-  if (methods.size() == 1 || !std::isfinite(best.Residual))
-  {
-    RequireAnswer(best, this->Options.Limits);
-    return best;
-  }
-  best.IsFinal = true;
+  best.IsFinal = methods.size() > 1 && std::isfinite(best.Residual);
+  RequireAnswer(best, this->Options.Limits);
   return best;
 }
 

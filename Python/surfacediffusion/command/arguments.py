@@ -281,7 +281,8 @@ def _texture(commands):
                              "GiererMeinhardt or FitzHughNagumo")
     parser.add_argument("--seed", metavar="N", type=_whole, default=0,
                         help="of the initial noise (default 0)")
-    parser.add_argument("--steps", metavar="N", type=_count, help="largest number of time steps (default 640)")
+    parser.add_argument("--steps", metavar="N", type=_count,
+                        help="largest number of time steps (default 640)")
 
 
 def _directions(commands):
