@@ -159,7 +159,7 @@ Eigen::Vector2d LineFieldOperator::Mean(const Eigen::Ref<const Vector>& z, Index
   for (int a = 0; a < 3; ++a)
   {
     sum += this->Transports[3 * t + a].Matrix() *
-      z.segment(2 * this->Medial->TriangleVertices()(t, a), 2);
+      z.segment<2>(2 * this->Medial->TriangleVertices()(t, a));
   }
   return sum / 3.0;
 }
