@@ -19,6 +19,10 @@ namespace
 /// error of the orientation of helical stripes is 1.0 degrees with 2 as with 4.
 constexpr int SmoothingSteps = 2;
 
+/// The number of solves with one matrix that the choice of a solver counts on: that of ten time
+/// steps. A choice by the number of steps would change all states of a longer run by the tolerance.
+constexpr double ExpectedSolves = 10.0 * SmoothingSteps;
+
 /// An error of the smoothed data or tensors changes D by as much.
 constexpr double SmoothingTolerance = 1e-4;
 
@@ -92,7 +96,8 @@ std::unique_ptr<StructureTensor> TensorDiffusionSettings::MakeStructure(ModelInp
   const auto find = [&](SolverPurpose purpose, SolverTask task, double width)
   {
     task.DiffusionNumber = HeatBlur::TimeOfWidth(width, SmoothingSteps) / SmoothingSteps / (h * h);
-    const auto solver = inputs.Solvers.Find(purpose, task, SmoothingSteps);
+    task.NumberOfSolves = ExpectedSolves;
+    const auto solver = inputs.Solvers.Find(purpose, task);
     IterationLimits limits = solver->GetLimits();
     limits.Tolerance = std::min(limits.Tolerance, SmoothingTolerance);
     solver->SetLimits(limits);

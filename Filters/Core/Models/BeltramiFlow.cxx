@@ -23,19 +23,19 @@ BeltramiFlow::BeltramiFlow(std::shared_ptr<const Assembler> assembler, TangentVe
   }
 }
 
+/// det G = 1 + b^2 trace T + b^4 det T.
 BeltramiFlow::Metrics BeltramiFlow::Measure(Index t) const
 {
   GradientTensor sum = SumGradients(this->Mesh(), this->U, t);
   if (!this->Factors.IsOne())
   {
     const PlaneTensor s = this->Factors(t);
-    const double determinant = s.XX * s.YY - s.XY * s.XY;
     sum.T = sum.T.Between(s);
-    sum.Determinant *= determinant * determinant;
+    sum.RootDeterminant *= s.XX * s.YY - s.XY * s.XY;
   }
   const double square = this->Options.ColorScale * this->Options.ColorScale;
-  const double excess = square * (sum.T.Trace() + square * sum.Determinant);
-  return { sum.T, excess, std::sqrt(1.0 + excess) };
+  return { sum.T, sum.RootDeterminant,
+    std::hypot(std::sqrt(1.0 + square * sum.T.Trace()), square * sum.RootDeterminant) };
 }
 
 /// D = adj(G) / sqrt(det G).
@@ -87,13 +87,17 @@ double BeltramiFlow::Energy() const
 {
   const TriangleMesh& mesh = this->Mesh();
   const double square = this->Options.ColorScale * this->Options.ColorScale;
+  // (sqrt(det G) - 1)/b^2 without cancellation
   const double excess = Sum(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
       const Metrics metrics = this->Measure(t);
-      return mesh.Shapes()[t].Area() * metrics.Excess / (metrics.AreaRatio + 1.0);
+      const double determinant =
+        metrics.RootDeterminant * (square * metrics.RootDeterminant / (metrics.AreaRatio + 1.0));
+      return mesh.Shapes()[t].Area() *
+        (metrics.T.Trace() / (metrics.AreaRatio + 1.0) + determinant);
     });
-  return mesh.GetReduction().Sum(excess / square + this->FidelityEnergy());
+  return mesh.GetReduction().Sum(excess + this->FidelityEnergy());
 }
 
 TangentVectors BeltramiFlow::Axes() const

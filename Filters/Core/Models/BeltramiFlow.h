@@ -71,7 +71,7 @@ private:
   struct Metrics
   {
     PlaneTensor T; ///< of S grad u
-    double Excess; ///< det G - 1
+    double RootDeterminant; ///< of T
     double AreaRatio; ///< sqrt(det G)
   };
   Metrics Measure(Index t) const;

@@ -42,7 +42,7 @@ GradientTensor SumGradients(const TriangleMesh& mesh, const Values& u, Index t)
     const double r = xx > yy ? g[1] - share * g[0] : g[0] - share * g[1];
     rest += r * r;
   }
-  sum.Determinant = larger * rest;
+  sum.RootDeterminant = std::sqrt(larger) * std::sqrt(rest); // the product might overflow
   return sum;
 }
 

@@ -7,13 +7,13 @@
 namespace SurfaceDiffusion
 {
 
-/// T = sum over the columns k of u of grad u_k grad u_k^T on a triangle, and its determinant, which
-/// has no cancellation: it is 0 for one column, up to the square of round-off for others whose
-/// gradients are parallel.
+/// T = sum over the columns k of u of grad u_k grad u_k^T on a triangle, and the root of its
+/// determinant, which has no cancellation: it is 0 for one column, and up to round-off for others
+/// whose gradients are parallel.
 struct GradientTensor
 {
   PlaneTensor T{ 0.0, 0.0, 0.0 };
-  double Determinant = 0.0;
+  double RootDeterminant = 0.0;
 };
 GradientTensor SumGradients(const TriangleMesh& mesh, const Values& u, Index t);
 
