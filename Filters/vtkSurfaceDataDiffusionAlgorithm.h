@@ -93,6 +93,28 @@ public:
   vtkGetMacro(AcrossDiffusivity, double);
   ///@}
 
+  ///@{
+  /**
+   * On (default): the result of data on cells is on cells. Off: it is u at the points. No effect on
+   * point data.
+   */
+  vtkSetMacro(ResultOnCells, bool);
+  vtkGetMacro(ResultOnCells, bool);
+  vtkBooleanMacro(ResultOnCells, bool);
+  ///@}
+
+  ///@{
+  /**
+   * On (default): a result on cells is f + P*(u - u_0), see above. It keeps all of the data that the
+   * points do not resolve: a model that changes nothing returns f, but of white noise on triangles
+   * 87 % is left, however strong the smoothing. Off: it is P* u, the mean of u over each cell, for
+   * data whose noise is to be removed. Both keep constants and the integral.
+   */
+  vtkSetMacro(KeepCellDetail, bool);
+  vtkGetMacro(KeepCellDetail, bool);
+  vtkBooleanMacro(KeepCellDetail, bool);
+  ///@}
+
   /**
    * In addition to the superclass: HoldKnownValues off, InitialFill Input.
    */

@@ -328,6 +328,9 @@ protected:
   /// a warning unless the array is the data.
   void AddResult(vtkDataArray* result, const SurfaceDiffusion::InputFields& fields,
     vtkDataSetAttributes* attributes);
+  bool HasResultOnCells(const SurfaceDiffusion::InputFields& fields) const;
+  vtkDataSetAttributes* FindResultAttributes(
+    const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) const;
   std::string FindResultName(const SurfaceDiffusion::InputFields& fields) const;
   int FindResultType(const SurfaceDiffusion::InputFields& fields) const;
 
@@ -359,6 +362,9 @@ protected:
   bool IntrinsicDelaunay = false;
   int OutputPrecision = OUTPUT_PRECISION_INPUT;
   int CheckpointMemoryLimit = 512;
+  /// Of classes whose results may be on cells; these have the properties.
+  bool ResultOnCells = true;
+  bool KeepCellDetail = true;
 
   /// The run, kept between updates.
   struct RunState;

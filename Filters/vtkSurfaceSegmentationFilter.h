@@ -133,6 +133,16 @@ public:
 
   ///@{
   /**
+   * On (default): the results of data on cells are on cells: RegionProbability is the mean of u over
+   * the cell, and RegionId its largest component, or the seed of the cell. Off: they are on points.
+   */
+  vtkSetMacro(ResultOnCells, bool);
+  vtkGetMacro(ResultOnCells, bool);
+  vtkBooleanMacro(ResultOnCells, bool);
+  ///@}
+
+  ///@{
+  /**
    * The mean of a region, in array units: of region 1 ... NumberOfRegions, component 0, 1, ... of
    * the data. With AutomaticMeans off all of them have to be set, or none. GetMean() gives NaN for
    * one that is not set.
