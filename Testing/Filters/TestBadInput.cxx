@@ -138,7 +138,7 @@ TEST(BadInput, ArraysThatCannotBeUsedAreErrors)
   ExpectError({ "InputArray", "not set" },
     [](vtkFVMHeatFilter*, vtkPolyData* input)
     { input->GetPointData()->SetActiveScalars(nullptr); });
-  ExpectError({ "InputArray", "\"f\"", "association", "points" },
+  ExpectError({ "InputArray", "\"f\"", "cell arrays", "association 0" },
     [](vtkFVMHeatFilter* filter, vtkPolyData*) { SetInputArray(filter, 0, "f", true); });
   ExpectError({ "InputArray", "\"names\"", "vtkStringArray", "numeric" },
     [](vtkFVMHeatFilter* filter, vtkPolyData* input)
