@@ -54,8 +54,9 @@ Values ReadValues(vtkDataArray* array);
 /// The hash of everything that ReadFields() reads.
 Fingerprint FingerprintFields(const InputFields& arrays);
 
-/// cells: the cell of each triangle of the surface's input, of numberOfCells. Throws std::runtime_error, with the
-/// property's name, on infinite directions and on rates that are negative or not finite.
+/// cells: the cell of each triangle of the surface's input, of numberOfCells. Throws
+/// std::runtime_error, with the property's name, on infinite directions and on rates that are
+/// negative or not finite.
 Fields ReadFields(
   const InputFields& arrays, const std::vector<vtkIdType>& cells, vtkIdType numberOfCells);
 

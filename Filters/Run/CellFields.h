@@ -49,9 +49,10 @@ struct CellState
 ///     Given_i = sum over c of chi_c w_c m_ci f_c / sum over c of chi_c w_c m_ci,
 ///     FidelityFactors_i = sum over c of chi_c w_c m_ci / A_i.
 ///
-/// Polygons have the equal shares of CellTransfer in the first line. Without fidelity, w = 1. A vertex is missing if no cell around it is known. The vertices of a
-/// fixed cell are fixed to the mean of the fixed cells around them. Lines are averaged as
-/// tensors u u^T. Writes cells.Known. Throws as MakePointData(). Collective.
+/// Polygons have the equal shares of CellTransfer in the first line. Without fidelity, w = 1. A
+/// vertex is missing if no cell around it is known. The vertices of a fixed cell are fixed to the
+/// mean of the fixed cells around them. Lines are averaged as tensors u u^T. Writes cells.Known.
+/// Throws as MakePointData(). Collective.
 PointData MakePointDataOfCells(
   const Surface& surface, const Fields& fields, CellState& cells, const ProcessGroup& processes);
 
@@ -66,8 +67,8 @@ PointData MakePointDataOfCells(
 Values MakeCellResult(
   const CellState& cells, const Values& state, const Values& given, bool keepDetail);
 
-/// The labels of cells, from the probabilities of the regions at the vertices: the seed of the cell,
-/// otherwise the region of the largest mean probability; 0 at cells that take no part.
+/// The labels of cells, from the probabilities of the regions at the vertices: the seed of the
+/// cell, otherwise the region of the largest mean probability; 0 at cells that take no part.
 std::vector<Index> MakeCellLabels(const CellState& cells, const Values& probabilities);
 
 } // namespace SurfaceDiffusion

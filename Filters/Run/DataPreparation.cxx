@@ -43,6 +43,8 @@ void DescribeData(const DataSettings& settings, ModelTraits& traits)
 {
   traits.NeedsDirections = settings.IsDirected();
   traits.HoldsKnownValues = settings.HoldKnownValues;
+  traits.ResultOnCells = settings.ResultOnCells;
+  traits.KeepCellDetail = settings.KeepCellDetail;
   traits.UsesRandomNumbers = settings.InitialFill == InitialFill::Noise;
   traits.MaskHasEffect =
     settings.InitialFill != InitialFill::Input || traits.UsesFidelity || settings.HoldKnownValues;

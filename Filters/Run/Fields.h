@@ -88,10 +88,10 @@ Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& of
 /// Whether a row of the data belongs to a participating triangle.
 std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fields);
 
-/// Given, Missing and Fixed of the vertices, of data on points, with values divided by `unit`. Points that are merged
-/// into one vertex give it the mean of the known ones, and their mean fidelity factor. Throws
-/// std::runtime_error on infinite values, on points that are fixed at NaN, and on fidelity factors
-/// that are negative or not finite.
+/// Given, Missing and Fixed of the vertices, of data on points, with values divided by `unit`.
+/// Points that are merged into one vertex give it the mean of the known ones, and their mean
+/// fidelity factor. Throws std::runtime_error on infinite values, on points that are fixed at NaN,
+/// and on fidelity factors that are negative or not finite.
 PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit);
 
 /// e1 on the triangles of surface.Mesh(); no row if there are no directions.
@@ -99,8 +99,8 @@ TangentVectors MakeDirections(
   const Surface& surface, const Fields& fields, const ParallelFor& parallel);
 
 /// The label that each vertex keeps, or 0; empty if there are no seeds. A vertex between cells of
-/// different labels is free. Throws std::runtime_error if points of different labels are merged into
-/// one vertex.
+/// different labels is free. Throws std::runtime_error if points of different labels are merged
+/// into one vertex.
 std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields);
 
 /// A number per vertex that identifies it in random numbers.

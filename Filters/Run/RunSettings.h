@@ -65,6 +65,8 @@ struct ModelTraits
   bool CountsClamped = false;
   bool BoundsError = false; ///< steps report a bound of their error
   bool UsesRandomNumbers = false;
+  bool ResultOnCells = false; ///< if the data are on cells
+  bool KeepCellDetail = true;
   bool StateIsUnitVectors = false;
   bool StateIsLines = false; ///< unit vectors whose sign has no meaning
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each

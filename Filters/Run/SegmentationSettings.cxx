@@ -187,6 +187,7 @@ ModelTraits SegmentationSettings::DescribeModel() const
   traits.StateHasUnitOfValues = false;
   traits.UsesFidelity = true;
   traits.UsesRandomNumbers = true;
+  traits.ResultOnCells = this->ResultOnCells;
   traits.CanBeDistributed = false;
   return traits;
 }

@@ -21,20 +21,21 @@ struct VertexMeans
 ///
 ///     m_ci = sum over the triangles t of c around i of area(t)/3
 ///
-/// in common, times the area factor of vertex i if the surface has given areas. The sum of m_ci over
-/// i is the area A_c of the cell, and that over c is the area A_i of the control cell. On triangles
+/// in common, times the area factor of vertex i if the surface has given areas. The sum of m_ci
+/// over i is the area A_c of the cell, and that over c is the area A_i of the control cell. On
+/// triangles
 ///
 ///     (P f)_i  = sum over c of m_ci f_c / A_i     cells to vertices,
 ///     (P*u)_c  = sum over i of m_ci u_i / A_c     vertices to cells
 ///
 /// are the mean of f over the control cell and the mean of the piecewise linear u over the cell.
 /// They are adjoint in the inner products weighted by the areas. The m_ci of polygons depend on the
-/// diagonals that cut them, so that P f would do so to first order. There P has an equal share of the
-/// polygon's area for each of its corners in place of m_ci, and a constant for each connected
+/// diagonals that cut them, so that P f would do so to first order. There P has an equal share of
+/// the polygon's area for each of its corners in place of m_ci, and a constant for each connected
 /// component of the surface, of second order, restores the integral.
 ///
-/// P and P* keep constants and the integral: sum of A_i (P f)_i = sum of A_c f_c, and sum of
-/// A_c (P*u)_c = sum of A_i u_i. P* P smooths: it keeps 31 % of the standard deviation of white noise
+/// P and P* keep constants and the integral: sum of A_i (P f)_i = sum of A_c f_c, and sum of A_c
+/// (P*u)_c = sum of A_i u_i. P* P smooths: it keeps 31 % of the standard deviation of white noise
 /// on the triangles of a regular mesh, and P 41 %.
 class CellTransfer
 {
