@@ -10,6 +10,7 @@
 #include "Conversion/TimeRequests.h"
 #include "Distributed/DistributedSolver.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -53,7 +54,7 @@ vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm()
 {
   this->SetNumberOfOutputPorts(2);
   this->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::SCALARS);
 }
 
 vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
@@ -124,10 +125,11 @@ bool vtkSurfaceDiffusionAlgorithm::FindFields(
   vtkPolyData* block, InputFields& fields, Problems& problems)
 {
   const InputArrays inputs(this, block, problems);
-  fields.Data = inputs.FindOnPoints(0, "InputArray", InputArrays::AnyNumberOfComponents);
-  fields.Mask = inputs.FindOnPoints(1, "MaskArray", 1);
+  fields.Data =
+    inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents, fields.DataOnCells);
+  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
   fields.Direction = inputs.Find(2, "DirectionArray", 3, fields.DirectionOnCells);
-  fields.Fixed = inputs.FindOnPoints(3, "FixedArray", 1);
+  fields.Fixed = inputs.Find(3, "FixedArray", 1, fields.FixedOnCells);
   return fields.Data != nullptr;
 }
 
@@ -392,10 +394,38 @@ void vtkSurfaceDiffusionAlgorithm::WriteResult(
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
   const std::string name = this->FindResultName(fields);
-  this->AddResult(WritePointArray(*block.Surface, fields.Data, block.Path->State(),
-                    block.Units.ValueUnit, this->FindResultType(fields), name),
-    fields, output->GetPointData());
-  output->GetPointData()->SetActiveScalars(name.c_str());
+  const int type = this->FindResultType(fields);
+  const Values& u = block.Path->State();
+  vtkDataSetAttributes* const attributes = this->FindResultAttributes(fields, output);
+  if (this->HasResultOnCells(fields))
+  {
+    const Values result =
+      MakeCellResult(*block.Cells, u, ReadValues(fields.Data), this->KeepCellDetail);
+    this->AddResult(
+      WriteCellArray(block.Cells->Transfer, fields.Data, result, type, name), fields, attributes);
+  }
+  else
+  {
+    this->AddResult(WritePointArray(*block.Surface, fields.Data, fields.DataOnCells, u,
+                      block.Units.ValueUnit, type, name),
+      fields, attributes);
+  }
+  attributes->SetActiveScalars(name.c_str());
+}
+
+bool vtkSurfaceDiffusionAlgorithm::HasResultOnCells(const InputFields& fields) const
+{
+  return fields.DataOnCells && this->ResultOnCells;
+}
+
+vtkDataSetAttributes* vtkSurfaceDiffusionAlgorithm::FindResultAttributes(
+  const InputFields& fields, vtkPolyData* output) const
+{
+  if (this->HasResultOnCells(fields))
+  {
+    return output->GetCellData();
+  }
+  return output->GetPointData();
 }
 
 std::string vtkSurfaceDiffusionAlgorithm::FindResultName(const InputFields& fields) const

@@ -47,6 +47,13 @@ FilterKind MakeKind(
     result };
 }
 
+/// Adds the rough array "c" of cells, which some of AllFilters() take.
+inline void AddRoughCells(vtkPolyData* surface)
+{
+  surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 1,
+    [](vtkIdType i, int k) { return 2.0 + Rough(i, k); }));
+}
+
 /// Every filter, also with the settings that select other algorithms.
 inline std::vector<FilterKind> AllFilters()
 {
@@ -69,6 +76,7 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFidelityWeight(0.1);
       }),
     MakeKind<Heat>("HeatAutomatic", "fDiffused", 3, [](Heat* f) { f->AutomaticFidelityOn(); }),
+    MakeKind<Heat>("HeatOfCells", "cDiffused", 3, [](Heat* f) { SetInputArray(f, 0, "c", true); }),
     MakeKind<TV>("TV", "fTV", 3),
     MakeKind<TV>("TVImplicit", "fTV", 2, [](TV* f) { f->SetTimeIntegratorToImplicit(); }),
     MakeKind<TV>("TVSteady", "fTV", 1, [](TV* f) { f->SetModeToSteadyState(); }),

@@ -173,6 +173,8 @@ List OfDataDiffusion(int timeIntegrators)
          RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)),
          RANDOM_PROPERTY(F, InitialFill, Choice(dice, 4)),
          RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
+         RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
+         RANDOM_PROPERTY(F, KeepCellDetail, dice.Flip()),
          RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
          RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
        })
@@ -203,6 +205,7 @@ inline List OfSegmentation()
     RANDOM_PROPERTY(F, AutomaticFidelity, dice.Flip(2)),
     RANDOM_PROPERTY(F, FidelityWeight, Positive(dice)),
     RANDOM_PROPERTY(F, AutomaticMeans, !dice.Flip(12)),
+    RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-4, 0.5)),
     { "Mean",
       [](vtkPolyDataAlgorithm* filter, Dice& dice) {
