@@ -19,6 +19,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -426,6 +427,44 @@ vtkDataSetAttributes* vtkSurfaceDiffusionAlgorithm::FindResultAttributes(
     return output->GetCellData();
   }
   return output->GetPointData();
+}
+
+/// Vertices, lines and hidden cells keep their value, as those of a surface in one piece do.
+void vtkSurfaceDiffusionAlgorithm::CompletePiece(const SurfaceBlock& piece)
+{
+  const auto isNew = [&](int array)
+  {
+    vtkAbstractArray* const after = piece.Output->GetCellData()->GetAbstractArray(array);
+    return piece.Input->GetCellData()->GetAbstractArray(after->GetName()) != after;
+  };
+  bool hasNew = false;
+  for (int a = 0; a < piece.Output->GetCellData()->GetNumberOfArrays(); ++a)
+  {
+    hasNew = hasNew || isNew(a);
+  }
+  InputFields fields;
+  Problems reportedAlready;
+  if (!hasNew || !this->FindFields(piece.Input, fields, reportedAlready) ||
+    !this->HasResultOnCells(fields))
+  {
+    return;
+  }
+  vtkDataArray* const result =
+    piece.Output->GetCellData()->GetArray(this->FindResultName(fields).c_str());
+  if (!result || result == fields.Data)
+  {
+    return;
+  }
+  vtkUnsignedCharArray* const ghosts = piece.Input->GetCellGhostArray();
+  const vtkIdType polygons = piece.Input->GetNumberOfVerts() + piece.Input->GetNumberOfLines();
+  for (vtkIdType c = 0; c < result->GetNumberOfTuples(); ++c)
+  {
+    const bool isHidden = ghosts && (ghosts->GetValue(c) & vtkDataSetAttributes::HIDDENCELL) != 0;
+    for (int k = 0; (c < polygons || isHidden) && k < result->GetNumberOfComponents(); ++k)
+    {
+      result->SetComponent(c, k, fields.Data->GetComponent(c, k));
+    }
+  }
 }
 
 std::string vtkSurfaceDiffusionAlgorithm::FindResultName(const InputFields& fields) const

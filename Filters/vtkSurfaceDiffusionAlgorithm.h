@@ -360,6 +360,7 @@ protected:
     const SurfaceDiffusion::ProgressMonitor& progress) override;
   bool SolvesInPieces(
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points) override;
+  void CompletePiece(const SurfaceBlock& piece) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
