@@ -43,12 +43,12 @@ SquaredGradient SquareGradient(const TriangleMesh& mesh, const TangentVectors& f
 NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assembler,
   TangentVectors frames, PointData data, const Settings& settings,
   std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
-  : StateModel(data.Start)
+  : DataModel(std::move(data))
   , Assembly(std::move(assembler))
   , Frames(std::move(frames))
-  , Data(std::move(data))
   , Fit(this->Data,
-      { settings.Fidelity, settings.Norm, settings.Coupling, settings.FidelityRounding })
+      { settings.Fidelity, settings.Norm, settings.Coupling, settings.FidelityRounding, false,
+        settings.ChannelWeights })
   , Options(settings)
   , Parallel(parallel)
   , System(this->Assembly, std::move(solver), parallel)
@@ -56,7 +56,7 @@ NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assemble
   , Weighted(this->Isotropic.rows(), 3)
   , Diagonal(this->Data.Start.rows())
 {
-  if (this->Fit.CanConserve())
+  if (this->Fit.CanConserve() && settings.ConservesTotal)
   {
     this->Conserved =
       TotalCorrection(this->Assembly->Mesh(), this->Data, this->Fit.IsPresent(), parallel);
@@ -68,56 +68,82 @@ NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assemble
     across << -this->Frames.col(1), this->Frames.col(0);
     this->Perpendicular = DirectionalWeights(this->Assembly->Mesh(), across, parallel);
   }
-  const Eigen::Index columns = settings.Coupling == ChannelCoupling::Joint ? U.cols() : 1;
-  this->Change.resize(this->U.rows(), columns);
-  this->RightHandSide.resize(this->U.rows(), columns);
-  if (this->Data.Fixed.any())
+  this->MakeGroups();
+}
+
+void NonlinearDiffusion::MakeGroups()
+{
+  const Eigen::Index columns = this->NormColumns();
+  for (Eigen::Index first = 0; first < this->U.cols();)
   {
-    this->NoChange = Values::Zero(this->U.rows(), columns);
+    const Eigen::Index end = (first / columns + 1) * columns;
+    Eigen::Index last = first + 1;
+    while (last < end && this->Fit.ChannelWeight(last) == this->Fit.ChannelWeight(first))
+    {
+      ++last;
+    }
+    std::size_t buffer = 0;
+    while (buffer < this->Unknowns.size() && this->Unknowns[buffer].Change.cols() != last - first)
+    {
+      ++buffer;
+    }
+    if (buffer == this->Unknowns.size())
+    {
+      const Values zero = Values::Zero(this->U.rows(), last - first);
+      this->Unknowns.push_back({ zero, zero, this->Data.Fixed.any() ? zero : Values() });
+    }
+    this->Groups.push_back({ first, last, buffer, first % columns != 0 });
+    first = last;
   }
 }
 
 StepReport NonlinearDiffusion::Advance(const ProgressMonitor& progress)
 {
   StepReport report;
-  const Eigen::Index columns = this->Change.cols();
-  const Eigen::Index systems = this->U.cols() / columns;
-  for (Eigen::Index system = 0; system < systems; ++system)
+  const auto count = static_cast<double>(this->Groups.size());
+  double done = 0.0;
+  for (const Group& group : this->Groups)
   {
-    const double done = static_cast<double>(system) / static_cast<double>(systems);
-    this->AdvanceColumns(system * columns, (system + 1) * columns, report,
-      progress.Part(done, done + 1.0 / static_cast<double>(systems)));
+    this->AdvanceGroup(group, report, progress.Part(done / count, (done + 1.0) / count));
+    done += 1.0;
   }
   this->Conserved.Restore(this->Assembly->Mesh(), this->U, this->Parallel);
   return report;
 }
 
-void NonlinearDiffusion::AdvanceColumns(
-  Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress)
+void NonlinearDiffusion::AdvanceGroup(
+  const Group& group, StepReport& report, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  this->FillWeights(first, last);
+  Buffers& unknowns = this->Unknowns[group.Buffer];
+  const Eigen::Index first = group.First;
+  const Eigen::Index last = group.Last;
+  const double channelWeight = this->Fit.ChannelWeight(first);
+  if (!group.SharesWeights) // later groups still need them at the old u
+  {
+    this->FillWeights(first, first + this->NormColumns());
+  }
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       this->Diagonal[i] = mesh.ControlAreas()[i] *
-        (1.0 + this->Options.TimeStep * this->Fit.Weight(i, this->U, first, last));
+        (1.0 + this->Options.TimeStep * channelWeight * this->Fit.Weight(i, this->U, first, last));
     });
   this->System.Assemble(this->Diagonal, this->Options.TimeStep, this->Weighted);
-  this->FillChange(first, last);
+  this->FillChange(group);
   if (this->Data.Fixed.any())
   {
-    this->System.Constrain(this->Data.Fixed, this->NoChange);
+    this->System.Constrain(this->Data.Fixed, unknowns.NoChange);
   }
   this->System.SetUpSolver(progress.Part(0.0, 0.5));
-  this->Change.setZero();
-  this->System.Solve(this->RightHandSide, this->Change, report, progress.Part(0.5, 1.0));
+  unknowns.Change.setZero();
+  this->System.Solve(unknowns.RightHandSide, unknowns.Change, report, progress.Part(0.5, 1.0));
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       for (Eigen::Index k = first; k < last; ++k)
       {
-        this->U(i, k) += this->Change(i, k - first);
+        this->U(i, k) += unknowns.Change(i, k - first);
       }
     });
 }
@@ -144,9 +170,13 @@ void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
 
 /// dt (-K(u_old) u_old + lambda chi M (f - u_old)), from differences along edges: the off-diagonal
 /// entries of the matrix are those of dt K.
-void NonlinearDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
+void NonlinearDiffusion::FillChange(const Group& group)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
+  Values& side = this->Unknowns[group.Buffer].RightHandSide;
+  const Eigen::Index first = group.First;
+  const Eigen::Index last = group.Last;
+  const double step = this->Options.TimeStep * this->Fit.ChannelWeight(first);
   const Index* outer = this->System.GetMatrix().outerIndexPtr();
   const Index* inner = this->System.GetMatrix().innerIndexPtr();
   const double* a = this->System.GetMatrix().valuePtr();
@@ -154,7 +184,7 @@ void NonlinearDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
     [&](Index i)
     {
       const double lambda =
-        this->Options.TimeStep * mesh.ControlAreas()[i] * this->Fit.Weight(i, this->U, first, last);
+        step * mesh.ControlAreas()[i] * this->Fit.Weight(i, this->U, first, last);
       for (Eigen::Index k = first; k < last; ++k)
       {
         const double u = this->U(i, k);
@@ -163,7 +193,7 @@ void NonlinearDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
         {
           change -= a[slot] * (this->U(inner[slot], k) - u);
         }
-        this->RightHandSide(i, k - first) = change;
+        side(i, k - first) = change;
       }
     });
 }
@@ -171,7 +201,7 @@ void NonlinearDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
 double NonlinearDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  const Eigen::Index columns = this->Change.cols();
+  const Eigen::Index columns = this->NormColumns();
   double energy = 0.0;
   for (Eigen::Index first = 0; first < this->U.cols(); first += columns)
   {

@@ -9,7 +9,9 @@
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/MeanCorrection.h"
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -26,7 +28,7 @@ namespace SurfaceDiffusion
 /// constant to the last bit, however large g may be.
 ///
 /// L1 fidelity is lagged likewise: lambda/sqrt((f - u_old)^2 + delta^2) in place of lambda.
-class NonlinearDiffusion : public StateModel
+class NonlinearDiffusion : public DataModel
 {
 public:
   struct Settings
@@ -40,6 +42,8 @@ public:
     ChannelCoupling Coupling = ChannelCoupling::Joint;
     FidelityNorm Norm = FidelityNorm::L2;
     double FidelityRounding = 1e-3; ///< delta of L1, in units of the values, > 0
+    bool ConservesTotal = true; ///< whether states without fidelity keep the total of the start
+    std::vector<double> ChannelWeights = {}; ///< of L2, see Fidelity
   };
 
   /// frames: e1 per triangle (see TangentVectors.h), without rows if g1 = g2; see IsotropicMean()
@@ -55,14 +59,31 @@ public:
   double Energy() const override;
 
 private:
-  void AdvanceColumns(
-    Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress);
+  /// Columns that have one matrix: they share |grad u| and the fidelity weight.
+  struct Group
+  {
+    Eigen::Index First, Last;
+    std::size_t Buffer; ///< number of its Buffers
+    bool SharesWeights; ///< of the triangles, with the group before it
+  };
+  /// The unknowns of a group, one column for each of its columns.
+  struct Buffers
+  {
+    Values Change, RightHandSide;
+    Values NoChange; ///< the Dirichlet conditions of Change
+  };
+
+  void MakeGroups();
+  void AdvanceGroup(const Group& group, StepReport& report, const ProgressMonitor& progress);
   void FillWeights(Eigen::Index first, Eigen::Index last);
-  void FillChange(Eigen::Index first, Eigen::Index last);
+  void FillChange(const Group& group);
+  Eigen::Index NormColumns() const
+  {
+    return this->Options.Coupling == ChannelCoupling::Joint ? this->U.cols() : 1;
+  }
 
   std::shared_ptr<const Assembler> Assembly;
   TangentVectors Frames;
-  PointData Data;
   Fidelity Fit;
   Settings Options;
   const ParallelFor& Parallel;
@@ -73,8 +94,8 @@ private:
   CornerWeights Perpendicular; ///< the same along e2
   CornerWeights Weighted; ///< of g1 and g2 at the old level (12)
   Vector Diagonal;
-  Values Change, RightHandSide;
-  Values NoChange; ///< the Dirichlet conditions of Change
+  std::vector<Group> Groups;
+  std::vector<Buffers> Unknowns; ///< of groups of the same size
 };
 
 } // namespace SurfaceDiffusion
