@@ -392,8 +392,13 @@ void vtkSurfaceDiffusionAlgorithm::WriteResult(
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
   const std::string name = this->FindResultName(fields);
-  this->AddResult(WritePointArray(*block.Surface, fields.Data, block.Path->State(),
-                    block.Units.ValueUnit, this->FindResultType(fields), name),
+  const auto write = [&](const Values& values, double unit)
+  {
+    return WritePointArray(
+      *block.Surface, fields.Data, values, unit, this->FindResultType(fields), name);
+  };
+  this->AddResult(block.HasLinearLight ? write(block.EncodedState(SMPParallelFor::Instance()), 1.0)
+                                       : write(block.Path->State(), block.Units.ValueUnit),
     fields, output->GetPointData());
   output->GetPointData()->SetActiveScalars(name.c_str());
 }

@@ -159,6 +159,7 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
     fields.DataName = std::string(arrays.DataAreTerms ? "DataTermArray" : "InputArray") + " \"" +
       NameOf(arrays.Data) + "\"";
     fields.DataAreTerms = arrays.DataAreTerms;
+    fields.DataAreBytes = arrays.Data->GetDataType() == VTK_UNSIGNED_CHAR;
   }
   fields.Mask = ReadFlags(arrays.Mask);
   fields.Fixed = ReadFlags(arrays.Fixed);

@@ -36,6 +36,7 @@ struct Fields
   Values Rates;
   std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: by coordinates
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
+  bool DataAreBytes = false; ///< unsigned char, which models of colours take for sRGB
   std::vector<Index> Seeds; ///< per point, the label 1, 2, ... that it keeps, or 0; may be empty
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
+#include "Run/LinearLight.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -132,6 +134,11 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   std::unique_ptr<Fields>& fields)
 {
   processes.RunCollectively([&] { fields = std::make_unique<Fields>(input.ReadFields()); });
+  block.HasLinearLight = fields->DataAreBytes && this->Settings->DescribeModel().UsesLinearLight;
+  if (block.HasLinearLight)
+  {
+    DecodeColors(fields->Data, this->Parallel);
+  }
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
   block.Statistics.Add(*block.Surface, *fields, inpaint);
@@ -141,6 +148,13 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
     std::any_of(fields->Mask.begin(), fields->Mask.end(), [](char masked) { return masked != 0; });
   block.MaskVersion = Fingerprint();
   block.MaskVersion.AddBytes(fields->Mask.data(), fields->Mask.size(), this->Parallel);
+}
+
+Values Run::Block::EncodedState(const ParallelFor& parallel) const
+{
+  Values colors = this->Path->State() * this->Units.ValueUnit;
+  EncodeColors(colors, parallel);
+  return colors;
 }
 
 /// h and R of all surfaces together.

@@ -66,6 +66,7 @@ struct ModelTraits
   bool BoundsError = false; ///< steps report a bound of their error
   bool UsesRandomNumbers = false;
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
+  bool UsesLinearLight = false; ///< unsigned char colours are in sRGB, see LinearLight.h
 };
 
 /// The settings of a time-dependent model, in the user's terms. A subclass describes its model with

@@ -231,8 +231,10 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
   const std::optional<InputArray>& source, int first) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
-  const Values& state = from.Path->State();
-  const double unit = from.Units.ValueUnit;
+  const Values encoded =
+    from.HasLinearLight ? from.EncodedState(PythonThreads::Instance()) : Values();
+  const Values& state = from.HasLinearLight ? encoded : from.Path->State();
+  const double unit = from.HasLinearLight ? 1.0 : from.Units.ValueUnit;
   const auto value = [&](Index v, Eigen::Index k) { return state(v, k) * unit; };
   if (!source)
   {
