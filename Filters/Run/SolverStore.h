@@ -23,6 +23,7 @@ enum class SolverPurpose
   Fill, ///< the harmonic start on missing vertices
   Blur, ///< the blur that is removed
   Edges, ///< v of the Mumford-Shah model
+  Structure, ///< the integration of structure tensors
   Chromaticity ///< C of the chromaticity-brightness model
 };
 
@@ -72,7 +73,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 7> Solvers;
+  std::array<Kept, 8> Solvers;
 };
 
 } // namespace SurfaceDiffusion

@@ -43,115 +43,32 @@ SquaredGradient SquareGradient(const TriangleMesh& mesh, const TangentVectors& f
 NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assembler,
   TangentVectors frames, PointData data, const Settings& settings,
   std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
-  : DataModel(std::move(data))
-  , Assembly(std::move(assembler))
-  , Frames(std::move(frames))
-  , Fit(this->Data,
+  : LaggedDiffusion(std::move(assembler), std::move(data), settings.TimeStep,
       { settings.Fidelity, settings.Norm, settings.Coupling, settings.FidelityRounding, false,
-        settings.ChannelWeights })
+        settings.ChannelWeights },
+      std::move(solver), parallel)
+  , Frames(std::move(frames))
   , Options(settings)
-  , Parallel(parallel)
-  , System(this->Assembly, std::move(solver), parallel)
-  , Isotropic(CotanWeights(this->Assembly->Mesh(), parallel))
-  , Weighted(this->Isotropic.rows(), 3)
-  , Diagonal(this->Data.Start.rows())
+  , Isotropic(CotanWeights(this->Mesh(), parallel))
 {
-  if (this->Fit.CanConserve() && settings.ConservesTotal)
+  if (!settings.ConservesTotal)
   {
-    this->Conserved =
-      TotalCorrection(this->Assembly->Mesh(), this->Data, this->Fit.IsPresent(), parallel);
+    this->DropConservation();
   }
   if (this->Frames.rows() > 0)
   {
-    this->Directional = DirectionalWeights(this->Assembly->Mesh(), this->Frames, parallel);
+    this->Directional = DirectionalWeights(this->Mesh(), this->Frames, parallel);
     TangentVectors across(this->Frames.rows(), 2);
     across << -this->Frames.col(1), this->Frames.col(0);
-    this->Perpendicular = DirectionalWeights(this->Assembly->Mesh(), across, parallel);
+    this->Perpendicular = DirectionalWeights(this->Mesh(), across, parallel);
   }
-  this->MakeGroups();
-}
-
-void NonlinearDiffusion::MakeGroups()
-{
-  const Eigen::Index columns = this->NormColumns();
-  for (Eigen::Index first = 0; first < this->U.cols();)
-  {
-    const Eigen::Index end = (first / columns + 1) * columns;
-    Eigen::Index last = first + 1;
-    while (last < end && this->Fit.ChannelWeight(last) == this->Fit.ChannelWeight(first))
-    {
-      ++last;
-    }
-    std::size_t buffer = 0;
-    while (buffer < this->Unknowns.size() && this->Unknowns[buffer].Change.cols() != last - first)
-    {
-      ++buffer;
-    }
-    if (buffer == this->Unknowns.size())
-    {
-      const Values zero = Values::Zero(this->U.rows(), last - first);
-      this->Unknowns.push_back({ zero, zero, this->Data.Fixed.any() ? zero : Values() });
-    }
-    this->Groups.push_back({ first, last, buffer, first % columns != 0 });
-    first = last;
-  }
-}
-
-StepReport NonlinearDiffusion::Advance(const ProgressMonitor& progress)
-{
-  StepReport report;
-  const auto count = static_cast<double>(this->Groups.size());
-  double done = 0.0;
-  for (const Group& group : this->Groups)
-  {
-    this->AdvanceGroup(group, report, progress.Part(done / count, (done + 1.0) / count));
-    done += 1.0;
-  }
-  this->Conserved.Restore(this->Assembly->Mesh(), this->U, this->Parallel);
-  return report;
-}
-
-void NonlinearDiffusion::AdvanceGroup(
-  const Group& group, StepReport& report, const ProgressMonitor& progress)
-{
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  Buffers& unknowns = this->Unknowns[group.Buffer];
-  const Eigen::Index first = group.First;
-  const Eigen::Index last = group.Last;
-  const double channelWeight = this->Fit.ChannelWeight(first);
-  if (!group.SharesWeights) // later groups still need them at the old u
-  {
-    this->FillWeights(first, first + this->NormColumns());
-  }
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      this->Diagonal[i] = mesh.ControlAreas()[i] *
-        (1.0 + this->Options.TimeStep * channelWeight * this->Fit.Weight(i, this->U, first, last));
-    });
-  this->System.Assemble(this->Diagonal, this->Options.TimeStep, this->Weighted);
-  this->FillChange(group);
-  if (this->Data.Fixed.any())
-  {
-    this->System.Constrain(this->Data.Fixed, unknowns.NoChange);
-  }
-  this->System.SetUpSolver(progress.Part(0.0, 0.5));
-  unknowns.Change.setZero();
-  this->System.Solve(unknowns.RightHandSide, unknowns.Change, report, progress.Part(0.5, 1.0));
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      for (Eigen::Index k = first; k < last; ++k)
-      {
-        this->U(i, k) += unknowns.Change(i, k - first);
-      }
-    });
 }
 
 /// The weights (12) of each triangle, with g1 and g2 at the old |grad u|.
-void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
+void NonlinearDiffusion::FillWeights(
+  Eigen::Index first, Eigen::Index last, StepReport&, const ProgressMonitor&)
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const TriangleMesh& mesh = this->Mesh();
   ForEach(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
@@ -168,40 +85,10 @@ void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
     });
 }
 
-/// dt (-K(u_old) u_old + lambda chi M (f - u_old)), from differences along edges: the off-diagonal
-/// entries of the matrix are those of dt K.
-void NonlinearDiffusion::FillChange(const Group& group)
-{
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  Values& side = this->Unknowns[group.Buffer].RightHandSide;
-  const Eigen::Index first = group.First;
-  const Eigen::Index last = group.Last;
-  const double step = this->Options.TimeStep * this->Fit.ChannelWeight(first);
-  const Index* outer = this->System.GetMatrix().outerIndexPtr();
-  const Index* inner = this->System.GetMatrix().innerIndexPtr();
-  const double* a = this->System.GetMatrix().valuePtr();
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      const double lambda =
-        step * mesh.ControlAreas()[i] * this->Fit.Weight(i, this->U, first, last);
-      for (Eigen::Index k = first; k < last; ++k)
-      {
-        const double u = this->U(i, k);
-        double change = lambda > 0.0 ? lambda * (this->Data.Given(i, k) - u) : 0.0;
-        for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
-        {
-          change -= a[slot] * (this->U(inner[slot], k) - u);
-        }
-        side(i, k - first) = change;
-      }
-    });
-}
-
 double NonlinearDiffusion::Energy() const
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const Eigen::Index columns = this->NormColumns();
+  const TriangleMesh& mesh = this->Mesh();
+  const Eigen::Index columns = this->ColumnsPerTensor();
   double energy = 0.0;
   for (Eigen::Index first = 0; first < this->U.cols(); first += columns)
   {
@@ -222,7 +109,7 @@ double NonlinearDiffusion::Energy() const
         return mesh.Shapes()[t].Area() * psi1;
       });
   }
-  return mesh.GetReduction().Sum(energy + this->Fit.Energy(mesh, this->U, this->Parallel));
+  return mesh.GetReduction().Sum(energy + this->FidelityEnergy());
 }
 
 } // namespace SurfaceDiffusion

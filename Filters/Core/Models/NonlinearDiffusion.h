@@ -3,13 +3,8 @@
 #pragma once
 
 #include "Core/Models/EdgeFunctions.h"
-#include "Core/Models/Fidelity.h"
-#include "Core/Models/ImplicitSystem.h"
-#include "Core/Models/Model.h"
-#include "Core/Operators/Assembler.h"
-#include "Core/Operators/MeanCorrection.h"
+#include "Core/Models/LaggedDiffusion.h"
 
-#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -24,11 +19,9 @@ namespace SurfaceDiffusion
 /// level, constant on each triangle, and solves one linear system (per channel, if channels have
 /// their own |grad u|) with the lumped mass matrix M and the stiffness matrix K:
 ///   (11), (14)  (M + dt K(u_old) + dt lambda chi M) u_new = M (u_old + dt lambda chi f).
-/// It is solved for u_new - u_old, so that round-off is relative to the change and a constant stays
-/// constant to the last bit, however large g may be.
 ///
 /// L1 fidelity is lagged likewise: lambda/sqrt((f - u_old)^2 + delta^2) in place of lambda.
-class NonlinearDiffusion : public DataModel
+class NonlinearDiffusion : public LaggedDiffusion
 {
 public:
   struct Settings
@@ -52,50 +45,19 @@ public:
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());
 
-  StepReport Advance(const ProgressMonitor& progress) override;
-
   /// int psi(|grad u|) with the potential psi of g, and the energy of Fidelity. If g1 and g2
   /// differ, psi1 cos^2 + psi2 sin^2 with the angle between grad u and e1.
   double Energy() const override;
 
 private:
-  /// Columns that have one matrix: they share |grad u| and the fidelity weight.
-  struct Group
-  {
-    Eigen::Index First, Last;
-    std::size_t Buffer; ///< number of its Buffers
-    bool SharesWeights; ///< of the triangles, with the group before it
-  };
-  /// The unknowns of a group, one column for each of its columns.
-  struct Buffers
-  {
-    Values Change, RightHandSide;
-    Values NoChange; ///< the Dirichlet conditions of Change
-  };
+  void FillWeights(Eigen::Index first, Eigen::Index last, StepReport& report,
+    const ProgressMonitor& progress) override;
 
-  void MakeGroups();
-  void AdvanceGroup(const Group& group, StepReport& report, const ProgressMonitor& progress);
-  void FillWeights(Eigen::Index first, Eigen::Index last);
-  void FillChange(const Group& group);
-  Eigen::Index NormColumns() const
-  {
-    return this->Options.Coupling == ChannelCoupling::Joint ? this->U.cols() : 1;
-  }
-
-  std::shared_ptr<const Assembler> Assembly;
   TangentVectors Frames;
-  Fidelity Fit;
   Settings Options;
-  const ParallelFor& Parallel;
-  ImplicitSystem System;
-  TotalCorrection Conserved;
   CornerWeights Isotropic; ///< cotan weights (10)
   CornerWeights Directional; ///< (13) along e1, no rows if g1 = g2
   CornerWeights Perpendicular; ///< the same along e2
-  CornerWeights Weighted; ///< of g1 and g2 at the old level (12)
-  Vector Diagonal;
-  std::vector<Group> Groups;
-  std::vector<Buffers> Unknowns; ///< of groups of the same size
 };
 
 } // namespace SurfaceDiffusion
