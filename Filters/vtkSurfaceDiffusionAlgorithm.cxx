@@ -396,19 +396,23 @@ void vtkSurfaceDiffusionAlgorithm::WriteResult(
   const Run::Block& block = this->State->Run.GetBlock(index);
   const std::string name = this->FindResultName(fields);
   const int type = this->FindResultType(fields);
-  const Values& u = block.Path->State();
+  const ParallelFor& parallel = SMPParallelFor::Instance();
   vtkDataSetAttributes* const attributes = this->FindResultAttributes(fields, output);
   if (this->HasResultOnCells(fields))
   {
-    const Values result =
-      MakeCellResult(*block.Cells, u, ReadValues(fields.Data), this->KeepCellDetail);
+    const Values result = block.CellResult(ReadValues(fields.Data), this->KeepCellDetail, parallel);
     this->AddResult(
       WriteCellArray(block.Cells->Transfer, fields.Data, result, type, name), fields, attributes);
   }
   else
   {
-    this->AddResult(WritePointArray(*block.Surface, fields.Data, fields.DataOnCells, u,
-                      block.Units.ValueUnit, type, name),
+    const auto write = [&](const Values& values, double unit)
+    {
+      return WritePointArray(
+        *block.Surface, fields.Data, fields.DataOnCells, values, unit, type, name);
+    };
+    this->AddResult(block.HasLinearLight ? write(block.EncodedState(parallel), 1.0)
+                                         : write(block.Path->State(), block.Units.ValueUnit),
       fields, attributes);
   }
   attributes->SetActiveScalars(name.c_str());

@@ -173,6 +173,7 @@ Fields ReadFields(
     fields.DataName = std::string(arrays.DataAreTerms ? "DataTermArray" : "InputArray") + " \"" +
       NameOf(arrays.Data) + "\"";
     fields.DataAreTerms = arrays.DataAreTerms;
+    fields.DataAreBytes = arrays.Data->GetDataType() == VTK_UNSIGNED_CHAR;
     fields.DataOnCells = arrays.DataOnCells;
   }
   fields.MaskOnCells = arrays.MaskOnCells;

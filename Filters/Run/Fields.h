@@ -42,6 +42,7 @@ struct Fields
   Values Rates;
   std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: by coordinates
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
+  bool DataAreBytes = false; ///< unsigned char, which models of colours take for sRGB
   std::vector<Index> Seeds; ///< per point or cell, the label 1, 2, ... it keeps, or 0; may be empty
   bool SeedsOnCells = false;
   /// The cell of each input triangle, below NumberOfCells, if one of the arrays is on cells.

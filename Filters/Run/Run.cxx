@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
+#include "Run/LinearLight.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -132,6 +134,11 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   std::unique_ptr<Fields>& fields)
 {
   processes.RunCollectively([&] { fields = std::make_unique<Fields>(input.ReadFields()); });
+  block.HasLinearLight = fields->DataAreBytes && this->Settings->DescribeModel().UsesLinearLight;
+  if (block.HasLinearLight)
+  {
+    DecodeColors(fields->Data, this->Parallel);
+  }
   const std::vector<char> mask = fields->Mask; // as it was given
   fields->DataOnCells = processes.Any(fields->DataOnCells); // that of a process without points, too
   MoveMarksToData(*block.Surface, *fields, processes, this->Parallel);
@@ -143,6 +150,27 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
   block.MaskVersion = Fingerprint();
   block.MaskVersion.AddBytes(mask.data(), mask.size(), this->Parallel);
+}
+
+Values Run::Block::EncodedState(const ParallelFor& parallel) const
+{
+  Values colors = this->Path->State() * this->Units.ValueUnit;
+  EncodeColors(colors, parallel);
+  return colors;
+}
+
+Values Run::Block::CellResult(Values given, bool keepDetail, const ParallelFor& parallel) const
+{
+  if (this->HasLinearLight)
+  {
+    DecodeColors(given, parallel);
+  }
+  given = MakeCellResult(*this->Cells, this->Path->State(), given, keepDetail);
+  if (this->HasLinearLight)
+  {
+    EncodeColors(given, parallel);
+  }
+  return given;
 }
 
 /// h and R of all surfaces together.

@@ -98,11 +98,17 @@ public:
     double TimeStep = 0.0;
     ValueStatistics Statistics;
     bool HasData = false;
+    bool HasLinearLight = false; ///< the state is linear light of sRGB values
     bool HasMask = false;
     bool HasMasked = false; ///< a nonzero entry of the mask
     Fingerprint MaskVersion;
     SolverStore Solvers;
     const SurfaceDiffusion::Decomposition* Decomposition = nullptr;
+
+    /// The current state in array units as sRGB values, if HasLinearLight.
+    Values EncodedState(const ParallelFor& parallel) const;
+    /// MakeCellResult() of the current state; given: the data on cells in array units, likewise.
+    Values CellResult(Values given, bool keepDetail, const ParallelFor& parallel) const;
   };
   const Block& GetBlock(std::size_t block) const { return *this->Blocks[block]; }
   std::size_t NumberOfBlocks() const { return this->Blocks.size(); }

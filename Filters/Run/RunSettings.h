@@ -70,6 +70,7 @@ struct ModelTraits
   bool StateIsUnitVectors = false;
   bool StateIsLines = false; ///< unit vectors whose sign has no meaning
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
+  bool UsesLinearLight = false; ///< unsigned char colours are in sRGB, see LinearLight.h
 };
 
 /// The settings of a time-dependent model, in the user's terms. A subclass describes its model with

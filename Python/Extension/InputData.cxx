@@ -182,6 +182,7 @@ Fields InputFields::Read() const
   {
     fields.DataName = this->DataAreTerms ? "DataTermArray" : "InputArray";
     fields.DataAreTerms = this->DataAreTerms;
+    fields.DataAreBytes = this->Data->dtype() == nb::dtype<std::uint8_t>();
     fields.Data.resize(static_cast<Eigen::Index>(this->Data->shape(0)), this->Components);
     const auto stride = static_cast<Eigen::Index>(this->Data->shape(1));
     VisitElements(*this->Data,

@@ -257,8 +257,10 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
   const std::optional<InputArray>& source, int first) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
-  const Values& state = from.Path->State();
-  const double unit = from.Units.ValueUnit;
+  const Values encoded =
+    from.HasLinearLight ? from.EncodedState(PythonThreads::Instance()) : Values();
+  const Values& state = from.HasLinearLight ? encoded : from.Path->State();
+  const double unit = from.HasLinearLight ? 1.0 : from.Units.ValueUnit;
   const auto value = [&](Index v, Eigen::Index k) { return state(v, k) * unit; };
   const bool onFaces = this->HasResultOnFaces(block);
   if (!source)
@@ -289,7 +291,8 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
         }
         const bool detail = this->Settings->DescribeModel().KeepCellDetail;
         WriteFaces(
-          from.Cells->Transfer, output, MakeCellResult(*from.Cells, state, given, detail),
+          from.Cells->Transfer, output,
+          from.CellResult(std::move(given), detail, PythonThreads::Instance()),
           [&](Index i, Eigen::Index k)
           { return static_cast<double>(old[i * columns + start + k]); },
           first);

@@ -246,6 +246,32 @@ AnyFilter ImplicitSteps()
   return tv;
 }
 
+AnyFilter OpponentMinimum()
+{
+  auto tv = Make<vtkIntrinsicTVFilter>("v", 1);
+  tv->SetColorModelToOpponent();
+  tv->SetModeToSteadyState();
+  tv->SetStopTolerance(1e-6);
+  return tv;
+}
+
+AnyFilter OpponentSteps()
+{
+  auto tv = Make<vtkIntrinsicTVFilter>("v", 4);
+  tv->SetColorModelToOpponent();
+  SetInputArray(tv, 1, "hole");
+  return tv;
+}
+
+AnyFilter Chromaticity()
+{
+  auto tv = Make<vtkIntrinsicTVFilter>("v", 4);
+  tv->SetColorModelToChromaticityBrightness();
+  SetInputArray(tv, 1, "hole");
+  SetInputArray(tv, 3, "edge");
+  return tv;
+}
+
 AnyFilter Heat()
 {
   return Make<vtkFVMHeatFilter>("f", 5);
@@ -365,7 +391,9 @@ INSTANTIATE_TEST_SUITE_P(Pieces, Together,
     Case{ "edge enhancing", "vEdgeEnhanced", EdgeEnhancing },
     Case{ "minimum", "fTV", Minimum, 1e-5 },
     Case{ "minimum, inpainting", "roughTV", MinimumInpainting },
-    Case{ "minimum, L1", "vTV", MinimumL1 },
+    Case{ "minimum, L1", "vTV", MinimumL1 }, Case{ "opponent colours", "vTV", OpponentSteps },
+    Case{ "opponent colours, minimum", "vTV", OpponentMinimum, 1e-4 },
+    Case{ "chromaticity", "vTV", Chromaticity },
     Case{ "implicit steps", "roughTV", ImplicitSteps, 1e-6 }));
 
 TEST_P(Together, StopWithinAStepIfOneOfThemIsAborted)

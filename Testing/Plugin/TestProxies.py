@@ -105,7 +105,8 @@ VALUES = {
 
 def click(filter, dice, clicked):
     """Changes one property that the panel offers; appends it to `clicked`."""
-    keys = [key for key in offered(filter) if key != "Kinetics"]
+    # ColorModel needs data of three components.
+    keys = [key for key in offered(filter) if key not in ("Kinetics", "ColorModel")]
     key = dice.choice(keys)
     prop = filter.SMProxy.GetProperty(key)
     entries = prop.FindDomain("vtkSMEnumerationDomain")

@@ -259,6 +259,11 @@ inline List OfTotalVariation()
     RANDOM_PROPERTY(F, BlurSteps, dice.Flip(24) ? 1 : 2 + dice.Below(5)),
     RANDOM_PROPERTY(F, Discretization, dice.Flip(3)),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 1.0 : dice.Logarithmic(1e-6, 0.5)),
+    RANDOM_PROPERTY(F, ColorModel, dice.Flip() ? 0 : Choice(dice, 3)),
+    RANDOM_PROPERTY(F, ChromaWeight, Positive(dice)),
+    RANDOM_PROPERTY(F, ChromaticityExponent, dice.Flip() ? 1.0 : 1.0 + dice.Unit()),
+    RANDOM_PROPERTY(F, ChromaticityWeight, Positive(dice)),
+    RANDOM_PROPERTY(F, LinearLight, dice.Flip()),
   };
 }
 
