@@ -39,7 +39,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import (
     vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
-    vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter, vtkTensorDiffusionFilter,
+    vtkSurfaceDenoisingFilter, vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter,
+    vtkTensorDiffusionFilter,
     vtkTuringTextureFilter,
 )
 from ._meshes import find_polydata
@@ -50,7 +51,8 @@ _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
 # The read-only values of the classes. A report has those that the filter has.
 _REPORTED = (
     "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
-    "EffectiveTimeStep", "EffectiveFidelityWeight", "Wavelength", "WavelengthGrowthRate",
+    "EffectiveTimeStep", "EffectiveFidelityWeight", "EffectiveNoiseLevel", "Wavelength",
+    "WavelengthGrowthRate",
     "DiffusionRateFactor", "MeanDisplacement", "MaximumDisplacement", "VolumeBefore",
     "VolumeAfter", "EdgeLength", "Gap", "LabelGap", "NumberOfAlternations",
 )
@@ -241,6 +243,20 @@ def segment(
     if full_output:
         result[1].boundaries = _output(algorithm, 2)
     return result
+
+
+def denoise_mesh(mesh, *, fixed=None, full_output=False, **properties):
+    """Remove the noise of the points of the mesh (vtkSurfaceDenoisingFilter).
+
+    fixed: point array; points with a nonzero value stay.
+    properties: SurfaceType="Automatic" (default), "CAD" or "Organic"; NoiseLevel, the standard
+    deviation of the noise in coordinate units (default: 0, measured).
+    full_output: see help(surfacediffusion.pyvista).
+
+    The result has moved points and the point array Displacement (n, 3).
+    """
+    return _run(vtkSurfaceDenoisingFilter(), mesh, properties, (None, None, None, fixed), None,
+        full_output)
 
 
 def direction_field(mesh, hints=None, *, full_output=False, **properties):

@@ -252,6 +252,7 @@ class TestProxies(unittest.TestCase):
              ["Mode", "EdgeFunction", "FidelityNorm", "AutomaticFidelity", "FidelityWeight"]),
             ("MumfordShahFilter",
              ["EdgeThreshold", "SmoothingLength", "EdgeWidth"]),
+            ("SurfaceDenoisingFilter", ["SurfaceType", "NoiseLevel"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
             ("SurfaceSegmentationFilter", ["NumberOfRegions", "AutomaticFidelity", "Mean", "AutomaticMeans"]),

@@ -9,6 +9,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -139,6 +140,8 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFidelityWeight(50.0);
         f->SetStopTolerance(0.1);
       }),
+    { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
+      "Displacement" },
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

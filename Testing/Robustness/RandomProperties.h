@@ -9,6 +9,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -357,6 +358,15 @@ inline List OfDirectionField()
   };
 }
 
+inline List OfDenoising()
+{
+  using F = vtkSurfaceDenoisingFilter;
+  return {
+    RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, SurfaceType, Choice(dice, 3)),
+  };
+}
+
 #undef RANDOM_PROPERTY
 
 template <typename F>
@@ -392,6 +402,7 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
     MakeClass<Tensor>({ OfSurface<Tensor>(), OfDataDiffusion<Tensor>(0b001), OfTensorDiffusion() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
+    MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),
       OfDiffusion<vtkSurfaceSegmentationFilter>(0b001), OfSegmentation() }),
