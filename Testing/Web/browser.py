@@ -37,7 +37,7 @@ def open_browser(downloads=None):
 
 
 def wait_for(condition, what, seconds=PATIENCE):
-    """The first true result of condition()."""
+    """The first true result of condition(); of an array, one that is not zero."""
     end = time.monotonic() + seconds
     while True:
         try:
@@ -46,7 +46,7 @@ def wait_for(condition, what, seconds=PATIENCE):
             result, last = None, problem
         else:
             last = result
-        if result:
+        if np.any(result):
             return result
         if time.monotonic() > end:
             raise AssertionError(f"not within {seconds} s: {what}; last: {last!r}")
