@@ -126,6 +126,7 @@ List OfSurface()
     RANDOM_PROPERTY(F, MergeCoincidentPoints, dice.Flip()),
     RANDOM_PROPERTY(F, MergeTolerance, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, SeamTolerance, dice.Flip() ? -1.0 : ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, NumberOfThreads, dice.Below(3)),
     RANDOM_PROPERTY(F, Controller, Controller(dice)),
     RANDOM_PROPERTY(F, ResultArrayName, Name(dice)),
   };
