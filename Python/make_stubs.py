@@ -19,14 +19,15 @@ from numpy.typing import ArrayLike, NDArray
 import numpy as np
 
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, SegmentationResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, SegmentationResult, TensorDiffusionResult,
+    TextureResult,
 )
 from ._run import Progress
 from ._surface import SurfaceLike
 
 __all__ = [
     "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
-    "turing_texture",
+    "tensor_diffusion", "turing_texture",
 ]
 """
 
@@ -38,6 +39,8 @@ RETURNS = {
     "mumford_shah": [({}, "EdgeResult"), ({"steps": True}, "Iterator[EdgeResult]")],
     "turing_texture": [({}, "TextureResult"), ({"steps": True}, "Iterator[TextureResult]")],
     "segment": [({}, "SegmentationResult")],
+    "tensor_diffusion": [({}, "NDArray[Any]"), ({"full_output": True}, "TensorDiffusionResult"),
+                         ({"steps": True}, "Iterator[TensorDiffusionResult]")],
     "direction_field": [({}, "NDArray[np.float64]")],
 }
 RETURNS["intrinsic_tv"] = RETURNS["heat"]

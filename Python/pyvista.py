@@ -39,7 +39,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import (
     vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
-    vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter, vtkTuringTextureFilter,
+    vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter, vtkTensorDiffusionFilter,
+    vtkTuringTextureFilter,
 )
 from ._meshes import find_polydata
 
@@ -110,6 +111,28 @@ def intrinsic_tv(
     """
     return _run(
         vtkIntrinsicTVFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        times, full_output)
+
+
+def tensor_diffusion(
+    mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
+    full_output=False, **properties
+):
+    """Smooth a point array along its own edges or lines (vtkTensorDiffusionFilter).
+
+    Solves m u_t = div(D grad u) + lambda chi (f - u), u(0) = f, with a D that follows from u.
+
+    The arguments are those of heat(). Useful properties: Model ("Beltrami", the default,
+    "CoherenceEnhancing" or "EdgeEnhancing"), ColorScale (b of Beltrami, default 10), Contrast (the
+    gradient of lines and edges, default 0.05), IntegrationScale (over which the direction of lines
+    is averaged, default 4), DiffusionAxes (default off), TimeStep (default 1),
+    NumberOfTimeSteps (default 10).
+
+    The result is the point array <array>Beltrami, <array>Coherent or <array>EdgeEnhanced, with the
+    shape of the data, and with DiffusionAxes the cell array DiffusionAxes (m, 3).
+    """
+    return _run(
+        vtkTensorDiffusionFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
         times, full_output)
 
 

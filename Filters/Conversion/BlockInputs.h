@@ -38,6 +38,9 @@ public:
   /// Null unless the last inputs were pieces.
   const PieceDecomposition* GetDecomposition() const { return this->Decomposition.get(); }
 
+  /// The cell of each triangle of a surface of the last inputs that were read.
+  const std::vector<vtkIdType>& CellsOf(std::size_t surface) const { return this->Cells[surface]; }
+
 private:
   /// The hashes of a surface, and the state of the data that they were computed from. Requests of
   /// other times need not hash the input again.

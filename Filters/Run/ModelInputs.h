@@ -77,6 +77,7 @@ struct RunResult
   Vector Edges; ///< 1 - v of the Mumford-Shah model, per vertex
   Polylines EdgeCurves; ///< its ridges, in coordinate units
   std::shared_ptr<const RegionResults> Regions; ///< of a segmentation
+  TangentVectors DiffusionAxes; ///< e of the strongest diffusion per triangle; no row: none
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<std::string> Warnings;

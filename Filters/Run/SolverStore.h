@@ -22,7 +22,8 @@ enum class SolverPurpose
   Search, ///< the search for a fidelity weight
   Fill, ///< the harmonic start on missing vertices
   Blur, ///< the blur that is removed
-  Edges ///< v of the Mumford-Shah model
+  Edges, ///< v of the Mumford-Shah model
+  Structure ///< the integration of structure tensors
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -71,7 +72,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 6> Solvers;
+  std::array<Kept, 7> Solvers;
 };
 
 } // namespace SurfaceDiffusion

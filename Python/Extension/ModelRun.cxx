@@ -304,6 +304,21 @@ void ModelRun::WriteEdges(std::size_t block, const OutputArray& output) const
     [](Index, Eigen::Index) { return 0.0; });
 }
 
+bool ModelRun::WriteAxes(
+  std::size_t block, const InputSurface& surface, const OutputArray& output) const
+{
+  const Run::Block& from = this->Model.GetBlock(block);
+  if (from.Result.DiffusionAxes.rows() == 0)
+  {
+    return false;
+  }
+  const Points axes = DirectionsOfCells(
+    *from.Surface, from.Result.DiffusionAxes, static_cast<std::int64_t>(surface.NumberOfFaces()),
+    [&](Index t) { return surface.FaceOf(t); }, PythonThreads::Instance());
+  WriteMatrix(axes, output);
+  return true;
+}
+
 std::vector<Index> ModelRun::GetCurveSizes(std::size_t block) const
 {
   const Polylines& curves = this->Model.GetBlock(block).Result.EdgeCurves;

@@ -62,6 +62,8 @@ public:
   nanobind::dict GetRegions(std::size_t block) const;
   /// The labels of the points; 0 at points that take no part.
   void WriteLabels(std::size_t block, const OutputArray& output) const;
+  /// The direction of the strongest diffusion per polygon of the surface; false if there is none.
+  bool WriteAxes(std::size_t block, const InputSurface& surface, const OutputArray& output) const;
   /// The moved points (float64 or float32); false if no point was moved.
   bool WriteMovedPoints(std::size_t block, const OutputArray& output) const;
 

@@ -118,6 +118,7 @@ NB_MODULE(_core, m)
     .def("write_curves", &ModelRun::WriteCurves, "block"_a, "output"_a)
     .def("regions", &ModelRun::GetRegions, "block"_a)
     .def("write_labels", &ModelRun::WriteLabels, "block"_a, "output"_a)
+    .def("write_axes", &ModelRun::WriteAxes, "block"_a, "surface"_a, "output"_a)
     .def("write_moved_points", &ModelRun::WriteMovedPoints, "block"_a, "output"_a);
 
   nb::class_<DirectionRun>(m, "DirectionRun")

@@ -7,6 +7,7 @@
 #include "Run/HeatSettings.h"
 #include "Run/MumfordShahSettings.h"
 #include "Run/SegmentationSettings.h"
+#include "Run/TensorDiffusionSettings.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
 
@@ -150,6 +151,10 @@ std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
   if (model == "mumford_shah")
   {
     return std::make_unique<MumfordShahSettings>();
+  }
+  if (model == "tensor_diffusion")
+  {
+    return std::make_unique<TensorDiffusionSettings>();
   }
   if (model == "turing_texture")
   {

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, SegmentationResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, SegmentationResult,
+    TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Runner, find_result_type
 from ._settings import shorten
@@ -64,6 +65,19 @@ def make_edges(
     runner.call(run.write_curves, block, points)
     return EdgeResult(output, edges=edges[:, 0], curves=np.split(points, np.cumsum(sizes))[:-1],
                       **_pick(EdgeResult, found))
+
+
+def make_tensor_diffusion(
+    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any]
+) -> TensorDiffusionResult:
+    """The result of tensor_diffusion on one surface, with columns for components."""
+    assert given.data is not None
+    output = np.empty(given.data.shape, dtype=find_result_type(given.data, dtype))
+    runner.call(run.write_state, block, output, given.data)
+    axes = np.empty((given.surface.n_faces, 3))
+    if not runner.call(run.write_axes, block, given.surface._core, axes):
+        axes = np.empty((0, 3))
+    return TensorDiffusionResult(output, axes=axes, **_pick(TensorDiffusionResult, found))
 
 
 def make_texture(

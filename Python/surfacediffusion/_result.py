@@ -84,6 +84,20 @@ class DiffusionResult(Result):
 
 
 @dataclass(frozen=True)
+class TensorDiffusionResult(Result):
+    """A state of :func:`tensor_diffusion`: a :class:`Result` with
+
+    Attributes
+    ----------
+    axes : ndarray, shape (m, 3)
+        With ``diffusion_axes=True`` the direction of the strongest diffusion in each face, a unit
+        vector whose sign has no meaning, or zero where diffusion is isotropic. No row otherwise.
+    """
+
+    axes: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)), repr=False)
+
+
+@dataclass(frozen=True)
 class HarmonicMapResult(Result):
     """A state of :func:`harmonic_map`: a :class:`Result` whose `values` are unit vectors, with
 

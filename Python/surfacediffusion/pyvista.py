@@ -49,7 +49,7 @@ from ._functions import segment as _segment
 from ._meshes import find_polydata
 from ._models import (
     ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
-    make_texture,
+    make_tensor_diffusion, make_texture,
 )
 from ._result import Result
 from ._run import Input, Progress, Runner, find_result_type
@@ -58,7 +58,7 @@ from ._surface import Surface, as_data
 
 __all__ = [
     "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
-    "turing_texture",
+    "tensor_diffusion", "turing_texture",
 ]
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
@@ -124,6 +124,22 @@ def mumford_shah(
     full_output=True returns, a list of arrays of points.
     """
     return _run("mumford_shah", mesh, array, (mask, direction, fixed, None, fidelity), times,
+                full_output, progress, properties)
+
+
+def tensor_diffusion(
+    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
+    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
+) -> Any:
+    """Smooth a point array along its own edges or lines.
+
+    The arguments are those of heat(); the equations and all other keywords are in
+    help(surfacediffusion.tensor_diffusion). The result is the point array <array>Beltrami,
+    <array>Coherent or <array>EdgeEnhanced, with the shape of the data; with diffusion_axes=True there
+    is the cell array DiffusionAxes (m, 3), too.
+    """
+    return _run("tensor_diffusion", mesh, array, (mask, direction, fixed, None, fidelity), times,
                 full_output, progress, properties)
 
 
@@ -357,7 +373,17 @@ def _prepare(
         fidelity=block.find("fidelity", fidelity)[0])
 
 
-def _write(function: str, block: _Block, result: Any, name: str | None, colors: bool) -> None:
+def _suffix(function: str, runner: Runner) -> str:
+    """Of the name of the result."""
+    if function == "tensor_diffusion":
+        return ("Beltrami", "Coherent", "EdgeEnhanced")[runner.settings.get("Model", 0)]
+    return {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
+            "mumford_shah": "MumfordShah"}.get(function, "")
+
+
+def _write(
+    function: str, block: _Block, result: Any, name: str | None, colors: bool, suffix: str
+) -> None:
     """Add the result to the mesh, and make it active."""
     points = block.mesh.point_data
     values = result.values
@@ -371,8 +397,8 @@ def _write(function: str, block: _Block, result: Any, name: str | None, colors: 
             points[active] = result.colors
         block.mesh.set_active_scalars(active, preference="point")
         return
-    suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
-              "mumford_shah": "MumfordShah"}[function]
+    if function == "tensor_diffusion" and len(result.axes) > 0:
+        block.mesh.cell_data["DiffusionAxes"] = result.axes
     if function == "mumford_shah":
         points["Edges"] = result.edges
     active = name or block.name + suffix
@@ -414,7 +440,7 @@ def _run(
     painted = bool(runner.settings.get("ColorOutput", False))
     make: Callable[..., Any] = {
         "harmonic_map": make_harmonic_map, "mumford_shah": make_edges,
-        "turing_texture": make_texture}.get(function, make_diffusion)
+        "tensor_diffusion": make_tensor_diffusion, "turing_texture": make_texture}.get(function, make_diffusion)
     extra = (colors if painted else [],) if function == "turing_texture" else ()
     inputs = [block.given for block in blocks if block.given]
     run = _core.ModelRun(function)
@@ -424,7 +450,7 @@ def _run(
         written = [block.fresh() for block in blocks]
         for number, block in enumerate(written):
             result = make(run, number, block.given, runner, dtype, state[number], *extra)
-            _write(function, block, result, result_name, painted)
+            _write(function, block, result, result_name, painted, _suffix(function, runner))
             results.append(result)
         whole = _rebuild(mesh, iter(written))
         return whole, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
@@ -468,7 +494,8 @@ def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 for _function in (
-        heat, intrinsic_tv, harmonic_map, mumford_shah, segment, turing_texture, direction_field):
+        heat, intrinsic_tv, harmonic_map, mumford_shah, segment, tensor_diffusion, turing_texture,
+        direction_field):
     setattr(_Accessor, _function.__name__, _as_method(_function))
 
 if hasattr(pyvista, "register_dataset_accessor"):

@@ -41,7 +41,7 @@ STAGES = {
     "Filter100Steps": "the same in the filter",
     "TimeSeek": "seek to another time of that run",
 }
-MODELS = "MinimizeToGap|FindEdges|ExtractCurves|LaggedStep/.*:3$|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
+MODELS = "MinimizeToGap|FindEdges|ExtractCurves|LaggedStep/.*:3$|ChannelStep|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
 NOTED = {"vertices", "Gap", "Iterations", "steps", "time", "step_over_solves",
          "degrees_before", "degrees_after"}
 

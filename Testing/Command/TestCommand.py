@@ -215,6 +215,21 @@ class OtherCommands(CommandTest):
         self.assertIn("lh.func.gii: nothing is missing", error)
         np.testing.assert_array_equal(self.column("out.func.gii"), NOISE)
 
+    def test_enhance_smooths_noise_and_keeps_a_step(self):
+        step = np.where(POINTS[:, 2] > 0.1 * np.ptp(POINTS[:, 2]), 1.0, 0.0)
+        noisy = step + 0.1 * np.random.default_rng(0).standard_normal(len(step))
+        samples.write_gifti("noisy.func.gii", {"one": noisy})
+        for model in ("lines", "edges", "beltrami"):
+            report = self.report(
+                f"enhance lh.surf.gii noisy.func.gii out.func.gii --model {model} --time 4 --steps 4")
+            self.assertEqual((report["model"], report["time"], report["steps"]), (model, 4.0, 4))
+            found = self.column("out.func.gii")
+            self.assertLess(np.abs(found - step).mean(), np.abs(noisy - step).mean(), model)
+        code, _, error = run("enhance", "lh.surf.gii", "noisy.func.gii", "out.func.gii", "--model",
+                             "edges", "--scale", "3")
+        self.assertEqual(code, 2)
+        self.assertIn("--scale is 3; allowed: with --model lines", error)
+
     def test_edges_are_written_as_a_map_and_as_curves(self):
         jump = np.where(POINTS[:, 2] > 0.1 * np.ptp(POINTS[:, 2]), 1.0, 0.0)
         samples.write_gifti("jump.func.gii", {"one": jump})

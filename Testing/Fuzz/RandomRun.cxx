@@ -3,6 +3,7 @@
 #include "RandomRun.h"
 
 #include "Core/Geometry/DirectionField.h"
+#include "Core/Models/BeltramiFlow.h"
 #include "Core/Models/CrouzeixRaviart.h"
 #include "Core/Models/HarmonicMap.h"
 #include "Core/Models/InitialState.h"
@@ -11,6 +12,7 @@
 #include "Core/Models/NonlinearDiffusion.h"
 #include "Core/Models/ReactionDiffusion.h"
 #include "Core/Models/Segmentation.h"
+#include "Core/Models/StructureDiffusion.h"
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Models/TotalVariationFlow.h"
@@ -286,6 +288,53 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   Run(mesh, model, promises);
 }
 
+/// Models whose diffusion tensor follows from the data.
+void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+  const TangentVectors& frames)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  const int kind = bytes.Below(3);
+  const double timeStep = bytes.Size(6.0);
+  const double fidelity = bytes.Flip() ? bytes.Size(4.0) : 0.0;
+  const double along = bytes.Flip() ? bytes.Size(2.0) : 1.0;
+  const double scale = bytes.Size(6.0);
+  Promises promises;
+  promises.Sum = fidelity == 0.0 && !Any(data.Fixed);
+  if (kind == 0)
+  {
+    BeltramiFlow::Settings settings;
+    settings.TimeStep = timeStep;
+    settings.Fidelity = fidelity;
+    settings.AlongDiffusivity = along;
+    settings.ColorScale = scale;
+    settings.MassMetric =
+      bytes.Flip() ? BeltramiFlow::Metric::Fixed : BeltramiFlow::Metric::Induced;
+    promises.Sum = promises.Sum && settings.MassMetric == BeltramiFlow::Metric::Fixed;
+    promises.Energy = !HasFlatTriangles(mesh);
+    promises.Fidelity = fidelity;
+    BeltramiFlow model(assembler, frames, std::move(data), settings, ReadSolver(bytes));
+    Run(mesh, model, promises);
+    return;
+  }
+  StructureDiffusion::Settings settings;
+  settings.TimeStep = timeStep;
+  settings.Fidelity = fidelity;
+  settings.AlongDiffusivity = along;
+  settings.Contrast = scale;
+  settings.Model = kind == 1 ? StructureDiffusion::Kind::CoherenceEnhancing
+                             : StructureDiffusion::Kind::EdgeEnhancing;
+  auto integration = kind == 1 ? std::make_unique<TensorSmoothing>(
+                                   std::make_shared<LineFieldOperator>(assembler->SharedMesh()),
+                                   bytes.Size(2.0), 2, MakeCholeskySolver())
+                               : nullptr;
+  auto structure = std::make_unique<StructureTensor>(assembler->SharedMesh(),
+    std::make_unique<HeatBlur>(assembler, bytes.Size(2.0), 2, MakeCholeskySolver()),
+    std::move(integration));
+  StructureDiffusion model(
+    assembler, frames, std::move(data), settings, std::move(structure), ReadSolver(bytes));
+  Run(mesh, model, promises);
+}
+
 void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames)
 {
@@ -301,6 +350,11 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
   Promises promises;
   promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
   const TriangleMesh& mesh = assembler->Mesh();
+  if (bytes.Flip(3))
+  {
+    RunTensor(bytes, assembler, std::move(data), frames);
+    return;
+  }
   if (bytes.Flip(3))
   {
     const auto edges = std::make_shared<const MedialMesh>(mesh);

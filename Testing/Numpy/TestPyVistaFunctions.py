@@ -15,7 +15,8 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, turing_texture,
+    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, tensor_diffusion,
+    turing_texture,
 )
 
 
@@ -68,6 +69,11 @@ class Meshes(unittest.TestCase):
         aligned = np.abs(np.einsum("ij,ij->i", field["Direction"], mesh["flow"]))
         lengths = np.linalg.norm(mesh["flow"], axis=1)
         self.assertGreater(np.median(aligned / lengths), 0.9)
+        lines = tensor_diffusion(mesh, "f", mask="hole", model="CoherenceEnhancing",
+                                 diffusion_axes=True, number_of_time_steps=2)
+        self.assertEqual(lines.point_data.active_scalars_name, "fCoherent")
+        self.assertEqual(lines["DiffusionAxes"].shape, (mesh.n_cells, 3))
+        self.assertIn("fBeltrami", tensor_diffusion(mesh, "f", fixed="hole").array_names)
         edges, report = mumford_shah(mesh, "f", mask="hole", full_output=True, edge_threshold=0.5)
         self.assertEqual(edges["Edges"].shape, (mesh.n_points,))
         self.assertEqual(edges.point_data.active_scalars_name, "fMumfordShah")

@@ -27,6 +27,7 @@ FILTERS = {
     "harmonic_map": "vtkHarmonicMapFilter",
     "mumford_shah": "vtkMumfordShahFilter",
     "segment": "vtkSurfaceSegmentationFilter",
+    "tensor_diffusion": "vtkTensorDiffusionFilter",
     "turing_texture": "vtkTuringTextureFilter",
     "direction_field": "vtkSurfaceDirectionFieldFilter",
 }
@@ -100,6 +101,11 @@ class SameBits(unittest.TestCase):
              {"Discretization": "CrouzeixRaviart", "NumberOfTimeSteps": 3}),
             ("mumford_shah", {"values": self.normals}, {"EdgeThreshold": 0.4}),
             ("mumford_shah", {"values": self.normals[:, 0].astype(np.float32)}, {}),
+            ("tensor_diffusion", {"values": self.columns, "mask": self.mask}, {}),
+            ("tensor_diffusion", {"values": self.values, "directions": self.around},
+             {"Model": "CoherenceEnhancing", "AcrossDiffusivity": 0.5, "NumberOfTimeSteps": 2}),
+            ("tensor_diffusion", {"values": colours, "fixed": self.mask},
+             {"Model": "EdgeEnhancing", "FidelityWeight": 0.1, "DiffusionAxes": True}),
             ("segment", {"values": self.values, "mask": self.mask}, {}),
             ("segment", {"values": self.columns, "fidelity": 1.0 + self.points[:, 2] ** 2},
              {"NumberOfRegions": 3, "AutomaticFidelity": False, "FidelityWeight": 2.0}),
@@ -140,7 +146,7 @@ class SameBits(unittest.TestCase):
 
     def compare(self, function, arrays, properties, expected):
         keywords = {snake_case(name): value for name, value in properties.items()}
-        if function in ("heat", "intrinsic_tv"):
+        if function in ("heat", "intrinsic_tv", "tensor_diffusion"):
             keywords["full_output"] = True
         result = getattr(sd, function)(self.surface, **arrays, **keywords)
         if function == "direction_field":
@@ -151,7 +157,10 @@ class SameBits(unittest.TestCase):
                 found["TextureColor"] = result.colors
         else:
             suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
-                      "mumford_shah": "MumfordShah", "segment": "Segmented"}[function]
+                      "mumford_shah": "MumfordShah", "segment": "Segmented",
+                      "tensor_diffusion": {"CoherenceEnhancing": "Coherent",
+                                           "EdgeEnhancing": "EdgeEnhanced"}.get(
+                                               properties.get("Model"), "Beltrami")}[function]
             base = next(iter(arrays), "Normals")
             found = {base + suffix: result.values}
         if function == "segment":
@@ -160,6 +169,8 @@ class SameBits(unittest.TestCase):
                         if key != "history Block" and not key.startswith("history Mean_")}
         if function == "mumford_shah":
             found["Edges"] = result.edges
+        if function == "tensor_diffusion" and properties.get("DiffusionAxes"):
+            found["DiffusionAxes"] = result.axes
         if function == "harmonic_map":
             found["points"] = result.points
         if function not in ("direction_field", "segment"):

@@ -13,7 +13,7 @@ import surfacediffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDirectionFieldFilter,
-    SurfaceSegmentationFilter,
+    SurfaceSegmentationFilter, TensorDiffusionFilter,
     TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -55,6 +55,11 @@ CASES = (
     ("harmonic, paper", HarmonicMapFilter,
      dict(InputArray=["POINTS", "vectors"], Scheme="ExplicitReaction"), "vectorsHarmonic"),
     ("edges", MumfordShahFilter, dict(Tolerance=1e-10), "fMumfordShah"),
+    ("beltrami", TensorDiffusionFilter, dict(Tolerance=1e-10), "fBeltrami"),
+    ("coherence, gathered", TensorDiffusionFilter, dict(Model="CoherenceEnhancing", Tolerance=1e-10),
+     "fCoherent"),
+    ("axes, gathered", TensorDiffusionFilter,
+     dict(Model="EdgeEnhancing", DiffusionAxes=1, Tolerance=1e-10), "DiffusionAxes"),
     ("segmentation", SurfaceSegmentationFilter, dict(AutomaticFidelity=0, FidelityWeight=2.0),
      "RegionId"),
     ("turing", TuringTextureFilter, LABYRINTH, "u1"),
@@ -73,6 +78,7 @@ TOGETHER = {
     "ConjugateGradient": ("heat", "heat, inpainting", "heat, NaN, noise", "heat, region",
                           "heat, fixed, along", "tv", "tv, minimum", "tv, minimum, L1",
                           "harmonic, p = 2", "harmonic, inpainting", "harmonic, paper", "turing",
+                          "beltrami",
                           "turing, rates", "turing, along, colours"),
     "Multigrid": ("heat", "heat, inpainting", "harmonic, p = 2", "turing")}
 DISTRIBUTED = tuple(
@@ -122,7 +128,7 @@ def keys(data, of_cells):
 
 def values(data, name):
     """The values of a point or cell array, by key; lines have no sign."""
-    of_cells = name == "Direction"
+    of_cells = name in ("Direction", "DiffusionAxes")
     array = (data.GetCellData() if of_cells else data.GetPointData()).GetArray(name)
     assert array is not None, name
     rows = vtk_to_numpy(array).astype(float).reshape(array.GetNumberOfTuples(), -1)

@@ -7,6 +7,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include "vtkCellData.h"
@@ -183,6 +184,28 @@ AnyFilter EdgesInpainting()
   return shah;
 }
 
+AnyFilter Beltrami()
+{
+  return Make<vtkTensorDiffusionFilter>("v", 5);
+}
+
+AnyFilter BeltramiInpainting()
+{
+  auto tensor = Make<vtkTensorDiffusionFilter>("rough", 5);
+  SetInputArray(tensor, 1, "hole");
+  SetInputArray(tensor, 3, "edge");
+  tensor->SetFidelityWeight(0.2);
+  tensor->SetMetricToFixed();
+  return tensor;
+}
+
+AnyFilter EdgeEnhancing()
+{
+  auto tensor = Make<vtkTensorDiffusionFilter>("v", 5);
+  tensor->SetModelToEdgeEnhancing();
+  return tensor;
+}
+
 AnyFilter Minimum()
 {
   auto tv = Make<vtkIntrinsicTVFilter>("f", 1);
@@ -334,6 +357,9 @@ INSTANTIATE_TEST_SUITE_P(Pieces, Together,
     Case{ "harmonic, minimizing movement", "vHarmonic", HarmonicMinimizingMovement },
     Case{ "edges", "Edges", Edges }, Case{ "edges, values", "vMumfordShah", Edges },
     Case{ "edges, inpainting", "roughMumfordShah", EdgesInpainting },
+    Case{ "Beltrami", "vBeltrami", Beltrami },
+    Case{ "Beltrami, inpainting", "roughBeltrami", BeltramiInpainting },
+    Case{ "edge enhancing", "vEdgeEnhanced", EdgeEnhancing },
     Case{ "minimum", "fTV", Minimum, 1e-5 },
     Case{ "minimum, inpainting", "roughTV", MinimumInpainting },
     Case{ "minimum, L1", "vTV", MinimumL1 },

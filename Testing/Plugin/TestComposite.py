@@ -10,7 +10,7 @@ import unittest
 from paraview import servermanager
 from paraview.simple import (
     FVMHeatFilter, GroupDatasets, HarmonicMapFilter, IntrinsicTVFilter, MumfordShahFilter,
-    SurfaceDirectionFieldFilter, TuringTextureFilter,
+    SurfaceDirectionFieldFilter, TensorDiffusionFilter, TuringTextureFilter,
 )
 from plugin_testing import read_sphere, values
 
@@ -18,7 +18,7 @@ from plugin_testing import read_sphere, values
 FILTERS = (
     (FVMHeatFilter, "noisyDiffused"), (IntrinsicTVFilter, "noisyTV"),
     (HarmonicMapFilter, "NormalsHarmonic"), (MumfordShahFilter, "noisyMumfordShah"),
-    (TuringTextureFilter, "u1"),
+    (TensorDiffusionFilter, "noisyBeltrami"), (TuringTextureFilter, "u1"),
     (SurfaceDirectionFieldFilter, "Direction"),
 )
 KINDS = ("vtkMultiBlockDataSet", "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection")

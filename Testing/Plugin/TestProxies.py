@@ -251,6 +251,7 @@ class TestProxies(unittest.TestCase):
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
             ("SurfaceSegmentationFilter", ["NumberOfRegions", "AutomaticFidelity", "Mean", "AutomaticMeans"]),
+            ("TensorDiffusionFilter", ["Model", "ColorScale", "Metric", "FidelityWeight"]),
             ("TuringTextureFilter",
              ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
               "DecayRate"]),

@@ -11,6 +11,7 @@
 #include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
+#include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
@@ -54,6 +55,7 @@ inline std::vector<FilterKind> AllFilters()
   using Harmonic = vtkHarmonicMapFilter;
   using Shah = vtkMumfordShahFilter;
   using Segmentation = vtkSurfaceSegmentationFilter;
+  using Tensor = vtkTensorDiffusionFilter;
   using Turing = vtkTuringTextureFilter;
   return {
     MakeKind<Heat>("Heat", "fDiffused", 3),
@@ -90,6 +92,22 @@ inline std::vector<FilterKind> AllFilters()
         f->SetSolverToDirect();
         f->IntrinsicDelaunayOn();
       }),
+    MakeKind<Tensor>("Beltrami", "fBeltrami", 3),
+    MakeKind<Tensor>("BeltramiFixed", "fBeltrami", 3,
+      [](Tensor* f)
+      {
+        f->SetMetricToFixed();
+        f->IntrinsicDelaunayOn();
+        f->SetTimeStep(1e4);
+      }),
+    MakeKind<Tensor>("CoherenceEnhancing", "fCoherent", 2,
+      [](Tensor* f)
+      {
+        f->SetModelToCoherenceEnhancing();
+        f->DiffusionAxesOn();
+      }),
+    MakeKind<Tensor>(
+      "EdgeEnhancing", "fEdgeEnhanced", 3, [](Tensor* f) { f->SetModelToEdgeEnhancing(); }),
     MakeKind<Turing>("Turing", "u1", 4),
     MakeKind<Turing>("TuringFirstOrder", "u1", 4,
       [](Turing* f)

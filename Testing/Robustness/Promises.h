@@ -301,6 +301,15 @@ inline std::string ExpectPromises(
     EXPECT_LE(edges->GetRange()[1], 1.0);
     return ExpectTotalIsConserved(shah) + ", " + ExpectEnergyFallsInStages(shah);
   }
+  if (auto* tensor = vtkTensorDiffusionFilter::SafeDownCast(filter))
+  {
+    const bool beltrami = tensor->GetModel() == vtkTensorDiffusionFilter::MODEL_BELTRAMI;
+    if (beltrami && tensor->GetMetric() == vtkTensorDiffusionFilter::METRIC_INDUCED)
+    {
+      return ExpectEnergyFalls(tensor);
+    }
+    return ExpectTotalIsConserved(tensor) + ", " + ExpectEnergyFalls(tensor);
+  }
   if (auto* turing = vtkTuringTextureFilter::SafeDownCast(filter))
   {
     std::string found = ExpectPatternBounds(turing);

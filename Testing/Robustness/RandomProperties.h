@@ -11,6 +11,7 @@
 #include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
+#include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include <algorithm>
@@ -285,6 +286,21 @@ inline List OfMumfordShah()
   };
 }
 
+inline List OfTensorDiffusion()
+{
+  using F = vtkTensorDiffusionFilter;
+  return {
+    RANDOM_PROPERTY(F, Model, Choice(dice, 3)),
+    RANDOM_PROPERTY(F, ColorScale, Positive(dice)),
+    RANDOM_PROPERTY(F, Metric, Choice(dice, 2)),
+    RANDOM_PROPERTY(F, NoiseScale, ZeroOrPositive(dice, 4)),
+    RANDOM_PROPERTY(F, IntegrationScale, ZeroOrPositive(dice, 4)),
+    RANDOM_PROPERTY(F, Contrast, Positive(dice)),
+    RANDOM_PROPERTY(F, Alpha, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-6, 1.0)),
+    RANDOM_PROPERTY(F, DiffusionAxes, dice.Flip(3)),
+  };
+}
+
 inline List OfTexture()
 {
   using F = vtkTuringTextureFilter;
@@ -357,6 +373,7 @@ inline std::vector<FilterClass> AllFilterClasses()
   using TV = vtkIntrinsicTVFilter;
   using Harmonic = vtkHarmonicMapFilter;
   using Shah = vtkMumfordShahFilter;
+  using Tensor = vtkTensorDiffusionFilter;
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   return {
@@ -365,6 +382,7 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<Harmonic>(
       { OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(0b001), OfHarmonicMap() }),
     MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
+    MakeClass<Tensor>({ OfSurface<Tensor>(), OfDataDiffusion<Tensor>(0b001), OfTensorDiffusion() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),

@@ -216,6 +216,18 @@ TEST_P(EveryMesh, HasItsEdgesFound)
   this->Run(shah, "fMumfordShah");
 }
 
+TEST_P(EveryMesh, IsDiffusedAlongItsDataByTensors)
+{
+  vtkNew<vtkTensorDiffusionFilter> beltrami;
+  SetSteps(beltrami, 2);
+  this->Run(beltrami, "fBeltrami");
+
+  vtkNew<vtkTensorDiffusionFilter> coherent;
+  SetSteps(coherent, 1);
+  coherent->SetModelToCoherenceEnhancing();
+  this->Run(coherent, "fCoherent");
+}
+
 TEST_P(EveryMesh, HasATextureGrown)
 {
   vtkNew<vtkTuringTextureFilter> turing;

@@ -33,6 +33,7 @@ const std::set<std::string> WithoutEffectInClass = {
   "vtkHarmonicMapFilter TimeIntegrator", // it has only one
   "vtkMumfordShahFilter TimeIntegrator",
   "vtkMumfordShahFilter EdgeCurves", // three steps find no edge that is long enough
+  "vtkTensorDiffusionFilter TimeIntegrator",
   "vtkSurfaceSegmentationFilter TimeIntegrator", // a steady state
   "vtkSurfaceSegmentationFilter TimeStep", "vtkSurfaceSegmentationFilter NumberOfTimeSteps",
   "vtkSurfaceSegmentationFilter OutputInterval",
@@ -97,11 +98,12 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   using Segmentation = vtkSurfaceSegmentationFilter;
+  using Tensor = vtkTensorDiffusionFilter;
   std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
   needed["MergeTolerance"] = With<Surface>([](Surface* f) { f->MergeCoincidentPointsOn(); });
   needed["OutputInterval"] = With<Diffusion>([](Diffusion* f) { f->GenerateTimeStepsOn(); });
-  for (const char* name :
-    { "vtkFVMHeatFilter", "vtkIntrinsicTVFilter", "vtkHarmonicMapFilter", "vtkMumfordShahFilter" })
+  for (const char* name : { "vtkFVMHeatFilter", "vtkIntrinsicTVFilter", "vtkHarmonicMapFilter",
+         "vtkMumfordShahFilter", "vtkTensorDiffusionFilter" })
   {
     needed[name + std::string(" RandomSeed")] =
       With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
@@ -176,6 +178,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
   needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
     With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
+  needed["NoiseScale"] = needed["IntegrationScale"] = needed["Contrast"] = needed["Alpha"] =
+    With<Tensor>([](Tensor* f) { f->SetModelToCoherenceEnhancing(); });
   needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =
     With<Direction>([](Direction* f) { f->SetMethodToCurvatureAligned(); });
   needed["HintWeight"] = With<Direction>([](Direction* f) { f->SetMethodToHints(); });

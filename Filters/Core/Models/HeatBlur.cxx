@@ -58,18 +58,20 @@ void HeatBlur::Prepare(const ProgressMonitor& progress)
   this->Prepared = true;
 }
 
-void HeatBlur::Apply(Values& u, StepReport& report)
+void HeatBlur::Apply(Values& u, StepReport& report, const ProgressMonitor& progress)
 {
   if (!this->Prepared)
   {
-    this->Prepare();
+    this->Prepare(progress.Part(0.0, 0.0));
   }
   this->RightHandSide.resize(u.rows(), u.cols());
   for (int step = 0; step < this->Steps; ++step)
   {
     ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
       [&](Index i) { this->RightHandSide.row(i) = this->Mesh.ControlAreas()[i] * u.row(i); });
-    this->System.Solve(this->RightHandSide, u, report);
+    const double steps = this->Steps;
+    this->System.Solve(
+      this->RightHandSide, u, report, progress.Part(step / steps, (step + 1) / steps));
   }
 }
 

@@ -32,7 +32,7 @@ public:
   void Prepare(const ProgressMonitor& progress = ProgressMonitor());
 
   /// u becomes H u. The solves are added to the report.
-  void Apply(Values& u, StepReport& report);
+  void Apply(Values& u, StepReport& report, const ProgressMonitor& progress = ProgressMonitor());
 
   /// v becomes H (lambda w chi v): the derivative of lambda/2 int w chi (H u - f)^2 in the inner
   /// product of M for v = H u - f.

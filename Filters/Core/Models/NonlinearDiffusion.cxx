@@ -43,89 +43,27 @@ SquaredGradient SquareGradient(const TriangleMesh& mesh, const TangentVectors& f
 NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assembler,
   TangentVectors frames, PointData data, const Settings& settings,
   std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
-  : StateModel(data.Start)
-  , Assembly(std::move(assembler))
+  : LaggedDiffusion(std::move(assembler), std::move(data), settings.TimeStep,
+      { settings.Fidelity, settings.Norm, settings.Coupling, settings.FidelityRounding },
+      std::move(solver), parallel)
   , Frames(std::move(frames))
-  , Data(std::move(data))
-  , Fit(this->Data,
-      { settings.Fidelity, settings.Norm, settings.Coupling, settings.FidelityRounding })
   , Options(settings)
-  , Parallel(parallel)
-  , System(this->Assembly, std::move(solver), parallel)
-  , Isotropic(CotanWeights(this->Assembly->Mesh(), parallel))
-  , Weighted(this->Isotropic.rows(), 3)
-  , Diagonal(this->Data.Start.rows())
+  , Isotropic(CotanWeights(this->Mesh(), parallel))
 {
-  if (this->Fit.CanConserve())
-  {
-    this->Conserved =
-      TotalCorrection(this->Assembly->Mesh(), this->Data, this->Fit.IsPresent(), parallel);
-  }
   if (this->Frames.rows() > 0)
   {
-    this->Directional = DirectionalWeights(this->Assembly->Mesh(), this->Frames, parallel);
+    this->Directional = DirectionalWeights(this->Mesh(), this->Frames, parallel);
     TangentVectors across(this->Frames.rows(), 2);
     across << -this->Frames.col(1), this->Frames.col(0);
-    this->Perpendicular = DirectionalWeights(this->Assembly->Mesh(), across, parallel);
+    this->Perpendicular = DirectionalWeights(this->Mesh(), across, parallel);
   }
-  const Eigen::Index columns = settings.Coupling == ChannelCoupling::Joint ? U.cols() : 1;
-  this->Change.resize(this->U.rows(), columns);
-  this->RightHandSide.resize(this->U.rows(), columns);
-  if (this->Data.Fixed.any())
-  {
-    this->NoChange = Values::Zero(this->U.rows(), columns);
-  }
-}
-
-StepReport NonlinearDiffusion::Advance(const ProgressMonitor& progress)
-{
-  StepReport report;
-  const Eigen::Index columns = this->Change.cols();
-  const Eigen::Index systems = this->U.cols() / columns;
-  for (Eigen::Index system = 0; system < systems; ++system)
-  {
-    const double done = static_cast<double>(system) / static_cast<double>(systems);
-    this->AdvanceColumns(system * columns, (system + 1) * columns, report,
-      progress.Part(done, done + 1.0 / static_cast<double>(systems)));
-  }
-  this->Conserved.Restore(this->Assembly->Mesh(), this->U, this->Parallel);
-  return report;
-}
-
-void NonlinearDiffusion::AdvanceColumns(
-  Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress)
-{
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  this->FillWeights(first, last);
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      this->Diagonal[i] = mesh.ControlAreas()[i] *
-        (1.0 + this->Options.TimeStep * this->Fit.Weight(i, this->U, first, last));
-    });
-  this->System.Assemble(this->Diagonal, this->Options.TimeStep, this->Weighted);
-  this->FillChange(first, last);
-  if (this->Data.Fixed.any())
-  {
-    this->System.Constrain(this->Data.Fixed, this->NoChange);
-  }
-  this->System.SetUpSolver(progress.Part(0.0, 0.5));
-  this->Change.setZero();
-  this->System.Solve(this->RightHandSide, this->Change, report, progress.Part(0.5, 1.0));
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      for (Eigen::Index k = first; k < last; ++k)
-      {
-        this->U(i, k) += this->Change(i, k - first);
-      }
-    });
 }
 
 /// The weights (12) of each triangle, with g1 and g2 at the old |grad u|.
-void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
+void NonlinearDiffusion::FillWeights(
+  Eigen::Index first, Eigen::Index last, StepReport&, const ProgressMonitor&)
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const TriangleMesh& mesh = this->Mesh();
   ForEach(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
@@ -142,36 +80,10 @@ void NonlinearDiffusion::FillWeights(Eigen::Index first, Eigen::Index last)
     });
 }
 
-/// dt (-K(u_old) u_old + lambda chi M (f - u_old)), from differences along edges: the off-diagonal
-/// entries of the matrix are those of dt K.
-void NonlinearDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
-{
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const Index* outer = this->System.GetMatrix().outerIndexPtr();
-  const Index* inner = this->System.GetMatrix().innerIndexPtr();
-  const double* a = this->System.GetMatrix().valuePtr();
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      const double lambda =
-        this->Options.TimeStep * mesh.ControlAreas()[i] * this->Fit.Weight(i, this->U, first, last);
-      for (Eigen::Index k = first; k < last; ++k)
-      {
-        const double u = this->U(i, k);
-        double change = lambda > 0.0 ? lambda * (this->Data.Given(i, k) - u) : 0.0;
-        for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
-        {
-          change -= a[slot] * (this->U(inner[slot], k) - u);
-        }
-        this->RightHandSide(i, k - first) = change;
-      }
-    });
-}
-
 double NonlinearDiffusion::Energy() const
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const Eigen::Index columns = this->Change.cols();
+  const TriangleMesh& mesh = this->Mesh();
+  const Eigen::Index columns = this->ColumnsPerSystem();
   double energy = 0.0;
   for (Eigen::Index first = 0; first < this->U.cols(); first += columns)
   {
@@ -192,7 +104,7 @@ double NonlinearDiffusion::Energy() const
         return mesh.Shapes()[t].Area() * psi1;
       });
   }
-  return mesh.GetReduction().Sum(energy + this->Fit.Energy(mesh, this->U, this->Parallel));
+  return mesh.GetReduction().Sum(energy + this->FidelityEnergy());
 }
 
 } // namespace SurfaceDiffusion

@@ -3,11 +3,7 @@
 #pragma once
 
 #include "Core/Models/EdgeFunctions.h"
-#include "Core/Models/Fidelity.h"
-#include "Core/Models/ImplicitSystem.h"
-#include "Core/Models/Model.h"
-#include "Core/Operators/Assembler.h"
-#include "Core/Operators/MeanCorrection.h"
+#include "Core/Models/LaggedDiffusion.h"
 
 #include <memory>
 
@@ -22,11 +18,9 @@ namespace SurfaceDiffusion
 /// level, constant on each triangle, and solves one linear system (per channel, if channels have
 /// their own |grad u|) with the lumped mass matrix M and the stiffness matrix K:
 ///   (11), (14)  (M + dt K(u_old) + dt lambda chi M) u_new = M (u_old + dt lambda chi f).
-/// It is solved for u_new - u_old, so that round-off is relative to the change and a constant stays
-/// constant to the last bit, however large g may be.
 ///
 /// L1 fidelity is lagged likewise: lambda/sqrt((f - u_old)^2 + delta^2) in place of lambda.
-class NonlinearDiffusion : public StateModel
+class NonlinearDiffusion : public LaggedDiffusion
 {
 public:
   struct Settings
@@ -48,33 +42,19 @@ public:
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());
 
-  StepReport Advance(const ProgressMonitor& progress) override;
-
   /// int psi(|grad u|) with the potential psi of g, and the energy of Fidelity. If g1 and g2
   /// differ, psi1 cos^2 + psi2 sin^2 with the angle between grad u and e1.
   double Energy() const override;
 
 private:
-  void AdvanceColumns(
-    Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress);
-  void FillWeights(Eigen::Index first, Eigen::Index last);
-  void FillChange(Eigen::Index first, Eigen::Index last);
+  void FillWeights(Eigen::Index first, Eigen::Index last, StepReport& report,
+    const ProgressMonitor& progress) override;
 
-  std::shared_ptr<const Assembler> Assembly;
   TangentVectors Frames;
-  PointData Data;
-  Fidelity Fit;
   Settings Options;
-  const ParallelFor& Parallel;
-  ImplicitSystem System;
-  TotalCorrection Conserved;
   CornerWeights Isotropic; ///< cotan weights (10)
   CornerWeights Directional; ///< (13) along e1, no rows if g1 = g2
   CornerWeights Perpendicular; ///< the same along e2
-  CornerWeights Weighted; ///< of g1 and g2 at the old level (12)
-  Vector Diagonal;
-  Values Change, RightHandSide;
-  Values NoChange; ///< the Dirichlet conditions of Change
 };
 
 } // namespace SurfaceDiffusion

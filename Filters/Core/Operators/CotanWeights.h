@@ -28,6 +28,37 @@ inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double 
 /// The cotan weights (10): c_ij = 1/2 cot(angle at v_k), D = 1.
 CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
+/// A symmetric tensor of second order in a triangle's own axes.
+struct PlaneTensor
+{
+  double XX = 1.0, XY = 0.0, YY = 1.0;
+
+  double Trace() const { return this->XX + this->YY; }
+  /// The traceless part as a complex number: half the difference of the eigenvalues times
+  /// exp(2 i a), with the angle a of the main axis.
+  Eigen::Vector2d Deviator() const { return { 0.5 * (this->XX - this->YY), this->XY }; }
+  /// S T S with this tensor T.
+  PlaneTensor Between(const PlaneTensor& s) const
+  {
+    const double a = this->XX * s.XX + this->XY * s.XY; // T S = (a b; c d)
+    const double b = this->XX * s.XY + this->XY * s.YY;
+    const double c = this->XY * s.XX + this->YY * s.XY;
+    const double d = this->XY * s.XY + this->YY * s.YY;
+    return { s.XX * a + s.XY * c, s.XX * b + s.XY * d, s.XY * b + s.YY * d };
+  }
+};
+
+/// The weights of a diffusion tensor D. Those of D = 1 are the cotan weights.
+inline Eigen::RowVector3d TensorWeights(const TriangleMesh::Shape& s, const PlaneTensor& d)
+{
+  const double half = 0.5 * s.Weight;
+  const double left = s.X / s.Y;
+  const double right = (s.Length - s.X) / s.Y;
+  return { half * (d.YY * left - d.XY), half * (d.YY * right + d.XY),
+    half * (s.Y * d.XX + (s.Length - 2.0 * s.X) * d.XY - d.YY * left * (s.Length - s.X)) /
+      s.Length };
+}
+
 /// The weights of the diffusion along a direction (13): D = e e^T. Zero if e is zero.
 inline Eigen::RowVector3d DirectionalWeights(const TriangleMesh::Shape& s, double ex, double ey)
 {

@@ -46,8 +46,8 @@ def make_parser(hemispheres=False):
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
-    for add in (_smooth, _denoise, _inpaint, _edges, _segment, _texture, _directions, _normals, _fwhm,
-                _info):
+    for add in (_smooth, _denoise, _inpaint, _enhance, _edges, _segment, _texture, _directions,
+                _normals, _fwhm, _info):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -217,6 +217,33 @@ def _inpaint(commands):
     parser.add_argument("--model", choices=("heat", "tv"), default="heat",
                         help="heat: harmonic functions, smooth (default); tv: total variation, "
                              "which continues edges")
+
+
+def _enhance(commands):
+    text = ("Smooth data along their own lines or edges: stripes, ridges and fingerprints become more "
+            "distinct, and interrupted ones are closed. NaN is filled in. The channels of a colour have "
+            "their lines in common, all other columns have their own.")
+    parser = commands.add(
+        "enhance", tasks.enhance, text,
+        [f"{PROGRAM} enhance scan.ply scan.ply closed.ply --time 20",
+         f"{PROGRAM} enhance scan.ply scan.ply clean.ply --model beltrami"])
+    commands.data(parser)
+    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.choices(parser)
+    parser.add_argument("--model", choices=("lines", "edges", "beltrami"), default="lines",
+                        help="lines: coherence-enhancing diffusion along lines (default); edges: "
+                             "edge-enhancing diffusion, smooth away from edges; beltrami: the area of "
+                             "the data as a surface is reduced, which keeps the edges of colours")
+    parser.add_argument("--time", metavar="T", type=_positive, default=10.0,
+                        help="the time of diffusion, in squared mean edge lengths (default 10)")
+    parser.add_argument("--steps", metavar="N", type=_count, default=10,
+                        help="number of time steps (default 10)")
+    parser.add_argument("--contrast", metavar="K", type=_positive,
+                        help="the gradient of lines and edges, in ranges of the data per mean edge "
+                             "length (default 0.05; for beltrami 0.1)")
+    parser.add_argument("--scale", metavar="S", type=_not_negative,
+                        help="the distance over which the direction of lines is averaged, in mean edge "
+                             "lengths (default 4)")
 
 
 def _edges(commands):

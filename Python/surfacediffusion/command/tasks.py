@@ -64,6 +64,30 @@ def inpaint(arguments, report):
         report.warn(f"{arguments.data}: nothing is missing, the values are unchanged")
 
 
+def enhance(arguments, report):
+    from .. import tensor_diffusion
+
+    options = {"time_step": arguments.time / arguments.steps,
+               "number_of_time_steps": arguments.steps,
+               "model": {"lines": "CoherenceEnhancing", "edges": "EdgeEnhancing",
+                         "beltrami": "Beltrami"}[arguments.model]}
+    if arguments.contrast and arguments.model == "beltrami":
+        options["color_scale"] = 1 / arguments.contrast
+    elif arguments.contrast:
+        options["contrast"] = arguments.contrast
+    if arguments.scale is not None:
+        if arguments.model != "lines":
+            raise FileError(f"--scale is {arguments.scale:g}; allowed: with --model lines")
+        options["integration_scale"] = arguments.scale
+    report.facts.update(model=arguments.model, time=arguments.time, steps=arguments.steps)
+
+    def compute(surface, values, mask, progress):
+        return tensor_diffusion(surface, values, mask=mask, mask_mode="Exclude", progress=progress,
+                                **options)
+
+    _change_data(arguments, report, "Enhancing", compute, _groups_of_arrays)
+
+
 def edges(arguments, report):
     from .. import mumford_shah
 

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Fidelity.h"
+#include "Core/Models/ImplicitSystem.h"
+#include "Core/Models/Model.h"
+#include "Core/Operators/Assembler.h"
+#include "Core/Operators/MeanCorrection.h"
+
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+/// Semi-implicit time steps of nonlinear diffusion with fidelity,
+///   m u_t = div(D grad u) + lambda chi (f - u),
+/// whose diffusion tensor D and mass density m depend on u: each step takes both at the old level
+/// and solves one linear system with the lumped mass matrix M and the stiffness matrix K of D,
+///   (m M + dt K(u_old) + dt lambda chi M) u_new = M (m u_old + dt lambda chi f).
+/// It is solved for u_new - u_old, so that round-off is relative to the change and a constant stays
+/// constant to the last bit, however large D may be. A subclass gives D, and m if it is not 1.
+class LaggedDiffusion : public StateModel
+{
+public:
+  StepReport Advance(const ProgressMonitor& progress) override;
+
+protected:
+  /// solver: kept by the caller, so that an ordering is reused. The columns of u share one D, or
+  /// each has its own, as the coupling of the fidelity says.
+  LaggedDiffusion(std::shared_ptr<const Assembler> assembler, PointData data, double timeStep,
+    const Fidelity::Settings& fidelity, std::shared_ptr<LinearSolver> solver,
+    const ParallelFor& parallel);
+
+  /// Fill Weighted for the channels first .. last - 1 at the current u, and what MassDensity() needs.
+  virtual void FillWeights(
+    Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress) = 0;
+  /// m at vertex i, the mean over its control cell.
+  virtual double MassDensity(Index /*i*/) const { return 1.0; }
+
+  const TriangleMesh& Mesh() const { return this->Assembly->Mesh(); }
+  /// The number of columns that share one D.
+  Eigen::Index ColumnsPerSystem() const { return this->Change.cols(); }
+  /// No longer correct the sum of A_i u_i, which the model does not conserve.
+  void DropConservation() { this->Conserved = TotalCorrection(); }
+  /// The energy of the fidelity term, summed over the vertices of this process.
+  double FidelityEnergy() const { return this->Fit.Energy(this->Mesh(), this->U, this->Parallel); }
+
+  const ParallelFor& Parallel;
+  CornerWeights Weighted; ///< the weights (12) of D
+
+private:
+  void AdvanceColumns(
+    Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress);
+  void FillChange(Eigen::Index first, Eigen::Index last);
+
+  std::shared_ptr<const Assembler> Assembly;
+  PointData Data;
+  Fidelity Fit;
+  double TimeStep;
+  ImplicitSystem System;
+  TotalCorrection Conserved;
+  Vector Diagonal;
+  Values Change, RightHandSide;
+  Values NoChange; ///< the Dirichlet conditions of Change
+};
+
+} // namespace SurfaceDiffusion

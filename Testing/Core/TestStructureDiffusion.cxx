@@ -1,0 +1,480 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Allocations.h"
+#include "Core/Models/StructureDiffusion.h"
+#include "Core/Models/Trajectory.h"
+#include "Core/Operators/MeanCorrection.h"
+#include "Core/Surface/TangentVectors.h"
+#include "EveryMeshFile.h"
+#include "Heat.h"
+#include "ThreadedFor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+using Kind = StructureDiffusion::Kind;
+using Settings = StructureDiffusion::Settings;
+
+constexpr Kind BothKinds[] = { Kind::CoherenceEnhancing, Kind::EdgeEnhancing };
+
+struct Scales
+{
+  double Noise = 1.0, Integration = 4.0; ///< in mean edge lengths; 0: off
+};
+
+std::shared_ptr<LinearSolver> Iterative(double tolerance, const ParallelFor& parallel = SerialFor())
+{
+  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver(parallel);
+  solver->SetLimits({ tolerance, 100000 });
+  return solver;
+}
+
+std::unique_ptr<StructureTensor> MakeStructure(std::shared_ptr<const Assembler> assembler,
+  Scales scales = {}, double tolerance = 1e-6, const ParallelFor& parallel = SerialFor())
+{
+  const auto mesh = assembler->SharedMesh();
+  const double width = WidthOfDeviation * MeanEdge(*mesh);
+  std::unique_ptr<HeatBlur> noise;
+  if (scales.Noise > 0.0)
+  {
+    noise = std::make_unique<HeatBlur>(
+      assembler, scales.Noise * width, 2, Iterative(tolerance, parallel), parallel);
+  }
+  std::unique_ptr<TensorSmoothing> integration;
+  if (scales.Integration > 0.0)
+  {
+    integration = std::make_unique<TensorSmoothing>(std::make_shared<LineFieldOperator>(mesh),
+      scales.Integration * width, 2, Iterative(tolerance, parallel), parallel);
+  }
+  return std::make_unique<StructureTensor>(
+    mesh, std::move(noise), std::move(integration), parallel);
+}
+
+/// Time steps in h^2 for values in a range of 1.
+Settings NaturalSettings(const TriangleMesh& mesh, Kind kind, double timeStep)
+{
+  const double h = MeanEdge(mesh);
+  Settings settings;
+  settings.TimeStep = timeStep * h * h;
+  settings.Model = kind;
+  settings.Contrast = 0.05 / h;
+  return settings;
+}
+
+std::unique_ptr<StructureDiffusion> MakeModel(std::shared_ptr<const Assembler> assembler,
+  PointData data, const Settings& settings, double tolerance = 1e-6,
+  const ParallelFor& parallel = SerialFor())
+{
+  auto structure = MakeStructure(assembler,
+    { 1.0, settings.Model == Kind::CoherenceEnhancing ? 4.0 : 0.0 }, tolerance, parallel);
+  return std::make_unique<StructureDiffusion>(std::move(assembler), TangentVectors(),
+    std::move(data), settings, std::move(structure), Iterative(tolerance, parallel), parallel);
+}
+
+double GaussianNoise(std::int64_t seed, Index i)
+{
+  return std::sqrt(-2.0 * std::log(1.0 - UniformRandom(seed, 0, i))) *
+    std::cos(2.0 * Pi * UniformRandom(seed, 1, i));
+}
+
+/// Stripes of 11 mean edge lengths that wind around a cylinder of radius 1 as helices.
+class HelicalStripes
+{
+public:
+  HelicalStripes()
+    : Shape(Cylinder(120, 76, 1.0, 76 * 2.0 * Pi / 120))
+    , Operators(MakeAssembler(this->Shape))
+    , Mesh(this->Operators->Mesh())
+    , EdgeLength(MeanEdge(this->Mesh) * this->Mesh.LengthUnit())
+  {
+    const double wave = 2.0 * Pi / (11.0 * this->EdgeLength);
+    this->Along = std::sqrt(wave * wave - Around * Around);
+  }
+
+  Values Sine() const
+  {
+    return Sample(this->Mesh, this->Shape,
+      [&](const Eigen::RowVector3d& x)
+      { return std::sin(Around * std::atan2(x[1], x[0]) + this->Along * x[2]); });
+  }
+
+  /// Stripes of the range 1 with so much Gaussian noise.
+  Values Data(double noise) const
+  {
+    Values u = 0.5 * this->Sine();
+    for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
+    {
+      u(i, 0) += noise * GaussianNoise(5, this->Mesh.InputVertex()[i]);
+    }
+    return u;
+  }
+
+  /// The amplitude of the stripes in u relative to Data().
+  double Contrast(const Values& u) const
+  {
+    const Values sine = this->Sine();
+    const Vector weighted = this->Mesh.ControlAreas().cwiseProduct(sine.col(0));
+    return weighted.dot(u.col(0)) / (0.5 * weighted.dot(sine.col(0)));
+  }
+
+  /// The mean angle between lines and the stripes, in degrees.
+  double MeanError(const TangentVectors& lines) const
+  {
+    const Points vectors =
+      VectorsInSpace(this->Mesh, this->Shape.Vertices, this->Shape.Faces, lines);
+    double sum = 0.0;
+    for (Index t = 0; t < this->Shape.NumberOfTriangles(); ++t)
+    {
+      Eigen::RowVector3d x = Eigen::RowVector3d::Zero();
+      for (int a = 0; a < 3; ++a)
+      {
+        x += this->Shape.Vertices.row(this->Shape.Faces(t, a));
+      }
+      const double angle = std::atan2(x[1], x[0]);
+      Eigen::RowVector3d across = { -Around * std::sin(angle), Around * std::cos(angle),
+        this->Along };
+      sum += std::asin(std::min(1.0, std::abs(across.normalized().dot(vectors.row(t)))));
+    }
+    return sum / this->Shape.NumberOfTriangles() * 180.0 / Pi;
+  }
+
+private:
+  static constexpr double Around = 6.0;
+  Surface Shape;
+
+public:
+  const std::shared_ptr<const Assembler> Operators;
+  const TriangleMesh& Mesh;
+  const double EdgeLength;
+
+private:
+  double Along = 0.0;
+};
+
+/// A flat torus without curvature: a sheet of cells x cells whose opposite borders are one.
+std::shared_ptr<const TriangleMesh> FlatTorus(Index cells)
+{
+  const Surface sheet = Jittered(Plate(cells, 1.0), 0.3 / cells, -0.99, 0.99, -0.99, 0.99);
+  const TriangleMesh flat(sheet.Vertices, sheet.Faces);
+  TriangleMesh::Contents contents;
+  contents.Shapes = flat.Shapes();
+  contents.TriangleVertices = flat.TriangleVertices();
+  for (Eigen::Index entry = 0; entry < contents.TriangleVertices.size(); ++entry)
+  {
+    Index& vertex = contents.TriangleVertices.data()[entry];
+    const Index input = flat.InputVertex()[vertex];
+    const Index column = input % (cells + 1);
+    const Index row = input / (cells + 1);
+    vertex = row % cells * cells + column % cells;
+  }
+  for (Index i = 0; i < cells * cells; ++i)
+  {
+    contents.InputVertex.push_back(i);
+  }
+  contents.InputTriangle = flat.InputTriangle();
+  contents.ComponentsBegin = { 0, cells * cells };
+  contents.LengthUnit = flat.LengthUnit();
+  contents.TotalEdgeLength = flat.TotalEdgeLength();
+  contents.NumberOfEdges = flat.NumberOfEdges();
+  return std::make_shared<TriangleMesh>(std::move(contents));
+}
+
+} // namespace
+
+TEST(StructureDiffusion, OrientationOfHelicalStripesIsFoundInNoise)
+{
+  const HelicalStripes stripes;
+  for (const double noise : { 0.0, 0.3 })
+  {
+    const auto model = MakeModel(stripes.Operators, PointData::FromValues(stripes.Data(noise)),
+      NaturalSettings(stripes.Mesh, Kind::CoherenceEnhancing, 1.0));
+    const double start = stripes.MeanError(model->Axes());
+    Advance(*model, 10);
+    const double end = stripes.MeanError(model->Axes());
+    std::printf("%g noise: %.3f degrees, after 10 h^2 %.3f\n", noise, start, end);
+    EXPECT_LT(start, 2.0);
+    EXPECT_LT(end, 2.0);
+  }
+}
+
+TEST(StructureDiffusion, StripesKeepTheContrastThatIsotropicDiffusionLoses)
+{
+  const HelicalStripes stripes;
+  const double time = 10.0 * stripes.EdgeLength * stripes.EdgeLength;
+  for (const double noise : { 0.0, 0.3 })
+  {
+    const PointData data = PointData::FromValues(stripes.Data(noise));
+    const auto model = MakeModel(
+      stripes.Operators, data, NaturalSettings(stripes.Mesh, Kind::CoherenceEnhancing, 1.0));
+    Advance(*model, 10);
+    const double before = stripes.Contrast(data.Given);
+    const double kept = stripes.Contrast(model->State()) / before;
+    const double isotropic = stripes.Contrast(Diffuse(stripes.Operators, data, time, 10)) / before;
+    const Values clean = stripes.Data(0.0);
+    const double noiseLeft = RootMeanSquare(stripes.Mesh, model->State() - clean);
+    std::printf("%g noise: kept %.4f, isotropic %.4f, error %.4f of %.4f\n", noise, kept, isotropic,
+      noiseLeft, RootMeanSquare(stripes.Mesh, data.Given - clean));
+    EXPECT_GT(kept, 0.95);
+    EXPECT_LT(isotropic, 0.5);
+  }
+}
+
+TEST(StructureDiffusion, ConstantTensorFieldsOnTheFlatTorusStay)
+{
+  const auto torus = FlatTorus(20);
+  const auto laplacian = std::make_shared<LineFieldOperator>(torus);
+  TensorSmoothing smoothing(laplacian, 0.8 / torus->LengthUnit(), 2, Iterative(1e-14));
+  // The same line in every triangle, in its own axes, which turn from triangle to triangle.
+  const Surface sheet = Jittered(Plate(20, 1.0), 0.3 / 20, -0.99, 0.99, -0.99, 0.99);
+  const TriangleMesh flat(sheet.Vertices, sheet.Faces);
+  const Points directions =
+    Eigen::RowVector3d(3.0, 1.0, 0.0).replicate(sheet.NumberOfTriangles(), 1);
+  const TangentVectors lines =
+    TangentVectorsFromTriangleVectors(flat, sheet.Vertices, sheet.Faces, directions);
+  TangentVectors z(lines.rows(), 2);
+  for (Eigen::Index t = 0; t < lines.rows(); ++t)
+  {
+    z.row(t) << std::pow(lines(t, 0), 2) - std::pow(lines(t, 1), 2),
+      2.0 * lines(t, 0) * lines(t, 1);
+  }
+  const TangentVectors before = z;
+  StepReport report;
+  smoothing.Apply(z, report);
+  EXPECT_LT((z - before).cwiseAbs().maxCoeff(), 1e-12);
+  z.topRows(1).setZero(); // and others change
+  smoothing.Apply(z, report);
+  EXPECT_GT(z.row(0).norm(), 0.9);
+}
+
+TEST(StructureDiffusion, SmoothedTensorsDecayAsAPlaneWave)
+{
+  // z = exp(i k x) on the flat torus is an eigenfunction of the connection Laplacian.
+  double errors[2];
+  for (const int level : { 0, 1 })
+  {
+    const Index cells = 20 << level;
+    const auto torus = FlatTorus(cells);
+    const Surface sheet = Jittered(Plate(cells, 1.0), 0.3 / cells, -0.99, 0.99, -0.99, 0.99);
+    const TriangleMesh flat(sheet.Vertices, sheet.Faces);
+    const double width = 0.6, wave = Pi;
+    TensorSmoothing smoothing(
+      std::make_shared<LineFieldOperator>(torus), width / torus->LengthUnit(), 2, Iterative(1e-13));
+    const auto field = [&](double factor)
+    {
+      TangentVectors z(flat.NumberOfTriangles(), 2);
+      for (Index t = 0; t < flat.NumberOfTriangles(); ++t)
+      {
+        const Index input = flat.InputTriangle()[t];
+        Eigen::RowVector3d x = Eigen::RowVector3d::Zero();
+        for (int a = 0; a < 3; ++a)
+        {
+          x += sheet.Vertices.row(sheet.Faces(input, a)) / 3.0;
+        }
+        const auto axes = TriangleAxes(flat, sheet.Vertices, sheet.Faces, t);
+        const double turn = std::atan2(axes(1, 0), axes(0, 0)); // of the triangle's axes
+        const double orientation = axes(0, 0) * axes(1, 1) - axes(1, 0) * axes(0, 1);
+        const double angle = orientation * (wave * x[0] - 2.0 * turn);
+        z.row(t) << factor * std::cos(angle), factor * std::sin(angle);
+      }
+      return z;
+    };
+    TangentVectors z = field(1.0);
+    StepReport report;
+    smoothing.Apply(z, report);
+    const double tau = HeatBlur::TimeOfWidth(width, 2);
+    const double decay = std::pow(1.0 + 0.5 * tau * wave * wave, -2);
+    errors[level] = (z - field(decay)).cwiseAbs().maxCoeff();
+  }
+  std::printf("plane wave to %.2e, %.2e\n", errors[0], errors[1]);
+  EXPECT_LT(errors[1], 5e-3);
+  EXPECT_GT(ObservedOrder(errors[0], errors[1]), 1.5);
+}
+
+TEST(StructureDiffusion, RotationAndOrientationDoNotMatter)
+{
+  const Surface s = Icosphere(4);
+  for (const Kind kind : BothKinds)
+  {
+    std::vector<Values> results;
+    for (const Surface& shape : { s, Rotated(s, 0.8), Flipped(s) })
+    {
+      const auto assembler = MakeAssembler(shape);
+      const TriangleMesh& mesh = assembler->Mesh();
+      const auto model = MakeModel(
+        assembler, PointData::FromValues(Noise(mesh, 2)), NaturalSettings(mesh, kind, 2.0), 1e-13);
+      Advance(*model, 4);
+      results.push_back(ToInput(mesh, model->State(), s.NumberOfVertices()));
+    }
+    EXPECT_LT((results[1] - results[0]).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT((results[2] - results[0]).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(StructureDiffusion, RotatedColorsGiveTheRotatedResult)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Values f = Noise(mesh, 3);
+  const Eigen::Matrix3d turn =
+    Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+  for (const Kind kind : BothKinds)
+  {
+    const Settings settings = NaturalSettings(mesh, kind, 2.0);
+    const auto model = MakeModel(assembler, PointData::FromValues(f), settings, 1e-13);
+    const auto turned = MakeModel(assembler, PointData::FromValues(f * turn), settings, 1e-13);
+    Advance(*model, 4);
+    Advance(*turned, 4);
+    EXPECT_LT((turned->State() - model->State() * turn).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(StructureDiffusion, AlphaOneIsLinearDiffusion)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(Noise(mesh, 2));
+  Settings settings = NaturalSettings(mesh, Kind::CoherenceEnhancing, 0.5);
+  settings.Alpha = 1.0;
+  const auto model = MakeModel(assembler, data, settings, 1e-12);
+  Advance(*model, 4);
+  const double h = MeanEdge(mesh) * mesh.LengthUnit();
+  const Values linear =
+    Diffuse(assembler, data, 2.0 * h * h, 4, 0.0, LinearDiffusion::Scheme::BackwardEuler);
+  EXPECT_LT((model->State() - linear).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST(StructureDiffusion, EdgeEnhancingKeepsAnEdgeAndSmoothsNoise)
+{
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Values cap = Sample(mesh, s, [](const Eigen::RowVector3d& x) { return x[2] > 0.3; });
+  const Values f = cap + 0.1 * Noise(mesh);
+  const auto model =
+    MakeModel(assembler, PointData::FromValues(f), NaturalSettings(mesh, Kind::EdgeEnhancing, 1.0));
+  Advance(*model, 10);
+  const double h = MeanEdge(mesh) * mesh.LengthUnit();
+  const Values linear = Diffuse(assembler, PointData::FromValues(f), 10.0 * h * h, 10);
+  const double error = RootMeanSquare(mesh, model->State() - cap);
+  std::printf("error %.4f, linear %.4f, data %.4f\n", error, RootMeanSquare(mesh, linear - cap),
+    RootMeanSquare(mesh, f - cap));
+  EXPECT_LT(error, 0.5 * RootMeanSquare(mesh, linear - cap));
+}
+
+TEST(StructureDiffusion, VarianceNeverRisesOnScannedMeshes)
+{
+  ForEachMeshFile(
+    [](const Surface& s)
+    {
+      const auto assembler = MakeAssembler(s);
+      const TriangleMesh& mesh = assembler->Mesh();
+      const Values f = 0.5 * Noise(mesh, 2);
+      for (const Kind kind : BothKinds)
+      {
+        for (const double timeStep : { 2.0, 1e4 })
+        {
+          const auto model =
+            MakeModel(assembler, PointData::FromValues(f), NaturalSettings(mesh, kind, timeStep));
+          const double first = model->Energy();
+          double last = first;
+          for (int step = 0; step < 2; ++step)
+          {
+            model->Advance(ProgressMonitor());
+            EXPECT_LE(model->Energy(), last + 1e-9 * first) << "step " << step;
+            last = model->Energy();
+          }
+          EXPECT_TRUE(model->State().allFinite());
+          for (int k = 0; k < 2; ++k)
+          {
+            const double scale = mesh.ControlAreas().dot(f.col(k).cwiseAbs());
+            EXPECT_NEAR(Total(mesh, model->State(), k), Total(mesh, f, k), 1e-12 * scale);
+          }
+        }
+      }
+    });
+}
+
+TEST(StructureDiffusion, ConstantsStayToTheLastBit)
+{
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const Values constant = Values::Constant(assembler->Mesh().NumberOfVertices(), 2, 1.0 / 3.0);
+  for (const Kind kind : BothKinds)
+  {
+    const auto model = MakeModel(
+      assembler, PointData::FromValues(constant), NaturalSettings(assembler->Mesh(), kind, 1e3));
+    Advance(*model, 3);
+    EXPECT_LT((model->State() - constant).cwiseAbs().maxCoeff(), 1e-15);
+  }
+}
+
+TEST(StructureDiffusion, FixedAndMissingVerticesAreRespected)
+{
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  PointData data = PointData::FromValues(Noise(assembler->Mesh(), 2));
+  data.Fixed.head(20) = true;
+  data.Missing.tail(20) = true;
+  data.Given.bottomRows(20).setConstant(1e9); // never read
+  for (const Kind kind : BothKinds)
+  {
+    Settings settings = NaturalSettings(assembler->Mesh(), kind, 10.0);
+    settings.Fidelity = 0.1;
+    const auto model = MakeModel(assembler, data, settings);
+    Advance(*model, 3);
+    EXPECT_EQ(model->State().topRows(20), data.Start.topRows(20));
+    EXPECT_LT(model->State().cwiseAbs().maxCoeff(), 2.0);
+  }
+}
+
+TEST(StructureDiffusion, CheckpointsAndThreadsGiveTheSameBits)
+{
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(Noise(mesh, 2));
+  for (const Kind kind : BothKinds)
+  {
+    const Settings settings = NaturalSettings(mesh, kind, 1.0);
+    Trajectory path(
+      assembler->SharedMesh(), MakeModel(assembler, data, settings), std::size_t(1) << 26);
+    path.Seek(4);
+    const Values last = path.State();
+    path.Seek(2);
+    EXPECT_NE(path.State(), last);
+    path.Seek(4);
+    EXPECT_EQ(path.State(), last);
+
+    const ThreadedFor threads(4);
+    const auto threaded = MakeModel(assembler, data, settings, 1e-6, threads);
+    Advance(*threaded, 4);
+    EXPECT_EQ(threaded->State(), last);
+  }
+}
+
+TEST(StructureDiffusion, LaterStepsDoNotAllocate)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  for (const Kind kind : BothKinds)
+  {
+    const auto model =
+      MakeModel(assembler, PointData::FromValues(Noise(mesh, 3)), NaturalSettings(mesh, kind, 1.0));
+    Advance(*model, 1);
+    const auto before = NumberOfAllocations();
+    Advance(*model, 3);
+    EXPECT_EQ(NumberOfAllocations(), before);
+  }
+}
