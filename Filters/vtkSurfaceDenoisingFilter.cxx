@@ -98,8 +98,8 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   std::vector<InputFields> fields(surfaces.size());
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    fields[b].Fixed =
-      InputArrays(this, surfaces[b].Input, problems).FindOnPoints(3, "FixedArray", 1);
+    const InputArrays inputs(this, surfaces[b].Input, problems);
+    fields[b].Fixed = inputs.Find(3, "FixedArray", 1, fields[b].FixedOnCells);
   }
   if (this->ReportProblems(problems))
   {
@@ -129,8 +129,9 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
     BlockInput input;
     input.SurfaceVersion = FingerprintSurface(data, nullptr);
     input.FieldsVersion = FingerprintFields(fields[b]);
-    input.ReadSurface = [&] { return ReadSurface(data, nullptr, block->Cells); };
-    input.ReadFields = [&] { return ReadFields(fields[b], block->Cells); };
+    input.ReadSurface = [&] { return ReadSurface(data, nullptr, false, block->Cells); };
+    input.ReadFields = [&]
+    { return ReadFields(fields[b], block->Cells, data->GetNumberOfCells()); };
     const double count = static_cast<double>(surfaces.size());
     block->Run.Update(input, *settings, progress.Part(b / count, (b + 0.98) / count));
     results.push_back(WriteDisplacement(block->Run, this->ResultArrayName));

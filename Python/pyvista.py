@@ -40,8 +40,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import (
     vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
     vtkSurfaceDenoisingFilter, vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter,
-    vtkTensorDiffusionFilter,
-    vtkTuringTextureFilter,
+    vtkTensorDiffusionFilter, vtkTuringTextureFilter,
 )
 from ._meshes import find_polydata
 

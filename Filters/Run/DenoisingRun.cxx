@@ -51,7 +51,8 @@ void DenoisingRun::Update(
   {
     points.row(i) = surface.Points().row(mesh.InputVertex()[i]) / unit;
   }
-  const Fields fields = input.ReadFields();
+  Fields fields = input.ReadFields();
+  MoveMarksToData(surface, fields, ProcessGroup(), this->Parallel);
   std::vector<char> fixed(fields.Fixed.empty() ? 0 : static_cast<std::size_t>(count), 0);
   const auto numberOfPoints = static_cast<Index>(surface.Points().rows());
   for (Index p = 0; p < numberOfPoints && !fixed.empty(); ++p)
