@@ -60,6 +60,12 @@ void LaggedDiffusion::AdvanceColumns(
     });
   this->System.Assemble(this->Diagonal, this->TimeStep, this->Weighted);
   this->FillChange(first, last);
+  if (this->Damping > 0.0)
+  {
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i) { this->Diagonal[i] = this->System.GetMatrix().coeff(i, i); });
+    this->System.AddToDiagonal(this->Damping, this->Diagonal);
+  }
   if (this->NoChange.size() > 0)
   {
     this->System.Constrain(this->Data.Fixed, this->NoChange);
