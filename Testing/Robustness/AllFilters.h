@@ -106,17 +106,21 @@ inline std::vector<FilterKind> AllFilters()
       [](Tensor* f)
       {
         f->SetMetricToFixed();
-        f->IntrinsicDelaunayOn();
         f->SetTimeStep(1e4);
       }),
     MakeKind<Tensor>("CoherenceEnhancing", "fCoherent", 2,
       [](Tensor* f)
       {
         f->SetModelToCoherenceEnhancing();
+        f->SetSolverToDirect(); // on needles, errors of other solvers raise the variance
         f->DiffusionAxesOn();
       }),
-    MakeKind<Tensor>(
-      "EdgeEnhancing", "fEdgeEnhanced", 3, [](Tensor* f) { f->SetModelToEdgeEnhancing(); }),
+    MakeKind<Tensor>("EdgeEnhancing", "fEdgeEnhanced", 3,
+      [](Tensor* f)
+      {
+        f->SetModelToEdgeEnhancing();
+        f->SetSolverToDirect();
+      }),
     MakeKind<Turing>("Turing", "u1", 4),
     MakeKind<Turing>("TuringFirstOrder", "u1", 4,
       [](Turing* f)

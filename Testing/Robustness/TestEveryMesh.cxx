@@ -238,6 +238,7 @@ TEST_P(EveryMesh, IsDiffusedAlongItsDataByTensors)
   vtkNew<vtkTensorDiffusionFilter> coherent;
   SetSteps(coherent, 1);
   coherent->SetModelToCoherenceEnhancing();
+  coherent->SetSolverToDirect(); // on needles, errors of other solvers raise the variance
   this->Run(coherent, "fCoherent");
 }
 
