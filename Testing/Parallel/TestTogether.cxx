@@ -708,9 +708,11 @@ TEST(PiecesTogether, TakeCellData)
       {
         const auto make = [&](vtkPolyData* surface)
         {
-          auto heat = Make<vtkFVMHeatFilter>("c", 4);
+          auto heat = Make<vtkFVMHeatFilter>("c", 1);
           SetInputArray(heat, 0, "c", true);
           heat->SetTolerance(1e-14);
+          heat->SetTimeIntegratorToFirstOrder();
+          heat->SetTimeStep(0.2);
           variant.Set(heat);
           heat->SetInputData(surface);
           return heat;
@@ -741,9 +743,11 @@ TEST(PiecesTogether, TakeMarksOfCellsForPointData)
   {
     const auto make = [&](vtkPolyData* surface)
     {
-      auto heat = Make<vtkFVMHeatFilter>("rough", 4);
+      auto heat = Make<vtkFVMHeatFilter>("rough", 1);
       heat->SetFidelityWeight(0.2);
       heat->SetTolerance(1e-14);
+      heat->SetTimeIntegratorToFirstOrder();
+      heat->SetTimeStep(0.2);
       SetInputArray(heat, index,
         index == 1 ? "hole of cells" : (index == 3 ? "ends of cells" : "weights of cells"), true);
       heat->SetInputData(surface);

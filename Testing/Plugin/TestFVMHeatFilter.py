@@ -203,7 +203,7 @@ class TestFVMHeatFilter(unittest.TestCase):
 
         check("InputArray", ["POINTS", "nothing"], ["POINTS", "noisy"])
         check("InputArray", ["POINTS", "names"], ["POINTS", "noisy"])
-        check("InputArray", ["CELLS", "nothing"], ["CELLS", "odd"])
+        check("InputArray", ["CELLS", "nothing"], ["POINTS", "noisy"])
         check("MaskArray", ["POINTS", "pair"], ["POINTS", ""])
         check("FixedArray", ["POINTS", "east"], ["POINTS", ""])
         check("DirectionArray", ["CELLS", "nothing"], ["CELLS", "up"])
