@@ -36,8 +36,8 @@ LEAST_GAIN = 1.0  # of ChromaticityBrightness with noise of colour alone, in CIE
 
 EXAMPLES = (
     Example("bear", "astronaut.png", FRONT, (0.45, 0.45)),
-    Example("mannequin-devil", "coffee.png", dict(view=(1, 0, 0), up=(0, 0, 1)), (0.4, 0.3)),
-    Example("sphere", "astronaut.png", FRONT, (0.5, 0.6)),
+    Example("mannequin-devil", "chelsea.png", dict(view=(1, 0, 0), up=(0, 0, 1)), (0.28, 0.62)),
+    Example("sphere", "astronaut.png", FRONT, (0.45, 0.75)),
 )
 PICTURES = {"bear": 0.4, "mannequin-devil": "colour", "sphere": 0.2}  # the noise of each row
 

@@ -140,6 +140,7 @@ TEST(IntrinsicTVImages, OpponentAxesHaveTheirOwnWeight)
   const auto sphere = NoisyColors();
   auto filter = MakeFilter(sphere);
   filter->SetColorModelToOpponent();
+  filter->SetFidelityWeight(15.0);
   EXPECT_LE(Error(filter, 0.5, 2.5, "TVOpponent"), ImageTest::Tolerance);
   filter->SetChromaWeight(0.4);
   EXPECT_GT(Error(filter, 0.5, 2.5, "TVOpponent", "TVOpponentTwin"), ImageTest::Tolerance);
