@@ -1,6 +1,6 @@
 #!/bin/bash
-# Draws figures 4 to 8 of the paper, deblurring, edges, stripes and regions on scanned surfaces with
-# photographs and on cortices, and a minimal surface: installs the required packages (Debian 12),
+# Draws figures 4 to 8 of the paper, deblurring, colours, edges, stripes and regions on scanned surfaces
+# with photographs and on cortices, and a minimal surface: installs the required packages (Debian 12),
 # fetches the data, builds the library, draws into build/figures, and prints errors and run times.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -43,6 +43,8 @@ cd build/figures
 "${display[@]}" "$python" "$examples/paper_figures.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
   --photos "$photos" --output .
 "${display[@]}" "$python" "$examples/deblurring.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
+  --photos "$photos" --output .
+"${display[@]}" "$python" "$examples/colour_denoising.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
   --photos "$photos" --output .
 "${display[@]}" "$python" "$examples/deblurring_cortex.py" || [ $? -eq 77 ] # without wb_command
 "${display[@]}" "$python" "$examples/harmonic_map.py"

@@ -411,6 +411,9 @@ public:
    * ChromaticityBrightness. Range, noise level, energy and totals are those of linear light. Results
    * below 0 and above 255 become 0 and 255, also if OutputPrecision is Single or Double. Data of
    * other types are taken as they are, and so are all data with ColorModel RGB.
+   * Linear light is additive. But noise of equal strength in the bytes becomes strong in bright
+   * colours: on a photograph with white noise of 10 to 40 % in its bytes, all models restored the
+   * bytes by 1.8 to 4 CIEDE2000 better than linear light. Off takes the bytes as they are.
    */
   vtkSetMacro(LinearLight, bool);
   vtkGetMacro(LinearLight, bool);

@@ -107,7 +107,8 @@ def intrinsic_tv(
 
     The arguments are those of heat(). Useful properties: FidelityWeight (lambda, default 3; smaller
     removes more), AutomaticFidelity (default off), EdgeFunction (default "TotalVariation"),
-    FidelityNorm ("L2", or "L1" for salt-and-pepper noise), Mode ("TimeSteps" or "SteadyState").
+    FidelityNorm ("L2", or "L1" for salt-and-pepper noise), Mode ("TimeSteps" or "SteadyState"),
+    ColorModel ("RGB", or "Opponent" or "ChromaticityBrightness" for colours).
 
     The result is the array <array>TV, with the shape of the data.
     """

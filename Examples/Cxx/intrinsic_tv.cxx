@@ -13,8 +13,9 @@
 //     intrinsic_tv surface.vtp array      your own data; the result is written to intrinsic_tv.vtp
 //
 // Try next: SetFidelityWeight(6), which removes less; SetAutomaticFidelity(true), which chooses
-// lambda; SetFidelityNormToL1() with FidelityWeight 1.2, for salt-and-pepper noise; a mask as input
-// array 1, whose points are filled in.
+// lambda; SetColorModelToOpponent(), which smooths colour more than brightness;
+// SetFidelityNormToL1() with FidelityWeight 1.2, for salt-and-pepper noise; a mask as input array 1,
+// whose points are filled in.
 
 #include <vtkDataObject.h>
 #include <vtkIntrinsicTVFilter.h>

@@ -300,7 +300,8 @@ def intrinsic_tv(
     total variation, 1/sqrt(abs(grad u)^2 + beta). With ``mode="SteadyState"`` it minimises the
     energy, integral of abs(grad u) + lambda/2 chi (f - u)^2. With `blur_fwhm`, too, it restores data
     that were blurred on the surface: H u stands in place of u in the second term, where H is the
-    blur.
+    blur. `color_model` describes colours, three columns, by brightness and two axes of colour, or by
+    brightness and chromaticity; both restore colours whose hue is noisy better than the default.
 
     Parameters
     ----------

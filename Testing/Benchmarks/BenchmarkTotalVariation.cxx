@@ -6,13 +6,17 @@
 // and a step of the paper's scheme compared with a step of the heat equation with a new factor. The
 // counter Gap is the duality gap that was reached, Iterations the number of iterations. Deblurring
 // removes a blur of 4 mean edge lengths. The segmentation has two labels with the means 0 and 1.
+// DenoiseColors minimises over three channels on opponent axes, or alternates brightness and
+// chromaticity, to a tolerance of 1e-3.
 // ChannelStep is a lagged step of all channels together, of total variation or of the Beltrami flow.
 
 #include "Meshes.h"
 
 #include "Core/Models/BeltramiFlow.h"
+#include "Core/Models/ChromaticityBrightness.h"
 #include "Core/Models/LinearDiffusion.h"
 #include "Core/Models/NonlinearDiffusion.h"
+#include "Core/Models/OpponentColors.h"
 #include "Core/Models/Segmentation.h"
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Models/TotalVariationDeblurring.h"
@@ -84,6 +88,61 @@ void MinimizeToGap(benchmark::State& state)
 BENCHMARK(MinimizeToGap)
   ->ArgNames({ "s", "digits", "channels" })
   ->ArgsProduct({ { 6, 7 }, { 3, 5 }, { 1, 3 } })
+  ->Unit(benchmark::kMillisecond);
+
+/// Alternated steps of brightness and chromaticity, or the joint minimum on opponent axes.
+void DenoiseColors(benchmark::State& state)
+{
+  const NoisyPattern pattern(static_cast<int>(state.range(0)), 3);
+  const bool separates = state.range(1) != 0;
+  const double h = pattern.MeanEdge;
+  const double fidelity = 3.0 / h;
+  TotalVariationFlow::Settings flow;
+  flow.SteadyState = !separates;
+  flow.TimeStep = 1e3 * h;
+  flow.Fidelity = fidelity;
+  flow.StopTolerance = 1e-3;
+  flow.ConservesTotal = !separates;
+  const auto makeFlow = [&](PointData data)
+  {
+    return std::make_unique<TotalVariationFlow>(
+      pattern.Operators, TangentVectors(), std::move(data), flow);
+  };
+  const auto makeMap = [&](PointData data)
+  {
+    HarmonicMap::Settings map;
+    map.TimeStep = flow.TimeStep;
+    map.Fidelity = fidelity;
+    map.Beta = 1e-6 / (h * h);
+    map.Limits = { 1e-3, 1000 };
+    return std::make_unique<HarmonicMap>(pattern.Operators, CotanWeights(pattern.Operators->Mesh()),
+      std::move(data), map, MakeCholeskySolver());
+  };
+  StepReport report;
+  for (auto _ : state)
+  {
+    std::unique_ptr<Model> model;
+    if (separates)
+    {
+      ChromaticityBrightness::Settings settings;
+      settings.Fidelity = fidelity;
+      settings.SteadyState = true;
+      settings.StopTolerance = 1e-3;
+      model = std::make_unique<ChromaticityBrightness>(
+        pattern.Operators, pattern.Data, settings, makeFlow, makeMap);
+    }
+    else
+    {
+      flow.ChannelWeights = { 1.0, 0.2, 0.2 };
+      model = std::make_unique<OpponentColors>(pattern.Data, makeFlow);
+    }
+    report = model->Advance(ProgressMonitor());
+  }
+  state.counters["Iterations"] = report.Iterations;
+}
+BENCHMARK(DenoiseColors)
+  ->ArgNames({ "s", "chromaticity" })
+  ->ArgsProduct({ { 5, 6 }, { 0, 1 } })
   ->Unit(benchmark::kMillisecond);
 
 void SegmentToGap(benchmark::State& state)

@@ -108,3 +108,40 @@ TEST(IntrinsicTVImages, ChannelsAreDenoisedTogether)
   filter->SetChannelCouplingToPerChannel();
   EXPECT_GT(Error(filter, -1.0, 1.0, "TVColors", "TVColorsTwin"), ImageTest::Tolerance);
 }
+
+namespace
+{
+
+/// Positive colours in patches, with noise.
+vtkSmartPointer<vtkPolyData> NoisyColors()
+{
+  auto sphere = Sphere(5);
+  Noise noise;
+  AddPointArray(sphere, "f", 3,
+    [&](vtkIdType i, int k)
+    { return 1.5 + std::sin(1.3 * Patches(sphere->GetPoint(i)) + 2.0 * k) + noise(i, k); });
+  return sphere;
+}
+
+} // namespace
+
+TEST(IntrinsicTVImages, BrightnessAndChromaticityAreDenoised)
+{
+  const auto sphere = NoisyColors();
+  auto filter = MakeFilter(sphere);
+  filter->SetColorModelToChromaticityBrightness();
+  EXPECT_LE(Error(filter, 0.5, 2.5, "TVChromaticity"), ImageTest::Tolerance);
+  filter->SetChromaticityWeight(1.5);
+  EXPECT_GT(Error(filter, 0.5, 2.5, "TVChromaticity", "TVChromaticityTwin"), ImageTest::Tolerance);
+}
+
+TEST(IntrinsicTVImages, OpponentAxesHaveTheirOwnWeight)
+{
+  const auto sphere = NoisyColors();
+  auto filter = MakeFilter(sphere);
+  filter->SetColorModelToOpponent();
+  filter->SetFidelityWeight(15.0);
+  EXPECT_LE(Error(filter, 0.5, 2.5, "TVOpponent"), ImageTest::Tolerance);
+  filter->SetChromaWeight(0.4);
+  EXPECT_GT(Error(filter, 0.5, 2.5, "TVOpponent", "TVOpponentTwin"), ImageTest::Tolerance);
+}
