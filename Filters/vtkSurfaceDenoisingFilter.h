@@ -63,8 +63,8 @@ public:
   /**
    * How much noise is removed: the standard deviation of the displacement of the points along the
    * normal, in coordinate units. 0 or more. Default: 0, which means estimated. The estimate is the
-   * median distance of points from quadrics through their neighbours, over 0.6745, less 0.02 mean
-   * edge lengths, in squares, which surfaces without noise have; see GetEffectiveNoiseLevel().
+   * 0.3 quantile of the distances of points from quadrics through their neighbours, over 0.3853,
+   * less 0.03 mean edge lengths, in squares, which surfaces without noise have; see GetEffectiveNoiseLevel().
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);

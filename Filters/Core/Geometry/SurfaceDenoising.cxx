@@ -16,7 +16,7 @@ namespace
 /// The noise, in h, for which the fidelities of a scheme are meant.
 constexpr double ReferenceNoise = 0.3;
 /// The estimate, in h, on surfaces without noise that have details as small as their triangles.
-constexpr double DetailLevel = 0.02;
+constexpr double DetailLevel = 0.03;
 /// Noise below this, in h, is none: that of points in single precision.
 constexpr double SmallestNoise = 1e-4;
 /// AngleRatio below which a surface is sharp, after ProbeIterations for sharp surfaces.
@@ -53,7 +53,8 @@ double MeasureAngleRatio(const FaceGraph& graph, const Points& normals)
   {
     return 0.0;
   }
-  return MedianOf(differences) / std::sqrt(squares / static_cast<double>(differences.size()));
+  return QuantileOf(differences, 0.5) /
+    std::sqrt(squares / static_cast<double>(differences.size()));
 }
 
 /// The standard deviation of the displacements, by their median.

@@ -19,7 +19,7 @@ enum class SurfaceType
 struct DenoisingSettings
 {
   /// The standard deviation of the noise of the vertices along the normal, in the unit of the
-  /// points; 0: estimated (see EstimateVertexNoise()), less 0.02 mean edge lengths, in squares,
+  /// points; 0: estimated (see EstimateVertexNoise()), less 0.03 mean edge lengths, in squares,
   /// which surfaces without noise have.
   double NoiseLevel = 0.0;
   SurfaceType Type = SurfaceType::Automatic;

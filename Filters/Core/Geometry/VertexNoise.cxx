@@ -18,6 +18,10 @@ namespace
 constexpr std::size_t SmallestNeighbourhood = 9;
 constexpr double LargestLeverage = 2.0;
 constexpr double MedianOfNormalDistribution = 0.6745; ///< of |x| for the standard deviation 1
+/// The fraction of vertices that must be away from edges and without outliers, and the quantile of
+/// |x| for the standard deviation 1.
+constexpr double NoiseFraction = 0.3;
+constexpr double NoiseQuantile = 0.3853;
 
 using Quadric = Eigen::Matrix<double, 6, 1>;
 
@@ -101,20 +105,21 @@ double StandardizedDistance(
 
 } // namespace
 
-double MedianOf(std::vector<double>& values)
+double QuantileOf(std::vector<double>& values, double fraction)
 {
   if (values.empty())
   {
     return 0.0;
   }
-  const auto median = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), median, values.end());
-  return *median;
+  const double place = fraction * static_cast<double>(values.size());
+  const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), quantile, values.end());
+  return *quantile;
 }
 
 double MedianDeviation(std::vector<double>& absoluteValues)
 {
-  return MedianOf(absoluteValues) / MedianOfNormalDistribution;
+  return QuantileOf(absoluteValues, 0.5) / MedianOfNormalDistribution;
 }
 
 double EstimateVertexNoise(
@@ -137,7 +142,7 @@ double EstimateVertexNoise(
   distances.erase(std::remove_if(distances.begin(), distances.end(),
                     [](double distance) { return distance < 0.0; }),
     distances.end());
-  return MedianDeviation(distances);
+  return QuantileOf(distances, NoiseFraction) / NoiseQuantile;
 }
 
 } // namespace SurfaceDiffusion

@@ -9,8 +9,8 @@
 namespace SurfaceDiffusion
 {
 
-/// The upper median, 0 without values; reorders them.
-double MedianOf(std::vector<double>& values);
+/// The value below which this fraction of them, below 1, is; 0 without values. Reorders them.
+double QuantileOf(std::vector<double>& values, double fraction);
 
 /// The standard deviation of a normal distribution of mean 0 whose absolute values have this
 /// median.
@@ -21,9 +21,9 @@ double MedianDeviation(std::vector<double>& absoluteValues);
 ///
 /// A quadric z = a + b s + c t + d s^2 + e s t + f t^2 is fitted to the neighbours of each vertex
 /// and their neighbours, without the vertex itself. The distance of the vertex from it has the
-/// variance sigma^2 (1 + l), where l is the leverage of the fit. sigma is the median of the
-/// absolute standardised distances over 0.6745, so that edges and corners of the surface, and
-/// impulsive noise at less than half of the vertices, hardly matter. Vertices with fewer than nine
+/// variance sigma^2 (1 + l), where l is the leverage of the fit. sigma is the 0.3 quantile of the
+/// absolute standardised distances over 0.3853, so that edges and corners of the surface, and
+/// outliers, hardly matter as long as they are near to less than 70 % of the vertices. Vertices with fewer than nine
 /// such neighbours, or with l > 2, are left out. Returns 0 if none is left.
 ///
 /// points: per vertex of the mesh.
