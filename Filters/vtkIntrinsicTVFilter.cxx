@@ -26,6 +26,10 @@ SURFACEDIFFUSION_MIRROR(Self::FIDELITY_NORM_L2, FidelityNorm::L2);
 SURFACEDIFFUSION_MIRROR(Self::FIDELITY_NORM_L1, FidelityNorm::L1);
 SURFACEDIFFUSION_MIRROR(Self::DISCRETIZATION_LINEAR, Discretization::Linear);
 SURFACEDIFFUSION_MIRROR(Self::DISCRETIZATION_CROUZEIX_RAVIART, Discretization::CrouzeixRaviart);
+SURFACEDIFFUSION_MIRROR(Self::COLOR_MODEL_RGB, ColorModel::RGB);
+SURFACEDIFFUSION_MIRROR(Self::COLOR_MODEL_OPPONENT, ColorModel::Opponent);
+SURFACEDIFFUSION_MIRROR(
+  Self::COLOR_MODEL_CHROMATICITY_BRIGHTNESS, ColorModel::ChromaticityBrightness);
 
 vtkIntrinsicTVFilter::vtkIntrinsicTVFilter()
 {
@@ -63,6 +67,11 @@ const char* vtkIntrinsicTVFilter::GetDiscretizationAsString()
   return this->FindSettingWord("Discretization");
 }
 
+const char* vtkIntrinsicTVFilter::GetColorModelAsString()
+{
+  return this->FindSettingWord("ColorModel");
+}
+
 void vtkIntrinsicTVFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
@@ -73,6 +82,7 @@ void vtkIntrinsicTVFilter::UsePaperScheme()
   this->SetFidelityNormToL2();
   this->SetAutomaticFidelity(false);
   this->SetDiscretizationToLinear();
+  this->SetColorModelToRGB();
 }
 
 std::unique_ptr<RunSettings> vtkIntrinsicTVFilter::MakeSettings() const
@@ -92,6 +102,11 @@ std::unique_ptr<RunSettings> vtkIntrinsicTVFilter::MakeSettings() const
   settings->Blur.Steps = this->BlurSteps;
   settings->Discretization = static_cast<SurfaceDiffusion::Discretization>(this->Discretization);
   settings->StopTolerance = this->StopTolerance;
+  settings->Color.Model = static_cast<SurfaceDiffusion::ColorModel>(this->ColorModel);
+  settings->Color.ChromaWeight = this->ChromaWeight;
+  settings->Color.ChromaticityExponent = this->ChromaticityExponent;
+  settings->Color.ChromaticityWeight = this->ChromaticityWeight;
+  settings->Color.LinearLight = this->LinearLight;
   return settings;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkIntrinsicTVFilter
- * @brief   edge-preserving denoising and inpainting of point data on a surface
+ * @brief   edge-preserving denoising and inpainting of data on a surface
  *
  * Solves nonlinear diffusion on a triangulated surface, by default total variation flow,
  *
@@ -17,7 +17,7 @@
  * variation with g(s) = 1/sqrt(s^2 + beta), the default, (4) anisotropic diffusion with g1 and g2
  * functions of |grad u|, (17) denoising (lambda > 0) and (19) inpainting (missing data). The
  * gradient norm of colours combines their channels (ChannelCoupling), so that edges have the same
- * place in all of them.
+ * place in all of them. ColorModel describes colours by other unknowns than their components.
  *
  * **Units.** Let h be the mean edge length and R the range of the values. The natural unit of time
  * T is h R with EdgeFunction TotalVariation, whose speed depends on the height of the data: a step
@@ -330,13 +330,100 @@ public:
   vtkGetMacro(BlurSteps, int);
   ///@}
 
+  enum ColorModelType
+  {
+    COLOR_MODEL_RGB = 0,
+    COLOR_MODEL_OPPONENT = 1,
+    COLOR_MODEL_CHROMATICITY_BRIGHTNESS = 2
+  };
+
+  ///@{
+  /**
+   * The unknowns that colours, data of three components, are described by. Models other than RGB
+   * need FidelityNorm L2, and no BlurFWHM; with other numbers of components they are an error.
+   *
+   * RGB (default): the components of the data.
+   *
+   * Opponent: the components along the orthonormal axes (1, 1, 1)/sqrt(3) of brightness and
+   * (1, -1, 0)/sqrt(2), (1, 1, -2)/sqrt(6) of colour (J. van de Weijer, T. Gevers, A. Bagdanov, IEEE
+   * PAMI 28(1), 2006). lambda is ChromaWeight times FidelityWeight on the axes of colour. With
+   * ChromaWeight 1 and ChannelCoupling Joint the result is that of RGB.
+   *
+   * ChromaticityBrightness: u = B C with the brightness B = |u| and the chromaticity C, a unit
+   * vector (T. Chan, S. Kang, J. Shen, J. Vis. Commun. Image Represent. 12, 2001; B. Tang, G. Sapiro,
+   * V. Caselles, IEEE Trans. Image Process. 10, 2001), by the flow of
+   *
+   *     int psi(|grad B|) + mu/p int |grad C|^p + lambda/2 int chi |B C - f|^2,
+   *
+   * with p = ChromaticityExponent and mu = ChromaticityWeight. EdgeFunction acts on B. C is a
+   * p-harmonic map into the unit sphere (vtkHarmonicMapFilter) with beta = Beta in 1/h^2. The
+   * fidelity binds C by lambda B |f|, so that the hue of dark points, which is mostly noise, has
+   * little weight; that of black points is missing, and continued from around them. A time step moves
+   * B and then C, for fixed values of the other, in the metric |dB|^2 + R^2 |dC|^2; the energy never
+   * grows. SteadyState alternates long steps until one decreases the energy by less than
+   * StopTolerance of it; the column `Residual` is then this decrease. The energy is not convex, and
+   * the result is a stationary point. Sums of A_i u_i are not conserved, and ErrorBound is left out.
+   */
+  vtkSetMacro(ColorModel, int);
+  vtkGetMacro(ColorModel, int);
+  void SetColorModelToRGB() { this->SetColorModel(COLOR_MODEL_RGB); }
+  void SetColorModelToOpponent() { this->SetColorModel(COLOR_MODEL_OPPONENT); }
+  void SetColorModelToChromaticityBrightness()
+  {
+    this->SetColorModel(COLOR_MODEL_CHROMATICITY_BRIGHTNESS);
+  }
+  const char* GetColorModelAsString();
+  ///@}
+
+  ///@{
+  /**
+   * The factor of FidelityWeight on the two axes of colour of ColorModel Opponent. Below 1, colour
+   * is smoothed more than brightness. Above 0. Default: 0.2, which was best on photographs with
+   * white noise.
+   */
+  vtkSetMacro(ChromaWeight, double);
+  vtkGetMacro(ChromaWeight, double);
+  ///@}
+
+  ///@{
+  /**
+   * p of ColorModel ChromaticityBrightness, from 1 to 2: 1 (default) keeps edges of hue, 2 smooths
+   * evenly.
+   */
+  vtkSetMacro(ChromaticityExponent, double);
+  vtkGetMacro(ChromaticityExponent, double);
+  ///@}
+
+  ///@{
+  /**
+   * mu of ColorModel ChromaticityBrightness, the weight of the smoothness of C beside that of B. In
+   * R h^(p-1) with EdgeFunction TotalVariation, which is R for p = 1, and in R^2 h^(p-2) with others.
+   * Above 0. Default: 1.
+   */
+  vtkSetMacro(ChromaticityWeight, double);
+  vtkGetMacro(ChromaticityWeight, double);
+  ///@}
+
+  ///@{
+  /**
+   * On (default): unsigned char colours are decoded from sRGB (IEC 61966-2-1) to linear light, on the
+   * same scale from 0 to 255, and the result is encoded, with ColorModel Opponent and
+   * ChromaticityBrightness. Range, noise level, energy and totals are those of linear light. Results
+   * below 0 and above 255 become 0 and 255, also if OutputPrecision is Single or Double. Data of
+   * other types are taken as they are, and so are all data with ColorModel RGB.
+   */
+  vtkSetMacro(LinearLight, bool);
+  vtkGetMacro(LinearLight, bool);
+  vtkBooleanMacro(LinearLight, bool);
+  ///@}
+
   /// Set TimeIntegrator to Implicit, see the class comment.
   void SetTimeIntegratorToImplicit() { this->SetTimeIntegrator(TIME_INTEGRATOR_IMPLICIT); }
 
   /**
    * In addition to the superclass: Mode TimeSteps, EdgeFunction TotalVariation, AcrossEdgeFunction
    * Same, ChannelCoupling PerChannel, FidelityNorm L2, AutomaticFidelity off, Discretization
-   * Linear.
+   * Linear, ColorModel RGB.
    */
   void UsePaperScheme() override;
 
@@ -361,6 +448,11 @@ protected:
   double EffectiveFidelityWeight = 0.0;
   double BlurFWHM = 0.0;
   int BlurSteps = 4;
+  int ColorModel = COLOR_MODEL_RGB;
+  double ChromaWeight = 0.2;
+  double ChromaticityExponent = 1.0;
+  double ChromaticityWeight = 1.0;
+  bool LinearLight = true;
   int Discretization = DISCRETIZATION_LINEAR;
   double StopTolerance = 1e-4;
 

@@ -240,6 +240,10 @@ int vtkSurfaceFilter::RequestData(
   {
     UpdateOfPieces(this, processes, pieces, this->SeamTolerance, this->Private->Gathered,
       [&](const std::vector<SurfacePiece>& surfaces) { this->ProcessGuarded(toBlocks(surfaces)); });
+    for (const SurfaceBlock& piece : toBlocks(pieces))
+    {
+      this->CompletePiece(piece);
+    }
   }
   this->ShareReported();
   if (this->GetReleaseDataFlag() != 0 || vtkDataObject::GetGlobalReleaseDataFlag() != 0)
@@ -302,6 +306,8 @@ void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
     this->ReportError(failure);
   }
 }
+
+void vtkSurfaceFilter::CompletePiece(const SurfaceBlock&) {}
 
 void vtkSurfaceFilter::VisitReported(const std::function<void(double&)>& visit)
 {

@@ -149,6 +149,10 @@ protected:
   virtual bool SolvesInPieces(
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points);
 
+  /// Complete the results of a piece of a surface that process 0 has computed: cells that take no
+  /// part are not gathered. The default does nothing.
+  virtual void CompletePiece(const SurfaceBlock& piece);
+
   /// Visit the read-only values, which process 0 shares with all. Superclass first.
   virtual void VisitReported(const std::function<void(double&)>& visit);
 

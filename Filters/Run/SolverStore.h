@@ -23,7 +23,8 @@ enum class SolverPurpose
   Fill, ///< the harmonic start on missing vertices
   Blur, ///< the blur that is removed
   Edges, ///< v of the Mumford-Shah model
-  Structure ///< the integration of structure tensors
+  Structure, ///< the integration of structure tensors
+  Chromaticity ///< C of the chromaticity-brightness model
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -72,7 +73,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 7> Solvers;
+  std::array<Kept, 8> Solvers;
 };
 
 } // namespace SurfaceDiffusion

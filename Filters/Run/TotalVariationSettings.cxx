@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/TotalVariationSettings.h"
 
-#include "Core/Models/CrouzeixRaviart.h"
-#include "Core/Models/NonlinearDiffusion.h"
-#include "Core/Models/TotalVariationDeblurring.h"
-#include "Core/Models/TotalVariationFlow.h"
 #include "Run/DataPreparation.h"
-#include "Run/ModelInputs.h"
+#include "Run/TotalVariationModels.h"
 
 #include <algorithm>
 #include <sstream>
@@ -17,15 +13,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-/// L1 fidelity of the lagged scheme is rounded below this distance, in R.
-constexpr double L1Rounding = 1e-3;
-
-/// The smallest duality gap of the minimisers that the search for lambda computes.
-constexpr double SearchTolerance = 1e-3;
-
-/// The gradient at which the diffusivity is judged for the choice of a solver, in R/h.
-constexpr double TypicalGradient = 0.01;
 
 std::vector<const char*> WordsOfEdgeFunctions()
 {
@@ -45,182 +32,6 @@ EdgeFunctionProperties PropertiesOf(EdgeFunctionKind kind)
   const bool known = number >= 0 && number < NumberOfEdgeFunctions;
   return GetEdgeFunction(known ? kind : EdgeFunctionKind::TotalVariation);
 }
-
-/// Makes the models that the settings ask for.
-class ModelMaker
-{
-public:
-  ModelMaker(const TotalVariationSettings& options, ModelInputs& inputs)
-    : Options(options)
-    , Inputs(inputs)
-    , Units(inputs.Units)
-    , Time(options.DescribeModel().Time)
-  {
-  }
-
-  /// One unit of FidelityWeight in units of the numerics.
-  double FidelityUnit() const
-  {
-    const double l1 = this->Options.FidelityNorm == FidelityNorm::L1 ? 1.0 : 0.0;
-    return this->Units.ToCore(1.0, -this->Time.Length, l1 - this->Time.Value);
-  }
-
-  /// The lambda of AutomaticFidelity, in units of the numerics: that of the model and steps of the
-  /// run itself.
-  double FindFidelityWeight(RunResult& result) const
-  {
-    const double h = this->Units.CoreEdgeLength();
-    const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
-    const double start = 1.0 / (h * (dimensionless ? h : this->Units.CoreValueRange()));
-    const double tolerance = std::max(SearchTolerance, this->Options.StopTolerance);
-    const auto blur =
-      this->Options.Blur.IsOn() ? this->Options.Blur.Make(this->Inputs, {}) : nullptr;
-    return FindFidelity(
-      this->Inputs, this->Options.NoiseLevel, start, this->Options.DescribeModel().NumberOfSteps,
-      [&](double fidelity) { return this->Make(this->Inputs.Data, fidelity, tolerance); }, result,
-      blur.get());
-  }
-
-  /// Prepares the edges for CrouzeixRaviart. This takes seconds for a million vertices. In the
-  /// background it does not delay an abort.
-  void MakeEdges()
-  {
-    const auto edges = std::make_shared<EdgeUnknowns>();
-    RunInBackground(
-      [edges, mesh = this->Inputs.Surface.SharedMesh(), &parallel = this->Inputs.Parallel]
-      {
-        edges->Mesh = std::make_shared<MedialMesh>(*mesh);
-        edges->Operators = std::make_shared<Assembler>(edges->Mesh->Edges(), parallel);
-      },
-      this->Inputs.Progress.Part(0.1, 0.5));
-    this->Edges = edges;
-  }
-
-  /// The model of the settings, with its steady states and implicit steps to the tolerance.
-  std::unique_ptr<Model> Make(PointData data, double fidelity, double tolerance) const
-  {
-    if (!this->Edges)
-    {
-      return this->MakeOn(
-        this->Inputs.Surface.SharedAssembler(), std::move(data), fidelity, tolerance);
-    }
-    TotalCorrection conserved;
-    if (this->Options.FidelityNorm == FidelityNorm::L2 || fidelity == 0.0)
-    {
-      conserved =
-        TotalCorrection(this->Inputs.Surface.Mesh(), data, fidelity > 0.0, this->Inputs.Parallel);
-    }
-    return std::make_unique<CrouzeixRaviartModel>(
-      this->Inputs.Surface.SharedAssembler(), this->Edges->Mesh, std::move(data),
-      std::move(conserved),
-      [&](PointData onEdges)
-      { return this->MakeOn(this->Edges->Operators, std::move(onEdges), fidelity, tolerance); },
-      this->Inputs.Parallel);
-  }
-
-private:
-  struct EdgeUnknowns
-  {
-    std::shared_ptr<const MedialMesh> Mesh;
-    std::shared_ptr<const Assembler> Operators;
-  };
-
-  /// The model on the mesh of the assembler.
-  std::unique_ptr<Model> MakeOn(std::shared_ptr<const Assembler> assembler, PointData data,
-    double fidelity, double tolerance) const
-  {
-    return this->Options.Minimizes()
-      ? this->MakeMinimizing(std::move(assembler), std::move(data), fidelity,
-          this->Options.Mode == TotalVariationMode::SteadyState, tolerance)
-      : this->MakeLagged(std::move(assembler), std::move(data), fidelity);
-  }
-
-  std::unique_ptr<Model> MakeMinimizing(std::shared_ptr<const Assembler> assembler, PointData data,
-    double fidelity, bool steady, double tolerance) const
-  {
-    TotalVariationFlow::Settings settings;
-    settings.SteadyState = steady;
-    settings.TimeStep = this->Units.ToCore(this->Options.TimeStep, this->Time);
-    settings.Fidelity = fidelity;
-    settings.Function = this->MakeEdgeFunction(this->Options.EdgeFunction);
-    settings.AlongDiffusivity = this->Options.AlongDiffusivity;
-    settings.AcrossDiffusivity = this->Options.AcrossDiffusivity;
-    settings.Coupling = this->Options.ChannelCoupling;
-    settings.Norm = this->Options.FidelityNorm;
-    settings.StopTolerance = tolerance;
-    if (this->Options.Blur.IsOn() && fidelity > 0.0)
-    {
-      TotalVariationDeblurring::Settings deblurring;
-      deblurring.Regularization = settings;
-      deblurring.Fidelity = fidelity;
-      deblurring.StopTolerance = tolerance;
-      return std::make_unique<TotalVariationDeblurring>(std::move(assembler), this->Directions(),
-        std::move(data), deblurring, this->Options.Blur.Make(this->Inputs, {}),
-        this->Inputs.Parallel);
-    }
-    return std::make_unique<TotalVariationFlow>(
-      std::move(assembler), this->Directions(), std::move(data), settings, this->Inputs.Parallel);
-  }
-
-  std::unique_ptr<Model> MakeLagged(
-    std::shared_ptr<const Assembler> assembler, PointData data, double fidelity) const
-  {
-    NonlinearDiffusion::Settings settings;
-    settings.TimeStep = this->Units.ToCore(this->Options.TimeStep, this->Time);
-    settings.Fidelity = fidelity;
-    settings.Along = this->MakeEdgeFunction(this->Options.EdgeFunction);
-    settings.Across = settings.Along;
-    settings.AlongDiffusivity = this->Options.AlongDiffusivity;
-    settings.AcrossDiffusivity = this->Options.AcrossDiffusivity;
-    if (this->Options.AcrossEdgeFunction != 0)
-    {
-      const auto across = static_cast<EdgeFunctionKind>(this->Options.AcrossEdgeFunction - 1);
-      settings.Across = this->MakeEdgeFunction(across);
-      // In natural units g2 is a formula in x/h and u/R, independent of the dimension of time.
-      const auto power = [](EdgeFunctionKind kind)
-      { return GetEdgeFunction(kind).Dimensionless ? 0.0 : 1.0; };
-      const double difference = power(this->Options.EdgeFunction) - power(across);
-      settings.AcrossDiffusivity *= this->Units.ToCore(1.0, difference, -difference);
-    }
-    settings.Coupling = this->Options.ChannelCoupling;
-    settings.Norm = this->Options.FidelityNorm;
-    settings.FidelityRounding = L1Rounding * this->Units.CoreValueRange();
-
-    const double h = this->Units.CoreEdgeLength();
-    const double gradient = TypicalGradient * this->Units.CoreValueRange() / h;
-    const double along = settings.AlongDiffusivity * settings.Along(gradient * gradient);
-    const double across = settings.AcrossDiffusivity * settings.Across(gradient * gradient);
-    SolverTask task;
-    task.NumberOfVertices = assembler->Mesh().NumberOfVertices();
-    task.AllowMultigrid = false;
-    task.DiffusionNumber = settings.TimeStep * std::max(along, across) / (h * h);
-    return std::make_unique<NonlinearDiffusion>(std::move(assembler), this->Directions(),
-      std::move(data), settings, this->Inputs.Solvers.Find(SolverPurpose::Step, task),
-      this->Inputs.Parallel);
-  }
-
-  EdgeFunction MakeEdgeFunction(EdgeFunctionKind kind) const
-  {
-    EdgeFunction function;
-    function.Kind = kind;
-    function.Beta = this->Units.ToCore(this->Options.Beta, -2.0, 2.0);
-    function.Threshold = this->Units.ToCore(this->Options.EdgeThreshold, -1.0, 1.0);
-    return function;
-  }
-
-  /// e1 if g1 and g2 differ, no row otherwise.
-  TangentVectors Directions() const
-  {
-    return this->Options.DescribeModel().NeedsDirections ? this->Inputs.Directions
-                                                         : TangentVectors(0, 2);
-  }
-
-  const TotalVariationSettings& Options;
-  ModelInputs& Inputs;
-  const UnitSystem& Units;
-  const Dimension Time;
-  std::shared_ptr<const EdgeUnknowns> Edges; ///< of CrouzeixRaviart
-};
 
 } // namespace
 
@@ -255,12 +66,14 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "change of an iteration in the range of the data." },
     this->StopTolerance, SettingRange::OpenUnitInterval());
   this->Blur.Visit(visitor);
+  this->Color.Visit(visitor);
 }
 
 void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->DataSettings::CheckTogether(fields, problems);
   this->CheckBlur(problems);
+  this->CheckColorModel(fields, problems);
   if (this->Mode == TotalVariationMode::SteadyState)
   {
     this->RequireConvexEnergy("Mode SteadyState", problems);
@@ -294,6 +107,27 @@ void TotalVariationSettings::CheckBlur(Problems& problems) const
       static_cast<double>(this->FidelityNorm), "0 L2 together with BlurFWHM", problems);
     Require(this->Discretization == SurfaceDiffusion::Discretization::Linear, "Discretization",
       static_cast<double>(this->Discretization), "0 Linear together with BlurFWHM", problems);
+    Require(this->Color.IsRGB(), "ColorModel", static_cast<double>(this->Color.Model),
+      "0 RGB together with BlurFWHM", problems);
+  }
+}
+
+void TotalVariationSettings::CheckColorModel(const FieldSummary* fields, Problems& problems) const
+{
+  if (this->Color.IsRGB())
+  {
+    return;
+  }
+  Require(this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L2, "FidelityNorm",
+    static_cast<double>(this->FidelityNorm), "0 L2 together with a ColorModel other than RGB",
+    problems);
+  if (fields && fields->Data && fields->DataComponents != 3)
+  {
+    std::ostringstream text;
+    text << "ColorModel is " << static_cast<int>(this->Color.Model) << " but InputArray has "
+         << fields->DataComponents
+         << " components; allowed: 0 RGB, or an array of 3 components (alpha not counted)";
+    problems.push_back(text.str());
   }
 }
 
@@ -327,7 +161,9 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
   traits.CanBeDistributed = !this->AutomaticFidelity &&
     this->Discretization == SurfaceDiffusion::Discretization::Linear && !this->Blur.IsOn();
+  traits.UsesLinearLight = this->Color.UsesLinearLight();
   traits.BoundsError = this->Minimizes() && !this->Blur.IsOn() &&
+    this->Color.Model != ColorModel::ChromaticityBrightness &&
     !(this->Mode == TotalVariationMode::SteadyState &&
       (this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L1 || !traits.UsesFidelity));
   DescribeData(*this, traits);
@@ -338,7 +174,7 @@ ModelTraits TotalVariationSettings::DescribeModel() const
 std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
-  ModelMaker maker(*this, inputs);
+  TotalVariationModels maker(*this, inputs);
   if (this->Blur.IsOn())
   {
     this->Blur.Warn(inputs, result);
@@ -353,6 +189,17 @@ std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResu
   return maker.Make(std::move(inputs.Data), fidelity, this->StopTolerance);
 }
 
+const char* TotalVariationSettings::NameOfResidual() const
+{
+  if (this->Blur.IsOn())
+  {
+    return "relative change";
+  }
+  const bool alternates = this->Color.Model == ColorModel::ChromaticityBrightness &&
+    this->Mode == TotalVariationMode::SteadyState;
+  return alternates ? "relative decrease of the energy" : "relative duality gap";
+}
+
 void TotalVariationSettings::Finish(const RunState& state, RunResult& result) const
 {
   double gap = 0.0;
@@ -365,8 +212,7 @@ void TotalVariationSettings::Finish(const RunState& state, RunResult& result) co
     result.HasUnfinishedMinimum = true; // reported once, not at every requested time
     std::ostringstream text;
     text << "the minimisation ended at its largest number of iterations with a "
-         << (this->Blur.IsOn() ? "relative change" : "relative duality gap") << " of " << gap
-         << ", above StopTolerance";
+         << this->NameOfResidual() << " of " << gap << ", above StopTolerance";
     result.Warnings.push_back(text.str());
   }
 }

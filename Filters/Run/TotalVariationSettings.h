@@ -5,6 +5,7 @@
 #include "Core/Models/EdgeFunctions.h"
 #include "Core/Models/Fidelity.h"
 #include "Run/BlurSettings.h"
+#include "Run/ColorSettings.h"
 #include "Run/RunSettings.h"
 
 namespace SurfaceDiffusion
@@ -38,6 +39,7 @@ struct TotalVariationSettings : DataSettings
   SurfaceDiffusion::Discretization Discretization = SurfaceDiffusion::Discretization::Linear;
   double StopTolerance = 1e-4;
   BlurSettings Blur;
+  ColorSettings Color;
 
   TotalVariationSettings()
   {
@@ -63,7 +65,9 @@ protected:
 
 private:
   void CheckBlur(Problems& problems) const;
+  void CheckColorModel(const FieldSummary* fields, Problems& problems) const;
   void RequireConvexEnergy(const char* purpose, Problems& problems) const;
+  const char* NameOfResidual() const;
 };
 
 } // namespace SurfaceDiffusion

@@ -33,6 +33,11 @@ TEST(IntrinsicTVFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetDiscretization(), Filter::DISCRETIZATION_LINEAR);
   EXPECT_EQ(filter->GetStopTolerance(), 1e-4);
   EXPECT_EQ(filter->GetTolerance(), 1e-3);
+  EXPECT_EQ(filter->GetColorModel(), Filter::COLOR_MODEL_RGB);
+  EXPECT_EQ(filter->GetChromaWeight(), 0.2);
+  EXPECT_EQ(filter->GetChromaticityExponent(), 1.0);
+  EXPECT_EQ(filter->GetChromaticityWeight(), 1.0);
+  EXPECT_TRUE(filter->GetLinearLight());
 }
 
 TEST(IntrinsicTVFilter, EnumsAreNumberedInOrderAndHaveTexts)
@@ -97,6 +102,14 @@ TEST(IntrinsicTVFilter, EnumsAreNumberedInOrderAndHaveTexts)
   space(1, "CrouzeixRaviart");
   filter->SetDiscretizationToLinear();
   space(0, "Linear");
+  const auto color = [&](int v, const char* t)
+  { expect(filter->GetColorModel(), filter->GetColorModelAsString(), v, t); };
+  filter->SetColorModelToOpponent();
+  color(1, "Opponent");
+  filter->SetColorModelToChromaticityBrightness();
+  color(2, "ChromaticityBrightness");
+  filter->SetColorModelToRGB();
+  color(0, "RGB");
   const auto time = [&](int v, const char* t)
   { expect(filter->GetTimeIntegrator(), filter->GetTimeIntegratorAsString(), v, t); };
   filter->SetTimeIntegratorToImplicit();
@@ -114,7 +127,8 @@ TEST(IntrinsicTVFilter, PrintSelfNamesEveryProperty)
   for (const char* property :
     { "TimeStep", "FidelityWeight", "Mode", "EdgeFunction", "AcrossEdgeFunction", "Beta",
       "EdgeThreshold", "ChannelCoupling", "FidelityNorm", "AutomaticFidelity", "NoiseLevel",
-      "EffectiveFidelityWeight", "Discretization", "StopTolerance", "BlurFWHM", "BlurSteps" })
+      "EffectiveFidelityWeight", "Discretization", "StopTolerance", "BlurFWHM", "BlurSteps",
+      "ColorModel", "ChromaWeight", "ChromaticityExponent", "ChromaticityWeight", "LinearLight" })
   {
     EXPECT_NE(text.str().find(std::string(property) + ": "), std::string::npos) << property;
   }
@@ -130,6 +144,7 @@ TEST(IntrinsicTVFilter, UsePaperSchemeSetsThePapersReadingAndNothingElse)
   filter->SetFidelityNormToL1();
   filter->AutomaticFidelityOn();
   filter->SetDiscretizationToCrouzeixRaviart();
+  filter->SetColorModelToOpponent();
   filter->SetMaskModeToExclude();
   filter->SetFidelityWeight(7.0);
   filter->SetBeta(0.25);
@@ -143,6 +158,7 @@ TEST(IntrinsicTVFilter, UsePaperSchemeSetsThePapersReadingAndNothingElse)
   EXPECT_STREQ(filter->GetFidelityNormAsString(), "L2");
   EXPECT_FALSE(filter->GetAutomaticFidelity());
   EXPECT_STREQ(filter->GetDiscretizationAsString(), "Linear");
+  EXPECT_STREQ(filter->GetColorModelAsString(), "RGB");
   EXPECT_STREQ(filter->GetMaskModeAsString(), "Inpaint");
   EXPECT_STREQ(filter->GetInitialFillAsString(), "Input");
   EXPECT_EQ(filter->GetFidelityWeight(), 7.0);

@@ -12,8 +12,8 @@ import pieces
 import surfacediffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
-    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDirectionFieldFilter,
-    SurfaceSegmentationFilter, TensorDiffusionFilter,
+    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDenoisingFilter,
+    SurfaceDirectionFieldFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
     TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -42,6 +42,12 @@ CASES = (
     ("tv", IntrinsicTVFilter, dict(Tolerance=1e-10), "fTV"),
     ("tv, colours", IntrinsicTVFilter,
      dict(InputArray=["POINTS", "colors"], OutputPrecision="Double", Tolerance=1e-10), "colorsTV"),
+    ("tv, opponent colours", IntrinsicTVFilter,
+     dict(InputArray=["POINTS", "colors"], OutputPrecision="Double", Tolerance=1e-10,
+          ColorModel="Opponent"), "colorsTV"),
+    ("tv, chromaticity", IntrinsicTVFilter,
+     dict(InputArray=["POINTS", "colors"], OutputPrecision="Double", Tolerance=1e-10,
+          ColorModel="ChromaticityBrightness"), "colorsTV"),
     ("tv, minimum", IntrinsicTVFilter, dict(Mode="SteadyState", FidelityWeight=0.3, StopTolerance=1e-6), "fTV"),
     ("harmonic, normals", HarmonicMapFilter, {}, "NormalsHarmonic"),
     ("harmonic, p = 2", HarmonicMapFilter,
@@ -68,6 +74,7 @@ CASES = (
     ("turing, along, colours", TuringTextureFilter,
      dict(DirectionArray=["CELLS", "around"], DiffusionRateAcross1=5.0, ColorOutput=1, **LABYRINTH),
      "TextureColor"),
+    ("denoising", SurfaceDenoisingFilter, {}, "Displacement"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
@@ -184,7 +191,7 @@ class TestPieces(unittest.TestCase):
             worst = largest_of_all(worst)
             LARGEST[partition, name] = worst
             self.assertLessEqual(worst, TOLERANCE.get(name, 1e-9), "%s, %s" % (partition, name))
-            if make is not SurfaceDirectionFieldFilter:
+            if make not in (SurfaceDenoisingFilter, SurfaceDirectionFieldFilter):
                 rows = algorithm.GetOutputDataObject(1).GetNumberOfRows()
                 self.assertEqual(rows > 0, RANK == 0, "history of " + name)
 

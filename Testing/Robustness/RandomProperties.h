@@ -9,6 +9,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -173,6 +174,8 @@ List OfDataDiffusion(int timeIntegrators)
          RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)),
          RANDOM_PROPERTY(F, InitialFill, Choice(dice, 4)),
          RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
+         RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
+         RANDOM_PROPERTY(F, KeepCellDetail, dice.Flip()),
          RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
          RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
        })
@@ -203,6 +206,7 @@ inline List OfSegmentation()
     RANDOM_PROPERTY(F, AutomaticFidelity, dice.Flip(2)),
     RANDOM_PROPERTY(F, FidelityWeight, Positive(dice)),
     RANDOM_PROPERTY(F, AutomaticMeans, !dice.Flip(12)),
+    RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-4, 0.5)),
     { "Mean",
       [](vtkPolyDataAlgorithm* filter, Dice& dice) {
@@ -256,6 +260,11 @@ inline List OfTotalVariation()
     RANDOM_PROPERTY(F, BlurSteps, dice.Flip(24) ? 1 : 2 + dice.Below(5)),
     RANDOM_PROPERTY(F, Discretization, dice.Flip(3)),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 1.0 : dice.Logarithmic(1e-6, 0.5)),
+    RANDOM_PROPERTY(F, ColorModel, dice.Flip() ? 0 : Choice(dice, 3)),
+    RANDOM_PROPERTY(F, ChromaWeight, Positive(dice)),
+    RANDOM_PROPERTY(F, ChromaticityExponent, dice.Flip() ? 1.0 : 1.0 + dice.Unit()),
+    RANDOM_PROPERTY(F, ChromaticityWeight, Positive(dice)),
+    RANDOM_PROPERTY(F, LinearLight, dice.Flip()),
   };
 }
 
@@ -349,6 +358,15 @@ inline List OfDirectionField()
   };
 }
 
+inline List OfDenoising()
+{
+  using F = vtkSurfaceDenoisingFilter;
+  return {
+    RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, SurfaceType, Choice(dice, 3)),
+  };
+}
+
 #undef RANDOM_PROPERTY
 
 template <typename F>
@@ -384,6 +402,7 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
     MakeClass<Tensor>({ OfSurface<Tensor>(), OfDataDiffusion<Tensor>(0b001), OfTensorDiffusion() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
+    MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),
       OfDiffusion<vtkSurfaceSegmentationFilter>(0b001), OfSegmentation() }),

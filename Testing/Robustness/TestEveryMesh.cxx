@@ -129,6 +129,7 @@ vtkSmartPointer<vtkPolyData> MakeSurface(const Case& c)
   }
   AddPointArray(surface, "f", 1, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
   surface->GetPointData()->SetActiveScalars("f");
+  AddRoughCells(surface);
   return surface;
 }
 
@@ -198,6 +199,18 @@ TEST_P(EveryMesh, IsDenoisedByTotalVariation)
     SetSteps(tv, 2);
     tv->SetFidelityWeight(fidelity);
     this->Run(tv, "fTV");
+  }
+}
+
+TEST_P(EveryMesh, HasItsCellDataDiffused)
+{
+  for (const bool detail : { true, false })
+  {
+    vtkNew<vtkFVMHeatFilter> heat;
+    SetSteps(heat, 2);
+    SetInputArray(heat, 0, "c", true);
+    heat->SetKeepCellDetail(detail);
+    this->Run(heat, "cDiffused");
   }
 }
 

@@ -74,6 +74,9 @@ vtkSmartPointer<vtkPolyData> PatchedEllipsoid()
   }
   surface->SetPolys(cells);
   AddPointArray(surface, "f", 3, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
+  AddPointArray(
+    surface, "bytes", 3, [](vtkIdType i, int k) { return std::floor(127.0 + 120.0 * Rough(i, k)); },
+    VTK_UNSIGNED_CHAR);
   AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 7 == 3; });
   AddPointArray(surface, "e1", 3, [](vtkIdType, int k) { return k == 1 ? 1.0 : 0.3; });
   surface->GetPointData()->SetActiveScalars("f");
@@ -136,6 +139,15 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     {
       f->SetModeToSteadyState();
       f->SetBlurFWHM(0.2);
+    });
+  needed["ChromaWeight"] = With<TV>([](TV* f) { f->SetColorModelToOpponent(); });
+  needed["ChromaticityExponent"] = needed["ChromaticityWeight"] =
+    With<TV>([](TV* f) { f->SetColorModelToChromaticityBrightness(); });
+  needed["LinearLight"] = With<TV>(
+    [](TV* f)
+    {
+      f->SetColorModelToOpponent();
+      SetInputArray(f, 0, "bytes");
     });
   needed["vtkIntrinsicTVFilter EdgeThreshold"] =
     With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });

@@ -34,6 +34,7 @@ vtkSmartPointer<vtkPolyData> Hills()
     points->SetPoint(i, x[0], x[1], 8.0 * std::sin(0.1 * x[0]) * std::cos(0.13 * x[1]));
   }
   AddRough(hills);
+  AddRoughCells(hills);
   return hills;
 }
 
@@ -142,6 +143,7 @@ TEST_P(AnyThreads, MayRunTwoFiltersAtOnce)
 {
   const vtkSmartPointer<vtkPolyData> surface = Sphere(6);
   AddRough(surface);
+  AddRoughCells(surface);
   const vtkSmartPointer<vtkDataArray> alone = this->Run(surface);
   vtkSmartPointer<vtkDataArray> results[2];
   std::thread threads[2];

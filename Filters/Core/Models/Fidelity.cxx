@@ -32,6 +32,19 @@ double Fidelity::Density(double squaredDistance) const
     : 0.0;
 }
 
+/// |u - f|^2 at vertex i in channels first .. last - 1, with their factors.
+double Fidelity::SquaredDistance(Index i, const Values& u, int first, int last) const
+{
+  const double sign = this->Sign(i, u);
+  double squared = 0.0;
+  for (int k = first; k < last; ++k)
+  {
+    const double distance = u(i, k) - sign * this->Data.Given(i, k);
+    squared += this->ChannelWeight(k) * distance * distance;
+  }
+  return squared;
+}
+
 double Fidelity::Energy(
   const TriangleMesh& mesh, const Values& u, const ParallelFor& parallel) const
 {
@@ -48,11 +61,10 @@ double Fidelity::Energy(
       {
         return 0.0;
       }
-      const auto distance = u.row(i) - this->Sign(i, u) * this->Data.Given.row(i);
       double density = 0.0;
       ForEachNorm(coupling, static_cast<int>(u.cols()),
         [&](int first, int last)
-        { density += this->Density(distance.segment(first, last - first).squaredNorm()); });
+        { density += this->Density(this->SquaredDistance(i, u, first, last)); });
       return mesh.ControlAreas()[i] * this->Weight(i) * density;
     });
 }

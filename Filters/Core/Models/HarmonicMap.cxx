@@ -15,26 +15,14 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-Fidelity::Settings MakeFidelity(const HarmonicMap::Settings& settings)
-{
-  Fidelity::Settings fidelity;
-  fidelity.Weight = settings.Fidelity;
-  fidelity.LineField = settings.LineField;
-  return fidelity;
-}
-
-} // namespace
-
 HarmonicMap::HarmonicMap(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
   PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
   const ParallelFor& parallel)
   : StateModel(data.Start)
   , Assembly(std::move(assembler))
   , Data(std::move(data))
-  , Fit(this->Data, MakeFidelity(settings))
+  , Fit(this->Data,
+      { settings.Fidelity, FidelityNorm::L2, ChannelCoupling::Joint, 0.0, settings.LineField })
   , Options(settings)
   , Parallel(parallel)
   , GradientEnergy(this->Assembly->SharedMesh(), std::move(coefficients),
@@ -49,6 +37,17 @@ HarmonicMap::HarmonicMap(std::shared_ptr<const Assembler> assembler, CornerWeigh
   , RightHandSide(this->U.rows(), this->U.cols())
   , Step(this->U.rows(), this->U.cols())
   , Other(this->U.rows(), this->U.cols())
+{
+  this->FillDiagonal();
+}
+
+void HarmonicMap::SetFidelityFactors(const Vector& factors)
+{
+  this->Data.FidelityFactors = factors;
+  this->FillDiagonal();
+}
+
+void HarmonicMap::FillDiagonal()
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   ForEach(this->Parallel, mesh.NumberOfVertices(),

@@ -105,10 +105,14 @@ public:
 
   StepReport Advance(const ProgressMonitor& progress) override;
 
+  /// Replace the factors w of the fidelity, one per vertex, before the next step.
+  void SetFidelityFactors(const Vector& factors);
+
   /// E, with the p-th power of |grad u| in 1/LengthUnit()^p and areas in LengthUnit()^2.
   double Energy() const override;
 
 private:
+  void FillDiagonal();
   void Freeze();
   void ExplicitReactionStep(StepReport& report, const ProgressMonitor& progress);
   void TangentPlaneStep(StepReport& report, const ProgressMonitor& progress);

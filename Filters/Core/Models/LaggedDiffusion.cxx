@@ -10,78 +10,108 @@ namespace SurfaceDiffusion
 LaggedDiffusion::LaggedDiffusion(std::shared_ptr<const Assembler> assembler, PointData data,
   double timeStep, const Fidelity::Settings& fidelity, std::shared_ptr<LinearSolver> solver,
   const ParallelFor& parallel)
-  : StateModel(data.Start)
+  : DataModel(std::move(data))
   , Parallel(parallel)
   , Weighted(assembler->Mesh().NumberOfTriangles(), 3)
   , Assembly(std::move(assembler))
-  , Data(std::move(data))
   , Fit(this->Data, fidelity)
   , TimeStep(timeStep)
   , System(this->Assembly, std::move(solver), parallel)
   , Diagonal(this->U.rows())
-  , Change(this->U.rows(), fidelity.Coupling == ChannelCoupling::Joint ? this->U.cols() : 1)
-  , RightHandSide(this->Change.rows(), this->Change.cols())
+  , TensorColumns(fidelity.Coupling == ChannelCoupling::Joint ? this->U.cols() : 1)
 {
   if (this->Fit.CanConserve())
   {
     this->Conserved = TotalCorrection(this->Mesh(), this->Data, this->Fit.IsPresent(), parallel);
   }
-  if (this->Data.Fixed.any())
+  this->MakeGroups();
+}
+
+void LaggedDiffusion::MakeGroups()
+{
+  for (Eigen::Index first = 0; first < this->U.cols();)
   {
-    this->NoChange = Values::Zero(this->Change.rows(), this->Change.cols());
+    const Eigen::Index end = (first / this->TensorColumns + 1) * this->TensorColumns;
+    Eigen::Index last = first + 1;
+    while (last < end && this->Fit.ChannelWeight(last) == this->Fit.ChannelWeight(first))
+    {
+      ++last;
+    }
+    std::size_t buffer = 0;
+    while (buffer < this->Unknowns.size() && this->Unknowns[buffer].Change.cols() != last - first)
+    {
+      ++buffer;
+    }
+    if (buffer == this->Unknowns.size())
+    {
+      const Values zero = Values::Zero(this->U.rows(), last - first);
+      this->Unknowns.push_back({ zero, zero, this->Data.Fixed.any() ? zero : Values() });
+    }
+    this->Groups.push_back({ first, last, buffer });
+    first = last;
   }
 }
 
 StepReport LaggedDiffusion::Advance(const ProgressMonitor& progress)
 {
   StepReport report;
-  const Eigen::Index columns = this->Change.cols();
-  const Eigen::Index systems = this->U.cols() / columns;
-  for (Eigen::Index system = 0; system < systems; ++system)
+  const auto count = static_cast<double>(this->Groups.size());
+  double done = 0.0;
+  for (const Group& group : this->Groups)
   {
-    const double done = static_cast<double>(system) / static_cast<double>(systems);
-    this->AdvanceColumns(system * columns, (system + 1) * columns, report,
-      progress.Part(done, done + 1.0 / static_cast<double>(systems)));
+    this->AdvanceGroup(group, report, progress.Part(done / count, (done + 1.0) / count));
+    done += 1.0;
   }
   this->Conserved.Restore(this->Mesh(), this->U, this->Parallel);
   return report;
 }
 
-void LaggedDiffusion::AdvanceColumns(
-  Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress)
+void LaggedDiffusion::AdvanceGroup(
+  const Group& group, StepReport& report, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Mesh();
-  this->FillWeights(first, last, report, progress.Part(0.0, 0.2));
+  Buffers& unknowns = this->Unknowns[group.Buffer];
+  const Eigen::Index first = group.First;
+  const Eigen::Index last = group.Last;
+  const double step = this->TimeStep * this->Fit.ChannelWeight(first);
+  if (first % this->TensorColumns == 0) // the groups after it need D at the old u
+  {
+    this->FillWeights(first, first + this->TensorColumns, report, progress.Part(0.0, 0.2));
+  }
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       this->Diagonal[i] = mesh.ControlAreas()[i] *
-        (this->MassDensity(i) + this->TimeStep * this->Fit.Weight(i, this->U, first, last));
+        (this->MassDensity(i) + step * this->Fit.Weight(i, this->U, first, last));
     });
   this->System.Assemble(this->Diagonal, this->TimeStep, this->Weighted);
-  this->FillChange(first, last);
-  if (this->NoChange.size() > 0)
+  this->FillChange(group);
+  if (unknowns.NoChange.size() > 0)
   {
-    this->System.Constrain(this->Data.Fixed, this->NoChange);
+    this->System.Constrain(this->Data.Fixed, unknowns.NoChange);
   }
   this->System.SetUpSolver(progress.Part(0.2, 0.5));
-  this->Change.setZero();
-  this->System.Solve(this->RightHandSide, this->Change, report, progress.Part(0.5, 1.0));
+  unknowns.Change.setZero();
+  this->System.Solve(unknowns.RightHandSide, unknowns.Change, report, progress.Part(0.5, 1.0));
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
       for (Eigen::Index k = first; k < last; ++k)
       {
-        this->U(i, k) += this->Change(i, k - first);
+        this->U(i, k) += unknowns.Change(i, k - first);
       }
     });
 }
 
 /// dt (-K(u_old) u_old + lambda chi M (f - u_old)), from differences along edges: the off-diagonal
 /// entries of the matrix are those of dt K.
-void LaggedDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
+void LaggedDiffusion::FillChange(const Group& group)
 {
   const TriangleMesh& mesh = this->Mesh();
+  Values& side = this->Unknowns[group.Buffer].RightHandSide;
+  const Eigen::Index first = group.First;
+  const Eigen::Index last = group.Last;
+  const double step = this->TimeStep * this->Fit.ChannelWeight(first);
   const Index* outer = this->System.GetMatrix().outerIndexPtr();
   const Index* inner = this->System.GetMatrix().innerIndexPtr();
   const double* a = this->System.GetMatrix().valuePtr();
@@ -89,7 +119,7 @@ void LaggedDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
     [&](Index i)
     {
       const double lambda =
-        this->TimeStep * mesh.ControlAreas()[i] * this->Fit.Weight(i, this->U, first, last);
+        step * mesh.ControlAreas()[i] * this->Fit.Weight(i, this->U, first, last);
       for (Eigen::Index k = first; k < last; ++k)
       {
         const double u = this->U(i, k);
@@ -98,7 +128,7 @@ void LaggedDiffusion::FillChange(Eigen::Index first, Eigen::Index last)
         {
           change -= a[slot] * (this->U(inner[slot], k) - u);
         }
-        this->RightHandSide(i, k - first) = change;
+        side(i, k - first) = change;
       }
     });
 }

@@ -8,7 +8,9 @@
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/MeanCorrection.h"
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -20,7 +22,8 @@ namespace SurfaceDiffusion
 ///   (m M + dt K(u_old) + dt lambda chi M) u_new = M (m u_old + dt lambda chi f).
 /// It is solved for u_new - u_old, so that round-off is relative to the change and a constant stays
 /// constant to the last bit, however large D may be. A subclass gives D, and m if it is not 1.
-class LaggedDiffusion : public StateModel
+/// Columns with another fidelity weight have another matrix.
+class LaggedDiffusion : public DataModel
 {
 public:
   StepReport Advance(const ProgressMonitor& progress) override;
@@ -40,7 +43,7 @@ protected:
 
   const TriangleMesh& Mesh() const { return this->Assembly->Mesh(); }
   /// The number of columns that share one D.
-  Eigen::Index ColumnsPerSystem() const { return this->Change.cols(); }
+  Eigen::Index ColumnsPerTensor() const { return this->TensorColumns; }
   /// No longer correct the sum of A_i u_i, which the model does not conserve.
   void DropConservation() { this->Conserved = TotalCorrection(); }
   /// The energy of the fidelity term, summed over the vertices of this process.
@@ -50,19 +53,32 @@ protected:
   CornerWeights Weighted; ///< the weights (12) of D
 
 private:
-  void AdvanceColumns(
-    Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress);
-  void FillChange(Eigen::Index first, Eigen::Index last);
+  /// Columns that have one matrix: they share D and the fidelity weight.
+  struct Group
+  {
+    Eigen::Index First, Last;
+    std::size_t Buffer; ///< number of its Buffers
+  };
+  /// The unknowns of a group, one column for each of its columns.
+  struct Buffers
+  {
+    Values Change, RightHandSide;
+    Values NoChange; ///< the Dirichlet conditions of Change
+  };
+
+  void MakeGroups();
+  void AdvanceGroup(const Group& group, StepReport& report, const ProgressMonitor& progress);
+  void FillChange(const Group& group);
 
   std::shared_ptr<const Assembler> Assembly;
-  PointData Data;
   Fidelity Fit;
   double TimeStep;
   ImplicitSystem System;
   TotalCorrection Conserved;
   Vector Diagonal;
-  Values Change, RightHandSide;
-  Values NoChange; ///< the Dirichlet conditions of Change
+  Eigen::Index TensorColumns;
+  std::vector<Group> Groups;
+  std::vector<Buffers> Unknowns; ///< of groups of the same size
 };
 
 } // namespace SurfaceDiffusion

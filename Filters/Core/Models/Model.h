@@ -93,4 +93,24 @@ protected:
   Values U; ///< n x k
 };
 
+/// A StateModel of given data f. A model made of models may replace the data and the state between
+/// steps.
+class DataModel : public StateModel
+{
+public:
+  /// Not read where data are missing, but finite there.
+  void SetGiven(const Values& f) { this->Data.Given = f; }
+  const Values& Given() const { return this->Data.Given; }
+  void SetState(const Values& u) { this->U = u; }
+
+protected:
+  explicit DataModel(PointData data)
+    : StateModel(data.Start)
+    , Data(std::move(data))
+  {
+  }
+
+  PointData Data;
+};
+
 } // namespace SurfaceDiffusion

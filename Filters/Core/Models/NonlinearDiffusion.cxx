@@ -44,12 +44,17 @@ NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assemble
   TangentVectors frames, PointData data, const Settings& settings,
   std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
   : LaggedDiffusion(std::move(assembler), std::move(data), settings.TimeStep,
-      { settings.Fidelity, settings.Norm, settings.Coupling, settings.FidelityRounding },
+      { settings.Fidelity, settings.Norm, settings.Coupling, settings.FidelityRounding, false,
+        settings.ChannelWeights },
       std::move(solver), parallel)
   , Frames(std::move(frames))
   , Options(settings)
   , Isotropic(CotanWeights(this->Mesh(), parallel))
 {
+  if (!settings.ConservesTotal)
+  {
+    this->DropConservation();
+  }
   if (this->Frames.rows() > 0)
   {
     this->Directional = DirectionalWeights(this->Mesh(), this->Frames, parallel);
@@ -83,7 +88,7 @@ void NonlinearDiffusion::FillWeights(
 double NonlinearDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Mesh();
-  const Eigen::Index columns = this->ColumnsPerSystem();
+  const Eigen::Index columns = this->ColumnsPerTensor();
   double energy = 0.0;
   for (Eigen::Index first = 0; first < this->U.cols(); first += columns)
   {

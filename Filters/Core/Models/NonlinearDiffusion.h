@@ -6,6 +6,7 @@
 #include "Core/Models/LaggedDiffusion.h"
 
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -34,6 +35,8 @@ public:
     ChannelCoupling Coupling = ChannelCoupling::Joint;
     FidelityNorm Norm = FidelityNorm::L2;
     double FidelityRounding = 1e-3; ///< delta of L1, in units of the values, > 0
+    bool ConservesTotal = true; ///< whether states without fidelity keep the total of the start
+    std::vector<double> ChannelWeights = {}; ///< of L2, see Fidelity
   };
 
   /// frames: e1 per triangle (see TangentVectors.h), without rows if g1 = g2; see IsotropicMean()

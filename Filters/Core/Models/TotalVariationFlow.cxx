@@ -15,10 +15,10 @@ namespace SurfaceDiffusion
 TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assembler,
   const TangentVectors& frames, PointData data, const Settings& settings,
   const ParallelFor& parallel)
-  : StateModel(data.Start)
+  : DataModel(std::move(data))
   , Assembly(std::move(assembler))
-  , Data(std::move(data))
-  , Fit(this->Data, { settings.Fidelity, settings.Norm, settings.Coupling })
+  , Fit(this->Data,
+      { settings.Fidelity, settings.Norm, settings.Coupling, 0.0, false, settings.ChannelWeights })
   , Options(settings)
   , Parallel(parallel)
   , Diffusivity(std::max(settings.AlongDiffusivity, settings.AcrossDiffusivity))
@@ -45,20 +45,13 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
       ? StretchedGradients(mesh, frames, along, across, parallel)
       : PlainGradients(mesh, parallel));
 
-  // The minimiser's energy is E over Diffusivity, the step's term with it.
   const Index n = mesh.NumberOfVertices();
-  const double inertia = settings.SteadyState ? 0.0 : 1.0 / (settings.TimeStep * this->Diffusivity);
-  Vector quadratic(n);
-  Vector absolute(n);
-  ForEach(parallel, n,
-    [&](Index i)
-    {
-      const double fidelity = this->Fit.Weight(i) / this->Diffusivity;
-      const bool squared = settings.Norm == FidelityNorm::L2;
-      quadratic[i] = inertia + (squared ? fidelity : 0.0);
-      absolute[i] = squared ? 0.0 : fidelity;
-    });
-  this->MeasureWeights(quadratic);
+  Vector absolute = Vector::Zero(n);
+  if (settings.Norm == FidelityNorm::L1)
+  {
+    ForEach(parallel, n, [&](Index i) { absolute[i] = this->Fit.Weight(i) / this->Diffusivity; });
+  }
+  this->MeasureWeights();
 
   if (settings.SteadyState && settings.Norm == FidelityNorm::L1)
   {
@@ -77,8 +70,9 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
     minimizer.StopTolerance = settings.StopTolerance;
     minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
     this->Systems.push_back({ first, columns,
-      std::make_unique<TotalVariationMinimizer>(this->Assembly, gradients, quadratic, absolute,
-        this->Data.Fixed, start, minimizer, parallel) });
+      std::make_unique<TotalVariationMinimizer>(this->Assembly, gradients,
+        this->QuadraticWeights(first, columns), absolute, this->Data.Fixed, start, minimizer,
+        parallel) });
   }
   if (this->Systems.size() > 1)
   {
@@ -96,9 +90,35 @@ void TotalVariationFlow::SetLimits(double stopTolerance, int maximumNumberOfIter
   }
 }
 
-void TotalVariationFlow::MeasureWeights(const Vector& quadratic)
+/// The weights mu of the quadratic terms: one column, or one for each of the `columns` from `first`
+/// on if their fidelity differs. The minimiser's energy is E over Diffusivity, the step's term with
+/// it.
+Values TotalVariationFlow::QuadraticWeights(Eigen::Index first, Eigen::Index columns) const
+{
+  const bool differ = columns > 1 && !this->Options.ChannelWeights.empty();
+  const double inertia =
+    this->Options.SteadyState ? 0.0 : 1.0 / (this->Options.TimeStep * this->Diffusivity);
+  Values quadratic =
+    Values::Constant(this->Assembly->Mesh().NumberOfVertices(), differ ? columns : 1, inertia);
+  if (this->Options.Norm == FidelityNorm::L2)
+  {
+    ForEach(this->Parallel, static_cast<Index>(quadratic.rows()),
+      [&](Index i)
+      {
+        for (Eigen::Index k = 0; k < quadratic.cols(); ++k)
+        {
+          quadratic(i, k) +=
+            this->Fit.Weight(i) * this->Fit.ChannelWeight(first + k) / this->Diffusivity;
+        }
+      });
+  }
+  return quadratic;
+}
+
+void TotalVariationFlow::MeasureWeights()
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
+  const Vector quadratic = this->QuadraticWeights(0, this->U.cols()).rowwise().minCoeff();
   double largestInverse = 0.0;
   double area = 0.0;
   for (Eigen::Index i = 0; i < quadratic.size(); ++i)
@@ -155,6 +175,8 @@ void TotalVariationFlow::SetTarget()
           this->U.row(i) = this->Data.Start.row(i);
         }
       });
+    // The data may have been replaced since the start.
+    this->Target = this->Data.Given;
     return;
   }
   // lambda/2 |u - f|^2 + |u - u_old|^2/(2 dt) has its minimum at their weighted mean.
@@ -162,9 +184,13 @@ void TotalVariationFlow::SetTarget()
   ForEach(this->Parallel, n,
     [&](Index i)
     {
-      const double pull = squared ? this->Options.TimeStep * this->Fit.Weight(i) : 0.0;
-      this->Target.row(i) =
-        this->U.row(i) + (pull / (1.0 + pull)) * (this->Data.Given.row(i) - this->U.row(i));
+      const double weight = squared ? this->Options.TimeStep * this->Fit.Weight(i) : 0.0;
+      for (Eigen::Index k = 0; k < this->U.cols(); ++k)
+      {
+        const double pull = weight * this->Fit.ChannelWeight(k);
+        this->Target(i, k) =
+          this->U(i, k) + (pull / (1.0 + pull)) * (this->Data.Given(i, k) - this->U(i, k));
+      }
     });
 }
 

@@ -30,7 +30,7 @@ namespace SurfaceDiffusion
 ///
 /// A time step starts from the multipliers of the last one, so that short steps cost less than long
 /// ones.
-class TotalVariationFlow : public StateModel
+class TotalVariationFlow : public DataModel
 {
 public:
   struct Settings
@@ -46,6 +46,7 @@ public:
     double StopTolerance = 1e-4; ///< relative duality gap, see TotalVariationMinimizer
     int MaximumNumberOfIterations = 10000;
     bool ConservesTotal = true; ///< whether states without fidelity keep the total of the start
+    std::vector<double> ChannelWeights = {}; ///< of L2, see Fidelity
   };
 
   /// frames: e1 per triangle (see TangentVectors.h), without rows if g1 = g2.
@@ -55,13 +56,15 @@ public:
   /// Reports the iterations of the minimiser; as the residual its relative duality gap, which is
   /// above the tolerance if the largest number of iterations was reached; and as the error bound
   ///   sqrt(2 gap/(mu A)),
-  /// where gap is the duality gap itself over the diffusivity, mu the weight of the quadratic terms (lambda, 1/dt and
-  /// their sum) and A the area where they act: the root mean square of u - u* is not larger, since
-  /// the energy is strongly convex. Infinite if there are no such terms.
+  /// where gap is the duality gap itself over the diffusivity, mu the smallest weight of the
+  /// quadratic terms (lambda, 1/dt and their sum) and A the area where they act: the root mean
+  /// square of u - u* is not larger, since the energy is strongly convex. Infinite if there are no
+  /// such terms.
   StepReport Advance(const ProgressMonitor& progress) override;
 
+  using DataModel::SetState;
   /// Replace the state. The next step starts from the multipliers of the last one, or from none.
-  void SetState(const Values& u, bool keepMultipliers = true)
+  void SetState(const Values& u, bool keepMultipliers)
   {
     this->U = u;
     this->KeepsMultipliers = keepMultipliers;
@@ -88,11 +91,11 @@ private:
   };
 
   TotalVariationMinimizer::Report Minimize(const System& system, const ProgressMonitor& progress);
-  void MeasureWeights(const Vector& quadratic);
+  Values QuadraticWeights(Eigen::Index first, Eigen::Index columns) const;
+  void MeasureWeights();
   void SetTarget();
 
   std::shared_ptr<const Assembler> Assembly;
-  PointData Data;
   Fidelity Fit;
   Settings Options;
   const ParallelFor& Parallel;

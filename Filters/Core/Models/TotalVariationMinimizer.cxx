@@ -32,7 +32,7 @@ constexpr double StartOfGrowth = 6.0;
 
 /// The typical range of u on each triangle: that on the whole surface, except at outliers.
 Vector RangesOfTriangles(const TriangleMesh& mesh, const Eigen::Ref<const Values>& u,
-  const Vector& quadratic, const ParallelFor& parallel)
+  const Values& quadratic, const ParallelFor& parallel)
 {
   const Reduction& reduction = mesh.GetReduction();
   const bool grows = reduction.Any((quadratic.array() > 0.0).any());
@@ -73,7 +73,7 @@ EdgeFunction WithoutBeta(EdgeFunction function)
 } // namespace
 
 TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-  std::shared_ptr<const std::vector<GradientMap>> gradients, Vector quadratic, Vector absolute,
+  std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
   Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
   const ParallelFor& parallel)
   : TotalVariationMinimizer(assembler, std::move(gradients), quadratic, std::move(absolute),
@@ -83,7 +83,7 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 }
 
 TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-  std::shared_ptr<const std::vector<GradientMap>> gradients, Vector quadratic, Vector absolute,
+  std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
   Flags fixed, const Settings& settings, const Vector& ranges, const ParallelFor& parallel)
   : TotalVariationMinimizer(assembler, std::move(gradients),
       std::make_unique<VertexSplitting>(assembler->SharedMesh(), std::move(quadratic),
@@ -118,6 +118,14 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   }
   Vector owned;
   this->Diagonal = this->OverProcesses.OwnedPart(this->Vertices->MakeDiagonal(), owned);
+  this->ColumnShifts = this->Vertices->MakeColumnShifts();
+  for (Index i = 0; i < static_cast<Index>(this->ColumnShifts.rows()); ++i)
+  {
+    if (this->Vertices->GetFixed()[i] || !this->OverProcesses.Owns(i))
+    {
+      this->ColumnShifts.row(i).setZero();
+    }
+  }
   const double stiffness = this->Gradients.Stiffness();
   this->GrowthRate = stiffness > 0.0
     ? GrowthFactor * SquaredEdgeOverHeight * this->Vertices->QuadraticWeight() / stiffness
@@ -198,8 +206,12 @@ void TotalVariationMinimizer::AssembleMatrix(const Values& u)
     this->Assembly->Constrain(
       this->Matrix, this->Vertices->GetFixed(), u, this->Load, this->Parallel);
   }
-  this->Descent.SetMatrix(this->Matrix, this->OverProcesses);
+  this->Descent.SetMatrix(this->Matrix, this->ColumnShifts, this->OverProcesses);
   Multiply(this->Matrix, u, this->Descent.Residual, this->Parallel);
+  if (this->ColumnShifts.size() > 0)
+  {
+    this->Descent.Residual += this->ColumnShifts.cwiseProduct(u);
+  }
   this->Descent.Residual = this->Load - this->Descent.Residual;
   this->OverProcesses.Accumulate(this->Descent.Residual);
   this->Descent.Residual += this->RightHandSide;

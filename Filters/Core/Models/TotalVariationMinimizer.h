@@ -44,11 +44,12 @@ public:
   };
 
   /// quadratic, absolute: mu and nu >= 0 per vertex; in every connected component one of them must
-  /// be positive somewhere, or a vertex fixed. typical: values of the size of the data. They
+  /// be positive somewhere, or a vertex fixed. Without nu, mu may have a column for each one of u.
+  /// typical: values of the size of the data. They
   /// determine the penalty, and so the number of iterations; outliers act on it only around
   /// themselves.
   TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-    std::shared_ptr<const std::vector<GradientMap>> gradients, Vector quadratic, Vector absolute,
+    std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
     Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
     const ParallelFor& parallel = SerialFor());
 
@@ -94,7 +95,7 @@ public:
 private:
   /// ranges: typical ones of the values on each triangle.
   TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-    std::shared_ptr<const std::vector<GradientMap>> gradients, Vector quadratic, Vector absolute,
+    std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
     Flags fixed, const Settings& settings, const Vector& ranges, const ParallelFor& parallel);
 
   double NoiseEnergy() const;
@@ -117,6 +118,7 @@ private:
   std::unique_ptr<VertexTerms> Vertices;
   CornerWeights Weights; ///< of the quadratic problem for u, at the first penalty
   Vector Diagonal; ///< likewise
+  Values ColumnShifts; ///< more of it in each column, of an interface vertex in its owner only
   double GrowthRate; ///< of the penalty per iteration, in first penalties
   SparseMatrix Matrix; ///< of the quadratic problem for u
   QuadraticDescent Descent;

@@ -90,10 +90,9 @@ Eigen::RowVectorXd SumOfNeighbours(
   return sum;
 }
 
-/// Give every vertex without a direction the sum of those of its neighbours, ring by ring from the
-/// rim inwards; e_1 if nothing is known or neighbours cancel exactly. (The sum of lines
-/// depends on its order: only the serial reduction takes them.)
-void SpreadInwards(const TriangleMesh& mesh, Values& u, Flags& known, bool lineField)
+} // namespace
+
+void SpreadUnitVectors(const TriangleMesh& mesh, Values& u, Flags& known, bool lineField)
 {
   const Reduction& reduction = mesh.GetReduction();
   std::vector<Index> open, left;
@@ -140,8 +139,6 @@ void SpreadInwards(const TriangleMesh& mesh, Values& u, Flags& known, bool lineF
   }
 }
 
-} // namespace
-
 void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField,
   InitialFill fill, std::int64_t seed, const std::vector<std::int64_t>& ids)
 {
@@ -181,7 +178,7 @@ void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool line
       known[i] = Normalize(data.Start.row(i));
     }
   }
-  SpreadInwards(mesh, data.Start, known, lineField);
+  SpreadUnitVectors(mesh, data.Start, known, lineField);
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
     if (undirected[i])

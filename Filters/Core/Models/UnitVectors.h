@@ -43,6 +43,11 @@ bool Normalize(Row&& row)
 void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField,
   InitialFill fill, std::int64_t seed, const std::vector<std::int64_t>& ids);
 
+/// Give every vertex that is not known the direction of the sum of the vectors of its neighbours,
+/// ring by ring from the known ones on; e_1 if nothing is known or neighbours cancel exactly. All
+/// become known. (The sum of lines depends on its order: only the serial reduction takes them.)
+void SpreadUnitVectors(const TriangleMesh& mesh, Values& u, Flags& known, bool lineField);
+
 /// Normalise data.Start at the missing vertices; vectors without a direction are replaced by those
 /// of `instead`.
 void NormalizeFilled(PointData& data, const Values& instead);

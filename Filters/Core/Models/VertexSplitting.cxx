@@ -19,7 +19,7 @@ constexpr double PenaltyOfFidelity = 0.1;
 
 } // namespace
 
-VertexSplitting::VertexSplitting(std::shared_ptr<const TriangleMesh> mesh, Vector quadratic,
+VertexSplitting::VertexSplitting(std::shared_ptr<const TriangleMesh> mesh, Values quadratic,
   Vector absolute, Flags fixed, const Vector& ranges, const Settings& settings,
   const ParallelFor& parallel)
   : VertexTerms(std::move(mesh), std::move(fixed), parallel)
@@ -41,13 +41,24 @@ VertexSplitting::VertexSplitting(std::shared_ptr<const TriangleMesh> mesh, Vecto
 
 Vector VertexSplitting::MakeDiagonal() const
 {
-  return this->Areas.cwiseProduct(this->Quadratic) + this->Penalty;
+  return this->Areas.cwiseProduct(this->Quadratic.col(0)) + this->Penalty;
+}
+
+Values VertexSplitting::MakeColumnShifts() const
+{
+  Values shifts;
+  if (this->Quadratic.cols() > 1)
+  {
+    shifts = this->Quadratic.colwise() - this->Quadratic.col(0);
+    shifts.array().colwise() *= this->Areas.array();
+  }
+  return shifts;
 }
 
 double VertexSplitting::QuadraticWeight() const
 {
   return this->OverProcesses.SumOverVertices(this->Parallel, this->NumberOfVertices(),
-    [&](Index i) { return this->Areas[i] * this->Quadratic[i]; });
+    [&](Index i) { return this->Areas[i] * this->Quadratic.row(i).minCoeff(); });
 }
 
 void VertexSplitting::Start(const Values& g, const Values& f, const Values& u, bool keepMultipliers)
@@ -98,7 +109,11 @@ double VertexSplitting::Energy(const Values& u) const
   return this->OverProcesses.SumOverVertices(this->Parallel, this->NumberOfVertices(),
     [&](Index i)
     {
-      double density = 0.5 * this->Quadratic[i] * (u.row(i) - this->G->row(i)).squaredNorm();
+      double density = 0.0;
+      for (int k = 0; k < static_cast<int>(u.cols()); ++k)
+      {
+        density += 0.5 * this->Mu(i, k) * std::pow(u(i, k) - (*this->G)(i, k), 2);
+      }
       if (this->Absolute[i] > 0.0)
       {
         ForEachNorm(this->Options.Coupling, static_cast<int>(u.cols()),
@@ -131,7 +146,7 @@ double VertexSplitting::FeasibleShare(const Values& d) const
     {
       const double nu = this->Areas[i] * this->Absolute[i];
       double largest = 0.0;
-      if (nu > 0.0 && this->Quadratic[i] == 0.0 && !this->Fixed[i])
+      if (nu > 0.0 && this->Quadratic(i, 0) == 0.0 && !this->Fixed[i])
       {
         ForEachNorm(this->Options.Coupling, static_cast<int>(d.cols()),
           [&](int first, int last)
@@ -148,7 +163,7 @@ double VertexSplitting::DualAt(
   Index i, const Values& dual, const Values& present, int first, int last) const
 {
   const double* d = &dual(i, 0);
-  const double mu = this->Areas[i] * this->Quadratic[i];
+  double mu = this->Areas[i] * this->Mu(i, first); // positive in all columns or in none
   const double nu = this->Areas[i] * this->Absolute[i];
   const bool fixed = this->Fixed[i];
   const double range = this->Options.Range * std::sqrt(static_cast<double>(last - first));
@@ -160,6 +175,7 @@ double VertexSplitting::DualAt(
     double pull = 0.0;
     for (int k = first; k < last; ++k)
     {
+      mu = this->Areas[i] * this->Mu(i, k);
       const double u = nu > 0.0 && !fixed ? (*this->F)(i, k) : present(i, k);
       value += d[k] * u + 0.5 * mu * std::pow(u - (*this->G)(i, k), 2);
       squared += d[k] * d[k];
@@ -180,6 +196,7 @@ double VertexSplitting::DualAt(
   }
   for (int k = first; k < last; ++k)
   {
+    mu = this->Areas[i] * this->Mu(i, k);
     const double free = (*this->G)(i, k) - d[k] / mu;
     const double u = drawn > 0.0 ? free + drawn * ((*this->F)(i, k) - free) : free;
     value += d[k] * u + 0.5 * mu * std::pow(u - (*this->G)(i, k), 2);

@@ -11,7 +11,7 @@ namespace SurfaceDiffusion
 {
 
 /// The terms sum_i A_i (mu_i/2 |u_i - g_i|^2 + nu_i |u_i - f_i|) of an energy. The second one acts on
-/// q = u - f.
+/// q = u - f. Without it, mu may differ from column to column.
 class VertexSplitting : public VertexTerms
 {
 public:
@@ -22,25 +22,26 @@ public:
     double Range; ///< largest max - min of the data over the channels
   };
 
-  /// quadratic, absolute: mu, nu. ranges: typical range of the values around each vertex,
-  /// consistent.
-  VertexSplitting(std::shared_ptr<const TriangleMesh> mesh, Vector quadratic, Vector absolute,
+  /// quadratic, absolute: mu, nu; mu with one column, or with as many as u. ranges: typical range
+  /// of the values around each vertex, consistent.
+  VertexSplitting(std::shared_ptr<const TriangleMesh> mesh, Values quadratic, Vector absolute,
     Flags fixed, const Vector& ranges, const Settings& settings, const ParallelFor& parallel);
 
-  /// A (mu + rho)
+  /// A (mu + rho), of the first column
   Vector MakeDiagonal() const override;
+  Values MakeColumnShifts() const override;
+  /// Of the column with the least.
   double QuadraticWeight() const override;
   bool IsSplit() const override { return this->HasAbsolute; }
   void Start(const Values& g, const Values& f, const Values& u, bool keepMultipliers) override;
   void Update(const Values& u, double relaxation) override;
   void AddRightHandSide(Index i, double* row) const override
   {
-    const double mu = this->Areas[i] * this->Quadratic[i];
     const double rho = this->Penalty[i];
     const int columns = static_cast<int>(this->G->cols());
     for (int k = 0; k < columns; ++k)
     {
-      const double side = mu * (*this->G)(i, k);
+      const double side = this->Areas[i] * this->Mu(i, k) * (*this->G)(i, k);
       row[k] += rho > 0.0 ? side + rho * ((*this->F)(i, k) + this->Q(i, k) - this->C(i, k)) : side;
     }
   }
@@ -54,9 +55,11 @@ public:
   double FeasibleShare(const Values& d) const override;
 
 private:
+  double Mu(Index i, int k) const { return this->Quadratic(i, this->Quadratic.cols() > 1 ? k : 0); }
   double DualAt(Index i, const Values& d, const Values& u, int first, int last) const;
 
-  Vector Quadratic, Absolute;
+  Values Quadratic; ///< with a row per vertex, and one column for all columns of u or one for each
+  Vector Absolute;
   Settings Options;
   bool HasAbsolute;
   const Values* G = nullptr;

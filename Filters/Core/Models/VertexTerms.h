@@ -26,6 +26,9 @@ public:
   /// consistent.
   virtual Vector MakeDiagonal() const = 0;
 
+  /// How much more they add in each column, n x k and consistent; without columns: nothing.
+  virtual Values MakeColumnShifts() const { return Values(); }
+
   /// Sum over the vertices of the surface of the second derivatives of the quadratic terms.
   virtual double QuadraticWeight() const { return 0.0; }
 

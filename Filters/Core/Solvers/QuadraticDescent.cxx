@@ -8,13 +8,57 @@
 namespace SurfaceDiffusion
 {
 
-void QuadraticDescent::SetMatrix(const SparseMatrix& matrix, const Reduction& reduction)
+namespace
+{
+
+/// A matrix with another diagonal for each column.
+struct ShiftedSystem : SystemDefaults
+{
+  ShiftedSystem(const SparseMatrix& matrix, const Values& shifts, const Values& inverseDiagonals,
+    const Reduction& overProcesses)
+    : SystemDefaults{ overProcesses }
+    , Matrix(matrix)
+    , Shifts(shifts)
+    , InverseDiagonals(inverseDiagonals)
+  {
+  }
+
+  const SparseMatrix& Matrix;
+  const Values& Shifts;
+  const Values& InverseDiagonals; ///< consistent
+
+  template <int K>
+  void MultiplyRows(const Values& x, Values& y, Index begin, Index end) const
+  {
+    SurfaceDiffusion::MultiplyRows<K>(this->Matrix, x, y, begin, end);
+    const Index count = end - begin;
+    y.middleRows(begin, count) +=
+      this->Shifts.middleRows(begin, count).cwiseProduct(x.middleRows(begin, count));
+  }
+  double Scale(Index i, int c, const double* r) const
+  {
+    return this->InverseDiagonals(i, c) * r[c];
+  }
+};
+
+} // namespace
+
+void QuadraticDescent::SetMatrix(
+  const SparseMatrix& matrix, const Values& shifts, const Reduction& reduction)
 {
   this->Matrix = &matrix;
+  this->Shifts = &shifts;
   this->OverProcesses = &reduction;
   this->InverseDiagonal.resize(matrix.rows());
   const auto n = static_cast<Index>(matrix.rows());
   ForEach(this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
+  if (shifts.cols() > 0)
+  {
+    this->InverseDiagonals = shifts.colwise() + this->InverseDiagonal;
+    reduction.Accumulate(this->InverseDiagonals);
+    this->InverseDiagonals = this->InverseDiagonals.cwiseInverse();
+    return;
+  }
   reduction.Accumulate(this->InverseDiagonal);
   ForEach(
     this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
@@ -22,11 +66,24 @@ void QuadraticDescent::SetMatrix(const SparseMatrix& matrix, const Reduction& re
 
 void QuadraticDescent::Improve(Values& x, int iterations)
 {
-  const MatrixSystem system{ *this->Matrix, this->InverseDiagonal, *this->OverProcesses };
+  if (this->Shifts->cols() > 0)
+  {
+    this->Improve(
+      ShiftedSystem(*this->Matrix, *this->Shifts, this->InverseDiagonals, *this->OverProcesses), x,
+      iterations);
+    return;
+  }
+  this->Improve(
+    MatrixSystem(*this->Matrix, this->InverseDiagonal, *this->OverProcesses), x, iterations);
+}
+
+template <typename System>
+void QuadraticDescent::Improve(const System& system, Values& x, int iterations)
+{
   ForColumns(x.cols(),
     [&](auto k)
     {
-      ConjugateGradients<decltype(k)::value, MatrixSystem> method(
+      ConjugateGradients<decltype(k)::value, System> method(
         system, this->Residual, this->Work, this->Parallel);
       method.Start(0.0);
       for (int iteration = 1; iteration <= iterations && !method.IsFinished(); ++iteration)

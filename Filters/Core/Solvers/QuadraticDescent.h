@@ -20,9 +20,15 @@ public:
   {
   }
 
-  /// matrix: symmetric positive (semi)definite, with a positive diagonal; must stay as it is.
-  /// Over several processes it is accumulated.
-  void SetMatrix(const SparseMatrix& matrix, const Reduction& reduction = Reduction::Serial());
+  /// matrix: symmetric positive (semi)definite, with a positive diagonal. shifts: added to the
+  /// diagonal in each column, n x k; without columns: nothing. Both must stay as they are. Over
+  /// several processes both are accumulated.
+  void SetMatrix(const SparseMatrix& matrix, const Values& shifts,
+    const Reduction& reduction = Reduction::Serial());
+  void SetMatrix(const SparseMatrix& matrix, const Reduction& reduction = Reduction::Serial())
+  {
+    this->SetMatrix(matrix, this->NoShifts, reduction);
+  }
 
   /// The residual b - A x, n x k. The caller sets it before the first call of Improve, and adds to
   /// it every later change of b. It is consistent, as x is.
@@ -32,10 +38,16 @@ public:
   void Improve(Values& x, int iterations);
 
 private:
+  template <typename System>
+  void Improve(const System& system, Values& x, int iterations);
+
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
+  const Values NoShifts;
+  const Values* Shifts = nullptr;
   const Reduction* OverProcesses = &Reduction::Serial();
   Vector InverseDiagonal;
+  Values InverseDiagonals; ///< with shifts, one column for each
   ConjugateGradientWork Work;
 };
 

@@ -1,0 +1,451 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IntrinsicTVTest.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+// ColorModel of vtkIntrinsicTVFilter. The models themselves are tested in Core.
+using namespace IntrinsicTVTest;
+
+namespace
+{
+
+constexpr int Colored[] = { Filter::COLOR_MODEL_OPPONENT,
+  Filter::COLOR_MODEL_CHROMATICITY_BRIGHTNESS };
+
+/// A colour on each side of the edge of a cap, and noise.
+double Color(const double* p, vtkIdType i, int k)
+{
+  const double inside[] = { 0.8, 0.3, 0.1 };
+  const double outside[] = { 0.2, 0.5, 0.7 };
+  return (Cap(p) > 0.5 ? inside : outside)[k] + 0.1 * Rough(i, k);
+}
+
+void AddColors(vtkPolyData* sphere, double factor = 1.0)
+{
+  AddPointArray(
+    sphere, "f", 3, [&](vtkIdType i, int k) { return factor * Color(sphere->GetPoint(i), i, k); });
+  sphere->GetPointData()->SetActiveScalars("f");
+}
+
+/// The same from 0 to 255, with alpha.
+void AddBytes(vtkPolyData* sphere, int components = 3)
+{
+  AddPointArray(
+    sphere, "f", components,
+    [&](vtkIdType i, int k)
+    {
+      const double value = k == 3 ? i % 256 : 255.0 * Color(sphere->GetPoint(i), i, k);
+      return std::clamp(std::round(value), 0.0, 255.0);
+    },
+    VTK_UNSIGNED_CHAR);
+  sphere->GetPointData()->SetActiveScalars("f");
+}
+
+double Decoded(double byte)
+{
+  const double s = byte / 255.0;
+  return 255.0 * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+}
+
+double Encoded(double light)
+{
+  const double s = std::clamp(light / 255.0, 0.0, 1.0);
+  return 255.0 * (s <= 0.0031308 ? 12.92 * s : 1.055 * std::pow(s, 1.0 / 2.4) - 0.055);
+}
+
+} // namespace
+
+TEST(ColorModels, OpponentWithChromaWeightOneIsRGB)
+{
+  auto sphere = Sphere(3);
+  AddColors(sphere);
+  for (const bool steady : { false, true })
+  {
+    auto rgb = MakeFilter(sphere);
+    auto opponent = MakeFilter(sphere);
+    opponent->SetColorModelToOpponent();
+    opponent->SetChromaWeight(1.0);
+    for (Filter* filter : { rgb.Get(), opponent.Get() })
+    {
+      filter->SetMode(steady);
+      filter->SetStopTolerance(1e-7);
+      filter->SetTolerance(1e-12);
+      filter->Update();
+    }
+    EXPECT_LT(LargestDifference(Result(rgb), Result(opponent)), steady ? 1e-3 : 1e-9);
+    opponent->SetChromaWeight(0.25);
+    opponent->Update();
+    EXPECT_GT(LargestDifference(Result(rgb), Result(opponent)), 0.02);
+  }
+}
+
+TEST(ColorModels, BrightnessOfGreyIsTheScalarRun)
+{
+  auto sphere = Sphere(3);
+  AddPointArray(sphere, "f", 3,
+    [&](vtkIdType i, int) { return 0.5 + Cap(sphere->GetPoint(i)) + 0.1 * Rough(i, 0); });
+  AddPointArray(sphere, "s", 1,
+    [&](vtkIdType i, int)
+    { return std::sqrt(3.0) * sphere->GetPointData()->GetArray("f")->GetComponent(i, 0); });
+  auto colors = MakeFilter(sphere);
+  SetInputArray(colors, 0, "f");
+  colors->SetColorModelToChromaticityBrightness();
+  auto scalar = MakeFilter(sphere);
+  SetInputArray(scalar, 0, "s");
+  scalar->SetResultArrayName("result");
+  for (Filter* filter : { colors.Get(), scalar.Get() })
+  {
+    filter->SetUnitsToAbsolute();
+    filter->SetTimeStep(0.02);
+    filter->SetTolerance(1e-12);
+    filter->Update();
+  }
+  const auto expected = MakeArray(VTK_DOUBLE, "e", sphere->GetNumberOfPoints(), 3,
+    [&](vtkIdType i, int)
+    { return FilterTest::Result(scalar, "result")->GetComponent(i, 0) / std::sqrt(3.0); });
+  EXPECT_LT(LargestDifference(Result(colors), expected), 1e-9);
+}
+
+TEST(ColorModels, PowersOfTwoScaleTheResultToTheLastBit)
+{
+  auto sphere = Sphere(3);
+  auto larger = Sphere(3);
+  AddColors(sphere);
+  AddColors(larger, 64.0);
+  for (const bool steady : { false, true })
+  {
+    auto one = MakeFilter(sphere);
+    auto other = MakeFilter(larger);
+    for (Filter* filter : { one.Get(), other.Get() })
+    {
+      filter->SetColorModelToChromaticityBrightness();
+      filter->SetMode(steady);
+      filter->Update();
+    }
+    const auto expected = MakeArray(VTK_DOUBLE, "e", sphere->GetNumberOfPoints(), 3,
+      [&](vtkIdType i, int k) { return 64.0 * Result(one)->GetComponent(i, k); });
+    EXPECT_TRUE(Identical(Result(other), expected));
+  }
+}
+
+TEST(ColorModels, NaturalSettingsAreTheAbsoluteOnesInTheirUnits)
+{
+  auto sphere = Sphere(3);
+  AddColors(sphere, 3.0);
+  const Setting cases[] = { [](Filter*) {}, [](Filter* f) { f->SetModeToSteadyState(); },
+    [](Filter* f) { f->SetChromaticityExponent(1.5); },
+    [](Filter* f) { f->SetEdgeFunctionToCharbonnier(); } };
+  for (const Setting& set : cases)
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetColorModelToChromaticityBrightness();
+    set(filter);
+    filter->SetTimeStep(0.3);
+    filter->SetNumberOfTimeSteps(3);
+    filter->SetBeta(1e-2);
+    filter->SetFidelityWeight(0.7);
+    filter->SetChromaticityWeight(1.5);
+    filter->SetTolerance(1e-12);
+    filter->Update();
+    const auto natural = Copy(Result(filter));
+    const double unit = filter->GetTimeUnit();
+    const double h = filter->GetMeanEdgeLength();
+    const double range = filter->GetValueRange();
+    const double p = filter->GetChromaticityExponent();
+    const bool tv = filter->GetEdgeFunction() == Filter::EDGE_FUNCTION_TOTAL_VARIATION;
+    filter->SetUnitsToAbsolute();
+    filter->SetTimeStep(0.3 * unit);
+    filter->SetBeta(1e-2 * range * range / (h * h));
+    filter->SetEdgeThreshold(0.1 * range / h);
+    filter->SetFidelityWeight(0.7 / unit);
+    filter->SetChromaticityWeight(
+      1.5 * (tv ? range * std::pow(h, p - 1.0) : range * range * std::pow(h, p - 2.0)));
+    filter->Update();
+    // Many alternations amplify the last bits of h.
+    EXPECT_LT(LargestDifference(natural, Result(filter)), filter->GetMode() ? 1e-5 : 1e-7)
+      << "case " << (&set - cases);
+  }
+}
+
+TEST(ColorModels, EnergyNeverGrows)
+{
+  auto sphere = Sphere(3);
+  AddColors(sphere);
+  const Setting cases[] = { [](Filter*) {}, [](Filter* f) { f->SetTimeIntegratorToImplicit(); },
+    [](Filter* f) { f->SetEdgeFunctionToCharbonnier(); },
+    [](Filter* f) { f->SetEdgeFunctionToPeronaMalikRational(); },
+    [](Filter* f) { f->SetChromaticityExponent(1.5); },
+    [](Filter* f) { f->SetDiscretizationToCrouzeixRaviart(); } };
+  for (const int model : Colored)
+  {
+    for (const Setting& set : cases)
+    {
+      auto filter = MakeFilter(sphere);
+      filter->SetColorModel(model);
+      set(filter);
+      Messages messages(filter);
+      filter->Update();
+      EXPECT_TRUE(messages.Errors.empty());
+      EXPECT_TRUE(messages.Warnings.empty());
+      for (vtkIdType row = 1; row <= 10; ++row)
+      {
+        EXPECT_LE(
+          HistoryAt(filter, row, "Energy"), HistoryAt(filter, row - 1, "Energy") * (1.0 + 1e-12));
+      }
+    }
+  }
+}
+
+TEST(ColorModels, AnyTimeCanBeRequestedInAnyOrder)
+{
+  auto sphere = Sphere(3);
+  AddColors(sphere);
+  for (const int model : Colored)
+  {
+    for (const bool implicit : { false, true })
+    {
+      auto filter = MakeFilter(sphere);
+      filter->SetColorModel(model);
+      filter->SetTimeIntegrator(
+        implicit ? Filter::TIME_INTEGRATOR_IMPLICIT : Filter::TIME_INTEGRATOR_FIRST_ORDER);
+      filter->GenerateTimeStepsOn();
+      UpdateAt(filter, 0.0);
+      EXPECT_TRUE(Identical(Result(filter), sphere->GetPointData()->GetArray("f")));
+      UpdateAt(filter, 7.0);
+      const auto seventh = Copy(Result(filter));
+      UpdateAt(filter, 10.0);
+      const auto last = Copy(Result(filter));
+      UpdateAt(filter, 7.0);
+      EXPECT_TRUE(Identical(Result(filter), seventh));
+      filter->GenerateTimeStepsOff();
+      filter->Update();
+      EXPECT_TRUE(Identical(Result(filter), last));
+    }
+  }
+}
+
+TEST(ColorModels, MissingAndFixedPoints)
+{
+  auto sphere = Sphere(3);
+  AddColors(sphere);
+  vtkDataArray* f = sphere->GetPointData()->GetArray("f");
+  AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i % 5 == 0; });
+  AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 7 == 0 && i % 5 != 0; });
+  for (const int model : Colored)
+  {
+    for (const bool steady : { false, true })
+    {
+      for (const bool excludes : { false, true })
+      {
+        auto filter = MakeFilter(sphere);
+        filter->SetColorModel(model);
+        filter->SetMode(steady);
+        filter->SetMaskMode(excludes);
+        SetInputArray(filter, 1, "mask");
+        SetInputArray(filter, 3, "fixed");
+        filter->Update();
+        ASSERT_NE(Result(filter), nullptr);
+        for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
+        {
+          const bool kept = i % 5 == 0 || (excludes && i % 7 == 0);
+          for (int k = 0; kept && k < 3; ++k)
+          {
+            ASSERT_EQ(Result(filter)->GetComponent(i, k), f->GetComponent(i, k)) << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ColorModels, HeldColoursInpaintTheOthers)
+{
+  auto sphere = Sphere(4);
+  // The chromaticity is the same everywhere, so that brightness alone has to be continued.
+  const double color[] = { 0.6, 0.3, 0.2 };
+  AddPointArray(
+    sphere, "f", 3, [&](vtkIdType i, int k) { return i % 9 == 0 ? std::nan("") : color[k]; });
+  sphere->GetPointData()->SetActiveScalars("f");
+  for (const int model : Colored)
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetColorModel(model);
+    filter->SetModeToSteadyState();
+    filter->SetInitialFillToNoise();
+    filter->SetStopTolerance(1e-6);
+    filter->HoldKnownValuesOn();
+    filter->Update();
+    const auto expected = MakeArray(
+      VTK_DOUBLE, "e", sphere->GetNumberOfPoints(), 3, [&](vtkIdType, int k) { return color[k]; });
+    EXPECT_LT(LargestDifference(Result(filter), expected), 1e-2) << model;
+  }
+}
+
+TEST(ColorModels, AutomaticFidelityLeavesTheNoise)
+{
+  auto sphere = Sphere(4);
+  AddColors(sphere);
+  const auto areas = ControlAreas(sphere);
+  for (const int model : Colored)
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetColorModel(model);
+    filter->SetModeToSteadyState();
+    filter->AutomaticFidelityOn();
+    filter->SetNoiseLevel(0.05);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Warnings.empty());
+    const auto squares = MakeArray(VTK_DOUBLE, "e", sphere->GetNumberOfPoints(), 3,
+      [&](vtkIdType i, int k)
+      {
+        return std::pow(Result(filter)->GetComponent(i, k) -
+            sphere->GetPointData()->GetArray("f")->GetComponent(i, k),
+          2);
+      });
+    double sum = 0.0;
+    double area = 0.0;
+    for (const double a : areas)
+    {
+      area += a;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      sum += Total(areas, squares, k) / (3.0 * area);
+    }
+    EXPECT_NEAR(std::sqrt(sum), 0.05, 0.005) << model;
+    EXPECT_GT(filter->GetEffectiveFidelityWeight(), 0.0);
+  }
+}
+
+TEST(ColorModels, LinearLightDecodesAndEncodesBytesOnly)
+{
+  auto bytes = Sphere(3);
+  AddBytes(bytes);
+  auto light = Sphere(3);
+  vtkDataArray* f = bytes->GetPointData()->GetArray("f");
+  AddPointArray(light, "f", 3, [&](vtkIdType i, int k) { return Decoded(f->GetComponent(i, k)); });
+  light->GetPointData()->SetActiveScalars("f");
+  for (const int model : Colored)
+  {
+    auto decoding = MakeFilter(bytes);
+    decoding->SetOutputPrecisionToDouble();
+    auto plain = MakeFilter(light);
+    for (Filter* filter : { decoding.Get(), plain.Get() })
+    {
+      filter->SetColorModel(model);
+      filter->SetTolerance(1e-12);
+      filter->Update();
+    }
+    const auto expected = MakeArray(VTK_DOUBLE, "e", bytes->GetNumberOfPoints(), 3,
+      [&](vtkIdType i, int k) { return Encoded(Result(plain)->GetComponent(i, k)); });
+    EXPECT_LT(LargestDifference(Result(decoding), expected), 1e-9) << model;
+    EXPECT_NEAR(decoding->GetValueRange(), plain->GetValueRange(), 1e-9);
+    plain->LinearLightOff(); // no bytes: no effect
+    const auto before = Copy(Result(plain));
+    plain->Update();
+    EXPECT_TRUE(Identical(Result(plain), before));
+    decoding->LinearLightOff();
+    decoding->Update();
+    EXPECT_GT(LargestDifference(Result(decoding), expected), 1.0) << model;
+  }
+}
+
+TEST(ColorModels, LinearLightLeavesRGBAsItIs)
+{
+  auto sphere = Sphere(3);
+  AddBytes(sphere);
+  auto filter = MakeFilter(sphere);
+  EXPECT_TRUE(filter->GetLinearLight());
+  filter->Update();
+  const auto on = Copy(Result(filter));
+  filter->LinearLightOff();
+  filter->Update();
+  EXPECT_TRUE(Identical(Result(filter), on));
+}
+
+TEST(ColorModels, BytesStayBytesWithAlphaAndTheStartIsTheInput)
+{
+  auto sphere = Sphere(3);
+  AddBytes(sphere, 4);
+  vtkDataArray* f = sphere->GetPointData()->GetArray("f");
+  for (const int model : Colored)
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetColorModel(model);
+    filter->SetNumberOfTimeSteps(0);
+    filter->Update();
+    EXPECT_TRUE(Identical(Result(filter), f));
+    filter->SetNumberOfTimeSteps(3);
+    filter->Update();
+    EXPECT_EQ(Result(filter)->GetDataType(), VTK_UNSIGNED_CHAR);
+    EXPECT_GT(LargestDifference(Result(filter), f), 0.0);
+    for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
+    {
+      ASSERT_EQ(Result(filter)->GetComponent(i, 3), f->GetComponent(i, 3));
+    }
+  }
+}
+
+TEST(ColorModels, ColoursOutsideTheRangeOfBytesAreClamped)
+{
+  // A weak fidelity of colour takes saturated colours next to white out of the cube.
+  auto sphere = Sphere(3);
+  AddPointArray(
+    sphere, "f", 3,
+    [&](vtkIdType i, int k) { return Cap(sphere->GetPoint(i)) > 0.5 || k == 0 ? 255.0 : 0.0; },
+    VTK_UNSIGNED_CHAR);
+  sphere->GetPointData()->SetActiveScalars("f");
+  auto filter = MakeFilter(sphere);
+  filter->SetColorModelToOpponent();
+  filter->SetChannelCouplingToPerChannel();
+  filter->SetChromaWeight(0.01);
+  filter->SetOutputPrecisionToDouble();
+  filter->Update();
+  double low = 255.0;
+  double high = 0.0;
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      low = std::min(low, Result(filter)->GetComponent(i, k));
+      high = std::max(high, Result(filter)->GetComponent(i, k));
+    }
+  }
+  EXPECT_GE(low, 0.0);
+  EXPECT_DOUBLE_EQ(high, 255.0);
+}
+
+TEST(ColorModels, OtherDataAndSettingsAreErrors)
+{
+  auto sphere = Sphere(2);
+  AddRough(sphere, 2);
+  const std::pair<Setting, const char*> cases[] = {
+    { [](Filter*) {}, "ColorModel is 1 but InputArray has 2 components" },
+    { [](Filter* f) { f->SetFidelityNormToL1(); }, "FidelityNorm is 1; allowed: 0 L2" },
+    { [](Filter* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetBlurFWHM(1.0);
+      },
+      "ColorModel is 1; allowed: 0 RGB together with BlurFWHM" },
+    { [](Filter* f) { f->SetChromaWeight(0.0); }, "ChromaWeight is 0" },
+    { [](Filter* f) { f->SetChromaticityWeight(-1.0); }, "ChromaticityWeight is -1" },
+    { [](Filter* f) { f->SetChromaticityExponent(2.5); }, "ChromaticityExponent is 2.5" },
+    { [](Filter* f) { f->SetColorModel(3); }, "ColorModel is 3" },
+  };
+  for (const auto& [set, message] : cases)
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetColorModelToOpponent();
+    set(filter);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(Result(filter), nullptr);
+    ASSERT_EQ(messages.Errors.size(), 1u) << message;
+    EXPECT_NE(messages.Errors[0].find(message), std::string::npos) << messages.Errors[0];
+  }
+}
