@@ -1,7 +1,7 @@
 #!/bin/bash
 # Demonstrates the library on real surfaces: installs the required packages (Debian 12), fetches the
-# data, builds the library and draws four pictures. Arguments are passed on to
-# Examples/Python/demo.py, see its --help.
+# data, builds the library and draws one picture from each filter and four applications of linear
+# diffusion. Arguments are passed on to Examples/Python/demo.py, see its --help.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -51,6 +51,10 @@ if [ -z "${DISPLAY:-}" ]; then
   display=(xvfb-run -a -s "-screen 0 1024x768x24 -noreset")
 fi
 modules=$(dirname "$(find build/lib -type d -name surfacediffusion -path '*-packages/*' | head -1)")
-PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH} "${display[@]}" "$python" \
-  Examples/Python/demo.py --cortex "$data/fsaverage5" --mesh "$data/bunny00.off" \
+export PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH}
+mkdir -p build/demo
+(cd build/demo && "${display[@]}" "$python" ../../Examples/Python/overview.py \
+  "../../$data/bunny00.off")
+echo "Picture: build/demo/overview.png"
+"${display[@]}" "$python" Examples/Python/demo.py --cortex "$data/fsaverage5" --mesh "$data/bunny00.off" \
   --output build/demo "$@"

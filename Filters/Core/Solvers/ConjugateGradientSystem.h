@@ -12,7 +12,7 @@ namespace SurfaceDiffusion
 
 /// The defaults of a System, the linear system A x = b that ConjugateGradients solves. A System
 /// derives from it, hides what differs, and has
-///   template <int K> void MultiplyRows(const Values& x, Values& y, Index begin, Index end) const
+///   `template <int K> void MultiplyRows(const Values& x, Values& y, Index begin, Index end) const`
 ///     rows [begin, end) of y = A x;
 ///   double Scale(Index i, int c, const double* r) const
 ///     entry c of D^-1 r in row i, given row i of r. D is block diagonal, symmetric and positive

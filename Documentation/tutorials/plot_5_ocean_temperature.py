@@ -1,0 +1,66 @@
+"""
+Ocean temperature with coasts
+=============================
+
+Buoys measure the temperature of the sea at a few places, with errors. Between them it is interpolated
+within the water: nothing flows across land.
+"""
+from tutorial_data import show
+
+import numpy as np
+from surfacediffusion import heat, sphere
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersHybrid import vtkEarthSource
+
+earth = sphere(5, radius=6371.0)
+
+# %%
+# vtkEarthSource has the coasts as polygons. A point is land if an odd number of edges of polygons lies
+# to its north.
+source = vtkEarthSource()
+source.OutlineOn()
+source.Update()
+coasts = source.GetOutput()
+places = vtk_to_numpy(coasts.GetPoints().GetData()).astype(float)
+
+
+def angles(points):
+    points = points / np.linalg.norm(points, axis=1, keepdims=True)
+    return np.degrees(np.arctan2(points[:, 1], points[:, 0])), np.degrees(np.arcsin(points[:, 2]))
+
+
+longitude, latitude = angles(earth.points)
+east, north = angles(places)
+land = np.zeros(earth.n_points, bool)
+lines = coasts.GetLines()
+offsets = vtk_to_numpy(lines.GetOffsetsArray())
+corners = vtk_to_numpy(lines.GetConnectivityArray())
+for start, end in zip(offsets[:-1], offsets[1:]):
+    chain = corners[start:end]
+    for a, b in zip(chain, np.roll(chain, -1)):
+        # Degrees from each point to both ends, and where the edge crosses the point's meridian.
+        to_a, to_b = ((east[i] - longitude + 180) % 360 - 180 for i in (a, b))
+        between = (to_a * to_b < 0) & (abs(to_a - to_b) < 180)
+        at = north[a] + (north[b] - north[a]) * to_a / np.where(between, to_a - to_b, 1)
+        land ^= between & (at > latitude)
+print(f"{100 * land.mean():.0f} % land")
+
+# %%
+# 400 buoys, with an error of 1 degree. The other points are NaN, which is missing.
+random = np.random.default_rng(0)
+truth = 30 * np.cos(np.radians(latitude)) ** 2 - 2 + 3 * np.sin(np.radians(3 * longitude))
+buoys = random.choice(np.flatnonzero(~land), 400, replace=False)
+measured = np.full(earth.n_points, np.nan)
+measured[buoys] = truth[buoys] + random.normal(scale=1.0, size=buoys.size)
+water = earth.triangles[~land[earth.triangles].any(axis=1)]
+used = np.unique(water)
+number = np.full(earth.n_points, -1)
+number[used] = np.arange(used.size)
+temperature = np.full(earth.n_points, np.nan)
+temperature[used] = heat((earth.points[used], number[water]), measured[used], mode="SteadyState",
+                         fidelity_weight=1.0)
+error = np.sqrt(np.nanmean((temperature - truth) ** 2))
+print(f"error {error:.1f} degrees")
+assert error < 3
+show(earth.points, earth.triangles, {"buoys": measured, "temperature": temperature}, view=(-0.5, -1, 0.4),
+     up=(0, 0, 1), cmap="coolwarm", clim=(-3, 31), nan_color="white")
