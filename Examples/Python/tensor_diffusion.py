@@ -17,7 +17,7 @@ It prints the correlation with the pattern before the damage, everywhere and in 
 tensor_diffusion.png. Without an argument it takes scans of libcgal-demo from the folder
 SURFACEDIFFUSION_MESH_DIR, or a generated surface if that is not set.
 
-Try next: SetIntegrationScale(6), which closes longer gaps; SetModelToEdgeEnhancing();
+Try next: SetContrast(0.05), at which gaps stay open; SetModelToEdgeEnhancing();
 DiffusionAxesOn(), which gives the directions that were found as cell data.
 """
 import os
