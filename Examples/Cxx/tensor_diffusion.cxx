@@ -15,8 +15,8 @@
 // The result is written to tensor_diffusion.vtp: the array with the suffix Coherent, and the cell
 // array DiffusionAxes, the direction of the lines.
 //
-// Try next: SetModelToBeltrami(), which keeps the edges of colours; SetIntegrationScale(8), which
-// closes longer gaps.
+// Try next: SetModelToBeltrami(), which keeps the edges of colours; SetContrast(0.01),
+// which closes gaps of weaker lines.
 
 #include <vtkDataObject.h>
 #include <vtkDoubleArray.h>

@@ -9,15 +9,15 @@ of its curvature, and a pattern like a fingerprint on a closed surface. Both are
 gaps and covered by noise. The program restores them by three kinds of diffusion of the same time:
 
 - isotropic diffusion, which loses the stripes together with the noise;
-- anisotropic diffusion along a given direction: that of the curvature, which the stripes of the scan
-  follow roughly, and those of the fingerprint do not;
+- anisotropic diffusion along a given direction: that of the curvature, along which the stripes of the
+  scan were grown, and which those of the fingerprint do not follow;
 - coherence-enhancing diffusion, which finds the direction in the noisy data.
 
 It prints the correlation with the pattern before the damage, everywhere and in the gaps, and writes
 tensor_diffusion.png. Without an argument it takes scans of libcgal-demo from the folder
 SURFACEDIFFUSION_MESH_DIR, or a generated surface if that is not set.
 
-Try next: SetIntegrationScale(10), which closes longer gaps; SetModelToEdgeEnhancing();
+Try next: SetContrast(0.05), at which gaps stay open; SetModelToEdgeEnhancing();
 DiffusionAxesOn(), which gives the directions that were found as cell data.
 """
 import os
@@ -35,10 +35,10 @@ from surfacediffusion import (
     vtkFVMHeatFilter, vtkSurfaceDirectionFieldFilter, vtkTensorDiffusionFilter,
     vtkTuringTextureFilter)
 
-VERTICES = 40_000
+VERTICES = 20_000
 STRIPE = 12  # mean edge lengths from stripe to stripe
-GAP = 4.5  # the radius of a gap, likewise
-TIME = 40  # in squared mean edge lengths
+GAP = 2.5  # the radius of a gap, likewise
+TIME = 25  # in squared mean edge lengths
 STEPS = 10
 POINTS, CELLS = vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataObject.FIELD_ASSOCIATION_CELLS
 
@@ -113,7 +113,8 @@ def along_given_direction():
 def coherence_enhancing():
     model = vtkTensorDiffusionFilter()
     model.SetModelToCoherenceEnhancing()
-    model.SetIntegrationScale(6)
+    model.SetContrast(0.01)  # in gaps, and with noise in the range of the data, lines are weak
+    model.SetIntegrationScale(3)
     return model
 
 
@@ -151,9 +152,10 @@ def restore(surface, pattern):
     print(f"{pattern.title}: {surface.GetNumberOfPoints()} vertices, {broken.mean():.0%} in gaps")
     for title in shown:
         print(f"  {title:15}: correlation {everywhere[title]:.3f}, in gaps {inside[title]:.3f}")
-    for other in ("interrupted", "isotropic", "along curvature"):
-        assert everywhere["coherence"] > everywhere[other] + 0.05, everywhere
-        assert inside["coherence"] > inside[other], inside
+    others = ["interrupted", "isotropic"] + ([] if pattern.stripes else ["along curvature"])
+    for other in others:
+        assert everywhere["coherence"] > everywhere[other] + 0.1, everywhere
+        assert inside["coherence"] > inside[other] + 0.1, inside
     return surface, shown, everywhere, inside
 
 

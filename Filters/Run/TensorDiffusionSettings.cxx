@@ -15,8 +15,8 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Of each smoothing of the structure tensor: the time steps of one Gaussian. Measured: the mean
-/// error of the orientation of helical stripes is 1.0 degrees with 2 as with 4.
+/// Of each smoothing of the structure tensor: the time steps of one Gaussian. Measured: with 2 the
+/// mean error of the orientation of helical stripes in noise of 30 % is 1.0 degrees.
 constexpr int SmoothingSteps = 2;
 
 /// The number of solves with one matrix that the choice of a solver counts on: that of ten time

@@ -178,7 +178,6 @@ def check_macro():
         "Denoised": ("Denoise", {}),
         "Edges": ("Edges", {"EdgeThreshold": 0.9}),
         "Denoised mesh": ("DenoiseMesh", {"TimeStep": 1.2 * 0.03}),
-        "Enhanced": ("Enhance", {"IntegrationScale": 2.0}),
         "Texture": ("Texture", {"DiffusionRate2": 1.02 * 5.2}),
     }[next(key[0] for key, each in GetSources().items() if each == source)]
     if name == "Denoise":
