@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkFVMHeatFilter
- * @brief   linear diffusion of point data on a triangulated surface
+ * @brief   linear diffusion of data on a triangulated surface
  *
  * Solves the heat equation of the Laplace-Beltrami operator, with anisotropic diffusion and
  * fidelity as options,
@@ -101,7 +101,8 @@ public:
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
    * a linear fit to its neighbours. The estimate assumes white noise, independent from point to
    * point. If points farther apart differ by 15 % more, as in data that were interpolated or
-   * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
+   * smoothed, the noise is correlated: a warning gives both values, and the larger is used. For
+   * data on cells it is the noise of the cells, and the estimate assumes white noise on them.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);

@@ -9,6 +9,7 @@
 #include "Conversion/SurfaceReader.h"
 #include "Run/HarmonicMapSettings.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -52,6 +53,21 @@ bool HasZeroOrNaN(vtkDataArray* vectors)
     }
   }
   return false;
+}
+
+/// The lengths of the input's vectors, per vertex or per cell.
+Vector FindBrightness(const Run::Block& block, const InputFields& fields, bool ofCells)
+{
+  Fields colours;
+  colours.Data = ReadValues(fields.Data);
+  if (!fields.DataOnCells)
+  {
+    return MakePointData(*block.Surface, colours, false, 1.0).Given.rowwise().norm();
+  }
+  const Vector lengths = colours.Data.rowwise().norm();
+  return ofCells
+    ? lengths
+    : Vector(block.Cells->Transfer.ToVertices(lengths, Vector::Ones(lengths.size())).Of);
 }
 
 } // namespace
@@ -101,12 +117,15 @@ bool vtkHarmonicMapFilter::UsesNormals()
   const bool byName = name && *name;
   const bool byOtherAttribute = !name && asked->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) &&
     asked->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) != vtkDataSetAttributes::NORMALS;
-  return !byName && !byOtherAttribute;
+  const bool onCells = asked->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
+    asked->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  return !byName && !byOtherAttribute && !onCells;
 }
 
 bool vtkHarmonicMapFilter::IsNormals(const InputFields& fields, vtkPolyData* block) const
 {
-  return fields.DataAreComputed || fields.Data == block->GetPointData()->GetNormals();
+  return fields.DataAreComputed || fields.Data == block->GetPointData()->GetNormals() ||
+    fields.Data == block->GetCellData()->GetNormals();
 }
 
 /// The normals of a block without any, computed again only if its surface has changed.
@@ -155,7 +174,8 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
   if (this->MoveVertices && !this->IsNormals(fields, block))
   {
     problems.push_back("MoveVertices is on but " + label +
-      " is not the surface's normals; allowed: off, or the active normals or none as InputArray");
+      " is not the surface's normals; allowed: off, or the active normals of points or cells, or "
+      "none, as InputArray");
   }
   return true;
 }
@@ -191,21 +211,23 @@ void vtkHarmonicMapFilter::WriteResult(
   std::size_t index, const InputFields& fields, vtkPolyData* output)
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
-  vtkPointData* const data = output->GetPointData();
+  vtkDataSetAttributes* const data = this->FindResultAttributes(fields, output);
   const bool isNormals = this->IsNormals(fields, output);
   const bool isColour = fields.Data->GetDataType() == VTK_UNSIGNED_CHAR;
   const int type = this->FindResultType(fields);
-  Values state = block.Path->State();
+  const bool onCells = this->HasResultOnCells(fields);
+  Values vectors = onCells ? MakeCellResult(*block.Cells, block.Path->State(),
+                               ReadValues(fields.Data), this->KeepCellDetail)
+                           : block.Path->State();
   if (type == VTK_UNSIGNED_CHAR)
   {
-    Fields colours;
-    colours.Data = ReadValues(fields.Data);
-    const Values given = MakePointData(*block.Surface, colours, false, 1.0).Given;
-    state.array().colwise() *= given.rowwise().norm().array(); // the input's brightness
+    vectors.array().colwise() *= FindBrightness(block, fields, onCells).array();
   }
   const std::string name = this->FindResultName(fields);
-  this->AddResult(
-    WritePointArray(*block.Surface, fields.Data, state, 1.0, type, name), fields, data);
+  this->AddResult(onCells
+      ? WriteCellArray(block.Cells->Transfer, fields.Data, vectors, type, name)
+      : WritePointArray(*block.Surface, fields.Data, fields.DataOnCells, vectors, 1.0, type, name),
+    fields, data);
   const bool isVector = fields.Data->GetNumberOfComponents() == 3 && !isColour;
   int attribute = isVector ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
   if (isNormals && this->UseAsNormals)

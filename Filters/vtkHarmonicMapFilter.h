@@ -17,7 +17,7 @@
  * whereas p = 1 smooths the faces of a surface and keeps its creases.
  *
  * **Data.** The default data are the surface's normals: the active ones, or, if there are none,
- * computed normals (not split at edges). Any other point array of 2 or more components is
+ * computed normals (not split at edges). Any other point or cell array of 2 or more components is
  * normalised on entry, so that only its direction counts. Vectors of length zero or with NaN are
  * missing and are filled in, as masked vectors are. If InitialFill is Mean but there is no
  * prevailing direction (the mean of the known unit vectors is shorter than 1/2, as it is for the

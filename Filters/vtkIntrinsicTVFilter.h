@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkIntrinsicTVFilter
- * @brief   edge-preserving denoising and inpainting of point data on a surface
+ * @brief   edge-preserving denoising and inpainting of data on a surface
  *
  * Solves nonlinear diffusion on a triangulated surface, by default total variation flow,
  *

@@ -92,8 +92,10 @@ void vtkMumfordShahFilter::WriteResult(
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
   const bool single = this->FindResultType(fields) == VTK_FLOAT;
-  this->AddResult(WriteScalars(*block.Surface, EdgesName, block.Result.Edges, single, nullptr, 0),
-    fields, output->GetPointData());
+  const auto edges = this->HasResultOnCells(fields)
+    ? WriteRows(EdgesName, block.Cells->Transfer.ToCells(block.Result.Edges), single)
+    : WriteScalars(*block.Surface, EdgesName, block.Result.Edges, single, nullptr, 0);
+  this->AddResult(edges, fields, this->FindResultAttributes(fields, output));
   this->Superclass::WriteResult(index, fields, output);
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkMumfordShahFilter
- * @brief   edges and piecewise smooth approximation of point data on a triangulated surface
+ * @brief   edges and piecewise smooth approximation of data on a triangulated surface
  *
  * Minimises the functional of Mumford and Shah (CPAM 42, 1989) in the approximation of L. Ambrosio
  * and V. Tortorelli (CPAM 43, 1990); on meshes N. Bonneel, D. Coeurjolly, P. Gueth and J.-O.
@@ -44,8 +44,8 @@
  * 0 <= v <= 1 holds for the exact v on Delaunay meshes (IntrinsicDelaunay); on others v may leave
  * the interval, and `Edges` is clamped.
  *
- * **Output port 0**: the result, named as the data with the suffix `MumfordShah`, and the point
- * array `Edges`, 1 - v. **Output port 1**: the history; its energy is E with the eps of the step,
+ * **Output port 0**: the result, named as the data with the suffix `MumfordShah`, and the array
+ * `Edges`, 1 - v, or, for data on cells, its mean over the cell. **Output port 1**: the history; its energy is E with the eps of the step,
  * in (units of the array)^2: it can rise in the two steps where eps is halved. **Output port 2**:
  * the edges as polylines (vtkPolyData), one per edge between its ends and junctions, along the
  * ridge of 1 - v; a closed edge repeats its first point. It has the point array `Edges` and the

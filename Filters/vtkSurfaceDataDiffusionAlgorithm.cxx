@@ -33,7 +33,7 @@ bool vtkSurfaceDataDiffusionAlgorithm::FindFields(
 {
   const bool hasData = this->Superclass::FindFields(block, fields, problems);
   const SurfaceDiffusion::InputArrays inputs(this, block, problems);
-  fields.Fidelity = inputs.FindOnPoints(5, "FidelityArray", 1);
+  fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
   return hasData;
 }
 
@@ -46,4 +46,6 @@ void vtkSurfaceDataDiffusionAlgorithm::CopyProperties(
   settings.HoldKnownValues = this->HoldKnownValues;
   settings.AlongDiffusivity = this->AlongDiffusivity;
   settings.AcrossDiffusivity = this->AcrossDiffusivity;
+  settings.ResultOnCells = this->ResultOnCells;
+  settings.KeepCellDetail = this->KeepCellDetail;
 }

@@ -10,6 +10,7 @@
 #include "Conversion/TimeRequests.h"
 #include "Distributed/DistributedSolver.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -18,6 +19,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,7 +55,7 @@ vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm()
 {
   this->SetNumberOfOutputPorts(2);
   this->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::SCALARS);
 }
 
 vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
@@ -124,10 +126,11 @@ bool vtkSurfaceDiffusionAlgorithm::FindFields(
   vtkPolyData* block, InputFields& fields, Problems& problems)
 {
   const InputArrays inputs(this, block, problems);
-  fields.Data = inputs.FindOnPoints(0, "InputArray", InputArrays::AnyNumberOfComponents);
-  fields.Mask = inputs.FindOnPoints(1, "MaskArray", 1);
+  fields.Data =
+    inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents, fields.DataOnCells);
+  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
   fields.Direction = inputs.Find(2, "DirectionArray", 3, fields.DirectionOnCells);
-  fields.Fixed = inputs.FindOnPoints(3, "FixedArray", 1);
+  fields.Fixed = inputs.Find(3, "FixedArray", 1, fields.FixedOnCells);
   return fields.Data != nullptr;
 }
 
@@ -392,15 +395,80 @@ void vtkSurfaceDiffusionAlgorithm::WriteResult(
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
   const std::string name = this->FindResultName(fields);
-  const auto write = [&](const Values& values, double unit)
+  const int type = this->FindResultType(fields);
+  const ParallelFor& parallel = SMPParallelFor::Instance();
+  vtkDataSetAttributes* const attributes = this->FindResultAttributes(fields, output);
+  if (this->HasResultOnCells(fields))
   {
-    return WritePointArray(
-      *block.Surface, fields.Data, values, unit, this->FindResultType(fields), name);
+    const Values result = block.CellResult(ReadValues(fields.Data), this->KeepCellDetail, parallel);
+    this->AddResult(
+      WriteCellArray(block.Cells->Transfer, fields.Data, result, type, name), fields, attributes);
+  }
+  else
+  {
+    const auto write = [&](const Values& values, double unit)
+    {
+      return WritePointArray(
+        *block.Surface, fields.Data, fields.DataOnCells, values, unit, type, name);
+    };
+    this->AddResult(block.HasLinearLight ? write(block.EncodedState(parallel), 1.0)
+                                         : write(block.Path->State(), block.Units.ValueUnit),
+      fields, attributes);
+  }
+  attributes->SetActiveScalars(name.c_str());
+}
+
+bool vtkSurfaceDiffusionAlgorithm::HasResultOnCells(const InputFields& fields) const
+{
+  return fields.DataOnCells && this->ResultOnCells;
+}
+
+vtkDataSetAttributes* vtkSurfaceDiffusionAlgorithm::FindResultAttributes(
+  const InputFields& fields, vtkPolyData* output) const
+{
+  if (this->HasResultOnCells(fields))
+  {
+    return output->GetCellData();
+  }
+  return output->GetPointData();
+}
+
+/// Vertices, lines and hidden cells keep their value, as those of a surface in one piece do.
+void vtkSurfaceDiffusionAlgorithm::CompletePiece(const SurfaceBlock& piece)
+{
+  const auto isNew = [&](int array)
+  {
+    vtkAbstractArray* const after = piece.Output->GetCellData()->GetAbstractArray(array);
+    return piece.Input->GetCellData()->GetAbstractArray(after->GetName()) != after;
   };
-  this->AddResult(block.HasLinearLight ? write(block.EncodedState(SMPParallelFor::Instance()), 1.0)
-                                       : write(block.Path->State(), block.Units.ValueUnit),
-    fields, output->GetPointData());
-  output->GetPointData()->SetActiveScalars(name.c_str());
+  bool hasNew = false;
+  for (int a = 0; a < piece.Output->GetCellData()->GetNumberOfArrays(); ++a)
+  {
+    hasNew = hasNew || isNew(a);
+  }
+  InputFields fields;
+  Problems reportedAlready;
+  if (!hasNew || !this->FindFields(piece.Input, fields, reportedAlready) ||
+    !this->HasResultOnCells(fields))
+  {
+    return;
+  }
+  vtkDataArray* const result =
+    piece.Output->GetCellData()->GetArray(this->FindResultName(fields).c_str());
+  if (!result || result == fields.Data)
+  {
+    return;
+  }
+  vtkUnsignedCharArray* const ghosts = piece.Input->GetCellGhostArray();
+  const vtkIdType polygons = piece.Input->GetNumberOfVerts() + piece.Input->GetNumberOfLines();
+  for (vtkIdType c = 0; c < result->GetNumberOfTuples(); ++c)
+  {
+    const bool isHidden = ghosts && (ghosts->GetValue(c) & vtkDataSetAttributes::HIDDENCELL) != 0;
+    for (int k = 0; (c < polygons || isHidden) && k < result->GetNumberOfComponents(); ++k)
+    {
+      result->SetComponent(c, k, fields.Data->GetComponent(c, k));
+    }
+  }
 }
 
 std::string vtkSurfaceDiffusionAlgorithm::FindResultName(const InputFields& fields) const

@@ -4,29 +4,46 @@
  * @class   vtkSurfaceDiffusionAlgorithm
  * @brief   superclass of the time-dependent models: units, time, masks, solvers, history
  *
- * The subclasses solve diffusion equations on triangulated surfaces by the finite
- * volume method of C. Wu, J. Deng, F. Chen, "Diffusion Equations over Arbitrary Triangulated
- * Surfaces for Filtering and Texture Applications", IEEE TVCG 14(3), 2008: the Laplace-Beltrami
- * operator is discretised with cotan weights and a lumped mass matrix, whose entries are the areas
- * A_i of barycentric control cells. The surface may have any angles and any topology. Data are
- * point data, piecewise linear on the triangles. The boundary condition is the homogeneous Neumann
- * condition: there is no flux over the boundary of the surface.
+ * The subclasses solve diffusion equations on triangulated surfaces by the finite volume method of
+ * C. Wu, J. Deng, F. Chen, "Diffusion Equations over Arbitrary Triangulated Surfaces for Filtering
+ * and Texture Applications", IEEE TVCG 14(3), 2008: the Laplace-Beltrami operator is discretised
+ * with cotan weights and a lumped mass matrix, whose entries are the areas A_i of barycentric
+ * control cells. The surface may have any angles and any topology. Data on points are piecewise
+ * linear on the triangles; data on cells are moved to the points first, see below. The boundary
+ * condition is the homogeneous Neumann condition: there is no flux over the boundary of the
+ * surface.
  *
  * **Input arrays**, `SetInputArrayToProcess(idx, 0, 0, association, name)`; an empty name means
  * that the array is not set:
  *
  * | idx | association | meaning |
  * | --- | --- | --- |
- * | 0 | points | the data f, of any numeric type and number of components |
- * | 1 | points | the mask, one component: nonzero is missing or excluded, see MaskMode |
+ * | 0 | points or cells | the data f, of any numeric type and number of components |
+ * | 1 | points or cells | the mask, one component: nonzero is missing or excluded, see MaskMode |
  * | 2 | points or cells | the direction e1, three components, up to its sign |
- * | 3 | points | nonzero: the value is held fixed (Dirichlet) |
+ * | 3 | points or cells | nonzero: the value is held fixed (Dirichlet) |
  *
  * Unsigned chars are colours: the last of 2 or 4 components is alpha and is copied. The default
- * data are the active scalars. A point is also missing if any component of f is NaN. Directions
- * are projected into each triangle and normalised, and e2 = n x e1; a triangle whose direction is
- * zero or NaN is isotropic, with the geometric mean of the two diffusivities. A point that is both
- * fixed and missing is fixed.
+ * data are the active scalars of the points, or, if there are none, of the cells. A point is also
+ * missing if any component of f is NaN. Directions are projected into each triangle and normalised,
+ * and e2 = n x e1; a triangle whose direction is zero or NaN is isotropic, with the geometric mean
+ * of the two diffusivities. A point that is both fixed and missing is fixed.
+ *
+ * **Data on cells**, that is on triangles, quadrilaterals, larger polygons and strips, go to the
+ * points, are processed there, and their change comes back. With the area m_ci that cell c and the
+ * control cell of point i have in common, the area A_c of the cell, and
+ *
+ *     (P f)_i  = sum over c of m_ci f_c / A_i,
+ *     (P* u)_c = sum over i of m_ci u_i / A_c,
+ *
+ * the run starts from u_0 = P f, and the result on the cells is f + P*(u - u_0). P and P* keep
+ * constants and the integral, sum of A_c f_c = sum of A_i u_i, and a model that changes nothing
+ * returns f bit by bit. Cells of several triangles have equal shares of their area for their
+ * corners in P, and a constant restores the integral, so that results depend on the diagonals by
+ * O(h^2) only. A cell is missing if it is masked or NaN, and a point if all cells around it are;
+ * missing cells get P* u. With data on cells, a cell of a masked point is masked. With data on
+ * points, the points of a masked cell are masked. The points of a fixed cell are fixed to the mean
+ * of the fixed cells around them. Ghost cells and cells that are no polygons keep their value.
  *
  * Composite input is one problem with one set of units; see vtkSurfaceFilter for composite data and
  * for surfaces in pieces. Each process solves with its piece, so that memory and time are divided,
@@ -35,14 +52,15 @@
  * or Automatic with more than a million points. An abort is then obeyed by all processes within a
  * few iterations. Some features are always computed in process 0, which then holds the whole
  * surface: AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves of
- * vtkMumfordShahFilter, and MoveVertices, computed normals and line fields with missing values of vtkHarmonicMapFilter.
- * Random numbers are those of one process if there are global ids; otherwise they depend on the
- * coordinates.
+ * vtkMumfordShahFilter, and MoveVertices, computed normals and line fields with missing values of
+ * vtkHarmonicMapFilter. Random numbers are those of one process if there are global ids; otherwise
+ * they depend on the coordinates.
  *
- * **Output port 0** is the input with the result as a further point array, made active. Points
- * that no participating triangle uses keep their value. **Output port 1** is a vtkTable, the
- * history: row 0 is the initial state, then one row per step with columns `Step`, `Time`,
- * `Total_0` ... (sum of A_i u_i of each component), `Energy`, `Iterations`, `Residual`, `Seconds`.
+ * **Output port 0** is the input with the result as a further array, made active, of points or, for
+ * data on cells, of cells. Points that no participating triangle uses keep their value. **Output
+ * port 1** is a vtkTable, the history: row 0 is the initial state, then one row per step with
+ * columns `Step`, `Time`, `Total_0` ... (sum of A_i u_i of each component), `Energy`, `Iterations`,
+ * `Residual`, `Seconds`.
  *
  * **Invalid properties or arrays** are errors at update that name the property, its value and what
  * is allowed. The output then is the unchanged input. Defects of the surface (zero-area triangles,
@@ -145,8 +163,9 @@ public:
   ///@{
   /**
    * The meaning of the mask. Inpaint (default): masked points are missing and are filled in, (18)
-   * and (19). Exclude: triangles with a masked vertex are ignored, there is no flux over the edges
-   * of the remaining region of interest, and masked points keep their value.
+   * and (19). Exclude: triangles with a masked vertex and masked cells are ignored, there is no
+   * flux over the edges of the remaining region of interest, and masked points and cells keep their
+   * value.
    */
   vtkSetMacro(MaskMode, int);
   vtkGetMacro(MaskMode, int);
@@ -328,6 +347,9 @@ protected:
   /// a warning unless the array is the data.
   void AddResult(vtkDataArray* result, const SurfaceDiffusion::InputFields& fields,
     vtkDataSetAttributes* attributes);
+  bool HasResultOnCells(const SurfaceDiffusion::InputFields& fields) const;
+  vtkDataSetAttributes* FindResultAttributes(
+    const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) const;
   std::string FindResultName(const SurfaceDiffusion::InputFields& fields) const;
   int FindResultType(const SurfaceDiffusion::InputFields& fields) const;
 
@@ -338,6 +360,7 @@ protected:
     const SurfaceDiffusion::ProgressMonitor& progress) override;
   bool SolvesInPieces(
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points) override;
+  void CompletePiece(const SurfaceBlock& piece) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -359,6 +382,9 @@ protected:
   bool IntrinsicDelaunay = false;
   int OutputPrecision = OUTPUT_PRECISION_INPUT;
   int CheckpointMemoryLimit = 512;
+  /// Of classes whose results may be on cells; these have the properties.
+  bool ResultOnCells = true;
+  bool KeepCellDetail = true;
 
   /// The run, kept between updates.
   struct RunState;

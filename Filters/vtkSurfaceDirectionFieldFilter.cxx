@@ -115,8 +115,9 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     BlockInput input;
     input.SurfaceVersion = FingerprintSurface(data, nullptr);
     input.FieldsVersion = FingerprintFields(fields[b]);
-    input.ReadSurface = [&] { return ReadSurface(data, nullptr, block->Cells); };
-    input.ReadFields = [&] { return ReadFields(fields[b], block->Cells); };
+    input.ReadSurface = [&] { return ReadSurface(data, nullptr, false, block->Cells); };
+    input.ReadFields = [&]
+    { return ReadFields(fields[b], block->Cells, data->GetNumberOfCells()); };
     const double count = static_cast<double>(surfaces.size());
     block->Run.Update(input, *settings, progress.Part(b / count, (b + 0.95) / count));
     results.push_back(WriteDirections(block->Run.GetSurface(), block->Cells, data,

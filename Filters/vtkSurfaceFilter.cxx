@@ -3,6 +3,7 @@
 #include "vtkSurfaceFilter.h"
 
 #include "Conversion/SurfaceFilterInternals.h"
+#include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Distributed/SurfacePieces.h"
 #include "Run/Settings.h"
@@ -66,6 +67,8 @@ void vtkSurfaceFilter::CheckSurfaceProperties(Problems& problems)
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: 1e-6 of the bounding box");
   Require(
     seam.Contains(this->SeamTolerance), "SeamTolerance", this->SeamTolerance, seam.Text, problems);
+  Require(this->NumberOfThreads >= 0, "NumberOfThreads", this->NumberOfThreads,
+    "integers, 0 or more; 0: all", problems);
 }
 
 bool vtkSurfaceFilter::SolvesInPieces(const std::vector<SurfaceBlock>&, bool, double)
@@ -237,6 +240,10 @@ int vtkSurfaceFilter::RequestData(
   {
     UpdateOfPieces(this, processes, pieces, this->SeamTolerance, this->Private->Gathered,
       [&](const std::vector<SurfacePiece>& surfaces) { this->ProcessGuarded(toBlocks(surfaces)); });
+    for (const SurfaceBlock& piece : toBlocks(pieces))
+    {
+      this->CompletePiece(piece);
+    }
   }
   this->ShareReported();
   if (this->GetReleaseDataFlag() != 0 || vtkDataObject::GetGlobalReleaseDataFlag() != 0)
@@ -269,6 +276,7 @@ void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
   bool completed = false;
   try
   {
+    const ThreadScope threads(this->NumberOfThreads, Processes(this->Controller).Count() > 1);
     this->ProcessSurfaces(blocks, ProgressMonitor(callback));
     this->UpdateProgress(1.0);
     completed = true;
@@ -299,6 +307,8 @@ void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
   }
 }
 
+void vtkSurfaceFilter::CompletePiece(const SurfaceBlock&) {}
+
 void vtkSurfaceFilter::VisitReported(const std::function<void(double&)>& visit)
 {
   visit(this->MeanEdgeLength);
@@ -324,6 +334,7 @@ void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
   os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
   os << indent << "SeamTolerance: " << this->SeamTolerance << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
   os << indent << "MeanEdgeLength: " << this->MeanEdgeLength << "\n";

@@ -78,6 +78,18 @@ public:
 
   ///@{
   /**
+   * The largest number of threads of an update. 0 or more; 0 (default) means all that VTK's back end
+   * of vtkSMPTools has. If that back end is Sequential, as at the start of Debian's VTK and
+   * ParaView, and the environment variable VTK_SMP_BACKEND_IN_USE is not set, updates use the back
+   * end STDThread. With several processes they do so only if this number is greater than 1. No bit
+   * of a result depends on the number of threads.
+   */
+  vtkSetMacro(NumberOfThreads, int);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
    * The processes that hold pieces of the surface. Default: the global controller. Null,
    * if it was set by SetController(), means that this process has the whole surface. Otherwise an
    * update is an error if the pipeline asks for one of several pieces and no other process can be
@@ -137,6 +149,10 @@ protected:
   virtual bool SolvesInPieces(
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points);
 
+  /// Complete the results of a piece of a surface that process 0 has computed: cells that take no
+  /// part are not gathered. The default does nothing.
+  virtual void CompletePiece(const SurfaceBlock& piece);
+
   /// Visit the read-only values, which process 0 shares with all. Superclass first.
   virtual void VisitReported(const std::function<void(double&)>& visit);
 
@@ -171,6 +187,7 @@ protected:
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
   double SeamTolerance = -1.0;
+  int NumberOfThreads = 0;
   std::string ResultArrayName;
   double MeanEdgeLength = 0.0;
 

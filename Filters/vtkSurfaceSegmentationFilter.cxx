@@ -31,6 +31,7 @@ vtkStandardNewMacro(vtkSurfaceSegmentationFilter);
 namespace
 {
 
+constexpr const char* ProbabilityName = "RegionProbability";
 constexpr double NotSet = std::numeric_limits<double>::quiet_NaN();
 
 double FindMean(const std::map<std::pair<int, int>, double>& means, int region, int component)
@@ -39,22 +40,33 @@ double FindMean(const std::map<std::pair<int, int>, double>& means, int region, 
   return entry == means.end() ? NotSet : entry->second;
 }
 
-template <typename Array>
-vtkSmartPointer<vtkDataArray> MakeProbabilities(const Surface& surface, const Values& u)
+/// One row per point: that of its vertex, 0 at points of no participating triangle.
+Values StateOfPoints(const Surface& surface, const Values& u)
 {
-  const auto count = static_cast<vtkIdType>(surface.Points().rows());
-  const int regions = static_cast<int>(u.cols());
-  auto array = NewArray<Array>("RegionProbability", regions, count);
-  for (vtkIdType i = 0; i < count; ++i)
+  Values ofPoints = Values::Zero(surface.Points().rows(), u.cols());
+  for (Index i = 0; i < static_cast<Index>(ofPoints.rows()); ++i)
   {
-    const Index v = surface.VertexOf(static_cast<Index>(i));
-    for (int k = 0; k < regions; ++k)
+    const Index v = surface.VertexOf(i);
+    if (v >= 0)
     {
-      array->SetTypedComponent(
-        i, k, static_cast<typename Array::ValueType>(v >= 0 ? u(v, k) : 0.0));
+      ofPoints.row(i) = u.row(v);
     }
   }
-  return array;
+  return ofPoints;
+}
+
+/// The mean of the region of each label; zero for label 0.
+Values MeansOfLabels(const Values& means, const std::vector<Index>& labels)
+{
+  Values rows = Values::Zero(static_cast<Eigen::Index>(labels.size()), means.cols());
+  for (std::size_t i = 0; i < labels.size(); ++i)
+  {
+    if (labels[i] > 0)
+    {
+      rows.row(static_cast<Eigen::Index>(i)) = means.row(labels[i] - 1);
+    }
+  }
+  return rows;
 }
 
 } // namespace
@@ -107,6 +119,7 @@ std::unique_ptr<RunSettings> vtkSurfaceSegmentationFilter::MakeSettings() const
   settings->FidelityWeight = this->FidelityWeight;
   settings->AutomaticMeans = this->AutomaticMeans;
   settings->StopTolerance = this->StopTolerance;
+  settings->ResultOnCells = this->ResultOnCells;
   int components = 0;
   int regions = 0;
   for (const auto& [place, value] : this->Means)
@@ -129,15 +142,16 @@ bool vtkSurfaceSegmentationFilter::FindFields(
 {
   const InputArrays inputs(this, block, problems);
   const std::size_t before = problems.size();
-  fields.Data = inputs.FindOnPoints(7, "DataTermArray", InputArrays::AnyNumberOfComponents);
+  constexpr int any = InputArrays::AnyNumberOfComponents;
+  fields.Data = inputs.Find(7, "DataTermArray", any, fields.DataOnCells);
   fields.DataAreTerms = fields.Data != nullptr;
   if (!fields.DataAreTerms && problems.size() == before)
   {
-    fields.Data = inputs.FindOnPoints(0, "InputArray", InputArrays::AnyNumberOfComponents);
+    fields.Data = inputs.Find(0, "InputArray", any, fields.DataOnCells);
   }
-  fields.Mask = inputs.FindOnPoints(1, "MaskArray", 1);
-  fields.Fidelity = inputs.FindOnPoints(5, "FidelityArray", 1);
-  fields.Seeds = inputs.FindOnPoints(6, "SeedArray", 1);
+  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
+  fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
+  fields.Seeds = inputs.Find(6, "SeedArray", 1, fields.SeedsOnCells);
   return fields.Data != nullptr;
 }
 
@@ -147,32 +161,33 @@ void vtkSurfaceSegmentationFilter::WriteResult(
   const Run::Block& block = this->State->Run.GetBlock(index);
   const Surface& surface = *block.Surface;
   const RegionResults& regions = *block.Result.Regions;
-  vtkPointData* const points = output->GetPointData();
+  const bool onCells = this->HasResultOnCells(fields);
+  vtkDataSetAttributes* const attributes = this->FindResultAttributes(fields, output);
+  const Values& u = block.Path->State();
+  const std::vector<Index> labels = onCells ? MakeCellLabels(*block.Cells, u) : regions.Labels;
   const int type = this->FindResultType(fields);
   if (regions.Means.rows() > 0)
   {
-    Values segmented(static_cast<Eigen::Index>(regions.Labels.size()), regions.Means.cols());
-    for (std::size_t i = 0; i < regions.Labels.size(); ++i)
-    {
-      segmented.row(static_cast<Eigen::Index>(i)) = regions.Means.row(regions.Labels[i] - 1);
-    }
-    this->AddResult(
-      WritePointArray(surface, fields.Data, segmented, 1.0, type, this->FindResultName(fields)),
-      fields, points);
+    const Values segmented = MeansOfLabels(regions.Means, labels);
+    const std::string name = this->FindResultName(fields);
+    this->AddResult(onCells
+        ? WriteCellArray(block.Cells->Transfer, fields.Data, segmented, type, name)
+        : WritePointArray(surface, fields.Data, fields.DataOnCells, segmented, 1.0, type, name),
+      fields, attributes);
   }
-  const Values& u = block.Path->State();
-  this->AddResult(type == VTK_FLOAT || this->OutputPrecision == OUTPUT_PRECISION_SINGLE
-      ? MakeProbabilities<vtkFloatArray>(surface, u)
-      : MakeProbabilities<vtkDoubleArray>(surface, u),
-    fields, points);
-  const auto ids = NewArray<vtkIntArray>("RegionId", 1, output->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  const bool single = type == VTK_FLOAT || this->OutputPrecision == OUTPUT_PRECISION_SINGLE;
+  this->AddResult(WriteRows(ProbabilityName,
+                    onCells ? block.Cells->Transfer.ToCells(u) : StateOfPoints(surface, u), single),
+    fields, attributes);
+  const vtkIdType count = onCells ? output->GetNumberOfCells() : output->GetNumberOfPoints();
+  const auto ids = NewArray<vtkIntArray>("RegionId", 1, count);
+  for (vtkIdType i = 0; i < count; ++i)
   {
-    const Index v = surface.VertexOf(static_cast<Index>(i));
-    ids->SetValue(i, v >= 0 ? regions.Labels[static_cast<std::size_t>(v)] : 0);
+    const Index row = onCells ? static_cast<Index>(i) : surface.VertexOf(static_cast<Index>(i));
+    ids->SetValue(i, row >= 0 ? labels[static_cast<std::size_t>(row)] : 0);
   }
-  this->AddResult(ids, fields, points);
-  points->SetActiveScalars("RegionId");
+  this->AddResult(ids, fields, attributes);
+  attributes->SetActiveScalars("RegionId");
 }
 
 /// The rows of all blocks, one after the other.

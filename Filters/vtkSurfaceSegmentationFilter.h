@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSurfaceSegmentationFilter
- * @brief   divides a surface into regions with short boundaries by its point data
+ * @brief   divides a surface into regions with short boundaries by its data
  *
  * Finds K regions of a surface by the convex Chan-Vese model (T. Chan, S. Esedoglu, M. Nikolova,
  * SIAM J. Appl. Math. 66, 2006) and, for K > 2, by the convex relaxation of Potts' model (on
@@ -14,19 +14,19 @@
  * the length of the boundaries plus lambda times the data terms r_k = |f - c_k|^2, where c_k is the
  * mean of region k. chi is the indicator of the known part, and w the fidelity of each point, 1 by
  * default. A point belongs to the region of its largest u_k. The means are given (SetMean) or found
- * (AutomaticMeans). Instead of f, the data terms r_k themselves can be given as a point array with
- * one component per region, so that any feature can drive the segmentation: probabilities of a
- * classifier (r_k = -log p_k), distances from prototypes, and so on. Seeds are points whose label is
- * given. They suit interactive use: without any data term, the regions are those with the shortest
- * boundaries between the seeds.
+ * (AutomaticMeans). Instead of f, the data terms r_k themselves can be given as an array with one
+ * component per region, so that any feature can drive the segmentation: probabilities of a
+ * classifier (r_k = -log p_k), distances from prototypes, and so on. Seeds are points whose label
+ * is given. They suit interactive use: without any data term, the regions are those with the
+ * shortest boundaries between the seeds.
  *
  * **Input arrays** in addition to those of the superclass (0, the data f, and 1, the mask):
  *
  * | idx | association | meaning |
  * | --- | --- | --- |
- * | 5 | points | FidelityArray: w, one component, 0 or more. 0: missing |
- * | 6 | points | seeds, one component: the labels 1 ... K, 0 = free |
- * | 7 | points | the data terms r_k, K components, in place of f; NaN in any component: missing |
+ * | 5 | points or cells | FidelityArray: w, one component, 0 or more. 0: missing |
+ * | 6 | points or cells | seeds, one component: the labels 1 ... K, 0 = free |
+ * | 7 | points or cells | the data terms r_k, K components, in place of f; NaN in any component: missing |
  *
  * Input arrays 2 and 3 are not used. Missing points (mask, NaN) take the region that makes the
  * boundaries shortest. Points excluded by MaskMode Exclude have the label 0.
@@ -39,31 +39,33 @@
  *
  * where r_(1) and r_(2) are the smallest two data terms of a point for the given means or, with
  * AutomaticMeans, for the clusters of the values. D is the contrast of the data, d^2 for two values
- * without noise. Noise hardly changes it, or raises it. So regions are kept from a radius of about 3
- * h on, while noise of up to the distance of the means makes none. The mean has weights A w.
+ * without noise. Noise hardly changes it, or raises it. So regions are kept from a radius of about
+ * 3 h on, while noise of up to the distance of the means makes none. The mean has weights A w.
  *
  * **Units.** In natural units FidelityWeight is in 1/(h R^2), and in 1/(h R) with given data terms,
- * R their range. R includes the noise: under normal noise of half the difference of two values it is
- * about five times that difference, so that the same lambda has a number 25 times larger.
+ * R their range. R includes the noise: under normal noise of half the difference of two values it
+ * is about five times that difference, so that the same lambda has a number 25 times larger.
  *
- * **Scheme.** ADMM as in vtkIntrinsicTVFilter, with the projection onto the simplex, or the clamp to
- * [0, 1] for K = 2, until the duality gap certifies E up to StopTolerance. The means and u are
+ * **Scheme.** ADMM as in vtkIntrinsicTVFilter, with the projection onto the simplex, or the clamp
+ * to [0, 1] for K = 2, until the duality gap certifies E up to StopTolerance. The means and u are
  * minimised over in turn until no mean changes by more than a thousandth of their range. E never
- * rises. For given means or data terms u is the global minimiser up to the tolerance. The relaxation
- * is exact for K = 2. With AutomaticMeans the result is a local minimum. The result is a steady
- * state, in one step: TimeStep and NumberOfTimeSteps have no effect, and with GenerateTimeSteps the
- * first time shows the labels of the smallest data terms.
+ * rises. For given means or data terms u is the global minimiser up to the tolerance. The
+ * relaxation is exact for K = 2. With AutomaticMeans the result is a local minimum. The result is a
+ * steady state, in one step: TimeStep and NumberOfTimeSteps have no effect, and with
+ * GenerateTimeSteps the first time shows the labels of the smallest data terms.
  *
  * **Output.** Port 0: the input with the point arrays `RegionId` (int, 1 to K, 0 at points of no
  * participating triangle; active), `RegionProbability` (u, K components) and, unless data terms are
- * given, `<name>Segmented` (c of the region; ResultArrayName names this array). Port 1: a table with
- * a row per region: `Block`, `Region`, `Area`, `BoundaryLength`, `Components` (the number of
+ * given, `<name>Segmented` (c of the region; ResultArrayName names this array). Port 1: a table
+ * with a row per region: `Block`, `Region`, `Area`, `BoundaryLength`, `Components` (the number of
  * connected ones), and `Mean_0` ... of the data. Port 2: the boundaries as polylines that cut
  * triangles, level lines of u, with the cell arrays `Regions` (the two labels), `Length` and
- * `Block`. Areas and lengths are those of these lines. The smaller lambda is, the better is their
- * length: for data of two values with the difference d it is right to 1 % at lambda h d^2 = 0.1, 3.5 %
- * too long at 0.3, and 11 % at 0.7. AutomaticFidelity makes it 6 to 11 % too long. The edges between
- * points of different labels would be 10 to 12 % too long at any lambda and mesh size.
+ * `Block`. If the data are on cells, so are the arrays of port 0 (see ResultOnCells); points
+ * between cells with different seeds are free. Areas and lengths are those of these lines. The
+ * smaller lambda is, the better is their length: for data of two values with the difference d it is
+ * right to 1 % at lambda h d^2 = 0.1, 3.5 % too long at 0.3, and 11 % at 0.7. AutomaticFidelity
+ * makes it 6 to 11 % too long. The edges between points of different labels would be 10 to 12 % too
+ * long at any lambda and mesh size.
  *
  * The energy of a surface in pieces is minimised in process 0, which has ports 1 and 2 alone.
  *
@@ -129,6 +131,17 @@ public:
   vtkSetMacro(AutomaticMeans, bool);
   vtkGetMacro(AutomaticMeans, bool);
   vtkBooleanMacro(AutomaticMeans, bool);
+  ///@}
+
+  ///@{
+  /**
+   * On (default): the results of data on cells are on cells: RegionProbability is the mean of u
+   * over the cell, and RegionId its largest component, or the seed of the cell. Off: they are on
+   * points.
+   */
+  vtkSetMacro(ResultOnCells, bool);
+  vtkGetMacro(ResultOnCells, bool);
+  vtkBooleanMacro(ResultOnCells, bool);
   ///@}
 
   ///@{

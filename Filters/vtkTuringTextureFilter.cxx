@@ -90,11 +90,11 @@ bool vtkTuringTextureFilter::FindFields(vtkPolyData* block, InputFields& fields,
     data->Has(vtkDataObject::FIELD_NAME()) ? data->Get(vtkDataObject::FIELD_NAME()) : "";
   if (data->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) || (name && *name))
   {
-    fields.Data = inputs.FindOnPoints(0, "InputArray", 2);
+    fields.Data = inputs.Find(0, "InputArray", 2, fields.DataOnCells);
   }
-  fields.Mask = inputs.FindOnPoints(1, "MaskArray", 1);
+  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
   fields.Direction = inputs.Find(2, "DirectionArray", 3, fields.DirectionOnCells);
-  fields.Fixed = inputs.FindOnPoints(3, "FixedArray", 1);
+  fields.Fixed = inputs.Find(3, "FixedArray", 1, fields.FixedOnCells);
   bool onCells = true;
   fields.Rates = inputs.Find(4, "DiffusionRateArray", 4, onCells);
   if (fields.Rates && !onCells)
@@ -125,7 +125,8 @@ void vtkTuringTextureFilter::WriteResult(
   for (int c = 0; c < 2; ++c)
   {
     const std::string name = this->ResultArrayName + (c == 0 ? "u1" : "u2");
-    this->AddResult(WriteScalars(surface, name, u.col(c), single, fields.Data, c), fields, points);
+    vtkDataArray* const elsewhere = fields.DataOnCells ? nullptr : fields.Data.Get();
+    this->AddResult(WriteScalars(surface, name, u.col(c), single, elsewhere, c), fields, points);
   }
   const Vector texture = StretchContrast(u.col(this->TextureChemical), block.Result.ContrastLimits);
   this->AddResult(

@@ -39,8 +39,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import (
     vtkFVMHeatFilter, vtkHarmonicMapFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter,
-    vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter, vtkTensorDiffusionFilter,
-    vtkTuringTextureFilter,
+    vtkSurfaceDenoisingFilter, vtkSurfaceDirectionFieldFilter, vtkSurfaceSegmentationFilter,
+    vtkTensorDiffusionFilter, vtkTuringTextureFilter,
 )
 from ._meshes import find_polydata
 
@@ -50,7 +50,8 @@ _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
 # The read-only values of the classes. A report has those that the filter has.
 _REPORTED = (
     "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
-    "EffectiveTimeStep", "EffectiveFidelityWeight", "Wavelength", "WavelengthGrowthRate",
+    "EffectiveTimeStep", "EffectiveFidelityWeight", "EffectiveNoiseLevel", "Wavelength",
+    "WavelengthGrowthRate",
     "DiffusionRateFactor", "MeanDisplacement", "MaximumDisplacement", "VolumeBefore",
     "VolumeAfter", "EdgeLength", "Gap", "LabelGap", "NumberOfAlternations",
 )
@@ -69,25 +70,26 @@ def heat(
     mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
     full_output=False, **properties
 ):
-    """Smooth, denoise or inpaint a point array by linear diffusion (vtkFVMHeatFilter).
+    """Smooth, denoise or inpaint an array by linear diffusion (vtkFVMHeatFilter).
 
     Solves u_t = div(D grad u) + lambda chi (f - u), u(0) = f, with no flux across the boundary.
     D has the eigenvalues AlongDiffusivity and AcrossDiffusivity (default 1), lambda is
     FidelityWeight (default 0), and chi is 1 where f is known and 0 where it is missing.
 
-    array      the data f: point array (n,) or (n, k) of any numeric type, NaN is missing; default:
+    array      the data f: point array (n,) or (n, k) of any numeric type, NaN is missing, or cell
+               array with m rows, whose result is a cell array unless ResultOnCells=False; default:
                the active scalars
-    mask       point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
+    mask       point or cell array, nonzero is missing (or excluded with MaskMode="Exclude")
     direction  point or cell array (n, 3) or (m, 3): the direction that AlongDiffusivity acts along
-    fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
-    fidelity   point array (n,): factors of FidelityWeight, 0 or more
+    fixed      point or cell array, nonzero holds the value fixed (Dirichlet condition)
+    fidelity   point or cell array: factors of FidelityWeight, 0 or more
     times, full_output   see help(surfacediffusion.pyvista)
 
     Useful properties: FWHM (width of the blur in the unit of the coordinates, in place of TimeStep;
     default 0: off), TimeStep (above 0, default 1, in squared mean edge lengths), NumberOfTimeSteps
     (default 10), AutomaticFidelity (default off), Mode ("TimeSteps" or "SteadyState").
 
-    The result is the point array <array>Diffused, with the shape of the data.
+    The result is the array <array>Diffused, with the shape of the data.
     """
     return _run(
         vtkFVMHeatFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
@@ -98,7 +100,7 @@ def intrinsic_tv(
     mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
     full_output=False, **properties
 ):
-    """Denoise or inpaint a point array and preserve its edges (vtkIntrinsicTVFilter).
+    """Denoise or inpaint an array and preserve its edges (vtkIntrinsicTVFilter).
 
     Solves u_t = div(g(|grad u|) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
     total variation, 1/sqrt(|grad u|^2 + beta).
@@ -108,7 +110,7 @@ def intrinsic_tv(
     FidelityNorm ("L2", or "L1" for salt-and-pepper noise), Mode ("TimeSteps" or "SteadyState"),
     ColorModel ("RGB", or "Opponent" or "ChromaticityBrightness" for colours).
 
-    The result is the point array <array>TV, with the shape of the data.
+    The result is the array <array>TV, with the shape of the data.
     """
     return _run(
         vtkIntrinsicTVFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
@@ -151,7 +153,7 @@ def harmonic_map(
     Useful properties: Exponent (p in [1, 2], default 1: creases are preserved), LineField (u and -u
     are equal, default off), MoveVertices (move the points to fit the normals, default off).
 
-    The result is the point array <array>Harmonic (n, k); NormalsHarmonic for computed normals.
+    The result is the array <array>Harmonic (n, k); NormalsHarmonic for computed normals.
     """
     return _run(
         vtkHarmonicMapFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
@@ -162,7 +164,7 @@ def mumford_shah(
     mesh, array=None, *, mask=None, direction=None, fixed=None, fidelity=None, times=None,
     full_output=False, **properties
 ):
-    """Find the edges of a point array, and smooth or inpaint the data between them
+    """Find the edges of an array, and smooth or inpaint the data between them
     (vtkMumfordShahFilter).
 
     Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli.
@@ -171,7 +173,7 @@ def mumford_shah(
     edge costs less than smoothing, default 0.2 of the range of the data), SmoothingLength (default
     8 mean edge lengths), EdgeWidth (default 2 mean edge lengths).
 
-    The results are the point arrays <array>MumfordShah, with the shape of the data, and Edges (n,),
+    The results are the arrays <array>MumfordShah, with the shape of the data, and Edges (n,),
     which is 1 on edges. With full_output=True the report has the edges as `curves`.
     """
     return _run(
@@ -211,11 +213,12 @@ def segment(
     Minimises 1/2 sum_k int |grad u_k| + lambda sum_k int u_k |f - c_k|^2 over the probabilities u_k
     of the regions.
 
-    array   the data f: point array (n,) or (n, k), NaN is missing; default: the active scalars
-    terms   point array (n, K) of data terms in place of |f - c_k|^2
-    seeds   point array (n,) of labels 1 ... K that points keep, 0: free
-    mask    point array (n,), nonzero is missing (or excluded with MaskMode="Exclude")
-    fidelity   point array (n,) of factors w >= 0 of the data terms; 0 is missing
+    array   the data f: point array (n,) or (n, k) or cell array with m rows, NaN is missing;
+            default: the active scalars
+    terms   point or cell array of K components, data terms in place of |f - c_k|^2
+    seeds   point or cell array of labels 1 ... K that points or cells keep, 0: free
+    mask    point or cell array, nonzero is missing (or excluded with MaskMode="Exclude")
+    fidelity   point or cell array of factors w >= 0 of the data terms; 0 is missing
     means   the means c, one row per region, with AutomaticMeans off; default: they are found
     full_output   see help(surfacediffusion.pyvista); `history` then has one entry per region: Area,
                   BoundaryLength, Components, Mean_0 ..., and `boundaries` is a mesh of polylines
@@ -223,7 +226,7 @@ def segment(
     Useful properties: NumberOfRegions (default 2), FidelityWeight (lambda, which turns AutomaticFidelity
     off).
 
-    The results are the point arrays RegionId, RegionProbability and <array>Segmented.
+    The results are the arrays RegionId, RegionProbability and <array>Segmented.
     """
     algorithm = vtkSurfaceSegmentationFilter()
     if "FidelityWeight" in properties:
@@ -240,6 +243,20 @@ def segment(
     if full_output:
         result[1].boundaries = _output(algorithm, 2)
     return result
+
+
+def denoise_mesh(mesh, *, fixed=None, full_output=False, **properties):
+    """Remove the noise of the points of the mesh (vtkSurfaceDenoisingFilter).
+
+    fixed: point array; points with a nonzero value stay.
+    properties: SurfaceType="Automatic" (default), "CAD" or "Organic"; NoiseLevel, the standard
+    deviation of the noise in coordinate units (default: 0, measured).
+    full_output: see help(surfacediffusion.pyvista).
+
+    The result has moved points and the point array Displacement (n, 3).
+    """
+    return _run(vtkSurfaceDenoisingFilter(), mesh, properties, (None, None, None, fixed), None,
+        full_output)
 
 
 def direction_field(mesh, hints=None, *, full_output=False, **properties):
@@ -331,9 +348,10 @@ def _report(algorithm):
 
 
 def _association(surfaces, index, name):
-    """Directions are on points or cells, rates are on cells, all other arrays are on points."""
+    """Rates are on cells, all other arrays on points, or on cells if no point array has the name."""
     on_cells = index == 4 or (
-        index == 2 and not any(name in surface.point_data for surface in surfaces))
+        not any(name in surface.point_data for surface in surfaces)
+        and any(name in surface.cell_data for surface in surfaces))
     return _CELLS if on_cells else _POINTS
 
 

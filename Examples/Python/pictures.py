@@ -1,6 +1,8 @@
-"""Draws coloured surfaces side by side on a white background."""
+"""Draws coloured surfaces side by side on a white background, and writes them as a scene for the
+browser beside the picture."""
 import os
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -17,6 +19,8 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (
     vtkActor, vtkColorTransferFunction, vtkLight, vtkPolyDataMapper, vtkRenderer,
     vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
+
+from scenes import save_scene
 
 INK = (0.13, 0.14, 0.16)
 SMALL = 300  # smaller panels, in pixels of height, have a title only
@@ -190,6 +194,8 @@ def enlarge(renderer, panel, scale):
 
 
 def save_picture(path, panels, columns, panel_size):
+    """Writes a PNG file, and an HTML file of the same name if there is a viewer for scenes."""
+    save_scene(Path(path).with_suffix(".html"), panels, columns, Path(path).stem.replace("_", " "))
     rows = -(-len(panels) // columns)
     window = vtkRenderWindow()
     window.SetOffScreenRendering(True)

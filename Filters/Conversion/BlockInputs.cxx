@@ -24,14 +24,17 @@ std::vector<BlockInput> BlockInputs::Describe(
     std::vector<vtkIdType>& cells = this->Cells[b];
     Version& version = this->Versions[b];
     const InputStamp stamp(data, arrays.List());
-    if (!(version.Stamp == stamp) || version.Excludes != (excluded != nullptr))
+    const bool onCells = arrays.MaskOnCells;
+    if (!(version.Stamp == stamp) || version.Excludes != (excluded != nullptr) ||
+      version.Associations != arrays.Associations())
     {
-      version = { stamp, excluded != nullptr, FingerprintSurface(data, excluded),
-        FingerprintFields(arrays) };
+      version = { stamp, excluded != nullptr, arrays.Associations(),
+        FingerprintSurface(data, excluded, onCells), FingerprintFields(arrays) };
     }
     inputs[b].SurfaceVersion = version.Surface;
     inputs[b].FieldsVersion = version.Fields;
-    inputs[b].ReadSurface = [data, excluded, &cells] { return ReadSurface(data, excluded, cells); };
+    inputs[b].ReadSurface = [data, excluded, onCells, &cells]
+    { return ReadSurface(data, excluded, onCells, cells); };
   }
   return inputs;
 }
@@ -49,7 +52,7 @@ std::vector<BlockInput> BlockInputs::Make(
       {
         RequireTuples(surface.Fields->GlobalIds, surface.Data->GetNumberOfPoints(), "point");
       }
-      return ReadFields(*surface.Fields, cells);
+      return ReadFields(*surface.Fields, cells, surface.Data->GetNumberOfCells());
     };
   }
   return inputs;
@@ -75,7 +78,7 @@ std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<SurfaceInput
     inputs[b].ReadFields =
       [surface = surfaces[b], &cells = this->Cells[b], decomposition = this->Decomposition.get()]
     {
-      Fields read = ReadFields(*surface.Fields, cells);
+      Fields read = ReadFields(*surface.Fields, cells, surface.Data->GetNumberOfCells());
       read.Ids = decomposition->PointIds();
       return read;
     };

@@ -48,6 +48,7 @@ private:
   {
     InputStamp Stamp;
     bool Excludes = false;
+    unsigned int Associations = 0; ///< see InputFields
     Fingerprint Surface, Fields;
   };
 

@@ -35,8 +35,9 @@ std::vector<char> ReadFlags(vtkDataArray* array)
   return flags;
 }
 
-std::vector<Index> ReadSeeds(vtkDataArray* array)
+std::vector<Index> ReadSeeds(vtkDataArray* array, bool onCells)
 {
+  const char* const place = onCells ? "cell" : "point";
   std::vector<Index> seeds;
   for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
   {
@@ -44,8 +45,9 @@ std::vector<Index> ReadSeeds(vtkDataArray* array)
     if (!(label >= 0.0 && label <= std::numeric_limits<Index>::max() && label == std::floor(label)))
     {
       std::ostringstream text;
-      text << "SeedArray \"" << NameOf(array) << "\" is " << label << " at point " << i
-           << "; allowed: the labels 1 to NumberOfRegions, and 0 for points that are free";
+      text << "SeedArray \"" << NameOf(array) << "\" is " << label << " at " << place << ' ' << i
+           << "; allowed: the labels 1 to NumberOfRegions, and 0 for " << place
+           << "s that are free";
       throw std::runtime_error(text.str());
     }
     seeds.push_back(static_cast<Index>(label));
@@ -111,6 +113,17 @@ std::vector<vtkDataArray*> InputFields::List() const
     this->Seeds, this->GlobalIds };
 }
 
+unsigned int InputFields::Associations() const
+{
+  unsigned int bits = 0;
+  for (const bool onCells : { this->DataOnCells, this->MaskOnCells, this->DirectionOnCells,
+         this->FixedOnCells, this->FidelityOnCells, this->SeedsOnCells })
+  {
+    bits = 2 * bits + (onCells ? 1 : 0);
+  }
+  return bits;
+}
+
 int NumberOfDataComponents(vtkDataArray* array)
 {
   const int components = array->GetNumberOfComponents();
@@ -145,12 +158,13 @@ Fingerprint FingerprintFields(const InputFields& arrays)
   {
     AddArray(fingerprint, array);
   }
-  fingerprint.AddNumber(std::uint64_t{ arrays.DirectionOnCells ? 1u : 0u });
+  fingerprint.AddNumber(std::uint64_t{ arrays.Associations() });
   fingerprint.AddNumber(std::uint64_t{ arrays.DataAreTerms ? 1u : 0u });
   return fingerprint;
 }
 
-Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells)
+Fields ReadFields(
+  const InputFields& arrays, const std::vector<vtkIdType>& cells, vtkIdType numberOfCells)
 {
   Fields fields;
   if (arrays.Data)
@@ -160,6 +174,16 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
       NameOf(arrays.Data) + "\"";
     fields.DataAreTerms = arrays.DataAreTerms;
     fields.DataAreBytes = arrays.Data->GetDataType() == VTK_UNSIGNED_CHAR;
+    fields.DataOnCells = arrays.DataOnCells;
+  }
+  fields.MaskOnCells = arrays.MaskOnCells;
+  fields.FixedOnCells = arrays.FixedOnCells;
+  fields.FidelityOnCells = arrays.FidelityOnCells;
+  fields.SeedsOnCells = arrays.SeedsOnCells;
+  if (fields.HasCells())
+  {
+    fields.NumberOfCells = static_cast<Index>(numberOfCells);
+    fields.Cells.assign(cells.begin(), cells.end());
   }
   fields.Mask = ReadFlags(arrays.Mask);
   fields.Fixed = ReadFlags(arrays.Fixed);
@@ -167,7 +191,7 @@ Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells
   {
     fields.FidelityFactors.push_back(arrays.Fidelity->GetComponent(i, 0));
   }
-  fields.Seeds = ReadSeeds(arrays.Seeds);
+  fields.Seeds = ReadSeeds(arrays.Seeds, arrays.SeedsOnCells);
   if (arrays.Direction)
   {
     const Points vectors = ReadDirections(arrays.Direction);

@@ -22,20 +22,27 @@ namespace SurfaceDiffusion
 struct InputFields
 {
   vtkSmartPointer<vtkDataArray> Data; ///< index 0
+  bool DataOnCells = false;
   bool DataAreComputed = false; ///< normals that the input does not have
   vtkDataArray* Mask = nullptr; ///< index 1
+  bool MaskOnCells = false;
   vtkDataArray* Direction = nullptr; ///< index 2
   bool DirectionOnCells = false;
   vtkDataArray* Fixed = nullptr; ///< index 3
+  bool FixedOnCells = false;
   vtkDataArray* Rates = nullptr; ///< index 4
   vtkDataArray* Fidelity = nullptr; ///< index 5
+  bool FidelityOnCells = false;
   vtkDataArray* Seeds = nullptr; ///< index 6
+  bool SeedsOnCells = false;
   bool DataAreTerms = false; ///< Data is index 7
   vtkDataArray* GlobalIds = nullptr; ///< of the points
 
   FieldSummary Summarize() const;
   /// All arrays, null for those that are not set.
   std::vector<vtkDataArray*> List() const;
+  /// Which of them are on cells, as bits.
+  unsigned int Associations() const;
 };
 
 /// The number of components that are data: the last of 2 or 4 unsigned chars is alpha.
@@ -47,8 +54,10 @@ Values ReadValues(vtkDataArray* array);
 /// The hash of everything that ReadFields() reads.
 Fingerprint FingerprintFields(const InputFields& arrays);
 
-/// cells: the cell of each triangle of the surface's input. Throws std::runtime_error, with the
-/// property's name, on infinite directions and on rates that are negative or not finite.
-Fields ReadFields(const InputFields& arrays, const std::vector<vtkIdType>& cells);
+/// cells: the cell of each triangle of the surface's input, of numberOfCells. Throws
+/// std::runtime_error, with the property's name, on infinite directions and on rates that are
+/// negative or not finite.
+Fields ReadFields(
+  const InputFields& arrays, const std::vector<vtkIdType>& cells, vtkIdType numberOfCells);
 
 } // namespace SurfaceDiffusion

@@ -18,9 +18,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr const char* Remedy =
-  "; the filter Cell Data to Point Data (vtkCellDataToPointData) makes point arrays of cell arrays";
-
 /// The array that SetInputArrayToProcess() chose: by its name or as an active attribute.
 struct Choice
 {
@@ -62,26 +59,27 @@ struct Choice
 };
 
 /// The sentence of an array that is not there.
-std::string DescribeAbsence(const Choice& choice, bool allowCells, vtkPolyData* block)
+std::string DescribeAbsence(const Choice& choice, vtkPolyData* block)
 {
   const bool onPoints = choice.MayBeOnPoints();
-  const bool onCells = allowCells && choice.MayBeOnCells();
+  const bool onCells = choice.MayBeOnCells();
   const std::string kind = onPoints && onCells ? "point or cell" : (onCells ? "cell" : "point");
-  std::string text;
-  if (choice.HasName())
+  if (!choice.HasName())
   {
-    text = "is not among the " + kind + " arrays of the input; choose one of them";
-  }
-  else
-  {
-    text = "is not set and the input has no active " + kind + " " +
+    return "is not set and the input has no active " + kind + " " +
       vtkDataSetAttributes::GetAttributeTypeAsString(choice.Attribute) + "; choose a " + kind +
       " array";
   }
-  const bool isCellArray = choice.HasName() ? block->GetCellData()->HasArray(choice.Name) != 0
-                                            : block->GetPointData()->GetNumberOfArrays() == 0 &&
-      block->GetCellData()->GetNumberOfArrays() > 0;
-  return !onCells && isCellArray ? text + Remedy : text;
+  const std::string text = "is not among the " + kind + " arrays of the input; choose one of them";
+  if (!onCells && block->GetCellData()->HasArray(choice.Name))
+  {
+    return text + ", or association 1 for the cell array of this name";
+  }
+  if (!onPoints && block->GetPointData()->HasArray(choice.Name))
+  {
+    return text + ", or association 0 for the point array of this name";
+  }
+  return text;
 }
 
 } // namespace
@@ -97,18 +95,7 @@ InputArrays::InputArrays(
 vtkDataArray* InputArrays::Find(
   int index, const char* property, int components, bool& onCells) const
 {
-  return this->FindAs(index, property, components, true, onCells);
-}
-
-vtkDataArray* InputArrays::FindOnPoints(int index, const char* property, int components) const
-{
-  bool onCells = false;
-  return this->FindAs(index, property, components, false, onCells);
-}
-
-vtkDataArray* InputArrays::FindAs(
-  int index, const char* property, int components, bool allowCells, bool& onCells) const
-{
+  onCells = false;
   const Choice choice(this->Filter->GetInputArrayInformation(index));
   if (!choice.IsSet && index != 0)
   {
@@ -126,24 +113,22 @@ vtkDataArray* InputArrays::FindAs(
     this->Problems.push_back(text.str());
     return nullptr;
   };
-  if (!choice.IsKnownAssociation() || !(allowCells || choice.MayBeOnPoints()))
+  if (!choice.IsKnownAssociation())
   {
-    const bool isCells = choice.Association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
     return report("has association " + std::to_string(choice.Association) +
-      (isCells ? " (cells)" : "") + "; allowed: points (0)" + (allowCells ? " or cells (1)" : "") +
-      (isCells ? Remedy : ""));
+      "; allowed: points (0) or cells (1)");
   }
 
   vtkAbstractArray* found =
     choice.MayBeOnPoints() ? choice.FindIn(this->Block->GetPointData()) : nullptr;
-  onCells = !found && allowCells && choice.MayBeOnCells();
-  if (onCells)
+  const bool isOnCells = !found && choice.MayBeOnCells();
+  if (isOnCells)
   {
     found = choice.FindIn(this->Block->GetCellData());
   }
   if (!found)
   {
-    return report(DescribeAbsence(choice, allowCells, this->Block));
+    return report(DescribeAbsence(choice, this->Block));
   }
   vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!array)
@@ -151,11 +136,11 @@ vtkDataArray* InputArrays::FindAs(
     return report(std::string("is a ") + found->GetClassName() + "; allowed: numeric arrays");
   }
   const vtkIdType tuples =
-    onCells ? this->Block->GetNumberOfCells() : this->Block->GetNumberOfPoints();
+    isOnCells ? this->Block->GetNumberOfCells() : this->Block->GetNumberOfPoints();
   if (array->GetNumberOfTuples() != tuples)
   {
-    return report("has " + std::to_string(array->GetNumberOfTuples()) +
-      " tuples; allowed: " + std::to_string(tuples) + ", one per " + (onCells ? "cell" : "point"));
+    return report("has " + std::to_string(array->GetNumberOfTuples()) + " tuples; allowed: " +
+      std::to_string(tuples) + ", one per " + (isOnCells ? "cell" : "point"));
   }
   const int size = array->GetNumberOfComponents();
   if (components == AnyNumberOfComponents ? size < 1 : size != components)
@@ -164,6 +149,7 @@ vtkDataArray* InputArrays::FindAs(
       (components == AnyNumberOfComponents ? std::string("1 or more")
                                            : std::to_string(components)));
   }
+  onCells = isOnCells;
   return array;
 }
 

@@ -24,13 +24,7 @@ public:
   /// problem reported if it is absent or not allowed. onCells: whether it is cell data.
   vtkDataArray* Find(int index, const char* property, int components, bool& onCells) const;
 
-  /// The same if only point data are allowed.
-  vtkDataArray* FindOnPoints(int index, const char* property, int components) const;
-
 private:
-  vtkDataArray* FindAs(
-    int index, const char* property, int components, bool allowCells, bool& onCells) const;
-
   vtkAlgorithm* Filter;
   vtkPolyData* Block;
   std::vector<std::string>& Problems;

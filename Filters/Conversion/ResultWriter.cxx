@@ -42,24 +42,10 @@ vtkSmartPointer<vtkDataArray> MakeScalars(const Surface& surface, const std::str
   return array;
 }
 
-template <typename Array, typename Value>
-void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& value)
-{
-  const auto column = NewArray<Array>(name, 1, rows);
-  for (int row = 0; row < rows; ++row)
-  {
-    column->SetValue(row, value(row));
-  }
-  table->AddColumn(column);
-}
-
-} // namespace
-
-vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArray* source,
-  const Values& values, double unit, int type, const std::string& name)
+vtkSmartPointer<vtkDataArray> NewArrayLike(
+  vtkDataArray* source, vtkIdType tuples, int type, const std::string& name)
 {
   const int components = source->GetNumberOfComponents();
-  const vtkIdType tuples = source->GetNumberOfTuples();
   vtkSmartPointer<vtkDataArray> result;
   switch (type)
   {
@@ -74,32 +60,101 @@ vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArr
       break;
   }
   result->CopyComponentNames(source);
+  return result;
+}
+
+/// Tuple i becomes row rowOf(i) of values x unit; other(i, k) in components that `values` has not,
+/// and in all of them if the row is negative.
+template <typename RowOf, typename Other>
+void WriteTuples(
+  vtkDataArray* result, const Values& values, double unit, const RowOf& rowOf, const Other& other)
+{
+  const int components = result->GetNumberOfComponents();
   const int dataComponents = static_cast<int>(values.cols());
+  const auto tuples = static_cast<Index>(result->GetNumberOfTuples());
+  const auto write = [&](auto* typed)
+  {
+    auto to = vtk::DataArrayTupleRange(typed);
+    using T = typename std::decay_t<decltype(to)>::ComponentType;
+    ForEach(SMPParallelFor::Instance(), tuples,
+      [&](Index i)
+      {
+        auto tuple = to[i];
+        const Index row = rowOf(i);
+        for (int k = 0; k < components; ++k)
+        {
+          tuple[k] =
+            ConvertValue<T>(row >= 0 && k < dataComponents ? values(row, k) * unit : other(i, k));
+        }
+      });
+  };
+  using Dispatch =
+    vtkArrayDispatch::DispatchByArray<vtkTypeList::Create<vtkAOSDataArrayTemplate<double>,
+      vtkAOSDataArrayTemplate<float>, vtkAOSDataArrayTemplate<unsigned char>>>;
+  Dispatch::Execute(result, write);
+}
+
+template <typename Array>
+vtkSmartPointer<vtkDataArray> MakeRows(const std::string& name, const Values& values)
+{
+  const auto tuples = static_cast<vtkIdType>(values.rows());
+  const int components = static_cast<int>(values.cols());
+  auto array = NewArray<Array>(name, components, tuples);
+  for (vtkIdType i = 0; i < tuples; ++i)
+  {
+    for (int k = 0; k < components; ++k)
+    {
+      array->SetTypedComponent(i, k, ConvertValue<typename Array::ValueType>(values(i, k)));
+    }
+  }
+  return array;
+}
+
+template <typename Array, typename Value>
+void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& value)
+{
+  const auto column = NewArray<Array>(name, 1, rows);
+  for (int row = 0; row < rows; ++row)
+  {
+    column->SetValue(row, value(row));
+  }
+  table->AddColumn(column);
+}
+
+} // namespace
+
+vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArray* source,
+  bool sourceOnCells, const Values& values, double unit, int type, const std::string& name)
+{
+  const auto points = static_cast<vtkIdType>(surface.Points().rows());
+  const auto result = NewArrayLike(source, points, type, name);
+  const auto rowOf = [&](Index i) { return surface.VertexOf(i); };
+  if (sourceOnCells)
+  {
+    const auto alpha = static_cast<int>(values.cols());
+    WriteTuples(result, values, unit, rowOf,
+      [&](Index, int k) { return k < alpha ? 0.0 : static_cast<double>(VTK_UNSIGNED_CHAR_MAX); });
+    return result;
+  }
   VisitTuples(source,
     [&](const auto& from)
     {
-      const auto write = [&](auto* typed)
-      {
-        auto to = vtk::DataArrayTupleRange(typed);
-        using T = typename std::decay_t<decltype(to)>::ComponentType;
-        ForEach(SMPParallelFor::Instance(), static_cast<Index>(tuples),
-          [&](Index i)
-          {
-            auto tuple = to[i];
-            const auto old = from[i];
-            const Index v = surface.VertexOf(i);
-            for (int k = 0; k < components; ++k)
-            {
-              tuple[k] = v >= 0 && k < dataComponents
-                ? ConvertValue<T>(values(v, k) * unit)
-                : ConvertValue<T>(static_cast<double>(old[k]));
-            }
-          });
-      };
-      using Dispatch =
-        vtkArrayDispatch::DispatchByArray<vtkTypeList::Create<vtkAOSDataArrayTemplate<double>,
-          vtkAOSDataArrayTemplate<float>, vtkAOSDataArrayTemplate<unsigned char>>>;
-      Dispatch::Execute(result.Get(), write);
+      WriteTuples(result, values, unit, rowOf,
+        [&](Index i, int k) { return static_cast<double>(from[i][k]); });
+    });
+  return result;
+}
+
+vtkSmartPointer<vtkDataArray> WriteCellArray(const CellTransfer& cells, vtkDataArray* source,
+  const Values& values, int type, const std::string& name)
+{
+  const auto result = NewArrayLike(source, source->GetNumberOfTuples(), type, name);
+  VisitTuples(source,
+    [&](const auto& from)
+    {
+      WriteTuples(
+        result, values, 1.0, [&](Index i) { return cells.Participates(i) ? i : -1; },
+        [&](Index i, int k) { return static_cast<double>(from[i][k]); });
     });
   return result;
 }
@@ -109,6 +164,11 @@ vtkSmartPointer<vtkDataArray> WriteScalars(const Surface& surface, const std::st
 {
   return single ? MakeScalars<vtkFloatArray>(surface, name, values, source, component)
                 : MakeScalars<vtkDoubleArray>(surface, name, values, source, component);
+}
+
+vtkSmartPointer<vtkDataArray> WriteRows(const std::string& name, const Values& values, bool single)
+{
+  return single ? MakeRows<vtkFloatArray>(name, values) : MakeRows<vtkDoubleArray>(name, values);
 }
 
 vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Operators/CellTransfer.h"
 #include "Run/History.h"
 #include "Run/Surface.h"
 
@@ -19,16 +20,25 @@ class vtkTable;
 namespace SurfaceDiffusion
 {
 
-/// An array of `type` with the shape of `source`, named `name`: values x unit at the points of
-/// participating triangles (rounded and clamped for integer types), a copy of the source at other
-/// points and in alpha. Throws std::runtime_error if `type` cannot hold a value.
+/// An array of `type` with the components of `source`, named `name`: values x unit at the points of
+/// participating triangles (rounded and clamped for integer types). At other points and in alpha it
+/// is a copy of the source, or, if that is on cells, 0 and opaque. Throws std::runtime_error if
+/// `type` cannot hold a value.
 vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArray* source,
-  const Values& values, double unit, int type, const std::string& name);
+  bool sourceOnCells, const Values& values, double unit, int type, const std::string& name);
+
+/// The same for an array on cells: one row of values per cell. Cells that take no part, and alpha,
+/// are copied from the source.
+vtkSmartPointer<vtkDataArray> WriteCellArray(const CellTransfer& cells, vtkDataArray* source,
+  const Values& values, int type, const std::string& name);
 
 /// One value per point, single or double precision. Points of no participating triangle have that
 /// component of `source`, or 0 without a source.
 vtkSmartPointer<vtkDataArray> WriteScalars(const Surface& surface, const std::string& name,
   const Eigen::Ref<const Vector>& values, bool single, vtkDataArray* source, int component);
+
+/// One row of `values` per tuple, single or double precision.
+vtkSmartPointer<vtkDataArray> WriteRows(const std::string& name, const Values& values, bool single);
 
 /// Points in single precision if those of `like` are, in double precision otherwise.
 vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like);

@@ -11,7 +11,6 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <string>
 
 namespace SurfaceDiffusion
 {
@@ -26,7 +25,7 @@ public:
   void Run(Index count, LoopBody body) const override
   {
     LoopWatch* const watch = LoopWatch::OfThisThread();
-    if (count < Few)
+    if (count < Few || LimitOfThisThread() == 1)
     {
       body(0, count);
     }
@@ -40,19 +39,16 @@ public:
     }
   }
 
-  /// The back end Sequential is ParaView's default, not a user's choice of one thread: a few long
-  /// tasks then run on VTK's other back end.
   void RunTasks(Index count, LoopBody body) const override
   {
-    const auto run = [&] { RunOnThreads(count, 1, body, LoopWatch::OfThisThread()); };
-    if (std::string(vtkSMPTools::GetBackend()) == "Sequential")
-    {
-      vtkSMPTools::LocalScope(vtkSMPTools::Config(std::string("STDThread")), run);
-    }
-    else
-    {
-      run();
-    }
+    RunOnThreads(count, 1, body, LoopWatch::OfThisThread());
+  }
+
+  /// The largest number of threads of loops that this thread starts; 0: all of VTK's back end.
+  static int& LimitOfThisThread()
+  {
+    static thread_local int limit = 0;
+    return limit;
   }
 
   /// The object that all share, because the core keeps references to it.
@@ -70,6 +66,11 @@ private:
     std::exception_ptr failure;
     std::mutex ofFailure;
     std::atomic<bool> failed{ false };
+    const int limit = LimitOfThisThread();
+    if (limit > 0) // as many ranges as threads
+    {
+      grain = std::max<vtkIdType>(grain, (count + limit - 1) / limit);
+    }
     const auto loop = [&](vtkIdType begin, vtkIdType end)
     {
       try

@@ -255,7 +255,7 @@ InputStamp::InputStamp(vtkPolyData* input, std::vector<vtkDataArray*> arrays)
   }
 }
 
-Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded)
+Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded, bool excludedCells)
 {
   Fingerprint fingerprint;
   AddArray(fingerprint, input->GetPoints() ? input->GetPoints()->GetData() : nullptr);
@@ -265,10 +265,12 @@ Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded)
   AddCells(fingerprint, input->GetStrips());
   AddArray(fingerprint, input->GetCellGhostArray());
   AddArray(fingerprint, excluded);
+  fingerprint.AddNumber(std::uint64_t{ excludedCells ? 1u : 0u });
   return fingerprint;
 }
 
-SurfaceArrays ReadSurface(vtkPolyData* input, vtkDataArray* excluded, std::vector<vtkIdType>& cells)
+SurfaceArrays ReadSurface(
+  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, std::vector<vtkIdType>& cells)
 {
   if (input->GetNumberOfPoints() > LargestCount)
   {
@@ -289,7 +291,14 @@ SurfaceArrays ReadSurface(vtkPolyData* input, vtkDataArray* excluded, std::vecto
       arrays.Triangles(static_cast<Eigen::Index>(t), a) = triangulator.Triangles[t][a];
     }
   }
-  if (excluded)
+  if (excluded && excludedCells)
+  {
+    for (const vtkIdType cell : triangulator.Cells)
+    {
+      arrays.ExcludedTriangles.push_back(excluded->GetComponent(cell, 0) != 0.0);
+    }
+  }
+  else if (excluded)
   {
     arrays.Excluded.resize(static_cast<std::size_t>(input->GetNumberOfPoints()));
     for (std::size_t i = 0; i < arrays.Excluded.size(); ++i)

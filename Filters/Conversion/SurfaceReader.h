@@ -40,15 +40,16 @@ struct InputStamp
 };
 
 /// The hash of everything that ReadSurface() reads.
-Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded);
+Fingerprint FingerprintSurface(
+  vtkPolyData* input, vtkDataArray* excluded = nullptr, bool excludedCells = false);
 
 /// The triangles of the polygons and strips of `input`. Ghost and hidden cells are ignored.
-/// excluded: per point, nonzero for points whose triangles are ignored; may be null. cells:
-/// the input's cell of each triangle.
+/// excluded: per point, nonzero for points whose triangles are ignored, or, with excludedCells, per
+/// cell, nonzero for those that are ignored; may be null. cells: the input's cell of each triangle.
 ///
 /// Throws std::runtime_error if there are more points or triangles than 32-bit numbers count, and
 /// if a cell refers to a point that does not exist.
 SurfaceArrays ReadSurface(
-  vtkPolyData* input, vtkDataArray* excluded, std::vector<vtkIdType>& cells);
+  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, std::vector<vtkIdType>& cells);
 
 } // namespace SurfaceDiffusion

@@ -2,19 +2,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/DataPreparation.h"
 
+#include "Core/Foundation/Random.h"
 #include "Core/Models/HeatBlur.h"
 #include "Core/Models/NoiseLevel.h"
 #include "Core/Operators/CotanWeights.h"
 
+#include <cmath>
 #include <sstream>
 
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+/// The noise at the vertices of data on cells. White noise of the cells is correlated between the
+/// vertices of a cell, so that EstimateNoise() is too low. A sample of such noise shows by how much.
+double EstimateNoiseOfCells(const ModelInputs& inputs)
+{
+  const CellTransfer& cells = *inputs.Cells;
+  Values noise(cells.NumberOfCells(), 1);
+  for (Index c = 0; c < cells.NumberOfCells(); ++c)
+  {
+    noise(c, 0) = std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, c) - 1.0); // of deviation 1
+  }
+  const PointData sample =
+    PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of);
+  const auto estimate = [&](const PointData& data)
+  {
+    return EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data)
+      .BetweenNeighbours;
+  };
+  const double found = estimate(sample);
+  return found > 0.0 ? estimate(inputs.Data) * cells.NoiseGain() / found : 0.0;
+}
+
+} // namespace
+
 void DescribeData(const DataSettings& settings, ModelTraits& traits)
 {
   traits.NeedsDirections = settings.IsDirected();
   traits.HoldsKnownValues = settings.HoldKnownValues;
+  traits.ResultOnCells = settings.ResultOnCells;
+  traits.KeepCellDetail = settings.KeepCellDetail;
   traits.UsesRandomNumbers = settings.InitialFill == InitialFill::Noise;
   traits.MaskHasEffect =
     settings.InitialFill != InitialFill::Input || traits.UsesFidelity || settings.HoldKnownValues;
@@ -77,7 +107,11 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
 {
   const double unit = inputs.Units.ValueUnit;
   double noise = noiseLevel / unit;
-  if (noiseLevel == 0.0)
+  if (inputs.Cells)
+  {
+    noise = noiseLevel == 0.0 ? EstimateNoiseOfCells(inputs) : noise * inputs.Cells->NoiseGain();
+  }
+  else if (noiseLevel == 0.0)
   {
     const NoiseEstimate estimate =
       EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data);

@@ -24,15 +24,38 @@ bool IsSet(const std::vector<char>& flags, Eigen::Index i)
   return !flags.empty() && flags[static_cast<std::size_t>(i)] != 0;
 }
 
-std::runtime_error PointError(
-  const Fields& fields, Eigen::Index point, const char* found, const char* allowed)
+/// The labels of the cells around each vertex, if they are the same or 0.
+std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  constexpr Index none = 0, several = -1;
+  std::vector<Index> seeds(static_cast<std::size_t>(mesh.NumberOfVertices()), none);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
+    const Index cell = fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))];
+    const Index label = fields.Seeds[static_cast<std::size_t>(cell)];
+    for (int a = 0; a < 3 && label != none; ++a)
+    {
+      Index& seed = seeds[static_cast<std::size_t>(mesh.TriangleVertices()(t, a))];
+      seed = seed == none || seed == label ? label : several;
+    }
+  }
+  std::replace(seeds.begin(), seeds.end(), several, none);
+  return seeds;
+}
+
+} // namespace
+
+std::runtime_error DataError(
+  const Fields& fields, Eigen::Index row, const char* found, const char* allowed)
 {
   std::ostringstream text;
-  text << fields.DataName << " " << found << " at point " << point << "; " << allowed;
+  text << fields.DataName << " " << found << (fields.DataOnCells ? " at cell " : " at point ")
+       << row << "; " << allowed;
   return std::runtime_error(text.str());
 }
 
-/// The mean factor of each vertex over its participating points.
 Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& ofPoints)
 {
   const Index n = surface.Mesh().NumberOfVertices();
@@ -57,7 +80,24 @@ Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& of
   return factors.cwiseQuotient(counts);
 }
 
-} // namespace
+std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fields)
+{
+  std::vector<char> found(static_cast<std::size_t>(fields.Data.rows()), 0);
+  if (fields.DataOnCells)
+  {
+    for (const Index row : surface.InputMesh().InputTriangle())
+    {
+      const Index cell = fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))];
+      found[static_cast<std::size_t>(cell)] = 1;
+    }
+    return found;
+  }
+  for (std::size_t i = 0; i < found.size(); ++i)
+  {
+    found[i] = surface.VertexOf(static_cast<Index>(i)) >= 0;
+  }
+  return found;
+}
 
 void ValueStatistics::Widen(std::size_t component, double low, double high)
 {
@@ -77,15 +117,16 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
   Eigen::Array<double, 1, Eigen::Dynamic> low, high;
   low.setConstant(columns, Infinity);
   high.setConstant(columns, -Infinity);
+  const std::vector<char> participates = FindParticipatingRows(surface, fields);
+  const bool fixedHere = fields.FixedOnCells == fields.DataOnCells;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
-    if (surface.VertexOf(static_cast<Index>(i)) < 0 || IsSet(fields.Missing, i) ||
-      !values.row(i).allFinite())
+    if (!IsSet(participates, i) || IsSet(fields.Missing, i) || !values.row(i).allFinite())
     {
       continue;
     }
     this->Largest = std::max(this->Largest, values.row(i).cwiseAbs().maxCoeff());
-    if (inpaint && IsSet(fields.Mask, i) && !IsSet(fields.Fixed, i))
+    if (inpaint && IsSet(fields.Mask, i) && !(fixedHere && IsSet(fields.Fixed, i)))
     {
       continue;
     }
@@ -154,7 +195,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   {
     if (values.row(i).array().isInf().any())
     {
-      throw PointError(fields, i, "is infinite", "allowed: finite values and NaN");
+      throw DataError(fields, i, "is infinite", "allowed: finite values and NaN");
     }
     const Index v = surface.VertexOf(static_cast<Index>(i));
     if (v < 0)
@@ -165,7 +206,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
     const bool isNaN = IsSet(fields.Missing, i) || values.row(i).hasNaN();
     if (isFixed && isNaN)
     {
-      throw PointError(
+      throw DataError(
         fields, i, "is NaN where FixedArray holds it", "allowed there: finite values");
     }
     data.Fixed[v] = data.Fixed[v] || isFixed;
@@ -229,6 +270,10 @@ std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields)
   if (fields.Seeds.empty())
   {
     return {};
+  }
+  if (fields.SeedsOnCells)
+  {
+    return MakeSeedsOfCells(surface, fields);
   }
   std::vector<Index> seeds(static_cast<std::size_t>(surface.Mesh().NumberOfVertices()), 0);
   for (std::size_t i = 0; i < fields.Seeds.size(); ++i)

@@ -8,6 +8,7 @@
 #include "Run/Surface.h"
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,18 +18,23 @@ namespace SurfaceDiffusion
 /// The input arrays of a run on one surface.
 struct Fields
 {
-  /// f, one row per input point and one column per component; no column if there are no data. NaN
-  /// in any component of a point means that the point is missing.
+  /// f, one row per input point or cell and one column per component; no column if there are no
+  /// data. NaN in any component of a row means that the point or cell is missing.
   Values Data;
+  bool DataOnCells = false;
   std::string DataName = "InputArray"; ///< for error messages
   /// Data may be a panel of the columns of the input, from FirstColumn of AllColumns on. Then NaN in
   /// columns outside of the panel is known by Missing: per point, nonzero: NaN in any column.
   Eigen::Index FirstColumn = 0;
   Eigen::Index AllColumns = 0; ///< 0: Data has all columns
   std::vector<char> Missing; ///< may be empty
-  std::vector<char> Mask; ///< per point, nonzero: missing or excluded; may be empty
-  std::vector<char> Fixed; ///< per point, nonzero: Dirichlet; may be empty
-  std::vector<double> FidelityFactors; ///< per point, 0 or more; empty: 1 everywhere
+  /// Per point or cell, nonzero: missing or excluded; may be empty. See MoveMarksToData().
+  std::vector<char> Mask;
+  bool MaskOnCells = false;
+  std::vector<char> Fixed; ///< per point or cell, nonzero: Dirichlet; may be empty
+  bool FixedOnCells = false;
+  std::vector<double> FidelityFactors; ///< per point or cell, 0 or more; empty: 1 everywhere
+  bool FidelityOnCells = false;
   /// e1, per point or per input triangle; no row if there are no directions. Finite or NaN.
   SurfaceDiffusion::Points Directions;
   bool DirectionsOnTriangles = false;
@@ -37,15 +43,25 @@ struct Fields
   std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: by coordinates
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
   bool DataAreBytes = false; ///< unsigned char, which models of colours take for sRGB
-  std::vector<Index> Seeds; ///< per point, the label 1, 2, ... that it keeps, or 0; may be empty
+  std::vector<Index> Seeds; ///< per point or cell, the label 1, 2, ... it keeps, or 0; may be empty
+  bool SeedsOnCells = false;
+  /// The cell of each input triangle, below NumberOfCells, if one of the arrays is on cells.
+  std::vector<Index> Cells;
+  Index NumberOfCells = 0;
+
+  bool HasCells() const
+  {
+    return this->DataOnCells || this->MaskOnCells || this->FixedOnCells || this->FidelityOnCells ||
+      this->SeedsOnCells;
+  }
 };
 
 /// The extreme known values of each component, over several surfaces and processes.
 class ValueStatistics
 {
 public:
-  /// Count the finite values at points of participating triangles; those that are missing count
-  /// for Magnitude() alone. inpaint: whether a mask means missing.
+  /// Count the finite values at points or cells of participating triangles; those that are missing
+  /// count for Magnitude() alone. inpaint: whether a mask means missing.
   void Add(const Surface& surface, const Fields& fields, bool inpaint);
   void Merge(const ValueStatistics& other);
   void Merge(const ProcessGroup& processes);
@@ -62,18 +78,30 @@ private:
   double Largest = 0.0;
 };
 
-/// Given, Missing and Fixed of the vertices, with values divided by `unit`. Points that are merged
-/// into one vertex give it the mean of the known ones, and their mean fidelity factor. Throws
-/// std::runtime_error on infinite values, on points that are fixed at NaN, and on fidelity factors
-/// that are negative or not finite.
+/// The error of a row of the data, on points or cells.
+std::runtime_error DataError(
+  const Fields& fields, Eigen::Index row, const char* found, const char* allowed);
+
+/// The mean factor of each vertex over its participating points. Throws std::runtime_error on
+/// factors that are negative or not finite.
+Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& ofPoints);
+
+/// Whether a row of the data belongs to a participating triangle.
+std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fields);
+
+/// Given, Missing and Fixed of the vertices, of data on points, with values divided by `unit`.
+/// Points that are merged into one vertex give it the mean of the known ones, and their mean
+/// fidelity factor. Throws std::runtime_error on infinite values, on points that are fixed at NaN,
+/// and on fidelity factors that are negative or not finite.
 PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit);
 
 /// e1 on the triangles of surface.Mesh(); no row if there are no directions.
 TangentVectors MakeDirections(
   const Surface& surface, const Fields& fields, const ParallelFor& parallel);
 
-/// The label that each vertex keeps, or 0; empty if there are no seeds. Throws std::runtime_error if
-/// points of different labels are merged into one vertex.
+/// The label that each vertex keeps, or 0; empty if there are no seeds. A vertex between cells of
+/// different labels is free. Throws std::runtime_error if points of different labels are merged
+/// into one vertex.
 std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields);
 
 /// A number per vertex that identifies it in random numbers.

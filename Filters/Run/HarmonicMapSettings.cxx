@@ -63,6 +63,8 @@ ModelTraits HarmonicMapSettings::DescribeModel() const
   traits.Energy = { 2.0 - this->Exponent, 0.0 };
   traits.HasValueRange = false;
   traits.UsesFidelity = this->FidelityWeight > 0.0;
+  traits.StateIsUnitVectors = true;
+  traits.StateIsLines = this->LineField;
   traits.CanBeDistributed = !this->MoveVertices;
   DescribeData(*this, traits);
   return traits;

@@ -6,6 +6,7 @@
 #include "Core/Geometry/RidgeCurves.h"
 #include "Core/Geometry/VertexUpdating.h"
 #include "Core/Models/Trajectory.h"
+#include "Core/Operators/CellTransfer.h"
 #include "Run/Fields.h"
 #include "Run/SolverStore.h"
 #include "Run/Units.h"
@@ -36,6 +37,8 @@ struct ModelInputs
   bool IsLastPanel = true; ///< of them
   bool DataAreTerms = false; ///< as in Fields
   std::vector<Index> Seeds; ///< per vertex, see MakeSeeds()
+  const CellTransfer* Cells = nullptr; ///< that has made the data; null if they are on points
+  Index LargestCellSeed = 0; ///< of seeds on cells, which vertices between cells do not have
 };
 
 /// The regions of a segmentation at the current step, in coordinate and array units.

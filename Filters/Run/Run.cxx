@@ -139,15 +139,17 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   {
     DecodeColors(fields->Data, this->Parallel);
   }
+  const std::vector<char> mask = fields->Mask; // as it was given
+  fields->DataOnCells = processes.Any(fields->DataOnCells); // that of a process without points, too
+  MoveMarksToData(*block.Surface, *fields, processes, this->Parallel);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
   block.Statistics.Add(*block.Surface, *fields, inpaint);
   block.HasData = processes.Any(fields->Data.cols() > 0);
-  block.HasMask = !fields->Mask.empty();
-  block.HasMasked =
-    std::any_of(fields->Mask.begin(), fields->Mask.end(), [](char masked) { return masked != 0; });
+  block.HasMask = !mask.empty();
+  block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
   block.MaskVersion = Fingerprint();
-  block.MaskVersion.AddBytes(fields->Mask.data(), fields->Mask.size(), this->Parallel);
+  block.MaskVersion.AddBytes(mask.data(), mask.size(), this->Parallel);
 }
 
 Values Run::Block::EncodedState(const ParallelFor& parallel) const
@@ -155,6 +157,20 @@ Values Run::Block::EncodedState(const ParallelFor& parallel) const
   Values colors = this->Path->State() * this->Units.ValueUnit;
   EncodeColors(colors, parallel);
   return colors;
+}
+
+Values Run::Block::CellResult(Values given, bool keepDetail, const ParallelFor& parallel) const
+{
+  if (this->HasLinearLight)
+  {
+    DecodeColors(given, parallel);
+  }
+  given = MakeCellResult(*this->Cells, this->Path->State(), given, keepDetail);
+  if (this->HasLinearLight)
+  {
+    EncodeColors(given, parallel);
+  }
+  return given;
 }
 
 /// h and R of all surfaces together.
@@ -207,16 +223,26 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
     [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
   block.Result = RunResult();
   block.Solvers.Configure(*this->Settings, this->Parallel);
-  ModelInputs inputs{ *block.Surface, block.Units, this->MakeData(block, fields, processes),
-    std::move(directions), fields.Rates,
+  PointData data = this->MakeData(block, fields, processes);
+  ModelInputs inputs{ *block.Surface, block.Units, std::move(data), std::move(directions),
+    fields.Rates,
     this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)
                                                       : std::vector<std::int64_t>(),
     this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
     std::max(fields.AllColumns, fields.Data.cols()),
     fields.FirstColumn + fields.Data.cols() >= fields.AllColumns, fields.DataAreTerms,
-    MakeSeeds(*block.Surface, fields) };
+    MakeSeeds(*block.Surface, fields), block.Cells ? &block.Cells->Transfer : nullptr };
+  if (fields.SeedsOnCells && !fields.Seeds.empty())
+  {
+    inputs.LargestCellSeed = *std::max_element(fields.Seeds.begin(), fields.Seeds.end());
+  }
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
+  if (block.Cells)
+  {
+    block.Cells->Start = model->State();
+    block.Result.HasMissing = block.Result.HasMissing || block.Cells->HasUnknown;
+  }
   const std::size_t limit = this->CheckpointMemory(*model, processes);
   auto path = std::make_unique<Trajectory>(
     block.Surface->SharedMesh(), std::move(model), limit, this->Parallel, this->KeepsHistory);
@@ -224,16 +250,27 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
   block.Path = std::move(path); // last: an aborted run must not look like a finished one
 }
 
-/// The data of the vertices. A vertex on an interface takes the data of its owner.
-PointData Run::MakeData(
-  const Block& block, const Fields& fields, const ProcessGroup& processes) const
+/// The data of the vertices. A vertex on an interface takes the data of its owner, or the mean of
+/// the cells of all processes.
+PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& processes) const
 {
   PointData data;
+  block.Cells.reset();
   if (!block.HasData)
   {
     return data;
   }
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
+  if (fields.DataOnCells)
+  {
+    const ModelTraits traits = this->Settings->DescribeModel();
+    const CellReading reading{ inpaint, traits.UsesFidelity, traits.StateIsUnitVectors,
+      traits.StateIsLines, block.Units.ValueUnit };
+    block.Cells = std::make_unique<CellState>(
+      CellState{ MakeCellTransfer(*block.Surface, fields, this->Parallel), {}, false, {}, reading,
+        fields.SeedsOnCells ? fields.Seeds : std::vector<Index>() });
+    return MakePointDataOfCells(*block.Surface, fields, *block.Cells, processes);
+  }
   processes.RunCollectively(
     [&]
     {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Models/Trajectory.h"
+#include "Run/CellFields.h"
 #include "Run/Fields.h"
 #include "Run/Fingerprint.h"
 #include "Run/History.h"
@@ -88,6 +89,7 @@ public:
     UnitSystem Units;
     std::unique_ptr<Trajectory> Path;
     RunResult Result;
+    std::unique_ptr<CellState> Cells; ///< null unless the data are on cells
 
     /// The inputs and settings that the parts above were made from.
     Fingerprint SurfaceVersion, FieldsVersion;
@@ -105,6 +107,8 @@ public:
 
     /// The current state in array units as sRGB values, if HasLinearLight.
     Values EncodedState(const ParallelFor& parallel) const;
+    /// MakeCellResult() of the current state; given: the data on cells in array units, likewise.
+    Values CellResult(Values given, bool keepDetail, const ParallelFor& parallel) const;
   };
   const Block& GetBlock(std::size_t block) const { return *this->Blocks[block]; }
   std::size_t NumberOfBlocks() const { return this->Blocks.size(); }
@@ -134,7 +138,7 @@ private:
   void MeasureUnits(const ProcessGroup& processes);
   void MakeModel(Block& block, const Fields& fields, const ProcessGroup& processes,
     const ProgressMonitor& progress);
-  PointData MakeData(const Block& block, const Fields& fields, const ProcessGroup& processes) const;
+  PointData MakeData(Block& block, const Fields& fields, const ProcessGroup& processes) const;
   std::size_t CheckpointMemory(const Model& model, const ProcessGroup& processes) const;
   void CheckHold(const ProcessGroup& processes) const;
   Shortfalls FindShortfalls() const;

@@ -123,6 +123,14 @@ void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance)
     tolerance, SettingRange::NonNegative());
 }
 
+void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)
+{
+  visitor.Switch(
+    { "ResultOnCells", "", "Whether data on cells have a result on cells rather than on points.",
+      SettingScope::Output },
+    onCells);
+}
+
 void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel)
 {
   visitor.Switch({ "AutomaticFidelity", "",
@@ -154,6 +162,14 @@ void DataSettings::Visit(SettingVisitor& visitor)
     this->AlongDiffusivity, SettingRange::NonNegative());
   visitor.Number({ "AcrossDiffusivity", "", "The factor of the diffusivity along e2." },
     this->AcrossDiffusivity, SettingRange::NonNegative());
+  VisitResultOnCells(visitor, this->ResultOnCells);
+  visitor.Switch(
+    { "KeepCellDetail", "",
+      "Whether a result on cells is the data plus the mean change over the cell, which "
+      "keeps differences between cells that the points do not resolve, rather than the "
+      "mean of the result over the cell, which is smoother.",
+      SettingScope::Output },
+    this->KeepCellDetail);
 }
 
 double DataSettings::LargestDiffusivity() const

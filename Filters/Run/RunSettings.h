@@ -65,6 +65,10 @@ struct ModelTraits
   bool CountsClamped = false;
   bool BoundsError = false; ///< steps report a bound of their error
   bool UsesRandomNumbers = false;
+  bool ResultOnCells = false; ///< if the data are on cells
+  bool KeepCellDetail = true;
+  bool StateIsUnitVectors = false;
+  bool StateIsLines = false; ///< unit vectors whose sign has no meaning
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
   bool UsesLinearLight = false; ///< unsigned char colours are in sRGB, see LinearLight.h
 };
@@ -127,6 +131,8 @@ struct DataSettings : RunSettings
   bool HoldKnownValues = false;
   double AlongDiffusivity = 1.0;
   double AcrossDiffusivity = 1.0;
+  bool ResultOnCells = true;
+  bool KeepCellDetail = true;
 
   void Visit(SettingVisitor& visitor) override;
 
@@ -140,6 +146,9 @@ protected:
 
 /// The settings MergeCoincidentPoints and MergeTolerance.
 void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance);
+
+/// The setting ResultOnCells.
+void VisitResultOnCells(SettingVisitor& visitor, bool& onCells);
 
 /// The settings AutomaticFidelity and NoiseLevel.
 void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel);

@@ -149,6 +149,7 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
                    "The duality gap at which the minimisation stops, relative to the energy above "
                    "lambda int min_k r_k." },
     this->StopTolerance, SettingRange::OpenUnitInterval());
+  VisitResultOnCells(visitor, this->ResultOnCells);
 }
 
 void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
@@ -186,6 +187,7 @@ ModelTraits SegmentationSettings::DescribeModel() const
   traits.StateHasUnitOfValues = false;
   traits.UsesFidelity = true;
   traits.UsesRandomNumbers = true;
+  traits.ResultOnCells = this->ResultOnCells;
   traits.CanBeDistributed = false;
   return traits;
 }
@@ -193,6 +195,7 @@ ModelTraits SegmentationSettings::DescribeModel() const
 std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   CheckSeeds(inputs.Seeds, this->NumberOfRegions);
+  CheckSeeds({ inputs.LargestCellSeed }, this->NumberOfRegions);
   result.HasMissing = inputs.Data.Missing.any();
   inputs.Data.Given =
     inputs.Data.Given.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });

@@ -20,6 +20,7 @@ struct SegmentationSettings : RunSettings
   /// c_1, then c_2, ... with all components of each; NaN: not set.
   std::vector<double> Means;
   double StopTolerance = 1e-3;
+  bool ResultOnCells = true;
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;

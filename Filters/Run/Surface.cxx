@@ -124,15 +124,22 @@ void Surface::SelectTriangles(const SurfaceOptions& options)
     this->Representative = MergePoints(this->Arrays.Points, options.MergeTolerance);
   }
   SurfaceDiffusion::Triangles& triangles = this->Arrays.Triangles;
-  const std::vector<char>& excluded = this->Arrays.Excluded;
+  std::vector<char>& excluded = this->Arrays.Excluded;
+  const std::vector<char>& ofTriangles = this->Arrays.ExcludedTriangles;
   const auto isExcluded = [&](Index point)
   { return !excluded.empty() && excluded[static_cast<std::size_t>(point)] != 0; };
+  std::vector<Index> pointsOfExcluded;
   Eigen::Index kept = 0;
   this->TriangleRows.reserve(static_cast<std::size_t>(triangles.rows()));
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
   {
     if (isExcluded(triangles(t, 0)) || isExcluded(triangles(t, 1)) || isExcluded(triangles(t, 2)))
     {
+      continue;
+    }
+    if (!ofTriangles.empty() && ofTriangles[static_cast<std::size_t>(t)] != 0)
+    {
+      pointsOfExcluded.insert(pointsOfExcluded.end(), &triangles(t, 0), &triangles(t, 0) + 3);
       continue;
     }
     for (int a = 0; a < 3; ++a)
@@ -146,6 +153,14 @@ void Surface::SelectTriangles(const SurfaceOptions& options)
     ++kept;
   }
   triangles.conservativeResize(kept, 3);
+  if (!pointsOfExcluded.empty()) // those that no triangle is left to use are unused on purpose
+  {
+    excluded.resize(static_cast<std::size_t>(this->Arrays.Points.rows()), 0);
+    for (const Index point : pointsOfExcluded)
+    {
+      excluded[static_cast<std::size_t>(point)] = 1;
+    }
+  }
 }
 
 void Surface::Build(

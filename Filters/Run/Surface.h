@@ -21,6 +21,7 @@ struct SurfaceArrays
   /// Per point, above 0: multiplies the area of its control cell, for surfaces whose true areas are
   /// known, such as averages of many. Empty: 1. Not together with IntrinsicDelaunay.
   std::vector<double> AreaFactors = {};
+  std::vector<char> ExcludedTriangles = {}; ///< per triangle: nonzero ones are ignored, too
 };
 
 /// Throws std::runtime_error if a coordinate is not finite.

@@ -140,15 +140,26 @@ void InputSurface::SetAreaFactors(const FactorArray& factors)
     this->AreaFactors.data(), sizeof(double) * this->AreaFactors.size(), PythonThreads::Instance());
 }
 
-SurfaceArrays InputSurface::Read(const std::optional<FlagArray>& excluded) const
+SurfaceArrays InputSurface::Read(const std::optional<FlagArray>& excluded, bool onFaces) const
 {
-  return { this->Coordinates, this->TriangleRows, ReadFlags(excluded), this->AreaFactors };
+  SurfaceArrays arrays{ this->Coordinates, this->TriangleRows, {}, this->AreaFactors };
+  if (!onFaces)
+  {
+    arrays.Excluded = ReadFlags(excluded);
+    return arrays;
+  }
+  for (Index t = 0; excluded && t < static_cast<Index>(this->TriangleRows.rows()); ++t)
+  {
+    arrays.ExcludedTriangles.push_back(excluded->data()[this->FaceOf(t)] != 0);
+  }
+  return arrays;
 }
 
-Fingerprint InputSurface::Version(const std::optional<FlagArray>& excluded) const
+Fingerprint InputSurface::Version(const std::optional<FlagArray>& excluded, bool onFaces) const
 {
   Fingerprint version = this->Contents;
   AddArray(version, excluded);
+  version.AddNumber(std::uint64_t{ onFaces ? 1U : 0U });
   return version;
 }
 
@@ -192,6 +203,20 @@ Fields InputFields::Read() const
     fields.FirstColumn = this->FirstColumn;
     fields.AllColumns = this->AllColumns;
     fields.Missing = *this->Missing;
+  }
+  fields.DataOnCells = this->DataOnFaces;
+  fields.MaskOnCells = this->MaskOnFaces;
+  fields.FixedOnCells = this->FixedOnFaces;
+  fields.FidelityOnCells = this->FidelityOnFaces;
+  fields.SeedsOnCells = this->SeedsOnFaces;
+  if (fields.HasCells())
+  {
+    fields.NumberOfCells = static_cast<Index>(this->Surface->NumberOfFaces());
+    fields.Cells.resize(static_cast<std::size_t>(this->Surface->GetTriangles().rows()));
+    for (std::size_t t = 0; t < fields.Cells.size(); ++t)
+    {
+      fields.Cells[t] = static_cast<Index>(this->Surface->FaceOf(static_cast<Index>(t)));
+    }
   }
   fields.Mask = ReadFlags(this->Mask);
   fields.Fixed = ReadFlags(this->Fixed);
@@ -250,7 +275,11 @@ Fingerprint InputFields::Version() const
   AddArray(version, this->FidelityFactors);
   AddArray(version, this->Seeds);
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
-  version.AddNumber(std::uint64_t{ this->DirectionsOnFaces ? 1U : 0U });
+  for (const bool onFaces : { this->DirectionsOnFaces, this->DataOnFaces, this->MaskOnFaces,
+         this->FixedOnFaces, this->FidelityOnFaces, this->SeedsOnFaces })
+  {
+    version.AddNumber(std::uint64_t{ onFaces ? 1U : 0U });
+  }
   return version;
 }
 

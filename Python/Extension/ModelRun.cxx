@@ -38,10 +38,10 @@ void WriteMatrix(const Matrix& from, const OutputArray& output)
     });
 }
 
-/// Write value(v, k) at the points of vertices, and other(i, k) at all other points. With
-/// first >= 0, only `components` columns from there on are written.
-template <typename Value, typename Other>
-void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index components,
+/// Row i becomes value(rowOf(i), k), or other(i, k) if rowOf(i) is negative and in further columns.
+/// With first >= 0, only `components` columns from there on are written.
+template <typename RowOf, typename Value, typename Other>
+void WriteRows(const RowOf& rowOf, const OutputArray& output, Eigen::Index components,
   const Value& value, const Other& other, Eigen::Index first = -1)
 {
   const auto stride = static_cast<Eigen::Index>(output.shape(1));
@@ -53,7 +53,7 @@ void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index
       using T = std::remove_pointer_t<decltype(to)>;
       const auto writeRow = [&](Index i)
       {
-        const Index v = surface.VertexOf(i);
+        const Index v = rowOf(i);
         T* const row = to + i * stride + start;
         const Eigen::Index known = v >= 0 ? std::min(components, columns) : 0;
         for (Eigen::Index k = 0; k < known; ++k)
@@ -68,6 +68,31 @@ void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index
       WithValueErrors(
         [&] { ForEach(PythonThreads::Instance(), static_cast<Index>(output.shape(0)), writeRow); });
     });
+}
+
+/// Write value(v, k) at the points of vertices, and other(i, k) at all other points.
+template <typename Value, typename Other>
+void WritePoints(const Surface& surface, const OutputArray& output, Eigen::Index components,
+  const Value& value, const Other& other, Eigen::Index first = -1)
+{
+  WriteRows([&](Index i) { return surface.VertexOf(i); }, output, components, value, other, first);
+}
+
+/// The same for faces: one row of `values` per face.
+template <typename Other>
+void WriteFaces(const CellTransfer& cells, const OutputArray& output, const Values& values,
+  const Other& other, Eigen::Index first = -1)
+{
+  WriteRows([&](Index i) { return cells.Participates(i) ? i : -1; }, output, values.cols(),
+    [&](Index i, Eigen::Index k) { return values(i, k); }, other, first);
+}
+
+constexpr double Opaque = 255.0;
+
+/// 0, and opaque in the column of alpha.
+auto NothingAt(Eigen::Index columns)
+{
+  return [columns](Index, Eigen::Index k) { return k < columns ? 0.0 : Opaque; };
 }
 
 template <typename T>
@@ -161,9 +186,10 @@ void ModelRun::Update(
       {
         const InputFields& fields = *blocks[b];
         const auto excluded = excludes ? fields.Mask : std::nullopt;
-        inputs[b].SurfaceVersion = fields.Surface->Version(excluded);
+        inputs[b].SurfaceVersion = fields.Surface->Version(excluded, fields.MaskOnFaces);
         inputs[b].FieldsVersion = fields.Version();
-        inputs[b].ReadSurface = [&fields, excluded] { return fields.Surface->Read(excluded); };
+        inputs[b].ReadSurface = [&fields, excluded]
+        { return fields.Surface->Read(excluded, fields.MaskOnFaces); };
         inputs[b].ReadFields = [&fields] { return fields.Read(); };
       }
       ClearOnFailure(this->Model,
@@ -236,13 +262,43 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
   const Values& state = from.HasLinearLight ? encoded : from.Path->State();
   const double unit = from.HasLinearLight ? 1.0 : from.Units.ValueUnit;
   const auto value = [&](Index v, Eigen::Index k) { return state(v, k) * unit; };
+  const bool onFaces = this->HasResultOnFaces(block);
   if (!source)
   {
-    WritePoints(
-      *from.Surface, output, state.cols(), value, [](Index, Eigen::Index) { return 0.0; }, first);
+    const auto nothing = NothingAt(state.cols());
+    if (onFaces)
+    {
+      WriteFaces(from.Cells->Transfer, output, from.Cells->Transfer.ToCells(state), nothing, first);
+      return;
+    }
+    WritePoints(*from.Surface, output, state.cols(), value, nothing, first);
     return;
   }
   const auto columns = static_cast<Eigen::Index>(source->shape(1));
+  if (onFaces)
+  {
+    VisitElements(*source,
+      [&](const auto* old)
+      {
+        const Eigen::Index start = std::max(first, 0);
+        Values given(static_cast<Eigen::Index>(source->shape(0)), state.cols());
+        for (Eigen::Index i = 0; i < given.rows(); ++i)
+        {
+          for (Eigen::Index k = 0; k < given.cols(); ++k)
+          {
+            given(i, k) = static_cast<double>(old[i * columns + start + k]);
+          }
+        }
+        const bool detail = this->Settings->DescribeModel().KeepCellDetail;
+        WriteFaces(
+          from.Cells->Transfer, output,
+          from.CellResult(std::move(given), detail, PythonThreads::Instance()),
+          [&](Index i, Eigen::Index k)
+          { return static_cast<double>(old[i * columns + start + k]); },
+          first);
+      });
+    return;
+  }
   VisitElements(*source,
     [&](const auto* old)
     {
@@ -260,17 +316,48 @@ void ModelRun::WriteColorsOfVectors(
   const Run::Block& from = this->Model.GetBlock(block);
   Fields colors;
   colors.Data = source.Read().Data;
-  const Values given = MakePointData(*from.Surface, colors, false, 1.0).Given;
-  Values state = from.Path->State();
-  state.array().colwise() *= given.rowwise().norm().array();
+  const bool onFaces = this->HasResultOnFaces(block);
+  Values vectors = from.Path->State();
+  Vector brightness = colors.Data.rowwise().norm();
+  if (onFaces)
+  {
+    const bool detail = this->Settings->DescribeModel().KeepCellDetail;
+    vectors = MakeCellResult(*from.Cells, vectors, colors.Data, detail);
+  }
+  else if (from.Cells)
+  {
+    brightness = Vector(
+      from.Cells->Transfer.ToVertices(brightness, Vector::Ones(brightness.size())).Of.col(0));
+  }
+  else
+  {
+    brightness = MakePointData(*from.Surface, colors, false, 1.0).Given.rowwise().norm();
+  }
+  vectors.array().colwise() *= brightness.array();
+  const auto value = [&](Index row, Eigen::Index k) { return vectors(row, k); };
+  if (from.Cells && !onFaces)
+  {
+    WritePoints(*from.Surface, output, vectors.cols(), value, NothingAt(vectors.cols()));
+    return;
+  }
   const auto columns = static_cast<Eigen::Index>(source.Data->shape(1));
   VisitElements(*source.Data,
     [&](const auto* old)
     {
-      WritePoints(
-        *from.Surface, output, state.cols(), [&](Index v, Eigen::Index k) { return state(v, k); },
-        [&](Index i, Eigen::Index k) { return static_cast<double>(old[i * columns + k]); });
+      const auto other = [&](Index i, Eigen::Index k)
+      { return static_cast<double>(old[i * columns + k]); };
+      if (onFaces)
+      {
+        WriteFaces(from.Cells->Transfer, output, vectors, other);
+        return;
+      }
+      WritePoints(*from.Surface, output, vectors.cols(), value, other);
     });
+}
+
+bool ModelRun::HasResultOnFaces(std::size_t block) const
+{
+  return this->Model.GetBlock(block).Cells && this->Settings->DescribeModel().ResultOnCells;
 }
 
 void ModelRun::WriteTexture(std::size_t block, const OutputArray& output) const
@@ -301,6 +388,11 @@ void ModelRun::WriteEdges(std::size_t block, const OutputArray& output) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
   const Vector& edges = from.Result.Edges;
+  if (this->HasResultOnFaces(block))
+  {
+    WriteFaces(from.Cells->Transfer, output, from.Cells->Transfer.ToCells(edges), NothingAt(1));
+    return;
+  }
   WritePoints(
     *from.Surface, output, 1, [&](Index v, Eigen::Index) { return edges[v]; },
     [](Index, Eigen::Index) { return 0.0; });
@@ -373,6 +465,15 @@ nb::dict ModelRun::GetRegions(std::size_t block) const
 void ModelRun::WriteLabels(std::size_t block, const OutputArray& output) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
+  if (this->HasResultOnFaces(block))
+  {
+    const std::vector<Index> ofFaces = MakeCellLabels(*from.Cells, from.Path->State());
+    const Values values =
+      Eigen::Map<const Eigen::VectorXi>(ofFaces.data(), static_cast<Eigen::Index>(ofFaces.size()))
+        .cast<double>();
+    WriteFaces(from.Cells->Transfer, output, values, NothingAt(1));
+    return;
+  }
   const std::vector<Index>& labels = from.Result.Regions->Labels;
   WritePoints(
     *from.Surface, output, 1,
@@ -411,9 +512,9 @@ void DirectionRun::Update(
     [&](const ProgressMonitor& monitor)
     {
       BlockInput block;
-      block.SurfaceVersion = input.Surface->Version(std::nullopt);
+      block.SurfaceVersion = input.Surface->Version(std::nullopt, false);
       block.FieldsVersion = input.Version();
-      block.ReadSurface = [&] { return input.Surface->Read(std::nullopt); };
+      block.ReadSurface = [&] { return input.Surface->Read(std::nullopt, false); };
       block.ReadFields = [&] { return input.Read(); };
       this->Field.Update(block, settings, monitor);
     });

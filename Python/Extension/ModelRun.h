@@ -41,8 +41,9 @@ public:
   /// Numbers that describe the run on one surface.
   nanobind::dict GetResults(std::size_t block) const;
 
-  /// Write the current state at the points of a surface. `source` gives the values of points that
-  /// take no part and of alpha; without it they are 0. first: the column of `output` that the panel
+  /// Write the current state at the points of a surface, or at its faces if the data are on them and
+  /// the settings say so. `source` gives the values of points or faces that take no part and of
+  /// alpha; without it they are 0 and opaque. first: the column of `output` that the panel
   /// of columns begins at; columns outside of it are left as they are. -1: all columns are written.
   void WriteState(std::size_t block, const OutputArray& output,
     const std::optional<InputArray>& source, int first) const;
@@ -66,6 +67,9 @@ public:
   bool WriteAxes(std::size_t block, const InputSurface& surface, const OutputArray& output) const;
   /// The moved points (float64 or float32); false if no point was moved.
   bool WriteMovedPoints(std::size_t block, const OutputArray& output) const;
+
+  /// Whether the results are at the faces of the surface.
+  bool HasResultOnFaces(std::size_t block) const;
 
 private:
   std::string Name;

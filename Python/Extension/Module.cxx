@@ -18,6 +18,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 namespace nb = nanobind;
 using namespace SurfaceDiffusion;
 using namespace nanobind::literals;
@@ -27,9 +29,12 @@ namespace
 
 InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optional<InputArray> data,
   int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
-  std::optional<DoubleArray> directions, bool directionsOnFaces, std::optional<DoubleArray> rates,
-  std::optional<FactorArray> fidelity, std::optional<LongArray> seeds, bool dataAreTerms)
+  std::optional<DoubleArray> directions, std::optional<DoubleArray> rates,
+  std::optional<FactorArray> fidelity, std::optional<LongArray> seeds, bool dataAreTerms,
+  const std::vector<std::string>& onFaces)
 {
+  const auto isOnFaces = [&](const char* name)
+  { return std::find(onFaces.begin(), onFaces.end(), name) != onFaces.end(); };
   InputFields fields;
   fields.Surface = std::move(surface);
   fields.Data = std::move(data);
@@ -37,11 +42,16 @@ InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optiona
   fields.Mask = std::move(mask);
   fields.Fixed = std::move(fixed);
   fields.Directions = std::move(directions);
-  fields.DirectionsOnFaces = directionsOnFaces;
   fields.Rates = std::move(rates);
   fields.FidelityFactors = std::move(fidelity);
   fields.Seeds = std::move(seeds);
   fields.DataAreTerms = dataAreTerms;
+  fields.DataOnFaces = isOnFaces("data");
+  fields.MaskOnFaces = isOnFaces("mask");
+  fields.FixedOnFaces = isOnFaces("fixed");
+  fields.DirectionsOnFaces = isOnFaces("directions");
+  fields.FidelityOnFaces = isOnFaces("fidelity");
+  fields.SeedsOnFaces = isOnFaces("seeds");
   return fields;
 }
 
@@ -83,17 +93,17 @@ NB_MODULE(_core, m)
       "__init__",
       [](InputFields* self, std::shared_ptr<InputSurface> surface, std::optional<InputArray> data,
         int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
-        std::optional<DoubleArray> directions, bool directionsOnFaces,
-        std::optional<DoubleArray> rates, std::optional<FactorArray> fidelity,
-        std::optional<LongArray> seeds, bool dataAreTerms)
+        std::optional<DoubleArray> directions, std::optional<DoubleArray> rates,
+        std::optional<FactorArray> fidelity, std::optional<LongArray> seeds, bool dataAreTerms,
+        const std::vector<std::string>& onFaces)
       {
         new (self) InputFields(MakeFields(std::move(surface), std::move(data), components,
-          std::move(mask), std::move(fixed), std::move(directions), directionsOnFaces,
-          std::move(rates), std::move(fidelity), std::move(seeds), dataAreTerms));
+          std::move(mask), std::move(fixed), std::move(directions), std::move(rates),
+          std::move(fidelity), std::move(seeds), dataAreTerms, onFaces));
       },
       "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
-      "directions"_a.none(), "directions_on_faces"_a, "rates"_a.none(), "fidelity"_a.none(),
-      "seeds"_a.none(), "data_are_terms"_a)
+      "directions"_a.none(), "rates"_a.none(), "fidelity"_a.none(), "seeds"_a.none(),
+      "data_are_terms"_a, "on_faces"_a)
     .def("columns", &InputFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")
@@ -106,6 +116,7 @@ NB_MODULE(_core, m)
     .def("warnings", &ModelRun::GetWarnings)
     .def("history", &ModelRun::GetHistory)
     .def("results", &ModelRun::GetResults, "block"_a)
+    .def("has_result_on_faces", &ModelRun::HasResultOnFaces, "block"_a)
     .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none(),
       "first"_a = -1)
     .def(

@@ -24,7 +24,7 @@ from ._result import (
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, translate
-from ._surface import SurfaceLike, as_data, as_surface
+from ._surface import Surface, SurfaceLike, as_data, as_surface, find_on_faces
 
 __all__ = [
     "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
@@ -42,17 +42,19 @@ SHARED = {
 surface : Surface or tuple (points, faces)
     The surface. A :class:`Surface` keeps mesh, ordering and factors between calls.""",
     "mask": """\
-mask : array_like, shape (n,), optional
-    Nonzero is missing, or excluded with ``mask_mode="Exclude"``.""",
+mask : array_like, shape (n,) or (m,), optional
+    Nonzero is missing, or excluded with ``mask_mode="Exclude"``. At points or faces, as `fixed` and
+    `fidelity`: the points of a masked or fixed face are masked or fixed, and faces with a masked
+    point are masked if the data are on faces.""",
     "directions": """\
 directions : array_like, shape (n, 3) or (m, 3), optional
     The direction e1 at each point or face, of any length and sign; zero or NaN is none.""",
     "fixed": """\
-fixed : array_like, shape (n,), optional
+fixed : array_like, shape (n,) or (m,), optional
     Nonzero holds the value (Dirichlet condition).""",
     "fidelity": """\
-fidelity : array_like, shape (n,), optional
-    Factors w >= 0 of `fidelity_weight` at each point, such as 1/s^2 for noise of standard
+fidelity : array_like, shape (n,) or (m,), optional
+    Factors w >= 0 of `fidelity_weight` at each point or face, such as 1/s^2 for noise of standard
     deviation s.""",
     "steps": """\
 steps : bool, default False
@@ -70,9 +72,15 @@ progress : bool or callable, default False
     True: a bar (needs tqdm). A callable takes the fraction done; an exception that it raises
     ends the run.""",
     "values": """\
-values : array_like, shape (n,) or (n, k)
-    The data f, one row per point. NaN in any component is missing. uint8 with 2 or 4 components
-    is a colour with alpha, which is not changed.""",
+values : array_like, shape (n,) or (n, k), or (m,) or (m, k)
+    The data f, one row per point or face. NaN in any component is missing. uint8 with 2 or 4
+    components is a colour with alpha, which is not changed. Data on faces are averaged at the
+    points such that the integral is kept, and their change there is added to the faces; see
+    `result_on_faces` and `keep_face_detail`.""",
+    "on_faces": """\
+on_faces : bool, optional
+    Whether the data are on faces. Default: by their number of rows; on points if there are as many
+    points as faces.""",
     "problems": """\
 Raises
 ------
@@ -149,25 +157,40 @@ def _are_independent(name: str, runner: Runner) -> bool:
         runner.settings.get("InitialFill") != noise)
 
 
+def _take(name: str, values: Any, surface: Surface, on_faces: bool | None) -> tuple[Any, bool]:
+    """The data, and whether they are on faces."""
+    found = find_on_faces(name, values, surface, on_faces)
+    if not found:
+        return as_data(name, values, surface.n_points), False
+    return as_data(name, values, surface.n_faces, "face"), True
+
+
+def _in_shape(values: NDArray[Any], given: Any) -> NDArray[Any]:
+    """The values with one dimension if the given ones have one."""
+    return values[:, 0] if np.ndim(given) == 1 else values
+
+
 def _diffusion(
-    name: str, surface: Any, values: Any, mask: Any, directions: Any, fixed: Any, fidelity: Any,
-    steps: bool, full_output: bool, dtype: Any, progress: Progress, properties: dict[str, Any],
+    name: str, surface: Any, values: Any, on_faces: Any, mask: Any, directions: Any, fixed: Any,
+    fidelity: Any, steps: bool, full_output: bool, dtype: Any, progress: Progress, properties: dict[str, Any],
 ) -> Any:
     if not isinstance(full_output, (bool, np.bool_)):
         raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
     surface = as_surface(surface)
-    data = as_data("values", values, surface.n_points)
-    shape = np.shape(values)
+    data, on_faces = _take("values", values, surface, on_faces)
     find_result_type(data, dtype)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
+    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
+                  directions=directions, fidelity=fidelity)
     runner = Runner(name, properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
         result = make_diffusion(run, 0, given, runner, dtype, found)
-        return replace(result, values=result.values.reshape(shape))
+        return replace(result, values=_in_shape(result.values, values))
 
     if data.shape[1] > PANEL and not (steps or full_output) and _are_independent(name, runner):
-        output = np.empty(data.shape, dtype=find_result_type(data, dtype))
+        stays = on_faces and runner.settings.get("ResultOnCells", True)
+        rows = surface.n_faces if stays else surface.n_points
+        output = np.empty((rows, data.shape[1]), dtype=find_result_type(data, dtype))
         with surface._lock:
             run = surface._runs.setdefault(name, _core.ModelRun(name))
             runner.finish_panels(run, given, output, PANEL, progress)
@@ -181,6 +204,7 @@ def heat(
     surface: SurfaceLike,
     values: ArrayLike,
     *,
+    on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
@@ -205,6 +229,7 @@ def heat(
     ----------
     {surface}
     {values}
+    {on_faces}
     {mask}
     {directions}
     {fixed}
@@ -249,8 +274,8 @@ def heat(
     >>> [state.step for state in heat(surface, noise, steps=True, output_interval=4)]
     [0, 4, 8, 10]
     """
-    return _diffusion("heat", surface, values, mask, directions, fixed, fidelity, steps, full_output,
-                      dtype, progress, properties)
+    return _diffusion("heat", surface, values, on_faces, mask, directions, fixed, fidelity, steps,
+                      full_output, dtype, progress, properties)
 
 
 @_with_settings
@@ -258,6 +283,7 @@ def intrinsic_tv(
     surface: SurfaceLike,
     values: ArrayLike,
     *,
+    on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
@@ -281,6 +307,7 @@ def intrinsic_tv(
     ----------
     {surface}
     {values}
+    {on_faces}
     {mask}
     {directions}
     {fixed}
@@ -314,8 +341,8 @@ def intrinsic_tv(
     >>> bool(result.effective_fidelity_weight > 0)
     True
     """
-    return _diffusion("intrinsic_tv", surface, values, mask, directions, fixed, fidelity, steps,
-                      full_output, dtype, progress, properties)
+    return _diffusion("intrinsic_tv", surface, values, on_faces, mask, directions, fixed, fidelity,
+                      steps, full_output, dtype, progress, properties)
 
 
 @_with_settings
@@ -409,6 +436,7 @@ def mumford_shah(
     surface: SurfaceLike,
     values: ArrayLike,
     *,
+    on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
@@ -434,6 +462,7 @@ def mumford_shah(
     ----------
     {surface}
     {values}
+    {on_faces}
     {mask}
     {directions}
     {fixed}
@@ -467,15 +496,15 @@ def mumford_shah(
     True
     """
     surface = as_surface(surface)
-    data = as_data("values", values, surface.n_points)
-    shape = np.shape(values)
+    data, on_faces = _take("values", values, surface, on_faces)
     find_result_type(data, dtype)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
+    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
+                  directions=directions, fidelity=fidelity)
     runner = Runner("mumford_shah", properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> EdgeResult:
         result = make_edges(run, 0, given, runner, dtype, found)
-        return replace(result, values=result.values.reshape(shape))
+        return replace(result, values=_in_shape(result.values, values))
 
     return _run("mumford_shah", given, runner, make, steps, progress)
 
@@ -485,6 +514,7 @@ def harmonic_map(
     surface: SurfaceLike,
     vectors: ArrayLike | None = None,
     *,
+    on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
@@ -502,9 +532,10 @@ def harmonic_map(
     Parameters
     ----------
     {surface}
-    vectors : array_like, shape (n, k) with k > 1, optional
-        The vectors f, which are normalised first. Zero and NaN are missing. Default: the normals of
+    vectors : array_like, shape (n, k) or (m, k) with k > 1, optional
+        The vectors f at points or faces, which are normalised first. Zero and NaN are missing. Default: the normals of
         the points, in single precision.
+    {on_faces}
     {mask}
     {directions}
     {fixed}
@@ -536,9 +567,11 @@ def harmonic_map(
     True
     """
     surface = as_surface(surface)
-    data = as_vectors(surface, vectors, properties)
+    on_faces = vectors is not None and find_on_faces("vectors", vectors, surface, on_faces)
+    data = as_vectors(surface, vectors, properties, on_faces)
     find_result_type(data, dtype)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
+    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
+                  directions=directions, fidelity=fidelity)
     runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
     return _run("harmonic_map", given, runner,
                 lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),
@@ -551,6 +584,7 @@ def segment(
     values: ArrayLike | None = None,
     *,
     terms: ArrayLike | None = None,
+    on_faces: bool | None = None,
     seeds: ArrayLike | None = None,
     mask: ArrayLike | None = None,
     fidelity: ArrayLike | None = None,
@@ -566,15 +600,17 @@ def segment(
     Parameters
     ----------
     {surface}
-    values : array_like, shape (n,) or (n, k), optional
-        The data f. NaN in any component is missing.
-    terms : array_like, shape (n, K), optional
+    values : array_like, shape (n,) or (n, k), or (m,) or (m, k), optional
+        The data f at points or faces. NaN in any component is missing.
+    terms : array_like, shape (n, K) or (m, K), optional
         The data terms r_k in place of `values`. NaN in any component is missing.
-    seeds : array_like of int, shape (n,), optional
-        Labels 1 to K that points keep; 0: free.
+    {on_faces}
+    seeds : array_like of int, shape (n,) or (m,), optional
+        Labels 1 to K that points or faces keep; 0: free. Points between faces of different labels
+        are free.
     {mask}
-    fidelity : array_like, shape (n,), optional
-        Factors w >= 0 of the data terms at each point, such as 1/s^2 for noise of standard
+    fidelity : array_like, shape (n,) or (m,), optional
+        Factors w >= 0 of the data terms at each point or face, such as 1/s^2 for noise of standard
         deviation s; 0 is missing.
     {progress}
 
@@ -605,11 +641,11 @@ def segment(
         raise ValueError("values and terms are " + ("both" if values is not None else "not") +
                          " given; allowed: one of them")
     name = "values" if terms is None else "terms"
-    data = as_data(name, values if terms is None else terms, surface.n_points)
+    data, on_faces = _take(name, values if terms is None else terms, surface, on_faces)
     for name, switch in (("means", "automatic_means"), ("fidelity_weight", "automatic_fidelity")):
         if name in properties:
             properties.setdefault(switch, False)
-    given = Input(surface, data, mask=mask, fidelity=fidelity, seeds=seeds,
+    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fidelity=fidelity, seeds=seeds,
                   data_are_terms=terms is not None)
     runner = Runner("segment", properties, ARRAYS)
     result: SegmentationResult = _run(

@@ -29,8 +29,8 @@ def make_diffusion(
 ) -> DiffusionResult:
     """The result of heat or intrinsic_tv on one surface, with columns for components."""
     assert given.data is not None
-    output = np.empty(given.data.shape, dtype=find_result_type(given.data, dtype))
-    runner.call(run.write_state, block, output, given.data)
+    output = _empty(run, block, given, dtype)
+    runner.call(run.write_state, block, output, given.source(run, block))
     return DiffusionResult(output, **_pick(DiffusionResult, found))
 
 
@@ -39,11 +39,11 @@ def make_harmonic_map(
 ) -> HarmonicMapResult:
     """The result of harmonic_map on one surface."""
     assert given.data is not None
-    output = np.empty(given.data.shape, dtype=find_result_type(given.data, dtype))
+    output = _empty(run, block, given, dtype)
     if output.dtype == np.uint8:
         runner.call(run.write_colors_of_vectors, block, output, given.core)
     else:
-        runner.call(run.write_state, block, output, given.data)
+        runner.call(run.write_state, block, output, given.source(run, block))
     points = np.array(given.surface.points)
     runner.call(run.write_moved_points, block, points)
     return HarmonicMapResult(output, points=points, **_pick(HarmonicMapResult, found))
@@ -55,10 +55,10 @@ def make_edges(
     """The result of mumford_shah on one surface, with columns for components."""
     assert given.data is not None
     result_type = find_result_type(given.data, dtype)
-    output = np.empty(given.data.shape, dtype=result_type)
-    runner.call(run.write_state, block, output, given.data)
+    output = _empty(run, block, given, dtype)
+    runner.call(run.write_state, block, output, given.source(run, block))
     single = result_type == np.float32
-    edges = np.empty((given.surface.n_points, 1), dtype=np.float32 if single else np.float64)
+    edges = np.empty((len(output), 1), dtype=np.float32 if single else np.float64)
     runner.call(run.write_edges, block, edges)
     sizes = run.curve_sizes(block)
     points = np.empty((sum(sizes), 3))
@@ -102,7 +102,7 @@ def make_segmentation(
     run: Any, block: int, given: Input, runner: Runner, found: dict[str, Any]
 ) -> SegmentationResult:
     """The result of segment on one surface."""
-    n = given.surface.n_points
+    n = given.rows(run, block)
     regions = run.regions(block)
     labels = np.empty((n, 1))
     runner.call(run.write_labels, block, labels)
@@ -119,16 +119,17 @@ def make_segmentation(
         boundaries=boundaries, **regions, **_pick(SegmentationResult, found))
 
 
-def as_vectors(surface: Surface, vectors: Any, properties: Mapping[str, Any]) -> NDArray[Any]:
+def as_vectors(surface: Surface, vectors: Any, properties: Mapping[str, Any],
+               on_faces: bool = False) -> NDArray[Any]:
     """The vectors of harmonic_map: the given ones, or the normals."""
-    n = surface.n_points
+    n = surface.n_faces if on_faces else surface.n_points
     if vectors is None:
         return surface._point_normals()
     found = as_numbers("vectors", vectors)
     columns = data_components(found) if found.ndim == 2 else 0
     if found.ndim != 2 or found.shape[0] != n or columns < 2:
-        raise ValueError(f"vectors has shape {found.shape}; allowed: ({n}, k), one row per point and "
-                         "k > 1, alpha of colours not counted")
+        raise ValueError(f"vectors has shape {found.shape}; allowed: ({n}, k), one row per "
+                         f"{'face' if on_faces else 'point'} and k > 1, alpha of colours not counted")
     if properties.get("move_vertices", False) is True and found.shape[1] != 3:
         raise ValueError(f"vectors has shape {found.shape}; allowed with move_vertices: ({n}, 3)")
     return as_data("vectors", vectors, n)
@@ -154,6 +155,13 @@ def as_colors(low: Any, high: Any) -> list[tuple[float, ...]]:
             raise ValueError(f"{name} is {shorten(color)}; allowed: three numbers from 0 to 1")
         colors.append(tuple(float(part) for part in parts))
     return colors
+
+
+def _empty(run: Any, block: int, given: Input, dtype: Any) -> NDArray[Any]:
+    """An array for the result of data."""
+    assert given.data is not None
+    shape = (given.rows(run, block), given.data.shape[1])
+    return np.empty(shape, dtype=find_result_type(given.data, dtype))
 
 
 def _pick(result_class: Any, found: dict[str, Any]) -> dict[str, Any]:

@@ -18,7 +18,8 @@ class Result:
     Attributes
     ----------
     values : ndarray
-        The result at the points, with the shape of the input.
+        The result at the points, or at the faces if the data are on faces and `result_on_faces` is
+        on, with as many dimensions as the input.
     step : int
         The number of time steps done.
     time : float

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._settings import convert_all, settings_of, shorten, translate
 from ._surface import (
-    Surface, as_factors, as_flags, as_labels, as_numbers, as_rows, data_components,
+    Surface, as_factors, as_flags, as_labels, as_numbers, as_rows, data_components, find_place,
 )
 
 Progress = Union[None, bool, Callable[[float], Any]]
@@ -92,13 +92,16 @@ def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
 
 
 class Input:
-    """The input of a run on one surface. on_faces: where the directions are; None: by their number."""
+    """The input of a run on one surface. data_on_faces: where the data are. on_faces: where the
+    directions are; None: by their number. Masks and the like are on points or faces by their
+    number."""
 
     def __init__(
         self,
         surface: Surface,
         data: NDArray[Any] | None = None,
         *,
+        data_on_faces: bool = False,
         mask: Any = None,
         fixed: Any = None,
         directions: Any = None,
@@ -132,11 +135,27 @@ class Input:
                 row = int(np.argmax(bad))
                 raise ValueError(f"rates has {rates[row].tolist()} in row {row}; allowed: finite "
                                  "numbers, 0 or more")
+        self.data_on_faces = data_on_faces
+        marks = {"mask": as_flags("mask", mask), "fixed": as_flags("fixed", fixed),
+                 "fidelity": as_factors("fidelity", fidelity), "seeds": as_labels("seeds", seeds)}
+        what = {"mask": "flag", "fixed": "flag", "fidelity": "number", "seeds": "label"}
+        places = ["data"] * data_on_faces + ["directions"] * bool(on_faces) + [
+            name for name, array in marks.items()
+            if array is not None and find_place(name, array, (n, m), what[name], data_on_faces)]
         self.core = _core.Fields(
-            surface._core, data, 0 if data is None else data_components(data),
-            as_flags("mask", mask, n), as_flags("fixed", fixed, n), directions,
-            bool(on_faces), rates, as_factors("fidelity", fidelity, n), as_labels("seeds", seeds, n),
-            data_are_terms)
+            surface._core, data, 0 if data is None else data_components(data), marks["mask"],
+            marks["fixed"], directions, rates, marks["fidelity"], marks["seeds"], data_are_terms,
+            places)
+
+    def rows(self, run: Any, block: int) -> int:
+        """The number of rows of a result."""
+        on_faces = run.has_result_on_faces(block)
+        return self.surface.n_faces if on_faces else self.surface.n_points
+
+    def source(self, run: Any, block: int) -> NDArray[Any] | None:
+        """The data, if the result is in the same place."""
+        same = self.data_on_faces == run.has_result_on_faces(block)
+        return self.data if same else None
 
 
 class Runner:
@@ -189,7 +208,7 @@ class Runner:
                 self.call(run.update, [panel], self.settings, reporter.callable, False)
                 self.call(run.seek, -1, reporter.callable)
                 reporter.finish_part()
-                self.call(run.write_state, 0, output, given.data, first)
+                self.call(run.write_state, 0, output, given.source(run, 0), first)
                 known += [text for text in self.warnings(run) if text not in known]
         warn(known)
 

@@ -27,7 +27,8 @@ UNUSED = {
                 "Tolerance", "MaximumNumberOfIterations"},
 }
 
-RENAMED = {"RandomSeed": "seed"}
+RENAMED = {"RandomSeed": "seed", "ResultOnCells": "result_on_faces",
+           "KeepCellDetail": "keep_face_detail"}
 
 
 @dataclass(frozen=True)
@@ -119,5 +120,6 @@ def translate(function: str, message: str, arrays: Mapping[str, str]) -> str:
     names = {setting.name: setting.keyword for setting in settings_of(function).values()}
     names.update(arrays)
     message = message.replace("OutputPrecision to Double", "dtype to float64")
+    message = re.sub(r"\bcell(s?)\b", r"face\1", message)
     pattern = r"\b(" + "|".join(sorted(names, key=len, reverse=True)) + r")\b"
     return re.sub(pattern, lambda m: names[m.group(1)], message)

@@ -38,50 +38,71 @@ def as_rows(name: str, values: Any, rows: int, columns: int, row_name: str) -> N
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
-def as_labels(name: str, values: Any, n: int) -> NDArray[np.int64] | None:
-    """Labels 1, 2, ... of points, 0 for none; None stays."""
+def find_place(name: str, array: NDArray[Any], sizes: tuple[int, int], what: str,
+               on_faces: bool) -> bool:
+    """Whether an array of one dimension is on faces. sizes: the numbers of points and of faces.
+    on_faces: the answer if these are equal."""
+    n, m = sizes
+    if array.shape not in ((n,), (m,)):
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},), one {what} per point, or "
+                         f"({m},), one per face")
+    return on_faces if n == m else array.shape[0] == m
+
+
+def as_labels(name: str, values: Any) -> NDArray[np.int64] | None:
+    """Labels 1, 2, ..., 0 for none; None stays."""
     if values is None:
         return None
     array = as_numbers(name, values)
-    if array.shape != (n,):
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},), one label per point")
     bad = ~((array >= 0) & (array == np.floor(array)) & (array < 2**31))
     if bad.any():
         row = int(np.argmax(bad))
         raise ValueError(f"{name} is {array[row]} in row {row}; allowed: the labels 1 to "
-                         "number_of_regions, and 0 for points that are free")
+                         "number_of_regions, and 0 for those that are free")
     return np.ascontiguousarray(array, dtype=np.int64)
 
 
-def as_flags(name: str, values: Any, points: int) -> NDArray[np.uint8] | None:
-    """One flag per point, nonzero is set; None stays."""
+def as_flags(name: str, values: Any, points: int | None = None) -> NDArray[np.uint8] | None:
+    """Flags, nonzero is set, one per point if their number is given; None stays."""
     if values is None:
         return None
     array = np.ma.getdata(as_numbers(name, values))
-    if array.shape != (points,):
+    if points is not None and array.shape != (points,):
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},), one flag per point")
     return np.ascontiguousarray(array != 0, dtype=np.uint8)
 
 
-def as_factors(name: str, values: Any, points: int) -> NDArray[np.float64] | None:
-    """One number, 0 or more, per point; None stays."""
+def as_factors(name: str, values: Any) -> NDArray[np.float64] | None:
+    """Numbers; None stays."""
     if values is None:
         return None
-    array = as_numbers(name, values)
-    if array.shape != (points,):
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},), one number per point")
-    return np.ascontiguousarray(array, dtype=np.float64)
+    return np.ascontiguousarray(as_numbers(name, values), dtype=np.float64)
 
 
-def as_data(name: str, values: Any, points: int) -> NDArray[Any]:
-    """The data as float64, float32 or uint8, with one row per point and one column per component."""
+def as_data(name: str, values: Any, points: int, row_name: str = "point") -> NDArray[Any]:
+    """The data as float64, float32 or uint8, with one row per point (or face: `row_name`) and one
+    column per component."""
     array = as_numbers(name, values)
     if array.ndim not in (1, 2) or array.shape[0] != points or array.size == 0:
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},) or ({points}, k), "
-                         "one row per point")
+                         f"one row per {row_name}")
     kept = array.dtype.kind == "f" and array.dtype.itemsize == 4
     dtype: Any = np.float32 if kept else np.uint8 if array.dtype == np.uint8 else np.float64
     return np.ascontiguousarray(array.reshape(points, -1), dtype=dtype)
+
+
+def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | None) -> bool:
+    """Whether data are on faces: as `on_faces` says, or if their number is that of the faces and not
+    that of the points."""
+    if on_faces is not None and not isinstance(on_faces, (bool, np.bool_)):
+        raise ValueError(f"on_faces is {shorten(on_faces)}; allowed: True, False or None")
+    if on_faces is not None:
+        return bool(on_faces)
+    array, n, m = as_numbers(name, values), surface.n_points, surface.n_faces
+    if array.ndim not in (1, 2) or array.shape[0] not in (n, m) or array.size == 0:
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},) or ({n}, k), one row per "
+                         f"point, or ({m},) or ({m}, k), one row per face")
+    return bool(array.shape[0] != n)
 
 
 def data_components(array: NDArray[Any]) -> int:

@@ -19,7 +19,8 @@ def get_number_of_threads() -> int:
 
 
 def set_number_of_threads(number: int) -> None:
-    """Run later loops on this number of threads. No bit of a result depends on it.
+    """Run later loops on this number of threads; 0 means as many as the processors this process may
+    use, the default. No bit of a result depends on it.
 
     Examples
     --------
@@ -29,10 +30,15 @@ def set_number_of_threads(number: int) -> None:
     2
     """
     allowed = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
-    if not allowed or not 1 <= number <= 1024:
-        raise ValueError(f"number is {shorten(number)}; allowed: 1 to 1024 threads")
-    _core.set_number_of_threads(int(number))
+    if not allowed or not 0 <= number <= 1024:
+        raise ValueError(f"number is {shorten(number)}; allowed: 0 to 1024 threads")
+    _core.set_number_of_threads(int(number) or _number_of_processors())
 
 
-if hasattr(os, "sched_getaffinity"):
-    set_number_of_threads(min(1024, len(os.sched_getaffinity(0))))
+def _number_of_processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return min(1024, len(os.sched_getaffinity(0)))
+    return min(1024, os.cpu_count() or 1)
+
+
+set_number_of_threads(0)

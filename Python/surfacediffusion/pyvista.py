@@ -16,12 +16,13 @@ A mesh is a pyvista.PolyData with n points and m cells, or a pyvista.MultiBlock 
 blocks may be None or empty; its surfaces share their natural units, and blocks without the array
 are returned as they are. The input is not modified. Arrays are passed by name:
 
-array      the data: point array (n,) or (n, k) of any numeric type, NaN is missing; default: the
+array      the data: point array (n,) or (n, k) of any numeric type, NaN is missing, or cell array
+           with m rows, whose result is a cell array unless result_on_faces=False; default: the
            active scalars
-mask       point array (n,), nonzero is missing (or excluded with mask_mode="Exclude")
+mask       point or cell array, nonzero is missing (or excluded with mask_mode="Exclude")
 direction  point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along
-fixed      point array (n,), nonzero holds the value fixed (Dirichlet condition)
-fidelity   point array (n,), factors of fidelity_weight, 0 or more
+fixed      point or cell array, nonzero holds the value fixed (Dirichlet condition)
+fidelity   point or cell array, factors of fidelity_weight, 0 or more
 
 times: times in the unit of time_step, in any order. The function then returns a list with the mesh
 at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
@@ -69,10 +70,10 @@ def heat(
     fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
     full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
-    """Smooth, denoise or inpaint a point array by linear diffusion.
+    """Smooth, denoise or inpaint an array by linear diffusion.
 
     The arguments are described in help(surfacediffusion.pyvista), the equation and all other keywords
-    in help(surfacediffusion.heat). The result is the point array <array>Diffused, with the shape of
+    in help(surfacediffusion.heat). The result is the array <array>Diffused, with the shape of
     the data.
     """
     return _run("heat", mesh, array, (mask, direction, fixed, None, fidelity), times, full_output,
@@ -84,10 +85,10 @@ def intrinsic_tv(
     fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
     full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
-    """Denoise or inpaint a point array and preserve its edges.
+    """Denoise or inpaint an array and preserve its edges.
 
     The arguments are described in help(surfacediffusion.pyvista), the equation and all other keywords
-    in help(surfacediffusion.intrinsic_tv). The result is the point array <array>TV, with the shape of
+    in help(surfacediffusion.intrinsic_tv). The result is the array <array>TV, with the shape of
     the data.
     """
     return _run("intrinsic_tv", mesh, array, (mask, direction, fixed, None, fidelity), times,
@@ -116,10 +117,10 @@ def mumford_shah(
     fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
     full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
-    """Find the edges of a point array, and smooth or inpaint the data between them.
+    """Find the edges of an array, and smooth or inpaint the data between them.
 
     The arguments are those of heat(); the functional and all other keywords are in
-    help(surfacediffusion.mumford_shah). The results are the point arrays <array>MumfordShah, with
+    help(surfacediffusion.mumford_shah). The results are the arrays <array>MumfordShah, with
     the shape of the data, and Edges (n,). The curves along the edges are `curves` of the report that
     full_output=True returns, a list of arrays of points.
     """
@@ -166,36 +167,43 @@ def segment(
 ) -> Any:
     """Divide the mesh into regions with short boundaries.
 
-    array: the data; terms: point array (n, K) of data terms in their place; seeds: point array (n,)
-    of labels that points keep, 0 is free; fidelity: point array (n,) of factors of the data terms,
-    0 is missing. The equation and all other keywords are described in
+    array: the data; terms: array of K components of data terms in their place; seeds: array of labels
+    that points or cells keep, 0 is free; fidelity: array of factors of the data terms, 0 is missing.
+    All of them are on points or cells. The equation and all other keywords are described in
     help(surfacediffusion.segment). The blocks of a MultiBlock are segmented one by one, each with
-    its own natural units. The results are the point arrays RegionId (active), RegionProbability
-    (n, K) and, with data, <array>Segmented: the mean of the region, or the data of points that take
-    no part. full_output: if True, the function returns a pair: the mesh, and the
+    its own natural units. The results are the arrays RegionId (active), RegionProbability (n, K) and,
+    with data, <array>Segmented: the mean of the region, or the data of points that take no part; of
+    cells if the data are on cells. full_output: if True, the function returns a pair: the mesh, and the
     SegmentationResult, of a MultiBlock the list of them.
     """
     properties, result_name = _keywords("segment", properties)
     blocks, results = _find_surfaces(mesh), []
     for block in blocks:
-        name = array or block.mesh.point_data.active_scalars_name
+        name = (array or block.mesh.point_data.active_scalars_name
+                or block.mesh.cell_data.active_scalars_name)
         if terms is None and name is None:
             raise ValueError("array is None and the mesh has no active scalars; allowed: the name of "
-                             "a point array")
-        values = None if terms is not None else block.find("array", name)[0]
-        result = _segment(
-            block.surface, values, terms=block.find("terms", terms)[0],
-            seeds=block.find("seeds", seeds)[0], mask=block.find("mask", mask)[0],
-            fidelity=block.find("fidelity", fidelity)[0], progress=progress, **properties)
+                             "an array")
+        data, on_faces = block.find(*(("array", name) if terms is None else ("terms", terms)),
+                                    faces=True)
+        if on_faces and block.has_strips:
+            raise ValueError("the data are a cell array of triangle strips; allowed: polygons, for "
+                             "example mesh.triangulate()")
+        marks = {argument: block.find(argument, given, faces=True)[0] for argument, given in (
+            ("seeds", seeds), ("mask", mask), ("fidelity", fidelity))}
+        values = data if terms is None else None
+        result = _segment(block.surface, values, terms=None if terms is None else data,
+                          on_faces=on_faces, progress=progress, **marks, **properties)
         results.append(result)
-        points = block.mesh.point_data
+        stays = on_faces and properties.get("result_on_faces", True)
         if values is not None:
-            means = result.means[result.values - 1].reshape(len(values), *values.shape[1:])
-            means[result.values == 0] = values[result.values == 0]
-            points[result_name or f"{name}Segmented"] = means
-        points["RegionProbability"] = result.probabilities
-        points["RegionId"] = result.values
-        block.mesh.set_active_scalars("RegionId")
+            means = result.means[result.values - 1].reshape(-1, *values.shape[1:])
+            if stays or not on_faces:
+                means[result.values == 0] = values[result.values == 0]
+            block.add(result_name or f"{name}Segmented", means, stays)
+        block.add("RegionProbability", result.probabilities, stays)
+        block.add("RegionId", result.values, stays)
+        block.mesh.set_active_scalars("RegionId", preference="cell" if stays else "point")
     segmented = _rebuild(mesh, iter(blocks))
     if not full_output:
         return segmented
@@ -224,6 +232,10 @@ def direction_field(
         block.mesh.cell_data[name or "Direction"] = cells
         block.mesh.GetCellData().SetActiveVectors(name or "Direction")
     return _rebuild(mesh, iter(surfaces))
+
+
+_SUFFIXES = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
+             "mumford_shah": "MumfordShah"}
 
 
 class _Block:
@@ -255,6 +267,15 @@ class _Block:
         where = " or ".join(["point"] * points + ["cell"] * faces)
         listed = ", ".join(repr(other) for other in names) or "of which there are none"
         raise ValueError(f"{argument} is {shorten(name)}; allowed: {where} arrays, {listed}")
+
+    def add(self, name: str, values: NDArray[Any], on_faces: bool) -> None:
+        """Add an array of points or, zero at cells that are no faces, of cells."""
+        if not on_faces:
+            self.mesh.point_data[name] = values
+            return
+        cells = np.zeros((self.mesh.n_cells, *values.shape[1:]), dtype=values.dtype)
+        cells[self.face_cells] = values
+        self.mesh.cell_data[name] = cells
 
     def fresh(self) -> _Block:
         """The same surface, with a mesh for other results."""
@@ -351,42 +372,72 @@ def _prepare(
     """The input of a block."""
     mesh, surface = block.mesh, block.surface
     data: Any = None
+    on_faces = False
     if function == "harmonic_map":
         name = array or mesh.point_data.active_normals_name
-        data = as_vectors(surface, block.find("array", name)[0], properties)
+        vectors, on_faces = block.find("array", name, faces=True)
+        data = as_vectors(surface, vectors, properties, on_faces)
         block.name = name or "Normals"
     elif function == "turing_texture":
         data = as_initial(surface, block.find("initial", array)[0])
     else:
-        name = array or mesh.point_data.active_scalars_name
+        name = (array or mesh.point_data.active_scalars_name or mesh.cell_data.active_scalars_name)
         if name is None:
-            raise ValueError("array is None, and there are no active point scalars; allowed: the name "
-                             "of a point array")
-        data = as_data(name, block.find("array", name)[0], surface.n_points)
+            raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
+                             "array")
+        values, on_faces = block.find("array", name, faces=True)
+        data = as_data(name, values, surface.n_faces if on_faces else surface.n_points,
+                       "face" if on_faces else "point")
         block.name = name
+    if on_faces and block.has_strips:
+        raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
+                         "polygons, for example mesh.triangulate()")
     mask, direction, fixed, rates, fidelity = names
-    directions, on_faces = block.find("direction", direction, faces=True)
+    directions, directed_faces = block.find("direction", direction, faces=True)
+    marks = {argument: block.find(argument, given, faces=True)[0]
+             for argument, given in (("mask", mask), ("fixed", fixed), ("fidelity", fidelity))}
     block.given = Input(
-        surface, data, mask=block.find("mask", mask)[0], fixed=block.find("fixed", fixed)[0],
-        directions=directions, directions_name="direction", on_faces=on_faces,
-        rates=block.find("rates", rates, points=False, faces=True)[0],
-        fidelity=block.find("fidelity", fidelity)[0])
+        surface, data, data_on_faces=on_faces, directions=directions,
+        directions_name="direction", on_faces=directed_faces,
+        rates=block.find("rates", rates, points=False, faces=True)[0], **marks)
 
 
 def _suffix(function: str, runner: Runner) -> str:
     """Of the name of the result."""
     if function == "tensor_diffusion":
         return ("Beltrami", "Coherent", "EdgeEnhanced")[runner.settings.get("Model", 0)]
-    return {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
-            "mumford_shah": "MumfordShah"}.get(function, "")
+    return _SUFFIXES.get(function, "")
+
+
+def _write_cells(
+    function: str, block: _Block, result: Any, name: str | None, suffix: str
+) -> None:
+    """The same for results on faces. Other cells keep their value."""
+    cells, given = block.mesh.cell_data, np.asarray(block.input.cell_data[block.name])
+    values = np.array(given, dtype=result.values.dtype)
+    values[block.face_cells] = result.values.reshape((-1,) + given.shape[1:])
+    active = name or block.name + suffix
+    cells[active] = values
+    if function == "mumford_shah":
+        block.add("Edges", result.edges, True)
+    if function != "harmonic_map":
+        block.mesh.set_active_scalars(active, preference="cell")
+    elif block.name == block.input.cell_data.active_normals_name:
+        block.mesh.GetCellData().SetActiveNormals(active)
 
 
 def _write(
-    function: str, block: _Block, result: Any, name: str | None, colors: bool, suffix: str
+    function: str, block: _Block, result: Any, name: str | None, colors: bool, suffix: str,
+    on_faces: bool
 ) -> None:
     """Add the result to the mesh, and make it active."""
     points = block.mesh.point_data
     values = result.values
+    if function == "tensor_diffusion" and len(result.axes) > 0:
+        block.mesh.cell_data["DiffusionAxes"] = result.axes
+    if on_faces:
+        _write_cells(function, block, result, name, suffix)
+        return
     if function == "turing_texture":
         prefix = name or ""
         points[prefix + "u1"], points[prefix + "u2"] = values[:, 0], values[:, 1]
@@ -397,13 +448,12 @@ def _write(
             points[active] = result.colors
         block.mesh.set_active_scalars(active, preference="point")
         return
-    if function == "tensor_diffusion" and len(result.axes) > 0:
-        block.mesh.cell_data["DiffusionAxes"] = result.axes
     if function == "mumford_shah":
         points["Edges"] = result.edges
     active = name or block.name + suffix
     given = block.input.point_data
-    single = block.name in given and given[block.name].ndim == 1
+    source = given if block.name in given else block.input.cell_data
+    single = block.name in source and source[block.name].ndim == 1
     points[active] = values[:, 0] if single else values
     if function != "harmonic_map":
         block.mesh.set_active_scalars(active, preference="point")
@@ -432,7 +482,8 @@ def _run(
             find_result_type(block.given.data if block.given else None, dtype)
             blocks.append(block)
         except ValueError as error:
-            if array is not None and array in block.mesh.point_data:
+            if array is not None and (
+                    array in block.mesh.point_data or array in block.mesh.cell_data):
                 raise
             failures.append(error)
     if not blocks:
@@ -450,7 +501,8 @@ def _run(
         written = [block.fresh() for block in blocks]
         for number, block in enumerate(written):
             result = make(run, number, block.given, runner, dtype, state[number], *extra)
-            _write(function, block, result, result_name, painted, _suffix(function, runner))
+            _write(function, block, result, result_name, painted, _suffix(function, runner),
+                   run.has_result_on_faces(number))
             results.append(result)
         whole = _rebuild(mesh, iter(written))
         return whole, results if isinstance(mesh, pyvista.MultiBlock) else results[0]

@@ -19,7 +19,8 @@ import numpy as np
 import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
-from surfacediffusion import Surface, heat, intrinsic_tv
+from surfacediffusion import (Surface, get_number_of_threads, heat, intrinsic_tv,
+                              set_number_of_threads)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
@@ -344,6 +345,19 @@ class Reports(CommandTest):
 
     def test_quiet_prints_nothing(self):
         self.assertEqual(self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii --quiet"), "")
+
+    def test_threads_do_not_change_the_result(self):
+        before = get_number_of_threads()
+        try:
+            self.succeed("smooth lh.surf.gii lh.func.gii 5 all.npy")
+            self.succeed("smooth lh.surf.gii lh.func.gii 5 one.npy --threads 1")
+            self.assertEqual(get_number_of_threads(), 1)
+        finally:
+            set_number_of_threads(before)
+        np.testing.assert_array_equal(np.load("one.npy"), np.load("all.npy"))
+        code, _, error = run("smooth", "lh.surf.gii", "lh.func.gii", 5, "x.npy", "--threads", "x")
+        self.assertEqual(code, 2)
+        self.assertIn("allowed: a whole number from 0 to 1024", error)
 
     def test_one_line_says_what_was_written(self):
         out = self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii")

@@ -410,14 +410,16 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
   };
   EXPECT_EQ(choice(44000, 0.1, 1), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(44000, 100.0, 1), SolverMethod::Multigrid);
-  EXPECT_EQ(choice(44000, 1.0, 10), SolverMethod::Direct);
+  EXPECT_EQ(choice(44000, 1.0, 10), SolverMethod::ConjugateGradient);
+  EXPECT_EQ(choice(44000, 1.0, 40), SolverMethod::Direct);
   EXPECT_EQ(choice(44000, 1.0, 10, 1e-3), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(178000, 100.0, 20), SolverMethod::Direct);
   EXPECT_EQ(choice(178000, 1e4, 1), SolverMethod::Multigrid);
   EXPECT_EQ(choice(711000, 0.1, 10), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(711000, 1e4, 10), SolverMethod::Multigrid);
   EXPECT_EQ(choice(711000, 1.0, 100), SolverMethod::Direct);
-  EXPECT_EQ(choice(178000, 0.1, 100), SolverMethod::Direct);
+  EXPECT_EQ(choice(178000, 0.1, 100), SolverMethod::ConjugateGradient);
+  EXPECT_EQ(choice(178000, 1.0, 100), SolverMethod::Direct);
   EXPECT_EQ(choice(1000000, 0.1, 200), SolverMethod::ConjugateGradient);
 }
 
@@ -459,7 +461,7 @@ TEST(Automatic, KnowsThatAnisotropyCostsCycles)
 {
   SolverTask task;
   task.NumberOfVertices = 262000;
-  task.DiffusionNumber = 10.0;
+  task.DiffusionNumber = 100.0;
   EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
   task.Anisotropy = 100.0;
   EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::ConjugateGradient);

@@ -138,7 +138,7 @@ TEST(BadInput, ArraysThatCannotBeUsedAreErrors)
   ExpectError({ "InputArray", "not set" },
     [](vtkFVMHeatFilter*, vtkPolyData* input)
     { input->GetPointData()->SetActiveScalars(nullptr); });
-  ExpectError({ "InputArray", "\"f\"", "association", "points" },
+  ExpectError({ "InputArray", "\"f\"", "cell arrays", "association 0" },
     [](vtkFVMHeatFilter* filter, vtkPolyData*) { SetInputArray(filter, 0, "f", true); });
   ExpectError({ "InputArray", "\"names\"", "vtkStringArray", "numeric" },
     [](vtkFVMHeatFilter* filter, vtkPolyData* input)
@@ -163,11 +163,24 @@ TEST(BadInput, ArraysThatCannotBeUsedAreErrors)
       AddPointArray(input, "mask", 2, Rough);
       SetInputArray(filter, 1, "mask");
     });
+  ExpectError({ "MaskArray", "\"mask\"", "36", "50" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      input->GetCellData()->AddArray(MakeArray(VTK_INT, "mask", 36, 1, Rough));
+      SetInputArray(filter, 1, "mask", true);
+    });
   ExpectError({ "MaskArray", "\"mask\"", "association" },
     [](vtkFVMHeatFilter* filter, vtkPolyData* input)
     {
-      input->GetCellData()->AddArray(MakeArray(VTK_INT, "mask", 50, 1, Rough));
-      SetInputArray(filter, 1, "mask", true);
+      AddPointArray(input, "mask", 1, Rough);
+      filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_NONE, "mask");
+    });
+  ExpectError({ "InputArray", "\"ofCells\"", "cell 7", "finite" },
+    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
+    {
+      input->GetCellData()->AddArray(MakeArray(
+        VTK_DOUBLE, "ofCells", 50, 1, [](vtkIdType i, int) { return i == 7 ? Infinity : 1.0; }));
+      SetInputArray(filter, 0, "ofCells", true);
     });
   ExpectError({ "FidelityArray", "\"w\"", "2 components", "1" },
     [](vtkFVMHeatFilter* filter, vtkPolyData* input)

@@ -438,8 +438,8 @@ TEST(InputArrays, AMissingArrayIsReportedOnce)
   EXPECT_EQ(messages.Errors[0].find("not set"), std::string::npos) << messages.Errors[0];
 }
 
-/// A first Apply on a mesh without point arrays: the message names the remedy if there is one.
-TEST(InputArrays, OfCellsAloneAreAnErrorThatNamesTheRemedy)
+/// A first Apply on a mesh without point arrays.
+TEST(InputArrays, OfCellsAreTheDefaultWithoutPointScalarsAndNamedIfTheAssociationIsWrong)
 {
   auto plane = Grid(10, 10);
   const auto errorOf = [](vtkFVMHeatFilter* filter)
@@ -450,15 +450,19 @@ TEST(InputArrays, OfCellsAloneAreAnErrorThatNamesTheRemedy)
     return messages.Errors.empty() ? std::string() : messages.Errors[0];
   };
   auto filter = MakeFilter(plane);
-  EXPECT_EQ(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
+  EXPECT_NE(errorOf(filter).find("no active point or cell Scalars"), std::string::npos);
   const auto array = MakeArray(VTK_DOUBLE, "ofCells", plane->GetNumberOfCells(), 1, Rough);
   plane->GetCellData()->SetScalars(array);
   filter->Modified();
-  EXPECT_NE(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
+  filter->Update();
+  EXPECT_NE(filter->GetOutput()->GetCellData()->GetArray("ofCellsDiffused"), nullptr);
   SetInputArray(filter, 0, "ofCells");
-  EXPECT_NE(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
-  SetInputArray(filter, 0, "ofCells", true);
-  EXPECT_NE(errorOf(filter).find("Cell Data to Point Data"), std::string::npos);
+  EXPECT_NE(
+    errorOf(filter).find("association 1 for the cell array of this name"), std::string::npos);
+  AddPointArray(plane, "ofPoints", 1, Rough);
+  SetInputArray(filter, 0, "ofPoints", true);
+  EXPECT_NE(
+    errorOf(filter).find("association 0 for the point array of this name"), std::string::npos);
 }
 
 /// The other filters need no array at all.

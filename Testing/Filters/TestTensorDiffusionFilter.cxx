@@ -208,7 +208,7 @@ TEST(TensorDiffusionFilter, AxesRunAlongTheStripesAndNeedNoNewSteps)
       found += length > 0.0;
       sum += std::abs(axis[2]); // stripes are circles of equal z
     }
-    EXPECT_GT(found, 0.95 * axes->GetNumberOfTuples()); // flat parts have no axis
+    EXPECT_GT(found, 0.9 * axes->GetNumberOfTuples()); // flat parts have no axis
     EXPECT_LT(sum / found, 0.25) << model;
   }
 }

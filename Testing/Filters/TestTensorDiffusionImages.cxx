@@ -17,7 +17,7 @@ namespace
 double Stripes(const double* p)
 {
   const bool gap = std::hypot(p[0] - 0.5, p[2]) < 0.1 || std::hypot(p[0] + 0.1, p[2] - 0.5) < 0.1;
-  return gap ? 0.0 : std::sin(38.0 * (0.8 * p[0] + 0.6 * p[2]));
+  return gap ? 0.0 : std::sin(20.0 * (0.8 * p[0] + 0.6 * p[2]));
 }
 
 vtkSmartPointer<vtkPolyData> MakeSurface(double (*signal)(const double*), double amount)

@@ -159,7 +159,7 @@ CASES = [
     (lambda: sd.smooth_to_fwhm(BODY, Z, 1.0, tolerance=0), r"tolerance is 0; allowed: 0.0001 to 0.1"),
     (lambda: sd.smooth_to_fwhm(sd.sphere(3), sd.sphere(3).points[:, 2], 0.2),
      r"fwhm is 0.2, but the noise has a smoothness of .* already; allowed: larger widths"),
-    (lambda: sd.set_number_of_threads(0), r"number is 0; allowed: 1 to 1024 threads"),
+    (lambda: sd.set_number_of_threads(-1), r"number is -1; allowed: 0 to 1024 threads"),
 ]
 
 

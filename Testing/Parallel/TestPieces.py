@@ -12,8 +12,8 @@ import pieces
 import surfacediffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
-    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDirectionFieldFilter,
-    SurfaceSegmentationFilter, TensorDiffusionFilter,
+    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDenoisingFilter,
+    SurfaceDirectionFieldFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
     TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -74,6 +74,7 @@ CASES = (
     ("turing, along, colours", TuringTextureFilter,
      dict(DirectionArray=["CELLS", "around"], DiffusionRateAcross1=5.0, ColorOutput=1, **LABYRINTH),
      "TextureColor"),
+    ("denoising", SurfaceDenoisingFilter, {}, "Displacement"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
@@ -190,7 +191,7 @@ class TestPieces(unittest.TestCase):
             worst = largest_of_all(worst)
             LARGEST[partition, name] = worst
             self.assertLessEqual(worst, TOLERANCE.get(name, 1e-9), "%s, %s" % (partition, name))
-            if make is not SurfaceDirectionFieldFilter:
+            if make not in (SurfaceDenoisingFilter, SurfaceDirectionFieldFilter):
                 rows = algorithm.GetOutputDataObject(1).GetNumberOfRows()
                 self.assertEqual(rows > 0, RANK == 0, "history of " + name)
 

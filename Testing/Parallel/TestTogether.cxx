@@ -7,10 +7,13 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <gtest/gtest.h>
 
@@ -559,4 +562,225 @@ TEST(PiecesTogether, PiecesWithoutTrianglesGiveFiniteResults)
   heat->Update();
   ASSERT_NE(Result(heat), nullptr);
   EXPECT_TRUE(AllFinite(Result(heat)));
+}
+
+namespace
+{
+
+/// A piece with cell data that do not depend on the decomposition; ghosts: with a column of cells of
+/// the piece before it, marked as copies.
+vtkSmartPointer<vtkPolyData> WithCells(int begin, int end, bool quads, bool ghosts)
+{
+  const int first = begin - (ghosts && begin > 0 ? 1 : 0);
+  auto piece = WithData(Strip(first, end, N));
+  if (quads)
+  {
+    vtkNew<vtkCellArray> cells;
+    const vtkIdType nx = end - first + 1;
+    for (vtkIdType j = 0; j < N; ++j)
+    {
+      for (vtkIdType i = 0; i + 1 < nx; ++i)
+      {
+        const vtkIdType a = i + nx * j;
+        cells->InsertNextCell({ a, a + 1, a + nx + 1, a + nx });
+      }
+    }
+    piece->SetPolys(cells);
+  }
+  for (vtkIdType i = 0; i < piece->GetNumberOfPoints(); ++i) // no regular grid
+  {
+    double x[3];
+    piece->GetPoint(i, x);
+    const double id = piece->GetPointData()->GetGlobalIds()->GetComponent(i, 0);
+    piece->GetPoints()->SetPoint(i, x[0] + 0.2 / N * Rough(static_cast<vtkIdType>(id), 0),
+      x[1] + 0.2 / N * Rough(static_cast<vtkIdType>(id), 1), 0.1 * std::sin(5.0 * x[0]));
+  }
+  vtkNew<vtkIdList> corners;
+  const auto add = [&](const char* name, const auto& value)
+  {
+    piece->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, name, piece->GetNumberOfCells(), 1,
+      [&](vtkIdType c, int)
+      {
+        piece->GetCellPoints(c, corners);
+        double x[3];
+        piece->GetPoint(corners->GetId(0), x);
+        const auto id = static_cast<vtkIdType>(
+          piece->GetPointData()->GetGlobalIds()->GetComponent(corners->GetId(0), 0));
+        return value(x, id);
+      }));
+  };
+  add("c", [](const double* x, vtkIdType id) { return Data(x) + 0.3 * Rough(id, 0); });
+  add("hole of cells",
+    [](const double* x, vtkIdType) { return std::hypot(x[0] - 0.5, x[1] - 0.5) < 0.2; });
+  add("ends of cells", [](const double* x, vtkIdType) { return x[1] < 1.5 / N; });
+  add("weights of cells", [](const double*, vtkIdType id) { return 1.5 + Rough(id, 1); });
+  if (ghosts)
+  {
+    piece->GetCellData()->AddArray(MakeArray(VTK_UNSIGNED_CHAR,
+      vtkDataSetAttributes::GhostArrayName(), piece->GetNumberOfCells(), 1,
+      [&](vtkIdType c, int)
+      {
+        const vtkIdType perRow = (quads ? 1 : 2) * (end - first);
+        const bool isCopy = first < begin && c % perRow < (quads ? 1 : 2);
+        return isCopy ? static_cast<int>(vtkDataSetAttributes::DUPLICATECELL) : 0;
+      }));
+  }
+  return piece;
+}
+
+/// The largest difference of a cell array from that of a single process, at cells of equal points,
+/// over all processes. Copies are left out.
+double LargestDifferenceOfCells(vtkPolyData* mine, vtkPolyData* whole, const char* name)
+{
+  const auto keyOf = [](vtkPolyData* surface, vtkIdType cell)
+  {
+    vtkNew<vtkIdList> corners;
+    surface->GetCellPoints(cell, corners);
+    std::vector<double> key;
+    for (const vtkIdType i : *corners)
+    {
+      key.push_back(surface->GetPointData()->GetGlobalIds()->GetComponent(i, 0));
+    }
+    std::sort(key.begin(), key.end());
+    return key;
+  };
+  vtkDataArray* const here = mine->GetCellData()->GetArray(name);
+  vtkDataArray* const there = whole->GetCellData()->GetArray(name);
+  vtkUnsignedCharArray* const ghosts = mine->GetCellGhostArray();
+  std::map<std::vector<double>, vtkIdType> cellOf;
+  for (vtkIdType c = 0; c < whole->GetNumberOfCells(); ++c)
+  {
+    cellOf[keyOf(whole, c)] = c;
+  }
+  double largest = here && there ? 0.0 : VTK_DOUBLE_MAX;
+  for (vtkIdType c = 0; here && there && c < mine->GetNumberOfCells(); ++c)
+  {
+    if (!ghosts || ghosts->GetValue(c) == 0)
+    {
+      const double value = there->GetComponent(cellOf.at(keyOf(mine, c)), 0);
+      largest = std::max(largest, std::abs(here->GetComponent(c, 0) - value));
+    }
+  }
+  return OfAll(largest, vtkCommunicator::MAX_OP);
+}
+
+} // namespace
+
+TEST(PiecesTogether, TakeCellData)
+{
+  struct Variant
+  {
+    const char* Name;
+    void (*Set)(vtkFVMHeatFilter*);
+  };
+  const Variant variants[] = { { "smoothing", [](vtkFVMHeatFilter*) {} },
+    { "mean", [](vtkFVMHeatFilter* heat) { heat->KeepCellDetailOff(); } },
+    { "inpainting",
+      [](vtkFVMHeatFilter* heat)
+      {
+        SetInputArray(heat, 1, "hole of cells", true);
+        heat->SetFidelityWeight(0.1);
+      } },
+    { "exclusion",
+      [](vtkFVMHeatFilter* heat)
+      {
+        SetInputArray(heat, 1, "hole of cells", true);
+        heat->SetMaskModeToExclude();
+      } },
+    { "fixed", [](vtkFVMHeatFilter* heat) { SetInputArray(heat, 3, "ends of cells", true); } },
+    { "marks of points",
+      [](vtkFVMHeatFilter* heat)
+      {
+        SetInputArray(heat, 1, "hole");
+        SetInputArray(heat, 3, "edge");
+      } },
+    { "fidelity",
+      [](vtkFVMHeatFilter* heat)
+      {
+        heat->SetFidelityWeight(0.2);
+        SetInputArray(heat, 5, "weights of cells", true);
+      } } };
+  for (const Variant& variant : variants)
+  {
+    for (const bool quads : { false, true })
+    {
+      for (const bool ghosts : { false, true })
+      {
+        const auto make = [&](vtkPolyData* surface)
+        {
+          auto heat = Make<vtkFVMHeatFilter>("c", 1);
+          SetInputArray(heat, 0, "c", true);
+          heat->SetTolerance(1e-14);
+          heat->SetTimeIntegratorToFirstOrder();
+          heat->SetTimeStep(0.2);
+          variant.Set(heat);
+          heat->SetInputData(surface);
+          return heat;
+        };
+        const auto mine =
+          WithCells(N * Rank() / Count(), N * (Rank() + 1) / Count(), quads, ghosts);
+        const auto together = make(mine);
+        bool workedHere = false;
+        Listen(together,
+          [&](double amount) { workedHere = workedHere || (amount > 0.0 && amount < 1.0); });
+        together->Update();
+        EXPECT_TRUE(workedHere);
+        const auto alone = make(WithCells(0, N, quads, false));
+        alone->SetController(nullptr);
+        alone->Update();
+        EXPECT_LT(
+          LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), "cDiffused"), 1e-12)
+          << variant.Name << quads << ghosts;
+      }
+    }
+  }
+}
+
+/// Points of masked, fixed and weighted cells.
+TEST(PiecesTogether, TakeMarksOfCellsForPointData)
+{
+  for (const int index : { 1, 3, 5 })
+  {
+    const auto make = [&](vtkPolyData* surface)
+    {
+      auto heat = Make<vtkFVMHeatFilter>("rough", 1);
+      heat->SetFidelityWeight(0.2);
+      heat->SetTolerance(1e-14);
+      heat->SetTimeIntegratorToFirstOrder();
+      heat->SetTimeStep(0.2);
+      SetInputArray(heat, index,
+        index == 1 ? "hole of cells" : (index == 3 ? "ends of cells" : "weights of cells"), true);
+      heat->SetInputData(surface);
+      return heat;
+    };
+    const auto together =
+      make(WithCells(N * Rank() / Count(), N * (Rank() + 1) / Count(), false, false));
+    together->Update();
+    const auto alone = make(WithCells(0, N, false, false));
+    alone->SetController(nullptr);
+    alone->Update();
+    EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "roughDiffused"), 1e-12)
+      << index;
+  }
+}
+
+/// Surfaces that are gathered in process 0.
+TEST(PiecesTogether, HaveLabelsOfTheirCells)
+{
+  const auto make = [&](vtkPolyData* surface)
+  {
+    auto segmentation = vtkSmartPointer<vtkSurfaceSegmentationFilter>::New();
+    SetInputArray(segmentation, 0, "c", true);
+    segmentation->SetInputData(surface);
+    return segmentation;
+  };
+  const auto together =
+    make(WithCells(N * Rank() / Count(), N * (Rank() + 1) / Count(), true, true));
+  together->Update();
+  const auto alone = make(WithCells(0, N, true, false));
+  alone->SetController(nullptr);
+  alone->Update();
+  EXPECT_EQ(LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), "RegionId"), 0.0);
+  EXPECT_LT(
+    LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), "RegionProbability"), 1e-6);
 }

@@ -10,7 +10,7 @@ import unittest
 from paraview import servermanager
 from paraview.simple import (
     FVMHeatFilter, GroupDatasets, HarmonicMapFilter, IntrinsicTVFilter, MumfordShahFilter,
-    SurfaceDirectionFieldFilter, TensorDiffusionFilter, TuringTextureFilter,
+    SurfaceDenoisingFilter, SurfaceDirectionFieldFilter, TensorDiffusionFilter, TuringTextureFilter,
 )
 from plugin_testing import read_sphere, values
 
@@ -19,7 +19,7 @@ FILTERS = (
     (FVMHeatFilter, "noisyDiffused"), (IntrinsicTVFilter, "noisyTV"),
     (HarmonicMapFilter, "NormalsHarmonic"), (MumfordShahFilter, "noisyMumfordShah"),
     (TensorDiffusionFilter, "noisyBeltrami"), (TuringTextureFilter, "u1"),
-    (SurfaceDirectionFieldFilter, "Direction"),
+    (SurfaceDirectionFieldFilter, "Direction"), (SurfaceDenoisingFilter, "Displacement"),
 )
 KINDS = ("vtkMultiBlockDataSet", "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection")
 

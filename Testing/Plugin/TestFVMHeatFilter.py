@@ -51,15 +51,45 @@ class TestFVMHeatFilter(unittest.TestCase):
         heat = FVMHeatFilter(self.sphere)
         scalars = {"POINTS " + name for name in ("clean", "noisy", "damaged", "hole", "poles")}
         vectors = {"POINTS Normals", "POINTS east"}
-        self.assertEqual(menu(heat, "InputArray"), scalars | vectors | {"POINTS pair"})
-        self.assertEqual(menu(heat, "MaskArray"), scalars)
-        self.assertEqual(menu(heat, "FixedArray"), scalars)
+        self.assertEqual(
+            menu(heat, "InputArray"), scalars | vectors | {"POINTS pair", "CELLS odd", "CELLS up"})
+        self.assertEqual(menu(heat, "MaskArray"), scalars | {"CELLS odd"})
+        self.assertEqual(menu(heat, "FixedArray"), scalars | {"CELLS odd"})
         self.assertEqual(menu(heat, "DirectionArray"), vectors | {"CELLS up"})
 
     def test_optional_arrays_are_not_set_by_default(self):
         heat = FVMHeatFilter(self.sphere)
         for array in (heat.MaskArray, heat.DirectionArray, heat.FixedArray):
             self.assertEqual(array[1], "")
+
+    def test_cell_data_have_a_result_on_cells(self):
+        heat = FVMHeatFilter(self.sphere, InputArray=["CELLS", "odd"])
+        heat.UpdatePipeline()
+        cells = heat.CellData
+        self.assertIsNone(heat.PointData.GetArray("oddDiffused"))
+        low, high = cells.GetArray("oddDiffused").GetRange()
+        self.assertTrue(-0.1 < low < 0.3 and 0.7 < high < 1.1, (low, high))  # the detail stays
+        heat.KeepCellDetail = 0
+        heat.UpdatePipeline()
+        low, high = heat.CellData.GetArray("oddDiffused").GetRange()
+        self.assertTrue(0.4 < low < high < 0.6, (low, high))
+        heat.ResultOnCells = 0
+        heat.UpdatePipeline()
+        self.assertIsNotNone(heat.PointData.GetArray("oddDiffused"))
+        self.assertIsNone(heat.CellData.GetArray("oddDiffused"))
+
+    def test_the_panel_offers_the_properties_of_cells_for_cell_data_only(self):
+        heat = FVMHeatFilter(self.sphere, InputArray=["POINTS", "noisy"])
+        for key in ("ResultOnCells", "KeepCellDetail"):
+            hints = heat.SMProxy.GetProperty(key).GetHints()
+            decorator = hints.FindNestedElementByName("PropertyWidgetDecorator")
+            self.assertEqual(decorator.GetAttribute("property"), "InputArray")
+            index = int(decorator.GetAttribute("index"))
+            shown = decorator.GetAttribute("value")
+            for association, expected in (("POINTS", False), ("CELLS", True)):
+                heat.InputArray = [association, "noisy" if association == "POINTS" else "odd"]
+                element = heat.SMProxy.GetProperty("InputArray").GetElement(index)
+                self.assertEqual(element == shown, expected, (key, association))
 
     def test_masked_points_are_filled_in_from_their_boundary(self):
         heat = FVMHeatFilter(
@@ -173,7 +203,7 @@ class TestFVMHeatFilter(unittest.TestCase):
 
         check("InputArray", ["POINTS", "nothing"], ["POINTS", "noisy"])
         check("InputArray", ["POINTS", "names"], ["POINTS", "noisy"])
-        check("InputArray", ["CELLS", "up"], ["POINTS", "noisy"])
+        check("InputArray", ["CELLS", "nothing"], ["POINTS", "noisy"])
         check("MaskArray", ["POINTS", "pair"], ["POINTS", ""])
         check("FixedArray", ["POINTS", "east"], ["POINTS", ""])
         check("DirectionArray", ["CELLS", "nothing"], ["CELLS", "up"])

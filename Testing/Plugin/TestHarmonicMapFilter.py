@@ -32,7 +32,7 @@ class TestHarmonicMapFilter(unittest.TestCase):
     def test_the_menu_lists_only_vectors(self):
         harmonic = HarmonicMapFilter(self.sphere)
         self.assertEqual(
-            menu(harmonic, "InputArray"), {"POINTS Normals", "POINTS east", "POINTS pair"})
+            menu(harmonic, "InputArray"), {"POINTS Normals", "POINTS east", "POINTS pair", "CELLS up"})
 
     def test_shading_shows_the_result_at_once(self):
         harmonic = HarmonicMapFilter(self.sphere)

@@ -95,7 +95,8 @@ VALUES = {
     "AcrossDiffusivity": (1.0, 0.2), "NoiseLevel": (0.0, 0.1), "FeatureSize": (0.0, 0.5),
     "DiffusionRateAcross1": (-1.0, 3.0), "DiffusionRateAcross2": (-1.0, 3.0),
     "TimeStep": (0.02, 0.05), "Exponent": (1.0, 2.0), "OutputInterval": (1, 2),
-    "MaskArray": (["POINTS", "hole"],), "FixedArray": (["POINTS", "ends"],),
+    "MaskArray": (["POINTS", "hole"], ["CELLS", "spots"]),
+    "FixedArray": (["POINTS", "ends"], ["CELLS", "spots"]),
     "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (0.2, 0.5),
     "DiffusionRateArray": (["CELLS", "rates"],), "FidelityArray": (["POINTS", "weight"],),
     "BlurFWHM": (0.0, 0.3),
@@ -140,6 +141,8 @@ def sphere_with_arrays():
     add(data.GetPointData(), "ends", points[:, 2] < -0.4)
     add(data.GetPointData(), "weight", 1.0 + points[:, 1] ** 2)
     add(data.GetPointData(), "east", np.tile([1.0, 0.0, 0.0], (len(points), 1)))
+    add(data.GetCellData(), "g", np.cos(np.arange(cells)))
+    add(data.GetCellData(), "spots", np.arange(cells) % 7 == 0)
     add(data.GetCellData(), "up", np.tile([0.0, 0.0, 1.0], (cells, 1)))
     add(data.GetCellData(), "rates", np.tile([21.0, 21.0, 2.6, 2.6], (cells, 1)))
     source = servermanager.sources.TrivialProducer()
@@ -249,6 +252,7 @@ class TestProxies(unittest.TestCase):
              ["Mode", "EdgeFunction", "FidelityNorm", "AutomaticFidelity", "FidelityWeight"]),
             ("MumfordShahFilter",
              ["EdgeThreshold", "SmoothingLength", "EdgeWidth"]),
+            ("SurfaceDenoisingFilter", ["SurfaceType", "NoiseLevel"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
             ("SurfaceSegmentationFilter", ["NumberOfRegions", "AutomaticFidelity", "Mean", "AutomaticMeans"]),
@@ -314,7 +318,7 @@ class TestProxies(unittest.TestCase):
                 filter = getattr(servermanager.filters, name)(Input=sphere_with_arrays())
                 clicked = []
                 if name in ("FVMHeatFilter", "IntrinsicTVFilter", "SurfaceSegmentationFilter"):
-                    filter.InputArray = ["POINTS", "f"]
+                    filter.InputArray = dice.choice((["POINTS", "f"], ["CELLS", "g"]))
                 if "NumberOfTimeSteps" in filter.ListProperties():
                     filter.NumberOfTimeSteps = 2
                 for _ in range(8):

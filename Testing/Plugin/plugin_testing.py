@@ -65,6 +65,7 @@ def write_sphere(path, centre=(0.0, 0.0, 0.0)):
         names.InsertNextValue("point")
     data.AddArray(names)
     add_array(sphere.GetCellData(), "up", [(0.0, 0.0, 1.0)] * sphere.GetNumberOfCells())
+    add_array(sphere.GetCellData(), "odd", [c % 2 for c in range(sphere.GetNumberOfCells())])
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(path)
     writer.SetInputData(sphere)

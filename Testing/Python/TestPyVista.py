@@ -124,8 +124,15 @@ class TestPyVista(unittest.TestCase):
         mesh = noisy_sphere()
         with self.assertRaisesRegex(ValueError, "^TimeStep is -1; allowed"):
             heat(mesh, "f", TimeStep=-1)
-        with self.assertRaisesRegex(ValueError, "Cell Data to Point Data"):
-            heat(mesh.point_data_to_cell_data(), "f")
+
+    def test_cell_arrays_are_data_too(self):
+        mesh = noisy_sphere().point_data_to_cell_data()
+        smooth = heat(mesh, "f")
+        self.assertEqual(smooth.cell_data["fDiffused"].shape, mesh.cell_data["f"].shape)
+        areas = mesh.compute_cell_sizes().cell_data["Area"]
+        np.testing.assert_allclose(
+            areas @ smooth.cell_data["fDiffused"], areas @ mesh.cell_data["f"], rtol=1e-12)
+        self.assertIn("fDiffused", heat(mesh, "f", ResultOnCells=False).point_data)
 
     def test_times_give_a_mesh_each(self):
         mesh = noisy_sphere()

@@ -9,6 +9,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -47,6 +48,13 @@ FilterKind MakeKind(
     result };
 }
 
+/// Adds the rough array "c" of cells, which some of AllFilters() take.
+inline void AddRoughCells(vtkPolyData* surface)
+{
+  surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 1,
+    [](vtkIdType i, int k) { return 2.0 + Rough(i, k); }));
+}
+
 /// Every filter, also with the settings that select other algorithms.
 inline std::vector<FilterKind> AllFilters()
 {
@@ -69,6 +77,7 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFidelityWeight(0.1);
       }),
     MakeKind<Heat>("HeatAutomatic", "fDiffused", 3, [](Heat* f) { f->AutomaticFidelityOn(); }),
+    MakeKind<Heat>("HeatOfCells", "cDiffused", 3, [](Heat* f) { SetInputArray(f, 0, "c", true); }),
     MakeKind<TV>("TV", "fTV", 3),
     MakeKind<TV>("TVImplicit", "fTV", 2, [](TV* f) { f->SetTimeIntegratorToImplicit(); }),
     MakeKind<TV>("TVSteady", "fTV", 1, [](TV* f) { f->SetModeToSteadyState(); }),
@@ -97,17 +106,21 @@ inline std::vector<FilterKind> AllFilters()
       [](Tensor* f)
       {
         f->SetMetricToFixed();
-        f->IntrinsicDelaunayOn();
         f->SetTimeStep(1e4);
       }),
     MakeKind<Tensor>("CoherenceEnhancing", "fCoherent", 2,
       [](Tensor* f)
       {
         f->SetModelToCoherenceEnhancing();
+        f->SetSolverToDirect(); // on needles, errors of other solvers raise the variance
         f->DiffusionAxesOn();
       }),
-    MakeKind<Tensor>(
-      "EdgeEnhancing", "fEdgeEnhanced", 3, [](Tensor* f) { f->SetModelToEdgeEnhancing(); }),
+    MakeKind<Tensor>("EdgeEnhancing", "fEdgeEnhanced", 3,
+      [](Tensor* f)
+      {
+        f->SetModelToEdgeEnhancing();
+        f->SetSolverToDirect();
+      }),
     MakeKind<Turing>("Turing", "u1", 4),
     MakeKind<Turing>("TuringFirstOrder", "u1", 4,
       [](Turing* f)
@@ -131,6 +144,8 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFidelityWeight(50.0);
         f->SetStopTolerance(0.1);
       }),
+    { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
+      "Displacement" },
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

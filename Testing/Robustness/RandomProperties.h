@@ -9,6 +9,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -127,6 +128,7 @@ List OfSurface()
     RANDOM_PROPERTY(F, MergeCoincidentPoints, dice.Flip()),
     RANDOM_PROPERTY(F, MergeTolerance, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, SeamTolerance, dice.Flip() ? -1.0 : ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, NumberOfThreads, dice.Below(3)),
     RANDOM_PROPERTY(F, Controller, Controller(dice)),
     RANDOM_PROPERTY(F, ResultArrayName, Name(dice)),
   };
@@ -172,6 +174,8 @@ List OfDataDiffusion(int timeIntegrators)
          RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)),
          RANDOM_PROPERTY(F, InitialFill, Choice(dice, 4)),
          RANDOM_PROPERTY(F, HoldKnownValues, dice.Flip(3)),
+         RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
+         RANDOM_PROPERTY(F, KeepCellDetail, dice.Flip()),
          RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
          RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
        })
@@ -202,6 +206,7 @@ inline List OfSegmentation()
     RANDOM_PROPERTY(F, AutomaticFidelity, dice.Flip(2)),
     RANDOM_PROPERTY(F, FidelityWeight, Positive(dice)),
     RANDOM_PROPERTY(F, AutomaticMeans, !dice.Flip(12)),
+    RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-4, 0.5)),
     { "Mean",
       [](vtkPolyDataAlgorithm* filter, Dice& dice) {
@@ -353,6 +358,15 @@ inline List OfDirectionField()
   };
 }
 
+inline List OfDenoising()
+{
+  using F = vtkSurfaceDenoisingFilter;
+  return {
+    RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, SurfaceType, Choice(dice, 3)),
+  };
+}
+
 #undef RANDOM_PROPERTY
 
 template <typename F>
@@ -388,6 +402,7 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
     MakeClass<Tensor>({ OfSurface<Tensor>(), OfDataDiffusion<Tensor>(0b001), OfTensorDiffusion() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
+    MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),
       OfDiffusion<vtkSurfaceSegmentationFilter>(0b001), OfSegmentation() }),

@@ -53,6 +53,7 @@ protected:
   EveryFilter()
   {
     AddRough(this->Surface);
+    AddRoughCells(this->Surface);
     this->Reference = this->GetParam().Make();
     this->Reference->SetInputData(this->Surface);
     this->Reference->Update();

@@ -75,6 +75,19 @@ void AddRandomArrays(Dice& dice, vtkPolyData* surface)
   add("fixed", 1, [&](vtkIdType, int) { return dice.Flip(9); });
   add("e1", 3, [&](vtkIdType i, int k) { return dice.Flip(20) ? 0.0 : Rough(i, k); });
   add("rates", 4, [&](vtkIdType i, int k) { return 3.0 + Rough(i, k); });
+  const auto addToCells = [&](const char* name, int components, const auto& value)
+  {
+    if (!dice.Flip(8))
+    {
+      surface->GetCellData()->AddArray(
+        MakeArray(types[dice.Below(5)], name, surface->GetNumberOfCells(), components, value));
+    }
+  };
+  addToCells("f", 1 + dice.Below(4),
+    [&](vtkIdType i, int k)
+    { return holes && dice.Flip(5) ? vtkMath::Nan() : std::abs(size * Rough(i, k)); });
+  addToCells("mask", 1, [&](vtkIdType, int) { return dice.Flip(6); });
+  addToCells("fixed", 1, [&](vtkIdType, int) { return dice.Flip(9); });
   surface->GetPointData()->SetActiveScalars("f");
 }
 
@@ -83,7 +96,7 @@ const char* const ArrayNames[] = { "f", "mask", "e1", "fixed", "rates" };
 void SetRandomArray(Dice& dice, vtkPolyDataAlgorithm* filter)
 {
   const int index = dice.Below(5);
-  SetInputArray(filter, index, dice.Flip(3) ? "" : ArrayNames[index]);
+  SetInputArray(filter, index, dice.Flip(3) ? "" : ArrayNames[index], dice.Flip(3));
 }
 
 bool IsFinite(vtkDataArray* array, vtkIdType point)
@@ -99,17 +112,22 @@ bool IsFinite(vtkDataArray* array, vtkIdType point)
 /// Whether the added arrays are finite; unused points keep their value, even NaN.
 bool AddedIsFinite(vtkPolyData* output, vtkPolyData* input)
 {
-  vtkDataArray* given = input->GetPointData()->GetArray("f");
   bool finite = true;
-  for (int a = 0; a < output->GetPointData()->GetNumberOfArrays(); ++a)
+  const auto check = [&](vtkDataSetAttributes* added, vtkDataSetAttributes* before)
   {
-    vtkDataArray* array = output->GetPointData()->GetArray(a);
-    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+    vtkDataArray* const given = before->GetArray("f");
+    for (int a = 0; a < added->GetNumberOfArrays(); ++a)
     {
-      const bool isNew = !input->GetPointData()->HasArray(array->GetName());
-      finite = finite && (!isNew || (given && !IsFinite(given, i)) || IsFinite(array, i));
+      vtkDataArray* const array = added->GetArray(a);
+      for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+      {
+        const bool isNew = !before->HasArray(array->GetName());
+        finite = finite && (!isNew || (given && !IsFinite(given, i)) || IsFinite(array, i));
+      }
     }
-  }
+  };
+  check(output->GetPointData(), input->GetPointData());
+  check(output->GetCellData(), input->GetCellData());
   return finite;
 }
 

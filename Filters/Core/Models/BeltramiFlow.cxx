@@ -8,6 +8,15 @@
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+/// The eigenvalues of D differ by b^2 m1, that is by any factor on small triangles. A positive
+/// diagonal beside m M does not change that a step lowers E.
+constexpr double SmallDamping = 1e-14;
+
+} // namespace
+
 BeltramiFlow::BeltramiFlow(std::shared_ptr<const Assembler> assembler, TangentVectors frames,
   PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
   const ParallelFor& parallel)
@@ -16,6 +25,7 @@ BeltramiFlow::BeltramiFlow(std::shared_ptr<const Assembler> assembler, TangentVe
   , Options(settings)
   , Factors(std::move(frames), settings.AlongDiffusivity, settings.AcrossDiffusivity)
 {
+  this->Damping = SmallDamping;
   if (settings.MassMetric == Metric::Induced)
   {
     this->AreaRatios.resize(this->Mesh().NumberOfTriangles());

@@ -4,42 +4,98 @@
 
 #include "Core/Surface/TangentVectors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+/// Squares of gradients up to this length, times the square of another number of this size, are
+/// finite.
+constexpr double LongestGradient = 1e75;
+
+/// The gradients of the columns of u on a triangle.
+class Gradients
+{
+public:
+  Gradients(const TriangleMesh& mesh, const Values& u, Index t)
+    : Shape(mesh.Shapes()[t])
+    , Count(static_cast<int>(u.cols()))
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Corners[a] = u.data() + mesh.TriangleVertices()(t, a) * u.cols();
+    }
+  }
+
+  int Number() const { return this->Count; }
+  /// To a length of about LongestGradient. Before they are divided by lengths, which may be as small
+  /// as any number, values are made small.
+  void Shorten()
+  {
+    this->ValueScale = 1e-200;
+    double longest = 0.0;
+    for (int k = 0; k < this->Count; ++k)
+    {
+      longest = std::max(longest, (*this)[k].cwiseAbs().maxCoeff());
+    }
+    this->Scale = LongestGradient / longest;
+  }
+
+  Eigen::Vector2d operator[](int k) const
+  {
+    return this->Scale *
+      Gradient(this->Shape, this->ValueScale * this->Corners[0][k],
+        this->ValueScale * this->Corners[1][k], this->ValueScale * this->Corners[2][k]);
+  }
+
+private:
+  const TriangleMesh::Shape& Shape;
+  const double* Corners[3];
+  int Count;
+  double ValueScale = 1.0, Scale = 1.0;
+};
+
+PlaneTensor SumSquares(const Gradients& gradients)
+{
+  PlaneTensor sum{ 0.0, 0.0, 0.0 };
+  for (int k = 0; k < gradients.Number(); ++k)
+  {
+    const Eigen::Vector2d g = gradients[k];
+    sum.XX += g[0] * g[0];
+    sum.XY += g[0] * g[1];
+    sum.YY += g[1] * g[1];
+  }
+  return sum;
+}
+
+} // namespace
+
 GradientTensor SumGradients(const TriangleMesh& mesh, const Values& u, Index t)
 {
-  const TriangleMesh::Shape& s = mesh.Shapes()[t];
-  const auto columns = static_cast<int>(u.cols());
-  const Triangles& corners = mesh.TriangleVertices();
-  const double* const u0 = u.data() + corners(t, 0) * u.cols();
-  const double* const u1 = u.data() + corners(t, 1) * u.cols();
-  const double* const u2 = u.data() + corners(t, 2) * u.cols();
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (int k = 0; k < columns; ++k)
+  Gradients gradients(mesh, u, t);
+  GradientTensor sum{ SumSquares(gradients) };
+  if (!(sum.T.Trace() < LongestGradient * LongestGradient))
   {
-    const Eigen::Vector2d g = Gradient(s, u0[k], u1[k], u2[k]);
-    xx += g[0] * g[0];
-    xy += g[0] * g[1];
-    yy += g[1] * g[1];
+    gradients.Shorten();
+    sum.T = SumSquares(gradients);
   }
-  GradientTensor sum;
-  sum.T = { xx, xy, yy };
-  const double larger = xx > yy ? xx : yy;
-  if (columns == 1 || !(larger > 0.0))
+  const double larger = std::max(sum.T.XX, sum.T.YY);
+  if (gradients.Number() == 1 || !(larger > 0.0))
   {
     return sum;
   }
   // The row of the smaller components minus its part along that of the larger ones (Gram-Schmidt).
   double rest = 0.0;
-  const double share = xy / larger;
-  for (int k = 0; k < columns; ++k)
+  const double share = sum.T.XY / larger;
+  for (int k = 0; k < gradients.Number(); ++k)
   {
-    const Eigen::Vector2d g = Gradient(s, u0[k], u1[k], u2[k]);
-    const double r = xx > yy ? g[1] - share * g[0] : g[0] - share * g[1];
+    const Eigen::Vector2d g = gradients[k];
+    const double r = sum.T.XX > sum.T.YY ? g[1] - share * g[0] : g[0] - share * g[1];
     rest += r * r;
   }
   sum.RootDeterminant = std::sqrt(larger) * std::sqrt(rest); // the product might overflow

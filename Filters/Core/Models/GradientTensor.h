@@ -15,6 +15,8 @@ struct GradientTensor
   PlaneTensor T{ 0.0, 0.0, 0.0 };
   double RootDeterminant = 0.0;
 };
+/// Gradients whose squares might overflow, as of data on triangles of 1e-150 of the surface's size,
+/// are shortened to 1e75.
 GradientTensor SumGradients(const TriangleMesh& mesh, const Values& u, Index t);
 
 /// S = sqrt(along) e1 e1^T + sqrt(across) e2 e2^T per triangle, for constant factors of the

@@ -86,6 +86,12 @@ void LaggedDiffusion::AdvanceGroup(
     });
   this->System.Assemble(this->Diagonal, this->TimeStep, this->Weighted);
   this->FillChange(group);
+  if (this->Damping > 0.0)
+  {
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i) { this->Diagonal[i] = this->System.GetMatrix().coeff(i, i); });
+    this->System.AddToDiagonal(this->Damping, this->Diagonal);
+  }
   if (unknowns.NoChange.size() > 0)
   {
     this->System.Constrain(this->Data.Fixed, unknowns.NoChange);

@@ -49,6 +49,11 @@ protected:
   /// The energy of the fidelity term, summed over the vertices of this process.
   double FidelityEnergy() const { return this->Fit.Energy(this->Mesh(), this->U, this->Parallel); }
 
+  /// The part of the diagonal of the matrix that is added to it once more. It keeps the matrix
+  /// positive definite if the eigenvalues of D differ by more than round-off resolves, and slows
+  /// the change of u in a step by as much.
+  double Damping = 0.0;
+
   const ParallelFor& Parallel;
   CornerWeights Weighted; ///< the weights (12) of D
 

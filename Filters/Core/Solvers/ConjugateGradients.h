@@ -244,7 +244,11 @@ public:
     for (int s = 0; s < this->Systems(); ++s)
     {
       const double residual = std::sqrt(this->W.Square[s] / this->W.Reference[s]);
-      largest = residual <= largest ? largest : residual; // keeps NaN
+      if (std::isnan(residual))
+      {
+        return residual;
+      }
+      largest = std::max(largest, residual);
     }
     return largest;
   }

@@ -27,7 +27,12 @@ constexpr double Factor = 0.112; // x s^1.5
 constexpr double Substitution = 0.0027; // x s^1.4
 constexpr double LocalSubstitution = 0.004; // x c^0.2 s: in short steps the factor is sparser
 
-constexpr double Iteration = 4.2e-4; // of conjugate gradients with Jacobi, x s
+// Of conjugate gradients with Jacobi, x s: in single precision, and in double precision for long
+// steps with small tolerances (2026-11-22).
+constexpr double SingleIteration = 2.0e-4;
+constexpr double DoubleIteration = 4.2e-4;
+constexpr double LongestSingleStep = 150.0; // c
+constexpr double SmallestToleranceOfLongSteps = 1e-5;
 constexpr double Iterations = 67.0; // x digits c^0.4 s^0.1
 constexpr double IterationsAcross = 6.5; // x digits sqrt(n), at most: across the whole surface
 
@@ -40,7 +45,8 @@ constexpr double AnisotropicCycles = 0.2; // x min(anisotropy, c) to this power
 // What a further column costs of the first one, with 41,000 vertices and 8 to 48 columns: those of a
 // panel share a pass over the matrix or the factor.
 constexpr double SubstitutionColumn = 0.2;
-constexpr double IterationColumn = 0.3;
+constexpr double SingleIterationColumn = 1.0;
+constexpr double DoubleIterationColumn = 0.3;
 constexpr double CycleColumn = 0.4;
 
 constexpr double SmallestDiffusionNumber = 1e-2; // below, nothing changes
@@ -73,8 +79,10 @@ SolverMethod FindFastest(const SolverTask& task)
 
   const double iterations = digits *
     std::min(Iterations * std::pow(c, 0.4) * std::pow(s, 0.1), IterationsAcross * std::sqrt(n));
-  const double conjugateGradient =
-    columns(IterationColumn) * Threads * task.NumberOfSolves * iterations * Iteration * s;
+  const bool isSingle = c <= LongestSingleStep || task.Tolerance >= SmallestToleranceOfLongSteps;
+  const double iteration = isSingle ? SingleIteration * columns(SingleIterationColumn)
+                                    : DoubleIteration * columns(DoubleIterationColumn);
+  const double conjugateGradient = Threads * task.NumberOfSolves * iterations * iteration * s;
 
   const double cycles = digits * (Cycles + CyclesPerDecade * std::log10(c)) *
     std::pow(std::min(task.Anisotropy, std::max(c, 1.0)), AnisotropicCycles);

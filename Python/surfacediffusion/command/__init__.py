@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 
+from .._threads import set_number_of_threads
 from ..files import FileError
 from .arguments import parse
 from .inputs import ArgumentProblem
@@ -24,6 +25,8 @@ def main(argv=None) -> int:
         return int(finished.code or 0)
     report = Report(arguments)
     try:
+        if arguments.threads is not None:
+            set_number_of_threads(arguments.threads)
         with report.collecting_warnings():
             arguments.run(arguments, report)
     except (FileError, ArgumentProblem, ValueError) as error:

@@ -80,6 +80,9 @@ class _Commands:
                             help="print a report as JSON: times, widths, totals, warnings")
         parser.add_argument("--quiet", action="store_true",
                             help="print nothing but errors: no progress bar, no summary")
+        parser.add_argument("--threads", metavar="N", type=_threads,
+                            help="the number of threads (default: all processors, as 0); the "
+                                 "result does not depend on it")
         return parser
 
     def surface(self, parser, required=True):
@@ -121,6 +124,11 @@ def _not_negative(text):
 def _count(text):
     return int(_number(text, lambda value: value >= 1 and value == int(value) and value < 2**31,
                        "a whole number of at least 1"))
+
+
+def _threads(text):
+    return int(_number(text, lambda value: 0 <= value <= 1024 and value == int(value),
+                       "a whole number from 0 to 1024"))
 
 
 def _regions(text):

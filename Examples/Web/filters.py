@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The filters of the page: one entry of FILTERS each, with its sliders and the call that runs it.
+
+An entry's `run` takes a Mesh, the data and the sliders' values, and returns an Outcome. To add a
+model, write such a function and an entry; the page needs no other change.
+"""
+from dataclasses import dataclass, field
+from typing import Any, Callable
+
+import numpy as np
+
+import surfacediffusion as sd
+
+STEPS = 10  # time steps within the time of the slider
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A number that the page asks for. With `of_diagonal`, low, high, step and default are parts of
+    the diagonal of the mesh's bounding box, and the page shows coordinates."""
+
+    name: str
+    label: str
+    low: float
+    high: float
+    step: float
+    default: float
+    of_diagonal: bool = False
+
+    def range(self, diagonal):
+        """low, high, step and default for a mesh with this diagonal."""
+        scale = diagonal if self.of_diagonal else 1
+        return tuple(round(number * scale, 6) if scale < 1e4 else number * scale
+                     for number in (self.low, self.high, self.step, self.default))
+
+
+@dataclass
+class Outcome:
+    """The result of a filter: the array that the page shows, further arrays for the download, and
+    the points if they have moved. labels: the values are numbers of regions."""
+
+    shown: np.ndarray
+    arrays: dict = field(default_factory=dict)
+    cell_arrays: dict = field(default_factory=dict)
+    points: Any = None
+    history: dict = field(default_factory=dict)
+    labels: bool = False
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Filter:
+    """input: "values" for any array, "vectors" for those with several components or the normals,
+    "none" for filters of the surface alone."""
+
+    name: str
+    title: str
+    input: str
+    sliders: tuple
+    run: Callable[..., Outcome]
+
+
+def run_heat(mesh, data, options, progress):
+    if options["width"] > 0:
+        settings = {"fwhm": options["width"]}
+    else:
+        settings = {"fidelity_weight": options["weight"], "time_step": options["time"] / STEPS,
+                    "number_of_time_steps": STEPS}
+    return _diffused(sd.heat(mesh.surface, data, full_output=True, progress=progress, **settings))
+
+
+def run_total_variation(mesh, data, options, progress):
+    settings = {"automatic_fidelity": True}
+    if options["weight"] > 0:
+        settings = {"fidelity_weight": options["weight"]}
+    if options["time"] > 0:
+        settings.update(time_step=options["time"] / STEPS, number_of_time_steps=STEPS)
+    else:
+        settings["mode"] = "SteadyState"
+    result = sd.intrinsic_tv(mesh.surface, data, full_output=True, progress=progress, **settings)
+    return _diffused(result, f"λ is {result.effective_fidelity_weight:.3g}")
+
+
+def _diffused(result, note=""):
+    return Outcome(result.values, {"Result": result.values}, history=result.history, note=note)
+
+
+def run_edges(mesh, data, options, progress):
+    result = sd.mumford_shah(mesh.surface, data, progress=progress, fidelity_weight=options["weight"],
+                             smoothing_length=options["length"], edge_threshold=options["threshold"])
+    return Outcome(result.values, {"Result": result.values, "Edges": result.edges},
+                   history=result.history,
+                   note=f"{len(result.curves)} edges of length {result.edge_length:.4g}")
+
+
+def run_regions(mesh, data, options, progress):
+    settings = {"number_of_regions": int(options["regions"])}
+    if options["weight"] > 0:
+        settings.update(fidelity_weight=options["weight"], automatic_fidelity=False)
+    result = sd.segment(mesh.surface, data, progress=progress, **settings)
+    areas = ", ".join(f"{area:.4g}" for area in result.areas)
+    return Outcome(result.values, {"Region": result.values}, history=result.history, labels=True,
+                   note=f"areas {areas}")
+
+
+def run_normals(mesh, data, options, progress):
+    result = sd.harmonic_map(
+        mesh.surface, data, progress=progress, exponent=options["exponent"],
+        time_step=options["time"] / STEPS, number_of_time_steps=STEPS,
+        move_vertices=data is None and options["move"] > 0)
+    moved = result.points if data is None and options["move"] > 0 else None
+    return Outcome(result.values, {"Vectors": result.values}, points=moved, history=result.history,
+                   note="" if moved is None else
+                   f"points moved by {result.mean_displacement:.3g} on average")
+
+
+def run_texture(mesh, _, options, progress):
+    result = sd.turing_texture(mesh.surface, feature_size=options["size"], seed=int(options["seed"]),
+                               progress=progress)
+    return Outcome(result.texture, {"Texture": result.texture}, history=result.history,
+                   note=f"the fastest-growing wavelength is {result.wavelength:.4g}")
+
+
+def run_directions(mesh, _, options, progress):
+    """Directions on the faces, shown by noise that is smeared along them."""
+    field_of_lines = sd.direction_field(
+        mesh.surface, method="CurvatureAligned" if options["curvature"] > 0 else "Smooth",
+        progress=progress)
+    noise = np.random.default_rng(0).uniform(size=mesh.surface.n_points)
+    lines = sd.heat(mesh.surface, noise, directions=field_of_lines, across_diffusivity=0.001,
+                    time_step=10.0, number_of_time_steps=5)
+    return Outcome(lines, {"Lines": lines}, cell_arrays={"Direction": field_of_lines})
+
+
+WEIGHT = Slider("weight", "λ (0: found from the data)", 0, 20, 0.1, 0)
+
+FILTERS = {entry.name: entry for entry in (
+    Filter("heat", "Smooth: linear diffusion", "values", (
+        Slider("width", "Width (FWHM); 0: λ and time instead", 0, 0.2, 0.001, 0.03, True),
+        Slider("weight", "λ", 0, 2, 0.01, 0.05),
+        Slider("time", "Time, in squared edge lengths", 0.1, 50, 0.1, 4)), run_heat),
+    Filter("intrinsic_tv", "Denoise: total variation", "values", (
+        WEIGHT,
+        Slider("time", "Time (0: until nothing changes)", 0, 20, 0.1, 0)), run_total_variation),
+    Filter("mumford_shah", "Edges: Mumford-Shah", "values", (
+        Slider("weight", "λ", 0.05, 5, 0.05, 1),
+        Slider("length", "Width, in edge lengths", 1, 30, 0.5, 8),
+        Slider("threshold", "Jump, part of the range", 0.02, 1, 0.01, 0.2)), run_edges),
+    Filter("segment", "Regions", "values", (
+        Slider("regions", "Number of regions", 2, 8, 1, 2),
+        WEIGHT), run_regions),
+    Filter("harmonic_map", "Normals and vectors: harmonic map", "vectors", (
+        Slider("exponent", "Exponent p: 1 keeps creases, 2 smooths evenly", 1, 2, 0.05, 1),
+        Slider("time", "Time", 0.1, 50, 0.1, 10),
+        Slider("move", "Move the points along (0: no, 1: yes)", 0, 1, 1, 1)), run_normals),
+    Filter("turing_texture", "Texture: reaction and diffusion", "none", (
+        Slider("size", "Width of a spot with its gap", 0.02, 0.3, 0.001, 0.08, True),
+        Slider("seed", "Seed of the noise", 0, 100, 1, 0)), run_texture),
+    Filter("direction_field", "Direction field", "none", (
+        Slider("curvature", "Along the curvature (0: smoothest, 1: yes)", 0, 1, 1, 1),),
+           run_directions),
+)}

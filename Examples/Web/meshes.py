@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Meshes of the page: from the bytes of dropped files, and as files to download."""
+import os
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+import surfacediffusion as sd
+from surfacediffusion.files import FileError, read_data, read_surface
+
+FORMATS = ("OFF, OBJ, PLY, STL, VTK, VTP, GIFTI and FreeSurfer for surfaces; the same, CIFTI apart, "
+           "and MGH and NPY for values at their points")
+COLOURS = {"red", "green", "blue", "alpha"}
+
+
+@dataclass
+class Mesh:
+    """A surface and the arrays (n,) or (n, k) at its points."""
+
+    name: str
+    surface: sd.Surface
+    arrays: dict = field(default_factory=dict)
+
+    @property
+    def diagonal(self):
+        points = self.surface.points
+        return float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+
+
+def example():
+    """A rough pebble with noisy stripes, so that there is something to see at once."""
+    ball = sd.sphere(5)
+    x, y, z = ball.points.T
+    random = np.random.default_rng(0)
+    radius = 10 + np.sin(3 * x) * np.cos(2 * y) + 1.5 * y * z + random.normal(scale=0.03, size=x.size)
+    stripes = np.digitize(np.sin(4 * x + 2 * y * z) + 0.6 * z, (-0.4, 0.5)).astype(float)
+    surface = sd.Surface(radius[:, None] * ball.points, ball.triangles)
+    return Mesh("pebble (example)", surface, {
+        "Stripes with noise": stripes + random.normal(scale=0.2, size=x.size), "Stripes": stripes})
+
+
+def read_mesh(files):
+    """The mesh of dropped files {name: bytes}: one with a surface, others with values at its points.
+    FileError with one line for the page if there is a problem."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = []
+        for number, (name, content) in enumerate(files.items()):
+            # A folder each: FreeSurfer's readers look at names, and two files may have one name.
+            path = Path(folder, str(number), os.path.basename(name.replace("\\", "/")) or "file")
+            path.parent.mkdir()
+            path.write_bytes(content)
+            paths.append(path)
+        try:
+            return _read(paths)
+        except FileError as problem:
+            text = str(problem)
+            for path in paths:
+                text = text.replace(str(path), path.name)
+            raise FileError(text) from None
+
+
+def _read(paths):
+    surface, problems, others = None, [], []
+    for path in paths:
+        try:
+            if surface is None:
+                surface = read_surface(path)
+                with_surface = path
+                continue
+        except FileError as problem:
+            problems.append(str(problem))
+        others.append(path)
+    if surface is None:
+        raise FileError("; ".join(problems) or "no file")
+    mesh = Mesh(with_surface.name, sd.Surface(surface.points, surface.faces))
+    _add_arrays(mesh, with_surface, optional=True)
+    for path in others:
+        _add_arrays(mesh, path, optional=False)
+    mesh.arrays.setdefault("Height (z)", mesh.surface.points[:, 2].copy())
+    return mesh
+
+
+def _add_arrays(mesh, path, optional):
+    """Add the arrays of a file; columns of one name are components of one array."""
+    try:
+        data = read_data(path)
+    except FileError:
+        if optional:
+            return
+        raise
+    values, n = data.parts[0].values, mesh.surface.n_points
+    if data.parts[0].vertices is None and len(values) != n:
+        raise FileError(f"{path}: {len(values)} values; allowed: {n}, one per point of {mesh.name}")
+    if data.parts[0].vertices is not None:
+        full = np.full((n, values.shape[1]), np.nan)
+        full[data.parts[0].vertices] = values
+        values = full
+    if {"red", "green", "blue"} <= set(data.names):  # PLY
+        data.names = ["Colour" if name in COLOURS else name for name in data.names]
+    for name in dict.fromkeys(data.names):
+        array = values[:, [i for i, other in enumerate(data.names) if other == name]]
+        if name.isdigit() or not name:  # columns without a name
+            name = path.name if len(data.names) == 1 else f"{path.name} {name}"
+        mesh.arrays[name] = array[:, 0] if array.shape[1] == 1 else _as_colours(array)
+
+
+def _as_colours(array):
+    """Three or four columns of integers from 0 to 255 as uint8, all other arrays as they are."""
+    if array.shape[1] in (3, 4) and array.max() > 1 and (array == array.astype(np.uint8)).all():
+        return array.astype(np.uint8)
+    return array
+
+
+def as_polydata(points, triangles, arrays=None, cell_arrays=None):
+    """vtkPolyData with these arrays at points and cells."""
+    surface, coordinates, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
+    coordinates.SetData(numpy_to_vtk(np.ascontiguousarray(points, np.float32), deep=True))
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64), deep=True),
+        numpy_to_vtkIdTypeArray(np.ascontiguousarray(triangles, np.int64).ravel(), deep=True))
+    surface.SetPoints(coordinates)
+    surface.SetPolys(cells)
+    for target, given in ((surface.GetPointData(), arrays), (surface.GetCellData(), cell_arrays)):
+        for name, values in (given or {}).items():
+            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+            array.SetName(name)
+            target.AddArray(array)
+    return surface
+
+
+def result_file(mesh, outcome):
+    """The bytes of a VTP file with the input's arrays and those of the outcome."""
+    points = mesh.surface.points if outcome.points is None else outcome.points
+    cell_arrays = outcome.cell_arrays if len(mesh.surface.triangles) == mesh.surface.n_faces else {}
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(as_polydata(points, mesh.surface.triangles,
+                                    {**mesh.arrays, **outcome.arrays}, cell_arrays))
+    writer.WriteToOutputStringOn()
+    writer.SetDataModeToBinary()  # which all versions of VTK and ParaView read
+    writer.Write()
+    return writer.GetOutputString().encode()

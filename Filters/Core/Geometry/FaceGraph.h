@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Surface/TriangleMesh.h"
+
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Lists of numbers, one list per row.
+struct IndexLists
+{
+  std::vector<Index> Begin; ///< list i is Entries[Begin[i]] .. Entries[Begin[i + 1]]
+  std::vector<Index> Entries;
+};
+
+/// The triangles of a mesh as the nodes of a graph.
+struct FaceGraph
+{
+  explicit FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
+
+  Index NumberOfFaces() const { return static_cast<Index>(this->Ring.Begin.size()) - 1; }
+
+  const TriangleMesh& Mesh;
+  IndexLists Ring; ///< per triangle: the others that share a vertex with it, ascending
+  IndexLists Across; ///< per triangle: the others that share an edge with it, ascending
+};
+
+/// Unit normals, areas and centroids of the triangles. The normal of a triangle of zero area is 0.
+struct FaceGeometry
+{
+  SurfaceDiffusion::Points Normals;
+  Vector Areas;
+  SurfaceDiffusion::Points Centroids;
+
+  /// points: per vertex of the mesh.
+  void Measure(const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel);
+};
+
+/// exp(-x) for x >= 0 within 0.04, and 0 from x = 8 on: a weight that needs no library function, so
+/// that its bits are the same on all platforms.
+inline double FallOff(double x)
+{
+  const double y = x < 8.0 ? 1.0 - 0.125 * x : 0.0;
+  const double square = y * y;
+  return (square * square) * (square * square);
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/FaceNormalFilter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// The width of the guide of a smooth surface, relative to that of the filter.
+constexpr double GuideWidth = 0.5;
+/// The mean distance to the triangles of a ring over that to the neighbours across edges.
+constexpr double RingDistance = 1.5;
+constexpr double TinyDifference = 1e-9;
+
+Eigen::RowVector3d Direction(const Eigen::RowVector3d& vector, const Eigen::RowVector3d& otherwise)
+{
+  const double length = vector.norm();
+  return length > 0.0 ? Eigen::RowVector3d(vector / length) : otherwise;
+}
+
+/// Per triangle, the standard deviation of the spatial weight for Width = 1.
+Vector MeasureWidths(
+  const FaceGraph& graph, const FaceGeometry& geometry, const ParallelFor& parallel)
+{
+  Vector widths(graph.NumberOfFaces());
+  ForEach(parallel, graph.NumberOfFaces(),
+    [&](Index f)
+    {
+      double sum = 0.0;
+      const Index begin = graph.Ring.Begin[f];
+      const Index end = graph.Ring.Begin[f + 1];
+      for (Index k = begin; k < end; ++k)
+      {
+        sum += (geometry.Centroids.row(graph.Ring.Entries[k]) - geometry.Centroids.row(f)).norm();
+      }
+      widths[f] = end > begin ? sum / (RingDistance * (end - begin)) : 0.0;
+    });
+  return widths;
+}
+
+/// The differences of normals, in the order of graph.Across.Entries.
+Vector DifferencesAcross(const FaceGraph& graph, const Points& normals, const ParallelFor& parallel)
+{
+  Vector differences(static_cast<Index>(graph.Across.Entries.size()));
+  ForEach(parallel, graph.NumberOfFaces(),
+    [&](Index f)
+    {
+      for (Index k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
+      {
+        differences[k] = (normals.row(f) - normals.row(graph.Across.Entries[k])).norm();
+      }
+    });
+  return differences;
+}
+
+/// How inconsistent the normals of a patch are (equation (8) of the paper): the largest difference
+/// of two of its normals, times the share of the largest difference across an edge in the sum of
+/// all of them.
+double PatchInconsistency(const FaceGraph& graph, const Points& normals, const Vector& across,
+  const std::vector<Index>& patch)
+{
+  double largest = 0.0;
+  double largestAcross = 0.0;
+  double sumAcross = 0.0;
+  for (std::size_t i = 0; i < patch.size(); ++i)
+  {
+    const Index f = patch[i];
+    for (std::size_t j = i + 1; j < patch.size(); ++j)
+    {
+      largest = std::max(largest, (normals.row(f) - normals.row(patch[j])).squaredNorm());
+    }
+    for (Index k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
+    {
+      const Index g = graph.Across.Entries[k];
+      if (g > f && std::binary_search(patch.begin(), patch.end(), g))
+      {
+        largestAcross = std::max(largestAcross, across[k]);
+        sumAcross += across[k];
+      }
+    }
+  }
+  return std::sqrt(largest) * (TinyDifference + largestAcross) / (TinyDifference + sumAcross);
+}
+
+/// Triangle f and its ring, ascending.
+void ListPatch(const FaceGraph& graph, Index f, std::vector<Index>& patch)
+{
+  patch.assign(graph.Ring.Entries.begin() + graph.Ring.Begin[f],
+    graph.Ring.Entries.begin() + graph.Ring.Begin[f + 1]);
+  patch.insert(std::lower_bound(patch.begin(), patch.end(), f), f);
+}
+
+Points GuideOfSharpSurface(
+  const FaceGraph& graph, const FaceGeometry& geometry, const ParallelFor& parallel)
+{
+  const Index count = graph.NumberOfFaces();
+  const Vector across = DifferencesAcross(graph, geometry.Normals, parallel);
+  Vector inconsistency(count);
+  Points means(count, 3);
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      std::vector<Index> patch;
+      for (Index f = begin; f < end; ++f)
+      {
+        ListPatch(graph, f, patch);
+        inconsistency[f] = PatchInconsistency(graph, geometry.Normals, across, patch);
+        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+        for (const Index g : patch)
+        {
+          sum += geometry.Areas[g] * geometry.Normals.row(g);
+        }
+        means.row(f) = Direction(sum, geometry.Normals.row(f));
+      }
+    });
+  Points guide(count, 3);
+  ForEach(parallel, count,
+    [&](Index f)
+    {
+      Index best = f;
+      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      {
+        const Index g = graph.Ring.Entries[k];
+        best = inconsistency[g] < inconsistency[best] ? g : best;
+      }
+      guide.row(f) = means.row(best);
+    });
+  return guide;
+}
+
+Points GuideOfSmoothSurface(const FaceGraph& graph, const FaceGeometry& geometry,
+  const NormalFilterSettings& settings, const ParallelFor& parallel)
+{
+  Points guide(graph.NumberOfFaces(), 3);
+  const Vector widths = MeasureWidths(graph, geometry, parallel);
+  ForEach(parallel, graph.NumberOfFaces(),
+    [&](Index f)
+    {
+      const double width = GuideWidth * settings.Width * widths[f];
+      Eigen::RowVector3d sum = geometry.Areas[f] * geometry.Normals.row(f);
+      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      {
+        const Index g = graph.Ring.Entries[k];
+        const double distance =
+          (geometry.Centroids.row(g) - geometry.Centroids.row(f)).squaredNorm();
+        sum +=
+          geometry.Areas[g] * FallOff(distance / (2.0 * width * width)) * geometry.Normals.row(g);
+      }
+      guide.row(f) = Direction(sum, geometry.Normals.row(f));
+    });
+  return guide;
+}
+
+/// w_fg, in the order of graph.Ring.Entries.
+Vector MakeWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
+  const NormalFilterSettings& settings, const ParallelFor& parallel)
+{
+  Vector weights(static_cast<Index>(graph.Ring.Entries.size()));
+  const Vector widths = settings.Width * MeasureWidths(graph, geometry, parallel);
+  const double range = 0.5 / (settings.Range * settings.Range);
+  ForEach(parallel, graph.NumberOfFaces(),
+    [&](Index f)
+    {
+      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      {
+        const Index g = graph.Ring.Entries[k];
+        const double distance =
+          (geometry.Centroids.row(g) - geometry.Centroids.row(f)).squaredNorm();
+        const double difference = (guide.row(g) - guide.row(f)).squaredNorm();
+        weights[k] = FallOff(0.5 * distance / (widths[f] * widths[g]) + range * difference);
+      }
+    });
+  return weights;
+}
+
+/// One sweep from `normals` to `next`. Returns the weighted sum of the products of neighbours and
+/// of the normals with n0.
+double Sweep(const FaceGraph& graph, const FaceGeometry& geometry, const Vector& weights,
+  const NormalFilterSettings& settings, bool robust, const Points& normals, Points& next,
+  const ParallelFor& parallel)
+{
+  const double range = 0.5 / (settings.Range * settings.Range);
+  const double fidelity = robust ? settings.Fidelity : 0.0;
+  return Sum(parallel, graph.NumberOfFaces(),
+    [&](Index f)
+    {
+      const Eigen::RowVector3d own = normals.row(f);
+      Eigen::RowVector3d sum = geometry.Areas[f] * (own + fidelity * geometry.Normals.row(f));
+      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      {
+        const Index g = graph.Ring.Entries[k];
+        if (weights[k] == 0.0)
+        {
+          continue;
+        }
+        const Eigen::RowVector3d other = normals.row(g);
+        const double weight =
+          robust ? weights[k] * FallOff(range * (other - own).squaredNorm()) : weights[k];
+        sum += weight * geometry.Areas[g] * other;
+      }
+      next.row(f) = Direction(sum, own);
+      return geometry.Areas[f] * sum.dot(own);
+    });
+}
+
+} // namespace
+
+Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
+  const NormalFilterSettings& settings, const ParallelFor& parallel)
+{
+  return settings.Kind == SurfaceKind::Sharp
+    ? GuideOfSharpSurface(graph, geometry, parallel)
+    : GuideOfSmoothSurface(graph, geometry, settings, parallel);
+}
+
+Points FilterNormals(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
+  const NormalFilterSettings& settings, const ParallelFor& parallel)
+{
+  const Vector weights = MakeWeights(graph, geometry, guide, settings, parallel);
+  Points normals = geometry.Normals;
+  Points next(normals.rows(), 3);
+  double before = 0.0;
+  for (int sweep = 0; sweep < settings.Sweeps; ++sweep)
+  {
+    // The first sweep starts from the noise, in which the penalty would see edges everywhere.
+    const double products =
+      Sweep(graph, geometry, weights, settings, sweep > 0, normals, next, parallel);
+    if (sweep > 1 && products < before)
+    {
+      break;
+    }
+    before = products;
+    normals.swap(next);
+  }
+  return normals;
+}
+
+} // namespace SurfaceDiffusion

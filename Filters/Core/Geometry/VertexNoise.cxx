@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/VertexNoise.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr std::size_t SmallestNeighbourhood = 9;
+constexpr double LargestLeverage = 2.0;
+constexpr double MedianOfNormalDistribution = 0.6745; ///< of |x| for the standard deviation 1
+
+using Quadric = Eigen::Matrix<double, 6, 1>;
+
+void AppendNeighbours(const TriangleMesh& mesh, Index vertex, std::vector<Index>& list)
+{
+  for (Index k = mesh.VertexCornersBegin()[vertex]; k < mesh.VertexCornersBegin()[vertex + 1]; ++k)
+  {
+    const Index corner = mesh.VertexCorners()[k];
+    list.push_back(mesh.OtherCorner(corner, 1));
+    list.push_back(mesh.OtherCorner(corner, 2));
+  }
+}
+
+void MakeUnique(std::vector<Index>& list)
+{
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// The neighbours of the vertex and their neighbours, without the vertex.
+void FindTwoRings(const TriangleMesh& mesh, Index vertex, std::vector<Index>& list)
+{
+  list.clear();
+  AppendNeighbours(mesh, vertex, list);
+  MakeUnique(list);
+  const std::size_t first = list.size();
+  for (std::size_t k = 0; k < first; ++k)
+  {
+    AppendNeighbours(mesh, list[k], list);
+  }
+  MakeUnique(list);
+  list.erase(std::remove(list.begin(), list.end(), vertex), list.end());
+}
+
+/// The rows: two main axes of the points, and the normal.
+Eigen::Matrix3d MainAxes(const Points& points, const std::vector<Index>& list)
+{
+  Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
+  for (const Index i : list)
+  {
+    centre += points.row(i);
+  }
+  centre /= static_cast<double>(list.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Index i : list)
+  {
+    const Eigen::RowVector3d d = points.row(i) - centre;
+    covariance += d.transpose() * d;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  Eigen::Matrix3d axes;
+  axes.row(0) = solver.eigenvectors().col(2).transpose();
+  axes.row(1) = solver.eigenvectors().col(1).transpose();
+  axes.row(2) = axes.row(0).cross(axes.row(1));
+  return axes;
+}
+
+/// The standardised distance of the vertex from the quadric through `list`; negative if the fit is
+/// not well determined. h: a length of the size of the neighbourhood.
+double StandardizedDistance(
+  const Points& points, Index vertex, const std::vector<Index>& list, double h)
+{
+  const Eigen::Matrix3d axes = MainAxes(points, list);
+  Eigen::Matrix<double, 6, 6> normalMatrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Quadric right = Quadric::Zero();
+  for (const Index i : list)
+  {
+    const Eigen::Vector3d d = axes * (points.row(i) - points.row(vertex)).transpose() / h;
+    Quadric terms;
+    terms << 1.0, d[0], d[1], d[0] * d[0], d[0] * d[1], d[1] * d[1];
+    normalMatrix += terms * terms.transpose();
+    right += terms * d[2];
+  }
+  const auto factor = normalMatrix.ldlt();
+  const double leverage = factor.solve(Quadric::Unit(0))[0];
+  const double distance = std::abs(factor.solve(right)[0]) * h;
+  const bool determined = leverage >= 0.0 && leverage < LargestLeverage && std::isfinite(distance);
+  return determined ? distance / std::sqrt(1.0 + leverage) : -1.0;
+}
+
+} // namespace
+
+double MedianOf(std::vector<double>& values)
+{
+  if (values.empty())
+  {
+    return 0.0;
+  }
+  const auto median = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), median, values.end());
+  return *median;
+}
+
+double MedianDeviation(std::vector<double>& absoluteValues)
+{
+  return MedianOf(absoluteValues) / MedianOfNormalDistribution;
+}
+
+double EstimateVertexNoise(
+  const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
+{
+  const Index count = mesh.NumberOfVertices();
+  const double h = mesh.TotalEdgeLength() / std::max<Index>(1, mesh.NumberOfEdges());
+  std::vector<double> distances(static_cast<std::size_t>(count));
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      std::vector<Index> list;
+      for (Index i = begin; i < end; ++i)
+      {
+        FindTwoRings(mesh, i, list);
+        distances[i] =
+          list.size() < SmallestNeighbourhood ? -1.0 : StandardizedDistance(points, i, list, h);
+      }
+    });
+  distances.erase(std::remove_if(distances.begin(), distances.end(),
+                    [](double distance) { return distance < 0.0; }),
+    distances.end());
+  return MedianDeviation(distances);
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Solvers/SinglePrecisionSolver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+/// Columns that share each pass over the matrix.
+struct SinglePrecisionSolver::Group
+{
+  static constexpr int Most = 4;
+
+  Column* Columns;
+  int First; ///< of all columns
+  int Count;
+};
+
+void SinglePrecisionSolver::SetMatrix(const SparseMatrix& matrix, const Vector& inverseDiagonal)
+{
+  this->Roots.resize(inverseDiagonal.size());
+  ForEach(this->Parallel, static_cast<Index>(inverseDiagonal.size()),
+    [&](Index i) { this->Roots[i] = std::sqrt(inverseDiagonal[i]); });
+  this->Matrix.Set(matrix, this->Roots);
+}
+
+int SinglePrecisionSolver::Correct(const Values& r, std::vector<Column>& columns,
+  int maximumNumberOfIterations, Values& x, const ProgressMonitor& progress)
+{
+  const auto count = static_cast<int>(columns.size());
+  const std::size_t rows = this->Matrix.PaddedRows();
+  this->P.resize(rows * count);
+  for (std::vector<float>* vector : { &this->R, &this->Q, &this->Y })
+  {
+    vector->resize(rows * std::min(count, Group::Most));
+  }
+  int iterations = 0;
+  for (int first = 0; first < count; first += Group::Most)
+  {
+    const Group group{ columns.data() + first, first, std::min(Group::Most, count - first) };
+    bool solved[Group::Most];
+    bool isIdle = true;
+    for (int c = 0; c < group.Count; ++c)
+    {
+      solved[c] = group.Columns[c].Reduction < 1.0;
+      isIdle = isIdle && !solved[c];
+    }
+    if (!isIdle)
+    {
+      this->Take(r, group);
+      iterations = std::max(iterations,
+        this->Iterate(group, maximumNumberOfIterations, solved,
+          progress.Part(
+            static_cast<double>(first) / count, static_cast<double>(first + group.Count) / count)));
+      this->Add(group, solved, x);
+    }
+  }
+  return iterations;
+}
+
+/// R = D^-1/2 r, P = R + beta P, Y = 0.
+void SinglePrecisionSolver::Take(const Values& r, const Group& group)
+{
+  double scale[Group::Most];
+  float beta[Group::Most];
+  for (int c = 0; c < group.Count; ++c)
+  {
+    Column& column = group.Columns[c];
+    scale[c] = 0.0;
+    if (column.Reduction < 1.0)
+    {
+      const double last = column.Square;
+      column.FirstLength = column.FirstLength > 0.0 ? column.FirstLength : column.Length;
+      scale[c] = 1.0 / column.FirstLength;
+      column.Square = std::pow(column.Length * scale[c], 2.0);
+      beta[c] = last > 0.0 ? static_cast<float>(column.Square / last) : 0.0F;
+    }
+  }
+  const std::vector<Index>& rows = this->Matrix.RowsInOrder();
+  float* const directions = this->P.data() + group.First * rows.size();
+  ForEach(this->Parallel, static_cast<Index>(rows.size()),
+    [&](Index place)
+    {
+      const Index row = rows[place];
+      for (int c = 0; c < group.Count; ++c)
+      {
+        const std::size_t at = c * rows.size() + place;
+        const bool takesPart = row >= 0 && scale[c] > 0.0;
+        this->R[at] = takesPart
+          ? static_cast<float>(this->Roots[row] * r(row, group.First + c) * scale[c])
+          : 0.0F;
+        this->Y[at] = 0.0F;
+        if (scale[c] > 0.0)
+        {
+          directions[at] = beta[c] > 0.0F ? this->R[at] + beta[c] * directions[at] : this->R[at];
+        }
+      }
+    });
+}
+
+/// Reduce the residuals of the columns that are to be solved, or find that they cannot be.
+int SinglePrecisionSolver::Iterate(
+  const Group& group, int maximumNumberOfIterations, bool* solved, const ProgressMonitor& progress)
+{
+  const int count = group.Count;
+  float* const p = this->P.data() + group.First * this->Matrix.PaddedRows();
+  bool active[Group::Most];
+  double goals[Group::Most] = {};
+  double sums[Group::Most] = {};
+  float alpha[Group::Most] = {};
+  float beta[Group::Most] = {};
+  for (int c = 0; c < count; ++c)
+  {
+    const Column& column = group.Columns[c];
+    active[c] = solved[c];
+    goals[c] = std::pow(column.Reduction, 2.0) * column.Square;
+  }
+  int iterations = 0;
+  for (bool isFinished = false; !isFinished && iterations < maximumNumberOfIterations;)
+  {
+    ++iterations;
+    this->Matrix.Multiply(count, p, this->Q.data(), sums);
+    for (int c = 0; c < count; ++c)
+    {
+      const double step = active[c] ? group.Columns[c].Square / sums[c] : 0.0;
+      solved[c] = solved[c] && std::isfinite(step) && step >= 0.0;
+      active[c] = active[c] && solved[c];
+      alpha[c] = active[c] ? static_cast<float>(step) : 0.0F;
+    }
+    this->Matrix.Subtract(count, alpha, this->Q.data(), this->R.data(), sums);
+    double done = 0.99;
+    isFinished = true;
+    for (int c = 0; c < count; ++c)
+    {
+      double& square = group.Columns[c].Square;
+      if (active[c])
+      {
+        // The residual falls by about a constant factor per iteration.
+        const double left = std::log(goals[c] / sums[c]) / std::log(group.Columns[c].Reduction);
+        done = std::min(done, 1.0 + 0.5 * left);
+        active[c] = sums[c] > goals[c];
+        beta[c] = static_cast<float>(sums[c] / square);
+        square = active[c] ? sums[c] : square;
+        isFinished = isFinished && !active[c];
+      }
+    }
+    this->Matrix.Turn(count, alpha, beta, active, this->R.data(), this->Y.data(), p);
+    if (iterations % 8 == 0)
+    {
+      progress.Report(std::max(0.0, done));
+    }
+  }
+  progress.Report(1.0);
+  return iterations;
+}
+
+void SinglePrecisionSolver::Add(const Group& group, const bool* solved, Values& x)
+{
+  const std::vector<Index>& rows = this->Matrix.RowsInOrder();
+  ForEach(this->Parallel, static_cast<Index>(rows.size()),
+    [&](Index place)
+    {
+      const Index row = rows[place];
+      for (int c = 0; row >= 0 && c < group.Count; ++c)
+      {
+        if (solved[c])
+        {
+          const Column& column = group.Columns[c];
+          const double y = this->Y[c * rows.size() + place];
+          x(row, group.First + c) += column.Unit * (column.FirstLength * this->Roots[row] * y);
+        }
+      }
+    });
+}
+
+} // namespace SurfaceDiffusion

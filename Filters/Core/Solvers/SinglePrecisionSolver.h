@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Solvers/SlicedMatrix.h"
+
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Conjugate gradients with Jacobi preconditioner in single precision, for A x = b with a symmetric
+/// positive definite matrix A: they need half the memory traffic of double precision. Now and then
+/// the caller measures the residual in double precision, and the iterations continue from it along
+/// their last direction, so that they converge as in double precision (M. Clark, R. Babich,
+/// K. Barros, R. Brower, C. Rebbi, Comput. Phys. Commun. 181, 2010: reliable updates).
+class SinglePrecisionSolver
+{
+public:
+  explicit SinglePrecisionSolver(const ParallelFor& parallel)
+    : Parallel(parallel)
+    , Matrix(parallel)
+  {
+  }
+
+  /// inverseDiagonal: that of the matrix, D^-1.
+  void SetMatrix(const SparseMatrix& matrix, const Vector& inverseDiagonal);
+
+  /// A column of x and its iteration.
+  struct Column
+  {
+    double Unit = 1.0; ///< of its residual
+    double Length = 0.0; ///< of its residual, in this unit and the norm of D^-1
+    double Reduction = 1.0; ///< the factor by which to reduce this length; 1: leave the column
+    /// Of the first residual of the iteration, the unit of single precision; 0: it begins.
+    double FirstLength = 0.0;
+    double Square = 0.0; ///< of the residual before the last step, in the unit of single precision
+  };
+
+  /// Add to x what reduces the residuals, r = b - A x in double precision. The bits of a column do not
+  /// depend on the others. A column of a matrix that is not positive definite in single precision is
+  /// left. Returns the largest number of iterations.
+  int Correct(const Values& r, std::vector<Column>& columns, int maximumNumberOfIterations,
+    Values& x, const ProgressMonitor& progress);
+
+private:
+  struct Group;
+  void Take(const Values& r, const Group& group);
+  int Iterate(const Group& group, int maximumNumberOfIterations, bool* solved,
+    const ProgressMonitor& progress);
+  void Add(const Group& group, const bool* solved, Values& x);
+
+  const ParallelFor& Parallel;
+  SlicedMatrix Matrix;
+  Vector Roots; ///< D^-1/2
+  std::vector<float> R, Q, Y; ///< of a few columns, in the order of Matrix
+  std::vector<float> P; ///< the directions of all columns
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,433 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/CellFields.h"
+
+#include "Core/Models/UnitVectors.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+bool IsSet(const std::vector<char>& flags, Index i)
+{
+  return !flags.empty() && flags[static_cast<std::size_t>(i)] != 0;
+}
+
+/// Call f(cell, vertex) for the corners of the participating triangles.
+template <typename F>
+void ForEachCorner(const Surface& surface, const Fields& fields, const F& f)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
+    const Index cell = fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))];
+    for (int a = 0; a < 3; ++a)
+    {
+      f(cell, mesh.TriangleVertices()(t, a));
+    }
+  }
+}
+
+/// The vertices of marked cells, those of other processes included.
+Flags MarkVertices(const Surface& surface, const Fields& fields, const std::vector<char>& ofCells)
+{
+  Vector marks = Vector::Zero(surface.InputMesh().NumberOfVertices());
+  ForEachCorner(surface, fields,
+    [&](Index cell, Index vertex) { marks[vertex] += IsSet(ofCells, cell) ? 1.0 : 0.0; });
+  surface.InputMesh().GetReduction().Accumulate(marks);
+  return marks.array() > 0.0;
+}
+
+/// Per point the value of its vertex; `elsewhere` at other points.
+template <typename T, typename OfVertices>
+std::vector<T> SpreadToPoints(const Surface& surface, const OfVertices& ofVertices, T elsewhere)
+{
+  std::vector<T> ofPoints(static_cast<std::size_t>(surface.Points().rows()), elsewhere);
+  for (std::size_t i = 0; i < ofPoints.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0)
+    {
+      ofPoints[i] = static_cast<T>(ofVertices[v]);
+    }
+  }
+  return ofPoints;
+}
+
+/// The cells with a marked point.
+std::vector<char> MarkCells(
+  const Surface& surface, const Fields& fields, const std::vector<char>& ofPoints)
+{
+  Vector ofVertices = Vector::Zero(surface.InputMesh().NumberOfVertices());
+  for (std::size_t i = 0; i < ofPoints.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0 && ofPoints[i] != 0)
+    {
+      ofVertices[v] = 1.0;
+    }
+  }
+  std::vector<char> marks(static_cast<std::size_t>(fields.NumberOfCells), 0);
+  ForEachCorner(surface, fields,
+    [&](Index cell, Index vertex)
+    { marks[static_cast<std::size_t>(cell)] |= static_cast<char>(ofVertices[vertex] > 0.0); });
+  return marks;
+}
+
+void CheckCellFactors(const std::vector<double>& factors)
+{
+  for (std::size_t c = 0; c < factors.size(); ++c)
+  {
+    if (!(std::isfinite(factors[c]) && factors[c] >= 0.0))
+    {
+      std::ostringstream text;
+      text << "FidelityArray is " << factors[c] << " at cell " << c
+           << "; allowed: finite numbers, 0 or more";
+      throw std::runtime_error(text.str());
+    }
+  }
+}
+
+/// One factor per cell, 1 where none is given.
+Vector ReadCellFactors(const Fields& fields)
+{
+  Vector factors = Vector::Ones(fields.NumberOfCells);
+  if (fields.FidelityOnCells && !fields.FidelityFactors.empty())
+  {
+    CheckCellFactors(fields.FidelityFactors);
+    factors = Eigen::Map<const Vector>(fields.FidelityFactors.data(), factors.size());
+  }
+  return factors;
+}
+
+/// The rows u u^T of a row u.
+Values AsTensors(const Values& lines)
+{
+  const Eigen::Index m = lines.cols();
+  Values tensors(lines.rows(), m * m);
+  for (Eigen::Index i = 0; i < lines.rows(); ++i)
+  {
+    Eigen::Map<Eigen::MatrixXd>(tensors.row(i).data(), m, m) =
+      lines.row(i).transpose() * lines.row(i);
+  }
+  return tensors;
+}
+
+/// The main axis of a row of AsTensors() or of a sum of them.
+template <typename Row>
+Eigen::RowVectorXd MainAxis(const Row& tensor, Eigen::Index m)
+{
+  const Eigen::RowVectorXd copy = tensor;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(
+    Eigen::Map<const Eigen::MatrixXd>(copy.data(), m, m));
+  return axes.eigenvectors().col(m - 1).transpose();
+}
+
+/// CellTransfer::ToVertices() of values or of lines.
+VertexMeans Average(const CellState& cells, const Values& ofCells, const Vector& weights)
+{
+  if (!cells.Reading.Lines)
+  {
+    return cells.Transfer.ToVertices(ofCells, weights);
+  }
+  const VertexMeans tensors = cells.Transfer.ToVertices(AsTensors(ofCells), weights);
+  VertexMeans means{ Values::Zero(tensors.Of.rows(), ofCells.cols()), tensors.Weights };
+  for (Eigen::Index i = 0; i < means.Of.rows(); ++i)
+  {
+    if (means.Weights[i] > 0.0)
+    {
+      means.Of.row(i) = MainAxis(tensors.Of.row(i), ofCells.cols());
+    }
+  }
+  return means;
+}
+
+/// The data as the model reads them, and per cell 1 or 0: known, and not known but finite.
+struct CellData
+{
+  Values Of;
+  Vector Known, Damaged;
+  bool HasUnknown = false; ///< a cell that takes part
+};
+
+CellData ReadCells(const Surface& surface, const Fields& fields, const CellReading& reading)
+{
+  CellData data{ fields.Data / reading.Unit, Vector::Zero(fields.NumberOfCells),
+    Vector::Zero(fields.NumberOfCells) };
+  const std::vector<char> participates = FindParticipatingRows(surface, fields);
+  for (Index c = 0; c < static_cast<Index>(fields.Data.rows()); ++c)
+  {
+    if (!IsSet(participates, c))
+    {
+      continue;
+    }
+    if (fields.Data.row(c).array().isInf().any())
+    {
+      throw DataError(fields, c, "is infinite", "allowed: finite values and NaN");
+    }
+    const bool finite = !IsSet(fields.Missing, c) && !fields.Data.row(c).hasNaN() &&
+      (!reading.UnitVectors || Normalize(data.Of.row(c)));
+    const bool isFixed = fields.FixedOnCells && IsSet(fields.Fixed, c);
+    if (isFixed && !finite)
+    {
+      throw DataError(fields, c,
+        reading.UnitVectors ? "has no direction where FixedArray holds it"
+                            : "is NaN where FixedArray holds it",
+        "allowed there: finite values");
+    }
+    const bool known = finite && (isFixed || !(reading.Inpaint && IsSet(fields.Mask, c)));
+    data.HasUnknown = data.HasUnknown || !known;
+    data.Known[c] = known ? 1.0 : 0.0;
+    data.Damaged[c] = finite && !known ? 1.0 : 0.0;
+  }
+  return data;
+}
+
+/// Given and FidelityFactors of data with fidelity factors or missing cells.
+void WeightFidelity(const Surface& surface, const Fields& fields, const CellState& cells,
+  const CellData& given, const ProcessGroup& processes, PointData& data)
+{
+  Vector ofCells;
+  Vector ofVertices = Vector::Ones(data.Missing.size());
+  processes.RunCollectively(
+    [&]
+    {
+      ofCells = ReadCellFactors(fields);
+      if (!fields.FidelityOnCells && !fields.FidelityFactors.empty())
+      {
+        ofVertices = MakeFidelityFactors(surface, fields.FidelityFactors);
+      }
+    });
+  const Vector ones = Vector::Ones(fields.NumberOfCells);
+  const Vector areas = cells.Transfer.ToVertices(Values(ones.size(), 0), ones).Weights;
+  const VertexMeans weighted = Average(cells, given.Of, given.Known.cwiseProduct(ofCells));
+  data.FidelityFactors = weighted.Weights.cwiseQuotient(areas).cwiseProduct(ofVertices);
+  for (Eigen::Index v = 0; v < weighted.Of.rows(); ++v)
+  {
+    if (cells.Reading.UsesFidelity && weighted.Weights[v] > 0.0)
+    {
+      data.Given.row(v) = weighted.Of.row(v);
+    }
+  }
+}
+
+/// Fix the vertices of fixed cells and of fixed points.
+void FixVertices(const Surface& surface, const Fields& fields, const CellState& cells,
+  const CellData& given, const VertexMeans& damaged, const ProcessGroup& processes, PointData& data)
+{
+  if (processes.Any(fields.FixedOnCells))
+  {
+    Vector weights = Vector::Zero(fields.NumberOfCells);
+    for (Index c = 0; c < fields.NumberOfCells; ++c)
+    {
+      weights[c] = IsSet(fields.Fixed, c) ? given.Known[c] : 0.0;
+    }
+    const VertexMeans fixed = Average(cells, given.Of, weights);
+    for (Eigen::Index v = 0; v < fixed.Of.rows(); ++v)
+    {
+      if (fixed.Weights[v] > 0.0)
+      {
+        data.Fixed[v] = true;
+        data.Given.row(v) = fixed.Of.row(v);
+      }
+    }
+    return;
+  }
+  const auto fix = [&](Index point)
+  {
+    const Index v = surface.VertexOf(point);
+    if (v < 0 || !IsSet(fields.Fixed, point))
+    {
+      return;
+    }
+    data.Fixed[v] = true;
+    if (data.Missing[v] && !(damaged.Weights[v] > 0.0))
+    {
+      std::ostringstream text;
+      text << fields.DataName << " is NaN at all cells around point " << point
+           << " where FixedArray holds it; allowed there: finite values";
+      throw std::runtime_error(text.str());
+    }
+    data.Missing[v] = false;
+  };
+  processes.RunCollectively(
+    [&]
+    {
+      for (std::size_t i = 0; i < fields.Fixed.size(); ++i)
+      {
+        fix(static_cast<Index>(i));
+      }
+    });
+}
+
+/// The result of a line: the main axis of its tensor plus the change, with the sign of the line.
+Eigen::RowVectorXd AddToLine(
+  const Eigen::RowVectorXd& line, const Eigen::RowVectorXd& change, bool isKnown)
+{
+  const Eigen::Index m = line.size();
+  if (isKnown && change.isZero(0.0))
+  {
+    return line;
+  }
+  Eigen::RowVectorXd tensor = change;
+  if (isKnown)
+  {
+    tensor += AsTensors(line).row(0);
+  }
+  const Eigen::RowVectorXd axis = MainAxis(tensor, m);
+  return line.hasNaN() || axis.dot(line) >= 0.0 ? axis : Eigen::RowVectorXd(-axis);
+}
+
+} // namespace
+
+CellTransfer MakeCellTransfer(
+  const Surface& surface, const Fields& fields, const ParallelFor& parallel)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  std::vector<Index> cells(static_cast<std::size_t>(surface.Triangles().rows()));
+  for (std::size_t row = 0; row < cells.size(); ++row)
+  {
+    cells[row] =
+      fields.Cells[static_cast<std::size_t>(surface.InputTriangle(static_cast<Index>(row)))];
+  }
+  return CellTransfer(mesh, cells, fields.NumberOfCells, parallel);
+}
+
+void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup& processes,
+  const ParallelFor& parallel)
+{
+  if (processes.Any(fields.DataOnCells))
+  {
+    if (!fields.Mask.empty() && !fields.MaskOnCells)
+    {
+      fields.Mask = MarkCells(surface, fields, fields.Mask);
+    }
+    fields.MaskOnCells = true;
+    return;
+  }
+  if (processes.Any(fields.MaskOnCells))
+  {
+    fields.Mask = SpreadToPoints<char>(surface, MarkVertices(surface, fields, fields.Mask), 0);
+  }
+  if (processes.Any(fields.FixedOnCells))
+  {
+    fields.Fixed = SpreadToPoints<char>(surface, MarkVertices(surface, fields, fields.Fixed), 0);
+  }
+  if (processes.Any(fields.FidelityOnCells))
+  {
+    Values factors;
+    processes.RunCollectively([&] { factors = ReadCellFactors(fields); });
+    const CellTransfer transfer = MakeCellTransfer(surface, fields, parallel);
+    fields.FidelityFactors = SpreadToPoints<double>(surface,
+      Vector(transfer.ToVertices(factors, Vector::Ones(fields.NumberOfCells)).Of.col(0)), 1.0);
+  }
+  fields.MaskOnCells = fields.FixedOnCells = fields.FidelityOnCells = false;
+}
+
+PointData MakePointDataOfCells(
+  const Surface& surface, const Fields& fields, CellState& cells, const ProcessGroup& processes)
+{
+  CellData given;
+  processes.RunCollectively([&] { given = ReadCells(surface, fields, cells.Reading); });
+  double components = static_cast<double>(given.Of.cols());
+  surface.InputMesh().GetReduction().Max(&components, 1);
+  given.Of.conservativeResize(given.Of.rows(), static_cast<Eigen::Index>(components));
+
+  const VertexMeans known = Average(cells, given.Of, given.Known);
+  const VertexMeans damaged = Average(cells, given.Of, given.Damaged);
+  PointData data;
+  data.Given = known.Of;
+  data.Missing = known.Weights.array() <= 0.0;
+  data.Fixed = Flags::Constant(data.Missing.size(), false);
+  for (Eigen::Index v = 0; v < data.Missing.size(); ++v)
+  {
+    if (data.Missing[v])
+    {
+      data.Given.row(v) = damaged.Of.row(v);
+    }
+  }
+  const bool hasUnknown = cells.Reading.UsesFidelity && given.HasUnknown;
+  if (processes.Any(hasUnknown || !fields.FidelityFactors.empty()))
+  {
+    WeightFidelity(surface, fields, cells, given, processes, data);
+  }
+  FixVertices(surface, fields, cells, given, damaged, processes, data);
+  cells.HasUnknown = given.HasUnknown;
+  cells.Known.assign(static_cast<std::size_t>(fields.NumberOfCells), 0);
+  for (std::size_t c = 0; c < cells.Known.size(); ++c)
+  {
+    cells.Known[c] = given.Known[static_cast<Index>(c)] > 0.0;
+  }
+  return data;
+}
+
+Values MakeCellResult(
+  const CellState& cells, const Values& state, const Values& given, bool keepDetail)
+{
+  const CellReading& reading = cells.Reading;
+  const bool lines = reading.Lines;
+  const auto toCells = [&](const Values& u)
+  { return cells.Transfer.ToCells(lines ? AsTensors(u) : u); };
+  Values all = toCells(state);
+  Values changes;
+  if (keepDetail)
+  {
+    changes = lines ? cells.Transfer.ToCells(AsTensors(state) - AsTensors(cells.Start))
+                    : cells.Transfer.ToCells(state - cells.Start);
+  }
+  Values result = given;
+  for (Index c = 0; c < cells.Transfer.NumberOfCells(); ++c)
+  {
+    if (!cells.Transfer.Participates(c))
+    {
+      continue;
+    }
+    const bool adds = keepDetail && cells.Known[static_cast<std::size_t>(c)] != 0;
+    const Eigen::RowVectorXd change = adds ? changes.row(c) : all.row(c);
+    if (reading.UnitVectors)
+    {
+      Eigen::RowVectorXd vector = given.row(c);
+      Normalize(vector);
+      result.row(c) = lines ? AddToLine(vector, change, adds)
+                            : Eigen::RowVectorXd(adds ? vector + change : change);
+      Normalize(result.row(c));
+      continue;
+    }
+    for (Eigen::Index k = 0; k < result.cols(); ++k)
+    {
+      const double added = change[k] * reading.Unit;
+      result(c, k) = adds ? (added == 0.0 ? given(c, k) : given(c, k) + added) : added;
+    }
+  }
+  return result;
+}
+
+std::vector<Index> MakeCellLabels(const CellState& cells, const Values& probabilities)
+{
+  const Values ofCells = cells.Transfer.ToCells(probabilities);
+  std::vector<Index> labels(static_cast<std::size_t>(ofCells.rows()), 0);
+  for (Index c = 0; c < cells.Transfer.NumberOfCells(); ++c)
+  {
+    if (!cells.Transfer.Participates(c))
+    {
+      continue;
+    }
+    Eigen::Index largest = 0;
+    ofCells.row(c).maxCoeff(&largest);
+    const Index seed = cells.Seeds.empty() ? 0 : cells.Seeds[static_cast<std::size_t>(c)];
+    labels[static_cast<std::size_t>(c)] = seed > 0 ? seed : static_cast<Index>(largest) + 1;
+  }
+  return labels;
+}
+
+} // namespace SurfaceDiffusion

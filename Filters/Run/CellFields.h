@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Operators/CellTransfer.h"
+#include "Run/Fields.h"
+
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// The transfer between the cells of fields.Cells and the vertices of the surface.
+CellTransfer MakeCellTransfer(
+  const Surface& surface, const Fields& fields, const ParallelFor& parallel);
+
+/// Move marks to where the data are. With data on points, the points of a masked or fixed cell are
+/// masked or fixed, and the fidelity factor of a point is the mean over its control cell. With data
+/// on cells, a cell with a masked point is masked; marks of points that hold a vertex stay. Throws
+/// std::runtime_error on fidelity factors that are negative or not finite. Collective.
+void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup& processes,
+  const ParallelFor& parallel);
+
+/// How a model reads data on cells.
+struct CellReading
+{
+  bool Inpaint = true; ///< a mask means missing
+  bool UsesFidelity = false;
+  bool UnitVectors = false; ///< each vector is normalised first
+  bool Lines = false; ///< unit vectors u and -u are the same
+  double Unit = 1.0; ///< by which values are divided
+};
+
+/// The data of a run that were given on cells.
+struct CellState
+{
+  CellTransfer Transfer;
+  std::vector<char> Known; ///< per cell
+  bool HasUnknown = false; ///< among the cells that take part
+  Values Start; ///< u_0, the initial state at the vertices
+  CellReading Reading;
+  std::vector<Index> Seeds; ///< per cell, as in Fields; empty if seeds are not on cells
+};
+
+/// The data at the vertices of data on cells. With w the fidelity factors and chi the indicator of
+/// the known cells, the fidelity term lambda/2 sum over c and i of chi_c w_c m_ci (f_c - u_i)^2 of
+/// triangles is, up to a constant, that of the vertices with
+///
+///     Given_i = sum over c of chi_c w_c m_ci f_c / sum over c of chi_c w_c m_ci,
+///     FidelityFactors_i = sum over c of chi_c w_c m_ci / A_i.
+///
+/// Polygons have the equal shares of CellTransfer in the first line. Without fidelity, w = 1. A
+/// vertex is missing if no cell around it is known. The vertices of a fixed cell are fixed to the
+/// mean of the fixed cells around them. Lines are averaged as tensors u u^T. Writes cells.Known.
+/// Throws as MakePointData(). Collective.
+PointData MakePointDataOfCells(
+  const Surface& surface, const Fields& fields, CellState& cells, const ProcessGroup& processes);
+
+/// The result on the cells, in array units, one row per cell. With P and P* of CellTransfer it is
+///
+///     f + P*(u - u_0)    on known cells,
+///     P* u               on missing ones, and on all of them if keepDetail is false,
+///
+/// so that a model that changes nothing returns f with all its bits, and totals are kept if the
+/// model keeps those of the vertices. Unit vectors are normalised, lines are added as tensors.
+/// given: f, one row per cell; cells that take no part keep it. state: u.
+Values MakeCellResult(
+  const CellState& cells, const Values& state, const Values& given, bool keepDetail);
+
+/// The labels of cells, from the probabilities of the regions at the vertices: the seed of the
+/// cell, otherwise the region of the largest mean probability; 0 at cells that take no part.
+std::vector<Index> MakeCellLabels(const CellState& cells, const Values& probabilities);
+
+} // namespace SurfaceDiffusion

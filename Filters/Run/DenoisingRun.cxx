@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/DenoisingRun.h"
+
+namespace SurfaceDiffusion
+{
+
+void DenoisingRunSettings::Visit(SettingVisitor& visitor)
+{
+  visitor.Number({ "NoiseLevel", "coordinates",
+                   "The standard deviation of the noise of the points along the normal; 0: "
+                   "estimated from the surface." },
+    this->NoiseLevel, SettingRange::NonNegative());
+  visitor.Choice({ "SurfaceType", "",
+                   "CAD: smooth faces with sharp edges; Organic: smooth shapes with details; "
+                   "Automatic: by the angles at the edges of the denoised surface." },
+    this->SurfaceType, { "Automatic", "CAD", "Organic" });
+  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+}
+
+void DenoisingRun::Update(
+  const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress)
+{
+  const SettingsSnapshot surfaceSettings(settings, SettingScope::Surface);
+  const SettingsSnapshot modelSettings(settings, SettingScope::Model);
+  if (!this->Domain || this->SurfaceVersion != input.SurfaceVersion ||
+    this->SurfaceSettings != surfaceSettings)
+  {
+    this->HasResult = false;
+    this->Domain.reset();
+    SurfaceOptions options;
+    options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
+    options.MergeTolerance = settings.MergeTolerance;
+    this->Domain = std::make_unique<Surface>(
+      input.ReadSurface(), options, this->Parallel, progress.Part(0.0, 0.1));
+    this->SurfaceVersion = input.SurfaceVersion;
+    this->SurfaceSettings = surfaceSettings;
+  }
+  if (this->HasResult && this->FieldsVersion == input.FieldsVersion &&
+    this->ModelSettings == modelSettings)
+  {
+    return;
+  }
+  this->HasResult = false;
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = surface.InputMesh();
+  const double unit = mesh.LengthUnit();
+  const Index count = mesh.NumberOfVertices();
+  Points points(count, 3);
+  for (Index i = 0; i < count; ++i)
+  {
+    points.row(i) = surface.Points().row(mesh.InputVertex()[i]) / unit;
+  }
+  Fields fields = input.ReadFields();
+  MoveMarksToData(surface, fields, ProcessGroup(), this->Parallel);
+  std::vector<char> fixed(fields.Fixed.empty() ? 0 : static_cast<std::size_t>(count), 0);
+  const auto numberOfPoints = static_cast<Index>(surface.Points().rows());
+  for (Index p = 0; p < numberOfPoints && !fixed.empty(); ++p)
+  {
+    const Index vertex = surface.VertexOf(p);
+    if (vertex >= 0 && fields.Fixed[p])
+    {
+      fixed[vertex] = 1;
+    }
+  }
+  DenoisingSettings core;
+  core.NoiseLevel = settings.NoiseLevel / unit;
+  core.Type = settings.SurfaceType;
+  const Points moved = DenoiseSurface(
+    mesh, points, fixed, core, &this->Found, this->Parallel, progress.Part(0.1, 1.0));
+  this->Found.NoiseLevel *= unit;
+  this->Found.MeanDisplacement *= unit;
+  this->Found.MaximumDisplacement *= unit;
+  this->Moved = surface.Points();
+  for (Index p = 0; p < numberOfPoints; ++p)
+  {
+    const Index vertex = surface.VertexOf(p);
+    if (vertex >= 0)
+    {
+      this->Moved.row(p) += unit * (moved.row(vertex) - points.row(vertex));
+    }
+  }
+  this->FieldsVersion = input.FieldsVersion;
+  this->ModelSettings = modelSettings;
+  this->HasResult = true;
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Geometry/SurfaceDenoising.h"
+#include "Run/Run.h"
+#include "Run/WarningLog.h"
+
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+/// Mesh denoising in the user's terms.
+struct DenoisingRunSettings : Settings
+{
+  double NoiseLevel = 0.0;
+  SurfaceDiffusion::SurfaceType SurfaceType = SurfaceDiffusion::SurfaceType::Automatic;
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+
+  void Visit(SettingVisitor& visitor) override;
+};
+
+/// The denoised points of one surface, kept as long as neither inputs nor settings change.
+class DenoisingRun
+{
+public:
+  explicit DenoisingRun(const ParallelFor& parallel)
+    : Parallel(parallel)
+  {
+  }
+
+  /// Only Fixed of the fields is read. Throws std::runtime_error, std::bad_alloc, Aborted.
+  void Update(
+    const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
+
+  const Surface& GetSurface() const { return *this->Domain; }
+  /// Per input point, in coordinate units.
+  const Points& MovedPoints() const { return this->Moved; }
+  /// Lengths in coordinate units.
+  const DenoisingReport& Report() const { return this->Found; }
+  /// The surface that the result belongs to.
+  const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
+
+private:
+  const ParallelFor& Parallel;
+  Fingerprint SurfaceVersion, FieldsVersion;
+  SettingsSnapshot SurfaceSettings, ModelSettings;
+  std::unique_ptr<Surface> Domain;
+  Points Moved;
+  DenoisingReport Found;
+  bool HasResult = false;
+};
+
+} // namespace SurfaceDiffusion

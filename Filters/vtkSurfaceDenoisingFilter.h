@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSurfaceDenoisingFilter
+ * @brief   removes the noise of the points of a surface and keeps its sharp edges
+ *
+ * The points move so that the triangles become orthogonal to regularised normals. Connectivity and
+ * arrays stay. All weights follow from the noise level, which is estimated unless it is given, so
+ * that no setting is necessary.
+ *
+ * The method alternates two steps. With n_f the unit normals, a_f the areas and c_f the centroids
+ * of the triangles, the first regularises the normals n0 of the present surface: it descends on
+ *
+ *     sum_{f,g} a_f a_g w_fg rho(|n_f - n_g|) + mu sum_f a_f^2 |n_f - n0_f|^2,    |n_f| = 1,
+ *
+ * over pairs of triangles that share a vertex. rho(d) = 1 - exp(-d^2 / (2 r^2)) saturates at sharp
+ * edges, and w_fg = exp(-|c_f - c_g|^2 / (2 s^2) - |m_f - m_g|^2 / (2 r^2)) has the guide normals m
+ * (W. Zhang, B. Deng, J. Zhang, S. Bouaziz, L. Liu, Guided Mesh Normal Filtering, Computer Graphics
+ * Forum 34(7), 2015). The second step moves the points x, which were given as x0, to the minimum of
+ *
+ *     sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2
+ *       + sum_i l_i (N_i . (x_i - x0_i))^2 + t |(I - N_i N_i^T) (x_i - x0_i)|^2
+ *
+ * with the vertex normals N. l_i is proportional to the inverse of the variance of the noise, and
+ * smaller for outliers. Tangential displacements are small, so that triangles keep their shapes and
+ * boundary curves do not shrink.
+ *
+ * A surface whose estimated noise is 0 stays as it is. Noise of more than half
+ * of the distance between opposite sides of a thin part cannot be removed. Polygons should be
+ * oriented consistently, since an edge between triangles of opposite orientation counts as sharp.
+ *
+ * Input array 3 (points, one component, optional): points with a nonzero value stay where they
+ * are. They still guide their neighbours.
+ *
+ * The output has moved points and the point array `Displacement` (three components, in coordinate
+ * units). Point normals of the input are not changed. The points keep their precision.
+ *
+ * Surfaces in pieces, over processes and partitions, are gathered and denoised in process 0; see
+ * vtkSurfaceFilter. Each block of composite data is a surface of its own, with its own noise level.
+ *
+ * @sa vtkHarmonicMapFilter vtkWindowedSincPolyDataFilter
+ */
+#ifndef vtkSurfaceDenoisingFilter_h
+#define vtkSurfaceDenoisingFilter_h
+
+#include "vtkSurfaceFilter.h"
+
+namespace SurfaceDiffusion
+{
+struct DenoisingRunSettings;
+}
+
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDenoisingFilter : public vtkSurfaceFilter
+{
+public:
+  static vtkSurfaceDenoisingFilter* New();
+  vtkTypeMacro(vtkSurfaceDenoisingFilter, vtkSurfaceFilter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  void ReleaseCache() override;
+
+  ///@{
+  /**
+   * How much noise is removed: the standard deviation of the displacement of the points along the
+   * normal, in coordinate units. 0 or more. Default: 0, which means estimated. The estimate is the
+   * median distance of points from quadrics through their neighbours, over 0.6745, less 0.02 mean
+   * edge lengths, in squares, which surfaces without noise have; see GetEffectiveNoiseLevel().
+   */
+  vtkSetMacro(NoiseLevel, double);
+  vtkGetMacro(NoiseLevel, double);
+  ///@}
+
+  enum SurfaceTypeType
+  {
+    SURFACE_TYPE_AUTOMATIC = 0,
+    SURFACE_TYPE_CAD = 1,
+    SURFACE_TYPE_ORGANIC = 2
+  };
+
+  ///@{
+  /**
+   * The kind of surface. CAD: smooth faces that meet in sharp edges. Organic: smooth shapes with
+   * details, such as scans. Automatic (the default): CAD if, after a few iterations, the median of
+   * the angles at edges is less than 0.18 of their root mean square.
+   */
+  vtkSetMacro(SurfaceType, int);
+  vtkGetMacro(SurfaceType, int);
+  void SetSurfaceTypeToAutomatic() { this->SetSurfaceType(SURFACE_TYPE_AUTOMATIC); }
+  void SetSurfaceTypeToCAD() { this->SetSurfaceType(SURFACE_TYPE_CAD); }
+  void SetSurfaceTypeToOrganic() { this->SetSurfaceType(SURFACE_TYPE_ORGANIC); }
+  const char* GetSurfaceTypeAsString();
+  ///@}
+
+  /**
+   * The noise level of the last update, given or estimated, in coordinate units: the largest over
+   * the blocks of composite data.
+   */
+  vtkGetMacro(EffectiveNoiseLevel, double);
+
+  ///@{
+  /**
+   * The mean and the largest displacement of the last update, in coordinate units.
+   */
+  vtkGetMacro(MeanDisplacement, double);
+  vtkGetMacro(MaximumDisplacement, double);
+  ///@}
+
+protected:
+  vtkSurfaceDenoisingFilter();
+  ~vtkSurfaceDenoisingFilter() override;
+
+  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
+    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  void VisitReported(const std::function<void(double&)>& visit) override;
+
+  double NoiseLevel = 0.0;
+  int SurfaceType = SURFACE_TYPE_AUTOMATIC;
+  double EffectiveNoiseLevel = 0.0;
+  double MeanDisplacement = 0.0;
+  double MaximumDisplacement = 0.0;
+
+private:
+  vtkSurfaceDenoisingFilter(const vtkSurfaceDenoisingFilter&) = delete;
+  void operator=(const vtkSurfaceDenoisingFilter&) = delete;
+
+  std::unique_ptr<SurfaceDiffusion::DenoisingRunSettings> MakeSettings() const;
+
+  /// The denoised surfaces, kept between updates.
+  struct RunState;
+  const std::unique_ptr<RunState> State;
+};
+
+#endif

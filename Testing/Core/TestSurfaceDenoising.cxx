@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/SurfaceDenoising.h"
+#include "Core/Geometry/VertexNoise.h"
+#include "Meshes.h"
+#include "NoisySurfaces.h"
+#include "ThreadedFor.h"
+
+#include <gtest/gtest.h>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+Surface Denoised(const Surface& s, const DenoisingSettings& settings = DenoisingSettings(),
+  const std::vector<char>& fixedPoints = {}, DenoisingReport* report = nullptr,
+  const ParallelFor& parallel = SerialFor())
+{
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  const Points points = GatherVertices(mesh, s.Vertices) / mesh.LengthUnit();
+  std::vector<char> fixed;
+  for (const Index i : mesh.InputVertex())
+  {
+    fixed.push_back(fixedPoints.empty() ? 0 : fixedPoints[i]);
+  }
+  DenoisingSettings scaled = settings;
+  scaled.NoiseLevel /= mesh.LengthUnit();
+  const Points moved = DenoiseSurface(mesh, points, fixed, scaled, report, parallel);
+  Surface result = s;
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    result.Vertices.row(mesh.InputVertex()[i]) = moved.row(i) * mesh.LengthUnit();
+  }
+  return result;
+}
+
+double LargestDistance(const Surface& a, const Surface& b)
+{
+  return (a.Vertices - b.Vertices).rowwise().norm().maxCoeff();
+}
+
+} // namespace
+
+TEST(SurfaceDenoising, NoisyBlockRegainsItsPlanesAndSharpEdges)
+{
+  const Surface block = LBlock(24);
+  for (const double amount : { 0.1, 0.2, 0.3, 0.4 })
+  {
+    const Surface noisy = NoisyAlongNormals(block, amount);
+    DenoisingReport report;
+    const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
+    EXPECT_EQ(report.Kind, SurfaceKind::Sharp);
+    EXPECT_GT(MeanAngle(noisy, block), 80.0 * amount);
+    EXPECT_LT(MeanAngle(result, block), 10.0 * amount) << "noise " << amount;
+    EXPECT_NEAR(Volume(result) / Volume(block), 1.0, 0.005);
+    EXPECT_LE(NumberOfFlippedFaces(result, block), NumberOfFlippedFaces(noisy, block));
+  }
+}
+
+TEST(SurfaceDenoising, ImpulsiveNoiseOfABlockIsRemoved)
+{
+  const Surface block = LBlock(24);
+  const Surface noisy = NoisyAlongNormals(block, 0.5, 0.5);
+  const Surface result = Denoised(noisy);
+  EXPECT_GT(MeanAngle(noisy, block), 20.0);
+  EXPECT_LT(MeanAngle(result, block), 4.0);
+}
+
+TEST(SurfaceDenoising, SphereAndTorusAreOrganicAndBecomeSmooth)
+{
+  for (const Surface& surface : { Icosphere(5), Torus(80, 40) })
+  {
+    const Surface noisy = NoisyAlongNormals(surface, 0.3);
+    DenoisingReport report;
+    const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
+    EXPECT_EQ(report.Kind, SurfaceKind::Smooth);
+    EXPECT_GT(MeanAngle(noisy, surface), 25.0);
+    EXPECT_LT(MeanAngle(result, surface), 4.0);
+    EXPECT_NEAR(Volume(result) / Volume(surface), 1.0, 0.005);
+  }
+}
+
+TEST(SurfaceDenoising, SurfacesWithoutNoiseStay)
+{
+  for (const Surface& surface :
+    { LBlock(10), Icosphere(4), Torus(60, 30), Strip(20, 10), Cylinder(30, 20) })
+  {
+    const Surface result = Denoised(surface);
+    const double h = MeanEdge(TriangleMesh(surface.Vertices, surface.Faces));
+    EXPECT_LT(LargestDistance(result, surface), 0.02 * h);
+    EXPECT_LT(MeanAngle(result, surface), 0.5);
+  }
+}
+
+TEST(SurfaceDenoising, NoiseOfVerticesIsEstimated)
+{
+  for (const Surface& surface : { LBlock(20), Icosphere(5) })
+  {
+    for (const double amount : { 0.1, 0.3 })
+    {
+      const Surface noisy = NoisyAlongNormals(surface, amount);
+      const TriangleMesh clean(surface.Vertices, surface.Faces);
+      const double h = MeanEdge(clean) * clean.LengthUnit();
+      const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
+      const double estimate = EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices));
+      EXPECT_NEAR(estimate / (amount * h), 1.0, 0.15);
+    }
+  }
+}
+
+TEST(SurfaceDenoising, FollowsRotationsTranslationsAndScalesOfTheSurface)
+{
+  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.3);
+  const Surface result = Denoised(noisy);
+  const double size = noisy.Vertices.rowwise().norm().maxCoeff();
+  EXPECT_LT(LargestDistance(Denoised(Rotated(noisy)), Rotated(result)), 1e-9 * size);
+  EXPECT_LT(LargestDistance(Denoised(Scaled(noisy, 1e-3)), Scaled(result, 1e-3)), 1e-12 * size);
+  EXPECT_LT(LargestDistance(Denoised(Scaled(noisy, 1e60)), Scaled(result, 1e60)), 1e51 * size);
+  const Eigen::RowVector3d offset(30.0, -20.0, 10.0);
+  EXPECT_LT(LargestDistance(Denoised(Moved(noisy, offset)), Moved(result, offset)), 1e-8 * size);
+}
+
+TEST(SurfaceDenoising, DoesNotDependOnTheNumberOfThreads)
+{
+  const Surface noisy = NoisyAlongNormals(LBlock(24), 0.3);
+  const Surface one = Denoised(noisy);
+  const ThreadedFor threads(3);
+  EXPECT_EQ(Denoised(noisy, DenoisingSettings(), {}, nullptr, threads).Vertices, one.Vertices);
+}
+
+TEST(SurfaceDenoising, DoesNotDependOnTheNumberingOfPoints)
+{
+  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.3);
+  const auto number = Permutation(noisy.NumberOfVertices(), 3);
+  const Surface expected = Renumbered(Denoised(noisy), number);
+  EXPECT_LT(LargestDistance(Denoised(Renumbered(noisy, number)), expected), 1e-9 * 12.0);
+}
+
+TEST(SurfaceDenoising, FixedPointsStayAndOthersMove)
+{
+  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.3);
+  std::vector<char> fixed(static_cast<std::size_t>(noisy.NumberOfVertices()), 0);
+  for (Index i = 0; i < noisy.NumberOfVertices(); i += 3)
+  {
+    fixed[i] = 1;
+  }
+  const Surface result = Denoised(noisy, DenoisingSettings(), fixed);
+  Index moved = 0;
+  for (Index i = 0; i < noisy.NumberOfVertices(); ++i)
+  {
+    const double distance = (result.Vertices.row(i) - noisy.Vertices.row(i)).norm();
+    EXPECT_TRUE(!fixed[i] || distance < 1e-14) << i;
+    moved += distance > 1e-3;
+  }
+  EXPECT_GT(moved, noisy.NumberOfVertices() / 2);
+}
+
+TEST(SurfaceDenoising, BoundariesDoNotShrink)
+{
+  const Surface flat = Strip(30, 20, 3.0, 2.0);
+  const Surface noisy = NoisyAlongNormals(flat, 0.3);
+  const Surface result = Denoised(noisy);
+  EXPECT_LT(MeanAngle(result, flat), 3.0);
+  const TriangleMesh mesh(flat.Vertices, flat.Faces);
+  const double h = MeanEdge(mesh) * mesh.LengthUnit();
+  for (Index i = 0; i < flat.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVector3d d = result.Vertices.row(i) - flat.Vertices.row(i);
+    EXPECT_LT(d.head<2>().norm(), 0.5 * h);
+  }
+}
+
+TEST(SurfaceDenoising, LargerNoiseLevelsRemoveMoreAndTheTypeCanBeGiven)
+{
+  const Surface sphere = Icosphere(4);
+  const Surface noisy = NoisyAlongNormals(sphere, 0.2);
+  DenoisingReport report;
+  DenoisingSettings settings;
+  const Surface automatic = Denoised(noisy, settings, {}, &report);
+  const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
+  settings.NoiseLevel = 0.1 * report.NoiseLevel * mesh.LengthUnit();
+  EXPECT_GT(MeanAngle(Denoised(noisy, settings), sphere), 2.0 * MeanAngle(automatic, sphere));
+  settings.NoiseLevel = 0.0;
+  settings.Type = SurfaceType::CAD;
+  Denoised(noisy, settings, {}, &report);
+  EXPECT_EQ(report.Kind, SurfaceKind::Sharp);
+}
+
+TEST(SurfaceDenoising, AbortEndsTheWork)
+{
+  const Surface noisy = NoisyAlongNormals(LBlock(6), 0.3);
+  const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
+  int reports = 0;
+  const ProgressMonitor::Callback stop = [&](double) { return ++reports < 5; };
+  EXPECT_THROW(DenoiseSurface(mesh, GatherVertices(mesh, noisy.Vertices), {}, DenoisingSettings(),
+                 nullptr, SerialFor(), ProgressMonitor(stop)),
+    Aborted);
+  EXPECT_EQ(reports, 5);
+}

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkMinimalStandardRandomSequence.h"
+#include "vtkSurfaceDenoisingFilter.h"
+
+#include <gtest/gtest.h>
+
+using namespace FilterTest;
+
+namespace
+{
+
+/// Points moved along the unit sphere's normals, with standard deviation `amount`.
+vtkSmartPointer<vtkPolyData> NoisySphere(double amount, int levels = 5, bool single = false)
+{
+  auto sphere = Sphere(levels);
+  vtkNew<vtkPoints> points;
+  points->SetDataType(single ? VTK_FLOAT : VTK_DOUBLE);
+  vtkNew<vtkMinimalStandardRandomSequence> random;
+  random->SetSeed(7);
+  const auto uniform = [&]
+  {
+    random->Next();
+    return random->GetValue();
+  };
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    sphere->GetPoint(i, p);
+    double sum = -6.0; // the sum of twelve uniform numbers is nearly Gaussian
+    for (int k = 0; k < 12; ++k)
+    {
+      sum += uniform();
+    }
+    vtkMath::MultiplyScalar(p, 1.0 + amount * sum);
+    points->InsertNextPoint(p);
+  }
+  sphere->SetPoints(points);
+  return sphere;
+}
+
+/// The root mean square of |p| - 1.
+double Roughness(vtkPolyData* sphere)
+{
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+  {
+    const double d = vtkMath::Norm(sphere->GetPoint(i)) - 1.0;
+    sum += d * d;
+  }
+  return std::sqrt(sum / sphere->GetNumberOfPoints());
+}
+
+} // namespace
+
+TEST(SurfaceDenoisingFilter, RemovesNoiseAndReportsItsLevel)
+{
+  const auto noisy = NoisySphere(0.01);
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  filter->SetInputData(noisy);
+  filter->Update();
+  EXPECT_NEAR(Roughness(noisy), 0.01, 0.001);
+  EXPECT_LT(Roughness(filter->GetOutput()), 0.003);
+  EXPECT_NEAR(filter->GetEffectiveNoiseLevel(), 0.01, 0.0015);
+  EXPECT_GT(filter->GetMeanDisplacement(), 0.005);
+  EXPECT_GT(filter->GetMaximumDisplacement(), filter->GetMeanDisplacement());
+  EXPECT_GT(filter->GetMeanEdgeLength(), 0.0);
+}
+
+TEST(SurfaceDenoisingFilter, DisplacementsLeadFromTheInputToTheOutput)
+{
+  const auto noisy = NoisySphere(0.01, 3);
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  filter->SetInputData(noisy);
+  filter->Update();
+  vtkPolyData* const output = filter->GetOutput();
+  vtkDataArray* const displacement = output->GetPointData()->GetArray("Displacement");
+  ASSERT_NE(displacement, nullptr);
+  for (vtkIdType i = 0; i < noisy->GetNumberOfPoints(); ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      EXPECT_NEAR(
+        noisy->GetPoint(i)[k] + displacement->GetComponent(i, k), output->GetPoint(i)[k], 1e-14);
+    }
+  }
+  EXPECT_EQ(output->GetPolys()->GetNumberOfCells(), noisy->GetPolys()->GetNumberOfCells());
+}
+
+TEST(SurfaceDenoisingFilter, FixedPointsStayAndPointsKeepTheirPrecision)
+{
+  const auto noisy = NoisySphere(0.01, 4, true);
+  vtkNew<vtkDoubleArray> fixed;
+  fixed->SetName("fixed");
+  for (vtkIdType i = 0; i < noisy->GetNumberOfPoints(); ++i)
+  {
+    fixed->InsertNextValue(i % 2);
+  }
+  noisy->GetPointData()->AddArray(fixed);
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  filter->SetInputData(noisy);
+  filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed");
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPoints()->GetDataType(), VTK_FLOAT);
+  double farthest = 0.0;
+  for (vtkIdType i = 0; i < noisy->GetNumberOfPoints(); ++i)
+  {
+    double before[3], after[3];
+    noisy->GetPoint(i, before);
+    filter->GetOutput()->GetPoint(i, after);
+    const double distance = std::sqrt(vtkMath::Distance2BetweenPoints(before, after));
+    EXPECT_TRUE(i % 2 == 0 || distance == 0.0) << i;
+    farthest = std::max(farthest, distance);
+  }
+  EXPECT_GT(farthest, 0.005);
+}
+
+TEST(SurfaceDenoisingFilter, ErrorsNamePropertyValueAndRange)
+{
+  const auto noisy = NoisySphere(0.01, 2);
+  const auto errorOf = [&](const std::function<void(vtkSurfaceDenoisingFilter*)>& set)
+  {
+    vtkNew<vtkSurfaceDenoisingFilter> filter;
+    filter->SetInputData(noisy);
+    set(filter);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(messages.Errors.size(), 1u);
+    EXPECT_EQ(filter->GetOutput()->GetPointData()->GetArray("Displacement"), nullptr);
+    EXPECT_EQ(filter->GetOutput()->GetPoints(), noisy->GetPoints());
+    return messages.Errors.empty() ? std::string() : messages.Errors.front();
+  };
+  EXPECT_NE(errorOf([](auto* f) { f->SetNoiseLevel(-1.0); }).find("NoiseLevel is -1; allowed:"),
+    std::string::npos);
+  EXPECT_NE(errorOf([](auto* f) { f->SetSurfaceType(7); }).find("SurfaceType is 7; allowed:"),
+    std::string::npos);
+  EXPECT_NE(errorOf([](auto* f) { f->SetResultArrayName(""); }).find("ResultArrayName is empty"),
+    std::string::npos);
+  EXPECT_NE(
+    errorOf([](auto* f)
+      { f->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent"); })
+      .find("FixedArray"),
+    std::string::npos);
+}
+
+TEST(SurfaceDenoisingFilter, SurfaceTypeHasWords)
+{
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  EXPECT_STREQ(filter->GetSurfaceTypeAsString(), "Automatic");
+  filter->SetSurfaceTypeToCAD();
+  EXPECT_STREQ(filter->GetSurfaceTypeAsString(), "CAD");
+  filter->SetSurfaceTypeToOrganic();
+  EXPECT_STREQ(filter->GetSurfaceTypeAsString(), "Organic");
+}

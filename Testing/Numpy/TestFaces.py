@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Values, masks and the like of faces."""
+
+import unittest
+
+import numpy as np
+from surfacediffusion import (
+    Surface, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, sphere, turing_texture,
+)
+
+
+def face_areas(surface):
+    a, b, c = (surface.points[surface.triangles[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def quad_torus(n=24, m=16):
+    """As many points as faces."""
+    p, q = np.meshgrid(2 * np.pi * np.arange(n) / n, 2 * np.pi * np.arange(m) / m, indexing="ij")
+    r = 2 + np.cos(q)
+    points = np.stack([r * np.cos(p), r * np.sin(p), np.sin(q)], axis=-1).reshape(-1, 3)
+    number = np.arange(n * m).reshape(n, m)
+    east, north = np.roll(number, -1, 0), np.roll(number, -1, 1)
+    both = np.roll(east, -1, 1)
+    return Surface(points, np.stack([number, east, both, north], axis=-1).reshape(-1, 4))
+
+
+class TestFaces(unittest.TestCase):
+    def setUp(self):
+        self.surface = sphere(4)
+        self.noise = np.random.default_rng(0).normal(size=self.surface.n_faces)
+
+    def test_results_have_the_shape_of_the_values_and_the_total(self):
+        areas = face_areas(self.surface)
+        for function in (heat, intrinsic_tv):
+            for keep in (True, False):
+                result = function(self.surface, self.noise, keep_face_detail=keep)
+                self.assertEqual(result.shape, self.noise.shape)
+                np.testing.assert_allclose(areas @ result, areas @ self.noise, atol=1e-11)
+        self.assertEqual(
+            heat(self.surface, self.noise, result_on_faces=False).shape, (self.surface.n_points,))
+        two = np.stack([self.noise, -self.noise], axis=1)
+        self.assertEqual(heat(self.surface, two).shape, two.shape)
+
+    def test_nothing_changes_without_a_step(self):
+        same = heat(self.surface, self.noise, number_of_time_steps=0)
+        np.testing.assert_array_equal(same, self.noise)
+
+    def test_many_columns_are_those_of_single_runs(self):
+        many = np.random.default_rng(1).normal(size=(self.surface.n_faces, 40))
+        for on_faces in (True, False):
+            result = heat(self.surface, many, result_on_faces=on_faces)
+            np.testing.assert_array_equal(
+                result[:, 35], heat(self.surface, many[:, 35], result_on_faces=on_faces))
+
+    def test_equal_numbers_mean_points_unless_the_keyword_says_otherwise(self):
+        torus = quad_torus()
+        self.assertEqual(torus.n_points, torus.n_faces)
+        values = np.random.default_rng(2).normal(size=torus.n_points)
+        of_points = heat(torus, values, number_of_time_steps=2)
+        of_faces = heat(torus, values, number_of_time_steps=2, on_faces=True)
+        np.testing.assert_array_equal(
+            of_points, heat(torus, values, number_of_time_steps=2, on_faces=False))
+        self.assertGreater(np.abs(of_points - of_faces).max(), 0.1)
+        mask = np.zeros(torus.n_points, bool)
+        mask[[100, 101, 116, 117]] = True
+        damaged = np.where(mask, 1e6, values)
+        filled = heat(torus, damaged, mask=mask, on_faces=True, mode="SteadyState",
+                      hold_known_values=True)
+        np.testing.assert_array_equal(filled[~mask], values[~mask])
+        self.assertLess(np.abs(filled[mask]).max(), 10.0)
+
+    def test_masks_fixed_values_and_factors_are_on_points_or_faces(self):
+        surface, values = self.surface, self.surface.points[:, 2]
+        near = surface.points[:, 0] > 0.8
+        of_faces = near[surface.triangles].any(axis=1)
+        marked = np.zeros(surface.n_points, bool)
+        marked[surface.triangles[of_faces]] = True
+        np.testing.assert_array_equal(
+            heat(surface, values, mask=of_faces), heat(surface, values, mask=marked))
+        np.testing.assert_array_equal(
+            heat(surface, values, fixed=of_faces), heat(surface, values, fixed=marked))
+        np.testing.assert_array_equal(
+            heat(surface, self.noise, mask=near), heat(surface, self.noise, mask=of_faces))
+        heat(surface, values, fidelity=np.ones(surface.n_faces), fidelity_weight=1.0)
+        excluded = heat(surface, self.noise, mask=of_faces, mask_mode="Exclude")
+        np.testing.assert_array_equal(excluded[of_faces], self.noise[of_faces])
+        self.assertGreater(np.abs(excluded - self.noise)[~of_faces].min(), 0.0)
+
+    def test_all_functions_take_faces(self):
+        surface, m = self.surface, self.surface.n_faces
+        centres = surface.points[surface.triangles].mean(axis=1)
+        step = np.where(centres[:, 2] > 0.3, 1.0, 0.0)
+        edges = mumford_shah(surface, step)
+        self.assertEqual((edges.values.shape, edges.edges.shape), ((m,), (m,)))
+        regions = segment(surface, step)
+        self.assertEqual((regions.values.shape, regions.probabilities.shape), ((m,), (m, 2)))
+        far = np.abs(centres[:, 2] - 0.3) > 0.1
+        np.testing.assert_array_equal(regions.values[far], 1 + (step[far] > 0.5))
+        vectors = harmonic_map(surface, centres).values
+        np.testing.assert_allclose(np.linalg.norm(vectors, axis=1), 1.0, atol=1e-12)
+        colors = (255 * np.abs(centres)).astype(np.uint8)
+        alpha = np.concatenate([colors, np.full((m, 1), 77, np.uint8)], axis=1)
+        painted = harmonic_map(surface, alpha).values
+        self.assertEqual((painted.dtype, painted.shape), (np.uint8, (m, 4)))
+        self.assertTrue((painted[:, 3] == 77).all())
+        on_points = intrinsic_tv(surface, alpha, result_on_faces=False)
+        self.assertTrue((on_points[:, 3] == 255).all())
+        texture = turing_texture(surface, mask=centres[:, 0] > 0.5, mask_mode="Exclude",
+                                 number_of_time_steps=2)
+        self.assertEqual(texture.values.shape, (surface.n_points, 2))
+
+    def test_errors_name_faces(self):
+        with self.assertRaisesRegex(ValueError, r"one row per point, or \(5120,\)"):
+            heat(self.surface, np.zeros(7))
+        with self.assertRaisesRegex(ValueError, "on_faces is 3; allowed: True, False or None"):
+            heat(self.surface, self.noise, on_faces=3)
+        with self.assertRaisesRegex(ValueError, "one row per face"):
+            heat(self.surface, self.surface.points[:, 2], on_faces=True)
+        with self.assertRaisesRegex(ValueError, r"mask has shape \(3,\); allowed: \(2562,\), one flag"):
+            heat(self.surface, self.noise, mask=[0, 1, 0])
+        infinite = np.where(np.arange(self.surface.n_faces) == 9, np.inf, self.noise)
+        with self.assertRaisesRegex(ValueError, "values is infinite at face 9"):
+            heat(self.surface, infinite)
+
+
+if __name__ == "__main__":
+    unittest.main()
