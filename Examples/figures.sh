@@ -1,7 +1,8 @@
 #!/bin/bash
-# Draws figures 4 to 8 of the paper, deblurring, colours, edges, stripes and regions on scanned surfaces
-# with photographs and on cortices, and a minimal surface: installs the required packages (Debian 12),
-# fetches the data, builds the library, draws into build/figures, and prints errors and run times.
+# Draws figures 4 to 8 of the paper, deblurring, colours, edges, stripes and regions on scanned
+# surfaces with photographs and on cortices, and a minimal surface: installs the required packages
+# (Debian 12), fetches the data, builds the library, draws into build/figures, and prints errors and
+# run times.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
