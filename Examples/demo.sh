@@ -33,12 +33,13 @@ if [ ! -d "$data/fsaverage5" ]; then
   mv "$work/nilearn/nilearn/datasets/data/fsaverage5" "$data"
 fi
 
-# A scanned bunny (Stanford), from Debian's package of CGAL demos.
-if [ ! -f "$data/bunny00.off" ]; then
+# A scanned bunny (Stanford) and a bear, from Debian's package of CGAL demos.
+if [ ! -f "$data/bear.off" ]; then
   (cd "$work" && download libcgal-demo)
   dpkg-deb --extract "$work"/libcgal-demo_*.deb "$work/cgal"
-  tar -xzf "$work/cgal/usr/share/doc/libcgal-dev/data.tar.gz" -C "$work" data/meshes/bunny00.off
-  mv "$work/data/meshes/bunny00.off" "$data"
+  tar -xzf "$work/cgal/usr/share/doc/libcgal-dev/data.tar.gz" -C "$work" \
+    data/meshes/bunny00.off data/meshes/bear.off
+  mv "$work/data/meshes/bunny00.off" "$work/data/meshes/bear.off" "$data"
 fi
 
 echo "== Build"
@@ -54,7 +55,7 @@ modules=$(dirname "$(find build/lib -type d -name surfacediffusion -path '*-pack
 export PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH}
 mkdir -p build/demo
 (cd build/demo && "${display[@]}" "$python" ../../Examples/Python/overview.py \
-  "../../$data/bunny00.off")
+  "../../$data/bear.off")
 echo "Picture: build/demo/overview.png"
 "${display[@]}" "$python" Examples/Python/demo.py --cortex "$data/fsaverage5" --mesh "$data/bunny00.off" \
   --output build/demo "$@"

@@ -21,7 +21,7 @@ POINTS, CELLS = vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataObject.FIELD_ASSO
 GREYS = [(0.12, 0.12, 0.14), (0.95, 0.95, 0.93)]
 REGIONS = [(0.10, 0.45, 0.60), (0.95, 0.61, 0.15)]
 EDGES = [(0.95, 0.95, 0.93), (0.75, 0.10, 0.12)]
-VERTICES = 15_000
+VERTICES = 2_000
 
 
 def run(filter_class, surface, array=None, mask=None, **properties):
@@ -43,7 +43,7 @@ def table_for(values, colours):
 
 
 def smoothed(surface):
-    result = run(sd.vtkFVMHeatFilter, surface, "noisy", FWHM=8 * data.mean_edge_length(surface))
+    result = run(sd.vtkFVMHeatFilter, surface, "noisy", FWHM=5 * data.mean_edge_length(surface))
     return Panel(result, "noisy", "noise"), Panel(result, "noisyDiffused", "linear diffusion")
 
 
@@ -56,19 +56,19 @@ def inpainted(surface):
     missing = data.damage(surface, 0.15)
     torn = np.where(missing[:, None], np.uint8(255), data.array_of(surface, "clean"))
     surface = data.with_arrays(surface, missing=missing, torn=torn)
-    result = run(sd.vtkIntrinsicTVFilter, surface, "torn", "missing", Mode=1, HoldKnownValues=True)
-    return Panel(result, "torn", "missing data"), Panel(result, "tornTV", "inpainting")
+    result = run(sd.vtkFVMHeatFilter, surface, "torn", "missing", Mode=1, HoldKnownValues=True)
+    return Panel(result, "torn", "missing data"), Panel(result, "tornDiffused", "inpainting")
 
 
 def made_coherent(surface):
-    result = run(sd.vtkTensorDiffusionFilter, surface, "lines", NumberOfTimeSteps=10, TimeStep=4)
-    table = colour_table(0, 1, GREYS)
+    result = run(sd.vtkTensorDiffusionFilter, surface, "lines", NumberOfTimeSteps=10, TimeStep=8, Model=1)
+    table, name = colour_table(0, 1, GREYS), result.GetPointData().GetScalars().GetName()
     return (Panel(result, "lines", "noisy lines", table=table),
-            Panel(result, "linesDiffused", "tensor diffusion", table=table))
+            Panel(result, name, "tensor diffusion", table=table))
 
 
 def edged(surface):
-    result = run(sd.vtkMumfordShahFilter, surface, "patches", EdgeThreshold=0.3)
+    result = run(sd.vtkMumfordShahFilter, surface, "patches", EdgeThreshold=0.35)
     return (Panel(result, "patches", "noisy patches", table=colour_table(-0.3, 1.3, REGIONS)),
             Panel(result, "Edges", "edges", table=colour_table(0, 1, EDGES)))
 
@@ -79,20 +79,41 @@ def divided(surface):
             Panel(result, "RegionId", "regions", table=colour_table(1, 2, REGIONS, steps=2)))
 
 
-def made_even(surface):
+def grey(points, surface):
+    """A grey surface with these points. It has no normals, so that pictures show those of its
+    triangles."""
+    return data.with_arrays(data.make_surface(points, data.triangles_of(surface)),
+                            grey=np.full(points.shape, 210, np.uint8))
+
+
+def rough(surface):
     points = data.points_of(surface)
-    noise = np.random.default_rng(5).normal(scale=0.12 * data.mean_edge_length(surface), size=points.shape)
-    rough = data.make_surface(points + noise, data.triangles_of(surface))
-    grey = np.full(points.shape, 210, np.uint8)
-    rough = data.with_arrays(rough, grey=grey)
-    result = run(sd.vtkHarmonicMapFilter, rough, MoveVertices=True, TimeStep=0.05, NumberOfTimeSteps=5)
-    # Without the normals of the filter, the picture shows those of the moved points.
-    even = data.with_arrays(data.make_surface(data.points_of(result), data.triangles_of(result)), grey=grey)
-    return Panel(rough, "grey", "noisy points"), Panel(even, "grey", "harmonic map")
+    noise = np.random.default_rng(5).normal(size=points.shape)
+    return grey(points + 0.12 * data.mean_edge_length(surface) * noise, surface)
+
+
+def with_even_normals(surface):
+    """Normals as colours: red, green and blue are x, y and z."""
+    noisy = rough(surface)
+    result = run(sd.vtkHarmonicMapFilter, noisy, TimeStep=0.05, NumberOfTimeSteps=10)
+    before = run(sd.vtkHarmonicMapFilter, noisy, NumberOfTimeSteps=0)
+    panels = []
+    for found, title in ((before, "noisy normals"), (result, "harmonic map")):
+        colours = 127.5 + 127.5 * data.array_of(found, "NormalsHarmonic")
+        panels.append(Panel(data.with_arrays(surface, colours=colours.astype(np.uint8)), "colours",
+                            title))
+    return panels
+
+
+def with_even_points(surface):
+    noisy = rough(surface)
+    result = run(sd.vtkSurfaceDenoisingFilter, noisy)
+    return (Panel(noisy, "grey", "noisy points"),
+            Panel(grey(data.points_of(result), surface), "grey", "surface denoising"))
 
 
 def grown(surface):
-    size = 12 * data.mean_edge_length(surface)
+    size = 8 * data.mean_edge_length(surface)
     random = np.random.default_rng(0).uniform(size=surface.GetNumberOfPoints())
     result = run(sd.vtkTuringTextureFilter, data.with_arrays(surface, random=random), FeatureSize=size)
     texture = data.array_of(result, "u1")
@@ -119,7 +140,8 @@ def directed(surface):
             Panel(result, "randomDiffused", "direction field", table=table_for(smeared, GREYS)))
 
 
-FILTERS = (smoothed, denoised, inpainted, made_coherent, edged, divided, made_even, grown, directed)
+FILTERS = (smoothed, denoised, inpainted, made_coherent, edged, divided, with_even_normals,
+           with_even_points, grown, directed)
 
 
 def main():
@@ -129,7 +151,7 @@ def main():
     clean = data.stained_glass(surface)
     waves = data.waves(data.points_of(surface))
     patches = (waves > 0.3) + random.normal(scale=0.15, size=len(waves))
-    lines = 0.5 + 0.5 * np.sin(6 * waves) + random.normal(scale=0.4, size=len(waves))
+    lines = 0.5 + 0.5 * np.sin(6 * waves) + random.normal(scale=0.25, size=len(waves))
     surface = data.with_arrays(surface, clean=clean, noisy=data.with_noise(clean, 0.25),
                                patches=patches, lines=lines)
     pairs = []
@@ -143,8 +165,9 @@ def main():
     if display_missing():
         print("no picture: there is no display")
         return
-    save_picture("overview.png", [pair[0] for pair in pairs] + [pair[1] for pair in pairs],
-                 len(pairs), (190, 190))
+    half = len(pairs) // 2
+    rows = [[pair[when] for pair in part] for part in (pairs[:half], pairs[half:]) for when in (0, 1)]
+    save_picture("overview.png", sum(rows, []), half, (190, 186))
 
 
 if __name__ == "__main__":
