@@ -183,6 +183,20 @@ class OtherCommands(CommandTest):
         np.testing.assert_array_equal(found[:, :3], np.clip(np.rint(colours), 0, 255))
         np.testing.assert_array_equal(found[:, 3], quality)
 
+    def test_denoise_takes_models_of_colours(self):
+        Path("a.ply").write_bytes(samples.ply_bytes())
+        surface = Surface(read_surface("a.ply").points, FACES)
+        for word, model in (("opponent", "Opponent"), ("chromaticity", "ChromaticityBrightness")):
+            self.succeed(f"denoise a.ply a.ply b.ply --weight 3 --colors {word}")
+            colours = intrinsic_tv(surface, COLOURS.astype(float), fidelity_weight=3,
+                                   mode="SteadyState", mask_mode="Exclude", color_model=model)
+            written = read_data("b.ply").parts[0].values[:, :3]
+            np.testing.assert_allclose(written, np.clip(colours, 0, 255), atol=0.51)
+        code, _, error = run("denoise", "lh.surf.gii", "lh.func.gii", "x.func.gii", "--weight", 3,
+                             "--colors", "opponent")
+        self.assertEqual(code, 0)
+        self.assertIn("--colors is opponent, but lh.func.gii has no colours", error)
+
     def test_denoise_removes_noise_and_keeps_an_edge(self):
         points, faces = samples.sphere(4)
         samples.write_surface("fine.surf.gii", points, faces)
@@ -349,13 +363,14 @@ class Reports(CommandTest):
     def test_threads_do_not_change_the_result(self):
         before = get_number_of_threads()
         try:
-            self.succeed("smooth lh.surf.gii lh.func.gii 5 all.npy")
-            self.succeed("smooth lh.surf.gii lh.func.gii 5 one.npy --threads 1")
+            self.succeed("smooth lh.surf.gii lh.func.gii 5 all.func.gii")
+            self.succeed("smooth lh.surf.gii lh.func.gii 5 one.func.gii --threads 1")
             self.assertEqual(get_number_of_threads(), 1)
         finally:
             set_number_of_threads(before)
-        np.testing.assert_array_equal(np.load("one.npy"), np.load("all.npy"))
-        code, _, error = run("smooth", "lh.surf.gii", "lh.func.gii", 5, "x.npy", "--threads", "x")
+        one, every = (read_data(name).parts[0].values for name in ("one.func.gii", "all.func.gii"))
+        np.testing.assert_array_equal(one, every)
+        code, _, error = run("smooth", "lh.surf.gii", "lh.func.gii", 5, "x.func.gii", "--threads", "x")
         self.assertEqual(code, 2)
         self.assertIn("allowed: a whole number from 0 to 1024", error)
 

@@ -202,6 +202,10 @@ def _denoise(commands):
                        help="the fidelity weight, in natural units; smaller removes more")
     level.add_argument("--noise", metavar="SD", type=_positive,
                        help="the standard deviation of the noise, in the unit of the data")
+    parser.add_argument("--colors", choices=("rgb", "opponent", "chromaticity"), default="rgb",
+                        help="for colours. rgb: red, green and blue have their edges in common "
+                             "(default); opponent: noise of hues is removed more than that of "
+                             "brightness; chromaticity: brightness and hue are separate")
 
 
 def _inpaint(commands):

@@ -35,15 +35,22 @@ def denoise(arguments, report):
 
     options = {"fidelity_weight": arguments.weight} if arguments.weight else {
         "automatic_fidelity": True, "noise_level": arguments.noise or 0.0}
+    model = {"rgb": "RGB", "opponent": "Opponent",
+             "chromaticity": "ChromaticityBrightness"}[arguments.colors]
+    found = []
     weights = report.facts.setdefault("fidelity_weights", [])
 
     def compute(surface, values, mask, progress):
+        found.append(values.shape[1] == 3)
         result = intrinsic_tv(surface, values, mask=mask, mask_mode="Exclude", mode="SteadyState",
-                              progress=progress, full_output=True, **options)
+                              color_model=model if found[-1] else "RGB", progress=progress,
+                              full_output=True, **options)
         weights.append(number(result.effective_fidelity_weight))
         return result.values
 
     _change_data(arguments, report, "Denoising", compute, _groups_of_arrays)
+    if arguments.colors != "rgb" and not any(found):
+        report.warn(f"--colors is {arguments.colors}, but {arguments.data} has no colours")
 
 
 def inpaint(arguments, report):
