@@ -408,6 +408,8 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
     task.Tolerance = tolerance;
     return ChooseSolver(SolverMethod::Automatic, task).Method;
   };
+  EXPECT_EQ(choice(3000, 0.1, 1), SolverMethod::Direct);
+  EXPECT_EQ(choice(3000, 0.1, 1, 1e-3), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(44000, 0.1, 1), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(44000, 100.0, 1), SolverMethod::Multigrid);
   EXPECT_EQ(choice(44000, 1.0, 10), SolverMethod::ConjugateGradient);

@@ -184,7 +184,7 @@ class Meshes(unittest.TestCase):
                 heat(other, "f")
         with self.assertRaisesRegex(TypeError, "the mesh is a (pyvista_)?ndarray; allowed: pyvista.PolyData"):
             heat(np.asarray(mesh.points), "f")
-        with self.assertRaisesRegex(ValueError, "array is 'g'; allowed: point arrays, 'f', 'hole'"):
+        with self.assertRaisesRegex(ValueError, "array is 'g'; allowed: point or cell arrays, 'f', 'hole'"):
             heat(mesh, "g")
         with self.assertRaisesRegex(ValueError, "mask is 'h'; allowed: point arrays"):
             heat(mesh, "f", mask="h")

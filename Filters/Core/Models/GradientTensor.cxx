@@ -28,7 +28,8 @@ public:
   {
     for (int a = 0; a < 3; ++a)
     {
-      this->Corners[a] = u.data() + mesh.TriangleVertices()(t, a) * u.cols();
+      this->Corners[a] =
+        u.data() + static_cast<std::ptrdiff_t>(mesh.TriangleVertices()(t, a)) * u.cols();
     }
   }
 

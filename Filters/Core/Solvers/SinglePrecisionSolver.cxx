@@ -79,7 +79,7 @@ void SinglePrecisionSolver::Take(const Values& r, const Group& group)
     }
   }
   const std::vector<Index>& rows = this->Matrix.RowsInOrder();
-  float* const directions = this->P.data() + group.First * rows.size();
+  float* const directions = this->P.data() + static_cast<std::size_t>(group.First) * rows.size();
   ForEach(this->Parallel, static_cast<Index>(rows.size()),
     [&](Index place)
     {
@@ -105,7 +105,8 @@ int SinglePrecisionSolver::Iterate(
   const Group& group, int maximumNumberOfIterations, bool* solved, const ProgressMonitor& progress)
 {
   const int count = group.Count;
-  float* const p = this->P.data() + group.First * this->Matrix.PaddedRows();
+  float* const p =
+    this->P.data() + static_cast<std::size_t>(group.First) * this->Matrix.PaddedRows();
   bool active[Group::Most];
   double goals[Group::Most] = {};
   double sums[Group::Most] = {};
