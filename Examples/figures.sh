@@ -48,6 +48,7 @@ cd build/figures
 "${display[@]}" "$python" "$examples/colour_denoising.py" --meshes "$SURFACEDIFFUSION_MESH_DIR" \
   --photos "$photos" --output .
 "${display[@]}" "$python" "$examples/deblurring_cortex.py" || [ $? -eq 77 ] # without wb_command
+"${display[@]}" "$python" "$examples/cell_data.py"
 "${display[@]}" "$python" "$examples/harmonic_map.py"
 "${display[@]}" "$python" "$examples/mumford_shah.py"
 "${display[@]}" "$python" "$examples/minimal_surface.py"
