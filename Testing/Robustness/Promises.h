@@ -190,6 +190,28 @@ inline std::string ExpectTangentialUnitOrZero(vtkPolyData* surface, vtkDataArray
     Text("%.0f without direction", static_cast<double>(zeros));
 }
 
+/// The points of the output are those of the input plus the displacements, which are finite.
+inline std::string ExpectMovedPoints(
+  vtkPolyData* input, vtkPolyData* output, vtkDataArray* displacements)
+{
+  const double roundOff = input->GetPoints()->GetDataType() == VTK_FLOAT ? 1e-6 : 1e-14;
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const double from = input->GetPoint(i)[k];
+      const double to = output->GetPoint(i)[k];
+      const double moved = displacements->GetComponent(i, k);
+      EXPECT_TRUE(std::isfinite(moved)) << "point " << i;
+      const double size = std::abs(from) + std::abs(to) + std::abs(moved);
+      EXPECT_LE(std::abs(to - from - moved), roundOff * size) << "point " << i;
+      largest = std::max(largest, std::abs(moved));
+    }
+  }
+  return Text("points moved by %.1e", largest);
+}
+
 /// Concentrations are not negative, and the texture is in [0, 1].
 inline std::string ExpectPatternBounds(vtkPolyDataAlgorithm* filter)
 {
@@ -322,6 +344,10 @@ inline std::string ExpectPromises(
   if (auto* segmentation = vtkSurfaceSegmentationFilter::SafeDownCast(filter))
   {
     return ExpectLabelsAndProbabilities(segmentation, u);
+  }
+  if (vtkSurfaceDenoisingFilter::SafeDownCast(filter))
+  {
+    return ExpectMovedPoints(input, filter->GetOutput(), u);
   }
   return ExpectTangentialUnitOrZero(input, u);
 }

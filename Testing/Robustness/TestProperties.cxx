@@ -79,6 +79,8 @@ vtkSmartPointer<vtkPolyData> PatchedEllipsoid()
     surface, "bytes", 3, [](vtkIdType i, int k) { return std::floor(127.0 + 120.0 * Rough(i, k)); },
     VTK_UNSIGNED_CHAR);
   AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 7 == 3; });
+  surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 3,
+    [](vtkIdType i, int k) { return 2.0 + Rough(i, k); }));
   AddPointArray(surface, "e1", 3, [](vtkIdType, int k) { return k == 1 ? 1.0 : 0.3; });
   surface->GetPointData()->SetActiveScalars("f");
   return surface;
@@ -103,6 +105,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Direction = vtkSurfaceDirectionFieldFilter;
   using Segmentation = vtkSurfaceSegmentationFilter;
   using Tensor = vtkTensorDiffusionFilter;
+  using Denoising = vtkSurfaceDenoisingFilter;
   std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
   needed["MergeTolerance"] = With<Surface>([](Surface* f) { f->MergeCoincidentPointsOn(); });
   needed["OutputInterval"] = With<Diffusion>([](Diffusion* f) { f->GenerateTimeStepsOn(); });
@@ -112,6 +115,10 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed[name + std::string(" RandomSeed")] =
       With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
   }
+  needed["ResultOnCells"] = needed["KeepCellDetail"] =
+    With<Data>([](Data* f) { SetInputArray(f, 0, "c", true); });
+  needed["vtkSurfaceDenoisingFilter SurfaceType"] =
+    With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
   needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
     With<TV>([](TV* f) { f->SetStopTolerance(0.1); }); // it takes long otherwise
