@@ -116,7 +116,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
   }
   needed["ResultOnCells"] = needed["KeepCellDetail"] =
-    With<Data>([](Data* f) { SetInputArray(f, 0, "c", true); });
+    [](vtkPolyDataAlgorithm* f) { SetInputArray(f, 0, "c", true); };
   needed["vtkSurfaceDenoisingFilter SurfaceType"] =
     With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
