@@ -115,8 +115,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed[name + std::string(" RandomSeed")] =
       With<Data>([](Data* f) { f->SetInitialFillToNoise(); });
   }
-  needed["ResultOnCells"] = needed["KeepCellDetail"] =
-    [](vtkPolyDataAlgorithm* f) { SetInputArray(f, 0, "c", true); };
+  needed["ResultOnCells"] =
+    needed["KeepCellDetail"] = [](vtkPolyDataAlgorithm* f) { SetInputArray(f, 0, "c", true); };
   needed["vtkSurfaceDenoisingFilter SurfaceType"] =
     With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
