@@ -21,27 +21,13 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 void DenoisingRun::Update(
   const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress)
 {
-  const SettingsSnapshot surfaceSettings(settings, SettingScope::Surface);
-  const SettingsSnapshot modelSettings(settings, SettingScope::Model);
-  if (!this->Domain || this->SurfaceVersion != input.SurfaceVersion ||
-    this->SurfaceSettings != surfaceSettings)
-  {
-    this->HasResult = false;
-    this->Domain.reset();
-    SurfaceOptions options;
-    options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
-    options.MergeTolerance = settings.MergeTolerance;
-    this->Domain = std::make_unique<Surface>(
-      input.ReadSurface(), options, this->Parallel, progress.Part(0.0, 0.1));
-    this->SurfaceVersion = input.SurfaceVersion;
-    this->SurfaceSettings = surfaceSettings;
-  }
-  if (this->HasResult && this->FieldsVersion == input.FieldsVersion &&
-    this->ModelSettings == modelSettings)
+  SurfaceOptions options;
+  options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
+  options.MergeTolerance = settings.MergeTolerance;
+  if (!this->Prepare(input, settings, options, progress.Part(0.0, 0.1)))
   {
     return;
   }
-  this->HasResult = false;
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   const double unit = mesh.LengthUnit();
@@ -80,9 +66,7 @@ void DenoisingRun::Update(
       this->Moved.row(p) += unit * (moved.row(vertex) - points.row(vertex));
     }
   }
-  this->FieldsVersion = input.FieldsVersion;
-  this->ModelSettings = modelSettings;
-  this->HasResult = true;
+  this->Complete(input, settings);
 }
 
 } // namespace SurfaceDiffusion

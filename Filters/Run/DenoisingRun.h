@@ -3,10 +3,8 @@
 #pragma once
 
 #include "Core/Geometry/SurfaceDenoising.h"
-#include "Run/Run.h"
+#include "Run/SurfaceRun.h"
 #include "Run/WarningLog.h"
-
-#include <memory>
 
 namespace SurfaceDiffusion
 {
@@ -23,11 +21,11 @@ struct DenoisingRunSettings : Settings
 };
 
 /// The denoised points of one surface, kept as long as neither inputs nor settings change.
-class DenoisingRun
+class DenoisingRun : public SurfaceRun
 {
 public:
   explicit DenoisingRun(const ParallelFor& parallel)
-    : Parallel(parallel)
+    : SurfaceRun(parallel)
   {
   }
 
@@ -35,22 +33,14 @@ public:
   void Update(
     const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
 
-  const Surface& GetSurface() const { return *this->Domain; }
   /// Per input point, in coordinate units.
   const Points& MovedPoints() const { return this->Moved; }
   /// Lengths in coordinate units.
   const DenoisingReport& Report() const { return this->Found; }
-  /// The surface that the result belongs to.
-  const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
 
 private:
-  const ParallelFor& Parallel;
-  Fingerprint SurfaceVersion, FieldsVersion;
-  SettingsSnapshot SurfaceSettings, ModelSettings;
-  std::unique_ptr<Surface> Domain;
   Points Moved;
   DenoisingReport Found;
-  bool HasResult = false;
 };
 
 } // namespace SurfaceDiffusion

@@ -61,27 +61,13 @@ double DirectionFieldRun::MeanEdgeLength() const
 void DirectionFieldRun::Update(
   const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress)
 {
-  const SettingsSnapshot surfaceSettings(settings, SettingScope::Surface);
-  const SettingsSnapshot modelSettings(settings, SettingScope::Model);
-  if (!this->Domain || this->SurfaceVersion != input.SurfaceVersion ||
-    this->SurfaceSettings != surfaceSettings)
-  {
-    this->HasField = false;
-    this->Domain.reset();
-    SurfaceOptions options;
-    options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
-    options.MergeTolerance = settings.MergeTolerance;
-    this->Domain = std::make_unique<Surface>(
-      input.ReadSurface(), options, this->Parallel, progress.Part(0.0, 0.1));
-    this->SurfaceVersion = input.SurfaceVersion;
-    this->SurfaceSettings = surfaceSettings;
-  }
-  if (this->HasField && this->FieldsVersion == input.FieldsVersion &&
-    this->ModelSettings == modelSettings)
+  SurfaceOptions options;
+  options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
+  options.MergeTolerance = settings.MergeTolerance;
+  if (!this->Prepare(input, settings, options, progress.Part(0.0, 0.1)))
   {
     return;
   }
-  this->HasField = false;
   const TriangleMesh& mesh = this->Domain->Mesh();
   const double h = this->MeanEdgeLength() / mesh.LengthUnit();
   DirectionSettings core;
@@ -96,9 +82,7 @@ void DirectionFieldRun::Update(
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
     this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0), &this->Report);
-  this->FieldsVersion = input.FieldsVersion;
-  this->ModelSettings = modelSettings;
-  this->HasField = true;
+  this->Complete(input, settings);
 }
 
 std::vector<Warning> DirectionFieldRun::FindWarnings() const

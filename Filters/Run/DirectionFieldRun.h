@@ -3,10 +3,8 @@
 #pragma once
 
 #include "Core/Geometry/DirectionField.h"
-#include "Run/Run.h"
+#include "Run/SurfaceRun.h"
 #include "Run/WarningLog.h"
-
-#include <memory>
 
 namespace SurfaceDiffusion
 {
@@ -29,11 +27,11 @@ struct DirectionFieldSettings : Settings
 };
 
 /// The line field of one surface, kept as long as neither inputs nor settings change.
-class DirectionFieldRun
+class DirectionFieldRun : public SurfaceRun
 {
 public:
   explicit DirectionFieldRun(const ParallelFor& parallel)
-    : Parallel(parallel)
+    : SurfaceRun(parallel)
   {
   }
 
@@ -41,24 +39,16 @@ public:
   void Update(
     const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress);
 
-  const Surface& GetSurface() const { return *this->Domain; }
   /// e1 per triangle of the surface's InputMesh().
   const TangentVectors& Directions() const { return this->Field; }
   /// In coordinate units.
   double MeanEdgeLength() const;
   /// The warnings about the line field that hold.
   std::vector<Warning> FindWarnings() const;
-  /// The surface that the line field belongs to.
-  const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
 
 private:
-  const ParallelFor& Parallel;
-  Fingerprint SurfaceVersion, FieldsVersion;
-  SettingsSnapshot SurfaceSettings, ModelSettings;
-  std::unique_ptr<Surface> Domain;
   TangentVectors Field;
   LineFieldReport Report;
-  bool HasField = false;
 };
 
 } // namespace SurfaceDiffusion

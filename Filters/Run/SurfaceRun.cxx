@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/SurfaceRun.h"
+
+namespace SurfaceDiffusion
+{
+
+bool SurfaceRun::Prepare(const BlockInput& input, Settings& settings, const SurfaceOptions& options,
+  const ProgressMonitor& progress)
+{
+  const SettingsSnapshot surfaceSettings(settings, SettingScope::Surface);
+  if (!this->Domain || this->SurfaceVersion != input.SurfaceVersion ||
+    this->SurfaceSettings != surfaceSettings)
+  {
+    this->HasResult = false;
+    this->Domain.reset();
+    this->Domain =
+      std::make_unique<Surface>(input.ReadSurface(), options, this->Parallel, progress);
+    this->SurfaceVersion = input.SurfaceVersion;
+    this->SurfaceSettings = surfaceSettings;
+  }
+  const bool isCurrent = this->HasResult && this->FieldsVersion == input.FieldsVersion &&
+    this->ModelSettings == SettingsSnapshot(settings, SettingScope::Model);
+  this->HasResult = isCurrent;
+  return !isCurrent;
+}
+
+void SurfaceRun::Complete(const BlockInput& input, Settings& settings)
+{
+  this->FieldsVersion = input.FieldsVersion;
+  this->ModelSettings = SettingsSnapshot(settings, SettingScope::Model);
+  this->HasResult = true;
+}
+
+} // namespace SurfaceDiffusion

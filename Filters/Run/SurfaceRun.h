@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/Run.h"
+
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+/// A computation on one surface without time steps. The surface and the result are kept as long as
+/// neither the inputs nor the settings that they depend on change.
+class SurfaceRun
+{
+public:
+  const Surface& GetSurface() const { return *this->Domain; }
+  /// The surface that the result belongs to.
+  const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
+
+protected:
+  explicit SurfaceRun(const ParallelFor& parallel)
+    : Parallel(parallel)
+  {
+  }
+
+  /// Make the surface unless it is kept. Returns whether the result has to be computed.
+  bool Prepare(const BlockInput& input, Settings& settings, const SurfaceOptions& options,
+    const ProgressMonitor& progress);
+  /// The result of this input and these settings has been computed.
+  void Complete(const BlockInput& input, Settings& settings);
+
+  const ParallelFor& Parallel;
+  Fingerprint SurfaceVersion, FieldsVersion;
+  std::unique_ptr<Surface> Domain;
+
+private:
+  SettingsSnapshot SurfaceSettings, ModelSettings;
+  bool HasResult = false;
+};
+
+} // namespace SurfaceDiffusion
