@@ -69,7 +69,7 @@ class Page:
             if size > MEGABYTES:
                 raise ValueError(f"the files have {size:.0f} MB; allowed: {MEGABYTES:.0f} MB")
             mesh = read_mesh(given)
-        except Exception as problem:  # the page stays as it was, whatever a file holds
+        except Exception as problem:  # a file that cannot be read leaves the page as it was
             self.state.message = str(problem) or type(problem).__name__
             return
         self.state.message = ""

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/LaggedDiffusion.h"
 
+#include "Core/Operators/SparsePattern.h"
+
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -89,7 +91,7 @@ void LaggedDiffusion::AdvanceGroup(
   if (this->Damping > 0.0)
   {
     ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i) { this->Diagonal[i] = this->System.GetMatrix().coeff(i, i); });
+      [&](Index i) { this->Diagonal[i] = DiagonalEntry(this->System.GetMatrix(), i); });
     this->System.AddToDiagonal(this->Damping, this->Diagonal);
   }
   if (unknowns.NoChange.size() > 0)
