@@ -5,6 +5,7 @@
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
 #include "Conversion/MirroredEnum.h"
+#include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/SurfaceReader.h"
@@ -46,10 +47,7 @@ vtkSmartPointer<vtkDataArray> WriteDisplacement(const DenoisingRun& run, const s
 {
   const Points& given = run.GetSurface().Points();
   const Points& moved = run.MovedPoints();
-  auto result = vtkSmartPointer<vtkDoubleArray>::New();
-  result->SetName(name.c_str());
-  result->SetNumberOfComponents(3);
-  result->SetNumberOfTuples(given.rows());
+  auto result = NewArray<vtkDoubleArray>(name, 3, given.rows());
   for (Eigen::Index i = 0; i < given.rows(); ++i)
   {
     const Eigen::RowVector3d displacement = moved.row(i) - given.row(i);
