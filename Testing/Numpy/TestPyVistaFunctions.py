@@ -186,7 +186,7 @@ class Meshes(unittest.TestCase):
             heat(np.asarray(mesh.points), "f")
         with self.assertRaisesRegex(ValueError, "array is 'g'; allowed: point or cell arrays, 'f', 'hole'"):
             heat(mesh, "g")
-        with self.assertRaisesRegex(ValueError, "mask is 'h'; allowed: point arrays"):
+        with self.assertRaisesRegex(ValueError, "mask is 'h'; allowed: point or cell arrays, 'f', 'hole'"):
             heat(mesh, "f", mask="h")
         with self.assertRaisesRegex(ValueError, "the mesh is empty"):
             heat(pyvista.PolyData(), "f")
