@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RandomRun.h"
 
-#include "Core/Geometry/DirectionField.h"
+#include "RandomInput.h"
+
 #include "Core/Models/BeltramiFlow.h"
 #include "Core/Models/CrouzeixRaviart.h"
 #include "Core/Models/HarmonicMap.h"
@@ -36,37 +37,6 @@ namespace SurfaceDiffusion::Testing
 
 namespace
 {
-
-void Require(bool holds, const char* violated)
-{
-  if (!holds)
-  {
-    throw std::logic_error(violated);
-  }
-}
-
-/// Reads numbers from bytes, and zeros after the last byte.
-class Bytes
-{
-public:
-  Bytes(const std::uint8_t* bytes, std::size_t count)
-    : Next(bytes)
-    , End(bytes + count)
-  {
-  }
-  int Below(int limit) { return this->Byte() % limit; }
-  bool Flip(int oneIn = 2) { return this->Below(oneIn) == 1; }
-  /// One of a few values in [-1, 1], so that many are equal.
-  double Short() { return (this->Byte() - 128) / 128.0; }
-  /// A positive number of any size between 10^-span and 10^span.
-  double Size(double span) { return std::pow(10.0, span * this->Short()); }
-
-private:
-  std::uint8_t Byte() { return this->Next == this->End ? 0 : *this->Next++; }
-
-  const std::uint8_t* Next;
-  const std::uint8_t* End;
-};
 
 Points ReadPoints(Bytes& bytes)
 {
@@ -180,13 +150,6 @@ struct Promises
   bool Solution = true; ///< the systems have one
   double Fidelity = 0.0; ///< lambda, in the unit of the energy
 };
-
-/// Cotangents so large that nothing is left of the numbers to which they are added.
-bool HasFlatTriangles(const TriangleMesh& mesh)
-{
-  const CornerWeights c = CotanWeights(mesh);
-  return c.size() > 0 && c.cwiseAbs().maxCoeff() > 1e8;
-}
 
 void CheckState(const TriangleMesh& mesh, const Model& model, const Values& start,
   double energyBefore, double energyAtStart, const Promises& promises)
@@ -559,28 +522,6 @@ void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
   Run(mesh, model, Promises());
 }
 
-void RunDirections(Bytes& bytes, const Assembler& assembler, const Points& points,
-  const Triangles& triangles, const TangentVectors& frames)
-{
-  DirectionSettings settings;
-  settings.Method = static_cast<DirectionMethod>(bytes.Below(4));
-  settings.Perpendicular = bytes.Flip();
-  settings.SmoothingLength = bytes.Flip() ? bytes.Size(3.0) : 0.0;
-  settings.HintWeight = bytes.Size(6.0);
-  settings.Angle = 10.0 * bytes.Short();
-  if (HasFlatTriangles(assembler.Mesh()))
-  {
-    return;
-  }
-  const TangentVectors field = MakeDirectionField(assembler, points, triangles,
-    settings.Method == DirectionMethod::Hints ? frames : TangentVectors(0, 2), settings);
-  Require(field.rows() == assembler.Mesh().NumberOfTriangles(), "a triangle has no direction");
-  for (const auto& d : field.rowwise())
-  {
-    Require(std::abs(d.norm() - 1.0) < 1e-9 || d.norm() == 0.0, "a direction is not one long");
-  }
-}
-
 } // namespace
 
 void RunFromBytes(const std::uint8_t* begin, std::size_t count)
@@ -598,7 +539,7 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   TangentVectors frames = TangentVectorsFromPointVectors(*original, points, triangles, vectors);
   if (model == 5)
   {
-    RunDirections(bytes, Assembler(original), points, triangles, frames);
+    RunGeometry(bytes, Assembler(original), points, triangles, frames);
     return;
   }
   const bool delaunay = bytes.Flip();
