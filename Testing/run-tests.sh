@@ -1,12 +1,15 @@
 #!/bin/sh
+# Usage: run-tests.sh [versions]
 # Installs what is needed, builds, and runs every test. The last lines are ctest's summary, with the
 # seconds of processor time per label. In CI (CI is set) it is an error if test data are missing.
+# With "versions" it fetches other versions of VTK, and runs the tests that build the project with
+# each of them, and with pip, instead: these take as long as all others.
 set -eu
 cd "$(dirname "$0")/.."
 
 .ci/install-packages
 data="$PWD/build/data"
-if ! .ci/fetch-test-data "$data"; then
+if ! .ci/fetch-test-data "$data" "$@"; then
   [ -z "${CI:-}" ] || exit 1
   echo "no test data: tests that need it are skipped or left out" >&2
 fi
@@ -28,4 +31,4 @@ cmake --preset build \
 cmake --build --preset build
 
 # One display for all tests; -noreset: it outlives its first client.
-exec xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset test -j2
+exec xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "${1:-test}" -j2
