@@ -29,6 +29,7 @@ DomainDecomposition::DomainDecomposition(
   const Processes& processes, const Surface& surface, const PointIdentity& identity)
   : Reduction(Reduction::Kind::Distributed)
   , Group(processes)
+  , Neighbours(identity.Neighbours)
 {
   this->FindInterfaceVertices(surface.InputMesh(), identity);
   this->MergeComponents(surface.InputMesh(), identity);
@@ -59,35 +60,23 @@ void DomainDecomposition::Max(double* numbers, Index count) const
 void DomainDecomposition::FindInterfaceVertices(
   const TriangleMesh& mesh, const PointIdentity& identity)
 {
-  // A piece knows only from its own points that they have the labels of others. All processes
-  // exchange these labels, so that their owners know them too.
-  std::vector<vtkIdType> foreign;
-  for (std::size_t i = 0; i < identity.Labels.size(); ++i)
-  {
-    if (identity.Labels[i] != identity.FirstLabel + static_cast<vtkIdType>(i))
-    {
-      foreign.push_back(identity.Labels[i]);
-    }
-  }
-  foreign = this->Group.GatherAll(foreign);
-  const std::set<vtkIdType> shared(foreign.begin(), foreign.end());
+  const std::set<vtkIdType> shared(identity.Shared.begin(), identity.Shared.end());
   std::vector<vtkIdType> labels;
   std::map<vtkIdType, Index> vertexOf;
   for (Index v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    const vtkIdType label = identity.Labels[mesh.InputVertex()[v]];
-    if (shared.count(label) > 0)
+    const Index point = mesh.InputVertex()[v];
+    if (shared.count(point) > 0)
     {
-      labels.push_back(label);
-      vertexOf[label] = v;
+      labels.push_back(identity.Labels[point]);
+      vertexOf[identity.Labels[point]] = v;
     }
   }
-  const auto perProcess = this->Group.GatherPerProcess(labels);
-  for (int p = 0; p < this->Group.Count(); ++p)
+  for (const auto& [process, held] : this->ShareWithNeighbours(labels))
   {
-    for (const vtkIdType label : perProcess[p])
+    for (const vtkIdType label : held)
     {
-      this->Holders[label].push_back(p);
+      this->Holders[label].push_back(process);
     }
   }
   this->OwnedVertices.assign(mesh.NumberOfVertices(), true);
@@ -96,6 +85,20 @@ void DomainDecomposition::FindInterfaceVertices(
     this->OwnedVertices[vertex] =
       this->AddToInterface(this->Vertices, vertex, this->Holders[label]);
   }
+}
+
+/// The values of the neighbours and of this process, by rank.
+std::map<int, std::vector<vtkIdType>> DomainDecomposition::ShareWithNeighbours(
+  const std::vector<vtkIdType>& here) const
+{
+  std::map<int, std::vector<vtkIdType>> sent;
+  for (const int process : this->Neighbours)
+  {
+    sent[process] = here;
+  }
+  std::map<int, std::vector<vtkIdType>> all = this->Group.Exchange(this->Neighbours, sent);
+  all[this->Group.Rank()] = here;
+  return all;
 }
 
 bool DomainDecomposition::IsOnInterface(vtkIdType label) const
@@ -140,20 +143,39 @@ void DomainDecomposition::MergeComponents(const TriangleMesh& mesh, const PointI
       }
     }
   }
-  pairs = this->Group.GatherAll(pairs);
-  DisjointSets connected(std::accumulate(counts.begin(), counts.end(), 0));
-  std::map<vtkIdType, Index> componentOf;
+  std::map<vtkIdType, vtkIdType> own; // by label
   for (std::size_t i = 0; i < pairs.size(); i += 2)
   {
-    const auto component = static_cast<Index>(pairs[i + 1]);
-    const auto known = componentOf.emplace(pairs[i], component).first;
-    connected.Join(component, known->second);
+    own[pairs[i]] = pairs[i + 1];
+  }
+  std::set<std::array<vtkIdType, 2>> adjacent;
+  for (const auto& [process, theirs] : this->ShareWithNeighbours(pairs))
+  {
+    for (std::size_t i = 0; i < theirs.size(); i += 2)
+    {
+      const auto found = own.find(theirs[i]);
+      if (found != own.end())
+      {
+        adjacent.insert({ found->second, theirs[i + 1] });
+      }
+    }
+  }
+  std::vector<vtkIdType> joined;
+  for (const auto& pair : adjacent)
+  {
+    joined.insert(joined.end(), pair.begin(), pair.end());
+  }
+  joined = this->Group.GatherAll(joined);
+  DisjointSets connected(std::accumulate(counts.begin(), counts.end(), 0));
+  for (std::size_t i = 0; i < joined.size(); i += 2)
+  {
+    connected.Join(static_cast<Index>(joined[i]), static_cast<Index>(joined[i + 1]));
   }
   const std::vector<Index> numbers = connected.Labels();
   this->NumberOfComponents =
     numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1;
-  const auto own = numbers.begin() + first;
-  this->SurfaceComponent.assign(own, own + mesh.NumberOfComponents());
+  const auto here = numbers.begin() + first;
+  this->SurfaceComponent.assign(here, here + mesh.NumberOfComponents());
 }
 
 /// Edges of this process between vertices on interfaces.
@@ -188,16 +210,15 @@ void DomainDecomposition::FindInterfaceEdges(
     ends.push_back(edge.first.first);
     ends.push_back(edge.first.second);
   }
-  const auto perProcess = this->Group.GatherPerProcess(ends);
   std::map<EdgeMap::key_type, std::vector<int>> holders;
-  for (int p = 0; p < this->Group.Count(); ++p)
+  for (const auto& [process, theirs] : this->ShareWithNeighbours(ends))
   {
-    for (std::size_t e = 0; e < perProcess[p].size(); e += 2)
+    for (std::size_t e = 0; e < theirs.size(); e += 2)
     {
-      const EdgeMap::key_type key(perProcess[p][e], perProcess[p][e + 1]);
+      const EdgeMap::key_type key(theirs[e], theirs[e + 1]);
       if (edges.count(key) > 0)
       {
-        holders[key].push_back(p);
+        holders[key].push_back(process);
       }
     }
   }
@@ -233,13 +254,13 @@ void DomainDecomposition::FindCopies(const Surface& surface, const PointIdentity
     const auto after = std::upper_bound(firsts.begin(), firsts.end(), label);
     return static_cast<int>(after - firsts.begin()) - 1;
   };
-  std::vector<vtkIdType> labels;
+  std::map<int, std::vector<vtkIdType>> labels; // by the process that has the point
   for (std::size_t i = 0; i < identity.Labels.size(); ++i)
   {
     const vtkIdType label = identity.Labels[i];
     if (surface.VertexOf(static_cast<Index>(i)) < 0 && sourceOf(label) != rank)
     {
-      labels.push_back(label);
+      labels[sourceOf(label)].push_back(label);
       this->Copies[sourceOf(label)].push_back(static_cast<vtkIdType>(i));
       ++this->CopyCount;
     }
@@ -252,17 +273,13 @@ void DomainDecomposition::FindCopies(const Surface& surface, const PointIdentity
       pointOf[identity.Labels[point]] = point;
     }
   }
-  const auto perProcess = this->Group.GatherPerProcess(labels);
-  for (int p = 0; p < this->Group.Count(); ++p)
+  for (const auto& [process, asked] : this->Group.Exchange(this->Neighbours, labels))
   {
-    for (const vtkIdType label : perProcess[p])
+    for (const vtkIdType label : asked)
     {
-      if (sourceOf(label) == rank)
-      {
-        const auto point = pointOf.find(label);
-        this->Originals[p].push_back(
-          point != pointOf.end() ? point->second : label - identity.FirstLabel);
-      }
+      const auto point = pointOf.find(label);
+      this->Originals[process].push_back(
+        point != pointOf.end() ? point->second : label - identity.FirstLabel);
     }
   }
 }

@@ -71,6 +71,8 @@ private:
   EdgeMap FindCandidateEdges(const TriangleMesh& mesh, const PointIdentity& identity) const;
   void FindInterfaceEdges(const TriangleMesh& mesh, const PointIdentity& identity);
   void FindCopies(const Surface& surface, const PointIdentity& identity);
+  std::map<int, std::vector<vtkIdType>> ShareWithNeighbours(
+    const std::vector<vtkIdType>& here) const;
   bool IsOnInterface(vtkIdType label) const;
   bool AddToInterface(Interface& to, Index item, const std::vector<int>& holders) const;
 
@@ -84,7 +86,9 @@ private:
   void Exchange(int other, const std::vector<T>& sent, std::vector<T>& received) const;
 
   const Processes Group;
-  std::map<vtkIdType, std::vector<int>> Holders; ///< of labels that several pieces have: ranks
+  const std::vector<int> Neighbours; ///< ranks, ascending
+  /// Of labels that several pieces have: the ranks among the neighbours and this process.
+  std::map<vtkIdType, std::vector<int>> Holders;
   Interface Vertices, Edges;
   std::map<int, std::vector<vtkIdType>> Originals, Copies; ///< points, by the other process
   vtkIdType CopyCount = 0;

@@ -11,6 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -105,25 +108,42 @@ private:
   std::vector<std::pair<vtkIdType, vtkIdType>> Edges;
 };
 
-/// Per point whether it lies inside the bounding box of another piece of the surface.
-std::vector<char> FindCandidates(const SurfacePiece& piece, std::size_t number,
-  const std::vector<PieceEntry>& list, double tolerance)
+bool Meet(const PieceEntry& a, const PieceEntry& b, double reach)
+{
+  if (a.Surface != b.Surface || !a.Box.IsValid() || !b.Box.IsValid())
+  {
+    return false;
+  }
+  vtkBoundingBox first = a.Box;
+  vtkBoundingBox second = b.Box;
+  first.Inflate(reach);
+  second.Inflate(reach);
+  return first.Intersects(second) != 0;
+}
+
+/// Per process with another piece of the surface nearby, this one included: for each point of the
+/// piece whether it lies inside the bounding box of such a piece.
+std::map<int, std::vector<char>> FindCandidates(
+  const SurfacePiece& piece, std::size_t number, const std::vector<PieceEntry>& list, double reach)
 {
   const vtkIdType count = piece.Input->GetNumberOfPoints();
-  std::vector<char> candidates(count, 0);
+  std::map<int, std::vector<char>> candidates;
   for (std::size_t other = 0; other < list.size(); ++other)
   {
-    vtkBoundingBox box = list[other].Box;
-    if (other == number || list[other].Surface != piece.Surface || !box.IsValid())
+    if (other == number || !Meet(list[number], list[other], reach))
     {
       continue;
     }
-    box.Inflate(tolerance);
+    vtkBoundingBox box = list[other].Box;
+    box.Inflate(reach);
+    std::vector<char>& inside = candidates[list[other].Process];
+    inside.resize(count, 0);
     for (vtkIdType i = 0; i < count; ++i)
     {
-      const double* const x = piece.Input->GetPoint(i);
+      double x[3];
+      piece.Input->GetPoint(i, x);
       const bool finite = std::all_of(x, x + 3, [](double value) { return std::isfinite(value); });
-      candidates[i] = candidates[i] || (finite && box.ContainsPoint(x));
+      inside[i] = inside[i] || (finite && box.ContainsPoint(x));
     }
   }
   return candidates;
@@ -136,41 +156,77 @@ constexpr std::size_t IntegersPerPoint = 3; // piece, label, flags
 /// Interface points as they are sent: integers of all, then of each the id or the coordinates.
 struct Message
 {
-  std::vector<vtkIdType> Integers, GlobalIds;
-  std::vector<double> Coordinates;
+  std::map<int, std::vector<vtkIdType>> Integers, GlobalIds; ///< by process
+  std::map<int, std::vector<double>> Coordinates;
 };
 
+/// Adds the points of a piece to the messages to other processes, and to that to this one those
+/// near any other piece.
 void AppendPoints(const SurfacePiece& piece, std::size_t number,
-  const std::vector<PieceEntry>& list, double tolerance, bool byId, Message& message)
+  const std::vector<PieceEntry>& list, double reach, bool byId, Message& message)
 {
   vtkPolyData* const data = piece.Input;
   const vtkIdType count = data->GetNumberOfPoints();
-  const std::vector<char> candidates = FindCandidates(piece, number, list, tolerance);
-  const OpenPoints open(data, candidates);
+  std::map<int, std::vector<char>> candidates = FindCandidates(piece, number, list, reach);
+  std::vector<char>& all = candidates[list[number].Process];
+  all.resize(count, 0);
+  for (const auto& near : candidates)
+  {
+    std::transform(all.begin(), all.end(), near.second.begin(), all.begin(), std::bit_or<>());
+  }
+  const OpenPoints open(data, all);
   vtkUnsignedCharArray* const ghosts = data->GetPointGhostArray();
   const auto ids = AsIdTypeArray(byId ? FindGlobalPointIds(data) : nullptr);
-  for (vtkIdType i = 0; i < count; ++i)
+  for (const auto& [process, inside] : candidates)
   {
-    if (!candidates[i])
+    for (vtkIdType i = 0; i < count; ++i)
     {
-      continue;
+      if (!inside[i])
+      {
+        continue;
+      }
+      const bool isDuplicate = ghosts && ghosts->GetNumberOfTuples() == count &&
+        (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+      const bool isUsed = open.IsUsed(i);
+      const vtkIdType flags =
+        (!isUsed || open.IsOnEdge(i) ? OpenFlag : 0) | (!isUsed || isDuplicate ? CopyFlag : 0);
+      std::vector<vtkIdType>& integers = message.Integers[process];
+      integers.insert(
+        integers.end(), { static_cast<vtkIdType>(number), list[number].FirstLabel + i, flags });
+      if (ids)
+      {
+        message.GlobalIds[process].push_back(ids->GetValue(i));
+        continue;
+      }
+      for (int k = 0; k < 3; ++k)
+      {
+        message.Coordinates[process].push_back(data->GetPoint(i)[k] + 0.0); // -0 becomes 0
+      }
     }
-    const bool isDuplicate = ghosts && ghosts->GetNumberOfTuples() == count &&
-      (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
-    const bool isUsed = open.IsUsed(i);
-    message.Integers.push_back(static_cast<vtkIdType>(number));
-    message.Integers.push_back(list[number].FirstLabel + i);
-    message.Integers.push_back(
-      (!isUsed || open.IsOnEdge(i) ? OpenFlag : 0) | (!isUsed || isDuplicate ? CopyFlag : 0));
-    if (ids)
+  }
+}
+
+/// The points of a message from or to one process.
+void ReadPoints(const std::vector<PieceEntry>& list, const std::vector<vtkIdType>& integers,
+  const std::vector<vtkIdType>& ids, const std::vector<double>& coordinates,
+  std::vector<InterfacePoint>& points)
+{
+  for (std::size_t i = 0; i < integers.size() / IntegersPerPoint; ++i)
+  {
+    const vtkIdType* const values = &integers[IntegersPerPoint * i];
+    InterfacePoint point;
+    point.Piece = static_cast<int>(values[0]);
+    point.Surface = list[point.Piece].Surface;
+    point.Label = values[1];
+    point.IsOpen = (values[2] & OpenFlag) != 0;
+    point.IsCopy = (values[2] & CopyFlag) != 0;
+    point.GlobalId = ids.empty() ? 0 : ids[i];
+    point.Coordinates = { 0.0, 0.0, 0.0 };
+    if (ids.empty())
     {
-      message.GlobalIds.push_back(ids->GetValue(i));
-      continue;
+      std::copy_n(&coordinates[3 * i], 3, point.Coordinates.begin());
     }
-    for (int k = 0; k < 3; ++k)
-    {
-      message.Coordinates.push_back(data->GetPoint(i)[k] + 0.0); // -0 becomes 0
-    }
+    points.push_back(point);
   }
 }
 
@@ -222,35 +278,48 @@ std::vector<PieceEntry> ListPieces(
   return list;
 }
 
-std::vector<InterfacePoint> GatherInterfacePoints(const Processes& processes,
-  const std::vector<SurfacePiece>& pieces, const std::vector<PieceEntry>& list, std::size_t first,
-  double tolerance, bool byId)
+std::vector<int> FindNeighbours(
+  const Processes& processes, const std::vector<PieceEntry>& list, double reach)
 {
-  Message message;
-  for (std::size_t p = 0; p < pieces.size(); ++p)
+  std::set<int> neighbours;
+  for (const PieceEntry& own : list)
   {
-    AppendPoints(pieces[p], first + p, list, tolerance, byId, message);
-  }
-  message.Integers = processes.GatherAll(message.Integers);
-  message.GlobalIds = processes.GatherAll(message.GlobalIds);
-  message.Coordinates = processes.GatherAll(message.Coordinates);
-  std::vector<InterfacePoint> points(message.Integers.size() / IntegersPerPoint);
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    InterfacePoint& point = points[i];
-    const vtkIdType* const integers = &message.Integers[IntegersPerPoint * i];
-    point.Piece = static_cast<int>(integers[0]);
-    point.Surface = list[point.Piece].Surface;
-    point.Label = integers[1];
-    point.IsOpen = (integers[2] & OpenFlag) != 0;
-    point.IsCopy = (integers[2] & CopyFlag) != 0;
-    point.GlobalId = byId ? message.GlobalIds[i] : 0;
-    point.Coordinates = { 0.0, 0.0, 0.0 };
-    if (!byId)
+    for (const PieceEntry& other : list)
     {
-      std::copy_n(&message.Coordinates[3 * i], 3, point.Coordinates.begin());
+      if (own.Process == processes.Rank() && other.Process != own.Process &&
+        Meet(own, other, reach))
+      {
+        neighbours.insert(other.Process);
+      }
     }
   }
+  return { neighbours.begin(), neighbours.end() };
+}
+
+std::vector<InterfacePoint> FindInterfacePoints(const Processes& processes,
+  const std::vector<int>& neighbours, const std::vector<SurfacePiece>& pieces,
+  const std::vector<PieceEntry>& list, std::size_t first, double reach, bool byId)
+{
+  Message sent;
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+  {
+    AppendPoints(pieces[p], first + p, list, reach, byId, sent);
+  }
+  Message received;
+  received.Integers = processes.Exchange(neighbours, sent.Integers);
+  received.GlobalIds = processes.Exchange(neighbours, sent.GlobalIds);
+  received.Coordinates = processes.Exchange(neighbours, sent.Coordinates);
+  const int rank = processes.Rank();
+  received.Integers[rank] = std::move(sent.Integers[rank]);
+  received.GlobalIds[rank] = std::move(sent.GlobalIds[rank]);
+  received.Coordinates[rank] = std::move(sent.Coordinates[rank]);
+  std::vector<InterfacePoint> points;
+  for (const auto& [process, integers] : received.Integers)
+  {
+    ReadPoints(list, integers, received.GlobalIds[process], received.Coordinates[process], points);
+  }
+  std::sort(points.begin(), points.end(),
+    [](const InterfacePoint& a, const InterfacePoint& b) { return a.Label < b.Label; });
   return points;
 }
 

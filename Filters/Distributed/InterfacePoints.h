@@ -51,10 +51,17 @@ vtkDataArray* FindGlobalPointIds(vtkPolyData* data);
 std::vector<PieceEntry> ListPieces(
   const Processes& processes, const std::vector<SurfacePiece>& pieces);
 
-/// The points of all processes that lie inside the bounding box of another piece of the same
-/// surface, enlarged by the tolerance. list[first] is the first piece of this process. Collective.
-std::vector<InterfacePoint> GatherInterfacePoints(const Processes& processes,
-  const std::vector<SurfacePiece>& pieces, const std::vector<PieceEntry>& list, std::size_t first,
-  double tolerance, bool byId);
+/// The processes with a piece whose bounding box meets that of a piece of the same surface in this
+/// process when both are enlarged by `reach`; ascending, without this process.
+std::vector<int> FindNeighbours(
+  const Processes& processes, const std::vector<PieceEntry>& list, double reach);
+
+/// The points that may be points of several pieces, ordered by label: those of this process's pieces
+/// that lie inside the bounding box of another piece of the same surface, enlarged by `reach`, and
+/// those of the neighbours' pieces that lie inside such a box of a piece of this process.
+/// list[first] is the first piece of this process. Every process calls it.
+std::vector<InterfacePoint> FindInterfacePoints(const Processes& processes,
+  const std::vector<int>& neighbours, const std::vector<SurfacePiece>& pieces,
+  const std::vector<PieceEntry>& list, std::size_t first, double reach, bool byId);
 
 } // namespace SurfaceDiffusion

@@ -69,14 +69,25 @@ std::vector<PointIdentity> FindIdentity(
     [](const SurfacePiece& piece)
     { return piece.Input->GetNumberOfPoints() > 0 && !FindGlobalPointIds(piece.Input); }));
   tolerance = ToleranceOf(list, tolerance);
+  const double reach = ReachOfMatching * tolerance;
+  const std::vector<int> neighbours = FindNeighbours(processes, list, reach);
   const std::vector<InterfacePoint> points =
-    GatherInterfacePoints(processes, pieces, list, first, tolerance, byId);
+    FindInterfacePoints(processes, neighbours, pieces, list, first, reach, byId);
   const std::vector<std::size_t> owners = MatchPoints(points, byId, tolerance);
 
   std::vector<PointIdentity> identities;
   for (std::size_t p = 0; p < pieces.size(); ++p)
   {
     identities.push_back(MakeIdentity(pieces[p].Input, list[first + p].FirstLabel, byId));
+    identities.back().Neighbours = neighbours;
+  }
+  std::vector<char> isShared(points.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (owners[i] != i)
+    {
+      isShared[i] = isShared[owners[i]] = 1;
+    }
   }
   for (std::size_t i = 0; i < points.size(); ++i)
   {
@@ -87,6 +98,10 @@ std::vector<PointIdentity> FindIdentity(
       const vtkIdType point = points[i].Label - identity.FirstLabel;
       const InterfacePoint& owner = points[owners[i]];
       identity.Labels[point] = owner.Label;
+      if (isShared[i])
+      {
+        identity.Shared.push_back(point);
+      }
       if (!byId && owner.Label != points[i].Label) // its place can differ by the tolerance
       {
         identity.Ids[point] = IdsOfPlaces(

@@ -18,7 +18,7 @@ namespace SurfaceDiffusion
 /// If all pieces have global point ids, points with one id are one point. Otherwise coincident
 /// points are, if at least one of them lies on the edge of its piece (on an edge of one triangle)
 /// or is used by ghost cells only: first those with equal coordinates, then, of the others, those
-/// within the tolerance. Points of one piece are never merged: if a piece has several coincident
+/// for which the first point within the tolerance, in the order of labels, is the same. Points of one piece are never merged: if a piece has several coincident
 /// points (two sheets that touch, split normals), its k-th is identified with the k-th of the other
 /// pieces.
 ///
@@ -37,10 +37,13 @@ struct PointIdentity
   /// Per point a number that does not depend on the partition, for random numbers: the global id,
   /// or a hash of the coordinates; see IdsOfPlaces().
   std::vector<std::int64_t> Ids;
+  std::vector<vtkIdType> Shared; ///< the points that are points of other pieces too, ascending
+  std::vector<int> Neighbours; ///< the processes that may have such points, ascending
 };
 
-/// The identity of the points of each of this process's pieces. Collective. tolerance: in
-/// coordinate units; negative: 1e-6 of the diagonal of the surface's bounding box.
+/// The identity of the points of each of this process's pieces. Points are sent only to processes
+/// with pieces nearby. Collective. tolerance: in coordinate units; negative: 1e-6 of the diagonal of
+/// the surface's bounding box.
 std::vector<PointIdentity> FindIdentity(
   const Processes& processes, const std::vector<SurfacePiece>& pieces, double tolerance);
 

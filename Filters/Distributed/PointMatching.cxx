@@ -101,8 +101,8 @@ private:
   std::vector<std::size_t> Owners;
 };
 
-/// Moves points within the tolerance of each other to the same coordinates, those of the first.
-/// Cubes of the tolerance's width hold the first points, so that 27 of them are searched.
+/// Moves each point to the first one of its surface within the tolerance, which may be itself.
+/// Cubes of the tolerance's width hold the points, so that 27 of them are searched.
 void SnapNearPoints(std::vector<InterfacePoint>& points, const Group& among, double tolerance)
 {
   using Cube = std::array<double, 4>; // surface, and the position in a grid
@@ -115,40 +115,39 @@ void SnapNearPoints(std::vector<InterfacePoint>& points, const Group& among, dou
     }
     return cube;
   };
-  std::map<Cube, Group> firsts;
+  std::map<Cube, Group> cubes;
+  for (const std::size_t p : among)
+  {
+    cubes[cubeOf(points[p])].push_back(p);
+  }
+  const auto isNear = [&](std::size_t p, std::size_t q)
+  {
+    return vtkMath::Distance2BetweenPoints(
+             points[p].Coordinates.data(), points[q].Coordinates.data()) <= tolerance * tolerance;
+  };
+  std::vector<std::size_t> firsts;
   for (const std::size_t p : among)
   {
     const Cube centre = cubeOf(points[p]);
-    const std::size_t* nearest = nullptr;
-    double distance = tolerance * tolerance;
+    std::size_t first = p;
     for (int n = 0; n < 27; ++n)
     {
       const int shift[3] = { n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1 };
-      const auto found = firsts.find(
-        { centre[0], centre[1] + shift[0], centre[2] + shift[1], centre[3] + shift[2] });
-      if (found == firsts.end())
+      const auto found =
+        cubes.find({ centre[0], centre[1] + shift[0], centre[2] + shift[1], centre[3] + shift[2] });
+      if (found != cubes.end())
       {
-        continue;
-      }
-      for (const std::size_t& first : found->second)
-      {
-        const double d = vtkMath::Distance2BetweenPoints(
-          points[first].Coordinates.data(), points[p].Coordinates.data());
-        if (d <= distance)
-        {
-          distance = d;
-          nearest = &first;
-        }
+        const auto near = std::find_if(found->second.begin(), found->second.end(),
+          [&](std::size_t q) { return q >= first || isNear(p, q); });
+        first = near == found->second.end() ? first : std::min(first, *near);
       }
     }
-    if (nearest)
-    {
-      points[p].Coordinates = points[*nearest].Coordinates;
-    }
-    else
-    {
-      firsts[centre].push_back(p);
-    }
+    firsts.push_back(first);
+  }
+  const std::vector<InterfacePoint> before = points;
+  for (std::size_t i = 0; i < among.size(); ++i)
+  {
+    points[among[i]].Coordinates = before[firsts[i]].Coordinates;
   }
 }
 

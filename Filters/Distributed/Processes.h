@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace SurfaceDiffusion
 {
 
 /// The processes of a vtkMultiProcessController; without a controller, this process alone. All
-/// calls but Rank(), Count() and Controller() are collective.
+/// calls but Rank(), Count(), Controller() and Exchange() are collective.
 class Processes
 {
 public:
@@ -55,6 +56,44 @@ public:
       begin += length;
     }
     return perProcess;
+  }
+
+  /// Exchanges a vector with each of the partners, which name this process too: those that they
+  /// sent, by partner. Each pair in turn, the process of lower rank first.
+  template <typename T>
+  std::map<int, std::vector<T>> Exchange(
+    const std::vector<int>& partners, const std::map<int, std::vector<T>>& sent) const
+  {
+    constexpr int tag = 7404;
+    static const std::vector<T> nothing;
+    std::map<int, std::vector<T>> received;
+    for (const int other : partners)
+    {
+      const auto found = sent.find(other);
+      const std::vector<T>& here = found == sent.end() ? nothing : found->second;
+      for (const bool send : { this->Rank() < other, this->Rank() > other })
+      {
+        if (send)
+        {
+          const auto length = static_cast<vtkIdType>(here.size());
+          this->Shared->Send(&length, 1, other, tag);
+          if (length > 0)
+          {
+            this->Shared->Send(here.data(), length, other, tag);
+          }
+          continue;
+        }
+        vtkIdType length = 0;
+        this->Shared->Receive(&length, 1, other, tag);
+        std::vector<T>& there = received[other];
+        there.resize(static_cast<std::size_t>(length));
+        if (length > 0)
+        {
+          this->Shared->Receive(there.data(), length, other, tag);
+        }
+      }
+    }
+    return received;
   }
 
   /// True if it is true in one of the processes.

@@ -17,10 +17,32 @@
 
 #include <gtest/gtest.h>
 
+#include <mpi.h>
+
 #include <limits>
 #include <random>
 
 using namespace Pieces;
+
+namespace
+{
+
+long gatheredBytes = 0; // that this process received from all processes
+
+} // namespace
+
+/// Counts what MPI's own function receives.
+extern "C" int MPI_Allgatherv(const void* sent, int count, MPI_Datatype type, void* received,
+  const int* counts, const int* offsets, MPI_Datatype receivedType, MPI_Comm communicator)
+{
+  int width = 0;
+  PMPI_Type_size(receivedType, &width);
+  for (int p = 0; p < Count(); ++p)
+  {
+    gatheredBytes += static_cast<long>(width) * counts[p];
+  }
+  return PMPI_Allgatherv(sent, count, type, received, counts, offsets, receivedType, communicator);
+}
 
 namespace
 {
@@ -762,6 +784,32 @@ TEST(PiecesTogether, TakeMarksOfCellsForPointData)
     EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "roughDiffused"), 1e-12)
       << index;
   }
+}
+
+/// Points on interfaces are sent to neighbours: nothing that all processes receive grows with them.
+TEST(PiecesTogether, SendTheirPointsToNeighboursOnly)
+{
+  std::vector<long> bytes;
+  for (const int n : { N, 4 * N })
+  {
+    for (const bool byId : { false, true })
+    {
+      const auto mine = WithData(Mine(n));
+      if (!byId)
+      {
+        mine->GetPointData()->SetGlobalIds(nullptr);
+      }
+      auto heat = Make<vtkFVMHeatFilter>("f", 1);
+      heat->SetInputData(mine);
+      gatheredBytes = 0;
+      heat->Update();
+      EXPECT_NE(Result(heat, "fDiffused"), nullptr);
+      bytes.push_back(gatheredBytes);
+    }
+  }
+  EXPECT_GT(bytes[0], 0);
+  EXPECT_EQ(bytes[2], bytes[0]);
+  EXPECT_EQ(bytes[3], bytes[1]);
 }
 
 /// Surfaces that are gathered in process 0.
