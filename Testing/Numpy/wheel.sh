@@ -1,8 +1,10 @@
 #!/bin/sh
 # Usage: wheel.sh SOURCE FOLDER WHEELS
-# Makes a source distribution of SOURCE, from it a wheel, and installs this into a new virtual
+# Makes a source distribution and a wheel of SOURCE, and installs the wheel into a new virtual
 # environment without VTK in FOLDER/environment, all without a network. WHEELS has what is needed
 # (.ci/fetch-test-data). FOLDER/system gets the wheel, too, with numpy and VTK of the system.
+# The wheel is built from SOURCE itself, so that the compiler cache has most of it; the source
+# distribution must have the same files. Testing/Packaging/python_versions.sh builds wheels from it.
 set -eu
 source=$1
 folder=$2
@@ -10,7 +12,8 @@ wheels=$3
 unset PYTHONPATH LD_LIBRARY_PATH
 export PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1
 export PIP_FIND_LINKS="$wheels"
-export CCACHE_BASEDIR="$folder" # see Testing/run-tests.sh
+export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
+export CC="${CC:-/usr/bin/cc}" CXX="${CXX:-/usr/bin/c++}" # the compilers of CMake, not those of Python
 export CMAKE_ARGS="-DSURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON ${CMAKE_ARGS:-}"
 
 rm -rf "$folder/environment" "$folder/dist" "$folder/source"
@@ -29,8 +32,12 @@ if [ "$size" -gt 2000000 ]; then
   exit 1
 fi
 tar -xzf dist/*.tar.gz -C source --strip-components 1
+for path in CMake Filters/Core Filters/Run Python/Extension Python/surfacediffusion \
+  Python/CMakeLists.txt Python/make_stubs.py CMakeLists.txt pyproject.toml README.md LICENSE; do
+  diff -r --exclude=__pycache__ "$source/$path" "source/$path"
+done
 environment/bin/pip wheel --quiet --no-deps --wheel-dir dist \
-  --config-settings=build-dir="$folder/build" "$folder/source"
+  --config-settings=build-dir="$folder/build" "$source"
 environment/bin/pip install --quiet dist/*.whl
 if environment/bin/python -c "import vtkmodules" 2>/dev/null; then
   echo "there is a VTK in the environment"
