@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// CompareSolvers [<largest level>] compares the solver that Automatic selects with all solvers, for
+// CompareSolvers [<largest level> | <mesh file>...] compares the solver that Automatic selects with all solvers, for
 // runs of several backward Euler steps of c h^2 from noise. It prints a line of JSON per size, c
 // and number of steps: CPU seconds per method, the selected method, and its time over that of the
-// fastest. The sizes are those of SurfaceOfLevel(), by default up to level 2 (178,000 vertices).
+// fastest. The sizes are those of SurfaceOfLevel(), by default up to level 2 (178,000 vertices). Mesh
+// files, by their names without an ending, are surfaces on which CalibrateSolvers did not measure.
 
 #include "HeatSystem.h"
 #include "ProcessTime.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <iterator>
 
 using namespace SurfaceDiffusion;
@@ -115,10 +117,20 @@ void Compare(HeatSystem& system, double number)
 
 int main(int argc, char** argv)
 {
-  const int last = argc > 1 ? std::atoi(argv[1]) : 2;
-  for (int level = 0; level <= last; ++level)
+  std::vector<Surface> surfaces;
+  const bool haveNames = argc > 1 && std::strspn(argv[1], "0123456789") < std::strlen(argv[1]);
+  for (int a = 1; haveNames && a < argc; ++a)
   {
-    HeatSystem system(SurfaceOfLevel(level));
+    surfaces.push_back(ReadMeshFile(argv[a]));
+  }
+  const int last = argc > 1 ? std::atoi(argv[1]) : 2;
+  for (int level = 0; !haveNames && level <= last; ++level)
+  {
+    surfaces.push_back(SurfaceOfLevel(level));
+  }
+  for (const Surface& surface : surfaces)
+  {
+    HeatSystem system(surface);
     for (const double number : { 0.1, 1.0, 100.0, 1e4 })
     {
       Compare(system, number);

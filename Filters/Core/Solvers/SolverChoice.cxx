@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/SolverChoice.h"
 
+#include "Core/Solvers/SolverCosts.h"
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -15,43 +17,17 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Seconds on one core of an Intel Xeon (Sapphire Rapids class, 2.3 GHz, 2 virtual cores), fitted
-/// on 2026-11-21 to scans with 11,000 to 711,000 vertices (Testing/Benchmarks/CompareSolvers). Only
-/// their ratios matter. s: the number of vertices over Size; c: the diffusion number; digits: the
-/// decimal digits of the tolerance over 10.
+/// What SolverCosts.h does not measure.
 namespace Measured
 {
-constexpr double Size = 44000.0;
-
 // Fewer vertices are factorised in milliseconds, and solved to round-off.
 constexpr double SmallestIterative = 5000.0;
 constexpr double LargestToleranceOfSmall = 1e-5;
 
-constexpr double Factor = 0.112; // x s^1.5
-constexpr double Substitution = 0.0027; // x s^1.4
-constexpr double LocalSubstitution = 0.004; // x c^0.2 s: in short steps the factor is sparser
-
-// Of conjugate gradients with Jacobi, x s: in single precision, and in double precision for long
-// steps with small tolerances (2026-11-22).
-constexpr double SingleIteration = 2.0e-4;
-constexpr double DoubleIteration = 4.2e-4;
-constexpr double LongestSingleStep = 150.0; // c
+constexpr double LongestSingleStep = 150.0; // c, of conjugate gradients in single precision
 constexpr double SmallestToleranceOfLongSteps = 1e-5;
-constexpr double Iterations = 67.0; // x digits c^0.4 s^0.1
-constexpr double IterationsAcross = 6.5; // x digits sqrt(n), at most: across the whole surface
 
-constexpr double Hierarchy = 0.036; // of multigrid, x s
-constexpr double Cycle = 2.9e-3; // x s
-constexpr double Cycles = 9.5; // x digits, at c = 1
-constexpr double CyclesPerDecade = 2.7; // x digits log10(c)
 constexpr double AnisotropicCycles = 0.2; // x min(anisotropy, c) to this power
-
-// What a further column costs of the first one, with 41,000 vertices and 8 to 48 columns: those of a
-// panel share a pass over the matrix or the factor.
-constexpr double SubstitutionColumn = 0.2;
-constexpr double SingleIterationColumn = 1.0;
-constexpr double DoubleIterationColumn = 0.3;
-constexpr double CycleColumn = 0.4;
 
 constexpr double SmallestDiffusionNumber = 1e-2; // below, nothing changes
 constexpr double SteadyState = 1e4; // the diffusion number that a steady state is as long as
@@ -71,6 +47,7 @@ double DiffusionNumberOf(const SolverTask& task)
 SolverMethod FindFastest(const SolverTask& task)
 {
   using namespace Measured;
+  using namespace SolverCosts;
   const double n = task.NumberOfVertices;
   if (n <= SmallestIterative && task.Tolerance < LargestToleranceOfSmall)
   {
