@@ -93,8 +93,8 @@ TEST(HarmonicMap, RestartedRunsGiveTheSameBits)
   const Values f = RandomUnitVectors(mesh, 3);
   for (const MapScheme scheme : AllSchemes)
   {
-    for (const auto method :
-      { HarmonicMap::Preconditioner::Automatic, HarmonicMap::Preconditioner::Factor })
+    for (const auto method : { HarmonicMap::Preconditioner::Automatic,
+           HarmonicMap::Preconditioner::Factor, HarmonicMap::Preconditioner::Multigrid })
     {
       auto settings = MapSettings(mesh, 1.5, 0.05, 1e-4, scheme);
       settings.Method = method;

@@ -5,13 +5,16 @@
 #include "Core/Solvers/Aggregation.h"
 #include "Core/Solvers/LinearSolver.h"
 #include "Core/Solvers/Multigrid.h"
+#include "Core/Solvers/SparseColumns.h"
 #include "MeshFiles.h"
 #include "Meshes.h"
 #include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
+#include <random>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -216,4 +219,133 @@ TEST(GalerkinProduct, EqualsTheProductOfThree)
   const SparseMatrix half = matrix * prolongation;
   const SparseMatrix whole = restriction * half;
   EXPECT_LT((product - whole).norm(), 1e-14 * whole.norm());
+}
+
+namespace
+{
+
+/// A stiffness matrix whose coefficients differ by a factor of up to 20 from triangle to triangle.
+SparseMatrix NoisyMatrix(const Assembler& assembler, double c, unsigned seed)
+{
+  CornerWeights coefficients = CotanWeights(assembler.Mesh());
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> exponent(0.0, std::log(20.0));
+  for (Index t = 0; t < static_cast<Index>(coefficients.rows()); ++t)
+  {
+    coefficients.row(t) *= std::exp(exponent(random));
+  }
+  return HeatMatrix(assembler, c, coefficients);
+}
+
+int IterationsOf(LinearSolver& solver, const SparseMatrix& matrix, const Values& exact)
+{
+  solver.SetMatrix(matrix);
+  Values x = Values::Zero(exact.rows(), exact.cols());
+  const SolveReport report = solver.Solve(matrix * exact, x);
+  EXPECT_TRUE(report.Converged);
+  EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-6);
+  return report.Iterations;
+}
+
+} // namespace
+
+TEST(Coarsening, HasTheBitsOfItsParts)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  const SparseMatrix first = HeatMatrix(*assembler, 100.0);
+  const ThreadedFor threads(2);
+  Coarsening coarsening(first, 0.08, threads);
+  Vector kernel = Vector::Ones(first.rows());
+  coarsening.SetMatrix(NoisyMatrix(*assembler, 100.0, 1), kernel);
+  kernel = Vector::Ones(first.rows());
+  coarsening.SetMatrix(first, kernel);
+
+  Vector expected = Vector::Ones(first.rows());
+  const SparseMatrix restriction = SmoothedAggregation(first, 0.08, expected, SerialFor());
+  const SparseMatrix prolongation = restriction.transpose();
+  const SparseMatrix product = GalerkinProduct(first, restriction, prolongation, SerialFor());
+  EXPECT_TRUE(kernel == expected);
+  EXPECT_EQ(coarsening.NumberOfAggregates(), restriction.rows());
+  EXPECT_EQ((coarsening.Restriction() - restriction).norm(), 0.0);
+  EXPECT_EQ((coarsening.Prolongation() - prolongation).norm(), 0.0);
+  EXPECT_EQ((coarsening.Product() - product).norm(), 0.0);
+}
+
+TEST(Multigrid, KeptAggregatesServeOtherCoefficients)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  const Values exact = Noise(assembler->Mesh(), 3);
+  const auto kept = MakeMultigridSolver(HeatMatrix(*assembler, 1000.0), SerialFor());
+  for (const unsigned seed : { 1U, 2U })
+  {
+    for (const double c : { 10.0, 1000.0 })
+    {
+      const SparseMatrix matrix = NoisyMatrix(*assembler, c, seed);
+      const int own = IterationsOf(matrix, exact);
+      const int iterations = IterationsOf(*kept, matrix, exact);
+      std::cout << "dt = " << c << " h^2: " << iterations << " iterations, " << own
+                << " with its own aggregates\n";
+      EXPECT_LE(iterations, 1.5 * own);
+    }
+  }
+}
+
+TEST(Multigrid, KeptAggregatesForgetEarlierMatrices)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  const SparseMatrix model = HeatMatrix(*assembler, 1000.0);
+  const SparseMatrix matrix = NoisyMatrix(*assembler, 100.0, 3);
+  const Values r = Noise(assembler->Mesh(), 3);
+  const ThreadedFor threads(3);
+  const ParallelFor* const loops[] = { &SerialFor(), &threads };
+  Values z[2];
+  for (const int k : { 0, 1 })
+  {
+    const auto solver = MakeMultigridSolver(model, *loops[k]);
+    if (k == 1)
+    {
+      solver->SetMatrix(NoisyMatrix(*assembler, 10.0, 4));
+    }
+    solver->SetMatrix(matrix);
+    solver->Precondition(r, z[k]);
+  }
+  EXPECT_TRUE(z[0] == z[1]);
+}
+
+TEST(Multigrid, BitsOfAColumnDoNotDependOnTheOthers)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  const auto solver = MakeMultigridSolver();
+  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
+  solver->SetMatrix(matrix);
+  const Values all = Noise(assembler->Mesh(), 4);
+  for (const Eigen::Index columns : { 1, 2, 3, 4 })
+  {
+    Values z, one;
+    solver->Precondition(all.leftCols(columns), z);
+    for (Eigen::Index c = 0; c < columns; ++c)
+    {
+      solver->Precondition(all.col(c), one);
+      EXPECT_TRUE(z.col(c) == one.col(0)) << c << " of " << columns;
+    }
+  }
+}
+
+TEST(CollectColumns, KeepsNoPlacesOfAColumnWithTooManyRows)
+{
+  // 70,000 rows in one column: their places do not fit in 16 bits.
+  const auto collect = [](double factor)
+  {
+    return [factor](Index j, auto& column)
+    {
+      for (Index i = 0; i < (j == 0 ? 70000 : 3); ++i)
+      {
+        column.Add(i, factor * (i + j));
+      }
+    };
+  };
+  CollectedPlaces places;
+  SparseMatrix matrix = CollectColumns<NotedColumn>(70000, 5, SerialFor(), collect(1.0), places);
+  EXPECT_TRUE(places.empty());
+  EXPECT_EQ(matrix.coeff(69999, 0), 69999.0);
 }

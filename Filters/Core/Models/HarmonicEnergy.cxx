@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/HarmonicEnergy.h"
 
+#include "Core/Foundation/Columns.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -26,37 +28,59 @@ HarmonicEnergy::HarmonicEnergy(std::shared_ptr<const TriangleMesh> mesh, CornerW
 
 double HarmonicEnergy::operator()(const Values& u) const
 {
-  return this->Options.LargestDiffusivity *
-    Sum(this->Parallel, this->Mesh->NumberOfTriangles(),
-      [&](Index t) {
-        return this->Mesh->Shapes()[t].Area() * this->Density(this->GradientSquare(u, t, nullptr));
-      });
+  return ForColumns(u.cols(),
+    [&](auto k)
+    {
+      return this->Options.LargestDiffusivity *
+        Sum(this->Parallel, this->Mesh->NumberOfTriangles(),
+          [&](Index t)
+          {
+            const double square = this->GradientSquare<decltype(k)::value>(u, t, nullptr);
+            return this->Mesh->Shapes()[t].Area() * this->Density(square);
+          });
+    });
 }
 
 void HarmonicEnergy::Evaluate(const Values& u)
 {
-  ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
-    [&](Index t)
+  ForColumns(u.cols(),
+    [&](auto k)
     {
-      double signs[3];
-      this->Squares[t] = this->GradientSquare(u, t, signs);
-      this->Weights[t] = this->Diffusivity(this->Squares[t]);
-      if (this->Options.LineField)
-      {
-        this->Signs.row(t) << signs[0], signs[1], signs[2];
-      }
+      ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
+        [&](Index t)
+        {
+          double signs[3];
+          this->Squares[t] = this->GradientSquare<decltype(k)::value>(u, t, signs);
+          this->Weights[t] = this->Diffusivity(this->Squares[t]);
+          if (this->Options.LineField)
+          {
+            this->Signs.row(t) << signs[0], signs[1], signs[2];
+          }
+        });
     });
 }
 
 /// |grad u|^2 on a triangle, from c_ij = -area grad(phi_i) . D grad(phi_j): the sum over its edges
 /// of c_ij |u_i - u_j|^2 is area grad u . D grad u. For line fields also the signs that make it
-/// smallest, unless `signs` is null.
+/// smallest, unless `signs` is null. u has K columns, or any number of them if K is 0.
+template <int K>
 double HarmonicEnergy::GradientSquare(const Values& u, Index t, double* signs) const
 {
   const auto c = this->Coefficients.row(t);
   const auto v = this->Mesh->TriangleVertices().row(t);
+  const ColumnCount<K> columns(u.cols());
   const auto term = [&](int edge, double sign)
-  { return c[edge] * (u.row(v[(edge + 1) % 3]) - sign * u.row(v[(edge + 2) % 3])).squaredNorm(); };
+  {
+    const double* a = u.data() + static_cast<std::ptrdiff_t>(v[(edge + 1) % 3]) * columns;
+    const double* b = u.data() + static_cast<std::ptrdiff_t>(v[(edge + 2) % 3]) * columns;
+    double square = 0.0;
+    for (int k = 0; k < columns; ++k)
+    {
+      const double difference = a[k] - sign * b[k];
+      square += difference * difference;
+    }
+    return c[edge] * square;
+  };
   double smallest = 0.0;
   if (!this->Options.LineField)
   {

@@ -44,6 +44,7 @@ public:
   const CornerWeights* GetSigns() const { return this->Options.LineField ? &this->Signs : nullptr; }
 
 private:
+  template <int K>
   double GradientSquare(const Values& u, Index t, double* signs) const;
   double Diffusivity(double square) const;
   double Density(double square) const;

@@ -3,13 +3,9 @@
 #include "Core/Models/HarmonicMap.h"
 
 #include "Core/Models/UnitVectors.h"
-#include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <limits>
-#include <stdexcept>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -29,14 +25,14 @@ HarmonicMap::HarmonicMap(std::shared_ptr<const Assembler> assembler, CornerWeigh
       { settings.Exponent, settings.Beta, settings.LargestDiffusivity, settings.LineField },
       parallel)
   , System(this->Assembly, std::move(solver), parallel)
-  , Tangent(parallel)
+  , Tangent(this->Assembly, this->GradientEnergy.GetCoefficients(), settings.Method,
+      settings.LineField, settings.Limits, parallel)
   , Diagonal(this->U.rows())
   , Damping(this->U.rows())
   , Previous(this->U)
   , Anchor(this->U)
   , RightHandSide(this->U.rows(), this->U.cols())
   , Step(this->U.rows(), this->U.cols())
-  , Other(this->U.rows(), this->U.cols())
 {
   this->FillDiagonal();
 }
@@ -220,8 +216,10 @@ double HarmonicMap::Descend(double objective, StepReport& report, const Progress
       this->System.AddToDiagonal(share - damped, this->Damping);
       damped = share;
     }
-    const SolveReport solve =
-      this->SolveInTangentSpaces(progress.Part(done, done + 0.5 * (1.0 - done)));
+    const TangentSystem tangent{ this->System.GetMatrix(), this->Previous, this->Data.Fixed,
+      this->RightHandSide, this->Diagonal, mesh.GetReduction() };
+    const SolveReport solve = this->Tangent.Solve(
+      this->System, tangent, this->Step, progress.Part(done, done + 0.5 * (1.0 - done)));
     done += 0.5 * (1.0 - done);
     report.Add(solve);
     ForEach(this->Parallel, mesh.NumberOfVertices(),
@@ -281,117 +279,6 @@ void HarmonicMap::FindDamping()
   reduction.Accumulate(this->Damping);
   ForEach(this->Parallel, static_cast<Index>(this->Damping.size()),
     [&](Index i) { this->Damping[i] = reduction.Owns(i) ? std::max(this->Damping[i], 0.0) : 0.0; });
-}
-
-/// Whether a multigrid cycle is expected to need fewer seconds than Jacobi. The iterations with
-/// Jacobi grow with the square root of the ratio between the entries of the diagonal and the part
-/// that has no diffusion. On icospheres of 16,000 to 262,000 vertices both took the same time at a
-/// ratio near 200, at which Jacobi needed 160 iterations and the cycle 12.
-bool HarmonicMap::PrefersMultigrid() const
-{
-  if (!this->Assembly->Mesh().GetReduction().IsSerial())
-  {
-    return false;
-  }
-  constexpr double ratio = 200.0;
-  const SparseMatrix& matrix = this->System.GetMatrix();
-  const auto count = static_cast<Index>(matrix.rows());
-  const double stiff = Sum(this->Parallel, count,
-    [&](Index i) { return DiagonalEntry(matrix, i) > ratio * this->Diagonal[i] ? 1.0 : 0.0; });
-  return stiff > 0.5 * count;
-}
-
-/// The methods to try, in this order.
-const std::vector<HarmonicMap::Preconditioner>& HarmonicMap::Methods() const
-{
-  using Method = Preconditioner;
-  static const std::vector<Method> multigrid{ Method::Multigrid, Method::Jacobi, Method::Factor };
-  static const std::vector<Method> noise{ Method::Jacobi, Method::Factor };
-  static const std::vector<Method> factor{ Method::Factor, Method::Jacobi };
-  static const std::vector<Method> jacobi{ Method::Jacobi };
-  switch (this->Options.Method)
-  {
-    case Method::Factor:
-      return factor;
-    case Method::Jacobi:
-      return jacobi;
-    case Method::Multigrid:
-      return multigrid;
-    default:
-      return this->PrefersMultigrid() ? multigrid : noise;
-  }
-}
-
-SolveReport HarmonicMap::SolveInTangentSpaces(const ProgressMonitor& progress)
-{
-  const std::vector<Preconditioner>& methods = this->Methods();
-  // If triangles are so bad that none converges, the best of the answers is a step, too.
-  SolveReport best;
-  best.Residual = std::numeric_limits<double>::infinity();
-  std::exception_ptr failure;
-  double done = 0.0;
-  for (const Preconditioner method : methods)
-  {
-    const double end = method == methods.back() ? 1.0 : 0.5 * (1.0 + done);
-    try
-    {
-      SolveReport report = this->TrySolve(method, this->Other, progress.Part(done, end));
-      report.Iterations += best.Iterations;
-      if (report.Residual < best.Residual)
-      {
-        best = report;
-        this->Step.swap(this->Other);
-      }
-      best.Iterations = report.Iterations;
-    }
-    catch (const std::runtime_error&)
-    {
-      if (method == methods.front() && method != Preconditioner::Multigrid)
-      {
-        throw;
-      }
-      failure = std::current_exception(); // of a factorisation, which the other methods do not need
-    }
-    if (best.Converged)
-    {
-      return best;
-    }
-    done = end;
-  }
-  if (failure && !std::isfinite(best.Residual))
-  {
-    std::rethrow_exception(failure);
-  }
-  best.IsFinal = methods.size() > 1 && std::isfinite(best.Residual);
-  RequireAnswer(best, this->Options.Limits);
-  return best;
-}
-
-SolveReport HarmonicMap::TrySolve(
-  Preconditioner method, Values& step, const ProgressMonitor& progress)
-{
-  LinearSolver* preconditioner = nullptr;
-  double begin = 0.0;
-  if (method == Preconditioner::Factor)
-  {
-    begin = 0.5;
-    this->System.SetUpSolver(progress.Part(0.0, begin));
-    preconditioner = &this->System.GetSolver();
-  }
-  else if (method == Preconditioner::Multigrid)
-  {
-    begin = 0.5;
-    if (!this->Cycle)
-    {
-      this->Cycle = MakeMultigridSolver(this->Parallel);
-    }
-    this->Cycle->SetMatrix(this->System.GetMatrix(), progress.Part(0.0, begin));
-    preconditioner = this->Cycle.get();
-  }
-  const TangentSystem system{ this->System.GetMatrix(), this->Previous, this->Data.Fixed,
-    this->RightHandSide, this->Diagonal, this->Assembly->Mesh().GetReduction() };
-  return this->Tangent.Solve(
-    system, step, preconditioner, this->Options.Limits, progress.Part(begin, 1.0));
 }
 
 } // namespace SurfaceDiffusion

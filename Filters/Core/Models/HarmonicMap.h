@@ -6,8 +6,8 @@
 #include "Core/Models/HarmonicEnergy.h"
 #include "Core/Models/ImplicitSystem.h"
 #include "Core/Models/Model.h"
+#include "Core/Models/TangentMethods.h"
 #include "Core/Operators/Assembler.h"
-#include "Core/Solvers/TangentSolver.h"
 
 #include <memory>
 #include <vector>
@@ -67,19 +67,7 @@ public:
     MinimizingMovement
   };
 
-  /// The preconditioner of the conjugate gradients in the tangent spaces. Factor takes the solver
-  /// of the constructor with the matrix without the projections: a factorisation, or multigrid.
-  /// Multigrid is a cycle for the same matrix. Both are good for smooth maps and large steps, while
-  /// for noise Jacobi is fast. If a method does not converge, the next one follows; if none does,
-  /// the best answer is the step, and the report says so. Jacobi alone throws NotConverged unless
-  /// it is within AnswerFactor of the tolerance.
-  enum class Preconditioner
-  {
-    Automatic, ///< as Multigrid in one process if diffusion dominates, else Jacobi, Factor
-    Factor, ///< Factor, Jacobi
-    Multigrid, ///< Multigrid, Jacobi, Factor
-    Jacobi
-  };
+  using Preconditioner = TangentMethods::Preconditioner;
 
   struct Settings
   {
@@ -118,10 +106,6 @@ private:
   void TangentPlaneStep(StepReport& report, const ProgressMonitor& progress);
   void MinimizingMovementStep(StepReport& report, const ProgressMonitor& progress);
   double Descend(double objective, StepReport& report, const ProgressMonitor& progress);
-  SolveReport SolveInTangentSpaces(const ProgressMonitor& progress);
-  bool PrefersMultigrid() const;
-  const std::vector<Preconditioner>& Methods() const;
-  SolveReport TrySolve(Preconditioner method, Values& step, const ProgressMonitor& progress);
   void FindDamping();
   void ProjectToSphere();
   double Objective() const;
@@ -134,12 +118,11 @@ private:
   const ParallelFor& Parallel;
   HarmonicEnergy GradientEnergy;
   ImplicitSystem System;
-  TangentSolver Tangent;
-  std::unique_ptr<LinearSolver> Cycle; ///< of Multigrid
+  TangentMethods Tangent;
   Vector Diagonal; ///< (1 + lambda dt chi) M
   Vector Damping; ///< D, times dt; of an interface vertex in its owner only
   std::vector<double> InterfaceEntries; ///< matrix entries of the edges on interfaces
-  Values Previous, Anchor, RightHandSide, Step, Other;
+  Values Previous, Anchor, RightHandSide, Step;
 };
 
 } // namespace SurfaceDiffusion

@@ -5,6 +5,9 @@
 #include "Core/Foundation/Parallel.h"
 #include "Core/Foundation/Types.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
@@ -28,5 +31,43 @@ SparseMatrix SmoothedAggregation(
 /// R A P, symmetric to the rounding error. restriction: R; prolongation: P, its transpose.
 SparseMatrix GalerkinProduct(const SparseMatrix& matrix, const SparseMatrix& restriction,
   const SparseMatrix& prolongation, const ParallelFor& parallel);
+
+/// Both for one matrix after the other of the same pattern, with the aggregates and the strong
+/// entries of the first: a fraction of the time.
+class Coarsening
+{
+public:
+  /// matrix: gives the aggregates. See SmoothedAggregation().
+  Coarsening(const SparseMatrix& matrix, double strength, const ParallelFor& parallel);
+
+  Index NumberOfAggregates() const { return this->Count; }
+
+  /// Take the values of a matrix. kernel: see SmoothedAggregation().
+  void SetMatrix(const SparseMatrix& matrix, Vector& kernel);
+
+  const SparseMatrix& Restriction() const { return this->Restricting.Matrix; }
+  const SparseMatrix& Prolongation() const { return this->Prolonging; }
+  const SparseMatrix& Product() const { return this->Coarse.Matrix; }
+
+private:
+  struct Collected
+  {
+    SparseMatrix Matrix;
+    std::vector<std::vector<std::uint16_t>> Places; ///< see SparseColumns.h
+
+    template <typename Collect>
+    void Set(Index rows, Index columns, const ParallelFor& parallel, const Collect& collect);
+  };
+
+  void Transpose();
+
+  const ParallelFor& Parallel;
+  std::vector<char> Strong;
+  std::vector<Index> Of; ///< per vertex, or -1
+  Index Count = 0;
+  Collected Restricting, Half, Coarse;
+  SparseMatrix Prolonging;
+  std::vector<Index> Slots; ///< of the restriction, per slot of the prolongation
+};
 
 } // namespace SurfaceDiffusion

@@ -289,4 +289,12 @@ std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel)
   return std::make_unique<ConjugateGradientSolver>(std::make_unique<Multigrid>(parallel), parallel);
 }
 
+std::unique_ptr<LinearSolver> MakeMultigridSolver(
+  const SparseMatrix& model, const ParallelFor& parallel)
+{
+  auto hierarchy = std::make_unique<Multigrid>(parallel);
+  hierarchy->KeepAggregates(model);
+  return std::make_unique<ConjugateGradientSolver>(std::move(hierarchy), parallel);
+}
+
 } // namespace SurfaceDiffusion

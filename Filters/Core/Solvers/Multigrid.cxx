@@ -3,7 +3,7 @@
 #include "Core/Solvers/Multigrid.h"
 
 #include "Core/Foundation/Columns.h"
-#include "Core/Solvers/Aggregation.h"
+#include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,34 +16,50 @@ namespace
 
 constexpr Index LargestDirect = 500; // vertices of a level that is solved directly
 constexpr double LargestRatio = 0.8; // of the vertices of a level to those of the finer one
+constexpr double FinestStrength = 0.08; // of strong entries on the finest level, as in the paper
 
-/// matrix scaled to unit diagonal, from both sides.
-SparseMatrix Scaled(const SparseMatrix& matrix, const Vector& scaling, const ParallelFor& parallel)
+/// scaled = matrix scaled to unit diagonal, from both sides. scaled: of the pattern of matrix.
+void Scale(const SparseMatrix& matrix, const Vector& scaling, SparseMatrix& scaled,
+  const ParallelFor& parallel)
 {
-  SparseMatrix scaled = matrix;
-  const Index* outer = scaled.outerIndexPtr();
-  const Index* inner = scaled.innerIndexPtr();
-  double* a = scaled.valuePtr();
-  ForEach(parallel, static_cast<Index>(scaled.rows()),
+  const Index* outer = matrix.outerIndexPtr();
+  const Index* inner = matrix.innerIndexPtr();
+  const double* a = matrix.valuePtr();
+  double* s = scaled.valuePtr();
+  ForEach(parallel, static_cast<Index>(matrix.rows()),
     [&](Index i)
     {
       for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
       {
-        a[slot] *= scaling[i] * scaling[inner[slot]];
+        s[slot] = a[slot] * (scaling[i] * scaling[inner[slot]]);
       }
     });
-  return scaled;
 }
 
-/// In single precision, faster than Eigen's cast of a matrix.
-Eigen::SparseMatrix<float, Eigen::ColMajor, Index> Single(const SparseMatrix& matrix)
+/// In single precision, faster than Eigen's cast of a matrix. A matrix of the same size keeps its
+/// pattern.
+void Round(const SparseMatrix& matrix, Eigen::SparseMatrix<float, Eigen::ColMajor, Index>& single,
+  const ParallelFor& parallel)
 {
-  Eigen::SparseMatrix<float, Eigen::ColMajor, Index> single(matrix.rows(), matrix.cols());
-  single.resizeNonZeros(matrix.nonZeros());
-  std::copy_n(matrix.outerIndexPtr(), matrix.cols() + 1, single.outerIndexPtr());
-  std::copy_n(matrix.innerIndexPtr(), matrix.nonZeros(), single.innerIndexPtr());
-  std::copy_n(matrix.valuePtr(), matrix.nonZeros(), single.valuePtr());
-  return single;
+  const Index* outer = matrix.outerIndexPtr();
+  const bool isNew = single.cols() != matrix.cols() || single.nonZeros() != matrix.nonZeros();
+  if (isNew)
+  {
+    single.resize(matrix.rows(), matrix.cols());
+    single.resizeNonZeros(matrix.nonZeros());
+    std::copy_n(outer, matrix.cols() + 1, single.outerIndexPtr());
+  }
+  ForEachBlock(parallel, static_cast<Index>(matrix.cols()),
+    [&](Index, Index begin, Index end)
+    {
+      if (isNew)
+      {
+        std::copy(matrix.innerIndexPtr() + outer[begin], matrix.innerIndexPtr() + outer[end],
+          single.innerIndexPtr() + outer[begin]);
+      }
+      std::copy(matrix.valuePtr() + outer[begin], matrix.valuePtr() + outer[end],
+        single.valuePtr() + outer[begin]);
+    });
 }
 
 /// sums += sign (column i of `matrix`) . x, K columns of x, or any number of them if K is 0.
@@ -51,17 +67,21 @@ template <int K, typename Matrix, typename Numbers>
 void AddProduct(
   const Matrix& matrix, Index i, const Numbers& x, int columns, float sign, float* sums)
 {
+  // Eigen's rows of known length are in vector registers where compilers would not put them.
+  using Row = Eigen::Array<float, K == 0 ? Eigen::Dynamic : K, 1>;
   const ColumnCount<K> k(columns);
-  const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
   const float* a = matrix.valuePtr();
-  for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+  Eigen::Map<Row> total(sums, k);
+  std::conditional_t<K == 0, Eigen::Map<Row>&, Row> row(total);
+  for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
   {
-    const float* xj = x.data() + static_cast<std::ptrdiff_t>(inner[slot]) * k;
-    for (int c = 0; c < k; ++c)
-    {
-      sums[c] += sign * a[slot] * xj[c];
-    }
+    row += sign * a[slot] *
+      Eigen::Map<const Row>(x.data() + static_cast<std::ptrdiff_t>(inner[slot]) * k, k);
+  }
+  if constexpr (K > 0)
+  {
+    total = row;
   }
 }
 
@@ -72,14 +92,51 @@ Multigrid::Multigrid(const ParallelFor& parallel)
 {
 }
 
+void Multigrid::KeepAggregates(const SparseMatrix& model)
+{
+  this->Coarsenings.clear();
+  this->Levels.clear();
+  this->Columns = -1;
+  Vector kernel = model.diagonal().cwiseSqrt();
+  TakePattern(model, this->Finest, this->Parallel);
+  Scale(model, kernel.cwiseInverse(), this->Finest, this->Parallel);
+  double strength = FinestStrength;
+  for (const SparseMatrix* current = &this->Finest; current->rows() > LargestDirect;)
+  {
+    Coarsening next(*current, strength, this->Parallel);
+    if (next.NumberOfAggregates() > LargestRatio * static_cast<double>(current->rows()))
+    {
+      break;
+    }
+    next.SetMatrix(*current, kernel);
+    this->Coarsenings.push_back(std::move(next));
+    current = &this->Coarsenings.back().Product();
+    strength *= 0.5;
+  }
+  this->Levels.resize(this->Coarsenings.size());
+}
+
 void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress)
+{
+  Vector kernel = matrix.diagonal().cwiseSqrt();
+  this->Scaling = kernel.cwiseInverse();
+  if (!this->Coarsenings.empty())
+  {
+    Scale(matrix, this->Scaling, this->Finest, this->Parallel);
+    this->SetLevels(std::move(kernel), progress);
+    return;
+  }
+  SparseMatrix scaled;
+  TakePattern(matrix, scaled, this->Parallel);
+  Scale(matrix, this->Scaling, scaled, this->Parallel);
+  this->MakeLevels(std::move(scaled), std::move(kernel), progress);
+}
+
+void Multigrid::MakeLevels(SparseMatrix current, Vector kernel, const ProgressMonitor& progress)
 {
   this->Levels.clear();
   this->Columns = -1;
-  Vector kernel = matrix.diagonal().cwiseSqrt();
-  this->Scaling = kernel.cwiseInverse();
-  SparseMatrix current = Scaled(matrix, this->Scaling, this->Parallel);
-  double strength = 0.08; // as in the paper
+  double strength = FinestStrength;
   double fraction = 0.0;
   while (current.rows() > LargestDirect)
   {
@@ -89,7 +146,8 @@ void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& pro
       break;
     }
     const SparseMatrix prolongation = restriction.transpose();
-    this->Levels.push_back(this->MakeLevel(current, restriction, prolongation));
+    this->Levels.emplace_back();
+    this->SetLevel(current, restriction, prolongation, this->Levels.back());
     current = GalerkinProduct(current, restriction, prolongation, this->Parallel);
     strength *= 0.5;
     fraction = 0.5 * (fraction + 1.0);
@@ -100,13 +158,31 @@ void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& pro
   this->Coarsest->SetMatrix(this->CoarsestMatrix, progress.Part(fraction, 1.0));
 }
 
-Multigrid::Level Multigrid::MakeLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
-  const SparseMatrix& prolongation) const
+/// The levels of Finest.
+void Multigrid::SetLevels(Vector kernel, const ProgressMonitor& progress)
 {
-  Level level;
-  level.A = Single(matrix);
-  level.Prolongation = Single(restriction);
-  level.Restriction = Single(prolongation);
+  const SparseMatrix* current = &this->Finest;
+  double fraction = 0.0;
+  for (std::size_t l = 0; l < this->Levels.size(); ++l)
+  {
+    Coarsening& next = this->Coarsenings[l];
+    next.SetMatrix(*current, kernel);
+    this->SetLevel(*current, next.Restriction(), next.Prolongation(), this->Levels[l]);
+    current = &next.Product();
+    fraction = 0.5 * (fraction + 1.0);
+    progress.Report(fraction);
+  }
+  this->CoarsestMatrix = *current;
+  this->Coarsest = MakeCholeskySolver();
+  this->Coarsest->SetMatrix(this->CoarsestMatrix, progress.Part(fraction, 1.0));
+}
+
+void Multigrid::SetLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
+  const SparseMatrix& prolongation, Level& level) const
+{
+  Round(matrix, level.A, this->Parallel);
+  Round(restriction, level.Prolongation, this->Parallel);
+  Round(prolongation, level.Restriction, this->Parallel);
   level.InverseD.resize(matrix.rows());
   const Index* outer = matrix.outerIndexPtr();
   const double* a = matrix.valuePtr();
@@ -120,7 +196,6 @@ Multigrid::Level Multigrid::MakeLevel(const SparseMatrix& matrix, const SparseMa
       }
       level.InverseD[i] = static_cast<float>(1.0 / sum);
     });
-  return level;
 }
 
 void Multigrid::Resize(int columns)
@@ -145,7 +220,8 @@ void Multigrid::Resize(int columns)
 void Multigrid::Apply(const Values& r, const std::vector<double>& scale, Values& z)
 {
   const int k = static_cast<int>(r.cols());
-  this->Resize(k);
+  const bool isPadded = k == 3; // four columns fill a vector register
+  this->Resize(isPadded ? 4 : k);
   Numbers& b = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().B;
   ForEach(this->Parallel, static_cast<Index>(r.rows()),
     [&](Index i)
@@ -154,8 +230,19 @@ void Multigrid::Apply(const Values& r, const std::vector<double>& scale, Values&
       {
         b(i, c) = static_cast<float>(this->Scaling[i] * scale[c] * r(i, c));
       }
+      if (isPadded)
+      {
+        b(i, 3) = 0.0f;
+      }
     });
-  ForColumns(k, [&](auto columns) { this->Cycle<decltype(columns)::value>(0, k); });
+  if (isPadded)
+  {
+    this->Cycle<4>(0, 4);
+  }
+  else
+  {
+    ForColumns(k, [&](auto columns) { this->Cycle<decltype(columns)::value>(0, k); });
+  }
   const Numbers& x = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().X;
   ForEach(this->Parallel, static_cast<Index>(r.rows()),
     [&](Index i)

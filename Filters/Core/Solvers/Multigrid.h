@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Solvers/Aggregation.h"
 #include "Core/Solvers/LinearSolver.h"
 
 #include <memory>
@@ -29,6 +30,10 @@ class Multigrid
 public:
   explicit Multigrid(const ParallelFor& parallel);
 
+  /// The hierarchies of all later matrices, which have the pattern of `model`, take its aggregates:
+  /// making them then takes a fraction of the time. Throws as SetMatrix().
+  void KeepAggregates(const SparseMatrix& model);
+
   /// Make the hierarchy for `matrix`, which the caller need not keep. Throws Aborted, and
   /// std::runtime_error if the matrix is not positive definite.
   void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress = ProgressMonitor());
@@ -50,8 +55,10 @@ private:
     Numbers B, X, R, D, E;
   };
 
-  Level MakeLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
-    const SparseMatrix& prolongation) const;
+  void MakeLevels(SparseMatrix current, Vector kernel, const ProgressMonitor& progress);
+  void SetLevels(Vector kernel, const ProgressMonitor& progress);
+  void SetLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
+    const SparseMatrix& prolongation, Level& level) const;
   void Resize(int columns);
   template <int K>
   void Cycle(std::size_t number, int columns);
@@ -64,6 +71,8 @@ private:
   const ParallelFor& Parallel;
   Vector Scaling; ///< diag(A)^-1/2
   std::vector<Level> Levels;
+  std::vector<Coarsening> Coarsenings; ///< of KeepAggregates()
+  SparseMatrix Finest; ///< scaled, of KeepAggregates()
   SparseMatrix CoarsestMatrix;
   std::unique_ptr<LinearSolver> Coarsest;
   Values CoarsestB, CoarsestX;
