@@ -6,6 +6,7 @@
 #include "Conversion/InputArrays.h"
 #include "Conversion/MirroredEnum.h"
 #include "Conversion/NewArray.h"
+#include "Conversion/PointNormals.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DenoisingRun.h"
 
@@ -46,6 +47,18 @@ vtkSmartPointer<vtkDataArray> WriteDisplacement(const DenoisingRun& run, const s
     result->SetTuple(i, displacement.data());
   }
   return result;
+}
+
+/// Shading by the normals of the noisy points would hide the result.
+void UpdatePointNormals(vtkPolyData* surface)
+{
+  vtkDataArray* const before = surface->GetPointData()->GetNormals();
+  if (before)
+  {
+    const auto normals = ComputePointNormals(surface);
+    normals->SetName(before->GetName());
+    surface->GetPointData()->SetNormals(normals);
+  }
 }
 
 } // namespace
@@ -115,6 +128,10 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
     surfaces[b].Output->SetPoints(points[b]);
+    if (runs[b].Report().MaximumDisplacement > 0.0)
+    {
+      UpdatePointNormals(surfaces[b].Output);
+    }
     adder.Add(results[b], nullptr, surfaces[b].Output->GetPointData());
   }
   this->SummarizeReports();

@@ -33,7 +33,8 @@
  * are. They still guide their neighbours.
  *
  * The output has moved points and the point array `Displacement` (three components, in coordinate
- * units). Point normals of the input are not changed. The points keep their precision.
+ * units). The points keep their precision. Active point normals of the input are computed again for
+ * the moved points.
  *
  * Surfaces in pieces, over processes and partitions, are gathered and denoised in process 0; see
  * vtkSurfaceFilter. Each block of composite data is a surface of its own, with its own noise level.

@@ -219,7 +219,7 @@ def denoise_mesh(
 
     fixed: point or cell array; points, and the points of cells, with a nonzero value stay. The method
     and all other keywords are described in help(surfacediffusion.denoise_mesh). The result has moved
-    points and the point array Displacement (n, 3). Each block of a MultiBlock has its own noise
+    points and the point array Displacement (n, 3); active point normals are computed again. Each block of a MultiBlock has its own noise
     level. full_output: if True, the function returns a pair: the mesh, and the MeshDenoisingResult,
     of a MultiBlock the list of them.
     """
@@ -232,6 +232,11 @@ def denoise_mesh(
         results.append(result)
         block.add(name or "Displacement", result.points - block.surface.points, False)
         block.move(result.points)
+        normals = block.mesh.point_data.active_normals_name
+        if normals is not None and result.maximum_displacement > 0.0:
+            moved = Surface(result.points, block.surface.triangles)
+            block.mesh.point_data[normals] = moved._point_normals()
+            block.mesh.GetPointData().SetActiveNormals(normals)
     denoised = _rebuild(mesh, iter(blocks))
     if not full_output:
         return denoised

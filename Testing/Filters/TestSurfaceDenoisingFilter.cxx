@@ -165,6 +165,30 @@ TEST(SurfaceDenoisingFilter, FixedPointsStayAndPointsKeepTheirPrecision)
   EXPECT_GT(farthest, 0.005);
 }
 
+TEST(SurfaceDenoisingFilter, ActiveNormalsAreThoseOfTheMovedPoints)
+{
+  const auto noisy = NoisySphere(0.01, 4);
+  AddPointArray(noisy, "n", 3, [&](vtkIdType i, int k) { return noisy->GetPoint(i)[k]; });
+  AddPointArray(noisy, "other", 3, [&](vtkIdType i, int k) { return noisy->GetPoint(i)[k]; });
+  noisy->GetPointData()->SetActiveNormals("n");
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  filter->SetInputData(noisy);
+  filter->Update();
+  vtkPointData* const data = filter->GetOutput()->GetPointData();
+  ASSERT_NE(data->GetNormals(), nullptr);
+  EXPECT_STREQ(data->GetNormals()->GetName(), "n");
+  EXPECT_EQ(data->GetArray("other"), noisy->GetPointData()->GetArray("other"));
+  double worst = 1.0;
+  for (vtkIdType i = 0; i < noisy->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    filter->GetOutput()->GetPoint(i, p);
+    vtkMath::Normalize(p);
+    worst = std::min(worst, vtkMath::Dot(p, data->GetNormals()->GetTuple3(i)));
+  }
+  EXPECT_GT(worst, 0.97); // the noisy ones reach 0.9
+}
+
 TEST(SurfaceDenoisingFilter, ErrorsNamePropertyValueAndRange)
 {
   const auto noisy = NoisySphere(0.01, 2);

@@ -92,6 +92,8 @@ class Meshes(unittest.TestCase):
         ball = pyvista.Icosphere(nsub=4)
         noise = np.random.default_rng(5).normal(scale=0.005, size=(ball.n_points, 1))
         mesh = pyvista.PolyData(ball.points * (1 + noise).astype(np.float32), ball.faces)
+        mesh.point_data["n"] = np.array(mesh.points)
+        mesh.point_data.active_normals_name = "n"
         mesh["north"] = (mesh.points[:, 2] > 0.3).astype(np.uint8)
         before = np.array(mesh.points)
         blocks = pyvista.MultiBlock([mesh, None, mesh.scale(10.0, inplace=False)])
@@ -103,6 +105,10 @@ class Meshes(unittest.TestCase):
         self.assertEqual(moved.points.dtype, before.dtype)
         north = mesh["north"] != 0
         np.testing.assert_array_equal(moved.points[north], before[north])
+        self.assertEqual(moved.point_data.active_normals_name, "n")
+        radial = moved.points / np.linalg.norm(moved.points, axis=1, keepdims=True)
+        self.assertGreater(np.einsum("ij,ij->i", moved["n"], radial)[~north].min(), 0.97)
+        np.testing.assert_array_equal(mesh["n"], before)
         self.assertLess(np.linalg.norm(moved.points, axis=1)[~north].std(), 0.003)
         np.testing.assert_allclose(before + moved["Displacement"], moved.points, atol=1e-7)
         np.testing.assert_allclose(moved.points, sd.denoise_mesh(as_surface(mesh), fixed=north),
