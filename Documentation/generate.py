@@ -56,6 +56,10 @@ FILTERS = [
            ("HarmonicMap", "HarmonicMapBehaviour", "HarmonicMapEnergy", "VertexUpdating"), (
         ("number_of_time_steps", (0, 5, 40), {"move_vertices": True, "time_step": 0.5},
          "More time makes a noisy mesh smoother."),)),
+    Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", "Mesh denoising", "mesh_denoising.png",
+           ("SurfaceDenoising", "NoiseLevel"), (
+        ("noise_level", (0.003, 0.01, 0.03), {},
+         "A larger level removes more. Without it, the level of the noise is measured."),)),
     Filter("mumford_shah", "vtkMumfordShahFilter", "Edges", "mumford_shah.png", ("MumfordShah",), (
         ("edge_threshold", (0.2, 0.35, 0.6), {},
          "Jumps below the threshold are smoothed, jumps above it become edges."),)),
@@ -194,6 +198,9 @@ def scenes_of(entry):
                 found = function(surface, **keywords)
                 result = getattr(found, "texture", found.values)
                 points = getattr(found, "points", points)
+            elif entry.name == "denoise_mesh":
+                points = function(surface, **keywords)
+                result = np.linalg.norm(points - surface.points, axis=1)
             else:
                 result = np.asarray(function(surface, values, **keywords))
             panels.append(Panel(points, surface.triangles, result, f"{keyword} {number}"))

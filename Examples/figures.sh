@@ -1,6 +1,6 @@
 #!/bin/bash
-# Draws figures 4 to 8 of the paper, deblurring, colours, edges, stripes and regions on scanned
-# surfaces with photographs and on cortices, and a minimal surface: installs the required packages
+# Draws figures 4 to 8 of the paper, deblurring, colours, denoised meshes, edges, stripes and regions on
+# scanned surfaces with photographs and on cortices, and a minimal surface: installs the required packages
 # (Debian 12), fetches the data, builds the library, draws into build/figures, and prints errors and
 # run times.
 set -euo pipefail
@@ -50,6 +50,7 @@ cd build/figures
 "${display[@]}" "$python" "$examples/deblurring_cortex.py" || [ $? -eq 77 ] # without wb_command
 "${display[@]}" "$python" "$examples/cell_data.py"
 "${display[@]}" "$python" "$examples/harmonic_map.py"
+"${display[@]}" "$python" "$examples/mesh_denoising.py"
 "${display[@]}" "$python" "$examples/mumford_shah.py"
 "${display[@]}" "$python" "$examples/minimal_surface.py"
 "${display[@]}" "$python" "$examples/segmentation.py"

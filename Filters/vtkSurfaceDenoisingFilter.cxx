@@ -6,9 +6,8 @@
 #include "Conversion/InputArrays.h"
 #include "Conversion/MirroredEnum.h"
 #include "Conversion/NewArray.h"
-#include "Conversion/ResultWriter.h"
-#include "Conversion/SMPParallelFor.h"
-#include "Conversion/SurfaceReader.h"
+#include "Conversion/PointNormals.h"
+#include "Conversion/SurfaceRuns.h"
 #include "Run/DenoisingRun.h"
 
 #include "vtkDoubleArray.h"
@@ -28,15 +27,9 @@ SURFACEDIFFUSION_MIRROR(Self::SURFACE_TYPE_AUTOMATIC, SurfaceDiffusion::SurfaceT
 SURFACEDIFFUSION_MIRROR(Self::SURFACE_TYPE_CAD, SurfaceDiffusion::SurfaceType::CAD);
 SURFACEDIFFUSION_MIRROR(Self::SURFACE_TYPE_ORGANIC, SurfaceDiffusion::SurfaceType::Organic);
 
-/// One run per block, and the cells of its triangles.
 struct vtkSurfaceDenoisingFilter::RunState
 {
-  struct Block
-  {
-    DenoisingRun Run{ SMPParallelFor::Instance() };
-    std::vector<vtkIdType> Cells;
-  };
-  std::vector<std::unique_ptr<Block>> Blocks;
+  SurfaceRuns<DenoisingRun> Runs;
 };
 
 namespace
@@ -54,6 +47,18 @@ vtkSmartPointer<vtkDataArray> WriteDisplacement(const DenoisingRun& run, const s
     result->SetTuple(i, displacement.data());
   }
   return result;
+}
+
+/// Shading by the normals of the noisy points would hide the result.
+void UpdatePointNormals(vtkPolyData* surface)
+{
+  vtkDataArray* const before = surface->GetPointData()->GetNormals();
+  if (before)
+  {
+    const auto normals = ComputePointNormals(surface);
+    normals->SetName(before->GetName());
+    surface->GetPointData()->SetNormals(normals);
+  }
 }
 
 } // namespace
@@ -104,85 +109,77 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
     return;
   }
 
-  std::vector<Warning> warnings;
-  Fingerprint versions;
-  Index degenerate = 0;
-  double length = 0.0;
-  double edges = 0.0;
-  double moved = 0.0;
-  double vertices = 0.0;
-  double noise = 0.0;
-  double farthest = 0.0;
-  this->State->Blocks.resize(surfaces.size());
+  std::vector<SurfaceInput> inputs;
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  {
+    inputs.push_back({ surfaces[b].Input, &fields[b] });
+  }
+  auto& runs = this->State->Runs;
+  runs.Update(inputs, *settings, progress);
   std::vector<vtkSmartPointer<vtkDataArray>> results;
   std::vector<vtkSmartPointer<vtkPoints>> points;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    auto& block = this->State->Blocks[b];
-    if (!block)
-    {
-      block = std::make_unique<RunState::Block>();
-    }
-    vtkPolyData* const data = surfaces[b].Input;
-    BlockInput input;
-    input.SurfaceVersion = FingerprintSurface(data, nullptr);
-    input.FieldsVersion = FingerprintFields(fields[b]);
-    input.ReadSurface = [&] { return ReadSurface(data, nullptr, false, block->Cells); };
-    input.ReadFields = [&]
-    { return ReadFields(fields[b], block->Cells, data->GetNumberOfCells()); };
-    const double count = static_cast<double>(surfaces.size());
-    block->Run.Update(input, *settings, progress.Part(b / count, (b + 0.98) / count));
-    results.push_back(WriteDisplacement(block->Run, this->ResultArrayName));
-    points.push_back(WritePoints(block->Run.MovedPoints(), data->GetPoints()));
-    const TriangleMesh& mesh = block->Run.GetSurface().InputMesh();
-    const DenoisingReport& report = block->Run.Report();
-    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
-    edges += mesh.NumberOfEdges();
-    vertices += mesh.NumberOfVertices();
-    moved += report.MeanDisplacement * mesh.NumberOfVertices();
-    noise = std::max(noise, report.NoiseLevel);
-    farthest = std::max(farthest, report.MaximumDisplacement);
-    degenerate += block->Run.GetSurface().Diagnostics().DegenerateTriangles;
-    versions.Add(block->Run.GetSurfaceVersion());
+    results.push_back(WriteDisplacement(runs[b], this->ResultArrayName));
+    points.push_back(WritePoints(runs[b].MovedPoints(), surfaces[b].Input->GetPoints()));
   }
   this->BeginWriting();
-  std::vector<std::string> replaced;
+  ResultAdder adder(this->ResultArrayName);
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
     surfaces[b].Output->SetPoints(points[b]);
-    if (ReplaceArray(results[b], nullptr, surfaces[b].Output->GetPointData()))
+    if (runs[b].Report().MaximumDisplacement > 0.0)
     {
-      replaced.push_back(this->ResultArrayName);
+      UpdatePointNormals(surfaces[b].Output);
     }
+    adder.Add(results[b], nullptr, surfaces[b].Output->GetPointData());
   }
-  this->MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
-  this->EffectiveNoiseLevel = noise;
-  this->MeanDisplacement = vertices > 0.0 ? moved / vertices : 0.0;
-  this->MaximumDisplacement = farthest;
-  if (degenerate > 0)
-  {
-    warnings.push_back(
-      { std::to_string(degenerate) + " triangles of zero area have no normal", versions });
-  }
-  if (!replaced.empty())
-  {
-    warnings.push_back({ DescribeReplacement(replaced), Fingerprint() });
-  }
+  this->SummarizeReports();
+  std::vector<Warning> warnings = runs.FindWarnings("have no normal");
+  adder.AppendWarning(warnings);
   this->ReportWarnings(std::move(warnings));
+}
+
+void vtkSurfaceDenoisingFilter::SummarizeReports()
+{
+  const auto& runs = this->State->Runs;
+  this->MeanEdgeLength = runs.MeanEdgeLength();
+  this->EffectiveNoiseLevel = this->MeanDisplacement = this->MaximumDisplacement = 0.0;
+  this->VolumeBefore = this->VolumeAfter = 0.0;
+  constexpr double Mixed = SURFACE_TYPE_AUTOMATIC;
+  double vertices = 0.0;
+  double moved = 0.0;
+  for (std::size_t b = 0; b < runs.Size(); ++b)
+  {
+    const DenoisingReport& report = runs[b].Report();
+    const double count = runs[b].GetSurface().InputMesh().NumberOfVertices();
+    vertices += count;
+    moved += report.MeanDisplacement * count;
+    this->EffectiveNoiseLevel = std::max(this->EffectiveNoiseLevel, report.NoiseLevel);
+    this->MaximumDisplacement = std::max(this->MaximumDisplacement, report.MaximumDisplacement);
+    this->VolumeBefore += runs[b].VolumeBefore();
+    this->VolumeAfter += runs[b].VolumeAfter();
+    const auto type = static_cast<double>(runs[b].FoundType());
+    this->EffectiveSurfaceType = b == 0 || this->EffectiveSurfaceType == type ? type : Mixed;
+  }
+  this->MeanDisplacement = vertices > 0.0 ? moved / vertices : 0.0;
 }
 
 void vtkSurfaceDenoisingFilter::VisitReported(const std::function<void(double&)>& visit)
 {
   this->Superclass::VisitReported(visit);
   visit(this->EffectiveNoiseLevel);
+  visit(this->EffectiveSurfaceType);
   visit(this->MeanDisplacement);
   visit(this->MaximumDisplacement);
+  visit(this->VolumeBefore);
+  visit(this->VolumeAfter);
 }
 
 void vtkSurfaceDenoisingFilter::ReleaseCache()
 {
   this->Superclass::ReleaseCache();
-  this->State->Blocks.clear();
+  this->State->Runs.Clear();
 }
 
 void vtkSurfaceDenoisingFilter::PrintSelf(ostream& os, vtkIndent indent)
@@ -192,6 +189,9 @@ void vtkSurfaceDenoisingFilter::PrintSelf(ostream& os, vtkIndent indent)
   spaces << indent;
   os << Describe(*this->MakeSettings(), spaces.str());
   os << indent << "EffectiveNoiseLevel: " << this->EffectiveNoiseLevel << "\n";
+  os << indent << "EffectiveSurfaceType: " << this->GetEffectiveSurfaceType() << "\n";
   os << indent << "MeanDisplacement: " << this->MeanDisplacement << "\n";
   os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
+  os << indent << "VolumeBefore: " << this->VolumeBefore << "\n";
+  os << indent << "VolumeAfter: " << this->VolumeAfter << "\n";
 }

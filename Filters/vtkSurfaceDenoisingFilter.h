@@ -33,7 +33,8 @@
  * are. They still guide their neighbours.
  *
  * The output has moved points and the point array `Displacement` (three components, in coordinate
- * units). Point normals of the input are not changed. The points keep their precision.
+ * units). The points keep their precision. Active point normals of the input are computed again for
+ * the moved points.
  *
  * Surfaces in pieces, over processes and partitions, are gathered and denoised in process 0; see
  * vtkSurfaceFilter. Each block of composite data is a surface of its own, with its own noise level.
@@ -97,12 +98,28 @@ public:
    */
   vtkGetMacro(EffectiveNoiseLevel, double);
 
+  /**
+   * The kind of surface of the last update, given or found: SURFACE_TYPE_CAD or
+   * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, and if the blocks of
+   * composite data are of different kinds.
+   */
+  int GetEffectiveSurfaceType() const { return static_cast<int>(this->EffectiveSurfaceType); }
+
   ///@{
   /**
    * The mean and the largest displacement of the last update, in coordinate units.
    */
   vtkGetMacro(MeanDisplacement, double);
   vtkGetMacro(MaximumDisplacement, double);
+  ///@}
+
+  ///@{
+  /**
+   * The enclosed volume before and after the last update, in coordinate units, signed by the
+   * orientation. Blocks that are not closed or not consistently oriented have volume 0.
+   */
+  vtkGetMacro(VolumeBefore, double);
+  vtkGetMacro(VolumeAfter, double);
   ///@}
 
 protected:
@@ -116,14 +133,19 @@ protected:
   double NoiseLevel = 0.0;
   int SurfaceType = SURFACE_TYPE_AUTOMATIC;
   double EffectiveNoiseLevel = 0.0;
+  double EffectiveSurfaceType = SURFACE_TYPE_AUTOMATIC; ///< a double, as all that processes share
   double MeanDisplacement = 0.0;
   double MaximumDisplacement = 0.0;
+  double VolumeBefore = 0.0;
+  double VolumeAfter = 0.0;
 
 private:
   vtkSurfaceDenoisingFilter(const vtkSurfaceDenoisingFilter&) = delete;
   void operator=(const vtkSurfaceDenoisingFilter&) = delete;
 
   std::unique_ptr<SurfaceDiffusion::DenoisingRunSettings> MakeSettings() const;
+  /// Take the read-only values from the reports of all surfaces.
+  void SummarizeReports();
 
   /// The denoised surfaces, kept between updates.
   struct RunState;

@@ -5,9 +5,7 @@
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
 #include "Conversion/MirroredEnum.h"
-#include "Conversion/ResultWriter.h"
-#include "Conversion/SMPParallelFor.h"
-#include "Conversion/SurfaceReader.h"
+#include "Conversion/SurfaceRuns.h"
 #include "Run/DirectionFieldRun.h"
 
 #include "vtkCellData.h"
@@ -26,15 +24,9 @@ SURFACEDIFFUSION_MIRROR(Self::METHOD_CURVATURE_ALIGNED, DirectionMethod::Curvatu
 SURFACEDIFFUSION_MIRROR(Self::METHOD_SMOOTH, DirectionMethod::Smooth);
 SURFACEDIFFUSION_MIRROR(Self::METHOD_HINTS, DirectionMethod::Hints);
 
-/// One run per block, and the cells of its triangles.
 struct vtkSurfaceDirectionFieldFilter::RunState
 {
-  struct Block
-  {
-    DirectionFieldRun Run{ SMPParallelFor::Instance() };
-    std::vector<vtkIdType> Cells;
-  };
-  std::vector<std::unique_ptr<Block>> Blocks;
+  SurfaceRuns<DirectionFieldRun> Runs;
 };
 
 vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter()
@@ -97,67 +89,37 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     return;
   }
 
-  Index degenerate = 0;
-  std::vector<Warning> warnings;
-  Fingerprint versions;
-  double length = 0.0;
-  double edges = 0.0;
-  this->State->Blocks.resize(surfaces.size());
+  std::vector<SurfaceInput> inputs;
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  {
+    inputs.push_back({ surfaces[b].Input, &fields[b] });
+  }
+  auto& runs = this->State->Runs;
+  runs.Update(inputs, *settings, progress);
   std::vector<vtkSmartPointer<vtkDataArray>> results;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    auto& block = this->State->Blocks[b];
-    if (!block)
-    {
-      block = std::make_unique<RunState::Block>();
-    }
-    vtkPolyData* const data = surfaces[b].Input;
-    BlockInput input;
-    input.SurfaceVersion = FingerprintSurface(data, nullptr);
-    input.FieldsVersion = FingerprintFields(fields[b]);
-    input.ReadSurface = [&] { return ReadSurface(data, nullptr, false, block->Cells); };
-    input.ReadFields = [&]
-    { return ReadFields(fields[b], block->Cells, data->GetNumberOfCells()); };
-    const double count = static_cast<double>(surfaces.size());
-    block->Run.Update(input, *settings, progress.Part(b / count, (b + 0.95) / count));
-    results.push_back(WriteDirections(block->Run.GetSurface(), block->Cells, data,
-      block->Run.Directions(), this->ResultArrayName, SMPParallelFor::Instance()));
-    const TriangleMesh& mesh = block->Run.GetSurface().Mesh();
-    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
-    edges += mesh.NumberOfEdges();
-    degenerate += block->Run.GetSurface().Diagnostics().DegenerateTriangles;
-    versions.Add(block->Run.GetSurfaceVersion());
-    const std::vector<Warning> found = block->Run.FindWarnings();
-    warnings.insert(warnings.end(), found.begin(), found.end());
+    results.push_back(WriteDirections(runs[b].GetSurface(), runs.CellsOf(b), surfaces[b].Input,
+      runs[b].Directions(), this->ResultArrayName, SMPParallelFor::Instance()));
   }
   this->BeginWriting();
-  std::vector<std::string> replaced;
+  ResultAdder adder(this->ResultArrayName);
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
     vtkCellData* const cells = surfaces[b].Output->GetCellData();
-    if (ReplaceArray(results[b], fields[b].Direction, cells))
-    {
-      replaced.push_back(this->ResultArrayName);
-    }
+    adder.Add(results[b], fields[b].Direction, cells);
     cells->SetActiveVectors(this->ResultArrayName.c_str());
   }
-  this->MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
-  if (degenerate > 0)
-  {
-    warnings.push_back(
-      { std::to_string(degenerate) + " triangles of zero area get no direction", versions });
-  }
-  if (!replaced.empty())
-  {
-    warnings.push_back({ DescribeReplacement(replaced), Fingerprint() });
-  }
+  this->MeanEdgeLength = runs.MeanEdgeLength();
+  std::vector<Warning> warnings = runs.FindWarnings("get no direction");
+  adder.AppendWarning(warnings);
   this->ReportWarnings(std::move(warnings));
 }
 
 void vtkSurfaceDirectionFieldFilter::ReleaseCache()
 {
   this->Superclass::ReleaseCache();
-  this->State->Blocks.clear();
+  this->State->Runs.Clear();
 }
 
 void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)

@@ -19,14 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 import numpy as np
 
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, SegmentationResult, TensorDiffusionResult,
-    TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, SegmentationResult,
+    TensorDiffusionResult, TextureResult,
 )
 from ._run import Progress
 from ._surface import SurfaceLike
 
 __all__ = [
-    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
     "tensor_diffusion", "turing_texture",
 ]
 """
@@ -38,6 +38,7 @@ RETURNS = {
     "harmonic_map": [({}, "HarmonicMapResult"), ({"steps": True}, "Iterator[HarmonicMapResult]")],
     "mumford_shah": [({}, "EdgeResult"), ({"steps": True}, "Iterator[EdgeResult]")],
     "turing_texture": [({}, "TextureResult"), ({"steps": True}, "Iterator[TextureResult]")],
+    "denoise_mesh": [({}, "NDArray[np.float64]"), ({"full_output": True}, "MeshDenoisingResult")],
     "segment": [({}, "SegmentationResult")],
     "tensor_diffusion": [({}, "NDArray[Any]"), ({"full_output": True}, "TensorDiffusionResult"),
                          ({"steps": True}, "Iterator[TensorDiffusionResult]")],

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/DenoisingRun.h"
 
+#include "Core/Geometry/VertexUpdating.h"
+
 namespace SurfaceDiffusion
 {
 
@@ -16,6 +18,24 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
                    "Automatic: by the angles at the edges of the denoised surface." },
     this->SurfaceType, { "Automatic", "CAD", "Organic" });
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+}
+
+SurfaceType DenoisingRun::FoundType() const
+{
+  return this->Found.Kind == SurfaceKind::Sharp ? SurfaceType::CAD : SurfaceType::Organic;
+}
+
+std::vector<Warning> DenoisingRun::FindWarnings() const
+{
+  const Index coincident = this->Domain->Diagnostics().CoincidentBoundaryPoints;
+  if (coincident == 0)
+  {
+    return {};
+  }
+  return { { std::to_string(coincident) +
+      " boundary points coincide with others and may come apart (to join them, set "
+      "MergeCoincidentPoints)",
+    this->SurfaceVersion } };
 }
 
 void DenoisingRun::Update(
@@ -66,6 +86,8 @@ void DenoisingRun::Update(
       this->Moved.row(p) += unit * (moved.row(vertex) - points.row(vertex));
     }
   }
+  this->GivenVolume = EnclosedVolume(mesh, surface.Points(), this->Parallel);
+  this->MovedVolume = EnclosedVolume(mesh, this->Moved, this->Parallel);
   this->Complete(input, settings);
 }
 

@@ -51,13 +51,6 @@ void DirectionFieldSettings::Check(const FieldSummary* fields, Problems& problem
   }
 }
 
-double DirectionFieldRun::MeanEdgeLength() const
-{
-  const TriangleMesh& mesh = this->Domain->Mesh();
-  const double edges = mesh.NumberOfEdges();
-  return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges : 1.0;
-}
-
 void DirectionFieldRun::Update(
   const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress)
 {

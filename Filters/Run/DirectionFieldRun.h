@@ -41,8 +41,6 @@ public:
 
   /// e1 per triangle of the surface's InputMesh().
   const TangentVectors& Directions() const { return this->Field; }
-  /// In coordinate units.
-  double MeanEdgeLength() const;
   /// The warnings about the line field that hold.
   std::vector<Warning> FindWarnings() const;
 

@@ -25,6 +25,13 @@ bool SurfaceRun::Prepare(const BlockInput& input, Settings& settings, const Surf
   return !isCurrent;
 }
 
+double SurfaceRun::MeanEdgeLength() const
+{
+  const TriangleMesh& mesh = this->Domain->InputMesh();
+  const double edges = mesh.NumberOfEdges();
+  return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges : 1.0;
+}
+
 void SurfaceRun::Complete(const BlockInput& input, Settings& settings)
 {
   this->FieldsVersion = input.FieldsVersion;

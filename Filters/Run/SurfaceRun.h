@@ -17,6 +17,8 @@ public:
   const Surface& GetSurface() const { return *this->Domain; }
   /// The surface that the result belongs to.
   const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
+  /// Of triangles of positive area, in coordinate units; 1 if there are none.
+  double MeanEdgeLength() const;
 
 protected:
   explicit SurfaceRun(const ParallelFor& parallel)

@@ -499,6 +499,32 @@ bool ModelRun::WriteMovedPoints(std::size_t block, const OutputArray& output) co
 }
 
 //------------------------------------------------------------------------------------------------
+namespace
+{
+
+/// `input` without a mask, for as long as it lives.
+BlockInput MakeUnmaskedBlock(const InputFields& input)
+{
+  BlockInput block;
+  block.SurfaceVersion = input.Surface->Version(std::nullopt, false);
+  block.FieldsVersion = input.Version();
+  block.ReadSurface = [&] { return input.Surface->Read(std::nullopt, false); };
+  block.ReadFields = [&] { return input.Read(); };
+  return block;
+}
+
+void AppendDegenerateTriangles(
+  std::vector<std::string>& sentences, const Surface& surface, const std::string& consequence)
+{
+  const Index degenerate = surface.Diagnostics().DegenerateTriangles;
+  if (degenerate > 0)
+  {
+    sentences.push_back(std::to_string(degenerate) + " triangles of zero area " + consequence);
+  }
+}
+
+} // namespace
+
 void DirectionRun::Update(
   const InputFields& input, const nb::dict& values, const nb::object& progress)
 {
@@ -508,26 +534,14 @@ void DirectionRun::Update(
   Problems problems;
   settings.Check(&summary, problems);
   ThrowProblems(std::move(problems));
-  PythonProgress(progress).Run(
-    [&](const ProgressMonitor& monitor)
-    {
-      BlockInput block;
-      block.SurfaceVersion = input.Surface->Version(std::nullopt, false);
-      block.FieldsVersion = input.Version();
-      block.ReadSurface = [&] { return input.Surface->Read(std::nullopt, false); };
-      block.ReadFields = [&] { return input.Read(); };
-      this->Field.Update(block, settings, monitor);
-    });
+  PythonProgress(progress).Run([&](const ProgressMonitor& monitor)
+    { this->Field.Update(MakeUnmaskedBlock(input), settings, monitor); });
 }
 
 std::vector<std::string> DirectionRun::GetWarnings() const
 {
   std::vector<std::string> sentences = SentencesOf(this->Field.FindWarnings());
-  const Index degenerate = this->Field.GetSurface().Diagnostics().DegenerateTriangles;
-  if (degenerate > 0)
-  {
-    sentences.push_back(std::to_string(degenerate) + " triangles of zero area get no direction");
-  }
+  AppendDegenerateTriangles(sentences, this->Field.GetSurface(), "get no direction");
   return sentences;
 }
 
@@ -538,6 +552,45 @@ void DirectionRun::Write(const InputSurface& surface, const OutputArray& output)
     static_cast<std::int64_t>(surface.NumberOfFaces()), [&](Index t) { return surface.FaceOf(t); },
     PythonThreads::Instance());
   WriteMatrix(directions, output);
+}
+
+//------------------------------------------------------------------------------------------------
+void MeshDenoiser::Update(
+  const InputFields& input, const nb::dict& values, const nb::object& progress)
+{
+  DenoisingRunSettings settings;
+  AssignSettings(settings, values);
+  Problems problems;
+  CheckRanges(settings, problems);
+  ThrowProblems(std::move(problems));
+  PythonProgress(progress).Run([&](const ProgressMonitor& monitor)
+    { this->Run.Update(MakeUnmaskedBlock(input), settings, monitor); });
+}
+
+nb::dict MeshDenoiser::GetResults() const
+{
+  const DenoisingReport& report = this->Run.Report();
+  nb::dict results;
+  results["noise_level"] = report.NoiseLevel;
+  results["surface_type"] = this->Run.FoundType() == SurfaceType::CAD ? "CAD" : "Organic";
+  results["mean_displacement"] = report.MeanDisplacement;
+  results["maximum_displacement"] = report.MaximumDisplacement;
+  results["volume_before"] = this->Run.VolumeBefore();
+  results["volume_after"] = this->Run.VolumeAfter();
+  results["mean_edge_length"] = this->Run.MeanEdgeLength();
+  return results;
+}
+
+std::vector<std::string> MeshDenoiser::GetWarnings() const
+{
+  std::vector<std::string> sentences = SentencesOf(this->Run.FindWarnings());
+  AppendDegenerateTriangles(sentences, this->Run.GetSurface(), "have no normal");
+  return sentences;
+}
+
+void MeshDenoiser::Write(const OutputArray& output) const
+{
+  WriteMatrix(this->Run.MovedPoints(), output);
 }
 
 } // namespace SurfaceDiffusion

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "InputData.h"
+#include "Run/DenoisingRun.h"
 #include "Run/DirectionFieldRun.h"
 #include "Run/Run.h"
 #include "Threads.h"
@@ -97,6 +98,28 @@ public:
 
 private:
   DirectionFieldRun Field{ PythonThreads::Instance() };
+};
+
+/// The denoised points of one surface.
+class MeshDenoiser
+{
+public:
+  MeshDenoiser() = default;
+  MeshDenoiser(const MeshDenoiser&) = delete;
+  MeshDenoiser& operator=(const MeshDenoiser&) = delete;
+
+  /// Only the fixed points or faces of the input are read.
+  void Update(
+    const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
+  /// The attributes of the result, by name.
+  nanobind::dict GetResults() const;
+  /// The sentences of all warnings that hold.
+  std::vector<std::string> GetWarnings() const;
+  /// The moved points.
+  void Write(const OutputArray& output) const;
+
+private:
+  DenoisingRun Run{ PythonThreads::Instance() };
 };
 
 } // namespace SurfaceDiffusion

@@ -138,4 +138,11 @@ NB_MODULE(_core, m)
     .def("mean_edge_length", &DirectionRun::MeanEdgeLength)
     .def("warnings", &DirectionRun::GetWarnings)
     .def("write", &DirectionRun::Write, "surface"_a, "output"_a);
+
+  nb::class_<MeshDenoiser>(m, "MeshDenoiser")
+    .def(nb::init<>())
+    .def("update", &MeshDenoiser::Update, "fields"_a, "settings"_a, "progress"_a.none())
+    .def("results", &MeshDenoiser::GetResults)
+    .def("warnings", &MeshDenoiser::GetWarnings)
+    .def("write", &MeshDenoiser::Write, "output"_a);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SettingsTable.h"
 
+#include "Run/DenoisingRun.h"
 #include "Run/DirectionFieldRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
@@ -168,6 +169,10 @@ std::unique_ptr<Settings> MakeSettings(const std::string& model)
   if (model == "direction_field")
   {
     return std::make_unique<DirectionFieldSettings>();
+  }
+  if (model == "denoise_mesh")
+  {
+    return std::make_unique<DenoisingRunSettings>();
   }
   return MakeRunSettings(model);
 }

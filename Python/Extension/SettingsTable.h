@@ -17,7 +17,7 @@ struct RunSettings;
 /// The settings of a time-dependent model by the name of its Python function, with their defaults.
 std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model);
 
-/// The same for any function, direction_field included.
+/// The same for any function, also for those without time steps.
 std::unique_ptr<Settings> MakeSettings(const std::string& model);
 
 /// One dict per setting: name, unit, documentation, kind, default, allowed and words.

@@ -11,6 +11,7 @@
 `heat`               smoothing, denoising and inpainting by linear diffusion
 `intrinsic_tv`       denoising and inpainting that preserves edges
 `harmonic_map`       regularised normals and unit vectors, and denoised points
+`denoise_mesh`       points without noise, sharp edges kept
 `mumford_shah`       edges as curves, and data that are smooth between them
 `tensor_diffusion`   smoothing along the edges or the lines of the data
 `turing_texture`     textures by reaction and diffusion
@@ -19,10 +20,11 @@
 `smooth_to_fwhm`     smoothing up to a given smoothness
 ==================== ============================================================================
 
-`heat`, `intrinsic_tv`, `tensor_diffusion`, `direction_field` and `smooth_to_fwhm` return an array;
-with ``full_output=True`` the first three return a result with history and times. `harmonic_map`,
-`mumford_shah` and `turing_texture` return a result, since theirs is more than one array. Keywords are the properties
-of the filters for VTK and ParaView in snake_case. The results have the same bits.
+`heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
+return an array; with ``full_output=True`` the first three return a result with history and times, and
+`denoise_mesh` one with the noise level that it found. `harmonic_map`, `mumford_shah` and
+`turing_texture` return a result, since theirs is more than one array. Keywords are the properties of
+the filters for VTK and ParaView in snake_case. The results have the same bits.
 """
 
 import os as _os
@@ -30,13 +32,13 @@ from importlib.metadata import version as _version
 
 from . import _core
 from ._functions import (
-    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment,
+    denoise_mesh, direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment,
     tensor_diffusion, turing_texture,
 )
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, Result, SegmentationResult,
-    TensorDiffusionResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, RegionBoundary, Result,
+    SegmentationResult, TensorDiffusionResult, TextureResult,
 )
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
@@ -45,12 +47,11 @@ from ._threads import get_number_of_threads, set_number_of_threads
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "DiffusionResult", "EdgeResult", "FWHMEstimate", "HarmonicMapResult", "RegionBoundary", "Result",
-    "SegmentationResult", "Surface", "SurfaceDiffusionWarning", "TensorDiffusionResult", "TextureResult",
-    "direction_field",
-    "estimate_fwhm", "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah",
-    "segment", "set_number_of_threads", "smooth_to_fwhm", "sphere", "tensor_diffusion",
-    "turing_texture",
+    "DiffusionResult", "EdgeResult", "FWHMEstimate", "HarmonicMapResult", "MeshDenoisingResult",
+    "RegionBoundary", "Result", "SegmentationResult", "Surface", "SurfaceDiffusionWarning",
+    "TensorDiffusionResult", "TextureResult", "denoise_mesh", "direction_field", "estimate_fwhm",
+    "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "set_number_of_threads", "smooth_to_fwhm", "sphere", "tensor_diffusion", "turing_texture",
 ]
 
 if hasattr(_os, "register_at_fork"):

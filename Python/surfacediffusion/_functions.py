@@ -19,15 +19,15 @@ from ._models import (
     make_segmentation, make_tensor_diffusion, make_texture,
 )
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, SegmentationResult, TensorDiffusionResult,
-    TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, SegmentationResult,
+    TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, translate
 from ._surface import Surface, SurfaceLike, as_data, as_surface, find_on_faces
 
 __all__ = [
-    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
     "tensor_diffusion", "turing_texture",
 ]
 
@@ -576,6 +576,95 @@ def harmonic_map(
     return _run("harmonic_map", given, runner,
                 lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),
                 steps, progress)
+
+
+@_with_settings
+def denoise_mesh(
+    surface: SurfaceLike,
+    *,
+    fixed: ArrayLike | None = None,
+    full_output: bool = False,
+    progress: Progress = False,
+    **properties: Any,
+) -> NDArray[np.float64] | MeshDenoisingResult:
+    """Remove the noise of the points of a surface, and keep its sharp edges.
+
+    Two steps alternate. With n_f the unit normals, a_f the areas and c_f the centroids of the
+    triangles, the first regularises the normals n0 of the present surface, by descent on
+
+        sum_{f,g} a_f a_g w_fg rho(abs(n_f - n_g)) + mu sum_f a_f^2 abs(n_f - n0_f)^2
+
+    over pairs of triangles that share a point. rho(d) = 1 - exp(-d^2/(2 r^2)) saturates at sharp
+    edges, and w_fg = exp(-abs(c_f - c_g)^2/(2 s^2) - abs(m_f - m_g)^2/(2 r^2)) has the guide normals
+    m (Zhang, Deng, Zhang, Bouaziz, Liu, Guided Mesh Normal Filtering, CGF 34(7), 2015). The second
+    moves the points x, which were given as x0, to the minimum of
+
+        sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2 + sum_i l_i (N_i . (x_i - x0_i))^2
+
+    and a term that keeps tangential displacements small. All weights follow from the noise level: l_i
+    is proportional to the inverse of its square, and smaller for outliers. A surface whose estimated
+    noise is 0 stays as it is. Faces should be oriented consistently.
+
+    Parameters
+    ----------
+    {surface}
+    fixed : array_like, shape (n,) or (m,), optional
+        Nonzero points, and the points of nonzero faces, stay where they are.
+    full_output : bool, default False
+        Return a :class:`MeshDenoisingResult` in place of its `points`.
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    ndarray, shape (n, 3), or MeshDenoisingResult
+        The points; those of no face stay. The result has the noise level, the kind of surface,
+        displacements, volumes and warnings, too.
+
+    Raises
+    ------
+    ValueError
+        For settings and arrays that are not allowed; the message names the argument, what was found
+        and what is allowed.
+    KeyboardInterrupt
+        Within a block of work after Ctrl-C. The surface can be used again.
+
+    Warns
+    -----
+    SurfaceDiffusionWarning
+        For triangles of zero area, and for coincident points that may come apart.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import Surface, denoise_mesh, sphere
+    >>> clean = sphere(4)
+    >>> noise = np.random.default_rng(0).normal(scale=0.01, size=(clean.n_points, 1))
+    >>> noisy = Surface(clean.points * (1 + noise), clean.triangles)
+    >>> result = denoise_mesh(noisy, full_output=True)
+    >>> bool(np.linalg.norm(result.points, axis=1).std() < 0.5 * noise.std())
+    True
+    >>> result.surface_type, bool(abs(result.noise_level - 0.01) < 0.002)
+    ('Organic', True)
+    """
+    if not isinstance(full_output, (bool, np.bool_)):
+        raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
+    surface = as_surface(surface)
+    runner = Runner("denoise_mesh", properties, {"FixedArray": "fixed"})
+    inputs = Input(surface, fixed=fixed)
+    with surface._lock, ProgressReporter(progress) as reporter:
+        run = surface._runs.setdefault("denoise_mesh", _core.MeshDenoiser())
+        runner.call(run.update, inputs.core, runner.settings, reporter.callable)
+        reporter.finish_part()
+        points = np.empty((surface.n_points, 3))
+        runner.call(run.write, points)
+        sentences = runner.warnings(run)
+        results = run.results()
+    warn(sentences)
+    return MeshDenoisingResult(points, warnings=sentences, **results) if full_output else points
 
 
 @_with_settings

@@ -120,6 +120,45 @@ class HarmonicMapResult(Result):
 
 
 @dataclass(frozen=True)
+class MeshDenoisingResult:
+    """The result of :func:`denoise_mesh`. ``numpy.asarray(result)`` is `points`.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 3)
+        The denoised points.
+    noise_level : float
+        The standard deviation of the noise along the normal, given or estimated, in coordinate
+        units.
+    surface_type : str
+        The kind of surface, given or found: "CAD" or "Organic".
+    mean_displacement, maximum_displacement : float
+        Of the points, in coordinate units.
+    volume_before, volume_after : float
+        The enclosed volumes, in coordinate units, signed by the orientation; 0 for surfaces that
+        are not closed or not consistently oriented.
+    mean_edge_length : float
+        h of the given surface, in coordinate units.
+    warnings : list of str
+        Everything that was also given as a Python warning.
+    """
+
+    points: NDArray[np.float64] = field(repr=False)
+    noise_level: float
+    surface_type: str
+    mean_displacement: float
+    maximum_displacement: float
+    volume_before: float = field(repr=False)
+    volume_after: float = field(repr=False)
+    mean_edge_length: float = field(repr=False)
+    warnings: list[str] = field(repr=False)
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        array = self.points if dtype is None else self.points.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+
+@dataclass(frozen=True)
 class EdgeResult(Result):
     """A state of :func:`mumford_shah`: a :class:`Result` whose `values` are smooth between edges,
     with

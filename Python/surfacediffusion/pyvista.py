@@ -45,6 +45,7 @@ import pyvista
 from numpy.typing import NDArray
 
 from . import _core
+from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import direction_field as _direction_field
 from ._functions import segment as _segment
 from ._meshes import find_polydata
@@ -58,7 +59,7 @@ from ._settings import settings_of, shorten
 from ._surface import Surface, as_data
 
 __all__ = [
-    "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
+    "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
     "tensor_diffusion", "turing_texture",
 ]
 
@@ -210,6 +211,38 @@ def segment(
     return segmented, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 
 
+def denoise_mesh(
+    mesh: Any, *, fixed: str | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
+) -> Any:
+    """Remove the noise of the points of the mesh, and keep its sharp edges.
+
+    fixed: point or cell array; points, and the points of cells, with a nonzero value stay. The method
+    and all other keywords are described in help(surfacediffusion.denoise_mesh). The result has moved
+    points and the point array Displacement (n, 3); active point normals are computed again. Each block of a MultiBlock has its own noise
+    level. full_output: if True, the function returns a pair: the mesh, and the MeshDenoisingResult,
+    of a MultiBlock the list of them.
+    """
+    properties, name = _keywords("denoise_mesh", properties)
+    blocks, results = _find_surfaces(mesh), []
+    for block in blocks:
+        marks = block.find("fixed", fixed, faces=True)[0]
+        result = _denoise_mesh(block.surface, fixed=marks, full_output=True, progress=progress,
+                               **properties)
+        results.append(result)
+        block.add(name or "Displacement", result.points - block.surface.points, False)
+        block.move(result.points)
+        normals = block.mesh.point_data.active_normals_name
+        if normals is not None and result.maximum_displacement > 0.0:
+            moved = Surface(result.points, block.surface.triangles)
+            block.mesh.point_data[normals] = moved._point_normals()
+            block.mesh.GetPointData().SetActiveNormals(normals)
+    denoised = _rebuild(mesh, iter(blocks))
+    if not full_output:
+        return denoised
+    return denoised, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+
 def direction_field(
     mesh: Any, hints: str | None = None, *, progress: Progress = False, **properties: Any
 ) -> Any:
@@ -276,6 +309,10 @@ class _Block:
         cells = np.zeros((self.mesh.n_cells, *values.shape[1:]), dtype=values.dtype)
         cells[self.face_cells] = values
         self.mesh.cell_data[name] = cells
+
+    def move(self, points: NDArray[Any]) -> None:
+        """Give the mesh points of its own, in the precision of the input's."""
+        self.mesh.SetPoints(pyvista.vtk_points(points.astype(self.input.points.dtype)))
 
     def fresh(self) -> _Block:
         """The same surface, with a mesh for other results."""
@@ -460,8 +497,7 @@ def _write(
     elif block.name in ("Normals", given.active_normals_name):
         block.mesh.GetPointData().SetActiveNormals(active)
     if function == "harmonic_map" and result.mean_displacement > 0.0:
-        # Other points: those of the copy are the input's own.
-        block.mesh.SetPoints(pyvista.vtk_points(result.points.astype(block.input.points.dtype)))
+        block.move(result.points)
 
 
 def _run(
@@ -546,8 +582,8 @@ def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 for _function in (
-        heat, intrinsic_tv, harmonic_map, mumford_shah, segment, tensor_diffusion, turing_texture,
-        direction_field):
+        heat, intrinsic_tv, harmonic_map, denoise_mesh, mumford_shah, segment, tensor_diffusion,
+        turing_texture, direction_field):
     setattr(_Accessor, _function.__name__, _as_method(_function))
 
 if hasattr(pyvista, "register_dataset_accessor"):

@@ -19,7 +19,7 @@ import numpy as np
 import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
-from surfacediffusion import (Surface, get_number_of_threads, heat, intrinsic_tv,
+from surfacediffusion import (Surface, denoise_mesh, get_number_of_threads, heat, intrinsic_tv,
                               set_number_of_threads)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
@@ -302,6 +302,70 @@ class OtherCommands(CommandTest):
         self.assertLess(radii.std(), 0.07)
         self.assertGreater(report["maximum_displacement"], 0)
 
+    def test_denoise_mesh_writes_the_points_of_the_function(self):
+        points, faces = samples.sphere(4)
+        noise = np.random.default_rng(8).normal(0, 0.005, (len(points), 1))
+        samples.write_surface("noisy.surf.gii", points * (1 + noise), faces)
+        out = self.succeed("denoise-mesh noisy.surf.gii clean.surf.gii")
+        self.assertRegex(out, r"^clean.surf.gii: Organic, noise 0\.0\d+, points moved by 0\.0\d+ on "
+                              r"average, at most 0\.\d+, \d+\.\d\d s\n$")
+        given, found = read_surface("noisy.surf.gii"), read_surface("clean.surf.gii")
+        expected = denoise_mesh((given.points, given.faces), full_output=True)
+        np.testing.assert_array_equal(found.points, expected.points.astype(found.points.dtype))
+        np.testing.assert_array_equal(found.faces, given.faces)
+        self.assertLess(np.linalg.norm(found.points, axis=1).std(), 0.03)  # 0.05 before
+        report = self.report("denoise-mesh noisy.surf.gii clean.surf.gii")
+        self.assertEqual(report["surface_type"], "Organic")
+        for name in ("noise_level", "mean_displacement", "maximum_displacement", "volume_before",
+                     "volume_after", "mean_edge_length"):
+            self.assertEqual(report[name], getattr(expected, name), name)
+
+    def test_denoise_mesh_takes_level_type_and_fixed_vertices(self):
+        points, faces = samples.sphere(4)
+        noise = np.random.default_rng(8).normal(0, 0.005, (len(points), 1))
+        north = points[:, 2] > 3
+        samples.write_surface("noisy.surf.gii", points * (1 + noise), faces)
+        samples.write_gifti("north.func.gii", {"north": north})
+        report = self.report("denoise-mesh noisy.surf.gii clean.surf.gii --noise 0.03 --type cad "
+                             "--fixed north.func.gii")
+        self.assertEqual((report["noise_level"], report["surface_type"]), (0.03, "CAD"))
+        given, found = read_surface("noisy.surf.gii"), read_surface("clean.surf.gii")
+        np.testing.assert_array_equal(found.points[north], given.points[north])
+        expected = denoise_mesh((given.points, given.faces), noise_level=0.03, surface_type="CAD",
+                                fixed=north)
+        np.testing.assert_array_equal(found.points, expected.astype(found.points.dtype))
+
+    def test_denoise_mesh_merges_split_vertices(self):
+        noisy = POINTS * (1 + np.random.default_rng(9).normal(0, 0.005, (N, 1)))
+        split = noisy[FACES].reshape(-1, 3)
+        samples.write_surface("soup.surf.gii", split, np.arange(len(split)).reshape(-1, 3))
+        code, _, error = run("denoise-mesh", "soup.surf.gii", "apart.surf.gii")
+        self.assertEqual(code, 0)
+        self.assertIn("boundary points coincide with others and may come apart", error)
+        self.succeed("denoise-mesh soup.surf.gii whole.surf.gii --merge")
+        corners = read_surface("whole.surf.gii").points
+        for vertex in range(N):
+            self.assertEqual(len(np.unique(corners[FACES.ravel() == vertex], axis=0)), 1)
+
+    def test_denoise_mesh_keeps_the_formats_of_meshes(self):
+        noisy = POINTS * (1 + np.random.default_rng(9).normal(0, 0.05, (N, 1)))
+        Path("scan.ply").write_bytes(samples.ply_bytes(points=noisy))
+        Path("scan.off").write_text(samples.off_text(points=noisy))
+        Path("scan.obj").write_text(samples.obj_text(points=noisy))
+        Path("scan.stl").write_bytes(samples.stl_bytes(points=noisy))
+        for kind in ("ply", "off", "obj", "stl"):
+            self.succeed(f"denoise-mesh scan.{kind} clean.{kind}")
+            given, found = read_surface(f"scan.{kind}"), read_surface(f"clean.{kind}")
+            self.assertEqual(found.kind, kind)
+            expected = denoise_mesh((given.points, given.faces))
+            self.assertGreater(np.abs(expected - given.points).max(), 0.1)
+            corners = [np.asarray(points)[np.asarray(faces)] for points, faces in (
+                (expected, given.faces), (found.points, found.faces))]
+            np.testing.assert_allclose(*corners, atol=1e-5)
+        # The colours of the vertices are those that they were.
+        np.testing.assert_array_equal(read_data("clean.ply").parts[0].values,
+                                      read_data("scan.ply").parts[0].values)
+
     def test_fwhm_of_smoothed_noise(self):
         samples.write_surface("fine.surf.gii", *samples.sphere(4))
         surface = Surface(read_surface("fine.surf.gii").points, samples.sphere(4)[1])
@@ -380,7 +444,7 @@ class Reports(CommandTest):
 
     def test_help_of_every_command_shows_an_example(self):
         _, out, _ = run("--help")
-        commands = ("smooth", "denoise", "inpaint", "segment", "texture", "directions",
+        commands = ("smooth", "denoise", "denoise-mesh", "inpaint", "segment", "texture", "directions",
                     "normals", "fwhm", "info")
         for command in commands:
             self.assertIn(command, out)

@@ -69,6 +69,54 @@ TEST(SurfaceDenoisingFilter, RemovesNoiseAndReportsItsLevel)
   EXPECT_GT(filter->GetMeanEdgeLength(), 0.0);
 }
 
+TEST(SurfaceDenoisingFilter, ReportsTheKindOfSurfaceAndTheVolume)
+{
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_AUTOMATIC);
+  const auto noisy = NoisySphere(0.01);
+  filter->SetInputData(noisy);
+  filter->Update();
+  EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_ORGANIC);
+  const double ball = 4.0 / 3.0 * vtkMath::Pi();
+  EXPECT_NEAR(filter->GetVolumeBefore(), ball, 0.01 * ball);
+  EXPECT_NEAR(filter->GetVolumeAfter(), filter->GetVolumeBefore(), 0.005 * ball);
+  EXPECT_NE(filter->GetVolumeAfter(), filter->GetVolumeBefore());
+  filter->SetSurfaceTypeToCAD();
+  filter->Update();
+  EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_CAD);
+}
+
+TEST(SurfaceDenoisingFilter, CoincidentPointsAreAWarningUnlessTheyAreMerged)
+{
+  const auto noisy = NoisySphere(0.01, 3);
+  vtkNew<vtkPoints> points; // every triangle has its own
+  vtkNew<vtkCellArray> triangles;
+  for (vtkIdType t = 0; t < noisy->GetNumberOfCells(); ++t)
+  {
+    vtkNew<vtkIdList> corners;
+    noisy->GetCellPoints(t, corners);
+    triangles->InsertNextCell(3);
+    for (int k = 0; k < 3; ++k)
+    {
+      triangles->InsertCellPoint(points->InsertNextPoint(noisy->GetPoint(corners->GetId(k))));
+    }
+  }
+  vtkNew<vtkPolyData> soup;
+  soup->SetPoints(points);
+  soup->SetPolys(triangles);
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  filter->SetInputData(soup);
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(
+    messages.Warnings[0].find("coincide with others and may come apart"), std::string::npos);
+  filter->MergeCoincidentPointsOn();
+  filter->Update();
+  EXPECT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_TRUE(messages.Errors.empty());
+}
+
 TEST(SurfaceDenoisingFilter, DisplacementsLeadFromTheInputToTheOutput)
 {
   const auto noisy = NoisySphere(0.01, 3);
@@ -115,6 +163,30 @@ TEST(SurfaceDenoisingFilter, FixedPointsStayAndPointsKeepTheirPrecision)
     farthest = std::max(farthest, distance);
   }
   EXPECT_GT(farthest, 0.005);
+}
+
+TEST(SurfaceDenoisingFilter, ActiveNormalsAreThoseOfTheMovedPoints)
+{
+  const auto noisy = NoisySphere(0.01, 4);
+  AddPointArray(noisy, "n", 3, [&](vtkIdType i, int k) { return noisy->GetPoint(i)[k]; });
+  AddPointArray(noisy, "other", 3, [&](vtkIdType i, int k) { return noisy->GetPoint(i)[k]; });
+  noisy->GetPointData()->SetActiveNormals("n");
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  filter->SetInputData(noisy);
+  filter->Update();
+  vtkPointData* const data = filter->GetOutput()->GetPointData();
+  ASSERT_NE(data->GetNormals(), nullptr);
+  EXPECT_STREQ(data->GetNormals()->GetName(), "n");
+  EXPECT_EQ(data->GetArray("other"), noisy->GetPointData()->GetArray("other"));
+  double worst = 1.0;
+  for (vtkIdType i = 0; i < noisy->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    filter->GetOutput()->GetPoint(i, p);
+    vtkMath::Normalize(p);
+    worst = std::min(worst, vtkMath::Dot(p, data->GetNormals()->GetTuple3(i)));
+  }
+  EXPECT_GT(worst, 0.97); // the noisy ones reach 0.9
 }
 
 TEST(SurfaceDenoisingFilter, ErrorsNamePropertyValueAndRange)

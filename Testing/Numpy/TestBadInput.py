@@ -104,7 +104,13 @@ CASES = [
      r'hints is given but method is PrincipalCurvature; allowed: method="Hints", or no hints'),
     (lambda: sd.direction_field(BODY, method="Hints"), r"method is Hints but hints is not set; .*"),
     (lambda: sd.direction_field(BODY, np.ones(3), method="Hints"), r"hints has shape \(3,\); .*"),
+    (lambda: sd.denoise_mesh(BODY, fixed=[1, 0]), r"fixed has shape \(2,\); allowed: \(5,\), one.*"),
+    (lambda: sd.denoise_mesh(BODY, full_output=1), r"full_output is 1; allowed: True or False"),
     # settings
+    (lambda: sd.denoise_mesh(BODY, noise_level=-1),
+     r"noise_level is -1; allowed: finite numbers, 0 or more"),
+    (lambda: sd.denoise_mesh(BODY, surface_type="Metal"),
+     r"surface_type is 'Metal'; allowed: Automatic, CAD, Organic"),
     (lambda: sd.heat(BODY, Z, fwhm=-1), r"fwhm is -1; allowed: finite numbers, 0 or more"),
     (lambda: sd.heat(BODY, Z, fwhm="10 mm"), r"fwhm is '10 mm'; allowed: finite numbers, 0 or more"),
     (lambda: sd.heat(BODY, Z, fwhm=None), r"fwhm is None; allowed: finite numbers, 0 or more"),

@@ -19,7 +19,8 @@ FOLDER = pathlib.Path(sd.__file__).parent
 
 GOOD = """
     import numpy as np
-    from surfacediffusion import Surface, heat, intrinsic_tv, harmonic_map, turing_texture, sphere
+    from surfacediffusion import (
+        Surface, denoise_mesh, heat, intrinsic_tv, harmonic_map, turing_texture, sphere)
 
     surface = Surface(np.zeros((3, 3)), [[0, 1, 2]])
     array = heat(surface, np.zeros(3), fwhm=2.0, mode="TimeSteps", intrinsic_delaunay=True)
@@ -28,6 +29,8 @@ GOOD = """
     times = [state.time for state in heat((surface.points, surface.triangles), array, steps=True)]
     moved = harmonic_map(sphere(), move_vertices=True).points
     texture = turing_texture(sphere(), kinetics="GrayScott", seed=1).texture
+    points = denoise_mesh(sphere(), surface_type="CAD")
+    level: float = denoise_mesh((points, surface.faces), full_output=True).noise_level
 """
 
 BAD = {
@@ -36,6 +39,8 @@ BAD = {
     "heat(sphere(), [1.0], intrinsic_delaunay=1.5)": "intrinsic_delaunay",
     "heat(sphere(), [1.0]).history": "history",
     "harmonic_map(sphere(), steps=True).points": "points",
+    'denoise_mesh(sphere(), surface_type="Metal")': "surface_type",
+    "denoise_mesh(sphere()).noise_level": "noise_level",
 }
 
 
@@ -77,7 +82,7 @@ class Package(unittest.TestCase):
 
             good = check(GOOD)
             self.assertEqual(good.returncode, 0, good.stdout + good.stderr)
-            imports = "from surfacediffusion import heat, harmonic_map, sphere\n"
+            imports = "from surfacediffusion import denoise_mesh, heat, harmonic_map, sphere\n"
             found = check(imports + "\n".join(BAD)).stdout
             for line, (statement, word) in enumerate(BAD.items(), 2):
                 of_line = [text for text in found.splitlines() if f"program.py:{line}:" in text]

@@ -15,7 +15,7 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, tensor_diffusion,
+    denoise_mesh, direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, tensor_diffusion,
     turing_texture,
 )
 
@@ -87,6 +87,32 @@ class Meshes(unittest.TestCase):
         self.assertTrue((regions["RegionId"][mesh["seeds"] == 2] == 2).all())
         vectors = harmonic_map(mesh, "east")
         self.assertEqual(vectors["eastHarmonic"].shape, (mesh.n_points, 3))
+
+    def test_meshes_are_denoised_block_by_block(self):
+        ball = pyvista.Icosphere(nsub=4)
+        noise = np.random.default_rng(5).normal(scale=0.005, size=(ball.n_points, 1))
+        mesh = pyvista.PolyData(ball.points * (1 + noise).astype(np.float32), ball.faces)
+        mesh.point_data["n"] = np.array(mesh.points)
+        mesh.point_data.active_normals_name = "n"
+        mesh["north"] = (mesh.points[:, 2] > 0.3).astype(np.uint8)
+        before = np.array(mesh.points)
+        blocks = pyvista.MultiBlock([mesh, None, mesh.scale(10.0, inplace=False)])
+        denoised, reports = denoise_mesh(blocks, fixed="north", full_output=True)
+        self.assertEqual(len(reports), 2)
+        self.assertAlmostEqual(reports[1].noise_level / reports[0].noise_level, 10.0, delta=0.01)
+        np.testing.assert_array_equal(mesh.points, before)
+        moved = denoised[0]
+        self.assertEqual(moved.points.dtype, before.dtype)
+        north = mesh["north"] != 0
+        np.testing.assert_array_equal(moved.points[north], before[north])
+        self.assertEqual(moved.point_data.active_normals_name, "n")
+        radial = moved.points / np.linalg.norm(moved.points, axis=1, keepdims=True)
+        self.assertGreater(np.einsum("ij,ij->i", moved["n"], radial)[~north].min(), 0.97)
+        np.testing.assert_array_equal(mesh["n"], before)
+        self.assertLess(np.linalg.norm(moved.points, axis=1)[~north].std(), 0.003)
+        np.testing.assert_allclose(before + moved["Displacement"], moved.points, atol=1e-7)
+        np.testing.assert_allclose(moved.points, sd.denoise_mesh(as_surface(mesh), fixed=north),
+                                   atol=1e-7)
 
     def test_blocks_are_segmented_one_by_one(self):
         mesh = noisy_sphere()

@@ -25,6 +25,7 @@ FILTERS = {
     "heat": "vtkFVMHeatFilter",
     "intrinsic_tv": "vtkIntrinsicTVFilter",
     "harmonic_map": "vtkHarmonicMapFilter",
+    "denoise_mesh": "vtkSurfaceDenoisingFilter",
     "mumford_shah": "vtkMumfordShahFilter",
     "segment": "vtkSurfaceSegmentationFilter",
     "tensor_diffusion": "vtkTensorDiffusionFilter",
@@ -121,6 +122,8 @@ class SameBits(unittest.TestCase):
             ("harmonic_map", {"vectors": self.normals}, {"Exponent": 2.0}),
             ("harmonic_map", {"vectors": self.normals.astype(np.float32)}, {"LineField": True}),
             ("harmonic_map", {"vectors": colours[:, :3]}, {}),
+            ("denoise_mesh", {"fixed": self.mask}, {}),
+            ("denoise_mesh", {}, {"NoiseLevel": 0.01, "SurfaceType": "CAD"}),
             ("turing_texture", {}, {"NumberOfTimeSteps": 30, "RandomSeed": 4, "ColorOutput": True}),
             ("turing_texture", {}, {"NumberOfTimeSteps": 20, "Kinetics": "GrayScott",
                                     "TimeIntegrator": "FirstOrder"}),
@@ -157,6 +160,8 @@ class SameBits(unittest.TestCase):
         result = getattr(sd, function)(self.surface, **arrays, **keywords)
         if function == "direction_field":
             found = {"Direction": result}
+        elif function == "denoise_mesh":
+            found = {"points": result, "Displacement": result - self.points}
         elif function == "turing_texture":
             found = {"u1": result.values[:, 0], "u2": result.values[:, 1], "Texture": result.texture}
             if result.colors is not None:
@@ -179,7 +184,7 @@ class SameBits(unittest.TestCase):
             found["DiffusionAxes"] = result.axes
         if function == "harmonic_map":
             found["points"] = result.points
-        if function not in ("direction_field", "segment"):
+        if function not in ("denoise_mesh", "direction_field", "segment"):
             found.update({"history " + key: column for key, column in result.history.items()
                           if key != "Seconds"})
         self.assertEqual(set(expected) - {"points", "history Step"}, set(found) - {"points"})

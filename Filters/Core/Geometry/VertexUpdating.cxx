@@ -209,7 +209,8 @@ private:
   std::vector<Eigen::Matrix3d> InverseBlocks;
 };
 
-/// Enclosed volume; 0 where an edge is not passed once in each direction.
+} // namespace
+
 double EnclosedVolume(
   const TriangleMesh& mesh, const Eigen::Ref<const Points>& points, const ParallelFor& parallel)
 {
@@ -225,7 +226,7 @@ double EnclosedVolume(
   }
   std::sort(edges.begin(), edges.end());
   std::sort(reversed.begin(), reversed.end());
-  if (edges != reversed)
+  if (edges != reversed) // an edge is not passed once in each direction
   {
     return 0.0;
   }
@@ -236,8 +237,6 @@ double EnclosedVolume(
            [&](Index t) { return place(t, 0).dot(place(t, 1).cross(place(t, 2))); }) /
     6.0;
 }
-
-} // namespace
 
 Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
   const Values& normals, double range, VertexMotion& motion, const IterationLimits& limits,

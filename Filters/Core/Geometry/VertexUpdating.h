@@ -13,13 +13,17 @@ struct VertexMotion
 {
   double MeanDisplacement = 0.0; ///< area-weighted over the vertices
   double MaximumDisplacement = 0.0;
-  /// Enclosed volumes, signed by the orientation; 0 unless the surface is closed and consistently
-  /// oriented.
+  /// See EnclosedVolume().
   double VolumeBefore = 0.0;
   double VolumeAfter = 0.0;
   /// The relative residual of the fit if it missed the tolerance, otherwise 0.
   double MissedResidual = 0.0;
 };
+
+/// The enclosed volume, signed by the orientation; 0 unless the surface is closed and consistently
+/// oriented. points: of the input, in any unit.
+double EnclosedVolume(
+  const TriangleMesh& mesh, const Eigen::Ref<const Points>& points, const ParallelFor& parallel);
 
 /// Vertex updating: move the vertices of a surface so that the triangle normals match given
 /// normals, the second half of denoising a mesh by its normals. x minimises

@@ -46,8 +46,8 @@ def make_parser(hemispheres=False):
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
-    for add in (_smooth, _denoise, _inpaint, _enhance, _edges, _segment, _texture, _directions,
-                _normals, _fwhm, _info):
+    for add in (_smooth, _denoise, _denoise_mesh, _inpaint, _enhance, _edges, _segment, _texture,
+                _directions, _normals, _fwhm, _info):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -206,6 +206,35 @@ def _denoise(commands):
                         help="for colours. rgb: red, green and blue have their edges in common "
                              "(default); opponent: noise of hues is removed more than that of "
                              "brightness; chromaticity: brightness and hue are separate")
+
+
+MESH = """
+SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
+OUTPUT has the format of SURFACE, its faces and its data.
+"""
+
+
+def _denoise_mesh(commands):
+    text = ("Remove the noise of the points of a surface, and keep its sharp edges, boundaries and "
+            "volume. The level of the noise is measured, and all weights follow from it.")
+    parser = commands.add(
+        "denoise-mesh", tasks.denoise_mesh, text,
+        [f"{PROGRAM} denoise-mesh scan.ply clean.ply",
+         f"{PROGRAM} denoise-mesh part.stl clean.stl --type cad --noise 0.02"], MESH)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("output", metavar="OUTPUT", help="the surface with moved points")
+    parser.add_argument("--noise", metavar="SD", type=_positive,
+                        help="the standard deviation of the noise along the normal, in the unit of "
+                             "the coordinates; larger removes more (default: measured)")
+    parser.add_argument("--type", choices=("automatic", "cad", "organic"), default="automatic",
+                        help="cad: smooth faces with sharp edges; organic: smooth shapes with "
+                             "details, such as scans; automatic: found by the angles at edges "
+                             "(default)")
+    parser.add_argument("--merge", action="store_true",
+                        help="vertices at the same place are one vertex of the surface, as files "
+                             "with split normals or texture seams need")
+    parser.add_argument("--fixed", metavar="FILE",
+                        help="data in which vertices stay where the first column is above 0")
 
 
 def _inpaint(commands):

@@ -53,6 +53,33 @@ def denoise(arguments, report):
         report.warn(f"--colors is {arguments.colors}, but {arguments.data} has no colours")
 
 
+def denoise_mesh(arguments, report):
+    from .. import Surface
+    from .. import denoise_mesh as remove_noise
+
+    surface = _read_surface_for_output(arguments, report)
+    check_output_name(arguments.output, surface.kind)
+    options = {"noise_level": arguments.noise or 0.0,
+               "surface_type": {"cad": "CAD"}.get(arguments.type, arguments.type.capitalize()),
+               "merge_coincident_points": arguments.merge}
+    if arguments.fixed is not None:
+        with report.timed("read"):
+            options["fixed"] = dict(inputs.read_marks(arguments.fixed, {"": surface}))[id(surface)]
+    with report.timed("compute"), report.progress("Denoising") as progress:
+        result = remove_noise(Surface(surface.points, surface.faces), full_output=True,
+                              progress=progress, **options)
+    with report.timed("write"):
+        surface.save(arguments.output, result.points)
+    for name in ("noise_level", "mean_displacement", "maximum_displacement", "volume_before",
+                 "volume_after", "mean_edge_length"):
+        report.facts[name] = number(getattr(result, name))
+    report.facts["surface_type"] = result.surface_type
+    _say_written(arguments, report,
+                 f"{result.surface_type}, noise {result.noise_level:.4g}, points moved by "
+                 f"{result.mean_displacement:.4g} on average, at most "
+                 f"{result.maximum_displacement:.4g}")
+
+
 def inpaint(arguments, report):
     from .. import heat, intrinsic_tv
 

@@ -1,0 +1,174 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""denoise_mesh: noise is removed and reported, and everything else stays."""
+
+import sys
+import unittest
+import warnings
+
+import numpy as np
+
+import surfacediffusion as sd
+
+
+def noisy_sphere(amount=0.01, refinements=5):
+    """Points of the unit sphere moved along its normals, and the same surface without noise."""
+    clean = sd.sphere(refinements)
+    noise = np.random.default_rng(3).normal(scale=amount, size=(clean.n_points, 1))
+    return sd.Surface(clean.points * (1 + noise), clean.triangles), clean
+
+
+def cube_of(surface):
+    """The points of a sphere projected onto the cube of side 2."""
+    points = surface.points
+    return points / np.abs(points).max(axis=1, keepdims=True)
+
+
+def angles(points, other, triangles):
+    """The angles between the normals of triangles with these points, in degrees."""
+    def normals(of):
+        a, b, c = of[triangles].swapaxes(0, 1)
+        found = np.cross(b - a, c - a)
+        return found / np.linalg.norm(found, axis=1, keepdims=True)
+
+    cosines = (normals(points) * normals(other)).sum(axis=1)
+    return np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+
+
+class DenoiseMesh(unittest.TestCase):
+    def test_noise_of_a_sphere_is_removed_and_its_level_reported(self):
+        noisy, clean = noisy_sphere()
+        result = sd.denoise_mesh(noisy, full_output=True)
+        radii = np.linalg.norm(result.points, axis=1)
+        self.assertLess(radii.std(), 0.003)
+        self.assertLess(abs(result.noise_level - 0.01), 0.0015)
+        self.assertEqual(result.surface_type, "Organic")
+        self.assertLess(angles(result.points, clean.points, clean.triangles).mean(),
+                        0.3 * angles(noisy.points, clean.points, clean.triangles).mean())
+        self.assertEqual(result.warnings, [])
+
+    def test_a_cube_is_found_to_be_cad_and_keeps_its_edges(self):
+        ball = sd.sphere(5)
+        clean = cube_of(ball)
+        noise = np.random.default_rng(4).normal(scale=0.008, size=clean.shape)
+        noisy = sd.Surface(clean + noise, ball.triangles)
+        result = sd.denoise_mesh(noisy, full_output=True)
+        self.assertEqual(result.surface_type, "CAD")
+        before = angles(noisy.points, clean, ball.triangles)
+        after = angles(result.points, clean, ball.triangles)
+        self.assertLess(after.mean(), 0.25 * before.mean())
+        rounded = sd.denoise_mesh(noisy, surface_type="Organic")
+        self.assertGreater(angles(rounded, clean, ball.triangles).mean(), 1.2 * after.mean())
+
+    def test_the_report_agrees_with_the_points(self):
+        noisy, _ = noisy_sphere(refinements=4)
+        result = sd.denoise_mesh(noisy, full_output=True)
+        moved = np.linalg.norm(result.points - noisy.points, axis=1)
+        self.assertAlmostEqual(result.maximum_displacement, moved.max(), delta=1e-12)
+        self.assertAlmostEqual(result.mean_displacement, moved.mean(), delta=0.1 * moved.mean())
+
+        def volume(points):
+            a, b, c = points[noisy.triangles].swapaxes(0, 1)
+            return (a * np.cross(b, c)).sum() / 6
+
+        self.assertAlmostEqual(result.volume_before, volume(noisy.points), delta=1e-10)
+        self.assertAlmostEqual(result.volume_after, volume(result.points), delta=1e-10)
+        self.assertLess(abs(result.volume_after / result.volume_before - 1), 0.005)
+        edges = noisy.points[noisy.triangles] - noisy.points[np.roll(noisy.triangles, 1, axis=1)]
+        lengths = np.linalg.norm(edges, axis=2)
+        self.assertAlmostEqual(result.mean_edge_length, lengths.mean(), delta=1e-12)
+        np.testing.assert_array_equal(np.asarray(result), result.points)
+        np.testing.assert_array_equal(np.asarray(result), sd.denoise_mesh(noisy))
+
+    def test_an_open_surface_has_no_volume(self):
+        noisy, _ = noisy_sphere(refinements=4)
+        half = noisy.triangles[noisy.points[noisy.triangles].mean(axis=1)[:, 2] > 0]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            result = sd.denoise_mesh((noisy.points, half), full_output=True)
+        self.assertEqual((result.volume_before, result.volume_after), (0.0, 0.0))
+        unused = np.setdiff1d(np.arange(noisy.n_points), half)
+        np.testing.assert_array_equal(result.points[unused], noisy.points[unused])
+
+    def test_fixed_points_and_the_points_of_fixed_faces_stay(self):
+        noisy, _ = noisy_sphere(refinements=4)
+        north = noisy.points[:, 2] > 0.5
+        points = sd.denoise_mesh(noisy, fixed=north)
+        np.testing.assert_array_equal(points[north], noisy.points[north])
+        self.assertGreater(np.linalg.norm(points - noisy.points, axis=1)[~north].mean(), 0.005)
+        faces = north[noisy.triangles].any(axis=1)
+        held = np.unique(noisy.triangles[faces])
+        points = sd.denoise_mesh(noisy, fixed=faces)
+        np.testing.assert_array_equal(points[held], noisy.points[held])
+
+    def test_a_larger_level_removes_more(self):
+        noisy, _ = noisy_sphere()
+        roughness = [np.linalg.norm(sd.denoise_mesh(noisy, noise_level=level), axis=1).std()
+                     for level in (0.003, 0.01)]
+        self.assertLess(roughness[1], 0.8 * roughness[0])
+
+    def test_a_clean_surface_hardly_moves(self):
+        clean = sd.sphere(5)
+        result = sd.denoise_mesh(clean, full_output=True)
+        self.assertLess(result.maximum_displacement, 0.02 * result.mean_edge_length)
+
+    def test_scale_and_place_do_not_matter(self):
+        noisy, _ = noisy_sphere(refinements=3)
+        expected = sd.denoise_mesh(noisy)
+        shift = np.array([300.0, -20.0, 7.0])
+        found = sd.denoise_mesh((1000 * noisy.points + shift, noisy.triangles))
+        np.testing.assert_allclose((found - shift) / 1000, expected, atol=1e-9)
+
+    def test_seams_come_apart_with_a_warning_unless_their_points_are_merged(self):
+        noisy, _ = noisy_sphere(refinements=3)
+        split = noisy.points[noisy.triangles].reshape(-1, 3)
+        soup = sd.Surface(split, np.arange(len(split)).reshape(-1, 3))
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "come apart.*merge_coincident_points"):
+            sd.denoise_mesh(soup)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            merged = sd.denoise_mesh(soup, merge_coincident_points=True)
+        np.testing.assert_allclose(merged.reshape(-1, 3, 3),
+                                   sd.denoise_mesh(noisy)[noisy.triangles], atol=1e-3)
+        for corner in range(noisy.n_points):
+            copies = merged[(noisy.triangles == corner).ravel()]
+            self.assertLess(np.ptp(copies, axis=0).max(), 1e-14)
+
+    def test_triangles_of_zero_area_are_a_warning(self):
+        noisy, _ = noisy_sphere(refinements=3)
+        triangles = np.concatenate([noisy.triangles, [[0, 0, 1]]])
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "1 triangles of zero area have no"):
+            sd.denoise_mesh((noisy.points, triangles))
+
+    def test_progress_rises_to_one_and_can_end_the_run(self):
+        noisy, _ = noisy_sphere()
+        found = []
+        expected = sd.denoise_mesh(noisy, progress=found.append)
+        self.assertEqual(found, sorted(found))
+        self.assertEqual(found[-1], 1.0)
+
+        class Enough(Exception):
+            pass
+
+        def stop(fraction):
+            raise Enough
+
+        with self.assertRaises(Enough):
+            sd.denoise_mesh(noisy, progress=stop, noise_level=0.011)
+        np.testing.assert_array_equal(sd.denoise_mesh(noisy), expected)
+
+    def test_threads_do_not_change_a_bit(self):
+        noisy, _ = noisy_sphere(refinements=4)
+        before = sd.get_number_of_threads()
+        try:
+            results = []
+            for number in (1, 3):
+                sd.set_number_of_threads(number)
+                results.append(sd.denoise_mesh((noisy.points, noisy.triangles)))
+        finally:
+            sd.set_number_of_threads(before)
+        np.testing.assert_array_equal(*results)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2, argv=sys.argv)
