@@ -37,10 +37,10 @@ class Slider:
 
 @dataclass
 class Outcome:
-    """The result of a filter: the array that the page shows, further arrays for the download, and
-    the points if they have moved. labels: the values are numbers of regions."""
+    """The result of a filter: the array that the page shows (None: a grey surface), further arrays for
+    the download, and the points if they have moved. labels: the values are numbers of regions."""
 
-    shown: np.ndarray
+    shown: Any
     arrays: dict = field(default_factory=dict)
     cell_arrays: dict = field(default_factory=dict)
     points: Any = None
@@ -82,6 +82,14 @@ def run_total_variation(mesh, data, options, progress):
     return _diffused(result, f"λ is {result.effective_fidelity_weight:.3g}")
 
 
+def run_tensor_diffusion(mesh, data, options, progress):
+    result = sd.tensor_diffusion(
+        mesh.surface, data, full_output=True, progress=progress, model=TENSORS[int(options["model"])],
+        contrast=options["contrast"], fidelity_weight=options["weight"],
+        time_step=options["time"] / STEPS, number_of_time_steps=STEPS)
+    return _diffused(result, TENSORS[int(options["model"])])
+
+
 def _diffused(result, note=""):
     return Outcome(result.values, {"Result": result.values}, history=result.history, note=note)
 
@@ -115,6 +123,14 @@ def run_normals(mesh, data, options, progress):
                    f"points moved by {result.mean_displacement:.3g} on average")
 
 
+def run_surface_denoising(mesh, _, options, progress):
+    """The surface before and after, in grey."""
+    result = sd.denoise_mesh(mesh.surface, noise_level=options["noise"], full_output=True,
+                             surface_type=SURFACES[int(options["type"])], progress=progress)
+    return Outcome(None, {"Displacement": result.points - mesh.surface.points}, points=result.points,
+                   note=f"{result.surface_type} surface, noise of {result.noise_level:.3g}")
+
+
 def run_texture(mesh, _, options, progress):
     result = sd.turing_texture(mesh.surface, feature_size=options["size"], seed=int(options["seed"]),
                                progress=progress)
@@ -133,6 +149,9 @@ def run_directions(mesh, _, options, progress):
     return Outcome(lines, {"Lines": lines}, cell_arrays={"Direction": field_of_lines})
 
 
+SURFACES = ("Automatic", "CAD", "Organic")
+TENSORS = ("Beltrami", "CoherenceEnhancing", "EdgeEnhancing")
+
 WEIGHT = Slider("weight", "λ (0: found from the data)", 0, 20, 0.1, 0)
 
 FILTERS = {entry.name: entry for entry in (
@@ -143,6 +162,11 @@ FILTERS = {entry.name: entry for entry in (
     Filter("intrinsic_tv", "Denoise: total variation", "values", (
         WEIGHT,
         Slider("time", "Time (0: until nothing changes)", 0, 20, 0.1, 0)), run_total_variation),
+    Filter("tensor_diffusion", "Along edges and lines: tensor diffusion", "values", (
+        Slider("model", "Tensor (0: Beltrami, 1: along lines, 2: along edges)", 0, 2, 1, 0),
+        Slider("contrast", "Gradient of lines and edges, part of the range", 0.002, 0.2, 0.002, 0.02),
+        Slider("weight", "λ", 0, 2, 0.01, 0),
+        Slider("time", "Time, in squared edge lengths", 0.1, 100, 0.1, 10)), run_tensor_diffusion),
     Filter("mumford_shah", "Edges: Mumford-Shah", "values", (
         Slider("weight", "λ", 0.05, 5, 0.05, 1),
         Slider("length", "Width, in edge lengths", 1, 30, 0.5, 8),
@@ -154,6 +178,9 @@ FILTERS = {entry.name: entry for entry in (
         Slider("exponent", "Exponent p: 1 keeps creases, 2 smooths evenly", 1, 2, 0.05, 1),
         Slider("time", "Time", 0.1, 50, 0.1, 10),
         Slider("move", "Move the points along (0: no, 1: yes)", 0, 1, 1, 1)), run_normals),
+    Filter("denoise_mesh", "The mesh without noise: surface denoising", "none", (
+        Slider("noise", "Noise of the points (0: found from the mesh)", 0, 0.01, 0.0001, 0, True),
+        Slider("type", "Surface (0: found, 1: CAD, 2: organic)", 0, 2, 1, 0)), run_surface_denoising),
     Filter("turing_texture", "Texture: reaction and diffusion", "none", (
         Slider("size", "Width of a spot with its gap", 0.02, 0.3, 0.001, 0.08, True),
         Slider("seed", "Seed of the noise", 0, 100, 1, 0)), run_texture),

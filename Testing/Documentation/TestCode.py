@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The examples in the pages of Documentation run, its links lead to files, and its tutorials run."""
+"""The examples in the pages of Documentation run, its links lead to files, each filter has its page, and its tutorials
+run."""
 import doctest
 import os
 import re
@@ -10,7 +11,7 @@ import unittest
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parents[2] / "Documentation"
-MADE = {"filters", "gallery", "pictures", "cpp"}  # by the build of the site
+MADE = {"gallery", "pictures", "cpp"}  # by the build of the site
 
 try:
     import pyvista
@@ -30,15 +31,28 @@ class TestCode(unittest.TestCase):
                 attempted += result.attempted
         self.assertGreater(attempted, 3)
 
-    def test_every_filter_of_the_package_is_on_the_page_that_chooses(self):
-        import surfacediffusion as sd
-
+    def test_every_filter_has_a_page_with_its_parts_and_is_on_the_page_that_chooses(self):
         chosen = (FOLDER / "choose.md").read_text(encoding="utf-8")
-        filters = re.findall(r'^    Filter\("(\w+)"', (FOLDER / "generate.py").read_text(), re.M)
-        self.assertGreater(len(filters), 5)
+        filters = dict(re.findall(r'^    Filter\("(\w+)", "(\w+)"',
+                                  (FOLDER / "generate.py").read_text(), re.M))
+        classes = {path.stem for path in (FOLDER.parent / "Filters").glob("vtk*Filter.h")}
+        self.assertEqual(set(filters.values()), classes - {"vtkSurfaceFilter"})
         for name in filters:
-            self.assertTrue(callable(getattr(sd, name)))
-            self.assertIn(f"(filters/{name}.md)", chosen)
+            with self.subTest(name):
+                self.assertIn(f"(filters/{name}.md)", chosen)
+                page = (FOLDER / "filters" / f"{name}.md").read_text(encoding="utf-8")
+                self.assertEqual(re.findall(r"^## (.+)", page, re.M), [
+                    "Equation", "Effect of the properties", "Exact tests", "Limits", "Sources"])
+                self.assertIn(f'"{name}": (', (FOLDER / "effects.py").read_text(encoding="utf-8"))
+
+    def test_exact_tests_of_the_pages_exist(self):
+        tests = set()
+        for path in (FOLDER.parent / "Testing/Core").glob("Test*.cxx"):
+            tests.update(re.findall(r"^TEST(?:_[FP])?\(\w+,\s*(\w+)\)", path.read_text(), re.M))
+        for page in (FOLDER / "filters").glob("*.md"):
+            named = re.findall(r"^@@exact (.+)$", page.read_text(encoding="utf-8"), re.M)
+            self.assertGreater(len(named), 1, page.name)
+            self.assertEqual(set(" ".join(named).split()) - tests, set(), page.name)
 
     def test_links_between_pages_lead_to_files(self):
         for page in sorted(FOLDER.glob("*.md")):
