@@ -149,6 +149,7 @@ def _placed(panel):
     if surface.GetNumberOfPoints() > LARGEST:
         fewer = vtkDecimatePro()  # which keeps a part of the points, with their colours
         fewer.SetInputData(surface)
+        fewer.BoundaryVertexDeletionOff()  # nor single triangles
         fewer.SetTargetReduction(1 - LARGEST / surface.GetNumberOfPoints())
         normals.SetInputConnection(fewer.GetOutputPort())
     else:

@@ -100,6 +100,7 @@ def make_files(folder):
     nib.save(nib.freesurfer.MGHImage(np.zeros((2, 3, 2), np.float32), np.eye(4)),
              path("volume.mgh"))
     np.save(path("cube.npy"), np.zeros((3, 3, 3)))
+    np.save(path("faces.npy"), np.zeros(320))
     np.save(path("complex.npy"), np.zeros(N, complex))
     np.save(path("objects.npy"), np.array([None] * N), allow_pickle=True)
     if HAS_VTK:
@@ -169,6 +170,10 @@ CASES = [
     (DATA.format("infinite.func.gii"), "infinite.func.gii: column 1 is inf at vertex 7; allowed"),
     (DATA.format("nan.func.gii"), "nan.func.gii: column 1 has no known value"),
     (DATA.format("zeros.func.gii") + " --fix-zeros", "zeros.func.gii: column 1 has no known"),
+    (DATA.format("faces.npy"), rf"faces.npy: 320 values .* {N} points; allowed: {N} values, or --faces"),
+    (DATA.format("lh.func.gii") + " --faces", "has 320 faces; allowed: 320 values"),
+    (DATA.format("lh.curv") + " --faces", "a FreeSurfer curv file, which has no data at faces; allowed"),
+    (DATA.format("faces.npy") + " --faces --roi lh.func.gii", f"lh.func.gii: {N} values"),
     # CIFTI
     (CIFTI.format("cut.dscalar.nii"), "cut.dscalar.nii: damaged CIFTI file"),
     (CIFTI.format("labels.dlabel.nii"), "labels.dlabel.nii: labels, which have no mean"),

@@ -223,6 +223,49 @@ class OtherCommands(CommandTest):
                          f"--missing where.func.gii --model {model}")
             np.testing.assert_array_equal(self.column("b.func.gii"), found)
 
+    def test_data_at_faces_give_results_at_faces(self):
+        centres = self.surface.points[FACES].mean(axis=1)
+        noise = np.random.default_rng(10).normal(size=len(FACES))
+        values = np.column_stack([np.sign(centres[:, 0]) + 0.2 * noise, noise])
+        np.save("faces.npy", values)
+        np.save("region.npy", centres[:, 2] > -6)
+        report = self.report("smooth lh.surf.gii faces.npy 5 out.npy --faces --roi region.npy")
+        inside = centres[:, 2] > -6
+        expected = heat(self.surface, np.where(inside[:, None], values, 0), mask=~inside,
+                        mask_mode="Exclude", fwhm=5, number_of_time_steps=3)
+        np.testing.assert_array_equal(np.load("out.npy"), np.where(inside[:, None], expected, 0))
+        self.assertEqual(report["columns"][0]["excluded"], (~inside).sum())
+        report = self.report("smooth lh.surf.gii faces.npy 5 out.npy --faces")
+        for row in report["columns"]:
+            self.assertAlmostEqual(row["total_after"], row["total_before"], delta=1e-6)
+        self.succeed("denoise lh.surf.gii faces.npy out.npy --faces --column 1")
+        expected = intrinsic_tv(self.surface, values[:, 0], mode="SteadyState",
+                                automatic_fidelity=True)
+        np.testing.assert_array_equal(np.load("out.npy")[:, 0], expected)
+        np.save("holes.npy", np.where(centres[:, 0] > 5, np.nan, centres[:, 2]))
+        self.succeed("inpaint lh.surf.gii holes.npy out.npy --faces")
+        known = centres[:, 0] <= 5
+        np.testing.assert_array_equal(np.load("out.npy")[known], centres[known, 2])
+        self.assertTrue(np.isfinite(np.load("out.npy")).all())
+
+    @unittest.skipUnless(HAS_VTK, "needs VTK")
+    def test_cell_arrays_of_vtk_files_are_data_at_faces(self):
+        from surfacediffusion.files import vtk_files
+
+        samples.write_vtk("a.vtp")
+        noise = np.random.default_rng(10).normal(size=len(FACES))
+        image = read_surface("a.vtp").image
+        Path("b.vtp").write_bytes(vtk_files.write("vtp", image, cell_data={"g": noise, "h": noise}))
+        self.succeed("smooth b.vtp b.vtp 5 c.vtp --faces --column g")
+        before, after = read_data("b.vtp", True), read_data("c.vtp", True)
+        self.assertEqual(after.names, ["g", "h"])
+        np.testing.assert_array_equal(after.parts[0].values[:, 1], noise)
+        expected = heat((POINTS, FACES), noise, fwhm=5, number_of_time_steps=3)
+        np.testing.assert_allclose(after.parts[0].values[:, 0], expected, atol=1e-12)
+        np.testing.assert_array_equal(read_data("c.vtp").parts[0].values,
+                                      read_data("b.vtp").parts[0].values)
+        self.assertEqual(len(before.parts[0].values), len(FACES))
+
     def test_inpaint_says_if_nothing_is_missing(self):
         code, _, error = run("inpaint", "lh.surf.gii", "lh.func.gii", "out.func.gii")
         self.assertEqual(code, 0)

@@ -177,7 +177,7 @@ def check_macro():
         "Inpainted": ("Inpaint", {"HoldKnownValues": 0}),
         "Denoised": ("Denoise", {}),
         "Edges": ("Edges", {"EdgeThreshold": 0.9}),
-        "Denoised mesh": ("DenoiseMesh", {"TimeStep": 1.2 * 0.03}),
+        "Denoised mesh": ("DenoiseMesh", {"SurfaceType": "Organic"}),
         "Texture": ("Texture", {"DiffusionRate2": 1.02 * 5.2}),
     }[next(key[0] for key, each in GetSources().items() if each == source)]
     if name == "Denoise":

@@ -1,19 +1,22 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Denoises the normals of the selected surface, preserves its creases, and moves the points to fit
-the normals, equation (21) of the paper. If no source is selected, an example is shown."""
+"""Removes the noise of the points of the selected surface, and keeps its sharp edges. The level of the
+noise is measured. If no source is selected, an example is shown."""
 
 from paraview.simple import *
 
 surface = GetActiveSource()
 if surface is None:
     box = Subdivide(Clean(Triangulate(Box())), NumberofSubdivisions=5)
-    place = "(1.13*coordsX + 1.71*coordsY + 2.93*coordsZ)"
-    noise = "0.007*(sin(9871*%s)*iHat + sin(7919*%s)*jHat + sin(8887*%s)*kHat)" % ((place,) * 3)
+    hashes = ["43758.5*sin(%g*coordsX + %g*coordsY + %g*coordsZ)" % turns for turns in (
+        (127.1, 311.7, 74.7), (269.5, 183.3, 246.1), (113.5, 271.9, 124.6))]
+    noise = "0.025*(%s)" % " + ".join(
+        "(%s - floor(%s) - 0.5)*%s" % (number, number, axis)
+        for number, axis in zip(hashes, ("iHat", "jHat", "kHat")))
     surface = WarpByVector(
         Calculator(box, Function=noise, ResultArrayName="noise"), Vectors=["POINTS", "noise"])
 
-result = HarmonicMapFilter(surface, TimeStep=0.03, MoveVertices=1)
+result = SurfaceDenoisingFilter(surface)
 RenameSource("Denoised mesh", result)
 
 view = GetActiveViewOrCreate("RenderView")

@@ -18,7 +18,7 @@ FILES = """
 SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
 DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left and --right
 instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .label), NumPy (.npy), or a PLY or VTK file with
-data at its vertices. Files are recognised by their content. OUTPUT has the format and the metadata
+data at its vertices; with --faces, where there is that option, at the faces. Files are recognised by their content. OUTPUT has the format and the metadata
 of DATA. NaN means missing: the value is not used, and the output has a value there.
 """
 
@@ -102,6 +102,13 @@ class _Commands:
         return parser
 
     @staticmethod
+    def faces(parser):
+        parser.add_argument("--faces", action="store_true",
+                            help="DATA, and all other files of data, have values at the faces: "
+                                 "GIFTI, .mgh, .npy with one row per face, or VTK polydata with cell "
+                                 "arrays. So has OUTPUT")
+
+    @staticmethod
     def choices(parser):
         parser.add_argument("--roi", "-roi", metavar="FILE",
                             help="work inside this region alone, where its first column is above "
@@ -175,6 +182,7 @@ def _smooth(commands):
                         help="the width in the unit of the surface's coordinates (mm)")
     parser.add_argument("output", metavar="OUTPUT", help="the result")
     commands.choices(parser)
+    commands.faces(parser)
     parser.add_argument("--areas", "-corrected-areas", metavar="FILE",
                         help="the areas of the vertices in the first column, in place of those of "
                              "SURFACE: for a surface that is the average of many")
@@ -197,6 +205,7 @@ def _denoise(commands):
     commands.data(parser)
     parser.add_argument("output", metavar="OUTPUT", help="the result")
     commands.choices(parser)
+    commands.faces(parser)
     level = parser.add_mutually_exclusive_group()
     level.add_argument("--weight", metavar="W", type=_positive,
                        help="the fidelity weight, in natural units; smaller removes more")
@@ -246,6 +255,7 @@ def _inpaint(commands):
     commands.data(parser)
     parser.add_argument("output", metavar="OUTPUT", help="the result")
     commands.choices(parser)
+    commands.faces(parser)
     parser.add_argument("--missing", metavar="FILE", help="missing where the first column is above 0")
     parser.add_argument("--model", choices=("heat", "tv"), default="heat",
                         help="heat: harmonic functions, smooth (default); tv: total variation, "

@@ -16,7 +16,8 @@ class ArgumentProblem(ValueError):
 
 @dataclass
 class Patch:
-    """The values of one part of the data on its surface, one row per vertex of the surface.
+    """The values of one part of the data on its surface, one row per vertex of the surface, or per face
+    if the data are at faces.
 
     values   (n, k) float, NaN is missing; 0 where excluded
     excluded (n,) bool: outside the region, or without data in the file
@@ -79,7 +80,7 @@ def make_patches(surfaces, data: Data, columns, arguments):
         raise FileError(f"{data.path}: labels, which have no mean; allowed: real values")
     regions = {}
     if arguments.roi is not None:
-        regions = dict(_regions(arguments, surfaces))
+        regions = dict(_regions(arguments, surfaces, data.on_faces))
     patches = []
     for part in data.parts:
         surface = _surface_for(part, surfaces, data)
@@ -87,20 +88,21 @@ def make_patches(surfaces, data: Data, columns, arguments):
         _require_finite(values, data, part, columns)
         if arguments.fix_zeros:
             values[values == 0] = np.nan
-        values, excluded = _on_surface(part, values, surface, data.path)
+        values, excluded = _on_surface(part, values, surface, data)
         if arguments.roi is not None:
             excluded |= ~regions[id(surface)]
         if excluded.all():
-            raise FileError(f"{arguments.roi or data.path}: no vertex of {surface.path} is in the "
+            what = "face" if data.on_faces else "vertex"
+            raise FileError(f"{arguments.roi or data.path}: no {what} of {surface.path} is in the "
                             "region; allowed: at least one")
         values[excluded] = 0
         patches.append(Patch(surface, part, values, excluded))
     return patches
 
 
-def read_marks(path, surfaces):
-    """For each surface, a bool per vertex: whether the first column is above 0."""
-    data = read_data(path)
+def read_marks(path, surfaces, on_faces=False):
+    """For each surface, a bool per vertex or face: whether the first column is above 0."""
+    data = read_data(path, on_faces)
     for part in data.parts:
         surface = _surface_for(part, surfaces, data)
         if data.kind == "label":
@@ -108,7 +110,7 @@ def read_marks(path, surfaces):
         else:
             with np.errstate(invalid="ignore"):
                 inside = part.values[:, :1] > 0
-        marks, _ = _on_surface(part, inside, surface, data.path)
+        marks, _ = _on_surface(part, inside, surface, data)
         yield id(surface), marks[:, 0].astype(bool)
 
 
@@ -119,7 +121,7 @@ def read_areas(path, surfaces):
     data, found = read_data(path), {}
     for part in data.parts:
         surface = _surface_for(part, surfaces, data)
-        areas, absent = _on_surface(part, part.values[:, :1].astype(float), surface, path)
+        areas, absent = _on_surface(part, part.values[:, :1].astype(float), surface, data)
         areas = np.where(absent, vertex_areas(surface), areas[:, 0])
         wrong = ~(np.isfinite(areas) & (areas > 0))
         if wrong.any():
@@ -130,8 +132,8 @@ def read_areas(path, surfaces):
     return found
 
 
-def _regions(arguments, surfaces):
-    found = dict(read_marks(arguments.roi, surfaces))
+def _regions(arguments, surfaces, on_faces):
+    found = dict(read_marks(arguments.roi, surfaces, on_faces))
     for surface in surfaces.values():
         if id(surface) not in found:
             raise FileError(f"{arguments.roi}: nothing for {surface.path}; allowed: a region on "
@@ -159,14 +161,17 @@ def _surface_for(part, surfaces, data):
     return surface
 
 
-def _on_surface(part, values, surface, path):
-    """Values (n, k) with 0 where the file has none, and a bool per vertex: whether it has none."""
-    count = len(surface.points)
+def _on_surface(part, values, surface, data):
+    """Values (n, k) with 0 where the file has none, and a bool per vertex or face: whether it has
+    none."""
+    path, what = data.path, "faces" if data.on_faces else "points"
+    count = len(surface.faces if data.on_faces else surface.points)
     if part.vertices is None or part.size is not None:
         size = len(part.values) if part.size is None else part.size
         if size != count:
+            hint = "" if data.on_faces or size != len(surface.faces) else ", or --faces"
             raise FileError(f"{path}: {size} values per column, but {surface.path} has {count} "
-                            f"points; allowed: {count} values")
+                            f"{what}; allowed: {count} values{hint}")
     if part.vertices is None:
         return values, np.zeros(count, dtype=bool)
     if len(part.vertices) and not 0 <= part.vertices.min() <= part.vertices.max() < count:
@@ -202,6 +207,17 @@ def vertex_areas(surface: SurfaceFile, excluded=None):
     a, b, c = (points[faces[:, i]] for i in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     return np.bincount(faces.ravel(), np.repeat(areas / 3, 3), minlength=len(points))
+
+
+def face_areas(surface: SurfaceFile):
+    """The areas of the faces (m,)."""
+    points = np.asarray(surface.points, dtype=float)
+    faces = triangles(surface)
+    a, b, c = (points[faces[:, i]] for i in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    counts = ([1] * len(faces) if isinstance(surface.faces, np.ndarray)
+              else [len(face) - 2 for face in surface.faces])
+    return np.bincount(np.repeat(np.arange(len(counts)), counts), areas, minlength=len(counts))
 
 
 def triangles(surface: SurfaceFile):

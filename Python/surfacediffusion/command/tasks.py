@@ -24,8 +24,8 @@ def smooth(arguments, report):
     report.facts.update(fwhm=width, sigma=width / SIGMA_TO_FWHM, steps=arguments.steps)
 
     def compute(surface, values, mask, progress):
-        return heat(surface, values, mask=mask, mask_mode="Exclude", fwhm=width,
-                    number_of_time_steps=arguments.steps, progress=progress)
+        return heat(surface, values, on_faces=arguments.faces, mask=mask, mask_mode="Exclude",
+                    fwhm=width, number_of_time_steps=arguments.steps, progress=progress)
 
     _change_data(arguments, report, "Smoothing", compute, _groups_of_missing)
 
@@ -42,7 +42,8 @@ def denoise(arguments, report):
 
     def compute(surface, values, mask, progress):
         found.append(values.shape[1] == 3)
-        result = intrinsic_tv(surface, values, mask=mask, mask_mode="Exclude", mode="SteadyState",
+        result = intrinsic_tv(surface, values, on_faces=arguments.faces, mask=mask,
+                              mask_mode="Exclude", mode="SteadyState",
                               color_model=model if found[-1] else "RGB", progress=progress,
                               full_output=True, **options)
         weights.append(number(result.effective_fidelity_weight))
@@ -89,8 +90,8 @@ def inpaint(arguments, report):
     def compute(surface, values, mask, progress):
         if not np.isnan(values).any():
             return values
-        return model(surface, values, mask=mask, mask_mode="Exclude", mode="SteadyState",
-                     hold_known_values=True, progress=progress)
+        return model(surface, values, on_faces=arguments.faces, mask=mask, mask_mode="Exclude",
+                     mode="SteadyState", hold_known_values=True, progress=progress)
 
     groups = _groups_of_missing if arguments.model == "heat" else _groups_of_arrays
     _change_data(arguments, report, "Inpainting", compute, groups, arguments.missing)
@@ -363,11 +364,11 @@ def _info_line(entry):
 
 def _read(arguments, missing=None):
     surfaces = read_surfaces(arguments)
-    data = read_data(arguments.data)
+    data = read_data(arguments.data, getattr(arguments, "faces", False))
     columns = choose_columns(data, arguments.column)
     patches = make_patches(surfaces, data, columns, arguments)
     if missing is not None:
-        marks = dict(inputs.read_marks(missing, surfaces))
+        marks = dict(inputs.read_marks(missing, surfaces, data.on_faces))
         for patch in patches:
             patch.values[marks[id(patch.surface)] & ~patch.excluded] = np.nan
     return surfaces, data, columns, patches
@@ -458,8 +459,11 @@ def _require_known(patch, group, data, columns):
 def _add_totals(report, data, columns, patch, new, areas):
     """The integrals over the region before (known values alone) and after."""
     given = areas.get(id(patch.surface))
-    areas = inputs.vertex_areas(patch.surface, patch.excluded)
-    if given is not None:
+    if data.on_faces:
+        areas = np.where(patch.excluded, 0, inputs.face_areas(patch.surface))
+    else:
+        areas = inputs.vertex_areas(patch.surface, patch.excluded)
+    if given is not None and not data.on_faces:
         whole = inputs.vertex_areas(patch.surface)
         areas = np.divide(areas * given, whole, out=areas, where=whole > 0)
     missing = np.isnan(patch.values).sum(axis=0)

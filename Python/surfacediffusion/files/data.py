@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads and writes data at the vertices of surfaces: read_data(), new_data() and Data."""
+"""Reads and writes data at the vertices or faces of surfaces: read_data(), new_data() and Data."""
 from __future__ import annotations
 
 import contextlib
@@ -18,11 +18,12 @@ from .content import FileError, write_atomically
 
 ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
            "FreeSurfer (curv, .mgh, .mgz, .label), PLY, VTK polydata, NumPy (.npy)")
+ON_FACES = ("gifti", "mgh", "npy", "vtk", "vtp")  # kinds that can have data at faces
 
 
 @dataclass
 class Part:
-    """The values on one surface.
+    """The values on one surface. Vertices are faces if the data are at faces.
 
     values     (v, k): one row per vertex that has data, one column per map
     vertices   (v,) the numbers of these vertices; None: all, in order
@@ -45,6 +46,7 @@ class Data:
     labels  the values are numbers of labels, which have no mean
     usual   the columns to work on if nobody chooses (all but normals and the like)
     extra   a remark about values that are carried over unchanged, or empty
+    on_faces  the values are at the faces
     """
 
     path: str
@@ -55,6 +57,7 @@ class Data:
     usual: Sequence[int] = ()
     extra: str = ""
     image: Any = None
+    on_faces: bool = False
 
     def save(self, path, values, columns=None):
         """Write other values in the same format, with the metadata of the file.
@@ -72,16 +75,22 @@ class Data:
         write_atomically(path, _WRITERS[self.kind](self, values, columns))
 
 
-def read_data(path) -> Data:
-    """Read the data at vertices from a file of one of the formats in ALLOWED."""
+def read_data(path, on_faces=False) -> Data:
+    """Read the data at vertices, or at faces, from a file of one of the formats in ALLOWED."""
     content = read_content(path)
+    if on_faces and content.kind not in ON_FACES:
+        raise content.error(f"a {content.name} file, which has no data at faces; allowed: GIFTI, "
+                            ".mgh, .mgz, .npy, VTK polydata")
     if content.kind not in _READERS:
         raise content.error(f"a {content.name} file, which has no data at vertices; "
                             f"allowed: {ALLOWED}")
     with reading(content):
-        data = _READERS[content.kind](content)
+        data = (_read_vtk(content, on_faces) if content.kind in ("vtk", "vtp")
+                else _READERS[content.kind](content))
+        data.on_faces = on_faces
         if not data.names or not data.parts:
-            raise content.error("no data at vertices; allowed: at least one column")
+            where = "faces" if on_faces else "vertices"
+            raise content.error(f"no data at {where}; allowed: at least one column")
         for part in data.parts:
             if part.values.dtype.kind not in "fiub":
                 raise content.error(f"values of type {part.values.dtype}; allowed: real numbers")
@@ -288,10 +297,14 @@ def _read_ply(content):
     return _mesh_data(content, mesh, mesh.point_data, set(mesh.point_data) - _NOT_DATA)
 
 
-def _read_vtk(content):
+def _read_vtk(content, on_faces=False):
     mesh = vtk_files.read(content)
-    arrays = vtk_files.point_arrays(mesh)
-    active = mesh.GetPointData().GetScalars()
+    if on_faces and mesh.GetNumberOfPolys() != mesh.GetNumberOfCells():
+        raise content.error(f"{mesh.GetNumberOfCells()} cells, of which {mesh.GetNumberOfPolys()} are "
+                            "polygons; allowed for data at faces: polygons alone")
+    attributes = mesh.GetCellData() if on_faces else mesh.GetPointData()
+    arrays = vtk_files.arrays_of(attributes)
+    active = attributes.GetScalars()
     usual = {active.GetName()} if active is not None else set(arrays)
     return _mesh_data(content, mesh, arrays, usual)
 
@@ -322,8 +335,10 @@ def _write_ply(data, values, columns):
 
 def _write_vtk(data, values, columns):
     mesh = data.image[0]
-    arrays = _changed_arrays(data, values, columns, vtk_files.point_arrays(mesh))
-    return vtk_files.write(data.kind, mesh, point_data=arrays)
+    attributes = mesh.GetCellData() if data.on_faces else mesh.GetPointData()
+    arrays = _changed_arrays(data, values, columns, vtk_files.arrays_of(attributes))
+    return vtk_files.write(data.kind, mesh,
+                           **{"cell_data" if data.on_faces else "point_data": arrays})
 
 
 _READERS = {"gifti": _read_gifti, "cifti": _read_cifti, "curv": _read_curv, "mgh": _read_mgh,

@@ -61,11 +61,10 @@ def points_and_faces(mesh):
     return points, [corners[a:b].tolist() for a, b in zip(offsets[:-1], offsets[1:])]
 
 
-def point_arrays(mesh):
-    """{name: array} of the numeric arrays at the points."""
+def arrays_of(data):
+    """{name: array} of the numeric arrays among the attributes of points or cells."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    data = mesh.GetPointData()
     arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
     return {array.GetName() or f"array{i}": vtk_to_numpy(array)
             for i, array in enumerate(arrays) if array is not None}
