@@ -21,7 +21,7 @@ import icons  # noqa: E402
 from make import SIZE, read_screen  # noqa: E402
 
 ROWS, COLUMNS = 160, 640  # of the screen, which have the toolbars
-SHOWN = 24  # the size of an icon on the screen
+SIZES = range(20, 33)  # of an icon on the screen, which depends on the style of Qt
 PRESS = '<pqevent object="pqClientMainWindow/SurfaceDiffusionMacros/%s" command="activate" arguments=""/>\n'
 RUN = ('<pqevent object="pqClientMainWindow/menubar" command="activate" arguments="menu_Macros"/>\n'
        '<pqevent object="pqClientMainWindow/menubar/menu_Macros" command="activate" arguments="%s"/>\n')
@@ -56,19 +56,16 @@ def picture_of_window(folder, display):
         window.wait()
 
 
-def place_of(icon, screen):
-    """The place of an icon in the upper rows, and its mean difference from the screen there."""
-    step = icons.SIZE // SHOWN
-    picture = icons.draw(icon)[::-1].astype(float)
-    picture = picture.reshape(SHOWN, step, SHOWN, step, 4).mean(axis=(1, 3))
-    weights = (picture[..., 3] > 250).astype(float)
-    height, width = ROWS - SHOWN, COLUMNS - SHOWN
-    error, screen = np.zeros((height, width), np.float32), screen.astype(np.float32)
-    for y, x in zip(*weights.nonzero()):
+def place_of(icon, screen, size):
+    """The place of an icon in the toolbars, and its mean difference from the screen there."""
+    picture = icons.draw(icon, size)[::-1].astype(np.float32)
+    height, width = ROWS - size, COLUMNS - size
+    error, count = np.zeros((height, width), np.float32), 0
+    for y, x in zip(*(picture[..., 3] > 250).nonzero()):
         error += np.abs(screen[y:y + height, x:x + width] - picture[y, x, :3]).mean(axis=2)
-    error /= weights.sum()
-    best = np.unravel_index(error.argmin(), error.shape)
-    return best, error[best]
+        count += 1
+    place = np.unravel_index(error.argmin(), error.shape)
+    return place, error[place] / count
 
 
 def main():
@@ -86,15 +83,19 @@ def main():
     macros = sorted(path.stem for path in (SOURCE / "Examples/ParaView/Macros").glob("*.py"))
     drawn = {icon.__name__: icon for icon in icons.ICONS}
     assert sorted(drawn) == macros, (sorted(drawn), macros)
-    places = []
+    screen, places = screen.astype(np.float32), []
+    size = min(SIZES, key=lambda size: place_of(icons.edges, screen, size)[1])
+    print("size of the icons:", size)
     for macro in macros:
-        place, error = place_of(drawn[macro], screen)
+        place, error = place_of(drawn[macro], screen, size)
         print(f"{macro}: at {place}, difference {error:.1f} of 255")
-        assert error < 16, macro
+        assert error < 8, macro
         places.append(place)
-    assert len({y for y, _ in places}) == 1 and sorted(x for _, x in places) == [x for _, x in places]
-    upside_down, error = place_of(lambda x, y: drawn["denoise"](x, -y), screen)
-    assert error > 30, (upside_down, error)
+    assert np.ptp([y for y, _ in places]) <= 1, places
+    assert all(np.diff([x for _, x in places]) > size / 2), places
+    _, error = place_of(lambda x, y: icons.edges(x, -y), screen, size)  # which is not there
+    print(f"upside down: difference {error:.1f} of 255")
+    assert error > 24
 
 
 if __name__ == "__main__":

@@ -107,12 +107,12 @@ def history(x, y):
 ICONS = (denoise, inpaint, deblur, segment, denoise_mesh, edges, enhance_lines, texture, history)
 
 
-def draw(icon):
+def draw(icon, size=SIZE):
     """The icon as rows from the bottom up: red, green, blue and alpha."""
-    line = (np.arange(SIZE * FINER) + 0.5) / (SIZE * FINER) * 2 - 1
+    line = (np.arange(size * FINER) + 0.5) / (size * FINER) * 2 - 1
     colours = icon(*np.meshgrid(line, line))
     colours[..., :3] *= colours[..., 3:] / 255  # transparent points do not count
-    mean = colours.reshape(SIZE, FINER, SIZE, FINER, 4).mean(axis=(1, 3))
+    mean = colours.reshape(size, FINER, size, FINER, 4).mean(axis=(1, 3))
     mean[..., :3] /= np.maximum(mean[..., 3:], 1e-9) / 255
     return np.round(mean).astype(np.uint8)
 
