@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/FaceFlips.h"
 #include "Core/Geometry/SurfaceDenoising.h"
 #include "Core/Geometry/VertexNoise.h"
 #include "Meshes.h"
@@ -40,6 +41,25 @@ double LargestDistance(const Surface& a, const Surface& b)
 {
   return (a.Vertices - b.Vertices).rowwise().norm().maxCoeff();
 }
+
+/// A flat surface in the plane z = 0 with its faces.
+struct FlatSurface
+{
+  FlatSurface()
+    : Grid(Strip(20, 16, 2.0, 1.6))
+    , Mesh(this->Grid.Vertices, this->Grid.Faces)
+    , Graph(this->Mesh)
+    , Place(GatherVertices(this->Mesh, this->Grid.Vertices) / this->Mesh.LengthUnit())
+  {
+    this->Geometry.Measure(this->Mesh, this->Place, SerialFor());
+  }
+
+  Surface Grid;
+  TriangleMesh Mesh;
+  FaceGraph Graph;
+  Points Place; ///< of the vertices
+  FaceGeometry Geometry;
+};
 
 } // namespace
 
@@ -109,6 +129,96 @@ TEST(SurfaceDenoising, NoiseOfVerticesIsEstimatedAndEdgesRaiseItLittle)
       const double estimate = EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices));
       EXPECT_NEAR(estimate / (amount * h), 1.0, hasEdges ? 0.3 : 0.1);
     }
+  }
+}
+
+TEST(SurfaceDenoising, DetailsOfSmoothSurfacesAreNoNoise)
+{
+  for (const Surface& surface : { Icosphere(4), Torus(60, 30) })
+  {
+    const TriangleMesh mesh(surface.Vertices, surface.Faces);
+    EXPECT_EQ(EstimateVertexNoise(mesh, GatherVertices(mesh, surface.Vertices)), 0.0);
+  }
+}
+
+TEST(SurfaceDenoising, NormalWithoutSupportIsReplacedAndOthersStay)
+{
+  FlatSurface flat;
+  const Points normals = flat.Geometry.Normals;
+  const Index odd = flat.Mesh.NumberOfTriangles() / 2;
+  flat.Geometry.Normals.row(odd) *= -1.0;
+  EXPECT_EQ(
+    ReplaceUnsupportedNormals(flat.Graph, flat.Geometry, NormalFilterSettings(), SerialFor()),
+    normals);
+}
+
+TEST(SurfaceDenoising, LinearFitKeepsConstantNormals)
+{
+  const FlatSurface flat;
+  const Points& normals = flat.Geometry.Normals;
+  const Points fitted =
+    FitLinearNormals(flat.Graph, flat.Geometry, normals, NormalFilterSettings(), SerialFor());
+  EXPECT_LT((fitted - normals).rowwise().norm().maxCoeff(), 1e-12);
+}
+
+TEST(SurfaceDenoising, LinearFitKeepsTheTurnOfNormalsAtBoundariesWhereTheMeanFlattensIt)
+{
+  FlatSurface flat;
+  const Points& centroids = flat.Geometry.Centroids;
+  for (Index f = 0; f < flat.Graph.NumberOfFaces(); ++f)
+  {
+    const double angle = 0.5 * centroids(f, 0);
+    flat.Geometry.Normals.row(f) << std::sin(angle), 0.0, std::cos(angle);
+  }
+  const Points normals = flat.Geometry.Normals;
+  NormalFilterSettings settings;
+  settings.Sweeps = 1;
+  settings.Width = 2.0;
+  const Points linear = FitLinearNormals(flat.Graph, flat.Geometry, normals, settings, SerialFor());
+  const Points mean = FilterNormals(flat.Graph, flat.Geometry, normals, settings, SerialFor());
+  const double error = (linear - normals).rowwise().norm().maxCoeff();
+  EXPECT_LT(error, 0.5 * (mean - normals).rowwise().norm().maxCoeff());
+}
+
+TEST(SurfaceDenoising, FoldedTrianglesOfAPlaneAreTurnedWithinThePlane)
+{
+  FlatSurface flat;
+  const Points& normals = flat.Geometry.Normals;
+  Points points = flat.Place;
+  const double h = flat.Mesh.TotalEdgeLength() / flat.Mesh.NumberOfEdges();
+  std::vector<char> fixed(static_cast<std::size_t>(flat.Mesh.NumberOfVertices()), 0);
+  for (const Index i : flat.Mesh.BoundaryVertices())
+  {
+    fixed[i] = 1;
+  }
+  for (Index i = 0; i < flat.Mesh.NumberOfVertices(); i += 17)
+  {
+    points(i, 0) += fixed[i] ? 0.0 : 1.5 * h;
+  }
+  const Index folded = CountFlippedFaces(flat.Mesh, normals, points);
+  EXPECT_GT(folded, 5);
+  TurnFlippedFaces(flat.Mesh, normals, fixed, points);
+  EXPECT_EQ(CountFlippedFaces(flat.Mesh, normals, points), 0);
+  EXPECT_LT((points - flat.Place).col(2).cwiseAbs().maxCoeff(), 1e-12);
+  for (const Index i : flat.Mesh.BoundaryVertices())
+  {
+    EXPECT_EQ(points.row(i), flat.Place.row(i));
+  }
+}
+
+TEST(SurfaceDenoising, FlippedTrianglesNeverBecomeMore)
+{
+  const Surface block = LBlock(16);
+  const TriangleMesh mesh(block.Vertices, block.Faces);
+  FaceGeometry truth;
+  truth.Measure(mesh, GatherVertices(mesh, block.Vertices) / mesh.LengthUnit(), SerialFor());
+  for (const double amount : { 0.3, 0.6, 0.9 })
+  {
+    const Surface noisy = NoisyAlongNormals(block, amount);
+    Points points = GatherVertices(mesh, noisy.Vertices) / mesh.LengthUnit();
+    const Index before = CountFlippedFaces(mesh, truth.Normals, points);
+    TurnFlippedFaces(mesh, truth.Normals, {}, points);
+    EXPECT_LE(CountFlippedFaces(mesh, truth.Normals, points), before);
   }
 }
 

@@ -62,18 +62,20 @@ Vector DifferencesAcross(const FaceGraph& graph, const Points& normals, const Pa
 /// of two of its normals, times the share of the largest difference across an edge in the sum of
 /// all of them.
 double PatchInconsistency(const FaceGraph& graph, const Points& normals, const Vector& across,
-  const std::vector<Index>& patch)
+  const std::vector<Index>& patch, std::vector<Eigen::RowVector3d>& patchNormals)
 {
   double largest = 0.0;
   double largestAcross = 0.0;
   double sumAcross = 0.0;
-  for (std::size_t i = 0; i < patch.size(); ++i)
+  patchNormals.clear();
+  for (const Index f : patch)
   {
-    const Index f = patch[i];
-    for (std::size_t j = i + 1; j < patch.size(); ++j)
+    const Eigen::RowVector3d own = normals.row(f);
+    for (const Eigen::RowVector3d& other : patchNormals)
     {
-      largest = std::max(largest, (normals.row(f) - normals.row(patch[j])).squaredNorm());
+      largest = std::max(largest, (own - other).squaredNorm());
     }
+    patchNormals.push_back(own);
     for (Index k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
     {
       const Index g = graph.Across.Entries[k];
@@ -106,10 +108,11 @@ Points GuideOfSharpSurface(
     [&](Index, Index begin, Index end)
     {
       std::vector<Index> patch;
+      std::vector<Eigen::RowVector3d> patchNormals;
       for (Index f = begin; f < end; ++f)
       {
         ListPatch(graph, f, patch);
-        inconsistency[f] = PatchInconsistency(graph, geometry.Normals, across, patch);
+        inconsistency[f] = PatchInconsistency(graph, geometry.Normals, across, patch, patchNormals);
         Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
         for (const Index g : patch)
         {
@@ -156,28 +159,6 @@ Points GuideOfSmoothSurface(const FaceGraph& graph, const FaceGeometry& geometry
   return guide;
 }
 
-/// w_fg, in the order of graph.Ring.Entries.
-Vector MakeWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
-  const NormalFilterSettings& settings, const ParallelFor& parallel)
-{
-  Vector weights(static_cast<Index>(graph.Ring.Entries.size()));
-  const Vector widths = settings.Width * MeasureWidths(graph, geometry, parallel);
-  const double range = 0.5 / (settings.Range * settings.Range);
-  ForEach(parallel, graph.NumberOfFaces(),
-    [&](Index f)
-    {
-      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
-      {
-        const Index g = graph.Ring.Entries[k];
-        const double distance =
-          (geometry.Centroids.row(g) - geometry.Centroids.row(f)).squaredNorm();
-        const double difference = (guide.row(g) - guide.row(f)).squaredNorm();
-        weights[k] = FallOff(0.5 * distance / (widths[f] * widths[g]) + range * difference);
-      }
-    });
-  return weights;
-}
-
 /// One sweep from `normals` to `next`. Returns the weighted sum of the products of neighbours and
 /// of the normals with n0.
 double Sweep(const FaceGraph& graph, const FaceGeometry& geometry, const Vector& weights,
@@ -218,10 +199,31 @@ Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
     : GuideOfSmoothSurface(graph, geometry, settings, parallel);
 }
 
+Vector NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
+  const NormalFilterSettings& settings, const ParallelFor& parallel)
+{
+  Vector weights(static_cast<Index>(graph.Ring.Entries.size()));
+  const Vector widths = settings.Width * MeasureWidths(graph, geometry, parallel);
+  const double range = 0.5 / (settings.Range * settings.Range);
+  ForEach(parallel, graph.NumberOfFaces(),
+    [&](Index f)
+    {
+      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      {
+        const Index g = graph.Ring.Entries[k];
+        const double distance =
+          (geometry.Centroids.row(g) - geometry.Centroids.row(f)).squaredNorm();
+        const double difference = (guide.row(g) - guide.row(f)).squaredNorm();
+        weights[k] = FallOff(0.5 * distance / (widths[f] * widths[g]) + range * difference);
+      }
+    });
+  return weights;
+}
+
 Points FilterNormals(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
   const NormalFilterSettings& settings, const ParallelFor& parallel)
 {
-  const Vector weights = MakeWeights(graph, geometry, guide, settings, parallel);
+  const Vector weights = NeighbourWeights(graph, geometry, guide, settings, parallel);
   Points normals = geometry.Normals;
   Points next(normals.rows(), 3);
   double before = 0.0;

@@ -16,7 +16,7 @@ enum class SurfaceKind
 
 struct NormalFilterSettings
 {
-  SurfaceKind Kind = SurfaceKind::Sharp;
+  SurfaceKind Kind = SurfaceKind::Sharp; ///< of the guide
   double Range = 0.35; ///< differences of unit normals that count as one surface
   double Width = 1.0; ///< of the spatial weight, in mean distances between neighbouring triangles
   double Fidelity = 0.1; ///< weight of the normals that are filtered
@@ -33,6 +33,10 @@ struct NormalFilterSettings
 /// For smooth surfaces it is the mean normal over the patch of the triangle itself with narrow
 /// spatial weights.
 Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
+  const NormalFilterSettings& settings, const ParallelFor& parallel);
+
+/// The weights w_fg of FilterNormals(), in the order of graph.Ring.Entries.
+Vector NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
   const NormalFilterSettings& settings, const ParallelFor& parallel);
 
 /// Filters the normals n0 of the triangles: the robust regularisation of unit normals over the

@@ -47,10 +47,10 @@ public:
         normal.normalize(); // which leaves a vector of length 0 as it is
         const double moved = std::abs(normal.dot(points.row(i) - given.row(i)));
         const double outlier = settings.OutlierDistance;
-        const double fidelity = outlier > 0.0 && moved > outlier
-          ? settings.Fidelity * outlier / moved
-          : settings.Fidelity;
-        const double tangential = std::max(settings.Fidelity, settings.TangentialFidelity);
+        const bool hasFactors = settings.FidelityFactors.size() > 0;
+        const double full = settings.Fidelity * (hasFactors ? settings.FidelityFactors[i] : 1.0);
+        const double fidelity = outlier > 0.0 && moved > outlier ? full * outlier / moved : full;
+        const double tangential = std::max(full, settings.TangentialFidelity);
         const Block along = normal.transpose() * normal;
         this->Data[i] =
           (fidelity + SmallestWeight) * along + tangential * (Block::Identity() - along);

@@ -15,6 +15,7 @@ struct NormalFitSettings
   /// Displacements along the normal up to this length count as Gaussian noise, larger ones as
   /// outliers, whose weight falls with the displacement (Huber). In the unit of the points.
   double OutlierDistance = 0.0; ///< 0: no outliers
+  Vector FidelityFactors; ///< of Fidelity, per vertex; no entries: 1
   int MaximumNumberOfIterations = 30;
 };
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Geometry/FaceNormalFilter.h"
+#include "Core/Geometry/LinearNormals.h"
 #include "Core/Geometry/NormalFit.h"
 
 namespace SurfaceDiffusion
@@ -28,15 +28,22 @@ struct DenoisingSettings
 /// How normals are filtered and vertices fitted for one kind of surface, in mean edge lengths h.
 struct DenoisingScheme
 {
+  /// The first stage: FilterNormals(), which finds the edges of the surface.
   NormalFilterSettings Filter;
-  int Iterations = 30;
-  int FitIterations = 10; ///< of conjugate gradients in each iteration
+  int Iterations = 15;
   /// Fidelity of the fit in the first and in the last iteration for noise of 0.3 h. It is
   /// proportional to the inverse of the variance of the noise.
   double FirstFidelity = 0.5;
   double LastFidelity = 0.05;
+  /// The second stage: FitLinearNormals(), which regains the curvature that the first flattened.
+  NormalFilterSettings LinearFilter;
+  int LinearIterations = 15;
+  double LinearFidelity = 0.045; ///< of the fit, for noise of 0.3 h
   double TangentialFidelity = 0.1;
+  int FitIterations = 10; ///< of conjugate gradients in each iteration
   double OutlierLevel = 1.0; ///< OutlierDistance of the fit, in standard deviations of the noise
+  /// Whether the fidelity follows the local displacements (see DenoiseSurface()), or their median.
+  bool HasLocalFidelity = false;
 };
 DenoisingScheme SchemeFor(SurfaceKind kind);
 
@@ -44,8 +51,8 @@ struct DenoisingReport
 {
   double NoiseLevel = 0.0; ///< given or estimated, in the unit of the points
   SurfaceKind Kind = SurfaceKind::Sharp; ///< given or found
-  /// The median over the root mean square of the angles between filtered normals across edges:
-  /// small if a few sharp edges have most of the curvature.
+  /// The 0.8 quantile over the root mean square of the angles between filtered normals across
+  /// edges: small if a few sharp edges have most of the curvature.
   double AngleRatio = 0.0;
   double MeanDisplacement = 0.0; ///< of the vertices, in the unit of the points
   double MaximumDisplacement = 0.0;
@@ -53,10 +60,19 @@ struct DenoisingReport
 
 /// Remove the noise of the vertices of a triangulated surface.
 ///
-/// Iterations of FilterNormals() on the present surface and FitToNormals() to the given points:
-/// block descent on an energy of positions and normals, whose weights follow from the noise level.
-/// Tangential displacements are small, so that triangles and boundaries keep their shape. A noise
-/// level of 0 leaves the points as they are.
+/// Each iteration filters the normals of the present surface and fits the given points to them
+/// with FitToNormals(): block descent on an energy of positions and normals, whose weights follow
+/// from the noise level. The first iterations use FilterNormals(), which suits piecewise constant
+/// normals and sharpens edges. The last ones use FitLinearNormals() with the normals of the present
+/// surface as guide, for piecewise linear normals, and TurnFlippedFaces(). Tangential displacements
+/// are small, so that triangles and boundaries keep their shape. A noise level of 0 leaves the
+/// points as they are.
+///
+/// Displacements along the normal should have the variance of the noise (the discrepancy
+/// principle). If their median shows more, the fidelity grows. On organic surfaces it grows and
+/// falls per vertex, by local means of the squared displacements (G. Gilboa, N. Sochen, Y. Zeevi,
+/// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
+/// Transactions on Image Processing 15(8), 2006), so that regions of fine details keep them.
 ///
 /// points: per vertex of the mesh; fixed: per vertex, nonzero for vertices that stay, may be empty.
 /// Triangles should be oriented consistently: an edge with opposite orientations on its two sides

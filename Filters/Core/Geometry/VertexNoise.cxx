@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace SurfaceDiffusion
 {
@@ -22,6 +24,8 @@ constexpr double MedianOfNormalDistribution = 0.6745; ///< of |x| for the standa
 /// |x| for the standard deviation 1.
 constexpr double NoiseFraction = 0.3;
 constexpr double NoiseQuantile = 0.3853;
+/// (3/2)^3: the variance of details from three rings of neighbours over that from two.
+constexpr double GrowthOfDetails = 3.375;
 
 using Quadric = Eigen::Matrix<double, 6, 1>;
 
@@ -41,19 +45,20 @@ void MakeUnique(std::vector<Index>& list)
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-/// The neighbours of the vertex and their neighbours, without the vertex.
-void FindTwoRings(const TriangleMesh& mesh, Index vertex, std::vector<Index>& list)
+/// The vertices up to this number of edges away from the vertex, without the vertex.
+void FindRings(const TriangleMesh& mesh, Index vertex, int rings, std::vector<Index>& list)
 {
-  list.clear();
-  AppendNeighbours(mesh, vertex, list);
-  MakeUnique(list);
-  const std::size_t first = list.size();
-  for (std::size_t k = 0; k < first; ++k)
+  list.assign(1, vertex);
+  for (int ring = 0; ring < rings; ++ring)
   {
-    AppendNeighbours(mesh, list[k], list);
+    const std::size_t count = list.size();
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      AppendNeighbours(mesh, list[k], list);
+    }
+    MakeUnique(list);
   }
-  MakeUnique(list);
-  list.erase(std::remove(list.begin(), list.end(), vertex), list.end());
+  list.erase(std::lower_bound(list.begin(), list.end(), vertex));
 }
 
 /// The rows: two main axes of the points, and the normal.
@@ -103,6 +108,30 @@ double StandardizedDistance(
   return determined ? distance / std::sqrt(1.0 + leverage) : -1.0;
 }
 
+/// The estimate of EstimateVertexNoise() from the vertices up to this number of edges away.
+double EstimateOverRings(
+  const TriangleMesh& mesh, const Points& points, int rings, const ParallelFor& parallel)
+{
+  const Index count = mesh.NumberOfVertices();
+  const double h = mesh.TotalEdgeLength() / std::max<Index>(1, mesh.NumberOfEdges());
+  std::vector<double> distances(static_cast<std::size_t>(count));
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      std::vector<Index> list;
+      for (Index i = begin; i < end; ++i)
+      {
+        FindRings(mesh, i, rings, list);
+        distances[i] =
+          list.size() < SmallestNeighbourhood ? -1.0 : StandardizedDistance(points, i, list, h);
+      }
+    });
+  distances.erase(std::remove_if(distances.begin(), distances.end(),
+                    [](double distance) { return distance < 0.0; }),
+    distances.end());
+  return QuantileOf(distances, NoiseFraction) / NoiseQuantile;
+}
+
 } // namespace
 
 double QuantileOf(std::vector<double>& values, double fraction)
@@ -125,24 +154,10 @@ double MedianDeviation(std::vector<double>& absoluteValues)
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
-  const Index count = mesh.NumberOfVertices();
-  const double h = mesh.TotalEdgeLength() / std::max<Index>(1, mesh.NumberOfEdges());
-  std::vector<double> distances(static_cast<std::size_t>(count));
-  ForEachBlock(parallel, count,
-    [&](Index, Index begin, Index end)
-    {
-      std::vector<Index> list;
-      for (Index i = begin; i < end; ++i)
-      {
-        FindTwoRings(mesh, i, list);
-        distances[i] =
-          list.size() < SmallestNeighbourhood ? -1.0 : StandardizedDistance(points, i, list, h);
-      }
-    });
-  distances.erase(std::remove_if(distances.begin(), distances.end(),
-                    [](double distance) { return distance < 0.0; }),
-    distances.end());
-  return QuantileOf(distances, NoiseFraction) / NoiseQuantile;
+  const double two = EstimateOverRings(mesh, points, 2, parallel);
+  const double three = std::max(two, EstimateOverRings(mesh, points, 3, parallel));
+  return std::sqrt(
+    std::max(0.0, two * two - (three * three - two * two) / (GrowthOfDetails - 1.0)));
 }
 
 } // namespace SurfaceDiffusion

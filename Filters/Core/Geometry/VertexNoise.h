@@ -21,10 +21,17 @@ double MedianDeviation(std::vector<double>& absoluteValues);
 ///
 /// A quadric z = a + b s + c t + d s^2 + e s t + f t^2 is fitted to the neighbours of each vertex
 /// and their neighbours, without the vertex itself. The distance of the vertex from it has the
-/// variance sigma^2 (1 + l), where l is the leverage of the fit. sigma is the 0.3 quantile of the
+/// variance sigma^2 (1 + l), where l is the leverage of the fit. sigma_2 is the 0.3 quantile of the
 /// absolute standardised distances over 0.3853, so that edges and corners of the surface, and
-/// outliers, hardly matter as long as they are near to less than 70 % of the vertices. Vertices with fewer than nine
-/// such neighbours, or with l > 2, are left out. Returns 0 if none is left.
+/// outliers, hardly matter as long as they are near to less than 70 % of the vertices. Vertices
+/// with fewer than nine such neighbours, or with l > 2, are left out.
+///
+/// sigma_3 is the same with one more ring of neighbours. White noise has the same distances in
+/// both. The details of a surface that a quadric does not follow have larger ones, by the factor
+/// g = (3/2)^3 in the variance for details with a little more than a continuous gradient. The
+/// result is the variance extrapolated to a neighbourhood of no size, sigma_2^2 - (sigma_3^2 -
+/// sigma_2^2) / (g - 1), not below 0. It is 0 for surfaces whose distances are details alone, and
+/// if no vertex is left.
 ///
 /// points: per vertex of the mesh.
 double EstimateVertexNoise(

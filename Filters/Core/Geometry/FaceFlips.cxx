@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/FaceFlips.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr int MaximumNumberOfSweeps = 20;
+constexpr int NumberOfSteps = 4;
+/// t of TurnFlippedFaces().
+constexpr double Smoothness = 0.05;
+
+/// Twice the area of the triangle with its vertex `vertex` at `place`, as seen along its normal.
+double Seen(const TriangleMesh& mesh, const Points& normals, const Points& points, Index corner,
+  const Eigen::RowVector3d& place)
+{
+  const Eigen::RowVector3d a = points.row(mesh.OtherCorner(corner, 1)) - place;
+  const Eigen::RowVector3d b = points.row(mesh.OtherCorner(corner, 2)) - place;
+  return a.cross(b).dot(normals.row(corner / 3));
+}
+
+struct Star
+{
+  double Least; ///< seen area
+  Index Flipped;
+};
+
+Star MeasureStar(const TriangleMesh& mesh, const Points& normals, const Points& points,
+  Index vertex, const Eigen::RowVector3d& place)
+{
+  Star star{ 1e300, 0 };
+  for (Index k = mesh.VertexCornersBegin()[vertex]; k < mesh.VertexCornersBegin()[vertex + 1]; ++k)
+  {
+    const double seen = Seen(mesh, normals, points, mesh.VertexCorners()[k], place);
+    star.Least = std::min(star.Least, seen);
+    star.Flipped += seen < 0.0;
+  }
+  return star;
+}
+
+/// The minimum of the function of TurnFlippedFaces().
+Eigen::RowVector3d BestPlace(
+  const TriangleMesh& mesh, const Points& normals, const Points& points, Index vertex)
+{
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  Eigen::RowVector3d right = Eigen::RowVector3d::Zero();
+  Eigen::RowVector3d middle = Eigen::RowVector3d::Zero();
+  const Index begin = mesh.VertexCornersBegin()[vertex];
+  const Index end = mesh.VertexCornersBegin()[vertex + 1];
+  const Eigen::RowVector3d own = points.row(vertex);
+  for (Index k = begin; k < end; ++k)
+  {
+    const Index corner = mesh.VertexCorners()[k];
+    const Eigen::RowVector3d n = normals.row(corner / 3);
+    const Eigen::RowVector3d others =
+      points.row(mesh.OtherCorner(corner, 1)) + points.row(mesh.OtherCorner(corner, 2)) - 2.0 * own;
+    matrix += 2.0 / 3.0 * n.transpose() * n;
+    right += n.dot(others) / 3.0 * n;
+    middle += others / (2.0 * (end - begin));
+  }
+  matrix += Smoothness * Eigen::Matrix3d::Identity();
+  right += Smoothness * middle;
+  return own + matrix.ldlt().solve(right.transpose()).transpose();
+}
+
+/// Whether a step was found.
+bool MoveVertex(const TriangleMesh& mesh, const Points& normals, Points& points, Index vertex)
+{
+  const Eigen::RowVector3d own = points.row(vertex);
+  const Star before = MeasureStar(mesh, normals, points, vertex, own);
+  if (before.Flipped == 0)
+  {
+    return false;
+  }
+  Eigen::RowVector3d step = BestPlace(mesh, normals, points, vertex) - own;
+  for (int k = 0; k < NumberOfSteps; ++k, step *= 0.5)
+  {
+    const Star after = MeasureStar(mesh, normals, points, vertex, own + step);
+    if (after.Least > before.Least && after.Flipped <= before.Flipped)
+    {
+      points.row(vertex) = own + step;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool IsFlipped(const TriangleMesh& mesh, const Points& normals, const Points& points, Index t)
+{
+  return Seen(mesh, normals, points, 3 * t, points.row(mesh.TriangleVertices()(t, 0))) < 0.0;
+}
+
+} // namespace
+
+Index CountFlippedFaces(const TriangleMesh& mesh, const Points& normals, const Points& points)
+{
+  Index count = 0;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    count += IsFlipped(mesh, normals, points, t);
+  }
+  return count;
+}
+
+void TurnFlippedFaces(
+  const TriangleMesh& mesh, const Points& normals, const std::vector<char>& fixed, Points& points)
+{
+  bool changed = true;
+  for (int sweep = 0; sweep < MaximumNumberOfSweeps && changed; ++sweep)
+  {
+    std::vector<Index> vertices;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      for (int a = 0; a < 3 && IsFlipped(mesh, normals, points, t); ++a)
+      {
+        vertices.push_back(mesh.TriangleVertices()(t, a));
+      }
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    changed = false;
+    for (const Index vertex : vertices)
+    {
+      if (fixed.empty() || !fixed[vertex])
+      {
+        changed = MoveVertex(mesh, normals, points, vertex) || changed;
+      }
+    }
+  }
+}
+
+} // namespace SurfaceDiffusion
