@@ -21,7 +21,7 @@ struct HarmonicMapSettings : DataSettings
   bool MoveVertices = false;
   int MaximumNumberOfRepetitions = 50; ///< of MinimizingMovement; no property
 
-  HarmonicMapSettings() { this->Tolerance = 1e-6; }
+  HarmonicMapSettings() { this->Tolerance = 1e-5; }
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;

@@ -41,22 +41,24 @@ double HarmonicEnergy::operator()(const Values& u) const
     });
 }
 
-void HarmonicEnergy::Evaluate(const Values& u)
+double HarmonicEnergy::Evaluate(const Values& u)
 {
-  ForColumns(u.cols(),
+  return ForColumns(u.cols(),
     [&](auto k)
     {
-      ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
-        [&](Index t)
-        {
-          double signs[3];
-          this->Squares[t] = this->GradientSquare<decltype(k)::value>(u, t, signs);
-          this->Weights[t] = this->Diffusivity(this->Squares[t]);
-          if (this->Options.LineField)
+      return this->Options.LargestDiffusivity *
+        Sum(this->Parallel, this->Mesh->NumberOfTriangles(),
+          [&](Index t)
           {
-            this->Signs.row(t) << signs[0], signs[1], signs[2];
-          }
-        });
+            double signs[3];
+            this->Squares[t] = this->GradientSquare<decltype(k)::value>(u, t, signs);
+            this->Weights[t] = this->Diffusivity(this->Squares[t]);
+            if (this->Options.LineField)
+            {
+              this->Signs.row(t) << signs[0], signs[1], signs[2];
+            }
+            return this->Mesh->Shapes()[t].Area() * this->Density(this->Squares[t]);
+          });
     });
 }
 

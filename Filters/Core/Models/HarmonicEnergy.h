@@ -35,7 +35,8 @@ public:
   double operator()(const Values& u) const;
 
   /// Evaluate |grad u|^2, g and the signs of lines on each triangle, to be kept for a time step.
-  void Evaluate(const Values& u);
+  /// Returns the energy.
+  double Evaluate(const Values& u);
 
   const CornerWeights& GetCoefficients() const { return this->Coefficients; }
   const Vector& GradientSquares() const { return this->Squares; }

@@ -98,13 +98,15 @@ double HarmonicMap::Objective() const
   return mesh.GetReduction().Sum(here);
 }
 
-/// The matrix (1 + lambda dt chi) M + dt K(g) with g, and the signs of lines, at u.
-void HarmonicMap::Freeze()
+/// The matrix (1 + lambda dt chi) M + dt K(g) with g, and the signs of lines, at u. Returns E.
+double HarmonicMap::Freeze()
 {
-  this->GradientEnergy.Evaluate(this->U);
+  const double gradientEnergy = this->GradientEnergy.Evaluate(this->U);
   this->System.Assemble(this->Diagonal, this->Options.TimeStep,
     this->GradientEnergy.GetCoefficients(), this->GradientEnergy.Diffusivities().data(),
     this->GradientEnergy.GetSigns());
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  return mesh.GetReduction().Sum(gradientEnergy + this->Fit.Energy(mesh, this->U, this->Parallel));
 }
 
 void HarmonicMap::ProjectToSphere()
@@ -120,6 +122,13 @@ void HarmonicMap::ProjectToSphere()
         }
       });
   }
+}
+
+void HarmonicMap::Copy(const Values& from, Values& to) const
+{
+  ForEachBlock(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
+    [&](Index, Index begin, Index end)
+    { to.middleRows(begin, end - begin) = from.middleRows(begin, end - begin); });
 }
 
 // --- ExplicitReaction ---
@@ -161,20 +170,25 @@ void HarmonicMap::ExplicitReactionStep(StepReport& report, const ProgressMonitor
 
 void HarmonicMap::TangentPlaneStep(StepReport& report, const ProgressMonitor& progress)
 {
-  this->Anchor = this->U;
-  this->Descend(this->Energy(), report, progress);
+  this->Copy(this->U, this->Anchor);
+  const double energy = this->Freeze();
+  this->Descend(energy, report, progress);
 }
 
 void HarmonicMap::MinimizingMovementStep(StepReport& report, const ProgressMonitor& progress)
 {
   constexpr double stopTolerance = 1e-4; // on the last decrease, relative to that of the step
-  this->Anchor = this->U;
-  const double start = this->Energy();
+  this->Copy(this->U, this->Anchor);
+  const double start = this->Freeze();
   double objective = start;
   double before = start;
   for (int k = 0; k < this->Options.MaximumNumberOfRepetitions; ++k)
   {
     before = objective;
+    if (k > 0)
+    {
+      this->Freeze();
+    }
     // Each repetition is expected to take half of the time left.
     objective = this->Descend(
       before, report, progress.Part(1.0 - std::pow(0.5, k), 1.0 - std::pow(0.5, k + 1)));
@@ -186,14 +200,13 @@ void HarmonicMap::MinimizingMovementStep(StepReport& report, const ProgressMonit
   report.UnsettledDecrease = (before - objective) / (start - objective);
 }
 
-/// One step from u that does not raise Objective(), whose value at u is `objective`; returns the
-/// new value.
+/// After Freeze(), one step from u that does not raise Objective(), whose value at u is `objective`;
+/// returns the new value.
 double HarmonicMap::Descend(double objective, StepReport& report, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const double dt = this->Options.TimeStep;
-  this->Previous = this->U;
-  this->Freeze();
+  this->Copy(this->U, this->Previous);
   Multiply(this->System.GetMatrix(), this->U, this->RightHandSide, this->Parallel);
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)

@@ -101,7 +101,8 @@ public:
 
 private:
   void FillDiagonal();
-  void Freeze();
+  double Freeze();
+  void Copy(const Values& from, Values& to) const;
   void ExplicitReactionStep(StepReport& report, const ProgressMonitor& progress);
   void TangentPlaneStep(StepReport& report, const ProgressMonitor& progress);
   void MinimizingMovementStep(StepReport& report, const ProgressMonitor& progress);

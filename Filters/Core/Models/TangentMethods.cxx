@@ -37,14 +37,15 @@ TangentMethods::TangentMethods(std::shared_ptr<const Assembler> assembler,
 
 /// Whether a multigrid cycle is expected to need fewer seconds than Jacobi. The iterations with
 /// Jacobi grow with the square root of the ratio between the entries of the diagonal and the part
-/// that has no diffusion.
+/// that has no diffusion. To 1e-5, on noisy spheres of 65,538 vertices, both take the same time at a
+/// ratio near 60, at which Jacobi needs 35 iterations and the cycle 5; the aggregates take some more.
 bool TangentMethods::PrefersMultigrid(const TangentSystem& tangent) const
 {
   if (!tangent.Reduction.IsSerial())
   {
     return false;
   }
-  constexpr double ratio = 200.0;
+  constexpr double ratio = 100.0;
   const auto count = static_cast<Index>(tangent.Matrix.rows());
   const double stiff = Sum(this->Parallel, count,
     [&](Index i)

@@ -78,11 +78,10 @@ public:
       return;
     }
     std::vector<double> squares(r.cols());
-    for (Eigen::Index c = 0; c < r.cols(); ++c)
-    {
-      squares[c] = Sum(
-        this->Parallel, n, [&](Index i) { return r(i, c) * this->InverseDiagonal[i] * r(i, c); });
-    }
+    SumColumns(
+      this->Parallel, n, r.cols(),
+      [&](Index i, Eigen::Index c) { return r(i, c) * this->InverseDiagonal[i] * r(i, c); },
+      squares.data());
     this->Scales.resize(r.cols());
     this->System().Precondition(r, squares, z);
   }

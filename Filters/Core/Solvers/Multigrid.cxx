@@ -18,6 +18,14 @@ constexpr Index LargestDirect = 500; // vertices of a level that is solved direc
 constexpr double LargestRatio = 0.8; // of the vertices of a level to those of the finer one
 constexpr double FinestStrength = 0.08; // of strong entries on the finest level, as in the paper
 
+Vector RootsOfDiagonal(const SparseMatrix& matrix, const ParallelFor& parallel)
+{
+  Vector roots(matrix.rows());
+  ForEach(parallel, static_cast<Index>(matrix.rows()),
+    [&](Index i) { roots[i] = std::sqrt(DiagonalEntry(matrix, i)); });
+  return roots;
+}
+
 /// scaled = matrix scaled to unit diagonal, from both sides. scaled: of the pattern of matrix.
 void Scale(const SparseMatrix& matrix, const Vector& scaling, SparseMatrix& scaled,
   const ParallelFor& parallel)
@@ -97,7 +105,7 @@ void Multigrid::KeepAggregates(const SparseMatrix& model)
   this->Coarsenings.clear();
   this->Levels.clear();
   this->Columns = -1;
-  Vector kernel = model.diagonal().cwiseSqrt();
+  Vector kernel = RootsOfDiagonal(model, this->Parallel);
   TakePattern(model, this->Finest, this->Parallel);
   Scale(model, kernel.cwiseInverse(), this->Finest, this->Parallel);
   double strength = FinestStrength;
@@ -118,7 +126,7 @@ void Multigrid::KeepAggregates(const SparseMatrix& model)
 
 void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress)
 {
-  Vector kernel = matrix.diagonal().cwiseSqrt();
+  Vector kernel = RootsOfDiagonal(matrix, this->Parallel);
   this->Scaling = kernel.cwiseInverse();
   if (!this->Coarsenings.empty())
   {

@@ -70,8 +70,14 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   const Reduction& reduction = system.Reduction;
   const auto n = static_cast<Index>(system.B.rows());
   const auto columns = static_cast<int>(system.B.cols());
-  x.setZero(n, columns);
-  this->Residual = system.B;
+  x.resize(n, columns);
+  this->Residual.resize(n, columns);
+  ForEachBlock(this->Parallel, n,
+    [&](Index, Index begin, Index end)
+    {
+      x.middleRows(begin, end - begin).setZero();
+      this->Residual.middleRows(begin, end - begin) = system.B.middleRows(begin, end - begin);
+    });
   reduction.Accumulate(this->Residual);
   const Vector& inertia = reduction.Accumulated(system.Inertia, this->Inertia);
   this->InverseDiagonal.resize(n);
