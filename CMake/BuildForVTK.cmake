@@ -22,7 +22,7 @@ if (SURFACEDIFFUSION_BUILD_BENCHMARKS)
   list(APPEND vtk_test_components FiltersSources)
 endif ()
 find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components} ${vtk_test_components}
-  OPTIONAL_COMPONENTS ParallelMPI)
+  OPTIONAL_COMPONENTS ParallelMPI PythonInterpreter)
 if (TARGET VTK::mpi AND NOT TARGET MPI::MPI_C)
   find_package(MPI REQUIRED COMPONENTS C) # VTK's targets name it without looking for it
 endif ()
@@ -146,10 +146,17 @@ if (SURFACEDIFFUSION_WRAP_PYTHON)
     DESTINATION "${python_destination}/surfacediffusion" COMPONENT python)
 endif ()
 
-# The ParaView plugin
+# The ParaView plugin, and the toolbar with the macros if Qt and VTK's Python interpreter are found
 if (SURFACEDIFFUSION_BUILD_PLUGIN)
+  set(plugin_files "${PROJECT_SOURCE_DIR}/Plugin/paraview.plugin")
+  find_package(Qt5 QUIET COMPONENTS Widgets)
+  set(has_toolbar OFF)
+  if (TARGET Qt5::Widgets AND TARGET VTK::PythonInterpreter)
+    set(has_toolbar ON)
+    list(APPEND plugin_files "${PROJECT_SOURCE_DIR}/Plugin/Toolbar/paraview.plugin")
+  endif ()
   paraview_plugin_scan(
-    PLUGIN_FILES      "${PROJECT_SOURCE_DIR}/Plugin/paraview.plugin"
+    PLUGIN_FILES      ${plugin_files}
     PROVIDES_PLUGINS  plugins
     REQUIRES_MODULES  required_modules
     ENABLE_BY_DEFAULT ON)

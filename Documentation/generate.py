@@ -152,6 +152,7 @@ def copied_page(path):
             return match.group()
         full = os.path.normpath(os.path.join(os.path.dirname(path), target.split("#")[0]))
         if mark:
+            shutil.copy(SOURCE / full, SITE / "pictures")
             return f"![{words}](pictures/{os.path.basename(full)})"
         if full in PAGES:
             return f"[{words}]({PAGES[full]}.md)"

@@ -26,7 +26,7 @@ from vtkmodules.vtkIOExport import vtkJSONRenderWindowExporter
 from vtkmodules.vtkRenderingCore import (
     vtkActor, vtkCamera, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow)
 
-LARGEST = 40_000  # points; surfaces with more are simplified
+LARGEST = 100_000  # points in a scene; surfaces with more than their share are simplified
 TITLE = ('<div class="title" style="position: fixed; left: %g%%; top: %g%%; padding: 8px; z-index: 1; '
          'font: 14px sans-serif; color: #222; pointer-events: none">%s</div>\n')
 
@@ -75,7 +75,7 @@ def _pack(panels, columns):
     camera = vtkCamera()  # of all panels: they turn together
     for panel in panels:
         mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()
-        mapper.SetInputData(_placed(panel))
+        mapper.SetInputData(_placed(panel, LARGEST // len(panels)))
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray("Colour")
         actor.SetMapper(mapper)
@@ -129,8 +129,9 @@ def _remove_addresses(part):
         _remove_addresses(inner)
 
 
-def _placed(panel):
-    """The surface in the panel's view, in a square of size 1, with its colours."""
+def _placed(panel, largest):
+    """The surface in the panel's view, in a square of size 1, with its colours and not many more points
+    than `largest`."""
     view = np.asarray(panel.view, float) / np.linalg.norm(panel.view)
     right = np.cross(panel.up, view)
     right /= np.linalg.norm(right)
@@ -146,11 +147,11 @@ def _placed(panel):
     colours.SetName("Colour")
     surface.GetPointData().SetScalars(colours)
     normals = vtkPolyDataNormals()
-    if surface.GetNumberOfPoints() > LARGEST:
+    if surface.GetNumberOfPoints() > largest:
         fewer = vtkDecimatePro()  # which keeps a part of the points, with their colours
         fewer.SetInputData(surface)
         fewer.BoundaryVertexDeletionOff()  # nor single triangles
-        fewer.SetTargetReduction(1 - LARGEST / surface.GetNumberOfPoints())
+        fewer.SetTargetReduction(1 - largest / surface.GetNumberOfPoints())
         normals.SetInputConnection(fewer.GetOutputPort())
     else:
         normals.SetInputData(surface)

@@ -166,7 +166,7 @@ FILTERS = {entry.name: entry for entry in (
         Slider("model", "Tensor (0: Beltrami, 1: along lines, 2: along edges)", 0, 2, 1, 0),
         Slider("contrast", "Gradient of lines and edges, part of the range", 0.002, 0.2, 0.002, 0.02),
         Slider("weight", "λ", 0, 2, 0.01, 0),
-        Slider("time", "Time, in squared edge lengths", 0.1, 100, 0.1, 10)), run_tensor_diffusion),
+        Slider("time", "Time, in squared edge lengths", 0.1, 100, 0.1, 4)), run_tensor_diffusion),
     Filter("mumford_shah", "Edges: Mumford-Shah", "values", (
         Slider("weight", "λ", 0.05, 5, 0.05, 1),
         Slider("length", "Width, in edge lengths", 1, 30, 0.5, 8),

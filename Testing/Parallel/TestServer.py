@@ -36,7 +36,8 @@ def results(path, distribute):
     for name, filter, array in (
             ("heat at 4", heat, "noisyDiffused"),
             ("tv", IntrinsicTVFilter(data, InputArray=["POINTS", "noisy"], Tolerance=1e-10), "noisyTV"),
-            ("harmonic", HarmonicMapFilter(data, InputArray=["POINTS", "east"]), "eastHarmonic"),
+            ("harmonic", HarmonicMapFilter(data, InputArray=["POINTS", "east"], Tolerance=1e-10),
+             "eastHarmonic"),
             ("turing", turing, "u1"), ("direction", SurfaceDirectionFieldFilter(data), "Direction")):
         output = servermanager.Fetch(filter)
         cells = name == "direction"

@@ -36,8 +36,8 @@ class Panel:
 def two_coloured_ball():
     """Red for z > 0, the side to the camera, and blue behind."""
     ball = vtkSphereSource()
-    ball.SetThetaResolution(60)
-    ball.SetPhiResolution(60)
+    ball.SetThetaResolution(30)
+    ball.SetPhiResolution(30)
     ball.Update()
     front = points_of(ball.GetOutput())[:, 2] > 0
     colours = np.where(front[:, None], np.uint8([220, 30, 30]), np.uint8([30, 30, 220]))
@@ -57,6 +57,7 @@ class TestScenes(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.browser = open_browser()
+        cls.browser.set_window_size(600, 400)  # the browser draws without a graphics card
 
     @classmethod
     def tearDownClass(cls):

@@ -50,7 +50,7 @@ def wait_for(condition, what, seconds=PATIENCE):
             return result
         if time.monotonic() > end:
             raise AssertionError(f"not within {seconds} s: {what}; last: {last!r}")
-        time.sleep(0.1)
+        time.sleep(0.25)  # pictures of the page take time, too
 
 
 def picture_of(browser):

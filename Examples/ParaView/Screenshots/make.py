@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the pictures of GUIDE.md: ParaView's window, and each macro's example before and after.
+"""Makes the pictures of GUIDE.md: ParaView's window, still and moving, and each macro's example before
+and after.
 
-    make.py <folder of SurfaceDiffusion.so> <folder for the pictures>
+    make.py <folder of the plugins> <folder for the pictures> [window|macros]
 
-It needs Xvfb, and libqt5svg5 for ParaView's icons.
+It needs Xvfb, libqt5svg5 for ParaView's icons, and python3-pil for moving pictures.
 """
 
 import os
@@ -18,13 +19,15 @@ import tempfile
 import time
 
 import numpy as np
+from PIL import Image
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 
 HERE = pathlib.Path(__file__).resolve().parent
 MACROS = HERE.parent / "Macros"
-EXAMPLES = ("denoise", "inpaint", "denoise_mesh", "texture")
+EXAMPLES = ("denoise", "inpaint", "deblur", "edges", "segment", "enhance_lines", "denoise_mesh", "texture")
+COLUMNS = 4  # of the picture of the examples
 SIZE = (1280, 900)
 DISPLAY = ":%d" % (100 + os.getpid() % 800)
 DRAW = """
@@ -39,7 +42,7 @@ for name, source in (("before", surface), ("after", result)):
     if {mesh}:
         shown.ColorArrayName = ["POINTS", ""]
     ResetCamera(view)
-    SaveScreenshot({folder!r} + "/{name}_" + name + ".png", view, ImageResolution=[320, 320])
+    SaveScreenshot({folder!r} + "/{name}_" + name + ".png", view, ImageResolution=[240, 240])
 """
 
 
@@ -73,6 +76,8 @@ def read_screen(path):
     rows = np.frombuffer(data, np.uint8, stride * height, start).reshape(height, stride)
     pixels = rows.reshape(height, -1, 4)[:, :width, [2, 1, 0]]
     used = pixels.any(2)  # the window is in the upper left corner of a black screen
+    if not used.any():
+        return pixels
     pixels = pixels[: used.any(1).nonzero()[0][-1] + 1, : used.any(0).nonzero()[0][-1] + 1]
     return pixels[::-1].copy()
 
@@ -85,33 +90,67 @@ def draw_examples(folder, environment):
             mesh=name == "denoise_mesh"))
         subprocess.run(["pvpython", str(script)], check=True, env=environment)
     rows = [
-        np.hstack([read_png(folder / ("%s_%s.png" % (name, when))) for name in EXAMPLES])
-        for when in ("after", "before")
+        np.hstack([read_png(folder / ("%s_%s.png" % (name, when))) for name in EXAMPLES[at:at + COLUMNS]])
+        for at in range(0, len(EXAMPLES), COLUMNS) for when in ("before", "after")
     ]
-    return np.vstack(rows)
+    return np.vstack(rows[::-1])  # from the bottom up
 
 
-def draw_window(folder, environment):
+def record_window(folder, environment, events):
+    """Plays the events of a file in ParaView's window. The pictures that stood still for a moment, the
+    last of which is that of the end."""
     macros = folder / ".config" / "ParaView" / "Macros"
-    macros.mkdir(parents=True)
-    shutil.copy(MACROS / "history.py", macros)
+    macros.mkdir(parents=True, exist_ok=True)
+    for name in (MACROS / "history.py", HERE / "select_nothing.py"):
+        shutil.copy(name, macros)
     command = [
         "paraview", "--dr", "--script=%s" % (HERE / "window.py"), "--test-directory=%s" % folder,
-        "--test-script=%s" % (HERE / "window.xml"),
+        "--test-script=%s" % (HERE / events),
     ]
-    window = subprocess.Popen(
-        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    for line in window.stdout:
-        if "is finished" in line:
-            break
-    time.sleep(3)  # until everything is drawn
-    screen = read_screen(folder / "Xvfb_screen0")
-    window.kill()
-    return screen
+    with open(folder / "log", "w+") as log:
+        window = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT)
+        pictures, last, end = [], None, None
+        while end is None or time.monotonic() < end:
+            time.sleep(0.3)
+            text = (folder / "log").read_text()
+            if end is None and "is finished" in text:
+                end = time.monotonic() + 5  # until everything is drawn
+            if "Playing" not in text:
+                continue
+            screen = read_screen(folder / "Xvfb_screen0")
+            still = last is not None and np.array_equal(screen, last)
+            if still and (not pictures or differ(screen, pictures[-1])):
+                pictures.append(screen)
+            last = screen
+        window.kill()
+        window.wait()
+    return pictures
+
+
+def differ(first, second):
+    """Whether two pictures differ in more than half a percent of their points."""
+    return first.shape != second.shape or (first != second).any(2).mean() > 0.005
+
+
+def write_gif(path, pictures, scale=0.5, seconds=1.5):
+    """A moving picture with 64 colours, which stays for a while at its end."""
+    shape = np.max([picture.shape for picture in pictures], axis=0)
+    frames = []
+    for picture in pictures:
+        full = np.zeros(shape, np.uint8)
+        full[-picture.shape[0]:, :picture.shape[1]] = picture
+        image = Image.fromarray(full[::-1])
+        frames.append(image.resize([int(scale * size) for size in image.size], Image.LANCZOS))
+    palette = frames[-1].quantize(64)
+    frames = [frame.quantize(64, palette=palette, dither=Image.NONE) for frame in frames]
+    lengths = [int(1000 * seconds)] * (len(frames) - 1) + [int(3000 * seconds)]
+    frames[0].save(path, save_all=True, append_images=frames[1:], duration=lengths, loop=0, optimize=True)
+    print(path)
 
 
 def main():
-    plugin, output = (pathlib.Path(path).resolve() for path in sys.argv[1:])
+    plugin, output = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
+    wanted = sys.argv[3:] or ["window", "macros"]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         environment = dict(
@@ -122,8 +161,13 @@ def main():
             ["Xvfb", DISPLAY, "-screen", "0", screen, "-noreset", "-fbdir", name])
         try:
             time.sleep(2)
-            write_png(output / "paraview_macros.png", draw_examples(folder, environment))
-            write_png(output / "paraview_window.png", draw_window(folder, environment))
+            if "window" in wanted:
+                pictures = record_window(folder, environment, "window.xml")
+                write_png(output / "paraview_window.png", pictures[-1])
+                write_gif(output / "paraview_window.gif", pictures)
+            if "macros" in wanted:
+                write_gif(output / "paraview_macros.gif", record_window(folder, environment, "macros.xml"))
+                write_png(output / "paraview_macros.png", draw_examples(folder, environment))
         finally:
             server.terminate()
             server.wait()

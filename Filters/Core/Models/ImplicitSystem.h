@@ -41,6 +41,12 @@ public:
   /// Add factor x to the diagonal of the matrix.
   void AddToDiagonal(double factor, const Vector& x);
 
+  /// Replace the diagonal of the matrix, which has no Dirichlet conditions.
+  void SetDiagonal(const Vector& diagonal)
+  {
+    this->Assembly->SetDiagonal(this->Matrix, diagonal, this->Parallel);
+  }
+
   /// Impose u = values at fixed vertices; see Assembler::Constrain().
   void Constrain(const Flags& fixed, const Values& values);
 

@@ -5,6 +5,7 @@
 #include "Core/Models/InitialState.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"
+#include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
@@ -136,6 +137,7 @@ void MumfordShah::FindEdges(StepReport& report, const ProgressMonitor& progress)
   const double eps = this->CurrentEdgeWidth();
   const double restoring = this->Options.EdgeCost / (2.0 * eps);
   this->SquareGradients();
+  this->AssembleEdgeStiffness();
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     {
@@ -146,10 +148,10 @@ void MumfordShah::FindEdges(StepReport& report, const ProgressMonitor& progress)
       }
       q /= 3.0;
       const double pull = restoring * mesh.ControlAreas()[i];
-      this->Diagonal[i] = q + pull;
+      this->Diagonal[i] = q + pull + this->EdgeStiffness[i];
       this->EdgeRightHandSide(i, 0) = pull * (1.0 - this->V(i, 0)) - q * this->V(i, 0);
     });
-  this->EdgeSystem.Assemble(this->Diagonal, 2.0 * this->Options.EdgeCost * eps, this->Isotropic);
+  this->EdgeSystem.SetDiagonal(this->Diagonal);
   const SparseMatrix& matrix = this->EdgeSystem.GetMatrix();
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i) { this->EdgeRightHandSide(i, 0) += Flow(matrix, this->V, i, 0); });
@@ -163,6 +165,22 @@ void MumfordShah::FindEdges(StepReport& report, const ProgressMonitor& progress)
     this->EdgeRightHandSide, this->EdgeChange, report, progress.Part(0.5, 1.0));
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i) { this->V(i, 0) += this->EdgeChange(i, 0); });
+}
+
+/// 2 beta eps K, which is the same in all steps of a stage unless Dirichlet conditions changed it.
+void MumfordShah::AssembleEdgeStiffness()
+{
+  if (this->EdgeStage == this->Stage && !this->Cuts.any())
+  {
+    return;
+  }
+  const Index n = this->Assembly->Mesh().NumberOfVertices();
+  this->EdgeStiffness.setZero(n);
+  this->EdgeSystem.Assemble(
+    this->EdgeStiffness, 2.0 * this->Options.EdgeCost * this->CurrentEdgeWidth(), this->Isotropic);
+  const SparseMatrix& matrix = this->EdgeSystem.GetMatrix();
+  ForEach(this->Parallel, n, [&](Index i) { this->EdgeStiffness[i] = DiagonalEntry(matrix, i); });
+  this->EdgeStage = this->Stage;
 }
 
 /// OfTriangles: int D grad u . grad u over triangle t, the sum of c_ij |u_i - u_j|^2 over its edges.

@@ -82,6 +82,7 @@ private:
   bool IsLastStage() const { return this->Stage + 1 >= this->Options.NumberOfStages; }
   void SmoothData(StepReport& report, const ProgressMonitor& progress);
   void FindEdges(StepReport& report, const ProgressMonitor& progress);
+  void AssembleEdgeStiffness();
   void SquareGradients();
   double Weight(Index t) const;
   double MeasureEnergy() const;
@@ -104,6 +105,8 @@ private:
 
   Vector OfTriangles; ///< w, then int D grad u . grad u
   Vector Diagonal;
+  Vector EdgeStiffness; ///< diagonal of 2 beta eps K, with the eps of EdgeStage
+  int EdgeStage = -1;
   Values Change, RightHandSide, NoChange;
   Values EdgeChange, EdgeRightHandSide, NoEdgeChange;
 };

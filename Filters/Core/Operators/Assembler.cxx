@@ -126,6 +126,13 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
     });
 }
 
+void Assembler::SetDiagonal(
+  SparseMatrix& matrix, const Vector& diagonal, const ParallelFor& parallel) const
+{
+  ForEach(parallel, static_cast<Index>(diagonal.size()),
+    [&](Index i) { matrix.valuePtr()[this->DiagonalSlot[i]] = diagonal[i]; });
+}
+
 void Assembler::Constrain(SparseMatrix& matrix, const Flags& fixed, const Values& values,
   Values& load, const ParallelFor& parallel) const
 {

@@ -41,6 +41,10 @@ public:
     const CornerWeights& coefficients, const double* weights = nullptr,
     const ParallelFor& parallel = SerialFor(), const CornerWeights* signs = nullptr) const;
 
+  /// Replace the diagonal of a matrix of the pattern.
+  void SetDiagonal(
+    SparseMatrix& matrix, const Vector& diagonal, const ParallelFor& parallel = SerialFor()) const;
+
   /// Impose Dirichlet conditions u = values at `fixed` vertices: their rows keep only the diagonal
   /// and their columns are eliminated, so that the matrix stays symmetric positive definite. load,
   /// n x k, is the term of the right-hand side: the sum over fixed j of -a_ij values_j in free

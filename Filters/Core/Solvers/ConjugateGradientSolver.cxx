@@ -45,13 +45,16 @@ public:
     this->Matrix = &matrix;
     const Index n = static_cast<Index>(matrix.rows());
     this->InverseDiagonal.resize(n);
-    ForEach(this->Parallel, n,
-      [&](Index i) { this->InverseDiagonal[i] = 1.0 / DiagonalEntry(matrix, i); });
     if (this->Hierarchy)
     {
+      ForEach(this->Parallel, n,
+        [&](Index i) { this->InverseDiagonal[i] = 1.0 / DiagonalEntry(matrix, i); });
       this->Hierarchy->SetMatrix(matrix, progress);
     }
-    this->Share = this->Hierarchy ? 0.0 : this->ShareOfRowSums(matrix);
+    else
+    {
+      this->InvertDiagonal(matrix);
+    }
     if (this->Share >= SmallestShareOfOnePass)
     {
       this->Single.SetMatrix(matrix, this->InverseDiagonal);
@@ -92,21 +95,30 @@ private:
   static constexpr double SmallestShareOfOnePass = 1e-4;
   static constexpr double MostOfOnePass = 1e-5;
 
-  double ShareOfRowSums(const SparseMatrix& matrix) const
+  /// InverseDiagonal and Share, in one pass over the matrix.
+  void InvertDiagonal(const SparseMatrix& matrix)
   {
     const Index n = static_cast<Index>(matrix.rows());
     const Index* const outer = matrix.outerIndexPtr();
-    const double all = Sum(this->Parallel, n,
-      [&](Index i)
+    const Index* const inner = matrix.innerIndexPtr();
+    const double* const values = matrix.valuePtr();
+    this->RowSums.Resize(n, 2);
+    this->RowSums.Run<2>(this->Parallel, n, 2,
+      [&](Index i, double* sums)
       {
-        double sum = 0.0;
+        double sum = 0.0; // of a row first: large entries cancel
+        Index below = 0; // entries before the diagonal, see DiagonalEntry()
         for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
         {
-          sum += matrix.valuePtr()[slot];
+          sum += values[slot];
+          below += inner[slot] < i;
         }
-        return sum;
+        const double diagonal = values[outer[i] + below];
+        this->InverseDiagonal[i] = 1.0 / diagonal;
+        sums[0] += sum;
+        sums[1] += diagonal;
       });
-    return all / Sum(this->Parallel, n, [&](Index i) { return 1.0 / this->InverseDiagonal[i]; });
+    this->Share = this->RowSums[0] / this->RowSums[1];
   }
 
   ColumnSystem System()
@@ -124,7 +136,24 @@ private:
     this->Work.Resize(n, k, k);
 
     // b - A x in units of each column's own
-    Multiply(*this->Matrix, x, this->Residual, this->Parallel);
+    const bool startsAtZero = Max(this->Parallel, n,
+                                [&](Index i)
+                                {
+                                  bool isZero = true;
+                                  for (int c = 0; c < k; ++c)
+                                  {
+                                    isZero = isZero && x(i, c) == 0.0;
+                                  }
+                                  return isZero ? 0.0 : 1.0;
+                                }) == 0.0;
+    if (!startsAtZero)
+    {
+      Multiply(*this->Matrix, x, this->Residual, this->Parallel);
+    }
+    else
+    {
+      this->Residual.setZero();
+    }
     std::vector<double>& unit = this->Work.Unit;
     for (int c = 0; c < k; ++c)
     {
@@ -271,6 +300,7 @@ private:
   Vector InverseDiagonal;
   SinglePrecisionSolver Single;
   double Share = 0.0; ///< of row sums in the diagonal
+  ColumnSums RowSums;
   std::vector<SinglePrecisionSolver::Column> Corrections;
   Values Residual; ///< in Work.Unit
   std::vector<double> Scales;

@@ -152,16 +152,20 @@ void SlicedMatrix::Set(const SparseMatrix& matrix, const Vector& roots)
         const std::size_t last = this->Begin[place / Lanes + 1] + lane;
         std::size_t at = this->Begin[place / Lanes] + lane;
         const Index row = this->Rows[place];
-        const Index slots = row < 0 ? 0 : this->Outer[row + 1];
-        for (Index slot = row < 0 ? 0 : this->Outer[row]; slot < slots; ++slot)
+        const Index first = row < 0 ? 0 : this->Outer[row];
+        const Index size = row < 0 ? 0 : this->Outer[row + 1] - first;
+        Index below = 0; // entries before the diagonal, which are left out without a branch
+        for (Index k = 0; k < size; ++k)
         {
+          below += inner[first + k] < row;
+        }
+        for (Index k = 0; k + 1 < size; ++k)
+        {
+          const Index slot = first + k + (k >= below);
           const Index column = inner[slot];
-          if (column != row)
-          {
-            this->Columns[at] = this->Places[column];
-            this->Entries[at] = static_cast<float>(values[slot] * roots[row] * roots[column]);
-            at += Lanes;
-          }
+          this->Columns[at] = this->Places[column];
+          this->Entries[at] = static_cast<float>(values[slot] * roots[row] * roots[column]);
+          at += Lanes;
         }
         for (; at < last; at += Lanes)
         {
