@@ -4,7 +4,7 @@
 """Makes the pictures of GUIDE.md: ParaView's window, still and moving, and each macro's example before
 and after.
 
-    make.py <folder of the plugins> <folder for the pictures> [window|macros]
+    make.py <folder of the plugins> <folder for the pictures> [window] [buttons] [examples]
 
 It needs Xvfb, libqt5svg5 for ParaView's icons, and python3-pil for moving pictures.
 """
@@ -111,7 +111,7 @@ def record_window(folder, environment, events):
         window = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT)
         pictures, last, end = [], None, None
         while end is None or time.monotonic() < end:
-            time.sleep(0.3)
+            time.sleep(0.3)  # between two looks at the screen
             text = (folder / "log").read_text()
             if end is None and "is finished" in text:
                 end = time.monotonic() + 5  # until everything is drawn
@@ -128,21 +128,19 @@ def record_window(folder, environment, events):
 
 
 def differ(first, second):
-    """Whether two pictures differ in more than half a percent of their points."""
-    return first.shape != second.shape or (first != second).any(2).mean() > 0.005
+    """Whether two pictures differ in more than two percent of their points."""
+    return first.shape != second.shape or (first != second).any(2).mean() > 0.02
 
 
 def write_gif(path, pictures, scale=0.5, seconds=1.5):
-    """A moving picture with 64 colours, which stays for a while at its end."""
-    shape = np.max([picture.shape for picture in pictures], axis=0)
+    """A moving picture with 128 colours, which stays for a while at its end."""
     frames = []
     for picture in pictures:
-        full = np.zeros(shape, np.uint8)
-        full[-picture.shape[0]:, :picture.shape[1]] = picture
-        image = Image.fromarray(full[::-1])
-        frames.append(image.resize([int(scale * size) for size in image.size], Image.LANCZOS))
-    palette = frames[-1].quantize(64)
-    frames = [frame.quantize(64, palette=palette, dither=Image.NONE) for frame in frames]
+        if picture.shape == pictures[-1].shape:  # before, there is no window yet
+            image = Image.fromarray(picture[::-1])
+            frames.append(image.resize([int(scale * size) for size in image.size], Image.LANCZOS))
+    palette = Image.fromarray(np.vstack([np.asarray(frame) for frame in frames])).quantize(128)
+    frames = [frame.quantize(palette=palette, dither=Image.NONE) for frame in frames]
     lengths = [int(1000 * seconds)] * (len(frames) - 1) + [int(3000 * seconds)]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=lengths, loop=0, optimize=True)
     print(path)
@@ -150,7 +148,7 @@ def write_gif(path, pictures, scale=0.5, seconds=1.5):
 
 def main():
     plugin, output = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
-    wanted = sys.argv[3:] or ["window", "macros"]
+    wanted = sys.argv[3:] or ["window", "buttons", "examples"]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         environment = dict(
@@ -165,8 +163,9 @@ def main():
                 pictures = record_window(folder, environment, "window.xml")
                 write_png(output / "paraview_window.png", pictures[-1])
                 write_gif(output / "paraview_window.gif", pictures)
-            if "macros" in wanted:
+            if "buttons" in wanted:
                 write_gif(output / "paraview_macros.gif", record_window(folder, environment, "macros.xml"))
+            if "examples" in wanted:
                 write_png(output / "paraview_macros.png", draw_examples(folder, environment))
         finally:
             server.terminate()
