@@ -74,7 +74,6 @@ Vector FindBrightness(const Run::Block& block, const InputFields& fields, bool o
 
 vtkHarmonicMapFilter::vtkHarmonicMapFilter()
 {
-  this->Tolerance = 1e-5;
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
 }

@@ -234,8 +234,7 @@ public:
   /**
    * The relative residual, in the norm of the inverse diagonal, at which iterative solvers stop, in
    * (0, 1), and the largest number of iterations, 1 or more. A solve that does not converge within
-   * them is an error. Default: 1e-10 (1e-5 in vtkHarmonicMapFilter, 1e-3 in
-   * vtkIntrinsicTVFilter), 1000.
+   * them is an error. Default: 1e-10 (1e-3 in vtkIntrinsicTVFilter), 1000.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
