@@ -1,7 +1,8 @@
 #!/bin/sh
 # Installs this package and its peers in mesh denoising, measures them side by side, and writes the
 # page MESH_DENOISING.md. Arguments are passed on to compare_mesh_denoising.py, see its --help. Debian
-# 12 or later; the folder build/mesh-peers holds everything that is installed from PyPI.
+# 12 or later; the folder build/mesh-peers holds everything that is installed from PyPI. Open3D needs
+# libusb-1.0-0; a peer that cannot be used is named on the page.
 set -eu
 cd "$(dirname "$0")/../.."
 
