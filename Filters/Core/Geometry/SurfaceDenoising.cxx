@@ -257,7 +257,7 @@ DenoisingScheme SchemeFor(SurfaceKind kind)
   DenoisingScheme scheme;
   scheme.Filter.Kind = kind;
   scheme.LinearFilter.Kind = kind;
-  scheme.LinearFilter.Range = 0.305;
+  scheme.LinearFilter.Range = 0.31;
   scheme.LinearFilter.Width = 2.0;
   if (kind == SurfaceKind::Smooth)
   {

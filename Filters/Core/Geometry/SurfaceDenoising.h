@@ -33,12 +33,12 @@ struct DenoisingScheme
   int Iterations = 15;
   /// Fidelity of the fit in the first and in the last iteration for noise of 0.3 h. It is
   /// proportional to the inverse of the variance of the noise.
-  double FirstFidelity = 0.5;
-  double LastFidelity = 0.05;
+  double FirstFidelity = 0.45;
+  double LastFidelity = 0.045;
   /// The second stage: FitLinearNormals(), which regains the curvature that the first flattened.
   NormalFilterSettings LinearFilter;
   int LinearIterations = 15;
-  double LinearFidelity = 0.045; ///< of the fit, for noise of 0.3 h
+  double LinearFidelity = 0.04; ///< of the fit, for noise of 0.3 h
   double TangentialFidelity = 0.1;
   int FitIterations = 10; ///< of conjugate gradients in each iteration
   double OutlierLevel = 1.0; ///< OutlierDistance of the fit, in standard deviations of the noise
