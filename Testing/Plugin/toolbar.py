@@ -21,7 +21,7 @@ import icons  # noqa: E402
 from make import SIZE, read_screen  # noqa: E402
 
 ROWS, COLUMNS = 160, 640  # of the screen, which have the toolbars
-SIZES = range(20, 33)  # of an icon on the screen, which depends on the style of Qt
+SIZES = range(22, 30)  # of an icon on the screen, which depends on the style of Qt
 PRESS = '<pqevent object="pqClientMainWindow/SurfaceDiffusionMacros/%s" command="activate" arguments=""/>\n'
 RUN = ('<pqevent object="pqClientMainWindow/menubar" command="activate" arguments="menu_Macros"/>\n'
        '<pqevent object="pqClientMainWindow/menubar/menu_Macros" command="activate" arguments="%s"/>\n')

@@ -26,8 +26,7 @@ from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 
 HERE = pathlib.Path(__file__).resolve().parent
 MACROS = HERE.parent / "Macros"
-EXAMPLES = ("denoise", "inpaint", "deblur", "edges", "segment", "enhance_lines", "denoise_mesh", "texture")
-COLUMNS = 4  # of the picture of the examples
+EXAMPLES = ("denoise", "inpaint", "denoise_mesh", "texture")
 SIZE = (1280, 900)
 DISPLAY = ":%d" % (100 + os.getpid() % 800)
 DRAW = """
@@ -42,7 +41,7 @@ for name, source in (("before", surface), ("after", result)):
     if {mesh}:
         shown.ColorArrayName = ["POINTS", ""]
     ResetCamera(view)
-    SaveScreenshot({folder!r} + "/{name}_" + name + ".png", view, ImageResolution=[240, 240])
+    SaveScreenshot({folder!r} + "/{name}_" + name + ".png", view, ImageResolution=[320, 320])
 """
 
 
@@ -90,10 +89,10 @@ def draw_examples(folder, environment):
             mesh=name == "denoise_mesh"))
         subprocess.run(["pvpython", str(script)], check=True, env=environment)
     rows = [
-        np.hstack([read_png(folder / ("%s_%s.png" % (name, when))) for name in EXAMPLES[at:at + COLUMNS]])
-        for at in range(0, len(EXAMPLES), COLUMNS) for when in ("before", "after")
+        np.hstack([read_png(folder / ("%s_%s.png" % (name, when))) for name in EXAMPLES])
+        for when in ("after", "before")
     ]
-    return np.vstack(rows[::-1])  # from the bottom up
+    return np.vstack(rows)
 
 
 def record_window(folder, environment, events):
