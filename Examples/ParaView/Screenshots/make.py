@@ -131,14 +131,14 @@ def differ(first, second):
     return first.shape != second.shape or (first != second).any(2).mean() > 0.02
 
 
-def write_gif(path, pictures, scale=0.5, seconds=1.5):
-    """A moving picture with 128 colours, which stays for a while at its end."""
+def write_gif(path, pictures, scale=0.44, seconds=1.5):
+    """A moving picture with 96 colours, which stays for a while at its end."""
     frames = []
     for picture in pictures:
         if picture.shape == pictures[-1].shape:  # before, there is no window yet
             image = Image.fromarray(picture[::-1])
             frames.append(image.resize([int(scale * size) for size in image.size], Image.LANCZOS))
-    palette = Image.fromarray(np.vstack([np.asarray(frame) for frame in frames])).quantize(128)
+    palette = Image.fromarray(np.vstack([np.asarray(frame) for frame in frames])).quantize(96)
     frames = [frame.quantize(palette=palette, dither=Image.NONE) for frame in frames]
     lengths = [int(1000 * seconds)] * (len(frames) - 1) + [int(3000 * seconds)]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=lengths, loop=0, optimize=True)
