@@ -226,7 +226,7 @@ double EnclosedVolume(
   }
   std::sort(edges.begin(), edges.end());
   std::sort(reversed.begin(), reversed.end());
-  if (edges != reversed) // an edge is not passed once in each direction
+  if (edges.empty() || edges != reversed) // an edge is not passed once in each direction
   {
     return 0.0;
   }
