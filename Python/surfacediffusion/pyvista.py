@@ -219,9 +219,9 @@ def denoise_mesh(
 
     fixed: point or cell array; points, and the points of cells, with a nonzero value stay. The method
     and all other keywords are described in help(surfacediffusion.denoise_mesh). The result has moved
-    points and the point array Displacement (n, 3); active point normals are computed again. Each block of a MultiBlock has its own noise
-    level. full_output: if True, the function returns a pair: the mesh, and the MeshDenoisingResult,
-    of a MultiBlock the list of them.
+    points and the point array Displacement (n, 3); active point normals are computed again. Each
+    block of a MultiBlock has its own noise level. full_output: if True, the function returns a pair:
+    the mesh, and the MeshDenoisingResult, of a MultiBlock the list of them.
     """
     properties, name = _keywords("denoise_mesh", properties)
     blocks, results = _find_surfaces(mesh), []
