@@ -117,28 +117,6 @@ TEST(SurfaceDenoisingFilter, CoincidentPointsAreAWarningUnlessTheyAreMerged)
   EXPECT_TRUE(messages.Errors.empty());
 }
 
-TEST(SurfaceDenoisingFilter, SurfacesWithoutTrianglesStayAsTheyAre)
-{
-  vtkNew<vtkSurfaceDenoisingFilter> filter;
-  vtkNew<vtkPolyData> empty;
-  const auto points = NoisySphere(0.01, 1);
-  points->SetPolys(vtkSmartPointer<vtkCellArray>::New());
-  for (vtkPolyData* surface : { empty.Get(), points.Get() })
-  {
-    filter->SetInputData(surface);
-    filter->Update();
-    ASSERT_EQ(filter->GetOutput()->GetNumberOfPoints(), surface->GetNumberOfPoints());
-    for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-    {
-      for (int k = 0; k < 3; ++k)
-      {
-        EXPECT_EQ(filter->GetOutput()->GetPoint(i)[k], surface->GetPoint(i)[k]);
-      }
-    }
-    EXPECT_EQ(filter->GetVolumeAfter(), 0.0);
-  }
-}
-
 TEST(SurfaceDenoisingFilter, DisplacementsLeadFromTheInputToTheOutput)
 {
   const auto noisy = NoisySphere(0.01, 3);
