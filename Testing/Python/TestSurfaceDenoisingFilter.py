@@ -85,7 +85,7 @@ class MeshDenoising(unittest.TestCase):
         points, model = case.denoise()
         self.assertEqual(model.GetEffectiveSurfaceType(), model.SURFACE_TYPE_ORGANIC)
         self.assertLess(abs(model.GetEffectiveNoiseLevel() / case.length - 0.2), 0.02)
-        largest = 1.25 * case.low_pass()
+        largest = 1.1 * case.low_pass()
         self.assertLess(case.angle(points), largest)
         self.assertLess(case.angle(points), 0.2 * case.angle(points_of(case.noisy).astype(float)))
         self.assertEqual(np.sum(case.truth.angles(points) > 90), 0)
