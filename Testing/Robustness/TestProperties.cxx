@@ -119,7 +119,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed["KeepCellDetail"] = [](vtkPolyDataAlgorithm* f) { SetInputArray(f, 0, "c", true); };
   needed["vtkSurfaceDenoisingFilter SurfaceType"] =
     needed["vtkSurfaceDenoisingFilter MergeCoincidentPoints"] =
-      With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
+      needed["vtkSurfaceDenoisingFilter MergeTolerance"] =
+        With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
   needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
     With<TV>([](TV* f) { f->SetStopTolerance(0.1); }); // it takes long otherwise
