@@ -27,47 +27,52 @@ int NumberOfSharedVertices(const Triangles& triangles, Index t, Index u)
   return shared;
 }
 
-/// The triangles that share a vertex with triangle t.
-void FindRing(const TriangleMesh& mesh, Index t, std::vector<Index>& ring)
+/// Append the triangles that share a vertex with triangle t.
+void AppendRing(const TriangleMesh& mesh, Index t, std::vector<Index>& entries)
 {
-  ring.clear();
+  const auto first = static_cast<std::ptrdiff_t>(entries.size());
   for (int a = 0; a < 3; ++a)
   {
     const Index v = mesh.TriangleVertices()(t, a);
     for (Index k = mesh.VertexCornersBegin()[v]; k < mesh.VertexCornersBegin()[v + 1]; ++k)
     {
-      ring.push_back(mesh.VertexCorners()[k] / 3);
+      const Index other = mesh.VertexCorners()[k] / 3;
+      if (other != t)
+      {
+        entries.push_back(other);
+      }
     }
   }
-  std::sort(ring.begin(), ring.end());
-  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-  ring.erase(std::lower_bound(ring.begin(), ring.end(), t));
+  const auto begin = entries.begin() + first;
+  std::sort(begin, entries.end());
+  entries.erase(std::unique(begin, entries.end()), entries.end());
 }
 
-/// Fill the lists whose members find(i, members) returns. It is called twice per list.
-template <typename Find>
-void FillLists(IndexLists& lists, Index count, const ParallelFor& parallel, const Find& find)
+/// Fill the lists whose members append(i, entries) appends.
+template <typename Append>
+void FillLists(IndexLists& lists, Index count, const ParallelFor& parallel, const Append& append)
 {
   lists.Begin.assign(static_cast<std::size_t>(count) + 1, 0);
-  const auto each = [&](const auto& use)
-  {
-    ForEachBlock(parallel, count,
-      [&](Index, Index begin, Index end)
+  std::vector<std::vector<Index>> blocks(NumberOfBlocks(count));
+  ForEachBlock(parallel, count,
+    [&](Index block, Index begin, Index end)
+    {
+      std::vector<Index>& entries = blocks[block];
+      for (Index i = begin; i < end; ++i)
       {
-        std::vector<Index> members;
-        for (Index i = begin; i < end; ++i)
-        {
-          find(i, members);
-          use(i, members);
-        }
-      });
-  };
-  each([&](Index i, const std::vector<Index>& members)
-    { lists.Begin[i] = static_cast<Index>(members.size()); });
+        const std::size_t before = entries.size();
+        append(i, entries);
+        lists.Begin[i] = static_cast<Index>(entries.size() - before);
+      }
+    });
   CountsToOffsets(lists.Begin);
   lists.Entries.resize(static_cast<std::size_t>(lists.Begin.back()));
-  each([&](Index i, const std::vector<Index>& members)
-    { std::copy(members.begin(), members.end(), lists.Entries.begin() + lists.Begin[i]); });
+  ForEachBlock(parallel, count,
+    [&](Index block, Index begin, Index)
+    {
+      std::copy(
+        blocks[block].begin(), blocks[block].end(), lists.Entries.begin() + lists.Begin[begin]);
+    });
 }
 
 } // namespace
@@ -77,18 +82,36 @@ FaceGraph::FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel)
 {
   const Index count = mesh.NumberOfTriangles();
   FillLists(this->Ring, count, parallel,
-    [&](Index t, std::vector<Index>& members) { FindRing(mesh, t, members); });
+    [&](Index t, std::vector<Index>& entries) { AppendRing(mesh, t, entries); });
   FillLists(this->Across, count, parallel,
-    [&](Index t, std::vector<Index>& members)
+    [&](Index t, std::vector<Index>& entries)
     {
-      members.clear();
       for (Index k = this->Ring.Begin[t]; k < this->Ring.Begin[t + 1]; ++k)
       {
         if (NumberOfSharedVertices(mesh.TriangleVertices(), t, this->Ring.Entries[k]) > 1)
         {
-          members.push_back(this->Ring.Entries[k]);
+          entries.push_back(this->Ring.Entries[k]);
         }
       }
+    });
+  FillLists(this->Inside, count, parallel,
+    [&](Index t, std::vector<Index>& entries)
+    {
+      const auto begin = this->Ring.Entries.begin() + this->Ring.Begin[t];
+      const auto end = this->Ring.Entries.begin() + this->Ring.Begin[t + 1];
+      const auto appendPairs = [&](Index f)
+      {
+        for (Index k = this->Across.Begin[f]; k < this->Across.Begin[f + 1]; ++k)
+        {
+          const Index g = this->Across.Entries[k];
+          if (g > f && (g == t || std::binary_search(begin, end, g)))
+          {
+            entries.push_back(k);
+          }
+        }
+      };
+      appendPairs(t);
+      std::for_each(begin, end, appendPairs);
     });
 }
 

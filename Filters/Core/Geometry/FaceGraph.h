@@ -26,6 +26,9 @@ struct FaceGraph
   const TriangleMesh& Mesh;
   IndexLists Ring; ///< per triangle: the others that share a vertex with it, ascending
   IndexLists Across; ///< per triangle: the others that share an edge with it, ascending
+  /// Per triangle: the places in Across.Entries of the pairs of triangles of its patch, itself and
+  /// its ring, that share an edge; each pair once.
+  IndexLists Inside;
 };
 
 /// Unit normals, areas and centroids of the triangles. The normal of a triangle of zero area is 0.

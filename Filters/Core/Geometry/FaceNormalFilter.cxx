@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/FaceNormalFilter.h"
 
+#include "Core/Foundation/Columns.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -58,44 +61,76 @@ Vector DifferencesAcross(const FaceGraph& graph, const Points& normals, const Pa
   return differences;
 }
 
-/// How inconsistent the normals of a patch are (equation (8) of the paper): the largest difference
-/// of two of its normals, times the share of the largest difference across an edge in the sum of
-/// all of them.
-double PatchInconsistency(const FaceGraph& graph, const Points& normals, const Vector& across,
-  const std::vector<Index>& patch, std::vector<Eigen::RowVector3d>& patchNormals)
+constexpr std::size_t Lanes = 8;
+
+/// The largest squared difference of two of the vectors, of which there are a multiple of Lanes.
+SURFACEDIFFUSION_ANY_VECTORS double LargestSquare(
+  const double* x, const double* y, const double* z, std::size_t count)
 {
-  double largest = 0.0;
-  double largestAcross = 0.0;
-  double sumAcross = 0.0;
-  patchNormals.clear();
-  for (const Index f : patch)
+  double squares[Lanes] = {};
+  for (std::size_t i = 0; i < count; ++i)
   {
-    const Eigen::RowVector3d own = normals.row(f);
-    for (const Eigen::RowVector3d& other : patchNormals)
+    for (std::size_t first = i / Lanes * Lanes; first < count; first += Lanes)
     {
-      largest = std::max(largest, (own - other).squaredNorm());
-    }
-    patchNormals.push_back(own);
-    for (Index k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
-    {
-      const Index g = graph.Across.Entries[k];
-      if (g > f && std::binary_search(patch.begin(), patch.end(), g))
+      for (std::size_t l = 0; l < Lanes; ++l)
       {
-        largestAcross = std::max(largestAcross, across[k]);
-        sumAcross += across[k];
+        const double dx = x[first + l] - x[i];
+        const double dy = y[first + l] - y[i];
+        const double dz = z[first + l] - z[i];
+        const double square = dx * dx + dy * dy + dz * dz;
+        squares[l] = squares[l] > square ? squares[l] : square;
       }
     }
   }
-  return std::sqrt(largest) * (TinyDifference + largestAcross) / (TinyDifference + sumAcross);
+  return *std::max_element(squares, squares + Lanes);
 }
 
-/// Triangle f and its ring, ascending.
-void ListPatch(const FaceGraph& graph, Index f, std::vector<Index>& patch)
+/// A triangle and its ring.
+class Patch
 {
-  patch.assign(graph.Ring.Entries.begin() + graph.Ring.Begin[f],
-    graph.Ring.Entries.begin() + graph.Ring.Begin[f + 1]);
-  patch.insert(std::lower_bound(patch.begin(), patch.end(), f), f);
-}
+public:
+  /// How inconsistent the normals of the patch of triangle f are (equation (8) of the paper): the
+  /// largest difference of two of them, times the share of the largest difference across an edge in
+  /// the sum of all of them.
+  double Inconsistency(const FaceGraph& graph, const Points& normals, const Vector& across, Index f)
+  {
+    for (std::vector<double>& values : this->Normals)
+    {
+      values.clear();
+    }
+    this->Append(normals, f);
+    for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+    {
+      this->Append(normals, graph.Ring.Entries[k]);
+    }
+    while (this->Normals[0].size() % Lanes != 0)
+    {
+      this->Append(normals, f);
+    }
+    const double largest = LargestSquare(this->Normals[0].data(), this->Normals[1].data(),
+      this->Normals[2].data(), this->Normals[0].size());
+    double largestAcross = 0.0;
+    double sumAcross = 0.0;
+    for (Index k = graph.Inside.Begin[f]; k < graph.Inside.Begin[f + 1]; ++k)
+    {
+      const double difference = across[graph.Inside.Entries[k]];
+      largestAcross = std::max(largestAcross, difference);
+      sumAcross += difference;
+    }
+    return std::sqrt(largest) * (TinyDifference + largestAcross) / (TinyDifference + sumAcross);
+  }
+
+private:
+  void Append(const Points& normals, Index f)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Normals[axis].push_back(normals(f, axis));
+    }
+  }
+
+  std::array<std::vector<double>, 3> Normals; ///< per axis
+};
 
 Points GuideOfSharpSurface(
   const FaceGraph& graph, const FaceGeometry& geometry, const ParallelFor& parallel)
@@ -107,15 +142,14 @@ Points GuideOfSharpSurface(
   ForEachBlock(parallel, count,
     [&](Index, Index begin, Index end)
     {
-      std::vector<Index> patch;
-      std::vector<Eigen::RowVector3d> patchNormals;
+      Patch patch;
       for (Index f = begin; f < end; ++f)
       {
-        ListPatch(graph, f, patch);
-        inconsistency[f] = PatchInconsistency(graph, geometry.Normals, across, patch, patchNormals);
-        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-        for (const Index g : patch)
+        inconsistency[f] = patch.Inconsistency(graph, geometry.Normals, across, f);
+        Eigen::RowVector3d sum = geometry.Areas[f] * geometry.Normals.row(f);
+        for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
         {
+          const Index g = graph.Ring.Entries[k];
           sum += geometry.Areas[g] * geometry.Normals.row(g);
         }
         means.row(f) = Direction(sum, geometry.Normals.row(f));

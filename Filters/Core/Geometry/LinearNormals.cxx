@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/LinearNormals.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-#include <limits>
+#include <cmath>
 
 namespace SurfaceDiffusion
 {
@@ -58,26 +57,45 @@ public:
 
   void Add(const Eigen::RowVector3d& offset, const Eigen::RowVector3d& value, double weight)
   {
-    const Eigen::Vector3d terms(1.0, this->First.dot(offset), this->Second.dot(offset));
-    this->Matrix += weight * terms * terms.transpose();
-    this->Right += weight * terms * value;
+    const double x = this->First.dot(offset);
+    const double y = this->Second.dot(offset);
+    const Eigen::RowVector3d weighted = weight * value;
+    this->W += weight;
+    this->X += weight * x;
+    this->Y += weight * y;
+    this->XX += weight * x * x;
+    this->XY += weight * x * y;
+    this->YY += weight * y * y;
+    this->V += weighted;
+    this->VX += x * weighted;
+    this->VY += y * weighted;
   }
 
-  /// The value at the offset 0.
-  Eigen::RowVector3d Solve()
+  /// The direction of the value at the offset 0, not normalised: by Cramer's rule without the
+  /// determinant, which is not negative.
+  Eigen::RowVector3d Solve() const
   {
-    const double ridge =
-      Ridge * (this->Matrix(1, 1) + this->Matrix(2, 2)) + std::numeric_limits<double>::min();
-    this->Matrix(1, 1) += ridge;
-    this->Matrix(2, 2) += ridge;
-    const Eigen::Matrix3d solution = this->Matrix.ldlt().solve(this->Right);
-    return solution.row(0);
+    const double ridge = Ridge * (this->XX + this->YY);
+    if (!(ridge > 0.0))
+    {
+      return this->V;
+    }
+    // in the unit of length in which the mean square of the offsets is 1 / Ridge
+    const double unit = std::sqrt(ridge / this->W);
+    const double x = this->X / unit / this->W;
+    const double y = this->Y / unit / this->W;
+    const double xx = this->XX / ridge + 1.0;
+    const double xy = this->XY / ridge;
+    const double yy = this->YY / ridge + 1.0;
+    return (xx * yy - xy * xy) * this->V + (y * xy - x * yy) / unit * this->VX +
+      (x * xy - y * xx) / unit * this->VY;
   }
 
 private:
   Eigen::RowVector3d First, Second;
-  Eigen::Matrix3d Matrix = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d Right = Eigen::Matrix3d::Zero();
+  double W = 0.0, X = 0.0, Y = 0.0, XX = 0.0, XY = 0.0, YY = 0.0; ///< sums of the weighted terms
+  Eigen::RowVector3d V = Eigen::RowVector3d::Zero();
+  Eigen::RowVector3d VX = V, VY = V;
 };
 
 } // namespace

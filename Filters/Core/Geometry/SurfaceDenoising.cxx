@@ -240,9 +240,10 @@ private:
 SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::vector<char>& fixed,
   double noise, double& angleRatio, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  DenoisingScheme probe = SchemeFor(SurfaceKind::Sharp);
+  DenoisingScheme probe = SchemeFor(SurfaceKind::Sharp, noise / MeanEdgeLength(graph.Mesh));
   probe.Iterations = ProbeIterations;
   probe.LinearIterations = 0;
+  probe.FitIterations = 10;
   FaceGeometry geometry;
   geometry.Measure(graph.Mesh,
     DenoiseWithScheme(graph, points, fixed, noise, probe, parallel, progress), parallel);
@@ -252,22 +253,27 @@ SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::ve
 
 } // namespace
 
-DenoisingScheme SchemeFor(SurfaceKind kind)
+DenoisingScheme SchemeFor(SurfaceKind kind, double noise)
 {
   DenoisingScheme scheme;
   scheme.Filter.Kind = kind;
   scheme.LinearFilter.Kind = kind;
+  scheme.Filter.Fidelity = 0.12;
   scheme.LinearFilter.Range = 0.31;
   scheme.LinearFilter.Width = 2.0;
   if (kind == SurfaceKind::Smooth)
   {
     scheme.Filter.Sweeps = 1;
-    scheme.Iterations = 12;
+    // Each iteration is one step of descent, so that strong noise needs more of them.
+    scheme.Iterations = std::clamp(static_cast<int>(std::lround(50.0 * noise)), 3, 30);
     scheme.FirstFidelity = 0.09;
     scheme.LastFidelity = 0.09;
-    scheme.LinearFilter.Width = 1.0;
-    scheme.LinearIterations = 4;
-    scheme.LinearFidelity = 0.13;
+    scheme.LinearFilter.Range = 0.4;
+    scheme.LinearFilter.Width = 0.9;
+    scheme.LinearIterations =
+      std::clamp(static_cast<int>(std::lround(100.0 * noise * noise)), 2, 15);
+    scheme.LinearFidelity = 0.06;
+    scheme.FitIterations = 1;
     scheme.TangentialFidelity = 2.0;
     scheme.HasLocalFidelity = true;
   }
@@ -298,8 +304,9 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
       ? FindKind(graph, points, fixed, found.NoiseLevel, found.AngleRatio, parallel,
           progress.Part(0.1, 0.25))
       : (settings.Type == SurfaceType::CAD ? SurfaceKind::Sharp : SurfaceKind::Smooth);
-    moved = DenoiseWithScheme(graph, points, fixed, found.NoiseLevel, SchemeFor(found.Kind),
-      parallel, progress.Part(0.25, 1.0));
+    moved = DenoiseWithScheme(graph, points, fixed, found.NoiseLevel,
+      SchemeFor(found.Kind, found.NoiseLevel / MeanEdgeLength(mesh)), parallel,
+      progress.Part(0.25, 1.0));
   }
   const auto displacement = [&](Index i) { return (moved.row(i) - points.row(i)).norm(); };
   const Index count = mesh.NumberOfVertices();

@@ -40,12 +40,13 @@ struct DenoisingScheme
   int LinearIterations = 15;
   double LinearFidelity = 0.04; ///< of the fit, for noise of 0.3 h
   double TangentialFidelity = 0.1;
-  int FitIterations = 10; ///< of conjugate gradients in each iteration
+  int FitIterations = 4; ///< of conjugate gradients in each iteration: few of them regularise
   double OutlierLevel = 1.0; ///< OutlierDistance of the fit, in standard deviations of the noise
   /// Whether the fidelity follows the local displacements (see DenoiseSurface()), or their median.
   bool HasLocalFidelity = false;
 };
-DenoisingScheme SchemeFor(SurfaceKind kind);
+/// noise: its standard deviation in h.
+DenoisingScheme SchemeFor(SurfaceKind kind, double noise);
 
 struct DenoisingReport
 {
