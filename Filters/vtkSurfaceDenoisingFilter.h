@@ -16,18 +16,20 @@
  * over pairs of triangles that share a vertex. rho(d) = 1 - exp(-d^2 / (2 r^2)) saturates at sharp
  * edges, and w_fg = exp(-|c_f - c_g|^2 / (2 s^2) - |m_f - m_g|^2 / (2 r^2)) has the guide normals m
  * (W. Zhang, B. Deng, J. Zhang, S. Bouaziz, L. Liu, Guided Mesh Normal Filtering, Computer Graphics
- * Forum 34(7), 2015). The second step moves the points x, which were given as x0, to the minimum of
+ * Forum 34(7), 2015). The second step moves the points x, which were given as x0, towards the
+ * minimum of
  *
  *     sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2
  *       + sum_i l_i (N_i . (x_i - x0_i))^2 + t |(I - N_i N_i^T) (x_i - x0_i)|^2
  *
- * with the vertex normals N. l_i is proportional to the inverse of the variance of the noise, and
+ * with the vertex normals N, by four steps of conjugate gradients on CAD shapes and one on organic
+ * ones: few steps regularise. l_i is proportional to the inverse of the variance of the noise, and
  * smaller for outliers. Tangential displacements are small, so that triangles keep their shapes and
  * boundary curves do not shrink.
  *
- * A surface whose estimated noise is 0 stays as it is. Noise of more than half
- * of the distance between opposite sides of a thin part cannot be removed. Polygons should be
- * oriented consistently, since an edge between triangles of opposite orientation counts as sharp.
+ * A surface whose estimated noise is 0 stays as it is. Noise of more than half of the distance
+ * between opposite sides of a thin part cannot be removed. Polygons should be oriented consistently,
+ * since an edge between triangles of opposite orientation counts as sharp.
  *
  * Input array 3 (points, one component, optional): points with a nonzero value stay where they
  * are. They still guide their neighbours.
