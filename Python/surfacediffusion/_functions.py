@@ -597,7 +597,8 @@ def denoise_mesh(
     over pairs of triangles that share a point. rho(d) = 1 - exp(-d^2/(2 r^2)) saturates at sharp
     edges, and w_fg = exp(-abs(c_f - c_g)^2/(2 s^2) - abs(m_f - m_g)^2/(2 r^2)) has the guide normals
     m (Zhang, Deng, Zhang, Bouaziz, Liu, Guided Mesh Normal Filtering, CGF 34(7), 2015). The second
-    moves the points x, which were given as x0, to the minimum of
+    moves the points x, which were given as x0, by a few steps of conjugate gradients towards the
+    minimum of
 
         sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2 + sum_i l_i (N_i . (x_i - x0_i))^2
 
