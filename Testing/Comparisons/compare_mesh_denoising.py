@@ -133,7 +133,19 @@ def measure(mesh: Mesh, points, seconds):
         volumes.append((a * np.cross(b, c)).sum() / 6)
     return {"angle": angles.mean(), "distance": rms_distance(mesh, points),
             "volume": volumes[0] / volumes[1] - 1, "flipped": int((angles > 90).sum()),
-            "seconds": seconds}
+            "intersecting": self_intersections(mesh, points), "seconds": seconds}
+
+
+def self_intersections(mesh: Mesh, points):
+    """The number of triangles that intersect others, by MeshLab; None without it."""
+    try:
+        import pymeshlab
+    except ImportError:
+        return None
+    meshes = pymeshlab.MeshSet()
+    meshes.add_mesh(pymeshlab.Mesh(points, mesh.triangles))
+    meshes.apply_filter("compute_selection_by_self_intersections_per_face")
+    return int(meshes.current_mesh().face_selection_array().sum())
 
 
 def rms_distance(mesh: Mesh, points):
@@ -276,8 +288,9 @@ to six, whose result has the smallest angle to the truth. `denoise_mesh` has no 
 
 The angle is the mean over the triangles of the angle between the normal and the true one, in degrees.
 Root mean square distances of the points from the original surface are in its mean edge lengths. Then
-follow the change of the volume, the number of triangles whose normal is more than 90 degrees off, and
-the processor time on {processor} in seconds, of all threads together and under other load.
+follow the change of the volume, the numbers of triangles whose normal is more than 90 degrees off and
+of those that intersect others, and the processor time on {processor} in seconds, of all threads
+together and under other load.
 
 ## Mean angles
 
@@ -303,9 +316,10 @@ def all_measures(results):
     parts = []
     for name, rows in results.items():
         parts.append(f"### {name}\n\n" + table(
-            ["program", "angle", "distance", "volume", "flipped", "seconds"],
+            ["program", "angle", "distance", "volume", "flipped", "intersecting", "seconds"],
             [[row["program"], f"{row['angle']:.2f}", f"{row['distance']:.3f}",
               f"{100 * row['volume']:+.2f} %", str(row["flipped"]),
+              "" if row["intersecting"] is None else str(row["intersecting"]),
               f"{row['seconds']:.2f}" if row["seconds"] else ""] for row in rows]))
     return "\n".join(parts)
 
