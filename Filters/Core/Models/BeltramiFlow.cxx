@@ -44,8 +44,7 @@ BeltramiFlow::Metrics BeltramiFlow::Measure(Index t) const
     sum.RootDeterminant *= s.XX * s.YY - s.XY * s.XY;
   }
   const double square = this->Options.ColorScale * this->Options.ColorScale;
-  return { sum.T, sum.RootDeterminant,
-    std::hypot(std::sqrt(1.0 + square * sum.T.Trace()), square * sum.RootDeterminant) };
+  return { sum, std::hypot(std::sqrt(1.0 + square * sum.T.Trace()), square * sum.RootDeterminant) };
 }
 
 /// D = adj(G) / sqrt(det G).
@@ -53,9 +52,40 @@ PlaneTensor BeltramiFlow::Diffusivity(Index t, const Metrics& metrics) const
 {
   const double square = this->Options.ColorScale * this->Options.ColorScale;
   const double inverse = 1.0 / metrics.AreaRatio;
-  const PlaneTensor d = { (1.0 + square * metrics.T.YY) * inverse, -square * metrics.T.XY * inverse,
-    (1.0 + square * metrics.T.XX) * inverse };
+  const PlaneTensor d = { (1.0 + square * metrics.Gradients.T.YY) * inverse,
+    -square * metrics.Gradients.T.XY * inverse, (1.0 + square * metrics.Gradients.T.XX) * inverse };
   return this->Factors.IsOne() ? d : d.Between(this->Factors(t));
+}
+
+/// adj(G) = 1 + b^2 sum over the channels of r r^T with r = grad u turned by 90 degrees, and
+/// r . grad(phi_a) = d_a / (2 area) with the difference d_a along the edge opposite corner a. As
+/// squares, the weights of the channels stay positive semi-definite where the entries of D have lost
+/// their small eigenvalue.
+Eigen::RowVector3d BeltramiFlow::Weights(Index t, const Metrics& metrics) const
+{
+  const TriangleMesh::Shape& shape = this->Mesh().Shapes()[t];
+  PlaneTensor plain;
+  double determinant = 1.0;
+  if (!this->Factors.IsOne())
+  {
+    const PlaneTensor s = this->Factors(t);
+    plain = plain.Between(s);
+    determinant = s.XX * s.YY - s.XY * s.XY;
+  }
+  Eigen::RowVector3d weights = TensorWeights(shape, plain) / metrics.AreaRatio;
+  const double factor = this->Options.ColorScale * determinant *
+    std::sqrt(0.5 * shape.Weight / metrics.AreaRatio) /
+    (std::sqrt(shape.Length) * std::sqrt(shape.Y));
+  const GradientTensor& gradients = metrics.Gradients;
+  const auto corners = this->Mesh().TriangleVertices().row(t);
+  for (Eigen::Index k = 0; k < this->U.cols(); ++k)
+  {
+    const auto value = [&](int a) { return gradients.ValueScale * this->U(corners[a], k); };
+    const Eigen::RowVector3d d = factor * gradients.Scale *
+      Eigen::RowVector3d(value(2) - value(1), value(0) - value(2), value(1) - value(0));
+    weights -= Eigen::RowVector3d(d[1] * d[2], d[2] * d[0], d[0] * d[1]);
+  }
+  return weights;
 }
 
 void BeltramiFlow::FillWeights(Eigen::Index, Eigen::Index, StepReport&, const ProgressMonitor&)
@@ -66,7 +96,7 @@ void BeltramiFlow::FillWeights(Eigen::Index, Eigen::Index, StepReport&, const Pr
     [&](Index t)
     {
       const Metrics metrics = this->Measure(t);
-      this->Weighted.row(t) = TensorWeights(mesh.Shapes()[t], this->Diffusivity(t, metrics));
+      this->Weighted.row(t) = this->Weights(t, metrics);
       if (induced)
       {
         this->AreaRatios[t] = metrics.AreaRatio;
@@ -102,10 +132,10 @@ double BeltramiFlow::Energy() const
     [&](Index t)
     {
       const Metrics metrics = this->Measure(t);
-      const double determinant =
-        metrics.RootDeterminant * (square * metrics.RootDeterminant / (metrics.AreaRatio + 1.0));
+      const double determinant = metrics.Gradients.RootDeterminant *
+        (square * metrics.Gradients.RootDeterminant / (metrics.AreaRatio + 1.0));
       return mesh.Shapes()[t].Area() *
-        (metrics.T.Trace() / (metrics.AreaRatio + 1.0) + determinant);
+        (metrics.Gradients.T.Trace() / (metrics.AreaRatio + 1.0) + determinant);
     });
   return mesh.GetReduction().Sum(excess + this->FidelityEnergy());
 }

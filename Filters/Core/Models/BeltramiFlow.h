@@ -70,12 +70,12 @@ private:
   double MassDensity(Index i) const override;
   struct Metrics
   {
-    PlaneTensor T; ///< of S grad u
-    double RootDeterminant; ///< of T
+    GradientTensor Gradients; ///< of S grad u
     double AreaRatio; ///< sqrt(det G)
   };
   Metrics Measure(Index t) const;
   PlaneTensor Diffusivity(Index t, const Metrics& metrics) const;
+  Eigen::RowVector3d Weights(Index t, const Metrics& metrics) const; ///< of D
 
   Settings Options;
   GivenFactors Factors;

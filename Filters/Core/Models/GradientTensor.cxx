@@ -34,6 +34,8 @@ public:
   }
 
   int Number() const { return this->Count; }
+  double GetValueScale() const { return this->ValueScale; }
+  double GetScale() const { return this->Scale; }
   /// To a length of about LongestGradient. Before they are divided by lengths, which may be as small
   /// as any number, values are made small.
   void Shorten()
@@ -84,6 +86,8 @@ GradientTensor SumGradients(const TriangleMesh& mesh, const Values& u, Index t)
   {
     gradients.Shorten();
     sum.T = SumSquares(gradients);
+    sum.ValueScale = gradients.GetValueScale();
+    sum.Scale = gradients.GetScale();
   }
   const double larger = std::max(sum.T.XX, sum.T.YY);
   if (gradients.Number() == 1 || !(larger > 0.0))

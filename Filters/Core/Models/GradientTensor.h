@@ -14,6 +14,7 @@ struct GradientTensor
 {
   PlaneTensor T{ 0.0, 0.0, 0.0 };
   double RootDeterminant = 0.0;
+  double ValueScale = 1.0, Scale = 1.0; ///< by whose product the gradients were multiplied
 };
 /// Gradients whose squares might overflow, as of data on triangles of 1e-150 of the surface's size,
 /// are shortened to 1e75.
