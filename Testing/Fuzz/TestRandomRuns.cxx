@@ -52,6 +52,10 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // a large fidelity weight, which multiplies the round-off of the energy
     "006e7fffff00022afffffb0000215801fb329a76fffb0d0002fd0009028d2da176a8005801fb129a76fff9f9"
     "f9f90700000000000000f9f9f9fff9f9f9f9f9f9f9f9f9f9f9f9f90201f9f900",
+    // a flat triangle with steep data, on which the tensor of the Beltrami flow lost its positivity
+    "40497fff9999129912fbff769aa800f84cff9a76fffbffffff028d2dfffffffffffff7ffffffffffffffffff"
+    "ffff9a76a8005801fb769a9999999999999999999999029999999999999999129afbacff76a8ffffffffffff"
+    "ffffffffffffffffffffffff00f84cffff5102ecd3",
   };
   for (const std::string& digits : found)
   {
