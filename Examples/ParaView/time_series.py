@@ -27,13 +27,14 @@ else:  # a wave that travels over a sphere, with ripples; four files
         phase = 2 * math.pi * i / len(files)
         wave = Calculator(sphere, ResultArrayName=name, Function=(
             f"cos(6*coordsX + {phase}) + 0.3*sin(60*coordsY)*sin(60*coordsZ)"))
-        SaveData(file, wave, ChooseArraysToWrite=1, PointDataArrays=[name])
+        # Debian 12's ParaView cannot read appended data, the default
+        SaveData(file, wave, ChooseArraysToWrite=1, PointDataArrays=[name], DataMode="Binary")
 
 series = XMLPolyDataReader(FileName=files)
 heat = FVMHeatFilter(series, InputArray=["POINTS", name], FWHM=0.1)
 heat.UpdatePipelineInformation()
 print("times:", *heat.TimestepValues)
-SaveData("smooth.pvd", heat, WriteTimeSteps=1)
+SaveData("smooth.pvd", heat, WriteTimeSteps=1, DataMode="Binary")
 for time in heat.TimestepValues:
     heat.UpdatePipeline(time)
     low, high = heat.PointData[name + "Diffused"].GetRange()

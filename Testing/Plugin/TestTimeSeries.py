@@ -23,7 +23,7 @@ class TestTimeSeries(unittest.TestCase):
             data = Calculator(sphere, ResultArrayName="wave",
                               Function=f"cos(8*coordsX + {i}) + {i}*sin(30*coordsY)")
             cls.files.append(os.path.join(cls.folder, f"map_{i}.vtp"))
-            SaveData(cls.files[-1], data)
+            SaveData(cls.files[-1], data, DataMode="Binary")  # as in write_sphere()
         cls.series = XMLPolyDataReader(FileName=cls.files)
 
     def check(self, make):
@@ -51,7 +51,7 @@ class TestTimeSeries(unittest.TestCase):
     def test_the_filtered_series_is_written_with_its_times(self):
         heat = FVMHeatFilter(self.series, InputArray=["POINTS", "wave"], FWHM=0.1)
         path = os.path.join(self.folder, "smooth.pvd")
-        SaveData(path, heat, WriteTimeSteps=1)
+        SaveData(path, heat, WriteTimeSteps=1, DataMode="Binary")
         with open(path) as file:
             index = file.read()
         for time in range(3):
@@ -61,6 +61,7 @@ class TestTimeSeries(unittest.TestCase):
         for time, file in enumerate(written):
             again = XMLPolyDataReader(FileName=[os.path.join(self.folder, "smooth", file)])
             heat.UpdatePipeline(float(time))
+            self.assertEqual(len(values(heat, "waveDiffused")), 530)
             self.assertEqual(values(again, "waveDiffused"), values(heat, "waveDiffused"))
 
 
