@@ -160,8 +160,8 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
   Require(std::isfinite(energy) || !promises.Energy, "an energy is not finite");
   // Even a constant has energy, by round-off, which the fidelity weight multiplies.
   const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0.0;
-  const double roundOff =
-    1e-9 * energyAtStart + 1e-26 * (1.0 + promises.Fidelity) * largest * largest;
+  const double roundOff = 1e-9 * energyAtStart +
+    1e-26 * (1.0 + promises.Fidelity) * largest * largest + std::numeric_limits<double>::min();
   Require(!promises.Energy || energy <= energyBefore + roundOff, "an energy grows");
   for (Eigen::Index k = 0; k < u.cols(); ++k)
   {
