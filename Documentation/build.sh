@@ -8,7 +8,7 @@ environment=$site/environment
 data=build/data
 
 missing=
-for package in doxygen xvfb xauth libgl1-mesa-dri python3-venv; do
+for package in g++ python3-dev python3-venv doxygen xvfb xauth libgl1-mesa-dri; do
   dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -q '^installed' ||
     missing="$missing $package"
 done

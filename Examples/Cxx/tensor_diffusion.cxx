@@ -44,8 +44,8 @@ vtkSmartPointer<vtkPolyData> NoisyStripes(const char* name)
 {
   vtkNew<vtkSphereSource> source;
   source->SetRadius(1.0);
-  source->SetThetaResolution(200);
-  source->SetPhiResolution(140);
+  source->SetThetaResolution(120);
+  source->SetPhiResolution(84);
   source->Update();
   vtkSmartPointer<vtkPolyData> sphere = source->GetOutput();
   vtkNew<vtkMinimalStandardRandomSequence> random;

@@ -7,7 +7,7 @@ from paraview.simple import *
 
 surface = GetActiveSource()
 if surface is None:
-    sphere = Clean(Sphere(ThetaResolution=200, PhiResolution=200))
+    sphere = Clean(Sphere(ThetaResolution=120, PhiResolution=120))
     stripes = Calculator(
         sphere, Function="sin(40*(0.8*coordsX+0.6*coordsZ))*(sin(25*coordsY)>-0.8)",
         ResultArrayName="stripes")
