@@ -7,18 +7,7 @@ site=$PWD/build/site
 environment=$site/environment
 data=build/data
 
-missing=
-for package in g++ python3-dev python3-venv doxygen xvfb xauth libgl1-mesa-dri; do
-  dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -q '^installed' ||
-    missing="$missing $package"
-done
-if [ -n "$missing" ]; then
-  sudo=
-  [ "$(id -u)" -eq 0 ] || sudo=sudo
-  $sudo apt-get -q update
-  # shellcheck disable=SC2086 # one word per package
-  $sudo apt-get -q -y --no-install-recommends install $missing
-fi
+.ci/install-packages site
 if [ ! -e "$environment/complete" ]; then
   "${PYTHON:-python3}" -m venv "$environment"
   "$environment/bin/pip" install --quiet --disable-pip-version-check ".[io,pyvista]" \
