@@ -37,9 +37,9 @@ TangentMethods::TangentMethods(std::shared_ptr<const Assembler> assembler,
 
 /// Whether a multigrid cycle is expected to need fewer seconds than Jacobi. The iterations with
 /// Jacobi grow with the square root of the ratio between the entries of the diagonal and the part
-/// that has no diffusion. At a ratio just below 100, on a noisy sphere of 65,538 vertices, Jacobi needed 50
-/// iterations to 1e-5 and twice the time of the cycle, which needed 5. Making the aggregates takes
-/// as long as one or two solves more.
+/// that has no diffusion. At a ratio just below 100, on a noisy sphere of 65,538 vertices, Jacobi
+/// needed 50 iterations to 1e-5 and twice the time of the cycle, which needed 5. Making the
+/// aggregates takes as long as one or two solves more.
 bool TangentMethods::PrefersMultigrid(const TangentSystem& tangent) const
 {
   if (!tangent.Reduction.IsSerial())
