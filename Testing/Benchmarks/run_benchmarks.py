@@ -149,6 +149,30 @@ def choices(rows):
     return table(head, body) + f"At most 1.3 times the fastest in {good} of {len(rows)} cells.\n\n"
 
 
+def libraries(rows, solves):
+    """Milliseconds of the set-up and some solves with each solver, per step size and columns, and
+    the time of the solver that Automatic selects over each."""
+    text = ""
+    cases = sorted({(row["c"], row["columns"]) for row in rows})
+    sizes = sorted({row["vertices"] for row in rows})
+    ratios = []
+    for c, columns in cases:
+        times, selected = {}, {}
+        for row in rows:
+            if (row["c"], row["columns"]) == (c, columns):
+                total = row["setup"] + solves * row["solve"]
+                times.setdefault(row["solver"], {})[row["vertices"]] = total
+                if row.get(f"selected{solves}"):
+                    selected[row["vertices"]] = total
+        body = [[solver] + [f"{number(of[n])} ({selected[n] / of[n]:.2f})" if n in of else ""
+                            for n in sizes] for solver, of in times.items()]
+        ratios += [selected[n] / min(of[n] for of in times.values() if n in of) for n in sizes]
+        text += (f"Δt = {c:g} h², {columns} column{'s' if columns > 1 else ''}:\n\n"
+                 + table(["ms"] + [f"{n:,}" for n in sizes], body))
+    good = sum(ratio <= 1.3 for ratio in ratios)
+    return text + f"Automatic takes at most 1.3 times the fastest in {good} of {len(ratios)} cases.\n\n"
+
+
 def peers(options, program, folder):
     """The rows of the peers' program, which include ours."""
     specs = ["elephant.off+1", "refined_elephant.off", "refined_elephant.off+1",
@@ -226,6 +250,10 @@ def main():
                                 "--benchmark_min_time=0.1", "--benchmark_filter=" + MODELS]))
     grid = [json.loads(line) for line in
             run([program("CompareSolvers"), str(min(options.level, 3))]).splitlines()]
+    compared_libraries = []
+    if os.path.exists(program("CompareLibraries")):
+        compared_libraries = [json.loads(line) for line in run(
+            [program("CompareLibraries"), str(min(options.level, 3))]).splitlines()]
     page = ("# Measured times\n\nWritten by `run_benchmarks.py`: CPU time on one thread. "
             f"{machine()}. {options.note}\n\n"
             "Memory bandwidth (triad, 24 bytes per entry): "
@@ -242,6 +270,11 @@ def main():
             "solver (D: Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the "
             "fastest.\n\n"
             + choices(grid))
+    for solves in (1, 10) if compared_libraries else ():
+        page += (f"## {solves} step{'s' if solves > 1 else ''} with the solvers of other libraries\n\n"
+                 "Set-up and solves to a residual of 1e-10, by `CompareLibraries`. In brackets: the "
+                 "solver that Automatic selects over this one.\n\n"
+                 + libraries(compared_libraries, solves))
     if options.peers:
         with tempfile.TemporaryDirectory() as folder:
             compared = peers(options, program("HeatStep"), folder)

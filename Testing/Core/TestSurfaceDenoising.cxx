@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/FaceFlips.h"
+#include "Core/Geometry/LinearNormals.h"
 #include "Core/Geometry/SurfaceDenoising.h"
 #include "Core/Geometry/VertexNoise.h"
 #include "Meshes.h"

@@ -63,8 +63,15 @@ public:
   /// Row i of the product of the matrix and x.
   Eigen::RowVector3d Row(const Points& x, Index i) const
   {
+    return this->ApplyData(x, i) + this->ApplyNormals(x, i);
+  }
+
+  Eigen::RowVector3d ApplyData(const Points& x, Index i) const { return x.row(i) * this->Data[i]; }
+  /// The part of the normals, to which only differences of x matter.
+  Eigen::RowVector3d ApplyNormals(const Points& x, Index i) const
+  {
     const Eigen::RowVector3d own = x.row(i);
-    Eigen::RowVector3d row = own * this->Data[i];
+    Eigen::RowVector3d row = Eigen::RowVector3d::Zero();
     this->ForEachTriangle(i,
       [&](Index t, Index corner)
       {
@@ -76,7 +83,6 @@ public:
     return row;
   }
 
-  Eigen::RowVector3d ApplyData(const Points& x, Index i) const { return x.row(i) * this->Data[i]; }
   Eigen::RowVector3d Precondition(const Eigen::RowVector3d& r, Index i) const
   {
     return r * this->Inverse[i];
@@ -111,12 +117,10 @@ void FitToNormals(const TriangleMesh& mesh, const Points& given, const Points& n
   // In displacements from the given points, which may be far from the origin.
   Points x = points - given;
   Points residual(count, 3), direction(count, 3), product(count, 3);
-  const auto origin = [&](Index i) -> Eigen::RowVector3d
-  { return system.Row(given, i) - system.ApplyData(given, i); };
   double rz = Sum(parallel, count,
     [&](Index i)
     {
-      residual.row(i) = -system.Row(x, i) - origin(i);
+      residual.row(i) = -system.ApplyData(x, i) - system.ApplyNormals(points, i);
       if (system.IsFixed(i))
       {
         residual.row(i).setZero();

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -30,40 +31,73 @@ constexpr double GrowthOfDetails = 3.375;
 
 using Quadric = Eigen::Matrix<double, 6, 1>;
 
-void AppendNeighbours(const TriangleMesh& mesh, Index vertex, std::vector<Index>& list)
+struct VertexRange
 {
-  for (Index k = mesh.VertexCornersBegin()[vertex]; k < mesh.VertexCornersBegin()[vertex + 1]; ++k)
+  const Index* First;
+  const Index* Last;
+
+  const Index* begin() const { return this->First; }
+  const Index* end() const { return this->Last; }
+  std::size_t size() const { return static_cast<std::size_t>(this->Last - this->First); }
+};
+
+/// A vertex and the vertices up to three edges away from it.
+class Neighbourhood
+{
+public:
+  explicit Neighbourhood(const TriangleMesh& mesh)
+    : Mesh(mesh)
+    , FoundFrom(static_cast<std::size_t>(mesh.NumberOfVertices()), -1)
   {
-    const Index corner = mesh.VertexCorners()[k];
-    list.push_back(mesh.OtherCorner(corner, 1));
-    list.push_back(mesh.OtherCorner(corner, 2));
   }
-}
 
-void MakeUnique(std::vector<Index>& list)
-{
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-/// The vertices up to this number of edges away from the vertex, without the vertex.
-void FindRings(const TriangleMesh& mesh, Index vertex, int rings, std::vector<Index>& list)
-{
-  list.assign(1, vertex);
-  for (int ring = 0; ring < rings; ++ring)
+  void Find(Index vertex)
   {
-    const std::size_t count = list.size();
-    for (std::size_t k = 0; k < count; ++k)
+    this->Vertices.assign(1, vertex);
+    this->FoundFrom[vertex] = vertex;
+    std::size_t first = 0;
+    for (std::size_t& end : this->RingEnds)
     {
-      AppendNeighbours(mesh, list[k], list);
+      for (const std::size_t last = this->Vertices.size(); first < last; ++first)
+      {
+        this->AppendNeighbours(this->Vertices[first], vertex);
+      }
+      end = this->Vertices.size();
     }
-    MakeUnique(list);
   }
-  list.erase(std::lower_bound(list.begin(), list.end(), vertex));
-}
+
+  /// The vertices up to this number of edges away, without the vertex itself.
+  VertexRange WithinRings(int rings) const
+  {
+    return { this->Vertices.data() + 1, this->Vertices.data() + this->RingEnds[rings - 1] };
+  }
+
+private:
+  void AppendNeighbours(Index of, Index vertex)
+  {
+    const std::vector<Index>& begin = this->Mesh.VertexCornersBegin();
+    for (Index k = begin[of]; k < begin[of + 1]; ++k)
+    {
+      for (const int other : { 1, 2 })
+      {
+        const Index neighbour = this->Mesh.OtherCorner(this->Mesh.VertexCorners()[k], other);
+        if (this->FoundFrom[neighbour] != vertex)
+        {
+          this->FoundFrom[neighbour] = vertex;
+          this->Vertices.push_back(neighbour);
+        }
+      }
+    }
+  }
+
+  const TriangleMesh& Mesh;
+  std::vector<Index> FoundFrom; ///< per vertex: the last vertex near to which it was found
+  std::vector<Index> Vertices; ///< ring after ring
+  std::array<std::size_t, 3> RingEnds{};
+};
 
 /// The rows: two main axes of the points, and the normal.
-Eigen::Matrix3d MainAxes(const Points& points, const std::vector<Index>& list)
+Eigen::Matrix3d MainAxes(const Points& points, const VertexRange& list)
 {
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
   for (const Index i : list)
@@ -88,8 +122,7 @@ Eigen::Matrix3d MainAxes(const Points& points, const std::vector<Index>& list)
 
 /// The standardised distance of the vertex from the quadric through `list`; negative if the fit is
 /// not well determined. h: a length of the size of the neighbourhood.
-double StandardizedDistance(
-  const Points& points, Index vertex, const std::vector<Index>& list, double h)
+double StandardizedDistance(const Points& points, Index vertex, const VertexRange& list, double h)
 {
   const Eigen::Matrix3d axes = MainAxes(points, list);
   Eigen::Matrix<double, 6, 6> normalMatrix = Eigen::Matrix<double, 6, 6>::Zero();
@@ -109,26 +142,9 @@ double StandardizedDistance(
   return determined ? distance / std::sqrt(1.0 + leverage) : -1.0;
 }
 
-/// The estimate of EstimateVertexNoise() from the vertices up to this number of edges away.
-double EstimateOverRings(
-  const TriangleMesh& mesh, const Points& points, int rings, const ParallelFor& parallel)
+/// The noise whose absolute standardised distances these are; negative ones are left out.
+double NoiseOf(std::vector<double>& distances)
 {
-  const Index stride = std::max<Index>(1, mesh.NumberOfVertices() / EnoughVertices);
-  const Index count = mesh.NumberOfVertices() / stride;
-  const double h = mesh.TotalEdgeLength() / std::max<Index>(1, mesh.NumberOfEdges());
-  std::vector<double> distances(static_cast<std::size_t>(count));
-  ForEachBlock(parallel, count,
-    [&](Index, Index begin, Index end)
-    {
-      std::vector<Index> list;
-      for (Index i = begin; i < end; ++i)
-      {
-        FindRings(mesh, i * stride, rings, list);
-        distances[i] = list.size() < SmallestNeighbourhood
-          ? -1.0
-          : StandardizedDistance(points, i * stride, list, h);
-      }
-    });
   distances.erase(std::remove_if(distances.begin(), distances.end(),
                     [](double distance) { return distance < 0.0; }),
     distances.end());
@@ -154,11 +170,38 @@ double MedianDeviation(std::vector<double>& absoluteValues)
   return QuantileOf(absoluteValues, 0.5) / MedianOfNormalDistribution;
 }
 
+double MeanEdgeLength(const TriangleMesh& mesh)
+{
+  return mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
+}
+
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
-  const double two = EstimateOverRings(mesh, points, 2, parallel);
-  const double three = std::max(two, EstimateOverRings(mesh, points, 3, parallel));
+  const Index stride = std::max<Index>(1, mesh.NumberOfVertices() / EnoughVertices);
+  const Index count = mesh.NumberOfVertices() / stride;
+  const double h = MeanEdgeLength(mesh);
+  std::vector<double> twoRings(static_cast<std::size_t>(count));
+  std::vector<double> threeRings(twoRings.size());
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      Neighbourhood neighbourhood(mesh);
+      const auto distance = [&](Index vertex, int rings)
+      {
+        const VertexRange list = neighbourhood.WithinRings(rings);
+        return list.size() < SmallestNeighbourhood ? -1.0
+                                                   : StandardizedDistance(points, vertex, list, h);
+      };
+      for (Index i = begin; i < end; ++i)
+      {
+        neighbourhood.Find(i * stride);
+        twoRings[i] = distance(i * stride, 2);
+        threeRings[i] = distance(i * stride, 3);
+      }
+    });
+  const double two = NoiseOf(twoRings);
+  const double three = std::max(two, NoiseOf(threeRings));
   return std::sqrt(
     std::max(0.0, two * two - (three * three - two * two) / (GrowthOfDetails - 1.0)));
 }

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Geometry/LinearNormals.h"
+#include "Core/Geometry/NormalFit.h"
+
+namespace SurfaceDiffusion
+{
+
+/// How normals are filtered and vertices fitted for one kind of surface, in mean edge lengths h.
+struct DenoisingScheme
+{
+  /// The first stage: FilterNormals(), which finds the edges of the surface.
+  NormalFilterSettings Filter;
+  int Iterations = 15;
+  /// Fidelity of the fit in the first and in the last iteration for noise of 0.3 h. It is
+  /// proportional to the inverse of the variance of the noise.
+  double FirstFidelity = 0.45;
+  double LastFidelity = 0.045;
+  /// The second stage: FitLinearNormals(), which regains the curvature that the first flattened.
+  NormalFilterSettings LinearFilter;
+  int LinearIterations = 15;
+  double LinearFidelity = 0.04; ///< of the fit, for noise of 0.3 h
+  double TangentialFidelity = 0.1;
+  int FitIterations = 4; ///< of conjugate gradients in each iteration: few of them regularise
+  double OutlierLevel = 1.0; ///< OutlierDistance of the fit, in standard deviations of the noise
+  /// Whether the fidelity follows the local displacements (see DenoiseSurface()), or their median.
+  bool HasLocalFidelity = false;
+};
+
+/// The scheme with which surfaces of this kind are denoised. noise: its standard deviation in h.
+DenoisingScheme SchemeFor(SurfaceKind kind, double noise);
+
+/// Remove noise of this standard deviation, in the unit of the points, by the iterations of a scheme:
+/// DenoiseSurface() says which.
+Points DenoiseWithScheme(const FaceGraph& graph, const Points& points,
+  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
+  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+
+} // namespace SurfaceDiffusion
