@@ -253,6 +253,19 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   Run(mesh, model, promises);
 }
 
+/// Whether the energy of the Beltrami flow counts a gradient with less than its length.
+bool HasShortenedGradients(const TriangleMesh& mesh, const Values& u)
+{
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    if (SumGradients(mesh, u, t).ValueScale != 1.0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Models whose diffusion tensor follows from the data.
 void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames)
@@ -275,9 +288,9 @@ void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
     settings.MassMetric =
       bytes.Flip() ? BeltramiFlow::Metric::Fixed : BeltramiFlow::Metric::Induced;
     promises.Sum = promises.Sum && settings.MassMetric == BeltramiFlow::Metric::Fixed;
-    promises.Energy = !HasFlatTriangles(mesh);
     promises.Fidelity = fidelity;
     BeltramiFlow model(assembler, frames, std::move(data), settings, ReadSolver(bytes));
+    promises.Energy = !HasFlatTriangles(mesh) && !HasShortenedGradients(mesh, model.State());
     Run(mesh, model, promises);
     return;
   }

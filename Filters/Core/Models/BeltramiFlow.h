@@ -58,6 +58,7 @@ public:
     const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());
 
+  /// Gradients longer than 1e75 count as SumGradients() shortens them: a step may then raise it.
   double Energy() const override;
 
   /// The direction of the largest diffusivity per triangle, at the current u; zero where D is
