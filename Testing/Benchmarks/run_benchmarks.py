@@ -250,6 +250,8 @@ def main():
                                 "--benchmark_min_time=0.1", "--benchmark_filter=" + MODELS]))
     grid = [json.loads(line) for line in
             run([program("CompareSolvers"), str(min(options.level, 3))]).splitlines()]
+    shares = [json.loads(line) for line in
+              run([program("MeasureSerialShare"), str(min(options.level, 3))]).splitlines()]
     compared_libraries = []
     if os.path.exists(program("CompareLibraries")):
         compared_libraries = [json.loads(line) for line in run(
@@ -266,6 +268,11 @@ def main():
             "step of the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 "
             "vertices, edges (FindEdges: the whole run, ExtractCurves) and textures (Step: one step, "
             "Stands: until the pattern is stationary) on a scanned surface.\n\n" + models(of_models["benchmarks"])
+            + "## What threads do not make faster\n\nThe share of the time on one thread that is "
+            "outside of parallel loops, by `MeasureSerialShare`; loops over a few long tasks count "
+            f"with the longest one. {int(shares[0]['vertices']):,} vertices.\n\n"
+            + table(["stage", "ms", "serial"], [[row["stage"], number(row["ms"]),
+                                                 f"{100 * row['serial']:.1f} %"] for row in shares])
             + "## The solver that Automatic selects\n\nRuns of backward Euler steps: the selected "
             "solver (D: Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the "
             "fastest.\n\n"

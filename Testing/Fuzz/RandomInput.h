@@ -44,11 +44,22 @@ private:
   const std::uint8_t* End;
 };
 
-/// Cotangents so large that nothing is left of the numbers to which they are added.
+/// Cotangents so large that nothing is left of the numbers to which they are added. Those of an
+/// intrinsic triangulation may be small, but it keeps the control areas of the drawn triangles.
 inline bool HasFlatTriangles(const TriangleMesh& mesh)
 {
+  constexpr double large = 1e8;
+  Vector areas = Vector::Zero(mesh.NumberOfVertices());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      areas[mesh.TriangleVertices()(t, a)] += mesh.Shapes()[t].Area() / 3.0;
+    }
+  }
   const CornerWeights c = CotanWeights(mesh);
-  return c.size() > 0 && c.cwiseAbs().maxCoeff() > 1e8;
+  return (c.size() > 0 && c.cwiseAbs().maxCoeff() > large) ||
+    (areas.array() > large * mesh.ControlAreas().array()).any();
 }
 
 /// Direction fields and mesh denoising, whose results are not states of a model.
