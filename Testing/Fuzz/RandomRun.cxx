@@ -150,6 +150,7 @@ struct Promises
   bool Solution = true; ///< the systems have one
   double Fidelity = 0.0; ///< lambda, in the unit of the energy
   double RoundOff = 1e-13; ///< of values, relative to the largest
+  bool Variation = false; ///< the energy has a term that is linear in the differences of values
 };
 
 void CheckState(const TriangleMesh& mesh, const Model& model, const Values& start,
@@ -163,6 +164,7 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
   const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0.0;
   const double roundOff = 1e-9 * energyAtStart +
     std::pow(promises.RoundOff * largest, 2.0) * (1.0 + promises.Fidelity) +
+    (promises.Variation ? promises.RoundOff * largest * mesh.TotalEdgeLength() : 0.0) +
     std::numeric_limits<double>::min();
   Require(!promises.Energy || energy <= energyBefore + roundOff, "an energy grows");
   for (Eigen::Index k = 0; k < u.cols(); ++k)
@@ -377,6 +379,7 @@ void RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
     Run(mesh, model, promises);
     return;
   }
+  promises.Variation = true;
   TotalVariationDeblurring::Settings settings;
   settings.Fidelity = fidelity;
   settings.Regularization.Coupling =

@@ -62,6 +62,9 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // triangles drawn so flat that a blur does not keep constants
     "8000bcffff0100105b0100ff3bff8011ff002b2b2b2b2b2bf6fe0f012bededededededededededededededed"
     "ededed010000c8ededededff01e5ffffffbf00260400f4ffffff09b6ffff11ec5d",
+    // the round-off of a constant, in which total variation is linear
+    "8000ff47291153004e6040006c6f63616c6535012c0001ff60ff010d00f7ff00f7f47fffff2c2c2c2c2c2c2c"
+    "2c2c2cffff0000000000000001ff0000000000000060ff01fbff01ffff08",
   };
   for (const std::string& digits : found)
   {
