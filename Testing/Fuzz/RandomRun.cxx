@@ -243,11 +243,11 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   // If one of the diffusivities is 0, there are many steady states.
   promises.Solution = !(directed && across == 0.0 && settings.TimeScheme == Scheme::SteadyState);
   promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed);
+  // On flat triangles the remaining error of a solver may be large, and have much energy.
+  const bool isFlat = HasFlatTriangles(mesh);
   promises.Bounds = delaunay && !directed && settings.TimeScheme == Scheme::BackwardEuler &&
-    settings.Fidelity == 0.0;
-  // On flat triangles the remaining error of a solver has much energy.
-  promises.Energy =
-    settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed) && !HasFlatTriangles(mesh);
+    settings.Fidelity == 0.0 && !isFlat;
+  promises.Energy = settings.TimeScheme == Scheme::BackwardEuler && !Any(data.Fixed) && !isFlat;
   promises.Fidelity = settings.Fidelity;
   std::shared_ptr<LinearSolver> solver = ReadSolver(bytes);
   ReadFidelityFactors(bytes, data);

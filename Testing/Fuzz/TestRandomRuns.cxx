@@ -65,6 +65,10 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // the round-off of a constant, in which total variation is linear
     "8000ff47291153004e6040006c6f63616c6535012c0001ff60ff010d00f7ff00f7f47fffff2c2c2c2c2c2c2c"
     "2c2c2cffff0000000000000001ff0000000000000060ff01fbff01ffff08",
+    // triangles drawn so flat that the rest of a solve leaves the bounds
+    "004e313653753d0000373d00ff373d0011ff0100000100000100ffee110401000100013d000000ffffd50000"
+    "55726661805800ffff010000002919110100040100010000113f004e30385375726661636569da0100537572"
+    "6661636569da010000ffff00005a5a5a5a5a5a5aa35b5a055afe000008",
   };
   for (const std::string& digits : found)
   {
