@@ -116,6 +116,8 @@ std::vector<std::int64_t> Ids(const TriangleMesh& mesh)
   return ids;
 }
 
+constexpr double SolverTolerance = 1e-10;
+
 std::shared_ptr<LinearSolver> ReadSolver(Bytes& bytes)
 {
   std::shared_ptr<LinearSolver> solver;
@@ -127,7 +129,7 @@ std::shared_ptr<LinearSolver> ReadSolver(Bytes& bytes)
   {
     solver = MakeConjugateGradientSolver();
   }
-  solver->SetLimits({ 1e-10, 1000 });
+  solver->SetLimits({ SolverTolerance, 1000 });
   return solver;
 }
 
@@ -150,6 +152,9 @@ struct Promises
   bool Solution = true; ///< the systems have one
   double Fidelity = 0.0; ///< lambda, in the unit of the energy
   double RoundOff = 1e-13; ///< of values, relative to the largest
+  /// No energy is promised from the first step on whose report has a larger residual: the answer of
+  /// a direct solve is used as it is, with a warning.
+  double Residual = std::numeric_limits<double>::infinity();
   bool Variation = false; ///< the energy has a term that is linear in the differences of values
 };
 
@@ -187,7 +192,7 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
 }
 
 /// Three steps, of which the last is repeated from the saved state.
-void Run(const TriangleMesh& mesh, Model& model, const Promises& promises)
+void Run(const TriangleMesh& mesh, Model& model, Promises promises)
 {
   const Values start = model.State();
   const double energy = model.Energy();
@@ -200,7 +205,8 @@ void Run(const TriangleMesh& mesh, Model& model, const Promises& promises)
       const double before = model.Energy();
       checkpoint.resize(model.CheckpointSize());
       model.Save(checkpoint.data());
-      model.Advance(ProgressMonitor());
+      const StepReport report = model.Advance(ProgressMonitor());
+      promises.Energy = promises.Energy && report.Residual <= promises.Residual;
       CheckState(mesh, model, start, before, energy, promises);
     }
     const Values last = model.State();
@@ -293,6 +299,7 @@ void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
     promises.Fidelity = fidelity;
     BeltramiFlow model(assembler, frames, std::move(data), settings, ReadSolver(bytes));
     promises.Energy = !HasFlatTriangles(mesh) && !HasShortenedGradients(mesh, model.State());
+    promises.Residual = AnswerFactor * SolverTolerance;
     Run(mesh, model, promises);
     return;
   }
