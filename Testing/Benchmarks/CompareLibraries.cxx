@@ -34,7 +34,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <numeric>
+#include <string>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;

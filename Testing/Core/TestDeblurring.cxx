@@ -161,6 +161,19 @@ TEST(HeatBlur, IsSelfAdjointOfNormOneAndKeepsConstantsTotalsAndBounds)
   EXPECT_LT((s.Blur(one) - one).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(HeatBlur, ErrorsAreRelativeToTheContrastOfTheValues)
+{
+  const BlurredSphere s(4, 8.0);
+  HeatBlur blur(s.Operators, s.Width, Steps, MakeConjugateGradientSolver());
+  const double offset = 1e6;
+  Values u = Noise(s.Mesh);
+  Values far = u.array() + offset;
+  StepReport report;
+  blur.Apply(u, report);
+  blur.Apply(far, report);
+  EXPECT_LT((far.array() - offset - u.array()).abs().maxCoeff(), 1e-8);
+}
+
 TEST(TikhonovDeblurring, SphericalHarmonicsAreScaledByTheTransferFunctionWithSecondOrder)
 {
   const double lambda = 10.0;

@@ -3,6 +3,7 @@
 #include "Core/Models/HeatBlur.h"
 
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/MeanCorrection.h"
 
 #include <cmath>
 
@@ -64,7 +65,11 @@ void HeatBlur::Apply(Values& u, StepReport& report, const ProgressMonitor& progr
   {
     this->Prepare(progress.Part(0.0, 0.0));
   }
+  // Values are measured from the mean, which H keeps: the errors of a solve are relative to the
+  // contrast then.
+  FindMeans(this->Mesh, u, this->Mean, this->Parallel);
   this->RightHandSide.resize(u.rows(), u.cols());
+  u.rowwise() -= this->Mean;
   for (int step = 0; step < this->Steps; ++step)
   {
     ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
@@ -73,6 +78,7 @@ void HeatBlur::Apply(Values& u, StepReport& report, const ProgressMonitor& progr
     this->System.Solve(
       this->RightHandSide, u, report, progress.Part(step / steps, (step + 1) / steps));
   }
+  u.rowwise() += this->Mean;
 }
 
 void HeatBlur::ApplyToWeighted(const Fidelity& fidelity, Values& v, StepReport& report)

@@ -45,6 +45,7 @@ private:
   bool Prepared = false;
   ImplicitSystem System;
   Values RightHandSide;
+  Eigen::RowVectorXd Mean; ///< of the values that are blurred
 };
 
 } // namespace SurfaceDiffusion

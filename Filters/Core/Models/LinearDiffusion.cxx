@@ -24,17 +24,8 @@ LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   , Parallel(parallel)
   , System(this->Assembly, std::move(solver), parallel)
   , Conserved(this->Assembly->Mesh(), this->Data, this->Fit.IsPresent(), parallel)
-  , Origin(U.cols())
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const double area = mesh.GetReduction().Sum(mesh.ControlAreas().sum());
-  std::vector<double> totals;
-  Total(mesh, this->U, totals, parallel);
-  for (Eigen::Index k = 0; k < this->U.cols(); ++k)
-  {
-    const double mean = totals[k] / area;
-    this->Origin[k] = std::isfinite(mean) ? mean : 0.0;
-  }
+  FindMeans(this->Assembly->Mesh(), this->U, this->Origin, parallel);
 }
 
 void LinearDiffusion::Prepare(const ProgressMonitor& progress)

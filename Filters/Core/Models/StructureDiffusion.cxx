@@ -68,14 +68,8 @@ void StructureDiffusion::FillWeights(
 double StructureDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Mesh();
-  std::vector<double> totals;
-  Total(mesh, this->U, totals, this->Parallel);
-  const double area = mesh.GetReduction().Sum(mesh.ControlAreas().sum());
-  Eigen::RowVectorXd mean(this->U.cols());
-  for (Eigen::Index k = 0; k < mean.size(); ++k)
-  {
-    mean[k] = area > 0.0 ? totals[k] / area : 0.0;
-  }
+  Eigen::RowVectorXd mean;
+  FindMeans(mesh, this->U, mean, this->Parallel);
   return mesh.GetReduction().Sum(0.5 *
     Sum(this->Parallel, mesh.NumberOfVertices(),
       [&](Index i) { return mesh.ControlAreas()[i] * (this->U.row(i) - mean).squaredNorm(); }));

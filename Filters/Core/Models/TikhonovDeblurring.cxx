@@ -113,8 +113,8 @@ StepReport TikhonovDeblurring::Advance(const ProgressMonitor& progress)
   }
   const TriangleMesh& mesh = this->Assembly->Mesh();
   // Values are measured from the mean: the errors of a solve are relative to the contrast then.
-  const double area = mesh.ControlAreas().sum();
-  const Eigen::RowVectorXd origin = mesh.ControlAreas().transpose() * this->Data.Start / area;
+  Eigen::RowVectorXd origin;
+  FindMeans(mesh, this->Data.Start, origin, this->Parallel);
   StepReport report;
   StepReport blurs;
   Values x = this->Data.Start.rowwise() - origin;

@@ -5,6 +5,7 @@
 #include "Core/Foundation/ColumnSums.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -80,6 +81,15 @@ void Shift(const TriangleMesh& mesh, Index component, const double* shifts, Valu
     });
 }
 
+void TotalColumns(
+  const TriangleMesh& mesh, const Values& u, double* totals, const ParallelFor& parallel)
+{
+  SumColumns(
+    parallel, mesh.NumberOfVertices(), u.cols(),
+    [&](Index i, Eigen::Index k) { return mesh.ControlAreas()[i] * u(i, k); }, totals);
+  mesh.GetReduction().Sum(totals, static_cast<Index>(u.cols()));
+}
+
 } // namespace
 
 double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k, const ParallelFor& parallel)
@@ -92,10 +102,19 @@ void Total(const TriangleMesh& mesh, const Values& u, std::vector<double>& total
   const ParallelFor& parallel)
 {
   totals.resize(static_cast<std::size_t>(u.cols()));
-  SumColumns(
-    parallel, mesh.NumberOfVertices(), u.cols(),
-    [&](Index i, Eigen::Index k) { return mesh.ControlAreas()[i] * u(i, k); }, totals.data());
-  mesh.GetReduction().Sum(totals.data(), static_cast<Index>(totals.size()));
+  TotalColumns(mesh, u, totals.data(), parallel);
+}
+
+void FindMeans(
+  const TriangleMesh& mesh, const Values& u, Eigen::RowVectorXd& means, const ParallelFor& parallel)
+{
+  means.resize(u.cols());
+  TotalColumns(mesh, u, means.data(), parallel);
+  const double area = mesh.GetReduction().Sum(mesh.ControlAreas().sum());
+  for (double& mean : means)
+  {
+    mean = std::isfinite(mean / area) ? mean / area : 0.0;
+  }
 }
 
 TotalCorrection::TotalCorrection(

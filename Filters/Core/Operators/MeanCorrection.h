@@ -17,6 +17,9 @@ double Total(const TriangleMesh& mesh, const Values& u, Eigen::Index k,
 /// The same for every column.
 void Total(const TriangleMesh& mesh, const Values& u, std::vector<double>& totals,
   const ParallelFor& parallel = SerialFor());
+/// means[k] = the mean over the surface of column k, or 0 if it is not finite.
+void FindMeans(const TriangleMesh& mesh, const Values& u, Eigen::RowVectorXd& means,
+  const ParallelFor& parallel = SerialFor());
 
 /// Conserves the total sum A u to round-off, independently of the tolerance of the solver: the
 /// error that a solve makes on a connected component is spread over it evenly. Acts on the
