@@ -8,9 +8,9 @@
 #include <type_traits>
 
 // A function with this attribute, and all that is inlined into it, is compiled for several widths of
-// vectors, of which the widest that the processor has is used. Products and sums are rounded one by
-// one (no fused operations), so that the bits do not depend on the processor.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__)
+// vectors, of which the widest is used. No operations are fused, so that all have the same bits.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) &&   \
+  !defined(__SANITIZE_THREAD__) // it is not set up yet when the width is chosen
 #define SURFACEDIFFUSION_ANY_VECTORS                                                               \
   __attribute__((target_clones("avx512f", "avx2", "default"), optimize("fp-contract=off"), flatten))
 #else
