@@ -87,6 +87,9 @@ TEST(RandomRuns, StayAsTheyWereMended)
     "724010f702ff01ffff13047266610000ff00ffff8001ff00011011ff00f6fe0100000100757266020100001d"
     "fd1d03545555d500b0b000a9d3aaaa41e8e8e838aa00117240c8f801feff00fe1011ff00f6fe0100f8a9aaaa"
     "418a2a1d8ea360",
+    // a pass in single precision whose iterates grew until double precision lost the residual
+    "0000ffff010000010000111104010001000092193fffffffffffffff8b8b8bff1e0021ff00ffff0400ff0100"
+    "000000ffff0fffff0100000100ff0100010000",
   };
   for (const std::string& digits : found)
   {

@@ -7,6 +7,11 @@
 #include "Core/Solvers/Multigrid.h"
 #include "Core/Solvers/SinglePrecisionSolver.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
 namespace SurfaceDiffusion
 {
 
@@ -182,17 +187,61 @@ private:
     }
     if (!report.Converged)
     {
-      const int before = report.Iterations;
-      IterationLimits limits = this->Limits;
-      limits.MaximumNumberOfIterations -= before;
-      const ColumnSystem system = this->System();
-      report =
-        ConjugateGradients<K, ColumnSystem>(system, this->Residual, this->Work, this->Parallel)
-          .Solve(x, limits, progress.Part(begin, 1.0));
-      report.Iterations += before;
+      this->Iterate<K>(b, x, report, progress.Part(begin, 1.0));
     }
     progress.Report(1.0);
     return report;
+  }
+
+  /// Iterations in double precision. They know their residual by recurrence, which loses the true
+  /// one where an iterate is much larger than the solution: they go on from the true one then, as
+  /// long as that helps.
+  template <int K>
+  void Iterate(const Values& b, Values& x, SolveReport& report, const ProgressMonitor& progress)
+  {
+    constexpr double drifted = 2.0; // times the tolerance
+    constexpr double least = 0.1; // a start that gains less is the last one
+    const ColumnSystem system = this->System();
+    double last = std::numeric_limits<double>::infinity();
+    while (true)
+    {
+      const int before = report.Iterations;
+      IterationLimits limits = this->Limits;
+      limits.MaximumNumberOfIterations -= before;
+      report =
+        ConjugateGradients<K, ColumnSystem>(system, this->Residual, this->Work, this->Parallel)
+          .Solve(x, limits, progress.Part(std::isinf(last) ? 0.0 : 1.0, 1.0));
+      report.Iterations += before;
+      this->UpdateResidual<K>(b, x);
+      report.Residual = this->LargestResidual();
+      const bool hasDrifted = !(report.Residual <= drifted * this->Limits.Tolerance);
+      if (!report.Converged || !hasDrifted)
+      {
+        return;
+      }
+      report.Converged = false;
+      if (!(report.Residual <= least * last))
+      {
+        return;
+      }
+      last = report.Residual;
+    }
+  }
+
+  /// Of the columns whose residuals have been measured. Throws std::runtime_error if it is not finite.
+  double LargestResidual() const
+  {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < this->Work.Reference.size(); ++c)
+    {
+      const double residual = std::sqrt(this->Work.Sums[c] / this->Work.Reference[c]);
+      if (!std::isfinite(residual))
+      {
+        throw std::runtime_error("the linear system has no finite solution");
+      }
+      largest = std::max(largest, residual);
+    }
+    return largest;
   }
 
   /// Iterations in single precision with residuals in double precision, until all columns are within
@@ -205,9 +254,9 @@ private:
     this->Corrections.assign(k, SinglePrecisionSolver::Column());
     SolveReport report;
     double done = 0.0;
+    this->MeasureResidual<K>(k);
     while (true)
     {
-      this->MeasureResidual<K>(k);
       const double passes = this->PlanPass(report);
       const int left = this->Limits.MaximumNumberOfIterations - report.Iterations;
       if (report.Converged || passes == 0.0 || left <= 0)
@@ -215,11 +264,40 @@ private:
         return report;
       }
       const double end = done + (1.0 - done) / passes;
+      Values& before = this->Work.P; // iterations in double precision begin with a new one
+      ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
+        [&](Index, Index first, Index last)
+        {
+          const auto at = static_cast<std::ptrdiff_t>(first) * k;
+          std::copy_n(
+            x.data() + at, static_cast<std::ptrdiff_t>(last - first) * k, before.data() + at);
+        });
       report.Iterations += this->Single.Correct(this->Residual, this->Corrections,
         std::min(left, longestPass), x, progress.Part(done, end));
       done = end;
       this->UpdateResidual<K>(b, x);
+      if (this->TakeBackFailures(before, x))
+      {
+        this->UpdateResidual<K>(b, x);
+      }
     }
+  }
+
+  /// Take a pass back that has made the residual of a column larger: round-off of single precision
+  /// can make an iterate so large that double precision would not recover from it. Returns whether
+  /// there is one.
+  bool TakeBackFailures(const Values& before, Values& x)
+  {
+    bool any = false;
+    for (std::size_t c = 0; c < this->Corrections.size(); ++c)
+    {
+      if (!(std::sqrt(this->Work.Sums[c]) <= this->Corrections[c].Length))
+      {
+        x.col(static_cast<Eigen::Index>(c)) = before.col(static_cast<Eigen::Index>(c));
+        any = true;
+      }
+    }
+    return any;
   }
 
   /// Decide for each column by how much the next pass reduces its residual, which has been measured.
@@ -261,18 +339,21 @@ private:
     return passes;
   }
 
+  /// The residual and its squares in the norm of D^-1, in Work.Sums.
   template <int K>
   void UpdateResidual(const Values& b, const Values& x)
   {
     Multiply(*this->Matrix, x, this->Residual, this->Parallel);
     const ColumnCount<K> k(b.cols());
     const std::vector<double>& unit = this->Work.Unit;
-    ForEach(this->Parallel, static_cast<Index>(b.rows()),
-      [&](Index i)
+    this->Work.Sums.Run<K>(this->Parallel, static_cast<Index>(b.rows()), k,
+      [&](Index i, double* sums)
       {
         for (int c = 0; c < k; ++c)
         {
-          this->Residual(i, c) = b(i, c) / unit[c] - this->Residual(i, c) / unit[c];
+          const double r = b(i, c) / unit[c] - this->Residual(i, c) / unit[c];
+          this->Residual(i, c) = r;
+          sums[c] += r * this->InverseDiagonal[i] * r;
         }
       });
   }
