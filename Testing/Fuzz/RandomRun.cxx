@@ -261,17 +261,20 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   Run(mesh, model, promises);
 }
 
-/// Whether the energy of the Beltrami flow counts a gradient with less than its length.
-bool HasShortenedGradients(const TriangleMesh& mesh, const Values& u)
+/// Whether the diffusivities along and across every gradient, whose ratio is 1 + b^2 |grad u|^2, differ
+/// by less than round-off: a matrix keeps both then.
+bool IsResolved(const TriangleMesh& mesh, const Values& u, double colorScale)
 {
+  constexpr double steepest = 1e8;
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    if (SumGradients(mesh, u, t).ValueScale != 1.0)
+    const GradientTensor gradients = SumGradients(mesh, u, t);
+    if (gradients.ValueScale != 1.0 || !(colorScale * std::sqrt(gradients.T.Trace()) < steepest))
     {
-      return true;
+      return false;
     }
   }
-  return false;
+  return true;
 }
 
 /// Models whose diffusion tensor follows from the data.
@@ -298,7 +301,8 @@ void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
     promises.Sum = promises.Sum && settings.MassMetric == BeltramiFlow::Metric::Fixed;
     promises.Fidelity = fidelity;
     BeltramiFlow model(assembler, frames, std::move(data), settings, ReadSolver(bytes));
-    promises.Energy = !HasFlatTriangles(mesh) && !HasShortenedGradients(mesh, model.State());
+    promises.Solution = IsResolved(mesh, model.State(), scale);
+    promises.Energy = promises.Solution && !HasFlatTriangles(mesh);
     promises.Residual = AnswerFactor * SolverTolerance;
     Run(mesh, model, promises);
     return;

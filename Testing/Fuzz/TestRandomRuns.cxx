@@ -90,6 +90,13 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // a pass in single precision whose iterates grew until double precision lost the residual
     "0000ffff010000010000111104010001000092193fffffffffffffff8b8b8bff1e0021ff00ffff0400ff0100"
     "000000ffff0fffff0100000100ff0100010000",
+    // values of 1e29 again, on which a factorisation fails
+    "f623b7a3a3a3a3a3a3a3a3a3a3a3a3fffffff7ffff01ff1304020100001df51d0300386f80007d0000000001"
+    "0000000d0000004140c801fef8b000f05655ffff000011f7ffffffffffffff17aa0000ffff010000aab00010"
+    "2aaaaa418a0100111141040100536d6d6d6d6d6d6d6d6d6d6d6d6d6d6d6d6da3a3a3a3a3a3a3a3fffffff7ff"
+    "ff01ff1304020100001df51d0380396f00007d1d0021b0100bfffffe25aaaa4140c801fef8b00010a9aa0000"
+    "ffff01110009fef8b00010a9aa0000ffff010000aab000102aaaaa418a0100111141040100536d10006d126d"
+    "feffffffffffff1f6d6d6d6d6d6d6d6d8000ffff291100604e5374368b08048b01",
   };
   for (const std::string& digits : found)
   {

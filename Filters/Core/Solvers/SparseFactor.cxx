@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/SparseFactor.h"
 
+#include "Core/Solvers/NestedDissection.h"
+
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
@@ -15,6 +17,24 @@ struct SparseFactor::Decomposition
   : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>>
 {
   SparseMatrix& L() { return this->m_matrix; }
+
+  /// Order the rows and find the pattern of the factor.
+  void Analyze(const SparseMatrix& matrix)
+  {
+    if (!IsRegular(matrix))
+    {
+      this->analyzePattern(matrix);
+      return;
+    }
+    std::vector<Index> places = NestedDissection(matrix);
+    this->m_P.indices() =
+      Eigen::Map<const Eigen::Matrix<Index, Eigen::Dynamic, 1>>(places.data(), matrix.rows());
+    this->m_Pinv = this->m_P.inverse();
+    SparseMatrix ordered(matrix.rows(), matrix.cols());
+    ordered.selfadjointView<Eigen::Upper>() =
+      matrix.selfadjointView<Eigen::Lower>().twistedBy(this->m_P);
+    this->analyzePattern_preordered(ordered, true);
+  }
 };
 
 SparseFactor::SparseFactor()
@@ -54,7 +74,7 @@ void SparseFactor::Compute()
   const SparseMatrix& matrix = prune ? pruned : this->Matrix;
   if (!this->IsAnalyzed || prune || this->IsPruned)
   {
-    this->LDL->analyzePattern(matrix);
+    this->LDL->Analyze(matrix);
     this->IsAnalyzed = true;
     this->IsPruned = prune;
   }
