@@ -24,7 +24,7 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
   // so of slots, in the matrix are known when all rows are listed.
   std::vector<Index> outer(n + 1, 0);
   std::vector<std::vector<Index>> rows(NumberOfBlocks(n)); // one after another, per block
-  this->SlotMap.resize(corners.size());
+  this->SlotMap = Buffer<Slots>(corners.size());
   this->DiagonalSlot.resize(n);
   ForEachBlock(parallel, n,
     [&](Index block, Index first, Index last)
@@ -69,11 +69,12 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
   this->Empty.resize(n, n);
   this->Empty.resizeNonZeros(outer[n]);
   std::copy(outer.begin(), outer.end(), this->Empty.outerIndexPtr());
-  std::fill_n(this->Empty.valuePtr(), outer[n], 0.0);
   ForEachBlock(parallel, n,
     [&](Index block, Index first, Index last)
     {
+      std::fill(this->Empty.valuePtr() + outer[first], this->Empty.valuePtr() + outer[last], 0.0);
       std::copy(rows[block].begin(), rows[block].end(), this->Empty.innerIndexPtr() + outer[first]);
+      std::vector<Index>().swap(rows[block]);
       for (Index i = first; i < last; ++i)
       {
         this->DiagonalSlot[i] += outer[i];

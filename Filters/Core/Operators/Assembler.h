@@ -59,7 +59,7 @@ private:
   {
     Index Next, Last; ///< entries of the triangle's next and last vertex in a corner's row
   };
-  std::vector<Slots> SlotMap; ///< in the order of TriangleMesh::VertexCorners()
+  Buffer<Slots> SlotMap; ///< in the order of TriangleMesh::VertexCorners()
   std::vector<Index> DiagonalSlot; ///< per row
 };
 

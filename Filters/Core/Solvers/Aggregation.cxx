@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/Aggregation.h"
 
+#include "Core/Foundation/Grouping.h"
+#include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/SparseColumns.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -20,11 +23,12 @@ constexpr Index None = -1;
 constexpr double Omega = 8.0 / 9.0;
 
 /// Per slot of the matrix, whether its entry is strong.
-std::vector<char> FindStrong(
-  const SparseMatrix& matrix, double strength, const ParallelFor& parallel)
+Buffer<char> FindStrong(const SparseMatrix& matrix, double strength, const ParallelFor& parallel)
 {
-  const Vector root = matrix.diagonal().cwiseSqrt();
-  std::vector<char> strong(matrix.nonZeros());
+  Vector root(matrix.rows());
+  ForEach(parallel, static_cast<Index>(matrix.rows()),
+    [&](Index i) { root[i] = std::sqrt(DiagonalEntry(matrix, i)); });
+  Buffer<char> strong(matrix.nonZeros());
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
   ForEach(parallel, static_cast<Index>(matrix.rows()),
@@ -45,56 +49,117 @@ struct Aggregates
   Index Count = 0;
 };
 
-Aggregates Aggregate(const SparseMatrix& matrix, const std::vector<char>& strong)
+/// Finds the vertices that form aggregates with their neighbours, in the order of the numbering, but
+/// first inside of chunks, which do not depend on each other, and then along their borders.
+class RootSearch
+{
+public:
+  RootSearch(const SparseMatrix& matrix, const Buffer<char>& strong, const ParallelFor& parallel)
+    : Outer(matrix.outerIndexPtr())
+    , Inner(matrix.innerIndexPtr())
+    , Strong(strong)
+    , Roots(matrix.rows(), None)
+  {
+    const auto n = static_cast<Index>(matrix.rows());
+    constexpr Index chunkSize = 8 * BlockSize;
+    const Index chunks = (n + chunkSize - 1) / chunkSize;
+    std::vector<std::vector<Index>> borders(chunks);
+    ForEachTask(parallel, chunks,
+      [&](Index chunk)
+      {
+        const Index begin = chunk * chunkSize;
+        const Index end = std::min(n, begin + chunkSize);
+        for (Index i = begin; i < end; ++i)
+        {
+          if (!this->Gather(i, begin, end))
+          {
+            borders[chunk].push_back(i);
+          }
+        }
+      });
+    for (const std::vector<Index>& border : borders)
+    {
+      for (const Index i : border)
+      {
+        this->Gather(i, 0, n);
+      }
+    }
+  }
+
+  /// Per vertex, that which gathered it, or None.
+  std::vector<Index> Take() { return std::move(this->Roots); }
+
+private:
+  /// Make i and its neighbours an aggregate if they are free. False if that depends on a neighbour
+  /// outside of begin .. end - 1.
+  bool Gather(Index i, Index begin, Index end)
+  {
+    bool any = false;
+    bool isFree = this->Roots[i] == None;
+    bool isInside = true;
+    for (Index slot = this->Outer[i]; slot < this->Outer[i + 1] && isFree; ++slot)
+    {
+      if (this->Strong[slot])
+      {
+        const Index j = this->Inner[slot];
+        any = true;
+        isInside = isInside && j >= begin && j < end;
+        isFree = j < begin || j >= end || this->Roots[j] == None;
+      }
+    }
+    if (!isFree || !any)
+    {
+      return true;
+    }
+    if (isInside)
+    {
+      this->Roots[i] = i;
+      for (Index slot = this->Outer[i]; slot < this->Outer[i + 1]; ++slot)
+      {
+        if (this->Strong[slot])
+        {
+          this->Roots[this->Inner[slot]] = i;
+        }
+      }
+    }
+    return isInside;
+  }
+
+  const Index* const Outer;
+  const Index* const Inner;
+  const Buffer<char>& Strong;
+  std::vector<Index> Roots;
+};
+
+Aggregates Aggregate(
+  const SparseMatrix& matrix, const Buffer<char>& strong, const ParallelFor& parallel)
 {
   const Index n = static_cast<Index>(matrix.rows());
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
+  const std::vector<Index> root = RootSearch(matrix, strong, parallel).Take();
+  const Buffer<Index> roots = ListWhere(n, parallel, [&](Index i) { return root[i] == i; });
+  Buffer<Index> number(n);
+  ForEach(parallel, static_cast<Index>(roots.size()), [&](Index k) { number[roots[k]] = k; });
   Aggregates result;
-  std::vector<Index>& of = result.Of;
-  of.assign(n, None);
-
-  for (Index i = 0; i < n; ++i)
-  {
-    bool any = false;
-    bool free = of[i] == None;
-    for (Index slot = outer[i]; slot < outer[i + 1] && free; ++slot)
+  result.Count = static_cast<Index>(roots.size());
+  result.Of.resize(n);
+  // A vertex that joins an aggregate here does not bring its own neighbours along.
+  ForEach(parallel, n,
+    [&](Index i)
     {
-      any = any || strong[slot];
-      free = !strong[slot] || of[inner[slot]] == None;
-    }
-    if (free && any)
-    {
-      of[i] = result.Count;
-      for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+      Index joined = root[i];
+      double strongest = 0.0;
+      for (Index slot = outer[i]; slot < outer[i + 1] && root[i] == None; ++slot)
       {
-        if (strong[slot])
+        if (strong[slot] && root[inner[slot]] != None && -matrix.valuePtr()[slot] > strongest)
         {
-          of[inner[slot]] = result.Count;
+          strongest = -matrix.valuePtr()[slot];
+          joined = root[inner[slot]];
         }
       }
-      ++result.Count;
-    }
-  }
-
-  // A vertex that joins an aggregate here does not bring its own neighbours along.
-  std::vector<Index> joins(n, None);
-  for (Index i = 0; i < n; ++i)
-  {
-    double strongest = 0.0;
-    for (Index slot = outer[i]; slot < outer[i + 1] && of[i] == None; ++slot)
-    {
-      if (strong[slot] && of[inner[slot]] != None && -matrix.valuePtr()[slot] > strongest)
-      {
-        strongest = -matrix.valuePtr()[slot];
-        joins[i] = of[inner[slot]];
-      }
-    }
-  }
-  for (Index i = 0; i < n; ++i)
-  {
-    of[i] = of[i] == None ? joins[i] : of[i];
-  }
+      result.Of[i] = joined == None ? None : number[joined];
+    });
   return result;
 }
 
@@ -113,7 +178,7 @@ Vector CoarseKernel(const std::vector<Index>& of, Index count, const Vector& ker
 }
 
 /// What CollectColumns() calls for column i of the restriction.
-auto RestrictionColumn(const SparseMatrix& matrix, const std::vector<char>& strong,
+auto RestrictionColumn(const SparseMatrix& matrix, const Buffer<char>& strong,
   const std::vector<Index>& of, const Vector& kernel, const Vector& coarse)
 {
   return [&](Index i, auto& column)
@@ -166,13 +231,39 @@ auto ProductColumn(const SparseMatrix& rows, const SparseMatrix& matrix)
 SparseMatrix SmoothedAggregation(
   const SparseMatrix& matrix, double strength, Vector& kernel, const ParallelFor& parallel)
 {
-  const std::vector<char> strong = FindStrong(matrix, strength, parallel);
-  const Aggregates aggregates = Aggregate(matrix, strong);
+  const Buffer<char> strong = FindStrong(matrix, strength, parallel);
+  const Aggregates aggregates = Aggregate(matrix, strong, parallel);
   Vector coarse = CoarseKernel(aggregates.Of, aggregates.Count, kernel);
   SparseMatrix restriction = CollectColumns(aggregates.Count, static_cast<Index>(matrix.rows()),
     parallel, RestrictionColumn(matrix, strong, aggregates.Of, kernel, coarse));
   kernel = std::move(coarse);
   return restriction;
+}
+
+SparseMatrix Transposed(
+  const SparseMatrix& matrix, const ParallelFor& parallel, Buffer<Index>* slots)
+{
+  const auto columns = static_cast<Index>(matrix.cols());
+  const Index* const outer = matrix.outerIndexPtr();
+  Buffer<Index> columnOf(matrix.nonZeros());
+  ForEach(parallel, columns,
+    [&](Index j) { std::fill(columnOf.begin() + outer[j], columnOf.begin() + outer[j + 1], j); });
+  Groups rows = GroupByKey(static_cast<Index>(matrix.nonZeros()), static_cast<Index>(matrix.rows()),
+    parallel, [&](Index slot) { return matrix.innerIndexPtr()[slot]; });
+  SparseMatrix transposed(matrix.cols(), matrix.rows());
+  std::copy(rows.Begin.begin(), rows.Begin.end(), transposed.outerIndexPtr());
+  transposed.resizeNonZeros(matrix.nonZeros());
+  ForEach(parallel, static_cast<Index>(matrix.nonZeros()),
+    [&](Index k)
+    {
+      transposed.innerIndexPtr()[k] = columnOf[rows.Items[k]];
+      transposed.valuePtr()[k] = matrix.valuePtr()[rows.Items[k]];
+    });
+  if (slots)
+  {
+    *slots = std::move(rows.Items);
+  }
+  return transposed;
 }
 
 SparseMatrix GalerkinProduct(const SparseMatrix& matrix, const SparseMatrix& restriction,
@@ -188,7 +279,7 @@ Coarsening::Coarsening(const SparseMatrix& matrix, double strength, const Parall
   : Parallel(parallel)
   , Strong(FindStrong(matrix, strength, parallel))
 {
-  Aggregates aggregates = Aggregate(matrix, this->Strong);
+  Aggregates aggregates = Aggregate(matrix, this->Strong, parallel);
   this->Of = std::move(aggregates.Of);
   this->Count = aggregates.Count;
 }
@@ -221,19 +312,11 @@ void Coarsening::SetMatrix(const SparseMatrix& matrix, Vector& kernel)
 
 void Coarsening::Transpose()
 {
-  SparseMatrix& restriction = this->Restricting.Matrix;
-  if (this->Slots.empty())
+  const SparseMatrix& restriction = this->Restricting.Matrix;
+  if (this->Slots.size() == 0)
   {
-    // The slot of every entry is found by transposing the slots.
-    SparseMatrix slots = restriction;
-    for (Eigen::Index slot = 0; slot < slots.nonZeros(); ++slot)
-    {
-      slots.valuePtr()[slot] = static_cast<double>(slot);
-    }
-    this->Prolonging = slots.transpose();
-    this->Slots.resize(static_cast<std::size_t>(slots.nonZeros()));
-    std::transform(this->Prolonging.valuePtr(), this->Prolonging.valuePtr() + slots.nonZeros(),
-      this->Slots.begin(), [](double slot) { return static_cast<Index>(slot); });
+    this->Prolonging = Transposed(restriction, this->Parallel, &this->Slots);
+    return;
   }
   ForEach(this->Parallel, static_cast<Index>(this->Slots.size()),
     [&](Index slot)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Buffer.h"
 #include "Core/Foundation/Parallel.h"
 #include "Core/Foundation/Types.h"
 
@@ -17,8 +18,9 @@ namespace SurfaceDiffusion
 ///
 /// An off-diagonal entry is strong if -a_ij > strength sqrt(a_ii a_jj), and joins the vertices i
 /// and j as neighbours. In the order of the numbering, a vertex and its neighbours form an
-/// aggregate if none of them is in one yet. Every vertex that is left joins the aggregate of the
-/// neighbour with the strongest entry. Vertices without neighbours are left out.
+/// aggregate if none of them is in one yet. This is done inside of chunks of 16384 vertices first,
+/// on all threads, and then along their borders. Every vertex that is left joins the aggregate of
+/// the neighbour with the strongest entry. Vertices without neighbours are left out.
 ///
 /// The prolongation is (I - 8/9 D^-1 A') T. T is the `kernel`, a vector that the matrix nearly maps
 /// to zero, cut into one column of unit norm per aggregate. A' is the strong part of A with the
@@ -27,6 +29,10 @@ namespace SurfaceDiffusion
 /// kernel: on entry the fine level's, on return the coarse level's, all positive.
 SparseMatrix SmoothedAggregation(
   const SparseMatrix& matrix, double strength, Vector& kernel, const ParallelFor& parallel);
+
+/// slots: where to store the slot of `matrix` that each slot of the result comes from, or null.
+SparseMatrix Transposed(
+  const SparseMatrix& matrix, const ParallelFor& parallel, Buffer<Index>* slots = nullptr);
 
 /// R A P, symmetric to the rounding error. restriction: R; prolongation: P, its transpose.
 SparseMatrix GalerkinProduct(const SparseMatrix& matrix, const SparseMatrix& restriction,
@@ -62,12 +68,12 @@ private:
   void Transpose();
 
   const ParallelFor& Parallel;
-  std::vector<char> Strong;
+  Buffer<char> Strong;
   std::vector<Index> Of; ///< per vertex, or -1
   Index Count = 0;
   Collected Restricting, Half, Coarse;
   SparseMatrix Prolonging;
-  std::vector<Index> Slots; ///< of the restriction, per slot of the prolongation
+  Buffer<Index> Slots; ///< of the restriction, per slot of the prolongation
 };
 
 } // namespace SurfaceDiffusion

@@ -153,7 +153,7 @@ void Multigrid::MakeLevels(SparseMatrix current, Vector kernel, const ProgressMo
     {
       break;
     }
-    const SparseMatrix prolongation = restriction.transpose();
+    const SparseMatrix prolongation = Transposed(restriction, this->Parallel);
     this->Levels.emplace_back();
     this->SetLevel(current, restriction, prolongation, this->Levels.back());
     current = GalerkinProduct(current, restriction, prolongation, this->Parallel);

@@ -134,8 +134,8 @@ void SlicedMatrix::SortRows(const SparseMatrix& matrix)
       }
     });
   std::partial_sum(this->Begin.begin(), this->Begin.end(), this->Begin.begin());
-  this->Columns.resize(this->Begin.back());
-  this->Entries.resize(this->Begin.back());
+  this->Columns = Buffer<Index>(this->Begin.back());
+  this->Entries = Buffer<float>(this->Begin.back());
 }
 
 void SlicedMatrix::Set(const SparseMatrix& matrix, const Vector& roots)

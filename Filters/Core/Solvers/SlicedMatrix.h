@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Buffer.h"
 #include "Core/Foundation/Parallel.h"
 #include "Core/Foundation/Types.h"
 
@@ -54,8 +55,8 @@ private:
   std::vector<Index> Outer; ///< of the matrix for which the rows were sorted
   std::vector<Index> Rows, Places; ///< the order and its inverse
   std::vector<std::size_t> Begin; ///< of the entries of each slice, and their end
-  std::vector<Index> Columns; ///< places
-  std::vector<float> Entries;
+  Buffer<Index> Columns; ///< places
+  Buffer<float> Entries;
   std::vector<double> Partial;
 };
 

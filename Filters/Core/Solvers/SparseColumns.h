@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -167,7 +168,7 @@ SparseMatrix CollectColumns(Index rows, Index columns, const ParallelFor& parall
   ForEachBlock(parallel, columns,
     [&](Index block, Index begin, Index)
     {
-      const Block& collected = blocks[block];
+      const Block collected = std::move(blocks[block]);
       std::copy(
         collected.Rows.begin(), collected.Rows.end(), matrix.innerIndexPtr() + outer[begin]);
       std::copy(collected.Values.begin(), collected.Values.end(), matrix.valuePtr() + outer[begin]);

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Grouping.h"
 #include "Core/Foundation/Types.h"
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -61,25 +61,16 @@ struct HilbertPlace
 };
 
 /// Stable radix sort by position.
-inline void SortAlongCurve(std::vector<HilbertPlace>& places)
+inline void SortAlongCurve(Buffer<HilbertPlace>& places, const ParallelFor& parallel)
 {
-  constexpr std::uint64_t digit = (1 << HilbertBits) - 1;
-  std::vector<HilbertPlace> sorted(places.size());
+  constexpr Index digits = 1 << HilbertBits;
+  Buffer<HilbertPlace> sorted(places.size());
   for (int shift = 0; shift < 3 * HilbertBits; shift += HilbertBits)
   {
-    std::array<Index, digit + 2> begin = {};
-    for (const HilbertPlace& place : places)
-    {
-      ++begin[(place.Position >> shift & digit) + 1];
-    }
-    for (std::size_t d = 0; d < digit; ++d)
-    {
-      begin[d + 1] += begin[d];
-    }
-    for (const HilbertPlace& place : places)
-    {
-      sorted[begin[place.Position >> shift & digit]++] = place;
-    }
+    DistributeByDigit(
+      static_cast<Index>(places.size()), digits, parallel,
+      [&](Index i) { return static_cast<Index>(places[i].Position >> shift & (digits - 1)); },
+      [&](Index i, Index place) { sorted[place] = places[i]; });
     places.swap(sorted);
   }
 }

@@ -5,7 +5,6 @@
 #include "Core/Surface/TangentVectors.h"
 
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -41,38 +40,59 @@ IntrinsicDelaunay::IntrinsicDelaunay(std::shared_ptr<const TriangleMesh> mesh,
   const ParallelFor& parallel, const ProgressMonitor& progress)
   : Input(std::move(mesh))
 {
-  IntrinsicTriangulation triangulation(*this->Input);
-  this->FlipEdges(triangulation, progress);
+  IntrinsicTriangulation triangulation(*this->Input, parallel);
+  this->FlipEdges(triangulation, parallel, progress);
   this->EdgeFlips.shrink_to_fit();
-  for (Index side = 0; side < triangulation.NumberOfSides(); ++side)
-  {
-    this->EdgesLeft += triangulation.Twin(side) > side && !triangulation.IsDelaunay(side);
-  }
+  this->EdgesLeft = static_cast<Index>(Sum(parallel, triangulation.NumberOfSides(),
+    [&](Index side)
+    { return triangulation.Twin(side) > side && !triangulation.IsDelaunay(side) ? 1.0 : 0.0; }));
   this->Triangulation = triangulation.MakeMesh(*this->Input, parallel);
 }
 
-void IntrinsicDelaunay::FlipEdges(
-  IntrinsicTriangulation& triangulation, const ProgressMonitor& progress)
+void IntrinsicDelaunay::FlipEdges(IntrinsicTriangulation& triangulation,
+  const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  std::vector<Index> queue(triangulation.NumberOfSides());
-  std::iota(queue.begin(), queue.end(), 0);
-  std::vector<char> queued(queue.size(), 1);
+  // All sides are looked at from the last to the first, and after a flip the sides that it changes
+  // once more. Most need no flip, which is found out on all threads before.
+  const Index sides = triangulation.NumberOfSides();
+  Buffer<char> isToCheck(sides);
+  ForEach(parallel, sides, [&](Index side) { isToCheck[side] = !triangulation.IsDelaunay(side); });
+  Index left = sides; // those before are still to be looked at
+  std::vector<Index> again;
+  std::vector<char> isAgain(sides, 0);
+  const auto takeSide = [&]() -> Index
+  {
+    if (!again.empty())
+    {
+      const Index side = again.back();
+      again.pop_back();
+      isAgain[side] = 0;
+      return side;
+    }
+    while (left > 0 && !isToCheck[left - 1])
+    {
+      --left;
+    }
+    return --left;
+  };
   // Flips end: each lowers an energy of finitely many triangulations (Bobenko and Springborn).
   // Round-off in the lengths of needles can still flip some edges in circles, and a strip of n
   // needles needs of the order of n^2 flips. The edges that are left are counted.
   constexpr std::size_t maxChecksPerSide = 50;
   constexpr std::size_t checksBetweenReports = 65536;
-  const std::size_t maxChecks = maxChecksPerSide * queue.size();
+  const std::size_t maxChecks = maxChecksPerSide * isToCheck.size();
   IntrinsicTriangulation::EdgeFlip flip;
-  for (std::size_t checks = 0; !queue.empty() && checks < maxChecks; ++checks)
+  for (std::size_t checks = 0; checks < maxChecks; ++checks)
   {
     if (checks % checksBetweenReports == 0)
     {
       progress.Report(0.5);
     }
-    const Index side = queue.back();
-    queue.pop_back();
-    queued[side] = 0;
+    const Index side = takeSide();
+    if (side < 0)
+    {
+      return;
+    }
     if (triangulation.IsDelaunay(side) || !triangulation.Flip(side, flip))
     {
       continue;
@@ -82,10 +102,11 @@ void IntrinsicDelaunay::FlipEdges(
     {
       for (Index changed = 3 * t; changed < 3 * t + 3; ++changed)
       {
-        if (!queued[changed])
+        isToCheck[changed] = 1;
+        if (changed >= left && !isAgain[changed])
         {
-          queued[changed] = 1;
-          queue.push_back(changed);
+          isAgain[changed] = 1;
+          again.push_back(changed);
         }
       }
     }

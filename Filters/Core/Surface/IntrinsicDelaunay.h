@@ -42,7 +42,8 @@ public:
   const std::vector<IntrinsicTriangulation::EdgeFlip>& Flips() const { return this->EdgeFlips; }
 
 private:
-  void FlipEdges(IntrinsicTriangulation& triangulation, const ProgressMonitor& progress);
+  void FlipEdges(IntrinsicTriangulation& triangulation, const ParallelFor& parallel,
+    const ProgressMonitor& progress);
 
   std::shared_ptr<const TriangleMesh> Input, Triangulation;
   Index EdgesLeft = 0;

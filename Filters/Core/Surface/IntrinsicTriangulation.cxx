@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/IntrinsicTriangulation.h"
 
+#include "Core/Foundation/Grouping.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -73,86 +75,112 @@ Index BackOf(Index side, Index triangleCount)
 
 } // namespace
 
-IntrinsicTriangulation::IntrinsicTriangulation(const TriangleMesh& mesh)
+IntrinsicTriangulation::IntrinsicTriangulation(
+  const TriangleMesh& mesh, const ParallelFor& parallel)
 {
-  const std::vector<EdgeUse> uses = ListEdgeUses(mesh);
-  bool oneSheet = true; // every edge joins two triangles that run along it in opposite directions
-  for (std::size_t i = 0; i < uses.size() && oneSheet; i += 2)
+  const EdgeList edges = ListEdges(mesh, parallel);
+  this->TwoSheets = !IsOneSheet(edges.Uses, parallel);
+  this->MakeSheets(mesh, parallel);
+  this->JoinSheets(edges, mesh.NumberOfTriangles(), parallel);
+  this->Mollify(parallel);
+}
+
+IntrinsicTriangulation::EdgeList IntrinsicTriangulation::ListEdges(
+  const TriangleMesh& mesh, const ParallelFor& parallel)
+{
+  const auto& vertices = mesh.TriangleVertices();
+  const auto from = [&](Index side) { return vertices(side / 3, Next(side % 3)); };
+  const auto to = [&](Index side) { return vertices(side / 3, Last(side % 3)); };
+  Groups sides = GroupByKey(3 * mesh.NumberOfTriangles(), mesh.NumberOfVertices(), parallel,
+    [&](Index side) { return std::min(from(side), to(side)); });
+  EdgeList edges;
+  edges.Uses = Buffer<EdgeUse>(sides.Items.size());
+  ForEach(parallel, mesh.NumberOfVertices(),
+    [&](Index low)
+    {
+      const auto begin = edges.Uses.begin() + sides.Begin[low];
+      const auto end = edges.Uses.begin() + sides.Begin[low + 1];
+      std::transform(sides.Items.begin() + sides.Begin[low],
+        sides.Items.begin() + sides.Begin[low + 1], begin,
+        [&](Index side) -> EdgeUse {
+          return { low, std::max(from(side), to(side)), side, from(side) < to(side) };
+        });
+      std::sort(begin, end,
+        [](const EdgeUse& i, const EdgeUse& j)
+        { return std::tie(i.High, i.Side) < std::tie(j.High, j.Side); });
+    });
+  edges.Begin = std::move(sides.Begin);
+  return edges;
+}
+
+/// Whether every edge joins two triangles that run along it in opposite directions.
+bool IntrinsicTriangulation::IsOneSheet(const Buffer<EdgeUse>& uses, const ParallelFor& parallel)
+{
+  const auto joinsTwo = [&](std::size_t i)
   {
-    oneSheet = i + 1 < uses.size() && uses[i].SameEdge(uses[i + 1]) &&
+    return uses[i].SameEdge(uses[i + 1]) &&
       !(i + 2 < uses.size() && uses[i].SameEdge(uses[i + 2])) &&
       uses[i].Ascending != uses[i + 1].Ascending;
-  }
-  this->TwoSheets = !oneSheet;
-  this->MakeSheets(mesh);
-  this->JoinSheets(uses, mesh.NumberOfTriangles());
-  this->Mollify();
+  };
+  return uses.size() % 2 == 0 &&
+    Max(parallel, static_cast<Index>(uses.size() / 2),
+      [&](Index pair) { return joinsTwo(2 * static_cast<std::size_t>(pair)) ? 0.0 : 1.0; }) == 0.0;
 }
 
-/// Sorted by edge.
-std::vector<IntrinsicTriangulation::EdgeUse> IntrinsicTriangulation::ListEdgeUses(
-  const TriangleMesh& mesh)
-{
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      const Index from = mesh.TriangleVertices()(t, Next(a));
-      const Index to = mesh.TriangleVertices()(t, Last(a));
-      uses.push_back({ std::min(from, to), std::max(from, to), 3 * t + a, from < to });
-    }
-  }
-  std::sort(uses.begin(), uses.end(),
-    [](const EdgeUse& i, const EdgeUse& j)
-    { return std::tie(i.Low, i.High, i.Side) < std::tie(j.Low, j.High, j.Side); });
-  return uses;
-}
-
-void IntrinsicTriangulation::MakeSheets(const TriangleMesh& mesh)
+void IntrinsicTriangulation::MakeSheets(const TriangleMesh& mesh, const ParallelFor& parallel)
 {
   const Index count = mesh.NumberOfTriangles();
-  this->Triangles.resize((this->TwoSheets ? 2 : 1) * static_cast<std::size_t>(count));
-  for (Index t = 0; t < count; ++t)
-  {
-    const auto v = mesh.TriangleVertices().row(t);
-    const TriangleMesh::Shape& s = mesh.Shapes()[t];
-    const double l0 = s.EdgeLength(0);
-    const double l1 = s.EdgeLength(1);
-    this->Triangles[t] = { { v[0], v[1], v[2] }, { l0, l1, s.Length }, {} };
-    if (this->TwoSheets)
+  this->Triangles = Buffer<Triangle>((this->TwoSheets ? 2 : 1) * static_cast<std::size_t>(count));
+  ForEach(parallel, count,
+    [&](Index t)
     {
-      // The back is the triangle seen from behind: corners 1 and 2 exchanged.
-      this->Triangles[count + t] = { { v[0], v[2], v[1] }, { l0, s.Length, l1 }, {} };
-    }
-  }
+      const auto v = mesh.TriangleVertices().row(t);
+      const TriangleMesh::Shape& s = mesh.Shapes()[t];
+      const double l0 = s.EdgeLength(0);
+      const double l1 = s.EdgeLength(1);
+      this->Triangles[t] = { { v[0], v[1], v[2] }, { l0, l1, s.Length }, {} };
+      if (this->TwoSheets)
+      {
+        // The back is the triangle seen from behind: corners 1 and 2 exchanged.
+        this->Triangles[count + t] = { { v[0], v[2], v[1] }, { l0, s.Length, l1 }, {} };
+      }
+    });
 }
 
-void IntrinsicTriangulation::JoinSheets(const std::vector<EdgeUse>& uses, Index triangleCount)
+void IntrinsicTriangulation::JoinSheets(
+  const EdgeList& edges, Index triangleCount, const ParallelFor& parallel)
 {
+  const Buffer<EdgeUse>& uses = edges.Uses;
   // The side of the front or of the back that runs in the given direction.
   const auto sideOf = [&](const EdgeUse& use, bool ascending)
   { return use.Ascending == ascending ? use.Side : BackOf(use.Side, triangleCount); };
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end)
+  const auto joinEdge = [&](Index begin, Index end)
   {
-    while (end < uses.size() && uses[begin].SameEdge(uses[end]))
-    {
-      ++end;
-    }
     if (!this->TwoSheets)
     {
       this->Join(uses[begin].Side, uses[begin + 1].Side);
-      continue;
+      return;
     }
     // Around the edge, the ascending side of each triangle meets the descending side of the next
     // one: any cyclic order gives nonnegative weights.
-    for (std::size_t k = begin; k < end; ++k)
+    for (Index k = begin; k < end; ++k)
     {
       const EdgeUse& next = uses[k + 1 < end ? k + 1 : begin];
       this->Join(sideOf(uses[k], true), sideOf(next, false));
     }
-  }
+  };
+  ForEach(parallel, static_cast<Index>(edges.Begin.size()) - 1,
+    [&](Index low)
+    {
+      for (Index begin = edges.Begin[low], end = begin; begin < edges.Begin[low + 1]; begin = end)
+      {
+        while (end < edges.Begin[low + 1] && uses[begin].SameEdge(uses[end]))
+        {
+          ++end;
+        }
+        joinEdge(begin, end);
+      }
+    });
 }
 
 void IntrinsicTriangulation::Join(Index side, Index other)
@@ -165,8 +193,18 @@ void IntrinsicTriangulation::Join(Index side, Index other)
 /// triangle. Only the two shorter sides of a triangle that is too flat are lengthened, and as this
 /// can make a neighbour too flat, its sides in turn. No edge grows by more than the largest margin:
 /// if all grew by that, all inequalities would hold.
-void IntrinsicTriangulation::Mollify()
+void IntrinsicTriangulation::Mollify(const ParallelFor& parallel)
 {
+  const auto isFlat = [this](Index t)
+  {
+    return this->LackOfSlack(t, 0) > 0.0 || this->LackOfSlack(t, 1) > 0.0 ||
+      this->LackOfSlack(t, 2) > 0.0;
+  };
+  if (Max(parallel, static_cast<Index>(this->Triangles.size()),
+        [&](Index t) { return isFlat(t) ? 1.0 : 0.0; }) == 0.0)
+  {
+    return;
+  }
   std::vector<Index> queue(this->Triangles.size());
   std::iota(queue.begin(), queue.end(), 0);
   std::vector<char> queued(queue.size(), 1);
@@ -319,18 +357,19 @@ std::shared_ptr<TriangleMesh> IntrinsicTriangulation::MakeMesh(
   contents.TriangleVertices.resize(count, 3);
   contents.TriangleEdges.resize(count, 3);
   contents.Shapes.resize(count);
-  for (Index t = 0; t < count; ++t)
-  {
-    const Triangle& triangle = this->Triangles[t];
-    const Vec2 apex = Apex(triangle.Lengths);
-    contents.Shapes[t] = { triangle.Lengths[2], apex[0], apex[1], this->TwoSheets ? 0.5 : 1.0 };
-    contents.TriangleVertices.row(t) << triangle.Vertices[0], triangle.Vertices[1],
-      triangle.Vertices[2];
-    for (int a = 0; a < 3; ++a)
+  ForEach(parallel, count,
+    [&](Index t)
     {
-      contents.TriangleEdges(t, a) = std::min(3 * t + a, triangle.Twins[a]);
-    }
-  }
+      const Triangle& triangle = this->Triangles[t];
+      const Vec2 apex = Apex(triangle.Lengths);
+      contents.Shapes[t] = { triangle.Lengths[2], apex[0], apex[1], this->TwoSheets ? 0.5 : 1.0 };
+      contents.TriangleVertices.row(t) << triangle.Vertices[0], triangle.Vertices[1],
+        triangle.Vertices[2];
+      for (int a = 0; a < 3; ++a)
+      {
+        contents.TriangleEdges(t, a) = std::min(3 * t + a, triangle.Twins[a]);
+      }
+    });
   contents.InputVertex = mesh.InputVertex();
   contents.ComponentsBegin = mesh.ComponentsBegin();
   contents.BoundaryVertices = mesh.BoundaryVertices();

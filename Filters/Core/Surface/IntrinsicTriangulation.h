@@ -28,7 +28,8 @@ namespace SurfaceDiffusion
 class IntrinsicTriangulation
 {
 public:
-  explicit IntrinsicTriangulation(const TriangleMesh& mesh);
+  explicit IntrinsicTriangulation(
+    const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
   /// Side 3 t + a of triangle t is its edge opposite corner a, from corner a + 1 to corner a + 2.
   Index NumberOfSides() const { return 3 * static_cast<Index>(this->Triangles.size()); }
@@ -81,16 +82,25 @@ private:
     }
   };
 
-  static std::vector<EdgeUse> ListEdgeUses(const TriangleMesh& mesh);
-  void MakeSheets(const TriangleMesh& mesh);
-  void JoinSheets(const std::vector<EdgeUse>& uses, Index triangleCount);
+  /// All uses, sorted by edge. Those of edges whose low vertex is v are Uses[Begin[v]] ..
+  /// Uses[Begin[v + 1] - 1].
+  struct EdgeList
+  {
+    std::vector<Index> Begin;
+    Buffer<EdgeUse> Uses;
+  };
+
+  static EdgeList ListEdges(const TriangleMesh& mesh, const ParallelFor& parallel);
+  static bool IsOneSheet(const Buffer<EdgeUse>& uses, const ParallelFor& parallel);
+  void MakeSheets(const TriangleMesh& mesh, const ParallelFor& parallel);
+  void JoinSheets(const EdgeList& edges, Index triangleCount, const ParallelFor& parallel);
   void Join(Index side, Index other);
-  void Mollify();
+  void Mollify(const ParallelFor& parallel);
   double LackOfSlack(Index t, int a) const;
   double Cotangent(Index side) const;
   void Relink(Index side, Index twin);
 
-  std::vector<Triangle> Triangles;
+  Buffer<Triangle> Triangles;
   bool TwoSheets = false;
 };
 

@@ -3,13 +3,14 @@
 #include "Core/Surface/MeshNumbering.h"
 
 #include "Core/Foundation/DisjointSets.h"
-#include "Core/Foundation/Offsets.h"
+#include "Core/Foundation/Grouping.h"
 #include "Core/Surface/HilbertCurve.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -29,17 +30,33 @@ struct BoundingBox
   Row3 Centre;
   double Scale; ///< a power of two in which the box is at most 2 long: the default LengthUnit()
 
-  BoundingBox(const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles)
+  BoundingBox(const Eigen::Ref<const Points>& points, const Eigen::Ref<const Triangles>& triangles,
+    const ParallelFor& parallel)
   {
-    Row3 low = Row3::Constant(std::numeric_limits<double>::max());
-    Row3 high = -low;
-    for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-    {
-      for (int a = 0; a < 3; ++a)
+    const auto count = static_cast<Index>(triangles.rows());
+    const Row3 largest = Row3::Constant(std::numeric_limits<double>::max());
+    std::vector<std::array<Row3, 2>> blocks(NumberOfBlocks(count), { largest, -largest });
+    ForEachBlock(parallel, count,
+      [&](Index block, Index begin, Index end)
       {
-        low = low.cwiseMin(points.row(triangles(t, a)));
-        high = high.cwiseMax(points.row(triangles(t, a)));
-      }
+        Row3 low = largest;
+        Row3 high = -largest;
+        for (Index t = begin; t < end; ++t)
+        {
+          for (int a = 0; a < 3; ++a)
+          {
+            low = low.cwiseMin(points.row(triangles(t, a)));
+            high = high.cwiseMax(points.row(triangles(t, a)));
+          }
+        }
+        blocks[block] = { low, high };
+      });
+    Row3 low = largest;
+    Row3 high = -largest;
+    for (const auto& block : blocks)
+    {
+      low = low.cwiseMin(block[0]);
+      high = high.cwiseMax(block[1]);
     }
     this->Centre = 0.5 * low + 0.5 * high;
     // Half the extent cannot overflow; the scale is the next power of two above it, if there is
@@ -74,44 +91,25 @@ public:
     double lengthUnit, const ParallelFor& parallel)
     : InputPoints(points)
     , InputTriangles(triangles)
-    , Box(points, triangles)
+    , Box(points, triangles, parallel)
     , Parallel(parallel)
   {
     this->Mesh.LengthUnit = lengthUnit > 0.0 ? lengthUnit : this->Box.Scale;
   }
 
-  /// Lay all triangles out and keep those that are not degenerate.
+  /// Keep the triangles that are not degenerate.
   void SelectTriangles()
   {
     const auto count = static_cast<Index>(this->InputTriangles.rows());
-    std::vector<TriangleMesh::Shape> shapes(count);
-    ForEach(this->Parallel, count,
-      [&](Index t)
-      {
-        const auto corner = [&](int a) -> Row3
-        {
-          return (this->InputPoints.row(this->InputTriangles(t, a)) - this->Box.Centre) /
-            this->Mesh.LengthUnit;
-        };
-        shapes[t] = LayOut(corner(0), corner(1), corner(2));
-      });
-    this->Mesh.InputTriangle.reserve(count);
-    this->Mesh.Shapes.reserve(count);
-    for (Index t = 0; t < count; ++t)
-    {
-      if (shapes[t].Y > 0.0)
-      {
-        this->Mesh.InputTriangle.push_back(t);
-        this->Mesh.Shapes.push_back(shapes[t]);
-      }
-    }
-    this->Mesh.Diagnostics.DegenerateTriangles =
-      count - static_cast<Index>(this->Mesh.InputTriangle.size());
+    Buffer<char> isProper(count);
+    ForEach(this->Parallel, count, [&](Index t) { isProper[t] = this->ShapeOf(t).Y > 0.0; });
+    this->Selected = ListWhere(count, this->Parallel, [&](Index t) { return isProper[t] != 0; });
+    this->Mesh.Diagnostics.DegenerateTriangles = count - static_cast<Index>(this->Selected.size());
   }
 
   void NumberVertices()
   {
-    const std::vector<HilbertPlace> places = this->PlacesAlongCurve();
+    const Buffer<HilbertPlace> places = this->PlacesAlongCurve();
     this->Mesh.Diagnostics.IsolatedVertices =
       static_cast<Index>(this->InputPoints.rows()) - static_cast<Index>(places.size());
     this->NumberAlongCurve(places);
@@ -121,55 +119,59 @@ public:
   /// Triangles follow their smallest vertex.
   void SortTriangles()
   {
-    const Triangles& corners = this->Corners;
-    const auto triangleCount = static_cast<Index>(corners.rows());
-    std::vector<Index> begin(this->Mesh.InputVertex.size() + 1, 0);
-    for (Index t = 0; t < triangleCount; ++t)
-    {
-      ++begin[corners.row(t).minCoeff()];
-    }
-    CountsToOffsets(begin);
-    std::vector<Index> sortedTriangles(triangleCount);
-    std::vector<TriangleMesh::Shape> sortedShapes(triangleCount);
-    this->Mesh.TriangleVertices.resize(triangleCount, 3);
-    for (Index t = 0; t < triangleCount; ++t)
-    {
-      const Index place = begin[corners.row(t).minCoeff()]++;
-      sortedTriangles[place] = this->Mesh.InputTriangle[t];
-      sortedShapes[place] = this->Mesh.Shapes[t];
-      this->Mesh.TriangleVertices.row(place) = corners.row(t);
-    }
-    this->Mesh.InputTriangle.swap(sortedTriangles);
-    this->Mesh.Shapes.swap(sortedShapes);
+    const auto count = static_cast<Index>(this->Corners.rows());
+    const Buffer<Index> order = GroupByKey(count, static_cast<Index>(this->Mesh.InputVertex.size()),
+      this->Parallel,
+      [&](Index t) {
+        return this->Corners.row(t).minCoeff();
+      }).Items;
+    this->Mesh.InputTriangle.resize(count);
+    this->Mesh.TriangleVertices.resize(count, 3);
+    this->Mesh.Shapes.resize(count);
+    ForEach(this->Parallel, count,
+      [&](Index t)
+      {
+        this->Mesh.InputTriangle[t] = this->Selected[order[t]];
+        this->Mesh.TriangleVertices.row(t) = this->Corners.row(order[t]);
+        this->Mesh.Shapes[t] = this->ShapeOf(this->Mesh.InputTriangle[t]);
+      });
   }
 
   TriangleMesh::Contents Mesh;
 
 private:
+  /// Of a triangle of the input.
+  TriangleMesh::Shape ShapeOf(Index inputTriangle) const
+  {
+    const auto corner = [&](int a) -> Row3
+    {
+      return (this->InputPoints.row(this->InputTriangles(inputTriangle, a)) - this->Box.Centre) /
+        this->Mesh.LengthUnit;
+    };
+    return LayOut(corner(0), corner(1), corner(2));
+  }
+
   /// The points that triangles use, in the order of the Hilbert curve.
-  std::vector<HilbertPlace> PlacesAlongCurve() const
+  Buffer<HilbertPlace> PlacesAlongCurve() const
   {
     const auto inputCount = static_cast<Index>(this->InputPoints.rows());
-    std::vector<char> used(inputCount, 0);
-    for (const Index t : this->Mesh.InputTriangle)
-    {
-      for (int a = 0; a < 3; ++a)
+    std::vector<std::atomic<char>> isUsed(inputCount);
+    ForEach(this->Parallel, static_cast<Index>(this->Selected.size()),
+      [&](Index t)
       {
-        used[this->InputTriangles(t, a)] = 1;
-      }
-    }
-    std::vector<HilbertPlace> places;
-    places.reserve(inputCount);
-    for (Index i = 0; i < inputCount; ++i)
-    {
-      if (used[i])
-      {
-        places.push_back({ 0, i });
-      }
-    }
+        for (int a = 0; a < 3; ++a)
+        {
+          isUsed[this->InputTriangles(this->Selected[t], a)].store(1, std::memory_order_relaxed);
+        }
+      });
+    const Buffer<Index> used = ListWhere(inputCount, this->Parallel,
+      [&](Index i) { return isUsed[i].load(std::memory_order_relaxed) != 0; });
+    Buffer<HilbertPlace> places(used.size());
     ForEach(this->Parallel, static_cast<Index>(places.size()),
-      [&](Index i) { places[i].Position = this->CurvePosition(places[i].Vertex); });
-    SortAlongCurve(places);
+      [&](Index i) {
+        places[i] = { this->CurvePosition(used[i]), used[i] };
+      });
+    SortAlongCurve(places, this->Parallel);
     return places;
   }
 
@@ -187,60 +189,64 @@ private:
   }
 
   /// The corners of the triangles as places along the curve.
-  void NumberAlongCurve(const std::vector<HilbertPlace>& places)
+  void NumberAlongCurve(const Buffer<HilbertPlace>& places)
   {
-    std::vector<Index> number(this->InputPoints.rows(), -1);
-    for (std::size_t i = 0; i < places.size(); ++i)
-    {
-      number[places[i].Vertex] = static_cast<Index>(i);
-    }
-    const auto triangleCount = static_cast<Index>(this->Mesh.InputTriangle.size());
+    Buffer<Index> number(this->InputPoints.rows());
+    ForEach(this->Parallel, static_cast<Index>(places.size()),
+      [&](Index i) { number[places[i].Vertex] = i; });
+    const auto triangleCount = static_cast<Index>(this->Selected.size());
     this->Corners.resize(triangleCount, 3);
-    for (Index t = 0; t < triangleCount; ++t)
-    {
-      for (int a = 0; a < 3; ++a)
+    ForEach(this->Parallel, triangleCount,
+      [&](Index t)
       {
-        this->Corners(t, a) = number[this->InputTriangles(this->Mesh.InputTriangle[t], a)];
-      }
-    }
+        for (int a = 0; a < 3; ++a)
+        {
+          this->Corners(t, a) = number[this->InputTriangles(this->Selected[t], a)];
+        }
+      });
   }
 
   /// Renumber by connected component, in the order in which the curve meets them.
-  void NumberByComponent(const std::vector<HilbertPlace>& places)
+  void NumberByComponent(const Buffer<HilbertPlace>& places)
   {
     const auto count = static_cast<Index>(places.size());
+    const auto triangleCount = static_cast<Index>(this->Corners.rows());
     DisjointSets connected(count);
-    for (const auto& corners : this->Corners.rowwise())
-    {
-      connected.Join(corners[0], corners[1]);
-      connected.Join(corners[1], corners[2]);
-    }
-    const std::vector<Index> component = connected.Labels();
-    std::vector<Index>& begin = this->Mesh.ComponentsBegin;
-    begin.assign(1, 0);
-    for (const Index c : component)
-    {
-      begin.resize(std::max<std::size_t>(begin.size(), c + 2), 0);
-      ++begin[c];
-    }
-    CountsToOffsets(begin);
-    std::vector<Index> next = begin;
-    std::vector<Index> number(count);
+    ForEach(this->Parallel, triangleCount,
+      [&](Index t)
+      {
+        connected.Join(this->Corners(t, 0), this->Corners(t, 1));
+        connected.Join(this->Corners(t, 1), this->Corners(t, 2));
+      });
+    const std::vector<Index> component = connected.Labels(this->Parallel);
+    const Index components =
+      component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
+    Groups groups =
+      GroupByKey(count, components, this->Parallel, [&](Index i) { return component[i]; });
+    Buffer<Index> number(count);
     this->Mesh.InputVertex.resize(count);
-    for (Index i = 0; i < count; ++i)
-    {
-      number[i] = next[component[i]]++;
-      this->Mesh.InputVertex[number[i]] = places[i].Vertex;
-    }
-    Index* const corners = this->Corners.data();
-    std::transform(
-      corners, corners + this->Corners.size(), corners, [&](Index place) { return number[place]; });
+    ForEach(this->Parallel, count,
+      [&](Index i)
+      {
+        number[groups.Items[i]] = i;
+        this->Mesh.InputVertex[i] = places[groups.Items[i]].Vertex;
+      });
+    this->Mesh.ComponentsBegin = std::move(groups.Begin);
+    ForEach(this->Parallel, triangleCount,
+      [&](Index t)
+      {
+        for (int a = 0; a < 3; ++a)
+        {
+          this->Corners(t, a) = number[this->Corners(t, a)];
+        }
+      });
   }
 
   const Eigen::Ref<const Points>& InputPoints;
   const Eigen::Ref<const Triangles>& InputTriangles;
   const BoundingBox Box;
   const ParallelFor& Parallel;
+  Buffer<Index> Selected; ///< triangles of the input
   Triangles Corners; ///< of the selected triangles, in the order of the input
 };
 

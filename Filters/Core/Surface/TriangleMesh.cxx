@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/TriangleMesh.h"
 
+#include "Core/Foundation/Grouping.h"
 #include "Core/Foundation/IndexSet.h"
-#include "Core/Foundation/Offsets.h"
 #include "Core/Surface/MeshNumbering.h"
 
 #include <algorithm>
@@ -101,7 +101,7 @@ TriangleMesh::TriangleMesh(const Eigen::Ref<const Points>& points,
   const ProgressMonitor& progress, double lengthUnit)
 {
   this->Given = NumberMesh(points, triangles, lengthUnit, parallel, progress.Part(0.0, 0.6));
-  this->ListCorners();
+  this->ListCorners(parallel);
   progress.Report(0.8);
   this->SumAreas(parallel);
   this->MeasureEdges(parallel);
@@ -111,26 +111,17 @@ TriangleMesh::TriangleMesh(const Eigen::Ref<const Points>& points,
 TriangleMesh::TriangleMesh(Contents contents, const ParallelFor& parallel)
   : Given(std::move(contents))
 {
-  this->ListCorners();
+  this->ListCorners(parallel);
   this->SumAreas(parallel);
 }
 
-void TriangleMesh::ListCorners()
+void TriangleMesh::ListCorners(const ParallelFor& parallel)
 {
-  this->CornersBegin.assign(this->NumberOfVertices() + 1, 0);
-  const Index cornerCount = 3 * this->NumberOfTriangles();
-  const Index* corners = this->Given.TriangleVertices.data();
-  for (Index c = 0; c < cornerCount; ++c)
-  {
-    ++this->CornersBegin[corners[c]];
-  }
-  CountsToOffsets(this->CornersBegin);
-  std::vector<Index> next = this->CornersBegin;
-  this->CornerList.resize(cornerCount);
-  for (Index c = 0; c < cornerCount; ++c)
-  {
-    this->CornerList[next[corners[c]]++] = c;
-  }
+  const Index* const corners = this->Given.TriangleVertices.data();
+  Groups groups = GroupByKey(3 * this->NumberOfTriangles(), this->NumberOfVertices(), parallel,
+    [corners](Index c) { return corners[c]; });
+  this->CornersBegin = std::move(groups.Begin);
+  this->CornerList = std::move(groups.Items);
 }
 
 double TriangleMesh::ThirdOfTriangles(Index i) const

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Buffer.h"
 #include "Core/Foundation/Parallel.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Foundation/Reduction.h"
@@ -105,7 +106,7 @@ public:
   /// The triangles around vertex i are entries VertexCornersBegin()[i] .. [i + 1] of
   /// VertexCorners(): 3 t + a for corner a of triangle t, ascending.
   const std::vector<Index>& VertexCornersBegin() const { return this->CornersBegin; }
-  const std::vector<Index>& VertexCorners() const { return this->CornerList; }
+  const Buffer<Index>& VertexCorners() const { return this->CornerList; }
   /// The vertex `step` = 1 or 2 corners after an entry of VertexCorners(), in its triangle.
   Index OtherCorner(Index corner, int step) const
   {
@@ -155,13 +156,13 @@ public:
   const MeshDiagnostics& Diagnostics() const { return this->Given.Diagnostics; }
 
 private:
-  void ListCorners();
+  void ListCorners(const ParallelFor& parallel);
   void SumAreas(const ParallelFor& parallel);
   void MeasureEdges(const ParallelFor& parallel);
 
   Contents Given;
   std::vector<Index> CornersBegin;
-  std::vector<Index> CornerList;
+  Buffer<Index> CornerList;
   std::shared_ptr<const Reduction> OverProcesses;
 };
 
