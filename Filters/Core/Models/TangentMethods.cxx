@@ -83,6 +83,7 @@ SolveReport TangentMethods::Solve(ImplicitSystem& system, const TangentSystem& t
   // If triangles are so bad that none converges, the best of the answers is a step, too.
   SolveReport best;
   best.Residual = std::numeric_limits<double>::infinity();
+  best.Converged = false;
   std::exception_ptr failure;
   double done = 0.0;
   for (const Preconditioner method : methods)

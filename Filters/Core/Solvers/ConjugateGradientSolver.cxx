@@ -268,9 +268,9 @@ private:
       ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
         [&](Index, Index first, Index last)
         {
-          const auto at = static_cast<std::ptrdiff_t>(first) * k;
-          std::copy_n(
-            x.data() + at, static_cast<std::ptrdiff_t>(last - first) * k, before.data() + at);
+          const double* const from = x.data() + static_cast<std::ptrdiff_t>(first) * k;
+          double* const to = before.data() + static_cast<std::ptrdiff_t>(first) * k;
+          std::copy_n(from, static_cast<std::ptrdiff_t>(last - first) * k, to);
         });
       report.Iterations += this->Single.Correct(this->Residual, this->Corrections,
         std::min(left, longestPass), x, progress.Part(done, end));
