@@ -165,14 +165,14 @@ std::optional<CoarseSpace> MakeCoarseSpace(const Assembler& fine,
     {
       break;
     }
-    const SparseMatrix prolongation = restriction.transpose();
+    const SparseMatrix prolongation = Transposed(restriction, parallel);
     const Vector coarseAreas = restriction * areas;
     for (SparseMatrix& stiffness : space.Stiffness)
     {
       SparseMatrix coarse = GalerkinProduct(stiffness, restriction, prolongation, parallel);
       coarse /=
         StiffnessExcess({ stiffness, areas }, { coarse, coarseAreas }, restriction, parallel);
-      stiffness = std::move(coarse);
+      stiffness.swap(coarse);
     }
     areas = coarseAreas;
     space.Restriction =

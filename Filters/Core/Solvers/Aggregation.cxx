@@ -290,7 +290,9 @@ void Coarsening::Collected::Set(
 {
   if (this->Places.empty())
   {
-    this->Matrix = CollectColumns<NotedColumn>(rows, columns, parallel, collect, this->Places);
+    SparseMatrix matrix =
+      CollectColumns<NotedColumn>(rows, columns, parallel, collect, this->Places);
+    this->Matrix.swap(matrix); // not moved: Eigen 3.4 would copy it
     return;
   }
   CollectAgain(this->Matrix, this->Places, parallel, collect);
@@ -315,7 +317,8 @@ void Coarsening::Transpose()
   const SparseMatrix& restriction = this->Restricting.Matrix;
   if (this->Slots.size() == 0)
   {
-    this->Prolonging = Transposed(restriction, this->Parallel, &this->Slots);
+    SparseMatrix transposed = Transposed(restriction, this->Parallel, &this->Slots);
+    this->Prolonging.swap(transposed);
     return;
   }
   ForEach(this->Parallel, static_cast<Index>(this->Slots.size()),

@@ -111,14 +111,14 @@ void Multigrid::KeepAggregates(const SparseMatrix& model)
   double strength = FinestStrength;
   for (const SparseMatrix* current = &this->Finest; current->rows() > LargestDirect;)
   {
-    Coarsening next(*current, strength, this->Parallel);
+    Coarsening& next = this->Coarsenings.emplace_back(*current, strength, this->Parallel);
     if (next.NumberOfAggregates() > LargestRatio * static_cast<double>(current->rows()))
     {
+      this->Coarsenings.pop_back();
       break;
     }
     next.SetMatrix(*current, kernel);
-    this->Coarsenings.push_back(std::move(next));
-    current = &this->Coarsenings.back().Product();
+    current = &next.Product();
     strength *= 0.5;
   }
   this->Levels.resize(this->Coarsenings.size());
@@ -137,10 +137,11 @@ void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& pro
   SparseMatrix scaled;
   TakePattern(matrix, scaled, this->Parallel);
   Scale(matrix, this->Scaling, scaled, this->Parallel);
-  this->MakeLevels(std::move(scaled), std::move(kernel), progress);
+  this->MakeLevels(scaled, std::move(kernel), progress);
 }
 
-void Multigrid::MakeLevels(SparseMatrix current, Vector kernel, const ProgressMonitor& progress)
+/// current: the finest matrix on entry. Matrices are swapped: Eigen 3.4 copies those that are moved.
+void Multigrid::MakeLevels(SparseMatrix& current, Vector kernel, const ProgressMonitor& progress)
 {
   this->Levels.clear();
   this->Columns = -1;
@@ -156,12 +157,13 @@ void Multigrid::MakeLevels(SparseMatrix current, Vector kernel, const ProgressMo
     const SparseMatrix prolongation = Transposed(restriction, this->Parallel);
     this->Levels.emplace_back();
     this->SetLevel(current, restriction, prolongation, this->Levels.back());
-    current = GalerkinProduct(current, restriction, prolongation, this->Parallel);
+    SparseMatrix coarse = GalerkinProduct(current, restriction, prolongation, this->Parallel);
+    current.swap(coarse);
     strength *= 0.5;
     fraction = 0.5 * (fraction + 1.0);
     progress.Report(fraction);
   }
-  this->CoarsestMatrix = std::move(current);
+  this->CoarsestMatrix.swap(current);
   this->Coarsest = MakeCholeskySolver();
   this->Coarsest->SetMatrix(this->CoarsestMatrix, progress.Part(fraction, 1.0));
 }

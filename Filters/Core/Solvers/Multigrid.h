@@ -5,6 +5,7 @@
 #include "Core/Solvers/Aggregation.h"
 #include "Core/Solvers/LinearSolver.h"
 
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -55,7 +56,7 @@ private:
     Numbers B, X, R, D, E;
   };
 
-  void MakeLevels(SparseMatrix current, Vector kernel, const ProgressMonitor& progress);
+  void MakeLevels(SparseMatrix& current, Vector kernel, const ProgressMonitor& progress);
   void SetLevels(Vector kernel, const ProgressMonitor& progress);
   void SetLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
     const SparseMatrix& prolongation, Level& level) const;
@@ -71,7 +72,7 @@ private:
   const ParallelFor& Parallel;
   Vector Scaling; ///< diag(A)^-1/2
   std::vector<Level> Levels;
-  std::vector<Coarsening> Coarsenings; ///< of KeepAggregates()
+  std::deque<Coarsening> Coarsenings; ///< of KeepAggregates()
   SparseMatrix Finest; ///< scaled, of KeepAggregates()
   SparseMatrix CoarsestMatrix;
   std::unique_ptr<LinearSolver> Coarsest;
