@@ -116,6 +116,17 @@ TEST(NestedDissection, GivesEveryRowOfAnyGraphAPlace)
   }
 }
 
+TEST(NestedDissection, OrdersSmallComponentsAsEachAlone)
+{
+  const Surface torus = Torus(12, 10);
+  const Surface one = Renumbered(torus, Permutation(torus.NumberOfVertices(), 3));
+  const Surface four = Joined(Joined(one, one), Joined(one, one));
+  const SparseMatrix alone = MatrixOf(one);
+  const SparseMatrix all = MatrixOf(four);
+  EXPECT_EQ(EntriesOfFactor(all, NestedDissection(all)),
+    4 * EntriesOfFactor(alone, NestedDissection(alone)));
+}
+
 TEST(NestedDissection, FactorsRegularTriangulationsWithFewerEntriesThanMinimumDegree)
 {
   // numbered along a Hilbert curve, as all matrices of this library are

@@ -131,6 +131,7 @@ private:
         this->Label[i] = 0;
       }
       const Index end = begin + static_cast<Index>(this->Found.size());
+      std::sort(this->Found.begin(), this->Found.end()); // as OrderByDegree() needs them
       std::copy(this->Found.begin(), this->Found.end(), this->Order.begin() + begin);
       this->Parts.push_back({ begin, end });
       begin = end;
