@@ -37,6 +37,8 @@ GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   , Coupling(coupling)
   , Parallel(parallel)
   , Penalty(this->Mesh->NumberOfTriangles())
+  , Single(function, coupling, parallel)
+  , Double(function, coupling, parallel)
 {
   const double triangles = this->Mesh->GetReduction().Sum(this->Mesh->NumberOfTriangles());
   const double perUnknown = std::sqrt(triangles / unknowns);
@@ -79,120 +81,73 @@ double GradientSplitting::Stiffness() const
     [&](Index t) { return this->Penalty[t] * SquaredSteepest((*this->Gradients)[t]); }));
 }
 
-void GradientSplitting::SetGrowth(double growth)
+void GradientSplitting::Start(int columns, bool keepMultipliers, bool inSinglePrecision)
 {
-  if (growth != this->PenaltyGrowth)
+  const bool isSingle = inSinglePrecision && this->CanBeSingle();
+  if (keepMultipliers && this->Kept.empty() && isSingle != this->IsSingle)
   {
-    const double factor = this->PenaltyGrowth / growth;
-    ForEach(this->Parallel, static_cast<Index>(this->B.rows()),
-      [&](Index t) { this->B.row(t) *= factor; });
-    this->PenaltyGrowth = growth;
+    this->KeptColumns = this->NumberOfColumns();
+    this->Kept.resize(this->NumberOfMultipliers(this->KeptColumns));
+    this->GetMultipliers(this->Kept.data());
   }
-}
-
-void GradientSplitting::Start(const Values& u, bool keepMultipliers)
-{
-  const Eigen::Index triangles = this->Mesh->NumberOfTriangles();
-  this->PenaltyGrowth = 1.0; // an abort may have left another
-  this->P.resize(triangles, 2 * u.cols());
-  if (!keepMultipliers || this->B.cols() != 2 * u.cols())
-  {
-    this->B.setZero(triangles, 2 * u.cols());
-  }
-  this->Corners.resize(3 * triangles, u.cols());
-  ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
-    [&](Index t)
+  this->IsSingle = isSingle;
+  this->Visit(
+    [&](auto& splitting)
     {
-      for (Eigen::Index k = 0; k < u.cols(); ++k)
+      if (!splitting.HasMesh())
       {
-        const Eigen::Vector2d gradient = this->GradientOf(u, t, k);
-        this->P(t, 2 * k) = gradient[0];
-        this->P(t, 2 * k + 1) = gradient[1];
+        splitting.SetMesh(*this->Mesh, *this->Gradients, this->Penalty);
+      }
+      if (keepMultipliers && !this->Kept.empty() && this->KeptColumns == columns)
+      {
+        splitting.SetMultipliers(this->Kept.data(), columns);
+      }
+      else
+      {
+        splitting.Start(columns, keepMultipliers);
       }
     });
+  this->Kept = std::vector<double>();
 }
 
-void GradientSplitting::Update(const Values& u, double relaxation)
+/// Only for total variation, whose multipliers are at most 1 for data in any unit.
+bool GradientSplitting::CanBeSingle()
 {
-  ForColumns(u.cols(), [&](auto columns) { this->UpdateColumns<columns()>(u, relaxation); });
+  if (this->Function.Kind != EdgeFunctionKind::TotalVariation)
+  {
+    return false;
+  }
+  if (!this->Single.HasMesh())
+  {
+    this->Single.SetMesh(*this->Mesh, *this->Gradients, this->Penalty);
+  }
+  return this->Single.IsInRange();
 }
 
-template <int K>
-void GradientSplitting::UpdateColumns(const Values& values, double relaxation)
+void GradientSplitting::GetMultipliers(double* multipliers) const
 {
-  const EdgeFunction& function = this->Function;
-  const Index* vertices = this->Mesh->TriangleVertices().data();
-  const double* u = values.data();
-  ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
-    [&](Index t)
+  if (!this->Kept.empty())
+  {
+    std::copy(this->Kept.begin(), this->Kept.end(), multipliers);
+    return;
+  }
+  this->Visit([multipliers](const auto& splitting) { splitting.GetMultipliers(multipliers); });
+}
+
+void GradientSplitting::SetMultipliers(const double* multipliers, int columns)
+{
+  this->KeptColumns = columns;
+  this->Kept.assign(multipliers, multipliers + this->NumberOfMultipliers(columns));
+}
+
+void GradientSplitting::GatherMultipliers(Values& divergence)
+{
+  this->Visit(
+    [&](auto& splitting)
     {
-      const ColumnCount<K> count(values.cols());
-      const GradientMap map = (*this->Gradients)[t];
-      const double* u0 = u + static_cast<std::ptrdiff_t>(vertices[3 * t]) * count;
-      const double* u1 = u + static_cast<std::ptrdiff_t>(vertices[3 * t + 1]) * count;
-      const double* u2 = u + static_cast<std::ptrdiff_t>(vertices[3 * t + 2]) * count;
-      double* p = &this->P(t, 0);
-      double* b = &this->B(t, 0);
-      for (int k = 0; k < count; ++k)
-      {
-        const Eigen::Vector2d gradient =
-          (relaxation * (u1[k] - u0[k])) * map.First + (relaxation * (u2[k] - u0[k])) * map.Second;
-        b[2 * k] += gradient[0] + (1.0 - relaxation) * p[2 * k];
-        b[2 * k + 1] += gradient[1] + (1.0 - relaxation) * p[2 * k + 1];
-      }
-      const double scale = this->PenaltyGrowth * this->Penalty[t];
-      const double r = scale / this->Mesh->Shapes()[t].Area();
-      ForEachNorm(this->Coupling, count,
-        [&](int first, int last)
-        {
-          double squared = 0.0;
-          for (int c = 2 * first; c < 2 * last; ++c)
-          {
-            squared += b[c] * b[c];
-          }
-          const double factor = function.Shrinkage(r, std::sqrt(squared));
-          for (int c = 2 * first; c < 2 * last; ++c)
-          {
-            p[c] = factor * b[c];
-            b[c] -= p[c];
-          }
-        });
-      double* corner = &this->Corners(3 * t, 0);
-      for (int k = 0; k < count; ++k)
-      {
-        const double x = scale * (p[2 * k] - b[2 * k]);
-        const double y = scale * (p[2 * k + 1] - b[2 * k + 1]);
-        const double first = map.First[0] * x + map.First[1] * y;
-        const double second = map.Second[0] * x + map.Second[1] * y;
-        corner[k] = -first - second;
-        corner[count + k] = first;
-        corner[2 * count + k] = second;
-      }
-    });
-}
-
-void GradientSplitting::GatherMultipliers(Values& divergence) const
-{
-  const auto& begin = this->Mesh->VertexCornersBegin();
-  const auto& corners = this->Mesh->VertexCorners();
-  const Eigen::Index columns = divergence.cols();
-  const double growth = this->PenaltyGrowth;
-  ForEach(this->Parallel, this->Mesh->NumberOfVertices(),
-    [&](Index i)
-    {
-      double* d = &divergence(i, 0);
-      std::fill(d, d + columns, 0.0);
-      for (Index c = begin[i]; c < begin[i + 1]; ++c)
-      {
-        const Index t = corners[c] / 3;
-        const Eigen::Vector2d v =
-          growth * this->Penalty[t] * (*this->Gradients)[t].OfCorner(corners[c] % 3);
-        const double* b = &this->B(t, 0);
-        for (Eigen::Index k = 0; k < columns; ++k)
-        {
-          d[k] += v[0] * b[2 * k] + v[1] * b[2 * k + 1];
-        }
-      }
+      splitting.SpreadMultipliers();
+      ForEach(this->Parallel, this->Mesh->NumberOfVertices(),
+        [&](Index i) { splitting.template Gather<0>(i, &divergence(i, 0)); });
     });
 }
 
@@ -213,25 +168,6 @@ double GradientSplitting::Energy(const Values& u) const
           density += this->Function.Potential(squared);
         });
       return this->Mesh->Shapes()[t].Area() * density;
-    });
-}
-
-double GradientSplitting::ConjugateEnergy() const
-{
-  return Sum(this->Parallel, this->Mesh->NumberOfTriangles(),
-    [&](Index t)
-    {
-      const double area = this->Mesh->Shapes()[t].Area();
-      const double r = this->PenaltyGrowth * this->Penalty[t] / area;
-      double density = 0.0;
-      ForEachNorm(this->Coupling, static_cast<int>(this->Corners.cols()),
-        [&](int first, int last)
-        {
-          const double squared =
-            this->B.row(t).segment(2 * first, 2 * (last - first)).squaredNorm();
-          density += this->Function.Conjugate(r * r * squared);
-        });
-      return area * density;
     });
 }
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Parallel.h"
 #include "Core/Models/EdgeFunctions.h"
+#include "Core/Models/SlicedSplitting.h"
 #include "Core/Operators/GradientMap.h"
 #include "Core/Surface/TriangleMesh.h"
 
@@ -20,6 +20,18 @@ namespace SurfaceDiffusion
 /// at every iteration.
 class GradientSplitting
 {
+  // What follows uses their types.
+  template <typename Act>
+  decltype(auto) Visit(const Act& act)
+  {
+    return this->IsSingle ? act(this->Single) : act(this->Double);
+  }
+  template <typename Act>
+  decltype(auto) Visit(const Act& act) const
+  {
+    return this->IsSingle ? act(this->Single) : act(this->Double);
+  }
+
 public:
   /// function: of a convex psi, without beta. ranges: typical range of the values on each triangle.
   /// unknowns: number of vertices of the surface.
@@ -35,50 +47,63 @@ public:
   double Stiffness() const;
 
   /// Multiplies the first penalty of all triangles by `growth`. The multipliers y = r b stay.
-  void SetGrowth(double growth);
-  double Growth() const { return this->PenaltyGrowth; }
+  void SetGrowth(double growth)
+  {
+    this->Visit([growth](auto& splitting) { splitting.SetGrowth(growth); });
+  }
+  double Growth() const
+  {
+    return this->Visit([](const auto& splitting) { return splitting.Growth(); });
+  }
 
-  /// p = S grad u, and b = 0 unless there are multipliers to start from.
-  void Start(const Values& u, bool keepMultipliers);
+  /// p = S grad u in the next Update(), the first penalty, and y = 0 unless there are multipliers to
+  /// start from. inSinglePrecision: enough for a duality gap of SmallestSingleGap.
+  void Start(int columns, bool keepMultipliers, bool inSinglePrecision);
+  static constexpr double SmallestSingleGap = 1e-6;
 
-  /// b at the first penalty, one row per triangle; to be changed only when the growth is 1.
-  Values& Multipliers() { return this->B; }
-  const Values& Multipliers() const { return this->B; }
+  /// y, in row t of 2 columns numbers that of triangle t. Those that are set are kept for Start().
+  std::size_t NumberOfMultipliers(int columns) const
+  {
+    return static_cast<std::size_t>(this->Mesh->NumberOfTriangles()) * 2 * columns;
+  }
+  int NumberOfColumns() const ///< 0 before the first Start()
+  {
+    return this->Kept.empty()
+      ? this->Visit([](const auto& splitting) { return splitting.NumberOfColumns(); })
+      : this->KeptColumns;
+  }
+  void GetMultipliers(double* multipliers) const;
+  void SetMultipliers(const double* multipliers, int columns);
 
   /// p and b from the present u, over-relaxed, and what they give to the equation for u.
-  void Update(const Values& u, double relaxation);
+  void Update(const Values& u, double relaxation)
+  {
+    this->Visit([&](auto& splitting) { splitting.Update(u, relaxation); });
+  }
 
   /// row: what Update() gave to the equation at vertex i, accumulated over the triangles of this
   /// process; K columns, or any number of them for K = 0.
   template <int K>
   void GatherRightHandSide(Index i, double* row) const
   {
-    const Index* begin = this->Mesh->VertexCornersBegin().data();
-    const Index* corners = this->Mesh->VertexCorners().data();
-    for (int k = 0; k < ColumnCount<K>(this->Corners.cols()); ++k)
-    {
-      double sum = 0.0;
-      for (Index c = begin[i]; c < begin[i + 1]; ++c)
-      {
-        sum += this->Corners(corners[c], k);
-      }
-      row[k] = sum;
-    }
+    this->Visit([=](const auto& splitting) { splitting.template Gather<K>(i, row); });
   }
 
   /// divergence: per vertex i the integral of y . S grad phi_i, accumulated over the triangles of
   /// this process.
-  void GatherMultipliers(Values& divergence) const;
+  void GatherMultipliers(Values& divergence);
 
   /// int psi(|S grad u|), summed over the triangles of this process.
   double Energy(const Values& u) const;
 
   /// int psi*(|y|), likewise.
-  double ConjugateEnergy() const;
+  double ConjugateEnergy() const
+  {
+    return this->Visit([](const auto& splitting) { return splitting.ConjugateEnergy(); });
+  }
 
 private:
-  template <int K>
-  void UpdateColumns(const Values& u, double relaxation);
+  bool CanBeSingle();
   Eigen::Vector2d GradientOf(const Values& u, Index t, Eigen::Index k) const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
@@ -87,9 +112,11 @@ private:
   ChannelCoupling Coupling;
   const ParallelFor& Parallel;
   Vector Penalty; ///< r per triangle at the start, times its area
-  double PenaltyGrowth = 1.0; ///< r over that of the start
-  Values P, B; ///< per triangle: x and y of the first column, x and y of the second, ...
-  Values Corners; ///< per triangle corner: what the triangle gives to the equation of a vertex
+  SlicedSplitting<float> Single;
+  SlicedSplitting<double> Double;
+  bool IsSingle = false; ///< which one has the state
+  std::vector<double> Kept; ///< multipliers for the next Start()
+  int KeptColumns = 0;
 };
 
 } // namespace SurfaceDiffusion

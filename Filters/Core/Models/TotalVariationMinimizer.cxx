@@ -136,7 +136,8 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& g, const Values& f,
   Values& u, const ProgressMonitor& progress, bool keepMultipliers)
 {
-  this->Gradients.Start(u, keepMultipliers);
+  this->Gradients.Start(static_cast<int>(u.cols()), keepMultipliers,
+    this->Options.StopTolerance >= GradientSplitting::SmallestSingleGap);
   this->Vertices->Start(g, f, u, keepMultipliers);
   this->Prepare(u);
   this->Initial = this->Vertices->Admissible(u);
@@ -228,35 +229,34 @@ void TotalVariationMinimizer::SetGrowth(double growth, const Values& u)
 
 std::size_t TotalVariationMinimizer::NumberOfMultipliers(Eigen::Index columns) const
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const auto ofTriangles = static_cast<std::size_t>(2 * columns * mesh.NumberOfTriangles());
-  const auto ofVertices = static_cast<std::size_t>(columns * mesh.NumberOfVertices());
-  return ofTriangles + (this->Vertices->IsSplit() ? ofVertices : 0);
+  const auto ofVertices =
+    static_cast<std::size_t>(columns * this->Assembly->Mesh().NumberOfVertices());
+  return this->Gradients.NumberOfMultipliers(static_cast<int>(columns)) +
+    (this->Vertices->IsSplit() ? ofVertices : 0);
 }
 
 void TotalVariationMinimizer::SaveMultipliers(double* numbers, Eigen::Index columns) const
 {
-  const Values& b = this->Gradients.Multipliers();
-  const Values& c = this->Vertices->Multipliers();
-  if (b.size() == 0) // before the first call of Minimize()
+  if (this->Gradients.NumberOfColumns() == 0) // before the first call of Minimize()
   {
     std::fill_n(numbers, this->NumberOfMultipliers(columns), 0.0);
     return;
   }
-  std::copy(c.data(), c.data() + c.size(), std::copy(b.data(), b.data() + b.size(), numbers));
+  const Values& c = this->Vertices->Multipliers();
+  this->Gradients.GetMultipliers(numbers);
+  std::copy(c.data(), c.data() + c.size(),
+    numbers + this->Gradients.NumberOfMultipliers(static_cast<int>(columns)));
 }
 
 void TotalVariationMinimizer::RestoreMultipliers(const double* numbers, Eigen::Index columns)
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  Values& b = this->Gradients.Multipliers();
-  b.resize(mesh.NumberOfTriangles(), 2 * columns);
-  std::copy(numbers, numbers + b.size(), b.data());
+  this->Gradients.SetMultipliers(numbers, static_cast<int>(columns));
   if (this->Vertices->IsSplit())
   {
+    numbers += this->Gradients.NumberOfMultipliers(static_cast<int>(columns));
     Values& c = this->Vertices->Multipliers();
-    c.resize(mesh.NumberOfVertices(), columns);
-    std::copy(numbers + b.size(), numbers + b.size() + c.size(), c.data());
+    c.resize(this->Assembly->Mesh().NumberOfVertices(), columns);
+    std::copy(numbers, numbers + c.size(), c.data());
   }
 }
 
