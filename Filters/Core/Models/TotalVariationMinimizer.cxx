@@ -18,7 +18,7 @@ namespace
 {
 
 constexpr double OverRelaxation = 1.7;
-constexpr int InnerIterations = 4;
+static const int InnerIterations = getenv("INNER") ? atoi(getenv("INNER")) : 4;
 constexpr int IterationsPerCheck = 10;
 
 /// The growth of the penalty per iteration, in mu times the squared edge length: the convergence
@@ -136,8 +136,9 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& g, const Values& f,
   Values& u, const ProgressMonitor& progress, bool keepMultipliers)
 {
-  this->Gradients.Start(static_cast<int>(u.cols()), keepMultipliers,
-    this->Options.StopTolerance >= GradientSplitting::SmallestSingleGap);
+  const bool isSingle = this->Options.StopTolerance >= GradientSplitting::SmallestSingleGap;
+  this->Gradients.Start(static_cast<int>(u.cols()), keepMultipliers, isSingle);
+  this->Descent.SetSinglePrecision(isSingle);
   this->Vertices->Start(g, f, u, keepMultipliers);
   this->Prepare(u);
   this->Initial = this->Vertices->Admissible(u);

@@ -5,6 +5,8 @@
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/ConjugateGradients.h"
 
+#include <cmath>
+
 namespace SurfaceDiffusion
 {
 
@@ -57,15 +59,53 @@ void QuadraticDescent::SetMatrix(
     this->InverseDiagonals = shifts.colwise() + this->InverseDiagonal;
     reduction.Accumulate(this->InverseDiagonals);
     this->InverseDiagonals = this->InverseDiagonals.cwiseInverse();
+    this->HasSingle = false;
     return;
   }
   reduction.Accumulate(this->InverseDiagonal);
   ForEach(
     this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
+  this->HasSingle = this->IsSingle && reduction.IsSerial();
+  if (this->HasSingle)
+  {
+    this->Single.SetMatrix(matrix, this->InverseDiagonal);
+  }
+}
+
+/// False if it cannot.
+bool QuadraticDescent::ImproveInSinglePrecision(Values& x, int iterations)
+{
+  const auto n = static_cast<Index>(x.rows());
+  const auto columns = static_cast<int>(x.cols());
+  this->Squares.Resize(n, columns);
+  ForColumns(columns,
+    [&](auto k)
+    {
+      const ColumnCount<decltype(k)::value> count(columns);
+      this->Squares.Run<decltype(k)::value>(this->Parallel, n, count,
+        [&](Index i, double* sums)
+        {
+          for (int c = 0; c < count; ++c)
+          {
+            const double r = this->Residual(i, c);
+            sums[c] += r * this->InverseDiagonal[i] * r;
+          }
+        });
+    });
+  this->Lengths.resize(columns);
+  for (int c = 0; c < columns; ++c)
+  {
+    this->Lengths[c] = std::sqrt(this->Squares[c]);
+  }
+  return this->Single.Descend(this->Residual, this->Lengths, iterations, x);
 }
 
 void QuadraticDescent::Improve(Values& x, int iterations)
 {
+  if (this->HasSingle && this->ImproveInSinglePrecision(x, iterations))
+  {
+    return;
+  }
   if (this->Shifts->cols() > 0)
   {
     this->Improve(

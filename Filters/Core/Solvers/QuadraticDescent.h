@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Parallel.h"
 #include "Core/Solvers/ConjugateGradientSystem.h"
+#include "Core/Solvers/SinglePrecisionSolver.h"
 
 namespace SurfaceDiffusion
 {
@@ -17,6 +18,7 @@ class QuadraticDescent
 public:
   explicit QuadraticDescent(const ParallelFor& parallel = SerialFor())
     : Parallel(parallel)
+    , Single(parallel)
   {
   }
 
@@ -34,10 +36,15 @@ public:
   /// it every later change of b. It is consistent, as x is.
   Values Residual;
 
+  /// Iterate in single precision, in one process and without shifts. It is for outer iterations that
+  /// renew the residual now and then, of which round-off takes up to 1e-6 per call.
+  void SetSinglePrecision(bool isSingle) { this->IsSingle = isSingle; }
+
   /// `iterations` iterations, each column with its own step lengths.
   void Improve(Values& x, int iterations);
 
 private:
+  bool ImproveInSinglePrecision(Values& x, int iterations);
   template <typename System>
   void Improve(const System& system, Values& x, int iterations);
 
@@ -49,6 +56,11 @@ private:
   Vector InverseDiagonal;
   Values InverseDiagonals; ///< with shifts, one column for each
   ConjugateGradientWork Work;
+  bool IsSingle = false;
+  SinglePrecisionSolver Single; ///< of the matrix if HasSingle
+  bool HasSingle = false;
+  ColumnSums Squares;
+  std::vector<double> Lengths;
 };
 
 } // namespace SurfaceDiffusion

@@ -8,6 +8,14 @@
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+/// p.Ap / p.p below which products in single precision have no digit left.
+constexpr double ResolvedShare = 1e-6;
+
+} // namespace
+
 /// Columns that share each pass over the matrix.
 struct SinglePrecisionSolver::Group
 {
@@ -26,8 +34,9 @@ void SinglePrecisionSolver::SetMatrix(const SparseMatrix& matrix, const Vector& 
   this->Matrix.Set(matrix, this->Roots);
 }
 
-int SinglePrecisionSolver::Correct(const Values& r, std::vector<Column>& columns,
-  int maximumNumberOfIterations, Values& x, const ProgressMonitor& progress)
+/// act(group, solved) for the groups in which a column is to be solved.
+template <typename Act>
+void SinglePrecisionSolver::ForGroups(std::vector<Column>& columns, const Act& act)
 {
   const auto count = static_cast<int>(columns.size());
   const std::size_t rows = this->Matrix.PaddedRows();
@@ -36,7 +45,6 @@ int SinglePrecisionSolver::Correct(const Values& r, std::vector<Column>& columns
   {
     vector->resize(rows * std::min(count, Group::Most));
   }
-  int iterations = 0;
   for (int first = 0; first < count; first += Group::Most)
   {
     const Group group{ columns.data() + first, first, std::min(Group::Most, count - first) };
@@ -49,15 +57,52 @@ int SinglePrecisionSolver::Correct(const Values& r, std::vector<Column>& columns
     }
     if (!isIdle)
     {
+      act(group, solved);
+    }
+  }
+}
+
+int SinglePrecisionSolver::Correct(const Values& r, std::vector<Column>& columns,
+  int maximumNumberOfIterations, Values& x, const ProgressMonitor& progress)
+{
+  const auto count = static_cast<double>(columns.size());
+  int iterations = 0;
+  this->ForGroups(columns,
+    [&](const Group& group, bool* solved)
+    {
       this->Take(r, group);
       iterations = std::max(iterations,
         this->Iterate(group, maximumNumberOfIterations, solved,
-          progress.Part(
-            static_cast<double>(first) / count, static_cast<double>(first + group.Count) / count)));
+          progress.Part(group.First / count, (group.First + group.Count) / count)));
       this->Add(group, solved, x);
-    }
-  }
+    });
   return iterations;
+}
+
+bool SinglePrecisionSolver::Descend(
+  Values& r, const std::vector<double>& lengths, int iterations, Values& x)
+{
+  constexpr double never = 1e-30; // a reduction that ends no iteration
+  this->Descents.assign(lengths.size(), Column());
+  for (std::size_t c = 0; c < lengths.size(); ++c)
+  {
+    this->Descents[c].Length = lengths[c];
+    this->Descents[c].Reduction = lengths[c] > 0.0 ? never : 1.0;
+  }
+  bool isResolved = true;
+  this->ForGroups(this->Descents,
+    [&](const Group& group, bool* solved)
+    {
+      this->Take(r, group);
+      this->Iterate(group, iterations, solved, ProgressMonitor());
+      this->Add(group, solved, x);
+      this->GiveBack(group, solved, r);
+      for (int c = 0; c < group.Count; ++c)
+      {
+        isResolved = isResolved && (solved[c] || group.Columns[c].Reduction == 1.0);
+      }
+    });
+  return isResolved;
 }
 
 /// R = D^-1/2 r, P = R + beta P, Y = 0.
@@ -75,7 +120,9 @@ void SinglePrecisionSolver::Take(const Values& r, const Group& group)
       column.FirstLength = column.FirstLength > 0.0 ? column.FirstLength : column.Length;
       scale[c] = 1.0 / column.FirstLength;
       column.Square = std::pow(column.Length * scale[c], 2.0);
-      beta[c] = last > 0.0 ? static_cast<float>(column.Square / last) : 0.0F;
+      const double turn = last > 0.0 ? column.Square / last : 0.0;
+      beta[c] = static_cast<float>(turn);
+      column.DirectionSquare = column.Square + turn * turn * column.DirectionSquare;
     }
   }
   const std::vector<Index>& rows = this->Matrix.RowsInOrder();
@@ -125,8 +172,10 @@ int SinglePrecisionSolver::Iterate(
     this->Matrix.Multiply(count, p, this->Q.data(), sums);
     for (int c = 0; c < count; ++c)
     {
-      const double step = active[c] ? group.Columns[c].Square / sums[c] : 0.0;
-      solved[c] = solved[c] && std::isfinite(step) && step >= 0.0;
+      const Column& column = group.Columns[c];
+      const double step = active[c] ? column.Square / sums[c] : 0.0;
+      const bool isBounded = sums[c] > ResolvedShare * column.DirectionSquare;
+      solved[c] = solved[c] && (!active[c] || (isBounded && std::isfinite(step)));
       active[c] = active[c] && solved[c];
       alpha[c] = active[c] ? static_cast<float>(step) : 0.0F;
     }
@@ -142,8 +191,15 @@ int SinglePrecisionSolver::Iterate(
         const double left = std::log(goals[c] / sums[c]) / std::log(group.Columns[c].Reduction);
         done = std::min(done, 1.0 + 0.5 * left);
         active[c] = sums[c] > goals[c];
-        beta[c] = static_cast<float>(sums[c] / square);
-        square = active[c] ? sums[c] : square;
+        const double turn = sums[c] / square;
+        beta[c] = static_cast<float>(turn);
+        if (active[c])
+        {
+          square = sums[c];
+          // The residual and the last direction are orthogonal.
+          double& direction = group.Columns[c].DirectionSquare;
+          direction = square + turn * turn * direction;
+        }
         isFinished = isFinished && !active[c];
       }
     }
@@ -155,6 +211,25 @@ int SinglePrecisionSolver::Iterate(
   }
   progress.Report(1.0);
   return iterations;
+}
+
+/// r = D^1/2 R
+void SinglePrecisionSolver::GiveBack(const Group& group, const bool* solved, Values& r)
+{
+  const std::vector<Index>& rows = this->Matrix.RowsInOrder();
+  ForEach(this->Parallel, static_cast<Index>(rows.size()),
+    [&](Index place)
+    {
+      const Index row = rows[place];
+      for (int c = 0; row >= 0 && c < group.Count; ++c)
+      {
+        if (solved[c])
+        {
+          const double left = this->R[c * rows.size() + place];
+          r(row, group.First + c) = group.Columns[c].FirstLength / this->Roots[row] * left;
+        }
+      }
+    });
 }
 
 void SinglePrecisionSolver::Add(const Group& group, const bool* solved, Values& x)

@@ -35,7 +35,9 @@ public:
     double Reduction = 1.0; ///< the factor by which to reduce this length; 1: leave the column
     /// Of the first residual of the iteration, the unit of single precision; 0: it begins.
     double FirstLength = 0.0;
-    double Square = 0.0; ///< of the residual before the last step, in the unit of single precision
+    // Squared lengths before the last step, in the unit of single precision:
+    double Square = 0.0; ///< of the residual
+    double DirectionSquare = 0.0;
   };
 
   /// Add to x what reduces the residuals, r = b - A x in double precision. The bits of a column do not
@@ -44,17 +46,26 @@ public:
   int Correct(const Values& r, std::vector<Column>& columns, int maximumNumberOfIterations,
     Values& x, const ProgressMonitor& progress);
 
+  /// Add to x what a few iterations of its own give for each column of the residual r, and update r.
+  /// lengths: of the columns of r in the norm of D^-1. Returns false if the steps of a column are
+  /// bounded by nothing but round-off; it is left.
+  bool Descend(Values& r, const std::vector<double>& lengths, int iterations, Values& x);
+
 private:
   struct Group;
+  template <typename Act>
+  void ForGroups(std::vector<Column>& columns, const Act& act);
   void Take(const Values& r, const Group& group);
   int Iterate(const Group& group, int maximumNumberOfIterations, bool* solved,
     const ProgressMonitor& progress);
   void Add(const Group& group, const bool* solved, Values& x);
+  void GiveBack(const Group& group, const bool* solved, Values& r);
 
   const ParallelFor& Parallel;
   SlicedMatrix Matrix;
   Vector Roots; ///< D^-1/2
   std::vector<float> R, Q, Y; ///< of a few columns, in the order of Matrix
+  std::vector<Column> Descents; ///< work
   std::vector<float> P; ///< the directions of all columns
 };
 
