@@ -84,12 +84,13 @@ double GradientSplitting::Stiffness() const
 void GradientSplitting::Start(int columns, bool keepMultipliers, bool inSinglePrecision)
 {
   const bool isSingle = inSinglePrecision && this->CanBeSingle();
-  if (keepMultipliers && this->Kept.empty() && isSingle != this->IsSingle)
+  if (keepMultipliers && isSingle != this->IsSingle && this->Kept.empty())
   {
     this->KeptColumns = this->NumberOfColumns();
     this->Kept.resize(this->NumberOfMultipliers(this->KeptColumns));
     this->GetMultipliers(this->Kept.data());
   }
+  const bool startsFromKept = keepMultipliers && !this->Kept.empty();
   this->IsSingle = isSingle;
   this->Visit(
     [&](auto& splitting)
@@ -98,13 +99,10 @@ void GradientSplitting::Start(int columns, bool keepMultipliers, bool inSinglePr
       {
         splitting.SetMesh(*this->Mesh, *this->Gradients, this->Penalty);
       }
-      if (keepMultipliers && !this->Kept.empty() && this->KeptColumns == columns)
+      splitting.Start(columns, keepMultipliers && !startsFromKept);
+      if (startsFromKept && this->KeptColumns == columns)
       {
-        splitting.SetMultipliers(this->Kept.data(), columns);
-      }
-      else
-      {
-        splitting.Start(columns, keepMultipliers);
+        splitting.SetMultipliers(this->Kept.data());
       }
     });
   this->Kept = std::vector<double>();
@@ -131,7 +129,10 @@ void GradientSplitting::GetMultipliers(double* multipliers) const
     std::copy(this->Kept.begin(), this->Kept.end(), multipliers);
     return;
   }
-  this->Visit([multipliers](const auto& splitting) { splitting.GetMultipliers(multipliers); });
+  if (this->NumberOfColumns() > 0)
+  {
+    this->Visit([multipliers](const auto& splitting) { splitting.GetMultipliers(multipliers); });
+  }
 }
 
 void GradientSplitting::SetMultipliers(const double* multipliers, int columns)

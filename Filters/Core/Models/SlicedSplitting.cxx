@@ -123,6 +123,15 @@ void UpdateSlice(const Slice& slice, const Iteration<Number>& iteration, const S
   }
 }
 
+template <typename Number>
+void SetSharesOfTotalVariation(const Number (&squares)[Lanes], Number (&shares)[Lanes])
+{
+  for (Index l = 0; l < Lanes; ++l)
+  {
+    shares[l] = 1 / std::max(Number(1), std::sqrt(squares[l]));
+  }
+}
+
 template <typename Slice, typename Number>
 void UpdateSlices(const Slice* slices, Index begin, Index end, const Iteration<Number>& iteration,
   Number* w, Number* atCorners)
@@ -133,12 +142,7 @@ void UpdateSlices(const Slice* slices, Index begin, Index end, const Iteration<N
     UpdateSlice(
       slices[s], iteration,
       [](const Number(&squares)[Lanes], Number(&shares)[Lanes])
-      {
-        for (Index l = 0; l < Lanes; ++l)
-        {
-          shares[l] = 1 / std::max(Number(1), std::sqrt(squares[l]));
-        }
-      },
+      { SetSharesOfTotalVariation(squares, shares); },
       w + 2 * s * size, atCorners + 3 * s * size);
   }
 }
@@ -240,11 +244,16 @@ bool SlicedSplitting<Number>::IsInRange() const
            }) <= largest;
 }
 
-/// The shares of the multipliers in the W of slice s with these squares, for any function.
+/// The shares of the multipliers in the W of slice s with these squares.
 template <typename Number>
 void SlicedSplitting<Number>::SetShares(
   Index s, const Number (&squares)[Lanes], Number (&shares)[Lanes]) const
 {
+  if (this->Function.Kind == EdgeFunctionKind::TotalVariation)
+  {
+    SetSharesOfTotalVariation(squares, shares);
+    return;
+  }
   std::fill_n(shares, Lanes, Number(1));
   for (Index l = 0; l < this->LanesOf(s); ++l)
   {
@@ -434,17 +443,16 @@ void SlicedSplitting<Number>::GetMultipliers(double* multipliers) const
 }
 
 template <typename Number>
-void SlicedSplitting<Number>::SetMultipliers(const double* multipliers, int columns)
+void SlicedSplitting<Number>::SetMultipliers(const double* multipliers)
 {
-  this->Start(columns, false);
   this->ForEachSlice(
     [&](Index s)
     {
       for (Index l = 0; l < this->LanesOf(s); ++l)
       {
         const double* const y =
-          multipliers + (static_cast<std::size_t>(s) * Lanes + l) * 2 * columns;
-        for (int c = 0; c < 2 * columns; ++c)
+          multipliers + (static_cast<std::size_t>(s) * Lanes + l) * 2 * this->Columns;
+        for (int c = 0; c < 2 * this->Columns; ++c)
         {
           this->W[this->Place(s, c, l)] = static_cast<Number>(y[c]);
         }

@@ -51,8 +51,7 @@ public:
 
   /// y, in row t of 2 columns numbers those of triangle t.
   void GetMultipliers(double* multipliers) const;
-  /// Start with these.
-  void SetMultipliers(const double* multipliers, int columns);
+  void SetMultipliers(const double* multipliers); ///< only between Start() and Update()
   int NumberOfColumns() const { return this->Columns; }
 
   /// r over that of SetMesh(). A change leaves p and the multipliers.

@@ -18,12 +18,18 @@ namespace
 {
 
 constexpr double OverRelaxation = 1.7;
-static const int InnerIterations = getenv("INNER") ? atoi(getenv("INNER")) : 4;
+
+/// The quadratic problem is solved to this reduction of its residual, and more exactly whenever the
+/// gap has not fallen: a method that grows its penalty diverges if its errors grow with it.
+constexpr double FirstReduction = 0.2;
+constexpr double LeastReduction = 0.02;
+constexpr int InnerIterations = 20;
+
 constexpr int IterationsPerCheck = 10;
 
 /// The growth of the penalty per iteration, in mu times the squared edge length: the convergence
-/// of an accelerated method is fastest near 1/8.
-constexpr double GrowthFactor = 0.125;
+/// of an accelerated method is fastest near 1/3.
+constexpr double GrowthFactor = 0.35;
 constexpr double SquaredEdgeOverHeight = 4.0 / 3.0; ///< of equilateral triangles
 
 /// The first penalty of an energy with mu > 0, which then grows, is best a sixth of that which
@@ -147,6 +153,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   Report report;
   double fraction = 0.0;
   double growth = 1.0;
+  double reduction = FirstReduction;
   while (true)
   {
     if (report.Iterations % IterationsPerCheck == 0)
@@ -157,6 +164,10 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
       {
         growth = 1.0 + this->GrowthRate * report.Iterations;
       }
+      else if (report.Iterations > 0)
+      {
+        reduction = std::max(LeastReduction, 0.5 * reduction);
+      }
       const double left = std::log(std::max(1.0, report.Gap / this->Options.StopTolerance));
       fraction = std::max(fraction, 1.0 - left / std::log(1.0 / this->Options.StopTolerance));
     }
@@ -166,12 +177,20 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
       break;
     }
     progress.Report(fraction);
-    this->SetGrowth(growth, u);
+    if (growth != this->Gradients.Growth())
+    {
+      this->Gradients.SetGrowth(growth);
+      this->AssembleMatrix(u);
+    }
+    if (report.Iterations % IterationsPerCheck == 0)
+    {
+      this->SetResidual(u);
+    }
     ++report.Iterations;
     this->Gradients.Update(u, OverRelaxation);
     this->Vertices->Update(u, OverRelaxation);
     this->UpdateResidual();
-    this->Descent.Improve(u, InnerIterations);
+    this->Descent.Improve(u, reduction, InnerIterations);
   }
   u = this->Vertices->Admissible(u);
   // On nearly degenerate triangles the few inner iterations may not suffice.
@@ -184,7 +203,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   return report;
 }
 
-/// Sizes for as many columns as u has, and the residual of a right-hand side of zero.
+/// Sizes for as many columns as u has, a right-hand side of zero, and the matrix.
 void TotalVariationMinimizer::Prepare(const Values& u)
 {
   if (this->RightHandSide.cols() != u.cols())
@@ -198,7 +217,7 @@ void TotalVariationMinimizer::Prepare(const Values& u)
   this->AssembleMatrix(u);
 }
 
-/// The matrix and load at the present penalty, and the residual of u.
+/// The matrix and load at the present penalty.
 void TotalVariationMinimizer::AssembleMatrix(const Values& u)
 {
   this->Assembly->Fill(
@@ -209,22 +228,31 @@ void TotalVariationMinimizer::AssembleMatrix(const Values& u)
       this->Matrix, this->Vertices->GetFixed(), u, this->Load, this->Parallel);
   }
   this->Descent.SetMatrix(this->Matrix, this->ColumnShifts, this->OverProcesses);
-  Multiply(this->Matrix, u, this->Descent.Residual, this->Parallel);
-  if (this->ColumnShifts.size() > 0)
-  {
-    this->Descent.Residual += this->ColumnShifts.cwiseProduct(u);
-  }
-  this->Descent.Residual = this->Load - this->Descent.Residual;
-  this->OverProcesses.Accumulate(this->Descent.Residual);
-  this->Descent.Residual += this->RightHandSide;
 }
 
-void TotalVariationMinimizer::SetGrowth(double growth, const Values& u)
+/// The residual of u, which loses digits from update to update. Without a splitting what vertices
+/// give to the right-hand side does not change, and is added here alone.
+void TotalVariationMinimizer::SetResidual(const Values& u)
 {
-  if (growth != this->Gradients.Growth())
+  Values& residual = this->Descent.Residual;
+  Multiply(this->Matrix, u, residual, this->Parallel);
+  if (this->ColumnShifts.size() > 0)
   {
-    this->Gradients.SetGrowth(growth);
-    this->AssembleMatrix(u);
+    residual += this->ColumnShifts.cwiseProduct(u);
+  }
+  residual = this->Load - residual;
+  this->OverProcesses.Accumulate(residual);
+  residual += this->RightHandSide;
+  if (!this->Vertices->IsSplit())
+  {
+    ForEach(this->Parallel, static_cast<Index>(u.rows()),
+      [&](Index i)
+      {
+        if (!this->Vertices->GetFixed()[i])
+        {
+          this->Vertices->AddRightHandSide(i, &residual(i, 0));
+        }
+      });
   }
 }
 
@@ -271,25 +299,42 @@ template <int K>
 void TotalVariationMinimizer::UpdateColumns()
 {
   const ColumnCount<K> columns(this->RightHandSide.cols());
-  this->OverProcesses.AccumulateEach(
-    this->Parallel, this->Gathered,
-    [&](Index i) { this->Gradients.GatherRightHandSide<K>(i, &this->Gathered(i, 0)); },
-    [&](Index i)
+  const bool isSplit = this->Vertices->IsSplit();
+  const auto use = [&](Index i, double* sum)
+  {
+    if (this->Vertices->GetFixed()[i])
     {
-      if (this->Vertices->GetFixed()[i])
-      {
-        return;
-      }
-      double* sum = &this->Gathered(i, 0);
-      double* side = &this->RightHandSide(i, 0);
-      double* residual = &this->Descent.Residual(i, 0);
+      return;
+    }
+    if (isSplit)
+    {
       this->Vertices->AddRightHandSide(i, sum);
-      for (int k = 0; k < columns; ++k)
+    }
+    double* side = &this->RightHandSide(i, 0);
+    double* residual = &this->Descent.Residual(i, 0);
+    for (int k = 0; k < columns; ++k)
+    {
+      residual[k] += sum[k] - side[k];
+      side[k] = sum[k];
+    }
+  };
+  const auto gather = [&](Index i, double* sum)
+  { this->Gradients.GatherRightHandSide<K>(i, sum); };
+  if (this->OverProcesses.IsSerial())
+  {
+    ForEach(this->Parallel, static_cast<Index>(this->Gathered.rows()),
+      [&](Index i)
       {
-        residual[k] += sum[k] - side[k];
-        side[k] = sum[k];
-      }
-    });
+        ColumnRegisters<double, K> registers;
+        double* const sum = registers.Or(&this->Gathered(i, 0));
+        gather(i, sum);
+        use(i, sum);
+      });
+    return;
+  }
+  this->OverProcesses.AccumulateEach(
+    this->Parallel, this->Gathered, [&](Index i) { gather(i, &this->Gathered(i, 0)); },
+    [&](Index i) { use(i, &this->Gathered(i, 0)); });
 }
 
 /// The duality gap of the present u and multipliers, also relative to E or to `negligible`.

@@ -24,7 +24,7 @@ namespace SurfaceDiffusion
 /// The method is the alternating direction method of multipliers (ADMM; S. Boyd et al., Foundations
 /// and Trends in Machine Learning 3, 2011; for total variation T. Goldstein, S. Osher, SIAM J.
 /// Imaging Sci. 2, 2009) on p = S grad u and q = u - f, over-relaxed by 1.7; the quadratic problem
-/// for u is not solved but improved by a few conjugate gradient iterations from the last u. With
+/// for u is not solved but improved by conjugate gradient iterations from the last u. With
 /// mu > 0 the energy is strongly convex, and the penalty of the gradients grows linearly with the
 /// iterations as long as the gap falls (accelerated ADMM; A. Chambolle, T. Pock, J. Math. Imaging
 /// Vis. 40, 2011, algorithm 2; Y. Xu, SIAM J. Optim. 27, 2017). The
@@ -101,7 +101,7 @@ private:
   double NoiseEnergy() const;
   void Prepare(const Values& u);
   void AssembleMatrix(const Values& u);
-  void SetGrowth(double growth, const Values& u);
+  void SetResidual(const Values& u);
   void UpdateResidual();
   template <int K>
   void UpdateColumns();

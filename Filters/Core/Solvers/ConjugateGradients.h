@@ -234,6 +234,8 @@ public:
     }
   }
 
+  void SetTolerance(double tolerance) { this->Tolerance = tolerance; }
+
   /// Whether all systems are within the tolerance; false if a residual is not a number.
   bool IsFinished() const { return this->Residual() <= this->Tolerance; }
 

@@ -5,6 +5,7 @@
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/ConjugateGradients.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -73,7 +74,8 @@ void QuadraticDescent::SetMatrix(
 }
 
 /// False if it cannot.
-bool QuadraticDescent::ImproveInSinglePrecision(Values& x, int iterations)
+bool QuadraticDescent::ImproveInSinglePrecision(
+  Values& x, double reduction, int maximumNumberOfIterations)
 {
   const auto n = static_cast<Index>(x.rows());
   const auto columns = static_cast<int>(x.cols());
@@ -97,12 +99,13 @@ bool QuadraticDescent::ImproveInSinglePrecision(Values& x, int iterations)
   {
     this->Lengths[c] = std::sqrt(this->Squares[c]);
   }
-  return this->Single.Descend(this->Residual, this->Lengths, iterations, x);
+  return this->Single.Descend(
+    this->Residual, this->Lengths, reduction, maximumNumberOfIterations, x);
 }
 
-void QuadraticDescent::Improve(Values& x, int iterations)
+void QuadraticDescent::Improve(Values& x, double reduction, int maximumNumberOfIterations)
 {
-  if (this->HasSingle && this->ImproveInSinglePrecision(x, iterations))
+  if (this->HasSingle && this->ImproveInSinglePrecision(x, reduction, maximumNumberOfIterations))
   {
     return;
   }
@@ -110,26 +113,35 @@ void QuadraticDescent::Improve(Values& x, int iterations)
   {
     this->Improve(
       ShiftedSystem(*this->Matrix, *this->Shifts, this->InverseDiagonals, *this->OverProcesses), x,
-      iterations);
+      reduction, maximumNumberOfIterations);
     return;
   }
   this->Improve(
-    MatrixSystem(*this->Matrix, this->InverseDiagonal, *this->OverProcesses), x, iterations);
+    MatrixSystem(*this->Matrix, this->InverseDiagonal, *this->OverProcesses), x, reduction,
+    maximumNumberOfIterations);
 }
 
 template <typename System>
-void QuadraticDescent::Improve(const System& system, Values& x, int iterations)
+void QuadraticDescent::Improve(
+  const System& system, Values& x, double reduction, int maximumNumberOfIterations)
 {
   ForColumns(x.cols(),
     [&](auto k)
     {
       ConjugateGradients<decltype(k)::value, System> method(
         system, this->Residual, this->Work, this->Parallel);
+      std::fill(this->Work.Reference.begin(), this->Work.Reference.end(), 1.0);
       method.Start(0.0);
-      for (int iteration = 1; iteration <= iterations && !method.IsFinished(); ++iteration)
+      for (std::size_t c = 0; c < this->Work.Square.size(); ++c)
+      {
+        this->Work.Reference[c] = this->Work.Square[c] > 0.0 ? this->Work.Square[c] : 1.0;
+      }
+      method.SetTolerance(reduction);
+      for (int iteration = 1; iteration <= maximumNumberOfIterations && !method.IsFinished();
+           ++iteration)
       {
         method.Multiply(); // a step that only round-off bounds has the length 0
-        method.Advance(x, iteration == iterations);
+        method.Advance(x, iteration == maximumNumberOfIterations);
       }
     });
 }

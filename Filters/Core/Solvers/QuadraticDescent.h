@@ -40,13 +40,15 @@ public:
   /// renew the residual now and then, of which round-off takes up to 1e-6 per call.
   void SetSinglePrecision(bool isSingle) { this->IsSingle = isSingle; }
 
-  /// `iterations` iterations, each column with its own step lengths.
-  void Improve(Values& x, int iterations);
+  /// Iterations until each column of the residual is reduced by the factor `reduction`, in the norm
+  /// of the preconditioner, or until there have been as many as allowed.
+  void Improve(Values& x, double reduction, int maximumNumberOfIterations);
 
 private:
-  bool ImproveInSinglePrecision(Values& x, int iterations);
+  bool ImproveInSinglePrecision(Values& x, double reduction, int maximumNumberOfIterations);
   template <typename System>
-  void Improve(const System& system, Values& x, int iterations);
+  void Improve(
+    const System& system, Values& x, double reduction, int maximumNumberOfIterations);
 
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;

@@ -74,29 +74,27 @@ int SinglePrecisionSolver::Correct(const Values& r, std::vector<Column>& columns
       iterations = std::max(iterations,
         this->Iterate(group, maximumNumberOfIterations, solved,
           progress.Part(group.First / count, (group.First + group.Count) / count)));
-      this->Add(group, solved, x);
+      this->Add(group, solved, x, nullptr);
     });
   return iterations;
 }
 
-bool SinglePrecisionSolver::Descend(
-  Values& r, const std::vector<double>& lengths, int iterations, Values& x)
+bool SinglePrecisionSolver::Descend(Values& r, const std::vector<double>& lengths, double reduction,
+  int maximumNumberOfIterations, Values& x)
 {
-  constexpr double never = 1e-30; // a reduction that ends no iteration
   this->Descents.assign(lengths.size(), Column());
   for (std::size_t c = 0; c < lengths.size(); ++c)
   {
     this->Descents[c].Length = lengths[c];
-    this->Descents[c].Reduction = lengths[c] > 0.0 ? never : 1.0;
+    this->Descents[c].Reduction = lengths[c] > 0.0 ? reduction : 1.0;
   }
   bool isResolved = true;
   this->ForGroups(this->Descents,
     [&](const Group& group, bool* solved)
     {
       this->Take(r, group);
-      this->Iterate(group, iterations, solved, ProgressMonitor());
-      this->Add(group, solved, x);
-      this->GiveBack(group, solved, r);
+      this->Iterate(group, maximumNumberOfIterations, solved, ProgressMonitor());
+      this->Add(group, solved, x, &r);
       for (int c = 0; c < group.Count; ++c)
       {
         isResolved = isResolved && (solved[c] || group.Columns[c].Reduction == 1.0);
@@ -213,26 +211,8 @@ int SinglePrecisionSolver::Iterate(
   return iterations;
 }
 
-/// r = D^1/2 R
-void SinglePrecisionSolver::GiveBack(const Group& group, const bool* solved, Values& r)
-{
-  const std::vector<Index>& rows = this->Matrix.RowsInOrder();
-  ForEach(this->Parallel, static_cast<Index>(rows.size()),
-    [&](Index place)
-    {
-      const Index row = rows[place];
-      for (int c = 0; row >= 0 && c < group.Count; ++c)
-      {
-        if (solved[c])
-        {
-          const double left = this->R[c * rows.size() + place];
-          r(row, group.First + c) = group.Columns[c].FirstLength / this->Roots[row] * left;
-        }
-      }
-    });
-}
-
-void SinglePrecisionSolver::Add(const Group& group, const bool* solved, Values& x)
+/// x += D^-1/2 Y, and r = D^1/2 R unless it is null.
+void SinglePrecisionSolver::Add(const Group& group, const bool* solved, Values& x, Values* r)
 {
   const std::vector<Index>& rows = this->Matrix.RowsInOrder();
   ForEach(this->Parallel, static_cast<Index>(rows.size()),
@@ -246,6 +226,11 @@ void SinglePrecisionSolver::Add(const Group& group, const bool* solved, Values& 
           const Column& column = group.Columns[c];
           const double y = this->Y[c * rows.size() + place];
           x(row, group.First + c) += column.Unit * (column.FirstLength * this->Roots[row] * y);
+          if (r)
+          {
+            (*r)(row, group.First + c) =
+              column.FirstLength / this->Roots[row] * this->R[c * rows.size() + place];
+          }
         }
       }
     });

@@ -46,10 +46,11 @@ public:
   int Correct(const Values& r, std::vector<Column>& columns, int maximumNumberOfIterations,
     Values& x, const ProgressMonitor& progress);
 
-  /// Add to x what a few iterations of its own give for each column of the residual r, and update r.
-  /// lengths: of the columns of r in the norm of D^-1. Returns false if the steps of a column are
-  /// bounded by nothing but round-off; it is left.
-  bool Descend(Values& r, const std::vector<double>& lengths, int iterations, Values& x);
+  /// Add to x what reduces each column of the residual r by the factor `reduction`, if the iterations
+  /// suffice, and update r. lengths: of its columns in the norm of D^-1. Returns false if the steps
+  /// of a column are bounded by nothing but round-off; it is left.
+  bool Descend(Values& r, const std::vector<double>& lengths, double reduction,
+    int maximumNumberOfIterations, Values& x);
 
 private:
   struct Group;
@@ -58,8 +59,7 @@ private:
   void Take(const Values& r, const Group& group);
   int Iterate(const Group& group, int maximumNumberOfIterations, bool* solved,
     const ProgressMonitor& progress);
-  void Add(const Group& group, const bool* solved, Values& x);
-  void GiveBack(const Group& group, const bool* solved, Values& r);
+  void Add(const Group& group, const bool* solved, Values& x, Values* r);
 
   const ParallelFor& Parallel;
   SlicedMatrix Matrix;
