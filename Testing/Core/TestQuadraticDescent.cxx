@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
@@ -21,11 +23,12 @@ struct System
   QuadraticDescent Descent;
   Values B, X;
 
-  explicit System(Eigen::Index columns)
+  explicit System(Eigen::Index columns, bool isSingle = false)
     : B(Noise(Mesh, columns))
     , X(Values::Zero(Mesh.NumberOfVertices(), columns))
   {
     this->Operators->Fill(this->Matrix, this->Mesh.ControlAreas(), 0.05, CotanWeights(this->Mesh));
+    this->Descent.SetSinglePrecision(isSingle);
     this->Descent.SetMatrix(this->Matrix);
     this->Descent.Residual = this->B;
   }
@@ -47,11 +50,61 @@ TEST(QuadraticDescent, KeepsTheResidualWhileTheRightHandSideMoves)
     System system(columns);
     for (int call = 0; call < 20; ++call)
     {
-      system.Descent.Improve(system.X, 3);
+      system.Descent.Improve(system.X, 0.0, 3);
       const Values change = 0.1 * Noise(system.Mesh, columns, call);
       system.B += change;
       system.Descent.Residual += change;
       EXPECT_LT((system.Descent.Residual - system.TrueResidual()).cwiseAbs().maxCoeff(), 1e-12);
+    }
+  }
+}
+
+TEST(QuadraticDescent, KeepsItsDigitsInSinglePrecision)
+{
+  for (const Eigen::Index columns : { 1, 3, 5 })
+  {
+    System system(columns, true);
+    System exact(columns);
+    system.Descent.Improve(system.X, 0.0, 3);
+    exact.Descent.Improve(exact.X, 0.0, 3);
+    const double size = exact.X.cwiseAbs().maxCoeff();
+    EXPECT_GT((system.X - exact.X).cwiseAbs().maxCoeff(), 1e-14 * size); // it is another path
+    EXPECT_LT((system.X - exact.X).cwiseAbs().maxCoeff(), 1e-5 * size);
+    EXPECT_LT((system.Descent.Residual - system.TrueResidual()).cwiseAbs().maxCoeff(),
+      1e-6 * system.B.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(QuadraticDescent, EndsAtTheSolutionInSinglePrecision)
+{
+  System system(3, true);
+  for (int call = 0; call < 100; ++call)
+  {
+    system.Descent.Residual = system.TrueResidual();
+    system.Descent.Improve(system.X, 0.0, 4);
+  }
+  EXPECT_LT(system.TrueResidual().cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST(QuadraticDescent, StopsAtTheReduction)
+{
+  for (const bool isSingle : { false, true })
+  {
+    System system(2, isSingle);
+    const auto lengthOf = [&](Eigen::Index column)
+    {
+      const Vector inverse = Vector(system.Matrix.diagonal()).cwiseInverse();
+      const Values& r = system.Descent.Residual;
+      return std::sqrt(r.col(column).cwiseAbs2().dot(inverse));
+    };
+    system.Descent.Residual.col(1) *= 1e6;
+    const double first = lengthOf(0);
+    const double second = lengthOf(1);
+    system.Descent.Improve(system.X, 0.1, 100);
+    for (const double share : { lengthOf(0) / first, lengthOf(1) / second })
+    {
+      EXPECT_LT(share, 0.1);
+      EXPECT_GT(share, 0.01);
     }
   }
 }
@@ -61,23 +114,23 @@ TEST(QuadraticDescent, EndsAtTheSolution)
   System system(3);
   for (int call = 0; call < 100; ++call)
   {
-    system.Descent.Improve(system.X, 4);
+    system.Descent.Improve(system.X, 0.0, 4);
   }
   EXPECT_LT(system.TrueResidual().cwiseAbs().maxCoeff(), 1e-13);
   const Values x = system.X;
-  system.Descent.Improve(system.X, 4); // nothing left to do
+  system.Descent.Improve(system.X, 0.0, 4); // nothing left to do
   EXPECT_LT((system.X - x).cwiseAbs().maxCoeff(), 1e-10);
 }
 
 TEST(QuadraticDescent, ColumnsDoNotKnowOfEachOther)
 {
   System all(3);
-  all.Descent.Improve(all.X, 4);
+  all.Descent.Improve(all.X, 0.0, 4);
   for (Eigen::Index k = 0; k < 3; ++k)
   {
     System one(1);
     one.Descent.Residual = all.B.col(k);
-    one.Descent.Improve(one.X, 4);
+    one.Descent.Improve(one.X, 0.0, 4);
     EXPECT_TRUE(one.X == all.X.col(k));
   }
 }
@@ -89,11 +142,15 @@ TEST(QuadraticDescent, TakesNoStepThatOnlyRoundOffBounds)
   dense << 0.25, 0.5, 0.75, 0.5, 1.0, 1.5, 0.75, 1.5, 2.25;
   SparseMatrix matrix = dense.sparseView();
   matrix.coeffRef(0, 0) *= 1.0 + 4e-16;
-  QuadraticDescent descent;
-  descent.SetMatrix(matrix);
-  descent.Residual = Values::Zero(3, 1);
-  descent.Residual.col(0) << 0.25, 1.0, -2.25; // the diagonal times that
-  Values x = Values::Zero(3, 1);
-  descent.Improve(x, 4);
-  EXPECT_LT(x.cwiseAbs().maxCoeff(), 1e3);
+  for (const bool isSingle : { false, true })
+  {
+    QuadraticDescent descent;
+    descent.SetSinglePrecision(isSingle);
+    descent.SetMatrix(matrix);
+    descent.Residual = Values::Zero(3, 1);
+    descent.Residual.col(0) << 0.25, 1.0, -2.25; // the diagonal times that
+    Values x = Values::Zero(3, 1);
+    descent.Improve(x, 0.0, 4);
+    EXPECT_LT(x.cwiseAbs().maxCoeff(), 1e3);
+  }
 }

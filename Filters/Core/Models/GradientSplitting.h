@@ -57,9 +57,8 @@ public:
   }
 
   /// p = S grad u in the next Update(), the first penalty, and y = 0 unless there are multipliers to
-  /// start from. inSinglePrecision: enough for a duality gap of SmallestSingleGap.
+  /// start from. inSinglePrecision: if the function and the numbers of the surface allow it.
   void Start(int columns, bool keepMultipliers, bool inSinglePrecision);
-  static constexpr double SmallestSingleGap = 1e-6;
 
   /// y, in row t of 2 columns numbers that of triangle t. Those that are set are kept for Start().
   std::size_t NumberOfMultipliers(int columns) const

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -19,12 +20,15 @@ namespace
 
 constexpr double OverRelaxation = 1.7;
 
-/// The quadratic problem is solved to this reduction of its residual, and more exactly whenever the
-/// gap has not fallen: a method that grows its penalty diverges if its errors grow with it.
-constexpr double FirstReduction = 0.2;
-constexpr double LeastReduction = 0.02;
-constexpr int InnerIterations = 20;
+/// In single precision the bounds of the dual function hold up to round-off only, which is more of
+/// them where |u_i - f_i| bounds the multipliers at each vertex.
+constexpr double SmallestSingleGap = 1e-5;
+constexpr double SmallestSingleGapOfSplit = 1e-4;
 
+/// Conjugate gradient iterations on the quadratic problem. Without a growing penalty few of them are
+/// best: exact solutions circle around the minimum.
+constexpr int InnerIterations = 4;
+constexpr int MostInnerIterations = 20;
 constexpr int IterationsPerCheck = 10;
 
 /// The growth of the penalty per iteration, in mu times the squared edge length: the convergence
@@ -35,6 +39,38 @@ constexpr double SquaredEdgeOverHeight = 4.0 / 3.0; ///< of equilateral triangle
 /// The first penalty of an energy with mu > 0, which then grows, is best a sixth of that which
 /// stays: measured on steps and steady states of caps and patterns with and without noise.
 constexpr double StartOfGrowth = 6.0;
+
+/// How exactly the quadratic problem is solved and for how many iterations the penalty has grown. A
+/// method whose penalty grows diverges if its errors grow with it, and slows down if the penalty
+/// grows faster than it converges: when the gap has not fallen, errors become smaller and the penalty
+/// stays, and falls in the end.
+struct Pace
+{
+  static constexpr double LeastReduction = 0.02;
+  static constexpr int MostChecks = 3; ///< without a smaller gap
+
+  double Reduction = 0.2; ///< of the residual of the quadratic problem, with a growing penalty
+  int GrownIterations = 0;
+  double Smallest = std::numeric_limits<double>::infinity(); ///< gap
+  int ChecksSinceSmallest = 0;
+
+  void Take(double gap)
+  {
+    if (gap < this->Smallest)
+    {
+      this->Smallest = gap;
+      this->ChecksSinceSmallest = 0;
+      this->GrownIterations += IterationsPerCheck;
+      return;
+    }
+    ++this->ChecksSinceSmallest;
+    this->Reduction = std::max(LeastReduction, 0.5 * this->Reduction);
+    if (this->ChecksSinceSmallest % MostChecks == 0 && gap > 2.0 * this->Smallest)
+    {
+      this->GrownIterations /= 2;
+    }
+  }
+};
 
 /// The typical range of u on each triangle: that on the whole surface, except at outliers.
 Vector RangesOfTriangles(const TriangleMesh& mesh, const Eigen::Ref<const Values>& u,
@@ -142,32 +178,23 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& g, const Values& f,
   Values& u, const ProgressMonitor& progress, bool keepMultipliers)
 {
-  const bool isSingle = this->Options.StopTolerance >= GradientSplitting::SmallestSingleGap;
-  this->Gradients.Start(static_cast<int>(u.cols()), keepMultipliers, isSingle);
-  this->Descent.SetSinglePrecision(isSingle);
+  bool isSingle = this->Options.StopTolerance >=
+    (this->Vertices->IsSplit() ? SmallestSingleGapOfSplit : SmallestSingleGap);
+  this->Start(u, keepMultipliers, isSingle);
   this->Vertices->Start(g, f, u, keepMultipliers);
-  this->Prepare(u);
   this->Initial = this->Vertices->Admissible(u);
   const double startEnergy = this->Energy(this->Initial);
   const double negligible = std::max(1e-3 * startEnergy, 1e-6 * this->NoiseEnergy());
+  const bool grows = this->GrowthRate > 0.0;
   Report report;
+  Pace pace;
   double fraction = 0.0;
-  double growth = 1.0;
-  double reduction = FirstReduction;
   while (true)
   {
-    if (report.Iterations % IterationsPerCheck == 0)
+    const bool isCheck = report.Iterations % IterationsPerCheck == 0;
+    if (isCheck)
     {
-      const double last = report.AbsoluteGap;
       this->MeasureGap(u, negligible, report);
-      if (report.Iterations > 0 && report.AbsoluteGap < last)
-      {
-        growth = 1.0 + this->GrowthRate * report.Iterations;
-      }
-      else if (report.Iterations > 0)
-      {
-        reduction = std::max(LeastReduction, 0.5 * reduction);
-      }
       const double left = std::log(std::max(1.0, report.Gap / this->Options.StopTolerance));
       fraction = std::max(fraction, 1.0 - left / std::log(1.0 / this->Options.StopTolerance));
     }
@@ -177,20 +204,26 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
       break;
     }
     progress.Report(fraction);
-    if (growth != this->Gradients.Growth())
+    if (isCheck)
     {
-      this->Gradients.SetGrowth(growth);
-      this->AssembleMatrix(u);
-    }
-    if (report.Iterations % IterationsPerCheck == 0)
-    {
+      if (report.Iterations > 0)
+      {
+        pace.Take(report.AbsoluteGap);
+      }
+      if (isSingle && pace.ChecksSinceSmallest == Pace::MostChecks)
+      {
+        isSingle = false;
+        this->Start(u, true, false);
+      }
+      this->SetGrowth(1.0 + this->GrowthRate * pace.GrownIterations, u);
       this->SetResidual(u);
     }
     ++report.Iterations;
     this->Gradients.Update(u, OverRelaxation);
     this->Vertices->Update(u, OverRelaxation);
     this->UpdateResidual();
-    this->Descent.Improve(u, reduction, InnerIterations);
+    this->Descent.Improve(
+      u, grows ? pace.Reduction : 0.0, grows ? MostInnerIterations : InnerIterations);
   }
   u = this->Vertices->Admissible(u);
   // On nearly degenerate triangles the few inner iterations may not suffice.
@@ -203,8 +236,9 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   return report;
 }
 
-/// Sizes for as many columns as u has, a right-hand side of zero, and the matrix.
-void TotalVariationMinimizer::Prepare(const Values& u)
+/// The first iteration: sizes for as many columns as u has, the first penalty, and a right-hand side
+/// of zero.
+void TotalVariationMinimizer::Start(const Values& u, bool keepMultipliers, bool isSingle)
 {
   if (this->RightHandSide.cols() != u.cols())
   {
@@ -214,7 +248,18 @@ void TotalVariationMinimizer::Prepare(const Values& u)
     this->Load = Values::Zero(u.rows(), u.cols());
   }
   this->RightHandSide.setZero();
+  this->Gradients.Start(static_cast<int>(u.cols()), keepMultipliers, isSingle);
+  this->Descent.SetSinglePrecision(isSingle);
   this->AssembleMatrix(u);
+}
+
+void TotalVariationMinimizer::SetGrowth(double growth, const Values& u)
+{
+  if (growth != this->Gradients.Growth())
+  {
+    this->Gradients.SetGrowth(growth);
+    this->AssembleMatrix(u);
+  }
 }
 
 /// The matrix and load at the present penalty.

@@ -99,7 +99,8 @@ private:
     Flags fixed, const Settings& settings, const Vector& ranges, const ParallelFor& parallel);
 
   double NoiseEnergy() const;
-  void Prepare(const Values& u);
+  void Start(const Values& u, bool keepMultipliers, bool isSingle);
+  void SetGrowth(double growth, const Values& u);
   void AssembleMatrix(const Values& u);
   void SetResidual(const Values& u);
   void UpdateResidual();
