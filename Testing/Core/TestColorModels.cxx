@@ -142,7 +142,7 @@ TEST(ChromaticityBrightness, GreyDataKeepTheirChromaticityAndTheirBrightnessIsTh
     settings.TimeStep = 0.02;
     settings.Fidelity = 5.0;
     settings.Lagged = lagged;
-    settings.Tolerance = lagged ? 1e-12 : 1e-4;
+    settings.Tolerance = lagged ? 1e-12 : 1e-6; // for which the minimiser uses double precision
     const auto model = MakeColors(assembler, PointData::FromValues(colors), settings);
     std::unique_ptr<Model> scalar;
     const PointData data = PointData::FromValues(std::sqrt(3.0) * grey);
@@ -152,7 +152,7 @@ TEST(ChromaticityBrightness, GreyDataKeepTheirChromaticityAndTheirBrightnessIsTh
     }
     else
     {
-      auto exact = ExactSettings(mesh, 0.02, 5.0, 1e-4);
+      auto exact = ExactSettings(mesh, 0.02, 5.0, settings.Tolerance);
       exact.ConservesTotal = false;
       scalar = MakeExact(assembler, data, exact);
     }
@@ -583,8 +583,13 @@ TEST(OpponentColors, WithChromaWeightOneAreJointTotalVariation)
       {
         continue;
       }
-      const auto opponent = MakeOpponent(assembler, data, 1.0, lagged, timeStep);
-      const auto rgb = MakeOpponent(assembler, data, 1.0, lagged, timeStep, false);
+      const auto make = [&](bool isOpponent)
+      {
+        return MakeOpponent(
+          assembler, data, 1.0, lagged, timeStep, isOpponent, ChannelCoupling::Joint, 1e-8);
+      };
+      const auto opponent = make(true);
+      const auto rgb = make(false);
       EXPECT_TRUE(opponent->State() == data.Start);
       Advance(*opponent, 2);
       Advance(*rgb, 2);

@@ -493,6 +493,7 @@ TEST(Segmentation, ThreadsDoNotChangeABitAndNumberingNotTheResult)
   Segmentation::Settings settings;
   settings.UpdateMeans = true;
   settings.MaximumNumberOfAlternations = 3;
+  settings.StopTolerance = 5e-5; // for which the minimiser uses double precision
   const double fidelity = 0.5 / sphere.EdgeLength;
   const Segmented serial(sphere, inputOf(sphere, Ids(sphere.Mesh)), fidelity, settings);
   const ThreadedFor parallel(3);

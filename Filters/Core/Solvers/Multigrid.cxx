@@ -188,8 +188,9 @@ void Multigrid::SetLevels(Vector kernel, const ProgressMonitor& progress)
 }
 
 void Multigrid::SetLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
-  const SparseMatrix& prolongation, Level& level) const
+  const SparseMatrix& prolongation, Level& level)
 {
+  this->HasSlices = false;
   Round(matrix, level.A, this->Parallel);
   Round(restriction, level.Prolongation, this->Parallel);
   Round(prolongation, level.Restriction, this->Parallel);
@@ -227,11 +228,26 @@ void Multigrid::Resize(int columns)
   this->CoarsestNumbers.resize(this->CoarsestMatrix.rows(), columns);
 }
 
+void Multigrid::SetSlices()
+{
+  for (Level& level : this->Levels)
+  {
+    level.RowsOfA.Set(level.A, this->Parallel);
+    level.RowsOfProlongation.Set(level.Prolongation, this->Parallel);
+    level.RowsOfRestriction.Set(level.Restriction, this->Parallel);
+  }
+  this->HasSlices = true;
+}
+
 void Multigrid::Apply(const Values& r, const std::vector<double>& scale, Values& z)
 {
   const int k = static_cast<int>(r.cols());
   const bool isPadded = k == 3; // four columns fill a vector register
   this->Resize(isPadded ? 4 : k);
+  if (k == 1 && !this->HasSlices)
+  {
+    this->SetSlices();
+  }
   Numbers& b = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().B;
   ForEach(this->Parallel, static_cast<Index>(r.rows()),
     [&](Index i)
@@ -269,6 +285,20 @@ template <int K, typename Finish>
 void Multigrid::Subtract(
   Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)
 {
+  if constexpr (K == 1)
+  {
+    ForEachBlock(this->Parallel, static_cast<Index>(level.A.rows()),
+      [&](Index, Index begin, Index end)
+      {
+        float* const r = level.R.data();
+        level.RowsOfA.Subtract(begin, end, from.data(), x.data(), r);
+        for (Index i = begin; i < end; ++i)
+        {
+          finish(i, i, r + i);
+        }
+      });
+    return;
+  }
   const ColumnCount<K> k(columns);
   ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
     [&](Index i)
@@ -290,12 +320,29 @@ void Multigrid::Subtract(
     });
 }
 
-/// y = or y += (the columns of `rows`) . x
+/// y = or y += (the columns of `matrix`, or their slices) . x
 template <int K>
-void Multigrid::Product(const Matrix& rows, const Numbers& x, Numbers& y, int columns, bool add)
+void Multigrid::Product(const Matrix& matrix, const SlicedRows& rows, const Numbers& x, Numbers& y,
+  int columns, bool add)
 {
+  if constexpr (K == 1)
+  {
+    ForEachBlock(this->Parallel, rows.Size(),
+      [&](Index, Index begin, Index end)
+      {
+        if (add)
+        {
+          rows.Add(begin, end, x.data(), y.data());
+        }
+        else
+        {
+          rows.Multiply(begin, end, x.data(), y.data());
+        }
+      });
+    return;
+  }
   const ColumnCount<K> k(columns);
-  ForEach(this->Parallel, static_cast<Index>(rows.cols()),
+  ForEach(this->Parallel, static_cast<Index>(matrix.cols()),
     [&](Index i)
     {
       float* yi = y.data() + static_cast<std::ptrdiff_t>(i) * k;
@@ -305,7 +352,7 @@ void Multigrid::Product(const Matrix& rows, const Numbers& x, Numbers& y, int co
       {
         sums[c] = add ? yi[c] : 0.0f;
       }
-      AddProduct<K>(rows, i, x, k, 1.0f, sums);
+      AddProduct<K>(matrix, i, x, k, 1.0f, sums);
       for (int c = 0; c < k; ++c)
       {
         yi[c] = sums[c];
@@ -356,10 +403,10 @@ void Multigrid::Cycle(std::size_t number, int columns)
   this->Subtract<K>(level, level.R, level.E, columns, [](Index, std::ptrdiff_t, const float*) {});
 
   const bool last = number + 1 == this->Levels.size();
-  this->Product<K>(level.Restriction, level.R,
+  this->Product<K>(level.Restriction, level.RowsOfRestriction, level.R,
     last ? this->CoarsestNumbers : this->Levels[number + 1].B, columns, false);
   this->Cycle<K>(number + 1, columns);
-  this->Product<K>(level.Prolongation, last ? this->CoarsestNumbers : this->Levels[number + 1].X,
+  this->Product<K>(level.Prolongation, level.RowsOfProlongation, last ? this->CoarsestNumbers : this->Levels[number + 1].X,
     level.X, columns, true);
 
   this->Subtract<K>(level, level.B, level.X, columns, first);

@@ -4,6 +4,7 @@
 
 #include "Core/Solvers/Aggregation.h"
 #include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SlicedRows.h"
 
 #include <deque>
 #include <memory>
@@ -54,20 +55,23 @@ private:
     Matrix Prolongation; ///< column i: the weights of the vertices of the next level in vertex i
     Matrix Restriction; ///< its transpose
     Numbers B, X, R, D, E;
+    SlicedRows RowsOfA, RowsOfProlongation, RowsOfRestriction; ///< for one column
   };
 
   void MakeLevels(SparseMatrix& current, Vector kernel, const ProgressMonitor& progress);
   void SetLevels(Vector kernel, const ProgressMonitor& progress);
   void SetLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
-    const SparseMatrix& prolongation, Level& level) const;
+    const SparseMatrix& prolongation, Level& level);
   void Resize(int columns);
+  void SetSlices();
   template <int K>
   void Cycle(std::size_t number, int columns);
   template <int K, typename Finish>
   void Subtract(
     Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish);
   template <int K>
-  void Product(const Matrix& rows, const Numbers& x, Numbers& y, int columns, bool add);
+  void Product(const Matrix& matrix, const SlicedRows& rows, const Numbers& x, Numbers& y,
+    int columns, bool add);
 
   const ParallelFor& Parallel;
   Vector Scaling; ///< diag(A)^-1/2
@@ -79,6 +83,7 @@ private:
   Values CoarsestB, CoarsestX;
   Numbers CoarsestNumbers;
   int Columns = -1; ///< for which the vectors are allocated
+  bool HasSlices = false; ///< the levels have them
 };
 
 } // namespace SurfaceDiffusion
