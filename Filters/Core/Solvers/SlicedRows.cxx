@@ -23,40 +23,44 @@ struct Slices
   const float* Entries;
 };
 
-/// y = base b + sign rows x of whole slices.
+/// y = b + sign rows x of whole slices, in the order of Multigrid's products with several columns.
 SURFACEDIFFUSION_ANY_VECTORS void AddProducts(const Slices& slices, Index begin, Index end,
-  float sign, const float* x, float base, const float* b, float* y)
+  float sign, const float* x, const float* b, float* y)
 {
   for (std::ptrdiff_t row = begin; row < end; row += Lanes)
   {
-    float products[Lanes] = {};
+    float sums[Lanes];
+    for (Index l = 0; l < Lanes; ++l)
+    {
+      sums[l] = b[row + l];
+    }
     const std::size_t last = slices.Begin[row / Lanes + 1];
     for (std::size_t slot = slices.Begin[row / Lanes]; slot < last; slot += Lanes)
     {
       for (Index l = 0; l < Lanes; ++l)
       {
-        products[l] += slices.Entries[slot + l] * x[slices.Columns[slot + l]];
+        sums[l] += sign * slices.Entries[slot + l] * x[slices.Columns[slot + l]];
       }
     }
     for (Index l = 0; l < Lanes; ++l)
     {
-      y[row + l] = base * b[row + l] + sign * products[l];
+      y[row + l] = sums[l];
     }
   }
 }
 
 /// The same, where the last slice may be incomplete.
 void AddAnyProducts(const Slices& slices, Index begin, Index end, float sign, const float* x,
-  float base, const float* b, float* y)
+  const float* b, float* y)
 {
   const Index whole = begin + (end - begin) / Lanes * Lanes;
-  AddProducts(slices, begin, whole, sign, x, base, b, y);
+  AddProducts(slices, begin, whole, sign, x, b, y);
   if (whole < end)
   {
     float last[Lanes] = {};
     std::copy(b + whole, b + end, last);
     const Slices rest{ slices.Begin + whole / Lanes, slices.Columns, slices.Entries };
-    AddProducts(rest, 0, Lanes, sign, x, base, last, last);
+    AddProducts(rest, 0, Lanes, sign, x, last, last);
     std::copy_n(last, end - whole, y + whole);
   }
 }
@@ -122,13 +126,13 @@ void SlicedRows::Multiply(Index begin, Index end, const float* x, float* y) cons
 void SlicedRows::Subtract(Index begin, Index end, const float* b, const float* x, float* y) const
 {
   AddAnyProducts({ this->Begin.data(), this->Columns.data(), this->Entries.data() }, begin, end,
-    -1.0F, x, 1.0F, b, y);
+    -1.0F, x, b, y);
 }
 
 void SlicedRows::Add(Index begin, Index end, const float* x, float* y) const
 {
   AddAnyProducts({ this->Begin.data(), this->Columns.data(), this->Entries.data() }, begin, end,
-    1.0F, x, 1.0F, y, y);
+    1.0F, x, y, y);
 }
 
 } // namespace SurfaceDiffusion
