@@ -586,7 +586,7 @@ TEST(OpponentColors, WithChromaWeightOneAreJointTotalVariation)
       const auto make = [&](bool isOpponent)
       {
         return MakeOpponent(
-          assembler, data, 1.0, lagged, timeStep, isOpponent, ChannelCoupling::Joint, 1e-8);
+          assembler, data, 1.0, lagged, timeStep, isOpponent, ChannelCoupling::Joint, 1e-10);
       };
       const auto opponent = make(true);
       const auto rgb = make(false);
