@@ -74,7 +74,8 @@ TEST(TotalVariationMinimizer, GapBoundsTheDistanceToTheMinimum)
         problem.Quadratic = absolute ? 0.0 : 10.0;
         problem.Absolute = absolute ? 4.0 : 0.0;
         const auto [minimum, fine] = problem.Minimum(1e-6);
-        EXPECT_LE(fine.Gap, 1e-6) << static_cast<int>(kind) << static_cast<int>(coupling) << absolute << " " << fine.Iterations;
+        EXPECT_LE(fine.Gap, 1e-6) << static_cast<int>(kind) << static_cast<int>(coupling)
+                                  << absolute << " " << fine.Iterations;
         for (const double tolerance : { 1e-1, 1e-2, 1e-3 })
         {
           const auto [energy, report] = problem.Minimum(tolerance);

@@ -20,7 +20,7 @@ namespace SurfaceDiffusion
 /// at every iteration.
 class GradientSplitting
 {
-  // What follows uses their types.
+  // Their types are deduced: they come before their uses.
   template <typename Act>
   decltype(auto) Visit(const Act& act)
   {

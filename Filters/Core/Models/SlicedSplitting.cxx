@@ -110,8 +110,8 @@ void UpdateSlice(const Slice& slice, const Iteration<Number>& iteration, const S
     }
     for (int k = first; k < first + together; ++k)
     {
-      AddGradient(slice, iteration.U + k, columns, gain,
-        w + static_cast<std::ptrdiff_t>(2 * k) * Lanes);
+      AddGradient(
+        slice, iteration.U + k, columns, gain, w + static_cast<std::ptrdiff_t>(2 * k) * Lanes);
     }
     SumSquares(begin, 2 * together, squares);
     setShares(squares, shares);
@@ -435,7 +435,7 @@ void SlicedSplitting<Number>::GetMultipliers(double* multipliers) const
             {
               const auto t = static_cast<std::size_t>(s) * Lanes + l;
               multipliers[t * 2 * this->Columns + c] =
-                static_cast<double>(this->W[this->Place(s, c, l)]) * shares[l];
+                this->W[this->Place(s, c, l)] * shares[l]; // as rounded as in Start()
             }
           }
         });

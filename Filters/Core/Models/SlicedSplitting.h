@@ -38,8 +38,8 @@ public:
   }
 
   /// penalty: r per triangle, times its area. All three must stay.
-  void SetMesh(const TriangleMesh& mesh, const std::vector<GradientMap>& gradients,
-    const Vector& penalty);
+  void SetMesh(
+    const TriangleMesh& mesh, const std::vector<GradientMap>& gradients, const Vector& penalty);
   bool HasMesh() const { return this->Mesh != nullptr; }
 
   /// Whether the numbers of the mesh are far from the limits of Number.

@@ -363,8 +363,7 @@ void TotalVariationMinimizer::UpdateColumns()
       side[k] = sum[k];
     }
   };
-  const auto gather = [&](Index i, double* sum)
-  { this->Gradients.GatherRightHandSide<K>(i, sum); };
+  const auto gather = [&](Index i, double* sum) { this->Gradients.GatherRightHandSide<K>(i, sum); };
   if (this->OverProcesses.IsSerial())
   {
     ForEach(this->Parallel, static_cast<Index>(this->Gathered.rows()),

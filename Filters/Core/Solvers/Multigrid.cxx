@@ -322,8 +322,8 @@ void Multigrid::Subtract(
 
 /// y = or y += (the columns of `matrix`, or their slices) . x
 template <int K>
-void Multigrid::Product(const Matrix& matrix, const SlicedRows& rows, const Numbers& x, Numbers& y,
-  int columns, bool add)
+void Multigrid::Product(
+  const Matrix& matrix, const SlicedRows& rows, const Numbers& x, Numbers& y, int columns, bool add)
 {
   if constexpr (K == 1)
   {
@@ -406,8 +406,8 @@ void Multigrid::Cycle(std::size_t number, int columns)
   this->Product<K>(level.Restriction, level.RowsOfRestriction, level.R,
     last ? this->CoarsestNumbers : this->Levels[number + 1].B, columns, false);
   this->Cycle<K>(number + 1, columns);
-  this->Product<K>(level.Prolongation, level.RowsOfProlongation, last ? this->CoarsestNumbers : this->Levels[number + 1].X,
-    level.X, columns, true);
+  this->Product<K>(level.Prolongation, level.RowsOfProlongation,
+    last ? this->CoarsestNumbers : this->Levels[number + 1].X, level.X, columns, true);
 
   this->Subtract<K>(level, level.B, level.X, columns, first);
   this->Subtract<K>(level, level.R, level.D, columns,

@@ -116,9 +116,8 @@ void QuadraticDescent::Improve(Values& x, double reduction, int maximumNumberOfI
       reduction, maximumNumberOfIterations);
     return;
   }
-  this->Improve(
-    MatrixSystem(*this->Matrix, this->InverseDiagonal, *this->OverProcesses), x, reduction,
-    maximumNumberOfIterations);
+  this->Improve(MatrixSystem(*this->Matrix, this->InverseDiagonal, *this->OverProcesses), x,
+    reduction, maximumNumberOfIterations);
 }
 
 template <typename System>

@@ -47,8 +47,7 @@ public:
 private:
   bool ImproveInSinglePrecision(Values& x, double reduction, int maximumNumberOfIterations);
   template <typename System>
-  void Improve(
-    const System& system, Values& x, double reduction, int maximumNumberOfIterations);
+  void Improve(const System& system, Values& x, double reduction, int maximumNumberOfIterations);
 
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;

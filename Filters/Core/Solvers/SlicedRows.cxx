@@ -125,14 +125,14 @@ void SlicedRows::Multiply(Index begin, Index end, const float* x, float* y) cons
 
 void SlicedRows::Subtract(Index begin, Index end, const float* b, const float* x, float* y) const
 {
-  AddAnyProducts({ this->Begin.data(), this->Columns.data(), this->Entries.data() }, begin, end,
-    -1.0F, x, b, y);
+  AddAnyProducts(
+    { this->Begin.data(), this->Columns.data(), this->Entries.data() }, begin, end, -1.0F, x, b, y);
 }
 
 void SlicedRows::Add(Index begin, Index end, const float* x, float* y) const
 {
-  AddAnyProducts({ this->Begin.data(), this->Columns.data(), this->Entries.data() }, begin, end,
-    1.0F, x, y, y);
+  AddAnyProducts(
+    { this->Begin.data(), this->Columns.data(), this->Entries.data() }, begin, end, 1.0F, x, y, y);
 }
 
 } // namespace SurfaceDiffusion

@@ -22,8 +22,8 @@ public:
   static constexpr Index Lanes = 16;
 
   /// Row i is column i of `columns`. Allocates only for a new pattern.
-  void Set(const Eigen::SparseMatrix<float, Eigen::ColMajor, Index>& columns,
-    const ParallelFor& parallel);
+  void Set(
+    const Eigen::SparseMatrix<float, Eigen::ColMajor, Index>& columns, const ParallelFor& parallel);
 
   Index Size() const { return this->Count; }
 
