@@ -87,8 +87,9 @@ void GradientSplitting::Start(int columns, bool keepMultipliers, bool inSinglePr
   if (keepMultipliers && isSingle != this->IsSingle && this->Kept.empty())
   {
     this->KeptColumns = this->NumberOfColumns();
-    this->Kept.resize(this->NumberOfMultipliers(this->KeptColumns));
-    this->GetMultipliers(this->Kept.data());
+    std::vector<double> multipliers(this->NumberOfMultipliers(this->KeptColumns));
+    this->GetMultipliers(multipliers.data());
+    this->Kept.swap(multipliers);
   }
   const bool startsFromKept = keepMultipliers && !this->Kept.empty();
   this->IsSingle = isSingle;
