@@ -40,34 +40,36 @@ constexpr double SquaredEdgeOverHeight = 4.0 / 3.0; ///< of equilateral triangle
 /// stays: measured on steps and steady states of caps and patterns with and without noise.
 constexpr double StartOfGrowth = 6.0;
 
-/// How exactly the quadratic problem is solved and for how many iterations the penalty has grown. A
+/// How exactly the quadratic problem is solved and by how much the penalty has grown. A
 /// method whose penalty grows diverges if its errors grow with it, and slows down if the penalty
 /// grows faster than it converges: when the gap has not fallen, errors become smaller and the penalty
 /// stays, and falls in the end.
 struct Pace
 {
   static constexpr double LeastReduction = 0.02;
+  static constexpr double MostGrowth = 4.0; ///< at a time
   static constexpr int MostChecks = 3; ///< without a smaller gap
 
   double Reduction = 0.2; ///< of the residual of the quadratic problem, with a growing penalty
-  int GrownIterations = 0;
+  double Growth = 1.0; ///< of the penalty
   double Smallest = std::numeric_limits<double>::infinity(); ///< gap
   int ChecksSinceSmallest = 0;
 
-  void Take(double gap)
+  /// rate: of the growth per iteration
+  void Take(double gap, double rate)
   {
     if (gap < this->Smallest)
     {
       this->Smallest = gap;
       this->ChecksSinceSmallest = 0;
-      this->GrownIterations += IterationsPerCheck;
+      this->Growth = std::min(this->Growth + rate * IterationsPerCheck, MostGrowth * this->Growth);
       return;
     }
     ++this->ChecksSinceSmallest;
     this->Reduction = std::max(LeastReduction, 0.5 * this->Reduction);
     if (this->ChecksSinceSmallest % MostChecks == 0 && gap > 2.0 * this->Smallest)
     {
-      this->GrownIterations /= 2;
+      this->Growth = std::max(1.0, 0.5 * this->Growth);
     }
   }
 };
@@ -208,14 +210,14 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
     {
       if (report.Iterations > 0)
       {
-        pace.Take(report.AbsoluteGap);
+        pace.Take(report.AbsoluteGap, this->GrowthRate);
       }
       if (isSingle && pace.ChecksSinceSmallest == Pace::MostChecks)
       {
         isSingle = false;
         this->Start(u, true, false);
       }
-      this->SetGrowth(1.0 + this->GrowthRate * pace.GrownIterations, u);
+      this->SetGrowth(pace.Growth, u);
       this->SetResidual(u);
     }
     ++report.Iterations;
