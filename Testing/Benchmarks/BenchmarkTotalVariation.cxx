@@ -8,6 +8,7 @@
 // removes a blur of 4 mean edge lengths. The segmentation has two labels with the means 0 and 1.
 // DenoiseColors minimises over three channels on opponent axes, or alternates brightness and
 // chromaticity, to a tolerance of 1e-3.
+// FlowOfSteps minimises in as many time steps of a flow without fidelity as its argument says.
 // ChannelStep is a lagged step of all channels together, of total variation or of the Beltrami flow.
 
 #include "Meshes.h"
@@ -89,6 +90,28 @@ BENCHMARK(MinimizeToGap)
   ->ArgNames({ "s", "digits", "channels" })
   ->ArgsProduct({ { 6, 7 }, { 3, 5, 6 }, { 1, 3 } })
   ->Unit(benchmark::kMillisecond);
+
+/// The time 0.2 on a sphere with the radius 1, always in the same number of time steps: short steps
+/// start near their minima.
+void FlowOfSteps(benchmark::State& state)
+{
+  const NoisyPattern pattern(5, 1);
+  const int steps = static_cast<int>(state.range(0));
+  TotalVariationFlow::Settings settings;
+  settings.TimeStep = 0.2 / steps / pattern.Operators->Mesh().LengthUnit();
+  int iterations = 0;
+  for (auto _ : state)
+  {
+    TotalVariationFlow flow(pattern.Operators, TangentVectors(), pattern.Data, settings);
+    iterations = 0;
+    for (int step = 0; step < steps; ++step)
+    {
+      iterations += flow.Advance(ProgressMonitor()).Iterations;
+    }
+  }
+  state.counters["IterationsPerStep"] = static_cast<double>(iterations) / steps;
+}
+BENCHMARK(FlowOfSteps)->ArgName("steps")->Arg(4)->Arg(16)->Arg(64)->Unit(benchmark::kMillisecond);
 
 /// Alternated steps of brightness and chromaticity, or the joint minimum on opponent axes.
 void DenoiseColors(benchmark::State& state)
