@@ -442,7 +442,7 @@ TEST(TotalVariationFlow, EachOfSeveralChannelsComesOutAsIfAlone)
   }
 }
 
-TEST(TotalVariationFlow, ErrorBoundIsNotBelowTheErrorAndThatOfTheTolerance)
+TEST(TotalVariationFlow, ErrorBoundIsBetweenTheErrorAndThatOfTheTolerance)
 {
   const CapProblem cap;
   PointData data = PointData::FromValues(cap.Data.Start + 0.1 * Noise(cap.Mesh));
