@@ -277,7 +277,7 @@ void SlicedSplitting<Number>::ForNorms(Index s, const Act& act) const
       if (this->HasP)
       {
         Number squares[Lanes];
-        SumSquares(this->W.data() + this->Place(s, 2 * first, 0), 2 * (last - first), squares);
+        SumSquares(&this->W[this->Place(s, 2 * first, 0)], 2 * (last - first), squares);
         this->SetShares(s, squares, shares);
       }
       act(first, last, shares);
@@ -297,7 +297,7 @@ void SlicedSplitting<Number>::Scale(const Factor& factor)
         {
           for (int c = 2 * first; c < 2 * last; ++c)
           {
-            Number* const w = this->W.data() + this->Place(s, c, 0);
+            Number* const w = &this->W[this->Place(s, c, 0)];
             for (Index l = 0; l < Lanes; ++l)
             {
               w[l] *= factor(shares[l]);
@@ -321,7 +321,7 @@ void SlicedSplitting<Number>::Start(int columns, bool keepMultipliers)
   if (!fits || !keepMultipliers)
   {
     this->ForEachSlice(
-      [&](Index s) { std::fill_n(this->W.data() + this->Place(s, 0, 0), 2 * columns * Lanes, 0); });
+      [&](Index s) { std::fill_n(&this->W[this->Place(s, 0, 0)], 2 * columns * Lanes, 0); });
   }
   else if (this->HasP)
   {
@@ -366,8 +366,8 @@ void SlicedSplitting<Number>::Update(const Values& u, double relaxation)
           this->Slices[s], iteration,
           [this, s](const Number(&squares)[Lanes], Number(&shares)[Lanes])
           { this->SetShares(s, squares, shares); },
-          this->W.data() + this->Place(s, 0, 0),
-          this->AtCorners.data() + this->Place(s, 0, 0) / 2 * 3);
+          &this->W[this->Place(s, 0, 0)],
+          &this->AtCorners[this->Place(s, 0, 0) / 2 * 3]);
       });
   }
   this->HasP = true;
@@ -387,8 +387,8 @@ void SlicedSplitting<Number>::SpreadMultipliers()
             shares[l] *= this->Slices[s].AreaOverPenalty[l];
           }
           Spread(this->Slices[s], this->Columns, first, last, shares,
-            this->W.data() + this->Place(s, 0, 0),
-            this->AtCorners.data() + this->Place(s, 0, 0) / 2 * 3);
+            &this->W[this->Place(s, 0, 0)],
+            &this->AtCorners[this->Place(s, 0, 0) / 2 * 3]);
         });
     });
 }
@@ -408,7 +408,7 @@ double SlicedSplitting<Number>::ConjugateEnergy() const
         [&](int first, int last, const Number(&shares)[Lanes])
         {
           Number squares[Lanes];
-          SumSquares(this->W.data() + this->Place(s, 2 * first, 0), 2 * (last - first), squares);
+          SumSquares(&this->W[this->Place(s, 2 * first, 0)], 2 * (last - first), squares);
           for (Index l = 0; l < this->LanesOf(s); ++l)
           {
             const double squared = static_cast<double>(squares[l]) * shares[l] * shares[l];
