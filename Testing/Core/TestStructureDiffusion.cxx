@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
+#include "Core/Models/GradientTensor.h"
 #include "Core/Models/StructureDiffusion.h"
 #include "Core/Models/Trajectory.h"
 #include "Core/Operators/MeanCorrection.h"
@@ -403,6 +404,39 @@ TEST(StructureDiffusion, VarianceNeverRisesOnScannedMeshes)
         }
       }
     });
+}
+
+/// With g1 = 0, nothing flows along the gradient. On triangles of 1 : 300, round-off of the entries of D
+/// would.
+TEST(StructureDiffusion, OneChannelOnThinTrianglesStaysWhereNothingFlowsAcrossEdges)
+{
+  const auto assembler = MakeAssembler(Cylinder(24, 40, 1.0, 40 * 300 * 2.0 * Pi / 24));
+  Settings settings;
+  settings.Model = Kind::EdgeEnhancing;
+  settings.TimeStep = 1e8;
+  settings.Contrast = 1e-30;
+  StructureDiffusion model(assembler, TangentVectors(),
+    PointData::FromValues(Noise(assembler->Mesh())), settings,
+    MakeStructure(assembler, { 0.0, 0.0 }), MakeCholeskySolver());
+  const double first = model.Energy();
+  Advance(model, 2);
+  EXPECT_NEAR(model.Energy(), first, 1e-3 * first);
+}
+
+TEST(StructureDiffusion, NeighbouringHugeValuesHaveAGradient)
+{
+  const auto assembler = MakeAssembler(Icosphere(0));
+  const TriangleMesh& mesh = assembler->Mesh();
+  double value = std::ldexp(1.999, 320);
+  for (int run = 0; run < 100; ++run)
+  {
+    const double next = std::nextafter(value, 2.0 * value);
+    Values u = Values::Constant(mesh.NumberOfVertices(), 2, value);
+    u.row(mesh.TriangleVertices()(0, 1)).setConstant(next);
+    const PlaneTensor sum = SumGradients(mesh, u, 0).T;
+    EXPECT_TRUE(sum.Trace() > 0.0 && std::isfinite(sum.Trace())) << value;
+    value = next;
+  }
 }
 
 TEST(StructureDiffusion, ConstantsStayToTheLastBit)

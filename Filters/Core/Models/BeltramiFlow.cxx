@@ -8,15 +8,6 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-/// The eigenvalues of D differ by b^2 m1, that is by any factor on small triangles. A positive
-/// diagonal beside m M does not change that a step lowers E.
-constexpr double SmallDamping = 1e-14;
-
-} // namespace
-
 BeltramiFlow::BeltramiFlow(std::shared_ptr<const Assembler> assembler, TangentVectors frames,
   PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
   const ParallelFor& parallel)
@@ -25,7 +16,7 @@ BeltramiFlow::BeltramiFlow(std::shared_ptr<const Assembler> assembler, TangentVe
   , Options(settings)
   , Factors(std::move(frames), settings.AlongDiffusivity, settings.AcrossDiffusivity)
 {
-  this->Damping = SmallDamping;
+  this->DampRoundOff(); // the eigenvalues of D differ by b^2 m1: by any factor on small triangles
   if (settings.MassMetric == Metric::Induced)
   {
     this->AreaRatios.resize(this->Mesh().NumberOfTriangles());

@@ -37,16 +37,16 @@ public:
   double GetValueScale() const { return this->ValueScale; }
   double GetScale() const { return this->Scale; }
   /// To a length of about LongestGradient. Before they are divided by lengths, which may be as small
-  /// as any number, values are made small.
+  /// as any number, values are made small, by a power of two: neighbouring numbers stay apart.
   void Shorten()
   {
-    this->ValueScale = 1e-200;
+    this->ValueScale = std::ldexp(1.0, -660);
     double longest = 0.0;
     for (int k = 0; k < this->Count; ++k)
     {
       longest = std::max(longest, (*this)[k].cwiseAbs().maxCoeff());
     }
-    this->Scale = LongestGradient / longest;
+    this->Scale = longest > 0.0 ? LongestGradient / longest : 1.0;
   }
 
   Eigen::Vector2d operator[](int k) const

@@ -46,13 +46,12 @@ protected:
   Eigen::Index ColumnsPerTensor() const { return this->TensorColumns; }
   /// No longer correct the sum of A_i u_i, which the model does not conserve.
   void DropConservation() { this->Conserved = TotalCorrection(); }
+  /// Add 1e-14 of its diagonal to the matrix. That keeps the matrix positive definite where the
+  /// eigenvalues of D differ by more than round-off resolves, slows the change of u in a step by as
+  /// much, and leaves steady states and the decay of the energy as they are.
+  void DampRoundOff() { this->Damping = 1e-14; }
   /// The energy of the fidelity term, summed over the vertices of this process.
   double FidelityEnergy() const { return this->Fit.Energy(this->Mesh(), this->U, this->Parallel); }
-
-  /// The part of the diagonal of the matrix that is added to it once more. It keeps the matrix
-  /// positive definite if the eigenvalues of D differ by more than round-off resolves, and slows
-  /// the change of u in a step by as much.
-  double Damping = 0.0;
 
   const ParallelFor& Parallel;
   CornerWeights Weighted; ///< the weights (12) of D
@@ -78,6 +77,7 @@ private:
   std::shared_ptr<const Assembler> Assembly;
   Fidelity Fit;
   double TimeStep;
+  double Damping = 0.0;
   ImplicitSystem System;
   TotalCorrection Conserved;
   Vector Diagonal;

@@ -366,8 +366,7 @@ void SlicedSplitting<Number>::Update(const Values& u, double relaxation)
           this->Slices[s], iteration,
           [this, s](const Number(&squares)[Lanes], Number(&shares)[Lanes])
           { this->SetShares(s, squares, shares); },
-          &this->W[this->Place(s, 0, 0)],
-          &this->AtCorners[this->Place(s, 0, 0) / 2 * 3]);
+          &this->W[this->Place(s, 0, 0)], &this->AtCorners[this->Place(s, 0, 0) / 2 * 3]);
       });
   }
   this->HasP = true;
@@ -387,8 +386,7 @@ void SlicedSplitting<Number>::SpreadMultipliers()
             shares[l] *= this->Slices[s].AreaOverPenalty[l];
           }
           Spread(this->Slices[s], this->Columns, first, last, shares,
-            &this->W[this->Place(s, 0, 0)],
-            &this->AtCorners[this->Place(s, 0, 0) / 2 * 3]);
+            &this->W[this->Place(s, 0, 0)], &this->AtCorners[this->Place(s, 0, 0) / 2 * 3]);
         });
     });
 }

@@ -27,12 +27,13 @@ StructureDiffusion::StructureDiffusion(std::shared_ptr<const Assembler> assemble
   , Factors(std::move(frames), settings.AlongDiffusivity, settings.AcrossDiffusivity)
   , Structure(std::move(structure))
 {
+  this->DampRoundOff(); // g1 vanishes across steep edges
 }
 
-/// D = (g1 + g2)/2 I + (g1 - g2)/2 (cos 2a, sin 2a; sin 2a, -cos 2a) with e1 at the angle a.
-PlaneTensor StructureDiffusion::Diffusivity(Index t) const
+/// Without coherence, the mean of g1 and g2 in all directions.
+StructureDiffusion::Tensor StructureDiffusion::Diffusivity(Index t) const
 {
-  const Eigen::Vector2d deviator = this->Structure->Deviators().row(t);
+  const Eigen::RowVector2d deviator = this->Structure->Deviators().row(t);
   const double half = deviator.norm(); // (m1 - m2)/2
   const double square = this->Options.Contrast * this->Options.Contrast;
   double g1 = this->Options.Alpha;
@@ -48,11 +49,15 @@ PlaneTensor StructureDiffusion::Diffusivity(Index t) const
     g1 = -std::expm1(-FluxFactor * std::pow(ratio, 4));
     g2 = 1.0;
   }
-  const double mean = 0.5 * (g1 + g2);
-  const double scale = half > 0.0 ? 0.5 * (g1 - g2) / half : 0.0;
-  const PlaneTensor d = { mean + scale * deviator[0], scale * deviator[1],
-    mean - scale * deviator[0] };
-  return this->Factors.IsOne() ? d : d.Between(this->Factors(t));
+  const PlaneTensor s = this->Factors(t);
+  if (!(half > 0.0))
+  {
+    const double mean = 0.5 * (g1 + g2);
+    return { mean, mean, { s.XX, s.XY }, { s.XY, s.YY } };
+  }
+  const Eigen::RowVector2d e = StrongestAxis({ deviator[0], deviator[1], -deviator[0] });
+  return { g1, g2, { s.XX * e[0] + s.XY * e[1], s.XY * e[0] + s.YY * e[1] },
+    { s.XY * e[0] - s.XX * e[1], s.YY * e[0] - s.XY * e[1] } };
 }
 
 void StructureDiffusion::FillWeights(
@@ -62,7 +67,12 @@ void StructureDiffusion::FillWeights(
   const TriangleMesh& mesh = this->Mesh();
   ForEach(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
-    { this->Weighted.row(t) = TensorWeights(mesh.Shapes()[t], this->Diffusivity(t)); });
+    {
+      const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+      const Tensor d = this->Diffusivity(t);
+      this->Weighted.row(t) = d.G1 * DirectionalWeights(shape, d.E1[0], d.E1[1]) +
+        d.G2 * DirectionalWeights(shape, d.E2[0], d.E2[1]);
+    });
 }
 
 double StructureDiffusion::Energy() const
@@ -81,7 +91,13 @@ TangentVectors StructureDiffusion::Axes(const ProgressMonitor& progress) const
   this->Structure->Evaluate(this->U, unused, progress);
   TangentVectors axes(this->Mesh().NumberOfTriangles(), 2);
   ForEach(this->Parallel, this->Mesh().NumberOfTriangles(),
-    [&](Index t) { axes.row(t) = StrongestAxis(this->Diffusivity(t)); });
+    [&](Index t)
+    {
+      const Tensor d = this->Diffusivity(t);
+      const auto entry = [&](int i, int j)
+      { return d.G1 * (d.E1[i] * d.E1[j]) + d.G2 * (d.E2[i] * d.E2[j]); };
+      axes.row(t) = StrongestAxis({ entry(0, 0), entry(0, 1), entry(1, 1) });
+    });
   return axes;
 }
 

@@ -61,9 +61,17 @@ public:
   TangentVectors Axes(const ProgressMonitor& progress = ProgressMonitor()) const;
 
 private:
+  /// S D S = g1 S e1 (S e1)^T + g2 S e2 (S e2)^T. As a sum of squares it stays positive
+  /// semi-definite where the entries of D have lost the smaller of g1 and g2.
+  struct Tensor
+  {
+    double G1, G2;
+    Eigen::RowVector2d E1, E2; ///< S e1 and S e2
+  };
+
   void FillWeights(Eigen::Index first, Eigen::Index last, StepReport& report,
     const ProgressMonitor& progress) override;
-  PlaneTensor Diffusivity(Index t) const;
+  Tensor Diffusivity(Index t) const;
 
   Settings Options;
   GivenFactors Factors;
