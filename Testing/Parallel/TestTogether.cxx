@@ -248,6 +248,7 @@ AnyFilter MinimumInpainting()
   SetInputArray(tv, 1, "hole");
   SetInputArray(tv, 3, "edge");
   tv->SetHoldKnownValues(true);
+  tv->SetStopTolerance(1e-6); // in double precision
   return tv;
 }
 
@@ -255,6 +256,7 @@ AnyFilter MinimumL1()
 {
   auto tv = Make<vtkIntrinsicTVFilter>("v", 1);
   tv->SetModeToSteadyState();
+  tv->SetStopTolerance(1e-5); // in double precision
   tv->SetFidelityNormToL1();
   tv->SetFidelityWeight(2.0);
   return tv;

@@ -15,6 +15,9 @@ namespace
 /// With it, the flux of g1 is largest where m1 = K^2 (Weickert 1998, for the exponent 4).
 constexpr double FluxFactor = 3.31488;
 
+/// Of g1, below which g2 - g1 gives no direction.
+constexpr double RoundOff = 1e-12;
+
 } // namespace
 
 StructureDiffusion::StructureDiffusion(std::shared_ptr<const Assembler> assembler,
@@ -36,28 +39,36 @@ StructureDiffusion::Tensor StructureDiffusion::Diffusivity(Index t) const
   const Eigen::RowVector2d deviator = this->Structure->Deviators().row(t);
   const double half = deviator.norm(); // (m1 - m2)/2
   const double square = this->Options.Contrast * this->Options.Contrast;
-  double g1 = this->Options.Alpha;
-  double g2 = g1;
+  Tensor d;
   if (this->Options.Model == Kind::CoherenceEnhancing)
   {
     const double ratio = square / (2.0 * half); // infinite without coherence: g2 = alpha
-    g2 += (1.0 - g1) * std::exp(-ratio * ratio);
+    d.G1 = this->Options.Alpha;
+    d.Excess = (1.0 - d.G1) * std::exp(-ratio * ratio);
   }
   else
   {
     const double ratio = square / (0.5 * this->Structure->Traces()[t] + half);
-    g1 = -std::expm1(-FluxFactor * std::pow(ratio, 4));
-    g2 = 1.0;
+    const double flux = FluxFactor * std::pow(ratio, 4);
+    d.G1 = -std::expm1(-flux);
+    d.Excess = std::exp(-flux);
   }
-  const PlaneTensor s = this->Factors(t);
-  if (!(half > 0.0))
+  if (half > 0.0)
   {
-    const double mean = 0.5 * (g1 + g2);
-    return { mean, mean, { s.XX, s.XY }, { s.XY, s.YY } };
+    d.E2 = StrongestAxis({ -deviator[0], -deviator[1], deviator[0] });
   }
-  const Eigen::RowVector2d e = StrongestAxis({ deviator[0], deviator[1], -deviator[0] });
-  return { g1, g2, { s.XX * e[0] + s.XY * e[1], s.XY * e[0] + s.YY * e[1] },
-    { s.XY * e[0] - s.XX * e[1], s.YY * e[0] - s.XY * e[1] } };
+  else
+  {
+    d.G1 += 0.5 * d.Excess;
+    d.Excess = 0.0;
+  }
+  if (!this->Factors.IsOne())
+  {
+    const PlaneTensor s = this->Factors(t);
+    d.Square = d.Square.Between(s);
+    d.E2 = { s.XX * d.E2[0] + s.XY * d.E2[1], s.XY * d.E2[0] + s.YY * d.E2[1] };
+  }
+  return d;
 }
 
 void StructureDiffusion::FillWeights(
@@ -70,8 +81,8 @@ void StructureDiffusion::FillWeights(
     {
       const TriangleMesh::Shape& shape = mesh.Shapes()[t];
       const Tensor d = this->Diffusivity(t);
-      this->Weighted.row(t) = d.G1 * DirectionalWeights(shape, d.E1[0], d.E1[1]) +
-        d.G2 * DirectionalWeights(shape, d.E2[0], d.E2[1]);
+      this->Weighted.row(t) = d.G1 * TensorWeights(shape, d.Square) +
+        d.Excess * DirectionalWeights(shape, d.E2[0], d.E2[1]);
     });
 }
 
@@ -93,10 +104,15 @@ TangentVectors StructureDiffusion::Axes(const ProgressMonitor& progress) const
   ForEach(this->Parallel, this->Mesh().NumberOfTriangles(),
     [&](Index t)
     {
-      const Tensor d = this->Diffusivity(t);
-      const auto entry = [&](int i, int j)
-      { return d.G1 * (d.E1[i] * d.E1[j]) + d.G2 * (d.E2[i] * d.E2[j]); };
-      axes.row(t) = StrongestAxis({ entry(0, 0), entry(0, 1), entry(1, 1) });
+      Tensor d = this->Diffusivity(t);
+      if (this->Factors.IsOne() && d.Excess > RoundOff * d.G1)
+      {
+        d.G1 = 0.0; // D - g1 has the same axes, whose digits g1 would take
+      }
+      const auto entry = [&](double square, int i, int j)
+      { return d.G1 * square + d.Excess * d.E2[i] * d.E2[j]; };
+      axes.row(t) = StrongestAxis(
+        { entry(d.Square.XX, 0, 0), entry(d.Square.XY, 0, 1), entry(d.Square.YY, 1, 1) });
     });
   return axes;
 }

@@ -61,12 +61,14 @@ public:
   TangentVectors Axes(const ProgressMonitor& progress = ProgressMonitor()) const;
 
 private:
-  /// S D S = g1 S e1 (S e1)^T + g2 S e2 (S e2)^T. As a sum of squares it stays positive
-  /// semi-definite where the entries of D have lost the smaller of g1 and g2.
+  /// S D S = g1 S^2 + (g2 - g1) S e2 (S e2)^T. As a sum of squares it stays positive semi-definite
+  /// where the entries of D have lost g1.
   struct Tensor
   {
-    double G1, G2;
-    Eigen::RowVector2d E1, E2; ///< S e1 and S e2
+    double G1;
+    double Excess; ///< g2 - g1 >= 0
+    PlaneTensor Square; ///< S^2
+    Eigen::RowVector2d E2 = Eigen::RowVector2d::Zero(); ///< S e2
   };
 
   void FillWeights(Eigen::Index first, Eigen::Index last, StepReport& report,
