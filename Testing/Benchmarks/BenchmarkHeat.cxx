@@ -67,7 +67,7 @@ void PatternAndSlots(benchmark::State& state)
   for (auto _ : state)
   {
     Assembler assembler(system.Mesh);
-    benchmark::DoNotOptimize(assembler.Pattern().valuePtr());
+    benchmark::DoNotOptimize(assembler.Pattern().Inner.data());
   }
   CountVertices(state, system.Mesh->NumberOfVertices());
 }

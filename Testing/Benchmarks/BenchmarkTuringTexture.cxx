@@ -98,7 +98,7 @@ struct Texture
   double LargestEigenvalue() const
   {
     const TriangleMesh& mesh = this->Operators->Mesh();
-    SparseMatrix matrix = this->Operators->Pattern();
+    SparseMatrix matrix = ZeroMatrix(this->Operators->Pattern());
     this->Operators->Fill(matrix, mesh.ControlAreas(), 1.0, this->Coefficients);
     Values x = Noise(mesh);
     Values y = x;

@@ -95,7 +95,7 @@ struct HeatSystem
     : Mesh(MakeMesh(s))
     , Operators(std::make_shared<Assembler>(this->Mesh))
     , Coefficients(CotanWeights(*this->Mesh))
-    , Matrix(this->Operators->Pattern())
+    , Matrix(ZeroMatrix(this->Operators->Pattern()))
   {
   }
 

@@ -112,7 +112,7 @@ int main(int argc, char** argv)
   measure("pattern", [&] { operators = std::make_shared<Assembler>(mesh, loops); });
   measure("cotan weights", [&] { weights = CotanWeights(*mesh, loops); });
   const double h = mesh->TotalEdgeLength() / mesh->NumberOfEdges();
-  matrix = operators->Pattern();
+  matrix = ZeroMatrix(operators->Pattern());
   measure("assembly",
     [&] { operators->Fill(matrix, mesh->ControlAreas(), 100.0 * h * h, weights, nullptr, loops); });
 

@@ -23,7 +23,7 @@ SparseMatrix WeightedMatrix(const Assembler& assembler, double diagonal, double 
   {
     weights[t] = 0.1 + UniformRandom(3, 0, mesh.InputTriangle()[t]);
   }
-  SparseMatrix matrix = assembler.Pattern();
+  SparseMatrix matrix = ZeroMatrix(assembler.Pattern());
   assembler.Fill(matrix, diagonal * mesh.ControlAreas(), scale, CotanWeights(mesh), weights.data());
   return matrix;
 }
@@ -75,7 +75,7 @@ TEST(Assembler, EntriesAreHalfTheSumOfOppositeCotangents)
   const auto assembler = MakeAssembler(MakeSurface(
     { { -1, 0, 0 }, { 1, 0, 0 }, { 0, h, 0 }, { 0, -h, 0 } }, { { 0, 1, 2 }, { 1, 0, 3 } }));
   const TriangleMesh& mesh = assembler->Mesh();
-  SparseMatrix k = assembler->Pattern();
+  SparseMatrix k = ZeroMatrix(assembler->Pattern());
   assembler->Fill(k, Vector::Zero(4), 1.0, CotanWeights(mesh));
   std::vector<Index> number(4);
   for (Index i = 0; i < 4; ++i)
@@ -95,7 +95,7 @@ TEST(Assembler, StiffnessMatrixAndDirichletEnergyAgree)
   {
     const auto assembler = MakeAssembler(s);
     const CornerWeights c = CotanWeights(assembler->Mesh());
-    SparseMatrix k = assembler->Pattern();
+    SparseMatrix k = ZeroMatrix(assembler->Pattern());
     assembler->Fill(k, Vector::Zero(k.rows()), 1.0, c);
     const Values u = Noise(assembler->Mesh(), 2);
     const double byMatrix = 0.5 * (u.transpose() * (k * u)).trace();
@@ -109,7 +109,7 @@ TEST(Assembler, LinearFunctionsAreHarmonicInside)
   const Surface s = Rotated(Jittered(Strip(12, 12), 0.02, 0, 1, 0, 1));
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
-  SparseMatrix k = assembler->Pattern();
+  SparseMatrix k = ZeroMatrix(assembler->Pattern());
   assembler->Fill(k, Vector::Zero(k.rows()), 1.0, CotanWeights(mesh));
   const Values u =
     Sample(mesh, s, [](const Eigen::RowVector3d& p) { return 2.0 * p[0] - 3.0 * p[1] + p[2]; });
@@ -194,13 +194,13 @@ TEST(Assembler, ListsTheManyNeighboursOfAHubOnceAndSorted)
     fan.Faces.row(i) << spokes, i, (i + 1) % spokes;
   }
   const auto assembler = MakeAssembler(fan);
-  const SparseMatrix& pattern = assembler->Pattern();
-  EXPECT_EQ(pattern.nonZeros(), spokes + 1 + 2 * 2 * spokes);
+  const SparsePattern& pattern = assembler->Pattern();
+  EXPECT_EQ(pattern.NumberOfEntries(), spokes + 1 + 2 * 2 * spokes);
   for (Index i = 0; i <= spokes; ++i)
   {
-    const Index* row = pattern.innerIndexPtr();
-    EXPECT_TRUE(std::is_sorted(row + pattern.outerIndexPtr()[i],
-      row + pattern.outerIndexPtr()[i + 1], std::less_equal<Index>()));
+    const Index* row = pattern.Inner.data();
+    EXPECT_TRUE(
+      std::is_sorted(row + pattern.Outer[i], row + pattern.Outer[i + 1], std::less_equal<Index>()));
   }
   EXPECT_EQ(assembler->Mesh().NumberOfEdges(), 2 * spokes);
 }
@@ -228,8 +228,8 @@ TEST(Assembler, TakesAnEmptyMesh)
 {
   const auto assembler =
     std::make_shared<Assembler>(std::make_shared<TriangleMesh>(Points(0, 3), Triangles(0, 3)));
-  EXPECT_EQ(assembler->Pattern().rows(), 0);
-  EXPECT_EQ(assembler->Pattern().nonZeros(), 0);
+  EXPECT_EQ(assembler->Pattern().NumberOfRows(), 0);
+  EXPECT_EQ(assembler->Pattern().NumberOfEntries(), 0);
 }
 
 TEST(Assembler, StopsWhenAsked)

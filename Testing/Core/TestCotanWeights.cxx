@@ -210,7 +210,7 @@ TEST(CotanWeights, DiffusionAlongADirectionDoesNotSeeGradientsAcross)
       s.Vertices.row(s.Faces(mesh.InputTriangle()[t], 0));
     e1.row(t) << edge[0] / edge.norm(), -edge[1] / edge.norm(); // the x axis, seen from the edge
   }
-  SparseMatrix k = assembler->Pattern();
+  SparseMatrix k = ZeroMatrix(assembler->Pattern());
   assembler->Fill(k, Vector::Zero(mesh.NumberOfVertices()), 1.0, DirectionalWeights(mesh, e1));
   const Values y = Sample(mesh, s, [](const Eigen::RowVector3d& p) { return p[1]; });
   EXPECT_LT((k * y).cwiseAbs().maxCoeff(), 1e-14);

@@ -22,7 +22,7 @@ struct Problem
   Values Given = Noise(Mesh, 2, 1);
   Values B = Noise(Mesh, 2, 2);
   Flags Fixed = Flags::Constant(Mesh.NumberOfVertices(), false);
-  SparseMatrix Matrix = Assembly->Pattern(); ///< without Dirichlet conditions
+  SparseMatrix Matrix = ZeroMatrix(Assembly->Pattern()); ///< without Dirichlet conditions
 
   Problem()
   {

@@ -60,7 +60,7 @@ std::vector<std::pair<const char*, Surface>> BadSurfaces()
 
 SparseMatrix Stiffness(const Assembler& assembler)
 {
-  SparseMatrix k = assembler.Pattern();
+  SparseMatrix k = ZeroMatrix(assembler.Pattern());
   assembler.Fill(
     k, Vector::Zero(assembler.Mesh().NumberOfVertices()), 1.0, CotanWeights(assembler.Mesh()));
   return k;
@@ -321,7 +321,7 @@ TEST(IntrinsicDelaunay, EdgesFromAVertexToItselfDoNotDrownOthers)
   Vector weights(2);
   weights[large] = 1e4;
   weights[1 - large] = 1e-8;
-  SparseMatrix k = flipped.Pattern();
+  SparseMatrix k = ZeroMatrix(flipped.Pattern());
   flipped.Fill(k, Vector::Zero(3), 1.0, c, weights.data());
   for (int i = 0; i < 3; ++i)
   {

@@ -94,8 +94,8 @@ TEST(Invariance, ThreadsDoNotChangeTheMeshOrTheMatrix)
   EXPECT_TRUE(mesh->ControlAreas() == serialMesh->ControlAreas());
   const Assembler serial(serialMesh);
   const Assembler threaded(mesh, parallel);
-  SparseMatrix a = serial.Pattern();
-  SparseMatrix b = threaded.Pattern();
+  SparseMatrix a = ZeroMatrix(serial.Pattern());
+  SparseMatrix b = ZeroMatrix(threaded.Pattern());
   serial.Fill(a, serialMesh->ControlAreas(), 0.1, CotanWeights(*serialMesh));
   threaded.Fill(b, mesh->ControlAreas(), 0.1, CotanWeights(*mesh, parallel), nullptr, parallel);
   ASSERT_EQ(a.nonZeros(), b.nonZeros());

@@ -22,7 +22,7 @@ namespace
 /// M + dt K, dt in the mesh's own units.
 SparseMatrix HeatMatrix(const Assembler& assembler, double timeStep)
 {
-  SparseMatrix matrix = assembler.Pattern();
+  SparseMatrix matrix = ZeroMatrix(assembler.Pattern());
   assembler.Fill(matrix, assembler.Mesh().ControlAreas(), timeStep, CotanWeights(assembler.Mesh()));
   return matrix;
 }
@@ -151,7 +151,7 @@ TEST_P(AnySolver, TakesANewMatrixOfTheSameOrAnotherPattern)
 TEST_P(AnySolver, DoesNotPassOffAnIndefiniteMatrixAsSolved)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
-  SparseMatrix matrix = assembler->Pattern();
+  SparseMatrix matrix = ZeroMatrix(assembler->Pattern());
   assembler->Fill(
     matrix, -0.5 * assembler->Mesh().ControlAreas(), 1.0, CotanWeights(assembler->Mesh()));
   bool solved = false;

@@ -27,7 +27,7 @@ SparseMatrix HeatMatrix(const Assembler& assembler, double c, const CornerWeight
 {
   const TriangleMesh& mesh = assembler.Mesh();
   const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges();
-  SparseMatrix matrix = assembler.Pattern();
+  SparseMatrix matrix = ZeroMatrix(assembler.Pattern());
   assembler.Fill(matrix, mesh.ControlAreas(), c * h * h, coefficients);
   return matrix;
 }

@@ -131,7 +131,7 @@ TEST(NestedDissection, FactorsRegularTriangulationsWithFewerEntriesThanMinimumDe
 {
   // numbered along a Hilbert curve, as all matrices of this library are
   const auto assembler = MakeAssembler(Icosphere(6));
-  SparseMatrix matrix = assembler->Pattern();
+  SparseMatrix matrix = ZeroMatrix(assembler->Pattern());
   assembler->Fill(matrix, assembler->Mesh().ControlAreas(), 1.0, CotanWeights(assembler->Mesh()));
   const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> byDegree(
     matrix);

@@ -19,7 +19,7 @@ struct System
 {
   std::shared_ptr<const Assembler> Operators = MakeAssembler(Icosphere(3));
   const TriangleMesh& Mesh = Operators->Mesh();
-  SparseMatrix Matrix = Operators->Pattern();
+  SparseMatrix Matrix = ZeroMatrix(Operators->Pattern());
   QuadraticDescent Descent;
   Values B, X;
 

@@ -26,10 +26,10 @@ constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 class Rings
 {
 public:
-  explicit Rings(const SparseMatrix& pattern)
-    : Outer(pattern.outerIndexPtr())
-    , Inner(pattern.innerIndexPtr())
-    , VisitedBy(static_cast<std::size_t>(pattern.rows()), -1)
+  explicit Rings(const SparsePattern& pattern)
+    : Outer(pattern.Outer.data())
+    , Inner(pattern.Inner.data())
+    , VisitedBy(static_cast<std::size_t>(pattern.NumberOfRows()), -1)
   {
   }
 

@@ -7,6 +7,7 @@
 #include "Core/Operators/SparseProduct.h"
 
 #include <algorithm>
+#include <array>
 
 namespace SurfaceDiffusion
 {
@@ -20,9 +21,9 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
   const auto& begin = m.VertexCornersBegin();
   const auto& corners = m.VertexCorners();
 
-  // Rows are listed once, with slots counted from the start of the row. The positions of rows, and
-  // so of slots, in the matrix are known when all rows are listed.
-  std::vector<Index> outer(n + 1, 0);
+  // Rows are listed once. Their positions in the matrix are known when all rows are listed.
+  std::vector<Index>& outer = this->Entries.Outer;
+  outer.assign(static_cast<std::size_t>(n) + 1, 0);
   std::vector<std::vector<Index>> rows(NumberOfBlocks(n)); // one after another, per block
   this->SlotMap = Buffer<Slots>(corners.size());
   this->DiagonalSlot.resize(n);
@@ -31,18 +32,20 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
     {
       IndexSet row;
       std::vector<Index> slot; // of the numbers that the set gives
+      std::vector<std::array<Index, 2>> numbers; // of the next and last vertex of each corner
       rows[block].reserve(8 * static_cast<std::size_t>(last - first));
       for (Index i = first; i < last; ++i)
       {
         row.Clear();
         row.Insert(i);
+        numbers.resize(static_cast<std::size_t>(begin[i + 1] - begin[i]));
         for (Index c = begin[i]; c < begin[i + 1]; ++c) // most of these are new,
         {
-          this->SlotMap[c].Next = row.Insert(m.OtherCorner(corners[c], 1));
+          numbers[c - begin[i]][0] = row.Insert(m.OtherCorner(corners[c], 1));
         }
         for (Index c = begin[i]; c < begin[i + 1]; ++c) // most of these known
         {
-          this->SlotMap[c].Last = row.Insert(m.OtherCorner(corners[c], 2));
+          numbers[c - begin[i]][1] = row.Insert(m.OtherCorner(corners[c], 2));
         }
         const Index size = row.Size();
         row.Rank(slot);
@@ -55,7 +58,9 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
         this->DiagonalSlot[i] = slot[0];
         for (Index c = begin[i]; c < begin[i + 1]; ++c)
         {
-          this->SlotMap[c] = { slot[this->SlotMap[c].Next], slot[this->SlotMap[c].Last] };
+          const auto [next, other] = numbers[c - begin[i]];
+          this->SlotMap[c] = { static_cast<std::uint8_t>(slot[next]),
+            static_cast<std::uint8_t>(slot[other]) }; // not read in long rows
         }
         outer[i + 1] = size;
       }
@@ -66,23 +71,15 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
     outer[i + 1] += outer[i];
   }
 
-  this->Empty.resize(n, n);
-  this->Empty.resizeNonZeros(outer[n]);
-  std::copy(outer.begin(), outer.end(), this->Empty.outerIndexPtr());
+  this->Entries.Inner = Buffer<Index>(static_cast<std::size_t>(outer[n]));
   ForEachBlock(parallel, n,
     [&](Index block, Index first, Index last)
     {
-      std::fill(this->Empty.valuePtr() + outer[first], this->Empty.valuePtr() + outer[last], 0.0);
-      std::copy(rows[block].begin(), rows[block].end(), this->Empty.innerIndexPtr() + outer[first]);
+      std::copy(rows[block].begin(), rows[block].end(), this->Entries.Inner.data() + outer[first]);
       std::vector<Index>().swap(rows[block]);
       for (Index i = first; i < last; ++i)
       {
         this->DiagonalSlot[i] += outer[i];
-        for (Index c = begin[i]; c < begin[i + 1]; ++c)
-        {
-          this->SlotMap[c].Next += outer[i];
-          this->SlotMap[c].Last += outer[i];
-        }
       }
     });
   progress.Report(1.0);
@@ -95,6 +92,7 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
   const auto& begin = this->SurfaceMesh->VertexCornersBegin();
   const auto& corners = this->SurfaceMesh->VertexCorners();
   const Index* outer = matrix.outerIndexPtr();
+  const Index* inner = matrix.innerIndexPtr();
   double* values = matrix.valuePtr();
   ForEach(parallel, this->SurfaceMesh->NumberOfVertices(),
     [&](Index i)
@@ -114,14 +112,25 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
         values[slot] -= sign * coefficient;
         onDiagonal += coefficient;
       };
+      const bool isMapped = outer[i + 1] - outer[i] <= LongestMappedRow;
+      const auto slotOf = [&](Index corner, int further, std::uint8_t slot)
+      {
+        return isMapped
+          ? outer[i] + slot
+          : static_cast<Index>(std::lower_bound(inner + outer[i], inner + outer[i + 1],
+                                 this->SurfaceMesh->OtherCorner(corner, further)) -
+              inner);
+      };
       for (Index c = begin[i]; c < begin[i + 1]; ++c)
       {
         const Index t = corners[c] / 3;
         const int next = (corners[c] + 1) % 3; // 3 t + a: an edge is that opposite the third corner
         const int last = (corners[c] + 2) % 3;
         const double factor = weights ? scale * weights[t] : scale;
-        add(this->SlotMap[c].Next, factor * coefficients(t, last), signs ? (*signs)(t, last) : 1.0);
-        add(this->SlotMap[c].Last, factor * coefficients(t, next), signs ? (*signs)(t, next) : 1.0);
+        add(slotOf(corners[c], 1, this->SlotMap[c].Next), factor * coefficients(t, last),
+          signs ? (*signs)(t, last) : 1.0);
+        add(slotOf(corners[c], 2, this->SlotMap[c].Last), factor * coefficients(t, next),
+          signs ? (*signs)(t, next) : 1.0);
       }
       values[diagonalSlot] = diagonal[i] + onDiagonal;
     });

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Operators/SparsePattern.h"
 #include "Core/Surface/TriangleMesh.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -28,12 +30,12 @@ public:
   const TriangleMesh& Mesh() const { return *this->SurfaceMesh; }
   std::shared_ptr<const TriangleMesh> SharedMesh() const { return this->SurfaceMesh; }
 
-  /// A matrix of the pattern, all zero: in each row a vertex and its neighbours, sorted.
-  const SparseMatrix& Pattern() const { return this->Empty; }
+  /// In each row a vertex and its neighbours.
+  const SparsePattern& Pattern() const { return this->Entries; }
 
   /// matrix = diag(d) + scale K with the stiffness matrix K,
   ///   (K u)_i = sum over the triangles at vertex i and their corners j of c_ij (u_i - u_j),
-  /// (6), (7), (9), (12). coefficients: c as in CotanWeights.h. `matrix` is a copy of Pattern().
+  /// (6), (7), (9), (12). coefficients: c as in CotanWeights.h. `matrix` has the Pattern().
   /// weights, one per triangle, multiply the coefficients (g of (9)); none means 1. signs, +1 or
   /// -1, are for fields whose neighbours are compared up to the sign: the rows of K then give the
   /// sum of c_ij (u_i - sign_ij u_j).
@@ -54,11 +56,14 @@ public:
 
 private:
   std::shared_ptr<const TriangleMesh> SurfaceMesh;
-  SparseMatrix Empty;
+  SparsePattern Entries;
+  /// The entries of the triangle's next and last vertex in a corner's row, counted from the start of
+  /// the row. Those of rows that are too long for that are searched.
   struct Slots
   {
-    Index Next, Last; ///< entries of the triangle's next and last vertex in a corner's row
+    std::uint8_t Next, Last;
   };
+  static constexpr Index LongestMappedRow = 256;
   Buffer<Slots> SlotMap; ///< in the order of TriangleMesh::VertexCorners()
   std::vector<Index> DiagonalSlot; ///< per row
 };
