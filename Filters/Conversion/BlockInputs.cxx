@@ -21,7 +21,7 @@ std::vector<BlockInput> BlockInputs::Describe(
     vtkPolyData* const data = surfaces[b].Data;
     const InputFields& arrays = *surfaces[b].Fields;
     vtkDataArray* const excluded = excludeMasked ? arrays.Mask : nullptr;
-    std::vector<vtkIdType>& cells = this->Cells[b];
+    std::vector<Index>& cells = this->Cells[b];
     Version& version = this->Versions[b];
     const InputStamp stamp(data, arrays.List());
     const bool onCells = arrays.MaskOnCells;

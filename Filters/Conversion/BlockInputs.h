@@ -39,7 +39,7 @@ public:
   const PieceDecomposition* GetDecomposition() const { return this->Decomposition.get(); }
 
   /// The cell of each triangle of a surface of the last inputs that were read.
-  const std::vector<vtkIdType>& CellsOf(std::size_t surface) const { return this->Cells[surface]; }
+  const std::vector<Index>& CellsOf(std::size_t surface) const { return this->Cells[surface]; }
 
 private:
   /// The hashes of a surface, and the state of the data that they were computed from. Requests of
@@ -54,7 +54,7 @@ private:
 
   std::vector<BlockInput> Describe(const std::vector<SurfaceInput>& surfaces, bool excludeMasked);
 
-  std::vector<std::vector<vtkIdType>> Cells; ///< per surface: the cell of each triangle
+  std::vector<std::vector<Index>> Cells; ///< per surface: the cell of each triangle
   std::vector<Version> Versions;
   std::unique_ptr<PieceDecomposition> Decomposition;
 };

@@ -72,7 +72,7 @@ Points ReadDirections(vtkDataArray* array)
   return vectors;
 }
 
-Values ReadRates(vtkDataArray* array, const std::vector<vtkIdType>& cells)
+Values ReadRates(vtkDataArray* array, const std::vector<Index>& cells)
 {
   Values rates(static_cast<Eigen::Index>(cells.size()), 4);
   for (std::size_t t = 0; t < cells.size(); ++t)
@@ -164,7 +164,7 @@ Fingerprint FingerprintFields(const InputFields& arrays)
 }
 
 Fields ReadFields(
-  const InputFields& arrays, const std::vector<vtkIdType>& cells, vtkIdType numberOfCells)
+  const InputFields& arrays, const std::vector<Index>& cells, vtkIdType numberOfCells)
 {
   Fields fields;
   if (arrays.Data)

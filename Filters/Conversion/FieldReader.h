@@ -58,6 +58,6 @@ Fingerprint FingerprintFields(const InputFields& arrays);
 /// std::runtime_error, with the property's name, on infinite directions and on rates that are
 /// negative or not finite.
 Fields ReadFields(
-  const InputFields& arrays, const std::vector<vtkIdType>& cells, vtkIdType numberOfCells);
+  const InputFields& arrays, const std::vector<Index>& cells, vtkIdType numberOfCells);
 
 } // namespace SurfaceDiffusion

@@ -191,7 +191,7 @@ vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like)
 }
 
 vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
-  const std::vector<vtkIdType>& cells, vtkPolyData* input, const TangentVectors& directions,
+  const std::vector<Index>& cells, vtkPolyData* input, const TangentVectors& directions,
   const std::string& name, const ParallelFor& parallel)
 {
   const Points vectors = DirectionsOfCells(

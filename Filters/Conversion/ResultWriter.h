@@ -46,7 +46,7 @@ vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like);
 /// An array of unit vectors for the cells of `input`. For a cell with several triangles it is the
 /// main axis of the area-weighted sum of d d^T over their directions d. Zero if there is none.
 vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
-  const std::vector<vtkIdType>& cells, vtkPolyData* input, const TangentVectors& directions,
+  const std::vector<Index>& cells, vtkPolyData* input, const TangentVectors& directions,
   const std::string& name, const ParallelFor& parallel);
 
 /// Add a result instead of an array of the same name, whose roles among the attributes are dropped,

@@ -67,6 +67,9 @@ public:
       RequireTuples(ghosts, input->GetNumberOfCells(), "cell");
       this->Ghosts = ghosts->GetPointer(0);
     }
+    const auto count = static_cast<std::size_t>(input->GetNumberOfPolys());
+    this->Triangles.reserve(count);
+    this->Cells.reserve(count);
     vtkIdType cell = input->GetNumberOfVerts() + input->GetNumberOfLines();
     this->AddCells(input->GetPolys(), cell, &Triangulator::AddPolygon);
     cell += input->GetNumberOfPolys();
@@ -74,7 +77,7 @@ public:
   }
 
   std::vector<std::array<Index, 3>> Triangles;
-  std::vector<vtkIdType> Cells;
+  std::vector<Index> Cells;
 
 private:
   using Adder = void (Triangulator::*)(vtkIdType cell, vtkIdType count, const vtkIdType* ids);
@@ -116,7 +119,7 @@ private:
   {
     this->Triangles.push_back(
       { static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c) });
-    this->Cells.push_back(cell);
+    this->Cells.push_back(static_cast<Index>(cell));
   }
 
   void AddStrip(vtkIdType cell, vtkIdType count, const vtkIdType* ids)
@@ -270,11 +273,15 @@ Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded, bool 
 }
 
 SurfaceArrays ReadSurface(
-  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, std::vector<vtkIdType>& cells)
+  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, std::vector<Index>& cells)
 {
   if (input->GetNumberOfPoints() > LargestCount)
   {
     throw std::runtime_error("the input has more points than this library can number");
+  }
+  if (input->GetNumberOfCells() > LargestCount)
+  {
+    throw std::runtime_error("the input has more cells than this library can number");
   }
   SurfaceArrays arrays;
   arrays.Points = ReadPoints(input);
@@ -293,7 +300,7 @@ SurfaceArrays ReadSurface(
   }
   if (excluded && excludedCells)
   {
-    for (const vtkIdType cell : triangulator.Cells)
+    for (const Index cell : triangulator.Cells)
     {
       arrays.ExcludedTriangles.push_back(excluded->GetComponent(cell, 0) != 0.0);
     }

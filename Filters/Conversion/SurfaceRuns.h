@@ -45,7 +45,7 @@ public:
   std::size_t Size() const { return this->Runs.size(); }
   const RunType& operator[](std::size_t surface) const { return *this->Runs[surface]; }
   /// The cell of each triangle of a surface.
-  const std::vector<vtkIdType>& CellsOf(std::size_t surface) const
+  const std::vector<Index>& CellsOf(std::size_t surface) const
   {
     return this->Inputs.CellsOf(surface);
   }

@@ -15,10 +15,10 @@ Points DirectionsOfCells(const Surface& surface, const TangentVectors& direction
 {
   const TriangleMesh& mesh = surface.InputMesh();
   const Points vectors =
-    VectorsInSpace(mesh, surface.Points(), surface.Triangles(), directions, parallel);
+    VectorsInSpace(mesh, surface.Points(), surface.MakeTriangles(), directions, parallel);
   Points result = Points::Zero(static_cast<Eigen::Index>(numberOfCells), 3);
 
-  Vector areas = Vector::Zero(surface.Triangles().rows());
+  Vector areas = Vector::Zero(surface.NumberOfTriangles());
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     areas[mesh.InputTriangle()[t]] = mesh.Shapes()[t].Area();

@@ -252,7 +252,7 @@ CellTransfer MakeCellTransfer(
   const Surface& surface, const Fields& fields, const ParallelFor& parallel)
 {
   const TriangleMesh& mesh = surface.InputMesh();
-  std::vector<Index> cells(static_cast<std::size_t>(surface.Triangles().rows()));
+  std::vector<Index> cells(static_cast<std::size_t>(surface.NumberOfTriangles()));
   for (std::size_t row = 0; row < cells.size(); ++row)
   {
     cells[row] =

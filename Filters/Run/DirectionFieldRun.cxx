@@ -74,7 +74,8 @@ void DirectionFieldRun::Update(
   core.Angle = RadiansFromDegrees(settings.Angle);
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
-    this->Domain->Triangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0), &this->Report);
+    this->Domain->MakeTriangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0),
+    &this->Report);
   this->Complete(input, settings);
 }
 

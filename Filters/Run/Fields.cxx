@@ -252,17 +252,17 @@ TangentVectors MakeDirections(
   if (!fields.DirectionsOnTriangles)
   {
     return TransportToMesh(surface,
-      TangentVectorsFromPointVectors(
-        surface.InputMesh(), surface.Points(), surface.Triangles(), fields.Directions, parallel));
+      TangentVectorsFromPointVectors(surface.InputMesh(), surface.Points(), surface.MakeTriangles(),
+        fields.Directions, parallel));
   }
-  SurfaceDiffusion::Points ofTriangles(surface.Triangles().rows(), 3);
+  SurfaceDiffusion::Points ofTriangles(surface.NumberOfTriangles(), 3);
   for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
   {
     ofTriangles.row(t) = fields.Directions.row(surface.InputTriangle(static_cast<Index>(t)));
   }
   return TransportToMesh(surface,
     TangentVectorsFromTriangleVectors(
-      surface.InputMesh(), surface.Points(), surface.Triangles(), ofTriangles, parallel));
+      surface.InputMesh(), surface.Points(), surface.MakeTriangles(), ofTriangles, parallel));
 }
 
 std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields)

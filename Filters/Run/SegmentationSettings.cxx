@@ -78,9 +78,10 @@ std::shared_ptr<RegionResults> MeasureRegions(
   const auto count = static_cast<Index>(model.State().cols());
   regions->Labels = model.Labels();
   const Values u = StateOfPoints(surface, model.State());
+  const Triangles triangles = surface.MakeTriangles();
   regions->Areas =
-    RegionAreas(surface.Points(), surface.Triangles(), u, AreaFactorsOfPoints(surface), parallel);
-  regions->Boundaries = FindRegionBoundaries(surface.Points(), surface.Triangles(), u);
+    RegionAreas(surface.Points(), triangles, u, AreaFactorsOfPoints(surface), parallel);
+  regions->Boundaries = FindRegionBoundaries(surface.Points(), triangles, u);
   regions->BoundaryLengths = Vector::Zero(count);
   for (const RegionBoundary& curve : regions->Boundaries.Curves)
   {

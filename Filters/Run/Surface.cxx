@@ -106,6 +106,7 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   this->SelectTriangles(options);
   progress.Report(0.1);
   this->Build(options, parallel, progress.Part(0.1, 1.0));
+  this->ReleaseTriangles();
   this->FindVertices();
   this->Found.DegenerateTriangles = this->Working->Diagnostics().DegenerateTriangles;
   this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
@@ -130,7 +131,8 @@ void Surface::SelectTriangles(const SurfaceOptions& options)
   { return !excluded.empty() && excluded[static_cast<std::size_t>(point)] != 0; };
   std::vector<Index> pointsOfExcluded;
   Eigen::Index kept = 0;
-  this->TriangleRows.reserve(static_cast<std::size_t>(triangles.rows()));
+  const bool selects = !excluded.empty() || !ofTriangles.empty();
+  this->TriangleRows.reserve(selects ? static_cast<std::size_t>(triangles.rows()) : 0);
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
   {
     if (isExcluded(triangles(t, 0)) || isExcluded(triangles(t, 1)) || isExcluded(triangles(t, 2)))
@@ -149,7 +151,10 @@ void Surface::SelectTriangles(const SurfaceOptions& options)
         ? point
         : this->Representative[static_cast<std::size_t>(point)];
     }
-    this->TriangleRows.push_back(static_cast<Index>(t));
+    if (selects)
+    {
+      this->TriangleRows.push_back(static_cast<Index>(t));
+    }
     ++kept;
   }
   triangles.conservativeResize(kept, 3);
@@ -186,6 +191,48 @@ void Surface::Build(
   this->Flipped = std::move(construction->Delaunay);
   this->Working = std::move(construction->Working);
   this->Operators = std::move(construction->Operators);
+}
+
+/// The mesh has the triangles, except those without an area.
+void Surface::ReleaseTriangles()
+{
+  const SurfaceDiffusion::Triangles& triangles = this->Arrays.Triangles;
+  this->TriangleCount = static_cast<Index>(triangles.rows());
+  if (this->Input->NumberOfTriangles() < this->TriangleCount)
+  {
+    std::vector<bool> isInMesh(static_cast<std::size_t>(this->TriangleCount), false);
+    for (const Index row : this->Input->InputTriangle())
+    {
+      isInMesh[static_cast<std::size_t>(row)] = true;
+    }
+    for (Index row = 0; row < this->TriangleCount; ++row)
+    {
+      if (!isInMesh[static_cast<std::size_t>(row)])
+      {
+        this->TrianglesWithoutArea.push_back(
+          { row, triangles(row, 0), triangles(row, 1), triangles(row, 2) });
+      }
+    }
+  }
+  this->Arrays.Triangles = SurfaceDiffusion::Triangles();
+}
+
+Triangles Surface::MakeTriangles() const
+{
+  SurfaceDiffusion::Triangles triangles(this->TriangleCount, 3);
+  const TriangleMesh& mesh = *this->Input;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      triangles(mesh.InputTriangle()[t], a) = mesh.InputVertex()[mesh.TriangleVertices()(t, a)];
+    }
+  }
+  for (const auto [row, first, second, third] : this->TrianglesWithoutArea)
+  {
+    triangles.row(row) << first, second, third;
+  }
+  return triangles;
 }
 
 void Surface::FindVertices()

@@ -6,6 +6,7 @@
 #include "Core/Operators/Assembler.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -62,12 +63,16 @@ public:
 
   /// Per input point.
   const SurfaceDiffusion::Points& Points() const { return this->Arrays.Points; }
-  /// Rows of Points(). Merged points are replaced by the point that represents them, and excluded
-  /// triangles are gone.
-  const SurfaceDiffusion::Triangles& Triangles() const { return this->Arrays.Triangles; }
-  /// The row of the input's triangles that row t of Triangles() is.
-  Index InputTriangle(Index t) const { return this->TriangleRows[static_cast<std::size_t>(t)]; }
-  /// The mesh of Triangles().
+  /// Rows of Points(), made anew from the mesh, whose numbers they are not. Merged points are
+  /// replaced by the point that represents them, and excluded triangles are gone.
+  SurfaceDiffusion::Triangles MakeTriangles() const;
+  Index NumberOfTriangles() const { return this->TriangleCount; }
+  /// The row of the input's triangles that row t of MakeTriangles() is.
+  Index InputTriangle(Index t) const
+  {
+    return this->TriangleRows.empty() ? t : this->TriangleRows[static_cast<std::size_t>(t)];
+  }
+  /// The mesh of MakeTriangles().
   const TriangleMesh& InputMesh() const { return *this->Input; }
 
   /// The mesh that models work on: InputMesh() or its intrinsic Delaunay triangulation, which has
@@ -87,12 +92,15 @@ private:
   void SelectTriangles(const SurfaceOptions& options);
   void Build(
     const SurfaceOptions& options, const ParallelFor& parallel, const ProgressMonitor& progress);
+  void ReleaseTriangles();
   void FindVertices();
   Index CountCoincidentBoundaryPoints() const;
 
   SurfaceArrays Arrays;
   std::vector<Index> Representative; ///< per point; empty if every point represents itself
-  std::vector<Index> TriangleRows;
+  Index TriangleCount = 0;
+  std::vector<std::array<Index, 4>> TrianglesWithoutArea; ///< row and points of those not in Input
+  std::vector<Index> TriangleRows; ///< empty: those of the input
   std::shared_ptr<TriangleMesh> Input;
   std::shared_ptr<const IntrinsicDelaunay> Flipped;
   std::shared_ptr<const TriangleMesh> Working;

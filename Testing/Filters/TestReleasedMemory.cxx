@@ -75,7 +75,7 @@ TEST(ReleasedMemory, IsAllThatAFilterKeepsBetweenUpdates)
       const double kept = AllocatedBytes() - before;
       if (!byFlag)
       {
-        EXPECT_GT(kept, 400.0 * points) << filter->GetClassName();
+        EXPECT_GT(kept, 200.0 * points) << filter->GetClassName(); // or nothing is measured
         vtkSurfaceFilter::SafeDownCast(filter)->ReleaseCache();
       }
       filter->GetOutputDataObject(0)->ReleaseData();
