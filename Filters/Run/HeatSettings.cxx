@@ -108,7 +108,8 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     return this->MakeDeblurring(inputs, result);
   }
   const TriangleMesh& mesh = inputs.Surface.Mesh();
-  const CornerWeights weights = MakeWeights(*this, inputs);
+  const bool isPlain = !this->IsDirected() && this->AlongDiffusivity == 1.0;
+  const CornerWeights weights = isPlain ? CornerWeights() : MakeWeights(*this, inputs);
   const ModelTraits traits = this->DescribeModel();
 
   UnitSystem timeUnits = inputs.Units;

@@ -27,6 +27,7 @@ LaggedDiffusion::LaggedDiffusion(std::shared_ptr<const Assembler> assembler, Poi
     this->Conserved = TotalCorrection(this->Mesh(), this->Data, this->Fit.IsPresent(), parallel);
   }
   this->MakeGroups();
+  this->Data.Start = Values(); // U has it, and no equation reads it
 }
 
 void LaggedDiffusion::MakeGroups()

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Columns.h"
 #include "Core/Models/InitialState.h"
+#include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"
 
 #include <algorithm>
@@ -26,6 +27,15 @@ LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   , Conserved(this->Assembly->Mesh(), this->Data, this->Fit.IsPresent(), parallel)
 {
   FindMeans(this->Assembly->Mesh(), this->U, this->Origin, parallel);
+  // Values that no equation reads take memory.
+  if (!this->Data.Fixed.any() && settings.TimeScheme != Scheme::SteadyState)
+  {
+    this->Data.Start = Values();
+  }
+  if (settings.Fidelity == 0.0)
+  {
+    this->Data.Given = Values();
+  }
 }
 
 void LinearDiffusion::Prepare(const ProgressMonitor& progress)
@@ -43,7 +53,8 @@ void LinearDiffusion::Prepare(const ProgressMonitor& progress)
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     { diagonal[i] = mesh.ControlAreas()[i] * (inertia + scale * this->Fit.Weight(i)); });
-  this->System.Assemble(diagonal, scale, this->Coefficients);
+  this->System.Assemble(diagonal, scale,
+    this->Coefficients.rows() > 0 ? this->Coefficients : CotanWeights(mesh, this->Parallel));
   if (this->Data.Fixed.any())
   {
     this->System.Constrain(this->Data.Fixed, this->Data.Start.rowwise() - this->Origin);

@@ -45,7 +45,7 @@ public:
   };
   static constexpr double Gamma = 0.2928932188134524;
 
-  /// coefficients: of D, see CotanWeights.h. solver: kept by the caller from run to run, so that
+  /// coefficients: of D, see CotanWeights.h; no row: D = 1. solver: kept by the caller from run to run, so that
   /// the same matrix is not factorised twice.
   LinearDiffusion(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,

@@ -49,7 +49,6 @@ NonlinearDiffusion::NonlinearDiffusion(std::shared_ptr<const Assembler> assemble
       std::move(solver), parallel)
   , Frames(std::move(frames))
   , Options(settings)
-  , Isotropic(CotanWeights(this->Mesh(), parallel))
 {
   if (!settings.ConservesTotal)
   {
@@ -76,12 +75,13 @@ void NonlinearDiffusion::FillWeights(
       const double g1 = this->Options.AlongDiffusivity * this->Options.Along(squared);
       if (this->Frames.rows() == 0)
       {
-        this->Weighted.row(t) = g1 * this->Isotropic.row(t);
+        this->Weighted.row(t) = g1 * CotanWeights(mesh.Shapes()[t]);
         return;
       }
       const double g2 = this->Options.AcrossDiffusivity * this->Options.Across(squared);
-      this->Weighted.row(t) = AnisotropicWeights(HasDirection(this->Frames, t),
-        this->Isotropic.row(t), this->Directional.row(t), this->Perpendicular.row(t), g1, g2);
+      this->Weighted.row(t) =
+        AnisotropicWeights(HasDirection(this->Frames, t), CotanWeights(mesh.Shapes()[t]),
+          this->Directional.row(t), this->Perpendicular.row(t), g1, g2);
     });
 }
 

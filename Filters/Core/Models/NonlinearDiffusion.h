@@ -55,7 +55,6 @@ private:
 
   TangentVectors Frames;
   Settings Options;
-  CornerWeights Isotropic; ///< cotan weights (10)
   CornerWeights Directional; ///< (13) along e1, no rows if g1 = g2
   CornerWeights Perpendicular; ///< the same along e2
 };

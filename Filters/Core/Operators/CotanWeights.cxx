@@ -9,15 +9,7 @@ CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel
 {
   CornerWeights c(mesh.NumberOfTriangles(), 3);
   ForEach(parallel, mesh.NumberOfTriangles(),
-    [&](Index t)
-    {
-      const TriangleMesh::Shape& s = mesh.Shapes()[t];
-      // The cotangent of an angle is the cosine over the sine of its two edges.
-      const double half = 0.5 * s.Weight;
-      c(t, 0) = half * s.X / s.Y;
-      c(t, 1) = half * (s.Length - s.X) / s.Y;
-      c(t, 2) = half * (s.Y / s.Length - (s.X / s.Y) * ((s.Length - s.X) / s.Length));
-    });
+    [&](Index t) { c.row(t) = CotanWeights(mesh.Shapes()[t]); });
   return c;
 }
 

@@ -28,6 +28,15 @@ inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double 
 /// The cotan weights (10): c_ij = 1/2 cot(angle at v_k), D = 1.
 CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
+/// Those of one triangle.
+inline Eigen::RowVector3d CotanWeights(const TriangleMesh::Shape& s)
+{
+  // The cotangent of an angle is the cosine over the sine of its two edges.
+  const double half = 0.5 * s.Weight;
+  return { half * s.X / s.Y, half * (s.Length - s.X) / s.Y,
+    half * (s.Y / s.Length - (s.X / s.Y) * ((s.Length - s.X) / s.Length)) };
+}
+
 /// A symmetric tensor of second order in a triangle's own axes.
 struct PlaneTensor
 {

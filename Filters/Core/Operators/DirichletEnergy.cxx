@@ -3,6 +3,7 @@
 #include "Core/Operators/DirichletEnergy.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include <algorithm>
 #include <numeric>
@@ -14,9 +15,9 @@ namespace
 {
 
 /// sums[k] = the part of the triangles [begin, end) in twice the energy of column k of u, of the K
-/// columns that begin at u.
+/// columns that begin at u. coefficients: three for each of these triangles.
 template <int K>
-void SumTriangles(const Triangles& corners, const CornerWeights& coefficients, const double* u,
+void SumTriangles(const Triangles& corners, const double* coefficients, const double* u,
   Eigen::Index stride, Index begin, Index end, double* sums)
 {
   double total[K] = {};
@@ -25,9 +26,10 @@ void SumTriangles(const Triangles& corners, const CornerWeights& coefficients, c
     const double* const u0 = u + corners(t, 0) * stride;
     const double* const u1 = u + corners(t, 1) * stride;
     const double* const u2 = u + corners(t, 2) * stride;
-    const double c0 = coefficients(t, 0);
-    const double c1 = coefficients(t, 1);
-    const double c2 = coefficients(t, 2);
+    const double* const c = coefficients + 3 * (t - begin);
+    const double c0 = c[0];
+    const double c1 = c[1];
+    const double c2 = c[2];
     for (int k = 0; k < K; ++k)
     {
       const double d0 = u1[k] - u2[k];
@@ -41,7 +43,7 @@ void SumTriangles(const Triangles& corners, const CornerWeights& coefficients, c
 
 // An attribute of a template is not portable: a function of its own.
 SURFACEDIFFUSION_ANY_VECTORS void SumTrianglesOfPanel(const Triangles& corners,
-  const CornerWeights& coefficients, const double* u, Eigen::Index stride, Index begin, Index end,
+  const double* coefficients, const double* u, Eigen::Index stride, Index begin, Index end,
   double* sums)
 {
   SumTriangles<ColumnPanel>(corners, coefficients, u, stride, begin, end, sums);
@@ -64,14 +66,27 @@ double SumColumnsOf(const TriangleMesh& mesh, const CornerWeights& coefficients,
       [&](Index block, Index begin, Index end)
       {
         double* const sums = partial + block * K;
-        if constexpr (K == ColumnPanel)
+        double cotans[3 * BlockSize];
+        const double* c = cotans;
+        if (coefficients.rows() > 0)
         {
-          SumTrianglesOfPanel(
-            corners, coefficients, start, u.cols(), from + begin, from + end, sums);
+          c = &coefficients(from + begin, 0);
         }
         else
         {
-          SumTriangles<K>(corners, coefficients, start, u.cols(), from + begin, from + end, sums);
+          for (Index t = from + begin; t < from + end; ++t)
+          {
+            Eigen::Map<Eigen::RowVector3d>(cotans + 3 * (t - from - begin)) =
+              CotanWeights(mesh.Shapes()[t]);
+          }
+        }
+        if constexpr (K == ColumnPanel)
+        {
+          SumTrianglesOfPanel(corners, c, start, u.cols(), from + begin, from + end, sums);
+        }
+        else
+        {
+          SumTriangles<K>(corners, c, start, u.cols(), from + begin, from + end, sums);
         }
       });
     for (Index s = 0; s < NumberOfBlocks(count) * K; ++s)

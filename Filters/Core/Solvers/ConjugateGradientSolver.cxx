@@ -137,7 +137,7 @@ private:
     const Index n = static_cast<Index>(b.rows());
     this->Residual.resize(n, k);
     this->Scales.resize(k);
-    this->Work.Resize(n, k, k);
+    this->Work.ResizeSums(n, k);
 
     // b - A x in units of each column's own
     const bool startsAtZero = Max(this->Parallel, n,
@@ -265,6 +265,7 @@ private:
       }
       const double end = done + (1.0 - done) / passes;
       Values& before = this->Work.P; // iterations in double precision begin with a new one
+      before.resize(x.rows(), x.cols());
       ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
         [&](Index, Index first, Index last)
         {

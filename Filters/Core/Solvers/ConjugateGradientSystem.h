@@ -83,16 +83,22 @@ struct ConjugateGradientWork
   std::vector<double> Rho; ///< R . B R
   std::vector<double> Length; ///< P . B^-1 P
   std::vector<double> Alpha, Beta, Step;
+  Index Rows = 0;
 
   void Resize(Index rows, int columns, int systems)
   {
-    if (this->P.rows() == rows && this->P.cols() == columns &&
-      this->Unit.size() == static_cast<std::size_t>(systems))
+    this->P.resize(rows, columns);
+    this->Q.resize(rows, columns);
+    this->ResizeSums(rows, systems);
+  }
+  /// All but P and Q.
+  void ResizeSums(Index rows, int systems)
+  {
+    if (this->Rows == rows && this->Unit.size() == static_cast<std::size_t>(systems))
     {
       return;
     }
-    this->P.resize(rows, columns);
-    this->Q.resize(rows, columns);
+    this->Rows = rows;
     this->Sums.Resize(rows, systems);
     this->Unit.assign(systems, 1.0);
     this->Reference.assign(systems, 1.0);
