@@ -22,7 +22,7 @@ constexpr double Relaxation = 1.7;
 struct Problem
 {
   std::shared_ptr<const TriangleMesh> Mesh;
-  std::shared_ptr<const std::vector<GradientMap>> Gradients;
+  std::shared_ptr<const GradientMaps> Gradients;
   EdgeFunction Function;
   ChannelCoupling Coupling;
   GradientSplitting Splitting;
@@ -33,8 +33,7 @@ struct Problem
   Problem(Kind kind, ChannelCoupling coupling, const Surface& s = Icosphere(2),
     const ParallelFor& parallel = SerialFor())
     : Mesh(std::make_shared<TriangleMesh>(s.Vertices, s.Faces))
-    , Gradients(
-        std::make_shared<const std::vector<GradientMap>>(PlainGradients(*Mesh, SerialFor())))
+    , Gradients(std::make_shared<const GradientMaps>(Mesh))
     , Function{ kind, 0.0, 3.0 }
     , Coupling(coupling)
     , Splitting(Mesh, Gradients, Function, coupling, Vector::Ones(Mesh->NumberOfTriangles()),
@@ -44,7 +43,7 @@ struct Problem
     const CornerWeights weights = this->Splitting.MakeCoefficients();
     for (Index t = 0; t < this->Mesh->NumberOfTriangles(); ++t)
     {
-      const GradientMap& map = (*this->Gradients)[t];
+      const GradientMap map = (*this->Gradients)[t];
       this->Penalty[t] = -weights(t, 0) / map.OfCorner(1).dot(map.OfCorner(2));
     }
   }

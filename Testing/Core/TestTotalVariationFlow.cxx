@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Core/Operators/GradientMap.h"
+#include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
@@ -38,13 +38,12 @@ struct CapProblem
 
 double TotalVariationOf(const TriangleMesh& mesh, const Values& u)
 {
-  const std::vector<GradientMap> gradients = PlainGradients(mesh, SerialFor());
   double sum = 0.0;
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const auto corners = mesh.TriangleVertices().row(t);
-    const Eigen::Vector2d gradient = (u(corners[1], 0) - u(corners[0], 0)) * gradients[t].First +
-      (u(corners[2], 0) - u(corners[0], 0)) * gradients[t].Second;
+    const Eigen::Vector2d gradient =
+      Gradient(mesh.Shapes()[t], u(corners[0], 0), u(corners[1], 0), u(corners[2], 0));
     sum += mesh.Shapes()[t].Area() * gradient.norm();
   }
   return sum;

@@ -14,11 +14,6 @@ namespace
 
 using Kind = EdgeFunctionKind;
 
-std::shared_ptr<const std::vector<GradientMap>> Gradients(const TriangleMesh& mesh)
-{
-  return std::make_shared<const std::vector<GradientMap>>(PlainGradients(mesh, SerialFor()));
-}
-
 /// A minimisation and all it needs: noise on a small sphere.
 struct Problem
 {
@@ -49,7 +44,8 @@ struct Problem
   {
     this->Settings.StopTolerance = tolerance;
     const Index n = this->Mesh.NumberOfVertices();
-    TotalVariationMinimizer minimizer(this->Operators, Gradients(this->Mesh),
+    TotalVariationMinimizer minimizer(this->Operators,
+      std::make_shared<const GradientMaps>(this->Operators->SharedMesh()),
       Vector::Constant(n, this->Quadratic), Vector::Constant(n, this->Absolute), this->Fixed,
       this->Data, this->Settings);
     Values u = this->Data;
@@ -97,7 +93,8 @@ TEST(TotalVariationMinimizer, NoSmallChangeLowersTheEnergy)
     problem.Absolute = absolute; // together with the quadratic term, as in a time step with L1
     problem.Settings.StopTolerance = 1e-7;
     const Index n = problem.Mesh.NumberOfVertices();
-    TotalVariationMinimizer minimizer(problem.Operators, Gradients(problem.Mesh),
+    TotalVariationMinimizer minimizer(problem.Operators,
+      std::make_shared<const GradientMaps>(problem.Operators->SharedMesh()),
       Vector::Constant(n, problem.Quadratic), Vector::Constant(n, absolute), problem.Fixed,
       problem.Data, problem.Settings);
     Values u = problem.Data;
@@ -121,7 +118,8 @@ TEST(TotalVariationMinimizer, FindsTheConstantBelowTheThresholdOfFidelity)
   problem.Quadratic = 1e-3;
   problem.Settings.StopTolerance = 1e-6;
   const Index n = problem.Mesh.NumberOfVertices();
-  TotalVariationMinimizer minimizer(problem.Operators, Gradients(problem.Mesh),
+  TotalVariationMinimizer minimizer(problem.Operators,
+    std::make_shared<const GradientMaps>(problem.Operators->SharedMesh()),
     Vector::Constant(n, problem.Quadratic), Vector::Zero(n), problem.Fixed, problem.Data,
     problem.Settings);
   Values u = problem.Data;
@@ -138,7 +136,7 @@ TEST(TotalVariationMinimizer, StretchedGradientsGiveTheAnisotropicCoefficients)
   const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
   TangentVectors frames = TangentVectorsFromTriangleVectors(*mesh, s.Vertices, s.Faces, directions);
   frames.topRows(10).setZero();
-  const auto maps = StretchedGradients(*mesh, frames, std::sqrt(2.0), std::sqrt(0.3), SerialFor());
+  const GradientMaps maps(mesh, frames, std::sqrt(2.0), std::sqrt(0.3));
   const CornerWeights c = AnisotropicWeights(*mesh, CotanWeights(*mesh), frames, 2.0, 0.3);
   for (Index t = 0; t < mesh->NumberOfTriangles(); ++t)
   {
@@ -155,7 +153,8 @@ TEST(TotalVariationMinimizer, SliversAndVeryUnevenTrianglesNeedFewIterationsToo)
     const TriangleMesh& mesh = assembler->Mesh();
     const Values f = Noise(mesh);
     const Vector mu = (10.0 * mesh.ControlAreas().array().rsqrt()).matrix();
-    TotalVariationMinimizer minimizer(assembler, Gradients(mesh), mu,
+    TotalVariationMinimizer minimizer(assembler,
+      std::make_shared<const GradientMaps>(assembler->SharedMesh()), mu,
       Vector::Zero(mesh.NumberOfVertices()), Flags::Constant(mesh.NumberOfVertices(), false), f,
       { {}, ChannelCoupling::Joint, 2.0, 1e-4, 10000 });
     Values u = f;
@@ -169,7 +168,8 @@ TEST(TotalVariationMinimizer, AbortsWithinAnIteration)
 {
   Problem problem;
   const Index n = problem.Mesh.NumberOfVertices();
-  TotalVariationMinimizer minimizer(problem.Operators, Gradients(problem.Mesh),
+  TotalVariationMinimizer minimizer(problem.Operators,
+    std::make_shared<const GradientMaps>(problem.Operators->SharedMesh()),
     Vector::Constant(n, 10.0), Vector::Zero(n), problem.Fixed, problem.Data, problem.Settings);
   int calls = 0;
   double last = 0.0;

@@ -29,7 +29,7 @@ double SquaredSteepest(const GradientMap& map)
 } // namespace
 
 GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
-  std::shared_ptr<const std::vector<GradientMap>> gradients, const EdgeFunction& function,
+  std::shared_ptr<const GradientMaps> gradients, const EdgeFunction& function,
   ChannelCoupling coupling, const Vector& ranges, double unknowns, const ParallelFor& parallel)
   : Mesh(std::move(mesh))
   , Gradients(std::move(gradients))
@@ -56,7 +56,7 @@ CornerWeights GradientSplitting::MakeCoefficients() const
   ForEach(this->Parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
     {
-      const GradientMap& map = (*this->Gradients)[t];
+      const GradientMap map = (*this->Gradients)[t];
       for (int a = 0; a < 3; ++a)
       {
         coefficients(t, a) =
@@ -70,7 +70,7 @@ CornerWeights GradientSplitting::MakeCoefficients() const
 Eigen::Vector2d GradientSplitting::GradientOf(const Values& u, Index t, Eigen::Index k) const
 {
   const Triangles& corners = this->Mesh->TriangleVertices();
-  const GradientMap& map = (*this->Gradients)[t];
+  const GradientMap map = (*this->Gradients)[t];
   const double u0 = u(corners(t, 0), k);
   return (u(corners(t, 1), k) - u0) * map.First + (u(corners(t, 2), k) - u0) * map.Second;
 }

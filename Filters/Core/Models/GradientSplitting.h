@@ -36,7 +36,7 @@ public:
   /// function: of a convex psi, without beta. ranges: typical range of the values on each triangle.
   /// unknowns: number of vertices of the surface.
   GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
-    std::shared_ptr<const std::vector<GradientMap>> gradients, const EdgeFunction& function,
+    std::shared_ptr<const GradientMaps> gradients, const EdgeFunction& function,
     ChannelCoupling coupling, const Vector& ranges, double unknowns, const ParallelFor& parallel);
 
   /// The coefficients of int r/2 |S grad u|^2 for Assembler, at the first penalty.
@@ -106,7 +106,7 @@ private:
   Eigen::Vector2d GradientOf(const Values& u, Index t, Eigen::Index k) const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
-  std::shared_ptr<const std::vector<GradientMap>> Gradients;
+  std::shared_ptr<const GradientMaps> Gradients;
   EdgeFunction Function;
   ChannelCoupling Coupling;
   const ParallelFor& Parallel;

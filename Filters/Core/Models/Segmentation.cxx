@@ -69,7 +69,7 @@ Segmentation::Segmentation(std::shared_ptr<const Assembler> assembler, Input inp
   minimizer.StopTolerance = settings.StopTolerance;
   minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
   this->Minimizer = std::make_unique<TotalVariationMinimizer>(this->Assembly,
-    std::make_shared<const std::vector<GradientMap>>(PlainGradients(mesh, parallel)),
+    std::make_shared<const GradientMaps>(this->Assembly->SharedMesh()),
     std::make_unique<SimplexSplitting>(
       this->Assembly->SharedMesh(), FindSeeds(this->Given.Seeds, n), typicalCost, parallel),
     Vector::Constant(mesh.NumberOfTriangles(), TypicalSize), minimizer, parallel);

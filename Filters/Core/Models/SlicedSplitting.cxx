@@ -180,11 +180,10 @@ void SlicedSplitting<Number>::ForEachSlice(const Act& act) const
 
 template <typename Number>
 void SlicedSplitting<Number>::SetMesh(
-  const TriangleMesh& mesh, const std::vector<GradientMap>& gradients, const Vector& penalty)
+  const TriangleMesh& mesh, const GradientMaps& gradients, const Vector& penalty)
 {
   this->Mesh = &mesh;
   this->Penalty = &penalty;
-  this->VertexBegin = mesh.VertexCornersBegin().data();
   const Index triangles = mesh.NumberOfTriangles();
   this->Slices = Buffer<Slice>(static_cast<std::size_t>((triangles + Lanes - 1) / Lanes));
   this->ForEachSlice(
@@ -196,26 +195,19 @@ void SlicedSplitting<Number>::SetMesh(
         const Index t = s * Lanes + l;
         const double area = mesh.Shapes()[t].Area();
         const double r = penalty[t] / area;
+        const GradientMap map = gradients[t];
         for (int corner = 0; corner < 3; ++corner)
         {
           slice.Vertices[corner][l] = mesh.TriangleVertices()(t, corner);
         }
         for (int axis = 0; axis < 2; ++axis)
         {
-          slice.Map[axis][l] = static_cast<Number>(r * gradients[t].First[axis]);
-          slice.Map[2 + axis][l] = static_cast<Number>(r * gradients[t].Second[axis]);
+          slice.Map[axis][l] = static_cast<Number>(r * map.First[axis]);
+          slice.Map[2 + axis][l] = static_cast<Number>(r * map.Second[axis]);
         }
         slice.AreaOverPenalty[l] = static_cast<Number>(area / r);
       }
       this->Slices[s] = slice;
-    });
-  const auto& corners = mesh.VertexCorners();
-  this->Places.resize(corners.size());
-  ForEach(this->Parallel, static_cast<Index>(corners.size()),
-    [&](Index c)
-    {
-      const Index t = corners[c] / 3;
-      this->Places[c] = (t / Lanes * 3 + corners[c] % 3) * Lanes + t % Lanes;
     });
 }
 

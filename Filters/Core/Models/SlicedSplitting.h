@@ -38,8 +38,7 @@ public:
   }
 
   /// penalty: r per triangle, times its area. All three must stay.
-  void SetMesh(
-    const TriangleMesh& mesh, const std::vector<GradientMap>& gradients, const Vector& penalty);
+  void SetMesh(const TriangleMesh& mesh, const GradientMaps& gradients, const Vector& penalty);
   bool HasMesh() const { return this->Mesh != nullptr; }
 
   /// Whether the numbers of the mesh are far from the limits of Number.
@@ -70,16 +69,17 @@ public:
   void Gather(Index i, double* row) const
   {
     const ColumnCount<K> columns(this->Columns);
-    for (int k = 0; k < columns; ++k)
+    std::fill_n(row, static_cast<int>(columns), 0.0);
+    const Index* const corners = this->Mesh->VertexCorners().data();
+    const Index end = this->Mesh->VertexCornersBegin()[i + 1];
+    for (Index c = this->Mesh->VertexCornersBegin()[i]; c < end; ++c)
     {
-      double sum = 0.0;
-      for (Index c = this->VertexBegin[i]; c < this->VertexBegin[i + 1]; ++c)
+      const Index t = corners[c] / 3;
+      const auto first = static_cast<std::size_t>(t / Lanes * 3 + corners[c] % 3) * columns;
+      for (int k = 0; k < columns; ++k)
       {
-        const Index lane = this->Places[c] % Lanes;
-        const auto slice = static_cast<std::size_t>(this->Places[c] - lane);
-        sum += this->AtCorners[slice * columns + static_cast<std::size_t>(k * Lanes + lane)];
+        row[k] += this->AtCorners[(first + k) * Lanes + t % Lanes];
       }
-      row[k] = sum;
     }
   }
 
@@ -117,8 +117,6 @@ private:
   const ParallelFor& Parallel;
   const TriangleMesh* Mesh = nullptr;
   const Vector* Penalty = nullptr;
-  const Index* VertexBegin = nullptr; ///< of the corners of each vertex in Places
-  std::vector<Index> Places; ///< (3 slice + corner) Lanes + lane
   Buffer<Slice> Slices;
   int Columns = 0;
   double PenaltyGrowth = 1.0;

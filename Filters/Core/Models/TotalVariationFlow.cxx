@@ -41,9 +41,8 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
     along = std::sqrt(along);
     across = std::sqrt(across);
   }
-  const auto gradients = std::make_shared<const std::vector<GradientMap>>(frames.rows() > 0
-      ? StretchedGradients(mesh, frames, along, across, parallel)
-      : PlainGradients(mesh, parallel));
+  const auto gradients =
+    std::make_shared<const GradientMaps>(this->Assembly->SharedMesh(), frames, along, across);
 
   const Index n = mesh.NumberOfVertices();
   Vector absolute = Vector::Zero(n);

@@ -117,9 +117,8 @@ EdgeFunction WithoutBeta(EdgeFunction function)
 } // namespace
 
 TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-  std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
-  Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
-  const ParallelFor& parallel)
+  std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
+  const Eigen::Ref<const Values>& typical, const Settings& settings, const ParallelFor& parallel)
   : TotalVariationMinimizer(assembler, std::move(gradients), quadratic, std::move(absolute),
       std::move(fixed), settings,
       RangesOfTriangles(assembler->Mesh(), typical, quadratic, parallel), parallel)
@@ -127,8 +126,8 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 }
 
 TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-  std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
-  Flags fixed, const Settings& settings, const Vector& ranges, const ParallelFor& parallel)
+  std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
+  const Settings& settings, const Vector& ranges, const ParallelFor& parallel)
   : TotalVariationMinimizer(assembler, std::move(gradients),
       std::make_unique<VertexSplitting>(assembler->SharedMesh(), std::move(quadratic),
         std::move(absolute), std::move(fixed),
@@ -141,7 +140,7 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
 }
 
 TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-  std::shared_ptr<const std::vector<GradientMap>> gradients, std::unique_ptr<VertexTerms> terms,
+  std::shared_ptr<const GradientMaps> gradients, std::unique_ptr<VertexTerms> terms,
   const Vector& ranges, const Settings& settings, const ParallelFor& parallel)
   : Assembly(std::move(assembler))
   , OverProcesses(this->Assembly->Mesh().GetReduction())

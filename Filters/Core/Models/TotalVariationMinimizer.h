@@ -49,13 +49,13 @@ public:
   /// determine the penalty, and so the number of iterations; outliers act on it only around
   /// themselves.
   TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-    std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
-    Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
+    std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
+    const Eigen::Ref<const Values>& typical, const Settings& settings,
     const ParallelFor& parallel = SerialFor());
 
   /// The same with other terms at the vertices. ranges: typical ones of u on each triangle.
   TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-    std::shared_ptr<const std::vector<GradientMap>> gradients, std::unique_ptr<VertexTerms> terms,
+    std::shared_ptr<const GradientMaps> gradients, std::unique_ptr<VertexTerms> terms,
     const Vector& ranges, const Settings& settings, const ParallelFor& parallel = SerialFor());
 
   struct Report
@@ -95,8 +95,8 @@ public:
 private:
   /// ranges: typical ones of the values on each triangle.
   TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-    std::shared_ptr<const std::vector<GradientMap>> gradients, Values quadratic, Vector absolute,
-    Flags fixed, const Settings& settings, const Vector& ranges, const ParallelFor& parallel);
+    std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
+    const Settings& settings, const Vector& ranges, const ParallelFor& parallel);
 
   double NoiseEnergy() const;
   void Start(const Values& u, bool keepMultipliers, bool isSingle);

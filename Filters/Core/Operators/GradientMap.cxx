@@ -4,42 +4,37 @@
 
 #include "Core/Operators/CotanWeights.h"
 
+#include <utility>
+
 namespace SurfaceDiffusion
 {
 
-std::vector<GradientMap> PlainGradients(const TriangleMesh& mesh, const ParallelFor& parallel)
+GradientMaps::GradientMaps(
+  std::shared_ptr<const TriangleMesh> mesh, TangentVectors frames, double along, double across)
+  : Mesh(std::move(mesh))
+  , Frames(std::move(frames))
+  , Along(along)
+  , Across(across)
 {
-  std::vector<GradientMap> maps(mesh.NumberOfTriangles());
-  ForEach(parallel, mesh.NumberOfTriangles(),
-    [&](Index t)
-    {
-      const TriangleMesh::Shape& s = mesh.Shapes()[t];
-      maps[t] = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
-    });
-  return maps;
 }
 
-std::vector<GradientMap> StretchedGradients(const TriangleMesh& mesh,
-  const Eigen::Ref<const TangentVectors>& frames, double along, double across,
-  const ParallelFor& parallel)
+GradientMap GradientMaps::operator[](Index t) const
 {
-  std::vector<GradientMap> maps = PlainGradients(mesh, parallel);
-  ForEach(parallel, mesh.NumberOfTriangles(),
-    [&](Index t)
-    {
-      const bool directed = HasDirection(frames, t);
-      const Eigen::Vector2d e1 = frames.row(t);
-      const auto stretch = [&](const Eigen::Vector2d& v) -> Eigen::Vector2d
-      {
-        if (!directed)
-        {
-          return IsotropicMean(along, across) * v;
-        }
-        return across * v + ((along - across) * e1.dot(v)) * e1;
-      };
-      maps[t] = { stretch(maps[t].First), stretch(maps[t].Second) };
-    });
-  return maps;
+  const TriangleMesh::Shape& s = this->Mesh->Shapes()[t];
+  const GradientMap plain = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
+  if (this->Frames.rows() == 0)
+  {
+    return plain;
+  }
+  if (!HasDirection(this->Frames, t))
+  {
+    const double mean = IsotropicMean(this->Along, this->Across);
+    return { mean * plain.First, mean * plain.Second };
+  }
+  const Eigen::Vector2d e1 = this->Frames.row(t);
+  const auto stretch = [&](const Eigen::Vector2d& v) -> Eigen::Vector2d
+  { return this->Across * v + ((this->Along - this->Across) * e1.dot(v)) * e1; };
+  return { stretch(plain.First), stretch(plain.Second) };
 }
 
 } // namespace SurfaceDiffusion

@@ -4,7 +4,7 @@
 
 #include "Core/Surface/TriangleMesh.h"
 
-#include <vector>
+#include <memory>
 
 namespace SurfaceDiffusion
 {
@@ -23,12 +23,26 @@ struct GradientMap
   }
 };
 
-/// S = 1, per triangle.
-std::vector<GradientMap> PlainGradients(const TriangleMesh& mesh, const ParallelFor& parallel);
+/// The map of each triangle of a mesh, computed when it is asked for.
+class GradientMaps
+{
+public:
+  /// S = 1.
+  explicit GradientMaps(std::shared_ptr<const TriangleMesh> mesh)
+    : GradientMaps(std::move(mesh), TangentVectors(), 1.0, 1.0)
+  {
+  }
+  /// S = along e1 e1^T + across e2 e2^T; see IsotropicMean() for triangles without a direction.
+  /// frames: e1 per triangle; no row: S = 1.
+  GradientMaps(
+    std::shared_ptr<const TriangleMesh> mesh, TangentVectors frames, double along, double across);
 
-/// S = along e1 e1^T + across e2 e2^T; see IsotropicMean() for triangles without a direction.
-std::vector<GradientMap> StretchedGradients(const TriangleMesh& mesh,
-  const Eigen::Ref<const TangentVectors>& frames, double along, double across,
-  const ParallelFor& parallel);
+  GradientMap operator[](Index t) const;
+
+private:
+  std::shared_ptr<const TriangleMesh> Mesh;
+  TangentVectors Frames;
+  double Along, Across;
+};
 
 } // namespace SurfaceDiffusion
