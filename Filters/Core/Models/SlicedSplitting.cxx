@@ -209,6 +209,14 @@ void SlicedSplitting<Number>::SetMesh(
       }
       this->Slices[s] = slice;
     });
+  const auto& corners = mesh.VertexCorners();
+  this->Places.resize(corners.size()); // finding them in every iteration costs more than reading
+  ForEach(this->Parallel, static_cast<Index>(corners.size()),
+    [&](Index c)
+    {
+      const Index t = corners[c] / 3;
+      this->Places[c] = (t / Lanes * 3 + corners[c] % 3) * Lanes + t % Lanes;
+    });
 }
 
 template <typename Number>

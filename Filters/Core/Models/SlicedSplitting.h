@@ -69,17 +69,17 @@ public:
   void Gather(Index i, double* row) const
   {
     const ColumnCount<K> columns(this->Columns);
-    std::fill_n(row, static_cast<int>(columns), 0.0);
-    const Index* const corners = this->Mesh->VertexCorners().data();
-    const Index end = this->Mesh->VertexCornersBegin()[i + 1];
-    for (Index c = this->Mesh->VertexCornersBegin()[i]; c < end; ++c)
+    const std::vector<Index>& begin = this->Mesh->VertexCornersBegin();
+    for (int k = 0; k < columns; ++k)
     {
-      const Index t = corners[c] / 3;
-      const auto first = static_cast<std::size_t>(t / Lanes * 3 + corners[c] % 3) * columns;
-      for (int k = 0; k < columns; ++k)
+      double sum = 0.0;
+      for (Index c = begin[i]; c < begin[i + 1]; ++c)
       {
-        row[k] += this->AtCorners[(first + k) * Lanes + t % Lanes];
+        const Index lane = this->Places[c] % Lanes;
+        const auto slice = static_cast<std::size_t>(this->Places[c] - lane);
+        sum += this->AtCorners[slice * columns + static_cast<std::size_t>(k * Lanes + lane)];
       }
+      row[k] = sum;
     }
   }
 
@@ -117,6 +117,7 @@ private:
   const ParallelFor& Parallel;
   const TriangleMesh* Mesh = nullptr;
   const Vector* Penalty = nullptr;
+  std::vector<Index> Places; ///< (3 slice + corner) Lanes + lane of each of VertexCorners()
   Buffer<Slice> Slices;
   int Columns = 0;
   double PenaltyGrowth = 1.0;
