@@ -70,14 +70,19 @@ void Spread(const Slice& slice, int columns, int first, int last, const Number (
     Number* const at0 = atCorners + static_cast<std::ptrdiff_t>(k) * Lanes;
     Number* const at1 = at0 + static_cast<std::ptrdiff_t>(columns) * Lanes;
     Number* const at2 = at1 + static_cast<std::ptrdiff_t>(columns) * Lanes;
+    Number a[Lanes]; // the compiler knows that these overlap nothing
+    Number b[Lanes];
     for (Index l = 0; l < Lanes; ++l)
     {
-      const Number a = factors[l] * (slice.Map[0][l] * x[l] + slice.Map[1][l] * y[l]);
-      const Number b = factors[l] * (slice.Map[2][l] * x[l] + slice.Map[3][l] * y[l]);
-      at0[l] = -a - b;
-      at1[l] = a;
-      at2[l] = b;
+      a[l] = factors[l] * (slice.Map[0][l] * x[l] + slice.Map[1][l] * y[l]);
+      b[l] = factors[l] * (slice.Map[2][l] * x[l] + slice.Map[3][l] * y[l]);
     }
+    for (Index l = 0; l < Lanes; ++l)
+    {
+      at0[l] = -a[l] - b[l];
+    }
+    std::copy_n(a, Lanes, at1);
+    std::copy_n(b, Lanes, at2);
   }
 }
 

@@ -75,9 +75,9 @@ public:
       double sum = 0.0;
       for (Index c = begin[i]; c < begin[i + 1]; ++c)
       {
-        const Index lane = this->Places[c] % Lanes;
-        const auto slice = static_cast<std::size_t>(this->Places[c] - lane);
-        sum += this->AtCorners[slice * columns + static_cast<std::size_t>(k * Lanes + lane)];
+        const auto place = static_cast<std::size_t>(this->Places[c]);
+        const std::size_t lane = place % Lanes;
+        sum += this->AtCorners[K == 1 ? place : (place - lane) * columns + k * Lanes + lane];
       }
       row[k] = sum;
     }
