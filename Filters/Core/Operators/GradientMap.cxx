@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/GradientMap.h"
 
-#include "Core/Operators/CotanWeights.h"
-
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -18,14 +16,8 @@ GradientMaps::GradientMaps(
 {
 }
 
-GradientMap GradientMaps::operator[](Index t) const
+GradientMap GradientMaps::Stretch(Index t, const GradientMap& plain) const
 {
-  const TriangleMesh::Shape& s = this->Mesh->Shapes()[t];
-  const GradientMap plain = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
-  if (this->Frames.rows() == 0)
-  {
-    return plain;
-  }
   if (!HasDirection(this->Frames, t))
   {
     const double mean = IsotropicMean(this->Along, this->Across);

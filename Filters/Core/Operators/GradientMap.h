@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/TriangleMesh.h"
 
 #include <memory>
@@ -37,9 +38,16 @@ public:
   GradientMaps(
     std::shared_ptr<const TriangleMesh> mesh, TangentVectors frames, double along, double across);
 
-  GradientMap operator[](Index t) const;
+  GradientMap operator[](Index t) const
+  {
+    const TriangleMesh::Shape& s = this->Mesh->Shapes()[t];
+    const GradientMap plain = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
+    return this->Frames.rows() == 0 ? plain : this->Stretch(t, plain);
+  }
 
 private:
+  GradientMap Stretch(Index t, const GradientMap& plain) const;
+
   std::shared_ptr<const TriangleMesh> Mesh;
   TangentVectors Frames;
   double Along, Across;
