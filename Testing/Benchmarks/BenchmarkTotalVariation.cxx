@@ -9,7 +9,8 @@
 // DenoiseColors minimises over three channels on opponent axes, or alternates brightness and
 // chromaticity, to a tolerance of 1e-3.
 // FlowOfSteps minimises in as many time steps of a flow without fidelity as its argument says.
-// ChannelStep is a lagged step of all channels together, of total variation or of the Beltrami flow.
+// ChannelStep is a lagged step of all channels together, of total variation, of the Beltrami flow or
+// of coherence-enhancing diffusion.
 
 #include "HeatSystem.h"
 #include "Meshes.h"
@@ -20,6 +21,7 @@
 #include "Core/Models/NonlinearDiffusion.h"
 #include "Core/Models/OpponentColors.h"
 #include "Core/Models/Segmentation.h"
+#include "Core/Models/StructureDiffusion.h"
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Models/TotalVariationFlow.h"
@@ -87,7 +89,8 @@ void MinimizeToGap(benchmark::State& state)
 }
 BENCHMARK(MinimizeToGap)
   ->ArgNames({ "s", "digits", "channels" })
-  ->ArgsProduct({ { 6, 7 }, { 3, 5, 6 }, { 1, 3 } })
+  ->ArgsProduct({ { 6, 7, 8 }, { 3, 5, 6 }, { 1 } })
+  ->ArgsProduct({ { 6, 7 }, { 3, 5 }, { 3 } })
   ->Unit(benchmark::kMillisecond);
 
 /// The time 0.2 on a sphere with the radius 1, always in the same number of time steps: short steps
@@ -337,13 +340,33 @@ void ChannelStep(benchmark::State& state)
     model = std::make_unique<NonlinearDiffusion>(
       pattern.Operators, TangentVectors(), pattern.Data, settings, solver);
   }
-  else
+  else if (state.range(2) == 1)
   {
     BeltramiFlow::Settings settings;
     settings.TimeStep = h * h;
     settings.ColorScale = 10.0 * h;
     model = std::make_unique<BeltramiFlow>(
       pattern.Operators, TangentVectors(), pattern.Data, settings, solver);
+  }
+  else
+  {
+    const auto iterative = [&solver]
+    {
+      std::shared_ptr<LinearSolver> other = MakeConjugateGradientSolver();
+      other->SetLimits(solver->GetLimits());
+      return other;
+    };
+    StructureDiffusion::Settings settings;
+    settings.TimeStep = h * h;
+    settings.Contrast = 0.05 / h;
+    const auto mesh = pattern.Operators->SharedMesh();
+    model = std::make_unique<StructureDiffusion>(pattern.Operators, TangentVectors(), pattern.Data,
+      settings,
+      std::make_unique<StructureTensor>(mesh,
+        std::make_unique<HeatBlur>(pattern.Operators, h, 2, iterative()),
+        std::make_unique<TensorSmoothing>(
+          std::make_shared<LineFieldOperator>(mesh), 4.0 * h, 2, iterative())),
+      solver);
   }
   for (int step = 0; step < 5; ++step)
   {
@@ -357,8 +380,8 @@ void ChannelStep(benchmark::State& state)
   state.counters["Iterations"] = report.Iterations;
 }
 BENCHMARK(ChannelStep)
-  ->ArgNames({ "s", "channels", "Beltrami" })
-  ->ArgsProduct({ { 6 }, { 1, 3 }, { 0, 1 } })
+  ->ArgNames({ "s", "channels", "Beltrami: 1, coherence: 2" })
+  ->ArgsProduct({ { 6 }, { 1, 3 }, { 0, 1, 2 } })
   ->Unit(benchmark::kMillisecond);
 
 void HeatStepWithANewFactor(benchmark::State& state)

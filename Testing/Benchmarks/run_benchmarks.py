@@ -41,8 +41,15 @@ STAGES = {
     "Filter100Steps": "the same in the filter",
     "TimeSeek": "seek to another time of that run",
 }
-MODELS = "MinimizeToGap|FindEdges|ExtractCurves|LaggedStep/.*:3$|ChannelStep|TenSteps/[56]/[12]/1|^Step/mesh:[13]|Stands/mesh:[13]"
-NOTED = {"vertices", "Gap", "Iterations", "steps", "time", "step_over_solves",
+MODELS = ("MinimizeToGap|FlowOfSteps|PaperSteps|SegmentToGap|DenoiseColors/s:6|DeblurBy.*/s:6|FindEdges|"
+          "ExtractCurves|LaggedStep/.*:3$|ChannelStep|TenSteps/[56]/[12]/1|^Step/mesh:[13]|"
+          "Stands/mesh:[13]")
+PRECISION = {
+    "product": ("ProductIn/double", "ProductIn/single"),
+    "conjugate gradients to 1e-10, 100 h²": ("SolveIn/double", "SolveIn/single"),
+    "total variation: update of the gradients": ("UpdateIn<double>", "UpdateIn<float>"),
+}
+NOTED = {"vertices", "Gap", "Iterations", "Error", "steps", "time", "step_over_solves",
          "degrees_before", "degrees_after"}
 
 
@@ -123,6 +130,17 @@ def solvers(results):
             title = f"{method}, {int(tenths) / 10:g} h², {columns} column"
             rows.append(results.row(title + ("s" if columns != "1" else ""), name))
     return table(head, rows)
+
+
+def precisions(results):
+    """Milliseconds in double and in single precision, and their ratio."""
+    sizes = sorted(results.times["ProductIn/double"])
+    rows = []
+    for title, names in PRECISION.items():
+        double, single = (results.times[name] for name in names)
+        rows.append([title] + [f"{number(double[n])} / {number(single[n])} = {double[n] / single[n]:.2f}"
+                               for n in sizes])
+    return table(["ms"] + [f"{n:,}" for n in sizes], rows)
 
 
 def models(rows):
@@ -264,8 +282,13 @@ def main():
             "log(time) over log(vertices). Of bandwidth: the minimum memory traffic of a stage per "
             "time, relative to the triad on data of the same size.\n\n" + stages(results)
             + "## Linear solves from noise to a residual of 1e-10\n\n" + solvers(results)
-            + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser; LaggedStep: one "
-            "step of the paper's scheme) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 "
+            + "## What single precision gains\n\nThe same work in double precision on compressed "
+            "rows and in single precision on slices of 16 rows or triangles, one column.\n\n"
+            + precisions(results)
+            + "## Other models\n\nTotal variation (MinimizeToGap: the minimiser, FlowOfSteps: the "
+            "minimiser in steps of a flow, LaggedStep: one step of the paper's scheme, PaperSteps: "
+            "ten of them on a scanned surface, ChannelStep: one for all channels, of total variation, "
+            "the Beltrami flow or coherence-enhancing diffusion) and harmonic maps (TenSteps) on icospheres of 10 4^s + 2 "
             "vertices, edges (FindEdges: the whole run, ExtractCurves) and textures (Step: one step, "
             "Stands: until the pattern is stationary) on a scanned surface.\n\n" + models(of_models["benchmarks"])
             + "## What threads do not make faster\n\nThe share of the time on one thread that is "
