@@ -98,6 +98,9 @@ private:
   static constexpr double SmallestShare = 2e-3;
   static constexpr double SmallestShareOfOnePass = 1e-4;
   static constexpr double MostOfOnePass = 1e-5;
+  /// From here on (the diffusion number 3), round-off of single precision does no harm to a reduction by
+  /// MostOfOnePass either; otherwise it is 1e-4.
+  static constexpr double SmallestShareOfLongPasses = 0.05;
 
   /// InverseDiagonal and Share, in one pass over the matrix.
   void InvertDiagonal(const SparseMatrix& matrix)
@@ -305,7 +308,7 @@ private:
   /// Returns the largest number of passes that are left, or 0.
   double PlanPass(SolveReport& report)
   {
-    constexpr double most = 1e-4; // round-off of single precision does no harm to such a reduction
+    const double most = this->Share >= SmallestShareOfLongPasses ? MostOfOnePass : 1e-4;
     constexpr double least = 0.1; // a pass that gains less is the last one of its column
     double passes = 0.0;
     report.Residual = 0.0;
