@@ -8,7 +8,7 @@
 #include "Conversion/RunState.h"
 #include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/TimeRequests.h"
-#include "Distributed/DistributedSolver.h"
+#include "Distributed/DistributedMultigrid.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -240,7 +240,7 @@ bool vtkSurfaceDiffusionAlgorithm::SolvesInPieces(
   const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points)
 {
   const SharedProcessGroup group(this->GetController());
-  if (!HasDistributedSolver(group.GetProcesses()) || this->Solver == SOLVER_DIRECT ||
+  if (!HasDistributedMultigrid(group.GetProcesses()) || this->Solver == SOLVER_DIRECT ||
     this->IntrinsicDelaunay || this->MergeCoincidentPoints ||
     group.Any(!this->CanSolveInPieces(pieces)))
   {

@@ -82,8 +82,13 @@ void DomainDecomposition::FindInterfaceVertices(
   this->OwnedVertices.assign(mesh.NumberOfVertices(), true);
   for (const auto& [label, vertex] : vertexOf)
   {
-    this->OwnedVertices[vertex] =
-      this->AddToInterface(this->Vertices, vertex, this->Holders[label]);
+    if (this->IsOnInterface(label))
+    {
+      const auto number = static_cast<Index>(this->VerticesOnInterface.size());
+      this->VerticesOnInterface.push_back(vertex);
+      this->OwnedVertices[vertex] =
+        this->AddToInterface(this->Vertices, number, this->Holders[label]);
+    }
   }
 }
 
@@ -330,19 +335,43 @@ const typename Map::mapped_type& FindItems(const Map& map, int process)
   return found == map.end() ? none : found->second;
 }
 
+/// change() sees and changes the rows of the vertices alone.
+template <typename T, typename Change>
+void OnRows(const std::vector<Index>& vertices, T* rows, Index columns, const Change& change)
+{
+  std::vector<T> some(vertices.size() * columns);
+  const auto row = [&](std::size_t v)
+  { return rows + static_cast<std::ptrdiff_t>(vertices[v]) * columns; };
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+  {
+    std::copy_n(row(v), columns, some.data() + v * columns);
+  }
+  change(some.data());
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+  {
+    std::copy_n(some.data() + v * columns, columns, row(v));
+  }
+}
+
 } // namespace
 
 void DomainDecomposition::UpdateFromOwners(Values& values) const
 {
-  this->UpdateItems(this->Vertices, values.data(), static_cast<Index>(values.cols()));
+  this->UpdateVertices(values.data(), static_cast<Index>(values.cols()));
 }
 
 void DomainDecomposition::UpdateFromOwners(std::vector<vtkIdType>& numbers) const
 {
-  this->UpdateItems(this->Vertices, numbers.data(), 1);
+  this->UpdateVertices(numbers.data(), 1);
 }
 
 void DomainDecomposition::Accumulate(double* rows, Index columns) const
+{
+  OnRows(this->VerticesOnInterface, rows, columns,
+    [&](double* ofInterface) { this->AccumulateInterfaceVertices(ofInterface, columns); });
+}
+
+void DomainDecomposition::AccumulateInterfaceVertices(double* rows, Index columns) const
 {
   this->AccumulateItems(this->Vertices, rows, columns);
 }
@@ -374,6 +403,13 @@ void DomainDecomposition::ExchangeItems(const Items& sent, const Items& received
       write(in[i], incoming.data() + i * columns);
     }
   }
+}
+
+template <typename T>
+void DomainDecomposition::UpdateVertices(T* rows, Index columns) const
+{
+  OnRows(this->VerticesOnInterface, rows, columns,
+    [&](T* ofInterface) { this->UpdateItems(this->Vertices, ofInterface, columns); });
 }
 
 template <typename T>

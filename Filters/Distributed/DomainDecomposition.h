@@ -33,6 +33,7 @@ public:
   void UpdateFromOwners(std::vector<vtkIdType>& numbers) const; ///< one per vertex
   using Reduction::Accumulate;
   void Accumulate(double* rows, Index columns) const override;
+  void AccumulateInterfaceVertices(double* rows, Index columns) const override;
   void AccumulateInterfaceEdges(double* ofEdges) const override;
 
   /// asked: whether this process is to stop. Sum() then throws Aborted in all processes.
@@ -52,8 +53,9 @@ public:
   double SharedEdgeLength() const { return this->ForeignEdgeLength; }
 
 private:
-  /// Vertices or edges on interfaces, by the other process: those that this process owns and the
-  /// other has too, and those that the other owns. Both processes list them in the same order.
+  /// Numbers of vertices or edges on interfaces, by the other process: those that this process owns
+  /// and the other has too, and those that the other owns. Both processes list them in the same
+  /// order.
   struct Interface
   {
     std::map<int, std::vector<Index>> Owned, Foreign;
@@ -76,6 +78,8 @@ private:
   bool IsOnInterface(vtkIdType label) const;
   bool AddToInterface(Interface& to, Index item, const std::vector<int>& holders) const;
 
+  template <typename T>
+  void UpdateVertices(T* rows, Index columns) const;
   template <typename T>
   void UpdateItems(const Interface& items, T* rows, Index columns) const;
   void AccumulateItems(const Interface& items, double* rows, Index columns) const;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/PieceDecomposition.h"
 
-#include "Distributed/DistributedSolver.h"
+#include "Distributed/DistributedMultigrid.h"
 #include "Distributed/SurfacePieces.h"
 
 #include "vtkBoundingBox.h"
@@ -51,7 +51,11 @@ void PieceDecomposition::Attach(Surface& surface, SolverStore& solvers)
   this->Domain->ObeyAbort(this->AbortRequested);
   surface.SetReduction(this->Domain);
   solvers.SetDistributedFactory(
-    [domain = this->Domain](bool multigrid) { return MakeDistributedSolver(domain, multigrid); });
+    [domain = this->Domain](bool multigrid, const ParallelFor& parallel)
+    {
+      return multigrid ? MakeDistributedMultigridSolver(domain)
+                       : MakeConjugateGradientSolver(domain, parallel);
+    });
 }
 
 void PieceDecomposition::UpdateCopies(

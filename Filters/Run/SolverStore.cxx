@@ -49,7 +49,8 @@ std::shared_ptr<LinearSolver> SolverStore::Find(
   Kept& kept = this->Solvers[static_cast<std::size_t>(purpose)];
   if (this->Distributed)
   {
-    kept.Solver = this->Distributed(PreferDistributedMultigrid(this->Method, task));
+    kept.Solver =
+      this->Distributed(PreferDistributedMultigrid(this->Method, task), *this->Parallel);
   }
   else
   {

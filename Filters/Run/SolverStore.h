@@ -33,7 +33,8 @@ class SolverStore
 {
 public:
   /// Makes a solver over processes; multigrid: whether a multigrid preconditioner is wanted.
-  using DistributedFactory = std::function<std::unique_ptr<LinearSolver>(bool multigrid)>;
+  using DistributedFactory =
+    std::function<std::unique_ptr<LinearSolver>(bool multigrid, const ParallelFor& parallel)>;
 
   void Configure(const RunSettings& settings, const ParallelFor& parallel);
   void SetDistributedFactory(DistributedFactory factory) { this->Distributed = std::move(factory); }

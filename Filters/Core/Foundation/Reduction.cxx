@@ -82,17 +82,6 @@ double Reduction::Quantile(const Eigen::Ref<const Vector>& values, double fracti
   return *at;
 }
 
-const Vector& Reduction::Accumulated(const Vector& values, Vector& storage) const
-{
-  if (this->IsSerial())
-  {
-    return values;
-  }
-  storage = values;
-  this->Accumulate(storage);
-  return storage;
-}
-
 const Vector& Reduction::OwnedPart(const Vector& values, Vector& storage) const
 {
   if (this->IsSerial())

@@ -86,7 +86,17 @@ public:
   void Accumulate(Vector& values) const { this->Accumulate(values.data(), 1); }
 
   /// The same into `storage`, which the serial reduction does not need: it returns `values`.
-  const Vector& Accumulated(const Vector& values, Vector& storage) const;
+  template <typename T>
+  const T& Accumulated(const T& values, T& storage) const
+  {
+    if (this->IsSerial())
+    {
+      return values;
+    }
+    storage = values;
+    this->Accumulate(storage);
+    return storage;
+  }
 
   /// Values at vertices that this process owns, 0 at the others: with them a sum over the vertices
   /// of the process counts each vertex once. The serial reduction returns `values`.
@@ -114,6 +124,10 @@ public:
     ForEach(parallel, rows, use);
   }
 
+  /// Vertices that other processes have too; Accumulate() for one row of numbers per such vertex.
+  const std::vector<Index>& InterfaceVertices() const { return this->VerticesOnInterface; }
+  virtual void AccumulateInterfaceVertices(double* /*rows*/, Index /*columns*/) const {}
+
   /// Edges that other processes have too, as pairs of vertices of this one; Accumulate() for one
   /// number per such edge.
   const std::vector<std::array<Index, 2>>& InterfaceEdges() const { return this->EdgesOnInterface; }
@@ -139,6 +153,7 @@ protected:
 
   Index NumberOfComponents = 0; ///< of the surface
   std::vector<Index> SurfaceComponent; ///< per component of the process's mesh
+  std::vector<Index> VerticesOnInterface;
   std::vector<std::array<Index, 2>> EdgesOnInterface;
   std::vector<char> OwnedVertices, OwnedEdges;
 

@@ -44,6 +44,14 @@ public:
     , Single(parallel)
   {
   }
+  ConjugateGradientSolver(
+    std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel)
+    : Parallel(parallel)
+    , OwnReduction(std::move(overProcesses))
+    , OverProcesses(*this->OwnReduction)
+    , Single(parallel, this->OverProcesses)
+  {
+  }
 
   void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress) override
   {
@@ -121,21 +129,27 @@ private:
           below += inner[slot] < i;
         }
         const double diagonal = values[outer[i] + below];
-        this->InverseDiagonal[i] = 1.0 / diagonal;
+        this->InverseDiagonal[i] = diagonal;
         sums[0] += sum;
         sums[1] += diagonal;
       });
+    this->RowSums.Reduce(this->OverProcesses);
+    this->OverProcesses.Accumulate(this->InverseDiagonal);
+    ForEach(this->Parallel, n,
+      [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
     this->Share = this->RowSums[0] / this->RowSums[1];
   }
 
   ColumnSystem System()
   {
-    return { { *this->Matrix, this->InverseDiagonal }, this->Hierarchy.get(), this->Scales };
+    return { { *this->Matrix, this->InverseDiagonal, this->OverProcesses }, this->Hierarchy.get(),
+      this->Scales };
   }
 
   template <int K>
-  SolveReport SolveColumns(const Values& b, Values& x, const ProgressMonitor& progress)
+  SolveReport SolveColumns(const Values& accumulatedB, Values& x, const ProgressMonitor& progress)
   {
+    const Values& b = this->OverProcesses.Accumulated(accumulatedB, this->ConsistentB);
     const ColumnCount<K> k(b.cols());
     const Index n = static_cast<Index>(b.rows());
     this->Residual.resize(n, k);
@@ -143,19 +157,20 @@ private:
     this->Work.ResizeSums(n, k);
 
     // b - A x in units of each column's own
-    const bool startsAtZero = Max(this->Parallel, n,
-                                [&](Index i)
-                                {
-                                  bool isZero = true;
-                                  for (int c = 0; c < k; ++c)
-                                  {
-                                    isZero = isZero && x(i, c) == 0.0;
-                                  }
-                                  return isZero ? 0.0 : 1.0;
-                                }) == 0.0;
-    if (!startsAtZero)
+    double startsElsewhere = Max(this->Parallel, n,
+      [&](Index i)
+      {
+        bool isZero = true;
+        for (int c = 0; c < k; ++c)
+        {
+          isZero = isZero && x(i, c) == 0.0;
+        }
+        return isZero ? 0.0 : 1.0;
+      });
+    this->OverProcesses.Max(&startsElsewhere, 1);
+    if (startsElsewhere > 0.0)
     {
-      Multiply(*this->Matrix, x, this->Residual, this->Parallel);
+      this->MultiplyByMatrix(x);
     }
     else
     {
@@ -164,18 +179,20 @@ private:
     std::vector<double>& unit = this->Work.Unit;
     for (int c = 0; c < k; ++c)
     {
-      unit[c] = ScaleOf(b, this->Residual, c, this->Parallel);
+      unit[c] = ScaleOf(b, this->Residual, c, this->Parallel, this->OverProcesses);
     }
     this->Work.Sums.Run<K>(this->Parallel, n, k,
       [&](Index i, double* sums)
       {
+        const bool counts = this->OverProcesses.Owns(i);
         for (int c = 0; c < k; ++c)
         {
           const double bi = b(i, c) / unit[c];
           this->Residual(i, c) = bi - this->Residual(i, c) / unit[c];
-          sums[c] += bi * this->InverseDiagonal[i] * bi;
+          sums[c] += counts ? bi * this->InverseDiagonal[i] * bi : 0.0;
         }
       });
+    this->Work.Sums.Reduce(this->OverProcesses);
     for (int c = 0; c < k; ++c)
     {
       this->Work.Reference[c] = this->Work.Sums[c] > 0.0 ? this->Work.Sums[c] : 1.0;
@@ -347,19 +364,28 @@ private:
   template <int K>
   void UpdateResidual(const Values& b, const Values& x)
   {
-    Multiply(*this->Matrix, x, this->Residual, this->Parallel);
+    this->MultiplyByMatrix(x);
     const ColumnCount<K> k(b.cols());
     const std::vector<double>& unit = this->Work.Unit;
     this->Work.Sums.Run<K>(this->Parallel, static_cast<Index>(b.rows()), k,
       [&](Index i, double* sums)
       {
+        const bool counts = this->OverProcesses.Owns(i);
         for (int c = 0; c < k; ++c)
         {
           const double r = b(i, c) / unit[c] - this->Residual(i, c) / unit[c];
           this->Residual(i, c) = r;
-          sums[c] += r * this->InverseDiagonal[i] * r;
+          sums[c] += counts ? r * this->InverseDiagonal[i] * r : 0.0;
         }
       });
+    this->Work.Sums.Reduce(this->OverProcesses);
+  }
+
+  /// Residual = A x.
+  void MultiplyByMatrix(const Values& x)
+  {
+    Multiply(*this->Matrix, x, this->Residual, this->Parallel);
+    this->OverProcesses.Accumulate(this->Residual);
   }
 
   /// The squares of the residual in the norm of D^-1, in Work.Sums.
@@ -370,15 +396,19 @@ private:
     this->Work.Sums.Run<K>(this->Parallel, static_cast<Index>(this->Residual.rows()), k,
       [&](Index i, double* sums)
       {
+        const bool counts = this->OverProcesses.Owns(i);
         for (int c = 0; c < k; ++c)
         {
           const double r = this->Residual(i, c);
-          sums[c] += r * this->InverseDiagonal[i] * r;
+          sums[c] += counts ? r * this->InverseDiagonal[i] * r : 0.0;
         }
       });
+    this->Work.Sums.Reduce(this->OverProcesses);
   }
 
   const ParallelFor& Parallel;
+  const std::shared_ptr<const Reduction> OwnReduction;
+  const Reduction& OverProcesses = Reduction::Serial();
   std::unique_ptr<Multigrid> Hierarchy;
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
@@ -387,6 +417,7 @@ private:
   ColumnSums RowSums;
   std::vector<SinglePrecisionSolver::Column> Corrections;
   Values Residual; ///< in Work.Unit
+  Values ConsistentB; ///< over several processes
   std::vector<double> Scales;
   ConjugateGradientWork Work;
 };
@@ -395,7 +426,13 @@ private:
 
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(const ParallelFor& parallel)
 {
-  return std::make_unique<ConjugateGradientSolver>(nullptr, parallel);
+  return std::make_unique<ConjugateGradientSolver>(std::unique_ptr<Multigrid>(), parallel);
+}
+
+std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
+  std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel)
+{
+  return std::make_unique<ConjugateGradientSolver>(std::move(overProcesses), parallel);
 }
 
 std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel)

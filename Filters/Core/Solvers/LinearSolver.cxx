@@ -37,11 +37,12 @@ void RequireAnswer(const SolveReport& report, const IterationLimits& limits)
   }
 }
 
-double LinearSolver::ScaleOf(
-  const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel)
+double LinearSolver::ScaleOf(const Values& a, const Values& b, Eigen::Index column,
+  const ParallelFor& parallel, const Reduction& overProcesses)
 {
-  const double largest = Max(parallel, static_cast<Index>(a.rows()),
+  double largest = Max(parallel, static_cast<Index>(a.rows()),
     [&](Index i) { return std::max(std::abs(a(i, column)), std::abs(b(i, column))); });
+  overProcesses.Max(&largest, 1);
   return largest > 0.0 && std::isfinite(largest) ? std::exp2(std::ilogb(largest)) : 1.0;
 }
 

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Parallel.h"
 #include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/Types.h"
 
 #include <memory>
@@ -83,8 +84,8 @@ public:
 protected:
   /// A power of two near the largest entry of two columns. The squares of entries divided by it
   /// neither overflow nor underflow, and the division is exact.
-  static double ScaleOf(
-    const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel);
+  static double ScaleOf(const Values& a, const Values& b, Eigen::Index column,
+    const ParallelFor& parallel, const Reduction& overProcesses = Reduction::Serial());
 
   IterationLimits Limits;
 };
@@ -99,6 +100,11 @@ std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = S
 /// double precision (SinglePrecisionSolver), to the same tolerance.
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
   const ParallelFor& parallel = SerialFor());
+
+/// The same over processes: matrices and right-hand sides are accumulated, solutions consistent
+/// vectors (see Reduction).
+std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
+  std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel);
 
 /// Conjugate gradients with a cycle of Multigrid as preconditioner: the number of iterations hardly
 /// grows with size and time step.

@@ -168,6 +168,7 @@ int SinglePrecisionSolver::Iterate(
   {
     ++iterations;
     this->Matrix.Multiply(count, p, this->Q.data(), sums);
+    this->Accumulate(count, p, sums);
     for (int c = 0; c < count; ++c)
     {
       const Column& column = group.Columns[c];
@@ -178,6 +179,7 @@ int SinglePrecisionSolver::Iterate(
       alpha[c] = active[c] ? static_cast<float>(step) : 0.0F;
     }
     this->Matrix.Subtract(count, alpha, this->Q.data(), this->R.data(), sums);
+    this->CountOnce(count, this->R.data(), sums);
     double done = 0.99;
     isFinished = true;
     for (int c = 0; c < count; ++c)
@@ -209,6 +211,60 @@ int SinglePrecisionSolver::Iterate(
   }
   progress.Report(1.0);
   return iterations;
+}
+
+/// Q = A p and p . Q over all processes, from those of the process. Matrix has added the unit diagonal
+/// in each of them; it is meant once.
+void SinglePrecisionSolver::Accumulate(int columns, const float* p, double* sums)
+{
+  if (this->OverProcesses.IsSerial())
+  {
+    return;
+  }
+  const std::vector<Index>& vertices = this->OverProcesses.InterfaceVertices();
+  const std::vector<Index>& places = this->Matrix.PlacesOfRows();
+  const std::size_t rows = this->Matrix.PaddedRows();
+  this->OnInterfaces.resize(vertices.size() * columns);
+  double* number = this->OnInterfaces.data();
+  for (const Index vertex : vertices)
+  {
+    for (int c = 0; c < columns; ++c, ++number)
+    {
+      const std::size_t at = c * rows + places[vertex];
+      *number = this->Q[at];
+      if (!this->OverProcesses.Owns(vertex))
+      {
+        const double entry = p[at];
+        *number -= entry;
+        sums[c] -= entry * entry;
+      }
+    }
+  }
+  this->OverProcesses.AccumulateInterfaceVertices(this->OnInterfaces.data(), columns);
+  number = this->OnInterfaces.data();
+  for (const Index vertex : vertices)
+  {
+    for (int c = 0; c < columns; ++c, ++number)
+    {
+      this->Q[c * rows + places[vertex]] = static_cast<float>(*number);
+    }
+  }
+  this->OverProcesses.Sum(sums, columns);
+}
+
+/// sums[c] = r . r over all processes, from those of the process.
+void SinglePrecisionSolver::CountOnce(int columns, const float* r, double* sums)
+{
+  const std::vector<Index>& places = this->Matrix.PlacesOfRows();
+  for (const Index vertex : this->OverProcesses.InterfaceVertices())
+  {
+    for (int c = 0; c < columns && !this->OverProcesses.Owns(vertex); ++c)
+    {
+      const double entry = r[c * this->Matrix.PaddedRows() + places[vertex]];
+      sums[c] -= entry * entry;
+    }
+  }
+  this->OverProcesses.Sum(sums, columns);
 }
 
 /// x += D^-1/2 Y, and r = D^1/2 R unless it is null.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Foundation/Reduction.h"
 #include "Core/Solvers/SlicedMatrix.h"
 
 #include <vector>
@@ -18,8 +19,11 @@ namespace SurfaceDiffusion
 class SinglePrecisionSolver
 {
 public:
-  explicit SinglePrecisionSolver(const ParallelFor& parallel)
+  /// overProcesses: A is accumulated over them, D, r and x are consistent.
+  explicit SinglePrecisionSolver(
+    const ParallelFor& parallel, const Reduction& overProcesses = Reduction::Serial())
     : Parallel(parallel)
+    , OverProcesses(overProcesses)
     , Matrix(parallel)
   {
   }
@@ -61,12 +65,17 @@ private:
     const ProgressMonitor& progress);
   void Add(const Group& group, const bool* solved, Values& x, Values* r);
 
+  void Accumulate(int columns, const float* p, double* sums);
+  void CountOnce(int columns, const float* r, double* sums);
+
   const ParallelFor& Parallel;
+  const Reduction& OverProcesses;
   SlicedMatrix Matrix;
   Vector Roots; ///< D^-1/2
   std::vector<float> R, Q, Y; ///< of a few columns, in the order of Matrix
   std::vector<Column> Descents; ///< work
   std::vector<float> P; ///< the directions of all columns
+  std::vector<double> OnInterfaces; ///< work
 };
 
 } // namespace SurfaceDiffusion

@@ -37,6 +37,8 @@ public:
   std::size_t PaddedRows() const { return this->Rows.size(); }
   /// The row of the matrix at each place in the order of the slices, or -1 at the end.
   const std::vector<Index>& RowsInOrder() const { return this->Rows; }
+  /// The place of each row.
+  const std::vector<Index>& PlacesOfRows() const { return this->Places; }
 
   /// q = A p; sums[c] = p . q.
   void Multiply(int columns, const float* p, float* q, double* sums);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Distributed/DistributedSolver.h"
+#include "Distributed/DistributedMultigrid.h"
 
 #ifdef SURFACEDIFFUSION_USE_HYPRE
 
@@ -46,10 +46,9 @@ HYPRE_Solver AsSolver(HYPRE_ParCSRMatrix matrix)
 class HypreSolver : public LinearSolver
 {
 public:
-  HypreSolver(std::shared_ptr<const DomainDecomposition> decomposition, bool multigrid)
+  explicit HypreSolver(std::shared_ptr<const DomainDecomposition> decomposition)
     : Domain(std::move(decomposition))
     , Comm(*Communicator(this->Domain->GetProcesses()))
-    , IsMultigrid(multigrid)
   {
     HYPRE_Init();
   }
@@ -165,17 +164,14 @@ private:
   void MakeSolver()
   {
     HYPRE_ParCSRPCGCreate(this->Comm, &this->Krylov);
-    if (this->IsMultigrid)
-    {
-      HYPRE_BoomerAMGCreate(&this->Multigrid);
-      HYPRE_BoomerAMGSetTol(this->Multigrid, 0.0);
-      HYPRE_BoomerAMGSetMaxIter(this->Multigrid, 1);
-      HYPRE_BoomerAMGSetCoarsenType(this->Multigrid, 10); // HMIS
-      HYPRE_BoomerAMGSetRelaxType(this->Multigrid, 6); // symmetric, as conjugate gradients need
-      HYPRE_BoomerAMGSetInterpType(this->Multigrid, 6);
-      HYPRE_BoomerAMGSetPMaxElmts(this->Multigrid, 4);
-      HYPRE_BoomerAMGSetup(this->Multigrid, this->Matrix, this->B.Vector, this->X.Vector);
-    }
+    HYPRE_BoomerAMGCreate(&this->Multigrid);
+    HYPRE_BoomerAMGSetTol(this->Multigrid, 0.0);
+    HYPRE_BoomerAMGSetMaxIter(this->Multigrid, 1);
+    HYPRE_BoomerAMGSetCoarsenType(this->Multigrid, 10); // HMIS
+    HYPRE_BoomerAMGSetRelaxType(this->Multigrid, 6); // symmetric, as conjugate gradients need
+    HYPRE_BoomerAMGSetInterpType(this->Multigrid, 6);
+    HYPRE_BoomerAMGSetPMaxElmts(this->Multigrid, 4);
+    HYPRE_BoomerAMGSetup(this->Multigrid, this->Matrix, this->B.Vector, this->X.Vector);
     const auto nothing = [](HYPRE_Solver, HYPRE_Matrix, HYPRE_Vector, HYPRE_Vector)
     { return HYPRE_Int(0); };
     const auto precondition = [](HYPRE_Solver self, HYPRE_Matrix, HYPRE_Vector b, HYPRE_Vector x)
@@ -206,8 +202,7 @@ private:
 
   HYPRE_Int ApplyPreconditioner(HYPRE_ParVector r, HYPRE_ParVector z)
   {
-    return this->IsMultigrid ? HYPRE_BoomerAMGSolve(this->Multigrid, this->Matrix, r, z)
-                             : HYPRE_ParCSRDiagScale(AsSolver(this->Matrix), this->Matrix, r, z);
+    return HYPRE_BoomerAMGSolve(this->Multigrid, this->Matrix, r, z);
   }
 
   void SetOwned(const Column& column, const Values& values, Eigen::Index k)
@@ -331,7 +326,6 @@ private:
 
   const std::shared_ptr<const DomainDecomposition> Domain;
   const MPI_Comm Comm;
-  const bool IsMultigrid;
   bool IsAborted = false;
   int Iterations = 0;
   ProgressMonitor CurrentProgress; ///< of the column that is solved
@@ -350,26 +344,26 @@ private:
 
 } // namespace
 
-bool HasDistributedSolver(const Processes& processes)
+bool HasDistributedMultigrid(const Processes& processes)
 {
   return Communicator(processes) != nullptr;
 }
 
-std::unique_ptr<LinearSolver> MakeDistributedSolver(
-  std::shared_ptr<const DomainDecomposition> decomposition, bool multigrid)
+std::unique_ptr<LinearSolver> MakeDistributedMultigridSolver(
+  std::shared_ptr<const DomainDecomposition> decomposition)
 {
-  return std::make_unique<HypreSolver>(std::move(decomposition), multigrid);
+  return std::make_unique<HypreSolver>(std::move(decomposition));
 }
 
 #else
 
-bool HasDistributedSolver(const Processes&)
+bool HasDistributedMultigrid(const Processes&)
 {
   return false;
 }
 
-std::unique_ptr<SurfaceDiffusion::LinearSolver> MakeDistributedSolver(
-  std::shared_ptr<const DomainDecomposition>, bool)
+std::unique_ptr<LinearSolver> MakeDistributedMultigridSolver(
+  std::shared_ptr<const DomainDecomposition>)
 {
   return nullptr;
 }
