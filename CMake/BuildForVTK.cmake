@@ -50,25 +50,11 @@ if (SURFACEDIFFUSION_PYPI_VTK AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
   endif ()
 endif ()
 
-# hypre, for surfaces larger than one process
-set(use_hypre OFF)
-if (SURFACEDIFFUSION_USE_HYPRE AND NOT SKBUILD)
-  find_path(HYPRE_INCLUDE_DIR HYPRE.h PATH_SUFFIXES hypre)
-  find_library(HYPRE_LIBRARY HYPRE)
-  mark_as_advanced(HYPRE_INCLUDE_DIR HYPRE_LIBRARY)
-  if (HYPRE_INCLUDE_DIR AND HYPRE_LIBRARY AND TARGET VTK::ParallelMPI)
-    set(use_hypre ON)
-  elseif (NOT SURFACEDIFFUSION_USE_HYPRE STREQUAL "AUTO")
-    message(FATAL_ERROR
-      "SURFACEDIFFUSION_USE_HYPRE needs hypre (libhypre-dev) and a VTK with ParallelMPI")
-  endif ()
-endif ()
-
 include(CMakeDependentOption)
 cmake_dependent_option(SURFACEDIFFUSION_BUILD_PLUGIN "Build the ParaView plugin" ON
   "ParaView_FOUND;NOT SKBUILD" OFF)
 message(STATUS "SurfaceDiffusion: VTK ${VTK_VERSION}, "
-  "ParaView ${ParaView_VERSION}, plugin ${SURFACEDIFFUSION_BUILD_PLUGIN}, hypre ${use_hypre}")
+  "ParaView ${ParaView_VERSION}, plugin ${SURFACEDIFFUSION_BUILD_PLUGIN}")
 
 # Installation folder of the Python package
 if (SURFACEDIFFUSION_WRAP_PYTHON)

@@ -8,7 +8,6 @@
 #include "Conversion/RunState.h"
 #include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/TimeRequests.h"
-#include "Distributed/DistributedMultigrid.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -240,7 +239,7 @@ bool vtkSurfaceDiffusionAlgorithm::SolvesInPieces(
   const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points)
 {
   const SharedProcessGroup group(this->GetController());
-  if (!HasDistributedMultigrid(group.GetProcesses()) || this->Solver == SOLVER_DIRECT ||
+  if (group.GetProcesses().Count() == 1 || this->Solver == SOLVER_DIRECT ||
     this->IntrinsicDelaunay || this->MergeCoincidentPoints ||
     group.Any(!this->CanSolveInPieces(pieces)))
   {

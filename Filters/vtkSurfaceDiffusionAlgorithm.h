@@ -47,9 +47,8 @@
  *
  * Composite input is one problem with one set of units; see vtkSurfaceFilter for composite data and
  * for surfaces in pieces. Each process solves with its piece, so that memory and time are divided,
- * if the library was built with hypre, the surface has one piece per process, IntrinsicDelaunay and
- * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid (hypre's BoomerAMG),
- * or Automatic with more than a million points. An abort is then obeyed by all processes within a
+ * if the surface has one piece per process, IntrinsicDelaunay and MergeCoincidentPoints are off, and
+ * Solver is ConjugateGradient or Multigrid, or Automatic with more than a million points. An abort is then obeyed by all processes within a
  * few iterations. Some features are always computed in process 0, which then holds the whole
  * surface: AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves of
  * vtkMumfordShahFilter, and MoveVertices, computed normals and line fields with missing values of

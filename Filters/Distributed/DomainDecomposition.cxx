@@ -18,18 +18,13 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-constexpr int ExchangeTag = 7403;
-
-} // namespace
-
 DomainDecomposition::DomainDecomposition(
   const Processes& processes, const Surface& surface, const PointIdentity& identity)
   : Reduction(Reduction::Kind::Distributed)
   , Group(processes)
   , Neighbours(identity.Neighbours)
+  , Vertices(processes)
+  , Edges(processes)
 {
   this->FindInterfaceVertices(surface.InputMesh(), identity);
   this->MergeComponents(surface.InputMesh(), identity);
@@ -80,14 +75,17 @@ void DomainDecomposition::FindInterfaceVertices(
     }
   }
   this->OwnedVertices.assign(mesh.NumberOfVertices(), true);
+  std::map<std::vector<int>, Index> sets;
   for (const auto& [label, vertex] : vertexOf)
   {
     if (this->IsOnInterface(label))
     {
-      const auto number = static_cast<Index>(this->VerticesOnInterface.size());
-      this->VerticesOnInterface.push_back(vertex);
+      const std::vector<int>& holders = this->Holders[label];
+      const auto set = sets.emplace(holders, static_cast<Index>(sets.size())).first;
+      this->HolderSets.push_back(set->second);
       this->OwnedVertices[vertex] =
-        this->AddToInterface(this->Vertices, number, this->Holders[label]);
+        this->Vertices.Add(static_cast<Index>(this->VerticesOnInterface.size()), holders);
+      this->VerticesOnInterface.push_back(vertex);
     }
   }
 }
@@ -110,24 +108,6 @@ bool DomainDecomposition::IsOnInterface(vtkIdType label) const
 {
   const auto holders = this->Holders.find(label);
   return holders != this->Holders.end() && holders->second.size() > 1;
-}
-
-/// holders: the processes that have the item, ascending; the first owns it. Returns whether that is
-/// this process.
-bool DomainDecomposition::AddToInterface(
-  Interface& to, Index item, const std::vector<int>& holders) const
-{
-  const int owner = holders.front();
-  if (owner != this->Group.Rank())
-  {
-    to.Foreign[owner].push_back(item);
-    return false;
-  }
-  for (std::size_t h = 1; h < holders.size(); ++h)
-  {
-    to.Owned[holders[h]].push_back(item);
-  }
-  return true;
 }
 
 /// Components of pieces that share a vertex are parts of one component of the surface.
@@ -232,7 +212,7 @@ void DomainDecomposition::FindInterfaceEdges(
     if (holders[key].size() > 1)
     {
       const auto number = static_cast<Index>(this->EdgesOnInterface.size());
-      const bool isOwned = this->AddToInterface(this->Edges, number, holders[key]);
+      const bool isOwned = this->Edges.Add(number, holders[key]);
       this->EdgesOnInterface.push_back(edge.Vertices);
       this->OwnedEdges.push_back(isOwned);
       this->ForeignEdges += isOwned ? 0 : 1;
@@ -289,155 +269,11 @@ void DomainDecomposition::FindCopies(const Surface& surface, const PointIdentity
   }
 }
 
-/// The process of lower rank sends first.
-template <typename T>
-void DomainDecomposition::Exchange(
-  int other, const std::vector<T>& sent, std::vector<T>& received) const
-{
-  vtkMultiProcessController* const controller = this->Group.Controller();
-  for (const bool send : { this->Group.Rank() < other, this->Group.Rank() > other })
-  {
-    if (send && !sent.empty())
-    {
-      controller->Send(sent.data(), static_cast<vtkIdType>(sent.size()), other, ExchangeTag);
-    }
-    else if (!send && !received.empty())
-    {
-      controller->Receive(
-        received.data(), static_cast<vtkIdType>(received.size()), other, ExchangeTag);
-    }
-  }
-}
-
-namespace
-{
-
-/// The processes named in either, ascending.
-template <typename Map>
-std::set<int> FindPartners(const Map& a, const Map& b)
-{
-  std::set<int> partners;
-  for (const Map* map : { &a, &b })
-  {
-    for (const auto& entry : *map)
-    {
-      partners.insert(entry.first);
-    }
-  }
-  return partners;
-}
-
-template <typename Map>
-const typename Map::mapped_type& FindItems(const Map& map, int process)
-{
-  static const typename Map::mapped_type none;
-  const auto found = map.find(process);
-  return found == map.end() ? none : found->second;
-}
-
-/// change() sees and changes the rows of the vertices alone.
-template <typename T, typename Change>
-void OnRows(const std::vector<Index>& vertices, T* rows, Index columns, const Change& change)
-{
-  std::vector<T> some(vertices.size() * columns);
-  const auto row = [&](std::size_t v)
-  { return rows + static_cast<std::ptrdiff_t>(vertices[v]) * columns; };
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-  {
-    std::copy_n(row(v), columns, some.data() + v * columns);
-  }
-  change(some.data());
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-  {
-    std::copy_n(some.data() + v * columns, columns, row(v));
-  }
-}
-
-} // namespace
-
-void DomainDecomposition::UpdateFromOwners(Values& values) const
-{
-  this->UpdateVertices(values.data(), static_cast<Index>(values.cols()));
-}
-
-void DomainDecomposition::UpdateFromOwners(std::vector<vtkIdType>& numbers) const
-{
-  this->UpdateVertices(numbers.data(), 1);
-}
-
-void DomainDecomposition::Accumulate(double* rows, Index columns) const
-{
-  OnRows(this->VerticesOnInterface, rows, columns,
-    [&](double* ofInterface) { this->AccumulateInterfaceVertices(ofInterface, columns); });
-}
-
-void DomainDecomposition::AccumulateInterfaceVertices(double* rows, Index columns) const
-{
-  this->AccumulateItems(this->Vertices, rows, columns);
-}
-
-void DomainDecomposition::AccumulateInterfaceEdges(double* ofEdges) const
-{
-  this->AccumulateItems(this->Edges, ofEdges, 1);
-}
-
-/// Each process sends `columns` numbers of type T for every item in `sent`, which read(item,
-/// numbers) fills in, and gives those it gets for the items in `received` to write(item, numbers).
-template <typename T, typename Items, typename Read, typename Write>
-void DomainDecomposition::ExchangeItems(const Items& sent, const Items& received,
-  std::size_t columns, const Read& read, const Write& write) const
-{
-  for (const int other : FindPartners(sent, received))
-  {
-    const auto& out = FindItems(sent, other);
-    const auto& in = FindItems(received, other);
-    std::vector<T> outgoing(out.size() * columns);
-    std::vector<T> incoming(in.size() * columns);
-    for (std::size_t i = 0; i < out.size(); ++i)
-    {
-      read(out[i], outgoing.data() + i * columns);
-    }
-    this->Exchange(other, outgoing, incoming);
-    for (std::size_t i = 0; i < in.size(); ++i)
-    {
-      write(in[i], incoming.data() + i * columns);
-    }
-  }
-}
-
-template <typename T>
-void DomainDecomposition::UpdateVertices(T* rows, Index columns) const
-{
-  OnRows(this->VerticesOnInterface, rows, columns,
-    [&](T* ofInterface) { this->UpdateItems(this->Vertices, ofInterface, columns); });
-}
-
-template <typename T>
-void DomainDecomposition::UpdateItems(const Interface& items, T* rows, Index columns) const
-{
-  const auto row = [&](Index item) { return rows + static_cast<std::ptrdiff_t>(item) * columns; };
-  this->ExchangeItems<T>(
-    items.Owned, items.Foreign, columns,
-    [&](Index item, T* numbers) { std::copy_n(row(item), columns, numbers); },
-    [&](Index item, const T* numbers) { std::copy_n(numbers, columns, row(item)); });
-}
-
-/// Owners add the values of the other processes, ordered by rank, and send the sums back.
-void DomainDecomposition::AccumulateItems(const Interface& items, double* rows, Index columns) const
-{
-  const auto row = [&](Index item) { return rows + static_cast<std::ptrdiff_t>(item) * columns; };
-  this->ExchangeItems<double>(
-    items.Foreign, items.Owned, columns,
-    [&](Index item, double* numbers) { std::copy_n(row(item), columns, numbers); },
-    [&](Index item, const double* numbers)
-    { std::transform(numbers, numbers + columns, row(item), row(item), std::plus<double>()); });
-  this->UpdateItems(items, rows, columns);
-}
-
 void DomainDecomposition::FillCopies(vtkDataArray* array) const
 {
-  this->ExchangeItems<double>(
-    this->Originals, this->Copies, static_cast<std::size_t>(array->GetNumberOfComponents()),
+  ExchangeRows(
+    this->Group, this->Originals, this->Copies,
+    static_cast<std::size_t>(array->GetNumberOfComponents()),
     [&](vtkIdType point, double* tuple) { array->GetTuple(point, tuple); },
     [&](vtkIdType point, const double* tuple) { array->SetTuple(point, tuple); });
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/Reduction.h"
+#include "Distributed/CoarseDecomposition.h"
 #include "Distributed/PointIdentity.h"
 #include "Distributed/Processes.h"
 #include "Run/Surface.h"
@@ -29,12 +30,28 @@ public:
   using Reduction::Sum;
   void Sum(double* numbers, Index count) const override;
   void Max(double* numbers, Index count) const override;
-  void UpdateFromOwners(Values& values) const override;
-  void UpdateFromOwners(std::vector<vtkIdType>& numbers) const; ///< one per vertex
-  using Reduction::Accumulate;
-  void Accumulate(double* rows, Index columns) const override;
-  void AccumulateInterfaceVertices(double* rows, Index columns) const override;
-  void AccumulateInterfaceEdges(double* ofEdges) const override;
+  int Rank() const override { return this->Group.Rank(); }
+  std::vector<double> Gather(const std::vector<double>& here) const override
+  {
+    return this->Group.GatherAll(here);
+  }
+  void AccumulateInterface(double* rows, Index columns) const override
+  {
+    this->Vertices.Accumulate(rows, columns);
+  }
+  void UpdateInterface(double* rows, Index columns) const override
+  {
+    this->Vertices.Update(rows, columns);
+  }
+  std::shared_ptr<const Reduction> Coarsened(
+    const std::vector<Index>& coarse, Index count) const override
+  {
+    return std::make_shared<CoarseDecomposition>(*this, *this, this->Vertices, coarse, count);
+  }
+  void AccumulateInterfaceEdges(double* ofEdges) const override
+  {
+    this->Edges.Accumulate(ofEdges, 1);
+  }
 
   /// asked: whether this process is to stop. Sum() then throws Aborted in all processes.
   void ObeyAbort(std::shared_ptr<const bool> asked) { this->AbortAsked = std::move(asked); }
@@ -53,13 +70,6 @@ public:
   double SharedEdgeLength() const { return this->ForeignEdgeLength; }
 
 private:
-  /// Numbers of vertices or edges on interfaces, by the other process: those that this process owns
-  /// and the other has too, and those that the other owns. Both processes list them in the same
-  /// order.
-  struct Interface
-  {
-    std::map<int, std::vector<Index>> Owned, Foreign;
-  };
   /// An edge between vertices on interfaces.
   struct Edge
   {
@@ -76,24 +86,12 @@ private:
   std::map<int, std::vector<vtkIdType>> ShareWithNeighbours(
     const std::vector<vtkIdType>& here) const;
   bool IsOnInterface(vtkIdType label) const;
-  bool AddToInterface(Interface& to, Index item, const std::vector<int>& holders) const;
-
-  template <typename T>
-  void UpdateVertices(T* rows, Index columns) const;
-  template <typename T>
-  void UpdateItems(const Interface& items, T* rows, Index columns) const;
-  void AccumulateItems(const Interface& items, double* rows, Index columns) const;
-  template <typename T, typename Items, typename Read, typename Write>
-  void ExchangeItems(const Items& sent, const Items& received, std::size_t columns,
-    const Read& read, const Write& write) const;
-  template <typename T>
-  void Exchange(int other, const std::vector<T>& sent, std::vector<T>& received) const;
 
   const Processes Group;
   const std::vector<int> Neighbours; ///< ranks, ascending
   /// Of labels that several pieces have: the ranks among the neighbours and this process.
   std::map<vtkIdType, std::vector<int>> Holders;
-  Interface Vertices, Edges;
+  InterfaceExchange Vertices, Edges; ///< of InterfaceVertices() and InterfaceEdges()
   std::map<int, std::vector<vtkIdType>> Originals, Copies; ///< points, by the other process
   vtkIdType CopyCount = 0;
   Index ForeignEdges = 0;

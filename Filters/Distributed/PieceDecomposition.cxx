@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/PieceDecomposition.h"
 
-#include "Distributed/DistributedMultigrid.h"
 #include "Distributed/SurfacePieces.h"
 
 #include "vtkBoundingBox.h"
@@ -53,7 +52,7 @@ void PieceDecomposition::Attach(Surface& surface, SolverStore& solvers)
   solvers.SetDistributedFactory(
     [domain = this->Domain](bool multigrid, const ParallelFor& parallel)
     {
-      return multigrid ? MakeDistributedMultigridSolver(domain)
+      return multigrid ? MakeMultigridSolver(domain, parallel)
                        : MakeConjugateGradientSolver(domain, parallel);
     });
 }

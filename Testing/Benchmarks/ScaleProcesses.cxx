@@ -6,7 +6,7 @@
 ///         [<time step in natural units> [heat | turing | harmonic | tv | minimum]]
 ///
 /// For conjugate gradients with the Jacobi preconditioner and, if the model allows it, with
-/// multigrid (hypre), the program prints: vertices, seconds of the first update (identification of
+/// multigrid, the program prints: vertices, seconds of the first update (identification of
 /// interface vertices, assembly, set-up, solve) and of a second step alone, iterations, interface
 /// vertices, bytes that the busiest process sends per matrix-vector product, and its memory.
 /// "minimum" is total variation with TimeIntegrator Implicit.

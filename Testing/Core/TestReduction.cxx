@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
@@ -36,10 +38,6 @@ public:
     }
   }
   void Max(double*, Index) const override {}
-  void UpdateFromOwners(Values&) const override {}
-  using Reduction::Accumulate;
-  void Accumulate(double*, Index) const override {}
-  void AccumulateInterfaceEdges(double*) const override {}
 };
 
 /// As if all vertices were on the interface with a process that has the same
@@ -47,9 +45,13 @@ public:
 class Equal : public Twin
 {
 public:
-  using Twin::Accumulate;
-  using Twin::Twin;
-  void Accumulate(double* rows, Index columns) const override
+  explicit Equal(Index vertices)
+    : Twin(vertices)
+  {
+    this->VerticesOnInterface.resize(vertices);
+    std::iota(this->VerticesOnInterface.begin(), this->VerticesOnInterface.end(), 0);
+  }
+  void AccumulateInterface(double* rows, Index columns) const override
   {
     for (Index i = 0; i < static_cast<Index>(this->OwnedVertices.size()) * columns; ++i)
     {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Solves by domain decomposition: each process with its own piece, with hypre.
+/// Solves by domain decomposition: each process with its own piece.
 #include "Pieces.h"
 
 #include "vtkFVMHeatFilter.h"
@@ -13,6 +13,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkIdList.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <gtest/gtest.h>
@@ -49,9 +50,10 @@ namespace
 
 constexpr int N = 24;
 
-/// A piece with ids, vectors and a mask that do not depend on the decomposition. sheared: with
+/// A piece of a square of n columns with ids, vectors and a mask that do not depend on the decomposition. sheared: with
 /// obtuse angles.
-vtkSmartPointer<vtkPolyData> WithData(vtkSmartPointer<vtkPolyData> piece, bool sheared = false)
+vtkSmartPointer<vtkPolyData> WithData(
+  vtkSmartPointer<vtkPolyData> piece, bool sheared = false, int n = N)
 {
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName("ids");
@@ -59,7 +61,7 @@ vtkSmartPointer<vtkPolyData> WithData(vtkSmartPointer<vtkPolyData> piece, bool s
   {
     double x[3];
     piece->GetPoint(i, x);
-    ids->InsertNextValue(std::lround(x[0] * N) * (N + 1) + std::lround(x[1] * N));
+    ids->InsertNextValue(std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
     x[0] += sheared ? -0.8 * x[1] : 0.0;
     piece->GetPoints()->SetPoint(i, x);
   }
@@ -395,6 +397,80 @@ TEST_P(Together, SeekInTime)
   direct->SetNumberOfTimeSteps(2);
   direct->Update();
   EXPECT_TRUE(Identical(Result(direct, GetParam().Result), second));
+}
+
+/// The triangles of the square that `owner` gives to this process: a function of their number and of a
+/// corner.
+template <typename Owner>
+vtkSmartPointer<vtkPolyData> MinePicked(int n, const Owner& owner)
+{
+  const auto whole = WithData(Strip(0, n, n), false, n);
+  auto mine = vtkSmartPointer<vtkPolyData>::New();
+  mine->SetPoints(whole->GetPoints());
+  mine->GetPointData()->ShallowCopy(whole->GetPointData());
+  vtkNew<vtkCellArray> triangles;
+  for (vtkIdType t = 0; t < whole->GetNumberOfCells(); ++t)
+  {
+    vtkNew<vtkIdList> corners;
+    whole->GetCellPoints(t, corners);
+    if (owner(t, whole->GetPoint(corners->GetId(0))) == Rank())
+    {
+      triangles->InsertNextCell(corners);
+    }
+  }
+  mine->SetPolys(triangles);
+  return mine;
+}
+
+/// Long steps with multigrid.
+vtkSmartPointer<vtkFVMHeatFilter> RunLongSteps(
+  vtkPolyData* input, vtkMultiProcessController* controller)
+{
+  auto heat = Make<vtkFVMHeatFilter>("rough", 2);
+  heat->SetController(controller);
+  heat->SetSolverToMultigrid();
+  heat->SetTimeStep(1e4);
+  heat->SetInputData(input);
+  heat->Update();
+  return heat;
+}
+
+/// Pieces are strips, tiles that meet in corners, and triangles at random. The latter put nearly all
+/// vertices on interfaces, where the prolongation is not smoothed.
+TEST(MultigridOverProcesses, TakesHardlyMoreIterationsThanOneProcess)
+{
+  constexpr int n = 128;
+  const auto alone = RunLongSteps(WithData(Strip(0, n, n), false, n), nullptr);
+  std::mt19937 random(7);
+  const auto inTiles = [](vtkIdType, const double* x)
+  { return (static_cast<int>(5.0 * x[0]) + 2 * static_cast<int>(5.0 * x[1])) % Count(); };
+  const auto atRandom = [&](vtkIdType, const double*)
+  { return static_cast<int>(random() % static_cast<unsigned>(Count())); };
+  struct Pieces
+  {
+    const char* Name;
+    vtkSmartPointer<vtkPolyData> Mine;
+    double Factor; ///< the most iterations over those of one process
+  };
+  const std::vector<Pieces> all = {
+    { "strips", WithData(Mine(n), false, n), 1.15 },
+    { "tiles", MinePicked(n, inTiles), 1.15 },
+    { "at random", MinePicked(n, atRandom), 4.0 },
+  };
+  for (const auto& [name, piece, factor] : all)
+  {
+    const auto heat = RunLongSteps(piece, vtkMultiProcessController::GetGlobalController());
+    const double difference =
+      LargestDifference(heat->GetOutput(), alone->GetOutput(), "roughDiffused");
+    EXPECT_LT(difference, 1e-10) << name;
+    if (Rank() == 0)
+    {
+      std::cout << Count() << " processes, " << name << ": difference " << difference
+                << ", iterations " << heat->GetNumberOfIterations() << ", alone "
+                << alone->GetNumberOfIterations() << "\n";
+      EXPECT_LE(heat->GetNumberOfIterations(), factor * alone->GetNumberOfIterations()) << name;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Pieces, Together,

@@ -82,6 +82,58 @@ double Reduction::Quantile(const Eigen::Ref<const Vector>& values, double fracti
   return *at;
 }
 
+std::shared_ptr<const Reduction> Reduction::SharedSerial()
+{
+  return std::shared_ptr<const Reduction>(std::shared_ptr<void>(), &Reduction::Serial());
+}
+
+std::shared_ptr<const Reduction> Reduction::Coarsened(const std::vector<Index>&, Index) const
+{
+  return Reduction::SharedSerial();
+}
+
+namespace
+{
+
+/// change(rows) sees and changes the rows of the vertices alone.
+template <typename Change>
+void ChangeRows(
+  const std::vector<Index>& vertices, double* rows, Index columns, const Change& change)
+{
+  std::vector<double> some(vertices.size() * columns);
+  const auto row = [&](std::size_t v)
+  { return rows + static_cast<std::ptrdiff_t>(vertices[v]) * columns; };
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+  {
+    std::copy_n(row(v), columns, some.data() + v * columns);
+  }
+  change(some.data());
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+  {
+    std::copy_n(some.data() + v * columns, columns, row(v));
+  }
+}
+
+} // namespace
+
+void Reduction::UpdateFromOwners(double* rows, Index columns) const
+{
+  if (!this->IsSerial())
+  {
+    ChangeRows(this->VerticesOnInterface, rows, columns,
+      [&](double* some) { this->UpdateInterface(some, columns); });
+  }
+}
+
+void Reduction::Accumulate(double* rows, Index columns) const
+{
+  if (!this->IsSerial())
+  {
+    ChangeRows(this->VerticesOnInterface, rows, columns,
+      [&](double* some) { this->AccumulateInterface(some, columns); });
+  }
+}
+
 const Vector& Reduction::OwnedPart(const Vector& values, Vector& storage) const
 {
   if (this->IsSerial())

@@ -6,6 +6,7 @@
 #include "Core/Foundation/Types.h"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -32,6 +33,7 @@ public:
   virtual ~Reduction() = default;
 
   static const Reduction& Serial();
+  static std::shared_ptr<const Reduction> SharedSerial(); ///< the same one
 
   /// True if this process has the whole surface. No formula depends on it.
   bool IsSerial() const { return !this->IsDistributed; }
@@ -73,12 +75,22 @@ public:
   /// order, that with the number fraction (count - 1), rounded. 0 without values.
   double Quantile(const Eigen::Ref<const Vector>& values, double fraction) const;
 
+  /// The processes are numbered from 0.
+  virtual int Rank() const { return 0; }
+  /// The numbers of all processes, ordered by rank.
+  virtual std::vector<double> Gather(const std::vector<double>& here) const { return here; }
+
   /// Vertices on interfaces get the values of the process that owns them.
-  virtual void UpdateFromOwners(Values& /*values*/) const {}
+  void UpdateFromOwners(double* rows, Index columns) const;
+  void UpdateFromOwners(Values& values) const
+  {
+    this->UpdateFromOwners(values.data(), static_cast<Index>(values.cols()));
+  }
+  void UpdateFromOwners(Vector& values) const { this->UpdateFromOwners(values.data(), 1); }
 
   /// An accumulated vector becomes consistent: vertices on interfaces get the sum of what the
   /// processes have there, to the same bits everywhere. rows: per vertex.
-  virtual void Accumulate(double* /*rows*/, Index /*columns*/) const {}
+  void Accumulate(double* rows, Index columns) const;
   void Accumulate(Values& values) const
   {
     this->Accumulate(values.data(), static_cast<Index>(values.cols()));
@@ -124,9 +136,20 @@ public:
     ForEach(parallel, rows, use);
   }
 
-  /// Vertices that other processes have too; Accumulate() for one row of numbers per such vertex.
+  /// Vertices that other processes have too; Accumulate() and UpdateFromOwners() for one row of numbers
+  /// per such vertex.
   const std::vector<Index>& InterfaceVertices() const { return this->VerticesOnInterface; }
-  virtual void AccumulateInterfaceVertices(double* /*rows*/, Index /*columns*/) const {}
+  virtual void AccumulateInterface(double* /*rows*/, Index /*columns*/) const {}
+  virtual void UpdateInterface(double* /*rows*/, Index /*columns*/) const {}
+  /// Per such vertex a number of the set of processes that have it. The number is the process's own.
+  const std::vector<Index>& InterfaceHolders() const { return this->HolderSets; }
+
+  /// The reduction of `count` vertices of which each stands for a part of the vertices of this one:
+  /// vertex i is in part coarse[i], or in none if that is negative. Those of a part that has vertices
+  /// on interfaces all are, of the same processes, and all these have the same ones in the part.
+  /// This reduction's finest one must outlive it.
+  virtual std::shared_ptr<const Reduction> Coarsened(
+    const std::vector<Index>& coarse, Index count) const;
 
   /// Edges that other processes have too, as pairs of vertices of this one; Accumulate() for one
   /// number per such edge.
@@ -153,7 +176,7 @@ protected:
 
   Index NumberOfComponents = 0; ///< of the surface
   std::vector<Index> SurfaceComponent; ///< per component of the process's mesh
-  std::vector<Index> VerticesOnInterface;
+  std::vector<Index> VerticesOnInterface, HolderSets;
   std::vector<std::array<Index, 2>> EdgesOnInterface;
   std::vector<char> OwnedVertices, OwnedEdges;
 

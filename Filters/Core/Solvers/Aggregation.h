@@ -4,9 +4,12 @@
 
 #include "Core/Foundation/Buffer.h"
 #include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/Types.h"
+#include "Core/Solvers/Aggregates.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -26,7 +29,15 @@ namespace SurfaceDiffusion
 /// to zero, cut into one column of unit norm per aggregate. A' is the strong part of A with the
 /// other entries lumped to its diagonal D. So the coarse space contains the kernel.
 ///
-/// kernel: on entry the fine level's, on return the coarse level's, all positive.
+/// Over processes the matrix is accumulated. The vertices of an aggregate are in the same processes,
+/// and so are their rows of the prolongation: on interfaces it is T, which needs no rows of other
+/// processes.
+///
+/// kernel, overProcesses: on entry the fine level's, on return the coarse level's; kernel: consistent
+/// and positive.
+SparseMatrix SmoothedAggregation(const SparseMatrix& matrix, double strength, Vector& kernel,
+  std::shared_ptr<const Reduction>& overProcesses, const ParallelFor& parallel);
+/// On one process.
 SparseMatrix SmoothedAggregation(
   const SparseMatrix& matrix, double strength, Vector& kernel, const ParallelFor& parallel);
 
@@ -46,7 +57,7 @@ public:
   /// matrix: gives the aggregates. See SmoothedAggregation().
   Coarsening(const SparseMatrix& matrix, double strength, const ParallelFor& parallel);
 
-  Index NumberOfAggregates() const { return this->Count; }
+  Index NumberOfAggregates() const { return this->Sets.Count; }
 
   /// Take the values of a matrix. kernel: see SmoothedAggregation().
   void SetMatrix(const SparseMatrix& matrix, Vector& kernel);
@@ -68,9 +79,7 @@ private:
   void Transpose();
 
   const ParallelFor& Parallel;
-  Buffer<char> Strong;
-  std::vector<Index> Of; ///< per vertex, or -1
-  Index Count = 0;
+  Aggregates Sets;
   Collected Restricting, Half, Coarse;
   SparseMatrix Prolonging;
   Buffer<Index> Slots; ///< of the restriction, per slot of the prolongation

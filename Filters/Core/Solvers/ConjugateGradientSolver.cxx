@@ -38,17 +38,12 @@ struct ColumnSystem : MatrixSystem
 class ConjugateGradientSolver : public LinearSolver
 {
 public:
-  ConjugateGradientSolver(std::unique_ptr<Multigrid> hierarchy, const ParallelFor& parallel)
-    : Parallel(parallel)
-    , Hierarchy(std::move(hierarchy))
-    , Single(parallel)
-  {
-  }
-  ConjugateGradientSolver(
+  ConjugateGradientSolver(std::unique_ptr<Multigrid> hierarchy,
     std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel)
     : Parallel(parallel)
-    , OwnReduction(std::move(overProcesses))
-    , OverProcesses(*this->OwnReduction)
+    , KeptProcesses(std::move(overProcesses))
+    , OverProcesses(*this->KeptProcesses)
+    , Hierarchy(std::move(hierarchy))
     , Single(parallel, this->OverProcesses)
   {
   }
@@ -60,8 +55,9 @@ public:
     this->InverseDiagonal.resize(n);
     if (this->Hierarchy)
     {
-      ForEach(this->Parallel, n,
-        [&](Index i) { this->InverseDiagonal[i] = 1.0 / DiagonalEntry(matrix, i); });
+      ForEach(
+        this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
+      this->TakeInverse();
       this->Hierarchy->SetMatrix(matrix, progress);
     }
     else
@@ -93,8 +89,13 @@ public:
     std::vector<double> squares(r.cols());
     SumColumns(
       this->Parallel, n, r.cols(),
-      [&](Index i, Eigen::Index c) { return r(i, c) * this->InverseDiagonal[i] * r(i, c); },
+      [&](Index i, Eigen::Index c)
+      {
+        const double square = r(i, c) * this->InverseDiagonal[i] * r(i, c);
+        return this->OverProcesses.Owns(i) ? square : 0.0;
+      },
       squares.data());
+    this->OverProcesses.Sum(squares.data(), static_cast<Index>(squares.size()));
     this->Scales.resize(r.cols());
     this->System().Precondition(r, squares, z);
   }
@@ -134,10 +135,16 @@ private:
         sums[1] += diagonal;
       });
     this->RowSums.Reduce(this->OverProcesses);
-    this->OverProcesses.Accumulate(this->InverseDiagonal);
-    ForEach(this->Parallel, n,
-      [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
+    this->TakeInverse();
     this->Share = this->RowSums[0] / this->RowSums[1];
+  }
+
+  /// InverseDiagonal, from the diagonal of the process.
+  void TakeInverse()
+  {
+    this->OverProcesses.Accumulate(this->InverseDiagonal);
+    ForEach(this->Parallel, static_cast<Index>(this->InverseDiagonal.size()),
+      [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
   }
 
   ColumnSystem System()
@@ -407,8 +414,8 @@ private:
   }
 
   const ParallelFor& Parallel;
-  const std::shared_ptr<const Reduction> OwnReduction;
-  const Reduction& OverProcesses = Reduction::Serial();
+  const std::shared_ptr<const Reduction> KeptProcesses;
+  const Reduction& OverProcesses;
   std::unique_ptr<Multigrid> Hierarchy;
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
@@ -426,18 +433,26 @@ private:
 
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(const ParallelFor& parallel)
 {
-  return std::make_unique<ConjugateGradientSolver>(std::unique_ptr<Multigrid>(), parallel);
+  return MakeConjugateGradientSolver(Reduction::SharedSerial(), parallel);
 }
 
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
   std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel)
 {
-  return std::make_unique<ConjugateGradientSolver>(std::move(overProcesses), parallel);
+  return std::make_unique<ConjugateGradientSolver>(nullptr, std::move(overProcesses), parallel);
 }
 
 std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel)
 {
-  return std::make_unique<ConjugateGradientSolver>(std::make_unique<Multigrid>(parallel), parallel);
+  return MakeMultigridSolver(Reduction::SharedSerial(), parallel);
+}
+
+std::unique_ptr<LinearSolver> MakeMultigridSolver(
+  std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel)
+{
+  auto hierarchy = std::make_unique<Multigrid>(parallel, overProcesses);
+  return std::make_unique<ConjugateGradientSolver>(
+    std::move(hierarchy), std::move(overProcesses), parallel);
 }
 
 std::unique_ptr<LinearSolver> MakeMultigridSolver(
@@ -445,7 +460,8 @@ std::unique_ptr<LinearSolver> MakeMultigridSolver(
 {
   auto hierarchy = std::make_unique<Multigrid>(parallel);
   hierarchy->KeepAggregates(model);
-  return std::make_unique<ConjugateGradientSolver>(std::move(hierarchy), parallel);
+  return std::make_unique<ConjugateGradientSolver>(
+    std::move(hierarchy), Reduction::SharedSerial(), parallel);
 }
 
 } // namespace SurfaceDiffusion

@@ -109,6 +109,8 @@ std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
 /// Conjugate gradients with a cycle of Multigrid as preconditioner: the number of iterations hardly
 /// grows with size and time step.
 std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel = SerialFor());
+std::unique_ptr<LinearSolver> MakeMultigridSolver(
+  std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel);
 
 /// The same for matrices of the pattern of `model`, whose hierarchies all take the aggregates of
 /// that of `model`: SetMatrix() takes a fraction of the time.

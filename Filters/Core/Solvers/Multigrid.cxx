@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/Multigrid.h"
 
-#include "Core/Foundation/Columns.h"
 #include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -18,12 +19,22 @@ constexpr Index LargestDirect = 500; // vertices of a level that is solved direc
 constexpr double LargestRatio = 0.8; // of the vertices of a level to those of the finer one
 constexpr double FinestStrength = 0.08; // of strong entries on the finest level, as in the paper
 
-Vector RootsOfDiagonal(const SparseMatrix& matrix, const ParallelFor& parallel)
+Vector RootsOfDiagonal(
+  const SparseMatrix& matrix, const Reduction& overProcesses, const ParallelFor& parallel)
 {
   Vector roots(matrix.rows());
-  ForEach(parallel, static_cast<Index>(matrix.rows()),
-    [&](Index i) { roots[i] = std::sqrt(DiagonalEntry(matrix, i)); });
+  const auto n = static_cast<Index>(matrix.rows());
+  ForEach(parallel, n, [&](Index i) { roots[i] = DiagonalEntry(matrix, i); });
+  overProcesses.Accumulate(roots);
+  ForEach(parallel, n, [&](Index i) { roots[i] = std::sqrt(roots[i]); });
   return roots;
+}
+
+/// Over all processes, of which this one has n vertices.
+double CountVertices(const Reduction& overProcesses, Eigen::Index n)
+{
+  return overProcesses.SumOverVertices(
+    SerialFor(), static_cast<Index>(n), [](Index) { return 1.0; });
 }
 
 /// scaled = matrix scaled to unit diagonal, from both sides. scaled: of the pattern of matrix.
@@ -70,33 +81,11 @@ void Round(const SparseMatrix& matrix, Eigen::SparseMatrix<float, Eigen::ColMajo
     });
 }
 
-/// sums += sign (column i of `matrix`) . x, K columns of x, or any number of them if K is 0.
-template <int K, typename Matrix, typename Numbers>
-void AddProduct(
-  const Matrix& matrix, Index i, const Numbers& x, int columns, float sign, float* sums)
-{
-  // Eigen's rows of known length are in vector registers where compilers would not put them.
-  using Row = Eigen::Array<float, K == 0 ? Eigen::Dynamic : K, 1>;
-  const ColumnCount<K> k(columns);
-  const Index* inner = matrix.innerIndexPtr();
-  const float* a = matrix.valuePtr();
-  Eigen::Map<Row> total(sums, k);
-  std::conditional_t<K == 0, Eigen::Map<Row>&, Row> row(total);
-  for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
-  {
-    row += sign * a[slot] *
-      Eigen::Map<const Row>(x.data() + static_cast<std::ptrdiff_t>(inner[slot]) * k, k);
-  }
-  if constexpr (K > 0)
-  {
-    total = row;
-  }
-}
-
 } // namespace
 
-Multigrid::Multigrid(const ParallelFor& parallel)
+Multigrid::Multigrid(const ParallelFor& parallel, std::shared_ptr<const Reduction> overProcesses)
   : Parallel(parallel)
+  , OverProcesses(std::move(overProcesses))
 {
 }
 
@@ -105,7 +94,7 @@ void Multigrid::KeepAggregates(const SparseMatrix& model)
   this->Coarsenings.clear();
   this->Levels.clear();
   this->Columns = -1;
-  Vector kernel = RootsOfDiagonal(model, this->Parallel);
+  Vector kernel = RootsOfDiagonal(model, *this->OverProcesses, this->Parallel);
   TakePattern(model, this->Finest, this->Parallel);
   Scale(model, kernel.cwiseInverse(), this->Finest, this->Parallel);
   double strength = FinestStrength;
@@ -126,7 +115,7 @@ void Multigrid::KeepAggregates(const SparseMatrix& model)
 
 void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress)
 {
-  Vector kernel = RootsOfDiagonal(matrix, this->Parallel);
+  Vector kernel = RootsOfDiagonal(matrix, *this->OverProcesses, this->Parallel);
   this->Scaling = kernel.cwiseInverse();
   if (!this->Coarsenings.empty())
   {
@@ -145,27 +134,81 @@ void Multigrid::MakeLevels(SparseMatrix& current, Vector kernel, const ProgressM
 {
   this->Levels.clear();
   this->Columns = -1;
+  std::shared_ptr<const Reduction> overProcesses = this->OverProcesses;
   double strength = FinestStrength;
   double fraction = 0.0;
-  while (current.rows() > LargestDirect)
+  for (double size = CountVertices(*overProcesses, current.rows()); size > LargestDirect;)
   {
-    const SparseMatrix restriction = SmoothedAggregation(current, strength, kernel, this->Parallel);
-    if (restriction.rows() > LargestRatio * static_cast<double>(current.rows()))
+    std::shared_ptr<const Reduction> next = overProcesses;
+    const SparseMatrix restriction =
+      SmoothedAggregation(current, strength, kernel, next, this->Parallel);
+    const double left = CountVertices(*next, restriction.rows());
+    if (left > LargestRatio * size)
     {
       break;
     }
     const SparseMatrix prolongation = Transposed(restriction, this->Parallel);
     this->Levels.emplace_back();
+    this->Levels.back().OverProcesses = overProcesses;
     this->SetLevel(current, restriction, prolongation, this->Levels.back());
+    overProcesses = next;
+    size = left;
     SparseMatrix coarse = GalerkinProduct(current, restriction, prolongation, this->Parallel);
     current.swap(coarse);
     strength *= 0.5;
     fraction = 0.5 * (fraction + 1.0);
     progress.Report(fraction);
   }
-  this->CoarsestMatrix.swap(current);
+  this->SetCoarsest(current, overProcesses, progress.Part(fraction, 1.0));
+}
+
+/// matrix: that of the coarsest level, accumulated. It is taken.
+void Multigrid::SetCoarsest(SparseMatrix& matrix, std::shared_ptr<const Reduction> overProcesses,
+  const ProgressMonitor& progress)
+{
+  const auto n = static_cast<Index>(matrix.rows());
+  this->CoarsestRows.clear();
+  this->CoarsestOverProcesses = std::move(overProcesses);
+  if (this->CoarsestOverProcesses->IsSerial())
+  {
+    this->CoarsestMatrix.swap(matrix);
+  }
+  else
+  {
+    const Reduction& reduction = *this->CoarsestOverProcesses;
+    double owned = 0.0;
+    Vector rows(n);
+    for (Index i = 0; i < n; ++i)
+    {
+      rows[i] = owned;
+      owned += reduction.Owns(i) ? 1.0 : 0.0;
+    }
+    const std::vector<double> counts = reduction.Gather({ owned });
+    rows.array() += std::accumulate(counts.begin(), counts.begin() + reduction.Rank(), 0.0);
+    reduction.UpdateFromOwners(rows);
+    this->CoarsestRows.resize(n);
+    std::vector<double> entries; // row, column, value
+    for (Index i = 0; i < n; ++i)
+    {
+      this->CoarsestRows[i] = static_cast<Index>(rows[i]);
+      for (SparseMatrix::InnerIterator entry(matrix, i); entry; ++entry)
+      {
+        entries.insert(entries.end(), { rows[i], rows[entry.index()], entry.value() });
+      }
+    }
+    entries = reduction.Gather(entries);
+    std::vector<Eigen::Triplet<double, Index>> triplets;
+    for (std::size_t e = 0; e < entries.size(); e += 3)
+    {
+      triplets.emplace_back(
+        static_cast<Index>(entries[e]), static_cast<Index>(entries[e + 1]), entries[e + 2]);
+    }
+    const double size = std::accumulate(counts.begin(), counts.end(), 0.0);
+    this->CoarsestMatrix.resize(static_cast<Index>(size), static_cast<Index>(size));
+    this->CoarsestMatrix.setFromTriplets(triplets.begin(), triplets.end());
+  }
   this->Coarsest = MakeCholeskySolver();
-  this->Coarsest->SetMatrix(this->CoarsestMatrix, progress.Part(fraction, 1.0));
+  this->Coarsest->SetMatrix(this->CoarsestMatrix, progress);
 }
 
 /// The levels of Finest.
@@ -177,14 +220,14 @@ void Multigrid::SetLevels(Vector kernel, const ProgressMonitor& progress)
   {
     Coarsening& next = this->Coarsenings[l];
     next.SetMatrix(*current, kernel);
+    this->Levels[l].OverProcesses = this->OverProcesses;
     this->SetLevel(*current, next.Restriction(), next.Prolongation(), this->Levels[l]);
     current = &next.Product();
     fraction = 0.5 * (fraction + 1.0);
     progress.Report(fraction);
   }
-  this->CoarsestMatrix = *current;
-  this->Coarsest = MakeCholeskySolver();
-  this->Coarsest->SetMatrix(this->CoarsestMatrix, progress.Part(fraction, 1.0));
+  SparseMatrix coarsest = *current;
+  this->SetCoarsest(coarsest, this->OverProcesses, progress.Part(fraction, 1.0));
 }
 
 void Multigrid::SetLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
@@ -194,230 +237,28 @@ void Multigrid::SetLevel(const SparseMatrix& matrix, const SparseMatrix& restric
   Round(matrix, level.A, this->Parallel);
   Round(restriction, level.Prolongation, this->Parallel);
   Round(prolongation, level.Restriction, this->Parallel);
-  level.InverseD.resize(matrix.rows());
+  const auto n = static_cast<Index>(matrix.rows());
   const Index* outer = matrix.outerIndexPtr();
   const double* a = matrix.valuePtr();
-  ForEach(this->Parallel, static_cast<Index>(matrix.rows()),
+  Vector sums(n);
+  ForEach(this->Parallel, n,
     [&](Index i)
     {
-      double sum = 0.0;
+      sums[i] = 0.0;
       for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
       {
-        sum += std::abs(a[slot]);
-      }
-      level.InverseD[i] = static_cast<float>(1.0 / sum);
-    });
-}
-
-void Multigrid::Resize(int columns)
-{
-  if (this->Columns == columns)
-  {
-    return;
-  }
-  this->Columns = columns;
-  for (Level& level : this->Levels)
-  {
-    for (Numbers* work : { &level.B, &level.X, &level.R, &level.D, &level.E })
-    {
-      work->resize(level.A.rows(), columns);
-    }
-  }
-  this->CoarsestB.resize(this->CoarsestMatrix.rows(), columns);
-  this->CoarsestX.resize(this->CoarsestMatrix.rows(), columns);
-  this->CoarsestNumbers.resize(this->CoarsestMatrix.rows(), columns);
-}
-
-void Multigrid::SetSlices()
-{
-  for (Level& level : this->Levels)
-  {
-    level.RowsOfA.Set(level.A, this->Parallel);
-    level.RowsOfProlongation.Set(level.Prolongation, this->Parallel);
-    level.RowsOfRestriction.Set(level.Restriction, this->Parallel);
-  }
-  this->HasSlices = true;
-}
-
-void Multigrid::Apply(const Values& r, const std::vector<double>& scale, Values& z)
-{
-  const int k = static_cast<int>(r.cols());
-  const bool isPadded = k == 3; // four columns fill a vector register
-  this->Resize(isPadded ? 4 : k);
-  if (k == 1 && !this->HasSlices)
-  {
-    this->SetSlices();
-  }
-  Numbers& b = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().B;
-  ForEach(this->Parallel, static_cast<Index>(r.rows()),
-    [&](Index i)
-    {
-      for (int c = 0; c < k; ++c)
-      {
-        b(i, c) = static_cast<float>(this->Scaling[i] * scale[c] * r(i, c));
-      }
-      if (isPadded)
-      {
-        b(i, 3) = 0.0f;
+        sums[i] += std::abs(a[slot]);
       }
     });
-  if (isPadded)
+  level.OverProcesses->Accumulate(sums);
+  level.InverseD.resize(n);
+  ForEach(
+    this->Parallel, n, [&](Index i) { level.InverseD[i] = static_cast<float>(1.0 / sums[i]); });
+  level.IsOnInterface.assign(level.OverProcesses->IsSerial() ? 0 : n, false);
+  for (const Index vertex : level.OverProcesses->InterfaceVertices())
   {
-    this->Cycle<4>(0, 4);
+    level.IsOnInterface[vertex] = true;
   }
-  else
-  {
-    ForColumns(k, [&](auto columns) { this->Cycle<decltype(columns)::value>(0, k); });
-  }
-  const Numbers& x = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().X;
-  ForEach(this->Parallel, static_cast<Index>(r.rows()),
-    [&](Index i)
-    {
-      for (int c = 0; c < k; ++c)
-      {
-        z(i, c) = this->Scaling[i] / scale[c] * x(i, c);
-      }
-    });
-}
-
-/// R = from - A x, and finish(i, first number of row i, R of row i) in the same pass.
-template <int K, typename Finish>
-void Multigrid::Subtract(
-  Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)
-{
-  if constexpr (K == 1)
-  {
-    ForEachBlock(this->Parallel, static_cast<Index>(level.A.rows()),
-      [&](Index, Index begin, Index end)
-      {
-        float* const r = level.R.data();
-        level.RowsOfA.Subtract(begin, end, from.data(), x.data(), r);
-        for (Index i = begin; i < end; ++i)
-        {
-          finish(i, i, r + i);
-        }
-      });
-    return;
-  }
-  const ColumnCount<K> k(columns);
-  ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
-    [&](Index i)
-    {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
-      float* r = level.R.data() + at;
-      ColumnRegisters<float, K> registers;
-      float* sums = registers.Or(r);
-      for (int c = 0; c < k; ++c)
-      {
-        sums[c] = from.data()[at + c];
-      }
-      AddProduct<K>(level.A, i, x, k, -1.0f, sums);
-      for (int c = 0; c < k; ++c)
-      {
-        r[c] = sums[c];
-      }
-      finish(i, at, sums);
-    });
-}
-
-/// y = or y += (the columns of `matrix`, or their slices) . x
-template <int K>
-void Multigrid::Product(
-  const Matrix& matrix, const SlicedRows& rows, const Numbers& x, Numbers& y, int columns, bool add)
-{
-  if constexpr (K == 1)
-  {
-    ForEachBlock(this->Parallel, rows.Size(),
-      [&](Index, Index begin, Index end)
-      {
-        if (add)
-        {
-          rows.Add(begin, end, x.data(), y.data());
-        }
-        else
-        {
-          rows.Multiply(begin, end, x.data(), y.data());
-        }
-      });
-    return;
-  }
-  const ColumnCount<K> k(columns);
-  ForEach(this->Parallel, static_cast<Index>(matrix.cols()),
-    [&](Index i)
-    {
-      float* yi = y.data() + static_cast<std::ptrdiff_t>(i) * k;
-      ColumnRegisters<float, K> registers;
-      float* sums = registers.Or(yi);
-      for (int c = 0; c < k; ++c)
-      {
-        sums[c] = add ? yi[c] : 0.0f;
-      }
-      AddProduct<K>(matrix, i, x, k, 1.0f, sums);
-      for (int c = 0; c < k; ++c)
-      {
-        yi[c] = sums[c];
-      }
-    });
-}
-
-/// X = B_level B, symmetric: the smoother from zero, the coarser levels, the smoother again. With
-/// residuals r, the terms of the smoother are d = 4/3 D^-1 r and d' = 1/5 d + 12/5 D^-1 r'.
-template <int K>
-void Multigrid::Cycle(std::size_t number, int columns)
-{
-  if (number == this->Levels.size())
-  {
-    this->CoarsestB = this->CoarsestNumbers.cast<double>();
-    this->Coarsest->Precondition(this->CoarsestB, this->CoarsestX); // no refinement
-    this->CoarsestNumbers = this->CoarsestX.cast<float>();
-    return;
-  }
-  const ColumnCount<K> k(columns);
-  Level& level = this->Levels[number];
-  const auto first = [&](Index i, std::ptrdiff_t at, const float* r)
-  {
-    for (int c = 0; c < k; ++c)
-    {
-      level.D.data()[at + c] = 4.0f / 3.0f * level.InverseD[i] * r[c];
-    }
-  };
-  const auto second = [&](Index i, std::ptrdiff_t at, const float* r, int c)
-  { return 0.2f * level.D.data()[at + c] + 2.4f * level.InverseD[i] * r[c]; };
-
-  ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
-    [&](Index i)
-    {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
-      first(i, at, level.B.data() + at);
-    });
-  this->Subtract<K>(level, level.B, level.D, columns,
-    [&](Index i, std::ptrdiff_t at, const float* r)
-    {
-      for (int c = 0; c < k; ++c)
-      {
-        const float e = second(i, at, r, c);
-        level.E.data()[at + c] = e;
-        level.X.data()[at + c] = level.D.data()[at + c] + e;
-      }
-    });
-  this->Subtract<K>(level, level.R, level.E, columns, [](Index, std::ptrdiff_t, const float*) {});
-
-  const bool last = number + 1 == this->Levels.size();
-  this->Product<K>(level.Restriction, level.RowsOfRestriction, level.R,
-    last ? this->CoarsestNumbers : this->Levels[number + 1].B, columns, false);
-  this->Cycle<K>(number + 1, columns);
-  this->Product<K>(level.Prolongation, level.RowsOfProlongation,
-    last ? this->CoarsestNumbers : this->Levels[number + 1].X, level.X, columns, true);
-
-  this->Subtract<K>(level, level.B, level.X, columns, first);
-  this->Subtract<K>(level, level.R, level.D, columns,
-    [&](Index i, std::ptrdiff_t at, const float* r)
-    {
-      for (int c = 0; c < k; ++c)
-      {
-        level.X.data()[at + c] += level.D.data()[at + c] + second(i, at, r, c);
-      }
-    });
 }
 
 } // namespace SurfaceDiffusion

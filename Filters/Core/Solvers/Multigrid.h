@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Reduction.h"
 #include "Core/Solvers/Aggregation.h"
 #include "Core/Solvers/LinearSolver.h"
 #include "Core/Solvers/SlicedRows.h"
@@ -25,14 +26,19 @@ namespace SurfaceDiffusion
 /// runs in single precision. B is only the preconditioner of an iteration in double precision, and
 /// half the memory traffic is nearly half the time.
 ///
+/// Over processes, each level is decomposed as the surface is, and its matrix is accumulated:
+/// aggregates do not cross interfaces. Every process solves the coarsest level.
+///
 /// Nothing is added to the matrix. The coarsest matrix is factorised as by any CholeskySolver,
 /// which may regularise it (SparseFactor).
 class Multigrid
 {
 public:
-  explicit Multigrid(const ParallelFor& parallel);
+  /// overProcesses: over which the matrices are accumulated; r and z are consistent.
+  explicit Multigrid(const ParallelFor& parallel,
+    std::shared_ptr<const Reduction> overProcesses = Reduction::SharedSerial());
 
-  /// The hierarchies of all later matrices, which have the pattern of `model`, take its aggregates:
+  /// On one process: the hierarchies of all later matrices, which have the pattern of `model`, take its aggregates:
   /// making them then takes a fraction of the time. Throws as SetMatrix().
   void KeepAggregates(const SparseMatrix& model);
 
@@ -56,12 +62,16 @@ private:
     Matrix Restriction; ///< its transpose
     Numbers B, X, R, D, E;
     SlicedRows RowsOfA, RowsOfProlongation, RowsOfRestriction; ///< for one column
+    std::shared_ptr<const Reduction> OverProcesses;
+    std::vector<char> IsOnInterface; ///< per vertex; empty on one process
   };
 
   void MakeLevels(SparseMatrix& current, Vector kernel, const ProgressMonitor& progress);
   void SetLevels(Vector kernel, const ProgressMonitor& progress);
   void SetLevel(const SparseMatrix& matrix, const SparseMatrix& restriction,
     const SparseMatrix& prolongation, Level& level);
+  void SetCoarsest(SparseMatrix& matrix, std::shared_ptr<const Reduction> overProcesses,
+    const ProgressMonitor& progress);
   void Resize(int columns);
   void SetSlices();
   template <int K>
@@ -69,19 +79,33 @@ private:
   template <int K, typename Finish>
   void Subtract(
     Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish);
+  template <int K, typename Finish>
+  void SubtractOwnPart(
+    Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish);
+  template <int K, typename Finish>
+  void SubtractRows(
+    Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish);
+  void TakeInterface(const Reduction& overProcesses, const Numbers& numbers);
+  void AccumulateInterface(const Reduction& overProcesses, Numbers& numbers);
   template <int K>
   void Product(const Matrix& matrix, const SlicedRows& rows, const Numbers& x, Numbers& y,
     int columns, bool add);
 
+  void SolveCoarsest();
+
   const ParallelFor& Parallel;
+  const std::shared_ptr<const Reduction> OverProcesses;
   Vector Scaling; ///< diag(A)^-1/2
   std::vector<Level> Levels;
   std::deque<Coarsening> Coarsenings; ///< of KeepAggregates()
   SparseMatrix Finest; ///< scaled, of KeepAggregates()
-  SparseMatrix CoarsestMatrix;
+  std::shared_ptr<const Reduction> CoarsestOverProcesses;
+  SparseMatrix CoarsestMatrix; ///< of all processes
+  std::vector<Index> CoarsestRows; ///< in it, of the vertices of this process
   std::unique_ptr<LinearSolver> Coarsest;
   Values CoarsestB, CoarsestX;
   Numbers CoarsestNumbers;
+  std::vector<double> InterfaceNumbers; ///< work
   int Columns = -1; ///< for which the vectors are allocated
   bool HasSlices = false; ///< the levels have them
 };

@@ -240,7 +240,7 @@ void SinglePrecisionSolver::Accumulate(int columns, const float* p, double* sums
       }
     }
   }
-  this->OverProcesses.AccumulateInterfaceVertices(this->OnInterfaces.data(), columns);
+  this->OverProcesses.AccumulateInterface(this->OnInterfaces.data(), columns);
   number = this->OnInterfaces.data();
   for (const Index vertex : vertices)
   {

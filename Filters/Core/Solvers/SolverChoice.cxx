@@ -35,7 +35,7 @@ constexpr double SteadyState = 1e4; // the diffusion number that a steady state 
 // Iterations run on all threads, and a factorisation on one. This is their share of the time on one
 // thread, between that of one thread and of two.
 constexpr double Threads = 0.75;
-// Over several processes, with hypre: longer steps are cheaper with multigrid.
+// Over several processes longer steps are cheaper with multigrid.
 constexpr double LargestDistributedJacobi = 10.0;
 } // namespace Measured
 

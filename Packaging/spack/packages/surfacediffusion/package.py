@@ -24,7 +24,6 @@ class Surfacediffusion(CMakePackage):
         description="Build for VTK, for ParaView with its plugin, or the core alone",
     )
     variant("python", default=True, description="Build the Python package")
-    variant("hypre", default=False, description="Solve over MPI processes with hypre")
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")
@@ -35,16 +34,12 @@ class Surfacediffusion(CMakePackage):
     with when("host=vtk"):
         depends_on("vtk@9.1:")
         depends_on("vtk+python", when="+python")
-        depends_on("vtk+mpi", when="+hypre")
     with when("host=paraview"):
         depends_on("paraview@5.11: +development_files")
         depends_on("paraview+python", when="+python")
-        depends_on("paraview+mpi", when="+hypre")
-    depends_on("hypre+mpi", when="+hypre")
     extends("python", when="+python")
 
     conflicts("+python", when="host=none", msg="The Python package needs VTK: add ~python")
-    conflicts("+hypre", when="host=none", msg="hypre is used through VTK's MPI: add ~hypre")
 
     generator("ninja")
 
@@ -53,5 +48,4 @@ class Surfacediffusion(CMakePackage):
         return [
             self.define("SURFACEDIFFUSION_HOST", host[self.spec.variants["host"].value]),
             self.define_from_variant("SURFACEDIFFUSION_WRAP_PYTHON", "python"),
-            self.define_from_variant("SURFACEDIFFUSION_USE_HYPRE", "hypre"),
         ]
