@@ -101,16 +101,19 @@ void ChangeRows(
   const std::vector<Index>& vertices, double* rows, Index columns, const Change& change)
 {
   std::vector<double> some(vertices.size() * columns);
-  const auto row = [&](std::size_t v)
-  { return rows + static_cast<std::ptrdiff_t>(vertices[v]) * columns; };
-  for (std::size_t v = 0; v < vertices.size(); ++v)
+  const auto row = [&](Index vertex)
+  { return rows + static_cast<std::ptrdiff_t>(vertex) * columns; };
+  double* numbers = some.data();
+  for (const Index vertex : vertices)
   {
-    std::copy_n(row(v), columns, some.data() + v * columns);
+    numbers = std::copy_n(row(vertex), columns, numbers);
   }
   change(some.data());
-  for (std::size_t v = 0; v < vertices.size(); ++v)
+  const double* changed = some.data();
+  for (const Index vertex : vertices)
   {
-    std::copy_n(some.data() + v * columns, columns, row(v));
+    std::copy_n(changed, columns, row(vertex));
+    changed += columns;
   }
 }
 
