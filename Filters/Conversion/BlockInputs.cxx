@@ -79,7 +79,7 @@ std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<SurfaceInput
       [surface = surfaces[b], &cells = this->Cells[b], decomposition = this->Decomposition.get()]
     {
       Fields read = ReadFields(*surface.Fields, cells, surface.Data->GetNumberOfCells());
-      read.Ids = decomposition->PointIds();
+      read.MakeIds = [decomposition] { return decomposition->PointIds(); };
       return read;
     };
   }

@@ -215,11 +215,11 @@ Fields ReadFields(
   }
   if (arrays.GlobalIds)
   {
-    const auto ids = AsIdTypeArray(arrays.GlobalIds);
-    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+    fields.MakeIds = [ids = AsIdTypeArray(arrays.GlobalIds)]
     {
-      fields.Ids.push_back(ids->GetValue(i));
-    }
+      const vtkIdType* const first = ids->GetPointer(0);
+      return std::vector<std::int64_t>(first, first + ids->GetNumberOfTuples());
+    };
   }
   return fields;
 }

@@ -55,13 +55,17 @@ void DomainDecomposition::Max(double* numbers, Index count) const
 void DomainDecomposition::FindInterfaceVertices(
   const TriangleMesh& mesh, const PointIdentity& identity)
 {
-  const std::set<vtkIdType> shared(identity.Shared.begin(), identity.Shared.end());
+  std::vector<char> isShared(identity.Labels.size(), false);
+  for (const vtkIdType point : identity.Shared)
+  {
+    isShared[point] = true;
+  }
   std::vector<vtkIdType> labels;
   std::map<vtkIdType, Index> vertexOf;
   for (Index v = 0; v < mesh.NumberOfVertices(); ++v)
   {
     const Index point = mesh.InputVertex()[v];
-    if (shared.count(point) > 0)
+    if (isShared[point])
     {
       labels.push_back(identity.Labels[point]);
       vertexOf[identity.Labels[point]] = v;
@@ -116,17 +120,12 @@ void DomainDecomposition::MergeComponents(const TriangleMesh& mesh, const PointI
   const std::vector<Index> counts = this->Group.GatherAll({ mesh.NumberOfComponents() });
   const Index first = std::accumulate(counts.begin(), counts.begin() + this->Group.Rank(), 0);
   std::vector<vtkIdType> pairs; // label, component numbered through all processes
-  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  const auto& begins = mesh.ComponentsBegin();
+  for (const Index v : this->VerticesOnInterface)
   {
-    for (Index v = mesh.ComponentsBegin()[c]; v < mesh.ComponentsBegin()[c + 1]; ++v)
-    {
-      const vtkIdType label = identity.Labels[mesh.InputVertex()[v]];
-      if (this->IsOnInterface(label))
-      {
-        pairs.push_back(label);
-        pairs.push_back(first + c);
-      }
-    }
+    const auto next = std::upper_bound(begins.begin(), begins.end(), v);
+    pairs.push_back(identity.Labels[mesh.InputVertex()[v]]);
+    pairs.push_back(first + (next - begins.begin()) - 1);
   }
   std::map<vtkIdType, vtkIdType> own; // by label
   for (std::size_t i = 0; i < pairs.size(); i += 2)
@@ -168,6 +167,11 @@ DomainDecomposition::EdgeMap DomainDecomposition::FindCandidateEdges(
   const TriangleMesh& mesh, const PointIdentity& identity) const
 {
   const auto labelOf = [&](Index vertex) { return identity.Labels[mesh.InputVertex()[vertex]]; };
+  std::vector<char> isOnInterface(mesh.NumberOfVertices(), false);
+  for (const Index vertex : this->VerticesOnInterface)
+  {
+    isOnInterface[vertex] = true;
+  }
   EdgeMap edges;
   const Triangles& corners = mesh.TriangleVertices();
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
@@ -176,7 +180,7 @@ DomainDecomposition::EdgeMap DomainDecomposition::FindCandidateEdges(
     {
       const Index i = corners(t, (a + 1) % 3);
       const Index j = corners(t, (a + 2) % 3);
-      if (this->IsOnInterface(labelOf(i)) && this->IsOnInterface(labelOf(j)))
+      if (isOnInterface[i] && isOnInterface[j])
       {
         edges[std::minmax(labelOf(i), labelOf(j))] = { { i, j }, mesh.Shapes()[t].EdgeLength(a) };
       }
@@ -250,10 +254,10 @@ void DomainDecomposition::FindCopies(const Surface& surface, const PointIdentity
       ++this->CopyCount;
     }
   }
-  std::map<vtkIdType, vtkIdType> pointOf; // of labels on interfaces that are vertices here
-  for (const Index point : surface.InputMesh().InputVertex())
+  std::map<vtkIdType, vtkIdType> pointOf; // of shared labels that are vertices here
+  for (const vtkIdType point : identity.Shared)
   {
-    if (this->Holders.count(identity.Labels[point]) > 0)
+    if (surface.VertexOf(static_cast<Index>(point)) >= 0)
     {
       pointOf[identity.Labels[point]] = point;
     }

@@ -163,7 +163,8 @@ vtkSmartPointer<vtkPolyData> PackPiece(
   ids->SetName(PackedArrays::PointIds);
   ids->SetNumberOfTuples(points);
   std::copy(identity.Labels.begin(), identity.Labels.end(), labels->GetPointer(0));
-  std::copy(identity.Ids.begin(), identity.Ids.end(), ids->GetPointer(0));
+  const std::vector<std::int64_t> made = identity.MakeIds(input);
+  std::copy(made.begin(), made.end(), ids->GetPointer(0));
   packed->GetPointData()->AddArray(labels);
   packed->GetPointData()->SetGlobalIds(ids);
   packed->GetFieldData()->AddArray(PackNames(PackedArrays::PointArrayNames, input->GetPointData()));

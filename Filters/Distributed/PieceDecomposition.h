@@ -39,7 +39,7 @@ public:
   }
 
   /// Per point a number that does not depend on the decomposition.
-  const std::vector<std::int64_t>& PointIds() const { return this->Identity.Ids; }
+  std::vector<std::int64_t> PointIds() const { return this->Identity.MakeIds(this->Piece); }
 
   /// Give copies of points that other processes own what was written there: the arrays of `after`
   /// that `before` has not.

@@ -38,24 +38,32 @@ double ToleranceOf(const std::vector<PieceEntry>& list, double tolerance)
 
 PointIdentity MakeIdentity(vtkPolyData* data, vtkIdType firstLabel, bool byId)
 {
-  const vtkIdType count = data->GetNumberOfPoints();
   PointIdentity identity;
   identity.FirstLabel = firstLabel;
-  identity.Labels.resize(count);
+  identity.IsById = byId;
+  identity.Labels.resize(data->GetNumberOfPoints());
   std::iota(identity.Labels.begin(), identity.Labels.end(), firstLabel);
-  if (const auto ids = AsIdTypeArray(byId ? FindGlobalPointIds(data) : nullptr))
-  {
-    identity.Ids.assign(ids->GetPointer(0), ids->GetPointer(0) + count);
-  }
-  else
-  {
-    identity.Ids = IdsOfPlaces(static_cast<std::size_t>(count),
-      [&](std::size_t i, double* x) { data->GetPoint(static_cast<vtkIdType>(i), x); });
-  }
   return identity;
 }
 
 } // namespace
+
+std::vector<std::int64_t> PointIdentity::MakeIds(vtkPolyData* piece) const
+{
+  const vtkIdType count = piece->GetNumberOfPoints();
+  if (const auto ids = AsIdTypeArray(this->IsById ? FindGlobalPointIds(piece) : nullptr))
+  {
+    return std::vector<std::int64_t>(ids->GetPointer(0), ids->GetPointer(0) + count);
+  }
+  std::vector<std::int64_t> made = IdsOfPlaces(static_cast<std::size_t>(count),
+    [&](std::size_t i, double* x) { piece->GetPoint(static_cast<vtkIdType>(i), x); });
+  for (const auto& [point, place] : this->Moved)
+  {
+    made[point] = IdsOfPlaces(
+      1, [&, &at = place](std::size_t, double* x) { std::copy_n(at.begin(), 3, x); })[0];
+  }
+  return made;
+}
 
 std::vector<PointIdentity> FindIdentity(
   const Processes& processes, const std::vector<SurfacePiece>& pieces, double tolerance)
@@ -102,10 +110,9 @@ std::vector<PointIdentity> FindIdentity(
       {
         identity.Shared.push_back(point);
       }
-      if (!byId && owner.Label != points[i].Label) // its place can differ by the tolerance
+      if (!byId && owner.Label != points[i].Label)
       {
-        identity.Ids[point] = IdsOfPlaces(
-          1, [&](std::size_t, double* x) { std::copy_n(owner.Coordinates.begin(), 3, x); })[0];
+        identity.Moved.push_back({ point, owner.Coordinates });
       }
     }
   }

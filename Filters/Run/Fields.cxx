@@ -301,8 +301,8 @@ std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fi
 {
   const TriangleMesh& mesh = surface.Mesh();
   const SurfaceDiffusion::Points& points = surface.Points();
-  const std::vector<std::int64_t> ofPoints = !fields.Ids.empty()
-    ? fields.Ids
+  const std::vector<std::int64_t> ofPoints = fields.MakeIds
+    ? fields.MakeIds()
     : IdsOfPlaces(static_cast<std::size_t>(points.rows()),
         [&](std::size_t i, double* x)
         { std::copy_n(&points(static_cast<Eigen::Index>(i), 0), 3, x); });

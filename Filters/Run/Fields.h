@@ -8,6 +8,7 @@
 #include "Run/Surface.h"
 
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -40,7 +41,8 @@ struct Fields
   bool DirectionsOnTriangles = false;
   /// Diffusion rates of a texture, per input triangle; no row if there are none.
   Values Rates;
-  std::vector<std::int64_t> Ids; ///< per point, for random numbers; empty: by coordinates
+  /// Makes numbers per point, for random numbers; empty: they are made from the coordinates.
+  std::function<std::vector<std::int64_t>()> MakeIds;
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
   bool DataAreBytes = false; ///< unsigned char, which models of colours take for sRGB
   std::vector<Index> Seeds; ///< per point or cell, the label 1, 2, ... it keeps, or 0; may be empty
