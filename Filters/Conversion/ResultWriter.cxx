@@ -127,7 +127,7 @@ vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArr
   bool sourceOnCells, const Values& values, double unit, int type, const std::string& name)
 {
   const auto points = static_cast<vtkIdType>(surface.Points().rows());
-  const auto result = NewArrayLike(source, points, type, name);
+  auto result = NewArrayLike(source, points, type, name);
   const auto rowOf = [&](Index i) { return surface.VertexOf(i); };
   if (sourceOnCells)
   {
@@ -148,7 +148,7 @@ vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArr
 vtkSmartPointer<vtkDataArray> WriteCellArray(const CellTransfer& cells, vtkDataArray* source,
   const Values& values, int type, const std::string& name)
 {
-  const auto result = NewArrayLike(source, source->GetNumberOfTuples(), type, name);
+  auto result = NewArrayLike(source, source->GetNumberOfTuples(), type, name);
   VisitTuples(source,
     [&](const auto& from)
     {

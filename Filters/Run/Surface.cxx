@@ -274,7 +274,7 @@ Index Surface::CountCoincidentBoundaryPoints() const
   return count;
 }
 
-TangentVectors TransportToMesh(const Surface& surface, TangentVectors vectors)
+TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors)
 {
   return surface.Delaunay() ? surface.Delaunay()->Transport(vectors) : vectors;
 }

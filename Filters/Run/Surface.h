@@ -110,6 +110,6 @@ private:
 };
 
 /// e1 per triangle of Mesh(), from tangent vectors of InputMesh().
-TangentVectors TransportToMesh(const Surface& surface, TangentVectors vectors);
+TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors);
 
 } // namespace SurfaceDiffusion

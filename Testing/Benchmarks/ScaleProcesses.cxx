@@ -44,9 +44,8 @@ double Seconds()
 double PeakMemory()
 {
   std::ifstream status("/proc/self/status");
-  std::string word;
   double kilobytes = 0.0;
-  while (status >> word)
+  for (std::string word; status >> word;)
   {
     if (word == "VmHWM:")
     {

@@ -41,14 +41,14 @@ void SumColumns(
                   sums[c] += f(i, panel + c);
                 }
               }
-              std::copy_n(sums, width, partial + block * ColumnPanel);
+              std::copy_n(sums, width, partial + static_cast<std::ptrdiff_t>(block) * ColumnPanel);
             });
         });
       for (Index block = 0; block < NumberOfBlocks(chunk); ++block)
       {
         for (Eigen::Index c = 0; c < width; ++c)
         {
-          totals[panel + c] += partial[block * ColumnPanel + c];
+          totals[panel + c] += partial[static_cast<std::ptrdiff_t>(block) * ColumnPanel + c];
         }
       }
     }

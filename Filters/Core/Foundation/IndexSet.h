@@ -130,9 +130,9 @@ private:
     }
   }
 
-  std::vector<Index> Distinct = std::vector<Index>(2 * SmallSetSize, None);
+  std::vector<Index> Distinct = std::vector<Index>(std::size_t(2) * SmallSetSize, None);
   std::vector<Index> Places =
-    std::vector<Index>(4 * SmallSetSize, None); ///< hash table: places in Distinct
+    std::vector<Index>(std::size_t(4) * SmallSetSize, None); ///< hash table: places in Distinct
   std::vector<Index> Order; ///< by value, for large sets
   Index Count = 0;
 };

@@ -116,16 +116,17 @@ EdgeFunction WithoutBeta(EdgeFunction function)
 
 } // namespace
 
-TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-  std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
-  const Eigen::Ref<const Values>& typical, const Settings& settings, const ParallelFor& parallel)
+TotalVariationMinimizer::TotalVariationMinimizer(const std::shared_ptr<const Assembler>& assembler,
+  std::shared_ptr<const GradientMaps> gradients, const Values& quadratic, Vector absolute,
+  Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
+  const ParallelFor& parallel)
   : TotalVariationMinimizer(assembler, std::move(gradients), quadratic, std::move(absolute),
       std::move(fixed), settings,
       RangesOfTriangles(assembler->Mesh(), typical, quadratic, parallel), parallel)
 {
 }
 
-TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
+TotalVariationMinimizer::TotalVariationMinimizer(const std::shared_ptr<const Assembler>& assembler,
   std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
   const Settings& settings, const Vector& ranges, const ParallelFor& parallel)
   : TotalVariationMinimizer(assembler, std::move(gradients),

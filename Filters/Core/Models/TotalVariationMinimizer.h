@@ -48,9 +48,9 @@ public:
   /// typical: values of the size of the data. They
   /// determine the penalty, and so the number of iterations; outliers act on it only around
   /// themselves.
-  TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
-    std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
-    const Eigen::Ref<const Values>& typical, const Settings& settings,
+  TotalVariationMinimizer(const std::shared_ptr<const Assembler>& assembler,
+    std::shared_ptr<const GradientMaps> gradients, const Values& quadratic, Vector absolute,
+    Flags fixed, const Eigen::Ref<const Values>& typical, const Settings& settings,
     const ParallelFor& parallel = SerialFor());
 
   /// The same with other terms at the vertices. ranges: typical ones of u on each triangle.
@@ -94,7 +94,7 @@ public:
 
 private:
   /// ranges: typical ones of the values on each triangle.
-  TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
+  TotalVariationMinimizer(const std::shared_ptr<const Assembler>& assembler,
     std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
     const Settings& settings, const Vector& ranges, const ParallelFor& parallel);
 

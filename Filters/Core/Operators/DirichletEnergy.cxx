@@ -26,7 +26,7 @@ void SumTriangles(const Triangles& corners, const double* coefficients, const do
     const double* const u0 = u + corners(t, 0) * stride;
     const double* const u1 = u + corners(t, 1) * stride;
     const double* const u2 = u + corners(t, 2) * stride;
-    const double* const c = coefficients + 3 * (t - begin);
+    const double* const c = coefficients + static_cast<std::ptrdiff_t>(t - begin) * 3;
     const double c0 = c[0];
     const double c1 = c[1];
     const double c2 = c[2];
@@ -76,8 +76,8 @@ double SumColumnsOf(const TriangleMesh& mesh, const CornerWeights& coefficients,
         {
           for (Index t = from + begin; t < from + end; ++t)
           {
-            Eigen::Map<Eigen::RowVector3d>(cotans + 3 * (t - from - begin)) =
-              CotanWeights(mesh.Shapes()[t]);
+            Eigen::Map<Eigen::RowVector3d>(cotans +
+              static_cast<std::ptrdiff_t>(t - from - begin) * 3) = CotanWeights(mesh.Shapes()[t]);
           }
         }
         if constexpr (K == ColumnPanel)
