@@ -3,6 +3,7 @@
 #include "Conversion/SurfaceReader.h"
 
 #include "Conversion/SMPParallelFor.h"
+#include "Conversion/TupleRange.h"
 #include "Run/Polygons.h"
 
 #include "vtkCellArray.h"
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -32,14 +34,67 @@ constexpr vtkIdType LargestCount = std::numeric_limits<Index>::max();
 
 Points ReadPoints(vtkPolyData* input)
 {
-  const vtkIdType count = input->GetNumberOfPoints();
+  const ParallelFor& parallel = SMPParallelFor::Instance();
+  const auto count = static_cast<Index>(input->GetNumberOfPoints());
   Points points(count, 3);
-  for (vtkIdType i = 0; i < count; ++i)
+  if (count > 0)
   {
-    input->GetPoint(i, points.row(i).data());
+    VisitTuples(input->GetPoints()->GetData(),
+      [&](const auto& from)
+      {
+        ForEach(parallel, count,
+          [&](Index i)
+          {
+            for (int k = 0; k < 3; ++k)
+            {
+              points(i, k) = static_cast<double>(from[i][k]);
+            }
+          });
+      });
   }
-  RequireFiniteCoordinates(points);
+  RequireFiniteCoordinates(points, parallel);
   return points;
+}
+
+/// Reads the triangles of a surface without other cells and ghosts, and their cells, on all threads.
+/// Returns false if it is not one, or if a corner is not a point, which Triangulator reports.
+bool ReadTriangles(vtkPolyData* input, Triangles& triangles, std::vector<Index>& cells)
+{
+  vtkCellArray* const polygons = input->GetPolys();
+  if (!polygons || polygons->IsHomogeneous() != 3 || input->GetNumberOfStrips() > 0 ||
+    input->GetCellGhostArray())
+  {
+    return false;
+  }
+  const ParallelFor& parallel = SMPParallelFor::Instance();
+  const auto count = static_cast<Index>(polygons->GetNumberOfCells());
+  const vtkIdType points = input->GetNumberOfPoints();
+  triangles.resize(count, 3);
+  double isOutside = 0.0;
+  VisitTuples(polygons->GetConnectivityArray(),
+    [&](const auto& from)
+    {
+      isOutside = Max(parallel, count,
+        [&](Index t)
+        {
+          bool isInside = true;
+          for (int a = 0; a < 3; ++a)
+          {
+            const auto point = static_cast<vtkIdType>(from[vtkIdType(t) * 3 + a][0]);
+            isInside = isInside && point >= 0 && point < points;
+            triangles(t, a) = static_cast<Index>(point);
+          }
+          return isInside ? 0.0 : 1.0;
+        });
+    });
+  if (isOutside > 0.0)
+  {
+    return false;
+  }
+  cells.resize(static_cast<std::size_t>(count));
+  const auto first = static_cast<Index>(input->GetNumberOfVerts() + input->GetNumberOfLines());
+  std::iota(cells.begin(), cells.end(), first);
+  return true;
 }
 
 /// The triangles of the cells that are not excluded and not ghosts, each with its cell.
@@ -285,22 +340,26 @@ SurfaceArrays ReadSurface(
   }
   SurfaceArrays arrays;
   arrays.Points = ReadPoints(input);
-  Triangulator triangulator(input, arrays.Points);
-  if (static_cast<vtkIdType>(triangulator.Triangles.size()) > LargestCount)
+  if (!ReadTriangles(input, arrays.Triangles, cells))
   {
-    throw std::runtime_error("the input has more triangles than this library can number");
-  }
-  arrays.Triangles.resize(static_cast<Eigen::Index>(triangulator.Triangles.size()), 3);
-  for (std::size_t t = 0; t < triangulator.Triangles.size(); ++t)
-  {
-    for (int a = 0; a < 3; ++a)
+    Triangulator triangulator(input, arrays.Points);
+    if (static_cast<vtkIdType>(triangulator.Triangles.size()) > LargestCount)
     {
-      arrays.Triangles(static_cast<Eigen::Index>(t), a) = triangulator.Triangles[t][a];
+      throw std::runtime_error("the input has more triangles than this library can number");
     }
+    arrays.Triangles.resize(static_cast<Eigen::Index>(triangulator.Triangles.size()), 3);
+    for (std::size_t t = 0; t < triangulator.Triangles.size(); ++t)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        arrays.Triangles(static_cast<Eigen::Index>(t), a) = triangulator.Triangles[t][a];
+      }
+    }
+    cells = std::move(triangulator.Cells);
   }
   if (excluded && excludedCells)
   {
-    for (const Index cell : triangulator.Cells)
+    for (const Index cell : cells)
     {
       arrays.ExcludedTriangles.push_back(excluded->GetComponent(cell, 0) != 0.0);
     }
@@ -313,7 +372,6 @@ SurfaceArrays ReadSurface(
       arrays.Excluded[i] = excluded->GetComponent(static_cast<vtkIdType>(i), 0) != 0.0;
     }
   }
-  cells = std::move(triangulator.Cells);
   return arrays;
 }
 

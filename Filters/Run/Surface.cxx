@@ -52,7 +52,8 @@ struct Construction
   }
 };
 
-void CheckArrays(const SurfaceArrays& arrays, const SurfaceOptions& options)
+void CheckArrays(
+  const SurfaceArrays& arrays, const SurfaceOptions& options, const ParallelFor& parallel)
 {
   if (arrays.Points.rows() > LargestCount)
   {
@@ -62,17 +63,28 @@ void CheckArrays(const SurfaceArrays& arrays, const SurfaceOptions& options)
   {
     throw std::runtime_error("the input has more triangles than this library can number");
   }
-  RequireFiniteCoordinates(arrays.Points);
+  RequireFiniteCoordinates(arrays.Points, parallel);
   if (options.IntrinsicDelaunay && !arrays.AreaFactors.empty())
   {
     throw std::runtime_error("IntrinsicDelaunay is on; allowed: off on surfaces with given areas");
+  }
+  const auto isPoint = [&](Index point) { return point >= 0 && point < arrays.Points.rows(); };
+  const auto hasPoints = [&](Index t)
+  {
+    const auto corners = arrays.Triangles.row(t);
+    return isPoint(corners[0]) && isPoint(corners[1]) && isPoint(corners[2]);
+  };
+  if (Max(parallel, static_cast<Index>(arrays.Triangles.rows()),
+        [&](Index t) { return hasPoints(t) ? 0.0 : 1.0; }) == 0.0)
+  {
+    return;
   }
   for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
   {
     for (int a = 0; a < 3; ++a)
     {
       const Index point = arrays.Triangles(t, a);
-      if (point < 0 || point >= arrays.Points.rows())
+      if (!isPoint(point))
       {
         std::ostringstream text;
         text << "triangle " << t << " of the input refers to point " << point << ", but there are "
@@ -85,11 +97,17 @@ void CheckArrays(const SurfaceArrays& arrays, const SurfaceOptions& options)
 
 } // namespace
 
-void RequireFiniteCoordinates(const Points& points)
+void RequireFiniteCoordinates(const Points& points, const ParallelFor& parallel)
 {
+  const auto isFinite = [&](Eigen::Index i) { return points.row(i).allFinite(); };
+  if (Max(parallel, static_cast<Index>(points.rows()),
+        [&](Index i) { return isFinite(i) ? 0.0 : 1.0; }) == 0.0)
+  {
+    return;
+  }
   for (Eigen::Index i = 0; i < points.rows(); ++i)
   {
-    if (!points.row(i).allFinite())
+    if (!isFinite(i))
     {
       std::ostringstream text;
       text << "point " << i << " of the input has coordinates that are not finite";
@@ -102,7 +120,7 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   const ProgressMonitor& progress)
   : Arrays(std::move(arrays))
 {
-  CheckArrays(this->Arrays, options);
+  CheckArrays(this->Arrays, options, parallel);
   this->SelectTriangles(options);
   progress.Report(0.1);
   this->Build(options, parallel, progress.Part(0.1, 1.0));

@@ -26,7 +26,7 @@ struct SurfaceArrays
 };
 
 /// Throws std::runtime_error if a coordinate is not finite.
-void RequireFiniteCoordinates(const Points& points);
+void RequireFiniteCoordinates(const Points& points, const ParallelFor& parallel = SerialFor());
 
 struct SurfaceOptions
 {
