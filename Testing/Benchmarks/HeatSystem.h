@@ -20,53 +20,6 @@
 namespace SurfaceDiffusion::Testing
 {
 
-/// The surface with every edge bisected, `times` times. The geometry is unchanged.
-inline Surface Subdivided(Surface s, int times)
-{
-  for (; times > 0; --times)
-  {
-    const Index n = s.NumberOfVertices();
-    std::vector<std::pair<Index, Index>> edges;
-    edges.reserve(3 * static_cast<std::size_t>(s.NumberOfTriangles()));
-    const auto edge = [&](Index t, int a) {
-      return std::minmax({ s.Faces(t, (a + 1) % 3), s.Faces(t, (a + 2) % 3) });
-    };
-    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        edges.push_back(edge(t, a));
-      }
-    }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    Surface finer{ Points(n + edges.size(), 3), Triangles(4 * s.NumberOfTriangles(), 3) };
-    finer.Vertices.topRows(n) = s.Vertices;
-    for (std::size_t e = 0; e < edges.size(); ++e)
-    {
-      finer.Vertices.row(n + static_cast<Index>(e)) =
-        0.5 * (s.Vertices.row(edges[e].first) + s.Vertices.row(edges[e].second));
-    }
-    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
-    {
-      Index m[3];
-      for (int a = 0; a < 3; ++a)
-      {
-        m[a] = n +
-          static_cast<Index>(
-            std::lower_bound(edges.begin(), edges.end(), edge(t, a)) - edges.begin());
-      }
-      const auto f = s.Faces.row(t);
-      finer.Faces.row(4 * t) << f[0], m[2], m[1];
-      finer.Faces.row(4 * t + 1) << m[2], f[1], m[0];
-      finer.Faces.row(4 * t + 2) << m[1], m[0], f[2];
-      finer.Faces.row(4 * t + 3) << m[0], m[1], m[2];
-    }
-    s = std::move(finer);
-  }
-  return s;
-}
-
 /// One scanned surface with sizes that grow by a factor of four. Levels 0 to 4 have 11,112; 44,460;
 /// 177,852; 711,420; 2,845,692 vertices. Without mesh files: icospheres of 10,242 to 2,621,442.
 inline const Surface& SurfaceOfLevel(int level)

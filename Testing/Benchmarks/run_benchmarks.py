@@ -93,7 +93,7 @@ class Results:
             if "bytes" in row:
                 passes = max(1, row["iterations"]) if "Gradient" in name else 1  # solver
                 self.bandwidth.setdefault(name, {})[n] = (row["GB/s"], row["bytes"] / passes)
-        self.sizes = sorted({n for times in self.times.values() for n in times})
+        self.sizes = sorted(self.times["MeshAndOrder"])
 
     def share(self, name):
         """The bandwidth on the largest surface, relative to the triad on data of the same size."""

@@ -12,8 +12,8 @@ namespace SurfaceDiffusion
 
 /// P A P^T = L D L^T for a symmetric positive definite matrix A, with a unit lower triangular
 /// matrix L, a diagonal matrix D and a permutation P, by Eigen::SimplicialLDLT. P is that of the
-/// approximate minimum degree ordering, or of NestedDissection() on regular triangulations. It
-/// differs from the plain factorisation in three ways:
+/// approximate minimum degree ordering, or on regular triangulations of NestedDissection() if that
+/// takes fewer operations. It differs from the plain factorisation in three ways:
 /// - Zeros that A stores are left out if they are more than 5 %: Dirichlet conditions leave them
 ///   behind. The factor is then that of the free vertices alone.
 /// - Regularisation: if a pivot is not above 1e-14 of its diagonal entry, A is factorised again
