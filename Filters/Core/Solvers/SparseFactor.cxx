@@ -18,16 +18,19 @@ struct SparseFactor::Decomposition
 {
   SparseMatrix& L() { return this->m_matrix; }
 
-  /// Order the rows and find the pattern of the factor. A surface that was subdivided is as regular as
-  /// an icosphere, but nested dissection can take twice as many operations there.
+  /// Order the rows and find the pattern of the factor. On regular triangulations nested dissection
+  /// takes about 40 n^1.5 operations, and minimum degree from 20 n^1.5 on subdivided scans to 110 n^1.5
+  /// on icospheres.
   void Analyze(const SparseMatrix& matrix)
   {
+    constexpr double ofDissection = 40.0;
     this->analyzePattern(matrix);
-    if (!IsRegular(matrix))
+    const double operations = this->Operations();
+    if (operations < ofDissection * std::pow(static_cast<double>(matrix.rows()), 1.5) ||
+      !IsRegular(matrix))
     {
       return;
     }
-    const double operations = this->Operations();
     const Order byDegree = this->m_P.indices();
     const std::vector<Index> places = NestedDissection(matrix);
     this->AnalyzeInOrder(matrix, Eigen::Map<const Order>(places.data(), matrix.rows()));
