@@ -56,8 +56,9 @@ Points ReadPoints(vtkPolyData* input)
   return points;
 }
 
-/// Reads the triangles of a surface without other cells and ghosts, and their cells, on all threads.
-/// Returns false if it is not one, or if a corner is not a point, which Triangulator reports.
+/// Reads the triangles of a surface without other cells and ghosts, and their cells, on all
+/// threads. Returns false if it is not one, or if a corner is not a point, which Triangulator
+/// reports.
 bool ReadTriangles(vtkPolyData* input, Triangles& triangles, std::vector<Index>& cells)
 {
   vtkCellArray* const polygons = input->GetPolys();

@@ -47,8 +47,8 @@ Fingerprint FingerprintSurface(
 /// excluded: per point, nonzero for points whose triangles are ignored, or, with excludedCells, per
 /// cell, nonzero for those that are ignored; may be null. cells: the input's cell of each triangle.
 ///
-/// Throws std::runtime_error if there are more points, cells or triangles than 32-bit numbers count, and
-/// if a cell refers to a point that does not exist.
+/// Throws std::runtime_error if there are more points, cells or triangles than 32-bit numbers
+/// count, and if a cell refers to a point that does not exist.
 SurfaceArrays ReadSurface(
   vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, std::vector<Index>& cells);
 

@@ -20,10 +20,9 @@ namespace SurfaceDiffusion
 
 DomainDecomposition::DomainDecomposition(
   const Processes& processes, const Surface& surface, const PointIdentity& identity)
-  : Reduction(Reduction::Kind::Distributed)
+  : InterfaceReduction(InterfaceExchange(processes))
   , Group(processes)
   , Neighbours(identity.Neighbours)
-  , Vertices(processes)
   , Edges(processes)
 {
   this->FindInterfaceVertices(surface.InputMesh(), identity);
@@ -167,11 +166,7 @@ DomainDecomposition::EdgeMap DomainDecomposition::FindCandidateEdges(
   const TriangleMesh& mesh, const PointIdentity& identity) const
 {
   const auto labelOf = [&](Index vertex) { return identity.Labels[mesh.InputVertex()[vertex]]; };
-  std::vector<char> isOnInterface(mesh.NumberOfVertices(), false);
-  for (const Index vertex : this->VerticesOnInterface)
-  {
-    isOnInterface[vertex] = true;
-  }
+  const std::vector<char> isOnInterface = this->MarkInterfaces(mesh.NumberOfVertices());
   EdgeMap edges;
   const Triangles& corners = mesh.TriangleVertices();
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Reduction.h"
-#include "Distributed/CoarseDecomposition.h"
+#include "Distributed/InterfaceReduction.h"
 #include "Distributed/PointIdentity.h"
 #include "Distributed/Processes.h"
 #include "Run/Surface.h"
@@ -20,7 +19,7 @@ namespace SurfaceDiffusion
 
 /// Domain decomposition without overlap of a surface of which each process has one piece. Vertices
 /// and edges on interfaces are owned by the process of lowest rank that has them.
-class DomainDecomposition : public Reduction
+class DomainDecomposition : public InterfaceReduction
 {
 public:
   /// surface: that of this process's piece, identity: that of the piece's points. Collective.
@@ -34,19 +33,6 @@ public:
   std::vector<double> Gather(const std::vector<double>& here) const override
   {
     return this->Group.GatherAll(here);
-  }
-  void AccumulateInterface(double* rows, Index columns) const override
-  {
-    this->Vertices.Accumulate(rows, columns);
-  }
-  void UpdateInterface(double* rows, Index columns) const override
-  {
-    this->Vertices.Update(rows, columns);
-  }
-  std::shared_ptr<const Reduction> Coarsened(
-    const std::vector<Index>& coarse, Index count) const override
-  {
-    return std::make_shared<CoarseDecomposition>(*this, *this, this->Vertices, coarse, count);
   }
   void AccumulateInterfaceEdges(double* ofEdges) const override
   {
@@ -91,7 +77,7 @@ private:
   const std::vector<int> Neighbours; ///< ranks, ascending
   /// Of labels that several pieces have: the ranks among the neighbours and this process.
   std::map<vtkIdType, std::vector<int>> Holders;
-  InterfaceExchange Vertices, Edges; ///< of InterfaceVertices() and InterfaceEdges()
+  InterfaceExchange Edges; ///< of InterfaceEdges()
   std::map<int, std::vector<vtkIdType>> Originals, Copies; ///< points, by the other process
   vtkIdType CopyCount = 0;
   Index ForeignEdges = 0;

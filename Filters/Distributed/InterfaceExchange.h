@@ -12,9 +12,9 @@ namespace SurfaceDiffusion
 {
 
 /// Exchanges rows of numbers with other processes: `sent` and `received` list items by the other
-/// process, which lists the same ones in the same order. The process sends `columns` numbers for every
-/// item in `sent`, which read(item, numbers) fills in, and gives those it gets for the items in
-/// `received` to write(item, numbers). Collective.
+/// process, which lists the same ones in the same order. The process sends `columns` numbers for
+/// every item in `sent`, which read(item, numbers) fills in, and gives those it gets for the items
+/// in `received` to write(item, numbers). Collective.
 template <typename Item, typename Read, typename Write>
 void ExchangeRows(const Processes& processes, const std::map<int, std::vector<Item>>& sent,
   const std::map<int, std::vector<Item>>& received, std::size_t columns, const Read& read,
@@ -85,12 +85,12 @@ public:
   /// Other processes get the rows of the owners.
   void Update(double* rows, Index columns) const;
 
-  /// Each row becomes the sum over the processes. Owners add the rows of the others, ordered by rank,
-  /// and send the sums back.
+  /// Each row becomes the sum over the processes. Owners add the rows of the others, ordered by
+  /// rank, and send the sums back.
   void Accumulate(double* rows, Index columns) const;
 
-  /// Of other items: coarse[item] is the one that the item is a part of, or negative if it is a part
-  /// of none, for all processes alike.
+  /// Of other items: coarse[item] is the one that the item is a part of, or negative if it is a
+  /// part of none, for all processes alike.
   InterfaceExchange Coarsened(const std::vector<Index>& coarse) const;
 
 private:

@@ -20,9 +20,9 @@ namespace SurfaceDiffusion
 /// If all pieces have global point ids, points with one id are one point. Otherwise coincident
 /// points are, if at least one of them lies on the edge of its piece (on an edge of one triangle)
 /// or is used by ghost cells only: first those with equal coordinates, then, of the others, those
-/// for which the first point within the tolerance, in the order of labels, is the same. Points of one piece are never merged: if a piece has several coincident
-/// points (two sheets that touch, split normals), its k-th is identified with the k-th of the other
-/// pieces.
+/// for which the first point within the tolerance, in the order of labels, is the same. Points of
+/// one piece are never merged: if a piece has several coincident points (two sheets that touch,
+/// split normals), its k-th is identified with the k-th of the other pieces.
 ///
 /// vtkGenerateGlobalIds, which numbers coincident points of all processes, keeps none of these
 /// rules: it merges coincident points of one piece (two sheets at one place become one) and inner
@@ -48,8 +48,8 @@ struct PointIdentity
 };
 
 /// The identity of the points of each of this process's pieces. Points are sent only to processes
-/// with pieces nearby. Collective. tolerance: in coordinate units; negative: 1e-6 of the diagonal of
-/// the surface's bounding box.
+/// with pieces nearby. Collective. tolerance: in coordinate units; negative: 1e-6 of the diagonal
+/// of the surface's bounding box.
 std::vector<PointIdentity> FindIdentity(
   const Processes& processes, const std::vector<SurfacePiece>& pieces, double tolerance);
 

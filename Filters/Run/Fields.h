@@ -24,8 +24,8 @@ struct Fields
   Values Data;
   bool DataOnCells = false;
   std::string DataName = "InputArray"; ///< for error messages
-  /// Data may be a panel of the columns of the input, from FirstColumn of AllColumns on. Then NaN in
-  /// columns outside of the panel is known by Missing: per point, nonzero: NaN in any column.
+  /// Data may be a panel of the columns of the input, from FirstColumn of AllColumns on. Then NaN
+  /// in columns outside of the panel is known by Missing: per point, nonzero: NaN in any column.
   Eigen::Index FirstColumn = 0;
   Eigen::Index AllColumns = 0; ///< 0: Data has all columns
   std::vector<char> Missing; ///< may be empty

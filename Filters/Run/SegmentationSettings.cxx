@@ -24,8 +24,8 @@ constexpr int LargestNumberOfAlternations = 20;
 
 constexpr double LargestNumberOfRegions = 1000;
 
-/// lambda of AutomaticFidelity times h and the contrast of the data terms: a disk of uniform data is
-/// kept from a radius of 3 h on, and noise of the size of the contrast's root is not.
+/// lambda of AutomaticFidelity times h and the contrast of the data terms: a disk of uniform data
+/// is kept from a radius of 3 h on, and noise of the size of the contrast's root is not.
 constexpr double AutomaticWeight = 0.6;
 
 void CheckSeeds(const std::vector<Index>& seeds, int regions)

@@ -52,6 +52,22 @@ struct Construction
   }
 };
 
+/// The first i of [0, count) for which holds(i) is false, or count if there is none.
+template <typename Holds>
+Index FirstWithout(const ParallelFor& parallel, Index count, const Holds& holds)
+{
+  if (Max(parallel, count, [&](Index i) { return holds(i) ? 0.0 : 1.0; }) == 0.0)
+  {
+    return count;
+  }
+  Index i = 0;
+  while (holds(i))
+  {
+    ++i;
+  }
+  return i;
+}
+
 void CheckArrays(
   const SurfaceArrays& arrays, const SurfaceOptions& options, const ParallelFor& parallel)
 {
@@ -69,28 +85,22 @@ void CheckArrays(
     throw std::runtime_error("IntrinsicDelaunay is on; allowed: off on surfaces with given areas");
   }
   const auto isPoint = [&](Index point) { return point >= 0 && point < arrays.Points.rows(); };
-  const auto hasPoints = [&](Index t)
-  {
-    const auto corners = arrays.Triangles.row(t);
-    return isPoint(corners[0]) && isPoint(corners[1]) && isPoint(corners[2]);
-  };
-  if (Max(parallel, static_cast<Index>(arrays.Triangles.rows()),
-        [&](Index t) { return hasPoints(t) ? 0.0 : 1.0; }) == 0.0)
-  {
-    return;
-  }
-  for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
-  {
-    for (int a = 0; a < 3; ++a)
+  const auto count = static_cast<Index>(arrays.Triangles.rows());
+  const Index t = FirstWithout(parallel, count,
+    [&](Index row)
     {
-      const Index point = arrays.Triangles(t, a);
-      if (!isPoint(point))
-      {
-        std::ostringstream text;
-        text << "triangle " << t << " of the input refers to point " << point << ", but there are "
-             << arrays.Points.rows() << " points";
-        throw std::runtime_error(text.str());
-      }
+      const auto corners = arrays.Triangles.row(row);
+      return isPoint(corners[0]) && isPoint(corners[1]) && isPoint(corners[2]);
+    });
+  for (int a = 0; t < count && a < 3; ++a)
+  {
+    const Index point = arrays.Triangles(t, a);
+    if (!isPoint(point))
+    {
+      std::ostringstream text;
+      text << "triangle " << t << " of the input refers to point " << point << ", but there are "
+           << arrays.Points.rows() << " points";
+      throw std::runtime_error(text.str());
     }
   }
 }
@@ -99,20 +109,14 @@ void CheckArrays(
 
 void RequireFiniteCoordinates(const Points& points, const ParallelFor& parallel)
 {
-  const auto isFinite = [&](Eigen::Index i) { return points.row(i).allFinite(); };
-  if (Max(parallel, static_cast<Index>(points.rows()),
-        [&](Index i) { return isFinite(i) ? 0.0 : 1.0; }) == 0.0)
+  const auto count = static_cast<Index>(points.rows());
+  const Index i =
+    FirstWithout(parallel, count, [&](Index row) { return points.row(row).allFinite(); });
+  if (i < count)
   {
-    return;
-  }
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-  {
-    if (!isFinite(i))
-    {
-      std::ostringstream text;
-      text << "point " << i << " of the input has coordinates that are not finite";
-      throw std::runtime_error(text.str());
-    }
+    std::ostringstream text;
+    text << "point " << i << " of the input has coordinates that are not finite";
+    throw std::runtime_error(text.str());
   }
 }
 

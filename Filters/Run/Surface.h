@@ -63,8 +63,8 @@ public:
 
   /// Per input point.
   const SurfaceDiffusion::Points& Points() const { return this->Arrays.Points; }
-  /// Rows of Points(), made anew from the mesh, whose numbers they are not. Merged points are
-  /// replaced by the point that represents them, and excluded triangles are gone.
+  /// The triangles of the mesh as rows of Points(), computed at each call. Merged points are
+  /// replaced by the point that represents them, and excluded triangles are left out.
   SurfaceDiffusion::Triangles MakeTriangles() const;
   Index NumberOfTriangles() const { return this->TriangleCount; }
   /// The row of the input's triangles that row t of MakeTriangles() is.

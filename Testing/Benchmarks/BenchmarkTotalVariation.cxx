@@ -9,8 +9,8 @@
 // DenoiseColors minimises over three channels on opponent axes, or alternates brightness and
 // chromaticity, to a tolerance of 1e-3.
 // FlowOfSteps minimises in as many time steps of a flow without fidelity as its argument says.
-// ChannelStep is a lagged step of all channels together, of total variation, of the Beltrami flow or
-// of coherence-enhancing diffusion.
+// ChannelStep is a lagged step of all channels together, of total variation, of the Beltrami flow
+// or of coherence-enhancing diffusion.
 
 #include "HeatSystem.h"
 #include "Meshes.h"

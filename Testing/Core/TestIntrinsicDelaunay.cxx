@@ -94,7 +94,8 @@ TEST(IntrinsicDelaunay, MakesNoWeightNegative)
   }
 }
 
-// Edges that go far around, as on a twisted tube: every flip of all of them straightens by one turn.
+// Edges that go far around, as on a twisted tube: every flip of all of them straightens by one
+// turn.
 TEST(IntrinsicDelaunay, SpiralsAreUnwound)
 {
   for (const double turns : { 3.0, 10.0, 30.0 })

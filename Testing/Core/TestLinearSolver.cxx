@@ -296,8 +296,8 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, IterativeSolver,
     Kind{ "Multigrid", [] { return MakeMultigridSolver(); } }),
   [](const auto& parameter) { return parameter.param.Name; });
 
-/// Diffusion along a direction only, at a long step, from the second step of a run that a fuzzer found:
-/// in single precision the iterates grow beyond all bounds.
+/// Diffusion along a direction only, at a long step, from the second step of a run that a fuzzer
+/// found: in single precision the iterates grow beyond all bounds.
 TEST(ConjugateGradient, MeetsTheToleranceWhereSinglePrecisionDiverges)
 {
   const std::array<double, 9> entries = { 0x1.f17c5ed085f1p+16, -0x1.7f08441056bb4p+16,

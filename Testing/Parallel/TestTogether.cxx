@@ -50,8 +50,8 @@ namespace
 
 constexpr int N = 24;
 
-/// A piece of a square of n columns with ids, vectors and a mask that do not depend on the decomposition. sheared: with
-/// obtuse angles.
+/// A piece of a square of n columns with ids, vectors and a mask that do not depend on the
+/// decomposition. sheared: with obtuse angles.
 vtkSmartPointer<vtkPolyData> WithData(
   vtkSmartPointer<vtkPolyData> piece, bool sheared = false, int n = N)
 {
@@ -403,8 +403,8 @@ TEST_P(Together, SeekInTime)
   EXPECT_TRUE(Identical(Result(direct, GetParam().Result), second));
 }
 
-/// The triangles of the square that `owner` gives to this process: a function of their number and of a
-/// corner.
+/// The triangles of the square that `owner` gives to this process: a function of their number and
+/// of a corner.
 template <typename Owner>
 vtkSmartPointer<vtkPolyData> MinePicked(int n, const Owner& owner)
 {
@@ -439,8 +439,8 @@ vtkSmartPointer<vtkFVMHeatFilter> RunLongSteps(
   return heat;
 }
 
-/// Pieces are strips, tiles that meet in corners, and triangles at random. The latter put nearly all
-/// vertices on interfaces, where the prolongation is not smoothed.
+/// Pieces are strips, tiles that meet in corners, and triangles at random. The latter put nearly
+/// all vertices on interfaces, where the prolongation is not smoothed.
 TEST(MultigridOverProcesses, TakesHardlyMoreIterationsThanOneProcess)
 {
   constexpr int n = 128;
@@ -671,8 +671,8 @@ TEST(PiecesTogether, PiecesWithoutTrianglesGiveFiniteResults)
 namespace
 {
 
-/// A piece with cell data that do not depend on the decomposition; ghosts: with a column of cells of
-/// the piece before it, marked as copies.
+/// A piece with cell data that do not depend on the decomposition; ghosts: with a column of cells
+/// of the piece before it, marked as copies.
 vtkSmartPointer<vtkPolyData> WithCells(int begin, int end, bool quads, bool ghosts)
 {
   const int first = begin - (ghosts && begin > 0 ? 1 : 0);

@@ -11,8 +11,8 @@
 namespace SurfaceDiffusion
 {
 
-/// totals[k] = the sum of f(i, k) over the rows i, for every column k: the bits of Sum(), in one pass
-/// over the rows of each panel of columns.
+/// totals[k] = the sum of f(i, k) over the rows i, for every column k: the bits of Sum(), in one
+/// pass over the rows of each panel of columns.
 template <typename F>
 void SumColumns(
   const ParallelFor& parallel, Index rows, Eigen::Index columns, const F& f, double* totals)

@@ -87,6 +87,16 @@ std::shared_ptr<const Reduction> Reduction::SharedSerial()
   return std::shared_ptr<const Reduction>(std::shared_ptr<void>(), &Reduction::Serial());
 }
 
+std::vector<char> Reduction::MarkInterfaces(Index count) const
+{
+  std::vector<char> marks(this->IsSerial() ? 0 : count, false);
+  for (const Index vertex : this->VerticesOnInterface)
+  {
+    marks[vertex] = true;
+  }
+  return marks;
+}
+
 std::shared_ptr<const Reduction> Reduction::Coarsened(const std::vector<Index>&, Index) const
 {
   return Reduction::SharedSerial();

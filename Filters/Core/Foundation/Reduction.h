@@ -136,18 +136,22 @@ public:
     ForEach(parallel, rows, use);
   }
 
-  /// Vertices that other processes have too; Accumulate() and UpdateFromOwners() for one row of numbers
-  /// per such vertex.
+  /// Vertices that other processes have too; Accumulate() and UpdateFromOwners() for one row of
+  /// numbers per such vertex.
   const std::vector<Index>& InterfaceVertices() const { return this->VerticesOnInterface; }
   virtual void AccumulateInterface(double* /*rows*/, Index /*columns*/) const {}
   virtual void UpdateInterface(double* /*rows*/, Index /*columns*/) const {}
-  /// Per such vertex a number of the set of processes that have it. The number is the process's own.
+  /// Per vertex of the process, of which there are `count`, whether it is one of them. Empty on one
+  /// process.
+  std::vector<char> MarkInterfaces(Index count) const;
+  /// Per such vertex a number of the set of processes that have it. The number is the process's
+  /// own.
   const std::vector<Index>& InterfaceHolders() const { return this->HolderSets; }
 
   /// The reduction of `count` vertices of which each stands for a part of the vertices of this one:
-  /// vertex i is in part coarse[i], or in none if that is negative. Those of a part that has vertices
-  /// on interfaces all are, of the same processes, and all these have the same ones in the part.
-  /// This reduction's finest one must outlive it.
+  /// vertex i is in part coarse[i], or in none if that is negative. Those of a part that has
+  /// vertices on interfaces all are, of the same processes, and all these have the same ones in the
+  /// part. This reduction's finest one must outlive it.
   virtual std::shared_ptr<const Reduction> Coarsened(
     const std::vector<Index>& coarse, Index count) const;
 

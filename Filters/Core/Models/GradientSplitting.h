@@ -56,8 +56,8 @@ public:
     return this->Visit([](const auto& splitting) { return splitting.Growth(); });
   }
 
-  /// p = S grad u in the next Update(), the first penalty, and y = 0 unless there are multipliers to
-  /// start from. inSinglePrecision: if the function and the numbers of the surface allow it.
+  /// p = S grad u in the next Update(), the first penalty, and y = 0 unless there are multipliers
+  /// to start from. inSinglePrecision: if the function and the numbers of the surface allow it.
   void Start(int columns, bool keepMultipliers, bool inSinglePrecision);
 
   /// y, in row t of 2 columns numbers that of triangle t. Those that are set are kept for Start().

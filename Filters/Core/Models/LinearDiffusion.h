@@ -45,8 +45,8 @@ public:
   };
   static constexpr double Gamma = 0.2928932188134524;
 
-  /// coefficients: of D, see CotanWeights.h; no row: D = 1. solver: kept by the caller from run to run, so that
-  /// the same matrix is not factorised twice.
+  /// coefficients: of D, see CotanWeights.h; no row: D = 1. solver: kept by the caller from run to
+  /// run, so that the same matrix is not factorised twice.
   LinearDiffusion(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
     PointData data, const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());

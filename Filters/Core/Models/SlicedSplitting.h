@@ -17,11 +17,11 @@ namespace SurfaceDiffusion
 {
 
 /// The passes of GradientSplitting over the triangles, with numbers in single or double precision.
-/// Slices of 16 triangles are stored number by number, so that the lanes of a vector register belong
-/// to 16 triangles.
+/// Slices of 16 triangles are stored number by number, so that the lanes of a vector register
+/// belong to 16 triangles.
 ///
-/// p and b are kept as one vector w = r (p + b) per column: p is the proximal map of psi/r at p + b,
-/// so that the multiplier is r b = share(|w|) w with share = 1 - shrinkage, for total variation
+/// p and b are kept as one vector w = r (p + b) per column: p is the proximal map of psi/r at p +
+/// b, so that the multiplier is r b = share(|w|) w with share = 1 - shrinkage, for total variation
 /// min(1, 1/|w|). Unlike p + b, w is of the size of psi' for data in any unit.
 template <typename Number>
 class SlicedSplitting
@@ -44,8 +44,8 @@ public:
   /// Whether the numbers of the mesh are far from the limits of Number.
   bool IsInRange() const;
 
-  /// p = S grad u in the next Update(), and the first penalty. The multipliers are 0 unless they are
-  /// kept.
+  /// p = S grad u in the next Update(), and the first penalty. The multipliers are 0 unless they
+  /// are kept.
   void Start(int columns, bool keepMultipliers);
 
   /// y, in row t of 2 columns numbers those of triangle t.

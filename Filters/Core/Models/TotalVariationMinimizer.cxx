@@ -25,8 +25,8 @@ constexpr double OverRelaxation = 1.7;
 constexpr double SmallestSingleGap = 1e-5;
 constexpr double SmallestSingleGapOfSplit = 1e-4;
 
-/// Conjugate gradient iterations on the quadratic problem. Without a growing penalty few of them are
-/// best: exact solutions circle around the minimum.
+/// Conjugate gradient iterations on the quadratic problem. Without a growing penalty few of them
+/// are best: exact solutions circle around the minimum.
 constexpr int InnerIterations = 4;
 constexpr int MostInnerIterations = 20;
 constexpr int IterationsPerCheck = 10;
@@ -42,8 +42,8 @@ constexpr double StartOfGrowth = 6.0;
 
 /// How exactly the quadratic problem is solved and by how much the penalty has grown. A
 /// method whose penalty grows diverges if its errors grow with it, and slows down if the penalty
-/// grows faster than it converges: when the gap has not fallen, errors become smaller and the penalty
-/// stays, and falls in the end.
+/// grows faster than it converges: when the gap has not fallen, errors become smaller and the
+/// penalty stays, and falls in the end.
 struct Pace
 {
   static constexpr double LeastReduction = 0.02;
@@ -238,8 +238,8 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   return report;
 }
 
-/// The first iteration: sizes for as many columns as u has, the first penalty, and a right-hand side
-/// of zero.
+/// The first iteration: sizes for as many columns as u has, the first penalty, and a right-hand
+/// side of zero.
 void TotalVariationMinimizer::Start(const Values& u, bool keepMultipliers, bool isSingle)
 {
   if (this->RightHandSide.cols() != u.cols())

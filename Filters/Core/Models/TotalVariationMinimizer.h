@@ -71,8 +71,8 @@ public:
 
   /// g, f: the data of the terms at the vertices, as VertexTerms::Start() takes them. u: the start
   /// on entry, the minimiser on return, and never of more energy than the start. The result depends
-  /// on the arguments alone, and on the multipliers of the last call if they are kept: near the last
-  /// minimum they save most of the iterations.
+  /// on the arguments alone, and on the multipliers of the last call if they are kept: near the
+  /// last minimum they save most of the iterations.
   Report Minimize(const Values& g, const Values& f, Values& u,
     const ProgressMonitor& progress = ProgressMonitor(), bool keepMultipliers = false);
 

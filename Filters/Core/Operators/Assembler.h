@@ -57,8 +57,8 @@ public:
 private:
   std::shared_ptr<const TriangleMesh> SurfaceMesh;
   SparsePattern Entries;
-  /// The entries of the triangle's next and last vertex in a corner's row, counted from the start of
-  /// the row. Those of rows that are too long for that are searched.
+  /// The entries of the triangle's next and last vertex in a corner's row, counted from the start
+  /// of the row. Those of rows that are too long for that are searched.
   struct Slots
   {
     std::uint8_t Next, Last;

@@ -19,28 +19,12 @@ namespace
 
 constexpr Index None = Aggregates::None;
 
-/// Per vertex, whether other processes have it too. Empty if there are none.
-std::vector<char> MarkInterfaces(const Reduction& overProcesses, Eigen::Index vertices)
-{
-  std::vector<char> marks(overProcesses.IsSerial() ? 0 : vertices, false);
-  for (const Index vertex : overProcesses.InterfaceVertices())
-  {
-    marks[vertex] = true;
-  }
-  return marks;
-}
-
-/// Per slot of the matrix, whether its entry is strong. Between vertices on interfaces it is about half
-/// of the entry of all processes.
+/// Per slot of the matrix, whether its entry is strong. Between vertices on interfaces it is about
+/// half of the entry of all processes.
 Buffer<char> FindStrong(const SparseMatrix& matrix, double strength, const Reduction& overProcesses,
   const std::vector<char>& isOnInterface, const ParallelFor& parallel)
 {
-  Vector root(matrix.rows());
-  ForEach(parallel, static_cast<Index>(matrix.rows()),
-    [&](Index i) { root[i] = DiagonalEntry(matrix, i); });
-  overProcesses.Accumulate(root);
-  ForEach(
-    parallel, static_cast<Index>(matrix.rows()), [&](Index i) { root[i] = std::sqrt(root[i]); });
+  const Vector root = RootsOfDiagonal(matrix, overProcesses, parallel);
   Buffer<char> strong(matrix.nonZeros());
   const Index* outer = matrix.outerIndexPtr();
   const Index* inner = matrix.innerIndexPtr();
@@ -58,8 +42,8 @@ Buffer<char> FindStrong(const SparseMatrix& matrix, double strength, const Reduc
   return strong;
 }
 
-/// Finds the vertices that form aggregates with their neighbours, in the order of the numbering, but
-/// first inside of chunks, which do not depend on each other, and then along their borders.
+/// Finds the vertices that form aggregates with their neighbours, in the order of the numbering,
+/// but first inside of chunks, which do not depend on each other, and then along their borders.
 class RootSearch
 {
 public:
@@ -171,7 +155,8 @@ void Aggregate(const SparseMatrix& matrix, const Buffer<char>& strong, const Par
     });
 }
 
-/// Aggregates of vertices that the same processes have. Their owner forms them along the interfaces.
+/// Aggregates of vertices that the same processes have. Their owner forms them along the
+/// interfaces.
 class InterfaceAggregation
 {
 public:
@@ -285,9 +270,20 @@ private:
 
 } // namespace
 
+Vector RootsOfDiagonal(
+  const SparseMatrix& matrix, const Reduction& overProcesses, const ParallelFor& parallel)
+{
+  Vector roots(matrix.rows());
+  const auto n = static_cast<Index>(matrix.rows());
+  ForEach(parallel, n, [&](Index i) { roots[i] = DiagonalEntry(matrix, i); });
+  overProcesses.Accumulate(roots);
+  ForEach(parallel, n, [&](Index i) { roots[i] = std::sqrt(roots[i]); });
+  return roots;
+}
+
 Aggregates::Aggregates(const SparseMatrix& matrix, double strength, const Reduction& overProcesses,
   const ParallelFor& parallel)
-  : IsOnInterface(MarkInterfaces(overProcesses, matrix.rows()))
+  : IsOnInterface(overProcesses.MarkInterfaces(static_cast<Index>(matrix.rows())))
   , Strong(FindStrong(matrix, strength, overProcesses, this->IsOnInterface, parallel))
 {
   if (overProcesses.IsSerial())

@@ -12,8 +12,8 @@
 namespace SurfaceDiffusion
 {
 
-/// The vertices of the next level of multigrid, as sets of vertices of this one (SmoothedAggregation
-/// defines them).
+/// The vertices of the next level of multigrid, as sets of vertices of this one
+/// (SmoothedAggregation defines them).
 struct Aggregates
 {
   static constexpr Index None = -1;
@@ -26,5 +26,9 @@ struct Aggregates
   std::vector<Index> Of; ///< per vertex, or None
   Index Count = 0;
 };
+
+/// diag(A)^1/2 of a matrix that is accumulated over processes.
+Vector RootsOfDiagonal(
+  const SparseMatrix& matrix, const Reduction& overProcesses, const ParallelFor& parallel);
 
 } // namespace SurfaceDiffusion

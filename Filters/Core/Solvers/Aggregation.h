@@ -29,12 +29,12 @@ namespace SurfaceDiffusion
 /// to zero, cut into one column of unit norm per aggregate. A' is the strong part of A with the
 /// other entries lumped to its diagonal D. So the coarse space contains the kernel.
 ///
-/// Over processes the matrix is accumulated. The vertices of an aggregate are in the same processes,
-/// and so are their rows of the prolongation: on interfaces it is T, which needs no rows of other
-/// processes.
+/// Over processes the matrix is accumulated. The vertices of an aggregate are in the same
+/// processes, and so are their rows of the prolongation: on interfaces it is T, which needs no rows
+/// of other processes.
 ///
-/// kernel, overProcesses: on entry the fine level's, on return the coarse level's; kernel: consistent
-/// and positive.
+/// kernel, overProcesses: on entry the fine level's, on return the coarse level's; kernel:
+/// consistent and positive.
 SparseMatrix SmoothedAggregation(const SparseMatrix& matrix, double strength, Vector& kernel,
   std::shared_ptr<const Reduction>& overProcesses, const ParallelFor& parallel);
 /// On one process.

@@ -101,14 +101,14 @@ public:
   }
 
 private:
-  /// (1 + lambda dt) M + dt K has the row sums of its first term, whose share in the diagonal measures
-  /// the condition: 2e-3 is the diffusion number 150. Below, rounding to single precision costs more
-  /// iterations than their speed gains, unless one pass reaches the tolerance.
+  /// (1 + lambda dt) M + dt K has the row sums of its first term, whose share in the diagonal
+  /// measures the condition: 2e-3 is the diffusion number 150. Below, rounding to single precision
+  /// costs more iterations than their speed gains, unless one pass reaches the tolerance.
   static constexpr double SmallestShare = 2e-3;
   static constexpr double SmallestShareOfOnePass = 1e-4;
   static constexpr double MostOfOnePass = 1e-5;
-  /// From here on (the diffusion number 3), round-off of single precision does no harm to a reduction by
-  /// MostOfOnePass either; otherwise it is 1e-4.
+  /// From here on (the diffusion number 3), round-off of single precision does no harm to a
+  /// reduction by MostOfOnePass either; otherwise it is 1e-4.
   static constexpr double SmallestShareOfLongPasses = 0.05;
 
   /// InverseDiagonal and Share, in one pass over the matrix.
@@ -195,7 +195,6 @@ private:
         for (int c = 0; c < k; ++c)
         {
           const double bi = b(i, c) / unit[c];
-          this->Residual(i, c) = bi - this->Residual(i, c) / unit[c];
           sums[c] += counts ? bi * this->InverseDiagonal[i] * bi : 0.0;
         }
       });
@@ -204,6 +203,7 @@ private:
     {
       this->Work.Reference[c] = this->Work.Sums[c] > 0.0 ? this->Work.Sums[c] : 1.0;
     }
+    this->SubtractProduct<K>(b);
     SolveReport report;
     report.Converged = false;
     const bool refines = this->Share >= SmallestShareOfOnePass;
@@ -255,7 +255,8 @@ private:
     }
   }
 
-  /// Of the columns whose residuals have been measured. Throws std::runtime_error if it is not finite.
+  /// Of the columns whose residuals have been measured. Throws std::runtime_error if it is not
+  /// finite.
   double LargestResidual() const
   {
     double largest = 0.0;
@@ -271,8 +272,8 @@ private:
     return largest;
   }
 
-  /// Iterations in single precision with residuals in double precision, until all columns are within
-  /// the tolerance or can come no closer.
+  /// Iterations in single precision with residuals in double precision, until all columns are
+  /// within the tolerance or can come no closer.
   template <int K>
   SolveReport Refine(const Values& b, Values& x, const ProgressMonitor& progress)
   {
@@ -281,7 +282,6 @@ private:
     this->Corrections.assign(k, SinglePrecisionSolver::Column());
     SolveReport report;
     double done = 0.0;
-    this->MeasureResidual<K>(k);
     while (true)
     {
       const double passes = this->PlanPass(report);
@@ -328,8 +328,8 @@ private:
     return any;
   }
 
-  /// Decide for each column by how much the next pass reduces its residual, which has been measured.
-  /// Returns the largest number of passes that are left, or 0.
+  /// Decide for each column by how much the next pass reduces its residual, which has been
+  /// measured. Returns the largest number of passes that are left, or 0.
   double PlanPass(SolveReport& report)
   {
     const double most = this->Share >= SmallestShareOfLongPasses ? MostOfOnePass : 1e-4;
@@ -372,6 +372,20 @@ private:
   void UpdateResidual(const Values& b, const Values& x)
   {
     this->MultiplyByMatrix(x);
+    this->SubtractProduct<K>(b);
+  }
+
+  /// Residual = A x.
+  void MultiplyByMatrix(const Values& x)
+  {
+    Multiply(*this->Matrix, x, this->Residual, this->Parallel);
+    this->OverProcesses.Accumulate(this->Residual);
+  }
+
+  /// The residual from A x, and its squares.
+  template <int K>
+  void SubtractProduct(const Values& b)
+  {
     const ColumnCount<K> k(b.cols());
     const std::vector<double>& unit = this->Work.Unit;
     this->Work.Sums.Run<K>(this->Parallel, static_cast<Index>(b.rows()), k,
@@ -382,31 +396,6 @@ private:
         {
           const double r = b(i, c) / unit[c] - this->Residual(i, c) / unit[c];
           this->Residual(i, c) = r;
-          sums[c] += counts ? r * this->InverseDiagonal[i] * r : 0.0;
-        }
-      });
-    this->Work.Sums.Reduce(this->OverProcesses);
-  }
-
-  /// Residual = A x.
-  void MultiplyByMatrix(const Values& x)
-  {
-    Multiply(*this->Matrix, x, this->Residual, this->Parallel);
-    this->OverProcesses.Accumulate(this->Residual);
-  }
-
-  /// The squares of the residual in the norm of D^-1, in Work.Sums.
-  template <int K>
-  void MeasureResidual(int columns)
-  {
-    const ColumnCount<K> k(columns);
-    this->Work.Sums.Run<K>(this->Parallel, static_cast<Index>(this->Residual.rows()), k,
-      [&](Index i, double* sums)
-      {
-        const bool counts = this->OverProcesses.Owns(i);
-        for (int c = 0; c < k; ++c)
-        {
-          const double r = this->Residual(i, c);
           sums[c] += counts ? r * this->InverseDiagonal[i] * r : 0.0;
         }
       });

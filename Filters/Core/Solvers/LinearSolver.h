@@ -91,13 +91,14 @@ protected:
 };
 
 /// Sparse Cholesky factorisation L D L^T, and one step of iterative refinement if the residual is
-/// above the tolerance. Its reports are final. A nearly singular matrix is regularised: see SparseFactor.
+/// above the tolerance. Its reports are final. A nearly singular matrix is regularised: see
+/// SparseFactor.
 std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = SerialFor());
 
 /// Conjugate gradients with Jacobi preconditioner, all columns in one pass over the matrix, each
 /// with its own step lengths. The paper's PBCG is this method for symmetric matrices (Appendix).
-/// Unless the matrix is stiff, the iterations are in single precision and measure their residuals in
-/// double precision (SinglePrecisionSolver), to the same tolerance.
+/// Unless the matrix is stiff, the iterations are in single precision and measure their residuals
+/// in double precision (SinglePrecisionSolver), to the same tolerance.
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
   const ParallelFor& parallel = SerialFor());
 

@@ -19,17 +19,6 @@ constexpr Index LargestDirect = 500; // vertices of a level that is solved direc
 constexpr double LargestRatio = 0.8; // of the vertices of a level to those of the finer one
 constexpr double FinestStrength = 0.08; // of strong entries on the finest level, as in the paper
 
-Vector RootsOfDiagonal(
-  const SparseMatrix& matrix, const Reduction& overProcesses, const ParallelFor& parallel)
-{
-  Vector roots(matrix.rows());
-  const auto n = static_cast<Index>(matrix.rows());
-  ForEach(parallel, n, [&](Index i) { roots[i] = DiagonalEntry(matrix, i); });
-  overProcesses.Accumulate(roots);
-  ForEach(parallel, n, [&](Index i) { roots[i] = std::sqrt(roots[i]); });
-  return roots;
-}
-
 /// Over all processes, of which this one has n vertices.
 double CountVertices(const Reduction& overProcesses, Eigen::Index n)
 {
@@ -129,7 +118,8 @@ void Multigrid::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& pro
   this->MakeLevels(scaled, std::move(kernel), progress);
 }
 
-/// current: the finest matrix on entry. Matrices are swapped: Eigen 3.4 copies those that are moved.
+/// current: the finest matrix on entry. Matrices are swapped: Eigen 3.4 copies those that are
+/// moved.
 void Multigrid::MakeLevels(SparseMatrix& current, Vector kernel, const ProgressMonitor& progress)
 {
   this->Levels.clear();
@@ -254,11 +244,7 @@ void Multigrid::SetLevel(const SparseMatrix& matrix, const SparseMatrix& restric
   level.InverseD.resize(n);
   ForEach(
     this->Parallel, n, [&](Index i) { level.InverseD[i] = static_cast<float>(1.0 / sums[i]); });
-  level.IsOnInterface.assign(level.OverProcesses->IsSerial() ? 0 : n, false);
-  for (const Index vertex : level.OverProcesses->InterfaceVertices())
-  {
-    level.IsOnInterface[vertex] = true;
-  }
+  level.IsOnInterface = level.OverProcesses->MarkInterfaces(n);
 }
 
 } // namespace SurfaceDiffusion

@@ -38,8 +38,8 @@ public:
   explicit Multigrid(const ParallelFor& parallel,
     std::shared_ptr<const Reduction> overProcesses = Reduction::SharedSerial());
 
-  /// On one process: the hierarchies of all later matrices, which have the pattern of `model`, take its aggregates:
-  /// making them then takes a fraction of the time. Throws as SetMatrix().
+  /// On one process: the hierarchies of all later matrices, which have the pattern of `model`, take
+  /// its aggregates: making them then takes a fraction of the time. Throws as SetMatrix().
   void KeepAggregates(const SparseMatrix& model);
 
   /// Make the hierarchy for `matrix`, which the caller need not keep. Throws Aborted, and

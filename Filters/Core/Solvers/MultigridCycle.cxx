@@ -187,7 +187,8 @@ void Multigrid::SubtractOwnPart(
   }
 }
 
-/// R = from - A x, of the process, and finish(i, first number of row i, R of row i) in the same pass.
+/// R = from - A x, of the process, and finish(i, first number of row i, R of row i) in the same
+/// pass.
 template <int K, typename Finish>
 void Multigrid::SubtractRows(
   Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)

@@ -213,8 +213,8 @@ int SinglePrecisionSolver::Iterate(
   return iterations;
 }
 
-/// Q = A p and p . Q over all processes, from those of the process. Matrix has added the unit diagonal
-/// in each of them; it is meant once.
+/// Q = A p and p . Q over all processes, from those of the process. Matrix has added the unit
+/// diagonal in each of them; it is meant once.
 void SinglePrecisionSolver::Accumulate(int columns, const float* p, double* sums)
 {
   if (this->OverProcesses.IsSerial())

@@ -44,15 +44,15 @@ public:
     double DirectionSquare = 0.0;
   };
 
-  /// Add to x what reduces the residuals, r = b - A x in double precision. The bits of a column do not
-  /// depend on the others. A column of a matrix that is not positive definite in single precision is
-  /// left. Returns the largest number of iterations.
+  /// Add to x what reduces the residuals, r = b - A x in double precision. The bits of a column do
+  /// not depend on the others. A column of a matrix that is not positive definite in single
+  /// precision is left. Returns the largest number of iterations.
   int Correct(const Values& r, std::vector<Column>& columns, int maximumNumberOfIterations,
     Values& x, const ProgressMonitor& progress);
 
-  /// Add to x what reduces each column of the residual r by the factor `reduction`, if the iterations
-  /// suffice, and update r. lengths: of its columns in the norm of D^-1. Returns false if the steps
-  /// of a column are bounded by nothing but round-off; it is left.
+  /// Add to x what reduces each column of the residual r by the factor `reduction`, if the
+  /// iterations suffice, and update r. lengths: of its columns in the norm of D^-1. Returns false
+  /// if the steps of a column are bounded by nothing but round-off; it is left.
   bool Descend(Values& r, const std::vector<double>& lengths, double reduction,
     int maximumNumberOfIterations, Values& x);
 

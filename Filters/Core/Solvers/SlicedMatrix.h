@@ -14,9 +14,10 @@ namespace SurfaceDiffusion
 
 /// The matrix D^-1/2 A D^-1/2 in single precision, where D is the diagonal of A, and the passes of
 /// conjugate gradients over it. The format is SELL-16-2048 (M. Kreutzer, G. Hager, G. Wellein,
-/// H. Fehske, A. Bishop, SIAM J. Sci. Comput. 36, 2014): slices of 16 rows are stored entry by entry,
-/// so that the lanes of a vector register belong to 16 rows, and the rows of each block are sorted by
-/// their lengths, so that little is filled up with zeros. The unit diagonal is not stored.
+/// H. Fehske, A. Bishop, SIAM J. Sci. Comput. 36, 2014): slices of 16 rows are stored entry by
+/// entry, so that the lanes of a vector register belong to 16 rows, and the rows of each block are
+/// sorted by their lengths, so that little is filled up with zeros. The unit diagonal is not
+/// stored.
 ///
 /// Vectors have one array of PaddedRows() numbers per column, in the order of the slices. Every sum
 /// has one order, and products and sums are rounded one by one, so that bits depend neither on the

@@ -19,8 +19,8 @@ struct SparseFactor::Decomposition
   SparseMatrix& L() { return this->m_matrix; }
 
   /// Order the rows and find the pattern of the factor. On regular triangulations nested dissection
-  /// takes about 40 n^1.5 operations, and minimum degree from 20 n^1.5 on subdivided scans to 110 n^1.5
-  /// on icospheres.
+  /// takes about 40 n^1.5 operations, and minimum degree from 20 n^1.5 on subdivided scans to 110
+  /// n^1.5 on icospheres.
   void Analyze(const SparseMatrix& matrix)
   {
     constexpr double ofDissection = 40.0;

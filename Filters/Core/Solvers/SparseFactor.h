@@ -52,8 +52,8 @@ public:
   /// once for all columns.
   std::vector<Index> Panels;
   /// The entries of the columns of L from j to next - 1, a panel, are at Entries + Begin[j], in the
-  /// order in which substitution needs them: first those in the panel's own rows below the diagonal,
-  /// row by row, then those in the rows below the panel, row by row, whose numbers are at
+  /// order in which substitution needs them: first those in the panel's own rows below the
+  /// diagonal, row by row, then those in the rows below the panel, row by row, whose numbers are at
   /// Rows + Begin[next - 1], up to Rows + Begin[next].
   std::vector<Index> Begin;
   const Index* Rows = nullptr;
