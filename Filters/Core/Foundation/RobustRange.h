@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Reduction.h"
+#include "Core/Foundation/Types.h"
+
+#include <limits>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// A lower and an upper bound; Low > High if there are no values.
+struct ValueBounds
+{
+  double Low = std::numeric_limits<double>::infinity();
+  double High = -std::numeric_limits<double>::infinity();
+
+  void Widen(const ValueBounds& other);
+  double Width() const { return this->High > this->Low ? this->High - this->Low : 0.0; }
+};
+
+/// The extremes of finite values without the outliers: the smallest 0.1 % and the largest 0.1 % are
+/// left out, from 100 values on at least one of each. Takes linear time, and reorders the values.
+ValueBounds RobustBounds(std::vector<double>& values);
+
+/// The largest width over the columns of RobustBounds() of the values at vertices that are not
+/// missing. Over several processes the widest of their bounds count. 0 without values.
+double RobustRange(const Values& values, const Flags& missing, const Reduction& reduction);
+
+} // namespace SurfaceDiffusion
