@@ -38,8 +38,9 @@ ValueBounds RobustBounds(std::vector<double>& values)
   const auto low = values.begin() + outliers;
   const auto high = values.end() - 1 - outliers;
   std::nth_element(values.begin(), low, values.end());
+  const double lowest = *low;
   std::nth_element(low, high, values.end());
-  return { *low, *high };
+  return { lowest, *high };
 }
 
 double RobustRange(const Values& values, const Flags& missing, const Reduction& reduction)
