@@ -1,10 +1,13 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Functions that the tests of the plugin share: a surface in a file, and the errors of a filter."""
+"""Functions that the tests of the plugin share: the list of its filters, a surface in a file, the
+errors of a filter, and the comparison of pictures."""
 
+import glob
 import math
 import os
 import random
+import xml.etree.ElementTree
 
 from paraview import servermanager
 from paraview.simple import SaveScreenshot, XMLPolyDataReader
@@ -18,6 +21,15 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 GARBAGE = 1000.0  # the damaged values
+PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
+
+
+def filter_names():
+    """The names of the plugin's filters, all that its XML files define."""
+    return [
+        proxy.get("name")
+        for path in sorted(glob.glob(os.path.join(PLUGIN, "*.xml")))
+        for proxy in xml.etree.ElementTree.parse(path).iterfind("ProxyGroup[@name='filters']/*")]
 
 
 def add_array(attributes, name, values, array=None):
