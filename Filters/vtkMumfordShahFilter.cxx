@@ -27,8 +27,8 @@ namespace
 
 constexpr const char* EdgesName = "Edges";
 
-/// The edges of all surfaces as polylines.
-vtkSmartPointer<vtkPolyData> MakeCurves(const Run& run)
+/// The edges of all surfaces as polylines, with the values of 1 - v as point array `name`.
+vtkSmartPointer<vtkPolyData> MakeCurves(const Run& run, const std::string& name)
 {
   LineWriter lines;
   std::vector<double> edges, lengths;
@@ -57,7 +57,7 @@ vtkSmartPointer<vtkPolyData> MakeCurves(const Run& run)
   }
   auto output = vtkSmartPointer<vtkPolyData>::New();
   lines.Write(output);
-  output->GetPointData()->AddArray(CopyToArray<vtkDoubleArray>(EdgesName, 1, edges));
+  output->GetPointData()->AddArray(CopyToArray<vtkDoubleArray>(name.c_str(), 1, edges));
   output->GetCellData()->AddArray(CopyToArray<vtkDoubleArray>("Length", 1, lengths));
   return output;
 }
@@ -92,9 +92,10 @@ void vtkMumfordShahFilter::WriteResult(
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
   const bool single = this->FindResultType(fields) == VTK_FLOAT;
+  const std::string name = this->FindOtherName(EdgesName);
   const auto edges = this->HasResultOnCells(fields)
-    ? WriteRows(EdgesName, block.Cells->Transfer.ToCells(block.Result.Edges), single)
-    : WriteScalars(*block.Surface, EdgesName, block.Result.Edges, single, nullptr, 0);
+    ? WriteRows(name, block.Cells->Transfer.ToCells(block.Result.Edges), single)
+    : WriteScalars(*block.Surface, name, block.Result.Edges, single, nullptr, 0);
   this->AddResult(edges, fields, this->FindResultAttributes(fields, output));
   this->Superclass::WriteResult(index, fields, output);
 }
@@ -102,7 +103,7 @@ void vtkMumfordShahFilter::WriteResult(
 void vtkMumfordShahFilter::TakeResults()
 {
   this->Superclass::TakeResults();
-  this->Curves = MakeCurves(this->State->Run);
+  this->Curves = MakeCurves(this->State->Run, this->FindOtherName(EdgesName));
   this->EdgeLength = 0.0;
   for (std::size_t b = 0; b < this->State->Run.NumberOfBlocks(); ++b)
   {

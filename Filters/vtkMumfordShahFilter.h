@@ -45,13 +45,15 @@
  * the interval, and `Edges` is clamped.
  *
  * **Output port 0**: the result, named as the data with the suffix `MumfordShah`, and the array
- * `Edges`, 1 - v, or, for data on cells, its mean over the cell. **Output port 1**: the history; its energy is E with the eps of the step,
- * in (units of the array)^2: it can rise in the two steps where eps is halved. **Output port 2**:
- * the edges as polylines (vtkPolyData), one per edge between its ends and junctions, along the
- * ridge of 1 - v; a closed edge repeats its first point. It has the point array `Edges` and the
- * cell array `Length`, in coordinate units. Edges shorter than 4 EdgeWidth are left out. Curves of
- * all blocks of composite data are in one output. They need the whole surface: with EdgeCurves on,
- * surfaces in pieces are gathered and solved in process 0, whose port 2 has the curves.
+ * `Edges`, 1 - v, or, for data on cells, its mean over the cell. ResultArrayName, if it is not
+ * empty, is the name of the result and the prefix of `Edges`. **Output port 1**: the history; its
+ * energy is E with the eps of the step, in (units of the array)^2: it can rise in the two steps
+ * where eps is halved. **Output port 2**: the edges as polylines (vtkPolyData), one per edge
+ * between its ends and junctions, along the ridge of 1 - v; a closed edge repeats its first point.
+ * It has the point array `Edges` and the cell array `Length`, in coordinate units. Edges shorter
+ * than 4 EdgeWidth are left out. Curves of all blocks of composite data are in one output. They
+ * need the whole surface: with EdgeCurves on, surfaces in pieces are gathered and solved in process
+ * 0, whose port 2 has the curves.
  *
  * Without missing, fixed or held values the sum of A_i u_i is conserved to a relative error of
  * 1e-12.

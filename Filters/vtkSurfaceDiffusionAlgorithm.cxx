@@ -383,7 +383,9 @@ std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
 void vtkSurfaceDiffusionAlgorithm::AddResult(
   vtkDataArray* result, const InputFields& fields, vtkDataSetAttributes* attributes)
 {
-  if (ReplaceArray(result, fields.Data, attributes))
+  vtkDataArray* const expected =
+    result->GetName() == this->ResultArrayName ? fields.Data.Get() : nullptr;
+  if (ReplaceArray(result, expected, attributes))
   {
     this->State->ReplacedArrays.emplace_back(result->GetName());
   }
@@ -478,6 +480,11 @@ std::string vtkSurfaceDiffusionAlgorithm::FindResultName(const InputFields& fiel
   }
   const char* name = fields.Data->GetName();
   return std::string(name ? name : "") + this->GetResultSuffix();
+}
+
+std::string vtkSurfaceDiffusionAlgorithm::FindOtherName(const char* name) const
+{
+  return this->ResultArrayName + name;
 }
 
 int vtkSurfaceDiffusionAlgorithm::FindResultType(const InputFields& fields) const

@@ -343,13 +343,15 @@ protected:
   virtual const char* GetResultSuffix() const = 0;
 
   /// Helpers of WriteResult(). AddResult() replaces an array of that name and its roles, and keeps
-  /// a warning unless the array is the data.
+  /// a warning unless the array is the data and has the name of ResultArrayName.
   void AddResult(vtkDataArray* result, const SurfaceDiffusion::InputFields& fields,
     vtkDataSetAttributes* attributes);
   bool HasResultOnCells(const SurfaceDiffusion::InputFields& fields) const;
   vtkDataSetAttributes* FindResultAttributes(
     const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) const;
   std::string FindResultName(const SurfaceDiffusion::InputFields& fields) const;
+  /// The name of an array beside the result.
+  std::string FindOtherName(const char* name) const;
   int FindResultType(const SurfaceDiffusion::InputFields& fields) const;
 
   /// The word of a property that is a choice.

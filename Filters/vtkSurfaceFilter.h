@@ -101,8 +101,10 @@ public:
 
   ///@{
   /**
-   * The name of the result. Default: empty, which stands for a name that the subclass makes, or the
-   * subclass's own default.
+   * The name of the result, and the prefix of the names of the other arrays that the filter adds.
+   * Default: empty, which stands for a name that the subclass makes and no prefix, or the
+   * subclass's own default. A result with the name of the array that it is computed from replaces
+   * this array. If results replace other arrays of the input, a warning names these.
    */
   vtkSetStdStringFromCharMacro(ResultArrayName);
   vtkGetCharFromStdStringMacro(ResultArrayName);

@@ -69,7 +69,8 @@ void vtkTensorDiffusionFilter::WriteResult(
   if (block.Result.DiffusionAxes.rows() > 0)
   {
     this->AddResult(WriteDirections(*block.Surface, this->State->Inputs.CellsOf(index), output,
-                      block.Result.DiffusionAxes, "DiffusionAxes", SMPParallelFor::Instance()),
+                      block.Result.DiffusionAxes, this->FindOtherName("DiffusionAxes"),
+                      SMPParallelFor::Instance()),
       fields, output->GetCellData());
   }
 }

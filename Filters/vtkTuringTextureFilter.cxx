@@ -124,18 +124,18 @@ void vtkTuringTextureFilter::WriteResult(
   vtkPointData* const points = output->GetPointData();
   for (int c = 0; c < 2; ++c)
   {
-    const std::string name = this->ResultArrayName + (c == 0 ? "u1" : "u2");
+    const std::string name = this->FindOtherName(c == 0 ? "u1" : "u2");
     vtkDataArray* const elsewhere = fields.DataOnCells ? nullptr : fields.Data.Get();
     this->AddResult(WriteScalars(surface, name, u.col(c), single, elsewhere, c), fields, points);
   }
   const Vector texture = StretchContrast(u.col(this->TextureChemical), block.Result.ContrastLimits);
   this->AddResult(
-    WriteScalars(surface, this->ResultArrayName + "Texture", texture, single, nullptr, 0), fields,
+    WriteScalars(surface, this->FindOtherName("Texture"), texture, single, nullptr, 0), fields,
     points);
-  std::string active = this->ResultArrayName + "u1";
+  std::string active = this->FindOtherName("u1");
   if (this->ColorOutput)
   {
-    active = this->ResultArrayName + "TextureColor";
+    active = this->FindOtherName("TextureColor");
     const std::array<double, 3> low = { this->LowColor[0], this->LowColor[1], this->LowColor[2] };
     const std::array<double, 3> high = { this->HighColor[0], this->HighColor[1],
       this->HighColor[2] };

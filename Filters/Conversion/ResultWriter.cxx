@@ -206,10 +206,10 @@ vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
   return array;
 }
 
-bool ReplaceArray(vtkDataArray* result, vtkDataArray* data, vtkDataSetAttributes* attributes)
+bool ReplaceArray(vtkDataArray* result, vtkDataArray* expected, vtkDataSetAttributes* attributes)
 {
   vtkAbstractArray* const former = attributes->GetAbstractArray(result->GetName());
-  const bool isAnother = former && former != data;
+  const bool isAnother = former && former != expected;
   if (former)
   {
     attributes->RemoveArray(result->GetName());

@@ -50,9 +50,9 @@ vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
   const std::string& name, const ParallelFor& parallel);
 
 /// Add a result instead of an array of the same name, whose roles among the attributes are dropped,
-/// since the result may have another number of components. Returns whether that array was another
-/// one than `data`, the array that the result was computed from.
-bool ReplaceArray(vtkDataArray* result, vtkDataArray* data, vtkDataSetAttributes* attributes);
+/// since the result may have another number of components. Returns whether an array of the input
+/// was replaced other than `expected`, the one that the user wants to be replaced; it may be null.
+bool ReplaceArray(vtkDataArray* result, vtkDataArray* expected, vtkDataSetAttributes* attributes);
 
 /// The warning about arrays of the input that results have replaced.
 std::string DescribeReplacement(const std::vector<std::string>& names);

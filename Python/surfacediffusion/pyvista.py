@@ -28,8 +28,9 @@ times: times in the unit of time_step, in any order. The function then returns a
 at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
 one. full_output: if True, the function returns a pair: the mesh or the list, and the Result (of a
 MultiBlock, or with times, the list of them). progress: True or a callable, as for arrays.
-result_array_name: in place of the default. All other keywords are those of the functions on arrays,
-also in the spelling of VTK and ParaView: FWHM=10 is fwhm=10.
+result_array_name: in place of the default, and the prefix of the names of further arrays. All other
+keywords are those of the functions on arrays, also in the spelling of VTK and ParaView: FWHM=10 is
+fwhm=10.
 
 Errors: TypeError if the mesh is not a surface, with the remedy; ValueError if an array or a keyword
 is not allowed, with a message that names it, what was found and what is allowed.
@@ -202,9 +203,10 @@ def segment(
             if stays or not on_faces:
                 means[result.values == 0] = values[result.values == 0]
             block.add(result_name or f"{name}Segmented", means, stays)
-        block.add("RegionProbability", result.probabilities, stays)
-        block.add("RegionId", result.values, stays)
-        block.mesh.set_active_scalars("RegionId", preference="cell" if stays else "point")
+        prefix = result_name or ""
+        block.add(prefix + "RegionProbability", result.probabilities, stays)
+        block.add(prefix + "RegionId", result.values, stays)
+        block.mesh.set_active_scalars(prefix + "RegionId", preference="cell" if stays else "point")
     segmented = _rebuild(mesh, iter(blocks))
     if not full_output:
         return segmented
@@ -456,7 +458,7 @@ def _write_cells(
     active = name or block.name + suffix
     cells[active] = values
     if function == "mumford_shah":
-        block.add("Edges", result.edges, True)
+        block.add((name or "") + "Edges", result.edges, True)
     if function != "harmonic_map":
         block.mesh.set_active_scalars(active, preference="cell")
     elif block.name == block.input.cell_data.active_normals_name:
@@ -471,7 +473,7 @@ def _write(
     points = block.mesh.point_data
     values = result.values
     if function == "tensor_diffusion" and len(result.axes) > 0:
-        block.mesh.cell_data["DiffusionAxes"] = result.axes
+        block.mesh.cell_data[(name or "") + "DiffusionAxes"] = result.axes
     if on_faces:
         _write_cells(function, block, result, name, suffix)
         return
@@ -486,7 +488,7 @@ def _write(
         block.mesh.set_active_scalars(active, preference="point")
         return
     if function == "mumford_shah":
-        points["Edges"] = result.edges
+        points[(name or "") + "Edges"] = result.edges
     active = name or block.name + suffix
     given = block.input.point_data
     source = given if block.name in given else block.input.cell_data

@@ -5,10 +5,15 @@
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
 #include "vtkFieldData.h"
+#include "vtkMumfordShahFilter.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkSurfaceSegmentationFilter.h"
+#include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
+
+#include <set>
 
 using namespace FilterTest;
 
@@ -333,4 +338,93 @@ TEST(OutputArrays, ATextureOverOtherArraysIsOneWarning)
   EXPECT_NE(messages.Warnings[0].find("\"Texture\", \"u1\""), std::string::npos)
     << messages.Warnings[0];
   EXPECT_EQ(Result(filter, "Texture")->GetNumberOfComponents(), 1);
+}
+
+namespace
+{
+
+/// The names of the arrays that the output has and the input has not.
+std::set<std::string> NewNames(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
+{
+  std::set<std::string> names;
+  for (const int type : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    vtkDataSetAttributes* const after = filter->GetOutput()->GetAttributes(type);
+    for (int a = 0; a < after->GetNumberOfArrays(); ++a)
+    {
+      const char* const name = after->GetArrayName(a);
+      if (!input->GetAttributes(type)->HasArray(name))
+      {
+        names.insert(name);
+      }
+    }
+  }
+  return names;
+}
+
+} // namespace
+
+TEST(OutputArrays, ResultArrayNameIsThePrefixOfTheOtherArrays)
+{
+  using Names = std::set<std::string>;
+  const auto plane = Grid(8, 8);
+  AddPointArray(plane, "f", 1, [](vtkIdType i, int) { return i % 8 < 4 ? 0.0 : 1.0; });
+  plane->GetPointData()->SetActiveScalars("f");
+  vtkNew<vtkMumfordShahFilter> shah;
+  vtkNew<vtkSurfaceSegmentationFilter> segmentation;
+  vtkNew<vtkTensorDiffusionFilter> tensor;
+  tensor->SetModelToEdgeEnhancing();
+  tensor->DiffusionAxesOn();
+  const auto expect =
+    [&](vtkSurfaceDiffusionAlgorithm* filter, const Names& automatic, const Names& named)
+  {
+    filter->SetInputData(plane);
+    filter->Update();
+    EXPECT_EQ(NewNames(filter, plane), automatic);
+    filter->SetResultArrayName("my");
+    filter->Update();
+    EXPECT_EQ(NewNames(filter, plane), named);
+  };
+  expect(shah, { "fMumfordShah", "Edges" }, { "my", "myEdges" });
+  auto* curves = vtkPolyData::SafeDownCast(shah->GetOutputDataObject(2));
+  EXPECT_TRUE(curves->GetPointData()->HasArray("myEdges"));
+  expect(segmentation, { "fSegmented", "RegionId", "RegionProbability" },
+    { "my", "myRegionId", "myRegionProbability" });
+  EXPECT_STREQ(segmentation->GetOutput()->GetPointData()->GetScalars()->GetName(), "myRegionId");
+  expect(tensor, { "fEdgeEnhanced", "DiffusionAxes" }, { "my", "myDiffusionAxes" });
+}
+
+/// The data are replaced on purpose only if ResultArrayName is their name.
+TEST(OutputArrays, OtherResultsThatReplaceTheDataAreAWarning)
+{
+  const std::string sentence = "results replace arrays of the input: ";
+  const auto plane = Grid(8, 8);
+  AddPointArray(plane, "Edges", 1, [](vtkIdType i, int) { return i % 8 < 4 ? 0.0 : 1.0; });
+  plane->GetPointData()->SetActiveScalars("Edges");
+  vtkNew<vtkMumfordShahFilter> shah;
+  shah->SetInputData(plane);
+  Messages ofEdges(shah);
+  shah->Update();
+  ASSERT_EQ(ofEdges.Warnings.size(), 1u);
+  EXPECT_NE(ofEdges.Warnings[0].find(sentence + "\"Edges\";"), std::string::npos)
+    << ofEdges.Warnings[0];
+  shah->SetResultArrayName("Edges"); // the result replaces the data, and the edges have a prefix
+  shah->Update();
+  EXPECT_EQ(ofEdges.Warnings.size(), 1u);
+  EXPECT_EQ(NewNames(shah, plane), std::set<std::string>{ "EdgesEdges" });
+
+  vtkNew<vtkSurfaceSegmentationFilter> first, second;
+  first->SetInputData(plane);
+  second->SetInputConnection(first->GetOutputPort());
+  Messages ofRegions(second);
+  second->Update();
+  ASSERT_EQ(ofRegions.Warnings.size(), 1u);
+  EXPECT_NE(ofRegions.Warnings[0].find(sentence + "\"RegionId\", \"RegionProbability\";"),
+    std::string::npos)
+    << ofRegions.Warnings[0];
+  second->SetResultArrayName("again");
+  second->Update();
+  EXPECT_EQ(ofRegions.Warnings.size(), 1u);
+  EXPECT_NE(Result(second, "RegionId"), nullptr);
+  EXPECT_NE(Result(second, "againRegionId"), nullptr);
 }
