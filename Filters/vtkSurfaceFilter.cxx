@@ -331,8 +331,6 @@ void vtkSurfaceFilter::ShareReported()
 void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "MergeCoincidentPoints: " << (this->MergeCoincidentPoints ? "On" : "Off") << "\n";
-  os << indent << "MergeTolerance: " << this->MergeTolerance << "\n";
   os << indent << "SeamTolerance: " << this->SeamTolerance << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";

@@ -7,6 +7,7 @@
 #include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
+#include "Run/ConvertValue.h"
 #include "Run/SegmentationSettings.h"
 
 #include "vtkCellData.h"
@@ -31,7 +32,9 @@ vtkStandardNewMacro(vtkSurfaceSegmentationFilter);
 namespace
 {
 
-constexpr const char* ProbabilityName = "RegionProbability";
+/// Of means with a wrong region or component that one message lists.
+constexpr std::size_t LargestNumberOfPlaces = 10;
+
 constexpr double NotSet = std::numeric_limits<double>::quiet_NaN();
 
 double FindMean(const std::map<std::pair<int, int>, double>& means, int region, int component)
@@ -102,7 +105,7 @@ void vtkSurfaceSegmentationFilter::RemoveAllMeans()
 
 void vtkSurfaceSegmentationFilter::AddMean(double region, double component, double value)
 {
-  this->SetMean(static_cast<int>(region), static_cast<int>(component), value);
+  this->SetMean(ConvertValue<int>(region), ConvertValue<int>(component), value);
 }
 
 double vtkSurfaceSegmentationFilter::GetEffectiveMean(int region, int component)
@@ -120,21 +123,32 @@ std::unique_ptr<RunSettings> vtkSurfaceSegmentationFilter::MakeSettings() const
   settings->AutomaticMeans = this->AutomaticMeans;
   settings->StopTolerance = this->StopTolerance;
   settings->ResultOnCells = this->ResultOnCells;
-  int components = 0;
-  int regions = 0;
-  for (const auto& [place, value] : this->Means)
+  for (const auto& [place, value] : this->Means) // in the order of the settings
   {
-    regions = std::max(regions, place.first);
-    components = std::max(components, place.second + 1);
-  }
-  for (int region = 1; region <= regions; ++region)
-  {
-    for (int component = 0; component < components; ++component)
-    {
-      settings->Means.push_back(FindMean(this->Means, region, component));
-    }
+    settings->Means.push_back(value);
   }
   return settings;
+}
+
+/// The settings check the number of means. If it is right, each region and component has one.
+void vtkSurfaceSegmentationFilter::CheckPlacesOfMeans(int components, Problems& problems) const
+{
+  const std::string regions = "1 to NumberOfRegions " + std::to_string(this->NumberOfRegions);
+  const std::string columns =
+    "0 to " + std::to_string(components - 1) + ", the last component of InputArray";
+  const std::size_t limit = problems.size() + LargestNumberOfPlaces;
+  for (const auto& [place, value] : this->Means)
+  {
+    if (problems.size() >= limit)
+    {
+      return;
+    }
+    const auto [region, component] = place;
+    Require(region >= 1 && region <= this->NumberOfRegions, "the region of a Mean", region,
+      regions.c_str(), problems);
+    Require(component >= 0 && component < components, "the component of a Mean", component,
+      columns.c_str(), problems);
+  }
 }
 
 bool vtkSurfaceSegmentationFilter::FindFields(
@@ -152,6 +166,10 @@ bool vtkSurfaceSegmentationFilter::FindFields(
   fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
   fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
   fields.Seeds = inputs.Find(6, "SeedArray", 1, fields.SeedsOnCells);
+  if (fields.Data && !fields.DataAreTerms && !this->AutomaticMeans)
+  {
+    this->CheckPlacesOfMeans(NumberOfDataComponents(fields.Data), problems);
+  }
   return fields.Data != nullptr;
 }
 
@@ -176,18 +194,19 @@ void vtkSurfaceSegmentationFilter::WriteResult(
       fields, attributes);
   }
   const bool single = type == VTK_FLOAT || this->OutputPrecision == OUTPUT_PRECISION_SINGLE;
-  this->AddResult(WriteRows(ProbabilityName,
+  this->AddResult(WriteRows(this->FindOtherName("RegionProbability"),
                     onCells ? block.Cells->Transfer.ToCells(u) : StateOfPoints(surface, u), single),
     fields, attributes);
   const vtkIdType count = onCells ? output->GetNumberOfCells() : output->GetNumberOfPoints();
-  const auto ids = NewArray<vtkIntArray>("RegionId", 1, count);
+  const std::string idName = this->FindOtherName("RegionId");
+  const auto ids = NewArray<vtkIntArray>(idName, 1, count);
   for (vtkIdType i = 0; i < count; ++i)
   {
     const Index row = onCells ? static_cast<Index>(i) : surface.VertexOf(static_cast<Index>(i));
     ids->SetValue(i, row >= 0 ? labels[static_cast<std::size_t>(row)] : 0);
   }
   this->AddResult(ids, fields, attributes);
-  attributes->SetActiveScalars("RegionId");
+  attributes->SetActiveScalars(idName.c_str());
 }
 
 /// The rows of all blocks, one after the other.
@@ -210,12 +229,11 @@ void vtkSurfaceSegmentationFilter::WriteTable(vtkTable* table)
     const RegionResults& regions = *this->Regions[b];
     while (static_cast<Eigen::Index>(means.size()) < regions.DataMeans.cols())
     {
-      means.push_back(
-        addColumn(vtkSmartPointer<vtkDoubleArray>::New(), "Mean_" + std::to_string(means.size())));
-      for (vtkIdType row = 0; row < blocks->GetNumberOfTuples(); ++row)
-      {
-        means.back()->InsertNextValue(NotSet);
-      }
+      // A table takes only columns that are as long as the others.
+      means.push_back(vtkSmartPointer<vtkDoubleArray>::New());
+      means.back()->SetNumberOfTuples(blocks->GetNumberOfTuples());
+      means.back()->Fill(NotSet);
+      addColumn(means.back(), "Mean_" + std::to_string(means.size() - 1));
     }
     for (Eigen::Index k = 0; k < regions.Areas.size(); ++k)
     {
@@ -310,6 +328,11 @@ void vtkSurfaceSegmentationFilter::VisitReported(const std::function<void(double
 void vtkSurfaceSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  for (const auto& [place, value] : this->Means)
+  {
+    os << indent << "Mean of region " << place.first << ", component " << place.second << ": "
+       << value << "\n";
+  }
   os << indent << "EffectiveFidelityWeight: " << this->EffectiveFidelityWeight << "\n";
   os << indent << "Gap: " << this->Gap << "\n";
   os << indent << "LabelGap: " << this->LabelGap << "\n";

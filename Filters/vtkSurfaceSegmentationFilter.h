@@ -56,7 +56,8 @@
  *
  * **Output.** Port 0: the input with the point arrays `RegionId` (int, 1 to K, 0 at points of no
  * participating triangle; active), `RegionProbability` (u, K components) and, unless data terms are
- * given, `<name>Segmented` (c of the region; ResultArrayName names this array). Port 1: a table
+ * given, `<name>Segmented` (c of the region). ResultArrayName, if it is not empty, is the name of
+ * the last one and the prefix of the others. Port 1: a table
  * with a row per region: `Block`, `Region`, `Area`, `BoundaryLength`, `Components` (the number of
  * connected ones), and `Mean_0` ... of the data. Port 2: the boundaries as polylines that cut
  * triangles, level lines of u, with the cell arrays `Regions` (the two labels), `Length` and
@@ -147,8 +148,8 @@ public:
   ///@{
   /**
    * The mean of a region, in array units: of region 1 ... NumberOfRegions, component 0, 1, ... of
-   * the data. With AutomaticMeans off all of them have to be set, or none. GetMean() gives NaN for
-   * one that is not set.
+   * the data. With AutomaticMeans off all of them have to be set, and no others, or none at all.
+   * GetMean() gives NaN for one that is not set.
    */
   void SetMean(int region, int component, double value);
   double GetMean(int region, int component);
@@ -214,6 +215,7 @@ private:
   vtkSurfaceSegmentationFilter(const vtkSurfaceSegmentationFilter&) = delete;
   void operator=(const vtkSurfaceSegmentationFilter&) = delete;
 
+  void CheckPlacesOfMeans(int components, Problems& problems) const;
   vtkSmartPointer<vtkPolyData> MakeBoundaries() const;
 
   std::map<std::pair<int, int>, double> Means; ///< by region and component

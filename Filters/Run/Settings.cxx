@@ -183,6 +183,15 @@ public:
   {
     this->Text << this->Indent << info.Name << ": " << value << "\n";
   }
+  void Numbers(const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
+  {
+    this->Text << this->Indent << info.Name << ":" << (values.empty() ? " none" : "");
+    for (const double value : values)
+    {
+      this->Text << ' ' << value;
+    }
+    this->Text << "\n";
+  }
   void Switch(const SettingInfo& info, bool& value) override
   {
     this->Text << this->Indent << info.Name << ": " << (value ? "On" : "Off") << "\n";

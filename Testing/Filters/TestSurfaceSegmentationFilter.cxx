@@ -403,9 +403,83 @@ TEST(SegmentationFilter, ErrorsNameThePropertyItsValueAndTheAllowedOnes)
     [](Filter* f)
     {
       f->AutomaticMeansOff();
+      f->SetMean(1, 0, std::nan(""));
       f->SetMean(2, 0, 1.0);
     });
   expect("SeedArray \"half\" is 0.5 at point 0", [](Filter* f) { SetInputArray(f, 6, "half"); });
   expect("SeedArray has the label 5; allowed: 0 to NumberOfRegions 2",
     [](Filter* f) { SetInputArray(f, 6, "five"); });
+}
+
+TEST(SegmentationFilter, MeansOfAnyOtherRegionOrComponentAreAnError)
+{
+  const std::pair<std::array<int, 2>, std::string> cases[] = {
+    { { 0, 0 }, "the region of a Mean is 0; allowed: 1 to NumberOfRegions 2" },
+    { { -3, 0 }, "the region of a Mean is -3; allowed: 1 to" },
+    { { 3, 0 }, "the region of a Mean is 3; allowed: 1 to" },
+    { { 1, -1 }, "the component of a Mean is -1; allowed: 0 to 0" },
+    { { 1, 1 }, "the component of a Mean is 1; allowed: 0 to 0" },
+    { { 20000000, 0 }, "the region of a Mean is 20000000; allowed: 1 to" },
+    { { 1, 2000000000 }, "the component of a Mean is 2000000000; allowed: 0 to 0" },
+  };
+  for (const auto& [place, text] : cases)
+  {
+    auto filter = MakeFilter(SphereWithCap(3));
+    filter->AutomaticMeansOff();
+    filter->SetMean(place[0], place[1], 2.0); // neither clamped nor refused
+    EXPECT_EQ(filter->GetMean(place[0], place[1]), 2.0);
+    const std::string error = ErrorOf(filter);
+    EXPECT_NE(error.find(text), std::string::npos) << error;
+    filter->AutomaticMeansOn(); // the means have no effect
+    EXPECT_EQ(ErrorOf(filter), "");
+  }
+}
+
+/// A table of all regions and components would take 16 GB.
+TEST(SegmentationFilter, PropertiesTakeTheMemoryOfTheMeansThatAreSet)
+{
+  auto filter = MakeFilter(SphereWithCap(3));
+  filter->SetMean(20000000, 0, 1.0);
+  filter->SetMean(1, 99, 1.0);
+  filter->UpdateInformation();
+  EXPECT_STREQ(filter->GetUnitsAsString(), "Natural");
+}
+
+TEST(SegmentationFilter, PrintSelfNamesMeansAndEachPropertyOnce)
+{
+  auto filter = MakeFilter(SphereWithCap(3));
+  filter->SetMean(2, 0, -7.5);
+  std::ostringstream text;
+  filter->Print(text);
+  EXPECT_NE(text.str().find("Mean of region 2, component 0: -7.5"), std::string::npos);
+  for (const char* const name : { "MergeCoincidentPoints: ", "MergeTolerance: " })
+  {
+    const std::size_t first = text.str().find(name);
+    ASSERT_NE(first, std::string::npos) << name;
+    EXPECT_EQ(text.str().find(name, first + 1), std::string::npos) << name;
+  }
+}
+
+TEST(SegmentationFilter, BlocksWithOtherNumbersOfComponentsHaveAllColumns)
+{
+  auto scalar = SphereWithCap(3);
+  auto vector = SphereWithCap(3);
+  AddPointArray(vector, "f", 3,
+    [&](vtkIdType i, int k) { return (Height(vector->GetPoint(i)) > 0.5 ? 2.0 : -1.0) + k; });
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, scalar);
+  blocks->SetBlock(1, vector);
+  auto filter = MakeFilter(blocks);
+  SetInputArray(filter, 0, "f");
+  EXPECT_EQ(ErrorOf(filter), "");
+  vtkTable* const table = vtkTable::SafeDownCast(filter->GetOutputDataObject(1));
+  EXPECT_EQ(table->GetNumberOfRows(), 4);
+  for (int k = 0; k < 3; ++k)
+  {
+    const std::string name = "Mean_" + std::to_string(k);
+    ASSERT_TRUE(table->GetColumnByName(name.c_str())) << name;
+    ASSERT_EQ(table->GetColumnByName(name.c_str())->GetNumberOfTuples(), 4);
+    EXPECT_EQ(std::isnan(TableAt(filter, 1, name.c_str())), k > 0);
+    EXPECT_NEAR(TableAt(filter, 3, name.c_str()), 2.0 + k, 0.3);
+  }
 }
