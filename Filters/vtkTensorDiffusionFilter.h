@@ -49,9 +49,9 @@
  * **Output port 0**: the result, named as the data with the suffix `Beltrami`, `Coherent` or
  * `EdgeEnhanced`, and the cell array `DiffusionAxes` on request. ResultArrayName, if it is not
  * empty, is the name of the result and the prefix of `DiffusionAxes`. **Output port 1**: the
- * history. Its energy is that of Beltrami above, in (units of the array)^2. The other models have no
- * energy; the column has the variance 1/2 int |u - mean|^2, which without fidelity never rises (a
- * Lyapunov function, Weickert 1998).
+ * history. Its energy is that of Beltrami above, in (units of the array)^2. The other models have
+ * no energy; the column has the variance 1/2 int |u - mean|^2, which without fidelity never rises
+ * (a Lyapunov function, Weickert 1998).
  *
  * Surfaces in pieces are solved by all processes together, except by CoherenceEnhancing, whose
  * structure tensor needs the whole surface, and with DiffusionAxes: the pieces are then gathered
