@@ -59,7 +59,10 @@ class Surfaces(FileTest):
     def test_off_and_obj_keep_everything_but_coordinates(self):
         for kind, text in (("off", samples.off_text()), ("obj", samples.obj_text())):
             _, saved = self.check(self.path(f"a.{kind}", text), kind, 0)
-            before, after = text.splitlines(), saved.read_text().splitlines()
+            # The normal of all corners belongs to no vertex: see Normals in TestFormats.py.
+            before = text.replace("vn 0 0 1\n", "").replace("/1/1", "/1").splitlines()
+            after = saved.read_text().splitlines()
+            self.assertEqual(len(before), len(after))
             self.assertEqual(before[0], after[0])
             self.assertEqual(before[-len(FACES):], after[-len(FACES):])
 

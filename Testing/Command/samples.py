@@ -130,6 +130,13 @@ def write_label(path, vertices, values):
     return path
 
 
+def write_annot(path, labels, names):
+    """A FreeSurfer atlas; labels (n,) are numbers of names."""
+    colours = np.array([[10 * i, 20, 30, 0, 0] for i in range(len(names))])
+    freesurfer.write_annot(str(path), np.asarray(labels), colours, names, fill_ctab=True)
+    return path
+
+
 def off_text(points=POINTS, faces=FACES):
     lines = ["OFF # a comment", f"{len(points)} {len(faces)} 0"]
     lines += [f"{x!r} {y!r} {z!r}" for x, y, z in points.tolist()]

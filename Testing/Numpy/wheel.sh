@@ -47,7 +47,7 @@ environment/bin/python -c "import surfacediffusion as s; print('installed', s.__
 environment/bin/pip install --quiet tqdm mypy
 # For the tests of files and of PyVista, whose VTK is that of PyPI. They are optional.
 environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist ||
-  echo "no nibabel, meshio or PyVista: their tests are skipped"
+  echo "no nibabel or PyVista: their tests are skipped"
 
 rm -rf system
 "${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages system

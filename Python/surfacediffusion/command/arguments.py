@@ -17,9 +17,10 @@ PROGRAM = "surfacediffusion"
 FILES = """
 SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
 DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left and --right
-instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .label), NumPy (.npy), or a PLY or VTK file with
-data at its vertices; with --faces, where there is that option, at the faces. Files are recognised by their content. OUTPUT has the format and the metadata
-of DATA. NaN means missing: the value is not used, and the output has a value there.
+instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), or a PLY or VTK
+file with data at its vertices; with --faces, where there is that option, at the faces. Files are
+recognised by their content, and may be compressed by gzip, or pipes. OUTPUT has the format and the
+metadata of DATA. NaN means missing: the value is not used, and the output has a value there.
 """
 
 
@@ -46,7 +47,7 @@ def make_parser(hemispheres=False):
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
-    for add in (_smooth, _denoise, _denoise_mesh, _inpaint, _enhance, _edges, _segment, _texture,
+    for add in (_smooth, _metric_smoothing, _denoise, _denoise_mesh, _inpaint, _enhance, _edges, _segment, _texture,
                 _directions, _normals, _fwhm, _info):
         add(_Commands(commands, hemispheres))
     return parser
@@ -112,7 +113,10 @@ class _Commands:
     def choices(parser):
         parser.add_argument("--roi", "-roi", metavar="FILE",
                             help="work inside this region alone, where its first column is above "
-                                 "0: nothing flows across its boundary; outside, OUTPUT is 0")
+                                 "0: nothing flows across its boundary; outside, OUTPUT is 0. "
+                                 "FILE may be a FreeSurfer .label, or FILE:LABEL for one label of an "
+                                 "atlas, by its name or number: lh.aparc.annot:precentral (also of "
+                                 ".label.gii and .dlabel.nii)")
         parser.add_argument("--fix-zeros", "-fix-zeros", action="store_true",
                             help="zeros mean missing, as NaN does")
         parser.add_argument("--column", "-column", action="append", metavar="N|NAME", default=[],
@@ -171,28 +175,54 @@ def _smooth(commands):
             "Gaussian on the surface whose full width at half maximum is FWHM; the integral of "
             "the data over the surface is kept. The order of the arguments is that of "
             "wb_command -metric-smoothing, whose kernel is a standard deviation unless -fwhm is "
-            "given (here: --sigma).")
+            "given: see metric-smoothing, or --sigma.")
     parser = commands.add(
         "smooth", tasks.smooth, text,
         [f"{PROGRAM} smooth lh.midthickness.surf.gii lh.thickness.shape.gii 10 lh.smooth.shape.gii",
          f"{PROGRAM} smooth bold.dtseries.nii 4 smooth.dtseries.nii --left L.surf.gii "
          "--right R.surf.gii"])
     commands.data(parser)
-    parser.add_argument("fwhm", metavar="FWHM", type=_positive,
+    parser.add_argument("width", metavar="FWHM", type=_positive,
                         help="the width in the unit of the surface's coordinates (mm)")
     parser.add_argument("output", metavar="OUTPUT", help="the result")
     commands.choices(parser)
     commands.faces(parser)
-    parser.add_argument("--areas", "-corrected-areas", metavar="FILE",
-                        help="the areas of the vertices in the first column, in place of those of "
-                             "SURFACE: for a surface that is the average of many")
+    _areas_and_steps(parser)
     width = parser.add_mutually_exclusive_group()
     width.add_argument("--sigma", action="store_true",
                        help="FWHM is given as a standard deviation: FWHM = 2.3548 sigma")
     width.add_argument("-fwhm", dest="is_fwhm", action="store_true", help=argparse.SUPPRESS)
+
+
+def _areas_and_steps(parser):
+    parser.add_argument("--areas", "-corrected-areas", metavar="FILE",
+                        help="the areas of the vertices in the first column, in place of those of "
+                             "SURFACE: for a surface that is the average of many")
     parser.add_argument("--steps", metavar="N", type=_count, default=3,
                         help="number of time steps (default 3, which is within about 0.1 %% of "
                              "the solution at 10 mm on a cortex)")
+
+
+def _metric_smoothing(commands):
+    text = ("Smooth data with the arguments of wb_command -metric-smoothing, and with their meaning: "
+            "KERNEL is the standard deviation (sigma) of a Gaussian, or its full width at half maximum "
+            "with -fwhm, and zeros are values unless -fix-zeros is given. The result is that of `smooth`.")
+    parser = commands.add(
+        "metric-smoothing", tasks.smooth, text,
+        [f"{PROGRAM} metric-smoothing L.midthickness.surf.gii L.thickness.shape.gii 4 "
+         "L.smooth.shape.gii -roi L.roi.shape.gii"])
+    commands.data(parser)
+    parser.add_argument("width", metavar="KERNEL", type=_positive,
+                        help="the standard deviation in the unit of the surface's coordinates (mm)")
+    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    parser.add_argument("-fwhm", dest="sigma", action="store_false",
+                        help="KERNEL is the full width at half maximum: sigma = FWHM / 2.3548")
+    commands.choices(parser)
+    parser.set_defaults(faces=False)
+    _areas_and_steps(parser)
+    parser.add_argument("-method", choices=("GEO_GAUSS_AREA",), default="GEO_GAUSS_AREA",
+                        help="the kernel of Workbench that this one is like, its default; the others "
+                             "weigh vertices without their areas")
 
 
 def _denoise(commands):
@@ -219,7 +249,8 @@ def _denoise(commands):
 
 MESH = """
 SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
-OUTPUT has the format of SURFACE, its faces and its data.
+OUTPUT has the format of SURFACE, its faces and its data. Normals in the file are computed again, or
+left out where they belong to corners of faces.
 """
 
 

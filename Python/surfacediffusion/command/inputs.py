@@ -3,11 +3,14 @@
 """The surfaces, regions and columns that a command line names, checked against each other."""
 from __future__ import annotations
 
+import os
+import re
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
+from ..files.data import NO_VERTICES
 
 
 class ArgumentProblem(ValueError):
@@ -101,17 +104,49 @@ def make_patches(surfaces, data: Data, columns, arguments):
 
 
 def read_marks(path, surfaces, on_faces=False):
-    """For each surface, a bool per vertex or face: whether the first column is above 0."""
+    """For each surface, a bool per vertex or face: whether the first column is above 0, or has the
+    label that is named after a colon, as in lh.aparc.annot:precentral."""
+    path, label = _split_label(path)
     data = read_data(path, on_faces)
+    if data.kind == "annot" and label is None:
+        raise FileError(f"{path}: an atlas without a label; allowed: {path}:LABEL with "
+                        f"{_labels_text(data)}")
+    number = None if label is None else _find_label(data, label)
     for part in data.parts:
         surface = _surface_for(part, surfaces, data)
         if data.kind == "label":
             inside = np.ones((len(part.values), 1), dtype=bool)
+        elif number is not None:
+            inside = part.values[:, :1] == number
         else:
             with np.errstate(invalid="ignore"):
                 inside = part.values[:, :1] > 0
         marks, _ = _on_surface(part, inside, surface, data)
         yield id(surface), marks[:, 0].astype(bool)
+
+
+def _split_label(path):
+    """The file and the label of FILE:LABEL; None if no label is named."""
+    name, colon, label = path.rpartition(":")
+    return (name, label) if colon and not os.path.exists(path) and os.path.exists(name) else (path, None)
+
+
+def _find_label(data, label):
+    """The number of a label that is given by its name or number."""
+    if not data.labels:
+        raise FileError(f"{data.path}: values, which have no label {label!r}; allowed: an atlas (.annot, "
+                        ".label.gii, .dlabel.nii)")
+    for number, name in data.label_names.items():
+        if label == name:
+            return number
+    if re.fullmatch(r"-?\d+", label) and int(label) in data.label_names:
+        return int(label)
+    raise FileError(f"{data.path}: no label {label!r}; allowed: {_labels_text(data)}")
+
+
+def _labels_text(data):
+    shown = [f"{number} {name}" for number, name in data.label_names.items()]
+    return ", ".join(shown[:40]) + (", ..." if len(shown) > 40 else "")
 
 
 def read_areas(path, surfaces):
@@ -146,6 +181,9 @@ def _surface_for(part, surfaces, data):
         if data.kind != "cifti":
             raise ArgumentProblem(f"--left and --right are for CIFTI files; {data.path} has one "
                                   "surface: give SURFACE")
+        if part.structure not in ("CortexLeft", "CortexRight"):
+            raise FileError(f"{data.path}: data at vertices of {part.structure}; allowed: CortexLeft, "
+                            "CortexRight")
         if part.structure not in surfaces:
             side = part.structure.replace("Cortex", "").lower()
             raise ArgumentProblem(f"--{side} is missing: {data.path} has data of {part.structure}")
@@ -165,6 +203,8 @@ def _on_surface(part, values, surface, data):
     """Values (n, k) with 0 where the file has none, and a bool per vertex or face: whether it has
     none."""
     path, what = data.path, "faces" if data.on_faces else "points"
+    if surface.kind == "stl" and not data.on_faces:
+        raise FileError(f"{path} on {surface.path}: {NO_VERTICES}")
     count = len(surface.faces if data.on_faces else surface.points)
     if part.vertices is None or part.size is not None:
         size = len(part.values) if part.size is None else part.size

@@ -9,7 +9,8 @@ import math
 import numpy as np
 
 from ..files import FileError, new_data, read_data, read_surface
-from ..files.content import check_output_folder, check_output_name, kind_of_name
+from ..files.content import (
+    check_output_folder, check_output_name, kind_of_name, read_content)
 from . import inputs
 from .inputs import choose_columns, make_patches, read_surfaces
 from .report import number
@@ -20,14 +21,21 @@ SIGMA_TO_FWHM = math.sqrt(8 * math.log(2))
 def smooth(arguments, report):
     from .. import heat
 
-    width = arguments.fwhm * (SIGMA_TO_FWHM if arguments.sigma else 1)
+    width = arguments.width * (SIGMA_TO_FWHM if arguments.sigma else 1)
     report.facts.update(fwhm=width, sigma=width / SIGMA_TO_FWHM, steps=arguments.steps)
 
     def compute(surface, values, mask, progress):
         return heat(surface, values, on_faces=arguments.faces, mask=mask, mask_mode="Exclude",
                     fwhm=width, number_of_time_steps=arguments.steps, progress=progress)
 
-    _change_data(arguments, report, "Smoothing", compute, _groups_of_missing)
+    _change_data(arguments, report, "Smoothing", compute, _groups_of_missing,
+                 say=lambda surface: _width_text(width, surface))
+
+
+def _width_text(fwhm, surface):
+    """The formats of brains are in millimetres, other meshes in any unit."""
+    unit = " mm" if surface.kind in ("gifti", "freesurfer") else ""
+    return f"FWHM {fwhm:.3g}{unit} (sigma {fwhm / SIGMA_TO_FWHM:.3g})"
 
 
 def denoise(arguments, report):
@@ -69,8 +77,7 @@ def denoise_mesh(arguments, report):
     with report.timed("compute"), report.progress("Denoising") as progress:
         result = remove_noise(Surface(surface.points, surface.faces), full_output=True,
                               progress=progress, **options)
-    with report.timed("write"):
-        surface.save(arguments.output, result.points)
+    _write_points(arguments, report, surface, result.points)
     for name in ("noise_level", "mean_displacement", "maximum_displacement", "volume_before",
                  "volume_after", "mean_edge_length"):
         report.facts[name] = number(getattr(result, name))
@@ -78,7 +85,7 @@ def denoise_mesh(arguments, report):
     _say_written(arguments, report,
                  f"{result.surface_type}, noise {result.noise_level:.4g}, points moved by "
                  f"{result.mean_displacement:.4g} on average, at most "
-                 f"{result.maximum_displacement:.4g}")
+                 f"{result.maximum_displacement:.4g}{_normals_text(report)}")
 
 
 def inpaint(arguments, report):
@@ -260,15 +267,14 @@ def normals(arguments, report):
     if not arguments.move:
         _write_new(arguments, report, target, np.asarray(result.values, dtype=np.float32))
         return
-    with report.timed("write"):
-        surface.save(arguments.output, result.points)
+    _write_points(arguments, report, surface, result.points)
     report.facts.update(mean_displacement=number(result.mean_displacement),
                         maximum_displacement=number(result.maximum_displacement),
                         volume_before=number(result.volume_before),
                         volume_after=number(result.volume_after))
     _say_written(arguments, report,
                  f"points moved by {result.mean_displacement:.4g} on average, at most "
-                 f"{result.maximum_displacement:.4g}")
+                 f"{result.maximum_displacement:.4g}{_normals_text(report)}")
 
 
 def fwhm(arguments, report):
@@ -302,12 +308,13 @@ def info(arguments, report):
     for path in arguments.files:
         entry = {"file": path}
         surface_problem = data_problem = None
+        content = read_content(path)
         try:
-            entry.update(_surface_info(read_surface(path)))
+            entry.update(_surface_info(read_surface(content)))
         except FileError as error:
             surface_problem = error
         try:
-            entry.update(_data_info(read_data(path)))
+            entry.update(_data_info(read_data(content)))
         except FileError as error:
             data_problem = error
         if surface_problem and data_problem:
@@ -374,14 +381,14 @@ def _read(arguments, missing=None):
     return surfaces, data, columns, patches
 
 
-def _change_data(arguments, report, title, compute, groups, missing=None):
+def _change_data(arguments, report, title, compute, groups, missing=None, say=None):
     """Applies compute(surface, values, mask, progress) to the groups of columns of each surface
-    and writes the result in the format of DATA."""
+    and writes the result in the format of DATA. say(surface): a part of the summary."""
     check_output_folder(arguments.output)
     with report.timed("read"):
         surfaces, data, columns, patches = _read(arguments, missing)
         areas = inputs.read_areas(getattr(arguments, "areas", None), surfaces)
-        check_output_name(arguments.output, data.kind)
+        data.check_name(arguments.output)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
     results = []
@@ -405,7 +412,10 @@ def _change_data(arguments, report, title, compute, groups, missing=None):
     with report.timed("write"):
         data.save(arguments.output, results, columns)
     report.facts.update(data=data.path, output=arguments.output)
-    _say_written(arguments, report, f"{len(columns)} column{'s' * (len(columns) > 1)}")
+    what = f"{len(columns)} column{'s' * (len(columns) > 1)}"
+    if say is not None:
+        what += ", " + say(patches[0].surface)
+    _say_written(arguments, report, what)
 
 
 def _make_surface(patch, areas):
@@ -488,6 +498,17 @@ def _read_surface_for_output(arguments, report):
         surface = read_surface(arguments.surface)
     report.facts.update(surface=arguments.surface, output=arguments.output)
     return surface
+
+
+def _write_points(arguments, report, surface, points):
+    with report.timed("write"):
+        report.facts["normals"] = surface.save(arguments.output, points) or None
+
+
+def _normals_text(report):
+    """Normals of the old points would let viewers draw the old surface."""
+    done = report.facts["normals"]
+    return f", normals {done}" if done else ""
 
 
 def _write_new(arguments, report, target, values):

@@ -6,6 +6,8 @@ from __future__ import annotations
 import contextlib
 import gzip
 import importlib
+import logging
+import math
 import os
 import re
 import struct
@@ -14,17 +16,21 @@ import zlib
 from dataclasses import dataclass
 
 NAMES = {
-    "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI (a volume)", "mgh": "FreeSurfer mgh",
+    "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI", "mgh": "FreeSurfer mgh",
     "freesurfer": "FreeSurfer surface", "curv": "FreeSurfer curv", "label": "FreeSurfer label",
-    "off": "OFF", "obj": "OBJ", "ply": "PLY", "stl": "STL", "vtk": "VTK legacy", "vtp": "VTK XML",
+    "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY", "stl": "STL", "vtk": "VTK legacy", "vtp": "VTK XML",
     "npy": "NumPy npy",
 }
 
 # The ends of names by which an output that is named like another format is noticed.
 EXTENSIONS = {
     ".gii": "gifti", ".mgh": "mgh", ".mgz": "mgh", ".label": "label", ".off": "off", ".obj": "obj",
-    ".ply": "ply", ".stl": "stl", ".vtk": "vtk", ".vtp": "vtp", ".npy": "npy", ".nii": "cifti",
+    ".ply": "ply", ".stl": "stl", ".vtk": "vtk", ".vtp": "vtp", ".npy": "npy", ".nii": "nifti",
+    ".annot": "annot",
 }
+
+# CIFTI names say what the rows are: .dscalar.nii, .dtseries.nii, ...
+_CIFTI_NAME = re.compile(r"\.([dp][a-z]+)\.nii$")
 
 
 class FileError(ValueError):
@@ -63,46 +69,90 @@ def read_content(path) -> Content:
     kind = find_kind(data)
     if kind is None:
         raise FileError(f"{path}: a file of unknown kind that starts with {data[:12]!r}; allowed: "
-                        + ", ".join(name for kind, name in NAMES.items() if kind != "nifti"))
+                        + ", ".join(NAMES.values()))
     return Content(path, data, kind)
+
+
+@contextlib.contextmanager
+def on_disk(content):
+    """The path of a temporary file with these bytes, for libraries that read nothing else. The file
+    itself is opened once, in read_content(), because it may be compressed or a pipe."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "content")
+        with open(path, "wb") as file:
+            file.write(content.bytes)
+        yield path
 
 
 def find_kind(data: bytes) -> str | None:
     """The kind of a file with this content, a key of NAMES; None if unknown."""
-    head = data[:4096]
     starts = {
         b"\xff\xff\xfe": "freesurfer", b"\xff\xff\xfd": "freesurfer", b"\xff\xff\xff": "curv",
         b"#!ascii label": "label", b"# vtk DataFile": "vtk", b"\x93NUMPY": "npy",
     }
     for start, kind in starts.items():
-        if head.startswith(start):
+        if data.startswith(start):
             return kind
-    if re.match(rb"ply\s", head):
+    if re.match(rb"ply\s", data):
         return "ply"
-    if re.match(rb"\s*(<\?xml|<!DOCTYPE|<GIFTI|<VTKFile)", head):
-        return "gifti" if b"<GIFTI" in head else "vtp" if b"<VTKFile" in head else None
-    if re.match(rb"\s*(#[^\n]*\n\s*)*(ST)?C?N?OFF\b", head):
-        return "off"
-    return _find_binary_kind(data) or _find_text_kind(head)
+    return _find_xml_kind(data) or _find_binary_kind(data) or _find_text_kind(data)
+
+
+def _find_xml_kind(data):
+    """By the name of the root element. Before it may be a byte-order mark, declarations and comments
+    of any length."""
+    prolog = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^<>]*>)?", re.DOTALL)
+    start = 0
+    while (end := prolog.match(data, start).end()) > start:
+        start = end
+    for name, kind in ((b"<GIFTI", "gifti"), (b"<VTKFile", "vtp")):
+        if data.startswith(name, start):
+            return kind
+    return None
 
 
 def _find_binary_kind(data):
-    if len(data) >= 4 and any(
-            struct.unpack_from(order + "i", data)[0] == 540 for order in "<>"):
-        return "cifti"
+    for order in "<>":
+        if len(data) >= 540 and struct.unpack_from(order + "i", data)[0] == 540:  # NIfTI-2
+            intent = struct.unpack_from(order + "i", data, 504)[0]
+            return "cifti" if 3000 <= intent < 3100 else "nifti"
     if len(data) >= 348 and data[344:347] in (b"n+1", b"ni1"):
         return "nifti"
     if len(data) >= 284 and struct.unpack_from(">i", data)[0] == 1:
         return "mgh"
-    if len(data) >= 84 and len(data) == 84 + 50 * struct.unpack_from("<I", data, 80)[0]:
+    if _is_binary_stl(data):
         return "stl"
+    if len(data) >= 16:  # one pair of numbers per vertex, then the tag of the table of colours
+        count = struct.unpack_from(">i", data)[0]
+        if 0 < count <= (len(data) - 8) // 8 and struct.unpack_from(">i", data, 4 + 8 * count)[0] == 1:
+            return "annot"
     return None
 
 
-def _find_text_kind(head):
-    if re.match(rb"\s*solid\b", head):
+def _is_binary_stl(data):
+    """Some programs write more bytes after the triangles than the format has."""
+    if len(data) < 84:
+        return False
+    count = struct.unpack_from("<I", data, 80)[0]
+    size = 84 + 50 * count
+    if len(data) == size:
+        return True
+    return b"\0" in data[:84] and 0 < count and size < len(data) and all(
+        math.isfinite(value) for value in struct.unpack_from("<12f", data, 84))
+
+
+def _find_text_kind(data):
+    head = data[:4096]
+    if b"\0" in head:
+        return None
+    start, comment = 0, re.compile(rb"\xef\xbb\xbf|\s+|#[^\r\n]*")
+    while found := comment.match(data, start):
+        start = found.end()
+    if re.compile(rb"(ST)?C?N?4?n?OFF(\d|\s)").match(data, start):
+        return "off"
+    if re.match(rb"(?:\xef\xbb\xbf)?\s*solid\b", head, re.IGNORECASE):
         return "stl"
-    if b"\0" not in head and re.search(rb"^v\s+[-+.\d]", head, re.MULTILINE):
+    if re.search(rb"(?:^|[\r\n])[ \t]*v[ \t]+[-+.\d]", data):
         return "obj"
     return None
 
@@ -123,7 +173,8 @@ def reading(content):
     """Turns any exception of a reader into one line. Readers raise exceptions of many kinds for
     damaged files, hence the broad clause."""
     try:
-        yield
+        with _silent_log("nibabel.global"):  # it reports headers that it mends, on standard error
+            yield
     except FileError:
         raise
     except Exception as error:
@@ -131,17 +182,36 @@ def reading(content):
         raise content.error(f"damaged {content.name} file: {reason[:200]}") from error
 
 
+@contextlib.contextmanager
+def _silent_log(name):
+    logger = logging.getLogger(name)
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+
+
 def kind_of_name(path) -> str | None:
     """The kind that the name of an output file announces; None if it announces none."""
     name = os.fspath(path).lower()
     if name.endswith(".gz"):
         name = name[:-3]
-    return EXTENSIONS.get(os.path.splitext(name)[1])
+    return "cifti" if _CIFTI_NAME.search(name) else EXTENSIONS.get(os.path.splitext(name)[1])
 
 
-def check_output_name(path, kind):
-    """An output is written in the format of the input, so its name must not say otherwise."""
+def check_output_name(path, kind, rows=""):
+    """An output is written in the format of the input, so its name must not say otherwise. rows: of
+    CIFTI, "dscalar" or "dtseries"."""
     announced = kind_of_name(path)
+    if kind == "cifti":
+        found = _CIFTI_NAME.search(os.fspath(path).lower())
+        if found and found[1] != rows:
+            raise FileError(f"{path}: named .{found[1]}.nii, but it is written as .{rows}.nii, the "
+                            "format of the input")
+        if announced == "nifti":
+            return
     if announced not in (None, kind):
         raise FileError(f"{path}: named as {NAMES[announced]}, but it is written as {NAMES[kind]}, "
                         "the format of the input")
@@ -154,8 +224,12 @@ def check_output_folder(path):
         raise FileError(f"{path}: cannot be written: there is no folder {folder}")
     if os.path.isdir(path):
         raise FileError(f"{path}: cannot be written: it is a folder")
-    if os.path.exists(path) and not os.path.isfile(path):  # a device or a pipe would be replaced
-        raise FileError(f"{path}: cannot be written: it is not a regular file")
+    if os.path.exists(path):
+        if not os.path.isfile(path):  # a device or a pipe would be replaced
+            raise FileError(f"{path}: cannot be written: it is not a regular file")
+        # A new file takes its place, which needs no permission of the old one.
+        if not os.access(path, os.W_OK) or not os.stat(path).st_mode & 0o222:
+            raise FileError(f"{path}: cannot be written: the file there is write-protected")
     if not os.access(folder, os.W_OK):
         raise FileError(f"{path}: cannot be written: no permission to write in {folder}")
 

@@ -3,22 +3,23 @@
 """Reads and writes data at the vertices or faces of surfaces: read_data(), new_data() and Data."""
 from __future__ import annotations
 
-import contextlib
 import io
-import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from . import freesurfer_data, gifti_data, meshio_files, vtk_files
-from .content import check_output_name, import_reader, kind_of_name, read_content, reading
+from . import freesurfer_data, gifti_data, ply, vtk_files
+from .content import Content, check_output_name, import_reader, kind_of_name, read_content, reading
 from .content import FileError, write_atomically
 
 ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
-           "FreeSurfer (curv, .mgh, .mgz, .label), PLY, VTK polydata, NumPy (.npy)")
-ON_FACES = ("gifti", "mgh", "npy", "vtk", "vtp")  # kinds that can have data at faces
+           "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK polydata, NumPy (.npy)")
+ON_FACES = ("gifti", "mgh", "nifti", "npy", "vtk", "vtp")  # kinds that can have data at faces
+
+NO_VERTICES = ("an STL file numbers no vertices, so that values at vertices belong to none; allowed: "
+               "values at faces, or a surface of another format")
 
 
 @dataclass
@@ -44,9 +45,11 @@ class Data:
     names   of the k columns; columns of one array of VTK have one name
     parts   one, or one per surface of a CIFTI file
     labels  the values are numbers of labels, which have no mean
+    label_names  {number: name} of the labels of the first column
     usual   the columns to work on if nobody chooses (all but normals and the like)
     extra   a remark about values that are carried over unchanged, or empty
     on_faces  the values are at the faces
+    rows    of CIFTI, "dscalar" or "dtseries", as its name should say
     """
 
     path: str
@@ -54,10 +57,16 @@ class Data:
     names: list[str]
     parts: list[Part]
     labels: bool = False
+    label_names: dict[int, str] = field(default_factory=dict)
     usual: Sequence[int] = ()
     extra: str = ""
     image: Any = None
     on_faces: bool = False
+    rows: str = ""
+
+    def check_name(self, path):
+        """Raises FileError if the name of an output announces another format."""
+        check_output_name(path, self.kind, self.rows)
 
     def save(self, path, values, columns=None):
         """Write other values in the same format, with the metadata of the file.
@@ -66,7 +75,7 @@ class Data:
         columns  the numbers of these columns; default: all. Files of meshes keep their other
                  columns, other files then hold these alone
         """
-        check_output_name(path, self.kind)
+        self.check_name(path)
         columns = list(range(len(self.names))) if columns is None else list(columns)
         for part, new in zip(self.parts, values):
             if np.shape(new) != (len(part.values), len(columns)):
@@ -76,11 +85,12 @@ class Data:
 
 
 def read_data(path, on_faces=False) -> Data:
-    """Read the data at vertices, or at faces, from a file of one of the formats in ALLOWED."""
-    content = read_content(path)
+    """Read the data at vertices, or at faces, from a file of one of the formats in ALLOWED, or from its
+    Content."""
+    content = path if isinstance(path, Content) else read_content(path)
     if on_faces and content.kind not in ON_FACES:
         raise content.error(f"a {content.name} file, which has no data at faces; allowed: GIFTI, "
-                            ".mgh, .mgz, .npy, VTK polydata")
+                            ".mgh, .mgz, .nii.gz, .npy, VTK polydata")
     if content.kind not in _READERS:
         raise content.error(f"a {content.name} file, which has no data at vertices; "
                             f"allowed: {ALLOWED}")
@@ -103,6 +113,8 @@ def new_data(surface, path, names) -> Data:
     """Data for columns that no file holds yet, zero at first, in the format that the name of the
     output announces; without an extension, FreeSurfer's curv for one column."""
     values = np.zeros((len(surface.points), len(names)), dtype=np.float32)
+    if surface.kind == "stl":
+        raise FileError(f"{surface.path}: {NO_VERTICES}")
     kind = kind_of_name(path)
     if kind is None and surface.kind == "freesurfer" and len(names) == 1:
         kind = "curv"
@@ -125,15 +137,19 @@ def new_data(surface, path, names) -> Data:
 # ---- GIFTI ---------------------------------------------------------------------------------------
 
 def _read_gifti(content):
-    image, columns, structure = gifti_data.read(content)
+    image, columns, vertices, structure = gifti_data.read(content)
     arrays = [gifti_data.column(image, column) for column in columns]
     lengths = sorted({len(array) for array in arrays})
     if len(lengths) > 1:
         raise content.error(f"arrays of {lengths[0]} and {lengths[-1]} values; allowed: one length")
+    if vertices is not None and lengths and lengths[0] != len(vertices):
+        raise content.error(f"{len(vertices)} numbers of vertices for {lengths[0]} values; allowed: one "
+                            "per value")
     names = [gifti_data.name(image, column) for column in columns]
     return Data(content.path, content.kind, names,
-                [Part(np.column_stack(arrays), structure=structure)] if arrays else [],
-                labels=gifti_data.has_labels(image), image=(image, columns))
+                [Part(np.column_stack(arrays), vertices, structure=structure)] if arrays else [],
+                labels=gifti_data.has_labels(image), label_names=gifti_data.label_names(image),
+                image=(image, columns))
 
 
 def _write_gifti(data, values, columns):
@@ -145,8 +161,7 @@ def _write_gifti(data, values, columns):
 
 def _read_cifti(content):
     cifti2 = import_reader("nibabel.cifti2", content)
-    with _silent_log("nibabel.global"):  # it reports headers that it mends, on standard error
-        image = cifti2.Cifti2Image.from_bytes(content.bytes)
+    image = cifti2.Cifti2Image.from_bytes(content.bytes)
     axes = [image.header.get_axis(i) for i in range(image.ndim)]
     if len(axes) != 2 or not isinstance(axes[1], cifti2.BrainModelAxis) or not isinstance(
             axes[0], (cifti2.ScalarAxis, cifti2.SeriesAxis, cifti2.LabelAxis)):
@@ -164,21 +179,12 @@ def _read_cifti(content):
         slices.append(slice(rows.start, rows.stop))
     extra = f"{volumes} voxels are copied unchanged" if volumes else ""
     series = isinstance(axes[0], cifti2.SeriesAxis)
+    labels = isinstance(axes[0], cifti2.LabelAxis)
     names = [str(i + 1) for i in range(len(axes[0]))] if series else [str(n) for n in axes[0].name]
-    return Data(content.path, content.kind, names, parts,
-                labels=isinstance(axes[0], cifti2.LabelAxis), extra=extra,
-                image=(image, values, slices))
-
-
-@contextlib.contextmanager
-def _silent_log(name):
-    logger = logging.getLogger(name)
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)
-    try:
-        yield
-    finally:
-        logger.setLevel(level)
+    label_names = {key: name for key, (name, _) in axes[0].label[0].items()} if labels else {}
+    return Data(content.path, content.kind, names, parts, labels=labels, label_names=label_names,
+                extra=extra, image=(image, values, slices),
+                rows="dtseries" if series else "dlabel" if labels else "dscalar")
 
 
 def _structure(name):
@@ -231,14 +237,14 @@ def _write_curv(data, values, columns):
     return freesurfer_data.write_curv(values[0], data.image)
 
 
-def _read_mgh(content):
-    values, image = freesurfer_data.read_mgh(content)
+def _read_volume(content):
+    values, image = freesurfer_data.read_volume(content)
     names = [str(i + 1) for i in range(values.shape[1])]
     return Data(content.path, content.kind, names, [Part(values)], image=image)
 
 
-def _write_mgh(data, values, columns):
-    return freesurfer_data.write_mgh(values[0], data.image)
+def _write_volume(data, values, columns):
+    return freesurfer_data.write_volume(values[0], data.image)
 
 
 def _read_label(content):
@@ -249,6 +255,12 @@ def _read_label(content):
 
 def _write_label(data, values, columns):
     return freesurfer_data.write_label(values[0], data.image)
+
+
+def _read_annot(content):
+    labels, names = freesurfer_data.read_annot(content)
+    return Data(content.path, content.kind, ["label"], [Part(labels[:, None])], labels=True,
+                label_names=names)
 
 
 def _read_npy(content):
@@ -282,7 +294,6 @@ _NOT_DATA = {"nx", "ny", "nz", "s", "t", "u", "v", "texture_u", "texture_v", "al
 def _mesh_data(content, mesh, arrays, usual_names):
     columns, places = [], []
     for name, array in arrays.items():
-        array = np.asarray(array)
         for component in range(1 if array.ndim == 1 else array.shape[1]):
             columns.append(array if array.ndim == 1 else array[:, component])
             places.append((name, component))
@@ -293,8 +304,9 @@ def _mesh_data(content, mesh, arrays, usual_names):
 
 
 def _read_ply(content):
-    mesh = meshio_files.read(content)
-    return _mesh_data(content, mesh, mesh.point_data, set(mesh.point_data) - _NOT_DATA)
+    mesh = ply.read(content.bytes)
+    arrays = {name: column for name, column in mesh.vertices.items() if name not in {"x", "y", "z"}}
+    return _mesh_data(content, mesh, arrays, set(arrays) - _NOT_DATA)
 
 
 def _read_vtk(content, on_faces=False):
@@ -329,8 +341,7 @@ def _changed_arrays(data, values, columns, arrays):
 
 def _write_ply(data, values, columns):
     mesh = data.image[0]
-    arrays = _changed_arrays(data, values, columns, mesh.point_data)
-    return meshio_files.write("ply", mesh, point_data=arrays)
+    return mesh.write(_changed_arrays(data, values, columns, mesh.vertices))
 
 
 def _write_vtk(data, values, columns):
@@ -341,9 +352,9 @@ def _write_vtk(data, values, columns):
                            **{"cell_data" if data.on_faces else "point_data": arrays})
 
 
-_READERS = {"gifti": _read_gifti, "cifti": _read_cifti, "curv": _read_curv, "mgh": _read_mgh,
-            "label": _read_label, "npy": _read_npy, "ply": _read_ply, "vtk": _read_vtk,
+_READERS = {"gifti": _read_gifti, "cifti": _read_cifti, "curv": _read_curv, "mgh": _read_volume,
+            "nifti": _read_volume, "annot": _read_annot, "label": _read_label, "npy": _read_npy, "ply": _read_ply, "vtk": _read_vtk,
             "vtp": _read_vtk}
-_WRITERS = {"gifti": _write_gifti, "cifti": _write_cifti, "curv": _write_curv, "mgh": _write_mgh,
-            "label": _write_label, "npy": _write_npy, "ply": _write_ply, "vtk": _write_vtk,
+_WRITERS = {"gifti": _write_gifti, "cifti": _write_cifti, "curv": _write_curv, "mgh": _write_volume,
+            "nifti": _write_volume, "label": _write_label, "npy": _write_npy, "ply": _write_ply, "vtk": _write_vtk,
             "vtp": _write_vtk}

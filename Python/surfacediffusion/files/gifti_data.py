@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import copy
+import io
+import os
 
 import numpy as np
 
@@ -11,26 +13,62 @@ from .content import import_reader
 
 _SURFACE_INTENTS = (1008, 1009)  # NIFTI_INTENT_POINTSET, NIFTI_INTENT_TRIANGLE
 _LABEL_INTENT = 1002
+_INDEX_INTENT = 2002  # NIFTI_INTENT_NODE_INDEX
+_EXTERNAL, _BASE64_GZIP = 4, 3
+
+
+def read_image(content):
+    """The image. Arrays may be in another file of the same folder, as SPM and CAT write them; they
+    are written into the file itself."""
+    import_reader("nibabel.gifti", content)
+    from nibabel.gifti.parse_gifti_fast import GiftiImageParser
+
+    class Parser(GiftiImageParser):
+        def StartElementHandler(self, name, attrs):
+            other = attrs.get("ExternalFileName", "")
+            if os.path.basename(other) != other:
+                raise content.error(f"data in the file {other}; allowed: in the folder of the GIFTI "
+                                    "file")
+            super().StartElementHandler(name, attrs)
+
+    file = io.BytesIO(content.bytes)
+    file.name = os.path.abspath(content.path)  # in whose folder the parser looks
+    parser = Parser()
+    parser.parse(fptr=file)
+    for array in parser.img.darrays:
+        if array.encoding == _EXTERNAL:
+            array.data = np.array(array.data)
+            array.encoding, array.ext_fname, array.ext_offset = _BASE64_GZIP, "", 0
+    return parser.img
 
 
 def read(content):
-    """The image, its columns, and the structure of the brain that it belongs to."""
-    gifti = import_reader("nibabel.gifti", content)
-    image = gifti.GiftiImage.from_bytes(content.bytes)
-    columns = []
+    """The image, its columns, the vertices that their rows belong to (None: all in order), and the
+    structure of the brain that it belongs to."""
+    image = read_image(content)
+    columns, vertices = [], None
     for i, array in enumerate(image.darrays):
         if array.intent in _SURFACE_INTENTS:
             continue
         if array.data is None or array.data.ndim > 2:
             raise ValueError(f"array {i + 1} is not of one or two dimensions")
-        if array.data.ndim == 1:
+        if array.intent == _INDEX_INTENT:
+            if vertices is not None:
+                raise content.error("several arrays of numbers of vertices; allowed: one")
+            vertices = array.data.ravel()
+        elif array.data.ndim == 1:
             columns.append((i, None))
         else:
             columns.extend((i, j) for j in range(array.data.shape[1]))
     if not columns and image.darrays:
         raise content.error("a GIFTI surface, which has no data at vertices; allowed: "
                             ".func.gii, .shape.gii, .label.gii")
-    return image, columns, image.meta.get("AnatomicalStructurePrimary") or ""
+    if vertices is not None:
+        if vertices.dtype.kind not in "iu" or len(np.unique(vertices)) != len(vertices):
+            raise content.error("NIFTI_INTENT_NODE_INDEX has a vertex twice, or numbers with a "
+                                "fraction; allowed: each vertex at most once")
+        vertices = vertices.astype(np.int64)
+    return image, columns, vertices, image.meta.get("AnatomicalStructurePrimary") or ""
 
 
 def column(image, place):
@@ -49,20 +87,26 @@ def has_labels(image):
     return any(array.intent == _LABEL_INTENT for array in image.darrays)
 
 
+def label_names(image):
+    """{number: name} of the table of labels."""
+    return image.labeltable.get_labels_as_dict() if has_labels(image) else {}
+
+
 def write(image, places, values):
     """The image with these columns alone, and new values in them."""
     changed = copy.copy(image)
     changed.darrays = []
-    for i in dict.fromkeys(i for i, _ in places):
-        array = copy.copy(image.darrays[i])
+    for i, array in enumerate(image.darrays):
         chosen = [c for c, (k, _) in enumerate(places) if k == i]
+        if array.intent == _INDEX_INTENT:
+            changed.darrays.append(array)
+        if not chosen:
+            continue
+        array = copy.copy(array)
         data = np.asarray(values)[:, chosen].astype(np.float32)
         array.data = data[:, 0] if image.darrays[i].data.ndim == 1 else data
         array.dims = list(array.data.shape)
         array.datatype = 16  # NIFTI_TYPE_FLOAT32
-        # Data in a file beside this one are written into it.
-        if array.encoding == 4:
-            array.encoding, array.ext_fname, array.ext_offset = 3, "", 0
         changed.darrays.append(array)
     return changed.to_bytes()
 

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""OFF and OBJ files. Both are lines of text, and are read here because meshio accepts only some of
-them: OFF without comments and colours, OBJ with as many texture coordinates as vertices."""
+"""OFF and OBJ files, which are lines of text. Everything but coordinates and normals is written as it
+was read. Lines are split as bytes: their text may be UTF-8 or anything else, and str.splitlines()
+splits within some of its characters."""
 from __future__ import annotations
 
 import re
@@ -16,91 +17,206 @@ def _numbers(text, what):
         raise ValueError(f"{what}: {error}") from None
 
 
-def _faces(polygons):
-    """(m, 3) int for triangles, otherwise a list of polygons."""
-    if polygons and all(len(polygon) == 3 for polygon in polygons):
-        return np.array(polygons, dtype=np.int64)
-    return polygons
+def _text_of(numbers):
+    return " ".join(map(repr, numbers))
 
 
-def _off_lines(data):
-    """(number of the line, words without comment) of each line that has words."""
-    for number, line in enumerate(data.decode("latin-1").splitlines()):
-        words = line.split("#", 1)[0].split()
-        if words:
-            yield number, words
+# ---- OFF -----------------------------------------------------------------------------------------
+
+# ST: texture coordinates, C: colours, N: normals. Vertices of other dimensions are no surface.
+_OFF = re.compile(r"(?:\ufeff|ï»¿)?(ST)?(C)?(N)?(4)?(n)?OFF(\d*)$")
+
+
+class _Off:
+    """The words of the vertices and faces. In most files each has a line of its own: its number is in
+    vertex_lines. `lines` has (number, words without comment) of each line with words."""
+
+    def __init__(self, data):
+        self.text = [line.decode("latin-1") for line in data.splitlines(keepends=True)]
+        self.lines = []
+        for number, line in enumerate(self.text):
+            words = line.split("#", 1)[0].split()
+            if words:
+                self.lines.append((number, words))
+        self._read_header()
+        try:
+            self._read_lines()
+        except ValueError as problem:
+            try:
+                self._read_words()
+            except (IndexError, ValueError):
+                raise problem from None
+
+    def _read_header(self):
+        name, *counts = self.lines[0][1]
+        found = _OFF.match(name)
+        if found is None:
+            raise ValueError(f"it starts with {name[:20]!r}; allowed: OFF, COFF, NOFF, CNOFF, STOFF")
+        if found[4] or found[5]:
+            raise ValueError(f"{name}: vertices with other than three coordinates; allowed: OFF, COFF, "
+                             "NOFF, CNOFF, STOFF")
+        counts = [found[6]] * bool(found[6]) + counts  # "OFF8 6 12" is found in collections of meshes
+        self.size = 3 + 3 * bool(found[3]) + 4 * bool(found[2]) + 2 * bool(found[1])
+        self.has_normals = bool(found[3])
+        self.first = 1
+        if not counts:
+            if len(self.lines) < 2:
+                raise ValueError("the counts of vertices and faces are missing")
+            counts, self.first = self.lines[1][1], 2
+        if counts[0].upper() == "BINARY":
+            raise ValueError("binary OFF; allowed: text")
+        if len(counts) < 2:
+            raise ValueError("the counts of vertices and faces are missing")
+        self.counts = int(counts[0]), int(counts[1])
+        if min(self.counts) < 0:
+            raise ValueError(f"{self.counts[0]} vertices and {self.counts[1]} faces are announced")
+
+    def _read_lines(self):
+        vertices, faces = self.counts
+        rows = self.lines[self.first:]
+        if len(rows) < vertices + faces:
+            raise ValueError(f"{vertices} vertices and {faces} faces are announced, but "
+                             f"{len(rows)} lines follow")
+        self.vertex_lines = [number for number, _ in rows[:vertices]]
+        self.vertices = [words for _, words in rows[:vertices]]
+        self.points = _numbers([words[:3] for words in self.vertices], "a vertex")
+        if vertices and (self.points.ndim != 2 or self.points.shape[1] != 3):
+            raise ValueError("a vertex does not have three coordinates")
+        self.faces = []
+        for number, words in rows[vertices:vertices + faces]:
+            if not words[0].isdigit() or not 3 <= int(words[0]) < len(words):
+                raise ValueError(f"line {number + 1} is no face: {' '.join(words)[:40]}")
+            self.faces.append(words)
+
+    def _read_words(self):
+        """Several vertices in a line, or faces over several lines: only the last line of a face has
+        an end that counts, after its colour."""
+        vertices, faces = self.counts
+        words = [(word, number) for number, line in self.lines[self.first:] for word in line]
+        if len(words) < vertices * self.size + 4 * faces:
+            raise ValueError("too few words")
+        self.vertex_lines = None
+        self.vertices = [[word for word, _ in words[i:i + self.size]]
+                         for i in range(0, vertices * self.size, self.size)]
+        self.points = _numbers([row[:3] for row in self.vertices], "a vertex")
+        place, self.faces = vertices * self.size, []
+        for _ in range(faces):
+            end = place + 1 + int(words[place][0])
+            if end < place + 4:
+                raise ValueError("a face of fewer than three vertices")
+            last = words[end - 1][1]
+            while end < len(words) and words[end][1] == last:
+                end += 1
+            self.faces.append([word for word, _ in words[place:end]])
+            place = end
+        if place != len(words):
+            raise ValueError("more words than faces have")
+
+    def polygons(self):
+        return [[int(word) for word in row[1:int(row[0]) + 1]] for row in self.faces]
+
+    def write(self, points, normals):
+        rows = []
+        for i, words in enumerate(self.vertices):
+            new = points[i] + (normals[i] if self.has_normals else [])
+            rows.append((_text_of(new), words[len(new):]))
+        if self.vertex_lines is None:
+            head = self.text[:self.lines[self.first - 1][0] + 1]
+            lines = [" ".join([text, *rest]) for text, rest in rows]
+            lines += [" ".join(words) for words in self.faces]
+            return "".join(head) + "\n".join(lines) + "\n"
+        lines = list(self.text)
+        for number, (text, _) in zip(self.vertex_lines, rows):
+            before = re.match(r"\s*" + r"\S+\s+" * (text.count(" ")) + r"[^\s#]+", lines[number])[0]
+            indent = re.match(r"\s*", before)[0]
+            lines[number] = indent + text + lines[number][len(before):]
+        return "".join(lines)
 
 
 def read_off(data: bytes):
-    lines = list(_off_lines(data))
-    layout = _off_layout(lines)
-    points, faces = layout["points"], layout["faces"]
-    coordinates = _numbers([lines[i][1][:3] for i in points], "a vertex")
-    if len(points) and (coordinates.ndim != 2 or coordinates.shape[1] != 3):
-        raise ValueError("a vertex does not have three coordinates")
-    polygons = []
-    for i in faces:
-        words = lines[i][1]
-        size = int(words[0])
-        if size < 3 or len(words) <= size:
-            raise ValueError(f"line {lines[i][0] + 1} is no face: {' '.join(words)[:40]}")
-        polygons.append([int(word) for word in words[1:size + 1]])
-    return coordinates.reshape(-1, 3), _faces(polygons)
+    off = _Off(data)
+    return off.points.reshape(-1, 3), off.polygons()
 
 
-def _off_layout(lines):
-    """Which of the lines hold points and faces. The counts may follow OFF on its line."""
-    words = lines[0][1][1:]
-    first = 1
-    if not words:
-        if len(lines) < 2:
-            raise ValueError("the counts of vertices and faces are missing")
-        words = lines[1][1]
-        first = 2
-    if words[0].upper() == "BINARY":
-        raise ValueError("binary OFF; allowed: text")
-    vertices, polygons = int(words[0]), int(words[1])
-    if len(lines) < first + vertices + polygons:
-        raise ValueError(f"{vertices} vertices and {polygons} faces are announced, but "
-                         f"{len(lines) - first} lines follow")
-    middle = first + vertices
-    return {"points": range(first, middle), "faces": range(middle, middle + polygons)}
+def write_off(data: bytes, points, normals):
+    """The file with other coordinates and normals, and what was done with its normals."""
+    off = _Off(data)
+    text = off.write(np.asarray(points, float).tolist(), np.asarray(normals, float).tolist())
+    return text.encode("latin-1"), "computed again" if off.has_normals else ""
+
+
+# ---- OBJ -----------------------------------------------------------------------------------------
+
+def _obj_lines(data):
+    """(number, line) of each line; one that ends in a backslash goes on in the next line. Comments
+    do not: a folder's name may end in one."""
+    start, whole = 0, ""
+    for number, line in enumerate(data.splitlines(keepends=True), start=1):
+        text = line.decode("latin-1")
+        start = start if whole else number
+        if not (whole or text).lstrip().startswith("#") and text.rstrip().endswith("\\"):
+            whole += text.rstrip()[:-1] + " "
+            continue
+        yield start, whole + text
+        whole = ""
+    if whole:
+        yield start, whole + "\n"
 
 
 def read_obj(data: bytes):
     points, polygons = [], []
-    for number, line in enumerate(data.decode("latin-1").splitlines(), start=1):
-        words = line.split()
+    for number, line in _obj_lines(data):
+        words = line.split("#", 1)[0].split()
         if not words:
             continue
         if words[0] == "v":
             if len(words) < 4:
-                raise ValueError(f"line {number} is no vertex: {line[:40]}")
+                raise ValueError(f"line {number} is no vertex: {line.strip()[:40]}")
             points.append(words[1:4])
         elif words[0] == "f":
             if len(words) < 4:
-                raise ValueError(f"line {number} is no face: {line[:40]}")
+                raise ValueError(f"line {number} is no face: {line.strip()[:40]}")
             corners = [int(word.split("/")[0]) for word in words[1:]]
             if 0 in corners:
                 raise ValueError(f"line {number}: numbers of vertices start at 1")
             # Negative numbers count from the last vertex so far.
             polygons.append([c - 1 if c > 0 else len(points) + c for c in corners])
-    return _numbers(points, "a vertex").reshape(-1, 3), _faces(polygons)
+    return _numbers(points, "a vertex").reshape(-1, 3), polygons
+
+
+def write_obj(data: bytes, points, normals):
+    """The file with other coordinates, and what was done with its normals. If each vertex has the
+    normal of its own number, these are replaced; other ones, which belong to corners, are left out."""
+    lines = [line for _, line in _obj_lines(data)]
+    keys = [line.split(None, 1)[0] if line.strip() else "" for line in lines]
+    new = {"v": iter(np.asarray(points, float).tolist())}
+    drop = False
+    if "vn" in keys:
+        drop = keys.count("vn") != keys.count("v") or any(
+            _has_other_normals(line) for line, key in zip(lines, keys) if key == "f")
+        new["vn"] = iter(np.asarray(normals, float).tolist())
+    result = []
+    for line, key in zip(lines, keys):
+        if drop and key == "vn":
+            continue
+        if key in new:
+            text = _text_of(next(new[key]))
+            line = re.sub(r"^(\s*vn?\s+)\S+\s+\S+\s+[^\s#]+", rf"\g<1>{text}", line, count=1)
+        elif drop and key == "f":
+            corners, hash_sign, comment = line.partition("#")
+            corners = re.sub(r"(?<=\s)(-?\d+)(/-?\d+|/)/-?\d+(?=\s|$)",
+                             lambda found: found[1] + found[2].rstrip("/"), corners)
+            line = corners + hash_sign + comment
+        result.append(line)
+    text = "".join(result).encode("latin-1")
+    return text, "" if "vn" not in keys else "left out" if drop else "computed again"
+
+
+def _has_other_normals(face):
+    corners = [word.split("/") for word in face.split("#", 1)[0].split()[1:]]
+    return any(len(corner) < 3 or corner[0] != corner[2] or corner[0].startswith("-")
+               for corner in corners)
 
 
 READERS = {"off": read_off, "obj": read_obj}
-
-
-def replace_points(content, points) -> bytes:
-    """The same file with other coordinates: colours, comments and faces stay as they are."""
-    text = content.bytes.decode("latin-1").splitlines(keepends=True)
-    if content.kind == "off":
-        lines = list(_off_lines(content.bytes))
-        numbers = [lines[i][0] for i in _off_layout(lines)["points"]]
-        pattern = re.compile(r"^(\s*)\S+\s+\S+\s+\S+")
-    else:
-        numbers = [i for i, line in enumerate(text) if line.split()[:1] == ["v"]]
-        pattern = re.compile(r"^(\s*v\s+)\S+\s+\S+\s+\S+")
-    for number, (x, y, z) in zip(numbers, np.asarray(points, dtype=float).tolist()):
-        text[number] = pattern.sub(rf"\g<1>{x!r} {y!r} {z!r}", text[number], count=1)
-    return "".join(text).encode("latin-1")
+WRITERS = {"off": write_off, "obj": write_obj}

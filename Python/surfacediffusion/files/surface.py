@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import tempfile
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from . import mesh_text, meshio_files, vtk_files
-from .content import check_output_name, import_reader, read_content, reading, write_atomically
+from . import gifti_data, mesh_text, ply, stl, vtk_files
+from .content import Content, check_output_name, import_reader, on_disk, read_content, reading
+from .content import write_atomically
 
 KINDS = ("gifti", "freesurfer", "off", "obj", "ply", "stl", "vtk", "vtp")
 ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, VTK polydata"
@@ -35,25 +36,44 @@ class SurfaceFile:
     image: Any = field(default=None, repr=False)  # what the reader returned
 
     def save(self, path, points):
-        """Write the surface with other points (n, 3) in the same format."""
+        """Write the surface with other points (n, 3) in the same format. The normals in the file do
+        not belong to these: returns "computed again" or "left out", or "" if it has none."""
         check_output_name(path, self.kind)
         points = np.asarray(points)
         if points.shape != self.points.shape:
             raise ValueError(f"points have shape {points.shape}; allowed: {self.points.shape}")
-        write_atomically(path, _WRITERS[self.kind](self, points))
+        data, normals = _WRITERS[self.kind](self, points)
+        write_atomically(path, data)
+        return normals
 
 
 def read_surface(path) -> SurfaceFile:
-    """Read a surface from a file of one of the formats in ALLOWED."""
-    content = read_content(path)
+    """Read a surface from a file of one of the formats in ALLOWED, or from its Content."""
+    content = path if isinstance(path, Content) else read_content(path)
     if content.kind == "curv" and _is_quad_surface(content):
-        content.kind = "freesurfer"
+        content = replace(content, kind="freesurfer")
     if content.kind not in KINDS:
         raise content.error(f"a {content.name} file, which has no surface; allowed: {ALLOWED}")
     with reading(content):
         surface = _READERS[content.kind](content)
+        surface.faces = _faces(surface.faces)
         _check(content, surface)
     return surface
+
+
+def _faces(polygons):
+    """(m, 3) int for triangles, otherwise a list of polygons."""
+    if len(polygons) and all(len(polygon) == 3 for polygon in polygons):
+        return np.asarray(polygons, dtype=np.int64)
+    return polygons.tolist() if isinstance(polygons, np.ndarray) else polygons
+
+
+def _normals(points, faces):
+    """Unit normals at the points and on the faces."""
+    from .._surface import Surface
+
+    surface = Surface(points, faces)
+    return surface._point_normals(), surface._face_normals()[0]
 
 
 def _check(content, surface):
@@ -63,6 +83,8 @@ def _check(content, surface):
                             "allowed: at least one of each")
     flat = faces if isinstance(faces, np.ndarray) else np.concatenate(
         [np.asarray(face, dtype=np.int64) for face in faces])
+    if not isinstance(faces, np.ndarray) and min(map(len, faces)) < 3:
+        raise content.error("a face has fewer than three points; allowed: polygons")
     low, high = flat.min(), flat.max()
     if low < 0 or high >= len(points):
         bad = low if low < 0 else high
@@ -81,8 +103,7 @@ def _is_quad_surface(content):
 # ---- GIFTI ---------------------------------------------------------------------------------------
 
 def _read_gifti(content):
-    gifti = import_reader("nibabel.gifti", content)
-    image = gifti.GiftiImage.from_bytes(content.bytes)
+    image = gifti_data.read_image(content)
     points = image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")
     faces = image.get_arrays_from_intent("NIFTI_INTENT_TRIANGLE")
     if not points or not faces:
@@ -107,7 +128,7 @@ def _write_gifti(surface, points):
     before = array.data
     array.data = points.astype(before.dtype)
     try:
-        return surface.image.to_bytes()
+        return surface.image.to_bytes(), ""
     finally:
         array.data = before
 
@@ -116,10 +137,10 @@ def _write_gifti(surface, points):
 
 def _read_freesurfer(content):
     freesurfer = import_reader("nibabel.freesurfer", content)
-    # nibabel takes a path here, and warns about files without a footer, which are allowed.
-    with warnings.catch_warnings():
+    # nibabel warns about files without a footer, which are allowed.
+    with warnings.catch_warnings(), on_disk(content) as path:
         warnings.simplefilter("ignore")
-        points, faces, info = freesurfer.read_geometry(content.path, read_metadata=True)
+        points, faces, info = freesurfer.read_geometry(path, read_metadata=True)
     return SurfaceFile(content.path, content.kind, points, faces.astype(np.int64),
                        _freesurfer_structure(content.path), info)
 
@@ -137,28 +158,42 @@ def _write_freesurfer(surface, points):
         freesurfer.write_geometry(
             str(path), points, surface.faces, "created by surfacediffusion",
             surface.image or None)
-        return path.read_bytes()
+        return path.read_bytes(), ""
 
 
 # ---- other meshes --------------------------------------------------------------------------------
 
 def _read_text(content):
     points, faces = mesh_text.READERS[content.kind](content.bytes)
-    return SurfaceFile(content.path, content.kind, points, faces, image=content)
+    return SurfaceFile(content.path, content.kind, points, faces, image=content.bytes)
 
 
 def _write_text(surface, points):
-    return mesh_text.replace_points(surface.image, points)
+    normals, _ = _normals(points, surface.faces)
+    return mesh_text.WRITERS[surface.kind](surface.image, points, normals)
 
 
-def _read_meshio(content):
-    mesh = meshio_files.read(content)
-    return SurfaceFile(content.path, content.kind, np.asarray(mesh.points),
-                       meshio_files.faces_of(mesh), image=mesh)
+def _read_ply(content):
+    mesh = ply.read(content.bytes)
+    return SurfaceFile(content.path, content.kind, mesh.points, mesh.faces, image=mesh)
 
 
-def _write_meshio(surface, points):
-    return meshio_files.write(surface.kind, surface.image, points=points)
+def _write_ply(surface, points):
+    columns = dict(zip("xyz", np.asarray(points).T))
+    has_normals = {"nx", "ny", "nz"} <= set(surface.image.vertices)
+    if has_normals:
+        columns.update(zip(("nx", "ny", "nz"), _normals(points, surface.faces)[0].T))
+    return surface.image.write(columns), "computed again" if has_normals else ""
+
+
+def _read_stl(content):
+    points, faces = stl.read(content.bytes)
+    return SurfaceFile(content.path, content.kind, points, faces, image=content.bytes)
+
+
+def _write_stl(surface, points):
+    _, normals = _normals(points, surface.faces)
+    return stl.write(surface.image, points, surface.faces, normals), "computed again"
 
 
 def _read_vtk(content):
@@ -168,12 +203,15 @@ def _read_vtk(content):
 
 
 def _write_vtk(surface, points):
-    return vtk_files.write(surface.kind, surface.image, points=points)
+    normals = vtk_files.normals_of(surface.image, *_normals(points, surface.faces))
+    data = vtk_files.write(surface.kind, surface.image, points=points, **normals)
+    found = [values for arrays in normals.values() for values in arrays.values()]
+    return data, "" if not found else "left out" if found[-1] is None else "computed again"
 
 
 _READERS = {"gifti": _read_gifti, "freesurfer": _read_freesurfer, "off": _read_text,
-            "obj": _read_text, "ply": _read_meshio, "stl": _read_meshio, "vtk": _read_vtk,
+            "obj": _read_text, "ply": _read_ply, "stl": _read_stl, "vtk": _read_vtk,
             "vtp": _read_vtk}
 _WRITERS = {"gifti": _write_gifti, "freesurfer": _write_freesurfer, "off": _write_text,
-            "obj": _write_text, "ply": _write_meshio, "stl": _write_meshio, "vtk": _write_vtk,
+            "obj": _write_text, "ply": _write_ply, "stl": _write_stl, "vtk": _write_vtk,
             "vtp": _write_vtk}

@@ -4,9 +4,11 @@
 package vtk is imported for such files only."""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
-from .content import import_reader
+from .content import import_reader, on_disk
 
 
 def read(content):
@@ -28,20 +30,26 @@ def read(content):
     core.vtkLogger.SetStderrVerbosity(core.vtkLogger.VERBOSITY_OFF)
     try:
         reader = Reader()
-        reader.SetFileName(content.path)
         if content.kind == "vtk":
             reader.ReadAllScalarsOn()
             reader.ReadAllVectorsOn()
             reader.ReadAllNormalsOn()
             reader.ReadAllFieldsOn()
             reader.ReadAllColorScalarsOn()
-        reader.Update()
+        with on_disk(content) as path:
+            reader.SetFileName(path)
+            reader.Update()
         problems = window.GetOutput()
     finally:
         core.vtkOutputWindow.SetInstance(before)
         core.vtkLogger.SetStderrVerbosity(verbosity)
-    if problems:
-        raise ValueError(problems)
+    # "ERROR: In file, line n", then "class (address): text" or text. Truncated files give a generic
+    # warning that begins with "Error"; other warnings are not in the way of the data.
+    entries = re.split(r"(ERROR|(?:Generic )?Warning): In .*\s", problems)
+    for kind, text in zip(entries[1::2], entries[2::2]):
+        text = re.sub(r"^\s*\w+ \(\w+\): ", "", text)
+        if kind == "ERROR" or text.startswith("Error"):
+            raise ValueError(text.replace(path, content.path))
     return reader.GetOutput()
 
 
@@ -70,8 +78,24 @@ def arrays_of(data):
             for i, array in enumerate(arrays) if array is not None}
 
 
+def normals_of(mesh, of_points, of_faces):
+    """The arguments of write() that replace the normals among the arrays of points and cells, or remove
+    those of cells if some of them are no faces."""
+    found = {}
+    for key, attributes, values in (("point_data", mesh.GetPointData(), of_points),
+                                    ("cell_data", mesh.GetCellData(), of_faces)):
+        array = attributes.GetNormals() or attributes.GetArray("Normals")
+        found[key] = {}
+        if array is not None and array.GetNumberOfTuples() == len(values):
+            found[key] = {array.GetName(): values.astype(np.float32)}
+        elif array is not None:
+            found[key] = {array.GetName(): None}
+    return found
+
+
 def write(kind, mesh, points=None, point_data=None, cell_data=None) -> bytes:
-    """The mesh with other points, and with more or other arrays at its points or cells."""
+    """The mesh with other points, and with more or other arrays at its points or cells; None removes an
+    array."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -87,6 +111,9 @@ def write(kind, mesh, points=None, point_data=None, cell_data=None) -> bytes:
     for attributes, arrays in ((changed.GetPointData(), point_data),
                                (changed.GetCellData(), cell_data)):
         for name, values in (arrays or {}).items():
+            if values is None:
+                attributes.RemoveArray(name)
+                continue
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)
             attributes.AddArray(array)
