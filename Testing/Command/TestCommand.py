@@ -483,12 +483,12 @@ class Reports(CommandTest):
 
     def test_one_line_says_what_was_written(self):
         out = self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii")
-        self.assertRegex(out, r"^out.func.gii: 2 columns, \d+\.\d\d s\n$")
+        self.assertRegex(out, r"^out.func.gii: 2 columns, FWHM 5 mm \(sigma 2.12\), \d+\.\d\d s\n$")
 
     def test_help_of_every_command_shows_an_example(self):
         _, out, _ = run("--help")
-        commands = ("smooth", "denoise", "denoise-mesh", "inpaint", "segment", "texture", "directions",
-                    "normals", "fwhm", "info")
+        commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "segment",
+                    "texture", "directions", "normals", "fwhm", "info")
         for command in commands:
             self.assertIn(command, out)
             code, text, _ = run(command, "--help")
