@@ -1,11 +1,15 @@
 #!/bin/sh
-# Usage: run-tests.sh [versions]
+# Usage: run-tests.sh [versions | checks]
 # Installs what is needed, builds, and runs every test. The last lines are ctest's summary, with the
-# seconds of processor time per label. In CI (CI is set) it is an error if test data are missing.
+# seconds of processor time per label. In CI (CI is set) it is an error if test data are missing, and
+# if a test is skipped that may_be_skipped.txt does not list.
 # With "versions" it fetches other versions of VTK, and runs the tests that build the project with
-# each of them, and with pip, instead: these take as long as all others.
+# each of them, and with pip, instead: these take as long as all others. With "checks" it runs these,
+# all sanitizers, the fuzzer and the long tests: see run-checks.sh.
 set -eu
 cd "$(dirname "$0")/.."
+preset=${1:-test}
+[ "$preset" != checks ] || exec Testing/run-checks.sh
 
 .ci/install-packages
 data="$PWD/build/data"
@@ -24,6 +28,7 @@ export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 export CCACHE_BASEDIR="$PWD/build"
 
 cmake --preset build \
+  -D SURFACEDIFFUSION_REQUIRE_TEST_DATA="${CI:+ON}" \
   -D SURFACEDIFFUSION_MESH_DIR="$(folder meshes)" \
   -D SURFACEDIFFUSION_VTK91_PREFIX="$(folder vtk91)" \
   -D SURFACEDIFFUSION_CURRENT_VTK_DIR="$(folder vtk-current)" \
@@ -31,4 +36,11 @@ cmake --preset build \
 cmake --build --preset build
 
 # One display for all tests; -noreset: it outlives its first client.
-exec xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "${1:-test}" -j2
+results="$PWD/build/tests.xml"
+status=0
+xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "$preset" -j2 \
+  --output-junit "$results" --test-output-size-passed 1000000 || status=$?
+if [ -n "${CI:-}" ]; then
+  /usr/bin/python3 Testing/check_skips.py "$results" Testing/may_be_skipped.txt || status=1
+fi
+exit "$status"

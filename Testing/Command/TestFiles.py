@@ -272,4 +272,4 @@ class Writing(FileTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

@@ -19,8 +19,9 @@ void ForEachMeshFile(Function function)
 {
   if (!HaveMeshFiles())
   {
-    return;
+    GTEST_SKIP() << "SURFACEDIFFUSION_MESH_DIR is not set";
   }
+  int surfaces = 0;
   const bool all = std::getenv("SURFACEDIFFUSION_LONG") != nullptr;
   for (const auto& entry : std::filesystem::directory_iterator(SURFACEDIFFUSION_MESH_DIR))
   {
@@ -30,10 +31,12 @@ void ForEachMeshFile(Function function)
       const Surface surface = ReadOff(entry.path().string());
       if (TriangleMesh(surface.Vertices, surface.Faces).NumberOfTriangles() > 0)
       {
+        ++surfaces;
         function(surface);
       }
     }
   }
+  EXPECT_GT(surfaces, 0) << "no surface in " << SURFACEDIFFUSION_MESH_DIR;
 }
 
 } // namespace SurfaceDiffusion::Testing

@@ -45,9 +45,8 @@ if environment/bin/python -c "import vtkmodules" 2>/dev/null; then
 fi
 environment/bin/python -c "import surfacediffusion as s; print('installed', s.__version__)"
 environment/bin/pip install --quiet tqdm mypy
-# For the tests of files and of PyVista, whose VTK is that of PyPI. They are optional.
-environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist ||
-  echo "no nibabel or PyVista: their tests are skipped"
+# For the tests of files and of PyVista, whose VTK is that of PyPI
+environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist
 
 rm -rf system
 "${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages system

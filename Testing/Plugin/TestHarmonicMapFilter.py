@@ -85,4 +85,4 @@ class TestHarmonicMapFilter(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

@@ -117,4 +117,4 @@ if __name__ == "__main__":
     if len(sys.argv) == 3:
         globals()[sys.argv[1]](sys.argv[2])
     else:
-        unittest.main()
+        unittest.main(verbosity=2)

@@ -135,4 +135,4 @@ class TestHeatFilter(unittest.TestCase):
 
 if __name__ == "__main__":
     vtkObject.GlobalWarningDisplayOn()
-    unittest.main()
+    unittest.main(verbosity=2)

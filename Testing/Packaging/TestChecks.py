@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What run-tests.sh and run-checks.sh rely on. Argument: the folder of the sources."""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(sys.argv.pop())
+TESTING = SOURCE / "Testing"
+sys.path.insert(0, str(TESTING))
+from record_check import ROW, result_of  # noqa: E402
+
+
+def case(name, output, skipped=""):
+    return f'<testcase name="{name}">{skipped}<system-out>{output}</system-out></testcase>'
+
+
+class Skips(unittest.TestCase):
+
+    def check(self, cases, rules=""):
+        """The exit code and the output of check_skips.py."""
+        with tempfile.TemporaryDirectory() as folder:
+            results, allowed = Path(folder, "tests.xml"), Path(folder, "allowed.txt")
+            results.write_text(f"<testsuite>{''.join(cases)}</testsuite>")
+            allowed.write_text("# reasons\n\n" + rules)
+            run = subprocess.run([sys.executable, TESTING / "check_skips.py", results, allowed],
+                                 capture_output=True, text=True)
+        return run.returncode, run.stdout
+
+    def test_a_run_without_skips_passes_in_silence(self):
+        self.assertEqual(self.check([case("A", "skipped nothing\nOK")]), (0, ""))
+
+    def test_skips_of_ctest_googletest_and_unittest_are_found(self):
+        code, text = self.check([
+            case("ByCode", "skipped: no tool", '<skipped message="SKIP_RETURN_CODE=77"/>'),
+            case("ByGoogleTest", "[ RUN      ] A.b\nx.cxx:80: Skipped\nno meshes\n\n[  SKIPPED ] A.b (0 ms)"),
+            case("ByUnittest", "test_a (__main__.T.test_a) ... skipped 'no VTK'\n\nOK (skipped=1)"),
+            case("WithoutReason", "..s.\n\nOK (skipped=1)"),
+        ])
+        self.assertEqual(code, 1)
+        self.assertEqual(text.splitlines()[:4], [
+            "skipped: ByCode: skipped: no tool", "skipped: ByGoogleTest: no meshes",
+            "skipped: ByUnittest: no VTK", "skipped: WithoutReason: no reason in the output"])
+
+    def test_only_the_listed_reason_is_allowed(self):
+        cases = [case("Command.A", "test_a (T) ... skipped 'root may write'\n\nOK (skipped=1)")]
+        self.assertEqual(self.check(cases, "Command\\..*: root may\n"), (0, ""))
+        self.assertEqual(self.check(cases, "Command\\..*: no VTK\n")[0], 1)
+        self.assertEqual(self.check(cases, "Command: root may\n")[0], 1)
+
+
+class TestData(unittest.TestCase):
+
+    def configure(self, meshes, wheels):
+        with tempfile.TemporaryDirectory() as folder:
+            environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+            return subprocess.run(
+                ["cmake", "-S", SOURCE, "-B", folder, "-DSURFACEDIFFUSION_HOST=None", "-DBUILD_TESTING=ON",
+                 "-DSURFACEDIFFUSION_REQUIRE_TEST_DATA=ON", f"-DSURFACEDIFFUSION_MESH_DIR={meshes}",
+                 f"-DSURFACEDIFFUSION_WHEEL_DIR={wheels}"],
+                capture_output=True, text=True, env=environment)
+
+    def test_an_empty_folder_of_meshes_or_wheels_is_an_error(self):
+        with tempfile.TemporaryDirectory() as data:
+            meshes, wheels = Path(data, "meshes"), Path(data, "wheels")
+            meshes.mkdir()
+            wheels.mkdir()
+            self.assertIn("there is no file", self.configure(meshes, wheels).stderr)
+            (meshes / "a.off").touch()
+            (wheels / "a.whl").touch()
+            run = self.configure(meshes, wheels)
+            self.assertNotEqual(run.returncode, 0)
+            self.assertIn("there is no file", run.stderr)
+            self.assertIn("/numpy/", run.stderr)
+
+
+class Checks(unittest.TestCase):
+
+    def test_each_check_has_passed_since_the_last_release(self):
+        rows = {row[0]: row for row in ROW.findall((TESTING / "CHECKS.md").read_text())}
+        script = (TESTING / "run-checks.sh").read_text()
+        names = re.search(r"\|\| set -- (.*)", script).group(1).split()
+        self.assertLessEqual(set(rows), set(names))
+        releases = re.findall(r"^## (\d+)\.(\d+)\.(\d+)", (SOURCE / "CHANGELOG.md").read_text(), re.MULTILINE)
+        if releases:  # the newest is first
+            last = tuple(map(int, releases[0]))
+            for name in names:
+                self.assertIn(name, rows)
+                self.assertGreaterEqual(tuple(map(int, rows[name][4].split("."))), last, name)
+
+    def test_the_counts_of_ctest_and_of_the_fuzzer_are_read(self):
+        self.assertEqual(result_of("100% tests passed, 0 tests failed out of 12\n"), "12 tests pass")
+        self.assertEqual(result_of("stat::number_of_executed_units: 345\n"), "345 runs without a finding")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

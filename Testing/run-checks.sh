@@ -1,0 +1,56 @@
+#!/bin/sh
+# Usage: run-checks.sh [CHECK...]
+# The checks before a release, which take hours and are not part of run-tests.sh: all tests under the
+# sanitizers, ten minutes of fuzzing, all meshes, and other versions of VTK. Without arguments all run,
+# also if one fails. Each that passes is entered into Testing/CHECKS.md with its day and its commit.
+# Logs are in build/checks. The exit code is 1 if a check has failed.
+set -eu
+cd "$(dirname "$0")/.."
+
+.ci/install-packages
+.ci/install-packages checks
+data="$PWD/build/data"
+.ci/fetch-test-data "$data" versions
+export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+export CCACHE_BASEDIR="$PWD/build"
+mkdir -p build/checks
+
+build()
+{
+  cmake --preset "$1" -D SURFACEDIFFUSION_REQUIRE_TEST_DATA=ON \
+    -D SURFACEDIFFUSION_MESH_DIR="$data/meshes" \
+    -D SURFACEDIFFUSION_VTK91_PREFIX="$data/vtk91" \
+    -D SURFACEDIFFUSION_CURRENT_VTK_DIR="$data/vtk-current" \
+    -D SURFACEDIFFUSION_WHEEL_DIR="$data/wheels"
+  cmake --build --preset "$1"
+}
+
+run()
+{
+  case $1 in
+    fuzz)
+      build fuzz && mkdir -p build/checks/corpus
+      build-fuzz/bin/FuzzSurfaceDiffusionCore -max_total_time=600 -print_final_stats=1 \
+        build/checks/corpus
+      return
+      ;;
+    sanitize | sanitize-more) build sanitize ;;
+    tsan | tsan-filters | tsan-numpy) build tsan ;;
+    *) build build ;;
+  esac
+  xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "$1" -j2
+}
+
+[ $# -gt 0 ] || set -- fuzz sanitize sanitize-more tsan tsan-filters tsan-numpy long versions
+status=0
+for check in "$@"; do
+  echo "== $check"
+  if (run "$check") > "build/checks/$check.log" 2>&1; then
+    /usr/bin/python3 Testing/record_check.py "$check" "build/checks/$check.log"
+  else
+    tail -n 40 "build/checks/$check.log"
+    echo "$check has failed: build/checks/$check.log"
+    status=1
+  fi
+done
+exit "$status"
