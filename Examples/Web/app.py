@@ -5,26 +5,30 @@
 before and after, and download the result.
 
     Examples/Web/start.sh            # installs what is needed below build/web, and starts
-    app.py [--port 8080] [--host 127.0.0.1] [--sessions 8]
+    app.py [--port 8080] [--host 127.0.0.1] [--name NAME] [--sessions 8]
 
 Everybody who opens the page gets a process of their own (session.py) behind an address that cannot
 be guessed, so that nobody sees the data of others. The data stay in the memory of this process and
 are gone when the page has been closed for a minute. All of it runs over one port, which a tunnel of ssh
 can forward. It listens to this machine only, unless --host says otherwise; there is no password.
+Pages of other sites cannot open sessions, neither by links and pictures nor by a name that they let
+point to this machine: requests must name an address, localhost, or a --name.
 """
 import argparse
 import asyncio
 import contextlib
+import ipaddress
 import os
 import secrets
 import sys
 import webbrowser
 from pathlib import Path
 
-from aiohttp import ClientSession, WSMsgType, web
+from aiohttp import ClientConnectionError, ClientSession, WSMsgType, web
 
 LIFE = 60  # seconds that a page without a browser is kept
 START = 60  # seconds that a page may take to start
+MESSAGE = 10_004_096  # bytes of a message from a browser, as in the session's own server
 
 
 class Session:
@@ -64,8 +68,9 @@ async def drain(stream):
 class Front:
     """Hands out sessions, and passes requests on to them."""
 
-    def __init__(self, limit, life):
+    def __init__(self, limit, life, names=()):
         self.sessions, self.limit, self.life, self.client = {}, limit, life, None
+        self.names = {"localhost", *names}
         self.lock = asyncio.Lock()
 
     def routes(self):
@@ -79,7 +84,27 @@ class Front:
                     session.process.terminate()
                     await session.process.wait()
 
-    async def open_page(self, _):
+    @web.middleware
+    async def check_host(self, request, handler):
+        """A name that belongs to another site may point to this machine (DNS rebinding), so that the
+        site's pages may read the answers; an address may not."""
+        if not self.allows(request.host):
+            return web.Response(status=403, text=f"The address names {request.host}; allowed: a numeric "
+                                f"address, {', '.join(sorted(self.names))} (app.py --name adds one).\n")
+        return await handler(request)
+
+    def allows(self, host):
+        name = host.rsplit(":", 1)[0] if not host.endswith("]") else host
+        try:
+            ipaddress.ip_address(name.strip("[]"))
+        except ValueError:
+            return name.lower() in self.names
+        return True
+
+    async def open_page(self, request):
+        if request.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin"):
+            return web.Response(status=403, text="Another site has asked for this page; allowed: its "
+                                "address, typed or copied into the browser.\n")
         async with self.lock:
             self.sessions = {token: s for token, s in self.sessions.items() if s.alive}
             if len(self.sessions) >= self.limit:
@@ -92,12 +117,19 @@ class Front:
 
     async def forward(self, request):
         session = self.sessions.get(request.match_info["token"])
-        if session is None or not session.alive:
-            return web.Response(status=404, content_type="text/html",
-                                text='This page has ended. <a href="/">Open a new one.</a>\n')
+        if session is not None and session.alive:
+            with contextlib.suppress(ClientConnectionError):  # it may end meanwhile
+                return await self.forward_to(session, request)
+        return web.Response(status=404, content_type="text/html",
+                            text='This page has ended. <a href="/">Open a new one.</a>\n')
+
+    async def forward_to(self, session, request):
         address = f"http://127.0.0.1:{session.port}/{request.match_info['path']}"
         if request.headers.get("Upgrade", "").lower() == "websocket":
             return await self.join(request, address)
+        if request.match_info["path"] == "ws":  # the session would wait for its messages for ever
+            return web.Response(status=426, text="This address is for web sockets.\n",
+                                headers={"Upgrade": "websocket"})
         async with self.client.get(address, params=request.query) as answer:
             kept = {name: answer.headers[name] for name in ("Content-Type", "Content-Encoding")
                     if name in answer.headers}
@@ -105,7 +137,7 @@ class Front:
 
     async def join(self, request, address):
         """A web socket to the browser and one to the session; each message goes to the other."""
-        browser = web.WebSocketResponse(max_msg_size=0)
+        browser = web.WebSocketResponse(max_msg_size=MESSAGE)
         await browser.prepare(request)
         async with self.client.ws_connect(address, max_msg_size=0) as inner:
             await asyncio.wait([asyncio.ensure_future(pump(browser, inner)),
@@ -125,8 +157,8 @@ async def pump(source, target):
 
 
 async def serve(args):
-    front = Front(args.sessions, args.life)
-    app = web.Application()
+    front = Front(args.sessions, args.life, args.name)
+    app = web.Application(middlewares=[front.check_host])
     app.add_routes(front.routes())
     app.cleanup_ctx.append(front.run)
     runner = web.AppRunner(app, access_log=None)
@@ -149,6 +181,9 @@ def main():
                         help="0.0.0.0 serves other machines, too (default: %(default)s)")
     parser.add_argument("--port", type=int, default=8080, metavar="N",
                         help="0: any that is free (default: %(default)s)")
+    parser.add_argument("--name", action="append", default=[], metavar="NAME",
+                        help="a name of this machine by which browsers may ask for the page; may be "
+                        "repeated (default: localhost)")
     parser.add_argument("--sessions", type=int, default=8, metavar="N",
                         help="the number of people at a time (default: %(default)s)")
     parser.add_argument("--life", type=int, default=LIFE, metavar="SECONDS",

@@ -18,7 +18,9 @@ STEPS = 10  # time steps within the time of the slider
 @dataclass(frozen=True)
 class Slider:
     """A number that the page asks for. With `of_diagonal`, low, high, step and default are parts of
-    the diagonal of the mesh's bounding box, and the page shows coordinates."""
+    the diagonal of the mesh's bounding box, and the page shows coordinates, in their unit. A number
+    that stands for a choice is asked for by a menu with the words in `choices`, from 0 on; one that is
+    0 or 1, without words, by a switch."""
 
     name: str
     label: str
@@ -27,12 +29,24 @@ class Slider:
     step: float
     default: float
     of_diagonal: bool = False
+    choices: tuple = ()
 
     def range(self, diagonal):
-        """low, high, step and default for a mesh with this diagonal."""
-        scale = diagonal if self.of_diagonal else 1
-        return tuple(round(number * scale, 6) if scale < 1e4 else number * scale
-                     for number in (self.low, self.high, self.step, self.default))
+        """low, high, step and default for a mesh with this diagonal: lengths with three digits."""
+        numbers = (self.low, self.high, self.step, self.default)
+        if not self.of_diagonal:
+            return numbers
+        return tuple(float(f"{number * diagonal:.3g}") for number in numbers)
+
+    @property
+    def look(self):
+        if self.choices:
+            return "menu"
+        return "switch" if (self.low, self.high, self.step) == (0, 1, 1) else "slider"
+
+
+def choice(name, label, *words):
+    return Slider(name, label, 0, len(words) - 1, 1, 0, choices=words)
 
 
 @dataclass
@@ -156,14 +170,14 @@ WEIGHT = Slider("weight", "λ (0: found from the data)", 0, 20, 0.1, 0)
 
 FILTERS = {entry.name: entry for entry in (
     Filter("heat", "Smooth: linear diffusion", "values", (
-        Slider("width", "Width (FWHM); 0: λ and time instead", 0, 0.2, 0.001, 0.03, True),
+        Slider("width", "Width (FWHM; 0: λ and time instead)", 0, 0.2, 0.001, 0.03, True),
         Slider("weight", "λ", 0, 2, 0.01, 0.05),
         Slider("time", "Time, in squared edge lengths", 0.1, 50, 0.1, 4)), run_heat),
     Filter("intrinsic_tv", "Denoise: total variation", "values", (
         WEIGHT,
         Slider("time", "Time (0: until nothing changes)", 0, 20, 0.1, 0)), run_total_variation),
     Filter("tensor_diffusion", "Along edges and lines: tensor diffusion", "values", (
-        Slider("model", "Tensor (0: Beltrami, 1: along lines, 2: along edges)", 0, 2, 1, 0),
+        choice("model", "Tensor", "Beltrami flow", "along lines", "along edges"),
         Slider("contrast", "Gradient of lines and edges, part of the range", 0.002, 0.2, 0.002, 0.02),
         Slider("weight", "λ", 0, 2, 0.01, 0),
         Slider("time", "Time, in squared edge lengths", 0.1, 100, 0.1, 4)), run_tensor_diffusion),
@@ -177,14 +191,13 @@ FILTERS = {entry.name: entry for entry in (
     Filter("harmonic_map", "Normals and vectors: harmonic map", "vectors", (
         Slider("exponent", "Exponent p: 1 keeps creases, 2 smooths evenly", 1, 2, 0.05, 1),
         Slider("time", "Time", 0.1, 50, 0.1, 10),
-        Slider("move", "Move the points along (0: no, 1: yes)", 0, 1, 1, 1)), run_normals),
+        Slider("move", "Move the points along", 0, 1, 1, 1)), run_normals),
     Filter("denoise_mesh", "The mesh without noise: surface denoising", "none", (
         Slider("noise", "Noise of the points (0: found from the mesh)", 0, 0.01, 0.0001, 0, True),
-        Slider("type", "Surface (0: found, 1: CAD, 2: organic)", 0, 2, 1, 0)), run_surface_denoising),
+        choice("type", "Surface", "found from the mesh", "CAD", "organic")), run_surface_denoising),
     Filter("turing_texture", "Texture: reaction and diffusion", "none", (
         Slider("size", "Width of a spot with its gap", 0.02, 0.3, 0.001, 0.08, True),
         Slider("seed", "Seed of the noise", 0, 100, 1, 0)), run_texture),
     Filter("direction_field", "Direction field", "none", (
-        Slider("curvature", "Along the curvature (0: smoothest, 1: yes)", 0, 1, 1, 1),),
-           run_directions),
+        Slider("curvature", "Along the curvature, not only smooth", 0, 1, 1, 1),), run_directions),
 )}

@@ -22,7 +22,7 @@ from vtkmodules.vtkRenderingCore import (
 from surfacediffusion import SurfaceDiffusionWarning
 
 from filters import FILTERS
-from meshes import FORMATS, as_polydata, example, read_mesh, result_file
+from meshes import FORMATS, as_polydata, example, read_mesh, result_file, result_names
 
 VIRIDIS = np.array([(68, 1, 84), (58, 82, 139), (32, 144, 140), (94, 201, 97), (253, 231, 36)]) / 255
 REGIONS = np.array([(102, 194, 165), (252, 141, 98), (141, 160, 203), (231, 138, 195),
@@ -47,7 +47,8 @@ class Page:
                            "filter": "heat", "arrays": [], "array": "", "sliders": [], "values": {},
                            "message": "", "note": "", "busy": False, "progress": 0, "files": None,
                            "mesh_name": "", "curve": "", "history": {"names": [], "rows": []},
-                           "formats": FORMATS, "done": 0})
+                           "formats": FORMATS, "done": 0, "unit": "", "bars": [],
+                           "download_names": [], "download_name": ""})
         self.state.trame__title = "SurfaceDiffusion"
         self.state.change("files")(self.open_files)
         self.state.change("filter", "array")(self.choose)
@@ -62,13 +63,10 @@ class Page:
         if not files:
             return
         files = files if isinstance(files, list) else [files]
-        given = {f["name"]: b"".join(f["content"]) if isinstance(f["content"], list)
-                 else f["content"] or b"" for f in files}
-        size = sum(len(content) for content in given.values()) / 2**20
+        given = [(f["name"], b"".join(f["content"]) if isinstance(f["content"], list)
+                  else f["content"] or b"") for f in files]
         try:
-            if size > MEGABYTES:
-                raise ValueError(f"the files have {size:.0f} MB; allowed: {MEGABYTES:.0f} MB")
-            mesh = read_mesh(given)
+            mesh = read_mesh(given, MEGABYTES)
         except Exception as problem:  # a file that cannot be read leaves the page as it was
             self.state.message = str(problem) or type(problem).__name__
             return
@@ -79,6 +77,7 @@ class Page:
         self.mesh, self.outcome = mesh, None
         self.state.mesh_name = (f"{mesh.name}: {mesh.surface.n_points:,} points, "
                                 f"{mesh.surface.n_faces:,} faces")
+        self.state.unit = f" {mesh.unit}" if mesh.unit else " (unit of the coordinates)"
         self.state.arrays = list(mesh.arrays)
         self.state.array = next(iter(mesh.arrays))
         self.set_sliders()
@@ -104,7 +103,9 @@ class Page:
         for slider in FILTERS[self.state.filter].sliders:
             low, high, step, default = slider.range(self.mesh.diagonal)
             shown.append({"name": slider.name, "label": slider.label, "min": low, "max": high,
-                          "step": step})
+                          "step": step, "look": slider.look, "length": slider.of_diagonal,
+                          "choices": [{"title": word, "value": i}
+                                      for i, word in enumerate(slider.choices)]})
             values[slider.name] = default
         self.state.update({"sliders": shown, "values": values})
 
@@ -159,6 +160,7 @@ class Page:
             self.state.busy, self.state.message = False, message
             self.state.note = outcome.note if outcome else ""
             self.show_history(outcome.history if outcome else {})
+            self.offer_downloads()
             self.draw()
             self.state.done += 1
 
@@ -175,8 +177,14 @@ class Page:
         self.state.history = {"names": names, "rows": rows}
         self.state.curve = curve_of(history)
 
+    def offer_downloads(self):
+        names = result_names(self.mesh, self.outcome, self.state.array) if self.outcome else []
+        if names != self.state.download_names:
+            self.state.update({"download_names": names, "download_name": names[0] if names else ""})
+
     def download(self):
-        return self.server.protocol.addAttachment(result_file(self.mesh, self.outcome))
+        return self.server.protocol.addAttachment(
+            result_file(self.mesh, self.outcome, self.state.array, self.state.download_name))
 
     # ---- picture --------------------------------------------------------------------------------
 
@@ -193,13 +201,18 @@ class Page:
             after = None if after is None else colours_of_vectors(after)
             if self.outcome is not None and self.outcome.points is not None:
                 before = after = None
-        place(self.views[0], points, triangles, before, before)
-        place(self.views[1], moved, triangles, after, after if labels or before is None else before,
-              labels)
+        bars = (place(self.views[0], points, triangles, before, before),
+                place(self.views[1], moved, triangles, after,
+                      after if labels or before is None else before, labels))
+        name = "" if labels or self.data() is None else self.state.array
+        unit = self.mesh.unit_of(name) if name else ""
+        self.state.bars = [{**bar, "left": left, "title": f"{name}, {unit}" if unit else name}
+                           for bar, left in zip(bars, (0, 50)) if bar]
         if reset:
             self.views[0][0].ResetCamera()
-            self.ctrl.reset_camera()
         self.ctrl.update_view()
+        if reset:  # after the geometry: the browser has another surface until then
+            self.ctrl.push_camera()
 
     # ---- layout ---------------------------------------------------------------------------------
 
@@ -210,9 +223,12 @@ class Page:
             with layout.toolbar:
                 v3.VSpacer()
                 html.Span("{{ mesh_name }}", id="mesh", classes="mr-4 text-body-2")
+                v3.VSelect(v_model=("download_name",), items=("download_names",), id="format",
+                           v_show="download_names.length > 1", density="compact", hide_details=True,
+                           variant="plain", style="max-width: 300px", classes="mr-2")
                 v3.VBtn("Download result", id="download", disabled=("busy || !done || !!message",),
                         prepend_icon="mdi-download", variant="tonal", classes="mr-2",
-                        click="utils.download('result.vtp', trigger('download'), "
+                        click="utils.download(download_name, trigger('download'), "
                               "'application/octet-stream')")
             with layout.drawer, v3.VContainer(classes="pa-4"):
                 v3.VFileInput(v_model=("files",), multiple=True, id="files", show_size=True,
@@ -224,14 +240,27 @@ class Page:
                 v3.VSelect(v_model=("array",), items=("arrays",), label="Array", id="array",
                            v_show="arrays.length", variant="outlined", density="compact")
                 with html.Div(v_for="s in sliders", key="s.name", id=("'slider-' + s.name",)):
-                    html.Div("{{ s.label }}: {{ values[s.name] }}", classes="text-body-2")
+                    html.Div("{{ s.label }}: {{ values[s.name] }}{{ s.length ? unit : '' }}",
+                             v_if="s.look == 'slider'", classes="text-body-2")
                     v3.VSlider(
+                        v_if="s.look == 'slider'",
                         model_value=("values[s.name]",), min=("s.min",), max=("s.max",),
                         step=("s.step",), density="compact", hide_details=True,
-                        update_modelValue="values = {...values, [s.name]: Number($event.toFixed(6))}")
+                        update_modelValue="values = {...values, "
+                                          "[s.name]: Number($event.toPrecision(6))}")
+                    v3.VSelect(
+                        v_if="s.look == 'menu'", model_value=("values[s.name]",),
+                        items=("s.choices",), label=("s.label",), id=("s.name",),
+                        variant="outlined", density="compact",
+                        update_modelValue="values = {...values, [s.name]: $event}")
+                    v3.VSwitch(
+                        v_if="s.look == 'switch'", model_value=("values[s.name]",),
+                        true_value=(1,), false_value=(0,), label=("s.label",), color="primary",
+                        density="compact", hide_details=True,
+                        update_modelValue="values = {...values, [s.name]: $event}")
                 v3.VProgressLinear(model_value=("progress",), active=("busy",), id="busy")
                 v3.VAlert("{{ message }}", v_if="message", type="error", id="message",
-                          density="compact", classes="mt-4")
+                          density="compact", classes="mt-4", style="max-height: 10em; overflow: auto")
                 html.Div("{{ note }}", id="note", classes="mt-4 text-body-2")
                 html.Div(v_html=("curve",), id="curve", classes="mt-4")
                 with v3.VTable(density="compact", height=220, fixed_header=True, id="history",
@@ -244,10 +273,17 @@ class Page:
             with layout.content, v3.VContainer(fluid=True, classes="pa-0 fill-height",
                                                style="position: relative"):
                 view = vtk_widgets.VtkLocalView(self.window, ref="view")
-                self.ctrl.update_view, self.ctrl.reset_camera = view.update, view.reset_camera
+                self.ctrl.update_view, self.ctrl.push_camera = view.update, view.push_camera
                 for left, word in ((0, "Before"), (50, "After")):
                     html.Div(word, classes="text-h6 pa-3",
                              style=f"position: absolute; top: 0; left: {left}%; pointer-events: none")
+                with html.Div(v_for="bar in bars", key="bar.left", classes="bar text-body-2 pa-3",
+                              style=("`position: absolute; bottom: 0; left: ${bar.left}%; width: 240px; "
+                                     "pointer-events: none`",)):
+                    html.Div("{{ bar.title }}")
+                    html.Div(style=("`height: 12px; background: ${bar.colours}`",))
+                    with html.Div(style="display: flex; justify-content: space-between"):
+                        html.Span("{{ word }}", v_for="word in bar.words", key="word")
                 html.Div("{{ done }}", id="done", style="display: none")
 
 
@@ -288,7 +324,8 @@ def make_window():
 
 
 def place(view, points, triangles, values, scale, labels=False):
-    """Show a surface with values; scale: the array whose range the colours have."""
+    """Show a surface with values; scale: the array whose range the colours have. Returns the colour bar:
+    CSS colours and the words below them; None for a surface without values or with colours of its own."""
     _, mapper, _ = view
     if values is not None and values.ndim == 2 and values.dtype != np.uint8:
         values, scale = (None if a is None else np.linalg.norm(a, axis=1) for a in (values, scale))
@@ -300,16 +337,21 @@ def place(view, points, triangles, values, scale, labels=False):
     mapper.SetInputData(surface)
     mapper.SetScalarVisibility(values is not None)
     if values is None:
-        return
+        return None
     if values.ndim == 2:
         mapper.SetColorModeToDirectScalars()
-        return
+        return None
     mapper.SetColorModeToMapScalars()
     finite = scale[np.isfinite(scale)] if scale.ndim == 1 else np.zeros(0)
     low, high = (finite.min(), finite.max()) if finite.size else (0.0, 1.0)
     colours = REGIONS[np.arange(max(int(high), 1)) % len(REGIONS)] if labels else VIRIDIS
     mapper.SetLookupTable(table_of(colours, 1 if labels else 256))
     mapper.SetScalarRange(*((1, max(2, int(high))) if labels else (low, high)))
+    css = [f"rgb({', '.join(str(round(255 * part)) for part in colour)})" for colour in colours]
+    if labels:  # one block each
+        css = [f"{colour} {100 * (i + k) / len(css):.4g}%" for i, colour in enumerate(css) for k in (0, 1)]
+    words = map(str, range(1, len(colours) + 1)) if labels else (f"{low:.4g}", f"{high:.4g}")
+    return {"colours": f"linear-gradient(to right, {', '.join(css)})", "words": list(words)}
 
 
 def table_of(colours, size):

@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Examples/Web driven in headless Chromium, as people would use it. Argument: the folder of the
 application."""
+import gzip
 import os
 import re
 import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+from http.client import HTTPConnection
 from pathlib import Path
 from urllib.request import urlopen
 
@@ -34,10 +37,10 @@ sys.path.insert(0, str(FOLDER))
 from filters import FILTERS  # noqa: E402
 
 
-def write_off(path, surface):
+def write_off(path, surface, centre=(0, 0, 0)):
     path.write_text("\n".join(
         [f"OFF\n{surface.n_points} {surface.n_faces} 0"]
-        + [" ".join(map(repr, point)) for point in surface.points.tolist()]
+        + [" ".join(map(repr, point)) for point in (surface.points + centre).tolist()]
         + [f"3 {a} {b} {c}" for a, b, c in surface.triangles.tolist()]) + "\n")
 
 
@@ -98,7 +101,9 @@ class TestApplication(unittest.TestCase):
         wait_for(lambda: self.runs() > runs, "its first run")
 
     def choose(self, box, title):
-        self.one(f".v-select:has(#{box}) .v-field").click()
+        field = self.one(f".v-select:has(#{box}) .v-field")
+        self.browser.execute_script("arguments[0].scrollIntoView()", field)
+        field.click()
         item = wait_for(lambda: [e for e in self.browser.find_elements(
             By.CSS_SELECTOR, ".v-overlay--active .v-list-item") if e.text.strip() == title], title)
         item[0].click()
@@ -116,13 +121,12 @@ class TestApplication(unittest.TestCase):
         picture = wait_for(lambda: self.halves_with_surface(), "two surfaces")
         canvas = self.one("canvas")
         drag(self.browser, canvas, 120, 40, at=(-200, 0))
-        left, right = np.split(picture_of(self.browser)[:, 400:1180], 2, axis=1)
-        for before, after in zip(picture, (left, right)):
+        for before, after in zip(picture, self.halves()):
             self.assertGreater(difference(before, after), 0.02)
             self.assertGreater(surface_part(after), 0.1)
 
     def halves_with_surface(self):
-        halves = np.split(picture_of(self.browser)[:, 400:1180], 2, axis=1)
+        halves = self.halves()
         return halves if min(map(surface_part, halves)) > 0.1 else None
 
     def test_smooths_a_dropped_mesh_and_the_slider_changes_the_download(self):
@@ -142,24 +146,92 @@ class TestApplication(unittest.TestCase):
                 wait_for(lambda: self.one("#download").is_enabled(), "the first result")
                 first = picture_of(self.browser)
             wait_for(lambda: self.one("#download").is_enabled(), "the end of the runs")
-            widths.append(float(self.text("#slider-width div").rsplit(": ", 1)[1]))
-            result = self.download()
+            widths.append(float(self.text("#slider-width div").rsplit(": ", 1)[1].split()[0]))
             smooth = sd.heat(self.surface, self.values, fwhm=widths[-1])
-            np.testing.assert_allclose(result, smooth, atol=1e-12)
+            # In the format of the file that was dropped, and with everything
+            np.testing.assert_allclose(np.load(self.download()), smooth, atol=1e-12)
+            self.choose("format", "result.vtp")
+            np.testing.assert_allclose(self.download_vtp(), smooth, atol=1e-12)
+            self.choose("format", "thickness_result.npy")
         self.assertGreater(widths[1], 1.5 * widths[0])
         self.assertGreater(difference(first, picture), 0.005)
         self.assertIn("Energy", self.text("#history thead"))
         self.assertIn("energy", self.text("#curve svg"))
 
     def download(self):
-        for old in self.folder.glob("result*"):
+        """The path of the file."""
+        for old in self.folder.glob("*result*"):
             old.unlink()
         self.one("#download").click()
-        wait_for(lambda: (self.folder / "result.vtp").is_file(), "the download")
+        return wait_for(lambda: [path for path in self.folder.glob("*result*")
+                                 if path.suffix != ".crdownload"], "the download")[0]
+
+    def download_vtp(self):
         reader = vtkXMLPolyDataReader()
-        reader.SetFileName(str(self.folder / "result.vtp"))
+        reader.SetFileName(str(self.download()))
         reader.Update()
         return vtk_to_numpy(reader.GetOutput().GetPointData().GetArray("Result"))
+
+    def test_frames_a_dropped_mesh_of_any_size_and_place(self):
+        self.open()
+        for number, (radius, centre) in enumerate(((50.0, 0), (0.002, 0), (300.0, 5000), (1.0, -7))):
+            with self.subTest(radius=radius):
+                name = f"ball{number}.off"
+                write_off(self.folder / name, sd.sphere(3, radius=radius), (centre, 0, centre))
+                runs = self.runs()
+                self.drop(name)
+                wait_for(lambda: name in self.text("#mesh") and self.runs() > runs, "its first run")
+                # A ball fills a third of a view, and its width does not reach the sides.
+                wait_for(lambda: all(0.2 < surface_part(half) < 0.5 and
+                                     surface_part(half[200:400, :4]) == 0 for half in self.halves()),
+                         "a ball in the middle of each view")
+                self.clear_files()
+
+    def halves(self):
+        return np.split(picture_of(self.browser)[:, 400:1180], 2, axis=1)
+
+    def clear_files(self):
+        self.browser.execute_script(
+            "arguments[0].click()", self.one(".v-file-input .v-field__clearable i"))
+
+    def test_colour_bars_have_the_range_of_the_data_and_its_name(self):
+        self.open()
+        self.drop_ball()
+        self.choose("array", "thickness.npy")
+        low, high = (f"{limit:.4g}" for limit in (self.values.min(), self.values.max()))
+        wait_for(lambda: [low, high] == [e.text for e in self.browser.find_elements(
+            By.CSS_SELECTOR, ".bar span")][:2], "the range")
+        self.assertIn("thickness.npy", self.text(".bar"))
+        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, ".bar")), 2)
+
+    def test_choices_are_menus_and_switches(self):
+        self.open()
+        self.choose("filter", FILTERS["tensor_diffusion"].title)
+        wait_for(lambda: "Beltrami" in self.text("#note"), "the first choice")
+        self.choose("model", "along lines")
+        wait_for(lambda: "CoherenceEnhancing" in self.text("#note"), "the second choice")
+        runs = self.runs()
+        self.choose("filter", FILTERS["harmonic_map"].title)
+        wait_for(lambda: self.runs() > runs and "points moved" in self.text("#note"), "moved points")
+        self.browser.execute_script("arguments[0].click()", self.one("#slider-move input"))
+        wait_for(lambda: self.runs() > runs + 1 and self.text("#note") == "", "points that stay")
+
+    def test_moved_points_are_downloaded_in_the_format_of_the_mesh(self):
+        self.open()
+        noisy = sd.sphere(4, radius=50.0)
+        noisy = sd.Surface(noisy.points + np.random.default_rng(2).normal(
+            scale=0.5, size=noisy.points.shape), noisy.triangles)
+        write_off(self.folder / "noisy.off", noisy)
+        runs = self.runs()
+        self.drop("noisy.off")
+        wait_for(lambda: "noisy.off" in self.text("#mesh") and self.runs() > runs, "the mesh")
+        self.choose("filter", FILTERS["denoise_mesh"].title)
+        wait_for(lambda: "surface, noise of" in self.text("#note"), "its run")
+        path = self.download()
+        self.assertEqual(path.name, "noisy_result.off")
+        points = np.loadtxt(path.read_text().splitlines()[2:2 + noisy.n_points])
+        error = np.abs(np.linalg.norm(points, axis=1) - 50)
+        self.assertLess(error.mean(), 0.5 * np.abs(np.linalg.norm(noisy.points, axis=1) - 50).mean())
 
     def test_every_filter_runs_and_shows_no_message(self):
         self.open()
@@ -181,18 +253,19 @@ class TestApplication(unittest.TestCase):
         (self.folder / "empty.ply").write_bytes(b"")
         np.save(self.folder / "short.npy", np.zeros(5))
         (self.folder / "large.stl").write_bytes(b"x" * (2 << 20))
+        (self.folder / "zeros.gii.gz").write_bytes(gzip.compress(b"\0" * (200 << 20)))
         self.open()
         for names, words in ((("broken.off",), "a face refers to point 7; allowed: 0 to 2"),
                              (("words.obj",), "words.obj"), (("empty.ply",), "empty.ply"),
                              (("ball.off", "short.npy"), "5 values; allowed: 2562"),
-                             (("large.stl",), "the files have 2 MB; allowed: 1 MB")):
+                             (("large.stl",), "the files have more than 1 MB, decompressed; allowed: 1 MB"),
+                             (("zeros.gii.gz",), "the files have more than 1 MB, decompressed")):
             with self.subTest(names[-1]):
                 self.drop(*names)
                 wait_for(lambda: words in self.message(), words)
                 self.assertNotIn("/tmp", self.message())
                 self.assertIn("example", self.text("#mesh"))
-                self.browser.execute_script(
-                    "arguments[0].click()", self.one(".v-file-input .v-field__clearable i"))
+                self.clear_files()
         self.drop_ball()
         self.assertEqual(self.message(), "")
 
@@ -215,12 +288,67 @@ class TestApplication(unittest.TestCase):
         self.assertIn("ball.off", self.text("#mesh"))
         wait_for(lambda: urlopen(self.address).status == 200, "the end of the closed session")
 
+    def ask(self, path="/", **headers):
+        """The status of an answer; no redirection is followed."""
+        connection = HTTPConnection("127.0.0.1", int(self.address.rstrip("/").rsplit(":", 1)[1]))
+        try:
+            connection.request("GET", path, headers={
+                name.replace("_", "-"): value for name, value in headers.items()})
+            answer = connection.getresponse()
+            answer.read()
+            return answer.status, answer.getheader("Location")
+        finally:
+            connection.close()
+
+    def wait_for_room(self):
+        """A new session; those of other tests end after a second."""
+        return wait_for(lambda: [location for status, location in [self.ask()] if status == 302],
+                        "room for a session")[0]
+
+    def test_other_sites_get_no_session(self):
+        self.assertEqual(self.ask(Host="evil.example")[0], 403)
+        self.assertEqual(self.ask(Host="evil.example:8080")[0], 403)
+        for site in ("cross-site", "same-site"):  # a picture or a link of another page
+            self.assertEqual(self.ask(Sec_Fetch_Site=site)[0], 403)
+        location = self.wait_for_room()
+        self.assertEqual(self.ask(location, Host="evil.example")[0], 403)
+        for host in ("localhost", "localhost:8080", "127.0.0.1:9000", "[::1]:8080", "192.168.1.2"):
+            self.assertEqual(self.ask(location, Host=host)[0], 200, host)
+
+    def test_a_request_without_an_upgrade_does_not_keep_the_session(self):
+        location = self.wait_for_room()
+        self.assertEqual(self.ask(location.partition("/index")[0] + "/ws")[0], 426)
+        wait_for(lambda: self.ask(location)[0] == 404, "the end of the session", 20)
+
+    def test_a_large_message_ends_the_connection_before_it_is_stored(self):
+        location = self.wait_for_room()
+        port = int(self.address.rstrip("/").rsplit(":", 1)[1])
+        with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
+            connection.sendall((f"GET {location.partition('/index')[0]}/ws HTTP/1.1\r\nHost: localhost\r\n"
+                                "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n").encode())
+            self.assertIn(b"101", connection.recv(4096))
+            before = memory_of(self.app.pid)
+            # A masked binary frame of 300 MB
+            connection.sendall(b"\x82\xff" + (300 << 20).to_bytes(8, "big") + b"\0\0\0\0")
+            with self.assertRaises(OSError):
+                for _ in range(300):
+                    connection.sendall(b"\0" * (1 << 20))
+                    time.sleep(0.001)
+        self.assertLess(memory_of(self.app.pid) - before, 60)
+
     def test_listens_to_this_machine_only(self):
         port = int(self.address.rstrip("/").rsplit(":", 1)[1])
         with socket.create_connection(("127.0.0.1", port), timeout=5):
             pass
         with self.assertRaises(OSError):  # a loopback address too, but another
             socket.create_connection(("127.0.0.2", port), timeout=5)
+
+
+def memory_of(process):
+    """MB that a process has in memory."""
+    text = Path(f"/proc/{process}/status").read_text()
+    return int(re.search(r"VmRSS:\s*(\d+)", text).group(1)) / 1024
 
 
 def surface_part(picture):
