@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkTensorDiffusionFilter
- * @brief   diffusion of point data along their own edges and lines on a triangulated surface
+ * @brief   diffusion of data along their own edges and lines on a triangulated surface
  *
  * Solves diffusion equations whose tensor D follows from the data f themselves,
  *

@@ -4,6 +4,7 @@
 documentation."""
 
 import random
+import re
 import unittest
 
 import numpy as np
@@ -23,6 +24,40 @@ NOT_CXX_PROPERTIES = {
     "Mean",  # a list: SetMean(region, component, value)
 }
 PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"]}
+
+
+# What users type into ParaView's search, which finds words of labels only.
+SEARCHES = {
+    "smooth": {"FVMHeatFilter", "HarmonicMapFilter", "TensorDiffusionFilter"},
+    "blur": {"FVMHeatFilter"},
+    "heat": {"FVMHeatFilter"},
+    "inpaint": {"FVMHeatFilter", "IntrinsicTVFilter"},
+    "denoise": {"IntrinsicTVFilter", "SurfaceDenoisingFilter"},
+    "edges": {"IntrinsicTVFilter", "MumfordShahFilter", "TensorDiffusionFilter"},
+    "lines": {"TensorDiffusionFilter"},
+    "regions": {"SurfaceSegmentationFilter"},
+    "segment": {"SurfaceSegmentationFilter"},
+    "mesh": {"SurfaceDenoisingFilter"},
+    "normals": {"HarmonicMapFilter", "SurfaceDenoisingFilter"},
+    "texture": {"TuringTextureFilter"},
+    "pattern": {"TuringTextureFilter"},
+    "direction": {"HarmonicMapFilter", "SurfaceDirectionFieldFilter"},
+    "curvature": {"SurfaceDirectionFieldFilter"},
+}
+
+# Shares, factors and exponents, which have no unit.
+WITHOUT_UNIT = {
+    "AlongDiffusivity", "AcrossDiffusivity", "Tolerance", "StopTolerance", "Alpha", "Exponent",
+    "ChromaWeight", "ChromaticityExponent", "InitialNoise",
+}
+# The unit in the first sentence of a property's documentation
+UNIT = re.compile(r"\bunits? of|in any unit|without a unit|in the unit|in degrees|in R\b|in R/h"
+                  r"|in \(R/h\)|in 1/|in length")
+
+
+def in_menu(name):
+    """The prototype of the filter in the menu."""
+    return servermanager.ProxyManager().GetPrototypeProxy("filters", name)
 
 
 def proxies():
@@ -68,7 +103,8 @@ def offered(proxy):
         hints = prop.GetHints()
         decorators = [] if hints is None else [
             hints.GetNestedElement(n) for n in range(hints.GetNumberOfNestedElements())]
-        if iterator.GetKey() != "Input" and not prop.GetInformationOnly() and all(
+        shown = not prop.GetInformationOnly() and prop.GetPanelVisibility() != "never"
+        if iterator.GetKey() != "Input" and shown and all(
                 holds(proxy, element) for element in decorators
                 if element.GetName() == "PropertyWidgetDecorator"):
             yield iterator.GetKey()
@@ -129,6 +165,7 @@ def sphere_with_arrays():
     add(data.GetPointData(), "f", points[:, 2] + 0.1 * np.cos(50 * points[:, 0]))
     add(data.GetPointData(), "hole", points[:, 0] > 0.3)
     add(data.GetPointData(), "ends", points[:, 2] < -0.4)
+    add(data.GetPointData(), "pair", points[:, :2])
     add(data.GetPointData(), "weight", 1.0 + points[:, 1] ** 2)
     add(data.GetPointData(), "east", np.tile([1.0, 0.0, 0.0], (len(points), 1)))
     add(data.GetCellData(), "g", np.cos(np.arange(cells)))
@@ -144,18 +181,44 @@ class TestProxies(unittest.TestCase):
     def test_there_are_filters(self):
         self.assertIn("FVMHeatFilter", filter_names())
 
-    def test_proxy_is_named_like_its_class_and_made_by_paraview_simple(self):
+    def test_scripts_make_filters_by_the_names_of_their_classes_and_by_their_labels(self):
         for name, proxy, cxx in proxies():
-            self.assertEqual(proxy.SMProxy.GetVTKClassName(), cxx.__name__)
-            self.assertTrue(hasattr(simple, name), name)
+            label = make_name_valid(in_menu(name).GetXMLLabel())
+            made = {each: getattr(simple, each)(sphere_with_arrays()) for each in (name, label)}
+            for each in made.values():
+                self.assertEqual(each.SMProxy.GetVTKClassName(), cxx.__name__)
+                self.assertEqual(each.ListProperties(), proxy.ListProperties())
+            self.assertEqual(made[label].SMProxy.GetXMLName(), name)  # as in state files
+            self.assertEqual(getattr(simple, name).__doc__, getattr(simple, label).__doc__)
 
-    def test_proxy_has_help_and_a_place_in_the_menu(self):
+    def test_only_the_proxy_with_the_label_is_in_the_menu(self):
         for name, proxy, _ in proxies():
-            text = proxy.SMProxy.GetDocumentation()
+            text = in_menu(name).GetDocumentation()
             for part in (text.GetShortHelp(), text.GetLongHelp(), text.GetDescription()):
                 self.assertGreater(len(part or ""), 20, name)
-            menu = proxy.SMProxy.GetHints().FindNestedElementByName("ShowInMenu")
+            hints = in_menu(name).GetHints()
+            menu = hints.FindNestedElementByName("ShowInMenu")
             self.assertEqual(menu.GetAttribute("category"), "Surface Diffusion", name)
+            self.assertIsNone(hints.FindNestedElementByName("ReaderFactory"), name)
+            hints = proxy.SMProxy.GetHints()
+            self.assertIsNotNone(hints.FindNestedElementByName("ReaderFactory"), name)
+
+    def test_labels_have_the_words_that_users_search_for(self):
+        labels = {name: in_menu(name).GetXMLLabel().lower() for name in filter_names()}
+        for word, expected in SEARCHES.items():
+            self.assertEqual({name for name in labels if word in labels[name]}, expected, word)
+        self.assertEqual(set.union(*SEARCHES.values()), set(labels))
+        # All columns of the menu Alphabetical are as wide as its longest label.
+        self.assertLessEqual(max(map(len, labels.values())), len("Extract Cells Along Lines Custom Source"))
+
+    def test_the_documentation_of_a_number_begins_with_its_unit(self):
+        for name, key, prop, _ in properties():
+            if not prop.IsA("vtkSMDoubleVectorProperty") or prop.GetInformationOnly():
+                continue
+            if prop.GetNumberOfElements() != 1 or key in WITHOUT_UNIT:
+                continue
+            text = " ".join(prop.GetDocumentation().GetDescription().split())
+            self.assertRegex(text.split(". ")[0], UNIT, name)
 
     def test_ports_have_names(self):
         for name, proxy, cxx in proxies():
@@ -245,7 +308,8 @@ class TestProxies(unittest.TestCase):
             ("SurfaceDenoisingFilter", ["SurfaceType", "NoiseLevel"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
-            ("SurfaceSegmentationFilter", ["NumberOfRegions", "AutomaticFidelity", "Mean", "AutomaticMeans"]),
+            ("SurfaceSegmentationFilter",
+             ["NumberOfRegions", "AutomaticFidelity", "AutomaticMeans"]),
             ("TensorDiffusionFilter", ["Model", "ColorScale", "Metric", "FidelityWeight"]),
             ("TuringTextureFilter",
              ["Kinetics", "FeatureSize", "DiffusionRate1", "DiffusionRate2", "GrowthRate",
@@ -266,6 +330,39 @@ class TestProxies(unittest.TestCase):
             found = [key for key in offered(proxy) if not is_advanced(proxy, key)]
             self.assertLessEqual(len(found), 10, (name, found))
             self.assertGreaterEqual(len(found), 3, (name, found))
+
+    def test_the_panel_offers_a_choice_only_where_there_is_one(self):
+        for name, proxy, _ in proxies():
+            for key in offered(proxy):
+                entries = proxy.SMProxy.GetProperty(key).FindDomain("vtkSMEnumerationDomain")
+                if entries is not None:
+                    self.assertGreater(entries.GetNumberOfEntries(), 1, (name, key))
+
+    def test_the_panel_offers_no_property_that_has_no_effect(self):
+        for name, values, hidden in (
+            ("SurfaceSegmentationFilter", {},
+             {"DirectionArray", "FixedArray", "TimeStep", "NumberOfTimeSteps", "GenerateTimeSteps",
+              "OutputInterval", "CheckpointMemoryLimit", "TimeIntegrator", "Solver", "Tolerance",
+              "MaximumNumberOfIterations", "Mean"}),
+            ("MumfordShahFilter", {}, {"TimeIntegrator", "TimeStep", "RandomSeed"}),
+            ("TensorDiffusionFilter", {}, {"TimeIntegrator", "RandomSeed"}),
+            ("HarmonicMapFilter", {}, {"TimeIntegrator"}),
+            ("TuringTextureFilter", dict(InputArray=["POINTS", "pair"]), {"InitialNoise"}),
+            ("TuringTextureFilter", dict(DiffusionRateArray=["CELLS", "rates"]),
+             {"DiffusionRate1", "DiffusionRate2"}),
+        ):
+            proxy = getattr(servermanager.filters, name)(Input=sphere_with_arrays())
+            shown = set(offered(proxy))
+            if values:
+                self.assertLessEqual(hidden, shown, name)
+            for key, value in values.items():
+                setattr(proxy, key, value)
+            self.assertEqual(set(offered(proxy)) & hidden, set(), (name, values))
+            self.assertLessEqual(hidden, set(proxy.ListProperties()), name)  # for scripts
+        regions = servermanager.filters.SurfaceSegmentationFilter(AutomaticMeans=0)
+        self.assertIn("Mean", list(offered(regions)))
+        heat = servermanager.filters.FVMHeatFilter(InitialFill="Noise")
+        self.assertIn("RandomSeed", list(offered(heat)))
 
     def test_lengths_have_a_domain_with_a_reset_button_and_are_off_at_first(self):
         lengths = {"FWHM", "FeatureSize", "SmoothingLength", "MergeTolerance"}

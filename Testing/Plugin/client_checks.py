@@ -5,7 +5,7 @@ and each prints one line that the test requires."""
 
 import os
 
-from paraview import smtrace
+from paraview import make_name_valid, smtrace
 from paraview.simple import (
     AssignViewToLayout, ColorBy, CreateView, Delete, FindSource, GetActiveSource, GetActiveView,
     GetAnimationScene, GetColorTransferFunction, GetDisplayProperties, GetLayout, GetSources,
@@ -122,11 +122,13 @@ def start_recording():
 def check_recording():
     """After the filter is deleted, the trace creates it again with the same picture."""
     trace = smtrace.stop_trace()
-    assert "FVMHeatFilter(" in trace and "NumberOfTimeSteps = 10" not in trace, trace
+    name = make_name_valid(GetActiveSource().SMProxy.GetXMLLabel())
+    assert name + "(" in trace and "NumberOfTimeSteps = 10" not in trace, trace
     Delete(GetActiveSource())
-    assert FindSource("FVMHeatFilter1") is None
+    assert FindSource(name + "1") is None
     exec(compile(trace, "trace", "exec"), {"__name__": "trace"})
-    SetActiveSource(FindSource("FVMHeatFilter1"))
+    SetActiveSource(FindSource(name + "1"))
+    assert name_of(GetActiveSource()) == "FVMHeatFilter"
     check_steps(10, end=True)
     say("as expected: trace")
 

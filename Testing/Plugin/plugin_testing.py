@@ -25,7 +25,7 @@ PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "Plugin")
 
 
 def filter_names():
-    """The names of the plugin's filters, all that its XML files define."""
+    """The names of all filters of the plugin: those that its XML files define."""
     return [
         proxy.get("name")
         for path in sorted(glob.glob(os.path.join(PLUGIN, "*.xml")))
