@@ -82,8 +82,9 @@ class _Commands:
         parser.add_argument("--quiet", action="store_true",
                             help="print nothing but errors: no progress bar, no summary")
         parser.add_argument("--threads", metavar="N", type=_threads,
-                            help="the number of threads (default: all processors, as 0); the "
-                                 "result does not depend on it")
+                            help="the number of threads, 0: all processors (default: that of the "
+                                 "variable SURFACEDIFFUSION_NUM_THREADS, else of OMP_NUM_THREADS, else "
+                                 "0); the result does not depend on it")
         return parser
 
     def surface(self, parser, required=True):
