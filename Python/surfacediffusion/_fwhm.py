@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._functions import heat
 from ._run import find_result_type
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, data_components
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_outside, as_surface, data_components
 
 #: exp(-d^2 / (4 sigma^2)) = exp(-d^2 * _RATE / FWHM^2), since FWHM^2 = 8 ln 2 sigma^2.
 _RATE = 2.0 * np.log(2.0)
@@ -36,6 +36,7 @@ def estimate_fwhm(
     residuals: ArrayLike,
     *,
     mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
     demean: bool = True,
 ) -> FWHMEstimate:
     """Estimate the smoothness of noise: the FWHM of the Gaussian kernel that white noise has to be
@@ -49,6 +50,8 @@ def estimate_fwhm(
         Noise maps without signal, such as the residuals of a regression. NaN is missing.
     mask : array_like, shape (n,), optional
         Nonzero leaves a point out.
+    roi : array_like, shape (n,), optional
+        The region of interest, in place of `mask`: zero and NaN leave a point out.
     demean : bool, default True
         Whether the mean over the surface is first subtracted from each column. The part of the
         variance that is expected to go with it is taken into account.
@@ -96,7 +99,7 @@ def estimate_fwhm(
     """
     surface = as_surface(surface)
     maps = as_data("residuals", residuals, surface.n_points)
-    masked = as_flags("mask", mask, surface.n_points)
+    masked = as_flags("mask", _as_mask(mask, roi, surface), surface.n_points)
     if not isinstance(demean, (bool, np.bool_)):
         raise ValueError(f"demean is {shorten(demean)}; allowed: True or False")
     edges = _Edges(surface)
@@ -136,6 +139,15 @@ def estimate_fwhm(
     pooled = _solve(products[varying].mean(), variances[varying].mean(axis=0), edges.squares,
                     areas[varying].mean())
     return FWHMEstimate(pooled, columns)
+
+
+def _as_mask(mask: Any, roi: Any, surface: Surface) -> Any:
+    """The mask of points, or that of the region of interest."""
+    if roi is None:
+        return mask
+    if mask is not None:
+        raise ValueError("mask and roi are both given; allowed: one of them")
+    return as_outside(roi, surface.n_points)
 
 
 class _Edges:
@@ -213,6 +225,7 @@ def smooth_to_fwhm(
     *,
     residuals: ArrayLike | None = None,
     mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
     demean: bool = True,
     tolerance: float = 0.005,
     dtype: Any = None,
@@ -238,6 +251,8 @@ def smooth_to_fwhm(
         The noise of the data.
     mask : array_like, shape (n,), optional
         Nonzero is outside the region of interest: not smoothed, and nothing flows across.
+    roi : array_like, shape (n,), optional
+        The region of interest, in place of `mask`: nonzero is inside.
     demean : bool, default True
         As for :func:`estimate_fwhm`.
     tolerance : float, from 1e-4 to 0.1, default 0.005
@@ -273,6 +288,7 @@ def smooth_to_fwhm(
             allowed = "finite numbers above 0" if name == "fwhm" else "0.0001 to 0.1"
             raise ValueError(f"{name} is {shorten(number)}; allowed: {allowed}")
     data = as_data("values", values, surface.n_points)
+    mask = _as_mask(mask, roi, surface)
     find_result_type(data, dtype)
     if residuals is None:
         noise = np.asarray(data, dtype=np.float64)

@@ -45,11 +45,17 @@ class Setting:
     words: tuple[str, ...] = ()  #: of a choice
     usable: tuple[str, ...] = ()  #: the words that may be chosen
 
+    @functools.cached_property
+    def spellings(self) -> dict[str, str]:
+        """The word for each spelling of a choice: as in C++, and in snake_case."""
+        return {spelling: word for word in self.usable for spelling in (word, snake_case(word))}
+
     def convert(self, value: Any) -> Any:
         """The value for C++. ValueError if it has another type or is no word."""
         if self.kind == "choice":
-            if isinstance(value, str) and value in self.usable:
-                return self.words.index(value)
+            word = self.spellings.get(value) if isinstance(value, str) else None
+            if word is not None:
+                return self.words.index(word)
         elif self.kind == "switch":
             if isinstance(value, (bool, np.bool_)):
                 return bool(value)
@@ -64,7 +70,8 @@ class Setting:
                 return operator.index(int(value))
         elif isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "iuf":
             return self.convert(value[()])
-        raise ValueError(f"{self.keyword} is {shorten(value)}; allowed: {self.allowed}")
+        hint = ", or in snake_case" if self.kind == "choice" else ""
+        raise ValueError(f"{self.keyword} is {shorten(value)}; allowed: {self.allowed}{hint}")
 
 
 def shorten(value: Any) -> str:

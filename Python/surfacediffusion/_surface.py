@@ -72,6 +72,19 @@ def as_flags(name: str, values: Any, points: int | None = None) -> NDArray[np.ui
     return np.ascontiguousarray(array != 0, dtype=np.uint8)
 
 
+def as_outside(roi: Any, *sizes: int) -> NDArray[np.bool_]:
+    """The mask of the outside of a region of interest, which has one of these sizes."""
+    array = np.ma.getdata(as_numbers("roi", roi))
+    if array.shape not in [(size,) for size in sizes]:
+        allowed = " or ".join(f"({size},)" for size in sizes)
+        raise ValueError(f"roi has shape {array.shape}; allowed: {allowed}, one flag per point"
+                         + (" or face" if len(sizes) > 1 else ""))
+    if not ((array != 0) & ~np.isnan(array)).any():
+        raise ValueError("roi is 0 everywhere; allowed: nonzero in the region of interest")
+    outside: NDArray[np.bool_] = (array == 0) | np.isnan(array)
+    return outside
+
+
 def as_factors(name: str, values: Any) -> NDArray[np.float64] | None:
     """Numbers; None stays."""
     if values is None:

@@ -48,7 +48,7 @@ class Areas(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, message):
                 Surface(POINTS, FACES, areas)
         with self.assertRaisesRegex((ValueError, RuntimeError), "allowed: off on surfaces with given"):
-            heat(Surface(POINTS, FACES, AREAS), VALUES, intrinsic_delaunay=True)
+            heat(Surface(POINTS, FACES, AREAS), VALUES, fwhm=6, intrinsic_delaunay=True)
 
 
 if __name__ == "__main__":

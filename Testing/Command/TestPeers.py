@@ -127,12 +127,12 @@ class LaPy(unittest.TestCase):
         np.testing.assert_allclose(areas, np.bincount(faces.ravel()) / 6)
         self.assertAlmostEqual(areas.sum(), 6)
         # The library's areas are the same: the integral in its history is that of 1.
-        result = heat((points, faces), np.ones(8), number_of_time_steps=1, full_output=True)
+        result = heat((points, faces), np.ones(8), number_of_time_steps=1, full_output=True, time_step=1)
         np.testing.assert_allclose(result.history["Total_0"], 6)
         for i in range(8):
             one = np.arange(8) == i
             result = heat((points, faces), one.astype(float), number_of_time_steps=0,
-                          full_output=True)
+                          full_output=True, time_step=1)
             self.assertAlmostEqual(result.history["Total_0"][0], areas[i])
 
 

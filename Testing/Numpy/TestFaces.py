@@ -35,33 +35,34 @@ class TestFaces(unittest.TestCase):
         areas = face_areas(self.surface)
         for function in (heat, intrinsic_tv):
             for keep in (True, False):
-                result = function(self.surface, self.noise, keep_face_detail=keep)
+                result = function(self.surface, self.noise, time_step=1, keep_face_detail=keep)
                 self.assertEqual(result.shape, self.noise.shape)
                 np.testing.assert_allclose(areas @ result, areas @ self.noise, atol=1e-11)
         self.assertEqual(
-            heat(self.surface, self.noise, result_on_faces=False).shape, (self.surface.n_points,))
+            heat(self.surface, self.noise, time_step=1, result_on_faces=False).shape,
+            (self.surface.n_points,))
         two = np.stack([self.noise, -self.noise], axis=1)
-        self.assertEqual(heat(self.surface, two).shape, two.shape)
+        self.assertEqual(heat(self.surface, two, time_step=1).shape, two.shape)
 
     def test_nothing_changes_without_a_step(self):
-        same = heat(self.surface, self.noise, number_of_time_steps=0)
+        same = heat(self.surface, self.noise, number_of_time_steps=0, time_step=1)
         np.testing.assert_array_equal(same, self.noise)
 
     def test_many_columns_are_those_of_single_runs(self):
         many = np.random.default_rng(1).normal(size=(self.surface.n_faces, 40))
         for on_faces in (True, False):
-            result = heat(self.surface, many, result_on_faces=on_faces)
+            result = heat(self.surface, many, result_on_faces=on_faces, time_step=1)
             np.testing.assert_array_equal(
-                result[:, 35], heat(self.surface, many[:, 35], result_on_faces=on_faces))
+                result[:, 35], heat(self.surface, many[:, 35], result_on_faces=on_faces, time_step=1))
 
     def test_equal_numbers_mean_points_unless_the_keyword_says_otherwise(self):
         torus = quad_torus()
         self.assertEqual(torus.n_points, torus.n_faces)
         values = np.random.default_rng(2).normal(size=torus.n_points)
-        of_points = heat(torus, values, number_of_time_steps=2)
-        of_faces = heat(torus, values, number_of_time_steps=2, on_faces=True)
+        of_points = heat(torus, values, number_of_time_steps=2, time_step=1)
+        of_faces = heat(torus, values, number_of_time_steps=2, on_faces=True, time_step=1)
         np.testing.assert_array_equal(
-            of_points, heat(torus, values, number_of_time_steps=2, on_faces=False))
+            of_points, heat(torus, values, number_of_time_steps=2, on_faces=False, time_step=1))
         self.assertGreater(np.abs(of_points - of_faces).max(), 0.1)
         mask = np.zeros(torus.n_points, bool)
         mask[[100, 101, 116, 117]] = True
@@ -78,13 +79,16 @@ class TestFaces(unittest.TestCase):
         marked = np.zeros(surface.n_points, bool)
         marked[surface.triangles[of_faces]] = True
         np.testing.assert_array_equal(
-            heat(surface, values, mask=of_faces), heat(surface, values, mask=marked))
+            heat(surface, values, mask=of_faces, time_step=1),
+            heat(surface, values, mask=marked, time_step=1))
         np.testing.assert_array_equal(
-            heat(surface, values, fixed=of_faces), heat(surface, values, fixed=marked))
+            heat(surface, values, fixed=of_faces, time_step=1),
+            heat(surface, values, fixed=marked, time_step=1))
         np.testing.assert_array_equal(
-            heat(surface, self.noise, mask=near), heat(surface, self.noise, mask=of_faces))
-        heat(surface, values, fidelity=np.ones(surface.n_faces), fidelity_weight=1.0)
-        excluded = heat(surface, self.noise, mask=of_faces, mask_mode="Exclude")
+            heat(surface, self.noise, mask=near, time_step=1),
+            heat(surface, self.noise, mask=of_faces, time_step=1))
+        heat(surface, values, fidelity=np.ones(surface.n_faces), fidelity_weight=1.0, time_step=1)
+        excluded = heat(surface, self.noise, mask=of_faces, mask_mode="Exclude", time_step=1)
         np.testing.assert_array_equal(excluded[of_faces], self.noise[of_faces])
         self.assertGreater(np.abs(excluded - self.noise)[~of_faces].min(), 0.0)
 
@@ -113,16 +117,16 @@ class TestFaces(unittest.TestCase):
 
     def test_errors_name_faces(self):
         with self.assertRaisesRegex(ValueError, r"one row per point, or \(5120,\)"):
-            heat(self.surface, np.zeros(7))
+            heat(self.surface, np.zeros(7), time_step=1)
         with self.assertRaisesRegex(ValueError, "on_faces is 3; allowed: True, False or None"):
-            heat(self.surface, self.noise, on_faces=3)
+            heat(self.surface, self.noise, on_faces=3, time_step=1)
         with self.assertRaisesRegex(ValueError, "one row per face"):
-            heat(self.surface, self.surface.points[:, 2], on_faces=True)
+            heat(self.surface, self.surface.points[:, 2], on_faces=True, time_step=1)
         with self.assertRaisesRegex(ValueError, r"mask has shape \(3,\); allowed: \(2562,\), one flag"):
-            heat(self.surface, self.noise, mask=[0, 1, 0])
+            heat(self.surface, self.noise, mask=[0, 1, 0], time_step=1)
         infinite = np.where(np.arange(self.surface.n_faces) == 9, np.inf, self.noise)
         with self.assertRaisesRegex(ValueError, "values is infinite at face 9"):
-            heat(self.surface, infinite)
+            heat(self.surface, infinite, time_step=1)
 
 
 if __name__ == "__main__":

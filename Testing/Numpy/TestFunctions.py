@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import pickle
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -67,9 +68,10 @@ class Heat(unittest.TestCase):
         noise[random.random(surface.n_points) < 0.1, 149] = np.nan
         mask = random.random(surface.n_points) < 0.1
         for options in ({"fwhm": 0.3}, {"fwhm": 0.3, "mask_mode": "Exclude", "mask": mask},
-                        {"fidelity_weight": 1.0, "initial_fill": "Input", "mask": mask},
+                        {"fidelity_weight": 1.0, "initial_fill": "Input", "mask": mask, "time_step": 1},
                         {"mode": "SteadyState", "hold_known_values": True},
-                        {"initial_fill": "Noise"}, {"dtype": np.float64, "fixed": ~mask & False}):
+                        {"initial_fill": "Noise", "time_step": 1},
+                        {"dtype": np.float64, "fixed": ~mask & False, "time_step": 1}):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 panels = sd.heat(surface, noise, **options)
@@ -82,17 +84,17 @@ class Heat(unittest.TestCase):
         noise = np.random.default_rng(1).normal(size=(surface.n_points, 150))
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            sd.heat(surface, noise, mask=np.zeros(surface.n_points))
+            sd.heat(surface, noise, mask=np.zeros(surface.n_points), time_step=1)
         self.assertEqual(["the mask changes nothing with these settings"],
                          [str(warning.message) for warning in caught])
         noise[7, 140] = np.inf
         with self.assertRaisesRegex(ValueError, "values is infinite at point 7"):
-            sd.heat(surface, noise)
+            sd.heat(surface, noise, time_step=1)
 
     def test_progress_of_many_columns_grows_to_one(self):
         surface = sd.sphere(3)
         fractions = []
-        sd.heat(surface, np.ones((surface.n_points, 150)), progress=fractions.append)
+        sd.heat(surface, np.ones((surface.n_points, 150)), progress=fractions.append, time_step=1)
         self.assertEqual(fractions, sorted(fractions))
         self.assertEqual(fractions[-1], 1.0)
 
@@ -299,9 +301,64 @@ class Keywords(unittest.TestCase):
                 defaults["number_of_time_steps"] = 3
                 expected = np.asarray(function(surface, *values, number_of_time_steps=3))
             else:
-                expected = np.asarray(function(surface, *values))
+                needed = {"time_step": 1.0} if name == "heat" else {}
+                expected = np.asarray(function(surface, *values, **needed))
             np.testing.assert_array_equal(np.asarray(function(surface, *values, **defaults)),
                                           expected)
+
+    def test_words_may_be_in_snake_case(self):
+        surface = sd.sphere(2)
+        z = surface.points[:, 2]
+        for function in ("heat", "intrinsic_tv", "tensor_diffusion", "mumford_shah", "turing_texture",
+                         "harmonic_map", "direction_field", "denoise_mesh", "segment"):
+            for setting in sd._settings.settings_of(function).values():
+                for word in setting.usable:
+                    spelling = sd._settings.snake_case(word)
+                    self.assertRegex(spelling, "^[a-z0-9_]+$")
+                    self.assertEqual(setting.convert(spelling), setting.convert(word))
+        np.testing.assert_array_equal(
+            sd.heat(surface, z, mode="steady_state", fidelity_weight=2.0, mask_mode="exclude"),
+            sd.heat(surface, z, mode="SteadyState", fidelity_weight=2.0, mask_mode="Exclude"))
+        for word in ("steadystate", "STEADY_STATE", "steady state"):
+            with self.assertRaisesRegex(ValueError, "TimeSteps, SteadyState, or in snake_case"):
+                sd.heat(surface, z, mode=word)
+
+    def test_a_region_of_interest_is_the_opposite_of_a_mask(self):
+        surface = sd.sphere(3)
+        z = surface.points[:, 2]
+        noise = np.random.default_rng(3).normal(size=z.size)
+        inside = np.where(z > 0.2, 3.0, 0.0)
+        inside[z < -0.9] = np.nan
+        outside = ~(inside > 0)
+        functions = {
+            "heat": {"fwhm": 0.5}, "intrinsic_tv": {"number_of_time_steps": 2},
+            "tensor_diffusion": {"number_of_time_steps": 2}, "mumford_shah": {},
+            "segment": {"fidelity_weight": 2.0}}
+        for name, options in functions.items():
+            function = getattr(sd, name)
+            found = np.asarray(function(surface, noise, roi=inside, **options))
+            np.testing.assert_array_equal(found, np.asarray(function(
+                surface, noise, mask=outside, mask_mode="Exclude", **options)), name)
+            if name != "segment":
+                np.testing.assert_array_equal(found[outside], noise[outside], name)
+                self.assertTrue((found[~outside] != noise[~outside]).mean() > 0.9, name)
+        for name in ("turing_texture", "harmonic_map"):
+            options = {"number_of_time_steps": 2}
+            np.testing.assert_array_equal(
+                np.asarray(getattr(sd, name)(surface, roi=inside, **options)),
+                np.asarray(getattr(sd, name)(surface, mask=outside, mask_mode="Exclude", **options)))
+        centres = surface.points[surface.triangles].mean(axis=1)[:, 2]
+        np.testing.assert_array_equal(
+            sd.heat(surface, centres, fwhm=0.5, roi=centres > 0),
+            sd.heat(surface, centres, fwhm=0.5, mask=centres <= 0, mask_mode="Exclude"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            np.testing.assert_array_equal(sd.heat(surface, noise, fwhm=0.5, roi=np.ones(z.size)),
+                                          sd.heat(surface, noise, fwhm=0.5))
+        self.assertEqual(sd.estimate_fwhm(surface, noise, roi=inside).pooled,
+                         sd.estimate_fwhm(surface, noise, mask=outside).pooled)
+        np.testing.assert_array_equal(sd.smooth_to_fwhm(surface, noise, 0.8, roi=z > -0.5),
+                                      sd.smooth_to_fwhm(surface, noise, 0.8, mask=z <= -0.5))
 
     def test_unknown_keyword_is_a_type_error_with_the_nearest(self):
         with self.assertRaisesRegex(TypeError, "'fhwm'; did you mean 'fwhm'"):
@@ -322,19 +379,20 @@ class Results(unittest.TestCase):
         self.values = np.random.default_rng(1).normal(size=self.surface.n_points)
 
     def test_steps_are_the_states_of_runs_of_that_length(self):
-        states = list(sd.heat(self.surface, self.values, steps=True, number_of_time_steps=5))
+        states = list(sd.heat(self.surface, self.values, time_step=1, steps=True,
+                              number_of_time_steps=5))
         self.assertEqual([state.step for state in states], list(range(6)))
         np.testing.assert_array_equal(states[0].values, self.values)
         for state in states:
             self.assertAlmostEqual(state.time, state.step * 1.0)
-        last = sd.heat(self.surface, self.values, number_of_time_steps=5, full_output=True)
+        last = sd.heat(self.surface, self.values, number_of_time_steps=5, full_output=True, time_step=1)
         np.testing.assert_array_equal(states[-1].values, last.values)
         np.testing.assert_array_equal(states[-1].history["Energy"], last.history["Energy"])
 
     def test_iterators_do_not_disturb_other_calls(self):
-        one = sd.heat(self.surface, self.values, steps=True)
-        two = sd.heat(self.surface, 2 * self.values, steps=True)
-        expected = list(sd.heat(self.surface, self.values, steps=True))
+        one = sd.heat(self.surface, self.values, steps=True, time_step=1)
+        two = sd.heat(self.surface, 2 * self.values, steps=True, time_step=1)
+        expected = list(sd.heat(self.surface, self.values, steps=True, time_step=1))
         for a, b, wanted in zip(one, two, expected):
             sd.heat(self.surface, self.values, fwhm=0.5)
             np.testing.assert_array_equal(a.values, wanted.values)
@@ -345,7 +403,8 @@ class Results(unittest.TestCase):
             sd.heat(self.surface, self.values, steps=True, time_step=0)
 
     def test_energy_falls_and_times_grow(self):
-        result = sd.heat(self.surface, self.values, number_of_time_steps=4, full_output=True)
+        result = sd.heat(self.surface, self.values, time_step=1, number_of_time_steps=4,
+                         full_output=True)
         self.assertEqual(len(result.times), 5)
         self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
         self.assertTrue((np.diff(result.times) > 0).all())
@@ -419,7 +478,7 @@ class Warnings(unittest.TestCase):
         points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]])
         surface = sd.Surface(points, [[0, 1, 2], [3, 5, 4]])
         with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "set merge_coincident_points"):
-            sd.heat(surface, np.zeros(6))
+            sd.heat(surface, np.zeros(6), time_step=1)
 
 
 class Interruption(unittest.TestCase):
@@ -459,7 +518,7 @@ class Interruption(unittest.TestCase):
         self.assertEqual(seen, sorted(seen))
         self.assertEqual(seen[-1], 1.0)
         seen.clear()
-        for _ in sd.heat(surface, surface.points[:, 2], steps=True, progress=seen.append):
+        for _ in sd.heat(surface, surface.points[:, 2], steps=True, progress=seen.append, time_step=1):
             pass
         self.assertEqual(seen, sorted(seen))
         self.assertEqual((len(seen) >= 11, seen[-1]), (True, 1.0))
@@ -515,6 +574,27 @@ class Threads(unittest.TestCase):
         for other in results[1:]:
             for a, b in zip(results[0], other):
                 np.testing.assert_array_equal(a, b)
+
+    def test_the_environment_gives_the_number_at_first(self):
+        program = ("import surfacediffusion as s; n = s.get_number_of_threads(); "
+                   "s.set_number_of_threads(0); print(n, s.get_number_of_threads())")
+        processors = len(os.sched_getaffinity(0))
+        for own, openmp, expected, warning in (
+                ("3", "5", 3, ""), ("", "5", 5, ""), (None, "4,2", 4, ""), (None, None, processors, ""),
+                ("0", "5", 5, "SURFACEDIFFUSION_NUM_THREADS is '0'; allowed: 1 to 1024 threads"),
+                ("many", None, processors, "SURFACEDIFFUSION_NUM_THREADS is 'many'; allowed: "),
+                (None, "-1", processors, "OMP_NUM_THREADS is '-1'; allowed: 1 to 1024 threads"),
+                ("99999999999999999999", None, processors, "allowed: 1 to 1024 threads")):
+            given = {"SURFACEDIFFUSION_NUM_THREADS": own, "OMP_NUM_THREADS": openmp}
+            environment = {k: v for k, v in {**os.environ, **given}.items() if v is not None}
+            for name in given:
+                if given[name] is None:
+                    environment.pop(name, None)
+            done = subprocess.run([sys.executable, "-c", program], env=environment, check=True,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.stdout.split(), [str(expected), str(processors)], given)
+            self.assertEqual(done.stderr.count("SurfaceDiffusionWarning"), bool(warning), done.stderr)
+            self.assertIn(warning, done.stderr)
 
     def test_one_surface_serves_several_threads(self):
         surface = sd.sphere(4)
