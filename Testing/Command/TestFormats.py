@@ -573,7 +573,7 @@ class GIFTI(FormatTest):
         self.assertEqual(len(read_data("c.gii").parts[0].values), N)
         self.refused("a.gii: damaged GIFTI file", "info", "a.gii")
         os.unlink("a.dat")
-        self.refused("a.gii: damaged GIFTI file: Cannot locate external file", "info", "a.gii")
+        self.refused("a.gii: there is no file a.dat with its data in the same folder", "info", "a.gii")
 
     def test_files_of_other_folders_are_not_read(self):
         for other in ("/etc/passwd", "../a.dat", "sub/a.dat"):
@@ -713,6 +713,8 @@ class Atlases(FormatTest):
         self.refused("no label '9'", *command, "a.label.gii:9")
         self.refused("values, which have no label 'a'; allowed: an atlas", *command, "one.roi:a")
         self.refused("labels, which have no mean", "smooth", "lh.white", "lh.aparc.annot", 5, "lh.out")
+        with self.assertRaisesRegex(FileError, "a.npy: values cannot be written as FreeSurfer annot"):
+            read_data("lh.aparc.annot").save("a.npy", [NOISE[:, None]])
 
     def test_a_name_may_hold_a_colon_and_a_file_as_well(self):
         os.rename("a.label.gii", "a:b.label.gii")

@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 
 try:
-    import meshio  # noqa: F401
     import nibabel as nib
     from nibabel import cifti2, freesurfer, gifti
 except ImportError as missing:

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import freesurfer_data, gifti_data, ply, vtk_files
 from .content import Content, check_output_name, import_reader, kind_of_name, read_content, reading
-from .content import FileError, write_atomically
+from .content import NAMES, FileError, write_atomically
 
 ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
            "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK polydata, NumPy (.npy)")
@@ -75,6 +75,9 @@ class Data:
         columns  the numbers of these columns; default: all. Files of meshes keep their other
                  columns, other files then hold these alone
         """
+        if self.kind not in _WRITERS:
+            raise FileError(f"{path}: values cannot be written as {NAMES[self.kind]}, the format of "
+                            f"{self.path}; allowed: formats of values")
         self.check_name(path)
         columns = list(range(len(self.names))) if columns is None else list(columns)
         for part, new in zip(self.parts, values):

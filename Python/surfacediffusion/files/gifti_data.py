@@ -29,6 +29,8 @@ def read_image(content):
             if os.path.basename(other) != other:
                 raise content.error(f"data in the file {other}; allowed: in the folder of the GIFTI "
                                     "file")
+            if other and not os.path.isfile(os.path.join(os.path.dirname(file.name), other)):
+                raise content.error(f"there is no file {other} with its data in the same folder")
             super().StartElementHandler(name, attrs)
 
     file = io.BytesIO(content.bytes)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Polydata of VTK, legacy and XML, through VTK's own readers: meshio does not read polydata. The
-package vtk is imported for such files only."""
+"""Polydata of VTK, legacy and XML, through VTK's own readers. The package vtk is imported for such files
+only."""
 from __future__ import annotations
 
 import re
