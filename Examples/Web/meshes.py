@@ -19,6 +19,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 import surfacediffusion as sd
 from surfacediffusion.files import FileError, new_data, read_data, read_surface
+from surfacediffusion.files.data import NO_VERTICES
 
 FORMATS = ("OFF, OBJ, PLY, STL, VTK, VTP, GIFTI and FreeSurfer for surfaces; the same, CIFTI apart, "
            "and MGH and NPY for values at their points")
@@ -136,6 +137,11 @@ def _add_arrays(mesh, path, optional):
             return
         raise
     values, n = data.parts[0].values, mesh.surface.n_points
+    if mesh.file.kind == "stl":
+        raise FileError(f"{path}: {NO_VERTICES}")
+    if data.parts[0].vertices is not None and not (data.parts[0].vertices < n).all():
+        raise FileError(f"{path}: vertices up to {data.parts[0].vertices.max()}; allowed: below {n}, the "
+                        f"number of points of {mesh.name}")
     if data.parts[0].vertices is None and len(values) != n:
         raise FileError(f"{path}: {len(values)} values; allowed: {n}, one per point of {mesh.name}")
     if data.parts[0].vertices is not None:

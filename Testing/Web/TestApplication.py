@@ -252,12 +252,16 @@ class TestApplication(unittest.TestCase):
         (self.folder / "words.obj").write_bytes(b"\x00\xff no mesh <script>alert(1)</script>")
         (self.folder / "empty.ply").write_bytes(b"")
         np.save(self.folder / "short.npy", np.zeros(5))
+        (self.folder / "part.stl").write_text(
+            "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+            "endloop\nendfacet\nendsolid a\n")
         (self.folder / "large.stl").write_bytes(b"x" * (2 << 20))
         (self.folder / "zeros.gii.gz").write_bytes(gzip.compress(b"\0" * (200 << 20)))
         self.open()
         for names, words in ((("broken.off",), "a face refers to point 7; allowed: 0 to 2"),
                              (("words.obj",), "words.obj"), (("empty.ply",), "empty.ply"),
                              (("ball.off", "short.npy"), "5 values; allowed: 2562"),
+                             (("part.stl", "short.npy"), "an STL file numbers no vertices"),
                              (("large.stl",), "the files have more than 1 MB, decompressed; allowed: 1 MB"),
                              (("zeros.gii.gz",), "the files have more than 1 MB, decompressed")):
             with self.subTest(names[-1]):
