@@ -687,6 +687,8 @@ class Atlases(FormatTest):
                     "a.label.gii:1"):
             self.assertEqual(self.smooth(roi, "lh.b"), expected)
         self.assertNotEqual(self.smooth("a.label.gii:2", "lh.b"), expected)
+        self.assertEqual(self.smooth("a.label.gii:Ålesund:1", "lh.b"),
+                         self.smooth("a.label.gii:2", "lh.c"))
 
     def test_an_atlas_of_cifti(self):
         from nibabel import cifti2

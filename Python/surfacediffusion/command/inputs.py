@@ -126,9 +126,12 @@ def read_marks(path, surfaces, on_faces=False):
 
 
 def _split_label(path):
-    """The file and the label of FILE:LABEL; None if no label is named."""
-    name, colon, label = path.rpartition(":")
-    return (name, label) if colon and not os.path.exists(path) and os.path.exists(name) else (path, None)
+    """The file and the label of FILE:LABEL; None if no label is named. Both may have colons."""
+    if not os.path.exists(path):
+        for colon in re.finditer(":", path):
+            if os.path.exists(path[:colon.start()]):
+                return path[:colon.start()], path[colon.end():]
+    return path, None
 
 
 def _find_label(data, label):

@@ -63,9 +63,11 @@ def read_surface(path) -> SurfaceFile:
 
 def _faces(polygons):
     """(m, 3) int for triangles, otherwise a list of polygons."""
-    if len(polygons) and all(len(polygon) == 3 for polygon in polygons):
-        return np.asarray(polygons, dtype=np.int64)
-    return polygons.tolist() if isinstance(polygons, np.ndarray) else polygons
+    if isinstance(polygons, np.ndarray):
+        return polygons if polygons.shape[1:] == (3,) else polygons.tolist()
+    if polygons and all(len(polygon) == 3 for polygon in polygons):
+        return np.array(polygons, dtype=np.int64)
+    return polygons
 
 
 def _normals(points, faces):
