@@ -32,7 +32,7 @@ bool vtkSurfaceDataDiffusionAlgorithm::FindFields(
   vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems)
 {
   const bool hasData = this->Superclass::FindFields(block, fields, problems);
-  const SurfaceDiffusion::InputArrays inputs(this, block, problems);
+  const SurfaceDiffusion::InputArrays inputs(this, block, fields, problems);
   fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
   return hasData;
 }

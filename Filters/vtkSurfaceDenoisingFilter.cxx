@@ -49,18 +49,6 @@ vtkSmartPointer<vtkDataArray> WriteDisplacement(const DenoisingRun& run, const s
   return result;
 }
 
-/// Shading by the normals of the noisy points would hide the result.
-void UpdatePointNormals(vtkPolyData* surface)
-{
-  vtkDataArray* const before = surface->GetPointData()->GetNormals();
-  if (before)
-  {
-    const auto normals = ComputePointNormals(surface);
-    normals->SetName(before->GetName());
-    surface->GetPointData()->SetNormals(normals);
-  }
-}
-
 } // namespace
 
 vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
@@ -99,11 +87,19 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   }
   const std::vector<SurfaceBlock> surfaces = this->SelectSurfaces(blocks, problems);
   std::vector<InputFields> fields(surfaces.size());
+  BlockSentences found;
+  std::vector<std::string> names;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    const InputArrays inputs(this, surfaces[b].Input, problems);
+    Problems here;
+    const InputArrays inputs(this, surfaces[b].Input, fields[b], here);
     fields[b].Fixed = inputs.Find(3, "FixedArray", 1, fields[b].FixedOnCells);
+    found.Add(here, surfaces[b].Name);
+    names.push_back(surfaces[b].Name);
   }
+  found.AppendTo(problems, surfaces.size());
+  Problems absences;
+  SettleAbsence(fields, names, problems, absences);
   if (this->ReportProblems(problems))
   {
     return;
@@ -112,7 +108,7 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   std::vector<SurfaceInput> inputs;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    inputs.push_back({ surfaces[b].Input, &fields[b] });
+    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
   }
   auto& runs = this->State->Runs;
   runs.Update(inputs, *settings, progress);
@@ -127,17 +123,30 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   ResultAdder adder(this->ResultArrayName);
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    surfaces[b].Output->SetPoints(points[b]);
     if (runs[b].Report().MaximumDisplacement > 0.0)
     {
-      UpdatePointNormals(surfaces[b].Output);
+      surfaces[b].Output->SetPoints(points[b]);
+      UpdateNormals(surfaces[b].Input, surfaces[b].Output);
     }
     adder.Add(results[b], nullptr, surfaces[b].Output->GetPointData());
   }
   this->SummarizeReports();
   std::vector<Warning> warnings = runs.FindWarnings("have no normal");
   adder.AppendWarning(warnings);
+  for (const std::string& sentence : absences)
+  {
+    warnings.push_back({ sentence, Fingerprint() });
+  }
   this->ReportWarnings(std::move(warnings));
+}
+
+/// Other normals than the active ones are not gathered.
+void vtkSurfaceDenoisingFilter::CompletePiece(const SurfaceBlock& piece)
+{
+  if (piece.Output->GetPoints() != piece.Input->GetPoints())
+  {
+    DropNormals(piece.Input, piece.Output);
+  }
 }
 
 void vtkSurfaceDenoisingFilter::SummarizeReports()

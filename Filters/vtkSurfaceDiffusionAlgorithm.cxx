@@ -4,15 +4,18 @@
 
 #include "Conversion/InputArrays.h"
 #include "Conversion/MirroredEnum.h"
+#include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
 #include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/TimeRequests.h"
+#include "Run/BlockSentences.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPointData.h"
@@ -46,6 +49,20 @@ namespace
 constexpr double MaxGatheredPoints = 1e6;
 
 const std::vector<const char*> WordsOfPrecision = { "Single", "Double", "Input" };
+
+constexpr int DirectionIndex = 2;
+
+/// Where there is no direction, diffusion is isotropic.
+void ReplaceAbsentDirections(vtkPolyData* block, InputFields& fields)
+{
+  if (std::any_of(fields.Absent.begin(), fields.Absent.end(),
+        [](const AbsentArray& array) { return array.Index == DirectionIndex; }))
+  {
+    fields.NoDirection = NewArray<vtkDoubleArray>("", 3, block->GetNumberOfPoints());
+    fields.NoDirection->Fill(0.0);
+    fields.Direction = fields.NoDirection;
+  }
+}
 
 } // namespace
 
@@ -124,7 +141,7 @@ void vtkSurfaceDiffusionAlgorithm::CopyProperties(RunSettings& settings) const
 bool vtkSurfaceDiffusionAlgorithm::FindFields(
   vtkPolyData* block, InputFields& fields, Problems& problems)
 {
-  const InputArrays inputs(this, block, problems);
+  const InputArrays inputs(this, block, fields, problems);
   fields.Data =
     inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents, fields.DataOnCells);
   fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
@@ -301,6 +318,10 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   {
     warnings.push_back({ DescribeReplacement(state.ReplacedArrays), Fingerprint() });
   }
+  for (const std::string& sentence : state.InputWarnings)
+  {
+    warnings.push_back({ sentence, Fingerprint() });
+  }
   this->ReportWarnings(std::move(warnings));
 }
 
@@ -333,36 +354,57 @@ void vtkSurfaceDiffusionAlgorithm::WriteResults(
 void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& blocks,
   std::vector<SurfaceBlock>& surfaces, std::vector<InputFields>& fields, Problems& problems)
 {
-  Problems missingData;
+  BlockSentences problemsOfData, problemsOfBlocks;
+  std::vector<std::string> names;
+  std::vector<Problems> found;
   for (const SurfaceBlock& block : blocks)
   {
-    InputFields found;
-    if (this->GetProcessGroup().IsShared() && block.Input->GetNumberOfPoints() == 0)
+    InputFields arrays;
+    Problems here;
+    const bool takesPart = this->GetProcessGroup().IsShared() &&
+      block.Input->GetNumberOfPoints() == 0; // in collective calls
+    if (takesPart || this->FindFields(block.Input, arrays, here))
     {
-      surfaces.push_back(block); // it participates in collective calls
-      fields.push_back(found);
+      arrays.GlobalIds = block.Input->GetPointData()->GetGlobalIds();
+      surfaces.push_back(block);
+      fields.push_back(arrays);
+      found.push_back(here);
+      names.push_back(block.Name);
       continue;
     }
-    Problems here;
-    const bool hasData = this->FindFields(block.Input, found, here);
-    found.GlobalIds = block.Input->GetPointData()->GetGlobalIds();
-    if (hasData && here.empty()) // an array that is not found would be reported as not set, too
+    for (const AbsentArray& array : arrays.Absent)
     {
-      const FieldSummary summary = found.Summarize();
-      this->State->Settings->Check(&summary, here);
+      here.push_back(array.Problem);
     }
-    Problems& all = hasData ? problems : missingData;
-    all.insert(all.end(), here.begin(), here.end());
-    if (hasData)
-    {
-      surfaces.push_back(block);
-      fields.push_back(found);
-    }
+    problemsOfData.Add(here, block.Name);
   }
+  Problems& warnings = this->State->InputWarnings;
+  warnings.clear();
+  problemsOfData.AppendTo(warnings, blocks.size());
   if (surfaces.empty())
   {
-    problems.insert(problems.end(), missingData.begin(), missingData.end());
+    problems.insert(problems.end(), warnings.begin(), warnings.end());
+    return;
   }
+  for (std::string& warning : warnings)
+  {
+    warning += " (without data, a block passes through)";
+  }
+  const std::size_t before = problems.size();
+  SettleAbsence(fields, names, problems, warnings);
+  const bool allAreFound = problems.size() == before;
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  {
+    ReplaceAbsentDirections(surfaces[b].Input, fields[b]);
+    // An array that is not found would be reported as not set, too.
+    if (found[b].empty() && allAreFound && surfaces[b].Input->GetNumberOfPoints() > 0)
+    {
+      const FieldSummary summary = fields[b].Summarize();
+      this->State->Settings->Check(&summary, found[b]);
+    }
+    problemsOfBlocks.Add(found[b], names[b]);
+  }
+  problemsOfBlocks.AppendTo(problems, surfaces.size());
 }
 
 std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
@@ -371,7 +413,7 @@ std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
   std::vector<SurfaceInput> inputs;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    inputs.push_back({ surfaces[b].Input, &fields[b] });
+    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
   }
   const bool excludes = this->MaskMode == MASK_MODE_EXCLUDE;
   return this->GetProcessGroup().IsShared()

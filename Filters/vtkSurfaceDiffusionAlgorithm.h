@@ -46,7 +46,9 @@
  * of the fixed cells around them. Ghost cells and cells that are no polygons keep their value.
  *
  * Composite input is one problem with one set of units; see vtkSurfaceFilter for composite data and
- * for surfaces in pieces. Each process solves with its piece, so that memory and time are divided,
+ * for surfaces in pieces. A block without the data, or with data that are not allowed, passes
+ * through, and another array that a block does not have counts as not set there, if at least one
+ * block has it. One warning names these blocks. Each process solves with its piece, so that memory and time are divided,
  * if the surface has one piece per process, IntrinsicDelaunay and MergeCoincidentPoints are off,
  * and Solver is ConjugateGradient or Multigrid, or Automatic with more than a million points. An
  * abort is then obeyed by all processes within a few iterations. Some features are always computed

@@ -73,17 +73,28 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   }
   const std::vector<SurfaceBlock> surfaces = this->SelectSurfaces(blocks, problems);
   std::vector<InputFields> fields(surfaces.size());
-  for (std::size_t b = 0; b < surfaces.size() && settings->Method == DirectionMethod::Hints; ++b)
+  BlockSentences found;
+  std::vector<std::string> names;
+  const bool hasHints = settings->Method == DirectionMethod::Hints;
+  for (std::size_t b = 0; b < surfaces.size() && hasHints; ++b)
   {
-    const std::size_t before = problems.size();
-    fields[b].Direction = InputArrays(this, surfaces[b].Input, problems)
+    Problems here;
+    fields[b].Direction = InputArrays(this, surfaces[b].Input, fields[b], here)
                             .Find(2, "DirectionArray", 3, fields[b].DirectionOnCells);
-    if (problems.size() == before)
-    {
-      const FieldSummary summary = fields[b].Summarize();
-      settings->Check(&summary, problems);
-    }
+    found.Add(here, surfaces[b].Name);
+    names.push_back(surfaces[b].Name);
   }
+  const std::size_t before = problems.size();
+  Problems unused; // a block without hints is an error
+  SettleAbsence(fields, names, problems, unused);
+  for (std::size_t b = 0; b < surfaces.size() && hasHints && problems.size() == before; ++b)
+  {
+    Problems here;
+    const FieldSummary summary = fields[b].Summarize();
+    settings->Check(&summary, here);
+    found.Add(here, surfaces[b].Name);
+  }
+  found.AppendTo(problems, surfaces.size());
   if (this->ReportProblems(problems))
   {
     return;
@@ -92,7 +103,7 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   std::vector<SurfaceInput> inputs;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    inputs.push_back({ surfaces[b].Input, &fields[b] });
+    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
   }
   auto& runs = this->State->Runs;
   runs.Update(inputs, *settings, progress);

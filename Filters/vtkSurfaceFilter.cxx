@@ -103,7 +103,15 @@ std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
   }
   anyPoint = group.Any(anyPoint);
   anyPolygon = group.Any(anyPolygon);
-  if (!anyPoint)
+  const InputDescription& input = this->Private->Input;
+  if (!anyPoint && !input.OtherTypes.empty())
+  {
+    problems.push_back((input.IsComposite ? "the blocks are " : "the input is ") +
+      input.OtherTypes +
+      "; a surface of polygons or strips is needed (for the surface of a grid, "
+      "apply Extract Surface, which is vtkDataSetSurfaceFilter)");
+  }
+  else if (!anyPoint)
   {
     problems.emplace_back("the input is empty; a surface of polygons or strips is needed");
   }
@@ -174,6 +182,8 @@ int vtkSurfaceFilter::FillInputPortInformation(int, vtkInformation* info)
   // All blocks of composite data are needed: they share natural units or are pieces of a surface.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  // Other data are an error, whose message says what to do. That of the executive does not.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;
 }
 
@@ -208,12 +218,16 @@ int vtkSurfaceFilter::RequestData(
   {
     return 1;
   }
-  const auto toBlocks = [](const std::vector<SurfacePiece>& surfaces)
+  this->Private->Input = DescribeInput(vtkDataObject::GetData(inputs[0]));
+  const auto toBlocks = [&names = this->Private->Input.SurfaceNames](
+                          const std::vector<SurfacePiece>& surfaces)
   {
     std::vector<SurfaceBlock> blocks;
     for (const SurfacePiece& surface : surfaces)
     {
-      blocks.push_back({ surface.Input, surface.Output });
+      const auto number = static_cast<std::size_t>(surface.Surface);
+      blocks.push_back(
+        { surface.Input, surface.Output, number < names.size() ? names[number] : std::string() });
     }
     return blocks;
   };

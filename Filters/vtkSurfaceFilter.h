@@ -10,7 +10,10 @@
  * errors, after which the output is the unchanged input.
  *
  * Polygons and strips are triangulated internally. Vertices and lines pass through. Ghost and
- * hidden cells are ignored. Each block of composite input is a surface of its own.
+ * hidden cells are ignored. Each block of composite input is a surface of its own, and blocks of
+ * other types pass through. Messages that do not hold for all blocks name theirs, by the block's
+ * name or its indices, such as 0/2. Any type of input is accepted; if it has no surface, an error
+ * names the type and the remedy.
  *
  * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with
  * a piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one
@@ -137,6 +140,7 @@ protected:
   {
     vtkPolyData* Input;
     vtkPolyData* Output;
+    std::string Name = {}; ///< of a block of composite data, for messages; otherwise empty
   };
 
   /// Process the surfaces of one update and add the results to the outputs. Errors are

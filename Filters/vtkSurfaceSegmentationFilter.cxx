@@ -154,12 +154,12 @@ void vtkSurfaceSegmentationFilter::CheckPlacesOfMeans(int components, Problems& 
 bool vtkSurfaceSegmentationFilter::FindFields(
   vtkPolyData* block, InputFields& fields, Problems& problems)
 {
-  const InputArrays inputs(this, block, problems);
+  const InputArrays inputs(this, block, fields, problems);
   const std::size_t before = problems.size();
   constexpr int any = InputArrays::AnyNumberOfComponents;
   fields.Data = inputs.Find(7, "DataTermArray", any, fields.DataOnCells);
   fields.DataAreTerms = fields.Data != nullptr;
-  if (!fields.DataAreTerms && problems.size() == before)
+  if (!fields.DataAreTerms && problems.size() == before && fields.Absent.empty())
   {
     fields.Data = inputs.Find(0, "InputArray", any, fields.DataOnCells);
   }

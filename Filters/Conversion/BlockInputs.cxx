@@ -31,6 +31,7 @@ std::vector<BlockInput> BlockInputs::Describe(
       version = { stamp, excluded != nullptr, arrays.Associations(),
         FingerprintSurface(data, excluded, onCells), FingerprintFields(arrays) };
     }
+    inputs[b].Name = surfaces[b].Name;
     inputs[b].SurfaceVersion = version.Surface;
     inputs[b].FieldsVersion = version.Fields;
     inputs[b].ReadSurface = [data, excluded, onCells, &cells]

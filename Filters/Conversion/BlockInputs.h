@@ -20,6 +20,7 @@ struct SurfaceInput
 {
   vtkPolyData* Data;
   const InputFields* Fields;
+  std::string Name = {}; ///< of a block, for messages
 };
 
 /// Describes the surfaces of an update to a Run: hashes of their contents, and functions that read

@@ -18,9 +18,19 @@ class vtkPolyData;
 namespace SurfaceDiffusion
 {
 
+/// An array that was chosen and that a block does not have.
+struct AbsentArray
+{
+  int Index; ///< of SetInputArrayToProcess()
+  std::string Label; ///< the property, and the name of the array if there is one
+  std::string Problem; ///< the sentence if no block has it
+};
+
 /// The input arrays of one block, found and checked.
 struct InputFields
 {
+  std::vector<AbsentArray> Absent;
+  vtkSmartPointer<vtkDataArray> NoDirection; ///< zeros: a block without the directions of others
   vtkSmartPointer<vtkDataArray> Data; ///< index 0
   bool DataOnCells = false;
   bool DataAreComputed = false; ///< normals that the input does not have

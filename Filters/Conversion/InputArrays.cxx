@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/InputArrays.h"
 
+#include "Run/BlockSentences.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -10,7 +12,8 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
-#include <sstream>
+#include <algorithm>
+#include <map>
 
 namespace SurfaceDiffusion
 {
@@ -85,9 +88,10 @@ std::string DescribeAbsence(const Choice& choice, vtkPolyData* block)
 } // namespace
 
 InputArrays::InputArrays(
-  vtkAlgorithm* filter, vtkPolyData* block, std::vector<std::string>& problems)
+  vtkAlgorithm* filter, vtkPolyData* block, InputFields& fields, std::vector<std::string>& problems)
   : Filter(filter)
   , Block(block)
+  , Fields(fields)
   , Problems(problems)
 {
 }
@@ -101,16 +105,11 @@ vtkDataArray* InputArrays::Find(
   {
     return nullptr;
   }
+  const std::string label =
+    property + (choice.HasName() ? " \"" + std::string(choice.Name) + "\"" : std::string());
   const auto report = [&](const std::string& what)
   {
-    std::ostringstream text;
-    text << property;
-    if (choice.HasName())
-    {
-      text << " \"" << choice.Name << "\"";
-    }
-    text << ' ' << what;
-    this->Problems.push_back(text.str());
+    this->Problems.push_back(label + ' ' + what);
     return nullptr;
   };
   if (!choice.IsKnownAssociation())
@@ -128,7 +127,9 @@ vtkDataArray* InputArrays::Find(
   }
   if (!found)
   {
-    return report(DescribeAbsence(choice, this->Block));
+    this->Fields.Absent.push_back(
+      { index, label, label + ' ' + DescribeAbsence(choice, this->Block) });
+    return nullptr;
   }
   vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!array)
@@ -151,6 +152,37 @@ vtkDataArray* InputArrays::Find(
   }
   onCells = isOnCells;
   return array;
+}
+
+void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std::string>& blocks,
+  std::vector<std::string>& problems, std::vector<std::string>& warnings)
+{
+  struct Absence
+  {
+    AbsentArray Array;
+    std::vector<std::string> Blocks;
+  };
+  std::map<int, Absence> absences;
+  for (std::size_t b = 0; b < fields.size(); ++b)
+  {
+    for (const AbsentArray& array : fields[b].Absent)
+    {
+      const auto entry = absences.insert({ array.Index, { array, {} } }).first;
+      entry->second.Blocks.push_back(blocks[b]);
+    }
+  }
+  for (const auto& [index, absence] : absences)
+  {
+    if (absence.Blocks.size() == fields.size())
+    {
+      problems.push_back(absence.Array.Problem);
+    }
+    else
+    {
+      warnings.push_back(absence.Array.Label + " counts as not set on " +
+        ListBlocks(absence.Blocks) + ", without this array");
+    }
+  }
 }
 
 } // namespace SurfaceDiffusion

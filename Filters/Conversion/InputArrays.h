@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Conversion/FieldReader.h"
+
 #include <string>
 #include <vector>
 
@@ -12,22 +14,30 @@ class vtkPolyData;
 namespace SurfaceDiffusion
 {
 
-/// Finds the arrays that SetInputArrayToProcess() chose on one block, and lists their problems.
+/// Finds the arrays that SetInputArrayToProcess() chose on one block, and lists their problems. An
+/// array that the block does not have is added to the absent ones of `fields`.
 class InputArrays
 {
 public:
   static constexpr int AnyNumberOfComponents = 0;
 
-  InputArrays(vtkAlgorithm* filter, vtkPolyData* block, std::vector<std::string>& problems);
+  InputArrays(vtkAlgorithm* filter, vtkPolyData* block, InputFields& fields,
+    std::vector<std::string>& problems);
 
-  /// The array at `index`, called `property` in messages. Null if it is not set, and null with a
-  /// problem reported if it is absent or not allowed. onCells: whether it is cell data.
+  /// The array at `index`, called `property` in messages. Null if it is not set or absent, and null
+  /// with a problem reported if it is not allowed. onCells: whether it is cell data.
   vtkDataArray* Find(int index, const char* property, int components, bool& onCells) const;
 
 private:
   vtkAlgorithm* Filter;
   vtkPolyData* Block;
+  InputFields& Fields;
   std::vector<std::string>& Problems;
 };
+
+/// Decides about the absent arrays of all blocks. One that no block has is a problem. One that
+/// another block has counts as not set, with a sentence in `warnings`. blocks: their names.
+void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std::string>& blocks,
+  std::vector<std::string>& problems, std::vector<std::string>& warnings);
 
 } // namespace SurfaceDiffusion

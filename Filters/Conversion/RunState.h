@@ -30,6 +30,7 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
   // Of one update:
   std::shared_ptr<SurfaceDiffusion::RunSettings> Settings;
   std::vector<std::string> SettingProblems;
+  std::vector<std::string> InputWarnings; ///< about arrays that some blocks do not have
   std::vector<std::string> ReplacedArrays; ///< of the input, by results
   int Step = 0; ///< the requested step
   SurfaceDiffusion::History History;

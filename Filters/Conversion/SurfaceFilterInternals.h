@@ -7,6 +7,7 @@
 #include "Conversion/SMPParallelFor.h"
 #include "Distributed/GatheredSurfaces.h"
 #include "Distributed/SharedProcessGroup.h"
+#include "Distributed/SurfacePieces.h"
 #include "Run/WarningLog.h"
 
 #include <memory>
@@ -16,6 +17,9 @@ struct vtkSurfaceFilter::Internals
 {
   std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered;
   SurfaceDiffusion::WarningLog Reported;
+
+  /// During an update: what messages say about the input.
+  SurfaceDiffusion::InputDescription Input;
 
   /// During an update: the processes, if each works on its piece.
   std::unique_ptr<SurfaceDiffusion::SharedProcessGroup> Group;

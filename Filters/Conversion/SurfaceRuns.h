@@ -5,6 +5,7 @@
 #include "Conversion/BlockInputs.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/SMPParallelFor.h"
+#include "Run/BlockSentences.h"
 #include "Run/SurfaceRun.h"
 #include "Run/WarningLog.h"
 
@@ -32,13 +33,18 @@ public:
     const std::vector<BlockInput> inputs = this->Inputs.Make(surfaces, false);
     const double count = static_cast<double>(surfaces.size());
     this->Runs.resize(surfaces.size());
+    this->Names.resize(surfaces.size());
     for (std::size_t b = 0; b < surfaces.size(); ++b)
     {
       if (!this->Runs[b])
       {
         this->Runs[b] = std::make_unique<RunType>(SMPParallelFor::Instance());
       }
-      this->Runs[b]->Update(inputs[b], settings, progress.Part(b / count, (b + 0.95) / count));
+      this->Names[b] = inputs[b].Name;
+      NameBlockInErrors(this->Names[b],
+        [&] {
+          this->Runs[b]->Update(inputs[b], settings, progress.Part(b / count, (b + 0.95) / count));
+        });
     }
   }
 
@@ -71,12 +77,23 @@ public:
     Index degenerate = 0;
     Fingerprint versions;
     std::vector<Warning> warnings;
-    for (const auto& run : this->Runs)
+    BlockSentences ofRuns;
+    Fingerprint causes;
+    for (std::size_t b = 0; b < this->Runs.size(); ++b)
     {
-      degenerate += run->GetSurface().Diagnostics().DegenerateTriangles;
-      versions.Add(run->GetSurfaceVersion());
-      const std::vector<Warning> found = run->FindWarnings();
-      warnings.insert(warnings.end(), found.begin(), found.end());
+      degenerate += this->Runs[b]->GetSurface().Diagnostics().DegenerateTriangles;
+      versions.Add(this->Runs[b]->GetSurfaceVersion());
+      for (const Warning& warning : this->Runs[b]->FindWarnings())
+      {
+        ofRuns.Add(warning.Sentence, this->Names[b]);
+        causes.Add(warning.Cause);
+      }
+    }
+    std::vector<std::string> sentences;
+    ofRuns.AppendTo(sentences, this->Runs.size());
+    for (const std::string& sentence : sentences)
+    {
+      warnings.push_back({ sentence, causes });
     }
     if (degenerate > 0)
     {
@@ -95,6 +112,7 @@ public:
 private:
   BlockInputs Inputs;
   std::vector<std::unique_ptr<RunType>> Runs;
+  std::vector<std::string> Names;
 };
 
 /// Adds results of one name to the surfaces of an output.

@@ -143,13 +143,14 @@ std::vector<SurfacePiece> GatheredSurfaces::MakeOutputs()
     }
   }
   this->Gathered = std::move(version);
-  for (const std::unique_ptr<StitchedSurface>& surface : this->Surfaces)
+  for (std::size_t number = 0; number < this->Surfaces.size(); ++number)
   {
+    StitchedSurface* const surface = this->Surfaces[number].get();
     if (surface)
     {
       surface->Output = vtkSmartPointer<vtkPolyData>::New();
       surface->Output->ShallowCopy(surface->Data);
-      outputs.push_back({ static_cast<int>(outputs.size()), surface->Data, surface->Output });
+      outputs.push_back({ static_cast<int>(number), surface->Data, surface->Output });
     }
   }
   return outputs;

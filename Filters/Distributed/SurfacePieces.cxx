@@ -28,53 +28,83 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Appends the surface number of each leaf that exists, in the order of vtkCompositeDataIterator.
-/// Absent blocks are counted, since other processes may have them.
-void NumberSurfaces(vtkDataObject* data, int& surfaces, std::vector<int>& leafSurfaces)
+/// The surfaces of composite data. Absent blocks are counted, since other processes may have them.
+struct SurfaceList
 {
-  if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
+  std::vector<std::string> Names; ///< see InputDescription
+  /// The surface of each leaf that exists, in the order of vtkCompositeDataIterator.
+  std::vector<int> OfLeaves;
+  std::vector<vtkDataObject*> Leaves;
+
+  void Add(vtkDataObject* data, const std::string& name, const std::string& path)
   {
-    for (unsigned int b = 0; b < blocks->GetNumberOfBlocks(); ++b)
+    const auto pathOf = [&](unsigned int child)
+    { return (path.empty() ? "" : path + "/") + std::to_string(child); };
+    if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
     {
-      NumberSurfaces(blocks->GetBlock(b), surfaces, leafSurfaces);
-    }
-    return;
-  }
-  if (auto* members = vtkPartitionedDataSetCollection::SafeDownCast(data))
-  {
-    for (unsigned int m = 0; m < members->GetNumberOfPartitionedDataSets(); ++m)
-    {
-      NumberSurfaces(members->GetPartitionedDataSet(m), surfaces, leafSurfaces);
-    }
-    return;
-  }
-  if (auto* partitions = vtkPartitionedDataSet::SafeDownCast(data)) // or vtkMultiPieceDataSet
-  {
-    for (unsigned int p = 0; p < partitions->GetNumberOfPartitions(); ++p)
-    {
-      if (partitions->GetPartitionAsDataObject(p))
+      for (unsigned int b = 0; b < blocks->GetNumberOfBlocks(); ++b)
       {
-        leafSurfaces.push_back(surfaces);
+        this->Add(blocks->GetBlock(b),
+          NameIn(blocks->HasMetaData(b) ? blocks->GetMetaData(b) : nullptr), pathOf(b));
+      }
+      return;
+    }
+    if (auto* members = vtkPartitionedDataSetCollection::SafeDownCast(data))
+    {
+      for (unsigned int m = 0; m < members->GetNumberOfPartitionedDataSets(); ++m)
+      {
+        this->Add(members->GetPartitionedDataSet(m),
+          NameIn(members->HasMetaData(m) ? members->GetMetaData(m) : nullptr), pathOf(m));
+      }
+      return;
+    }
+    if (auto* partitions = vtkPartitionedDataSet::SafeDownCast(data)) // or vtkMultiPieceDataSet
+    {
+      for (unsigned int p = 0; p < partitions->GetNumberOfPartitions(); ++p)
+      {
+        this->AddLeaf(partitions->GetPartitionAsDataObject(p));
       }
     }
+    else
+    {
+      this->AddLeaf(data);
+    }
+    this->Names.push_back(name.empty() ? path : '"' + name + '"');
   }
-  else if (data)
+
+private:
+  static std::string NameIn(vtkInformation* information)
   {
-    leafSurfaces.push_back(surfaces);
+    return information && information->Has(vtkCompositeDataSet::NAME())
+      ? information->Get(vtkCompositeDataSet::NAME())
+      : "";
   }
-  ++surfaces;
-}
+
+  void AddLeaf(vtkDataObject* leaf)
+  {
+    if (leaf)
+    {
+      this->OfLeaves.push_back(static_cast<int>(this->Names.size()));
+      this->Leaves.push_back(leaf);
+    }
+  }
+};
 
 } // namespace
 
 bool MakeOutputObject(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
   if (!input)
   {
-    return false;
+    if (inputs[0]->GetNumberOfInformationObjects() == 0 && !output) // the executive reports it
+    {
+      auto nothing = vtkSmartPointer<vtkPolyData>::New();
+      outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), nothing);
+    }
+    return inputs[0]->GetNumberOfInformationObjects() == 0;
   }
-  vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
   if (!output || !output->IsA(input->GetClassName()) || !input->IsA(output->GetClassName()))
   {
     auto made = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
@@ -104,9 +134,8 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
   compositeOutput->CopyStructure(compositeInput);
   compositeOutput->GetFieldData()->ShallowCopy(compositeInput->GetFieldData());
   output->GetInformation()->CopyEntry(input->GetInformation(), vtkDataObject::DATA_TIME_STEP());
-  int surfaces = 0;
-  std::vector<int> leafSurfaces;
-  NumberSurfaces(input, surfaces, leafSurfaces);
+  SurfaceList surfaces;
+  surfaces.Add(input, "", "");
   std::size_t number = 0;
   auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(compositeInput->NewIterator());
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
@@ -116,10 +145,32 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
     copy->ShallowCopy(leaf);
     compositeOutput->SetDataSet(iterator, copy);
     // Other kinds of composite data (AMR grids) hold no polydata.
-    add(number < leafSurfaces.size() ? leafSurfaces[number] : 0, leaf, copy);
+    add(number < surfaces.OfLeaves.size() ? surfaces.OfLeaves[number] : 0, leaf, copy);
     ++number;
   }
   return pieces;
+}
+
+InputDescription DescribeInput(vtkDataObject* input)
+{
+  InputDescription description;
+  description.IsComposite = vtkCompositeDataSet::SafeDownCast(input) != nullptr;
+  SurfaceList surfaces;
+  surfaces.Add(input, "", "");
+  description.SurfaceNames = surfaces.Names;
+  std::set<std::string> types;
+  for (vtkDataObject* const leaf : surfaces.Leaves)
+  {
+    if (!vtkPolyData::SafeDownCast(leaf))
+    {
+      types.insert(leaf->GetClassName());
+    }
+  }
+  for (const std::string& type : types)
+  {
+    description.OtherTypes += (description.OtherTypes.empty() ? "" : ", ") + type;
+  }
+  return description;
 }
 
 bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,

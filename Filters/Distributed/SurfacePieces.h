@@ -4,6 +4,7 @@
 
 #include "vtkType.h"
 
+#include <string>
 #include <vector>
 
 class vtkAlgorithm;
@@ -34,6 +35,17 @@ bool MakeOutputObject(vtkInformationVector** inputs, vtkInformationVector* outpu
 /// multi-block data and members of collections are separate surfaces. The partitions of a
 /// vtkPartitionedDataSet and the pieces of a vtkMultiPieceDataSet are pieces of one surface.
 std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* output);
+
+/// What messages say about the parts of an input.
+struct InputDescription
+{
+  /// Of composite data, by the number of a surface: the name of the block in quotation marks, or its
+  /// indices, as 0/2. Otherwise empty.
+  std::vector<std::string> SurfaceNames;
+  std::string OtherTypes; ///< the classes of the leaves that are no polydata
+  bool IsComposite = false;
+};
+InputDescription DescribeInput(vtkDataObject* input);
 
 /// Whether the input is one of several pieces and the controller gives no access to the others.
 /// This is reported as an error. whole: the user states that each piece is a separate surface.

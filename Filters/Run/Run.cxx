@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
+#include "Run/BlockSentences.h"
 #include "Run/LinearLight.h"
 
 #include <algorithm>
@@ -46,7 +47,8 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
     if (processes.Any(!this->IsModelCurrent(block, inputs[b], snapshot, traits)))
     {
       block.Path.reset();
-      this->ReadFields(inputs[b], processes, block, fields[b]);
+      NameBlockInErrors(
+        block.Name, [&] { this->ReadFields(inputs[b], processes, block, fields[b]); });
     }
   }
   this->MeasureUnits(processes);
@@ -58,14 +60,18 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
     if (processes.Any(!block.Path || !(units == block.Units)))
     {
       block.Path.reset();
-      if (!fields[b])
-      {
-        this->ReadFields(inputs[b], processes, block, fields[b]);
-      }
       block.Units = units;
       const double share = static_cast<double>(count);
-      this->MakeModel(block, *fields[b], processes,
-        progress.Part(0.6 + 0.4 * b / share, 0.6 + 0.4 * (b + 1) / share));
+      NameBlockInErrors(block.Name,
+        [&]
+        {
+          if (!fields[b])
+          {
+            this->ReadFields(inputs[b], processes, block, fields[b]);
+          }
+          this->MakeModel(block, *fields[b], processes,
+            progress.Part(0.6 + 0.4 * b / share, 0.6 + 0.4 * (b + 1) / share));
+        });
       block.FieldsVersion = inputs[b].FieldsVersion;
       block.ModelSettings = snapshot;
       block.NumberOfBlocks = count;
@@ -102,10 +108,15 @@ void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGro
       block.reset(); // before the new one takes memory
       block = std::make_unique<Block>();
       const double share = static_cast<double>(inputs.size());
-      this->MakeSurface(inputs[b], processes, *block, progress.Part(b / share, (b + 1) / share));
+      NameBlockInErrors(inputs[b].Name,
+        [&] {
+          this->MakeSurface(
+            inputs[b], processes, *block, progress.Part(b / share, (b + 1) / share));
+        });
       block->SurfaceVersion = inputs[b].SurfaceVersion;
       block->SurfaceSettings = snapshot;
     }
+    block->Name = inputs[b].Name;
   }
 }
 
@@ -222,6 +233,7 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
   processes.RunCollectively(
     [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
   block.Result = RunResult();
+  block.FinishedStep = -1;
   block.Solvers.Configure(*this->Settings, this->Parallel);
   PointData data = this->MakeData(block, fields, processes);
   ModelInputs inputs{ *block.Surface, block.Units, std::move(data), std::move(directions),
@@ -364,14 +376,22 @@ void Run::Seek(int step, const ProgressMonitor& progress)
       all > 0.0 ? progress.Part(done / all, (done + size) / all) : progress;
     done += size;
     const Index before = block->Path->NumberOfAdvances();
-    block->Path->Seek(step, part);
+    NameBlockInErrors(block->Name, [&] { block->Path->Seek(step, part); });
     this->StepsComputed += block->Path->NumberOfAdvances() - before;
   }
+  const SettingsSnapshot outputSettings(*this->Settings, SettingScope::Output);
   for (const auto& block : this->Blocks)
   {
-    this->Settings->Finish(
-      { *block->Surface, block->Units, *block->Path, this->Parallel, progress.Part(1.0, 1.0) },
-      block->Result);
+    const int reached = block->Path->Step();
+    if (block->FinishedStep != reached || block->FinishSettings != outputSettings)
+    {
+      block->FinishedStep = -1;
+      this->Settings->Finish(
+        { *block->Surface, block->Units, *block->Path, this->Parallel, progress.Part(1.0, 1.0) },
+        block->Result);
+      block->FinishedStep = reached;
+      block->FinishSettings = outputSettings;
+    }
   }
 }
 

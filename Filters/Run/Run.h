@@ -38,6 +38,7 @@ public:
 /// One surface with its fields. The arrays are read only if their fingerprint has changed.
 struct BlockInput
 {
+  std::string Name = {}; ///< of a block of several, for messages; otherwise empty
   Fingerprint SurfaceVersion;
   Fingerprint FieldsVersion;
   std::function<SurfaceArrays()> ReadSurface;
@@ -85,10 +86,13 @@ public:
   /// One surface of the run.
   struct Block
   {
+    std::string Name; ///< as in BlockInput
     std::unique_ptr<SurfaceDiffusion::Surface> Surface;
     UnitSystem Units;
     std::unique_ptr<Trajectory> Path;
     RunResult Result;
+    int FinishedStep = -1; ///< the step of Result, which RunSettings::Finish() has completed
+    SettingsSnapshot FinishSettings; ///< of scope Output, that it was completed with
     std::unique_ptr<CellState> Cells; ///< null unless the data are on cells
 
     /// The inputs and settings that the parts above were made from.

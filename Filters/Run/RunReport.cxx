@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
+#include "Run/BlockSentences.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <sstream>
@@ -173,14 +175,19 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
     " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
     "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "
     "data there");
+  BlockSentences ofBlocks;
+  Fingerprint inputs;
   for (const auto& block : this->Blocks)
   {
-    Fingerprint inputs = block->SurfaceVersion;
+    inputs.Add(block->SurfaceVersion);
     inputs.Add(block->FieldsVersion);
-    for (const std::string& sentence : block->Result.Warnings)
-    {
-      warnings.push_back({ sentence, inputs });
-    }
+    ofBlocks.Add(block->Result.Warnings, block->Name);
+  }
+  std::vector<std::string> sentences;
+  ofBlocks.AppendTo(sentences, this->Blocks.size());
+  for (const std::string& sentence : sentences)
+  {
+    warnings.push_back({ sentence, inputs });
   }
   const Shortfalls shortfalls = this->FindShortfalls();
   if (shortfalls.MissedResidual > 0.0)

@@ -462,13 +462,55 @@ TEST(DirectionFieldRun, IsKeptUntilInputsOrSettingsChange)
   EXPECT_EQ(reads, 1);
   settings.Angle = 90.0;
   run.Update(block, settings, ProgressMonitor());
-  EXPECT_EQ(reads, 2);
+  EXPECT_EQ(reads, 1); // the field is turned, not computed again
   double largest = 0.0; // the field is turned by a right angle
   for (Eigen::Index t = 0; t < first.rows(); ++t)
   {
     largest = std::max(largest, std::abs(first.row(t).dot(run.Directions().row(t))));
   }
   EXPECT_LT(largest, 1e-12);
+  settings.Angle = 0.0;
+  run.Update(block, settings, ProgressMonitor());
+  EXPECT_EQ(run.Directions(), first);
+  settings.PrincipalDirection = 1;
+  run.Update(block, settings, ProgressMonitor());
+  EXPECT_EQ(reads, 2);
+}
+
+/// Results beside the state may take half of a run, such as the curves of edges.
+TEST(Run, ResultsAreFinishedAgainOnlyIfTheirStepOrSettingsChange)
+{
+  struct Counted : HeatSettings
+  {
+    int* Count = nullptr;
+    void Finish(const RunState& state, RunResult& result) const override
+    {
+      ++*this->Count;
+      this->HeatSettings::Finish(state, result);
+    }
+  };
+  RunInput input(Testing::Icosphere(2));
+  SurfaceDiffusion::Run run(SerialFor());
+  int count = 0;
+  Counted settings;
+  settings.Count = &count;
+  settings.NumberOfTimeSteps = 4;
+  StateOf(run, { input.Block() }, settings);
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(count, 1);
+  run.Seek(2, ProgressMonitor());
+  EXPECT_EQ(count, 2);
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(count, 3);
+  settings.OutputInterval = 2; // any setting that results may depend on
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(count, 4);
+  settings.TimeStep = 0.5;
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(count, 5);
+  input.Data.Data(3, 0) += 1.0;
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(count, 6);
 }
 
 } // namespace SurfaceDiffusion
