@@ -211,6 +211,8 @@ void vtkHarmonicMapFilter::WriteResult(
   std::size_t index, const InputFields& fields, vtkPolyData* output)
 {
   const Run::Block& block = this->State->Run.GetBlock(index);
+  vtkNew<vtkPolyData> given;
+  given->ShallowCopy(output);
   vtkDataSetAttributes* const data = this->FindResultAttributes(fields, output);
   const bool isNormals = this->IsNormals(fields, output);
   const bool isColour = fields.Data->GetDataType() == VTK_UNSIGNED_CHAR;
@@ -238,6 +240,17 @@ void vtkHarmonicMapFilter::WriteResult(
   if (block.Result.MovedPoints.rows() > 0)
   {
     output->SetPoints(WritePoints(block.Result.MovedPoints, output->GetPoints()));
+    UpdateNormals(given, output);
+  }
+}
+
+/// Other normals than the active ones are not gathered.
+void vtkHarmonicMapFilter::CompletePiece(const SurfaceBlock& piece)
+{
+  this->Superclass::CompletePiece(piece);
+  if (piece.Output->GetPoints() != piece.Input->GetPoints())
+  {
+    DropNormals(piece.Input, piece.Output);
   }
 }
 

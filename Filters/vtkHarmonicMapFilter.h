@@ -156,8 +156,10 @@ public:
    * (mesh denoising by vertex updating). They minimise 1/2 int |grad(N . x)|^2 + 1/(2 r^2) int
    * |x - x_0|^2 with N the result on the triangle and r = 5 mean edge lengths. The input array must
    * be the surface's normals. Points in single precision stay in single precision, all others
-   * become double. GetMeanDisplacement() and the following values describe the motion. Default:
-   * off.
+   * become double. Normals of the input on points or cells, that are active there or have the name
+   * "Normals", are computed again for the moved points, and tangents are dropped; in surfaces in
+   * pieces, only active normals are kept. GetMeanDisplacement() and the following values describe
+   * the motion. Default: off.
    */
   vtkSetMacro(MoveVertices, bool);
   vtkGetMacro(MoveVertices, bool);
@@ -194,6 +196,7 @@ protected:
   void WriteResult(
     std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
   void TakeResults() override;
+  void CompletePiece(const SurfaceBlock& piece) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   const char* GetResultSuffix() const override { return "Harmonic"; }
 

@@ -35,8 +35,9 @@
  * are. They still guide their neighbours.
  *
  * The output has moved points and the point array `Displacement` (three components, in coordinate
- * units). The points keep their precision. Active point normals of the input are computed again for
- * the moved points.
+ * units). The points keep their precision. Normals of the input, on points or cells, that are active
+ * or have the name "Normals" are computed again for the moved points, and tangents are dropped. In
+ * surfaces in pieces, only active normals are kept.
  *
  * Surfaces in pieces, over processes and partitions, are gathered and denoised in process 0; see
  * vtkSurfaceFilter. Each block of composite data is a surface of its own, with its own noise level.
@@ -130,6 +131,7 @@ protected:
 
   void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
     const SurfaceDiffusion::ProgressMonitor& progress) override;
+  void CompletePiece(const SurfaceBlock& piece) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
 
   double NoiseLevel = 0.0;

@@ -15,4 +15,12 @@ namespace SurfaceDiffusion
 /// so that its last bits differ from run to run.
 vtkSmartPointer<vtkDataArray> ComputePointNormals(vtkPolyData* surface);
 
+/// `after` is a copy of `before` with moved points. Compute the normals again that it has of the
+/// input, on points and on cells: those that are active there and those with the name "Normals".
+/// Tangents are dropped.
+void UpdateNormals(vtkPolyData* before, vtkPolyData* after);
+
+/// Drop them all.
+void DropNormals(vtkPolyData* before, vtkPolyData* after);
+
 } // namespace SurfaceDiffusion

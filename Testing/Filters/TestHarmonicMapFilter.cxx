@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
+#include "vtkCell.h"
+#include "vtkCellData.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkPolygon.h"
 #include "vtkSMPTools.h"
 #include "vtkStripper.h"
 
@@ -419,6 +422,36 @@ TEST(HarmonicMapFilter, LineFieldsAreIndependentOfTheSign)
     lines->GetTuple(i, b);
     EXPECT_NEAR(std::abs(vtkMath::Dot(a, b)), 1.0, 1e-9);
   }
+}
+
+TEST(HarmonicMapFilter, MovedPointsHaveNormalsOfTheirOwn)
+{
+  auto sphere = SphereWithNoisyNormals(3);
+  sphere->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "ofCells", sphere->GetNumberOfCells(), 3,
+    [&](vtkIdType c, int k)
+    {
+      double n[3];
+      vtkPolygon::ComputeNormal(sphere->GetCell(c)->GetPoints(), n);
+      return n[k];
+    }));
+  sphere->GetCellData()->SetActiveNormals("ofCells");
+  auto filter = MakeFilter(sphere);
+  filter->MoveVerticesOn();
+  filter->Update();
+  vtkPolyData* const output = filter->GetOutput();
+  EXPECT_EQ(output->GetPointData()->GetNormals(), Result(filter, "nHarmonic"));
+  vtkDataArray* const ofCells = output->GetCellData()->GetNormals();
+  ASSERT_NE(ofCells, nullptr);
+  for (vtkIdType c = 0; c < output->GetNumberOfCells(); ++c)
+  {
+    double n[3];
+    vtkPolygon::ComputeNormal(output->GetCell(c)->GetPoints(), n);
+    ASSERT_NEAR(vtkMath::Dot(n, ofCells->GetTuple3(c)), 1.0, 1e-12) << c;
+  }
+  EXPECT_FALSE(Identical(Result(filter, "n"), sphere->GetPointData()->GetNormals()));
+  filter->MoveVerticesOff();
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetCellData()->GetNormals(), sphere->GetCellData()->GetNormals());
 }
 
 // --- Energy, units, time ---

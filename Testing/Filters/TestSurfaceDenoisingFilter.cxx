@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
+#include "vtkCell.h"
+#include "vtkCellData.h"
 #include "vtkMinimalStandardRandomSequence.h"
+#include "vtkPolygon.h"
 #include "vtkSurfaceDenoisingFilter.h"
 
 #include <gtest/gtest.h>
@@ -187,6 +190,61 @@ TEST(SurfaceDenoisingFilter, ActiveNormalsAreThoseOfTheMovedPoints)
     worst = std::min(worst, vtkMath::Dot(p, data->GetNormals()->GetTuple3(i)));
   }
   EXPECT_GT(worst, 0.97); // the noisy ones reach 0.9
+}
+
+/// VTK's mappers shade by the normals of cells if points have none.
+TEST(SurfaceDenoisingFilter, NormalsOfCellsAreThoseOfTheMovedTriangles)
+{
+  for (const double side : { 1.0, -1.0 })
+  {
+    const auto noisy = NoisySphere(0.01, 4);
+    const auto addNormals = [&](const char* name)
+    {
+      noisy->GetCellData()->AddArray(MakeArray(VTK_FLOAT, name, noisy->GetNumberOfCells(), 3,
+        [&](vtkIdType c, int k)
+        {
+          double n[3];
+          vtkPolygon::ComputeNormal(noisy->GetCell(c)->GetPoints(), n);
+          return side * n[k];
+        }));
+    };
+    addNormals("n");
+    addNormals("Normals");
+    addNormals("other");
+    noisy->GetCellData()->SetActiveNormals("n");
+    noisy->GetPointData()->AddArray(MakeArray(VTK_DOUBLE, "Normals", noisy->GetNumberOfPoints(), 3,
+      [&](vtkIdType i, int k) { return side * noisy->GetPoint(i)[k]; }));
+    AddPointArray(noisy, "Tangents", 3, Rough);
+    vtkNew<vtkSurfaceDenoisingFilter> filter;
+    filter->SetInputData(noisy);
+    filter->Update();
+    vtkPolyData* const output = filter->GetOutput();
+    vtkCellData* const cells = output->GetCellData();
+    ASSERT_NE(cells->GetNormals(), nullptr);
+    EXPECT_STREQ(cells->GetNormals()->GetName(), "n");
+    EXPECT_TRUE(Identical(cells->GetNormals(), cells->GetArray("Normals")));
+    EXPECT_EQ(cells->GetArray("other"), noisy->GetCellData()->GetArray("other"));
+    for (vtkIdType c = 0; c < output->GetNumberOfCells(); ++c)
+    {
+      double n[3];
+      vtkPolygon::ComputeNormal(output->GetCell(c)->GetPoints(), n);
+      ASSERT_NEAR(side * vtkMath::Dot(n, cells->GetNormals()->GetTuple3(c)), 1.0, 1e-6) << c;
+    }
+    vtkDataArray* const ofPoints = output->GetPointData()->GetArray("Normals");
+    ASSERT_NE(ofPoints, nullptr);
+    EXPECT_EQ(ofPoints->GetDataType(), VTK_DOUBLE);
+    EXPECT_FALSE(output->GetPointData()->HasArray("Tangents"));
+    double worst = 1.0;
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      double p[3];
+      output->GetPoint(i, p);
+      vtkMath::Normalize(p);
+      worst = std::min(worst, side * vtkMath::Dot(p, ofPoints->GetTuple3(i)));
+    }
+    EXPECT_GT(worst, 0.97);
+    EXPECT_TRUE(noisy->GetPointData()->HasArray("Tangents")); // the input is unchanged
+  }
 }
 
 TEST(SurfaceDenoisingFilter, ErrorsNamePropertyValueAndRange)
