@@ -13,6 +13,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -32,6 +33,7 @@ vtkSmartPointer<vtkPolyData> MakeCurves(const Run& run, const std::string& name)
 {
   LineWriter lines;
   std::vector<double> edges, lengths;
+  std::vector<int> blocks;
   for (std::size_t b = 0; b < run.NumberOfBlocks(); ++b)
   {
     const RunResult& result = run.GetBlock(b).Result;
@@ -53,12 +55,14 @@ vtkSmartPointer<vtkPolyData> MakeCurves(const Run& run, const std::string& name)
       }
       lines.EndLine();
       lengths.push_back(curves.Length(l));
+      blocks.push_back(static_cast<int>(b));
     }
   }
   auto output = vtkSmartPointer<vtkPolyData>::New();
   lines.Write(output);
   output->GetPointData()->AddArray(CopyToArray<vtkDoubleArray>(name.c_str(), 1, edges));
   output->GetCellData()->AddArray(CopyToArray<vtkDoubleArray>("Length", 1, lengths));
+  output->GetCellData()->AddArray(CopyToArray<vtkIntArray>("Block", 1, blocks));
   return output;
 }
 

@@ -36,7 +36,8 @@ void DirectionFieldSettings::Visit(SettingVisitor& visitor)
   visitor.Number(
     { "HintWeight", "1/h^2", "The weight of hints and curvatures against smoothness." },
     this->HintWeight, SettingRange::Positive());
-  visitor.Number({ "Angle", "degrees", "The rotation of the field in the surface at the end." },
+  visitor.Number({ "Angle", "degrees", "The rotation of the field in the surface at the end.",
+                   SettingScope::Output },
     this->Angle, SettingRange::AnyFinite());
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
@@ -57,10 +58,18 @@ void DirectionFieldRun::Update(
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;
-  if (!this->Prepare(input, settings, options, progress.Part(0.0, 0.1)))
+  if (this->Prepare(input, settings, options, progress.Part(0.0, 0.1)))
   {
-    return;
+    this->MakeField(input, settings, progress.Part(0.1, 1.0));
+    this->Complete(input, settings);
   }
+  this->Rotated = this->Field;
+  RotateLines(this->Rotated, RadiansFromDegrees(settings.Angle), this->Parallel);
+}
+
+void DirectionFieldRun::MakeField(
+  const BlockInput& input, const DirectionFieldSettings& settings, const ProgressMonitor& progress)
+{
   const TriangleMesh& mesh = this->Domain->Mesh();
   const double h = this->MeanEdgeLength() / mesh.LengthUnit();
   DirectionSettings core;
@@ -71,12 +80,9 @@ void DirectionFieldRun::Update(
     : settings.SmoothingLength / mesh.LengthUnit();
   core.HintWeight = settings.HintWeight / (h * h);
   core.MaximumNumberOfSteps = settings.MaximumNumberOfSteps;
-  core.Angle = RadiansFromDegrees(settings.Angle);
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
-    this->Domain->MakeTriangles(), hints, core, this->Parallel, progress.Part(0.1, 1.0),
-    &this->Report);
-  this->Complete(input, settings);
+    this->Domain->MakeTriangles(), hints, core, this->Parallel, progress, &this->Report);
 }
 
 std::vector<Warning> DirectionFieldRun::FindWarnings() const

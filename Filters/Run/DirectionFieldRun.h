@@ -40,12 +40,16 @@ public:
     const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress);
 
   /// e1 per triangle of the surface's InputMesh().
-  const TangentVectors& Directions() const { return this->Field; }
+  const TangentVectors& Directions() const { return this->Rotated; }
   /// The warnings about the line field that hold.
   std::vector<Warning> FindWarnings() const;
 
 private:
-  TangentVectors Field;
+  void MakeField(const BlockInput& input, const DirectionFieldSettings& settings,
+    const ProgressMonitor& progress);
+
+  TangentVectors Field; ///< before the rotation by Angle
+  TangentVectors Rotated;
   LineFieldReport Report;
 };
 

@@ -271,6 +271,10 @@ TEST(MumfordShahFilter, BlocksShareUnitsAndTheOutputOfCurves)
   filter->Update();
   EXPECT_EQ(Curves(filter)->GetNumberOfLines(), 2);
   EXPECT_NEAR(filter->GetEdgeLength(), 2.0 * Circle, 0.02 * Circle);
+  vtkDataArray* const block = Curves(filter)->GetCellData()->GetArray("Block");
+  ASSERT_NE(block, nullptr);
+  EXPECT_EQ(block->GetComponent(0, 0), 0.0);
+  EXPECT_EQ(block->GetComponent(1, 0), 1.0);
 }
 
 TEST(MumfordShahFilter, MaskedPointsAreFilledWithEdgesOrKeptOut)

@@ -33,19 +33,6 @@ std::unique_ptr<LinearSolver> MakeSolverFor(
   return solver;
 }
 
-/// Rotate all lines by `angle` in their triangles.
-void Rotate(TangentVectors& lines, double angle, const ParallelFor& parallel)
-{
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  ForEach(parallel, static_cast<Index>(lines.rows()),
-    [&](Index t)
-    {
-      const Eigen::RowVector2d d = lines.row(t);
-      lines.row(t) << c * d[0] - s * d[1], s * d[0] + c * d[1];
-    });
-}
-
 } // namespace
 
 TangentVectors MakeDirectionField(const Assembler& assembler,
@@ -81,7 +68,6 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
       : LineFieldFromHints(laplacian, lines, settings.HintWeight * weights, *solver,
           progress.Part(0.4, 1.0), &found);
   }
-  Rotate(lines, settings.Angle, parallel);
   progress.Report(1.0);
   if (report)
   {
@@ -89,6 +75,18 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
     report->MissedResidual = std::max(missed, found.MissedResidual);
   }
   return lines;
+}
+
+void RotateLines(TangentVectors& lines, double angle, const ParallelFor& parallel)
+{
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  ForEach(parallel, static_cast<Index>(lines.rows()),
+    [&](Index t)
+    {
+      const Eigen::RowVector2d d = lines.row(t);
+      lines.row(t) << c * d[0] - s * d[1], s * d[0] + c * d[1];
+    });
 }
 
 } // namespace SurfaceDiffusion

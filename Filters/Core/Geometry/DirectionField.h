@@ -25,7 +25,6 @@ struct DirectionSettings
   bool Perpendicular = false; ///< the maximum-curvature direction instead
   double SmoothingLength = 0.0; ///< of the normals: full width at half maximum, in LengthUnit()
   double HintWeight = 1.0; ///< in 1/LengthUnit()^2
-  double Angle = 0.0; ///< by which the field is rotated at the end, in radians
   int MaximumNumberOfSteps = 50; ///< of SmoothestLineField()
 };
 
@@ -36,5 +35,8 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
   const Eigen::Ref<const TangentVectors>& hints, const DirectionSettings& settings,
   const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor(),
   LineFieldReport* report = nullptr);
+
+/// Rotate all lines by an angle in radians, each in its triangle.
+void RotateLines(TangentVectors& lines, double angle, const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion
