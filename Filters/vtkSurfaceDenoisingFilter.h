@@ -35,9 +35,9 @@
  * are. They still guide their neighbours.
  *
  * The output has moved points and the point array `Displacement` (three components, in coordinate
- * units). The points keep their precision. Normals of the input, on points or cells, that are active
- * or have the name "Normals" are computed again for the moved points, and tangents are dropped. In
- * surfaces in pieces, only active normals are kept.
+ * units). The points keep their precision. Normals of the input, on points or cells, that are
+ * active or have the name "Normals" are computed again for the moved points, and tangents are
+ * dropped. In surfaces in pieces, only active normals are kept.
  *
  * Surfaces in pieces, over processes and partitions, are gathered and denoised in process 0; see
  * vtkSurfaceFilter. Each block of composite data is a surface of its own, with its own noise level.

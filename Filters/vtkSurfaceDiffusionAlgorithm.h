@@ -48,14 +48,15 @@
  * Composite input is one problem with one set of units; see vtkSurfaceFilter for composite data and
  * for surfaces in pieces. A block without the data, or with data that are not allowed, passes
  * through, and another array that a block does not have counts as not set there, if at least one
- * block has it. One warning names these blocks. Each process solves with its piece, so that memory and time are divided,
- * if the surface has one piece per process, IntrinsicDelaunay and MergeCoincidentPoints are off,
- * and Solver is ConjugateGradient or Multigrid, or Automatic with more than a million points. An
- * abort is then obeyed by all processes within a few iterations. Some features are always computed
- * in process 0, which then holds the whole surface: AutomaticFidelity, Discretization
- * CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves of vtkMumfordShahFilter, and MoveVertices,
- * computed normals and line fields with missing values of vtkHarmonicMapFilter. Random numbers are
- * those of one process if there are global ids; otherwise they depend on the coordinates.
+ * block has it. One warning names these blocks. Each process solves with its piece, so that memory
+ * and time are divided, if the surface has one piece per process, IntrinsicDelaunay and
+ * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid, or Automatic with
+ * more than a million points. An abort is then obeyed by all processes within a few iterations.
+ * Some features are always computed in process 0, which then holds the whole surface:
+ * AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves of
+ * vtkMumfordShahFilter, and MoveVertices, computed normals and line fields with missing values of
+ * vtkHarmonicMapFilter. Random numbers are those of one process if there are global ids; otherwise
+ * they depend on the coordinates.
  *
  * **Output port 0** is the input with the result as a further array, made active, of points or, for
  * data on cells, of cells. Points that no participating triangle uses keep their value. **Output

@@ -59,8 +59,8 @@ vtkSmartPointer<vtkPolyData> WithModerateCoordinates(vtkPolyData* block)
   return result;
 }
 
-/// Calls visit(cell, ids, size, normal) for each polygon and each triangle of a strip, with the number
-/// of its cell among the polygons and strips and its unit normal, zero if it has none.
+/// Calls visit(cell, ids, size, normal) for each polygon and each triangle of a strip, with the
+/// number of its cell among the polygons and strips and its unit normal, zero if it has none.
 template <typename Visit>
 void VisitPolygons(vtkPolyData* surface, const Visit& visit)
 {

@@ -39,8 +39,8 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
 /// What messages say about the parts of an input.
 struct InputDescription
 {
-  /// Of composite data, by the number of a surface: the name of the block in quotation marks, or its
-  /// indices, as 0/2. Otherwise empty.
+  /// Of composite data, by the number of a surface: the name of the block in quotation marks, or
+  /// its indices, as 0/2. Otherwise empty.
   std::vector<std::string> SurfaceNames;
   std::string OtherTypes; ///< the classes of the leaves that are no polydata
   bool IsComposite = false;
