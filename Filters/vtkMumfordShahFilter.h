@@ -51,9 +51,9 @@
  * where eps is halved. **Output port 2**: the edges as polylines (vtkPolyData), one per edge
  * between its ends and junctions, along the ridge of 1 - v; a closed edge repeats its first point.
  * It has the point array `Edges` and the cell arrays `Length`, in coordinate units, and `Block`,
- * the number of the surface in composite data. Edges shorter than 4 EdgeWidth are left out. Curves
- * need the whole surface: with EdgeCurves on, surfaces in pieces are gathered and solved in process
- * 0, whose port 2 has the curves.
+ * the number of the surface in composite data, whose curves are in one output. Edges shorter than 4
+ * EdgeWidth are left out. Curves need the whole surface: with EdgeCurves on, surfaces in pieces are
+ * gathered and solved in process 0, whose port 2 has the curves.
  *
  * Without missing, fixed or held values the sum of A_i u_i is conserved to a relative error of
  * 1e-12.

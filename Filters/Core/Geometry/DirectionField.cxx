@@ -53,7 +53,7 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
       settings.SmoothingLength, *solver, parallel, progress.Part(0.0, 0.3));
     missed = principal.MissedResidual;
     lines = std::move(principal.MinimumCurvature);
-    Rotate(lines, settings.Perpendicular ? quarterTurn : 0.0, parallel);
+    RotateLines(lines, settings.Perpendicular ? quarterTurn : 0.0, parallel);
     const double mean = principal.Difference.size() > 0 ? principal.Difference.mean() : 0.0;
     weights = principal.Difference / (mean > 0.0 ? mean : 1.0);
   }
