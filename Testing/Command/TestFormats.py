@@ -646,6 +646,12 @@ class Text(FormatTest):
         self.assertRegex(text, r"^OFF162 ")
         self.check(self.write("a.off", text))
 
+    def test_vertices_without_the_announced_normals_are_refused(self):
+        self.refused("a.off: damaged OFF file: a vertex does not have three coordinates, or a normal",
+                     "denoise-mesh", self.write("a.off", samples.off_text().replace("OFF", "NOFF")), "b.off")
+        self.refused("a.off: damaged OFF file: a vertex does not have three coordinates", "info",
+                     self.write("a.off", "OFF\n3 1 0\n0 0\n1 0\n0 1\n3 0 1 2\n"))
+
     def test_off_of_other_dimensions_is_refused_by_name(self):
         for name in ("4OFF", "nOFF", "STCN4OFF", "4nOFF"):
             self.refused(f"{name}: vertices with other than three coordinates; allowed: OFF", "info",

@@ -79,9 +79,9 @@ class _Off:
                              f"{len(rows)} lines follow")
         self.vertex_lines = [number for number, _ in rows[:vertices]]
         self.vertices = [words for _, words in rows[:vertices]]
+        if any(len(words) < 3 + 3 * self.has_normals for words in self.vertices):
+            raise ValueError("a vertex does not have three coordinates" + ", or a normal" * self.has_normals)
         self.points = _numbers([words[:3] for words in self.vertices], "a vertex")
-        if vertices and (self.points.ndim != 2 or self.points.shape[1] != 3):
-            raise ValueError("a vertex does not have three coordinates")
         self.faces = []
         for number, words in rows[vertices:vertices + faces]:
             if not words[0].isdigit() or not 3 <= int(words[0]) < len(words):
