@@ -427,6 +427,12 @@ class OtherCommands(CommandTest):
         self.assertEqual([column["name"] for column in data["columns"]], ["one", "two"])
         self.assertAlmostEqual(data["columns"][0]["mean"], NOISE.mean(), delta=1e-5)
 
+    def test_info_of_a_surface_beyond_the_range_of_numbers(self):
+        Path("a.off").write_text(samples.off_text(POINTS * 1e200))
+        out = self.succeed("info a.off")
+        self.assertIn(f"{N} points, {len(FACES)} faces, area unknown, mean edge unknown", out)
+        self.assertIsNone(self.report("info a.off")["files"][0]["area"])
+
     @unittest.skipUnless(HAS_VTK, "needs vtk")
     def test_vtk_files(self):
         samples.write_vtk("a.vtp", arrays={"f": NOISE.astype(float), "g": SMOOTH})

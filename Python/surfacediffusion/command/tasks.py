@@ -299,8 +299,8 @@ def fwhm(arguments, report):
         report.say(f"{where}FWHM {_text(entry['pooled'])}")
 
 
-def _text(value):
-    return "unknown" if value is None else f"{value:.4g}"
+def _text(value, digits=4):
+    return "unknown" if value is None else f"{value:.{digits}g}"
 
 
 def info(arguments, report):
@@ -324,6 +324,11 @@ def info(arguments, report):
 
 
 def _surface_info(surface):
+    with np.errstate(over="ignore", invalid="ignore"):  # numbers that no double holds are unknown
+        return _measure(surface)
+
+
+def _measure(surface):
     areas = inputs.vertex_areas(surface)
     faces = inputs.triangles(surface)
     edges = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]),
@@ -353,8 +358,8 @@ def _data_info(data):
 def _info_line(entry):
     words = [f"{entry['file']}: {entry['format']}"]
     if "points" in entry:
-        words.append(f"{entry['points']} points, {entry['faces']} faces, area {entry['area']:.6g}, "
-                     f"mean edge {entry['mean_edge_length']:.4g}")
+        words.append(f"{entry['points']} points, {entry['faces']} faces, "
+                     f"area {_text(entry['area'], 6)}, mean edge {_text(entry['mean_edge_length'])}")
     lines = [", ".join(words)]
     columns = entry.get("columns", [])
     for i, column in enumerate(columns[:8], start=1):
