@@ -221,9 +221,10 @@ def denoise_mesh(
 
     fixed: point or cell array; points, and the points of cells, with a nonzero value stay. The method
     and all other keywords are described in help(surfacediffusion.denoise_mesh). The result has moved
-    points and the point array Displacement (n, 3); active point normals are computed again. Each
-    block of a MultiBlock has its own noise level. full_output: if True, the function returns a pair:
-    the mesh, and the MeshDenoisingResult, of a MultiBlock the list of them.
+    points and the point array Displacement (n, 3); active point normals are computed again, and cell
+    normals and tangents are dropped. Each block of a MultiBlock has its own noise level. full_output:
+    if True, the function returns a pair: the mesh, and the MeshDenoisingResult, of a MultiBlock the
+    list of them.
     """
     properties, name = _keywords("denoise_mesh", properties)
     blocks, results = _find_surfaces(mesh), []
@@ -313,8 +314,14 @@ class _Block:
         self.mesh.cell_data[name] = cells
 
     def move(self, points: NDArray[Any]) -> None:
-        """Give the mesh points of its own, in the precision of the input's."""
+        """Give the mesh points of its own, in the precision of the input's. The normals of its cells and
+        its tangents, which were those of the former points, are dropped."""
         self.mesh.SetPoints(pyvista.vtk_points(points.astype(self.input.points.dtype)))
+        cells, given = self.mesh.cell_data, self.input.cell_data
+        for name in {given.active_normals_name, "Normals", "Tangents"} & set(given.keys()):
+            cells.remove(name)
+        if "Tangents" in self.input.point_data:
+            self.mesh.point_data.remove("Tangents")
 
     def fresh(self) -> _Block:
         """The same surface, with a mesh for other results."""

@@ -76,6 +76,9 @@ class Meshes(unittest.TestCase):
         self.assertIn("fBeltrami", tensor_diffusion(mesh, "f", fixed="hole").array_names)
         edges, report = mumford_shah(mesh, "f", mask="hole", full_output=True, edge_threshold=0.5)
         self.assertEqual(edges["Edges"].shape, (mesh.n_points,))
+        named = mumford_shah(mesh, "f", number_of_time_steps=1, result_array_name="g")
+        self.assertLessEqual({"g", "gEdges"}, set(named.array_names))
+        self.assertNotIn("Edges", named.array_names)
         self.assertEqual(edges.point_data.active_scalars_name, "fMumfordShah")
         self.assertIsInstance(report.curves, list)
         mesh.point_data["seeds"] = np.where(mesh.points[:, 2] > 0.9, 2, 0)
@@ -95,6 +98,8 @@ class Meshes(unittest.TestCase):
         mesh.point_data["n"] = np.array(mesh.points)
         mesh.point_data.active_normals_name = "n"
         mesh["north"] = (mesh.points[:, 2] > 0.3).astype(np.uint8)
+        mesh.cell_data["ofCells"] = np.array(mesh.face_normals)
+        mesh.cell_data.active_normals_name = "ofCells"
         before = np.array(mesh.points)
         blocks = pyvista.MultiBlock([mesh, None, mesh.scale(10.0, inplace=False)])
         denoised, reports = denoise_mesh(blocks, fixed="north", full_output=True)
@@ -111,6 +116,8 @@ class Meshes(unittest.TestCase):
         # The triangles of PyVista 0.44's icosphere face inwards.
         self.assertGreater((np.sign(cosines[0]) * cosines).min(), 0.97)
         np.testing.assert_array_equal(mesh["n"], before)
+        self.assertNotIn("ofCells", moved.cell_data)  # those of the noisy points
+        self.assertIn("ofCells", mesh.cell_data)
         self.assertLess(np.linalg.norm(moved.points, axis=1)[~north].std(), 0.003)
         np.testing.assert_allclose(before + moved["Displacement"], moved.points, atol=1e-7)
         np.testing.assert_allclose(moved.points, sd.denoise_mesh(as_surface(mesh), fixed=north),
