@@ -257,8 +257,9 @@ public:
 
   /**
    * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
-   * AutomaticFidelity found. For composite data it is that of the first block, since
-   * AutomaticFidelity finds one value for each block.
+   * AutomaticFidelity found. AutomaticFidelity finds one value for each block of composite data,
+   * since each may have noise of its own. This is then the value of the first block, and each block
+   * has its own as field array `EffectiveFidelityWeight`, with ResultArrayName as prefix.
    */
   vtkGetMacro(EffectiveFidelityWeight, double);
 

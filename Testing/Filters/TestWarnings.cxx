@@ -3,6 +3,7 @@
 #include "FilterTest.h"
 
 #include "vtkFVMHeatFilter.h"
+#include "vtkFieldData.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
@@ -149,4 +150,40 @@ TEST(ReportedValues, AreThoseOfTheFirstBlockWhicheverWasEditedLast)
   const double after = weightOf(filter);
   EXPECT_NE(after, before);
   EXPECT_EQ(after, weightOf(makeFilter()));
+}
+
+/// AutomaticFidelity finds a weight for each block, from its own noise.
+TEST(ReportedValues, EachBlockHasItsFidelityWeightAsFieldData)
+{
+  const auto makeBlock = [](double noise)
+  {
+    auto sphere = Sphere(4);
+    AddPointArray(sphere, "f", 1,
+      [&](vtkIdType i, int) { return sphere->GetPoint(i)[2] + noise * Rough(i, 0); });
+    sphere->GetPointData()->SetActiveScalars("f");
+    return sphere;
+  };
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, makeBlock(0.05));
+  blocks->SetBlock(1, makeBlock(0.3));
+  const auto weightOf = [](vtkIntrinsicTVFilter* filter, unsigned int b, const char* name)
+  {
+    filter->Update();
+    auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    vtkDataArray* const weight = output->GetBlock(b)->GetFieldData()->GetArray(name);
+    return weight ? weight->GetComponent(0, 0) : -1.0;
+  };
+  vtkNew<vtkIntrinsicTVFilter> filter;
+  filter->SetInputData(blocks);
+  filter->SetNumberOfTimeSteps(1);
+  EXPECT_EQ(weightOf(filter, 0, "EffectiveFidelityWeight"), -1.0); // one weight for all
+  filter->AutomaticFidelityOn();
+  const double first = weightOf(filter, 0, "EffectiveFidelityWeight");
+  const double second = weightOf(filter, 1, "EffectiveFidelityWeight");
+  EXPECT_EQ(first, filter->GetEffectiveFidelityWeight());
+  EXPECT_GT(first, second); // more noise, less fidelity
+  EXPECT_GT(second, 0.0);
+  filter->SetResultArrayName("my");
+  EXPECT_EQ(weightOf(filter, 1, "myEffectiveFidelityWeight"), second);
+  EXPECT_FALSE(blocks->GetBlock(0)->GetFieldData()->HasArray("myEffectiveFidelityWeight"));
 }
