@@ -16,6 +16,7 @@
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPointData.h"
@@ -186,7 +187,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestInformation(
   settings->Check(nullptr, problems);
   if (this->GenerateTimeSteps && problems.empty()) // problems are reported at update
   {
-    PublishTimes(*settings, outputs);
+    PublishTimes(*settings, this->State->KnownLength.Find(*settings), outputs);
   }
   return 1;
 }
@@ -218,8 +219,8 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   state.SettingProblems.clear(); // reported with those of the arrays
   state.Settings->Check(nullptr, state.SettingProblems);
   const bool valid = state.SettingProblems.empty();
-  state.Step = valid ? FindRequestedStep(*state.Settings, request, outputs) : 0;
-  const double time = valid ? state.Step * state.Settings->DescribeModel().TimeStep : 0.0;
+  state.Time = valid ? FindRequestedTime(*state.Settings, request, outputs) : std::nullopt;
+  state.LastStep = -1;
   const int result = this->Superclass::RequestData(request, inputs, outputs);
   if (state.Succeeded)
   {
@@ -233,9 +234,42 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   state.History = History();
   if (this->GenerateTimeSteps && valid)
   {
-    SetDataTime(time, outputs);
+    this->UpdateTimes(outputs);
   }
   return result;
+}
+
+/// Publish the times of the run, which may have ended before its last step.
+void vtkSurfaceDiffusionAlgorithm::UpdateTimes(vtkInformationVector* outputs)
+{
+  RunState& state = *this->State;
+  RunSettings& settings = *state.Settings;
+  if (state.LastStep >= 0 && state.KnownLength.Set(settings, state.LastStep))
+  {
+    PublishTimes(settings, state.LastStep, outputs);
+    this->Modified(); // filters downstream, which have not seen these times
+  }
+  const int last = state.KnownLength.Find(settings);
+  SetDataTime(FindStep(settings, state.Time, last) * settings.DescribeModel().TimeStep, outputs);
+}
+
+int vtkSurfaceDiffusionAlgorithm::RunState::Length::Find(RunSettings& settings) const
+{
+  const int steps = settings.DescribeModel().NumberOfSteps;
+  const bool isKnown = this->NumberOfSteps == steps &&
+    this->Surface == SettingsSnapshot(settings, SettingScope::Surface) &&
+    this->Model == SettingsSnapshot(settings, SettingScope::Model);
+  return isKnown ? this->LastStep : steps;
+}
+
+bool vtkSurfaceDiffusionAlgorithm::RunState::Length::Set(RunSettings& settings, int last)
+{
+  const bool isNew = this->Find(settings) != last;
+  this->Surface = SettingsSnapshot(settings, SettingScope::Surface);
+  this->Model = SettingsSnapshot(settings, SettingScope::Model);
+  this->NumberOfSteps = settings.DescribeModel().NumberOfSteps;
+  this->LastStep = last;
+  return isNew;
 }
 
 void vtkSurfaceDiffusionAlgorithm::WriteTable(vtkTable* table)
@@ -294,9 +328,17 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
     state.Run.Update(
       this->MakeInputs(surfaces, fields), state.Settings, group, progress.Part(0.0, 0.25));
     progress.Report(0.25);
+    double found = 0.25;
+    state.LastStep = state.Settings->DescribeModel().NumberOfSteps;
+    if (this->GenerateTimeSteps)
+    {
+      found = state.Settings->DescribeModel().MayEndEarly ? 0.65 : found;
+      state.LastStep = state.Run.FindLastStep(progress.Part(0.25, found));
+    }
+    state.Step = FindStep(*state.Settings, state.Time, state.LastStep);
     // If at most one step is left to do, writing the result is much of the work.
     const double written = state.Run.NumberOfStepsTo(state.Step) > 1 ? 0.95 : 0.7;
-    state.Run.Seek(state.Step, progress.Part(0.25, written));
+    state.Run.Seek(state.Step, progress.Part(found, written));
     progress.Report(written);
     this->BeginWriting();
     this->WriteResults(surfaces, fields);
@@ -342,10 +384,35 @@ void vtkSurfaceDiffusionAlgorithm::WriteResults(
         }
       }
     });
+  this->WriteFidelityWeights(surfaces);
   for (std::size_t b = 0; group.IsShared() && b < surfaces.size(); ++b)
   {
     state.Inputs.GetDecomposition()->UpdateCopies(
       surfaces[b].Input->GetPointData(), surfaces[b].Output->GetPointData());
+  }
+}
+
+/// If blocks have different weights, which AutomaticFidelity finds, each has its own as field data.
+void vtkSurfaceDiffusionAlgorithm::WriteFidelityWeights(const std::vector<SurfaceBlock>& surfaces)
+{
+  const auto weightOf = [&](std::size_t b)
+  { return this->State->Run.GetBlock(b).Result.EffectiveFidelityWeight; };
+  bool differ = false;
+  for (std::size_t b = 1; b < surfaces.size(); ++b)
+  {
+    differ = differ || weightOf(b) != weightOf(0);
+  }
+  const std::string name = this->FindOtherName("EffectiveFidelityWeight");
+  for (std::size_t b = 0; differ && b < surfaces.size(); ++b)
+  {
+    vtkFieldData* const data = surfaces[b].Output->GetFieldData();
+    if (data->HasArray(name.c_str()))
+    {
+      this->State->ReplacedArrays.push_back(name);
+    }
+    const auto weight = NewArray<vtkDoubleArray>(name, 1, 1);
+    weight->SetValue(0, weightOf(b));
+    data->AddArray(weight);
   }
 }
 
@@ -558,6 +625,9 @@ void vtkSurfaceDiffusionAlgorithm::VisitReported(const std::function<void(double
   visit(this->TimeUnit);
   visit(this->ValueRange);
   visit(this->Residual);
+  double last = this->State->LastStep;
+  visit(last);
+  this->State->LastStep = static_cast<int>(last);
   for (vtkIdType* count : { &this->NumberOfIterations, &this->NumberOfStepsComputed })
   {
     auto number = static_cast<double>(*count);

@@ -139,8 +139,10 @@ public:
   /**
    * On: the output has time steps, one per OutputInterval steps of the run, and any time can be
    * requested. Between two time steps the output is the earlier one, outside their range it is the
-   * nearest one. The input is then requested once, at its own first time if it has times. Off
-   * (default): the output is the final state, and the input's time passes through.
+   * nearest one. A run that ends early, by a StopTolerance, is computed to its end by the first
+   * update, after which only the times that it has are published; before, those of
+   * NumberOfTimeSteps are. The input is then requested once, at its own first time if it has times.
+   * Off (default): the output is the final state, and the input's time passes through.
    */
   vtkSetMacro(GenerateTimeSteps, bool);
   vtkGetMacro(GenerateTimeSteps, bool);
@@ -402,6 +404,8 @@ private:
 
   void FindAllFields(const std::vector<SurfaceBlock>& blocks, std::vector<SurfaceBlock>& surfaces,
     std::vector<SurfaceDiffusion::InputFields>& fields, Problems& problems);
+  void UpdateTimes(vtkInformationVector* outputs);
+  void WriteFidelityWeights(const std::vector<SurfaceBlock>& surfaces);
   void WriteResults(const std::vector<SurfaceBlock>& surfaces,
     const std::vector<SurfaceDiffusion::InputFields>& fields);
   std::vector<SurfaceDiffusion::BlockInput> MakeInputs(const std::vector<SurfaceBlock>& surfaces,

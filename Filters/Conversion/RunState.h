@@ -9,6 +9,7 @@
 #include "Run/Run.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,27 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
   };
   std::vector<ComputedNormals> Normals;
 
+  /// The last step of a run, which may have ended early, and the settings of that run.
+  struct Length
+  {
+    SurfaceDiffusion::SettingsSnapshot Surface, Model;
+    int NumberOfSteps = -1;
+    int LastStep = -1;
+
+    /// The last step of a run with these settings, as far as it is known.
+    int Find(SurfaceDiffusion::RunSettings& settings) const;
+    /// Remember the last step. Returns whether it was another one.
+    bool Set(SurfaceDiffusion::RunSettings& settings, int last);
+  } KnownLength;
+
   // Of one update:
   std::shared_ptr<SurfaceDiffusion::RunSettings> Settings;
   std::vector<std::string> SettingProblems;
   std::vector<std::string> InputWarnings; ///< about arrays that some blocks do not have
   std::vector<std::string> ReplacedArrays; ///< of the input, by results
+  std::optional<double> Time; ///< the requested time
   int Step = 0; ///< the requested step
+  int LastStep = -1; ///< of the run; -1 if it is not known
   SurfaceDiffusion::History History;
   bool Succeeded = false;
 };

@@ -17,9 +17,9 @@ namespace SurfaceDiffusion
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-void PublishTimes(const RunSettings& settings, vtkInformationVector* outputs)
+void PublishTimes(const RunSettings& settings, int last, vtkInformationVector* outputs)
 {
-  const std::vector<double> times = settings.PublishedTimes();
+  const std::vector<double> times = settings.PublishedTimes(last);
   const double range[2] = { times.front(), times.back() };
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
@@ -45,7 +45,7 @@ void RequestFirstTime(vtkInformation* input)
   }
 }
 
-int FindRequestedStep(
+std::optional<double> FindRequestedTime(
   const RunSettings& settings, vtkInformation* request, vtkInformationVector* outputs)
 {
   if (settings.GenerateTimeSteps)
@@ -56,10 +56,15 @@ int FindRequestedStep(
     vtkInformation* const info = outputs->GetInformationObject(port);
     if (info->Has(Pipeline::UPDATE_TIME_STEP()))
     {
-      return settings.FindStep(info->Get(Pipeline::UPDATE_TIME_STEP()));
+      return info->Get(Pipeline::UPDATE_TIME_STEP());
     }
   }
-  return settings.DescribeModel().NumberOfSteps;
+  return std::nullopt;
+}
+
+int FindStep(const RunSettings& settings, const std::optional<double>& time, int last)
+{
+  return time ? settings.FindStep(*time, last) : last;
 }
 
 void SetDataTime(double time, vtkInformationVector* outputs)

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 class vtkInformation;
 class vtkInformationVector;
 
@@ -10,17 +12,20 @@ namespace SurfaceDiffusion
 
 struct RunSettings;
 
-/// Declare the published times of the run at all output ports.
-void PublishTimes(const RunSettings& settings, vtkInformationVector* outputs);
+/// Declare the published times of a run that ends at step `last` at all output ports.
+void PublishTimes(const RunSettings& settings, int last, vtkInformationVector* outputs);
 
 /// Ask for the input at its own first time if it has times, and at no time otherwise: the requested
 /// time is a diffusion time, which has no meaning upstream.
 void RequestFirstTime(vtkInformation* input);
 
-/// The step that is requested from the output port that `request` comes from; the last one if no
-/// time is requested.
-int FindRequestedStep(
+/// The time that is requested from the output port that `request` comes from, with
+/// GenerateTimeSteps.
+std::optional<double> FindRequestedTime(
   const RunSettings& settings, vtkInformation* request, vtkInformationVector* outputs);
+
+/// The step for a requested time of a run that ends at step `last`, which answers no time, too.
+int FindStep(const RunSettings& settings, const std::optional<double>& time, int last);
 
 /// Set the time of the data at all output ports.
 void SetDataTime(double time, vtkInformationVector* outputs);

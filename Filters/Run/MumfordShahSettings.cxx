@@ -65,6 +65,7 @@ ModelTraits MumfordShahSettings::DescribeModel() const
 {
   ModelTraits traits;
   traits.NumberOfSteps = this->NumberOfTimeSteps;
+  traits.MayEndEarly = true;
   traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = this->IsAbsolute();
   traits.Energy = { 0.0, 2.0 };

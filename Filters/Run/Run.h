@@ -72,6 +72,10 @@ public:
   void Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSettings> settings,
     const ProcessGroup& processes, const ProgressMonitor& progress);
 
+  /// The last step of the run: of all steps, or where the last surface has become stationary. A run
+  /// that may end early is computed to its end, once.
+  int FindLastStep(const ProgressMonitor& progress);
+
   /// The number of steps that Seek() would compute.
   Index NumberOfStepsTo(int step) const;
   /// Move all surfaces to a step, and finish their results there.

@@ -42,6 +42,27 @@ std::string DescribeUnsettledSteps(const Shortfalls& found)
 
 } // namespace
 
+int Run::FindLastStep(const ProgressMonitor& progress)
+{
+  const ModelTraits traits = this->Settings->DescribeModel();
+  int last = 0;
+  for (std::size_t b = 0; b < this->Blocks.size() && traits.MayEndEarly; ++b)
+  {
+    const double share = static_cast<double>(this->Blocks.size());
+    Trajectory& path = *this->Blocks[b]->Path;
+    const Index before = path.NumberOfAdvances();
+    NameBlockInErrors(this->Blocks[b]->Name,
+      [&]
+      {
+        last = std::max(last,
+          static_cast<int>(
+            path.FindLastStep(traits.NumberOfSteps, progress.Part(b / share, (b + 1) / share))));
+      });
+    this->StepsComputed += path.NumberOfAdvances() - before;
+  }
+  return traits.MayEndEarly ? last : traits.NumberOfSteps;
+}
+
 History Run::MakeHistory(int step) const
 {
   const ModelTraits traits = this->Settings->DescribeModel();

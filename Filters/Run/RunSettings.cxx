@@ -88,28 +88,27 @@ void RunSettings::Check(const FieldSummary* fields, Problems& problems)
 
 void RunSettings::CheckTogether(const FieldSummary*, Problems&) const {}
 
-std::vector<double> RunSettings::PublishedTimes() const
+std::vector<double> RunSettings::PublishedTimes(int last) const
 {
   const ModelTraits traits = this->DescribeModel();
   std::vector<double> times;
-  for (std::int64_t step = 0; step < traits.NumberOfSteps; step += this->OutputInterval)
+  for (std::int64_t step = 0; step < last; step += this->OutputInterval)
   {
     times.push_back(static_cast<double>(step) * traits.TimeStep);
   }
-  times.push_back(traits.NumberOfSteps * traits.TimeStep);
+  times.push_back(last * traits.TimeStep);
   return times;
 }
 
-int RunSettings::FindStep(double time) const
+int RunSettings::FindStep(double time, int last) const
 {
   const ModelTraits traits = this->DescribeModel();
-  const std::vector<double> times = this->PublishedTimes();
+  const std::vector<double> times = this->PublishedTimes(last);
   // A time that another program has printed or summed may have lost its last bits.
   const double slack = 1e-9 * traits.TimeStep;
   const auto after = std::upper_bound(times.begin(), times.end(), time + slack);
   const std::int64_t index = std::max<std::ptrdiff_t>(after - times.begin() - 1, 0);
-  return static_cast<int>(
-    std::min<std::int64_t>(index * this->OutputInterval, traits.NumberOfSteps));
+  return static_cast<int>(std::min<std::int64_t>(index * this->OutputInterval, last));
 }
 
 void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance)

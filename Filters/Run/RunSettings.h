@@ -62,6 +62,7 @@ struct ModelTraits
   bool NeedsDirections = false; ///< diffusivities along and across differ
   bool HoldsKnownValues = false;
   bool MaskHasEffect = true; ///< in mode Inpaint, if there are data
+  bool MayEndEarly = false; ///< the state may become stationary before the last step
   bool CountsClamped = false;
   bool BoundsError = false; ///< steps report a bound of their error
   bool UsesRandomNumbers = false;
@@ -112,10 +113,10 @@ struct RunSettings : Settings
 
   bool IsAbsolute() const { return this->Units == UnitsMode::Absolute; }
 
-  /// The times of the published states, in the unit of TimeStep.
-  std::vector<double> PublishedTimes() const;
-  /// The step of the last state published at or before `time`.
-  int FindStep(double time) const;
+  /// The times of the published states of a run that ends at step `last`, in the unit of TimeStep.
+  std::vector<double> PublishedTimes(int last) const;
+  /// The step of the last of them at or before `time`.
+  int FindStep(double time, int last) const;
 
 protected:
   /// The time integrators that the model has.

@@ -214,6 +214,7 @@ ModelTraits TextureSettings::DescribeModel() const
 {
   ModelTraits traits;
   traits.NumberOfSteps = this->NumberOfTimeSteps;
+  traits.MayEndEarly = this->StopTolerance > 0.0;
   traits.TimeStep = this->EffectiveTimeStep();
   traits.AbsoluteTime = this->IsAbsolute();
   traits.TimeFactor = 1.0 / this->ReactionRate;

@@ -229,10 +229,15 @@ TEST(Settings, PublishedTimesEndWithTheLastStep)
   settings.TimeStep = 0.5;
   settings.NumberOfTimeSteps = 7;
   settings.OutputInterval = 3;
-  EXPECT_EQ(settings.PublishedTimes(), (std::vector<double>{ 0.0, 1.5, 3.0, 3.5 }));
-  EXPECT_EQ(settings.FindStep(1.49), 0);
-  EXPECT_EQ(settings.FindStep(1.5), 3);
-  EXPECT_EQ(settings.FindStep(3.4), 6);
-  EXPECT_EQ(settings.FindStep(99.0), 7);
-  EXPECT_EQ(settings.FindStep(-1.0), 0);
+  EXPECT_EQ(settings.PublishedTimes(7), (std::vector<double>{ 0.0, 1.5, 3.0, 3.5 }));
+  EXPECT_EQ(settings.FindStep(1.49, 7), 0);
+  EXPECT_EQ(settings.FindStep(1.5, 7), 3);
+  EXPECT_EQ(settings.FindStep(3.4, 7), 6);
+  EXPECT_EQ(settings.FindStep(99.0, 7), 7);
+  EXPECT_EQ(settings.FindStep(-1.0, 7), 0);
+  // The run has ended at step 4.
+  EXPECT_EQ(settings.PublishedTimes(4), (std::vector<double>{ 0.0, 1.5, 2.0 }));
+  EXPECT_EQ(settings.FindStep(1.9, 4), 3);
+  EXPECT_EQ(settings.FindStep(2.0, 4), 4);
+  EXPECT_EQ(settings.FindStep(3.5, 4), 4);
 }

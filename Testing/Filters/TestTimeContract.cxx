@@ -5,7 +5,10 @@
 #include "vtkFVMHeatFilter.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkMumfordShahFilter.h"
 #include "vtkObjectFactory.h"
+#include "vtkStripper.h"
+#include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
 
@@ -413,4 +416,89 @@ TEST(TimeContract, TheHistoryHasARowPerStepAndTheDocumentedColumns)
   EXPECT_EQ(filter->GetResidual(), residual);
   EXPECT_GT(residual, 0.0);
   EXPECT_LE(residual, filter->GetTolerance());
+}
+
+namespace
+{
+
+vtkSmartPointer<vtkPolyData> Halves()
+{
+  auto grid = Grid(12, 12);
+  AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return i % 12 < 6 ? 0.0 : 1.0; });
+  grid->GetPointData()->SetActiveScalars("f");
+  return grid;
+}
+
+} // namespace
+
+TEST(TimeContract, ARunThatEndsEarlyPublishesTheStepsThatItHas)
+{
+  vtkNew<vtkMumfordShahFilter> shah;
+  vtkNew<vtkTuringTextureFilter> texture;
+  texture->SetStopTolerance(0.5);
+  for (vtkSurfaceDiffusionAlgorithm* filter : { static_cast<vtkSurfaceDiffusionAlgorithm*>(shah),
+         static_cast<vtkSurfaceDiffusionAlgorithm*>(texture) })
+  {
+    filter->SetInputData(Halves());
+    filter->Update();
+    const auto rows = static_cast<std::size_t>(History(filter)->GetNumberOfRows());
+    const auto planned = static_cast<std::size_t>(filter->GetNumberOfTimeSteps()) + 1;
+    ASSERT_LT(rows, planned);
+    const char* const name = filter == shah.Get() ? "fMumfordShah" : "u1";
+    const auto final = Copy(Result(filter, name));
+
+    filter->GenerateTimeStepsOn();
+    EXPECT_EQ(PublishedTimes(filter).size(), planned); // the plan
+    UpdateAt(filter, 0.0);
+    EXPECT_EQ(DataTime(filter), 0.0);
+    const std::vector<double> times = PublishedTimes(filter);
+    EXPECT_EQ(times.size(), rows);
+    EXPECT_EQ(PublishedTimes(filter, 1), times);
+    const vtkIdType computed = filter->GetNumberOfStepsComputed();
+    UpdateAt(filter, times.back());
+    EXPECT_EQ(DataTime(filter), times.back());
+    EXPECT_TRUE(Identical(final, Result(filter, name)));
+    UpdateAt(filter, 1e9); // outside the range
+    EXPECT_EQ(DataTime(filter), times.back());
+    EXPECT_TRUE(Identical(final, Result(filter, name)));
+    EXPECT_LE(filter->GetNumberOfStepsComputed(), computed + static_cast<vtkIdType>(rows));
+
+    filter->SetOutputInterval(4); // the end may lie between two intervals
+    EXPECT_EQ(PublishedTimes(filter).back(), times.back());
+    UpdateAt(filter, times.back());
+    EXPECT_TRUE(Identical(final, Result(filter, name)));
+
+    filter->SetOutputInterval(1);
+    filter->SetNumberOfTimeSteps(3);
+    EXPECT_EQ(PublishedTimes(filter).size(), 4u);
+    UpdateAt(filter, 1e9);
+    EXPECT_EQ(History(filter)->GetNumberOfRows(), 4);
+  }
+}
+
+/// A filter that changes its times during an update is up to date after it.
+TEST(TimeContract, TimesThatChangeAtAnUpdateCauseNoOther)
+{
+  vtkNew<vtkMumfordShahFilter> filter;
+  vtkNew<vtkStripper> next;
+  filter->SetInputData(Halves());
+  filter->GenerateTimeStepsOn();
+  next->SetInputConnection(filter->GetOutputPort());
+  filter->Update();
+  const vtkMTimeType time = filter->GetOutput()->GetMTime();
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetMTime(), time);
+  next->UpdateInformation();
+  EXPECT_EQ(PublishedTimes(next), PublishedTimes(filter));
+  EXPECT_LT(PublishedTimes(next).size(), 1001u);
+  next->Update();
+  EXPECT_EQ(filter->GetOutput()->GetMTime(), time);
+  // Other data: the times are those of the new run after the next update.
+  auto noisy = Halves();
+  AddPointArray(noisy, "f", 1, [](vtkIdType i, int k) { return (i % 12 < 6) + 0.1 * Rough(i, k); });
+  noisy->GetPointData()->SetActiveScalars("f");
+  filter->SetInputData(noisy);
+  filter->Update();
+  EXPECT_EQ(
+    PublishedTimes(filter).size(), static_cast<std::size_t>(History(filter)->GetNumberOfRows()));
 }

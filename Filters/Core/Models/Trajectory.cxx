@@ -135,6 +135,16 @@ void Trajectory::Seek(Index step, const ProgressMonitor& progress)
     this->Checkpoints.Offer(this->Current, *this->Stepper);
     part.Report(1.0);
   }
+  this->HasEnded = this->HasEnded || this->Current < step;
+}
+
+Index Trajectory::FindLastStep(Index limit, const ProgressMonitor& progress)
+{
+  if (!this->HasEnded && static_cast<Index>(this->History.size()) <= limit)
+  {
+    this->Seek(limit, progress);
+  }
+  return std::min(limit, static_cast<Index>(this->History.size()) - 1);
 }
 
 void Trajectory::Record(const StepReport& report, double seconds)

@@ -72,6 +72,9 @@ public:
   /// std::runtime_error, after which any Seek() still works.
   void Seek(Index step, const ProgressMonitor& progress = ProgressMonitor());
 
+  /// The last step of the model, at most `limit`. Moves there if it is not known yet.
+  Index FindLastStep(Index limit, const ProgressMonitor& progress = ProgressMonitor());
+
   Index Step() const { return this->Current; }
   const Values& State() const { return this->Stepper->State(); }
   /// The model in that state, for what it has beside it.
@@ -104,6 +107,7 @@ private:
   Index Current = 0;
   Index Advances = 0;
   bool IsHistoryKept = true;
+  bool HasEnded = false; ///< the model has finished at the last row of History
 };
 
 } // namespace SurfaceDiffusion
