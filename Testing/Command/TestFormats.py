@@ -512,6 +512,15 @@ class PLY(FormatTest):
             np.testing.assert_array_equal(again.parts[0].values, 255 - COLOURS)
             self.assertEqual(b"format ascii" in Path("b.ply").read_bytes(), not order)
 
+    def test_words_of_other_columns_stay_as_they_are(self):
+        text = self.build(dict(self.cases())["colours before the coordinates"], "").decode()
+        rows = text.split("\n")
+        first = rows.index("end_header") + 1
+        rows[first] = "1 2 3 0.10 1e1 -0.000"
+        data = read_data(self.write("a.ply", "\n".join(rows)))
+        data.save("b.ply", [np.full((N, 1), 7)], [1])
+        self.assertEqual(Path("b.ply").read_text().split("\n")[first], "1 7 3 0.10 1e1 -0.000")
+
     def test_new_columns_come_after_the_others(self):
         for order in ("", "<", ">"):
             elements = dict(self.cases())["edges"]

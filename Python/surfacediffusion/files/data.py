@@ -344,7 +344,9 @@ def _changed_arrays(data, values, columns, arrays):
 
 def _write_ply(data, values, columns):
     mesh = data.image[0]
-    return mesh.write(_changed_arrays(data, values, columns, mesh.vertices))
+    changed = _changed_arrays(data, values, columns, mesh.vertices)
+    names = dict.fromkeys(data.image[1][column][0] for column in columns)
+    return mesh.write({name: changed[name] for name in names})
 
 
 def _write_vtk(data, values, columns):
@@ -356,8 +358,8 @@ def _write_vtk(data, values, columns):
 
 
 _READERS = {"gifti": _read_gifti, "cifti": _read_cifti, "curv": _read_curv, "mgh": _read_volume,
-            "nifti": _read_volume, "annot": _read_annot, "label": _read_label, "npy": _read_npy, "ply": _read_ply, "vtk": _read_vtk,
-            "vtp": _read_vtk}
+            "nifti": _read_volume, "annot": _read_annot, "label": _read_label, "npy": _read_npy,
+            "ply": _read_ply, "vtk": _read_vtk, "vtp": _read_vtk}
 _WRITERS = {"gifti": _write_gifti, "cifti": _write_cifti, "curv": _write_curv, "mgh": _write_volume,
-            "nifti": _write_volume, "label": _write_label, "npy": _write_npy, "ply": _write_ply, "vtk": _write_vtk,
-            "vtp": _write_vtk}
+            "nifti": _write_volume, "label": _write_label, "npy": _write_npy, "ply": _write_ply,
+            "vtk": _write_vtk, "vtp": _write_vtk}
