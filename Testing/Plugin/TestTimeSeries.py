@@ -1,13 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A file series of data on one surface, filtered time by time."""
+"""A file series of data on one surface, filtered time by time, and the times of a run."""
 
 import os
 import tempfile
 import unittest
 
+from paraview import servermanager
 from paraview.simple import (
-    Calculator, FVMHeatFilter, IntrinsicTVFilter, SaveData, Sphere, XMLPolyDataReader)
+    Calculator, FVMHeatFilter, GetAnimationScene, IntrinsicTVFilter, MumfordShahFilter,
+    SaveData, Sphere, XMLPolyDataReader)
 from plugin_testing import values
 
 
@@ -63,6 +65,27 @@ class TestTimeSeries(unittest.TestCase):
             heat.UpdatePipeline(float(time))
             self.assertEqual(len(values(heat, "waveDiffused")), 530)
             self.assertEqual(values(again, "waveDiffused"), values(heat, "waveDiffused"))
+
+
+class TestTimesOfARun(unittest.TestCase):
+    def test_a_run_that_ends_early_publishes_the_steps_that_it_has(self):
+        sphere = Sphere(ThetaResolution=24, PhiResolution=24)
+        halves = Calculator(sphere, ResultArrayName="f", Function="coordsZ > 0.1")
+        edges = MumfordShahFilter(halves, InputArray=["POINTS", "f"], GenerateTimeSteps=1)
+        edges.UpdatePipeline()
+        history = servermanager.Fetch(edges, idx=1)
+        self.assertLess(history.GetNumberOfRows(), 200)
+        edges.UpdatePipelineInformation()
+        times = list(edges.TimestepValues)
+        self.assertEqual(len(times), history.GetNumberOfRows())
+        final = values(edges, "fMumfordShah")
+        edges.UpdatePipeline(0.0)
+        self.assertNotEqual(values(edges, "fMumfordShah"), final)
+        edges.UpdatePipeline(times[-1])
+        self.assertEqual(values(edges, "fMumfordShah"), final)
+        scene = GetAnimationScene()
+        scene.UpdateAnimationUsingDataTimeSteps()
+        self.assertEqual(list(scene.TimeKeeper.TimestepValues), times)
 
 
 if __name__ == "__main__":
