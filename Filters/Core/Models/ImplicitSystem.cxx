@@ -10,9 +10,10 @@ namespace SurfaceDiffusion
 void ImplicitSystem::Assemble(const Eigen::Ref<const Vector>& diagonal, double scale,
   const CornerWeights& coefficients, const double* weights, const CornerWeights* signs)
 {
-  if (this->Matrix.rows() != diagonal.size())
+  if (!this->HasPattern)
   {
     TakePattern(this->Assembly->Pattern(), this->Matrix, this->Parallel);
+    this->HasPattern = true; // last: a pattern that was aborted is taken again
   }
   this->Assembly->Fill(this->Matrix, diagonal, scale, coefficients, weights, this->Parallel, signs);
 }

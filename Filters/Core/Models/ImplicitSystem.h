@@ -71,6 +71,7 @@ private:
   std::shared_ptr<LinearSolver> Solver;
   const ParallelFor& Parallel;
   SparseMatrix Matrix;
+  bool HasPattern = false; ///< the matrix has that of the assembler
   Values Load; ///< of Constrain(); no rows without Dirichlet conditions
   std::vector<Index> FixedRows;
   std::vector<Index> CoupledRows; ///< free vertices whose Load is not zero

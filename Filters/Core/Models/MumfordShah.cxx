@@ -174,6 +174,7 @@ void MumfordShah::AssembleEdgeStiffness()
   {
     return;
   }
+  this->EdgeStage = -1; // an abort leaves neither this stage's matrix nor the last one's
   const Index n = this->Assembly->Mesh().NumberOfVertices();
   this->EdgeStiffness.setZero(n);
   this->EdgeSystem.Assemble(

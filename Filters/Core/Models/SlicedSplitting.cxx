@@ -222,6 +222,7 @@ void SlicedSplitting<Number>::SetMesh(
       const Index t = corners[c] / 3;
       this->Places[c] = (t / Lanes * 3 + corners[c] % 3) * Lanes + t % Lanes;
     });
+  this->IsComplete = true; // last: a mesh that was aborted is set again
 }
 
 template <typename Number>

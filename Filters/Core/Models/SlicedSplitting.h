@@ -39,7 +39,7 @@ public:
 
   /// penalty: r per triangle, times its area. All three must stay.
   void SetMesh(const TriangleMesh& mesh, const GradientMaps& gradients, const Vector& penalty);
-  bool HasMesh() const { return this->Mesh != nullptr; }
+  bool HasMesh() const { return this->IsComplete; }
 
   /// Whether the numbers of the mesh are far from the limits of Number.
   bool IsInRange() const;
@@ -119,6 +119,7 @@ private:
   const Vector* Penalty = nullptr;
   std::vector<Index> Places; ///< (3 slice + corner) Lanes + lane of each of VertexCorners()
   Buffer<Slice> Slices;
+  bool IsComplete = false; ///< the members above
   int Columns = 0;
   double PenaltyGrowth = 1.0;
   Buffer<Number> W; ///< per slice the lanes of x and of y of each column

@@ -96,6 +96,7 @@ void TikhonovDeblurring::Prepare(const ProgressMonitor& progress)
   this->InverseDiagonal = this->Preconditioner.diagonal().cwiseInverse();
   this->Solver->SetMatrix(this->Preconditioner, progress.Part(0.0, 0.5));
   this->Blur->Prepare(progress.Part(0.5, 1.0));
+  this->Prepared = true; // last: a preparation that was aborted is repeated
 }
 
 void TikhonovDeblurring::ApplyAdjoint(Values& v, StepReport& report) const
@@ -107,7 +108,7 @@ void TikhonovDeblurring::ApplyAdjoint(Values& v, StepReport& report) const
 
 StepReport TikhonovDeblurring::Advance(const ProgressMonitor& progress)
 {
-  if (this->InverseDiagonal.size() == 0)
+  if (!this->Prepared)
   {
     this->Prepare(progress.Part(0.0, 0.3));
   }
@@ -118,9 +119,8 @@ StepReport TikhonovDeblurring::Advance(const ProgressMonitor& progress)
   StepReport report;
   StepReport blurs;
   Values x = this->Data.Start.rowwise() - origin;
-  this->Data.Given.rowwise() -= origin;
-  const SolveReport solve = this->Solve(x, blurs, progress.Part(0.3, 1.0));
-  this->Data.Given.rowwise() += origin;
+  const SolveReport solve =
+    this->Solve(this->Data.Given.rowwise() - origin, x, blurs, progress.Part(0.3, 1.0));
   RequireAnswer(solve, this->Limits);
   report.Add(solve);
   report.MissedResidual = std::max(report.MissedResidual, blurs.MissedResidual);
@@ -137,16 +137,19 @@ StepReport TikhonovDeblurring::Advance(const ProgressMonitor& progress)
   return report;
 }
 
-SolveReport TikhonovDeblurring::Solve(Values& x, StepReport& blurs, const ProgressMonitor& progress)
+SolveReport TikhonovDeblurring::Solve(
+  Values f, Values& x, StepReport& blurs, const ProgressMonitor& progress)
 {
-  return ForColumns(
-    x.cols(), [&](auto k) { return this->SolveColumns<decltype(k)::value>(x, blurs, progress); });
+  return ForColumns(x.cols(),
+    [&](auto k)
+    { return this->SolveColumns<decltype(k)::value>(std::move(f), x, blurs, progress); });
 }
 
-/// x: u minus its mean, with the values of Dirichlet conditions in place.
+/// residual: the data on entry. x: u, with the values of Dirichlet conditions in place. Both are
+/// measured from the mean of u.
 template <int K>
 SolveReport TikhonovDeblurring::SolveColumns(
-  Values& x, StepReport& blurs, const ProgressMonitor& progress)
+  Values residual, Values& x, StepReport& blurs, const ProgressMonitor& progress)
 {
   const Index n = static_cast<Index>(x.rows());
   const std::function<void(Values&)> makeProduct = [&](Values& v)
@@ -160,7 +163,6 @@ SolveReport TikhonovDeblurring::SolveColumns(
   const auto release = [&](Values& v)
   { ForEach(this->Parallel, n, [&](Index i) { system.template Project<K>(i, &v(i, 0)); }); };
 
-  Values residual = this->Data.Given;
   this->ApplyAdjoint(residual, blurs);
   ConjugateGradientWork work;
   work.Resize(n, static_cast<int>(x.cols()), static_cast<int>(x.cols()));

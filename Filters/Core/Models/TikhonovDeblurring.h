@@ -38,9 +38,10 @@ private:
   void Prepare(const ProgressMonitor& progress);
   /// v becomes lambda M H w chi v.
   void ApplyAdjoint(Values& v, StepReport& report) const;
-  SolveReport Solve(Values& x, StepReport& blurs, const ProgressMonitor& progress);
+  SolveReport Solve(Values f, Values& x, StepReport& blurs, const ProgressMonitor& progress);
   template <int K>
-  SolveReport SolveColumns(Values& x, StepReport& blurs, const ProgressMonitor& progress);
+  SolveReport SolveColumns(
+    Values residual, Values& x, StepReport& blurs, const ProgressMonitor& progress);
 
   std::shared_ptr<const Assembler> Assembly;
   CornerWeights Coefficients;
@@ -54,6 +55,7 @@ private:
   TotalCorrection Conserved;
   SparseMatrix Stiffness, Preconditioner;
   Vector InverseDiagonal; ///< of the preconditioner's matrix
+  bool Prepared = false;
 };
 
 } // namespace SurfaceDiffusion

@@ -50,21 +50,22 @@ void Round(const SparseMatrix& matrix, Eigen::SparseMatrix<float, Eigen::ColMajo
   const ParallelFor& parallel)
 {
   const Index* outer = matrix.outerIndexPtr();
-  const bool isNew = single.cols() != matrix.cols() || single.nonZeros() != matrix.nonZeros();
-  if (isNew)
+  if (single.cols() != matrix.cols() || single.nonZeros() != matrix.nonZeros())
   {
-    single.resize(matrix.rows(), matrix.cols());
-    single.resizeNonZeros(matrix.nonZeros());
-    std::copy_n(outer, matrix.cols() + 1, single.outerIndexPtr());
+    Eigen::SparseMatrix<float, Eigen::ColMajor, Index> taken(matrix.rows(), matrix.cols());
+    taken.resizeNonZeros(matrix.nonZeros());
+    std::copy_n(outer, matrix.cols() + 1, taken.outerIndexPtr());
+    ForEachBlock(parallel, static_cast<Index>(matrix.cols()),
+      [&](Index, Index begin, Index end)
+      {
+        std::copy(matrix.innerIndexPtr() + outer[begin], matrix.innerIndexPtr() + outer[end],
+          taken.innerIndexPtr() + outer[begin]);
+      });
+    single.swap(taken); // complete: the loop may have been aborted
   }
   ForEachBlock(parallel, static_cast<Index>(matrix.cols()),
     [&](Index, Index begin, Index end)
     {
-      if (isNew)
-      {
-        std::copy(matrix.innerIndexPtr() + outer[begin], matrix.innerIndexPtr() + outer[end],
-          single.innerIndexPtr() + outer[begin]);
-      }
       std::copy(matrix.valuePtr() + outer[begin], matrix.valuePtr() + outer[end],
         single.valuePtr() + outer[begin]);
     });

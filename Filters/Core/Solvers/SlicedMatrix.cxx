@@ -109,7 +109,7 @@ void SlicedMatrix::SortRows(const SparseMatrix& matrix)
   {
     return;
   }
-  this->Outer.assign(outer, outer + n + 1);
+  this->Outer.clear(); // until all is sorted: an abort must not look like the end
   const std::size_t slices = (static_cast<std::size_t>(n) + Lanes - 1) / Lanes;
   this->Rows.assign(slices * Lanes, -1);
   this->Places.resize(n);
@@ -136,6 +136,7 @@ void SlicedMatrix::SortRows(const SparseMatrix& matrix)
   std::partial_sum(this->Begin.begin(), this->Begin.end(), this->Begin.begin());
   this->Columns = Buffer<Index>(this->Begin.back());
   this->Entries = Buffer<float>(this->Begin.back());
+  this->Outer.assign(outer, outer + n + 1);
 }
 
 void SlicedMatrix::Set(const SparseMatrix& matrix, const Vector& roots)
