@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/BlockInputs.h"
 
+#include "Conversion/SMPParallelFor.h"
+#include "Distributed/ContentHash.h"
+
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
@@ -14,7 +17,6 @@ std::vector<BlockInput> BlockInputs::Describe(
   const std::vector<SurfaceInput>& surfaces, bool excludeMasked)
 {
   this->Cells.resize(surfaces.size());
-  this->Versions.resize(surfaces.size());
   std::vector<BlockInput> inputs(surfaces.size());
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
@@ -22,18 +24,10 @@ std::vector<BlockInput> BlockInputs::Describe(
     const InputFields& arrays = *surfaces[b].Fields;
     vtkDataArray* const excluded = excludeMasked ? arrays.Mask : nullptr;
     std::vector<Index>& cells = this->Cells[b];
-    Version& version = this->Versions[b];
-    const InputStamp stamp(data, arrays.List());
     const bool onCells = arrays.MaskOnCells;
-    if (!(version.Stamp == stamp) || version.Excludes != (excluded != nullptr) ||
-      version.Associations != arrays.Associations())
-    {
-      version = { stamp, excluded != nullptr, arrays.Associations(),
-        FingerprintSurface(data, excluded, onCells), FingerprintFields(arrays) };
-    }
     inputs[b].Name = surfaces[b].Name;
-    inputs[b].SurfaceVersion = version.Surface;
-    inputs[b].FieldsVersion = version.Fields;
+    inputs[b].SurfaceVersion = FingerprintSurface(data, excluded, onCells);
+    inputs[b].FieldsVersion = FingerprintFields(arrays);
     inputs[b].ReadSurface = [data, excluded, onCells, &cells]
     { return ReadSurface(data, excluded, onCells, cells); };
   }
@@ -73,8 +67,11 @@ std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<SurfaceInput
     vtkPointData* const points = surfaces[b].Data->GetPointData();
     this->Decomposition->SetPiece(surfaces[b].Data, seamTolerance);
     inputs[b].SurfaceVersion.AddNumber(seamTolerance);
-    AddArray(inputs[b].SurfaceVersion, points->GetGlobalIds());
-    AddArray(inputs[b].SurfaceVersion, points->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    for (vtkDataArray* array :
+      { points->GetGlobalIds(), points->GetArray(vtkDataSetAttributes::GhostArrayName()) })
+    {
+      AddArray(inputs[b].SurfaceVersion, array, SMPParallelFor::Instance());
+    }
     inputs[b].Decomposition = this->Decomposition.get();
     inputs[b].ReadFields =
       [surface = surfaces[b], &cells = this->Cells[b], decomposition = this->Decomposition.get()]

@@ -24,7 +24,8 @@ struct SurfaceInput
 };
 
 /// Describes the surfaces of an update to a Run: hashes of their contents, and functions that read
-/// them.
+/// them. The contents are hashed in every update, because arrays that were edited in place need not
+/// be marked as modified; that takes a fraction of the time of reading them.
 class BlockInputs
 {
 public:
@@ -43,20 +44,9 @@ public:
   const std::vector<Index>& CellsOf(std::size_t surface) const { return this->Cells[surface]; }
 
 private:
-  /// The hashes of a surface, and the state of the data that they were computed from. Requests of
-  /// other times need not hash the input again.
-  struct Version
-  {
-    InputStamp Stamp;
-    bool Excludes = false;
-    unsigned int Associations = 0; ///< see InputFields
-    Fingerprint Surface, Fields;
-  };
-
   std::vector<BlockInput> Describe(const std::vector<SurfaceInput>& surfaces, bool excludeMasked);
 
   std::vector<std::vector<Index>> Cells; ///< per surface: the cell of each triangle
-  std::vector<Version> Versions;
   std::unique_ptr<PieceDecomposition> Decomposition;
 };
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/FieldReader.h"
 
+#include "Conversion/SMPParallelFor.h"
 #include "Conversion/SurfaceReader.h"
 #include "Conversion/TupleRange.h"
+#include "Distributed/ContentHash.h"
 #include "Distributed/InterfacePoints.h"
 
 #include "vtkDataArray.h"
@@ -156,7 +158,7 @@ Fingerprint FingerprintFields(const InputFields& arrays)
   Fingerprint fingerprint;
   for (vtkDataArray* array : arrays.List())
   {
-    AddArray(fingerprint, array);
+    AddArray(fingerprint, array, SMPParallelFor::Instance());
   }
   fingerprint.AddNumber(std::uint64_t{ arrays.Associations() });
   fingerprint.AddNumber(std::uint64_t{ arrays.DataAreTerms ? 1u : 0u });

@@ -4,6 +4,7 @@
 
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/TupleRange.h"
+#include "Distributed/ContentHash.h"
 #include "Run/Polygons.h"
 
 #include "vtkCellArray.h"
@@ -242,17 +243,6 @@ private:
   vtkNew<vtkIdList> Ears;
 };
 
-void AddCells(Fingerprint& fingerprint, vtkCellArray* cells)
-{
-  const vtkIdType count = cells ? cells->GetNumberOfCells() : 0;
-  fingerprint.AddNumber(static_cast<std::uint64_t>(count));
-  if (count > 0)
-  {
-    AddArray(fingerprint, cells->GetOffsetsArray());
-    AddArray(fingerprint, cells->GetConnectivityArray());
-  }
-}
-
 } // namespace
 
 void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what)
@@ -266,64 +256,17 @@ void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what)
   }
 }
 
-void AddArray(Fingerprint& fingerprint, vtkDataArray* array)
-{
-  fingerprint.AddNumber(std::uint64_t{ array ? 1u : 0u });
-  if (!array)
-  {
-    return;
-  }
-  fingerprint.AddNumber(static_cast<std::uint64_t>(array->GetDataType()));
-  fingerprint.AddNumber(static_cast<std::uint64_t>(array->GetNumberOfComponents()));
-  fingerprint.AddNumber(static_cast<std::uint64_t>(array->GetNumberOfTuples()));
-  if (array->HasStandardMemoryLayout() && array->GetDataTypeSize() > 0)
-  {
-    const auto size = static_cast<std::size_t>(array->GetNumberOfValues()) *
-      static_cast<std::size_t>(array->GetDataTypeSize());
-    if (size > 0)
-    {
-      fingerprint.AddBytes(array->GetVoidPointer(0), size, SMPParallelFor::Instance());
-    }
-    return;
-  }
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-  {
-    for (int k = 0; k < array->GetNumberOfComponents(); ++k)
-    {
-      fingerprint.AddNumber(array->GetComponent(i, k));
-    }
-  }
-}
-
-InputStamp::InputStamp(vtkPolyData* input, std::vector<vtkDataArray*> arrays)
-  : Input(input)
-  , Time(input->GetMTime())
-  , Arrays(std::move(arrays))
-{
-  for (vtkCellArray* cells : { input->GetPolys(), input->GetStrips() })
-  {
-    if (cells)
-    {
-      this->Time = std::max({ this->Time, cells->GetMTime(), cells->GetOffsetsArray()->GetMTime(),
-        cells->GetConnectivityArray()->GetMTime() });
-    }
-  }
-  for (vtkDataArray* array : this->Arrays)
-  {
-    this->Time = std::max(this->Time, array ? array->GetMTime() : 0);
-  }
-}
-
 Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded, bool excludedCells)
 {
   Fingerprint fingerprint;
-  AddArray(fingerprint, input->GetPoints() ? input->GetPoints()->GetData() : nullptr);
+  const ParallelFor& parallel = SMPParallelFor::Instance();
+  AddArray(fingerprint, input->GetPoints() ? input->GetPoints()->GetData() : nullptr, parallel);
   fingerprint.AddNumber(static_cast<std::uint64_t>(input->GetNumberOfVerts()));
   fingerprint.AddNumber(static_cast<std::uint64_t>(input->GetNumberOfLines()));
-  AddCells(fingerprint, input->GetPolys());
-  AddCells(fingerprint, input->GetStrips());
-  AddArray(fingerprint, input->GetCellGhostArray());
-  AddArray(fingerprint, excluded);
+  AddCells(fingerprint, input->GetPolys(), parallel);
+  AddCells(fingerprint, input->GetStrips(), parallel);
+  AddArray(fingerprint, input->GetCellGhostArray(), parallel);
+  AddArray(fingerprint, excluded, parallel);
   fingerprint.AddNumber(std::uint64_t{ excludedCells ? 1u : 0u });
   return fingerprint;
 }

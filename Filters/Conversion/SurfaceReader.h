@@ -18,27 +18,6 @@ namespace SurfaceDiffusion
 /// Throws std::runtime_error unless the array has one tuple for each of `count`.
 void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what);
 
-/// Hash the contents of an array: type, shape and values. A null array has a hash, too.
-void AddArray(Fingerprint& fingerprint, vtkDataArray* array);
-
-/// Which data a hash was computed from. The numbers of VTK's modification times are unique, so that
-/// equal stamps mean that nobody has marked anything as modified since.
-struct InputStamp
-{
-  vtkPolyData* Input = nullptr;
-  vtkMTimeType Time = 0;
-  std::vector<vtkDataArray*> Arrays;
-
-  InputStamp() = default;
-  /// arrays: those that are read, null for those that are not set.
-  InputStamp(vtkPolyData* input, std::vector<vtkDataArray*> arrays);
-
-  friend bool operator==(const InputStamp& a, const InputStamp& b)
-  {
-    return a.Input == b.Input && a.Time == b.Time && a.Arrays == b.Arrays;
-  }
-};
-
 /// The hash of everything that ReadSurface() reads.
 Fingerprint FingerprintSurface(
   vtkPolyData* input, vtkDataArray* excluded = nullptr, bool excludedCells = false);

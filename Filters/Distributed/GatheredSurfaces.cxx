@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <map>
-#include <tuple>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -51,25 +51,20 @@ std::vector<PieceHeader> GatherHeaders(const Processes& processes,
 
 } // namespace
 
-bool GatheredSurfaces::Version::operator==(const Version& other) const
-{
-  return std::tie(this->Tolerance, this->Pieces) == std::tie(other.Tolerance, other.Pieces);
-}
-
 void GatheredSurfaces::Update(const Processes& processes, const std::vector<SurfacePiece>& pieces,
   double tolerance, vtkAlgorithm* filter)
 {
-  auto version = std::make_unique<Version>();
-  version->Tolerance = tolerance;
+  Fingerprint contents;
+  contents.AddNumber(tolerance);
   for (const SurfacePiece& piece : pieces)
   {
-    version->Pieces.emplace_back(filter, piece);
+    contents.Add(FingerprintPiece(filter, piece));
   }
-  if (processes.Any(!this->Gathered || !(*version == *this->Gathered)))
+  if (processes.Any(this->Gathered != contents))
   {
     this->Gathered.reset();
     this->GatherPieces(processes, pieces, tolerance, filter);
-    this->Gathered = std::move(version);
+    this->Gathered = contents;
   }
 }
 
@@ -134,7 +129,8 @@ StitchedSurface& GatheredSurfaces::FindSurface(std::size_t number)
 std::vector<SurfacePiece> GatheredSurfaces::MakeOutputs()
 {
   std::vector<SurfacePiece> outputs;
-  auto version = std::move(this->Gathered); // if memory runs out, gather again at the next update
+  const auto contents = std::exchange(
+    this->Gathered, std::nullopt); // if memory runs out, gather again at the next update
   for (const std::unique_ptr<StitchedSurface>& surface : this->Surfaces)
   {
     if (surface && !surface->Data)
@@ -142,7 +138,7 @@ std::vector<SurfacePiece> GatheredSurfaces::MakeOutputs()
       surface->StitchPieces();
     }
   }
-  this->Gathered = std::move(version);
+  this->Gathered = contents;
   for (std::size_t number = 0; number < this->Surfaces.size(); ++number)
   {
     StitchedSurface* const surface = this->Surfaces[number].get();

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <memory>
 #include <new>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -37,19 +38,12 @@ public:
   void ScatterResults(const Processes& processes, const std::vector<SurfacePiece>& pieces);
 
 private:
-  /// The state of the input that this process has contributed.
-  struct Version
-  {
-    double Tolerance;
-    std::vector<PieceVersion> Pieces;
-    bool operator==(const Version& other) const;
-  };
-
   void GatherPieces(const Processes& processes, const std::vector<SurfacePiece>& pieces,
     double tolerance, vtkAlgorithm* filter);
   StitchedSurface& FindSurface(std::size_t number);
 
-  std::unique_ptr<Version> Gathered; ///< null if there is nothing to be kept
+  /// The hash of what this process has contributed; nothing if there is nothing to be kept.
+  std::optional<Fingerprint> Gathered;
   std::vector<std::unique_ptr<StitchedSurface>> Surfaces; ///< process 0: by number, some null
   /// Process 0: surface and number in it of each piece, as all processes list them.
   std::vector<std::pair<StitchedSurface*, std::size_t>> Order;

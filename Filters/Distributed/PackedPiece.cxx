@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/PackedPiece.h"
 
+#include "Distributed/ContentHash.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -22,7 +24,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <tuple>
+#include <string>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -183,52 +186,42 @@ vtkSmartPointer<vtkPolyData> PackPiece(
   return packed;
 }
 
-PieceVersion::PieceVersion(vtkAlgorithm* filter, const SurfacePiece& piece)
-  : Surface(piece.Surface)
-  , FirstCell(piece.Input->GetNumberOfVerts() + piece.Input->GetNumberOfLines())
+Fingerprint FingerprintPiece(vtkAlgorithm* filter, const SurfacePiece& piece)
 {
+  Fingerprint fingerprint;
+  vtkPolyData* const input = piece.Input;
+  fingerprint.AddNumber(static_cast<std::uint64_t>(piece.Surface));
+  fingerprint.AddNumber(
+    static_cast<std::uint64_t>(input->GetNumberOfVerts() + input->GetNumberOfLines()));
+  AddArray(fingerprint, input->GetPoints() ? input->GetPoints()->GetData() : nullptr);
+  AddCells(fingerprint, input->GetPolys());
+  AddCells(fingerprint, input->GetStrips());
   const std::vector<int> types = FindReadAttributes(filter);
-  this->Append(piece.Input); // an array that was edited in place may not be marked itself
-  this->Append(piece.Input->GetPoints());
-  for (vtkCellArray* const cells : { piece.Input->GetPolys(), piece.Input->GetStrips() })
-  {
-    this->Append(cells);
-    this->Append(cells ? cells->GetOffsetsArray() : nullptr);
-    this->Append(cells ? cells->GetConnectivityArray() : nullptr);
-  }
   for (vtkDataSetAttributes* attributes :
-    { static_cast<vtkDataSetAttributes*>(piece.Input->GetPointData()),
-      static_cast<vtkDataSetAttributes*>(piece.Input->GetCellData()) })
+    { static_cast<vtkDataSetAttributes*>(input->GetPointData()),
+      static_cast<vtkDataSetAttributes*>(input->GetCellData()) })
   {
-    this->Append(attributes->GetGlobalIds());
-    this->Append(attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+    AddArray(fingerprint, attributes->GetGlobalIds());
+    AddArray(fingerprint, attributes->GetArray(vtkDataSetAttributes::GhostArrayName()));
     for (int a = 0; a < attributes->GetNumberOfArrays(); ++a)
     {
       vtkAbstractArray* const array = attributes->GetAbstractArray(a);
-      const bool isActive = SurfaceDiffusion::IsActive(types, attributes, array);
-      if (isActive || IsSelected(filter, array))
+      const std::string name = array->GetName() ? array->GetName() : "";
+      fingerprint.AddBytes(name.data(), name.size());
+      for (const int type : types)
       {
-        this->Append(array, isActive);
+        const bool isActive = attributes->GetAbstractAttribute(type) == array;
+        fingerprint.AddNumber(std::uint64_t{ isActive ? 1u : 0u });
+      }
+      if (IsActive(types, attributes, array) || IsSelected(filter, array))
+      {
+        AddArray(fingerprint, vtkDataArray::SafeDownCast(array)); // others cannot be data
+        fingerprint.AddNumber(static_cast<std::uint64_t>(array->GetDataType()));
+        fingerprint.AddNumber(static_cast<std::uint64_t>(array->GetNumberOfTuples()));
       }
     }
   }
-}
-
-void PieceVersion::Append(vtkObject* object, bool isActive)
-{
-  this->Objects.push_back({ object, object ? object->GetMTime() : 0, isActive });
-}
-
-bool PieceVersion::operator==(const PieceVersion& other) const
-{
-  return std::tie(this->Surface, this->FirstCell, this->Objects) ==
-    std::tie(other.Surface, other.FirstCell, other.Objects);
-}
-
-bool PieceVersion::ObjectVersion::operator==(const ObjectVersion& other) const
-{
-  return std::tie(this->Object, this->Time, this->IsActive) ==
-    std::tie(other.Object, other.Time, other.IsActive);
+  return fingerprint;
 }
 
 } // namespace SurfaceDiffusion

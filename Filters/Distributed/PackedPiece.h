@@ -3,16 +3,12 @@
 #pragma once
 
 #include "Distributed/PointIdentity.h"
+#include "Run/Fingerprint.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
-#include <vector>
-
-class vtkAbstractArray;
 class vtkAlgorithm;
-class vtkDataSetAttributes;
-class vtkObject;
 class vtkPolyData;
 
 namespace SurfaceDiffusion
@@ -45,27 +41,7 @@ vtkSmartPointer<Array> MakeSimilarArray(Array* array, vtkIdType count)
   return made;
 }
 
-/// The state of everything that PackPiece() reads: if two are equal, it would make the same.
-struct PieceVersion
-{
-  PieceVersion(vtkAlgorithm* filter, const SurfacePiece& piece);
-  bool operator==(const PieceVersion& other) const;
-
-private:
-  /// Times are unique: an object that has the address of a former one has a later time.
-  struct ObjectVersion
-  {
-    const vtkObject* Object;
-    vtkMTimeType Time;
-    bool IsActive; ///< among the active attributes
-    bool operator==(const ObjectVersion& other) const;
-  };
-
-  void Append(vtkObject* object, bool isActive = false);
-
-  int Surface;
-  vtkIdType FirstCell; ///< number of vertices and lines
-  std::vector<ObjectVersion> Objects;
-};
+/// The hash of everything that PackPiece() reads: if two are equal, it would make the same.
+Fingerprint FingerprintPiece(vtkAlgorithm* filter, const SurfacePiece& piece);
 
 } // namespace SurfaceDiffusion
