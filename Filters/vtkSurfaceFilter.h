@@ -83,9 +83,13 @@ public:
   /**
    * The largest number of threads of an update. 0 or more; 0 (default) means all that VTK's back end
    * of vtkSMPTools has. If that back end is Sequential, as at the start of Debian's VTK and
-   * ParaView, and the environment variable VTK_SMP_BACKEND_IN_USE is not set, updates use the back
-   * end STDThread. With several processes they do so only if this number is greater than 1. No bit
-   * of a result depends on the number of threads.
+   * ParaView, and nobody has chosen it, an update starts as many threads of its own as there are
+   * processors, and ends them. With several processes it does so only if this number is greater
+   * than 1. Sequential counts as chosen if the environment variable VTK_SMP_BACKEND_IN_USE is set,
+   * if VTK was built with another default, or if an earlier update has found another back end. The
+   * limits of vtkSMPTools::Initialize(), vtkSMPTools::LocalScope() and VTK_SMP_MAX_THREADS hold for
+   * these threads, too. VTK's back end is never changed. No bit of a result depends on the number
+   * of threads.
    */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);

@@ -4,30 +4,47 @@
 
 #include "Core/Foundation/LoopWatch.h"
 #include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/ThreadPool.h"
 
 #include "vtkSMPTools.h"
 
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <memory>
 #include <mutex>
 
 namespace SurfaceDiffusion
 {
 
-/// The core's loops on VTK's threads.
+/// The core's loops on the threads of an update: the library's own or those of VTK.
 class SMPParallelFor : public ParallelFor
 {
 public:
   /// The std::thread back end starts new threads for every loop: shorter loops are faster on one.
   static constexpr Index Few = 24;
 
+  /// The threads of the loops that one thread starts.
+  struct Team
+  {
+    /// The number of the library's own threads; 0: those of VTK.
+    int Own = 0;
+    /// The largest number of VTK's threads; 0: all of its back end.
+    int Limit = 0;
+    std::unique_ptr<ThreadPool> Pool; ///< the own threads, from the first long loop on
+  };
+
   void Run(Index count, LoopBody body) const override
   {
     LoopWatch* const watch = LoopWatch::OfThisThread();
-    if (count < Few || LimitOfThisThread() == 1)
+    const bool isOwn = HasOwnThreads();
+    if (count < (isOwn ? ThreadPool::Few : Few))
     {
       body(0, count);
+    }
+    else if (isOwn)
+    {
+      OwnThreads().Run(count, body);
     }
     else
     {
@@ -41,14 +58,21 @@ public:
 
   void RunTasks(Index count, LoopBody body) const override
   {
-    RunOnThreads(count, 1, body, LoopWatch::OfThisThread());
+    if (HasOwnThreads())
+    {
+      OwnThreads().RunTasks(count, body);
+    }
+    else
+    {
+      RunOnThreads(count, 1, body, LoopWatch::OfThisThread());
+    }
   }
 
-  /// The largest number of threads of loops that this thread starts; 0: all of VTK's back end.
-  static int& LimitOfThisThread()
+  /// Null, as outside of updates: all threads of VTK.
+  static Team*& TeamOfThisThread()
   {
-    static thread_local int limit = 0;
-    return limit;
+    static thread_local Team* team = nullptr;
+    return team;
   }
 
   /// The object that all share, because the core keeps references to it.
@@ -59,14 +83,26 @@ public:
   }
 
 private:
-  /// grain: as for vtkSMPTools::For.
+  static bool HasOwnThreads() { return TeamOfThisThread() && TeamOfThisThread()->Own > 0; }
+
+  static const ThreadPool& OwnThreads()
+  {
+    Team& team = *TeamOfThisThread();
+    if (!team.Pool)
+    {
+      team.Pool = std::make_unique<ThreadPool>(team.Own);
+    }
+    return *team.Pool;
+  }
+
+  /// On threads of VTK. grain: as for vtkSMPTools::For.
   static void RunOnThreads(Index count, vtkIdType grain, LoopBody body, LoopWatch* watch)
   {
     // An exception (not enough memory) that leaves a thread of VTK would end the program.
     std::exception_ptr failure;
     std::mutex ofFailure;
     std::atomic<bool> failed{ false };
-    const int limit = LimitOfThisThread();
+    const int limit = TeamOfThisThread() ? TeamOfThisThread()->Limit : 0;
     if (limit > 0) // as many ranges as threads
     {
       grain = std::max<vtkIdType>(grain, (count + limit - 1) / limit);

@@ -6,67 +6,75 @@
 
 #include "vtkSMPTools.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cstdlib>
-#include <mutex>
 #include <string>
+#include <thread>
 
 namespace SurfaceDiffusion
 {
 
 /// The threads of an update, during the life of this object: at most `number`, or all if it is 0.
 ///
-/// VTK and ParaView as Debian builds them start with the back end Sequential. Unless a user chose it
-/// in the environment, an update uses the threads of VTK's other back end, and the last of several
-/// updates that run at the same time restores Sequential.
+/// VTK and ParaView as Debian builds them start with the back end Sequential. Unless a user has
+/// chosen it, the loops of an update run on threads of its own, which end with it. VTK's back end
+/// is never changed: that is not thread safe, and other filters that run at the same time would
+/// lose what they had stored per thread.
 class ThreadScope
 {
 public:
   ThreadScope(int number, bool severalProcesses)
-    : Limit(SMPParallelFor::LimitOfThisThread())
-    , Before(this->Limit)
+    : Before(SMPParallelFor::TeamOfThisThread())
   {
-    this->Limit = number;
-    // Several processes divide the processors among them already.
-    if (number != 1 && (number > 1 || !severalProcesses) && !std::getenv("VTK_SMP_BACKEND_IN_USE"))
+    this->Team.Limit = number;
+    if (number == 1)
     {
-      const std::lock_guard<std::mutex> lock(Shared().Mutex);
-      const bool sequential = std::string(vtkSMPTools::GetBackend()) == "Sequential";
-      this->Threaded = Shared().Users > 0 || (sequential && vtkSMPTools::SetBackend("STDThread"));
-      Shared().Users += this->Threaded ? 1 : 0;
+      this->Team.Own = 1;
     }
+    else if (MayReplaceBackEnd())
+    {
+      // Several processes divide the processors among them already.
+      this->Team.Own = severalProcesses && number == 0 ? 1 : NumberOfOwnThreads(number);
+    }
+    SMPParallelFor::TeamOfThisThread() = &this->Team;
   }
 
-  ~ThreadScope()
-  {
-    this->Limit = this->Before;
-    if (this->Threaded)
-    {
-      const std::lock_guard<std::mutex> lock(Shared().Mutex);
-      if (--Shared().Users == 0)
-      {
-        vtkSMPTools::SetBackend("Sequential");
-      }
-    }
-  }
+  ~ThreadScope() { SMPParallelFor::TeamOfThisThread() = this->Before; }
 
   ThreadScope(const ThreadScope&) = delete;
   ThreadScope& operator=(const ThreadScope&) = delete;
 
 private:
-  struct Updates
+  /// Whether the back end is Sequential and nobody has chosen it: it is VTK's default, the
+  /// environment names no back end, and no update has found another one before.
+  static bool MayReplaceBackEnd()
   {
-    std::mutex Mutex;
-    int Users = 0; ///< updates for which the back end was changed
-  };
-  static Updates& Shared()
-  {
-    static Updates updates;
-    return updates;
+    static std::atomic<bool> hasChanged{ false };
+    const bool isDefault = VTK_SMP_DEFAULT_IMPLEMENTATION_SEQUENTIAL != 0;
+    if (!isDefault || std::string(vtkSMPTools::GetBackend()) != "Sequential")
+    {
+      hasChanged = true;
+    }
+    return !hasChanged && !std::getenv("VTK_SMP_BACKEND_IN_USE");
   }
 
-  int& Limit;
-  const int Before;
-  bool Threaded = false;
+  /// vtkSMPTools::Initialize(), the maximum of LocalScope(), and VTK_SMP_MAX_THREADS limit these
+  /// threads, too.
+  static int NumberOfOwnThreads(int number)
+  {
+    int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int desired =
+      vtk::detail::smp::vtkSMPToolsAPI::GetInstance().GetInternalDesiredNumberOfThread();
+    for (const int limit : { number, desired })
+    {
+      threads = limit > 0 ? std::min(threads, limit) : threads;
+    }
+    return threads;
+  }
+
+  SMPParallelFor::Team Team;
+  SMPParallelFor::Team* const Before;
 };
 
 } // namespace SurfaceDiffusion

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -86,9 +88,16 @@ class ThreadPool::Workers
 public:
   explicit Workers(int count)
   {
-    for (int i = 0; i < count; ++i)
+    this->Threads.reserve(static_cast<std::size_t>(count));
+    try
     {
-      this->Threads.emplace_back([this] { this->Work(); });
+      for (int i = 0; i < count; ++i)
+      {
+        this->Threads.emplace_back([this] { this->Work(); });
+      }
+    }
+    catch (const std::system_error&) // no memory for more, or their number is limited
+    {
     }
   }
 

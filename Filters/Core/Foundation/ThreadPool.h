@@ -15,7 +15,7 @@ namespace SurfaceDiffusion
 class ThreadPool : public ParallelFor
 {
 public:
-  /// threads: 1 or more, the calling thread included.
+  /// threads: 1 or more, the calling thread included. There are fewer if the system starts no more.
   explicit ThreadPool(int threads);
   ~ThreadPool() override;
   ThreadPool(const ThreadPool&) = delete;
