@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/HeatBlur.h"
 
+#include "Core/Foundation/Resize.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/MeanCorrection.h"
 
@@ -68,7 +69,7 @@ void HeatBlur::Apply(Values& u, StepReport& report, const ProgressMonitor& progr
   // Values are measured from the mean, which H keeps: the errors of a solve are relative to the
   // contrast then.
   FindMeans(this->Mesh, u, this->Mean, this->Parallel);
-  this->RightHandSide.resize(u.rows(), u.cols());
+  Resize(this->RightHandSide, u.rows(), u.cols());
   u.rowwise() -= this->Mean;
   for (int step = 0; step < this->Steps; ++step)
   {

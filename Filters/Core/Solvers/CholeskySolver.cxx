@@ -3,6 +3,7 @@
 #include "Core/Solvers/LinearSolver.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Foundation/Resize.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/ResidualSquares.h"
 #include "Core/Solvers/SparseFactor.h"
@@ -103,7 +104,7 @@ private:
   /// x = P^T L^-T D^-1 L^-1 P b
   void Substitute(const Values& b, Values& x)
   {
-    x.resize(b.rows(), b.cols());
+    Resize(x, b.rows(), b.cols());
     const auto columns = static_cast<int>(b.cols());
     for (int first = 0; first < columns; first += ColumnPanel)
     {
@@ -133,7 +134,7 @@ private:
   {
     const Index n = static_cast<Index>(b.rows());
     const Index* const place = this->Factor->Place;
-    this->W.resize(n, K);
+    Resize(this->W, n, K);
     double* const w = this->W.data();
     for (Index i = 0; i < n; ++i)
     {
@@ -164,7 +165,7 @@ private:
   /// improves them. Each column has the bits that it has alone.
   void Refine(const Values& b, Values& x)
   {
-    this->R.resize(b.rows(), b.cols());
+    Resize(this->R, b.rows(), b.cols());
     Multiply(*this->Matrix, x, this->R, this->Parallel);
     this->R = b - this->R;
     this->Substitute(this->R, this->Correction);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/ConjugateGradients.h"
 
+#include "Core/Foundation/Resize.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/Multigrid.h"
@@ -80,7 +81,7 @@ public:
   void Precondition(const Values& r, Values& z) override
   {
     const Index n = static_cast<Index>(r.rows());
-    z.resize(r.rows(), r.cols());
+    Resize(z, r.rows(), r.cols());
     if (!this->Hierarchy)
     {
       ForEach(this->Parallel, n, [&](Index i) { z.row(i) = this->InverseDiagonal[i] * r.row(i); });
@@ -159,7 +160,7 @@ private:
     const Values& b = this->OverProcesses.Accumulated(accumulatedB, this->ConsistentB);
     const ColumnCount<K> k(b.cols());
     const Index n = static_cast<Index>(b.rows());
-    this->Residual.resize(n, k);
+    Resize(this->Residual, n, k);
     this->Scales.resize(k);
     this->Work.ResizeSums(n, k);
 
@@ -292,7 +293,7 @@ private:
       }
       const double end = done + (1.0 - done) / passes;
       Values& before = this->Work.P; // iterations in double precision begin with a new one
-      before.resize(x.rows(), x.cols());
+      Resize(before, x.rows(), x.cols());
       ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
         [&](Index, Index first, Index last)
         {

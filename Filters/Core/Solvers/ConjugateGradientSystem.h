@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/ColumnSums.h"
+#include "Core/Foundation/Resize.h"
 #include "Core/Operators/SparseProduct.h"
 
 #include <vector>
@@ -87,8 +88,8 @@ struct ConjugateGradientWork
 
   void Resize(Index rows, int columns, int systems)
   {
-    this->P.resize(rows, columns);
-    this->Q.resize(rows, columns);
+    SurfaceDiffusion::Resize(this->P, rows, columns);
+    SurfaceDiffusion::Resize(this->Q, rows, columns);
     this->ResizeSums(rows, systems);
   }
   /// All but P and Q.

@@ -3,6 +3,7 @@
 #include "Core/Solvers/Multigrid.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Foundation/Resize.h"
 
 namespace SurfaceDiffusion
 {
@@ -46,14 +47,14 @@ void Multigrid::Resize(int columns)
   {
     for (Numbers* work : { &level.B, &level.X, &level.R, &level.D, &level.E })
     {
-      work->resize(level.A.rows(), columns);
+      SurfaceDiffusion::Resize(*work, level.A.rows(), columns);
     }
   }
   const Eigen::Index rows = this->CoarsestMatrix.rows();
-  this->CoarsestB.resize(rows, columns);
-  this->CoarsestX.resize(rows, columns);
+  SurfaceDiffusion::Resize(this->CoarsestB, rows, columns);
+  SurfaceDiffusion::Resize(this->CoarsestX, rows, columns);
   const bool isSerial = this->CoarsestOverProcesses->IsSerial();
-  this->CoarsestNumbers.resize(
+  SurfaceDiffusion::Resize(this->CoarsestNumbers,
     isSerial ? rows : static_cast<Eigen::Index>(this->CoarsestRows.size()), columns);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/TangentSolver.h"
 
+#include "Core/Foundation/Resize.h"
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/ConjugateGradients.h"
 
@@ -70,8 +71,8 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   const Reduction& reduction = system.Reduction;
   const auto n = static_cast<Index>(system.B.rows());
   const auto columns = static_cast<int>(system.B.cols());
-  x.resize(n, columns);
-  this->Residual.resize(n, columns);
+  Resize(x, n, columns);
+  Resize(this->Residual, n, columns);
   ForEachBlock(this->Parallel, n,
     [&](Index, Index begin, Index end)
     {
