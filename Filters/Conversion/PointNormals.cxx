@@ -3,6 +3,7 @@
 #include "Conversion/PointNormals.h"
 
 #include "Conversion/NewArray.h"
+#include "Distributed/CellFlags.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCellArray.h"
@@ -119,14 +120,18 @@ std::vector<double> Normalized(std::vector<double> vectors)
   return vectors;
 }
 
-/// Of the points, three components each.
+/// Of the points, three components each. Hidden cells do not count.
 std::vector<double> NormalsOfPoints(vtkPolyData* block)
 {
   std::vector<double> sums(3 * static_cast<std::size_t>(block->GetNumberOfPoints()), 0.0);
+  const std::vector<unsigned char> flags = FindCellFlags(block);
+  const vtkIdType first = block->GetNumberOfVerts() + block->GetNumberOfLines();
   VisitPolygons(WithModerateCoordinates(block),
-    [&](vtkIdType, const vtkIdType* ids, vtkIdType size, const double normal[3])
+    [&](vtkIdType cell, const vtkIdType* ids, vtkIdType size, const double normal[3])
     {
-      for (vtkIdType i = 0; i < size; ++i)
+      const bool isHidden = !flags.empty() &&
+        (flags[static_cast<std::size_t>(first + cell)] & vtkDataSetAttributes::HIDDENCELL) != 0;
+      for (vtkIdType i = 0; !isHidden && i < size; ++i)
       {
         AddTo(sums, ids[i], normal);
       }

@@ -4,6 +4,7 @@
 
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/TupleRange.h"
+#include "Distributed/CellFlags.h"
 #include "Distributed/ContentHash.h"
 #include "Run/Polygons.h"
 
@@ -64,7 +65,7 @@ bool ReadTriangles(vtkPolyData* input, Triangles& triangles, std::vector<Index>&
 {
   vtkCellArray* const polygons = input->GetPolys();
   if (!polygons || polygons->IsHomogeneous() != 3 || input->GetNumberOfStrips() > 0 ||
-    input->GetCellGhostArray())
+    input->GetCellGhostArray() || !FindHiddenPoints(input).empty())
   {
     return false;
   }
@@ -122,8 +123,8 @@ public:
     if (vtkUnsignedCharArray* ghosts = input->GetCellGhostArray())
     {
       RequireTuples(ghosts, input->GetNumberOfCells(), "cell");
-      this->Ghosts = ghosts->GetPointer(0);
     }
+    this->Ghosts = FindCellFlags(input);
     const auto count = static_cast<std::size_t>(input->GetNumberOfPolys());
     this->Triangles.reserve(count);
     this->Cells.reserve(count);
@@ -146,7 +147,7 @@ private:
     const vtkIdType count = cells ? cells->GetNumberOfCells() : 0;
     for (vtkIdType c = 0; c < count; ++c)
     {
-      if (this->Ghosts && (this->Ghosts[firstCell + c] & absent))
+      if (!this->Ghosts.empty() && (this->Ghosts[static_cast<std::size_t>(firstCell + c)] & absent))
       {
         continue;
       }
@@ -238,7 +239,7 @@ private:
   }
 
   const Points& Coordinates;
-  const unsigned char* Ghosts = nullptr;
+  std::vector<unsigned char> Ghosts;
   vtkNew<vtkPolygon> Polygon;
   vtkNew<vtkIdList> Ears;
 };
@@ -266,6 +267,7 @@ Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded, bool 
   AddCells(fingerprint, input->GetPolys(), parallel);
   AddCells(fingerprint, input->GetStrips(), parallel);
   AddArray(fingerprint, input->GetCellGhostArray(), parallel);
+  AddArray(fingerprint, input->GetPointGhostArray(), parallel);
   AddArray(fingerprint, excluded, parallel);
   fingerprint.AddNumber(std::uint64_t{ excludedCells ? 1u : 0u });
   return fingerprint;
@@ -301,6 +303,7 @@ SurfaceArrays ReadSurface(
     }
     cells = std::move(triangulator.Cells);
   }
+  arrays.Excluded = FindHiddenPoints(input); // whose triangles are left out above
   if (excluded && excludedCells)
   {
     for (const Index cell : cells)
@@ -310,10 +313,11 @@ SurfaceArrays ReadSurface(
   }
   else if (excluded)
   {
-    arrays.Excluded.resize(static_cast<std::size_t>(input->GetNumberOfPoints()));
+    arrays.Excluded.resize(static_cast<std::size_t>(input->GetNumberOfPoints()), 0);
     for (std::size_t i = 0; i < arrays.Excluded.size(); ++i)
     {
-      arrays.Excluded[i] = excluded->GetComponent(static_cast<vtkIdType>(i), 0) != 0.0;
+      arrays.Excluded[i] =
+        arrays.Excluded[i] != 0 || excluded->GetComponent(static_cast<vtkIdType>(i), 0) != 0.0;
     }
   }
   return arrays;

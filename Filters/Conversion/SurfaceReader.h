@@ -22,7 +22,8 @@ void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what);
 Fingerprint FingerprintSurface(
   vtkPolyData* input, vtkDataArray* excluded = nullptr, bool excludedCells = false);
 
-/// The triangles of the polygons and strips of `input`. Ghost and hidden cells are ignored.
+/// The triangles of the polygons and strips of `input`. Ghost and hidden cells are ignored,
+/// and cells with a hidden point.
 /// excluded: per point, nonzero for points whose triangles are ignored, or, with excludedCells, per
 /// cell, nonzero for those that are ignored; may be null. cells: the input's cell of each triangle.
 ///

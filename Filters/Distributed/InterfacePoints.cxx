@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/InterfacePoints.h"
 
+#include "Distributed/CellFlags.h"
+
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
@@ -33,9 +35,8 @@ public:
     , Used(candidates.size(), 0)
     , OnEdge(candidates.size(), 0)
   {
-    vtkUnsignedCharArray* const ghosts = data->GetCellGhostArray();
-    const bool known = ghosts && ghosts->GetNumberOfTuples() == data->GetNumberOfCells();
-    const unsigned char* const flags = known ? ghosts->GetPointer(0) : nullptr;
+    const std::vector<unsigned char> ghosts = FindCellFlags(data);
+    const unsigned char* const flags = ghosts.empty() ? nullptr : ghosts.data();
     vtkIdType cell = data->GetNumberOfVerts() + data->GetNumberOfLines();
     this->AddCells(data->GetPolys(), flags ? flags + cell : nullptr, false);
     cell += data->GetNumberOfPolys();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/PackedPiece.h"
 
+#include "Distributed/CellFlags.h"
 #include "Distributed/ContentHash.h"
 
 #include "vtkAlgorithm.h"
@@ -172,9 +173,11 @@ vtkSmartPointer<vtkPolyData> PackPiece(
   packed->GetPointData()->SetGlobalIds(ids);
   packed->GetFieldData()->AddArray(PackNames(PackedArrays::PointArrayNames, input->GetPointData()));
   packed->GetFieldData()->AddArray(PackNames(PackedArrays::CellArrayNames, input->GetCellData()));
-  vtkUnsignedCharArray* const ghosts = input->GetCellGhostArray();
-  if (ghosts && ghosts->GetNumberOfTuples() == input->GetNumberOfCells())
+  std::vector<unsigned char> flags = FindCellFlags(input);
+  if (!flags.empty())
   {
+    vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetArray(flags.data(), static_cast<vtkIdType>(flags.size()), 1); // not taken
     PackCellArray<vtkUnsignedCharArray>(
       vtkDataSetAttributes::GhostArrayName(), ghosts, first, packed);
   }
