@@ -9,6 +9,7 @@
 #include "Conversion/RunState.h"
 #include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/TimeRequests.h"
+#include "Distributed/CellFlags.h"
 #include "Run/BlockSentences.h"
 
 #include "vtkCellData.h"
@@ -325,21 +326,25 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   }
   try
   {
-    state.Run.Update(
-      this->MakeInputs(surfaces, fields), state.Settings, group, progress.Part(0.0, 0.25));
-    progress.Report(0.25);
-    double found = 0.25;
-    state.LastStep = state.Settings->DescribeModel().NumberOfSteps;
-    if (this->GenerateTimeSteps)
-    {
-      found = state.Settings->DescribeModel().MayEndEarly ? 0.65 : found;
-      state.LastStep = state.Run.FindLastStep(progress.Part(0.25, found));
-    }
-    state.Step = FindStep(*state.Settings, state.Time, state.LastStep);
-    // If at most one step is left to do, writing the result is much of the work.
-    const double written = state.Run.NumberOfStepsTo(state.Step) > 1 ? 0.95 : 0.7;
-    state.Run.Seek(state.Step, progress.Part(found, written));
-    progress.Report(written);
+    NamingExtremes(*state.Settings,
+      [&]
+      {
+        state.Run.Update(
+          this->MakeInputs(surfaces, fields), state.Settings, group, progress.Part(0.0, 0.25));
+        progress.Report(0.25);
+        double found = 0.25;
+        state.LastStep = state.Settings->DescribeModel().NumberOfSteps;
+        if (this->GenerateTimeSteps)
+        {
+          found = state.Settings->DescribeModel().MayEndEarly ? 0.65 : found;
+          state.LastStep = state.Run.FindLastStep(progress.Part(0.25, found));
+        }
+        state.Step = FindStep(*state.Settings, state.Time, state.LastStep);
+        // If at most one step is left to do, writing the result is much of the work.
+        const double written = state.Run.NumberOfStepsTo(state.Step) > 1 ? 0.95 : 0.7;
+        state.Run.Seek(state.Step, progress.Part(found, written));
+        progress.Report(written);
+      });
     this->BeginWriting();
     this->WriteResults(surfaces, fields);
   }
@@ -569,11 +574,12 @@ void vtkSurfaceDiffusionAlgorithm::CompletePiece(const SurfaceBlock& piece)
   {
     return;
   }
-  vtkUnsignedCharArray* const ghosts = piece.Input->GetCellGhostArray();
+  const std::vector<unsigned char> flags = FindCellFlags(piece.Input);
   const vtkIdType polygons = piece.Input->GetNumberOfVerts() + piece.Input->GetNumberOfLines();
   for (vtkIdType c = 0; c < result->GetNumberOfTuples(); ++c)
   {
-    const bool isHidden = ghosts && (ghosts->GetValue(c) & vtkDataSetAttributes::HIDDENCELL) != 0;
+    const bool isHidden = !flags.empty() &&
+      (flags[static_cast<std::size_t>(c)] & vtkDataSetAttributes::HIDDENCELL) != 0;
     for (int k = 0; (c < polygons || isHidden) && k < result->GetNumberOfComponents(); ++k)
     {
       result->SetComponent(c, k, fields.Data->GetComponent(c, k));

@@ -41,10 +41,10 @@ public:
         this->Runs[b] = std::make_unique<RunType>(SMPParallelFor::Instance());
       }
       this->Names[b] = inputs[b].Name;
+      const ProgressMonitor part = progress.Part(b / count, (b + 0.95) / count);
       NameBlockInErrors(this->Names[b],
-        [&] {
-          this->Runs[b]->Update(inputs[b], settings, progress.Part(b / count, (b + 0.95) / count));
-        });
+        [&]
+        { NamingExtremes(settings, [&] { this->Runs[b]->Update(inputs[b], settings, part); }); });
     }
   }
 

@@ -235,6 +235,24 @@ private:
   const std::string& Name;
 };
 
+/// Lists the settings whose squares may be too large or too small for a double.
+class ExtremesFinder : public NumberVisitor
+{
+public:
+  std::ostringstream Text;
+
+private:
+  void See(const SettingInfo& info, double value) override
+  {
+    constexpr double large = 1e100;
+    const double size = std::abs(value);
+    if (size > large || (size > 0.0 && size < 1.0 / large))
+    {
+      this->Text << (this->Text.tellp() > 0 ? " and " : "") << info.Name << " is " << value;
+    }
+  }
+};
+
 } // namespace
 
 SettingsSnapshot::SettingsSnapshot(Settings& settings, SettingScope scope)
@@ -272,6 +290,16 @@ const char* FindWord(Settings& settings, const std::string& name)
   WordFinder finder(name);
   settings.Visit(finder);
   return finder.Word;
+}
+
+std::string NameExtremes(Settings& settings, const std::string& failure)
+{
+  ExtremesFinder finder;
+  settings.Visit(finder);
+  const std::string found = finder.Text.str();
+  return found.empty()
+    ? failure
+    : found + ", with which " + failure + "; allowed: magnitudes whose squares a double can hold";
 }
 
 std::string ListChoices(const std::vector<const char*>& words, const std::vector<bool>& allowed)

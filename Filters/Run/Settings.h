@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -121,6 +122,29 @@ void Require(bool holds, const char* name, double value, const char* allowed, Pr
 
 /// "Name: value" lines, with words for choices, each after `indent`.
 std::string Describe(Settings& settings, const std::string& indent);
+
+/// The text of a failure, after the settings that may be the cause because their squares may be too
+/// large or too small for a double. Without any, the text as it is.
+std::string NameExtremes(Settings& settings, const std::string& failure);
+
+/// work(), whose errors name such settings.
+template <typename Work>
+void NamingExtremes(Settings& settings, const Work& work)
+{
+  try
+  {
+    work();
+  }
+  catch (const std::runtime_error& error)
+  {
+    const std::string text = NameExtremes(settings, error.what());
+    if (text == error.what())
+    {
+      throw;
+    }
+    throw std::runtime_error(text);
+  }
+}
 
 /// The word of the choice `name`; "Unknown" for a number without a word.
 const char* FindWord(Settings& settings, const std::string& name);

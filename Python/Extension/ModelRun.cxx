@@ -138,11 +138,11 @@ const TextureSettings& AsTexture(const RunSettings& settings)
 
 /// The units of the runs of later updates must not depend on a run that failed.
 template <typename Work>
-void ClearOnFailure(Run& run, const Work& work)
+void ClearOnFailure(Run& run, Settings& settings, const Work& work)
 {
   try
   {
-    work();
+    NamingExtremes(settings, work);
   }
   catch (const Aborted&)
   {
@@ -192,7 +192,7 @@ void ModelRun::Update(
         { return fields.Surface->Read(excluded, fields.MaskOnFaces); };
         inputs[b].ReadFields = [&fields] { return fields.Read(); };
       }
-      ClearOnFailure(this->Model,
+      ClearOnFailure(this->Model, *this->Settings,
         [&] { this->Model.Update(inputs, this->Settings, this->Alone, monitor.Part(0.0, 0.25)); });
     });
 }
@@ -201,8 +201,10 @@ void ModelRun::Seek(int step, const nb::object& progress)
 {
   this->Step = step < 0 ? this->NumberOfSteps() : step;
   PythonProgress(progress).Run(
-    [&](const ProgressMonitor& monitor) {
-      ClearOnFailure(this->Model, [&] { this->Model.Seek(this->Step, monitor.Part(0.25, 1.0)); });
+    [&](const ProgressMonitor& monitor)
+    {
+      ClearOnFailure(this->Model, *this->Settings,
+        [&] { this->Model.Seek(this->Step, monitor.Part(0.25, 1.0)); });
     });
 }
 
@@ -534,8 +536,12 @@ void DirectionRun::Update(
   Problems problems;
   settings.Check(&summary, problems);
   ThrowProblems(std::move(problems));
-  PythonProgress(progress).Run([&](const ProgressMonitor& monitor)
-    { this->Field.Update(MakeUnmaskedBlock(input), settings, monitor); });
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      NamingExtremes(
+        settings, [&] { this->Field.Update(MakeUnmaskedBlock(input), settings, monitor); });
+    });
 }
 
 std::vector<std::string> DirectionRun::GetWarnings() const
@@ -563,8 +569,12 @@ void MeshDenoiser::Update(
   Problems problems;
   CheckRanges(settings, problems);
   ThrowProblems(std::move(problems));
-  PythonProgress(progress).Run([&](const ProgressMonitor& monitor)
-    { this->Run.Update(MakeUnmaskedBlock(input), settings, monitor); });
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      NamingExtremes(
+        settings, [&] { this->Run.Update(MakeUnmaskedBlock(input), settings, monitor); });
+    });
 }
 
 nb::dict MeshDenoiser::GetResults() const
