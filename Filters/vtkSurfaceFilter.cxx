@@ -9,6 +9,7 @@
 #include "Run/Settings.h"
 
 #include "vtkDataObject.h"
+#include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
@@ -138,6 +139,7 @@ bool vtkSurfaceFilter::ReportProblems(Problems problems)
 /// Process 0 reports for all.
 void vtkSurfaceFilter::ReportError(const std::string& text)
 {
+  this->Private->HasFailed = true;
   if (this->GetProcessGroup().IsRoot())
   {
     vtkErrorMacro(<< text);
@@ -214,9 +216,12 @@ int vtkSurfaceFilter::RequestData(
 {
   const std::vector<SurfacePiece> pieces =
     CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
-  if (IsLonePiece(this, inputs, this->Controller, this->HasWholeSurface))
+  this->Private->HasFailed = false;
+  const std::string alone = DescribeLonePiece(inputs, this->Controller, this->HasWholeSurface);
+  if (!alone.empty())
   {
-    return 1;
+    this->ReportError(alone);
+    return this->EndUpdate();
   }
   this->Private->Input = DescribeInput(vtkDataObject::GetData(inputs[0]));
   const auto toBlocks = [&names = this->Private->Input.SurfaceNames](
@@ -252,8 +257,10 @@ int vtkSurfaceFilter::RequestData(
   }
   else
   {
-    UpdateOfPieces(this, processes, pieces, this->SeamTolerance, this->Private->Gathered,
-      [&](const std::vector<SurfacePiece>& surfaces) { this->ProcessGuarded(toBlocks(surfaces)); });
+    UpdateOfPieces(
+      this, processes, pieces, this->SeamTolerance, this->Private->Gathered,
+      [&](const std::vector<SurfacePiece>& surfaces) { this->ProcessGuarded(toBlocks(surfaces)); },
+      [&](const std::string& text) { this->ReportError(text); });
     for (const SurfaceBlock& piece : toBlocks(pieces))
     {
       this->CompletePiece(piece);
@@ -264,7 +271,31 @@ int vtkSurfaceFilter::RequestData(
   {
     this->ReleaseCache();
   }
-  return 1;
+  this->Private->HasFailed = processes.Any(this->Private->HasFailed);
+  return this->EndUpdate();
+}
+
+/// The answer to the pipeline: 0 if the update has failed.
+int vtkSurfaceFilter::EndUpdate()
+{
+  const bool failed = this->Private->HasFailed;
+  this->SetErrorCode(failed ? vtkErrorCode::UserError : vtkErrorCode::NoError);
+  if (failed)
+  {
+    this->Private->QuietExecutive(this->GetExecutive());
+  }
+  return failed ? 0 : 1;
+}
+
+vtkMTimeType vtkSurfaceFilter::GetMTime()
+{
+  if (this->Private->HasFailed)
+  {
+    // The pipeline takes the output for up to date even though the update has failed.
+    this->Private->FailureTime.Modified();
+    return this->Private->FailureTime.GetMTime();
+  }
+  return this->Superclass::GetMTime();
 }
 
 void vtkSurfaceFilter::ReleaseCache()

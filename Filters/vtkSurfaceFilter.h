@@ -10,10 +10,11 @@
  * errors, after which the output is the unchanged input.
  *
  * Polygons and strips are triangulated internally. Vertices and lines pass through. Ghost and
- * hidden cells are ignored. Each block of composite input is a surface of its own, and blocks of
- * other types pass through. Messages that do not hold for all blocks name theirs, by the block's
- * name or its indices, such as 0/2. Any type of input is accepted; if it has no surface, an error
- * names the type and the remedy.
+ * hidden cells are ignored, and so are cells with a hidden point (vtkDataSetAttributes::HIDDENPOINT),
+ * which keeps its value. Each block of composite input is a surface of its own, and blocks of other
+ * types pass through. Messages that do not hold for all blocks name theirs, by the block's name or
+ * its indices, such as 0/2. Any type of input is accepted; if it has no surface, an error names the
+ * type and the remedy.
  *
  * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with
  * a piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one
@@ -26,6 +27,11 @@
  * points get the results of the points that they are copies of. Warnings and errors are reported by
  * process 0 alone. Unless a subclass solves with the pieces themselves, the surface is gathered in
  * process 0 and the result is scattered.
+ *
+ * **Errors.** An update that reports an error fails: GetExecutive()->Update() returns 0, filters
+ * behind this one do not execute, and GetErrorCode() is vtkErrorCode::UserError (0 after an update
+ * that has succeeded or was aborted). The output is the unchanged input. The next update tries again
+ * and reports the error again, until something has changed.
  *
  * @sa vtkSurfaceDiffusionAlgorithm vtkSurfaceDirectionFieldFilter
  */
@@ -132,6 +138,9 @@ public:
    */
   virtual void ReleaseCache();
 
+  /// After an update that failed it is the present time, so that the next update tries again.
+  vtkMTimeType GetMTime() override;
+
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -211,6 +220,7 @@ private:
 
   void ProcessGuarded(const std::vector<SurfaceBlock>& blocks);
   void ReportError(const std::string& text);
+  int EndUpdate();
   bool IsAborted();
   void ShareReported();
 

@@ -50,11 +50,12 @@ private:
 };
 
 /// One update of a filter whose input is in pieces: calls execute(surfaces) in process 0 with each
-/// surface in one piece, and scatters the results. Errors are reported there. Collective.
-template <typename Execute>
+/// surface in one piece, and scatters the results. Want of memory is reported there, by
+/// report(text). Collective.
+template <typename Execute, typename Report>
 void UpdateOfPieces(vtkAlgorithm* filter, const Processes& processes,
   const std::vector<SurfacePiece>& pieces, double tolerance,
-  std::unique_ptr<GatheredSurfaces>& gathered, const Execute& execute)
+  std::unique_ptr<GatheredSurfaces>& gathered, const Execute& execute, const Report& report)
 {
   const bool isFirst = processes.Rank() == 0;
   if (!processes.Any(isFirst ? HasSurfaceInPieces(pieces) : HasPoints(pieces)))
@@ -79,7 +80,7 @@ void UpdateOfPieces(vtkAlgorithm* filter, const Processes& processes,
     }
     catch (const std::bad_alloc&)
     {
-      vtkErrorWithObjectMacro(filter, << "not enough memory for the whole surface in process 0");
+      report("not enough memory for the whole surface in process 0");
     }
   }
   gathered->ScatterResults(processes, pieces);

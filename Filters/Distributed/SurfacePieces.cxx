@@ -173,8 +173,8 @@ InputDescription DescribeInput(vtkDataObject* input)
   return description;
 }
 
-bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
-  vtkMultiProcessController* controller, bool whole)
+std::string DescribeLonePiece(
+  vtkInformationVector** inputs, vtkMultiProcessController* controller, bool whole)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* const input = inputs[0]->GetInformationObject(0);
@@ -183,14 +183,11 @@ bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
     input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
   if (whole || !several || Processes(controller).Count() > 1)
   {
-    return false;
+    return "";
   }
-  vtkErrorWithObjectMacro(filter,
-    "the input is one of " << input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())
-                           << " pieces, and Controller has no process with the others; allowed: a "
-                              "controller of all processes, or null if each piece is a separate "
-                              "surface");
-  return true;
+  return "the input is one of " + std::to_string(input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())) +
+    " pieces, and Controller has no process with the others; allowed: a controller of all "
+    "processes, or null if each piece is a separate surface";
 }
 
 PieceSummary SummarizePieces(const Processes& processes, const std::vector<SurfacePiece>& pieces)

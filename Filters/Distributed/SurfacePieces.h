@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-class vtkAlgorithm;
 class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
@@ -47,10 +46,10 @@ struct InputDescription
 };
 InputDescription DescribeInput(vtkDataObject* input);
 
-/// Whether the input is one of several pieces and the controller gives no access to the others.
-/// This is reported as an error. whole: the user states that each piece is a separate surface.
-bool IsLonePiece(vtkAlgorithm* filter, vtkInformationVector** inputs,
-  vtkMultiProcessController* controller, bool whole);
+/// The error if the input is one of several pieces and the controller gives no access to the
+/// others; otherwise empty. whole: the user states that each piece is a separate surface.
+std::string DescribeLonePiece(
+  vtkInformationVector** inputs, vtkMultiProcessController* controller, bool whole);
 
 /// The pieces of all processes together.
 struct PieceSummary
