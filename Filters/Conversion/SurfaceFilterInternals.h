@@ -17,6 +17,7 @@
 #include "vtkTimeStamp.h"
 #include "vtkWeakPointer.h"
 
+#include <cstring>
 #include <memory>
 
 /// The state of vtkSurfaceFilter that its header hides.
@@ -39,37 +40,38 @@ struct vtkSurfaceFilter::Internals
 
   ~Internals()
   {
-    if (this->Executive)
+    if (this->Observed)
     {
-      this->Executive->RemoveObserver(this->Quiet);
+      this->Observed->RemoveObserver(this->Quiet);
     }
   }
 
   /// Leave out the next error of the executive, that the filter has failed, with all entries of the
-  /// request: the filter has said why. Other errors are displayed as before.
+  /// request: the filter has said why.
   void QuietExecutive(vtkExecutive* executive)
   {
-    if (!executive->HasObserver(vtkCommand::ErrorEvent))
-    {
-      this->Executive = executive;
-      this->Quiet->SetClientData(&this->IsQuiet);
-      this->Quiet->SetCallback(
-        [](vtkObject*, unsigned long, void* isQuiet, void* text)
+    this->Observed = executive;
+    this->Quiet->SetCallback(
+      [](vtkObject* caller, unsigned long, void* command, void* text)
+      {
+        auto* const quiet = static_cast<vtkCallbackCommand*>(command);
+        caller->RemoveObserver(quiet);
+        const auto* const sentence = static_cast<const char*>(text);
+        if (sentence && std::strstr(sentence, "returned failure for request"))
         {
-          const auto* const sentence = static_cast<const char*>(text);
-          if (!*static_cast<bool*>(isQuiet) && sentence)
-          {
-            vtkOutputWindowDisplayErrorText(sentence);
-          }
-          *static_cast<bool*>(isQuiet) = false;
-        });
-      executive->AddObserver(vtkCommand::ErrorEvent, this->Quiet);
-    }
-    this->IsQuiet = true;
+          quiet->SetAbortFlag(1); // for observers after this one
+        }
+        else if (sentence)
+        {
+          vtkOutputWindowDisplayErrorText(sentence);
+        }
+      });
+    this->Quiet->SetClientData(this->Quiet);
+    executive->RemoveObserver(this->Quiet);
+    executive->AddObserver(vtkCommand::ErrorEvent, this->Quiet, VTK_FLOAT_MAX);
   }
 
 private:
   vtkNew<vtkCallbackCommand> Quiet;
-  vtkWeakPointer<vtkExecutive> Executive; ///< that the command observes
-  bool IsQuiet = false;
+  vtkWeakPointer<vtkExecutive> Observed;
 };
