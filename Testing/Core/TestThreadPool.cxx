@@ -12,6 +12,14 @@
 #include <thread>
 #include <vector>
 
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define SURFACEDIFFUSION_LIMIT_MEMORY
+#include <cstdlib>
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
+
 using namespace SurfaceDiffusion;
 
 namespace
@@ -117,3 +125,22 @@ TEST(ThreadPool, EndsALoopThatItsWatchStops)
   EXPECT_THROW(pool.RunTasks(1000, slow), Aborted);
   EXPECT_LT(visits, 1000);
 }
+
+#ifdef SURFACEDIFFUSION_LIMIT_MEMORY
+TEST(ThreadPool, HasFewerThreadsWhereMemoryIsTooShort)
+{
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto isComplete = []
+  {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    constexpr std::size_t left = 40000000; // the stacks of a few threads
+    const rlim_t limit = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + left;
+    const rlimit memory{ limit, limit };
+    setrlimit(RLIMIT_AS, &memory);
+    const ThreadPool pool(64);
+    return pool.NumberOfThreads() < 64 && CountVisits(pool, 1000) == std::vector<int>(1000, 1);
+  };
+  EXPECT_EXIT(std::exit(isComplete() ? 0 : 1), testing::ExitedWithCode(0), "");
+}
+#endif

@@ -48,11 +48,17 @@ FilterKind MakeKind(
     result };
 }
 
-/// Adds the rough array "c" of cells, which some of AllFilters() take.
-inline void AddRoughCells(vtkPolyData* surface)
+/// Adds the arrays other than "f" that some of AllFilters() take: the rough array "c" of cells,
+/// the colours "rgb", the mask "mask" and the directions "e1" of points.
+inline void AddArraysOfAllFilters(vtkPolyData* surface)
 {
   surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 1,
     [](vtkIdType i, int k) { return 2.0 + Rough(i, k); }));
+  AddPointArray(
+    surface, "rgb", 3, [](vtkIdType i, int k) { return 120.0 + 100.0 * Rough(i, k); },
+    VTK_UNSIGNED_CHAR);
+  AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 17 == 3; });
+  AddPointArray(surface, "e1", 3, [](vtkIdType i, int k) { return k + 0.3 * Rough(i, k); });
 }
 
 /// Every filter, also with the settings that select other algorithms.
@@ -77,12 +83,59 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFidelityWeight(0.1);
       }),
     MakeKind<Heat>("HeatAutomatic", "fDiffused", 3, [](Heat* f) { f->AutomaticFidelityOn(); }),
+    MakeKind<Heat>("HeatDeblurred", "fDiffused", 1,
+      [](Heat* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetFidelityWeight(1.0);
+        f->SetBlurFWHM(0.3);
+        SetInputArray(f, 1, "mask");
+      }),
+    MakeKind<Heat>("HeatMultigrid", "fDiffused", 3, [](Heat* f) { f->SetSolverToMultigrid(); }),
+    MakeKind<Heat>("HeatExcluded", "fDiffused", 3,
+      [](Heat* f)
+      {
+        f->SetMaskModeToExclude();
+        SetInputArray(f, 1, "mask");
+      }),
     MakeKind<Heat>("HeatOfCells", "cDiffused", 3, [](Heat* f) { SetInputArray(f, 0, "c", true); }),
     MakeKind<TV>("TV", "fTV", 3),
     MakeKind<TV>("TVImplicit", "fTV", 2, [](TV* f) { f->SetTimeIntegratorToImplicit(); }),
     MakeKind<TV>("TVSteady", "fTV", 1, [](TV* f) { f->SetModeToSteadyState(); }),
     MakeKind<TV>(
       "TVCrouzeixRaviart", "fTV", 2, [](TV* f) { f->SetDiscretizationToCrouzeixRaviart(); }),
+    MakeKind<TV>("TVAutomatic", "fTV", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        f->AutomaticFidelityOn();
+        f->SetNoiseLevel(0.3);
+      }),
+    MakeKind<TV>("TVAbsolute", "fTV", 2,
+      [](TV* f)
+      {
+        f->SetTimeIntegratorToImplicit();
+        f->SetFidelityNormToL1();
+      }),
+    MakeKind<TV>("TVDeblurred", "fTV", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetBlurFWHM(0.3);
+        f->SetStopTolerance(1e-2);
+      }),
+    MakeKind<TV>("TVOpponent", "rgbTV", 2,
+      [](TV* f)
+      {
+        f->SetColorModelToOpponent();
+        SetInputArray(f, 0, "rgb");
+      }),
+    MakeKind<TV>("TVChromaticity", "rgbTV", 2,
+      [](TV* f)
+      {
+        f->SetColorModelToChromaticityBrightness();
+        SetInputArray(f, 0, "rgb");
+      }),
     MakeKind<TV>("PeronaMalik", "fTV", 3,
       [](TV* f)
       {
@@ -94,6 +147,14 @@ inline std::vector<FilterKind> AllFilters()
       "HarmonicMoved", "NormalsHarmonic", 2, [](Harmonic* f) { f->MoveVerticesOn(); }),
     MakeKind<Harmonic>("HarmonicExplicit", "NormalsHarmonic", 2,
       [](Harmonic* f) { f->SetSchemeToExplicitReaction(); }),
+    MakeKind<Harmonic>("HarmonicLines", "NormalsHarmonic", 2,
+      [](Harmonic* f)
+      {
+        f->LineFieldOn();
+        f->UseAsNormalsOff();
+      }),
+    MakeKind<Harmonic>("HarmonicMinimizing", "NormalsHarmonic", 1,
+      [](Harmonic* f) { f->SetSchemeToMinimizingMovement(); }),
     MakeKind<Shah>("MumfordShah", "fMumfordShah", 4),
     MakeKind<Shah>("MumfordShahDirect", "fMumfordShah", 3,
       [](Shah* f)
@@ -128,6 +189,8 @@ inline std::vector<FilterKind> AllFilters()
         f->SetTimeIntegratorToFirstOrder();
         f->ColorOutputOn();
       }),
+    MakeKind<Turing>("TuringCoarseStart", "u1", 4, [](Turing* f) { f->SetCoarseStartSize(300); }),
+    MakeKind<Segmentation>("SegmentationDefaults", "RegionId", 1),
     MakeKind<Segmentation>("Segmentation", "RegionId", 1,
       [](Segmentation* f)
       {
@@ -153,6 +216,23 @@ inline std::vector<FilterKind> AllFilters()
       {
         auto filter = vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New();
         filter->SetMethodToSmooth();
+        return filter;
+      },
+      "Direction" },
+    { "DirectionAligned",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New();
+        filter->SetMethodToCurvatureAligned();
+        return filter;
+      },
+      "Direction" },
+    { "DirectionHints",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New();
+        filter->SetMethodToHints();
+        SetInputArray(filter, 2, "e1");
         return filter;
       },
       "Direction" },

@@ -129,7 +129,7 @@ vtkSmartPointer<vtkPolyData> MakeSurface(const Case& c)
   }
   AddPointArray(surface, "f", 1, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
   surface->GetPointData()->SetActiveScalars("f");
-  AddRoughCells(surface);
+  AddArraysOfAllFilters(surface);
   return surface;
 }
 

@@ -53,7 +53,7 @@ protected:
   EveryFilter()
   {
     AddRough(this->Surface);
-    AddRoughCells(this->Surface);
+    AddArraysOfAllFilters(this->Surface);
     this->Reference = this->GetParam().Make();
     this->Reference->SetInputData(this->Surface);
     this->Reference->Update();

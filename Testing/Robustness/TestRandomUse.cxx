@@ -75,6 +75,9 @@ void AddRandomArrays(Dice& dice, vtkPolyData* surface)
   add("fixed", 1, [&](vtkIdType, int) { return dice.Flip(9); });
   add("e1", 3, [&](vtkIdType i, int k) { return dice.Flip(20) ? 0.0 : Rough(i, k); });
   add("rates", 4, [&](vtkIdType i, int k) { return 3.0 + Rough(i, k); });
+  add("fidelity", 1, [&](vtkIdType i, int k) { return dice.Flip(9) ? 0.0 : 2.0 + Rough(i, k); });
+  add("seeds", 1, [&](vtkIdType, int) { return dice.Flip(9) ? 1 + dice.Below(2) : 0; });
+  add("terms", 2 + dice.Below(2), [&](vtkIdType i, int k) { return size * Rough(i, k); });
   const auto addToCells = [&](const char* name, int components, const auto& value)
   {
     if (!dice.Flip(8))
@@ -88,15 +91,46 @@ void AddRandomArrays(Dice& dice, vtkPolyData* surface)
     { return holes && dice.Flip(5) ? vtkMath::Nan() : std::abs(size * Rough(i, k)); });
   addToCells("mask", 1, [&](vtkIdType, int) { return dice.Flip(6); });
   addToCells("fixed", 1, [&](vtkIdType, int) { return dice.Flip(9); });
+  addToCells("e1", 3, [&](vtkIdType i, int k) { return dice.Flip(20) ? 0.0 : Rough(i, k); });
+  addToCells("rates", 4, [&](vtkIdType i, int k) { return 3.0 + Rough(i, k); });
+  addToCells(
+    "fidelity", 1, [&](vtkIdType i, int k) { return dice.Flip(9) ? 0.0 : 2.0 + Rough(i, k); });
+  addToCells("seeds", 1, [&](vtkIdType, int) { return dice.Flip(9) ? 1 + dice.Below(2) : 0; });
   surface->GetPointData()->SetActiveScalars("f");
 }
 
-const char* const ArrayNames[] = { "f", "mask", "e1", "fixed", "rates" };
+/// Per index of an input array.
+const char* const ArrayNames[] = { "f", "mask", "e1", "fixed", "rates", "fidelity", "seeds",
+  "terms" };
+constexpr int NumberOfArrays = 8;
+constexpr int Rates = 4; ///< which are on cells
+constexpr int Terms = 7; ///< which may be those of index 0
 
 void SetRandomArray(Dice& dice, vtkPolyDataAlgorithm* filter)
 {
-  const int index = dice.Below(5);
-  SetInputArray(filter, index, dice.Flip(3) ? "" : ArrayNames[index], dice.Flip(3));
+  const int index = dice.Below(NumberOfArrays);
+  const char* const name = ArrayNames[index == Terms && dice.Flip() ? 0 : index];
+  const bool onCells = index == Rates ? !dice.Flip(8) : dice.Flip(3);
+  SetInputArray(filter, index, dice.Flip(3) ? "" : name, onCells);
+}
+
+/// Changes one value of an array or one coordinate and marks nothing as modified, as numpy does.
+void EditInPlace(Dice& dice, vtkPolyData* surface)
+{
+  const char* const name = ArrayNames[dice.Below(NumberOfArrays)];
+  vtkDataArray* array = surface->GetPoints()->GetData();
+  if (!dice.Flip(4))
+  {
+    vtkDataSetAttributes* const ofCells = surface->GetCellData();
+    array = (dice.Flip() ? surface->GetPointData() : ofCells)->GetArray(name);
+  }
+  if (array && array->GetNumberOfTuples() > 0)
+  {
+    const int tuple = dice.Below(static_cast<int>(array->GetNumberOfTuples()));
+    const int component = dice.Below(array->GetNumberOfComponents());
+    const double before = array->GetComponent(tuple, component);
+    array->SetComponent(tuple, component, before == 0.0 ? 1.0 : 0.0);
+  }
 }
 
 bool IsFinite(vtkDataArray* array, vtkIdType point)
@@ -160,11 +194,12 @@ void UseAtRandom(const std::vector<FilterClass>& classes, unsigned int seed)
     {
       AddRandomArrays(dice, surface);
     }
-    if (!messages.Errors.empty())
+    else if (dice.Flip(3))
     {
-      filter->Modified(); // the pipeline does not repeat an update that only gave errors
-      messages.Errors.clear();
+      EditInPlace(dice, surface);
+      filter->Modified();
     }
+    messages.Errors.clear();
     const auto twin = Twin(kind, filter);
     Messages ofTwin(twin);
     const double time = dice.Logarithmic(1e-2, 1e2);

@@ -3,16 +3,27 @@
 
 #include "AllFilters.h"
 #include "Conversion/SMPParallelFor.h"
+#include "Conversion/ThreadScope.h"
 
-#include "vtkCallbackCommand.h"
+#include "vtkDoubleArray.h"
 #include "vtkFVMHeatFilter.h"
 #include "vtkSMPTools.h"
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iterator>
 #include <set>
 #include <string>
 #include <thread>
+
+#ifdef __linux__
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
 
 using namespace FilterTest;
 using SurfaceDiffusion::BlockSize;
@@ -34,7 +45,7 @@ vtkSmartPointer<vtkPolyData> Hills()
     points->SetPoint(i, x[0], x[1], 8.0 * std::sin(0.1 * x[0]) * std::cos(0.13 * x[1]));
   }
   AddRough(hills);
-  AddRoughCells(hills);
+  AddArraysOfAllFilters(hills);
   return hills;
 }
 
@@ -87,43 +98,163 @@ TEST_P(AnyThreads, DoNotChangeABit)
 namespace
 {
 
-/// VTK's back ends during an update of a filter, and after it.
-std::set<std::string> BackEndsOfAnUpdate(int numberOfThreads)
+/// Whether two tasks of a loop run at the same time. Each waits this long for the other.
+bool RunsTwoTasksAtOnce(std::chrono::milliseconds patience)
 {
-  vtkNew<vtkFVMHeatFilter> filter;
-  const vtkSmartPointer<vtkPolyData> sphere = Sphere(2);
-  AddRough(sphere);
-  filter->SetInputData(sphere);
-  filter->SetNumberOfThreads(numberOfThreads);
-  std::set<std::string> backEnds;
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetClientData(&backEnds);
-  observer->SetCallback([](vtkObject*, unsigned long, void* data, void*)
-    { static_cast<std::set<std::string>*>(data)->insert(vtkSMPTools::GetBackend()); });
-  filter->AddObserver(vtkCommand::ProgressEvent, observer);
-  filter->Update();
-  EXPECT_STREQ(vtkSMPTools::GetBackend(), "Sequential");
-  return backEnds;
+  std::atomic<int> active{ 0 };
+  std::atomic<bool> together{ false };
+  SurfaceDiffusion::SMPParallelFor::Instance().RunTasks(2,
+    [&](SurfaceDiffusion::Index begin, SurfaceDiffusion::Index end)
+    {
+      ++active;
+      const auto start = std::chrono::steady_clock::now();
+      while (!together && end - begin == 1 && std::chrono::steady_clock::now() - start < patience)
+      {
+        together = together || active == 2;
+      }
+      --active;
+    });
+  return together;
+}
+
+/// Whether an update has threads if they may be at most this number; 0: all.
+bool HasThreads(int number, bool severalProcesses = false)
+{
+  const SurfaceDiffusion::ThreadScope scope(number, severalProcesses);
+  return RunsTwoTasksAtOnce(std::chrono::seconds(20)); // on a loaded machine
+}
+
+bool IsAlone(int number, bool severalProcesses = false)
+{
+  const SurfaceDiffusion::ThreadScope scope(number, severalProcesses);
+  return !RunsTwoTasksAtOnce(std::chrono::milliseconds(300));
+}
+
+/// Ends a program in which VTK has its default and the user has chosen nothing before `choose`:
+/// with 0 if the check holds.
+void ExpectInNewProgram(const std::function<void()>& choose, const std::function<bool()>& check)
+{
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(
+    {
+      unsetenv("VTK_SMP_BACKEND_IN_USE");
+      unsetenv("VTK_SMP_MAX_THREADS");
+      choose();
+      std::exit(check() ? 0 : 1);
+    },
+    testing::ExitedWithCode(0), "");
+}
+
+bool IsSequentialByDefault()
+{
+  return VTK_SMP_DEFAULT_IMPLEMENTATION_SEQUENTIAL != 0 && std::thread::hardware_concurrency() > 1;
 }
 
 } // namespace
 
-TEST(Threads, ReplaceVTKsSequentialBackEndDuringAnUpdate)
+TEST(Threads, AreTheFiltersOwnWhereVTKIsSequentialByDefault)
+{
+  if (!IsSequentialByDefault())
+  {
+    GTEST_SKIP() << "VTK has another back end by default, or there is one processor";
+  }
+  const auto nothing = [] {};
+  ExpectInNewProgram(nothing, [] { return HasThreads(0) && HasThreads(2) && IsAlone(1); });
+  ExpectInNewProgram(nothing, [] { return IsAlone(0, true) && HasThreads(2, true); });
+  ExpectInNewProgram(
+    nothing, [] { return HasThreads(0) && !RunsTwoTasksAtOnce(std::chrono::milliseconds(300)); });
+}
+
+TEST(Threads, AreThoseThatTheUserHasChosen)
+{
+  if (!IsSequentialByDefault())
+  {
+    GTEST_SKIP() << "VTK has another back end by default, or there is one processor";
+  }
+  ExpectInNewProgram(
+    [] { setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", 1); }, [] { return IsAlone(0); });
+  ExpectInNewProgram([] { vtkSMPTools::Initialize(1); }, [] { return IsAlone(0); });
+  ExpectInNewProgram([] {},
+    []
+    {
+      bool limited = false;
+      vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&] { limited = IsAlone(0); });
+      return limited && HasThreads(0);
+    });
+  ExpectInNewProgram(
+    []
+    {
+      vtkSMPTools::SetBackend("STDThread");
+      HasThreads(0);
+      vtkSMPTools::SetBackend("Sequential");
+    },
+    [] { return IsAlone(0); });
+}
+
+TEST(Threads, OfFiltersLeaveThoseOfOtherThreadsAlone)
 {
   const std::string before = vtkSMPTools::GetBackend();
-  const char* const variable = "VTK_SMP_BACKEND_IN_USE";
-  const char* const chosen = std::getenv(variable);
-  const std::string ofUser = chosen ? chosen : "";
-  unsetenv(variable);
-  vtkSMPTools::SetBackend("Sequential");
-  EXPECT_EQ(BackEndsOfAnUpdate(0).count("STDThread"), 1u);
-  EXPECT_EQ(BackEndsOfAnUpdate(2).count("STDThread"), 1u);
-  EXPECT_EQ(BackEndsOfAnUpdate(1).count("STDThread"), 0u);
-  setenv(variable, "Sequential", 1);
-  EXPECT_EQ(BackEndsOfAnUpdate(0).count("STDThread"), 0u);
-  chosen ? setenv(variable, ofUser.c_str(), 1) : unsetenv(variable);
-  vtkSMPTools::SetBackend(before.c_str());
+  const vtkSmartPointer<vtkPolyData> surface = Hills();
+  std::atomic<bool> done{ false };
+  std::set<std::string> backEnds;
+  int ranges = 0;
+  int wrong = 0;
+  std::thread other( // vtkDataArray stores the ranges of its parts per thread
+    [&]
+    {
+      vtkNew<vtkDoubleArray> array;
+      array->SetNumberOfValues(100000);
+      array->FillValue(0.0);
+      while (!done)
+      {
+        ++ranges;
+        array->SetValue(ranges % 100000, ranges);
+        array->Modified();
+        wrong += array->GetRange(0)[1] == ranges ? 0 : 1;
+        backEnds.insert(vtkSMPTools::GetBackend());
+      }
+    });
+  for (int update = 0; update < 10; ++update)
+  {
+    vtkNew<vtkFVMHeatFilter> filter;
+    filter->SetInputData(surface);
+    filter->Update();
+  }
+  done = true;
+  other.join();
+  EXPECT_GT(ranges, 10);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(backEnds, std::set<std::string>{ before });
 }
+
+#ifdef __linux__
+TEST(Threads, EndWithTheUpdate)
+{
+  const auto count = []
+  {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  const vtkSmartPointer<vtkPolyData> surface = Hills();
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputData(surface);
+  filter->SetNumberOfThreads(2);
+  const auto before = count();
+  filter->Update();
+  EXPECT_EQ(count(), before);
+  const pid_t child = fork(); // has no threads but this one, and ends all the same
+  if (child == 0)
+  {
+    alarm(20);
+    filter->SetTimeStep(2.0);
+    filter->Update();
+    std::exit(filter->GetErrorCode() == 0 ? 0 : 1);
+  }
+  int status = 1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+#endif
 
 TEST(Threads, OfNegativeNumberAreAnError)
 {
@@ -143,7 +274,7 @@ TEST_P(AnyThreads, MayRunTwoFiltersAtOnce)
 {
   const vtkSmartPointer<vtkPolyData> surface = Sphere(6);
   AddRough(surface);
-  AddRoughCells(surface);
+  AddArraysOfAllFilters(surface);
   const vtkSmartPointer<vtkDataArray> alone = this->Run(surface);
   vtkSmartPointer<vtkDataArray> results[2];
   std::thread threads[2];

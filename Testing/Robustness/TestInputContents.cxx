@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Results belong to the contents of the inputs at the time of the update, whatever was marked as
+// modified: arrays and points that numpy has edited in place, and one array of many.
+
+#include "AllFilters.h"
+
+#include "vtkPartitionedDataSet.h"
+
+using namespace FilterTest;
+
+namespace
+{
+
+class InputContents : public testing::TestWithParam<FilterKind>
+{
+protected:
+  InputContents()
+  {
+    AddRough(this->Surface);
+    AddArraysOfAllFilters(this->Surface);
+    this->Filter = this->GetParam().Make();
+    this->Filter->SetInputData(this->Surface);
+    this->Filter->Update();
+    this->First = Copy(this->Result());
+  }
+
+  vtkDataArray* Result() { return ResultOf(this->Filter, this->GetParam().Result); }
+
+  vtkSmartPointer<vtkDataArray> FreshResult()
+  {
+    const auto fresh = this->GetParam().Make();
+    fresh->SetInputData(this->Surface);
+    fresh->Update();
+    return ResultOf(fresh, this->GetParam().Result);
+  }
+
+  /// Exchanges two values of each array, in place and unmarked.
+  void Edit()
+  {
+    vtkPointData* const data = this->Surface->GetPointData();
+    for (vtkDataArray* array : { data->GetArray("f"), data->GetArray("rgb"), data->GetArray("e1"),
+           this->Surface->GetCellData()->GetArray("c") })
+    {
+      const double other = array->GetComponent(41, 0);
+      array->SetComponent(41, 0, array->GetComponent(40, 0));
+      array->SetComponent(40, 0, other);
+    }
+  }
+  void Stretch(double factor)
+  {
+    vtkDataArray* const points = this->Surface->GetPoints()->GetData();
+    for (vtkIdType i = 0; i < points->GetNumberOfTuples(); ++i)
+    {
+      points->SetComponent(i, 2, factor * points->GetComponent(i, 2));
+    }
+  }
+
+  vtkSmartPointer<vtkPolyData> Surface = Sphere(3);
+  vtkSmartPointer<vtkPolyDataAlgorithm> Filter;
+  vtkSmartPointer<vtkDataArray> First;
+};
+
+} // namespace
+
+TEST_P(InputContents, AreReadAfterEditsInPlaceAndModifiedOfTheFilter)
+{
+  this->Edit();
+  this->Filter->Modified();
+  this->Filter->Update();
+  EXPECT_TRUE(Identical(this->Result(), this->FreshResult()));
+  this->Edit();
+  this->Filter->Modified();
+  this->Filter->Update();
+  EXPECT_TRUE(Identical(this->Result(), this->First));
+}
+
+TEST_P(InputContents, OfAnEditThatWasReadWithAChangedPropertyAreNotThoseBefore)
+{
+  this->Edit();
+  auto* const filter = vtkSurfaceFilter::SafeDownCast(this->Filter);
+  filter->SetMergeCoincidentPoints(true); // nothing coincides
+  this->Filter->Update();
+  EXPECT_TRUE(Identical(this->Result(), this->FreshResult()));
+  this->Edit();
+  this->Surface->GetPointData()->GetArray("f")->Modified();
+  this->Surface->Modified();
+  this->Filter->Update();
+  EXPECT_TRUE(Identical(this->Result(), this->First));
+}
+
+TEST_P(InputContents, IncludePointsThatWereMovedInPlace)
+{
+  this->Stretch(2.0);
+  this->Filter->Modified();
+  this->Filter->Update();
+  EXPECT_TRUE(Identical(this->Result(), this->FreshResult()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Inputs, InputContents, testing::ValuesIn(AllFilters()), KindName);
+
+TEST(InputContents, OfPiecesAreReadAfterEditsInPlace)
+{
+  vtkNew<vtkPartitionedDataSet> pieces;
+  for (unsigned int p = 0; p < 2; ++p)
+  {
+    const auto half = Grid(12, 12);
+    for (vtkIdType i = 0; i < half->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      half->GetPoint(i, x);
+      half->GetPoints()->SetPoint(i, x[0] + 11.0 * p, x[1], x[2]);
+    }
+    AddRough(half);
+    pieces->SetPartition(p, half);
+  }
+  const auto resultOf = [](vtkAlgorithm* filter)
+  {
+    return vtkPolyData::SafeDownCast(
+      vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPartition(1))
+      ->GetPointData()
+      ->GetArray("fDiffused");
+  };
+  vtkNew<vtkFVMHeatFilter> kept;
+  kept->SetInputData(pieces);
+  kept->Update();
+  const auto before = Copy(resultOf(kept));
+  vtkPolyData* const piece = vtkPolyData::SafeDownCast(pieces->GetPartition(1));
+  for (vtkDataArray* edited :
+    { piece->GetPointData()->GetArray("f"), piece->GetPoints()->GetData() })
+  {
+    edited->SetComponent(50, 0, edited->GetComponent(50, 0) + 0.3);
+    kept->Modified();
+    kept->Update();
+    vtkNew<vtkFVMHeatFilter> fresh;
+    fresh->SetInputData(pieces);
+    fresh->Update();
+    EXPECT_TRUE(Identical(resultOf(kept), resultOf(fresh)));
+    EXPECT_FALSE(Identical(resultOf(kept), before));
+  }
+}
+
+namespace
+{
+
+/// Reverses one array of a kept filter and compares with a new filter.
+void ExpectReadAlone(const std::function<vtkSmartPointer<vtkPolyDataAlgorithm>()>& make,
+  vtkPolyData* surface, vtkDataArray* array, const char* result)
+{
+  const auto kept = make();
+  kept->SetInputData(surface);
+  kept->Update();
+  ASSERT_NE(ResultOf(kept, result), nullptr);
+  const auto before = Copy(ResultOf(kept, result));
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples() / 2; ++i)
+  {
+    for (int k = 0; k < array->GetNumberOfComponents(); ++k)
+    {
+      const double other = array->GetComponent(array->GetNumberOfTuples() - 1 - i, k);
+      array->SetComponent(array->GetNumberOfTuples() - 1 - i, k, array->GetComponent(i, k));
+      array->SetComponent(i, k, other);
+    }
+  }
+  array->Modified();
+  kept->Update();
+  const auto fresh = make();
+  fresh->SetInputData(surface);
+  fresh->Update();
+  EXPECT_TRUE(Identical(ResultOf(kept, result), ResultOf(fresh, result))) << array->GetName();
+  EXPECT_FALSE(Identical(ResultOf(kept, result), before)) << array->GetName();
+}
+
+/// A hemisphere at 1, another at 0, and noise.
+vtkSmartPointer<vtkPolyData> TwoRegions()
+{
+  const auto surface = Sphere(3);
+  AddPointArray(surface, "f", 1,
+    [&](vtkIdType i, int k) { return (surface->GetPoint(i)[2] > 0.1) + 0.3 * Rough(i, k); });
+  surface->GetPointData()->SetActiveScalars("f");
+  return surface;
+}
+
+} // namespace
+
+TEST(InputContents, OfFidelityAloneAreReadAgain)
+{
+  const auto surface = TwoRegions();
+  vtkDataArray* const fidelity = AddPointArray(
+    surface, "fidelity", 1, [&](vtkIdType i, int k) { return 2.0 + 1.9 * Rough(i, k); });
+  ExpectReadAlone(
+    []
+    {
+      auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+      filter->SetFidelityWeight(0.5);
+      SetInputArray(filter, 5, "fidelity");
+      return filter;
+    },
+    surface, fidelity, "fDiffused");
+}
+
+TEST(InputContents, OfSeedsAloneAreReadAgain)
+{
+  const auto surface = TwoRegions();
+  vtkDataArray* const seeds = AddPointArray(
+    surface, "seeds", 1, [&](vtkIdType i, int) { return i < 9 ? 1 : (i < 30 ? 2 : 0); }, VTK_INT);
+  ExpectReadAlone(
+    []
+    {
+      auto filter = vtkSmartPointer<vtkSurfaceSegmentationFilter>::New();
+      SetInputArray(filter, 6, "seeds");
+      return filter;
+    },
+    surface, seeds, "RegionProbability");
+}
+
+TEST(InputContents, OfDataTermsAloneAreReadAgain)
+{
+  const auto surface = TwoRegions();
+  vtkDataArray* const terms = AddPointArray(surface, "terms", 2, Rough);
+  ExpectReadAlone(
+    []
+    {
+      auto filter = vtkSmartPointer<vtkSurfaceSegmentationFilter>::New();
+      filter->AutomaticFidelityOff();
+      SetInputArray(filter, 7, "terms");
+      return filter;
+    },
+    surface, terms, "RegionProbability");
+}
+
+TEST(InputContents, OfRatesAloneAreReadAgain)
+{
+  const auto surface = Sphere(3);
+  const double rates[] = { 21.0, 21.0, 2.6, 2.6 };
+  surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "rates", surface->GetNumberOfCells(), 4,
+    [&](vtkIdType i, int k) { return rates[k] * (1.0 + 0.3 * Rough(i, 0)); }));
+  ExpectReadAlone(
+    []
+    {
+      auto filter = vtkSmartPointer<vtkTuringTextureFilter>::New();
+      filter->SetNumberOfTimeSteps(10);
+      SetInputArray(filter, 4, "rates", true);
+      return filter;
+    },
+    surface, surface->GetCellData()->GetArray("rates"), "u1");
+}
+
+TEST(InputContents, OfTheDataChosenAsDataTermsAreDataTerms)
+{
+  const auto surface = TwoRegions();
+  AddPointArray(surface, "two", 2, [&](vtkIdType i, int k) { return Rough(i, k); });
+  const auto make = []
+  {
+    vtkNew<vtkSurfaceSegmentationFilter> filter;
+    filter->AutomaticFidelityOff();
+    return vtkSmartPointer<vtkSurfaceSegmentationFilter>(filter);
+  };
+  const auto kept = make();
+  kept->SetInputData(surface);
+  SetInputArray(kept, 0, "two");
+  kept->Update();
+  for (const char* terms : { "two", "", "two" })
+  {
+    const auto before = Copy(ResultOf(kept, "RegionProbability"));
+    SetInputArray(kept, 7, terms);
+    kept->Update();
+    const auto fresh = make();
+    fresh->SetInputData(surface);
+    SetInputArray(fresh, 0, "two");
+    SetInputArray(fresh, 7, terms);
+    fresh->Update();
+    EXPECT_TRUE(
+      Identical(ResultOf(kept, "RegionProbability"), ResultOf(fresh, "RegionProbability")));
+    EXPECT_FALSE(Identical(ResultOf(kept, "RegionProbability"), before));
+  }
+}
