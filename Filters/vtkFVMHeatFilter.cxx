@@ -48,7 +48,7 @@ std::unique_ptr<RunSettings> vtkFVMHeatFilter::MakeSettings() const
 void vtkFVMHeatFilter::TakeResults()
 {
   this->Superclass::TakeResults();
-  this->EffectiveFidelityWeight = this->State->Run.GetBlock(0).Result.EffectiveFidelityWeight;
+  this->EffectiveFidelityWeight = this->State->Run.ReportedBlock().Result.EffectiveFidelityWeight;
 }
 
 void vtkFVMHeatFilter::VisitReported(const std::function<void(double&)>& visit)

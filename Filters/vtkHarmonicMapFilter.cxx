@@ -227,7 +227,7 @@ void vtkHarmonicMapFilter::WriteResult(
   }
   const std::string name = this->FindResultName(fields);
   this->AddResult(onCells
-      ? WriteCellArray(block.Cells->Transfer, fields.Data, vectors, type, name)
+      ? WriteCellArray(*block.Cells, fields.Data, vectors, type, name)
       : WritePointArray(*block.Surface, fields.Data, fields.DataOnCells, vectors, 1.0, type, name),
     fields, data);
   const bool isVector = fields.Data->GetNumberOfComponents() == 3 && !isColour;

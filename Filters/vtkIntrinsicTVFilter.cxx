@@ -113,7 +113,7 @@ std::unique_ptr<RunSettings> vtkIntrinsicTVFilter::MakeSettings() const
 void vtkIntrinsicTVFilter::TakeResults()
 {
   this->Superclass::TakeResults();
-  this->EffectiveFidelityWeight = this->State->Run.GetBlock(0).Result.EffectiveFidelityWeight;
+  this->EffectiveFidelityWeight = this->State->Run.ReportedBlock().Result.EffectiveFidelityWeight;
 }
 
 void vtkIntrinsicTVFilter::VisitReported(const std::function<void(double&)>& visit)

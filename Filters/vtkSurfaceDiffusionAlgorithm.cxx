@@ -517,7 +517,7 @@ void vtkSurfaceDiffusionAlgorithm::WriteResult(
   {
     const Values result = block.CellResult(ReadValues(fields.Data), this->KeepCellDetail, parallel);
     this->AddResult(
-      WriteCellArray(block.Cells->Transfer, fields.Data, result, type, name), fields, attributes);
+      WriteCellArray(*block.Cells, fields.Data, result, type, name), fields, attributes);
   }
   else
   {

@@ -189,7 +189,7 @@ void vtkSurfaceSegmentationFilter::WriteResult(
     const Values segmented = MeansOfLabels(regions.Means, labels);
     const std::string name = this->FindResultName(fields);
     this->AddResult(onCells
-        ? WriteCellArray(block.Cells->Transfer, fields.Data, segmented, type, name)
+        ? WriteCellArray(*block.Cells, fields.Data, segmented, type, name)
         : WritePointArray(surface, fields.Data, fields.DataOnCells, segmented, 1.0, type, name),
       fields, attributes);
   }
@@ -289,7 +289,7 @@ vtkSmartPointer<vtkPolyData> vtkSurfaceSegmentationFilter::MakeBoundaries() cons
 void vtkSurfaceSegmentationFilter::TakeResults()
 {
   this->Superclass::TakeResults();
-  this->EffectiveFidelityWeight = this->State->Run.GetBlock(0).Result.EffectiveFidelityWeight;
+  this->EffectiveFidelityWeight = this->State->Run.ReportedBlock().Result.EffectiveFidelityWeight;
   this->Gap = this->LabelGap = 0.0;
   this->NumberOfAlternations = 0;
   this->EffectiveMeans.clear();
@@ -301,7 +301,8 @@ void vtkSurfaceSegmentationFilter::TakeResults()
     this->Gap = std::max(this->Gap, regions.Gap);
     this->LabelGap = std::max(this->LabelGap, regions.LabelGap);
     this->NumberOfAlternations = std::max(this->NumberOfAlternations, regions.NumberOfAlternations);
-    for (Eigen::Index k = 0; k < regions.Means.rows(); ++k)
+    const bool empty = this->State->Run.GetBlock(b).Surface->Mesh().NumberOfVertices() == 0;
+    for (Eigen::Index k = 0; !empty && k < regions.Means.rows(); ++k)
     {
       for (Eigen::Index c = 0; c < regions.Means.cols(); ++c)
       {

@@ -20,12 +20,21 @@
 #include <cstdint>
 
 #include <algorithm>
+#include <limits>
 
 namespace SurfaceDiffusion
 {
 
 namespace
 {
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Whether values that nothing determines are NaN, rather than those of the source.
+bool HoldsNaN(vtkDataArray* source)
+{
+  return source->GetDataType() == VTK_FLOAT || source->GetDataType() == VTK_DOUBLE;
+}
 
 template <typename Array>
 vtkSmartPointer<vtkDataArray> MakeScalars(const Surface& surface, const std::string& name,
@@ -129,32 +138,40 @@ vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArr
   const auto points = static_cast<vtkIdType>(surface.Points().rows());
   auto result = NewArrayLike(source, points, type, name);
   const auto rowOf = [&](Index i) { return surface.VertexOf(i); };
+  const bool holdsNaN = HoldsNaN(source);
   if (sourceOnCells)
   {
     const auto alpha = static_cast<int>(values.cols());
     WriteTuples(result, values, unit, rowOf,
-      [&](Index, int k) { return k < alpha ? 0.0 : static_cast<double>(VTK_UNSIGNED_CHAR_MAX); });
+      [&](Index i, int k)
+      {
+        const double nothing = holdsNaN && surface.IsUndetermined(i) ? NaN : 0.0;
+        return k < alpha ? nothing : static_cast<double>(VTK_UNSIGNED_CHAR_MAX);
+      });
     return result;
   }
   VisitTuples(source,
     [&](const auto& from)
     {
       WriteTuples(result, values, unit, rowOf,
-        [&](Index i, int k) { return static_cast<double>(from[i][k]); });
+        [&](Index i, int k)
+        { return holdsNaN && surface.IsUndetermined(i) ? NaN : static_cast<double>(from[i][k]); });
     });
   return result;
 }
 
-vtkSmartPointer<vtkDataArray> WriteCellArray(const CellTransfer& cells, vtkDataArray* source,
+vtkSmartPointer<vtkDataArray> WriteCellArray(const CellState& cells, vtkDataArray* source,
   const Values& values, int type, const std::string& name)
 {
   auto result = NewArrayLike(source, source->GetNumberOfTuples(), type, name);
+  const bool holdsNaN = HoldsNaN(source);
   VisitTuples(source,
     [&](const auto& from)
     {
       WriteTuples(
-        result, values, 1.0, [&](Index i) { return cells.Participates(i) ? i : -1; },
-        [&](Index i, int k) { return static_cast<double>(from[i][k]); });
+        result, values, 1.0, [&](Index i) { return cells.Transfer.Participates(i) ? i : -1; },
+        [&](Index i, int k)
+        { return holdsNaN && cells.IsUndetermined(i) ? NaN : static_cast<double>(from[i][k]); });
     });
   return result;
 }

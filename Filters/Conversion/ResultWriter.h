@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Operators/CellTransfer.h"
+#include "Run/CellFields.h"
 #include "Run/History.h"
 #include "Run/Surface.h"
 
@@ -22,14 +22,14 @@ namespace SurfaceDiffusion
 
 /// An array of `type` with the components of `source`, named `name`: values x unit at the points of
 /// participating triangles (rounded and clamped for integer types). At other points and in alpha it
-/// is a copy of the source, or, if that is on cells, 0 and opaque. Throws std::runtime_error if
-/// `type` cannot hold a value.
+/// is a copy of the source, or, if that is on cells, 0 and opaque; NaN at undetermined points if the
+/// source has floating-point values. Throws std::runtime_error if `type` cannot hold a value.
 vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArray* source,
   bool sourceOnCells, const Values& values, double unit, int type, const std::string& name);
 
 /// The same for an array on cells: one row of values per cell. Cells that take no part, and alpha,
-/// are copied from the source.
-vtkSmartPointer<vtkDataArray> WriteCellArray(const CellTransfer& cells, vtkDataArray* source,
+/// are copied from the source, with the same exception.
+vtkSmartPointer<vtkDataArray> WriteCellArray(const CellState& cells, vtkDataArray* source,
   const Values& values, int type, const std::string& name);
 
 /// One value per point, single or double precision. Points of no participating triangle have that

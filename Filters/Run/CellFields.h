@@ -40,6 +40,12 @@ struct CellState
   Values Start; ///< u_0, the initial state at the vertices
   CellReading Reading;
   std::vector<Index> Seeds; ///< per cell, as in Fields; empty if seeds are not on cells
+  std::vector<char> Undetermined; ///< per cell, empty if none is; see there
+
+  bool IsUndetermined(Index cell) const
+  {
+    return !this->Undetermined.empty() && this->Undetermined[static_cast<std::size_t>(cell)] != 0;
+  }
 };
 
 /// The data at the vertices of data on cells. With w the fidelity factors and chi the indicator of

@@ -41,6 +41,7 @@ double EstimateNoiseOfCells(const ModelInputs& inputs)
 
 void DescribeData(const DataSettings& settings, ModelTraits& traits)
 {
+  traits.StartsFromKnownValues = true;
   traits.NeedsDirections = settings.IsDirected();
   traits.HoldsKnownValues = settings.HoldKnownValues;
   traits.ResultOnCells = settings.ResultOnCells;

@@ -15,15 +15,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-SurfaceOptions MakeOptions(const RunSettings& settings)
-{
-  SurfaceOptions options;
-  options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
-  options.MergeTolerance = settings.MergeTolerance;
-  options.IntrinsicDelaunay = settings.IntrinsicDelaunay;
-  return options;
-}
-
 /// Squares of values within these bounds neither overflow nor vanish.
 constexpr double LargestMagnitude = 1e100;
 constexpr double SmallestMagnitude = 1e-100;
@@ -47,10 +38,11 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
     if (processes.Any(!this->IsModelCurrent(block, inputs[b], snapshot, traits)))
     {
       block.Path.reset();
-      NameBlockInErrors(
-        block.Name, [&] { this->ReadFields(inputs[b], processes, block, fields[b]); });
+      NameBlockInErrors(block.Name,
+        [&] { this->ReadFields(inputs[b], processes, block, fields[b], progress.Part(0.6, 0.6)); });
     }
   }
+  this->RequireKnownValue(fields, processes);
   this->MeasureUnits(processes);
   for (std::size_t b = 0; b < count; ++b)
   {
@@ -67,7 +59,7 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
         {
           if (!fields[b])
           {
-            this->ReadFields(inputs[b], processes, block, fields[b]);
+            this->ReadFields(inputs[b], processes, block, fields[b], progress.Part(0.6, 0.6));
           }
           this->MakeModel(block, *fields[b], processes,
             progress.Part(0.6 + 0.4 * b / share, 0.6 + 0.4 * (b + 1) / share));
@@ -94,55 +86,8 @@ bool Run::IsModelCurrent(const Block& block, const BlockInput& input,
     block.Solvers.ServesRunOf(traits.NumberOfSteps);
 }
 
-void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
-  const ProgressMonitor& progress)
-{
-  const SettingsSnapshot snapshot(*this->Settings, SettingScope::Surface);
-  this->Blocks.resize(inputs.size());
-  for (std::size_t b = 0; b < inputs.size(); ++b)
-  {
-    std::unique_ptr<Block>& block = this->Blocks[b];
-    if (processes.Any(!block || !block->Surface ||
-          block->SurfaceVersion != inputs[b].SurfaceVersion || block->SurfaceSettings != snapshot))
-    {
-      block.reset(); // before the new one takes memory
-      block = std::make_unique<Block>();
-      const double share = static_cast<double>(inputs.size());
-      NameBlockInErrors(inputs[b].Name,
-        [&] {
-          this->MakeSurface(
-            inputs[b], processes, *block, progress.Part(b / share, (b + 1) / share));
-        });
-      block->SurfaceVersion = inputs[b].SurfaceVersion;
-      block->SurfaceSettings = snapshot;
-    }
-    block->Name = inputs[b].Name;
-  }
-}
-
-void Run::MakeSurface(const BlockInput& input, const ProcessGroup& processes, Block& block,
-  const ProgressMonitor& progress)
-{
-  SurfaceOptions options = MakeOptions(*this->Settings);
-  if (input.Decomposition)
-  {
-    options.LengthUnit = input.Decomposition->FindLengthUnit();
-  }
-  processes.RunCollectively(
-    [&]
-    {
-      block.Surface =
-        std::make_unique<Surface>(input.ReadSurface(), options, this->Parallel, progress);
-    });
-  block.Decomposition = input.Decomposition;
-  if (input.Decomposition)
-  {
-    input.Decomposition->Attach(*block.Surface, block.Solvers);
-  }
-}
-
 void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Block& block,
-  std::unique_ptr<Fields>& fields)
+  std::unique_ptr<Fields>& fields, const ProgressMonitor& progress)
 {
   processes.RunCollectively([&] { fields = std::make_unique<Fields>(input.ReadFields()); });
   block.HasLinearLight = fields->DataAreBytes && this->Settings->DescribeModel().UsesLinearLight;
@@ -152,7 +97,9 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   }
   const std::vector<char> mask = fields->Mask; // as it was given
   fields->DataOnCells = processes.Any(fields->DataOnCells); // that of a process without points, too
-  MoveMarksToData(*block.Surface, *fields, processes, this->Parallel);
+  MoveMarksToData(
+    block.WholeSurface ? *block.WholeSurface : *block.Surface, *fields, processes, this->Parallel);
+  this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
   block.Statistics.Add(*block.Surface, *fields, inpaint);
@@ -255,6 +202,7 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
     block.Cells->Start = model->State();
     block.Result.HasMissing = block.Result.HasMissing || block.Cells->HasUnknown;
   }
+  block.Result.HasMissing = block.Result.HasMissing || block.Undetermined.NumberOfComponents > 0.0;
   const std::size_t limit = this->CheckpointMemory(*model, processes);
   auto path = std::make_unique<Trajectory>(
     block.Surface->SharedMesh(), std::move(model), limit, this->Parallel, this->KeepsHistory);
@@ -280,7 +228,7 @@ PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& 
       traits.StateIsLines, block.Units.ValueUnit };
     block.Cells = std::make_unique<CellState>(
       CellState{ MakeCellTransfer(*block.Surface, fields, this->Parallel), {}, false, {}, reading,
-        fields.SeedsOnCells ? fields.Seeds : std::vector<Index>() });
+        fields.SeedsOnCells ? fields.Seeds : std::vector<Index>(), block.Undetermined.Cells });
     return MakePointDataOfCells(*block.Surface, fields, *block.Cells, processes);
   }
   processes.RunCollectively(

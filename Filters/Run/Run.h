@@ -9,6 +9,7 @@
 #include "Run/History.h"
 #include "Run/ModelInputs.h"
 #include "Run/SolverStore.h"
+#include "Run/Undetermined.h"
 #include "Run/WarningLog.h"
 
 #include <functional>
@@ -91,7 +92,9 @@ public:
   struct Block
   {
     std::string Name; ///< as in BlockInput
-    std::unique_ptr<SurfaceDiffusion::Surface> Surface;
+    std::unique_ptr<SurfaceDiffusion::Surface> Surface; ///< without undetermined components
+    /// The surface with them; null if there are none.
+    std::unique_ptr<SurfaceDiffusion::Surface> WholeSurface;
     UnitSystem Units;
     std::unique_ptr<Trajectory> Path;
     RunResult Result;
@@ -105,13 +108,14 @@ public:
     std::size_t NumberOfBlocks = 0;
     double TimeStep = 0.0;
     ValueStatistics Statistics;
+    SurfaceDiffusion::Undetermined Undetermined;
     bool HasData = false;
     bool HasLinearLight = false; ///< the state is linear light of sRGB values
     bool HasMask = false;
     bool HasMasked = false; ///< a nonzero entry of the mask
     Fingerprint MaskVersion;
     SolverStore Solvers;
-    const SurfaceDiffusion::Decomposition* Decomposition = nullptr;
+    SurfaceDiffusion::Decomposition* Decomposition = nullptr;
 
     /// The current state in array units as sRGB values, if HasLinearLight.
     Values EncodedState(const ParallelFor& parallel) const;
@@ -119,6 +123,8 @@ public:
     Values CellResult(Values given, bool keepDetail, const ParallelFor& parallel) const;
   };
   const Block& GetBlock(std::size_t block) const { return *this->Blocks[block]; }
+  /// The first block with a vertex, whose numbers stand for those of all.
+  const Block& ReportedBlock() const;
   std::size_t NumberOfBlocks() const { return this->Blocks.size(); }
 
   /// h and R of all surfaces together, in coordinate and array units.
@@ -139,10 +145,14 @@ private:
     const ModelTraits& traits) const;
   void UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
     const ProgressMonitor& progress);
-  void MakeSurface(const BlockInput& input, const ProcessGroup& processes, Block& block,
-    const ProgressMonitor& progress);
+  std::unique_ptr<Surface> MakeSurface(const BlockInput& input, const ProcessGroup& processes,
+    std::vector<char> undetermined, const ProgressMonitor& progress) const;
   void ReadFields(const BlockInput& input, const ProcessGroup& processes, Block& block,
-    std::unique_ptr<Fields>& fields);
+    std::unique_ptr<Fields>& fields, const ProgressMonitor& progress);
+  void LeaveOutUndetermined(const BlockInput& input, const Fields& fields,
+    const ProcessGroup& processes, Block& block, const ProgressMonitor& progress);
+  void RequireKnownValue(
+    const std::vector<std::unique_ptr<Fields>>& fields, const ProcessGroup& processes) const;
   void MeasureUnits(const ProcessGroup& processes);
   void MakeModel(Block& block, const Fields& fields, const ProcessGroup& processes,
     const ProgressMonitor& progress);

@@ -5,6 +5,7 @@
 #include "Run/BlockSentences.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <sstream>
 
@@ -28,6 +29,13 @@ std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
   }
   text << "; the largest relative residual is " << found.MissedResidual;
   return text.str();
+}
+
+std::string DescribeUndetermined(long long components)
+{
+  return std::to_string(components) +
+    (components == 1 ? " connected component has" : " connected components have") +
+    " no known value: results are NaN there, or the input if that is an array of integers";
 }
 
 std::string DescribeUnsettledSteps(const Shortfalls& found)
@@ -61,6 +69,13 @@ int Run::FindLastStep(const ProgressMonitor& progress)
     this->StepsComputed += path.NumberOfAdvances() - before;
   }
   return traits.MayEndEarly ? last : traits.NumberOfSteps;
+}
+
+const Run::Block& Run::ReportedBlock() const
+{
+  const auto found = std::find_if(this->Blocks.begin(), this->Blocks.end(),
+    [](const auto& block) { return block->Surface->Mesh().NumberOfVertices() > 0; });
+  return found == this->Blocks.end() ? *this->Blocks.front() : **found;
 }
 
 History Run::MakeHistory(int step) const
@@ -198,17 +213,24 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
     "data there");
   BlockSentences ofBlocks;
   Fingerprint inputs;
+  double undetermined = 0.0;
   for (const auto& block : this->Blocks)
   {
     inputs.Add(block->SurfaceVersion);
     inputs.Add(block->FieldsVersion);
     ofBlocks.Add(block->Result.Warnings, block->Name);
+    undetermined += block->Undetermined.NumberOfComponents;
   }
   std::vector<std::string> sentences;
   ofBlocks.AppendTo(sentences, this->Blocks.size());
   for (const std::string& sentence : sentences)
   {
     warnings.push_back({ sentence, inputs });
+  }
+  const long long components = std::llround(processes.Sum(undetermined));
+  if (components > 0)
+  {
+    warnings.push_back({ DescribeUndetermined(components), inputs });
   }
   const Shortfalls shortfalls = this->FindShortfalls();
   if (shortfalls.MissedResidual > 0.0)

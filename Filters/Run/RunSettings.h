@@ -66,6 +66,7 @@ struct ModelTraits
   bool CountsClamped = false;
   bool BoundsError = false; ///< steps report a bound of their error
   bool UsesRandomNumbers = false;
+  bool StartsFromKnownValues = false; ///< a component without any is left out, see Undetermined
   bool ResultOnCells = false; ///< if the data are on cells
   bool KeepCellDetail = true;
   bool StateIsUnitVectors = false;

@@ -188,6 +188,7 @@ ModelTraits SegmentationSettings::DescribeModel() const
   traits.StateHasUnitOfValues = false;
   traits.UsesFidelity = true;
   traits.UsesRandomNumbers = true;
+  traits.StartsFromKnownValues = true;
   traits.ResultOnCells = this->ResultOnCells;
   traits.CanBeDistributed = false;
   return traits;

@@ -150,10 +150,14 @@ void Surface::SelectTriangles(const SurfaceOptions& options)
   std::vector<char>& excluded = this->Arrays.Excluded;
   const std::vector<char>& ofTriangles = this->Arrays.ExcludedTriangles;
   const auto isExcluded = [&](Index point)
-  { return !excluded.empty() && excluded[static_cast<std::size_t>(point)] != 0; };
+  {
+    return (!excluded.empty() && excluded[static_cast<std::size_t>(point)] != 0) ||
+      this->IsUndetermined(point);
+  };
   std::vector<Index> pointsOfExcluded;
   Eigen::Index kept = 0;
-  const bool selects = !excluded.empty() || !ofTriangles.empty();
+  const bool selects =
+    !excluded.empty() || !ofTriangles.empty() || !this->Arrays.Undetermined.empty();
   this->TriangleRows.reserve(selects ? static_cast<std::size_t>(triangles.rows()) : 0);
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
   {
@@ -271,7 +275,8 @@ void Surface::FindVertices()
     {
       this->Vertices[i] = this->Vertices[static_cast<std::size_t>(this->Representative[i])];
     }
-    const bool excluded = !this->Arrays.Excluded.empty() && this->Arrays.Excluded[i] != 0;
+    const bool excluded = (!this->Arrays.Excluded.empty() && this->Arrays.Excluded[i] != 0) ||
+      this->IsUndetermined(static_cast<Index>(i));
     this->Found.UnusedPoints += this->Vertices[i] < 0 && !excluded;
   }
 }

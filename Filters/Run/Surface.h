@@ -23,6 +23,8 @@ struct SurfaceArrays
   /// known, such as averages of many. Empty: 1. Not together with IntrinsicDelaunay.
   std::vector<double> AreaFactors = {};
   std::vector<char> ExcludedTriangles = {}; ///< per triangle: nonzero ones are ignored, too
+  /// Per point, empty or nonzero where nothing determines a value: excluded, too. See Undetermined.
+  std::vector<char> Undetermined = {};
 };
 
 /// Throws std::runtime_error if a coordinate is not finite.
@@ -85,6 +87,14 @@ public:
 
   /// The vertex of an input point; -1 if no participating triangle uses the point.
   Index VertexOf(Index point) const { return this->Vertices[static_cast<std::size_t>(point)]; }
+
+  /// Whether the point is of a component without a known value, which is excluded.
+  bool IsUndetermined(Index point) const
+  {
+    return !this->Arrays.Undetermined.empty() &&
+      this->Arrays.Undetermined[static_cast<std::size_t>(point)] != 0;
+  }
+  const std::vector<char>& Undetermined() const { return this->Arrays.Undetermined; }
 
   const SurfaceDiagnostics& Diagnostics() const { return this->Found; }
 

@@ -13,6 +13,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace nb = nanobind;
 
@@ -88,6 +89,7 @@ void WriteFaces(const CellTransfer& cells, const OutputArray& output, const Valu
 }
 
 constexpr double Opaque = 255.0;
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
 /// 0, and opaque in the column of alpha.
 auto NothingAt(Eigen::Index columns)
@@ -256,7 +258,7 @@ nb::dict ModelRun::GetResults(std::size_t block) const
 }
 
 void ModelRun::WriteState(std::size_t block, const OutputArray& output,
-  const std::optional<InputArray>& source, int first) const
+  const std::optional<InputArray>& source, int first, bool integers) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
   const Values encoded =
@@ -265,9 +267,16 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
   const double unit = from.HasLinearLight ? 1.0 : from.Units.ValueUnit;
   const auto value = [&](Index v, Eigen::Index k) { return state(v, k) * unit; };
   const bool onFaces = this->HasResultOnFaces(block);
+  const bool holdsNaN = !integers && this->Settings->DescribeModel().StateHasUnitOfValues &&
+    output.dtype().code == static_cast<std::uint8_t>(nb::dlpack::dtype_code::Float);
+  const auto isNaN = [&](Index i) {
+    return holdsNaN && (onFaces ? from.Cells->IsUndetermined(i) : from.Surface->IsUndetermined(i));
+  };
   if (!source)
   {
-    const auto nothing = NothingAt(state.cols());
+    const auto nothing = [&, columns = state.cols()](Index i, Eigen::Index k) {
+      return isNaN(i) ? NaN : k < columns ? 0.0 : Opaque;
+    };
     if (onFaces)
     {
       WriteFaces(from.Cells->Transfer, output, from.Cells->Transfer.ToCells(state), nothing, first);
@@ -296,7 +305,7 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
           from.Cells->Transfer, output,
           from.CellResult(std::move(given), detail, PythonThreads::Instance()),
           [&](Index i, Eigen::Index k)
-          { return static_cast<double>(old[i * columns + start + k]); },
+          { return isNaN(i) ? NaN : static_cast<double>(old[i * columns + start + k]); },
           first);
       });
     return;
@@ -306,8 +315,10 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
     {
       WritePoints(
         *from.Surface, output, state.cols(), value,
-        [&](Index i, Eigen::Index k)
-        { return static_cast<double>(old[i * columns + std::max(first, 0) + k]); },
+        [&](Index i, Eigen::Index k) {
+          return Unchanged(
+            old[i * columns + std::max(first, 0) + k], from.Surface->IsUndetermined(i));
+        },
         first);
     });
 }

@@ -46,8 +46,9 @@ public:
   /// the settings say so. `source` gives the values of points or faces that take no part and of
   /// alpha; without it they are 0 and opaque. first: the column of `output` that the panel
   /// of columns begins at; columns outside of it are left as they are. -1: all columns are written.
+  /// Where nothing determines a value it is NaN, but that of the source with `integers`.
   void WriteState(std::size_t block, const OutputArray& output,
-    const std::optional<InputArray>& source, int first) const;
+    const std::optional<InputArray>& source, int first, bool integers) const;
   /// The same for unit vectors of colours, with the brightness of the input.
   void WriteColorsOfVectors(
     std::size_t block, const OutputArray& output, const InputFields& source) const;

@@ -118,7 +118,7 @@ NB_MODULE(_core, m)
     .def("results", &ModelRun::GetResults, "block"_a)
     .def("has_result_on_faces", &ModelRun::HasResultOnFaces, "block"_a)
     .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none(),
-      "first"_a = -1)
+      "first"_a = -1, "integers"_a = false)
     .def(
       "write_colors_of_vectors", &ModelRun::WriteColorsOfVectors, "block"_a, "output"_a, "source"_a)
     .def("write_texture", &ModelRun::WriteTexture, "block"_a, "output"_a)

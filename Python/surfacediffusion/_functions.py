@@ -24,7 +24,9 @@ from ._result import (
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, translate
-from ._surface import Surface, SurfaceLike, as_data, as_outside, as_surface, find_on_faces
+from ._surface import (
+    Surface, SurfaceLike, as_data, as_outside, as_surface, find_on_faces, has_integers,
+)
 
 __all__ = [
     "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
@@ -202,7 +204,7 @@ def _diffusion(
     find_result_type(data, dtype)
     mask = _as_mask(mask, roi, surface, properties)
     given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
-                  directions=directions, fidelity=fidelity)
+                  directions=directions, fidelity=fidelity, integers=has_integers(values))
     runner = Runner(name, properties, ARRAYS)
     if name == "heat" and not (properties.get("fwhm") or {"time_step", "mode"} & set(properties)):
         # The width of the default time step would depend on the mesh.
@@ -462,7 +464,8 @@ def tensor_diffusion(
     shape = np.shape(values)
     find_result_type(data, dtype)
     mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity)
+    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity,
+                  integers=has_integers(values))
     runner = Runner("tensor_diffusion", properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> TensorDiffusionResult:
@@ -544,7 +547,7 @@ def mumford_shah(
     find_result_type(data, dtype)
     mask = _as_mask(mask, roi, surface, properties)
     given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
-                  directions=directions, fidelity=fidelity)
+                  directions=directions, fidelity=fidelity, integers=has_integers(values))
     runner = Runner("mumford_shah", properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> EdgeResult:
@@ -619,7 +622,7 @@ def harmonic_map(
     find_result_type(data, dtype)
     mask = _as_mask(mask, roi, surface, properties)
     given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
-                  directions=directions, fidelity=fidelity)
+                  directions=directions, fidelity=fidelity, integers=has_integers(vectors))
     runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
     return _run("harmonic_map", given, runner,
                 lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),

@@ -30,7 +30,7 @@ def make_diffusion(
     """The result of heat or intrinsic_tv on one surface, with columns for components."""
     assert given.data is not None
     output = _empty(run, block, given, dtype)
-    runner.call(run.write_state, block, output, given.source(run, block))
+    runner.call(given.write, run, block, output)
     return DiffusionResult(output, **_pick(DiffusionResult, found))
 
 
@@ -43,7 +43,7 @@ def make_harmonic_map(
     if output.dtype == np.uint8:
         runner.call(run.write_colors_of_vectors, block, output, given.core)
     else:
-        runner.call(run.write_state, block, output, given.source(run, block))
+        runner.call(given.write, run, block, output)
     points = np.array(given.surface.points)
     runner.call(run.write_moved_points, block, points)
     return HarmonicMapResult(output, points=points, **_pick(HarmonicMapResult, found))
@@ -56,7 +56,7 @@ def make_edges(
     assert given.data is not None
     result_type = find_result_type(given.data, dtype)
     output = _empty(run, block, given, dtype)
-    runner.call(run.write_state, block, output, given.source(run, block))
+    runner.call(given.write, run, block, output)
     single = result_type == np.float32
     edges = np.empty((len(output), 1), dtype=np.float32 if single else np.float64)
     runner.call(run.write_edges, block, edges)
@@ -73,7 +73,7 @@ def make_tensor_diffusion(
     """The result of tensor_diffusion on one surface, with columns for components."""
     assert given.data is not None
     output = np.empty(given.data.shape, dtype=find_result_type(given.data, dtype))
-    runner.call(run.write_state, block, output, given.data)
+    runner.call(given.write, run, block, output)
     axes = np.empty((given.surface.n_faces, 3))
     if not runner.call(run.write_axes, block, given.surface._core, axes):
         axes = np.empty((0, 3))

@@ -94,7 +94,8 @@ def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
 class Input:
     """The input of a run on one surface. data_on_faces: where the data are. on_faces: where the
     directions are; None: by their number. Masks and the like are on points or faces by their
-    number."""
+    number. integers: the data were, so that results keep them where nothing determines a value, in
+    place of NaN."""
 
     def __init__(
         self,
@@ -111,9 +112,10 @@ class Input:
         fidelity: Any = None,
         seeds: Any = None,
         data_are_terms: bool = False,
+        integers: bool = False,
     ) -> None:
         n, m = surface.n_points, surface.n_faces
-        self.surface, self.data = surface, data
+        self.surface, self.data, self.integers = surface, data, integers
         if directions is not None:
             array = as_numbers(directions_name, directions)
             if array.shape not in ((n, 3), (m, 3)):
@@ -152,10 +154,10 @@ class Input:
         on_faces = run.has_result_on_faces(block)
         return self.surface.n_faces if on_faces else self.surface.n_points
 
-    def source(self, run: Any, block: int) -> NDArray[Any] | None:
-        """The data, if the result is in the same place."""
+    def write(self, run: Any, block: int, output: NDArray[Any], first: int = -1) -> None:
+        """Write the state of a block; first: as in write_state."""
         same = self.data_on_faces == run.has_result_on_faces(block)
-        return self.data if same else None
+        run.write_state(block, output, self.data if same else None, first, self.integers)
 
 
 class Runner:
@@ -208,7 +210,7 @@ class Runner:
                 self.call(run.update, [panel], self.settings, reporter.callable, False)
                 self.call(run.seek, -1, reporter.callable)
                 reporter.finish_part()
-                self.call(run.write_state, 0, output, given.source(run, 0), first)
+                self.call(given.write, run, 0, output, first)
                 known += [text for text in self.warnings(run) if text not in known]
         warn(known)
 

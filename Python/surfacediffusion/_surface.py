@@ -104,6 +104,11 @@ def as_data(name: str, values: Any, points: int, row_name: str = "point") -> NDA
     return np.ascontiguousarray(array.reshape(points, -1), dtype=dtype)
 
 
+def has_integers(values: Any) -> bool:
+    """Whether data are integers, for which as_data() may give floating-point numbers."""
+    return np.asarray(values).dtype.kind in "biu"
+
+
 def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | None) -> bool:
     """Whether data are on faces: as `on_faces` says, or if their number is that of the faces and not
     that of the points."""

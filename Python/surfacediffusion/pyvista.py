@@ -57,7 +57,7 @@ from ._models import (
 from ._result import Result
 from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
-from ._surface import Surface, as_data
+from ._surface import Surface, as_data, has_integers
 
 __all__ = [
     "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
@@ -418,11 +418,12 @@ def _prepare(
     """The input of a block."""
     mesh, surface = block.mesh, block.surface
     data: Any = None
-    on_faces = False
+    on_faces = integers = False
     if function == "harmonic_map":
         name = array or mesh.point_data.active_normals_name
         vectors, on_faces = block.find("array", name, faces=True)
         data = as_vectors(surface, vectors, properties, on_faces)
+        integers = has_integers(vectors)
         block.name = name or "Normals"
     elif function == "turing_texture":
         data = as_initial(surface, block.find("initial", array)[0])
@@ -434,6 +435,7 @@ def _prepare(
         values, on_faces = block.find("array", name, faces=True)
         data = as_data(name, values, surface.n_faces if on_faces else surface.n_points,
                        "face" if on_faces else "point")
+        integers = has_integers(values)
         block.name = name
     if on_faces and block.has_strips:
         raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
@@ -444,7 +446,7 @@ def _prepare(
              for argument, given in (("mask", mask), ("fixed", fixed), ("fidelity", fidelity))}
     block.given = Input(
         surface, data, data_on_faces=on_faces, directions=directions,
-        directions_name="direction", on_faces=directed_faces,
+        directions_name="direction", on_faces=directed_faces, integers=integers,
         rates=block.find("rates", rates, points=False, faces=True)[0], **marks)
 
 

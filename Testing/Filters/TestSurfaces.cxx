@@ -145,7 +145,7 @@ TEST(Surfaces, OfZeroAreaKeepTheirValues)
   }
 }
 
-TEST(Surfaces, FullyExcludedOrMissingGiveFiniteResults)
+TEST(Surfaces, FullyExcludedKeepTheInputAndFullyMissingAreAnError)
 {
   auto surface = Grid(5, 5);
   vtkDataArray* f = AddRough(surface);
@@ -154,9 +154,12 @@ TEST(Surfaces, FullyExcludedOrMissingGiveFiniteResults)
   auto filter = MakeFilter(surface);
   SetInputArray(filter, 1, "all");
   filter->SetMaskModeToExclude();
-  Messages messages(filter);
-  filter->Update();
-  EXPECT_TRUE(Identical(Result(filter), f));
+  {
+    const Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(Identical(Result(filter), f));
+    EXPECT_TRUE(messages.Errors.empty());
+  }
   filter->SetMaskModeToInpaint();
   filter->SetFidelityWeight(1.0);
   for (int fill = 0; fill < 3; ++fill)
@@ -166,11 +169,13 @@ TEST(Surfaces, FullyExcludedOrMissingGiveFiniteResults)
       SetInputArray(filter, 0, name);
       filter->SetResultArrayName("u");
       filter->SetInitialFill(fill);
+      const Messages messages(filter);
       filter->Update();
-      EXPECT_TRUE(AllFinite(Result(filter, "u"))) << name << fill;
+      ASSERT_EQ(messages.Errors.size(), 1u);
+      EXPECT_NE(messages.Errors[0].find("has no known value"), std::string::npos);
+      EXPECT_EQ(Result(filter, "u"), nullptr) << name << fill;
     }
   }
-  EXPECT_TRUE(messages.Errors.empty());
 }
 
 TEST(Surfaces, ComponentsDoNotExchangeAnything)
