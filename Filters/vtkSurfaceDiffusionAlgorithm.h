@@ -29,6 +29,12 @@
  * and e2 = n x e1; a triangle whose direction is zero or NaN is isotropic, with the geometric mean
  * of the two diffusivities. A point that is both fixed and missing is fixed.
  *
+ * Nothing determines values on a connected component of the surface without a known value. It takes
+ * no part: its result is NaN if the data are floating-point numbers and the input if they are
+ * integers, regions of a segmentation have the label 0 and edges of vtkMumfordShahFilter are 0
+ * there. One warning counts these components. Data without any known value are an error. (Textures
+ * need no data.) Fixed points, and the seeds of a segmentation, count as known.
+ *
  * **Data on cells**, that is on triangles, quadrilaterals, larger polygons and strips, go to the
  * points, are processed there, and their change comes back. With the area m_ci that cell c and the
  * control cell of point i have in common, the area A_c of the cell, and

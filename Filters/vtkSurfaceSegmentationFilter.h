@@ -29,7 +29,8 @@
  * | 7 | points or cells | the data terms r_k, K components, in place of f; NaN in any component: missing |
  *
  * Input arrays 2 and 3 are not used. Missing points (mask, NaN) take the region that makes the
- * boundaries shortest. Points excluded by MaskMode Exclude have the label 0.
+ * boundaries shortest. Points excluded by MaskMode Exclude, and connected components without a known
+ * value or seed, have the label 0 and no boundaries.
  *
  * **The weight.** A disk of radius r is kept if lambda > 2/(r d^2) for data of two values with the
  * difference d. A cap of the angle theta on the unit sphere is kept if lambda d^2 > cot(theta/2).
