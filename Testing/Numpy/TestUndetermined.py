@@ -49,7 +49,7 @@ class Undetermined(unittest.TestCase):
     def test_functions_give_nan_there_and_elsewhere_what_they_give_alone(self):
         values = np.concatenate([VALUES, np.full(N, np.nan)])
         calls = [
-            lambda s, v: sd.heat(s, v),
+            lambda s, v: sd.heat(s, v, time_step=1.0),
             lambda s, v: sd.heat(s, v, mode="SteadyState", automatic_fidelity=True),
             lambda s, v: sd.intrinsic_tv(s, v, mode="SteadyState"),
             lambda s, v: sd.tensor_diffusion(s, v),
@@ -63,28 +63,28 @@ class Undetermined(unittest.TestCase):
     def test_masked_floats_are_nan_and_masked_integers_stay(self):
         values = np.concatenate([VALUES, np.full(N, 7.0)])
         for dtype in (np.float32, np.float64):
-            result, found = update(lambda: sd.heat(BOTH, values.astype(dtype), mask=SECOND))
+            result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values.astype(dtype), mask=SECOND))
             self.assertEqual(result.dtype, dtype)
-            self.check(result, found, sd.heat(ALONE, VALUES.astype(dtype)))
+            self.check(result, found, sd.heat(ALONE, time_step=1.0, values=VALUES.astype(dtype)))
         for dtype in (np.uint8, np.int16, np.int64):
-            result, found = update(lambda: sd.heat(BOTH, values.astype(dtype), mask=SECOND))
+            result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values.astype(dtype), mask=SECOND))
             self.assertEqual(len(found), 1)
             self.assertTrue((result[N:] == 7).all())
 
     def test_many_columns_are_nan_in_all_of_them(self):
         values = np.tile(np.concatenate([VALUES, VALUES])[:, None], (1, 40))
         values[N:, 35] = np.nan
-        result, found = update(lambda: sd.heat(BOTH, values))
+        result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values))
         self.assertEqual(len(found), 1)
         self.assertTrue(np.isnan(result[N:]).all())
-        np.testing.assert_allclose(result[:N, 3], sd.heat(ALONE, VALUES), atol=1e-6)
+        np.testing.assert_allclose(result[:N, 3], sd.heat(ALONE, time_step=1.0, values=VALUES), atol=1e-6)
 
     def test_faces_of_the_component_are_nan(self):
         values = np.concatenate([np.cos(np.arange(M)), np.full(M, np.nan)])
-        result, found = update(lambda: sd.heat(BOTH, values))
+        result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values))
         self.assertEqual(len(found), 1)
         self.assertTrue((np.isnan(result) == np.isnan(values)).all())
-        result, found = update(lambda: sd.heat(BOTH, values, result_on_cells=False))
+        result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values, result_on_cells=False))
         self.assertTrue((np.isnan(result) == SECOND).all())
 
     def test_labels_are_zero_without_boundaries(self):
@@ -98,7 +98,7 @@ class Undetermined(unittest.TestCase):
 
     def test_no_known_value_is_an_error(self):
         with self.assertRaisesRegex(ValueError, "values has no known value: .*"):
-            sd.heat(BOTH, np.full(2 * N, np.nan))
+            sd.heat(BOTH, time_step=1.0, values=np.full(2 * N, np.nan))
         with self.assertRaisesRegex(ValueError, "values has no known value: .*"):
             sd.segment(BOTH, np.concatenate([VALUES, VALUES]), mask=np.ones(2 * N))
 
