@@ -37,6 +37,21 @@ double EstimateNoiseOfCells(const ModelInputs& inputs)
   return found > 0.0 ? estimate(inputs.Data) * cells.NoiseGain() / found : 0.0;
 }
 
+/// Of the first guess of the search for a weight: keeps data to seven digits.
+constexpr double WeightWithoutNoise = 1e8;
+
+/// The data that the result has to differ from by the noise.
+PointData WithoutConstantParts(const ModelInputs& inputs)
+{
+  PointData data = inputs.Data;
+  const Flags varying = FindVaryingVertices(*inputs.Surface.SharedAssembler(), data);
+  if (varying.any())
+  {
+    data.Missing = !varying;
+  }
+  return data;
+}
+
 } // namespace
 
 void DescribeData(const DataSettings& settings, ModelTraits& traits)
@@ -120,12 +135,22 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
     if (estimate.IsCorrelated())
     {
       std::ostringstream text;
-      text << "the noise is correlated: its standard deviation is "
-           << estimate.BetweenNeighbours * unit << " between neighbours and " << noise * unit
-           << " farther apart, which AutomaticFidelity uses (to set another, use NoiseLevel)";
+      text << "the noise is correlated over about " << estimate.Distance
+           << " edge lengths: its standard deviation is " << estimate.BetweenNeighbours * unit
+           << " between neighbours and " << noise * unit
+           << (estimate.Settled ? " farther apart" : " or more farther apart")
+           << ", which AutomaticFidelity uses (to set another, use NoiseLevel)";
       result.Warnings.push_back(text.str());
     }
   }
+  if (noise == 0.0)
+  {
+    result.Warnings.emplace_back(
+      "AutomaticFidelity finds no noise in the data, which stay as they "
+      "are (to set the standard deviation of the noise, use NoiseLevel)");
+    return WeightWithoutNoise * start;
+  }
+  const PointData compared = WithoutConstantParts(inputs);
   const auto discrepancy = [&](double fidelity)
   {
     const std::unique_ptr<Model> model = makeModel(fidelity);
@@ -139,7 +164,7 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
       StepReport unused;
       blur->Apply(predicted, unused);
     }
-    return Discrepancy(inputs.Surface.Mesh(), inputs.Data, predicted);
+    return Discrepancy(inputs.Surface.Mesh(), compared, predicted);
   };
   const FidelityChoice choice = FindFidelityByDiscrepancy(discrepancy, noise, start);
   if (!choice.IsFound)

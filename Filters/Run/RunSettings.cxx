@@ -133,7 +133,8 @@ void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)
 void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel)
 {
   visitor.Switch({ "AutomaticFidelity", "",
-                   "Whether lambda is chosen by the discrepancy principle (Morozov 1966)." },
+                   "Whether lambda is chosen by the discrepancy principle (Morozov 1966), over the "
+                   "part of the data that is not constant." },
     automatic);
   visitor.Number({ "NoiseLevel", "values",
                    "The standard deviation of the noise for AutomaticFidelity; 0: estimated, for "

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/NoiseLevel.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "Core/Models/LinearFit.h"
+#include "Core/Models/NoiseCorrelation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,170 +16,185 @@ namespace
 {
 
 constexpr Index LargestSample = 20000;
-constexpr int FarthestRing = 8;
-/// Twice as far apart, the residuals of a smooth signal are up to four times as large, and grow
-/// faster with every ring. Those of noise that heat flow has smoothed grow less with every ring.
-constexpr double MostGrowth = 3.0;
-constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 
-/// The vertices at a distance of a number of edges.
-class Rings
+/// How the estimate grows with the distance, by factors of two of which it is made.
+struct Growth
 {
-public:
-  explicit Rings(const SparsePattern& pattern)
-    : Outer(pattern.Outer.data())
-    , Inner(pattern.Inner.data())
-    , VisitedBy(static_cast<std::size_t>(pattern.NumberOfRows()), -1)
-  {
-  }
-
-  const std::vector<Index>& Find(Index centre, int edges)
-  {
-    this->Ring.assign(1, centre);
-    this->VisitedBy[centre] = centre; // each centre is asked for once
-    for (int edge = 0; edge < edges; ++edge)
-    {
-      this->Next.clear();
-      for (const Index i : this->Ring)
-      {
-        for (Index slot = this->Outer[i]; slot < this->Outer[i + 1]; ++slot)
-        {
-          const Index j = this->Inner[slot];
-          if (this->VisitedBy[j] != centre)
-          {
-            this->VisitedBy[j] = centre;
-            this->Next.push_back(j);
-          }
-        }
-      }
-      this->Ring.swap(this->Next);
-    }
-    return this->Ring;
-  }
-
-private:
-  const Index* Outer;
-  const Index* Inner;
-  std::vector<Index> VisitedBy, Ring, Next;
+  int Farthest; ///< the largest distance, in edges
+  /// Twice as far apart, the residuals of a smooth signal are up to four times as large, and grow
+  /// faster with every distance. Those of noise that heat flow has smoothed grow less with every one.
+  double Most;
+  double Settled; ///< the estimate has reached the deviation of the noise
+  double SettledAtEnd; ///< the same at the largest distance
 };
+constexpr Growth GrowthOfOther = { 8, 3.0, 1.15, 1.3 };
+/// Of residuals that show that the noise is correlated.
+constexpr Growth GrowthOfSmoothed = { 16, 4.5, 1.03, 1.15 };
 
-/// The weights of the values at `offsets` in the linear fit at the origin, in the plane of the
-/// offsets; none if they do not determine one.
-Vector WeightsOfFit(const Eigen::Ref<const Points>& offsets)
+/// Means of equal numbers, such as data on cells have at vertices, differ by less, relatively.
+constexpr double RoundOff = 1e-13;
+
+/// The difference up to which the values of each column are equal.
+Eigen::RowVectorXd RoundOffOf(const PointData& data)
 {
-  if (offsets.rows() < 3)
+  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(data.Given.cols());
+  for (Eigen::Index i = 0; i < data.Given.rows(); ++i)
   {
-    return Vector();
+    if (!data.Missing[i])
+    {
+      largest = largest.cwiseMax(data.Given.row(i).cwiseAbs());
+    }
   }
-  const Eigen::Matrix3d spread = offsets.transpose() * offsets;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-  const double size = std::sqrt(axes.eigenvalues()[2]);
-  if (!(axes.eigenvalues()[1] > 1e-6 * axes.eigenvalues()[2]) || !(size > 0.0))
-  {
-    return Vector();
-  }
-  Eigen::Matrix<double, Eigen::Dynamic, 3> basis(offsets.rows(), 3);
-  basis.col(0).setOnes();
-  basis.rightCols(2) = offsets * axes.eigenvectors().rightCols(2) / size;
-  const Eigen::Matrix3d normal = basis.transpose() * basis;
-  const Eigen::Vector3d one = normal.ldlt().solve(Eigen::Vector3d::UnitX());
-  const Vector weights = basis * one;
-  return std::abs(weights.sum() - 1.0) < 1e-6 ? weights : Vector();
+  return RoundOff * largest;
 }
 
-double MedianDeviation(std::vector<double>& deviations)
+/// The deviation of the data from their medians: without a signal, that of the noise.
+double DeviationOfData(const PointData& data)
 {
-  if (deviations.empty())
+  double variance = 0.0;
+  std::vector<double> values;
+  for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
   {
-    return 0.0;
+    values.clear();
+    for (Eigen::Index i = 0; i < data.Given.rows(); ++i)
+    {
+      if (!data.Missing[i])
+      {
+        values.push_back(data.Given(i, k));
+      }
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    const double median = *middle;
+    for (double& value : values)
+    {
+      value = std::abs(value - median);
+    }
+    variance += std::pow(RobustDeviation(values), 2) / static_cast<double>(data.Given.cols());
   }
-  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  return 1.4826 * *middle;
+  return std::sqrt(variance);
 }
 
 /// The estimate from the vertices at a distance of `edges` edges.
 double EstimateAt(int edges, const Assembler& assembler, const Eigen::Ref<const Points>& points,
   const PointData& data)
 {
-  const std::vector<Index>& row = assembler.Mesh().InputVertex();
   const Index n = assembler.Mesh().NumberOfVertices();
   const Eigen::Index columns = data.Given.cols();
   const Index stride = 1 + n / LargestSample;
   Rings rings(assembler.Pattern());
+  const Eigen::RowVectorXd roundOff = RoundOffOf(data);
   std::vector<std::vector<double>> deviations(static_cast<std::size_t>(columns));
-  std::vector<Index> known;
-  Points offsets;
+  double count = 0.0;
   for (Index i = 0; i < n; i += stride)
   {
     if (data.Missing[i])
     {
       continue;
     }
-    known.clear();
-    for (const Index j : rings.Find(i, edges))
-    {
-      if (!data.Missing[j])
-      {
-        known.push_back(j);
-      }
-    }
-    offsets.resize(static_cast<Eigen::Index>(known.size()), 3);
-    for (std::size_t j = 0; j < known.size(); ++j)
-    {
-      offsets.row(static_cast<Eigen::Index>(j)) =
-        points.row(row[static_cast<std::size_t>(known[j])]) -
-        points.row(row[static_cast<std::size_t>(i)]);
-    }
-    const Vector weights = WeightsOfFit(offsets);
+    const LinearFit fit = FitAround(i, edges, assembler.Mesh(), rings, points, data.Missing);
+    const std::vector<Index>& known = fit.Known;
+    const Vector& weights = fit.Weights;
+    count += weights.size() > 0 ? 1.0 : 0.0;
     for (Eigen::Index k = 0; k < columns && weights.size() > 0; ++k)
     {
       double residual = 0.0;
+      bool varies = false;
       for (std::size_t j = 0; j < known.size(); ++j)
       {
-        residual +=
-          weights[static_cast<Eigen::Index>(j)] * (data.Given(known[j], k) - data.Given(i, k));
+        const double difference = data.Given(known[j], k) - data.Given(i, k);
+        residual += weights[static_cast<Eigen::Index>(j)] * difference;
+        varies = varies || std::abs(difference) > roundOff[k];
       }
-      deviations[static_cast<std::size_t>(k)].push_back(
-        std::abs(residual) / std::sqrt(1.0 + weights.squaredNorm()));
+      if (varies)
+      {
+        deviations[static_cast<std::size_t>(k)].push_back(
+          std::abs(residual) / std::sqrt(1.0 + weights.squaredNorm()));
+      }
     }
   }
   double variance = 0.0;
   for (std::vector<double>& ofColumn : deviations)
   {
-    variance += std::pow(MedianDeviation(ofColumn), 2) / static_cast<double>(columns);
+    // A column may be constant where others vary.
+    const double share = count > 0.0 ? static_cast<double>(ofColumn.size()) / count : 0.0;
+    variance += share * std::pow(RobustDeviation(ofColumn), 2) / static_cast<double>(columns);
   }
   return std::sqrt(variance);
 }
 
 } // namespace
 
-NoiseEstimate EstimateNoise(
-  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data)
+Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
 {
+  const SparsePattern& pattern = assembler.Pattern();
+  const Index n = assembler.Mesh().NumberOfVertices();
+  const Eigen::RowVectorXd roundOff = RoundOffOf(data);
+  const auto anyNeighbour = [&](Index i, const auto& holds)
+  {
+    bool found = false;
+    for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1] && !found; ++slot)
+    {
+      const Index j = pattern.Inner[slot];
+      found = j != i && !data.Missing[j] && holds(j);
+    }
+    return found;
+  };
+  Flags constant = Flags::Constant(n, false);
+  for (Index i = 0; i < n; ++i)
+  {
+    constant[i] = !data.Missing[i] && anyNeighbour(i, [](Index) { return true; }) &&
+      !anyNeighbour(i,
+        [&](Index j) {
+          return ((data.Given.row(j) - data.Given.row(i)).cwiseAbs().array() > roundOff.array())
+            .any();
+        });
+  }
+  Flags varying = Flags::Constant(n, false);
+  for (Index i = 0; i < n; ++i)
+  {
+    varying[i] = !data.Missing[i] && !constant[i] &&
+      !anyNeighbour(i, [&](Index j) { return constant[j] != 0; });
+  }
+  const auto outside = (!data.Missing && !constant).count();
+  return 3 * varying.count() < outside ? Flags(Flags::Constant(n, false)) : varying;
+}
+
+NoiseEstimate EstimateNoise(
+  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& given)
+{
+  PointData data = given;
+  data.Missing = !FindVaryingVertices(assembler, given);
   NoiseEstimate estimate;
   estimate.BetweenNeighbours = EstimateAt(1, assembler, points, data);
   estimate.Apart = estimate.BetweenNeighbours;
+  const bool smoothed =
+    estimate.Apart > 0.0 && CorrelateResiduals(assembler, points, data).IsOfCorrelatedNoise();
+  const Growth& growth = smoothed ? GrowthOfSmoothed : GrowthOfOther;
   double apart = estimate.BetweenNeighbours;
-  double growth = MostGrowth;
-  for (int edges = 2; edges <= FarthestRing && apart > 0.0; edges *= 2)
+  double most = growth.Most;
+  double last = growth.Most;
+  int distance = 1;
+  for (int edges = 2; edges <= growth.Farthest && apart > 0.0; edges *= 2)
   {
     const double next = EstimateAt(edges, assembler, points, data);
-    if (next <= 1.15 * apart)
+    last = next / apart;
+    if (last <= growth.Settled || last > most)
     {
-      estimate.Apart = apart;
-      return estimate;
+      break;
     }
-    if (next > growth * apart)
-    {
-      return estimate;
-    }
-    growth = next / apart;
+    most = smoothed ? most : last;
     apart = next;
+    distance = edges;
   }
-  if (growth < SettledGrowth)
+  const bool settled = last <= (distance == growth.Farthest ? growth.SettledAtEnd : growth.Settled);
+  estimate.Correlated = smoothed || (settled && distance > 1);
+  estimate.Settled = settled || !smoothed;
+  if (estimate.Correlated)
   {
-    estimate.Apart = apart;
+    // Far apart, the curvature of the surface and the ends of the fits add to the estimate.
+    estimate.Apart = std::min(apart, std::max(estimate.BetweenNeighbours, DeviationOfData(data)));
+    estimate.Distance = distance;
   }
   return estimate;
 }
