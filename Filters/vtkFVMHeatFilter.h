@@ -88,7 +88,9 @@ public:
    * On: lambda is chosen by the discrepancy principle (Morozov 1966), so that the area-weighted
    * root mean square of the difference between the steady state of (16) and the data is that of the
    * noise. FidelityWeight is ignored. The principle errs on the smooth side: on photographs with
-   * noise of 5 to 80 % its result was 1.3 to 2.6 dB from that of the best lambda. Default: off.
+   * noise of 5 to 80 % its result was 1.3 to 2.6 dB from that of the best lambda. Constant parts of
+   * the data, such as a background of 0, have no noise and are left out. Default: off; with BlurFWHM
+   * and FidelityWeight 0 always on.
    */
   vtkSetMacro(AutomaticFidelity, bool);
   vtkGetMacro(AutomaticFidelity, bool);
@@ -100,9 +102,10 @@ public:
    * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
    * a linear fit to its neighbours. The estimate assumes white noise, independent from point to
-   * point. If points farther apart differ by 15 % more, as in data that were interpolated or
-   * smoothed, the noise is correlated: a warning gives both values, and the larger is used. For
-   * data on cells it is the noise of the cells, and the estimate assumes white noise on them.
+   * point. Data that were interpolated or smoothed have correlated noise: residuals of neighbours
+   * are more alike than those of white noise, or points farther apart differ by 15 % more. A
+   * warning then gives the distance and both values, and the larger is used. For data
+   * on cells it is the noise of the cells, and the estimate assumes white noise on them.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);
@@ -125,8 +128,9 @@ public:
    *     1/2 int (g1 (grad u . e1)^2 + g2 (grad u . e2)^2) + lambda/2 int chi (H u - f)^2
    *
    * (Tikhonov regularisation), where H is the blur: BlurSteps steps of backward Euler for the heat
-   * equation, whose point spread function on the plane has this width. It needs Mode SteadyState,
-   * and has no effect without fidelity. A warning reports a width outside 2 to 8 mean edge lengths.
+   * equation, whose point spread function on the plane has this width. It needs Mode SteadyState.
+   * FidelityWeight 0, the default, then stands for the weight that AutomaticFidelity finds: a
+   * restoration has no other weight that suits most data. Any other weight is used. A warning reports a width outside 2 to 8 mean edge lengths.
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */

@@ -236,7 +236,8 @@ public:
    * FidelityWeight is ignored. AutomaticFidelity has the requirements of SteadyState and needs
    * FidelityNorm L2. The principle errs on the smooth side: on photographs with noise of 5 to 80 %
    * its result was 1 to 3 dB from that of the best lambda, which leaves 0.88 to 0.99 of the noise
-   * in the residual. Default: off.
+   * in the residual. Constant parts of the data, such as a background of 0, have no noise and are
+   * left out. Default: off; with BlurFWHM and FidelityWeight 3, its default, always on.
    */
   vtkSetMacro(AutomaticFidelity, bool);
   vtkGetMacro(AutomaticFidelity, bool);
@@ -248,8 +249,9 @@ public:
    * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
    * a linear fit to its neighbours. The estimate assumes white noise, independent from point to
-   * point. If points farther apart differ by 15 % more, as in data that were interpolated or
-   * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
+   * point. Data that were interpolated or smoothed have correlated noise: residuals of neighbours
+   * are more alike than those of white noise, or points farther apart differ by 15 % more. A
+   * warning then gives the distance and both values, and the larger is used.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);
@@ -313,8 +315,9 @@ public:
    * function on the plane has this width. The method is the monotone fast iterative
    * shrinkage-thresholding algorithm (MFISTA; A. Beck, M. Teboulle, IEEE Trans. Image Process. 18,
    * 2009). It stops when an iteration changes u by StopTolerance R, which is no bound of the error.
-   * BlurFWHM needs Mode SteadyState, FidelityNorm L2 and Discretization Linear, and has no effect
-   * without fidelity. A warning reports a width outside 2 to 8 mean edge lengths.
+   * BlurFWHM needs Mode SteadyState, FidelityNorm L2 and Discretization Linear.
+   * FidelityWeight 3, the default, then stands for the weight that AutomaticFidelity finds: of
+   * blurred data a weight of 3 leaves little. Any other weight is used. A warning reports a width outside 2 to 8 mean edge lengths.
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -16,8 +15,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 bool IsSet(const std::vector<char>& flags, Eigen::Index i)
 {
@@ -99,26 +96,19 @@ std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fi
   return found;
 }
 
-void ValueStatistics::Widen(std::size_t component, double low, double high)
+void ValueStatistics::Widen(
+  std::vector<ValueBounds>& bounds, std::size_t component, const ValueBounds& other)
 {
-  if (component >= this->Low.size())
-  {
-    this->Low.resize(component + 1, Infinity);
-    this->High.resize(component + 1, -Infinity);
-  }
-  this->Low[component] = std::min(this->Low[component], low);
-  this->High[component] = std::max(this->High[component], high);
+  bounds.resize(std::max(bounds.size(), component + 1));
+  bounds[component].Widen(other);
 }
 
-void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint)
+void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint, bool robust)
 {
   const Values& values = fields.Data;
-  const Eigen::Index columns = values.cols();
-  Eigen::Array<double, 1, Eigen::Dynamic> low, high;
-  low.setConstant(columns, Infinity);
-  high.setConstant(columns, -Infinity);
   const std::vector<char> participates = FindParticipatingRows(surface, fields);
   const bool fixedHere = fields.FixedOnCells == fields.DataOnCells;
+  std::vector<Index> known;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
     if (!IsSet(participates, i) || IsSet(fields.Missing, i) || !values.row(i).allFinite())
@@ -126,25 +116,36 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
       continue;
     }
     this->Largest = std::max(this->Largest, values.row(i).cwiseAbs().maxCoeff());
-    if (inpaint && IsSet(fields.Mask, i) && !(fixedHere && IsSet(fields.Fixed, i)))
+    if (!inpaint || !IsSet(fields.Mask, i) || (fixedHere && IsSet(fields.Fixed, i)))
     {
-      continue;
+      known.push_back(static_cast<Index>(i));
     }
-    low = low.min(values.row(i).array());
-    high = high.max(values.row(i).array());
   }
-  for (Eigen::Index k = 0; k < columns; ++k)
+  std::vector<double> column;
+  for (Eigen::Index k = 0; k < values.cols(); ++k)
   {
-    this->Widen(static_cast<std::size_t>(k), low[k], high[k]);
+    ValueBounds bounds;
+    column.clear();
+    for (const Index i : known)
+    {
+      bounds.Widen({ values(i, k), values(i, k) });
+      if (robust)
+      {
+        column.push_back(values(i, k));
+      }
+    }
+    Widen(this->All, static_cast<std::size_t>(k), bounds);
+    Widen(this->Robust, static_cast<std::size_t>(k), RobustBounds(column));
   }
 }
 
 void ValueStatistics::Merge(const ValueStatistics& other)
 {
   this->Largest = std::max(this->Largest, other.Largest);
-  for (std::size_t k = 0; k < other.Low.size(); ++k)
+  for (std::size_t k = 0; k < other.All.size(); ++k)
   {
-    this->Widen(k, other.Low[k], other.High[k]);
+    Widen(this->All, k, other.All[k]);
+    Widen(this->Robust, k, other.Robust[k]);
   }
 }
 
@@ -154,31 +155,46 @@ void ValueStatistics::Merge(const ProcessGroup& processes)
   {
     return;
   }
-  // Components, magnitude, low and high of each process. A process without data has no components.
-  std::vector<double> mine = { static_cast<double>(this->Low.size()), this->Largest };
-  mine.insert(mine.end(), this->Low.begin(), this->Low.end());
-  mine.insert(mine.end(), this->High.begin(), this->High.end());
+  // Magnitude and components of each process, and four bounds of each component. A process without
+  // data has no components.
+  std::vector<double> mine = { this->Largest, static_cast<double>(this->All.size()) };
+  for (std::size_t k = 0; k < this->All.size(); ++k)
+  {
+    mine.insert(mine.end(),
+      { this->All[k].Low, this->All[k].High, this->Robust[k].Low, this->Robust[k].High });
+  }
   const std::vector<double> all = processes.GatherAll(mine);
   for (std::size_t i = 0; i < all.size();)
   {
-    const auto components = static_cast<std::size_t>(all[i]);
-    this->Largest = std::max(this->Largest, all[i + 1]);
-    for (std::size_t k = 0; k < components; ++k)
+    this->Largest = std::max(this->Largest, all[i]);
+    const auto components = static_cast<std::size_t>(all[i + 1]);
+    i += 2;
+    for (std::size_t k = 0; k < components; ++k, i += 4)
     {
-      this->Widen(k, all[i + 2 + k], all[i + 2 + components + k]);
+      Widen(this->All, k, { all[i], all[i + 1] });
+      Widen(this->Robust, k, { all[i + 2], all[i + 3] });
     }
-    i += 2 + 2 * components;
   }
 }
 
 double ValueStatistics::Range() const
 {
   double range = 0.0;
-  for (std::size_t k = 0; k < this->Low.size(); ++k)
+  for (const ValueBounds& bounds : this->All)
   {
-    range = std::max(range, this->High[k] - this->Low[k]);
+    range = std::max(range, bounds.Width());
   }
   return range > 0.0 ? range : 1.0;
+}
+
+double ValueStatistics::RobustRange() const
+{
+  double range = 0.0;
+  for (const ValueBounds& bounds : this->Robust)
+  {
+    range = std::max(range, bounds.Width());
+  }
+  return range;
 }
 
 PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit)

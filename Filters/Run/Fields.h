@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/RobustRange.h"
 #include "Core/Models/Model.h"
 #include "Run/ProcessGroup.h"
 #include "Run/RunSettings.h"
@@ -64,19 +65,23 @@ class ValueStatistics
 public:
   /// Count the finite values at points or cells of participating triangles; those that are missing
   /// count for Magnitude() alone. inpaint: whether a mask means missing.
-  void Add(const Surface& surface, const Fields& fields, bool inpaint);
+  /// robust: whether RobustRange() is wanted, which takes longer.
+  void Add(const Surface& surface, const Fields& fields, bool inpaint, bool robust);
   void Merge(const ValueStatistics& other);
   void Merge(const ProcessGroup& processes);
 
   /// R: the largest over the components of max - min; 1 if no value differs.
   double Range() const;
+  /// The same of RobustBounds() of each surface; 0 if no value differs.
+  double RobustRange() const;
   /// The largest magnitude.
   double Magnitude() const { return this->Largest; }
 
 private:
-  void Widen(std::size_t component, double low, double high);
+  static void Widen(
+    std::vector<ValueBounds>& bounds, std::size_t component, const ValueBounds& other);
 
-  std::vector<double> Low, High;
+  std::vector<ValueBounds> All, Robust; ///< per component
   double Largest = 0.0;
 };
 

@@ -60,8 +60,8 @@ ModelTraits HeatSettings::DescribeModel() const
   traits.AbsoluteTime = this->FWHM > 0.0 || this->IsAbsolute();
   traits.Time = { 2.0, 0.0 };
   traits.Energy = { 0.0, 2.0 };
-  traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
-  traits.CanBeDistributed = !this->AutomaticFidelity && !this->Blur.IsOn();
+  traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
+  traits.CanBeDistributed = !this->FindsFidelity() && !this->Blur.IsOn();
   DescribeData(*this, traits);
   return traits;
 }
@@ -89,7 +89,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
   };
   this->Blur.Warn(inputs, result);
   double fidelity = this->FidelityWeight * unit;
-  if (this->AutomaticFidelity)
+  if (this->FindsFidelity())
   {
     const auto blur = this->Blur.Make(inputs, {});
     fidelity = FindFidelity(
@@ -103,7 +103,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
 std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
-  if (this->Blur.IsOn() && this->DescribeModel().UsesFidelity)
+  if (this->Blur.IsOn())
   {
     return this->MakeDeblurring(inputs, result);
   }

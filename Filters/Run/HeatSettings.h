@@ -38,6 +38,11 @@ protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:
+  /// Whether lambda is found; with a blur that is the default.
+  bool FindsFidelity() const
+  {
+    return this->AutomaticFidelity || (this->Blur.IsOn() && this->FidelityWeight == 0.0);
+  }
   std::unique_ptr<Model> MakeDeblurring(ModelInputs& inputs, RunResult& result) const;
 };
 

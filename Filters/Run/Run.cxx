@@ -102,7 +102,8 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
-  block.Statistics.Add(*block.Surface, *fields, inpaint);
+  block.Statistics.Add(
+    *block.Surface, *fields, inpaint, this->Settings->DescribeModel().SettingsInRange != nullptr);
   block.HasData = processes.Any(fields->Data.cols() > 0);
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
@@ -168,6 +169,7 @@ void Run::MeasureUnits(const ProcessGroup& processes)
     units.ValueUnit = std::exp2(std::ilogb(magnitude));
   }
   this->CommonUnits = units;
+  this->RobustValueRange = statistics.RobustRange();
   this->UnitOfTime = traits.AbsoluteTime ? 1.0
                                          : std::pow(units.MeanEdgeLength, traits.Time.Length) *
       std::pow(units.ValueRange, traits.Time.Value) * traits.TimeFactor;

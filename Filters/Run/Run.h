@@ -166,6 +166,7 @@ private:
   std::shared_ptr<RunSettings> Settings;
   std::vector<std::unique_ptr<Block>> Blocks;
   UnitSystem CommonUnits;
+  double RobustValueRange = 0.0; ///< 0: not measured
   double UnitOfTime = 1.0;
   long long StepsComputed = 0;
   bool KeepsHistory = true;

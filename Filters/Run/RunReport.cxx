@@ -31,6 +31,18 @@ std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
   return text.str();
 }
 
+/// R counts as that of outliers if it is so many times the range without them.
+constexpr double OutlierFactor = 3.0;
+
+std::string DescribeOutliers(double range, double robust, const char* settings)
+{
+  std::ostringstream text;
+  text << "the range R of the values, " << range << ", is that of outliers: it is " << robust
+       << " without the largest and the smallest 0.1 % of the values, and it is the unit of "
+       << settings << " (clip or mask the outliers, or set Units to Absolute)";
+  return text.str();
+}
+
 std::string DescribeUndetermined(long long components)
 {
   return std::to_string(components) +
@@ -231,6 +243,13 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
   if (components > 0)
   {
     warnings.push_back({ DescribeUndetermined(components), inputs });
+  }
+  const char* const inRange = this->Settings->DescribeModel().SettingsInRange;
+  const double range = this->CommonUnits.ValueRange;
+  if (inRange && !this->Settings->IsAbsolute() && this->RobustValueRange > 0.0 &&
+    range > OutlierFactor * this->RobustValueRange)
+  {
+    warnings.push_back({ DescribeOutliers(range, this->RobustValueRange, inRange), inputs });
   }
   const Shortfalls shortfalls = this->FindShortfalls();
   if (shortfalls.MissedResidual > 0.0)

@@ -57,6 +57,8 @@ struct ModelTraits
   double TimeFactor = 1.0; ///< of the natural unit of time, beyond its dimension
   Dimension Energy;
   bool HasValueRange = true; ///< false: R is 1
+  /// The settings measured in R that the result depends on, for a warning; null: none.
+  const char* SettingsInRange = nullptr;
   bool StateHasUnitOfValues = true; ///< false: u is a pure number
   bool UsesFidelity = false;
   bool NeedsDirections = false; ///< diffusivities along and across differ

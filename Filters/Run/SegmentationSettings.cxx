@@ -187,6 +187,7 @@ ModelTraits SegmentationSettings::DescribeModel() const
   traits.Energy = { 1.0, 0.0 };
   traits.StateHasUnitOfValues = false;
   traits.UsesFidelity = true;
+  traits.SettingsInRange = this->AutomaticFidelity ? nullptr : "FidelityWeight";
   traits.UsesRandomNumbers = true;
   traits.StartsFromKnownValues = true;
   traits.ResultOnCells = this->ResultOnCells;

@@ -83,6 +83,7 @@ ModelTraits TensorDiffusionSettings::DescribeModel() const
   traits.Time = { 2.0, 0.0 };
   traits.Energy = beltrami ? Dimension{ 0.0, 2.0 } : Dimension{ 2.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;
+  traits.SettingsInRange = beltrami ? "ColorScale" : "Contrast";
   traits.CanBeDistributed = this->Model != TensorModel::CoherenceEnhancing && !this->DiffusionAxes;
   DescribeData(*this, traits);
   return traits;

@@ -82,7 +82,7 @@ void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems&
   {
     this->RequireConvexEnergy("TimeIntegrator Implicit", problems);
   }
-  if (this->AutomaticFidelity)
+  if (this->FindsFidelity())
   {
     this->RequireConvexEnergy("AutomaticFidelity", problems);
     Require(this->FidelityNorm != SurfaceDiffusion::FidelityNorm::L1, "FidelityNorm",
@@ -148,6 +148,20 @@ void TotalVariationSettings::RequireConvexEnergy(const char* purpose, Problems& 
     "AlongDiffusivity and AcrossDiffusivity", 0.0, ("one above 0" + with).c_str(), problems);
 }
 
+/// The edge functions without a threshold have R in the unit of time.
+const char* TotalVariationSettings::FindSettingsInRange() const
+{
+  if (PropertiesOf(this->EdgeFunction).Dimensionless)
+  {
+    return this->EdgeFunction == EdgeFunctionKind::Constant ? nullptr : "EdgeThreshold";
+  }
+  if (this->Mode == TotalVariationMode::TimeSteps)
+  {
+    return "TimeStep and FidelityWeight";
+  }
+  return this->FindsFidelity() ? nullptr : "FidelityWeight";
+}
+
 ModelTraits TotalVariationSettings::DescribeModel() const
 {
   const bool dimensionless = PropertiesOf(this->EdgeFunction).Dimensionless;
@@ -157,9 +171,10 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = this->IsAbsolute();
   traits.Time = dimensionless ? Dimension{ 2.0, 0.0 } : Dimension{ 1.0, 1.0 };
+  traits.SettingsInRange = this->FindSettingsInRange();
   traits.Energy = dimensionless ? Dimension{ 0.0, 2.0 } : Dimension{ 1.0, 1.0 };
-  traits.UsesFidelity = this->AutomaticFidelity || this->FidelityWeight > 0.0;
-  traits.CanBeDistributed = !this->AutomaticFidelity &&
+  traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
+  traits.CanBeDistributed = !this->FindsFidelity() &&
     this->Discretization == SurfaceDiffusion::Discretization::Linear && !this->Blur.IsOn();
   traits.UsesLinearLight = this->Color.UsesLinearLight();
   traits.BoundsError = this->Minimizes() && !this->Blur.IsOn() &&
@@ -183,8 +198,8 @@ std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResu
   {
     maker.MakeEdges();
   }
-  const double fidelity = this->AutomaticFidelity ? maker.FindFidelityWeight(result)
-                                                  : this->FidelityWeight * maker.FidelityUnit();
+  const double fidelity = this->FindsFidelity() ? maker.FindFidelityWeight(result)
+                                                : this->FidelityWeight * maker.FidelityUnit();
   result.EffectiveFidelityWeight = fidelity / maker.FidelityUnit();
   return maker.Make(std::move(inputs.Data), fidelity, this->StopTolerance);
 }

@@ -41,9 +41,11 @@ struct TotalVariationSettings : DataSettings
   BlurSettings Blur;
   ColorSettings Color;
 
+  static constexpr double DefaultFidelityWeight = 3.0;
+
   TotalVariationSettings()
   {
-    this->FidelityWeight = 3.0;
+    this->FidelityWeight = DefaultFidelityWeight;
     this->Tolerance = 1e-3;
   }
 
@@ -64,6 +66,13 @@ protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:
+  /// Whether lambda is found; with a blur that is the default.
+  bool FindsFidelity() const
+  {
+    return this->AutomaticFidelity ||
+      (this->Blur.IsOn() && this->FidelityWeight == DefaultFidelityWeight);
+  }
+  const char* FindSettingsInRange() const;
   void CheckBlur(Problems& problems) const;
   void CheckColorModel(const FieldSummary* fields, Problems& problems) const;
   void RequireConvexEnergy(const char* purpose, Problems& problems) const;

@@ -254,6 +254,7 @@ def heat(
 
     With ``mode="SteadyState"`` and `blur_fwhm` it restores data that were blurred on the surface: u
     minimises the integral of 1/2 D grad u . grad u + lambda/2 chi (H u - f)^2, where H is the blur.
+    Then lambda is found as with `automatic_fidelity`, unless `fidelity_weight` is above 0.
 
     Parameters
     ----------
@@ -341,7 +342,8 @@ def intrinsic_tv(
     total variation, 1/sqrt(abs(grad u)^2 + beta). With ``mode="SteadyState"`` it minimises the
     energy, integral of abs(grad u) + lambda/2 chi (f - u)^2. With `blur_fwhm`, too, it restores data
     that were blurred on the surface: H u stands in place of u in the second term, where H is the
-    blur. `color_model` describes colours, three columns, by brightness and two axes of colour, or by
+    blur. Then lambda is found as with `automatic_fidelity`, unless `fidelity_weight` or
+    `automatic_fidelity` is given. `color_model` describes colours, three columns, by brightness and two axes of colour, or by
     brightness and chromaticity; both restore colours whose hue is noisy better than the default.
 
     Parameters

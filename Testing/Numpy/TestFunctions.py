@@ -700,5 +700,24 @@ class Segment(unittest.TestCase):
             self.assertIn(text, str(caught.exception))
 
 
+class Restoration(unittest.TestCase):
+    def test_weight_is_found_unless_it_is_given(self):
+        surface = sd.sphere(4)
+        cap = (surface.points[:, 2] > 0.5).astype(float)
+        noise = 0.02 * np.random.default_rng(1).normal(size=surface.n_points)
+        blurred = sd.heat(surface, cap, fwhm=0.3) + noise
+
+        def weight(**properties):
+            return sd.intrinsic_tv(surface, blurred, mode="SteadyState", blur_fwhm=0.3,
+                                   full_output=True, **properties).effective_fidelity_weight
+
+        found = weight()
+        self.assertGreater(found, 10.0)
+        self.assertEqual(weight(automatic_fidelity=True), found)
+        for given in (3.0, 20.0):
+            self.assertAlmostEqual(weight(fidelity_weight=given), given, delta=1e-12)
+        self.assertAlmostEqual(weight(automatic_fidelity=False), 3.0, delta=1e-12)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2, argv=sys.argv)

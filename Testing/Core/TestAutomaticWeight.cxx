@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RunInput.h"
+
+#include "Run/HeatSettings.h"
+#include "Run/TotalVariationSettings.h"
+
+#include "Core/Models/HeatBlur.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+// The fidelity weight that is found: of data with constant parts, and of blurred data.
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+using Testing::Alone;
+using Testing::RunInput;
+using Testing::StateOf;
+
+double Gaussian(Index i, int seed)
+{
+  const double r = std::sqrt(-2.0 * std::log(1.0 - UniformRandom(seed, 0, i)));
+  return r * std::cos(2.0 * Testing::Pi * UniformRandom(seed, 1, i));
+}
+
+/// Points with the largest values of a function of the place: the rest of them is constant.
+std::vector<char> Part(const Testing::Surface& s, double share)
+{
+  std::vector<double> order;
+  for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+  {
+    order.push_back(s.Vertices(i, 0) + 0.3 * s.Vertices(i, 1));
+  }
+  std::vector<double> sorted = order;
+  std::sort(sorted.begin(), sorted.end());
+  const double limit =
+    sorted[static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)))];
+  std::vector<char> part;
+  for (const double place : order)
+  {
+    part.push_back(place >= limit);
+  }
+  return part;
+}
+
+struct Noisy
+{
+  RunInput Input;
+  Vector Clean;
+};
+
+/// A smooth function and noise on a part, and `background` elsewhere.
+Noisy MakeNoisy(
+  const Testing::Surface& s, const std::vector<char>& part, double sigma, double background)
+{
+  Noisy data{ RunInput(s), Vector(s.Vertices.rows()) };
+  for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+  {
+    const bool inside = part[static_cast<std::size_t>(i)] != 0;
+    data.Clean[i] = background + (inside ? 0.2 * std::sin(3.0 * s.Vertices(i, 1)) : 0.0);
+    data.Input.Data.Data(i, 0) =
+      data.Clean[i] + (inside ? sigma * Gaussian(static_cast<Index>(i), 4) : 0.0);
+  }
+  return data;
+}
+
+/// Of the differences from the clean data at the points of a part.
+template <typename ModelSettings>
+double ErrorOf(
+  const Noisy& data, const std::vector<char>& part, const ModelSettings& settings, bool& warned)
+{
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values u = StateOf(run, { data.Input.Block() }, settings);
+  warned = !run.FindWarnings(Alone).empty();
+  double sum = 0.0;
+  double count = 0.0;
+  for (Eigen::Index i = 0; i < data.Clean.size(); ++i)
+  {
+    if (part[static_cast<std::size_t>(i)] != 0)
+    {
+      const Index v = run.GetBlock(0).Surface->VertexOf(static_cast<Index>(i));
+      sum += std::pow(u(v, 0) - data.Clean[i], 2);
+      count += 1.0;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+} // namespace
+
+TEST(AutomaticWeight, LeavesConstantPartsOutOfTheNoise)
+{
+  constexpr double sigma = 0.1;
+  HeatSettings heat;
+  heat.Mode = HeatMode::SteadyState;
+  heat.AutomaticFidelity = true;
+  TotalVariationSettings tv;
+  tv.Mode = TotalVariationMode::SteadyState;
+  tv.AutomaticFidelity = true;
+  const Testing::Surface strip =
+    Testing::Jittered(Testing::Strip(50, 50), 0.35 / 50.0, 0.001, 0.999, 0.001, 0.999);
+  for (const Testing::Surface& s : { Testing::Icosphere(4), strip })
+  {
+    for (const double share : { 0.4, 0.6, 0.9 })
+    {
+      for (const double background : { 0.0, 0.7 })
+      {
+        const std::vector<char> part = Part(s, share);
+        const std::vector<char> everywhere(part.size(), 1);
+        const Noisy constant = MakeNoisy(s, part, sigma, background);
+        const Noisy without = MakeNoisy(s, everywhere, sigma, background);
+        bool warned = false;
+        const double ofHeat = ErrorOf(constant, part, heat, warned);
+        EXPECT_FALSE(warned) << share;
+        EXPECT_LT(ofHeat, 1.5 * ErrorOf(without, part, heat, warned)) << share;
+        EXPECT_LT(ofHeat, 0.5 * sigma);
+        const double ofTV = ErrorOf(constant, part, tv, warned);
+        EXPECT_FALSE(warned) << share;
+        EXPECT_LT(ofTV, 1.5 * ErrorOf(without, part, tv, warned)) << share;
+        EXPECT_LT(ofTV, 0.6 * sigma);
+        std::printf("%g %g: heat %.4f TV %.4f\n", share, background, ofHeat, ofTV);
+      }
+    }
+  }
+}
+
+TEST(AutomaticWeight, KeepsMasksAndSpikesAndSaysSo)
+{
+  const Testing::Surface s = Testing::Icosphere(4);
+  HeatSettings heat;
+  heat.Mode = HeatMode::SteadyState;
+  heat.AutomaticFidelity = true;
+  for (const bool spikes : { false, true })
+  {
+    RunInput input(s);
+    for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+    {
+      input.Data.Data(i, 0) = (spikes ? i % 97 == 0 : s.Vertices(i, 2) > 0.3) ? 1.0 : 0.0;
+    }
+    SurfaceDiffusion::Run run(SerialFor());
+    const Values u = StateOf(run, { input.Block() }, heat);
+    const Surface& surface = *run.GetBlock(0).Surface;
+    for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+    {
+      EXPECT_NEAR(u(surface.VertexOf(static_cast<Index>(i)), 0), input.Data.Data(i, 0), 1e-5);
+    }
+    const std::vector<Warning> warnings = run.FindWarnings(Alone);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].Sentence.find("finds no noise"), std::string::npos);
+    EXPECT_NE(warnings[0].Sentence.find("NoiseLevel"), std::string::npos);
+  }
+}
+
+//------------------------------------------------------------------------------------------------
+namespace
+{
+
+/// A cap, blurred with the given width, and noise.
+Noisy BlurredCap(int level, double width, double sigma)
+{
+  const Testing::Surface s = Testing::Icosphere(level);
+  Noisy data{ RunInput(s), Vector(s.Vertices.rows()) };
+  HeatSettings blur;
+  blur.FWHM = width;
+  blur.NumberOfTimeSteps = 20;
+  for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+  {
+    data.Clean[i] = s.Vertices(i, 2) > 0.5 ? 1.0 : 0.0;
+    data.Input.Data.Data(i, 0) = data.Clean[i];
+  }
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values u = StateOf(run, { data.Input.Block() }, blur);
+  for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+  {
+    data.Input.Data.Data(i, 0) = u(run.GetBlock(0).Surface->VertexOf(static_cast<Index>(i)), 0) +
+      sigma * Gaussian(static_cast<Index>(i), 7);
+  }
+  return data;
+}
+
+/// With BlurFWHM and the default weight the weight is that of AutomaticFidelity; others are used.
+template <typename ModelSettings, typename ModeType>
+void ExpectFoundWeight(ModeType steady, double improvement)
+{
+  constexpr double width = 0.3; // 4.3 h
+  const Noisy data = BlurredCap(4, width, 0.02);
+  const std::vector<char> everywhere(static_cast<std::size_t>(data.Clean.size()), 1);
+  ModelSettings settings;
+  settings.Mode = steady;
+  settings.Blur.FWHM = width;
+  bool warned = false;
+  const double byDefault = ErrorOf(data, everywhere, settings, warned);
+  const double before = (data.Input.Data.Data.col(0) - data.Clean).norm() /
+    std::sqrt(static_cast<double>(data.Clean.size()));
+  EXPECT_LT(byDefault, improvement * before);
+  std::printf("blurred %.4f restored %.4f\n", before, byDefault);
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values found = StateOf(run, { data.Input.Block() }, settings);
+  const double weight = run.GetBlock(0).Result.EffectiveFidelityWeight;
+  settings.AutomaticFidelity = true;
+  EXPECT_EQ((StateOf(run, { data.Input.Block() }, settings) - found).norm(), 0.0);
+  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, weight);
+  settings.AutomaticFidelity = false;
+  settings.FidelityWeight = 17.0;
+  StateOf(run, { data.Input.Block() }, settings);
+  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, 17.0);
+  settings.Blur.FWHM = 0.0;
+  settings.FidelityWeight = ModelSettings().FidelityWeight;
+  StateOf(run, { data.Input.Block() }, settings);
+  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, settings.FidelityWeight);
+}
+
+} // namespace
+
+TEST(AutomaticWeight, IsTheDefaultOfTotalVariationDeblurring)
+{
+  ExpectFoundWeight<TotalVariationSettings>(TotalVariationMode::SteadyState, 0.6);
+}
+
+TEST(AutomaticWeight, IsTheDefaultOfTikhonovDeblurring)
+{
+  ExpectFoundWeight<HeatSettings>(HeatMode::SteadyState, 0.85);
+}
+
+} // namespace SurfaceDiffusion
