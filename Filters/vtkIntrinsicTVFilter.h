@@ -410,14 +410,14 @@ public:
 
   ///@{
   /**
-   * On (default): unsigned char colours are decoded from sRGB (IEC 61966-2-1) to linear light, on the
+   * On: unsigned char colours are decoded from sRGB (IEC 61966-2-1) to linear light, on the
    * same scale from 0 to 255, and the result is encoded, with ColorModel Opponent and
    * ChromaticityBrightness. Range, noise level, energy and totals are those of linear light. Results
    * below 0 and above 255 become 0 and 255, also if OutputPrecision is Single or Double. Data of
    * other types are taken as they are, and so are all data with ColorModel RGB.
    * Linear light is additive. But noise of equal strength in the bytes becomes strong in bright
    * colours: on a photograph with white noise of 10 to 40 % in its bytes, all models restored the
-   * bytes by 1.8 to 4 CIEDE2000 better than linear light. Off takes the bytes as they are.
+   * bytes by 1.8 to 4 CIEDE2000 better than linear light. Off (default) takes the bytes as they are.
    */
   vtkSetMacro(LinearLight, bool);
   vtkGetMacro(LinearLight, bool);
@@ -459,7 +459,7 @@ protected:
   double ChromaWeight = 0.2;
   double ChromaticityExponent = 1.0;
   double ChromaticityWeight = 1.0;
-  bool LinearLight = true;
+  bool LinearLight = false;
   int Discretization = DISCRETIZATION_LINEAR;
   double StopTolerance = 1e-4;
 

@@ -29,7 +29,8 @@ void ColorSettings::Visit(SettingVisitor& visitor)
     this->ChromaticityWeight, SettingRange::Positive());
   visitor.Switch({ "LinearLight", "",
                    "Whether unsigned char colours are decoded from sRGB to linear light and the "
-                   "result is encoded, with Opponent and ChromaticityBrightness." },
+                   "result is encoded, with Opponent and ChromaticityBrightness. Off suits noise "
+                   "of equal strength in the bytes." },
     this->LinearLight);
 }
 

@@ -24,7 +24,7 @@ struct ColorSettings
   double ChromaWeight = 0.2; ///< of Opponent
   double ChromaticityExponent = 1.0; ///< p
   double ChromaticityWeight = 1.0; ///< mu
-  bool LinearLight = true;
+  bool LinearLight = false;
 
   void Visit(SettingVisitor& visitor);
 

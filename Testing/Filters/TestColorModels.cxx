@@ -342,6 +342,7 @@ TEST(ColorModels, LinearLightDecodesAndEncodesBytesOnly)
     for (Filter* filter : { decoding.Get(), plain.Get() })
     {
       filter->SetColorModel(model);
+      filter->LinearLightOn();
       filter->SetTolerance(1e-12);
       filter->Update();
     }
@@ -364,7 +365,7 @@ TEST(ColorModels, LinearLightLeavesRGBAsItIs)
   auto sphere = Sphere(3);
   AddBytes(sphere);
   auto filter = MakeFilter(sphere);
-  EXPECT_TRUE(filter->GetLinearLight());
+  filter->LinearLightOn();
   filter->Update();
   const auto on = Copy(Result(filter));
   filter->LinearLightOff();

@@ -37,7 +37,7 @@ TEST(IntrinsicTVFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetChromaWeight(), 0.2);
   EXPECT_EQ(filter->GetChromaticityExponent(), 1.0);
   EXPECT_EQ(filter->GetChromaticityWeight(), 1.0);
-  EXPECT_TRUE(filter->GetLinearLight());
+  EXPECT_FALSE(filter->GetLinearLight());
 }
 
 TEST(IntrinsicTVFilter, EnumsAreNumberedInOrderAndHaveTexts)

@@ -103,7 +103,7 @@ class SameBits(unittest.TestCase):
             ("intrinsic_tv", {"values": colours[:, :3]},
              {"ColorModel": "Opponent", "ChromaWeight": 0.1, "Mode": "SteadyState"}),
             ("intrinsic_tv", {"values": self.columns},
-             {"ColorModel": "ChromaticityBrightness", "LinearLight": False, "Mode": "SteadyState"}),
+             {"ColorModel": "ChromaticityBrightness", "LinearLight": True, "Mode": "SteadyState"}),
             ("intrinsic_tv", {"values": self.columns},
              {"Discretization": "CrouzeixRaviart", "NumberOfTimeSteps": 3}),
             ("mumford_shah", {"values": self.normals}, {"EdgeThreshold": 0.4}),
