@@ -170,7 +170,7 @@ CellData ReadCells(const Surface& surface, const Fields& fields, const CellReadi
 }
 
 /// Given and FidelityFactors of data with fidelity factors or missing cells.
-void WeightFidelity(const Surface& surface, const Fields& fields, const CellState& cells,
+void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cells,
   const CellData& given, const ProcessGroup& processes, PointData& data)
 {
   Vector ofCells;
@@ -188,6 +188,8 @@ void WeightFidelity(const Surface& surface, const Fields& fields, const CellStat
   const Vector areas = cells.Transfer.ToVertices(Values(ones.size(), 0), ones).Weights;
   const VertexMeans weighted = Average(cells, given.Of, given.Known.cwiseProduct(ofCells));
   data.FidelityFactors = weighted.Weights.cwiseQuotient(areas).cwiseProduct(ofVertices);
+  cells.Factors = given.Known.cwiseProduct(ofCells).cwiseProduct(
+    Vector(cells.Transfer.ToCells(ofVertices).col(0)));
   for (Eigen::Index v = 0; v < weighted.Of.rows(); ++v)
   {
     if (cells.Reading.UsesFidelity && weighted.Weights[v] > 0.0)
@@ -246,19 +248,46 @@ void FixVertices(const Surface& surface, const Fields& fields, const CellState& 
     });
 }
 
+/// The fixed cells, or with fixed points those whose vertices are all fixed.
+std::vector<char> FindHeldCells(
+  const Surface& surface, const Fields& fields, const Flags& fixed, const ProcessGroup& processes)
+{
+  const auto count = static_cast<std::size_t>(fields.NumberOfCells);
+  std::vector<char> held(count, 0);
+  if (processes.Any(fields.FixedOnCells))
+  {
+    for (std::size_t c = 0; c < count; ++c)
+    {
+      held[c] = static_cast<char>(IsSet(fields.Fixed, static_cast<Index>(c)));
+    }
+    return held;
+  }
+  ForEachCorner(
+    surface, fields, [&](Index cell, Index) { held[static_cast<std::size_t>(cell)] = 1; });
+  ForEachCorner(surface, fields,
+    [&](Index cell, Index vertex)
+    { held[static_cast<std::size_t>(cell)] &= static_cast<char>(fixed[vertex]); });
+  return held;
+}
+
 } // namespace
 
-CellTransfer MakeCellTransfer(
-  const Surface& surface, const Fields& fields, const ParallelFor& parallel)
+std::vector<Index> CellsOfTriangles(const Surface& surface, const Fields& fields)
 {
-  const TriangleMesh& mesh = surface.InputMesh();
   std::vector<Index> cells(static_cast<std::size_t>(surface.NumberOfTriangles()));
   for (std::size_t row = 0; row < cells.size(); ++row)
   {
     cells[row] =
       fields.Cells[static_cast<std::size_t>(surface.InputTriangle(static_cast<Index>(row)))];
   }
-  return CellTransfer(mesh, cells, fields.NumberOfCells, parallel);
+  return cells;
+}
+
+CellTransfer MakeCellTransfer(
+  const Surface& surface, const Fields& fields, const ParallelFor& parallel)
+{
+  return CellTransfer(
+    surface.InputMesh(), CellsOfTriangles(surface, fields), fields.NumberOfCells, parallel);
 }
 
 void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup& processes,
@@ -314,17 +343,20 @@ PointData MakePointDataOfCells(
       data.Given.row(v) = damaged.Of.row(v);
     }
   }
+  cells.Factors = given.Known;
   const bool hasUnknown = cells.Reading.UsesFidelity && given.HasUnknown;
   if (processes.Any(hasUnknown || !fields.FidelityFactors.empty()))
   {
     WeightFidelity(surface, fields, cells, given, processes, data);
   }
   FixVertices(surface, fields, cells, given, damaged, processes, data);
+  cells.Held = FindHeldCells(surface, fields, data.Fixed, processes);
   cells.HasUnknown = given.HasUnknown;
   cells.Known.assign(static_cast<std::size_t>(fields.NumberOfCells), 0);
   for (std::size_t c = 0; c < cells.Known.size(); ++c)
   {
     cells.Known[c] = given.Known[static_cast<Index>(c)] > 0.0;
+    cells.Held[c] |= static_cast<char>(cells.Reading.HoldsKnown && cells.Known[c] != 0);
   }
   return data;
 }

@@ -2,13 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/CellDetail.h"
 #include "Core/Operators/CellTransfer.h"
 #include "Run/Fields.h"
+#include "Run/SolverStore.h"
 
+#include <memory>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
+
+/// The cell of each row of surface.MakeTriangles().
+std::vector<Index> CellsOfTriangles(const Surface& surface, const Fields& fields);
 
 /// The transfer between the cells of fields.Cells and the vertices of the surface.
 CellTransfer MakeCellTransfer(
@@ -28,6 +34,7 @@ struct CellReading
   bool UsesFidelity = false;
   bool UnitVectors = false; ///< each vector is normalised first
   bool Lines = false; ///< unit vectors u and -u are the same
+  bool HoldsKnown = false; ///< known cells keep their value
   double Unit = 1.0; ///< by which values are divided
 };
 
@@ -40,6 +47,9 @@ struct CellState
   Values Start; ///< u_0, the initial state at the vertices
   CellReading Reading;
   std::vector<Index> Seeds; ///< per cell, as in Fields; empty if seeds are not on cells
+  Vector Factors; ///< of the fidelity, per cell; 0 where missing
+  std::vector<char> Held; ///< per cell: a fixed one, or one whose vertices are all fixed
+  std::shared_ptr<const CellDetail> Detail; ///< null if the result needs none
   std::vector<char> Undetermined; ///< per cell, empty if none is; see there
 
   bool IsUndetermined(Index cell) const
@@ -57,18 +67,26 @@ struct CellState
 ///
 /// Polygons have the equal shares of CellTransfer in the first line. Without fidelity, w = 1. A
 /// vertex is missing if no cell around it is known. The vertices of a fixed cell are fixed to the
-/// mean of the fixed cells around them. Lines are averaged as tensors u u^T. Writes cells.Known.
-/// Throws as MakePointData(). Collective.
+/// mean of the fixed cells around them. Lines are averaged as tensors u u^T. Writes cells.Known,
+/// Factors and Held. Throws as MakePointData(). Collective.
 PointData MakePointDataOfCells(
   const Surface& surface, const Fields& fields, CellState& cells, const ProcessGroup& processes);
 
-/// The result on the cells, in array units, one row per cell. With P and P* of CellTransfer it is
+/// Put the detail of the cells beside a model of their data, whose state is cells.Start. Returns a
+/// model that does not diffuse as it is.
+std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface& surface,
+  const Fields& fields, CellState& cells, double valueRange, SolverStore& solvers,
+  const ParallelFor& parallel);
+
+/// The result on the cells, in array units, one row per cell. With P* of CellTransfer and the detail
+/// d = f - P* u_0 of CellDetail at the start, which diffuses too, it is
 ///
-///     f + P*(u - u_0)    on known cells,
-///     P* u               on missing ones, and on all of them if keepDetail is false,
+///     P* u + d = f + P*(u - u_0) + (d - d_0),
+///     P* u if keepDetail is false,
 ///
-/// so that a model that changes nothing returns f with all its bits, and totals are kept if the
-/// model keeps those of the vertices. Unit vectors are normalised, lines are added as tensors.
+/// with d_0 = 0 on missing cells, so that a model that changes nothing returns f with all its bits,
+/// and totals are kept if the model keeps those of the vertices. Unit vectors are normalised, lines
+/// are added as tensors.
 /// given: f, one row per cell; cells that take no part keep it. state: u.
 Values MakeCellResult(
   const CellState& cells, const Values& state, const Values& given, bool keepDetail);

@@ -5,6 +5,8 @@
 #include "Core/Models/UnitVectors.h"
 #include "Run/LineTensors.h"
 
+#include <utility>
+
 namespace SurfaceDiffusion
 {
 
@@ -29,7 +31,68 @@ Eigen::RowVectorXd AddToLine(
   return line.hasNaN() || axis.dot(line) >= 0.0 ? axis : Eigen::RowVectorXd(-axis);
 }
 
+/// The distance in L1 is rounded below this part of the range of the values.
+constexpr double L1Rounding = 1e-3;
+
+/// d_0.
+Values FirstDetail(const Fields& fields, const CellState& cells)
+{
+  const CellReading& reading = cells.Reading;
+  Values detail = -cells.Transfer.ToCells(reading.Lines ? AsTensors(cells.Start) : cells.Start);
+  for (Index c = 0; c < cells.Transfer.NumberOfCells(); ++c)
+  {
+    if (cells.Known[static_cast<std::size_t>(c)] == 0)
+    {
+      detail.row(c).setZero();
+      continue;
+    }
+    Values given = fields.Data.row(c) / reading.Unit;
+    if (reading.UnitVectors)
+    {
+      Normalize(given.row(0));
+    }
+    detail.row(c) += reading.Lines ? AsTensors(given).row(0) : given.row(0);
+  }
+  return detail;
+}
+
 } // namespace
+
+std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface& surface,
+  const Fields& fields, CellState& cells, double valueRange, SolverStore& solvers,
+  const ParallelFor& parallel)
+{
+  if (!(model->Diffusion().TimeStep > 0.0))
+  {
+    return model;
+  }
+  auto fluxes = std::make_unique<CellFluxes>(surface.InputMesh(), surface.Points(),
+    CellsOfTriangles(surface, fields), fields.NumberOfCells, parallel);
+  CellDetail::Data data{ FirstDetail(fields, cells), cells.Factors, cells.Held,
+    L1Rounding * valueRange, !cells.Reading.UnitVectors };
+  SolverTask task;
+  task.NumberOfVertices = fields.NumberOfCells;
+  task.NumberOfColumns = static_cast<int>(data.Start.cols());
+  const auto findSolver = [&solvers, task, overProcesses = fluxes->GetReduction()](
+                            double diffusionNumber, bool isConstant) mutable
+  {
+    if (!overProcesses->IsSerial())
+    {
+      return solvers.Make(overProcesses);
+    }
+    task.DiffusionNumber = diffusionNumber;
+    if (diffusionNumber == InfiniteTime)
+    {
+      task.DiffusionNumber.reset();
+    }
+    task.AllowMultigrid = isConstant;
+    return solvers.Find(SolverPurpose::Detail, task, isConstant ? 1.0 : 0.0);
+  };
+  auto detail = std::make_shared<CellDetail>(surface.InputMesh(), surface.Mesh(), cells.Transfer,
+    std::move(fluxes), cells.Start, std::move(data), findSolver, parallel);
+  cells.Detail = detail;
+  return std::make_unique<ModelWithCellDetail>(std::move(model), std::move(detail));
+}
 
 Values MakeCellResult(
   const CellState& cells, const Values& state, const Values& given, bool keepDetail)
@@ -53,7 +116,11 @@ Values MakeCellResult(
       continue;
     }
     const bool adds = keepDetail && cells.Known[static_cast<std::size_t>(c)] != 0;
-    const Eigen::RowVectorXd change = adds ? changes.row(c) : all.row(c);
+    Eigen::RowVectorXd change = adds ? changes.row(c) : all.row(c);
+    if (keepDetail && cells.Detail)
+    {
+      change += cells.Detail->Change(c);
+    }
     if (reading.UnitVectors)
     {
       Eigen::RowVectorXd vector = given.row(c);

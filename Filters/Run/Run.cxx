@@ -83,6 +83,7 @@ bool Run::IsModelCurrent(const Block& block, const BlockInput& input,
   return block.Path && block.FieldsVersion == input.FieldsVersion &&
     block.ModelSettings == settings && (block.Path->KeepsHistory() || !this->KeepsHistory) &&
     block.NumberOfBlocks == this->Blocks.size() && block.TimeStep == traits.TimeStep &&
+    (block.HoldsDetail || !block.Cells || !traits.NeedsCellDetail()) &&
     block.Solvers.ServesRunOf(traits.NumberOfSteps);
 }
 
@@ -199,9 +200,16 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
   }
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
+  const ModelTraits traits = this->Settings->DescribeModel();
+  block.HoldsDetail = traits.NeedsCellDetail();
   if (block.Cells)
   {
     block.Cells->Start = model->State();
+    if (block.HoldsDetail)
+    {
+      model = AddCellDetail(std::move(model), *block.Surface, fields, *block.Cells,
+        block.Units.CoreValueRange(), block.Solvers, this->Parallel);
+    }
     block.Result.HasMissing = block.Result.HasMissing || block.Cells->HasUnknown;
   }
   block.Result.HasMissing = block.Result.HasMissing || block.Undetermined.NumberOfComponents > 0.0;
@@ -227,10 +235,11 @@ PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& 
   {
     const ModelTraits traits = this->Settings->DescribeModel();
     const CellReading reading{ inpaint, traits.UsesFidelity, traits.StateIsUnitVectors,
-      traits.StateIsLines, block.Units.ValueUnit };
+      traits.StateIsLines, traits.HoldsKnownValues, block.Units.ValueUnit };
     block.Cells = std::make_unique<CellState>(
       CellState{ MakeCellTransfer(*block.Surface, fields, this->Parallel), {}, false, {}, reading,
-        fields.SeedsOnCells ? fields.Seeds : std::vector<Index>(), block.Undetermined.Cells });
+        fields.SeedsOnCells ? fields.Seeds : std::vector<Index>(), {}, {}, nullptr,
+        block.Undetermined.Cells });
     return MakePointDataOfCells(*block.Surface, fields, *block.Cells, processes);
   }
   processes.RunCollectively(

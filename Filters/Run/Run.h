@@ -110,6 +110,7 @@ public:
     ValueStatistics Statistics;
     SurfaceDiffusion::Undetermined Undetermined;
     bool HasData = false;
+    bool HoldsDetail = false; ///< Path has the detail of the cells
     bool HasLinearLight = false; ///< the state is linear light of sRGB values
     bool HasMask = false;
     bool HasMasked = false; ///< a nonzero entry of the mask

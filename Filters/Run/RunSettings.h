@@ -71,6 +71,7 @@ struct ModelTraits
   bool StartsFromKnownValues = false; ///< a component without any is left out, see Undetermined
   bool ResultOnCells = false; ///< if the data are on cells
   bool KeepCellDetail = true;
+  bool NeedsCellDetail() const { return this->KeepCellDetail && this->ResultOnCells; }
   bool StateIsUnitVectors = false;
   bool StateIsLines = false; ///< unit vectors whose sign has no meaning
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -67,6 +68,15 @@ std::shared_ptr<LinearSolver> SolverStore::Find(
   }
   kept.Solver->SetLimits(this->Limits);
   return kept.Solver;
+}
+
+std::shared_ptr<LinearSolver> SolverStore::Make(
+  std::shared_ptr<const Reduction> overProcesses) const
+{
+  std::shared_ptr<LinearSolver> solver =
+    MakeConjugateGradientSolver(std::move(overProcesses), *this->Parallel);
+  solver->SetLimits(this->Limits);
+  return solver;
 }
 
 } // namespace SurfaceDiffusion

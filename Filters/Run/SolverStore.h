@@ -24,7 +24,8 @@ enum class SolverPurpose
   Blur, ///< the blur that is removed
   Edges, ///< v of the Mumford-Shah model
   Structure, ///< the integration of structure tensors
-  Chromaticity ///< C of the chromaticity-brightness model
+  Chromaticity, ///< C of the chromaticity-brightness model
+  Detail ///< of data on cells
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -44,6 +45,8 @@ public:
   /// the number of steps.
   std::shared_ptr<LinearSolver> Find(
     SolverPurpose purpose, SolverTask task, double solvesPerStep = 0.0);
+  /// A solver over the processes of a reduction of other unknowns than the vertices.
+  std::shared_ptr<LinearSolver> Make(std::shared_ptr<const Reduction> overProcesses) const;
   /// Free the solver of a purpose that ends here.
   void Release(SolverPurpose purpose) { this->Solvers[static_cast<std::size_t>(purpose)] = Kept(); }
 
@@ -74,7 +77,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 8> Solvers;
+  std::array<Kept, 9> Solvers;
 };
 
 } // namespace SurfaceDiffusion

@@ -198,6 +198,17 @@ double ChromaticityBrightness::Energy() const
     0.5 * this->Options.Fidelity * mesh.GetReduction().Sum(rest);
 }
 
+DiffusionStep ChromaticityBrightness::Diffusion() const
+{
+  DiffusionStep step = this->BrightnessModel->Diffusion();
+  step.SharesTensor = true;
+  if (this->Options.SteadyState)
+  {
+    step.TimeStep = InfiniteTime;
+  }
+  return step;
+}
+
 void ChromaticityBrightness::UpdateState()
 {
   if (!this->Started)

@@ -66,6 +66,13 @@ public:
   /// E(B, C).
   double Energy() const override;
 
+  /// Those of B.
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index /*column*/) override
+  {
+    return this->BrightnessModel->DiffusionWeights(0);
+  }
+
   /// B, one column, and C.
   const Values& Brightness() const { return this->BrightnessModel->State(); }
   const Values& Chromaticity() const { return this->ChromaticityModel->State(); }

@@ -53,6 +53,13 @@ public:
   StepReport Advance(const ProgressMonitor& progress) override;
   double Energy() const override { return 4.0 * this->EdgeModel->Energy(); }
 
+  /// Triangles of both meshes have the same numbers and, being similar, the same weights.
+  DiffusionStep Diffusion() const override { return this->EdgeModel->Diffusion(); }
+  const CornerWeights& DiffusionWeights(Eigen::Index column) override
+  {
+    return this->EdgeModel->DiffusionWeights(column);
+  }
+
   std::size_t CheckpointSize() const override { return this->EdgeModel->CheckpointSize() + 1; }
   void Save(double* checkpoint) const override;
   void Restore(const double* checkpoint) override;

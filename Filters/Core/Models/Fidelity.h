@@ -46,6 +46,7 @@ public:
   {
   }
 
+  const Settings& GetSettings() const { return this->Options; }
   bool IsPresent() const { return this->Options.Weight > 0.0; }
 
   /// False for L1, which does not conserve the total of u.

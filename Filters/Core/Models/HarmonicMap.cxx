@@ -166,6 +166,26 @@ void HarmonicMap::ExplicitReactionStep(StepReport& report, const ProgressMonitor
   this->ProjectToSphere();
 }
 
+DiffusionStep HarmonicMap::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep = this->Options.TimeStep;
+  step.Fidelity = this->Options.Fidelity;
+  step.IsConstant = this->Options.Exponent == 2.0;
+  return step;
+}
+
+/// K(g) with the g of the last Freeze().
+const CornerWeights& HarmonicMap::DiffusionWeights(Eigen::Index /*column*/)
+{
+  const CornerWeights& coefficients = this->GradientEnergy.GetCoefficients();
+  this->Weighted.resize(coefficients.rows(), 3);
+  ForEach(this->Parallel, static_cast<Index>(coefficients.rows()),
+    [&](Index t)
+    { this->Weighted.row(t) = this->GradientEnergy.Diffusivities()[t] * coefficients.row(t); });
+  return this->Weighted;
+}
+
 // --- TangentPlane and MinimizingMovement ---
 
 void HarmonicMap::TangentPlaneStep(StepReport& report, const ProgressMonitor& progress)

@@ -99,6 +99,9 @@ public:
   /// E, with the p-th power of |grad u| in 1/LengthUnit()^p and areas in LengthUnit()^2.
   double Energy() const override;
 
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index column) override;
+
 private:
   void FillDiagonal();
   double Freeze();
@@ -124,6 +127,7 @@ private:
   Vector Damping; ///< D, times dt; of an interface vertex in its owner only
   std::vector<double> InterfaceEntries; ///< matrix entries of the edges on interfaces
   Values Previous, Anchor, RightHandSide, Step;
+  CornerWeights Weighted; ///< of DiffusionWeights()
 };
 
 } // namespace SurfaceDiffusion

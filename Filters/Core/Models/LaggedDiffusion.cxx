@@ -55,6 +55,27 @@ void LaggedDiffusion::MakeGroups()
   }
 }
 
+DiffusionStep LaggedDiffusion::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep = this->TimeStep;
+  step.Fidelity = this->Fit.GetSettings().Weight;
+  step.IsL1 = this->Fit.GetSettings().Norm == FidelityNorm::L1;
+  step.SharesTensor = this->TensorColumns == this->U.cols();
+  return step;
+}
+
+const CornerWeights& LaggedDiffusion::DiffusionWeights(Eigen::Index column)
+{
+  if (this->TensorColumns < this->U.cols()) // Weighted are those of the last columns
+  {
+    StepReport unused;
+    const Eigen::Index first = column / this->TensorColumns * this->TensorColumns;
+    this->FillWeights(first, first + this->TensorColumns, unused, ProgressMonitor());
+  }
+  return this->Weighted;
+}
+
 StepReport LaggedDiffusion::Advance(const ProgressMonitor& progress)
 {
   StepReport report;

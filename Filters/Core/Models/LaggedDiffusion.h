@@ -28,6 +28,10 @@ class LaggedDiffusion : public DataModel
 public:
   StepReport Advance(const ProgressMonitor& progress) override;
 
+  /// D is that of the old level.
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index column) override;
+
 protected:
   /// solver: kept by the caller, so that an ordering is reused. The columns of u share one D, or
   /// each has its own, as the coupling of the fidelity says.

@@ -239,6 +239,16 @@ void LinearDiffusion::Solve(Eigen::Index first, StepReport& report, const Progre
     this->Assembly->Mesh(), this->RightHandSide, this->V, this->Parallel, this->Shifts);
 }
 
+DiffusionStep LinearDiffusion::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep =
+    this->Options.TimeScheme == Scheme::SteadyState ? InfiniteTime : this->Options.TimeStep;
+  step.Fidelity = this->Options.Fidelity;
+  step.IsConstant = true;
+  return step;
+}
+
 double LinearDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();

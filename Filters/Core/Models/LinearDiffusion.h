@@ -56,6 +56,12 @@ public:
   /// 1/2 int D grad u . grad u + lambda/2 int chi |u - f|^2
   double Energy() const override;
 
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index /*column*/) override
+  {
+    return this->Coefficients;
+  }
+
 private:
   void Prepare(const ProgressMonitor& progress);
   /// Call body(i, Shifts of the component) for every vertex i.

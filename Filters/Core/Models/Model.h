@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,20 @@ struct StepReport
   }
 };
 
+/// A time step that reaches the steady state.
+constexpr double InfiniteTime = std::numeric_limits<double>::infinity();
+
+/// The diffusion of the last step of a model, m u_t = div(D grad u) + lambda w chi (f - u), for what
+/// diffuses beside its state: see CellDetail.
+struct DiffusionStep
+{
+  double TimeStep = 0.0; ///< infinite: the steady state; 0: nothing diffuses
+  double Fidelity = 0.0; ///< lambda
+  bool IsL1 = false; ///< the fidelity is lambda w chi (f - u) / |f - u|
+  bool SharesTensor = true; ///< all columns have one D
+  bool IsConstant = false; ///< D is the same in all steps
+};
+
 /// The time stepper of an evolution equation on one surface: a state that moves in time step by
 /// step. All that later steps depend on can be saved and restored, and then gives the same bits.
 class Model
@@ -61,6 +76,19 @@ public:
 
   /// The model's energy of the current state, in the units of the data and the mesh's lengths.
   virtual double Energy() const = 0;
+
+  /// Whether and how the state diffuses. Counts after a step.
+  virtual DiffusionStep Diffusion() const { return {}; }
+  /// The weights (12) of D in a column of the state, per triangle, valid until the next call; no row:
+  /// D = 1.
+  virtual const CornerWeights& DiffusionWeights(Eigen::Index /*column*/)
+  {
+    static const CornerWeights one;
+    return one;
+  }
+
+  /// The model in it, if it is one with something beside its state; otherwise itself.
+  virtual const Model& Innermost() const { return *this; }
 
   /// A checkpoint of CheckpointSize() numbers: the state, and more if later steps depend on it.
   virtual std::size_t CheckpointSize() const

@@ -234,6 +234,22 @@ double MumfordShah::EdgeEnergy() const
   return this->Options.EdgeCost * mesh.GetReduction().Sum(slope + ofDistance / (4.0 * eps));
 }
 
+DiffusionStep MumfordShah::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep = InfiniteTime;
+  step.Fidelity = this->Options.Fidelity;
+  return step;
+}
+
+const CornerWeights& MumfordShah::DiffusionWeights(Eigen::Index /*column*/)
+{
+  this->Weighted.resize(this->Coefficients.rows(), 3);
+  ForEach(this->Parallel, static_cast<Index>(this->Coefficients.rows()),
+    [&](Index t) { this->Weighted.row(t) = this->Weight(t) * this->Coefficients.row(t); });
+  return this->Weighted;
+}
+
 double MumfordShah::CurrentEdgeWidth() const
 {
   return std::ldexp(this->Options.EdgeWidth, this->Options.NumberOfStages - 1 - this->Stage);

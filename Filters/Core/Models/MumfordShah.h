@@ -70,6 +70,10 @@ public:
   /// eps of the current stage.
   double CurrentEdgeWidth() const;
 
+  /// The limit that the half step in u takes, with the new v.
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index column) override;
+
   /// 1 - v: 1 on edges. Values that a solver's error puts outside [0, 1] are clamped.
   Vector Edges() const;
 
@@ -108,6 +112,7 @@ private:
   Vector EdgeStiffness; ///< diagonal of 2 beta eps K, with the eps of EdgeStage
   int EdgeStage = -1;
   Values Change, RightHandSide, NoChange;
+  CornerWeights Weighted; ///< of DiffusionWeights()
   Values EdgeChange, EdgeRightHandSide, NoEdgeChange;
 };
 

@@ -43,6 +43,13 @@ StepReport OpponentColors::Advance(const ProgressMonitor& progress)
   return report;
 }
 
+DiffusionStep OpponentColors::Diffusion() const
+{
+  DiffusionStep step = this->Opponents->Diffusion();
+  step.SharesTensor = true;
+  return step;
+}
+
 void OpponentColors::UpdateState()
 {
   if (!this->Started)

@@ -31,6 +31,13 @@ public:
   bool Finished() const override { return this->Opponents->Finished(); }
   double Energy() const override { return this->Opponents->Energy(); }
 
+  /// Those of brightness.
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index /*column*/) override
+  {
+    return this->Opponents->DiffusionWeights(0);
+  }
+
   std::size_t CheckpointSize() const override { return this->Opponents->CheckpointSize() + 1; }
   void Save(double* checkpoint) const override;
   void Restore(const double* checkpoint) override;

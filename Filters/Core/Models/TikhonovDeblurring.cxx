@@ -190,4 +190,12 @@ double TikhonovDeblurring::Energy() const
     this->Fit.Energy(mesh, blurred, this->Parallel);
 }
 
+DiffusionStep TikhonovDeblurring::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep = InfiniteTime;
+  step.Fidelity = this->FidelityWeight;
+  return step;
+}
+
 } // namespace SurfaceDiffusion

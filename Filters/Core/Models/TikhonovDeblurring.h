@@ -34,6 +34,13 @@ public:
   /// E(u).
   double Energy() const override;
 
+  /// Those of E without the blur.
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index /*column*/) override
+  {
+    return this->Coefficients;
+  }
+
 private:
   void Prepare(const ProgressMonitor& progress);
   /// v becomes lambda M H w chi v.

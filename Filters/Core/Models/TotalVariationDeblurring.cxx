@@ -161,4 +161,13 @@ double TotalVariationDeblurring::Energy() const
   return this->Shrinkage->Energy() + this->FidelityEnergy(blurred);
 }
 
+DiffusionStep TotalVariationDeblurring::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep = InfiniteTime;
+  step.Fidelity = this->Options.Fidelity;
+  step.SharesTensor = this->Shrinkage->Diffusion().SharesTensor;
+  return step;
+}
+
 } // namespace SurfaceDiffusion

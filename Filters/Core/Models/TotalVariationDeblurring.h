@@ -47,6 +47,14 @@ public:
   /// E(u).
   double Energy() const override;
 
+  /// Those of E without the blur.
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index column) override
+  {
+    this->Shrinkage->SetState(this->U);
+    return this->Shrinkage->DiffusionWeights(column);
+  }
+
 private:
   /// A function on the surface with its blur and its energy.
   struct Point

@@ -4,6 +4,7 @@
 
 #include "Core/Models/InitialState.h"
 #include "Core/Models/ValueRange.h"
+#include "Core/Operators/CotanWeights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   const ParallelFor& parallel)
   : DataModel(std::move(data))
   , Assembly(std::move(assembler))
+  , Frames(frames)
   , Fit(this->Data,
       { settings.Fidelity, settings.Norm, settings.Coupling, 0.0, false, settings.ChannelWeights })
   , Options(settings)
@@ -272,6 +274,48 @@ double TotalVariationFlow::Energy() const
   }
   return this->Diffusivity * energy +
     mesh.GetReduction().Sum(this->Fit.Energy(mesh, this->U, this->Parallel));
+}
+
+DiffusionStep TotalVariationFlow::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep = this->Options.SteadyState ? InfiniteTime : this->Options.TimeStep;
+  step.Fidelity = this->Options.Fidelity;
+  step.IsL1 = this->Options.Norm == FidelityNorm::L1;
+  step.SharesTensor = this->Systems.size() == 1;
+  return step;
+}
+
+const CornerWeights& TotalVariationFlow::DiffusionWeights(Eigen::Index column)
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const Eigen::Index columns = this->Systems.front().Columns;
+  const Eigen::Index first = column / columns * columns;
+  this->Weighted.resize(mesh.NumberOfTriangles(), 3);
+  ForEach(this->Parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+      const auto u = [&](int a, Eigen::Index k)
+      { return this->U(mesh.TriangleVertices()(t, a), k); };
+      double squared = 0.0;
+      for (Eigen::Index k = first; k < first + columns; ++k)
+      {
+        squared += Gradient(shape, u(0, k), u(1, k), u(2, k)).squaredNorm();
+      }
+      const double g = this->Options.Function(squared);
+      const double g1 = this->Options.AlongDiffusivity * g;
+      if (this->Frames.rows() == 0)
+      {
+        this->Weighted.row(t) = g1 * CotanWeights(shape);
+        return;
+      }
+      const Eigen::RowVector2d e = this->Frames.row(t);
+      this->Weighted.row(t) = AnisotropicWeights(HasDirection(this->Frames, t), CotanWeights(shape),
+        DirectionalWeights(shape, e[0], e[1]), DirectionalWeights(shape, -e[1], e[0]), g1,
+        this->Options.AcrossDiffusivity * g);
+    });
+  return this->Weighted;
 }
 
 } // namespace SurfaceDiffusion

@@ -76,6 +76,10 @@ public:
   /// E(u).
   double Energy() const override;
 
+  /// D is that of LaggedDiffusion at the new u.
+  DiffusionStep Diffusion() const override;
+  const CornerWeights& DiffusionWeights(Eigen::Index column) override;
+
   /// With time steps also the multipliers, from which the next step starts.
   std::size_t CheckpointSize() const override;
   void Save(double* checkpoint) const override;
@@ -96,6 +100,8 @@ private:
   void SetTarget();
 
   std::shared_ptr<const Assembler> Assembly;
+  TangentVectors Frames;
+  CornerWeights Weighted; ///< of DiffusionWeights()
   Fidelity Fit;
   Settings Options;
   const ParallelFor& Parallel;

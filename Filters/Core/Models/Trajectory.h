@@ -78,7 +78,7 @@ public:
   Index Step() const { return this->Current; }
   const Values& State() const { return this->Stepper->State(); }
   /// The model in that state, for what it has beside it.
-  const Model& CurrentModel() const { return *this->Stepper; }
+  const Model& CurrentModel() const { return this->Stepper->Innermost(); }
   const TriangleMesh& Mesh() const { return *this->Surface; }
   bool KeepsHistory() const { return this->IsHistoryKept; }
 

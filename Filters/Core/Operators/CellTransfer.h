@@ -56,6 +56,27 @@ public:
   /// P* u: one row per cell, zero at cells that take no part.
   Values ToCells(const Values& ofVertices) const;
 
+  /// P* u of one cell; u(i): that of vertex i.
+  template <typename F>
+  double MeanOver(Index cell, const F& u) const
+  {
+    double mean = 0.0;
+    for (Index k = this->CellBegin[static_cast<std::size_t>(cell)];
+         k < this->CellBegin[static_cast<std::size_t>(cell) + 1]; ++k)
+    {
+      const Corner& corner = this->Corners[static_cast<std::size_t>(k)];
+      mean += corner.Area / this->Areas[cell] * u(corner.Vertex);
+    }
+    return mean;
+  }
+
+  /// Call f(cell) for the cells around a vertex.
+  template <typename F>
+  void ForEachCellAround(Index vertex, const F& f) const
+  {
+    this->ForEachCornerAround(vertex, [&](const Corner& corner) { f(corner.Cell); });
+  }
+
   /// The standard deviation of P f over that of f for white noise f, as root mean square over the
   /// surface. Collective.
   double NoiseGain() const;

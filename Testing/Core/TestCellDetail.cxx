@@ -1,0 +1,492 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The detail of cells that points do not resolve diffuses, too.
+
+#include "Allocations.h"
+#include "CellRun.h"
+#include "MeshFiles.h"
+#include "Meshes.h"
+#include "ThreadedFor.h"
+
+#include "Core/Operators/CellFluxes.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Run/HarmonicMapSettings.h"
+#include "Run/HeatSettings.h"
+#include "Run/MumfordShahSettings.h"
+#include "Run/TensorDiffusionSettings.h"
+#include "Run/TotalVariationSettings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+using namespace Testing;
+
+namespace
+{
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+HeatSettings Heat(double timeStep, int steps, TimeIntegrator integrator)
+{
+  HeatSettings settings;
+  settings.TimeStep = timeStep;
+  settings.NumberOfTimeSteps = steps;
+  settings.TimeIntegrator = integrator;
+  settings.Tolerance = 1e-10;
+  return settings;
+}
+
+Values WhiteNoise(Index count, Eigen::Index columns = 1)
+{
+  Values noise(count, columns);
+  for (Index c = 0; c < count; ++c)
+  {
+    for (Eigen::Index k = 0; k < columns; ++k)
+    {
+      noise(c, k) = std::sqrt(3.0) * (2.0 * UniformRandom(11, static_cast<Index>(k), c) - 1.0);
+    }
+  }
+  return noise;
+}
+
+/// Surfaces of triangles, of quads and of two components of other sizes, in no order.
+std::vector<CellInput> Shapes()
+{
+  std::vector<CellInput> shapes;
+  shapes.emplace_back(Icosphere(3));
+  const Testing::Surface torus = Rotated(Torus(24, 14));
+  shapes.emplace_back(torus, CellsOfQuads(torus));
+  const Testing::Surface both = Joined(Torus(20, 12), Moved(Icosphere(2, 0.5), { 6.0, 0.0, 0.0 }));
+  shapes.emplace_back(Renumbered(both, Permutation(static_cast<Index>(both.Vertices.rows()), 3)));
+  return shapes;
+}
+
+/// The full width at half maximum of the Gaussian that spreads white noise as f does: f is that of
+/// an impulse of integral 1, and a Gaussian of time t has the integral 1/(8 pi t) of its square.
+double Width(const Vector& areas, const Values& f)
+{
+  const double time = 1.0 / (8.0 * Pi * areas.dot(f.col(0).cwiseAbs2()));
+  return std::sqrt(16.0 * std::log(2.0) * time);
+}
+
+/// By how much values leave the range of others, relative to it.
+double Excess(const Values& values, const Values& data)
+{
+  const double range = data.maxCoeff() - data.minCoeff();
+  return std::max(values.maxCoeff() - data.maxCoeff(), data.minCoeff() - values.minCoeff()) / range;
+}
+
+Values ResultAt(SurfaceDiffusion::Run& run, const CellInput& input, int step)
+{
+  run.Seek(step, ProgressMonitor());
+  return MakeCellResult(
+    *run.GetBlock(0).Cells, run.GetBlock(0).Path->State(), input.Data.Data, true);
+}
+
+template <typename ModelSettings>
+void Start(SurfaceDiffusion::Run& run, const CellInput& input, const ModelSettings& settings)
+{
+  run.Update(
+    { input.Block() }, std::make_shared<ModelSettings>(settings), Alone, ProgressMonitor());
+}
+
+SparseMatrix OutflowsOf(const Testing::Surface& surface, const std::vector<Index>& cells)
+{
+  const TriangleMesh mesh(surface.Vertices, surface.Faces);
+  CellFluxes fluxes(mesh, surface.Vertices, cells, cells.back() + 1, SerialFor());
+  fluxes.SetUnitDiffusion();
+  SparseMatrix plain;
+  fluxes.Assemble(Vector::Zero(fluxes.NumberOfCells()), 1.0, plain);
+  fluxes.SetWeights(CotanWeights(mesh));
+  SparseMatrix weighted;
+  fluxes.Assemble(Vector::Zero(fluxes.NumberOfCells()), 1.0, weighted);
+  EXPECT_LT((plain - weighted).norm(), 1e-9 * plain.norm());
+  return plain;
+}
+
+} // namespace
+
+TEST(CellFluxes, OfSquaresAreTheFivePointFormula)
+{
+  const Testing::Surface strip = Strip(6, 5, 6.0, 5.0);
+  const Eigen::MatrixXd l = OutflowsOf(strip, CellsOfQuads(strip));
+  for (Eigen::Index i = 0; i < l.rows(); ++i)
+  {
+    for (Eigen::Index j = 0; j < l.cols(); ++j)
+    {
+      const auto distance = std::abs(i % 6 - j % 6) + std::abs(i / 6 - j / 6);
+      if (i != j)
+      {
+        EXPECT_NEAR(l(i, j), distance == 1 ? -1.0 : 0.0, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(CellFluxes, MakeAnMMatrixOnAnySurface)
+{
+  for (const Testing::Surface& surface : { Icosphere(2), Rotated(Torus(7, 40)), Moebius(20, 3),
+         ThreeFins(5), Jittered(Strip(12, 9), 0.04, 0.01, 0.99, 0.01, 0.99) })
+  {
+    const CellInput triangles(surface);
+    const Eigen::MatrixXd l = OutflowsOf(surface, triangles.Data.Cells);
+    EXPECT_EQ(l, l.transpose());
+    EXPECT_LT(l.colwise().sum().cwiseAbs().maxCoeff(), 1e-12 * l.cwiseAbs().maxCoeff());
+    for (Eigen::Index i = 0; i < l.rows(); ++i)
+    {
+      EXPECT_GT(l(i, i), 0.0);
+      EXPECT_LE((l.row(i).array() > 0.0).count(), 1);
+    }
+  }
+}
+
+TEST(CellDetail, ImpulsesSpreadAsWidelyAsOnPoints)
+{
+  for (const auto integrator : { TimeIntegrator::FirstOrder, TimeIntegrator::SecondOrder })
+  {
+    for (const bool quads : { false, true })
+    {
+      const Testing::Surface surface = quads ? Torus(64, 32) : Icosphere(4);
+      CellInput cells(surface, quads ? CellsOfQuads(surface) : std::vector<Index>());
+      RunInput points(surface);
+      for (const double timeStep : { 0.3, 1.0, 3.0 })
+      {
+        const HeatSettings settings = Heat(timeStep, 10, integrator);
+        double ofCells = 0.0, ofPoints = 0.0;
+        for (const Index place : { 3, 500, 777, 1200 })
+        {
+          SurfaceDiffusion::Run run(SerialFor()), other(SerialFor());
+          cells.Data.Data.setZero();
+          cells.Data.Data(place, 0) = 1.0;
+          const Values onCells = CellResultOf(run, cells, settings);
+          const CellTransfer& transfer = run.GetBlock(0).Cells->Transfer;
+          ofCells += Width(transfer.CellAreas(), onCells / transfer.CellAreas()[place]);
+          points.Data.Data.setZero();
+          points.Data.Data(place, 0) = 1.0;
+          const Values onPoints = StateOf(other, { points.Block() }, settings);
+          const Vector& areas = other.GetBlock(0).Surface->Mesh().ControlAreas();
+          ofPoints += Width(areas, onPoints / areas.dot(onPoints.col(0)));
+        }
+        EXPECT_NEAR(ofCells / ofPoints, 1.0, timeStep < 1.0 ? 0.06 : 0.03) << timeStep << quads;
+      }
+    }
+  }
+}
+
+TEST(CellDetail, WhiteNoiseLeavesAtTheDefaultsOfHeat)
+{
+  for (CellInput& input : Shapes())
+  {
+    input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+    SurfaceDiffusion::Run run(SerialFor());
+    const Values result = CellResultOf(run, input, HeatSettings());
+    const Vector& areas = run.GetBlock(0).Cells->Transfer.CellAreas();
+    EXPECT_LT(Deviation(areas, result), 0.12 * Deviation(areas, input.Data.Data));
+  }
+}
+
+/// A constant with noise, on which all models remove noise without an edge in their way.
+TEST(CellDetail, WhiteNoiseLeavesInAllModels)
+{
+  for (CellInput& input : Shapes())
+  {
+    input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+    const auto left = [&](const auto& settings)
+    {
+      SurfaceDiffusion::Run run(SerialFor());
+      const Values result = CellResultOf(run, input, settings);
+      const CellState& cells = *run.GetBlock(0).Cells;
+      const Values smooth =
+        MakeCellResult(cells, run.GetBlock(0).Path->State(), input.Data.Data, false);
+      const Vector& areas = cells.Transfer.CellAreas();
+      return Deviation(areas, result - smooth) / Deviation(areas, input.Data.Data);
+    };
+    HeatSettings steady;
+    steady.Mode = HeatMode::SteadyState;
+    EXPECT_LT(left(steady), 1e-9);
+    steady.FidelityWeight = 0.1;
+    EXPECT_LT(left(steady), 0.05);
+    TotalVariationSettings variation;
+    EXPECT_LT(left(variation), 0.2);
+    variation.Discretization = Discretization::CrouzeixRaviart;
+    EXPECT_LT(left(variation), 0.2);
+    variation.Discretization = Discretization::Linear;
+    variation.Mode = TotalVariationMode::SteadyState;
+    variation.FidelityWeight = 0.3;
+    EXPECT_LT(left(variation), 0.1);
+    variation.FidelityNorm = FidelityNorm::L1;
+    EXPECT_LT(left(variation), 0.3);
+    MumfordShahSettings shah;
+    shah.FidelityWeight = 0.1;
+    EXPECT_LT(left(shah), 0.1);
+    TensorDiffusionSettings tensor;
+    EXPECT_LT(left(tensor), 0.1);
+    tensor.Model = TensorModel::EdgeEnhancing;
+    EXPECT_LT(left(tensor), 0.3);
+  }
+}
+
+TEST(CellDetail, TheResultKeepsTheRangeOfTheDataWherePointsDo)
+{
+  for (const bool quads : { false, true })
+  {
+    const Testing::Surface surface = quads ? Strip(30, 24, 30.0, 24.0) : Icosphere(3);
+    CellInput input(surface, quads ? CellsOfQuads(surface) : std::vector<Index>());
+    const Values noise = WhiteNoise(input.Data.NumberOfCells);
+    const Points centres = input.Centres();
+    const double middle = centres.col(0).mean();
+    for (const int kind : { 0, 1, 2, 3 })
+    {
+      input.SetData(
+        [&](Index c, const Eigen::RowVector3d& x)
+        {
+          const double chance = noise(c, 0) / (2.0 * std::sqrt(3.0)) + 0.5;
+          const double values[] = { x[0] > middle ? 1.0 : 0.0, chance < 0.1 ? 1.0 : 0.0,
+            chance < 0.5 ? 1.0 : 0.0, c == 40 ? 1.0 : 0.0 };
+          return values[kind];
+        });
+      for (const double timeStep : { 0.003, 0.03, 0.3, 3.0 })
+      {
+        SurfaceDiffusion::Run run(SerialFor());
+        Start(run, input, Heat(timeStep, 8, TimeIntegrator::FirstOrder));
+        for (int step = 1; step <= 8; ++step)
+        {
+          EXPECT_LT(Excess(ResultAt(run, input, step), input.Data.Data), 0.01)
+            << quads << ' ' << kind << ' ' << timeStep << ' ' << step;
+        }
+      }
+    }
+  }
+}
+
+TEST(CellDetail, TotalsOfEachComponentAreKept)
+{
+  for (CellInput& input : Shapes())
+  {
+    input.Data.Data = WhiteNoise(input.Data.NumberOfCells, 2).array() + 0.3;
+    const auto check = [&](const auto& settings)
+    {
+      SurfaceDiffusion::Run run(SerialFor());
+      const Values result = CellResultOf(run, input, settings);
+      const CellTransfer& cells = run.GetBlock(0).Cells->Transfer;
+      const TriangleMesh& mesh = run.GetBlock(0).Surface->InputMesh();
+      for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+      {
+        std::vector<char> isHere(static_cast<std::size_t>(cells.NumberOfCells()), 0);
+        for (Index i = mesh.ComponentsBegin()[c]; i < mesh.ComponentsBegin()[c + 1]; ++i)
+        {
+          cells.ForEachCellAround(
+            i, [&](Index cell) { isHere[static_cast<std::size_t>(cell)] = 1; });
+        }
+        Eigen::RowVector2d change = Eigen::RowVector2d::Zero();
+        double size = 0.0;
+        for (Index cell = 0; cell < cells.NumberOfCells(); ++cell)
+        {
+          if (isHere[static_cast<std::size_t>(cell)] != 0)
+          {
+            const double area = cells.CellAreas()[cell];
+            change += area * (result.row(cell) - input.Data.Data.row(cell));
+            size += area * input.Data.Data.row(cell).norm();
+          }
+        }
+        EXPECT_LT(change.norm(), 1e-12 * size);
+      }
+    };
+    HeatSettings heat;
+    check(heat);
+    heat.IntrinsicDelaunay = true;
+    check(heat);
+    heat.FidelityWeight = 0.2;
+    check(heat);
+    heat.Mode = HeatMode::SteadyState;
+    check(heat);
+    TotalVariationSettings variation;
+    check(variation);
+    variation.ChannelCoupling = ChannelCoupling::PerChannel;
+    check(variation);
+    TensorDiffusionSettings tensor;
+    tensor.Model = TensorModel::EdgeEnhancing;
+    check(tensor);
+  }
+}
+
+TEST(CellDetail, TimeStepsTendToTheSteadyState)
+{
+  for (CellInput& input : Shapes())
+  {
+    input.Data.Data += 0.3 * WhiteNoise(input.Data.NumberOfCells);
+    input.Data.Data(5, 0) = NaN;
+    HeatSettings settings = Heat(1e4, 6, TimeIntegrator::FirstOrder);
+    settings.FidelityWeight = 0.2;
+    const Values late = CellResultOf(input, settings);
+    settings.Mode = HeatMode::SteadyState;
+    const Values steady = CellResultOf(input, settings);
+    EXPECT_LT((late - steady).cwiseAbs().maxCoeff(), 1e-6);
+    // Data that are pulled strongly enough stay.
+    settings.FidelityWeight = 1e6;
+    Values change = CellResultOf(input, settings) - input.Data.Data;
+    change(5, 0) = 0.0;
+    EXPECT_LT(change.cwiseAbs().maxCoeff(), 1e-3);
+  }
+}
+
+TEST(CellDetail, StepsHaveTheSameBitsInAnyOrder)
+{
+  for (CellInput& input : Shapes())
+  {
+    input.Data.Data += 0.3 * WhiteNoise(input.Data.NumberOfCells);
+    const auto check = [&](auto settings)
+    {
+      settings.NumberOfTimeSteps = 8;
+      settings.GenerateTimeSteps = true;
+      for (const int limit : { 0, 512 })
+      {
+        settings.CheckpointMemoryLimit = limit;
+        SurfaceDiffusion::Run forward(SerialFor()), jumping(SerialFor());
+        Start(forward, input, settings);
+        Start(jumping, input, settings);
+        std::vector<Values> results;
+        for (int step = 0; step <= 8; ++step)
+        {
+          results.push_back(ResultAt(forward, input, step));
+        }
+        EXPECT_EQ(results[0], input.Data.Data);
+        EXPECT_NE(results[8], results[7]);
+        for (const int step : { 7, 2, 0, 8, 5, 6 })
+        {
+          EXPECT_EQ(ResultAt(jumping, input, step), results[static_cast<std::size_t>(step)]);
+        }
+      }
+    };
+    check(HeatSettings());
+    check(TotalVariationSettings());
+    check(TensorDiffusionSettings());
+  }
+}
+
+TEST(CellDetail, DoesNotDependOnThreads)
+{
+  CellInput input(Icosphere(4));
+  input.Data.Data = WhiteNoise(input.Data.NumberOfCells, 3);
+  TotalVariationSettings variation;
+  variation.NumberOfTimeSteps = 2;
+  SurfaceDiffusion::Run heat(SerialFor()), flow(SerialFor());
+  const Values ofHeat = CellResultOf(heat, input, HeatSettings());
+  const Values ofFlow = CellResultOf(flow, input, variation);
+  const ThreadedFor threads(3);
+  SurfaceDiffusion::Run heats(threads), flows(threads);
+  EXPECT_EQ(CellResultOf(heats, input, HeatSettings()), ofHeat);
+  EXPECT_EQ(CellResultOf(flows, input, variation), ofFlow);
+}
+
+TEST(CellDetail, DoesNotDependOnTheNumberingBeyondRoundOff)
+{
+  const Testing::Surface surface = Torus(20, 12);
+  CellInput one(surface);
+  one.Data.Data = WhiteNoise(one.Data.NumberOfCells);
+  Testing::Surface renumbered = surface;
+  const std::vector<Index> numbers = Permutation(static_cast<Index>(surface.Vertices.rows()), 5);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    renumbered.Vertices.row(numbers[i]) = surface.Vertices.row(static_cast<Index>(i));
+  }
+  renumbered.Faces =
+    surface.Faces.unaryExpr([&](Index i) { return numbers[static_cast<std::size_t>(i)]; });
+  CellInput other(renumbered);
+  other.Data.Data = one.Data.Data;
+  HeatSettings settings;
+  settings.Tolerance = 1e-13;
+  EXPECT_LT(
+    (CellResultOf(one, settings) - CellResultOf(other, settings)).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+TEST(CellDetail, LaterStepsNeedNoAllocation)
+{
+  for (CellInput& input : Shapes())
+  {
+    for (const Eigen::Index columns : { 1, 3, 16 })
+    {
+      input.Data.Data = WhiteNoise(input.Data.NumberOfCells, columns);
+      HeatSettings settings;
+      settings.Solver = SolverMethod::ConjugateGradient;
+      settings.NumberOfTimeSteps = 12;
+      SurfaceDiffusion::Run run(SerialFor());
+      Start(run, input, settings);
+      run.Seek(2, ProgressMonitor());
+      const long before = NumberOfAllocations();
+      run.Seek(12, ProgressMonitor());
+      EXPECT_LT(NumberOfAllocations() - before, 12) << columns; // of Run::Seek(), not of steps
+    }
+  }
+}
+
+TEST(CellDetail, FlowsThroughEdgesOfManyTriangles)
+{
+  CellInput input(ThreeFins(10));
+  input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values result = CellResultOf(run, input, Heat(1e5, 3, TimeIntegrator::FirstOrder));
+  const Vector& areas = run.GetBlock(0).Cells->Transfer.CellAreas();
+  EXPECT_LT(Deviation(areas, result), 1e-3);
+}
+
+TEST(CellDetail, OfDirectionsLeavesLessThanItsNoise)
+{
+  for (const bool lines : { false, true })
+  {
+    CellInput input(Icosphere(3));
+    const Values noise = WhiteNoise(input.Data.NumberOfCells);
+    input.Data.Data.resize(input.Data.NumberOfCells, 3);
+    for (Index c = 0; c < input.Data.NumberOfCells; ++c)
+    {
+      const double sign = lines && c % 3 == 0 ? -1.0 : 1.0;
+      input.Data.Data.row(c) << sign * std::cos(0.2 * noise(c, 0)),
+        sign * std::sin(0.2 * noise(c, 0)), 0.0;
+    }
+    HarmonicMapSettings settings;
+    settings.LineField = lines;
+    const Values result = CellResultOf(input, settings);
+    EXPECT_LT(result.col(1).norm(), 0.15 * input.Data.Data.col(1).norm());
+    for (Index c = 0; c < input.Data.NumberOfCells; ++c)
+    {
+      EXPECT_NEAR(result.row(c).norm(), 1.0, 1e-14);
+      EXPECT_GT(result.row(c).dot(input.Data.Data.row(c)), 0.8);
+    }
+  }
+}
+
+TEST(CellDetail, OfAScanLeaves)
+{
+  if (!HaveMeshFiles())
+  {
+    GTEST_SKIP() << "SURFACEDIFFUSION_MESH_DIR is not set";
+  }
+  for (const char* name : { "cow", "mannequin-devil", "cross_quad" })
+  {
+    CellInput input(ReadMeshFile(name));
+    input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+    for (const bool delaunay : { false, true })
+    {
+      HeatSettings settings;
+      settings.IntrinsicDelaunay = delaunay;
+      SurfaceDiffusion::Run run(SerialFor());
+      const Values result = CellResultOf(run, input, settings);
+      const CellState& cells = *run.GetBlock(0).Cells;
+      const Values smooth =
+        MakeCellResult(cells, run.GetBlock(0).Path->State(), input.Data.Data, false);
+      const Vector& areas = cells.Transfer.CellAreas();
+      EXPECT_LT(Deviation(areas, result - smooth), 0.05 * Deviation(areas, input.Data.Data));
+    }
+  }
+}
+
+} // namespace SurfaceDiffusion
