@@ -42,14 +42,24 @@
  *     (P f)_i  = sum over c of m_ci f_c / A_i,
  *     (P* u)_c = sum over i of m_ci u_i / A_c,
  *
- * the run starts from u_0 = P f, and the result on the cells is f + P*(u - u_0). P and P* keep
- * constants and the integral, sum of A_c f_c = sum of A_i u_i, and a model that changes nothing
- * returns f bit by bit. Cells of several triangles have equal shares of their area for their
+ * the run starts from u_0 = P f, and the result on the cells is P* u + d with the detail d that the
+ * points do not resolve. It starts as d_0 = f - P* u_0 and diffuses, too: each step of a model with
+ * the diffusion tensor D solves
+ *
+ *     (A + dt L + dt lambda w chi A) d_new = A (d + dt lambda w chi d_0)
+ *
+ * on the cells, which is backward Euler with the two-point fluxes L between neighbours: |e| D over
+ * the distance of their centres by way of the middle of their edge e, times d_c - d_c'. A step to a
+ * steady state is its limit for long dt. So noise of single cells leaves as noise at points does,
+ * zero steps return f bit by bit, and where the points keep the range of f the result does: what
+ * would leave it is spread over the component. P and P* keep constants and the integral, sum of
+ * A_c f_c = sum of A_i u_i. Cells of several triangles have equal shares of their area for their
  * corners in P, and a constant restores the integral, so that results depend on the diagonals by
  * O(h^2) only. A cell is missing if it is masked or NaN, and a point if all cells around it are;
- * missing cells get P* u. With data on cells, a cell of a masked point is masked. With data on
+ * missing cells have d_0 = 0. With data on cells, a cell of a masked point is masked. With data on
  * points, the points of a masked cell are masked. The points of a fixed cell are fixed to the mean
- * of the fixed cells around them. Ghost cells and cells that are no polygons keep their value.
+ * of the fixed cells around them, and its d stays. Ghost cells and cells that are no polygons keep
+ * their value.
  *
  * Composite input is one problem with one set of units; see vtkSurfaceFilter for composite data and
  * for surfaces in pieces. A block without the data, or with data that are not allowed, passes

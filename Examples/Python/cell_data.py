@@ -8,10 +8,9 @@
 The program smooths a pattern under noise on the cells by linear diffusion, and draws
 
 - the noisy values;
-- the result as it is by default, the data plus the change that diffusion makes at the points. Details
-  that points do not resolve stay, so that a filter that changes nothing returns the data;
-- the result with KeepCellDetail off, the mean over each cell of the smooth values at the points, for
-  data whose noise is to be removed.
+- the result as it is by default: the mean over each cell of the smooth values at the points, and the
+  detail that points do not resolve, which diffuses on the cells. No time steps return the data;
+- the result with KeepCellDetail off, without the detail.
 
 It checks that both keep the integral over the surface, and the errors. It writes cell_data.png.
 
@@ -91,7 +90,7 @@ def main():
 
     weights = areas(points, corners)
     integral = np.sum(weights * noisy)
-    results = {"noisy values of cells": noisy, "data and change": smooth(True),
+    results = {"noisy values of cells": noisy, "with the detail of cells": smooth(True),
                "without the detail of cells": smooth(False)}
     table = colour_table(-1.2, 1.2, BLUE_TO_RED)
     panels, errors = [], []
@@ -102,7 +101,7 @@ def main():
         errors.append(error)
         panels.append(Panel(in_facets(points, corners, values), "values", title,
                             f"error {error:.2f}", view=(0.2, -0.7, 0.8), up=(0, 0, 1), table=table))
-    assert errors[1] < errors[0] and errors[2] < 0.25 * errors[0]
+    assert max(errors[1:]) < 0.15
     if display_missing():
         print("no picture: there is no display")
     else:

@@ -5,6 +5,7 @@
 #include "Core/Models/UnitVectors.h"
 #include "Run/LineTensors.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -72,7 +73,7 @@ std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface
     L1Rounding * valueRange, !cells.Reading.UnitVectors };
   SolverTask task;
   task.NumberOfVertices = fields.NumberOfCells;
-  task.NumberOfColumns = static_cast<int>(data.Start.cols());
+  task.NumberOfColumns = static_cast<int>(std::max(fields.AllColumns, data.Start.cols()));
   const auto findSolver = [&solvers, task, overProcesses = fluxes->GetReduction()](
                             double diffusionNumber, bool isConstant) mutable
   {

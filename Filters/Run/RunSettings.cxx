@@ -165,9 +165,10 @@ void DataSettings::Visit(SettingVisitor& visitor)
   VisitResultOnCells(visitor, this->ResultOnCells);
   visitor.Switch(
     { "KeepCellDetail", "",
-      "Whether a result on cells is the data plus the mean change over the cell, which "
-      "keeps differences between cells that the points do not resolve, rather than the "
-      "mean of the result over the cell, which is smoother.",
+      "Whether differences between cells that the points do not resolve, d = f - P* u(0), diffuse "
+      "on "
+      "the cells and are added to the result, P* u + d, rather than left out, where P* u is the "
+      "mean over the cell. No time steps then return the data.",
       SettingScope::Output },
     this->KeepCellDetail);
 }

@@ -83,8 +83,9 @@ values : array_like, shape (n,) or (n, k), or (m,) or (m, k)
     The data f, one row per point or face. NaN in any component is missing; a connected component
     without a known value is NaN in the result, or as it was if the data are integers. uint8 with
     2 or 4 components is a colour with alpha, which is not changed. Data on faces are averaged at
-    the points such that the integral is kept, and their change there is added to the faces; see
-    `result_on_faces` and `keep_face_detail`.""",
+    the points such that the integral is kept, and come back as the mean over each face; what the
+    points do not resolve diffuses on the faces and is added. See `result_on_faces` and
+    `keep_face_detail`.""",
     "on_faces": """\
 on_faces : bool, optional
     Whether the data are on faces. Default: by their number of rows; on points if there are as many

@@ -409,6 +409,7 @@ TEST(ColorModels, ColoursOutsideTheRangeOfBytesAreClamped)
   filter->SetColorModelToOpponent();
   filter->SetChannelCouplingToPerChannel();
   filter->SetChromaWeight(0.01);
+  filter->LinearLightOn();
   filter->SetOutputPrecisionToDouble();
   filter->Update();
   double low = 255.0;
