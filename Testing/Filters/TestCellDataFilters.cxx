@@ -176,6 +176,38 @@ TEST(CellDataFilters, ModelsThatChangeNothingReturnTheBits)
   EXPECT_FALSE(Identical(CellResult(tv, "cTV"), f));
 }
 
+TEST(CellDataFilters, TheirDetailComesAndGoesWithItsProperties)
+{
+  auto sphere = Sphere(3);
+  AddCellArray(sphere, "c", 2, Rough);
+  auto heat = MakeFilter<vtkFVMHeatFilter>(sphere, "c");
+  heat->Update();
+  const auto kept = Copy(CellResult(heat, "cDiffused"));
+  const auto steps = heat->GetNumberOfStepsComputed();
+  heat->KeepCellDetailOff();
+  heat->Update();
+  EXPECT_GT(LargestDifference(CellResult(heat, "cDiffused"), kept), 1e-6);
+  heat->ResultOnCellsOff();
+  heat->Update();
+  heat->ResultOnCellsOn();
+  heat->KeepCellDetailOn();
+  heat->Update();
+  EXPECT_TRUE(Identical(CellResult(heat, "cDiffused"), kept));
+  EXPECT_EQ(heat->GetNumberOfStepsComputed(), steps);
+
+  for (const bool onCells : { false, true })
+  {
+    auto late = MakeFilter<vtkFVMHeatFilter>(sphere, "c");
+    late->SetResultOnCells(onCells);
+    late->SetKeepCellDetail(!onCells);
+    late->Update();
+    late->ResultOnCellsOn();
+    late->KeepCellDetailOn();
+    late->Update();
+    EXPECT_TRUE(Identical(CellResult(late, "cDiffused"), kept));
+  }
+}
+
 TEST(CellDataFilters, ColoursStayColoursAndKeepTheirAlpha)
 {
   auto sphere = Sphere(3);
