@@ -328,7 +328,6 @@ void CellDetail::SolvePanel(Eigen::Index first, Eigen::Index count, const Diffus
     });
   const SolveReport solve = this->Solver->Solve(panel.B, panel.X, progress);
   RequireAnswer(solve, this->Solver->GetLimits());
-  report.Iterations += solve.Iterations;
   if (!solve.Converged)
   {
     report.MissedResidual = std::max(report.MissedResidual, solve.Residual);

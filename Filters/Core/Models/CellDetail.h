@@ -127,7 +127,7 @@ public:
   {
     return this->OfVertices->SumState(totals);
   }
-  /// Reports the iterations of both, and otherwise the step of the model.
+  /// Reports the step of the model, and solves of the detail that missed their tolerance.
   StepReport Advance(const ProgressMonitor& progress) override;
   bool Finished() const override { return this->OfVertices->Finished(); }
   double Energy() const override { return this->OfVertices->Energy(); }
