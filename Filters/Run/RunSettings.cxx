@@ -165,10 +165,9 @@ void DataSettings::Visit(SettingVisitor& visitor)
   VisitResultOnCells(visitor, this->ResultOnCells);
   visitor.Switch(
     { "KeepCellDetail", "",
-      "Whether differences between cells that the points do not resolve, d = f - P* u(0), diffuse "
-      "on "
-      "the cells and are added to the result, P* u + d, rather than left out, where P* u is the "
-      "mean over the cell. No time steps then return the data.",
+      "Whether differences between cells that the points do not resolve, d = f - P* u(0), "
+      "diffuse on the cells and are added to the result, P* u + d, rather than left out, where "
+      "P* u is the mean over the cell. No time steps then return the data.",
       SettingScope::Output },
     this->KeepCellDetail);
 }
