@@ -40,14 +40,13 @@ Vector WeightsOfFit(const Eigen::Ref<const Points>& offsets)
 
 } // namespace
 
-LinearFit FitAround(Index vertex, int edges, const TriangleMesh& mesh, Rings& rings,
-  const Eigen::Ref<const Points>& points, const Flags& missing)
+LinearFit FitAround(Index vertex, int edges, Rings& rings, const FitData& data)
 {
-  const std::vector<Index>& row = mesh.InputVertex();
+  const std::vector<Index>& row = data.Operators.Mesh().InputVertex();
   LinearFit fit;
-  for (const Index j : rings.Find(vertex, edges))
+  for (const Index j : rings.FindRing(vertex, edges))
   {
-    if (!missing[j])
+    if (!data.IsMissing(j))
     {
       fit.Known.push_back(j);
     }
@@ -56,8 +55,8 @@ LinearFit FitAround(Index vertex, int edges, const TriangleMesh& mesh, Rings& ri
   for (std::size_t j = 0; j < fit.Known.size(); ++j)
   {
     offsets.row(static_cast<Eigen::Index>(j)) =
-      points.row(row[static_cast<std::size_t>(fit.Known[j])]) -
-      points.row(row[static_cast<std::size_t>(vertex)]);
+      data.InputPoints.row(row[static_cast<std::size_t>(fit.Known[j])]) -
+      data.InputPoints.row(row[static_cast<std::size_t>(vertex)]);
   }
   fit.Weights = WeightsOfFit(offsets);
   return fit;

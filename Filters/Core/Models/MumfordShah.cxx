@@ -57,6 +57,15 @@ MumfordShah::MumfordShah(std::shared_ptr<const Assembler> assembler, CornerWeigh
   , EdgeChange(this->U.rows(), 1)
   , EdgeRightHandSide(this->U.rows(), 1)
 {
+  if (!settings.ValueScales.empty())
+  {
+    const std::vector<Index>& begin = this->Assembly->Mesh().ComponentsBegin();
+    this->Scales.resize(this->U.rows());
+    for (std::size_t c = 0; c < settings.ValueScales.size(); ++c)
+    {
+      this->Scales.segment(begin[c], begin[c + 1] - begin[c]).setConstant(settings.ValueScales[c]);
+    }
+  }
   FixFreeComponents(this->Assembly->Mesh(), this->Data, settings.Fidelity);
   if (this->Data.Fixed.any())
   {
@@ -115,7 +124,7 @@ void MumfordShah::SmoothData(StepReport& report, const ProgressMonitor& progress
       {
         const double pull =
           fidelity > 0.0 ? fidelity * (this->Data.Given(i, k) - this->U(i, k)) : 0.0;
-        this->RightHandSide(i, k) = pull + Flow(matrix, this->U, i, k);
+        this->RightHandSide(i, k) = this->Scale(i) * (pull + Flow(matrix, this->U, i, k));
       }
     });
   if (this->NoChange.size() > 0)
@@ -126,7 +135,7 @@ void MumfordShah::SmoothData(StepReport& report, const ProgressMonitor& progress
   this->Change.setZero();
   this->Smoothing.Solve(this->RightHandSide, this->Change, report, progress.Part(0.5, 1.0));
   ForEach(this->Parallel, mesh.NumberOfVertices(),
-    [&](Index i) { this->U.row(i) += this->Change.row(i); });
+    [&](Index i) { this->U.row(i) += this->Change.row(i) / this->Scale(i); });
   this->Conserved.Restore(mesh, this->U, this->Parallel);
 }
 
@@ -184,7 +193,8 @@ void MumfordShah::AssembleEdgeStiffness()
   this->EdgeStage = this->Stage;
 }
 
-/// OfTriangles: int D grad u . grad u over triangle t, the sum of c_ij |u_i - u_j|^2 over its edges.
+/// OfTriangles: int D grad u . grad u over triangle t, the sum of c_ij |u_i - u_j|^2 over its edges,
+/// of u times its scale.
 void MumfordShah::SquareGradients()
 {
   const Triangles& corners = this->Assembly->Mesh().TriangleVertices();
@@ -195,7 +205,9 @@ void MumfordShah::SquareGradients()
       const double sum = this->Coefficients(t, 0) * (u(1) - u(2)).squaredNorm() +
         this->Coefficients(t, 1) * (u(2) - u(0)).squaredNorm() +
         this->Coefficients(t, 2) * (u(0) - u(1)).squaredNorm();
-      this->OfTriangles[t] = std::max(sum, 0.0); // of obtuse triangles round-off may be left
+      const double scale = this->Scale(corners(t, 0));
+      this->OfTriangles[t] =
+        std::max(scale * scale * sum, 0.0); // of obtuse triangles round-off may be left
     });
 }
 
@@ -216,8 +228,25 @@ double MumfordShah::MeasureEnergy() const
   const double ofGradients = 0.5 *
     Sum(this->Parallel, mesh.NumberOfTriangles(),
       [&](Index t) { return this->Weight(t) * this->OfTriangles[t]; });
-  return this->EdgeEnergy() +
-    mesh.GetReduction().Sum(ofGradients + this->Fit.Energy(mesh, this->U, this->Parallel));
+  return this->EdgeEnergy() + mesh.GetReduction().Sum(ofGradients + this->FidelityEnergy());
+}
+
+double MumfordShah::FidelityEnergy() const
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  if (this->Scales.size() == 0)
+  {
+    return this->Fit.Energy(mesh, this->U, this->Parallel);
+  }
+  return 0.5 *
+    Sum(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double weight = mesh.ControlAreas()[i] * this->Fit.Weight(i);
+        return weight > 0.0 ? weight * this->Scales[i] * this->Scales[i] *
+            (this->U.row(i) - this->Data.Given.row(i)).squaredNorm()
+                            : 0.0;
+      });
 }
 
 double MumfordShah::EdgeEnergy() const

@@ -9,6 +9,7 @@
 #include "Core/Operators/MeanCorrection.h"
 
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -47,6 +48,10 @@ public:
     double Leakage = 1e-6; ///< kappa, > 0
     double StopTolerance = 1e-5; ///< on the relative decrease of the energy in one step
     int NumberOfStages = 3; ///< stage s has 2^(NumberOfStages - 1 - s) EdgeWidth
+    /// Of each connected component: s > 0, with which E is that of s u and s f there. Components do
+    /// not interact, so each has the edge cost EdgeCost/s^2. With scales at which their edges cost
+    /// alike, they are solved with the same relative accuracy. Empty: 1.
+    std::vector<double> ValueScales = {};
   };
 
   /// coefficients: of D, see CotanWeights.h. smoothing, edges: the solvers of both systems, kept by
@@ -89,6 +94,8 @@ private:
   void AssembleEdgeStiffness();
   void SquareGradients();
   double Weight(Index t) const;
+  double Scale(Index vertex) const { return this->Scales.size() > 0 ? this->Scales[vertex] : 1.0; }
+  double FidelityEnergy() const;
   double MeasureEnergy() const;
 
   std::shared_ptr<const Assembler> Assembly;
@@ -101,6 +108,7 @@ private:
   ImplicitSystem Smoothing, EdgeSystem;
   TotalCorrection Conserved;
   Flags Cuts;
+  Vector Scales; ///< of ValueScales, per vertex; empty: 1
 
   Values V; ///< n x 1
   int Stage = 0;

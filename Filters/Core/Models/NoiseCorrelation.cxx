@@ -45,20 +45,17 @@ double Product(const Combination& a, const Combination& b)
 class Residuals
 {
 public:
-  Residuals(
-    const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data)
-    : Mesh(assembler.Mesh())
-    , Pattern(assembler.Pattern())
-    , Combinations(static_cast<std::size_t>(Mesh.NumberOfVertices()))
+  explicit Residuals(const FitData& data)
+    : Data(data)
+    , Combinations(static_cast<std::size_t>(data.Range.Size()))
   {
-    Rings rings(this->Pattern);
-    const Index n = this->Mesh.NumberOfVertices();
-    const Index stride = BlockSize * (1 + n / LargestSample);
-    for (Index begin = 0; begin < n; begin += stride)
+    Rings rings = data.MakeRings();
+    const Index stride = BlockSize * (1 + data.Range.Size() / LargestSample);
+    for (Index begin = data.Range.Begin; begin < data.Range.End; begin += stride)
     {
-      for (Index i = begin; i < std::min(begin + BlockSize, n); ++i)
+      for (Index i = begin; i < std::min(begin + BlockSize, data.Range.End); ++i)
       {
-        this->Add(i, rings, points, data);
+        this->Add(i, rings);
       }
     }
   }
@@ -67,12 +64,12 @@ public:
   template <typename F>
   void ForEachPair(int edges, const F& f) const
   {
-    Rings rings(this->Pattern);
+    Rings rings = this->Data.MakeRings();
     for (const Index i : this->Centres)
     {
-      for (const Index j : rings.Find(i, edges))
+      for (const Index j : rings.FindRing(i, edges))
       {
-        if (j > i && !this->Combinations[static_cast<std::size_t>(j)].empty())
+        if (j > i && !this->At(j).empty())
         {
           f(i, j);
         }
@@ -81,17 +78,22 @@ public:
   }
 
   const std::vector<Index>& Vertices() const { return this->Centres; }
-  const Combination& At(Index i) const { return this->Combinations[static_cast<std::size_t>(i)]; }
+  const Combination& At(Index i) const { return this->Combinations[this->PlaceOf(i)]; }
 
 private:
-  void Add(Index i, Rings& rings, const Eigen::Ref<const Points>& points, const PointData& data)
+  std::size_t PlaceOf(Index i) const
   {
-    if (data.Missing[i])
+    return static_cast<std::size_t>(i - this->Data.Range.Begin);
+  }
+
+  void Add(Index i, Rings& rings)
+  {
+    if (this->Data.IsMissing(i))
     {
       return;
     }
-    Combination& combination = this->Combinations[static_cast<std::size_t>(i)];
-    const LinearFit fit = FitAround(i, 1, this->Mesh, rings, points, data.Missing);
+    Combination& combination = this->Combinations[this->PlaceOf(i)];
+    const LinearFit fit = FitAround(i, 1, rings, this->Data);
     if (fit.Weights.size() == 0)
     {
       return;
@@ -105,42 +107,43 @@ private:
     this->Centres.push_back(i);
   }
 
-  const TriangleMesh& Mesh;
-  const SparsePattern& Pattern;
-  std::vector<Combination> Combinations; ///< per vertex; empty without a fit
+  const FitData& Data;
+  std::vector<Combination> Combinations; ///< per vertex of the range; empty without a fit
   std::vector<Index> Centres;
 };
 
-/// The residuals of one column in their standard deviation; 0 at edges and outliers, where they are
-/// large, and at the neighbours of those.
-Vector StandardResiduals(
-  const Residuals& residuals, const SparsePattern& pattern, const Eigen::Ref<const Vector>& f)
+/// The residuals of one column in their standard deviation, per vertex of the range; 0 at edges and
+/// outliers, where they are large, and at the neighbours of those.
+Vector StandardResiduals(const Residuals& residuals, const FitData& data, Eigen::Index column)
 {
-  Vector all = Vector::Zero(f.size());
+  const SparsePattern& pattern = data.Operators.Pattern();
+  const Index first = data.Range.Begin;
+  const auto f = data.Given.col(column);
+  Vector all = Vector::Zero(data.Range.Size());
   std::vector<double> sizes;
   for (const Index i : residuals.Vertices())
   {
     for (const auto& [j, weight] : residuals.At(i))
     {
-      all[i] += weight * (f[j] - f[i]);
+      all[i - first] += weight * (f[j] - f[i]);
     }
-    sizes.push_back(std::abs(all[i]));
+    sizes.push_back(std::abs(all[i - first]));
   }
   const double limit = LargestResidual * RobustDeviation(sizes);
-  Vector r = Vector::Zero(f.size());
+  Vector r = Vector::Zero(data.Range.Size());
   double sum = 0.0;
   double count = 0.0;
   for (const Index i : residuals.Vertices())
   {
-    bool small = all[i] != 0.0;
+    bool small = all[i - first] != 0.0;
     for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1] && small; ++slot)
     {
-      small = std::abs(all[pattern.Inner[slot]]) <= limit; // i is among them
+      small = std::abs(all[pattern.Inner[slot] - first]) <= limit; // i is among them
     }
     if (small)
     {
-      r[i] = all[i];
-      sum += r[i] * r[i];
+      r[i - first] = all[i - first];
+      sum += r[i - first] * r[i - first];
       count += 1.0;
     }
   }
@@ -157,16 +160,16 @@ bool ResidualCorrelation::IsOfCorrelatedNoise() const
   return this->OneEdge > least && this->TwoEdges < slope * this->OneEdge;
 }
 
-ResidualCorrelation CorrelateResiduals(
-  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data)
+ResidualCorrelation CorrelateResiduals(const FitData& data)
 {
-  const Residuals residuals(assembler, points, data);
+  const Residuals residuals(data);
+  const Index first = data.Range.Begin;
   ResidualCorrelation found;
   double* const excess[2] = { &found.OneEdge, &found.TwoEdges };
   std::vector<Vector> columns;
   for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
   {
-    columns.push_back(StandardResiduals(residuals, assembler.Pattern(), data.Given.col(k)));
+    columns.push_back(StandardResiduals(residuals, data, k));
   }
   for (const int edges : { 1, 2 })
   {
@@ -178,9 +181,9 @@ ResidualCorrelation CorrelateResiduals(
         const double white = Product(residuals.At(i), residuals.At(j));
         for (const Vector& r : columns)
         {
-          if (r[i] != 0.0 && r[j] != 0.0)
+          if (r[i - first] != 0.0 && r[j - first] != 0.0)
           {
-            sum += r[i] * r[j] - white;
+            sum += r[i - first] * r[j - first] - white;
             pairs += 1.0;
           }
         }

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/Model.h"
-#include "Core/Operators/Assembler.h"
+#include "Core/Models/LinearFit.h"
 
 namespace SurfaceDiffusion
 {
@@ -25,7 +24,6 @@ struct ResidualCorrelation
 
 /// Measures it at known vertices, at 20,000 at most. Residuals above three times their median
 /// deviation, those of edges and outliers, do not count.
-ResidualCorrelation CorrelateResiduals(
-  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
+ResidualCorrelation CorrelateResiduals(const FitData& data);
 
 } // namespace SurfaceDiffusion

@@ -35,12 +35,12 @@ constexpr Growth GrowthOfSmoothed = { 16, 4.5, 1.03, 1.15 };
 constexpr double RoundOff = 1e-13;
 
 /// The difference up to which the values of each column are equal.
-Eigen::RowVectorXd RoundOffOf(const PointData& data)
+Eigen::RowVectorXd RoundOffOf(const FitData& data)
 {
   Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(data.Given.cols());
-  for (Eigen::Index i = 0; i < data.Given.rows(); ++i)
+  for (Index i = data.Range.Begin; i < data.Range.End; ++i)
   {
-    if (!data.Missing[i])
+    if (!data.IsMissing(i))
     {
       largest = largest.cwiseMax(data.Given.row(i).cwiseAbs());
     }
@@ -49,16 +49,16 @@ Eigen::RowVectorXd RoundOffOf(const PointData& data)
 }
 
 /// The deviation of the data from their medians: without a signal, that of the noise.
-double DeviationOfData(const PointData& data)
+double DeviationOfData(const FitData& data)
 {
   double variance = 0.0;
   std::vector<double> values;
   for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
   {
     values.clear();
-    for (Eigen::Index i = 0; i < data.Given.rows(); ++i)
+    for (Index i = data.Range.Begin; i < data.Range.End; ++i)
     {
-      if (!data.Missing[i])
+      if (!data.IsMissing(i))
       {
         values.push_back(data.Given(i, k));
       }
@@ -76,23 +76,21 @@ double DeviationOfData(const PointData& data)
 }
 
 /// The estimate from the vertices at a distance of `edges` edges.
-double EstimateAt(int edges, const Assembler& assembler, const Eigen::Ref<const Points>& points,
-  const PointData& data)
+double EstimateAt(int edges, const FitData& data)
 {
-  const Index n = assembler.Mesh().NumberOfVertices();
   const Eigen::Index columns = data.Given.cols();
-  const Index stride = 1 + n / LargestSample;
-  Rings rings(assembler.Pattern());
+  const Index stride = 1 + data.Range.Size() / LargestSample;
+  Rings rings = data.MakeRings();
   const Eigen::RowVectorXd roundOff = RoundOffOf(data);
   std::vector<std::vector<double>> deviations(static_cast<std::size_t>(columns));
   double count = 0.0;
-  for (Index i = 0; i < n; i += stride)
+  for (Index i = data.Range.Begin; i < data.Range.End; i += stride)
   {
-    if (data.Missing[i])
+    if (data.IsMissing(i))
     {
       continue;
     }
-    const LinearFit fit = FitAround(i, edges, assembler.Mesh(), rings, points, data.Missing);
+    const LinearFit fit = FitAround(i, edges, rings, data);
     const std::vector<Index>& known = fit.Known;
     const Vector& weights = fit.Weights;
     count += weights.size() > 0 ? 1.0 : 0.0;
@@ -123,12 +121,12 @@ double EstimateAt(int edges, const Assembler& assembler, const Eigen::Ref<const 
   return std::sqrt(variance);
 }
 
-} // namespace
-
-Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
+/// See FindVaryingVertices(). Per vertex of the range.
+Flags FindVarying(const FitData& data)
 {
-  const SparsePattern& pattern = assembler.Pattern();
-  const Index n = assembler.Mesh().NumberOfVertices();
+  const SparsePattern& pattern = data.Operators.Pattern();
+  const Index first = data.Range.Begin;
+  const Index n = data.Range.Size();
   const Eigen::RowVectorXd roundOff = RoundOffOf(data);
   const auto anyNeighbour = [&](Index i, const auto& holds)
   {
@@ -136,14 +134,14 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
     for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1] && !found; ++slot)
     {
       const Index j = pattern.Inner[slot];
-      found = j != i && !data.Missing[j] && holds(j);
+      found = j != i && !data.IsMissing(j) && holds(j);
     }
     return found;
   };
   Flags constant = Flags::Constant(n, false);
-  for (Index i = 0; i < n; ++i)
+  for (Index i = first; i < data.Range.End; ++i)
   {
-    constant[i] = !data.Missing[i] && anyNeighbour(i, [](Index) { return true; }) &&
+    constant[i - first] = !data.IsMissing(i) && anyNeighbour(i, [](Index) { return true; }) &&
       !anyNeighbour(i,
         [&](Index j) {
           return ((data.Given.row(j) - data.Given.row(i)).cwiseAbs().array() > roundOff.array())
@@ -151,25 +149,44 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
         });
   }
   Flags varying = Flags::Constant(n, false);
-  for (Index i = 0; i < n; ++i)
+  for (Index i = first; i < data.Range.End; ++i)
   {
-    varying[i] = !data.Missing[i] && !constant[i] &&
-      !anyNeighbour(i, [&](Index j) { return constant[j] != 0; });
+    varying[i - first] = !data.IsMissing(i) && !constant[i - first] &&
+      !anyNeighbour(i, [&](Index j) { return constant[j - first] != 0; });
   }
   const auto outside = (!data.Missing && !constant).count();
   return 3 * varying.count() < outside ? Flags(Flags::Constant(n, false)) : varying;
 }
 
-NoiseEstimate EstimateNoise(
-  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& given)
+VertexRange AllVertices(const Assembler& assembler)
 {
-  PointData data = given;
-  data.Missing = !FindVaryingVertices(assembler, given);
+  return { 0, assembler.Mesh().NumberOfVertices() };
+}
+
+} // namespace
+
+Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
+{
+  const Points none;
+  return FindVarying({ assembler, none, data.Given, AllVertices(assembler), data.Missing });
+}
+
+NoiseEstimate EstimateNoise(
+  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data)
+{
+  return EstimateNoise(assembler, points, data, AllVertices(assembler));
+}
+
+NoiseEstimate EstimateNoise(const Assembler& assembler, const Eigen::Ref<const Points>& points,
+  const PointData& given, VertexRange range)
+{
+  FitData data{ assembler, points, given.Given, range,
+    given.Missing.segment(range.Begin, range.Size()) };
+  data.Missing = !FindVarying(data);
   NoiseEstimate estimate;
-  estimate.BetweenNeighbours = EstimateAt(1, assembler, points, data);
+  estimate.BetweenNeighbours = EstimateAt(1, data);
   estimate.Apart = estimate.BetweenNeighbours;
-  const bool smoothed =
-    estimate.Apart > 0.0 && CorrelateResiduals(assembler, points, data).IsOfCorrelatedNoise();
+  const bool smoothed = estimate.Apart > 0.0 && CorrelateResiduals(data).IsOfCorrelatedNoise();
   const Growth& growth = smoothed ? GrowthOfSmoothed : GrowthOfOther;
   double apart = estimate.BetweenNeighbours;
   double most = growth.Most;
@@ -177,7 +194,7 @@ NoiseEstimate EstimateNoise(
   int distance = 1;
   for (int edges = 2; edges <= growth.Farthest && apart > 0.0; edges *= 2)
   {
-    const double next = EstimateAt(edges, assembler, points, data);
+    const double next = EstimateAt(edges, data);
     last = next / apart;
     if (last <= growth.Settled || last > most)
     {

@@ -4,6 +4,7 @@
 
 #include "Core/Models/Model.h"
 #include "Core/Operators/Assembler.h"
+#include "Core/Operators/Rings.h"
 
 #include <functional>
 
@@ -44,6 +45,10 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 /// enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
+
+/// The same from the vertices of some connected components.
+NoiseEstimate EstimateNoise(const Assembler& assembler, const Eigen::Ref<const Points>& points,
+  const PointData& data, VertexRange range);
 
 /// A fidelity weight, and the root mean square of u - f that it leaves.
 struct FidelityChoice
