@@ -83,8 +83,10 @@ std::unique_ptr<RunSettings> vtkMumfordShahFilter::MakeSettings() const
 {
   auto settings = std::make_unique<MumfordShahSettings>();
   this->CopyProperties(*settings);
-  settings->SmoothingLength = this->SmoothingLength;
+  settings->AutomaticThreshold = this->AutomaticThreshold;
+  settings->NoiseLevel = this->NoiseLevel;
   settings->EdgeThreshold = this->EdgeThreshold;
+  settings->SmoothingLength = this->SmoothingLength;
   settings->EdgeWidth = this->EdgeWidth;
   settings->StopTolerance = this->StopTolerance;
   settings->EdgeCurves = this->EdgeCurves;
@@ -122,11 +124,17 @@ void vtkMumfordShahFilter::TakeResults()
 void vtkMumfordShahFilter::VisitReported(const std::function<void(double&)>& visit)
 {
   this->Superclass::VisitReported(visit);
+  visit(this->EffectiveEdgeThreshold);
+  visit(this->EffectiveSmoothingLength);
+  visit(this->EstimatedNoiseLevel);
   visit(this->EdgeLength);
 }
 
 void vtkMumfordShahFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "EffectiveEdgeThreshold: " << this->EffectiveEdgeThreshold << "\n";
+  os << indent << "EffectiveSmoothingLength: " << this->EffectiveSmoothingLength << "\n";
+  os << indent << "EstimatedNoiseLevel: " << this->EstimatedNoiseLevel << "\n";
   os << indent << "EdgeLength: " << this->EdgeLength << "\n";
 }

@@ -50,7 +50,8 @@ _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
 # The read-only values of the classes. A report has those that the filter has.
 _REPORTED = (
     "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
-    "EffectiveTimeStep", "EffectiveFidelityWeight", "EffectiveNoiseLevel", "Wavelength",
+    "EffectiveTimeStep", "EffectiveFidelityWeight", "EffectiveNoiseLevel",
+    "EffectiveEdgeThreshold", "EffectiveSmoothingLength", "EstimatedNoiseLevel", "Wavelength",
     "WavelengthGrowthRate",
     "DiffusionRateFactor", "MeanDisplacement", "MaximumDisplacement", "VolumeBefore",
     "VolumeAfter", "EdgeLength", "Gap", "LabelGap", "NumberOfAlternations",
@@ -170,14 +171,18 @@ def mumford_shah(
     Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli.
 
     The arguments are those of heat(). Useful properties: EdgeThreshold (the jump from which on an
-    edge costs less than smoothing, default 0.2 of the range of the data), SmoothingLength (default
-    8 mean edge lengths), EdgeWidth (default 2 mean edge lengths).
+    edge costs less than smoothing, in the range of the data) and SmoothingLength (in mean edge
+    lengths), each of which turns AutomaticThreshold off; NoiseLevel for AutomaticThreshold, in the unit
+    of the data (default 0: estimated); EdgeWidth (default 2 mean edge lengths).
 
     The results are the arrays <array>MumfordShah, with the shape of the data, and Edges (n,),
     which is 1 on edges. With full_output=True the report has the edges as `curves`.
     """
+    algorithm = vtkMumfordShahFilter()
+    if {"EdgeThreshold", "SmoothingLength"} & set(properties):
+        algorithm.AutomaticThresholdOff()
     return _run(
-        vtkMumfordShahFilter(), mesh, properties, (array, mask, direction, fixed, None, fidelity),
+        algorithm, mesh, properties, (array, mask, direction, fixed, None, fidelity),
         times, full_output)
 
 

@@ -16,25 +16,10 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The noise at the vertices of data on cells. White noise of the cells is correlated between the
-/// vertices of a cell, so that EstimateNoise() is too low. A sample of such noise shows by how much.
-double EstimateNoiseOfCells(const ModelInputs& inputs)
+double EstimateBetweenNeighbours(const ModelInputs& inputs, const PointData& data)
 {
-  const CellTransfer& cells = *inputs.Cells;
-  Values noise(cells.NumberOfCells(), 1);
-  for (Index c = 0; c < cells.NumberOfCells(); ++c)
-  {
-    noise(c, 0) = std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, c) - 1.0); // of deviation 1
-  }
-  const PointData sample =
-    PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of);
-  const auto estimate = [&](const PointData& data)
-  {
-    return EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data)
-      .BetweenNeighbours;
-  };
-  const double found = estimate(sample);
-  return found > 0.0 ? estimate(inputs.Data) * cells.NoiseGain() / found : 0.0;
+  return EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data)
+    .BetweenNeighbours;
 }
 
 /// Of the first guess of the search for a weight: keeps data to seven digits.
@@ -53,6 +38,24 @@ PointData WithoutConstantParts(const ModelInputs& inputs)
 }
 
 } // namespace
+
+double FindCellNoiseGain(const ModelInputs& inputs)
+{
+  const CellTransfer& cells = *inputs.Cells;
+  Values noise(cells.NumberOfCells(), 1);
+  for (Index c = 0; c < cells.NumberOfCells(); ++c)
+  {
+    noise(c, 0) = std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, c) - 1.0); // of deviation 1
+  }
+  const double found = EstimateBetweenNeighbours(
+    inputs, PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of));
+  return found > 0.0 ? cells.NoiseGain() / found : 0.0;
+}
+
+double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel)
+{
+  return noiseLevel / inputs.Units.ValueUnit * (inputs.Cells ? inputs.Cells->NoiseGain() : 1.0);
+}
 
 void DescribeData(const DataSettings& settings, ModelTraits& traits)
 {
@@ -122,10 +125,10 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
   const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result, HeatBlur* blur)
 {
   const double unit = inputs.Units.ValueUnit;
-  double noise = noiseLevel / unit;
-  if (inputs.Cells)
+  double noise = NoiseAtVertices(inputs, noiseLevel);
+  if (inputs.Cells && noiseLevel == 0.0)
   {
-    noise = noiseLevel == 0.0 ? EstimateNoiseOfCells(inputs) : noise * inputs.Cells->NoiseGain();
+    noise = EstimateBetweenNeighbours(inputs, inputs.Data) * FindCellNoiseGain(inputs);
   }
   else if (noiseLevel == 0.0)
   {

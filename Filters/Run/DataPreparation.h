@@ -28,6 +28,13 @@ void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunR
 /// The cotan weights times the constant diffusivities of the settings: the weights of (12).
 CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& inputs);
 
+/// White noise of cells is correlated between the vertices of a cell, so that EstimateNoise() between
+/// neighbours is too low at vertices. This factor, found from a sample, mends that. 0 if it is not known.
+double FindCellNoiseGain(const ModelInputs& inputs);
+
+/// The standard deviation at vertices, in ValueUnit, of white noise of the data, in array units.
+double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel);
+
 /// The fidelity weight, in units of the numerics, at which the state after `steps` steps differs
 /// from the data by the noise (discrepancy principle). noiseLevel: in array units; 0: estimated.
 /// makeModel: the model of a fidelity weight. Warns in `result` if the noise is correlated, and if

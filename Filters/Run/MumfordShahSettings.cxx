@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/MumfordShahSettings.h"
 
+#include "Core/Models/EdgeScales.h"
 #include "Core/Models/MumfordShah.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace SurfaceDiffusion
@@ -19,8 +21,11 @@ namespace
 /// an edge are as long.
 constexpr double ShortestCurve = 4.0;
 
-/// Noise above the threshold makes edges nearly everywhere, and patterns hardly on so much.
-constexpr double LargestShare = 0.8;
+/// Patterns have edges on less of the surface, unless they are too fine for EdgeWidth.
+constexpr double LargestShare = 0.3;
+
+/// The threshold below which noise of deviation 1 makes edges, with the default lengths.
+constexpr double NoiseOfEdges = 3.0;
 
 /// A part of a hole that edges enclose hangs on kappa alone. With larger tolerances its values drift.
 constexpr double ToleranceInHoles = 1e-3;
@@ -35,20 +40,50 @@ double ShareOfEdges(const TriangleMesh& mesh, const Vector& edges, const Paralle
   return areas[1] > 0.0 ? areas[0] / areas[1] : 0.0;
 }
 
+void WarnOfUnused(const char* name, double value, double byDefault, RunResult& result)
+{
+  if (value != byDefault)
+  {
+    std::ostringstream text;
+    text << name << " is " << value
+         << " but AutomaticThreshold finds it (to use the given one, turn AutomaticThreshold off)";
+    result.WarnOnce(text.str());
+  }
+}
+
 } // namespace
+
+MumfordShahSettings::MumfordShahSettings()
+{
+  this->FidelityWeight = 1.0;
+  this->NumberOfTimeSteps = 1000;
+  this->Tolerance = 0.1;
+  this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic; // edges would form at others
+}
 
 void MumfordShahSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  visitor.Number({ "SmoothingLength", "h",
-                   "The length over which data are smoothed between edges; lambda is "
-                   "FidelityWeight over its square." },
-    this->SmoothingLength, SettingRange::Positive());
+  visitor.Switch(
+    { "AutomaticThreshold", "",
+      "Whether EdgeThreshold and SmoothingLength are found, for each connected component: "
+      "from the noise, the range of the values without outliers, and their slopes." },
+    this->AutomaticThreshold);
+  visitor.Number({ "NoiseLevel", "values",
+                   "The standard deviation of the noise for AutomaticThreshold; 0: estimated, for "
+                   "white noise." },
+    this->NoiseLevel, SettingRange::NonNegative());
   visitor.Number(
     { "EdgeThreshold", "R",
-      "The jump from which on an edge costs less than smoothing. Noise with a standard deviation "
-      "above a third of it, over all components together, makes edges everywhere." },
+      "The jump from which on an edge costs less than smoothing, with AutomaticThreshold "
+      "off. Noise with a standard deviation above a third of it, over all components "
+      "together, makes edges everywhere, as do slopes above EdgeThreshold/(2 "
+      "SmoothingLength)." },
     this->EdgeThreshold, SettingRange::Positive());
+  visitor.Number({ "SmoothingLength", "h",
+                   "The length over which data are smoothed between edges, with AutomaticThreshold "
+                   "off; lambda is FidelityWeight over its square." },
+    this->SmoothingLength, SettingRange::Positive());
   visitor.Number({ "EdgeWidth", "h",
                    "eps, the distance over which v rises beside an edge, at least the mean edge "
                    "length." },
@@ -70,9 +105,81 @@ ModelTraits MumfordShahSettings::DescribeModel() const
   traits.AbsoluteTime = this->IsAbsolute();
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;
-  traits.CanBeDistributed = !this->EdgeCurves;
+  traits.CanBeDistributed = !this->EdgeCurves && !this->AutomaticThreshold;
   DescribeData(*this, traits);
   return traits;
+}
+
+/// beta of a jump and a length, with the excess of the discrete model.
+double MumfordShahSettings::EdgeCost(const UnitSystem& units, double jump, double length) const
+{
+  const double width = units.ToCore(this->EdgeWidth, 1.0, 0.0);
+  return jump * jump / (4.0 * length) / (1.0 + units.CoreEdgeLength() / (4.0 * width));
+}
+
+double MumfordShahSettings::UseGivenScales(
+  const ModelInputs& inputs, MumfordShah::Settings& settings, RunResult& result) const
+{
+  const double length = inputs.Units.ToCore(this->SmoothingLength, 1.0, 0.0);
+  settings.Fidelity = this->FidelityWeight / (length * length);
+  settings.EdgeCost =
+    this->EdgeCost(inputs.Units, inputs.Units.ToCore(this->EdgeThreshold, 0.0, 1.0), length);
+  result.EffectiveEdgeThreshold = this->EdgeThreshold;
+  result.EffectiveSmoothingLength = this->SmoothingLength;
+  return length;
+}
+
+double MumfordShahSettings::UseFoundScales(
+  ModelInputs& inputs, MumfordShah::Settings& settings, RunResult& result) const
+{
+  const TriangleMesh& mesh = inputs.Surface.Mesh();
+  const std::vector<Index>& begin = mesh.ComponentsBegin();
+  const std::vector<EdgeScales> scales =
+    FindEdgeScales(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data,
+      { settings.EdgeWidth * mesh.LengthUnit(), NoiseAtVertices(inputs, this->NoiseLevel),
+        inputs.Cells && this->NoiseLevel == 0.0 ? FindCellNoiseGain(inputs) : 0.0 });
+  if (scales.empty())
+  {
+    return this->UseGivenScales(inputs, settings, result);
+  }
+  std::size_t largest = 0;
+  double longest = 0.0;
+  for (std::size_t c = 0; c < scales.size(); ++c)
+  {
+    largest = begin[c + 1] - begin[c] > begin[largest + 1] - begin[largest] ? c : largest;
+    longest = std::max(longest, scales[c].SmoothingLength);
+  }
+  const auto cost = [&](const EdgeScales& of)
+  { return this->EdgeCost(inputs.Units, of.Threshold, of.SmoothingLength / mesh.LengthUnit()); };
+  const EdgeScales& reference = scales[largest];
+  const double length = reference.SmoothingLength / mesh.LengthUnit();
+  settings.Fidelity = this->FidelityWeight / (length * length);
+  settings.EdgeCost = cost(reference);
+  settings.NumberOfStages = 1;
+  if (scales.size() > 1)
+  {
+    Vector& factors = inputs.Data.FidelityFactors;
+    if (factors.size() == 0)
+    {
+      factors = Vector::Ones(mesh.NumberOfVertices());
+    }
+    for (std::size_t c = 0; c < scales.size(); ++c)
+    {
+      settings.ValueScales.push_back(std::sqrt(settings.EdgeCost / cost(scales[c])));
+      factors.segment(begin[c], begin[c + 1] - begin[c]) *=
+        std::pow(reference.SmoothingLength / scales[c].SmoothingLength, 2);
+    }
+  }
+  result.EffectiveEdgeThreshold = reference.Threshold / inputs.Units.ToCore(1.0, 0.0, 1.0);
+  result.EffectiveSmoothingLength = length / inputs.Units.ToCore(1.0, 1.0, 0.0);
+  result.EstimatedNoiseLevel = this->NoiseLevel > 0.0
+    ? this->NoiseLevel
+    : inputs.Units.FromCore(reference.Noise, 0.0, 1.0) /
+      (inputs.Cells ? inputs.Cells->NoiseGain() : 1.0);
+  const MumfordShahSettings defaults;
+  WarnOfUnused("EdgeThreshold", this->EdgeThreshold, defaults.EdgeThreshold, result);
+  WarnOfUnused("SmoothingLength", this->SmoothingLength, defaults.SmoothingLength, result);
+  return longest / mesh.LengthUnit();
 }
 
 std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult& result) const
@@ -80,12 +187,10 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
   PrepareData(*this, inputs, result);
   result.EffectiveFidelityWeight = this->FidelityWeight;
   const double h = inputs.Units.CoreEdgeLength();
-  const double length = inputs.Units.ToCore(this->SmoothingLength, 1.0, 0.0);
-  const double jump = inputs.Units.ToCore(this->EdgeThreshold, 0.0, 1.0);
   MumfordShah::Settings settings;
-  settings.Fidelity = this->FidelityWeight / (length * length);
   settings.EdgeWidth = inputs.Units.ToCore(this->EdgeWidth, 1.0, 0.0);
-  settings.EdgeCost = jump * jump / (4.0 * length) / (1.0 + h / (4.0 * settings.EdgeWidth));
+  const double length = this->AutomaticThreshold ? this->UseFoundScales(inputs, settings, result)
+                                                 : this->UseGivenScales(inputs, settings, result);
   settings.StopTolerance = this->StopTolerance;
   if (settings.EdgeWidth < h * (1.0 - 1e-9))
   {
@@ -115,17 +220,56 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
     std::move(inputs.Data), settings, smoothing, edges, inputs.Parallel);
 }
 
+/// Says why so much of the surface is an edge.
+void MumfordShahSettings::WarnOfManyEdges(
+  const RunState& state, const MumfordShah& model, double share, RunResult& result) const
+{
+  std::ostringstream text;
+  text << std::lround(100.0 * share) << " % of the surface is an edge: ";
+  if (this->AutomaticThreshold)
+  {
+    text
+      << "the data have jumps closer together than 4 EdgeWidth (for fine patterns lower EdgeWidth; "
+         "for fewer edges turn AutomaticThreshold off and set EdgeThreshold above "
+      << result.EffectiveEdgeThreshold << ")";
+    result.WarnOnce(text.str());
+    return;
+  }
+  const double unit = state.Surface.Mesh().LengthUnit();
+  const double jump = state.Units.ToCore(this->EdgeThreshold, 0.0, 1.0);
+  const double steepest = jump / (2.0 * state.Units.ToCore(this->SmoothingLength, 1.0, 0.0) * unit);
+  bool noise = false, slopes = false;
+  if (state.Surface.Mesh().GetReduction().IsSerial())
+  {
+    const double channels = std::sqrt(static_cast<double>(model.State().cols()));
+    for (const EdgeScales& found : FindEdgeScales(*state.Surface.SharedAssembler(),
+           state.Surface.Points(), model.GetData(), { unit, 0.0, 0.0 }))
+    {
+      noise = noise || NoiseOfEdges * channels * found.Noise > jump;
+      slopes = slopes || found.Slope > steepest;
+    }
+  }
+  text
+    << (noise ? "the standard deviation of the noise is above a third of EdgeThreshold"
+           : slopes
+           ? "the data have slopes above EdgeThreshold/(2 SmoothingLength), which break into edges"
+           : "the data have jumps above EdgeThreshold closer together than 4 EdgeWidth")
+    << " (turn AutomaticThreshold on, or raise EdgeThreshold"
+    << (noise       ? ")"
+           : slopes ? " or lower SmoothingLength)"
+                    : " or lower EdgeWidth)");
+  result.WarnOnce(text.str());
+}
+
 void MumfordShahSettings::Finish(const RunState& state, RunResult& result) const
 {
   const auto& model = dynamic_cast<const MumfordShah&>(state.Path.CurrentModel());
   result.Edges = model.Edges();
   result.EdgeCurves = Polylines();
-  if (model.Finished() &&
-    ShareOfEdges(state.Surface.Mesh(), result.Edges, state.Parallel) > LargestShare)
+  const double share = ShareOfEdges(state.Surface.Mesh(), result.Edges, state.Parallel);
+  if (model.Finished() && share > LargestShare)
   {
-    result.WarnOnce(
-      "most of the surface is an edge, as if the standard deviation of the noise were above a "
-      "third of EdgeThreshold (to keep noise from making edges, raise EdgeThreshold)");
+    this->WarnOfManyEdges(state, model, share, result);
   }
   if (this->EdgeCurves)
   {

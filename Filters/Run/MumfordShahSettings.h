@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/MumfordShah.h"
 #include "Run/RunSettings.h"
 
 namespace SurfaceDiffusion
@@ -14,21 +15,21 @@ namespace SurfaceDiffusion
 ///   beta = EdgeThreshold^2 / (4 SmoothingLength) / (1 + h / (4 EdgeWidth)).
 /// A jump j that is smoothed away has the energy j^2 / (4 SmoothingLength) per length, and an edge
 /// of the discrete model beta (1 + h / (4 EdgeWidth)): two vertices have v = 0 across it.
+///
+/// With AutomaticThreshold each connected component has the EdgeThreshold and the SmoothingLength of
+/// FindEdgeScales(). Its edges then form with eps = EdgeWidth, without the continuation in eps: near
+/// the edges of a large eps noise is not smoothed, and makes edges that stay when eps falls.
 struct MumfordShahSettings : DataSettings
 {
-  double SmoothingLength = 8.0;
+  bool AutomaticThreshold = true;
+  double NoiseLevel = 0.0;
   double EdgeThreshold = 0.2;
+  double SmoothingLength = 8.0;
   double EdgeWidth = 2.0;
   double StopTolerance = 1e-5;
   bool EdgeCurves = true;
 
-  MumfordShahSettings()
-  {
-    this->FidelityWeight = 1.0;
-    this->NumberOfTimeSteps = 1000;
-    this->Tolerance = 0.1;
-    this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic; // edges would form at others
-  }
+  MumfordShahSettings();
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
@@ -37,6 +38,16 @@ struct MumfordShahSettings : DataSettings
 
 protected:
   std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
+
+private:
+  double EdgeCost(const UnitSystem& units, double jump, double length) const;
+  /// Set lambda and beta. Both return the longest SmoothingLength, in the unit of the mesh.
+  double UseGivenScales(
+    const ModelInputs& inputs, MumfordShah::Settings& settings, RunResult& result) const;
+  double UseFoundScales(
+    ModelInputs& inputs, MumfordShah::Settings& settings, RunResult& result) const;
+  void WarnOfManyEdges(
+    const RunState& state, const MumfordShah& model, double share, RunResult& result) const;
 };
 
 } // namespace SurfaceDiffusion

@@ -247,6 +247,9 @@ nb::dict ModelRun::GetResults(std::size_t block) const
   numbers["mean_edge_length"] = this->Model.Units().MeanEdgeLength;
   numbers["value_range"] = this->Model.Units().ValueRange;
   numbers["effective_fidelity_weight"] = result.EffectiveFidelityWeight;
+  numbers["effective_edge_threshold"] = result.EffectiveEdgeThreshold;
+  numbers["effective_smoothing_length"] = result.EffectiveSmoothingLength;
+  numbers["estimated_noise_level"] = result.EstimatedNoiseLevel;
   numbers["wavelength"] = result.Wavelength;
   numbers["wavelength_growth_rate"] = result.WavelengthGrowthRate;
   numbers["diffusion_rate_factor"] = result.DiffusionRateFactor;

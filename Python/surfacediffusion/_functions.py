@@ -506,7 +506,9 @@ def mumford_shah(
 
     The coefficients are lambda = `fidelity_weight`/`smoothing_length`^2, eps = `edge_width`, kappa =
     1e-6 and beta = `edge_threshold`^2/(4 `smoothing_length`)/(1 + h/(4 eps)), so that a jump of
-    `edge_threshold` costs as much as an edge as if it is smoothed. The result is a local minimum.
+    `edge_threshold` costs as much as an edge as if it is smoothed. By default
+    (`automatic_threshold`) both are found from the data, for each connected component, such that
+    neither noise nor slopes become edges. The result is a local minimum.
 
     Parameters
     ----------
@@ -529,7 +531,9 @@ def mumford_shah(
     Returns
     -------
     EdgeResult, or iterator of EdgeResult
-        `values` are u, `edges` is 1 - v, and `curves` are the edges as polylines.
+        `values` are u, `edges` is 1 - v, and `curves` are the edges as polylines. If
+        `edge_threshold` or `smoothing_length` is given, `automatic_threshold` is off unless it is
+        given, too.
 
     {problems}
 
@@ -789,9 +793,6 @@ def segment(
                          " given; allowed: one of them")
     name = "values" if terms is None else "terms"
     data, on_faces = _take(name, values if terms is None else terms, surface, on_faces)
-    for name, switch in (("means", "automatic_means"), ("fidelity_weight", "automatic_fidelity")):
-        if name in properties:
-            properties.setdefault(switch, False)
     mask = _as_mask(mask, roi, surface, properties)
     given = Input(surface, data, data_on_faces=on_faces, mask=mask, fidelity=fidelity, seeds=seeds,
                   data_are_terms=terms is not None)

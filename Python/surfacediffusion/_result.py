@@ -170,10 +170,18 @@ class EdgeResult(Result):
     curves : list of ndarray, shape (k, 3)
         The edges, one array of points per edge between its ends and junctions, along the ridge of
         `edges`. A closed curve repeats its first point.
+    effective_edge_threshold, effective_smoothing_length : float
+        Those of the run, given or found by ``automatic_threshold=True``, in the units of
+        `edge_threshold` and `smoothing_length`, on the connected component with the most points.
+    estimated_noise_level : float
+        The standard deviation of the noise that `automatic_threshold` used; 0 without it.
     """
 
     edges: NDArray[Any] = field(default_factory=lambda: np.empty(0), repr=False)
     curves: list[NDArray[np.float64]] = field(default_factory=list, repr=False)
+    effective_edge_threshold: float = 0.0
+    effective_smoothing_length: float = 0.0
+    estimated_noise_level: float = 0.0
 
     @property
     def edge_length(self) -> float:

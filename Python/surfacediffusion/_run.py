@@ -174,12 +174,20 @@ def _with_given_weight(function: str, properties: Mapping[str, Any]) -> Mapping[
     return properties
 
 
+#: Settings that are found from the data unless they are given, and the switches of that.
+_FOUND = {
+    "segment": {"means": "automatic_means", "fidelity_weight": "automatic_fidelity"},
+    "mumford_shah": {"edge_threshold": "automatic_threshold", "smoothing_length": "automatic_threshold"},
+}
+
+
 class Runner:
     """Runs of a model with given settings, and the wording of their errors."""
 
     def __init__(self, function: str, properties: Mapping[str, Any], arrays: Mapping[str, str]):
         self.function, self.arrays = function, arrays
-        self.settings = convert_all(function, _with_given_weight(function, properties))
+        off = {switch: False for name, switch in _FOUND.get(function, {}).items() if name in properties}
+        self.settings = convert_all(function, _with_given_weight(function, {**off, **properties}))
         interval = settings_of(function).get("output_interval")
         self.interval = self.settings.get("OutputInterval", interval.default if interval else 1)
 

@@ -18,7 +18,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double SmallestJump = 0.15; ///< in R
+constexpr double SmallestJump = 0.12; ///< in R
 constexpr double NoiseFactor = 3.2; ///< of the noise that makes no edges, with L = 8 h
 constexpr double ReferenceLength = 8.0; ///< lengths in h
 constexpr double ShortestLength = 2.0;

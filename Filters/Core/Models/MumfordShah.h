@@ -82,6 +82,8 @@ public:
   /// 1 - v: 1 on edges. Values that a solver's error puts outside [0, 1] are clamped.
   Vector Edges() const;
 
+  const PointData& GetData() const { return this->Data; }
+
   /// u, v, and the state of the continuation.
   std::size_t CheckpointSize() const override;
   void Save(double* checkpoint) const override;

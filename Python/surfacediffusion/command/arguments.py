@@ -339,11 +339,15 @@ def _edges(commands):
                         help="write the points of curves along the edges, a .npy array with rows of "
                              "the number of the curve and x, y, z")
     parser.add_argument("--threshold", metavar="J", type=_positive,
-                        help="the jump from which on an edge is kept, in the range of the data "
-                             "(default 0.2); at least three times the noise")
+                        help="the jump from which on an edge is kept, in the range of the data; at "
+                             "least three times the noise (default: found from the data, together "
+                             "with --length; with --length: 0.2)")
     parser.add_argument("--length", metavar="L", type=_positive,
-                        help="the length over which data are smoothed, in mean edge lengths "
-                             "(default 8)")
+                        help="the length over which data are smoothed, in mean edge lengths (default: "
+                             "found from the data; with --threshold: 8)")
+    parser.add_argument("--noise", metavar="SD", type=_positive,
+                        help="the standard deviation of the noise, if --threshold and --length are "
+                             "found (default: estimated)")
     parser.add_argument("--width", metavar="E", type=_positive,
                         help="the width of an edge, in mean edge lengths (default 2)")
 

@@ -135,7 +135,7 @@ def edges(arguments, report):
 
     options = {name: value for name, value in (
         ("edge_threshold", arguments.threshold), ("smoothing_length", arguments.length),
-        ("edge_width", arguments.width)) if value}
+        ("edge_width", arguments.width), ("noise_level", arguments.noise)) if value}
     for name in (arguments.map, arguments.curves):
         if name is not None:
             check_output_folder(name)
