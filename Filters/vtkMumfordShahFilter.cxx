@@ -110,6 +110,10 @@ void vtkMumfordShahFilter::TakeResults()
 {
   this->Superclass::TakeResults();
   this->Curves = MakeCurves(this->State->Run, this->FindOtherName(EdgesName));
+  const RunResult& first = this->State->Run.GetBlock(0).Result;
+  this->EffectiveEdgeThreshold = first.EffectiveEdgeThreshold;
+  this->EffectiveSmoothingLength = first.EffectiveSmoothingLength;
+  this->EstimatedNoiseLevel = first.EstimatedNoiseLevel;
   this->EdgeLength = 0.0;
   for (std::size_t b = 0; b < this->State->Run.NumberOfBlocks(); ++b)
   {

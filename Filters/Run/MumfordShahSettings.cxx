@@ -21,8 +21,10 @@ namespace
 /// an edge are as long.
 constexpr double ShortestCurve = 4.0;
 
-/// Patterns have edges on less of the surface, unless they are too fine for EdgeWidth.
+/// Edges on more of the surface are reported if noise or slopes made them, and if nothing is known of
+/// their reason on more than the second share: distinct edges of a coarse surface cover a third of it.
 constexpr double LargestShare = 0.3;
+constexpr double LargestShareOfJumps = 0.5;
 
 /// The threshold below which noise of deviation 1 makes edges, with the default lengths.
 constexpr double NoiseOfEdges = 3.0;
@@ -224,40 +226,43 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
 void MumfordShahSettings::WarnOfManyEdges(
   const RunState& state, const MumfordShah& model, double share, RunResult& result) const
 {
-  std::ostringstream text;
-  text << std::lround(100.0 * share) << " % of the surface is an edge: ";
-  if (this->AutomaticThreshold)
-  {
-    text
-      << "the data have jumps closer together than 4 EdgeWidth (for fine patterns lower EdgeWidth; "
-         "for fewer edges turn AutomaticThreshold off and set EdgeThreshold above "
-      << result.EffectiveEdgeThreshold << ")";
-    result.WarnOnce(text.str());
-    return;
-  }
-  const double unit = state.Surface.Mesh().LengthUnit();
-  const double jump = state.Units.ToCore(this->EdgeThreshold, 0.0, 1.0);
-  const double steepest = jump / (2.0 * state.Units.ToCore(this->SmoothingLength, 1.0, 0.0) * unit);
   bool noise = false, slopes = false;
-  if (state.Surface.Mesh().GetReduction().IsSerial())
+  if (!this->AutomaticThreshold && state.Surface.Mesh().GetReduction().IsSerial())
   {
+    const double unit = state.Surface.Mesh().LengthUnit();
+    const double jump = state.Units.ToCore(this->EdgeThreshold, 0.0, 1.0);
+    const double length = state.Units.ToCore(this->SmoothingLength, 1.0, 0.0) * unit;
     const double channels = std::sqrt(static_cast<double>(model.State().cols()));
     for (const EdgeScales& found : FindEdgeScales(*state.Surface.SharedAssembler(),
            state.Surface.Points(), model.GetData(), { unit, 0.0, 0.0 }))
     {
       noise = noise || NoiseOfEdges * channels * found.Noise > jump;
-      slopes = slopes || found.Slope > steepest;
+      slopes = slopes || 2.0 * length * found.Slope > jump;
     }
   }
-  text
-    << (noise ? "the standard deviation of the noise is above a third of EdgeThreshold"
-           : slopes
-           ? "the data have slopes above EdgeThreshold/(2 SmoothingLength), which break into edges"
-           : "the data have jumps above EdgeThreshold closer together than 4 EdgeWidth")
-    << " (turn AutomaticThreshold on, or raise EdgeThreshold"
-    << (noise       ? ")"
-           : slopes ? " or lower SmoothingLength)"
-                    : " or lower EdgeWidth)");
+  if (!noise && !slopes && share < LargestShareOfJumps)
+  {
+    return;
+  }
+  std::ostringstream text;
+  text << std::lround(100.0 * share) << " % of the surface is an edge: ";
+  if (noise)
+  {
+    text << "the standard deviation of the noise is above a third of EdgeThreshold (to keep noise "
+            "from making edges, turn AutomaticThreshold on or raise EdgeThreshold)";
+  }
+  else if (slopes)
+  {
+    text << "slopes above EdgeThreshold/(2 SmoothingLength) break into edges (to keep them smooth, "
+            "turn AutomaticThreshold on, raise EdgeThreshold or lower SmoothingLength)";
+  }
+  else
+  {
+    text
+      << "edges are 3 EdgeWidth wide, which is much for the distances between them (to tell them "
+         "apart, lower EdgeWidth or refine the surface; for fewer edges, raise EdgeThreshold"
+      << (this->AutomaticThreshold ? ", with AutomaticThreshold off)" : ")");
+  }
   result.WarnOnce(text.str());
 }
 

@@ -49,6 +49,8 @@ vtkPolyData* Curves(vtkAlgorithm* filter)
 TEST(MumfordShahFilter, HasTheDocumentedDefaults)
 {
   vtkNew<vtkMumfordShahFilter> filter;
+  EXPECT_TRUE(filter->GetAutomaticThreshold());
+  EXPECT_EQ(filter->GetNoiseLevel(), 0.0);
   EXPECT_EQ(filter->GetSmoothingLength(), 8.0);
   EXPECT_EQ(filter->GetEdgeThreshold(), 0.2);
   EXPECT_EQ(filter->GetEdgeWidth(), 2.0);
@@ -66,8 +68,10 @@ TEST(MumfordShahFilter, PrintSelfNamesEveryProperty)
   vtkNew<vtkMumfordShahFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* property : { "SmoothingLength", "EdgeThreshold", "EdgeWidth", "StopTolerance",
-         "EdgeCurves", "FidelityWeight", "EdgeLength" })
+  for (const char* property :
+    { "AutomaticThreshold", "NoiseLevel", "SmoothingLength", "EdgeThreshold", "EdgeWidth",
+      "StopTolerance", "EdgeCurves", "FidelityWeight", "EffectiveEdgeThreshold",
+      "EffectiveSmoothingLength", "EstimatedNoiseLevel", "EdgeLength" })
   {
     EXPECT_NE(text.str().find(std::string(property) + ": "), std::string::npos) << property;
   }
@@ -120,14 +124,30 @@ TEST(MumfordShahFilter, NaturalUnitsAreThoseOfTheMeshAndTheData)
 {
   const auto sphere = SphereWithCap(4, 3.0, 7.0, 0.1);
   const auto natural = MakeFilter(sphere);
+  natural->AutomaticThresholdOff();
   natural->Update();
   const auto absolute = MakeFilter(sphere);
   absolute->SetUnitsToAbsolute();
+  absolute->AutomaticThresholdOff();
   absolute->SetSmoothingLength(8.0 * natural->GetMeanEdgeLength());
   absolute->SetEdgeWidth(2.0 * natural->GetMeanEdgeLength());
   absolute->SetEdgeThreshold(0.2 * natural->GetValueRange());
   absolute->Update();
   EXPECT_LT(LargestDifference(Result(natural, "Edges"), Result(absolute, "Edges")), 1e-9);
+  EXPECT_EQ(natural->GetEffectiveEdgeThreshold(), 0.2);
+  EXPECT_EQ(natural->GetEffectiveSmoothingLength(), 8.0);
+  natural->AutomaticThresholdOn();
+  natural->Update();
+  absolute->AutomaticThresholdOn();
+  absolute->SetSmoothingLength(8.0); // the default, which is ignored
+  absolute->SetEdgeThreshold(0.2);
+  absolute->Update();
+  EXPECT_LT(LargestDifference(Result(natural, "Edges"), Result(absolute, "Edges")), 1e-9);
+  EXPECT_NEAR(absolute->GetEffectiveEdgeThreshold(),
+    natural->GetEffectiveEdgeThreshold() * natural->GetValueRange(), 1e-9);
+  EXPECT_NEAR(absolute->GetEffectiveSmoothingLength(),
+    natural->GetEffectiveSmoothingLength() * natural->GetMeanEdgeLength(), 1e-9);
+  EXPECT_EQ(absolute->GetEstimatedNoiseLevel(), natural->GetEstimatedNoiseLevel());
   EXPECT_EQ(natural->GetTimeUnit(), 1.0);
   EXPECT_EQ(absolute->GetTimeUnit(), 1.0);
   const double scale = 64.0; // of lengths and values
@@ -180,10 +200,12 @@ TEST(MumfordShahFilter, NoiseAboveTheThresholdIsReported)
 {
   const auto sphere = SphereWithCap(4, 0.0, 0.0, 1.0); // of range 2, sigma 0.58
   const auto filter = MakeFilter(sphere);
+  filter->AutomaticThresholdOff();
   Messages messages(filter);
   filter->Update();
   ASSERT_EQ(messages.Warnings.size(), 1u);
-  EXPECT_NE(messages.Warnings[0].find("most of the surface is an edge"), std::string::npos);
+  EXPECT_NE(
+    messages.Warnings[0].find("the noise is above a third of EdgeThreshold"), std::string::npos);
   filter->SetEdgeThreshold(1.5);
   filter->Update();
   EXPECT_EQ(messages.Warnings.size(), 1u);
@@ -199,6 +221,7 @@ TEST(MumfordShahFilter, PropertiesAreCheckedAndLeaveNoCurves)
 {
   const auto sphere = SphereWithCap(3, 0.0, 1.0, 0.0);
   const auto filter = MakeFilter(sphere);
+  filter->AutomaticThresholdOff();
   filter->Update();
   EXPECT_EQ(Curves(filter)->GetNumberOfLines(), 1);
   using Set = void (vtkMumfordShahFilter::*)(double);
@@ -307,4 +330,28 @@ TEST(MumfordShahFilter, MaskedPointsAreFilledWithEdgesOrKeptOut)
   EXPECT_EQ(Curves(filter)->GetNumberOfLines(), 1);
   EXPECT_NEAR(filter->GetEdgeLength(), Circle - 0.4, 0.05 * Circle);
   EXPECT_EQ(Result(filter, "fMumfordShah")->GetRange()[1], 100.0);
+}
+
+TEST(MumfordShahFilter, AutomaticThresholdIgnoresGivenOnesAndServesEachBlock)
+{
+  const auto sphere = SphereWithCap(5, 0.0, 1.0, 0.1);
+  const auto alone = MakeFilter(sphere);
+  alone->Update();
+  EXPECT_NEAR(alone->GetEffectiveEdgeThreshold(), 0.12, 0.01); // of the range with noise
+  EXPECT_NEAR(alone->GetEstimatedNoiseLevel(), 0.07, 0.02);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, sphere);
+  blocks->SetBlock(1, SphereWithCap(5, 0.0, 100.0, 10.0));
+  const auto both = MakeFilter(blocks);
+  both->Update();
+  EXPECT_EQ(Curves(both)->GetNumberOfLines(), 2);
+  EXPECT_NEAR(both->GetEdgeLength(), 2.0 * Circle, 0.02 * Circle);
+  const auto given = MakeFilter(sphere);
+  given->SetEdgeThreshold(0.7);
+  Messages messages(given);
+  given->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("EdgeThreshold is 0.7 but AutomaticThreshold finds it"),
+    std::string::npos);
+  EXPECT_TRUE(Identical(Result(given, "Edges"), Result(alone, "Edges")));
 }

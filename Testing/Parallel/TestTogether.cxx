@@ -198,6 +198,7 @@ AnyFilter Edges()
 {
   auto shah = Make<vtkMumfordShahFilter>("v", 12);
   shah->EdgeCurvesOff();
+  shah->AutomaticThresholdOff();
   shah->SetEdgeThreshold(0.8);
   return shah;
 }
@@ -208,6 +209,7 @@ AnyFilter EdgesInpainting()
   SetInputArray(shah, 1, "hole");
   SetInputArray(shah, 3, "edge");
   shah->EdgeCurvesOff();
+  shah->AutomaticThresholdOff();
   return shah;
 }
 

@@ -304,7 +304,7 @@ class TestProxies(unittest.TestCase):
             ("IntrinsicTVFilter",
              ["Mode", "EdgeFunction", "FidelityNorm", "AutomaticFidelity", "FidelityWeight"]),
             ("MumfordShahFilter",
-             ["EdgeThreshold", "SmoothingLength", "EdgeWidth"]),
+             ["AutomaticThreshold", "NoiseLevel", "EdgeWidth"]),
             ("SurfaceDenoisingFilter", ["SurfaceType", "NoiseLevel"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
@@ -387,6 +387,8 @@ class TestProxies(unittest.TestCase):
             ("FVMHeatFilter", {}, {"HoldKnownValues", "MaskMode", "AlongDiffusivity"}),
             ("IntrinsicTVFilter", dict(EdgeFunction=1), {"Mode", "AutomaticFidelity"}),
             ("IntrinsicTVFilter", dict(AutomaticFidelity=1), {"FidelityNorm", "EdgeFunction"}),
+            ("MumfordShahFilter", {}, {"EdgeThreshold", "SmoothingLength"}),
+            ("MumfordShahFilter", dict(AutomaticThreshold=0), {"NoiseLevel"}),
             ("TuringTextureFilter", {}, {"FixedArray", "DiffusionRateAcross1"}),
             ("TuringTextureFilter", dict(IntrinsicDelaunay=1), {"DiffusionRateArray"}),
         ):

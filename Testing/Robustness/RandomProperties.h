@@ -287,6 +287,8 @@ inline List OfMumfordShah()
 {
   using F = vtkMumfordShahFilter;
   return {
+    RANDOM_PROPERTY(F, AutomaticThreshold, dice.Flip()),
+    RANDOM_PROPERTY(F, NoiseLevel, dice.Flip() ? 0.0 : Positive(dice)),
     RANDOM_PROPERTY(F, SmoothingLength, Positive(dice)),
     RANDOM_PROPERTY(F, EdgeThreshold, Positive(dice)),
     RANDOM_PROPERTY(F, EdgeWidth, Positive(dice)),

@@ -225,6 +225,7 @@ TEST_P(EveryMesh, HasItsEdgesFound)
 {
   vtkNew<vtkMumfordShahFilter> shah;
   SetSteps(shah, 40);
+  shah->AutomaticThresholdOff();
   shah->SetEdgeThreshold(0.8);
   this->Run(shah, "fMumfordShah");
 }

@@ -104,6 +104,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   using Segmentation = vtkSurfaceSegmentationFilter;
+  using Shah = vtkMumfordShahFilter;
   using Tensor = vtkTensorDiffusionFilter;
   using Denoising = vtkSurfaceDenoisingFilter;
   std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> needed;
@@ -159,6 +160,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->SetColorModelToOpponent();
       SetInputArray(f, 0, "bytes");
     });
+  needed["vtkMumfordShahFilter EdgeThreshold"] = needed["vtkMumfordShahFilter SmoothingLength"] =
+    With<Shah>([](Shah* f) { f->AutomaticThresholdOff(); });
   needed["vtkIntrinsicTVFilter EdgeThreshold"] =
     With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
   needed["vtkIntrinsicTVFilter StopTolerance"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
