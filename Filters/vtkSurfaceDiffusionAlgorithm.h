@@ -69,10 +69,10 @@
  * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid, or Automatic with
  * more than a million points. An abort is then obeyed by all processes within a few iterations.
  * Some features are always computed in process 0, which then holds the whole surface:
- * AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves of
- * vtkMumfordShahFilter, and MoveVertices, computed normals and line fields with missing values of
- * vtkHarmonicMapFilter. Random numbers are those of one process if there are global ids; otherwise
- * they depend on the coordinates.
+ * AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves and
+ * AutomaticThreshold of vtkMumfordShahFilter, and MoveVertices, computed normals and line fields
+ * with missing values of vtkHarmonicMapFilter. Random numbers are those of one process if there are
+ * global ids; otherwise they depend on the coordinates.
  *
  * **Output port 0** is the input with the result as a further array, made active, of points or, for
  * data on cells, of cells. Points that no participating triangle uses keep their value. **Output

@@ -6,7 +6,7 @@
 //
 //     int lambda/2 |u - f|^2 + 1/2 v^2 |grad u|^2 + beta (eps |grad v|^2 + (1 - v)^2/(4 eps)),
 //
-// where v is near 0 on edges. A jump above EdgeThreshold is an edge.
+// where v is near 0 on edges. A jump above EdgeThreshold, which is found from the data, is an edge.
 //
 //     mumford_shah                        a noisy cap on a sphere, generated here
 //     mumford_shah surface.vtp array      your own data
@@ -14,7 +14,7 @@
 // The result is written to mumford_shah.vtp: u, and the array Edges, 1 - v. The third output of the
 // filter has the edges as curves.
 //
-// Try next: SetEdgeThreshold(0.5), which keeps fewer edges; a mask as input array 1, whose points are
+// Try next: AutomaticThresholdOff() and SetEdgeThreshold(0.5), which keeps fewer edges; a mask as input array 1, whose points are
 // filled in, with their edges.
 
 #include <vtkDataObject.h>

@@ -68,7 +68,7 @@ def made_coherent(surface):
 
 
 def edged(surface):
-    result = run(sd.vtkMumfordShahFilter, surface, "patches", EdgeThreshold=0.35)
+    result = run(sd.vtkMumfordShahFilter, surface, "patches")
     return (Panel(result, "patches", "noisy patches", table=colour_table(-0.3, 1.3, REGIONS)),
             Panel(result, "Edges", "edges", table=colour_table(0, 1, EDGES)))
 

@@ -109,8 +109,10 @@ def _diffused(result, note=""):
 
 
 def run_edges(mesh, data, options, progress):
-    result = sd.mumford_shah(mesh.surface, data, progress=progress, fidelity_weight=options["weight"],
-                             smoothing_length=options["length"], edge_threshold=options["threshold"])
+    given = {name: options[key] for name, key in (
+        ("smoothing_length", "length"), ("edge_threshold", "threshold")) if options[key] > 0}
+    result = sd.mumford_shah(
+        mesh.surface, data, progress=progress, fidelity_weight=options["weight"], **given)
     return Outcome(result.values, {"Result": result.values, "Edges": result.edges},
                    history=result.history,
                    note=f"{len(result.curves)} edges of length {result.edge_length:.4g}")
@@ -183,8 +185,8 @@ FILTERS = {entry.name: entry for entry in (
         Slider("time", "Time, in squared edge lengths", 0.1, 100, 0.1, 4)), run_tensor_diffusion),
     Filter("mumford_shah", "Edges: Mumford-Shah", "values", (
         Slider("weight", "λ", 0.05, 5, 0.05, 1),
-        Slider("length", "Width, in edge lengths", 1, 30, 0.5, 8),
-        Slider("threshold", "Jump, part of the range", 0.02, 1, 0.01, 0.2)), run_edges),
+        Slider("length", "Width, in edge lengths (0: found)", 0, 30, 0.5, 0),
+        Slider("threshold", "Jump, part of the range (0: found)", 0, 1, 0.01, 0)), run_edges),
     Filter("segment", "Regions", "values", (
         Slider("regions", "Number of regions", 2, 8, 1, 2),
         WEIGHT), run_regions),

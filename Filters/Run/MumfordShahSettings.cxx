@@ -21,10 +21,10 @@ namespace
 /// an edge are as long.
 constexpr double ShortestCurve = 4.0;
 
-/// Edges on more of the surface are reported if noise or slopes made them, and if nothing is known of
-/// their reason on more than the second share: distinct edges of a coarse surface cover a third of it.
+/// Edges on more of the surface are reported if noise or slopes made them. Jumps have them on more
+/// than the second share only if they are closer together than the width of edges.
 constexpr double LargestShare = 0.3;
-constexpr double LargestShareOfJumps = 0.5;
+constexpr double LargestShareOfJumps = 0.8;
 
 /// The threshold below which noise of deviation 1 makes edges, with the default lengths.
 constexpr double NoiseOfEdges = 3.0;

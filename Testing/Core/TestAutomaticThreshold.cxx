@@ -514,7 +514,7 @@ TEST(AutomaticThreshold, ManyEdgesAreReportedWithTheirReason)
   expect(warningOf(MakeInput(Globe(50), Height), given), "slopes above EdgeThreshold");
   expect(warningOf(MakeInput(sphere, UnitStep, 0.4), given), "standard deviation of the noise");
   const auto fine = [](const Eigen::RowVector3d& x)
-  { return std::sin(6.0 * x[0]) * std::sin(6.0 * x[1]) > 0.0 ? 1.0 : 0.0; };
+  { return std::sin(8.0 * x[0]) * std::sin(8.0 * x[1]) > 0.0 ? 1.0 : 0.0; };
   expect(warningOf(MakeInput(sphere, fine), given), "edges are 3 EdgeWidth wide");
   expect(warningOf(MakeInput(sphere, fine), {}), "with AutomaticThreshold off");
   EXPECT_TRUE(FindEdges(MakeInput(sphere, UnitStep, 0.05)).Warnings.empty());

@@ -106,7 +106,7 @@ class SameBits(unittest.TestCase):
              {"ColorModel": "ChromaticityBrightness", "LinearLight": True, "Mode": "SteadyState"}),
             ("intrinsic_tv", {"values": self.columns},
              {"Discretization": "CrouzeixRaviart", "NumberOfTimeSteps": 3}),
-            ("mumford_shah", {"values": self.normals}, {"EdgeThreshold": 0.4}),
+            ("mumford_shah", {"values": self.normals}, {"AutomaticThreshold": False, "EdgeThreshold": 0.4}),
             ("mumford_shah", {"values": self.normals[:, 0].astype(np.float32)}, {}),
             ("tensor_diffusion", {"values": self.columns, "mask": self.mask}, {}),
             ("tensor_diffusion", {"values": self.values, "directions": self.around},

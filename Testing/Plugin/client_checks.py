@@ -178,7 +178,7 @@ def check_macro():
     name, slip = {
         "Inpainted": ("Inpaint", {"HoldKnownValues": 0}),
         "Denoised": ("Denoise", {}),
-        "Edges": ("Edges", {"EdgeThreshold": 0.9}),
+        "Edges": ("Edges", {"AutomaticThreshold": 0, "EdgeThreshold": 0.9}),
         "Denoised mesh": ("DenoiseMesh", {"SurfaceType": "Organic"}),
         "Texture": ("Texture", {"DiffusionRate2": 1.02 * 5.2}),
     }[next(key[0] for key, each in GetSources().items() if each == source)]
