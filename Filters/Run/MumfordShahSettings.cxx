@@ -259,8 +259,8 @@ void MumfordShahSettings::WarnOfManyEdges(
   else
   {
     text
-      << "edges are 3 EdgeWidth wide, which is much for the distances between them (to tell them "
-         "apart, lower EdgeWidth or refine the surface; for fewer edges, raise EdgeThreshold"
+      << "edges are 3 EdgeWidth wide, which is more than their distances (to separate them, lower "
+         "EdgeWidth or refine the surface; for fewer edges, raise EdgeThreshold"
       << (this->AutomaticThreshold ? ", with AutomaticThreshold off)" : ")");
   }
   result.WarnOnce(text.str());
