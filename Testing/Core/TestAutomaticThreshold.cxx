@@ -514,9 +514,12 @@ TEST(AutomaticThreshold, ManyEdgesAreReportedWithTheirReason)
   expect(warningOf(MakeInput(Globe(50), Height), given), "slopes above EdgeThreshold");
   expect(warningOf(MakeInput(sphere, UnitStep, 0.4), given), "standard deviation of the noise");
   const auto fine = [](const Eigen::RowVector3d& x)
-  { return std::sin(8.0 * x[0]) * std::sin(8.0 * x[1]) > 0.0 ? 1.0 : 0.0; };
-  expect(warningOf(MakeInput(sphere, fine), given), "edges are 3 EdgeWidth wide");
-  expect(warningOf(MakeInput(sphere, fine), {}), "with AutomaticThreshold off");
+  { return std::sin(5.0 * x[0]) * std::sin(5.0 * x[1]) > 0.0 ? 1.0 : 0.0; };
+  MumfordShahSettings wide;
+  wide.EdgeWidth = 5.0;
+  expect(warningOf(MakeInput(sphere, fine), wide), "with AutomaticThreshold off");
+  wide.AutomaticThreshold = false;
+  expect(warningOf(MakeInput(sphere, fine), wide), "edges are 3 EdgeWidth wide");
   EXPECT_TRUE(FindEdges(MakeInput(sphere, UnitStep, 0.05)).Warnings.empty());
   MumfordShahSettings unused;
   unused.EdgeThreshold = 0.3;

@@ -262,6 +262,19 @@ class Edges(unittest.TestCase):
         self.assertEqual(states[0].curves, [])
         self.assertGreater(states[-1].edges.max(), 0.9)
 
+    def test_a_given_threshold_or_length_switches_the_automatic_ones_off(self):
+        surface = sd.sphere(4)
+        step = np.sign(surface.points[:, 2])
+        found = sd.mumford_shah(surface, step)
+        self.assertAlmostEqual(found.effective_edge_threshold, 0.12, delta=0.01)
+        self.assertLess(found.estimated_noise_level, 0.01)
+        given = sd.mumford_shah(surface, step, edge_threshold=0.4)
+        self.assertEqual((given.effective_edge_threshold, given.effective_smoothing_length), (0.4, 8.0))
+        given = sd.mumford_shah(surface, step, smoothing_length=5.0)
+        self.assertEqual((given.effective_edge_threshold, given.effective_smoothing_length), (0.2, 5.0))
+        with self.assertWarnsRegex(UserWarning, "edge_threshold is 0.4 but automatic_threshold"):
+            sd.mumford_shah(surface, step, edge_threshold=0.4, automatic_threshold=True)
+
     def test_curves_are_optional(self):
         surface = sd.sphere(4)
         result = sd.mumford_shah(surface, np.sign(bands(surface, 1)), edge_curves=False)
