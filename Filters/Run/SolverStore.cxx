@@ -39,7 +39,8 @@ bool SolverStore::ServesRunOf(int numberOfSteps) const
     [&](const Kept& kept)
     {
       return this->Distributed || !kept.IsUsed ||
-        this->Choose(kept.Task, kept.SolvesPerStep, numberOfSteps) == kept.Choice;
+        WouldSolveAlike(
+          *kept.Solver, kept.Choice, this->Choose(kept.Task, kept.SolvesPerStep, numberOfSteps));
     });
 }
 

@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// CompareSolvers [<largest level> | <mesh file>...] compares the solver that Automatic selects with all solvers, for
-// runs of several backward Euler steps of c h^2 from noise. It prints a line of JSON per size, c
-// and number of steps: CPU seconds per method, the selected method, and its time over that of the
-// fastest. The sizes are those of SurfaceOfLevel(), by default up to level 2 (178,000 vertices). Mesh
-// files, by their names without an ending, are surfaces on which CalibrateSolvers did not measure.
+// CompareSolvers [<largest level> | <mesh file>... | needles [<size>]] compares the solver Automatic
+// with all solvers, for runs of several backward Euler steps of c h^2 from noise. It prints a line of
+// JSON per surface, c and number of steps: CPU seconds and iterations per method, the method that
+// Automatic begins with, and its time over that of the fastest. The surfaces are those of
+// SurfaceOfLevel(), by default up to level 2 (178,000 vertices). Mesh files, by their names without
+// an ending, are surfaces on which CalibrateSolvers did not measure; needles are those of
+// NeedleMeshes.h with about size^2 vertices, by default 200^2.
 
 #include "HeatSystem.h"
+#include "NeedleMeshes.h"
 #include "ProcessTime.h"
 
 #include "Core/Solvers/SolverChoice.h"
@@ -17,6 +20,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <string>
+#include <utility>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -28,38 +33,45 @@ constexpr SolverMethod Methods[] = { SolverMethod::Direct, SolverMethod::Conjuga
   SolverMethod::Multigrid };
 constexpr const char* Names[] = { "Direct", "ConjugateGradient", "Multigrid" };
 
-/// Seconds of the set-up and of each step. Steps after the last measured one cost as much as it.
+/// Seconds of the set-up, and seconds and iterations of each step. Steps after the last measured one
+/// cost as much as it.
 struct Cost
 {
   double SetUp = 0.0;
   std::vector<double> Steps;
+  std::vector<double> Iterations;
 
-  double Run(int steps) const
+  double Seconds(int steps) const { return this->SetUp + Sum(this->Steps, steps); }
+  double NumberOfIterations(int steps) const { return Sum(this->Iterations, steps); }
+
+private:
+  static double Sum(const std::vector<double>& ofSteps, int steps)
   {
-    double seconds = this->SetUp;
+    double sum = 0.0;
     for (int step = 0; step < steps; ++step)
     {
-      seconds += this->Steps[std::min<std::size_t>(step, this->Steps.size() - 1)];
+      sum += ofSteps[std::min<std::size_t>(step, ofSteps.size() - 1)];
     }
-    return seconds;
+    return sum;
   }
 };
 
-Cost Measure(const HeatSystem& system, SolverMethod method)
+Cost MeasureOnce(const HeatSystem& system, const SolverChoice& choice, int steps)
 {
   Cost cost;
-  const auto solver = MakeSolver(method);
-  solver->SetLimits({ 1e-10, 100000 });
+  const auto solver = MakeSolver(choice);
+  solver->SetLimits({ 1e-10, choice.FallsBack ? 1000 : 10000 });
   double start = Now();
   solver->SetMatrix(system.Matrix);
   cost.SetUp = Now() - start;
   Values u = Noise(*system.Mesh), b;
-  for (int step = 0; step < 3; ++step)
+  for (int step = 0; step < std::min(steps, 3); ++step)
   {
     start = Now();
     b = system.RightHandSide(u);
-    solver->Solve(b, u);
+    const SolveReport report = solver->Solve(b, u);
     cost.Steps.push_back(Now() - start);
+    cost.Iterations.push_back(report.Iterations);
   }
   return cost;
 }
@@ -76,17 +88,19 @@ Cost Least(const Cost& a, const Cost& b)
   return least;
 }
 
-void Compare(HeatSystem& system, double number)
+Cost Measure(const HeatSystem& system, const SolverChoice& choice, int steps = 3)
+{
+  const Cost cost = MeasureOnce(system, choice, steps);
+  return cost.Seconds(1) < 3.0 ? Least(cost, MeasureOnce(system, choice, steps)) : cost;
+}
+
+void Compare(const std::string& name, HeatSystem& system, double number)
 {
   system.SetDiffusionNumber(number);
   Cost costs[3];
   for (int m = 0; m < 3; ++m)
   {
-    costs[m] = Measure(system, Methods[m]);
-    if (costs[m].Run(1) < 3.0)
-    {
-      costs[m] = Least(costs[m], Measure(system, Methods[m]));
-    }
+    costs[m] = Measure(system, { Methods[m] });
   }
   for (const int steps : { 1, 3, 10, 30, 100 })
   {
@@ -94,21 +108,21 @@ void Compare(HeatSystem& system, double number)
     task.NumberOfVertices = system.Mesh->NumberOfVertices();
     task.DiffusionNumber = number;
     task.NumberOfSolves = steps;
-    const SolverMethod method = ChooseSolver(SolverMethod::Automatic, task).Method;
-    const auto chosen = std::find(std::begin(Methods), std::end(Methods), method) - Methods;
-    double seconds[3];
+    const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, task);
+    const Cost automatic = Measure(system, choice, steps);
+    const auto chosen = std::find(std::begin(Methods), std::end(Methods), choice.Method) - Methods;
+    std::printf("{\"surface\": \"%s\", \"vertices\": %d, \"c\": %g, \"steps\": %d, ", name.c_str(),
+      task.NumberOfVertices, number, steps);
+    double best = costs[0].Seconds(steps);
     for (int m = 0; m < 3; ++m)
     {
-      seconds[m] = costs[m].Run(steps);
+      best = std::min(best, costs[m].Seconds(steps));
+      std::printf("\"%s\": [%.4g, %g], ", Names[m], costs[m].Seconds(steps),
+        costs[m].NumberOfIterations(steps));
     }
-    const double best = std::min({ seconds[0], seconds[1], seconds[2] });
-    std::printf(
-      "{\"vertices\": %d, \"c\": %g, \"steps\": %d, ", task.NumberOfVertices, number, steps);
-    for (int m = 0; m < 3; ++m)
-    {
-      std::printf("\"%s\": %.4g, ", Names[m], seconds[m]);
-    }
-    std::printf("\"chosen\": \"%s\", \"ratio\": %.3f}\n", Names[chosen], seconds[chosen] / best);
+    std::printf("\"Automatic\": [%.4g, %g], \"chosen\": \"%s\", \"ratio\": %.3f}\n",
+      automatic.Seconds(steps), automatic.NumberOfIterations(steps), Names[chosen],
+      automatic.Seconds(steps) / best);
   }
   std::fflush(stdout);
 }
@@ -117,23 +131,37 @@ void Compare(HeatSystem& system, double number)
 
 int main(int argc, char** argv)
 {
-  std::vector<Surface> surfaces;
+  std::vector<std::pair<std::string, Surface>> surfaces;
   const bool haveNames = argc > 1 && std::strspn(argv[1], "0123456789") < std::strlen(argv[1]);
-  for (int a = 1; haveNames && a < argc; ++a)
+  if (haveNames && std::strcmp(argv[1], "needles") == 0)
   {
-    surfaces.push_back(ReadMeshFile(argv[a]));
+    const Index size = argc > 2 ? std::atoi(argv[2]) : 200;
+    surfaces.emplace_back("sphere of meridians", LatitudeLongitudeSphere(size, size));
+    surfaces.emplace_back("torus with a seam", TorusWithSeam(size));
+    surfaces.emplace_back("cylinder with fans", CylinderWithFans(size, size));
+    surfaces.emplace_back("contour of a grid", ContourOfGrid(size / 4));
   }
-  const int last = argc > 1 ? std::atoi(argv[1]) : 2;
-  for (int level = 0; !haveNames && level <= last; ++level)
+  else if (haveNames)
   {
-    surfaces.push_back(SurfaceOfLevel(level));
+    for (int a = 1; a < argc; ++a)
+    {
+      surfaces.emplace_back(argv[a], ReadMeshFile(argv[a]));
+    }
   }
-  for (const Surface& surface : surfaces)
+  else
   {
-    HeatSystem system(surface);
+    const int last = argc > 1 ? std::atoi(argv[1]) : 2;
+    for (int level = 0; level <= last; ++level)
+    {
+      surfaces.emplace_back("level " + std::to_string(level), SurfaceOfLevel(level));
+    }
+  }
+  for (const auto& surface : surfaces)
+  {
+    HeatSystem system(surface.second);
     for (const double number : { 0.1, 1.0, 100.0, 1e4 })
     {
-      Compare(system, number);
+      Compare(surface.first, system, number);
     }
   }
   return 0;

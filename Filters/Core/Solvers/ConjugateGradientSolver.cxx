@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 namespace SurfaceDiffusion
@@ -213,7 +214,9 @@ private:
     {
       report = this->Refine<K>(b, x, progress.Part(0.0, begin));
     }
-    if (!report.Converged)
+    const bool isHopeless =
+      this->Limits.StopsEarly && report.Forecast > this->Limits.MaximumNumberOfIterations;
+    if (!report.Converged && !isHopeless)
     {
       this->Iterate<K>(b, x, report, progress.Part(begin, 1.0));
     }
@@ -234,12 +237,14 @@ private:
     while (true)
     {
       const int before = report.Iterations;
+      const double forecast = report.Forecast;
       IterationLimits limits = this->Limits;
       limits.MaximumNumberOfIterations -= before;
       report =
         ConjugateGradients<K, ColumnSystem>(system, this->Residual, this->Work, this->Parallel)
           .Solve(x, limits, progress.Part(std::isinf(last) ? 0.0 : 1.0, 1.0));
       report.Iterations += before;
+      report.Forecast = std::max(forecast, before + report.Forecast);
       this->UpdateResidual<K>(b, x);
       report.Residual = this->LargestResidual();
       const bool hasDrifted = !(report.Residual <= drifted * this->Limits.Tolerance);
@@ -279,6 +284,7 @@ private:
   SolveReport Refine(const Values& b, Values& x, const ProgressMonitor& progress)
   {
     constexpr int longestPass = 256;
+    std::optional<ConvergenceForecast> forecast;
     const ColumnCount<K> k(b.cols());
     this->Corrections.assign(k, SinglePrecisionSolver::Column());
     SolveReport report;
@@ -287,7 +293,12 @@ private:
     {
       const double passes = this->PlanPass(report);
       const int left = this->Limits.MaximumNumberOfIterations - report.Iterations;
-      if (report.Converged || passes == 0.0 || left <= 0)
+      if (!forecast)
+      {
+        forecast.emplace(report.Residual, this->Limits);
+      }
+      report.Forecast = forecast->Largest();
+      if (report.Converged || passes == 0.0 || left <= 0 || forecast->IsHopeless())
       {
         return report;
       }
@@ -301,8 +312,9 @@ private:
           double* const to = before.data() + static_cast<std::ptrdiff_t>(first) * k;
           std::copy_n(from, static_cast<std::ptrdiff_t>(last - first) * k, to);
         });
+      forecast->StartPass(report.Iterations);
       report.Iterations += this->Single.Correct(this->Residual, this->Corrections,
-        std::min(left, longestPass), x, progress.Part(done, end));
+        std::min(left, longestPass), x, progress.Part(done, end), &*forecast);
       done = end;
       this->UpdateResidual<K>(b, x);
       if (this->TakeBackFailures(before, x))
@@ -343,8 +355,9 @@ private:
       const double before = column.Length;
       column.Length = std::sqrt(this->Work.Sums[c]);
       column.Unit = this->Work.Unit[c];
+      column.ReferenceLength = std::sqrt(this->Work.Reference[c]);
       column.Reduction = 1.0;
-      const double residual = column.Length / std::sqrt(this->Work.Reference[c]);
+      const double residual = column.Length / column.ReferenceLength;
       if (!std::isfinite(residual))
       {
         report.Converged = false; // iterations in double precision report it

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Columns.h"
 #include "Core/Solvers/ConjugateGradientSystem.h"
+#include "Core/Solvers/ConvergenceForecast.h"
 #include "Core/Solvers/LinearSolver.h"
 
 #include <algorithm>
@@ -66,14 +67,15 @@ public:
   }
 
   /// Iterate until all residuals are within the tolerance. Throws std::runtime_error if one is not
-  /// finite. Not converged: more iterations are needed than allowed, or the matrix is not positive
-  /// definite beyond round-off.
+  /// finite. Not converged: more iterations are needed than allowed, or expected to be if limits say
+  /// so, or the matrix is not positive definite beyond round-off.
   SolveReport Solve(Values& x, const IterationLimits& limits, const ProgressMonitor& progress)
   {
     SolveReport report;
     this->Start(limits.Tolerance);
     const double start = this->FiniteResidual();
     double fraction = 0.0;
+    ConvergenceForecast forecast(start, limits);
     while (!this->IsFinished())
     {
       if (report.Iterations == limits.MaximumNumberOfIterations)
@@ -96,7 +98,13 @@ public:
         fraction = std::max(fraction, std::min(0.99, std::log(start / left) / all));
         progress.Report(fraction);
       }
+      if (forecast.Update(report.Iterations, left))
+      {
+        report.Converged = false;
+        break;
+      }
     }
+    report.Forecast = forecast.Largest();
     report.Residual = this->Residual();
     progress.Report(1.0);
     return report;

@@ -24,12 +24,17 @@ struct SolveReport
   /// Whether no method is left that could come closer: a direct one does not, and Automatic has
   /// tried them all. The answer is then used as it is.
   bool IsFinal = false;
+  /// The largest number of iterations that the rate of convergence let expect; see
+  /// ConvergenceForecast.
+  double Forecast = 0.0;
 };
 
 struct IterationLimits
 {
   double Tolerance = 1e-10; ///< on SolveReport::Residual
   int MaximumNumberOfIterations = 1000;
+  /// End as soon as the rate of convergence shows that these iterations are not enough.
+  bool StopsEarly = false;
 };
 
 /// Conjugate gradients take no step along p if p.A p is not above this share of p.diag(A) p: it is

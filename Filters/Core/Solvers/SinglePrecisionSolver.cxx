@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace SurfaceDiffusion
 {
@@ -12,7 +13,7 @@ namespace
 {
 
 /// p.Ap / p.p below which products in single precision have no digit left.
-constexpr double ResolvedShare = 1e-6;
+constexpr double SmallestResolved = 1e-6;
 
 } // namespace
 
@@ -63,19 +64,39 @@ void SinglePrecisionSolver::ForGroups(std::vector<Column>& columns, const Act& a
 }
 
 int SinglePrecisionSolver::Correct(const Values& r, std::vector<Column>& columns,
-  int maximumNumberOfIterations, Values& x, const ProgressMonitor& progress)
+  int maximumNumberOfIterations, Values& x, const ProgressMonitor& progress,
+  ConvergenceForecast* forecast)
 {
   const auto count = static_cast<double>(columns.size());
   int iterations = 0;
+  const ConvergenceForecast* const before = forecast;
+  std::optional<ConvergenceForecast> ofGroup, hardest;
   this->ForGroups(columns,
     [&](const Group& group, bool* solved)
     {
+      if (hardest && hardest->IsHopeless())
+      {
+        return;
+      }
+      if (before)
+      {
+        ofGroup = *before;
+      }
       this->Take(r, group);
       iterations = std::max(iterations,
         this->Iterate(group, maximumNumberOfIterations, solved,
-          progress.Part(group.First / count, (group.First + group.Count) / count)));
+          progress.Part(group.First / count, (group.First + group.Count) / count),
+          ofGroup ? &*ofGroup : nullptr));
       this->Add(group, solved, x, nullptr);
+      if (ofGroup && (!hardest || ofGroup->Largest() > hardest->Largest()))
+      {
+        hardest = ofGroup;
+      }
     });
+  if (hardest)
+  {
+    *forecast = *hardest;
+  }
   return iterations;
 }
 
@@ -93,7 +114,7 @@ bool SinglePrecisionSolver::Descend(Values& r, const std::vector<double>& length
     [&](const Group& group, bool* solved)
     {
       this->Take(r, group);
-      this->Iterate(group, maximumNumberOfIterations, solved, ProgressMonitor());
+      this->Iterate(group, maximumNumberOfIterations, solved, ProgressMonitor(), nullptr);
       this->Add(group, solved, x, &r);
       for (int c = 0; c < group.Count; ++c)
       {
@@ -146,8 +167,8 @@ void SinglePrecisionSolver::Take(const Values& r, const Group& group)
 }
 
 /// Reduce the residuals of the columns that are to be solved, or find that they cannot be.
-int SinglePrecisionSolver::Iterate(
-  const Group& group, int maximumNumberOfIterations, bool* solved, const ProgressMonitor& progress)
+int SinglePrecisionSolver::Iterate(const Group& group, int maximumNumberOfIterations, bool* solved,
+  const ProgressMonitor& progress, ConvergenceForecast* forecast)
 {
   const int count = group.Count;
   float* const p =
@@ -173,7 +194,7 @@ int SinglePrecisionSolver::Iterate(
     {
       const Column& column = group.Columns[c];
       const double step = active[c] ? column.Square / sums[c] : 0.0;
-      const bool isBounded = sums[c] > ResolvedShare * column.DirectionSquare;
+      const bool isBounded = sums[c] > SmallestResolved * column.DirectionSquare;
       solved[c] = solved[c] && (!active[c] || (isBounded && std::isfinite(step)));
       active[c] = active[c] && solved[c];
       alpha[c] = active[c] ? static_cast<float>(step) : 0.0F;
@@ -181,6 +202,7 @@ int SinglePrecisionSolver::Iterate(
     this->Matrix.Subtract(count, alpha, this->Q.data(), this->R.data(), sums);
     this->CountOnce(count, this->R.data(), sums);
     double done = 0.99;
+    double residual = 0.0;
     isFinished = true;
     for (int c = 0; c < count; ++c)
     {
@@ -201,8 +223,12 @@ int SinglePrecisionSolver::Iterate(
           direction = square + turn * turn * direction;
         }
         isFinished = isFinished && !active[c];
+        const Column& column = group.Columns[c];
+        residual =
+          std::max(residual, std::sqrt(sums[c]) * column.FirstLength / column.ReferenceLength);
       }
     }
+    isFinished = (forecast && forecast->Update(iterations, residual)) || isFinished;
     this->Matrix.Turn(count, alpha, beta, active, this->R.data(), this->Y.data(), p);
     if (iterations % 8 == 0)
     {

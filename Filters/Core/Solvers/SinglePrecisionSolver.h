@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Foundation/Reduction.h"
+#include "Core/Solvers/ConvergenceForecast.h"
 #include "Core/Solvers/SlicedMatrix.h"
 
 #include <vector>
@@ -36,6 +37,7 @@ public:
   {
     double Unit = 1.0; ///< of its residual
     double Length = 0.0; ///< of its residual, in this unit and the norm of D^-1
+    double ReferenceLength = 1.0; ///< that of the relative residual 1, likewise
     double Reduction = 1.0; ///< the factor by which to reduce this length; 1: leave the column
     /// Of the first residual of the iteration, the unit of single precision; 0: it begins.
     double FirstLength = 0.0;
@@ -46,9 +48,10 @@ public:
 
   /// Add to x what reduces the residuals, r = b - A x in double precision. The bits of a column do
   /// not depend on the others. A column of a matrix that is not positive definite in single
-  /// precision is left. Returns the largest number of iterations.
+  /// precision is left. forecast: may stop the iterations; or null. Returns the largest number of
+  /// iterations.
   int Correct(const Values& r, std::vector<Column>& columns, int maximumNumberOfIterations,
-    Values& x, const ProgressMonitor& progress);
+    Values& x, const ProgressMonitor& progress, ConvergenceForecast* forecast = nullptr);
 
   /// Add to x what reduces each column of the residual r by the factor `reduction`, if the
   /// iterations suffice, and update r. lengths: of its columns in the norm of D^-1. Returns false
@@ -62,7 +65,7 @@ private:
   void ForGroups(std::vector<Column>& columns, const Act& act);
   void Take(const Values& r, const Group& group);
   int Iterate(const Group& group, int maximumNumberOfIterations, bool* solved,
-    const ProgressMonitor& progress);
+    const ProgressMonitor& progress, ConvergenceForecast* forecast);
   void Add(const Group& group, const bool* solved, Values& x, Values* r);
 
   void Accumulate(int columns, const float* p, double* sums);

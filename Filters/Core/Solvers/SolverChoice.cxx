@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/SolverChoice.h"
 
+#include "Core/Solvers/FallBackSolver.h"
 #include "Core/Solvers/SolverCosts.h"
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <stdexcept>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -35,6 +34,14 @@ constexpr double SteadyState = 1e4; // the diffusion number that a steady state 
 // Iterations run on all threads, and a factorisation on one. This is their share of the time on one
 // thread, between that of one thread and of two.
 constexpr double Threads = 0.75;
+// On meshes where conjugate gradients give up, multigrid takes the cycles of steps that are longer by
+// this factor.
+constexpr double Hardness = 30.0;
+// Conjugate gradients are not given up before they need this factor of the expected iterations,
+// multigrid not before that.
+constexpr double LeastOfExpected = 1.5;
+constexpr double LeastOfNext = 1.25; // of the time of the next method
+constexpr double MostOfExpected = 5.0;
 // Over several processes longer steps are cheaper with multigrid.
 constexpr double LargestDistributedJacobi = 10.0;
 } // namespace Measured
@@ -44,145 +51,112 @@ double DiffusionNumberOf(const SolverTask& task)
   return task.DiffusionNumber.value_or(Measured::SteadyState);
 }
 
-SolverMethod FindFastest(const SolverTask& task)
+/// SolverChoice::Patience
+int PatienceOf(double iterations)
 {
-  using namespace Measured;
-  using namespace SolverCosts;
-  const double n = task.NumberOfVertices;
-  if (n <= SmallestIterative && task.Tolerance < LargestToleranceOfSmall)
-  {
-    return SolverMethod::Direct;
-  }
-  const double s = n / Size;
-  const double c = std::max(DiffusionNumberOf(task), SmallestDiffusionNumber);
-  const double digits = std::log(task.Tolerance) / std::log(1e-10);
-
-  const auto columns = [&](double share) { return 1.0 + share * (task.NumberOfColumns - 1); };
-  const double substitution = columns(SubstitutionColumn) *
-    std::min(Substitution * std::pow(s, 1.4), LocalSubstitution * std::pow(c, 0.2) * s);
-  const double factorization = Factor * std::pow(s, 1.5) + task.NumberOfSolves * substitution;
-
-  const double iterations = digits *
-    std::min(Iterations * std::pow(c, 0.4) * std::pow(s, 0.1), IterationsAcross * std::sqrt(n));
-  const bool isSingle = c <= LongestSingleStep || task.Tolerance >= SmallestToleranceOfLongSteps;
-  const double iteration = isSingle ? SingleIteration * columns(SingleIterationColumn)
-                                    : DoubleIteration * columns(DoubleIterationColumn);
-  const double conjugateGradient = Threads * task.NumberOfSolves * iterations * iteration * s;
-
-  const double cycles = digits * (Cycles + CyclesPerDecade * std::log10(c)) *
-    std::pow(std::min(task.Anisotropy, std::max(c, 1.0)), AnisotropicCycles);
-  const double multigrid =
-    Threads * (Hierarchy * s + columns(CycleColumn) * task.NumberOfSolves * cycles * Cycle * s);
-
-  const double iterative =
-    task.AllowMultigrid ? std::min(conjugateGradient, multigrid) : conjugateGradient;
-  const bool hasRoom = task.NumberOfVertices <= LargestFactor || !task.AllowMultigrid;
-  if (factorization < iterative && hasRoom)
-  {
-    return SolverMethod::Direct;
-  }
-  return iterative < conjugateGradient ? SolverMethod::Multigrid : SolverMethod::ConjugateGradient;
+  return static_cast<int>(std::min(iterations, 1e9));
 }
 
-/// Several methods: the first, and the next ones for the systems on which those before fail.
-class FallBackSolver : public LinearSolver
+/// Seconds that a method is expected to take in all, by SolverCosts.h.
+class ExpectedCosts
 {
 public:
-  explicit FallBackSolver(std::vector<std::unique_ptr<LinearSolver>> methods)
-    : Methods(std::move(methods))
+  explicit ExpectedCosts(const SolverTask& task)
+    : Task(task)
+    , S(task.NumberOfVertices / SolverCosts::Size)
+    , C(std::max(DiffusionNumberOf(task), Measured::SmallestDiffusionNumber))
+    , Digits(std::log(task.Tolerance) / std::log(1e-10))
   {
   }
 
-  void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress) override
+  double Factorization() const
   {
-    this->Matrix = &matrix;
-    for (this->First = 0;; ++this->First)
-    {
-      try
-      {
-        this->Methods[this->First]->SetMatrix(matrix, progress);
-        return;
-      }
-      catch (const std::runtime_error&)
-      {
-        if (this->First + 1 == this->Methods.size())
-        {
-          throw;
-        }
-      }
-    }
+    using namespace SolverCosts;
+    const double substitution = this->Columns(SubstitutionColumn) *
+      std::min(Substitution * std::pow(this->S, 1.4),
+        LocalSubstitution * std::pow(this->C, 0.2) * this->S);
+    return Factor * std::pow(this->S, 1.5) + this->Task.NumberOfSolves * substitution;
   }
 
-  // The next solve tries the first method again: if the failure were remembered, the bits of a step
-  // would depend on the steps computed before it.
-  SolveReport Solve(const Values& b, Values& x, const ProgressMonitor& progress) override
+  /// Of conjugate gradients with the diagonal.
+  double Iterations() const
   {
-    SolveReport best;
-    best.Residual = std::numeric_limits<double>::infinity();
-    std::exception_ptr failure;
-    double done = 0.0;
-    for (std::size_t m = this->First; m < this->Methods.size(); ++m)
-    {
-      const double end = m + 1 < this->Methods.size() ? 0.5 * (1.0 + done) : 1.0;
-      try
-      {
-        const SolveReport report = this->TrySolve(m, b, x, progress.Part(done, end));
-        if (report.Converged)
-        {
-          progress.Report(1.0);
-          return report;
-        }
-        if (report.Residual < best.Residual)
-        {
-          best = report;
-          this->Best = x;
-        }
-      }
-      catch (const std::runtime_error&)
-      {
-        if (!b.allFinite())
-        {
-          throw; // no method has an answer
-        }
-        failure = failure ? failure : std::current_exception();
-        x.setZero(b.rows(), b.cols());
-      }
-      done = end;
-    }
-    if (!std::isfinite(best.Residual))
-    {
-      std::rethrow_exception(failure);
-    }
-    x = this->Best;
-    best.IsFinal = true;
-    return best;
+    using namespace SolverCosts;
+    return this->Digits *
+      std::min(SolverCosts::Iterations * std::pow(this->C, 0.4) * std::pow(this->S, 0.1),
+        IterationsAcross * std::sqrt(static_cast<double>(this->Task.NumberOfVertices)));
+  }
+  /// One iteration in each solve
+  double Iteration() const
+  {
+    using namespace SolverCosts;
+    const bool isSingle = this->C <= Measured::LongestSingleStep ||
+      this->Task.Tolerance >= Measured::SmallestToleranceOfLongSteps;
+    const double iteration = isSingle ? SingleIteration * this->Columns(SingleIterationColumn)
+                                      : DoubleIteration * this->Columns(DoubleIterationColumn);
+    return Measured::Threads * this->Task.NumberOfSolves * iteration * this->S;
   }
 
-  void Precondition(const Values& r, Values& z) override
+  /// Of multigrid. hardness: a factor on the diffusion number.
+  double Cycles(double hardness = 1.0) const
   {
-    this->Methods[this->First]->Precondition(r, z);
+    using namespace SolverCosts;
+    return this->Digits * (SolverCosts::Cycles + CyclesPerDecade * std::log10(hardness * this->C)) *
+      std::pow(
+        std::min(this->Task.Anisotropy, std::max(this->C, 1.0)), Measured::AnisotropicCycles);
   }
-
-  bool RunsOnOneThread() const override { return this->Methods[this->First]->RunsOnOneThread(); }
+  double Multigrid(double hardness = 1.0) const
+  {
+    using namespace SolverCosts;
+    return Measured::Threads * this->S *
+      (Hierarchy +
+        this->Columns(CycleColumn) * this->Task.NumberOfSolves * this->Cycles(hardness) * Cycle);
+  }
 
 private:
-  SolveReport TrySolve(std::size_t m, const Values& b, Values& x, const ProgressMonitor& progress)
-  {
-    LinearSolver& method = *this->Methods[m];
-    method.SetLimits(this->Limits);
-    const double begin = m > this->First ? 0.8 : 0.0;
-    if (m > this->First)
-    {
-      method.SetMatrix(*this->Matrix, progress.Part(0.0, begin));
-    }
-    return method.Solve(b, x, progress.Part(begin, 1.0));
-  }
+  double Columns(double share) const { return 1.0 + share * (this->Task.NumberOfColumns - 1); }
 
-  std::vector<std::unique_ptr<LinearSolver>> Methods;
-  std::size_t First = 0; ///< the first that took the matrix
-  const SparseMatrix* Matrix = nullptr;
-  Values Best;
+  const SolverTask& Task;
+  const double S, C, Digits;
 };
+
+/// Of Automatic.
+SolverChoice FindFastest(const SolverTask& task)
+{
+  using namespace Measured;
+  SolverChoice choice;
+  choice.FallsBack = true;
+  if (task.NumberOfVertices <= SmallestIterative && task.Tolerance < LargestToleranceOfSmall)
+  {
+    return choice;
+  }
+  const ExpectedCosts costs(task);
+  const double conjugateGradient = costs.Iterations() * costs.Iteration();
+  const double iterative =
+    task.AllowMultigrid ? std::min(conjugateGradient, costs.Multigrid()) : conjugateGradient;
+  const bool hasRoom = task.NumberOfVertices <= LargestFactor || !task.AllowMultigrid;
+  if (costs.Factorization() < iterative && hasRoom)
+  {
+    return choice;
+  }
+  if (iterative < conjugateGradient)
+  {
+    choice.Method = SolverMethod::Multigrid;
+    choice.Patience = PatienceOf(MostOfExpected * costs.Cycles());
+    return choice;
+  }
+  choice.Method = SolverMethod::ConjugateGradient;
+  double next = costs.Factorization();
+  const double multigrid = costs.Multigrid(Hardness);
+  if (task.AllowMultigrid && (multigrid < next || !hasRoom))
+  {
+    choice.Next = SolverMethod::Multigrid;
+    next = multigrid;
+  }
+  choice.Patience = PatienceOf(
+    std::max(LeastOfNext * next / costs.Iteration(), LeastOfExpected * costs.Iterations()));
+  return choice;
+}
 
 std::unique_ptr<LinearSolver> MakeOne(SolverMethod method, const ParallelFor& parallel)
 {
@@ -201,14 +175,31 @@ std::unique_ptr<LinearSolver> MakeOne(SolverMethod method, const ParallelFor& pa
 
 SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task)
 {
-  SolverChoice choice;
-  choice.Method = method;
-  if (method == SolverMethod::Automatic)
+  if (method == SolverMethod::Automatic && !task.IsPreconditioner)
   {
-    choice.Method = task.IsPreconditioner ? SolverMethod::Direct : FindFastest(task);
-    choice.FallsBack = !task.IsPreconditioner;
+    return FindFastest(task);
+  }
+  SolverChoice choice;
+  choice.Method = method == SolverMethod::Automatic ? SolverMethod::Direct : method;
+  if (method == SolverMethod::Multigrid && !task.IsPreconditioner)
+  {
+    choice.FallsBack = true;
+    choice.Patience = std::numeric_limits<int>::max();
   }
   return choice;
+}
+
+bool WouldSolveAlike(
+  const LinearSolver& solver, const SolverChoice& made, const SolverChoice& other)
+{
+  if (made == other)
+  {
+    return true;
+  }
+  const auto* const methods = dynamic_cast<const FallBackSolver*>(&solver);
+  return methods && made.Method == other.Method && made.FallsBack == other.FallsBack &&
+    made.Patience > 0 && other.Patience > 0 && methods->EndsAlike(other.Patience) &&
+    (made.Next == other.Next || !methods->HasGivenUp());
 }
 
 std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const ParallelFor& parallel)
@@ -217,16 +208,23 @@ std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const Paral
   {
     return MakeOne(choice.Method, parallel);
   }
-  std::vector<std::unique_ptr<LinearSolver>> methods;
-  methods.push_back(MakeOne(choice.Method, parallel));
-  for (const SolverMethod next : { SolverMethod::Direct, SolverMethod::ConjugateGradient })
+  std::vector<SolverMethod> order = { choice.Method };
+  for (const SolverMethod next :
+    { choice.Next, SolverMethod::Direct, SolverMethod::ConjugateGradient })
   {
-    if (next != choice.Method)
+    if (std::find(order.begin(), order.end(), next) == order.end())
     {
-      methods.push_back(MakeOne(next, parallel));
+      order.push_back(next);
     }
   }
-  return std::make_unique<FallBackSolver>(std::move(methods));
+  std::vector<std::unique_ptr<LinearSolver>> methods;
+  for (const SolverMethod method : order)
+  {
+    methods.push_back(MakeOne(method, parallel));
+  }
+  const auto factor = std::find(order.begin(), order.end(), SolverMethod::Direct) - order.begin();
+  return std::make_unique<FallBackSolver>(
+    std::move(methods), static_cast<std::size_t>(factor), choice.Patience, parallel);
 }
 
 bool PreferDistributedMultigrid(SolverMethod method, const SolverTask& task)

@@ -43,24 +43,35 @@ struct SolverTask
   bool IsPreconditioner = false;
 };
 
-/// A method, and whether others follow if it fails: a factorisation, then conjugate gradients.
+/// A method, and whether others follow if it fails: Next, a factorisation, then conjugate gradients.
 /// Solvers of equal choices can stand in for each other.
 struct SolverChoice
 {
   SolverMethod Method = SolverMethod::Direct; ///< not Automatic
   bool FallsBack = false;
+  SolverMethod Next = SolverMethod::Direct;
+  /// The number of iterations of the first solve with a matrix from which on Next is expected to be
+  /// faster. That solve decides the method for the matrix: see ConvergenceForecast. 0: any number.
+  int Patience = 0;
 
   bool operator==(const SolverChoice& other) const
   {
-    return this->Method == other.Method && this->FallsBack == other.FallsBack;
+    return this->Method == other.Method && this->FallsBack == other.FallsBack &&
+      this->Next == other.Next && this->Patience == other.Patience;
   }
   bool operator!=(const SolverChoice& other) const { return !(*this == other); }
 };
 
 /// The method asked for, or instead of Automatic the one that is expected to be fastest by a model
-/// of measured times. Automatic falls back on the other methods, and if none converges takes the
-/// answer that is closest.
+/// of measured times on even meshes. Automatic and Multigrid fall back on the other methods, and if
+/// none converges take the answer that is closest. Where triangles are needles, conjugate gradients
+/// need many more iterations than the model expects, and Automatic goes on with another method.
 SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task);
+
+/// Whether the solves so far of a solver that was made for the choice `made` would have been the
+/// same, to the last bit, for `other`.
+bool WouldSolveAlike(
+  const LinearSolver& solver, const SolverChoice& made, const SolverChoice& other);
 
 std::unique_ptr<LinearSolver> MakeSolver(
   const SolverChoice& choice, const ParallelFor& parallel = SerialFor());

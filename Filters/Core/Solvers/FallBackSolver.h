@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Solvers/LinearSolver.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Several methods: the first, and the next ones for the systems on which those before fail. If the
+/// first one has a limited patience, the first solve with a matrix is its trial: it ends when its
+/// rate of convergence lets expect more iterations than that (ConvergenceForecast), and later solves
+/// begin with the next method. On needles that nothing but a factorisation resolves, this is the
+/// first method at once. All this depends on the matrix and the first right-hand side only: if later
+/// failures were remembered, the bits of a step would depend on the steps computed before it.
+class FallBackSolver : public LinearSolver
+{
+public:
+  /// factor: the number of the method that is a factorisation. patience: SolverChoice::Patience.
+  FallBackSolver(std::vector<std::unique_ptr<LinearSolver>> methods, std::size_t factor,
+    int patience, const ParallelFor& parallel)
+    : Methods(std::move(methods))
+    , Factor(factor)
+    , Patience(patience)
+    , Parallel(parallel)
+  {
+  }
+
+  void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress) override;
+  SolveReport Solve(const Values& b, Values& x, const ProgressMonitor& progress) override;
+
+  void Precondition(const Values& r, Values& z) override
+  {
+    this->Methods[this->First]->Precondition(r, z);
+  }
+  bool RunsOnOneThread() const override { return this->Methods[this->First]->RunsOnOneThread(); }
+
+  /// Whether the trials so far would have ended alike with this patience.
+  bool EndsAlike(int patience) const
+  {
+    return this->Needed <= patience && patience < this->Refused;
+  }
+  /// Whether a trial went wrong.
+  bool HasGivenUp() const { return std::isfinite(this->Refused); }
+
+private:
+  SolveReport TrySolve(std::size_t number, bool isFallBack, const Values& b, Values& x,
+    const ProgressMonitor& progress);
+  bool IsTrial(std::size_t method) const
+  {
+    return method == 0 && this->IsUndecided && this->Patience > 0;
+  }
+  void Decide(std::size_t method, bool isGood);
+
+  std::vector<std::unique_ptr<LinearSolver>> Methods;
+  const std::size_t Factor;
+  const int Patience;
+  const ParallelFor& Parallel;
+  const SparseMatrix* Matrix = nullptr;
+  std::size_t First = 0; ///< the method that solves begin with
+  std::size_t HasMatrix = 0; ///< the methods before this one have the matrix or are out of use
+  bool IsUndecided = true; ///< no solve with the matrix yet
+  Values Best;
+  /// The least patience with which trials went well, and with which one would have gone on.
+  double Needed = 0.0;
+  double Refused = std::numeric_limits<double>::infinity();
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NeedleMeshes.h"
+#include "RunInput.h"
+#include "ThreadedFor.h"
+
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/ConvergenceForecast.h"
+#include "Core/Solvers/SolverChoice.h"
+#include "Run/HeatSettings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+constexpr int Steps = 10;
+
+/// Backward Euler steps of c h^2 from noise.
+struct HeatSteps
+{
+  std::shared_ptr<const TriangleMesh> Mesh;
+  SparseMatrix Matrix;
+  SolverTask Task;
+
+  HeatSteps(const Testing::Surface& surface, double c)
+    : Mesh(MakeMesh(surface))
+  {
+    const Assembler assembler(this->Mesh);
+    const double h = MeanEdge(*this->Mesh);
+    this->Matrix = ZeroMatrix(assembler.Pattern());
+    assembler.Fill(this->Matrix, this->Mesh->ControlAreas(), c * h * h, CotanWeights(*this->Mesh));
+    this->Task.NumberOfVertices = this->Mesh->NumberOfVertices();
+    this->Task.DiffusionNumber = c;
+    this->Task.NumberOfSolves = Steps;
+  }
+
+  /// The state after the steps, and the sum of the iterations.
+  Values Run(LinearSolver& solver, int& iterations) const
+  {
+    solver.SetMatrix(this->Matrix);
+    Values u = Noise(*this->Mesh);
+    iterations = 0;
+    for (int step = 0; step < Steps; ++step)
+    {
+      const Values b = this->Mesh->ControlAreas().asDiagonal() * u;
+      const SolveReport report = solver.Solve(b, u);
+      EXPECT_NO_THROW(RequireAnswer(report, solver.GetLimits())) << report.Residual;
+      iterations += report.Iterations;
+    }
+    return u;
+  }
+
+  int IterationsOf(SolverMethod method) const
+  {
+    int iterations = 0;
+    this->Run(*MakeSolver(method, this->Task), iterations);
+    return iterations;
+  }
+};
+
+/// A run of heat diffusion with defaults.
+SurfaceDiffusion::HeatSettings Heat(int steps)
+{
+  SurfaceDiffusion::HeatSettings settings;
+  settings.NumberOfTimeSteps = steps;
+  return settings;
+}
+
+} // namespace
+
+// Conjugate gradients take 100 iterations and more in each of the ten steps.
+TEST(Needles, AutomaticTakesFewIterationsOnASphereOfMeridians)
+{
+  EXPECT_LE(
+    HeatSteps(LatitudeLongitudeSphere(100, 100), 1.0).IterationsOf(SolverMethod::Automatic), 150);
+}
+
+TEST(Needles, AutomaticTakesFewIterationsOnATorusWithASeam)
+{
+  for (const double c : { 0.1, 1.0, 10.0 })
+  {
+    const HeatSteps steps(TorusWithSeam(100), c);
+    EXPECT_LE(steps.IterationsOf(SolverMethod::Automatic), 400) << c;
+  }
+}
+
+// An even mesh keeps the method that the model of times expects to be the fastest.
+TEST(Needles, AutomaticStaysWithConjugateGradientsOnAnEvenMesh)
+{
+  const HeatSteps steps(Icosphere(5), 0.1);
+  EXPECT_EQ(steps.IterationsOf(SolverMethod::Automatic),
+    steps.IterationsOf(SolverMethod::ConjugateGradient));
+}
+
+TEST(Needles, MultigridFallsBackOnAFactorisation)
+{
+  for (const Testing::Surface& surface : { TorusWithSeam(60), ContourOfGrid(40) })
+  {
+    const HeatSteps steps(surface, 100.0);
+    int iterations = 0;
+    const Values u = steps.Run(*MakeSolver(SolverMethod::Multigrid, steps.Task), iterations);
+    EXPECT_LE(iterations, 400);
+    const Values direct = steps.Run(*MakeSolver(SolverMethod::Direct, steps.Task), iterations);
+    EXPECT_LT((u - direct).cwiseAbs().maxCoeff(), 1e-5);
+  }
+}
+
+TEST(Needles, AutomaticHasTheSameBitsOnAnyNumberOfThreads)
+{
+  for (const Testing::Surface& surface :
+    { LatitudeLongitudeSphere(100, 100), TorusWithSeam(80), CylinderWithFans(80, 80) })
+  {
+    const HeatSteps steps(surface, 1.0);
+    int iterations = 0, threaded = 0;
+    const Values one = steps.Run(*MakeSolver(SolverMethod::Automatic, steps.Task), iterations);
+    const ThreadedFor threads(3);
+    const Values three =
+      steps.Run(*MakeSolver(SolverMethod::Automatic, steps.Task, threads), threaded);
+    EXPECT_TRUE(one == three);
+    EXPECT_EQ(iterations, threaded);
+  }
+}
+
+// The first solve decides, and a new matrix is decided on its own.
+TEST(Needles, AutomaticForgetsTheLastMatrix)
+{
+  const HeatSteps steps(LatitudeLongitudeSphere(100, 100), 1.0);
+  int first = 0, second = 0;
+  const auto solver = MakeSolver(SolverMethod::Automatic, steps.Task);
+  const Values expected = steps.Run(*solver, first);
+  EXPECT_TRUE(steps.Run(*solver, second) == expected);
+  EXPECT_EQ(first, second);
+}
+
+TEST(Needles, StatesDoNotDependOnTheOrderInWhichTheyAreAskedFor)
+{
+  const RunInput input(LatitudeLongitudeSphere(100, 100));
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, Heat(Steps));
+  for (const int step : { 1, 4, 0, Steps })
+  {
+    run.Seek(step, ProgressMonitor());
+    SurfaceDiffusion::Run fresh(SerialFor());
+    StateOf(fresh, { input.Block() }, Heat(Steps));
+    fresh.Seek(step, ProgressMonitor());
+    EXPECT_TRUE(run.GetBlock(0).Path->State() == fresh.GetBlock(0).Path->State()) << step;
+  }
+}
+
+TEST(Needles, ALongerRunHasTheStatesOfANewOne)
+{
+  for (const Testing::Surface& surface : { LatitudeLongitudeSphere(100, 100), Icosphere(5) })
+  {
+    const RunInput input(surface);
+    SurfaceDiffusion::Run run(SerialFor());
+    for (const int steps : { 1, 2, 12, 40 })
+    {
+      const Values longer = StateOf(run, { input.Block() }, Heat(steps));
+      SurfaceDiffusion::Run fresh(SerialFor());
+      EXPECT_TRUE(longer == StateOf(fresh, { input.Block() }, Heat(steps))) << steps;
+    }
+  }
+}
+
+// On an even mesh no step is computed again.
+TEST(Needles, ALongerRunGoesOnFromTheStepsBefore)
+{
+  const RunInput input(Icosphere(5));
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, Heat(8));
+  const auto* const path = run.GetBlock(0).Path.get();
+  StateOf(run, { input.Block() }, Heat(10));
+  EXPECT_EQ(run.GetBlock(0).Path.get(), path);
+  EXPECT_EQ(run.GetBlock(0).Path->NumberOfAdvances(), 10);
+}
+
+TEST(ConvergenceForecast, ExpectsTheIterationsOfAConstantRate)
+{
+  ConvergenceForecast forecast(1.0, { 1e-8, 200, true });
+  EXPECT_FALSE(forecast.Update(31, 1.0)); // no forecast yet
+  EXPECT_EQ(forecast.Largest(), 0.0);
+  EXPECT_FALSE(forecast.Update(50, 1e-2));
+  EXPECT_NEAR(forecast.Largest(), 200.0, 1e-9);
+  EXPECT_FALSE(forecast.Update(60, 1e-2)); // the next one is that after 100 iterations
+  EXPECT_TRUE(forecast.Update(100, 1e-3));
+  EXPECT_NEAR(forecast.Largest(), 100.0 + 5.0 * 50.0, 1e-9);
+}
+
+TEST(ConvergenceForecast, StopsEarlyOnlyWhereItIsAskedTo)
+{
+  ConvergenceForecast patient(1.0, { 1e-8, 200, false });
+  EXPECT_FALSE(patient.Update(32, 2.0));
+  EXPECT_EQ(patient.Largest(), std::numeric_limits<double>::infinity());
+  ConvergenceForecast early(1.0, { 1e-8, 200, true });
+  EXPECT_TRUE(early.Update(32, 2.0));
+  ConvergenceForecast converged(1.0, { 1e-8, 10, true });
+  EXPECT_FALSE(converged.Update(40, 1e-9));
+}
