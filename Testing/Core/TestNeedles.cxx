@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -191,7 +192,7 @@ TEST(ConvergenceForecast, ExpectsTheIterationsOfAConstantRate)
   EXPECT_NEAR(forecast.Largest(), 200.0, 1e-9);
   EXPECT_FALSE(forecast.Update(60, 1e-2)); // the next one is that after 100 iterations
   EXPECT_TRUE(forecast.Update(100, 1e-3));
-  EXPECT_NEAR(forecast.Largest(), 100.0 + 5.0 * 50.0, 1e-9);
+  EXPECT_NEAR(forecast.Largest(), std::sqrt((100.0 + 5.0 * 50.0) * (100.0 * 8.0 / 3.0)), 1e-9);
 }
 
 TEST(ConvergenceForecast, StopsEarlyOnlyWhereItIsAskedTo)
@@ -200,7 +201,8 @@ TEST(ConvergenceForecast, StopsEarlyOnlyWhereItIsAskedTo)
   EXPECT_FALSE(patient.Update(32, 2.0));
   EXPECT_EQ(patient.Largest(), std::numeric_limits<double>::infinity());
   ConvergenceForecast early(1.0, { 1e-8, 200, true });
-  EXPECT_TRUE(early.Update(32, 2.0));
+  EXPECT_FALSE(early.Update(32, 2.0)); // before a quarter of the iterations that are allowed
+  EXPECT_TRUE(early.Update(64, 2.0));
   ConvergenceForecast converged(1.0, { 1e-8, 10, true });
   EXPECT_FALSE(converged.Update(40, 1e-9));
 }

@@ -208,15 +208,14 @@ private:
     this->SubtractProduct<K>(b);
     SolveReport report;
     report.Converged = false;
+    this->HasStoppedEarly = false;
     const bool refines = this->Share >= SmallestShareOfOnePass;
     const double begin = refines ? 0.9 : 0.0;
     if (refines)
     {
       report = this->Refine<K>(b, x, progress.Part(0.0, begin));
     }
-    const bool isHopeless =
-      this->Limits.StopsEarly && report.Forecast > this->Limits.MaximumNumberOfIterations;
-    if (!report.Converged && !isHopeless)
+    if (!report.Converged && !this->HasStoppedEarly)
     {
       this->Iterate<K>(b, x, report, progress.Part(begin, 1.0));
     }
@@ -298,7 +297,8 @@ private:
         forecast.emplace(report.Residual, this->Limits);
       }
       report.Forecast = forecast->Largest();
-      if (report.Converged || passes == 0.0 || left <= 0 || forecast->IsHopeless())
+      this->HasStoppedEarly = !report.Converged && forecast->IsHopeless();
+      if (report.Converged || passes == 0.0 || left <= 0 || this->HasStoppedEarly)
       {
         return report;
       }
@@ -423,6 +423,7 @@ private:
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
   SinglePrecisionSolver Single;
+  bool HasStoppedEarly = false; ///< before iterations in double precision
   double Share = 0.0; ///< of row sums in the diagonal
   ColumnSums RowSums;
   std::vector<SinglePrecisionSolver::Column> Corrections;

@@ -5,7 +5,9 @@
 #include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <limits>
 #include <stdexcept>
 
 namespace SurfaceDiffusion
@@ -157,8 +159,8 @@ SolveReport FallBackSolver::TrySolve(
   if (isTrial)
   {
     const double forecast = std::max<double>(report.Forecast, report.Iterations);
-    double& bound = report.Converged ? this->Needed : this->Refused;
-    bound = report.Converged ? std::max(bound, forecast) : std::min(bound, forecast);
+    this->Needed =
+      std::max(this->Needed, report.Converged ? forecast : std::numeric_limits<double>::infinity());
   }
   this->Decide(number, report.Converged);
   return report;

@@ -4,9 +4,7 @@
 
 #include "Core/Solvers/LinearSolver.h"
 
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -42,13 +40,8 @@ public:
   }
   bool RunsOnOneThread() const override { return this->Methods[this->First]->RunsOnOneThread(); }
 
-  /// Whether the trials so far would have ended alike with this patience.
-  bool EndsAlike(int patience) const
-  {
-    return this->Needed <= patience && patience < this->Refused;
-  }
-  /// Whether a trial went wrong.
-  bool HasGivenUp() const { return std::isfinite(this->Refused); }
+  /// Whether the trials so far went well, and would have with this patience.
+  bool EndsAlike(int patience) const { return this->Needed <= patience; }
 
 private:
   SolveReport TrySolve(std::size_t number, bool isFallBack, const Values& b, Values& x,
@@ -68,9 +61,7 @@ private:
   std::size_t HasMatrix = 0; ///< the methods before this one have the matrix or are out of use
   bool IsUndecided = true; ///< no solve with the matrix yet
   Values Best;
-  /// The least patience with which trials went well, and with which one would have gone on.
-  double Needed = 0.0;
-  double Refused = std::numeric_limits<double>::infinity();
+  double Needed = 0.0; ///< the least patience of all trials; infinite if one went wrong
 };
 
 } // namespace SurfaceDiffusion

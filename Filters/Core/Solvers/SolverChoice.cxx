@@ -196,10 +196,9 @@ bool WouldSolveAlike(
   {
     return true;
   }
-  const auto* const methods = dynamic_cast<const FallBackSolver*>(&solver);
-  return methods && made.Method == other.Method && made.FallsBack == other.FallsBack &&
-    made.Patience > 0 && other.Patience > 0 && methods->EndsAlike(other.Patience) &&
-    (made.Next == other.Next || !methods->HasGivenUp());
+  const auto* const trying = dynamic_cast<const FallBackSolver*>(&solver);
+  return trying && made.Method == other.Method && made.FallsBack == other.FallsBack &&
+    made.Patience > 0 && other.Patience > 0 && trying->EndsAlike(other.Patience);
 }
 
 std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const ParallelFor& parallel)
