@@ -16,6 +16,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
+/// Iterations from the answer of a factorisation rarely come closer.
+constexpr int MostAfterFactorization = 128;
+
 /// Whether triangles are so narrow that iterations end at round-off before they resolve the
 /// differences across them to the tolerance. The diagonal entries of such vertices are 1e8 times
 /// larger than others, and cancel in the row sums, which are the right-hand side of a step from the
@@ -92,13 +95,22 @@ SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMoni
   std::exception_ptr failure;
   double done = 0.0;
   int iterations = 0;
+  bool isFactorized = false;
   const std::size_t first = this->First;
   for (std::size_t m = first; m < this->Methods.size(); ++m)
   {
     const double end = m + 1 < this->Methods.size() ? 0.5 * (1.0 + done) : 1.0;
     try
     {
-      SolveReport report = this->TrySolve(m, m > first, b, x, progress.Part(done, end));
+      IterationLimits limits = this->Limits;
+      limits.StopsEarly = m > first;
+      if (isFactorized)
+      {
+        limits.MaximumNumberOfIterations =
+          std::min(limits.MaximumNumberOfIterations, MostAfterFactorization);
+      }
+      SolveReport report = this->TrySolve(m, limits, m > first, b, x, progress.Part(done, end));
+      isFactorized = isFactorized || m == this->Factor;
       iterations += report.Iterations;
       report.Iterations = iterations;
       // What a factorisation leaves is round-off.
@@ -137,8 +149,8 @@ SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMoni
   return best;
 }
 
-SolveReport FallBackSolver::TrySolve(
-  std::size_t number, bool isFallBack, const Values& b, Values& x, const ProgressMonitor& progress)
+SolveReport FallBackSolver::TrySolve(std::size_t number, IterationLimits limits, bool isFallBack,
+  const Values& b, Values& x, const ProgressMonitor& progress)
 {
   LinearSolver& method = *this->Methods[number];
   const double begin = isFallBack ? 0.8 : 0.0;
@@ -148,10 +160,9 @@ SolveReport FallBackSolver::TrySolve(
     this->HasMatrix = number + 1;
   }
   const bool isTrial = this->IsTrial(number);
-  IterationLimits limits = this->Limits;
-  limits.StopsEarly = isTrial || isFallBack;
   if (isTrial)
   {
+    limits.StopsEarly = true;
     limits.MaximumNumberOfIterations = std::min(limits.MaximumNumberOfIterations, this->Patience);
   }
   method.SetLimits(limits);

@@ -44,8 +44,8 @@ public:
   bool EndsAlike(int patience) const { return this->Needed <= patience; }
 
 private:
-  SolveReport TrySolve(std::size_t number, bool isFallBack, const Values& b, Values& x,
-    const ProgressMonitor& progress);
+  SolveReport TrySolve(std::size_t number, IterationLimits limits, bool isFallBack, const Values& b,
+    Values& x, const ProgressMonitor& progress);
   bool IsTrial(std::size_t method) const
   {
     return method == 0 && this->IsUndecided && this->Patience > 0;
