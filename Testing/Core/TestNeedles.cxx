@@ -77,20 +77,31 @@ SurfaceDiffusion::HeatSettings Heat(int steps)
 
 } // namespace
 
-// Conjugate gradients take 100 iterations and more in each of the ten steps.
+// Conjugate gradients take 2400 iterations for the ten steps.
 TEST(Needles, AutomaticTakesFewIterationsOnASphereOfMeridians)
 {
   EXPECT_LE(
-    HeatSteps(LatitudeLongitudeSphere(100, 100), 1.0).IterationsOf(SolverMethod::Automatic), 150);
+    HeatSteps(LatitudeLongitudeSphere(150, 150), 1.0).IterationsOf(SolverMethod::Automatic), 150);
 }
 
-TEST(Needles, AutomaticTakesFewIterationsOnATorusWithASeam)
+// Iterations of methods that fail count, too: solvers report their progress after every eighth one.
+TEST(Needles, AutomaticDoesLittleWorkOnATorusWithASeam)
 {
-  for (const double c : { 0.1, 1.0, 10.0 })
+  const HeatSteps steps(TorusWithSeam(150), 1.0);
+  int reports = 0;
+  const ProgressMonitor::Callback count = [&](double)
   {
-    const HeatSteps steps(TorusWithSeam(100), c);
-    EXPECT_LE(steps.IterationsOf(SolverMethod::Automatic), 400) << c;
+    ++reports;
+    return true;
+  };
+  const auto solver = MakeSolver(SolverMethod::Automatic, steps.Task);
+  solver->SetMatrix(steps.Matrix);
+  Values u = Noise(*steps.Mesh);
+  for (int step = 0; step < Steps; ++step)
+  {
+    solver->Solve(steps.Mesh->ControlAreas().asDiagonal() * u, u, ProgressMonitor(count));
   }
+  EXPECT_LE(reports, 100);
 }
 
 // An even mesh keeps the method that the model of times expects to be the fastest.
