@@ -239,7 +239,8 @@ public:
    * in the paper. Multigrid: conjugate gradients with smoothed aggregation as preconditioner; the
    * number of iterations hardly grows with the size and the time step. Automatic (default): the
    * solver that is expected to be the fastest for the size, the time step and the number of steps,
-   * according to measurements.
+   * according to measurements. Where narrow triangles keep the iterations of Automatic or Multigrid
+   * from converging, another solver takes over, at last Direct.
    */
   vtkSetMacro(Solver, int);
   vtkGetMacro(Solver, int);

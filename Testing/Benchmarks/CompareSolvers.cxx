@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // CompareSolvers [<largest level> | <mesh file>... | needles [<size>]] compares the solver Automatic
-// with all solvers, for runs of several backward Euler steps of c h^2 from noise. It prints a line of
-// JSON per surface, c and number of steps: CPU seconds and iterations per method, the method that
+// with all solvers, for runs of several backward Euler steps of c h^2 from noise. It prints a line
+// of JSON per surface, c and number of steps: CPU seconds and iterations per method, the method that
 // Automatic begins with, and its time over that of the fastest. The surfaces are those of
 // SurfaceOfLevel(), by default up to level 2 (178,000 vertices). Mesh files, by their names without
 // an ending, are surfaces on which CalibrateSolvers did not measure; needles are those of

@@ -67,8 +67,8 @@ public:
   }
 
   /// Iterate until all residuals are within the tolerance. Throws std::runtime_error if one is not
-  /// finite. Not converged: more iterations are needed than allowed, or expected to be if limits say
-  /// so, or the matrix is not positive definite beyond round-off.
+  /// finite. Not converged: more iterations are needed than allowed, or expected to be if limits
+  /// say so, or the matrix is not positive definite beyond round-off.
   SolveReport Solve(Values& x, const IterationLimits& limits, const ProgressMonitor& progress)
   {
     SolveReport report;

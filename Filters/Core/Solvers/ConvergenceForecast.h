@@ -13,8 +13,8 @@ namespace SurfaceDiffusion
 
 /// Forecasts the number of iterations of a solve after 32, 64, 128, ... iterations: the geometric
 /// mean of those at the mean rate of convergence so far and since the last forecast. The rate of
-/// conjugate gradients is uneven: they stall where few small eigenvalues are left, and speed up when
-/// they have found these.
+/// conjugate gradients is uneven: they stall where few small eigenvalues are left, and speed up
+/// when they have found these.
 class ConvergenceForecast
 {
 public:
@@ -62,8 +62,8 @@ public:
   double Largest() const { return this->Most; }
 
 private:
-  /// Of the iterations that are allowed. To stop before these are done would save little, and from a
-  /// start near the solution the residual grows at first.
+  /// Of the iterations that are allowed. To stop before these are done would save little, and from
+  /// a start near the solution the residual grows at first.
   static constexpr double LeastShare = 0.25;
 
   IterationLimits Limits;

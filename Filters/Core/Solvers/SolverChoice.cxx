@@ -34,8 +34,8 @@ constexpr double SteadyState = 1e4; // the diffusion number that a steady state 
 // Iterations run on all threads, and a factorisation on one. This is their share of the time on one
 // thread, between that of one thread and of two.
 constexpr double Threads = 0.75;
-// On meshes where conjugate gradients give up, multigrid takes the cycles of steps that are longer by
-// this factor.
+// On meshes where conjugate gradients give up, multigrid takes the cycles of steps that are longer
+// by this factor.
 constexpr double Hardness = 30.0;
 // Conjugate gradients are not given up before they need this factor of the expected iterations,
 // multigrid not before that.

@@ -43,8 +43,8 @@ struct SolverTask
   bool IsPreconditioner = false;
 };
 
-/// A method, and whether others follow if it fails: Next, a factorisation, then conjugate gradients.
-/// Solvers of equal choices can stand in for each other.
+/// A method, and whether others follow if it fails: Next, a factorisation, then conjugate
+/// gradients. Solvers of equal choices can stand in for each other.
 struct SolverChoice
 {
   SolverMethod Method = SolverMethod::Direct; ///< not Automatic
