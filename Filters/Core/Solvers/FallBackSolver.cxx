@@ -22,12 +22,14 @@ constexpr int MostAfterFactorization = 128;
 /// Whether triangles are so narrow that iterations end at round-off before they resolve the
 /// differences across them to the tolerance. The diagonal entries of such vertices are 1e8 times
 /// larger than others, and cancel in the row sums, which are the right-hand side of a step from the
-/// constant 1.
-bool HasUnresolvedNeedles(const SparseMatrix& matrix, double tolerance, const ParallelFor& parallel)
+/// constant 1. diagonal, sums: work.
+bool HasUnresolvedNeedles(const SparseMatrix& matrix, double tolerance, const ParallelFor& parallel,
+  Vector& diagonal, Vector& sums)
 {
   constexpr double large = 1e8;
   const auto n = static_cast<Index>(matrix.rows());
-  Vector diagonal(n), sums(n);
+  diagonal.resize(n);
+  sums.resize(n);
   ForEach(parallel, n,
     [&](Index i)
     {
@@ -57,7 +59,9 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
 {
   this->Matrix = &matrix;
   this->IsUndecided = true;
-  if (this->Patience > 0 && HasUnresolvedNeedles(matrix, this->Limits.Tolerance, this->Parallel))
+  if (this->Patience > 0 &&
+    HasUnresolvedNeedles(
+      matrix, this->Limits.Tolerance, this->Parallel, this->Diagonal, this->RowSums))
   {
     try
     {

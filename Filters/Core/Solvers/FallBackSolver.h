@@ -61,6 +61,7 @@ private:
   std::size_t HasMatrix = 0; ///< the methods before this one have the matrix or are out of use
   bool IsUndecided = true; ///< no solve with the matrix yet
   Values Best;
+  Vector Diagonal, RowSums; ///< of the matrix, kept so that time steps do not allocate
   double Needed = 0.0; ///< the least patience of all trials; infinite if one went wrong
 };
 
