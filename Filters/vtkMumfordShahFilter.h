@@ -28,14 +28,14 @@
  *
  * **AutomaticThreshold** (default: on) finds EdgeThreshold J and SmoothingLength L for each
  * connected component, from the noise sigma, the range R of the component's values without the
- * outermost 0.1 % at either end, and the slope g of the data between their jumps, the last two in the
- * Euclidean norm over the components of the array, as sigma:
+ * outermost 0.1 % at either end, and the slope g of the data between their jumps, all in the
+ * Euclidean norm over the components of the array:
  *
  *     J = max(0.12 R, 3.2 sigma sqrt(8 h / L), g max(sqrt(24 eps L), 2 L)),
  *
  * so that neither noise nor slopes become edges. L is what noise needs for J = 0.12 R, in 4 h to 24
- * h. If slopes then ask for a larger J, then L is shorter, down to 2 h, where noise and slopes ask for the
- * same J. White noise of 10 % of the range, in data with jumps of 25 %, leaves 85 % of the edges or
+ * h. If slopes then ask for a larger J, then L is shorter, down to 2 h, where noise and slopes ask
+ * for the same J. White noise of 10 % of the range, in data with jumps of 25 %, leaves 85 % of the edges or
  * more. GetEffectiveEdgeThreshold() and GetEffectiveSmoothingLength() return what was found. The
  * edges then form with eps = EdgeWidth from the start.
  *
@@ -91,8 +91,8 @@ public:
   ///@{
   /**
    * On (default): EdgeThreshold and SmoothingLength are found from the data, for each connected
-   * component and each block of composite data, and the given ones are ignored, with a warning if they were set. Surfaces in
-   * pieces are then gathered and solved in process 0.
+   * component and each block of composite data, and the given ones are ignored, with a warning if
+   * they were set. Surfaces in pieces are then gathered and solved in process 0.
    */
   vtkSetMacro(AutomaticThreshold, bool);
   vtkGetMacro(AutomaticThreshold, bool);

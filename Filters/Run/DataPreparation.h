@@ -28,8 +28,9 @@ void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunR
 /// The cotan weights times the constant diffusivities of the settings: the weights of (12).
 CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& inputs);
 
-/// White noise of cells is correlated between the vertices of a cell, so that EstimateNoise() between
-/// neighbours is too low at vertices. This factor, found from a sample, mends that. 0 if it is not known.
+/// White noise of cells is correlated between the vertices of a cell, so that EstimateNoise()
+/// between neighbours is too low at vertices. This factor, found from a sample, mends that. 0 if it
+/// is not known.
 double FindCellNoiseGain(const ModelInputs& inputs);
 
 /// The standard deviation at vertices, in ValueUnit, of white noise of the data, in array units.

@@ -71,8 +71,8 @@ struct RunResult
 {
   bool HasMissing = false;
   double EffectiveFidelityWeight = 0.0; ///< lambda, in the unit of FidelityWeight
-  /// Of edges, on the connected component with the most vertices: in the units of EdgeThreshold and of
-  /// SmoothingLength, and in array units.
+  /// Of edges, on the connected component with the most vertices: in the units of EdgeThreshold and
+  /// of SmoothingLength, and in array units.
   double EffectiveEdgeThreshold = 0.0;
   double EffectiveSmoothingLength = 0.0;
   double EstimatedNoiseLevel = 0.0;

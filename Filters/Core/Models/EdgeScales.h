@@ -30,20 +30,21 @@ struct EdgeScalesInput
 };
 
 /// J and L of each connected component, from the data alone. With the mean edge length h, the
-/// noise sigma (EstimateNoise(), in the Euclidean norm over the channels), the range R (RobustBounds(),
-/// likewise), and the slope g of the data between their jumps,
+/// noise sigma (EstimateNoise(), in the Euclidean norm over the channels), the range R
+/// (RobustBounds(), likewise), and the slope g of the data between their jumps,
 ///   J = max(0.12 R, 3.2 sigma sqrt(8 h / L), g max(sqrt(24 eps L), 2 L)).
 /// The second term keeps noise from making edges, measured on spheres, scans and jittered grids.
 /// The third is the gradient limit of the functional (A. Blake, A. Zisserman, Visual
 /// Reconstruction, 1987): slopes above J/(2 L) cost less as a staircase of edges, and above
-/// J/sqrt(24 eps L) the flux v^2 |grad u| of the approximation by Ambrosio and Tortorelli falls with the
-/// slope, so that it concentrates in edges.
+/// J/sqrt(24 eps L) the flux v^2 |grad u| of the approximation by Ambrosio and Tortorelli falls
+/// with the slope, so that it concentrates in edges.
 ///   L is what noise needs for J = 0.12 R, in 4 h to 24 h. If the slope then asks for a larger J,
 /// then L is shorter, down to 2 h, where the noise and the slope ask for the same J.
 ///
-/// g is found from linear fits on disks of four edges around at most 3000 vertices. Disks with a jump
-/// are left out: residuals above the noise and above a fifth of what the slope explains. g is the quantile
-/// of 90 % of the others, and a lower one the more disks have a jump.
+/// g is found from linear fits on disks of four edges around at most 3000 vertices. Disks with a
+/// jump are left out: their residual is above that of the noise and 0.12 of the fitted slope times
+/// the radius, in squares. g is the quantile of 90 % of the others, and a lower one the more disks
+/// have a jump.
 std::vector<EdgeScales> FindEdgeScales(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const PointData& data, const EdgeScalesInput& input);
 
