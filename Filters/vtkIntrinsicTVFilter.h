@@ -249,9 +249,8 @@ public:
    * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
    * a linear fit to its neighbours. The estimate assumes white noise, independent from point to
-   * point. Data that were interpolated or smoothed have correlated noise: residuals of neighbours
-   * are more alike than those of white noise, or points farther apart differ by 15 % more. A
-   * warning then gives the distance and both values, and the larger is used.
+   * point. If points farther apart differ by 15 % more, as in data that were interpolated or
+   * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
    */
   vtkSetMacro(NoiseLevel, double);
   vtkGetMacro(NoiseLevel, double);

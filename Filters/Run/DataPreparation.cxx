@@ -138,11 +138,9 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
     if (estimate.IsCorrelated())
     {
       std::ostringstream text;
-      text << "the noise is correlated over about " << estimate.Distance
-           << " edge lengths: its standard deviation is " << estimate.BetweenNeighbours * unit
-           << " between neighbours and " << noise * unit
-           << (estimate.Settled ? " farther apart" : " or more farther apart")
-           << ", which AutomaticFidelity uses (to set another, use NoiseLevel)";
+      text << "the noise is correlated: its standard deviation is "
+           << estimate.BetweenNeighbours * unit << " between neighbours and " << noise * unit
+           << " farther apart, which AutomaticFidelity uses (to set another, use NoiseLevel)";
       result.Warnings.push_back(text.str());
     }
   }

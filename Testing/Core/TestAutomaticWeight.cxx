@@ -209,11 +209,11 @@ void ExpectFoundWeight(ModeType steady, double improvement)
   settings.AutomaticFidelity = false;
   settings.FidelityWeight = 17.0;
   StateOf(run, { data.Input.Block() }, settings);
-  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, 17.0);
+  EXPECT_DOUBLE_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, 17.0);
   settings.Blur.FWHM = 0.0;
   settings.FidelityWeight = ModelSettings().FidelityWeight;
   StateOf(run, { data.Input.Block() }, settings);
-  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, settings.FidelityWeight);
+  EXPECT_DOUBLE_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, settings.FidelityWeight);
 }
 
 } // namespace

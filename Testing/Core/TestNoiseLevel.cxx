@@ -6,9 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <vector>
-
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
@@ -169,61 +166,6 @@ TEST(NoiseLevel, CorrelatedNoiseIsFoundOrMeasuredAcrossItsCorrelation)
     const NoiseEstimate noise = EstimateNoise(*assembler, s.Vertices, PointData::FromValues(f));
     EXPECT_EQ(noise.IsCorrelated(), c >= 0.3) << c << ' ' << noise.BetweenNeighbours;
     EXPECT_NEAR(noise.Level(), 1.0, 0.1) << c << ' ' << noise.BetweenNeighbours;
-  }
-}
-
-TEST(NoiseLevel, SmoothedNoiseIsFoundAndItsLevelIsMeasured)
-{
-  const Surface strip = Jittered(Strip(50, 50), 0.35 / 50.0, 0.001, 0.999, 0.001, 0.999);
-  for (const Surface& s : { Icosphere(4), strip })
-  {
-    const auto assembler = MakeAssembler(s);
-    const TriangleMesh& mesh = assembler->Mesh();
-    const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges() * mesh.LengthUnit();
-    for (const double width : { 2.5, 3.0, 4.0, 5.0, 6.0 }) // full width at half maximum, in h
-    {
-      const double time = width * width * h * h / (16.0 * std::log(2.0));
-      Values f = Diffuse(assembler, PointData::FromValues(GaussianNoise(mesh, 1)), time / 4.0, 4,
-        0.0, Scheme::SDIRK2);
-      f.array() -= f.mean();
-      f /= RootMeanSquare(mesh, f);
-      const NoiseEstimate noise = EstimateNoise(*assembler, s.Vertices, PointData::FromValues(f));
-      EXPECT_TRUE(noise.IsCorrelated()) << width;
-      EXPECT_TRUE(noise.Settled) << width;
-      EXPECT_GE(noise.Distance, 2) << width;
-      EXPECT_NEAR(noise.Level(), 1.0, 0.12) << width << ' ' << noise.BetweenNeighbours;
-    }
-  }
-}
-
-TEST(NoiseLevel, WhiteNoiseUnderAnySignalIsNotCorrelated)
-{
-  const Surface strip = Jittered(Strip(50, 50), 0.35 / 50.0, 0.001, 0.999, 0.001, 0.999);
-  const std::vector<std::function<double(const Eigen::RowVector3d&)>> signals = {
-    [](const Eigen::RowVector3d&) { return 0.0; },
-    [](const Eigen::RowVector3d& x) { return x[0]; },
-    [](const Eigen::RowVector3d& x) { return x[0] > 0.3 ? 1.0 : 0.0; },
-    [](const Eigen::RowVector3d& x) { return std::sin(4.0 * x[1]); },
-    [](const Eigen::RowVector3d& x) { return std::exp(-20.0 * x.squaredNorm()); },
-  };
-  for (const Surface& s : { Icosphere(3), Icosphere(4), strip })
-  {
-    const auto assembler = MakeAssembler(s);
-    const TriangleMesh& mesh = assembler->Mesh();
-    const Values white = GaussianNoise(mesh, 2);
-    for (std::size_t k = 0; k < signals.size(); ++k)
-    {
-      for (const double sigma : { 0.02, 0.1, 0.3 })
-      {
-        for (const Eigen::Index seed : { 0, 1 })
-        {
-          const Values f = Sample(mesh, s, signals[k]) + sigma * Values(white.col(seed));
-          EXPECT_FALSE(
-            EstimateNoise(*assembler, s.Vertices, PointData::FromValues(f)).IsCorrelated())
-            << k << ' ' << sigma << ' ' << seed << ' ' << mesh.NumberOfVertices();
-        }
-      }
-    }
   }
 }
 

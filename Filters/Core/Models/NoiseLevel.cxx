@@ -3,7 +3,6 @@
 #include "Core/Models/NoiseLevel.h"
 
 #include "Core/Models/LinearFit.h"
-#include "Core/Models/NoiseCorrelation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,20 +15,11 @@ namespace
 {
 
 constexpr Index LargestSample = 20000;
-
-/// How the estimate grows with the distance, by factors of two of which it is made.
-struct Growth
-{
-  int Farthest; ///< the largest distance, in edges
-  /// Twice as far apart, the residuals of a smooth signal are up to four times as large, and grow
-  /// faster with every distance. Those of noise that heat flow has smoothed grow less with every one.
-  double Most;
-  double Settled; ///< the estimate has reached the deviation of the noise
-  double SettledAtEnd; ///< the same at the largest distance
-};
-constexpr Growth GrowthOfOther = { 8, 3.0, 1.15, 1.3 };
-/// Of residuals that show that the noise is correlated.
-constexpr Growth GrowthOfSmoothed = { 16, 4.5, 1.03, 1.15 };
+constexpr int FarthestRing = 8;
+/// Twice as far apart, the residuals of a smooth signal are up to four times as large, and grow
+/// faster with every ring. Those of noise that heat flow has smoothed grow less with every ring.
+constexpr double MostGrowth = 3.0;
+constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 
 /// Means of equal numbers, such as data on cells have at vertices, differ by less, relatively.
 constexpr double RoundOff = 1e-13;
@@ -46,33 +36,6 @@ Eigen::RowVectorXd RoundOffOf(const FitData& data)
     }
   }
   return RoundOff * largest;
-}
-
-/// The deviation of the data from their medians: without a signal, that of the noise.
-double DeviationOfData(const FitData& data)
-{
-  double variance = 0.0;
-  std::vector<double> values;
-  for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
-  {
-    values.clear();
-    for (Index i = data.Range.Begin; i < data.Range.End; ++i)
-    {
-      if (!data.IsMissing(i))
-      {
-        values.push_back(data.Given(i, k));
-      }
-    }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    const double median = *middle;
-    for (double& value : values)
-    {
-      value = std::abs(value - median);
-    }
-    variance += std::pow(RobustDeviation(values), 2) / static_cast<double>(data.Given.cols());
-  }
-  return std::sqrt(variance);
 }
 
 /// The estimate from the vertices at a distance of `edges` edges.
@@ -186,32 +149,26 @@ NoiseEstimate EstimateNoise(const Assembler& assembler, const Eigen::Ref<const P
   NoiseEstimate estimate;
   estimate.BetweenNeighbours = EstimateAt(1, data);
   estimate.Apart = estimate.BetweenNeighbours;
-  const bool smoothed = estimate.Apart > 0.0 && CorrelateResiduals(data).IsOfCorrelatedNoise();
-  const Growth& growth = smoothed ? GrowthOfSmoothed : GrowthOfOther;
   double apart = estimate.BetweenNeighbours;
-  double most = growth.Most;
-  double last = growth.Most;
-  int distance = 1;
-  for (int edges = 2; edges <= growth.Farthest && apart > 0.0; edges *= 2)
+  double growth = MostGrowth;
+  for (int edges = 2; edges <= FarthestRing && apart > 0.0; edges *= 2)
   {
     const double next = EstimateAt(edges, data);
-    last = next / apart;
-    if (last <= growth.Settled || last > most)
+    if (next <= 1.15 * apart)
     {
-      break;
+      estimate.Apart = apart;
+      return estimate;
     }
-    most = smoothed ? most : last;
+    if (next > growth * apart)
+    {
+      return estimate;
+    }
+    growth = next / apart;
     apart = next;
-    distance = edges;
   }
-  const bool settled = last <= (distance == growth.Farthest ? growth.SettledAtEnd : growth.Settled);
-  estimate.Correlated = smoothed || (settled && distance > 1);
-  estimate.Settled = settled || !smoothed;
-  if (estimate.Correlated)
+  if (growth < SettledGrowth)
   {
-    // Far apart, the curvature of the surface and the ends of the fits add to the estimate.
-    estimate.Apart = std::min(apart, std::max(estimate.BetweenNeighbours, DeviationOfData(data)));
-    estimate.Distance = distance;
+    estimate.Apart = apart;
   }
   return estimate;
 }

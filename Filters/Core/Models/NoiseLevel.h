@@ -16,13 +16,11 @@ struct NoiseEstimate
 {
   double BetweenNeighbours = 0.0; ///< from the neighbours of each vertex
   double Apart = 0.0; ///< from vertices farther apart, as far as correlation was found
-  int Distance = 1; ///< of these, in edges
-  bool Correlated = false;
-  /// False: the noise is correlated over more edges than were looked at, and Apart is too low.
-  bool Settled = true;
 
-  bool IsCorrelated() const { return this->Correlated; }
-  double Level() const { return this->Correlated ? this->Apart : this->BetweenNeighbours; }
+  /// White noise has the same deviation at all distances. The differences of correlated noise, of
+  /// data that were interpolated or smoothed, are larger at larger distances.
+  bool IsCorrelated() const { return this->Apart > 1.15 * this->BetweenNeighbours; }
+  double Level() const { return this->IsCorrelated() ? this->Apart : this->BetweenNeighbours; }
 };
 
 /// The known vertices where data have noise, if they have any. Noise differs from vertex to vertex, so
@@ -36,13 +34,11 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 /// value at vertex i of the linear function, in the tangent plane, fitted to the known vertices at
 /// a distance of 1 edge from i, and then of 2, 4 and 8 edges while the result grows by more than
 /// 15 %, each time less than before: the noise is correlated. If it grows faster, or by more than
-/// 30 % at the end, then the signal bends and the first result is taken. If neighbouring residuals
-/// show correlated noise (see ResidualCorrelation), the result may grow faster, and up to 16 edges;
-/// it is at most the deviation of the data from their median. The deviation is 1.4826 times the
-/// median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the fit: robust to edges and exact on
-/// slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf. Theory 41, 1995). Only varying
-/// vertices count, at most 20,000 of them. Root mean square over the columns; 0 if no vertex has
-/// enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
+/// 30 % at the end, then the signal bends and the first result is taken. The
+/// deviation is 1.4826 times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the
+/// fit: robust to edges and exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf.
+/// Theory 41, 1995). Only varying vertices count. At most 20,000 vertices are used. Root mean square over the columns; 0 if no
+/// vertex has enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
 
