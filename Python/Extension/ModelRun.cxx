@@ -318,10 +318,8 @@ void ModelRun::WriteState(std::size_t block, const OutputArray& output,
     {
       WritePoints(
         *from.Surface, output, state.cols(), value,
-        [&](Index i, Eigen::Index k) {
-          return Unchanged(
-            old[i * columns + std::max(first, 0) + k], from.Surface->IsUndetermined(i));
-        },
+        [&](Index i, Eigen::Index k)
+        { return isNaN(i) ? NaN : static_cast<double>(old[i * columns + std::max(first, 0) + k]); },
         first);
     });
 }
