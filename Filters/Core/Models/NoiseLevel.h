@@ -34,11 +34,11 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 /// value at vertex i of the linear function, in the tangent plane, fitted to the known vertices at
 /// a distance of 1 edge from i, and then of 2, 4 and 8 edges while the result grows by more than
 /// 15 %, each time less than before: the noise is correlated. If it grows faster, or by more than
-/// 30 % at the end, then the signal bends and the first result is taken. The
-/// deviation is 1.4826 times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the
-/// fit: robust to edges and exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf.
-/// Theory 41, 1995). Only varying vertices count. At most 20,000 vertices are used. Root mean square over the columns; 0 if no
-/// vertex has enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
+/// 30 % at the end, then the signal bends and the first result is taken. The deviation is 1.4826
+/// times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the fit: robust to edges and
+/// exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf. Theory 41, 1995). Only
+/// varying vertices count, 20,000 of them at most. Root mean square over the columns; 0 if no vertex
+/// has enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
 
