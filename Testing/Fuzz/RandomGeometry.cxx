@@ -21,13 +21,14 @@ void RunDirections(Bytes& bytes, const Assembler& assembler, const Points& point
   settings.Perpendicular = bytes.Flip();
   settings.SmoothingLength = bytes.Flip() ? bytes.Size(3.0) : 0.0;
   settings.HintWeight = bytes.Size(6.0);
-  settings.Angle = 10.0 * bytes.Short();
+  const double angle = 10.0 * bytes.Short();
   if (HasFlatTriangles(assembler.Mesh()))
   {
     return;
   }
-  const TangentVectors field = MakeDirectionField(assembler, points, triangles,
+  TangentVectors field = MakeDirectionField(assembler, points, triangles,
     settings.Method == DirectionMethod::Hints ? frames : TangentVectors(0, 2), settings);
+  RotateLines(field, angle);
   Require(field.rows() == assembler.Mesh().NumberOfTriangles(), "a triangle has no direction");
   for (const auto& d : field.rowwise())
   {
