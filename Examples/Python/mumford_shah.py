@@ -18,8 +18,8 @@ show. The program checks the gain of u, and that the curves are as long as the b
 patches. It writes mumford_shah.png. Without an argument it takes an elephant of libcgal-demo from the folder
 SURFACEDIFFUSION_MESH_DIR, or a generated surface if that is not set.
 
-Try next: AutomaticThresholdOff() with SetEdgeThreshold(0.4), which keeps fewer edges, and
-SetSmoothingLength(16), which smooths more.
+Try next: AutomaticThresholdOn(), which finds both from the data; SetEdgeThreshold(0.4), which keeps fewer
+edges; SetSmoothingLength(16), which smooths more.
 """
 import os
 import sys
@@ -109,6 +109,13 @@ def minimiser():
     return model
 
 
+def edge_filter(threshold):
+    model = vtkMumfordShahFilter()
+    model.AutomaticThresholdOff()
+    model.SetEdgeThreshold(threshold)
+    return model
+
+
 def with_curves(surface, values, curves, radius, ink=1.2):
     """The surface coloured by `values` with tubes of the value `ink` along the curves."""
     tubes = vtkTubeFilter()
@@ -146,7 +153,7 @@ def draw(surface, name):
                           spoiled=np.where(scratched[:, None], 0.5, clean))
     view, up = VIEW.get(name, ((0.3, 0.2, 1), (0, 1, 0)))
 
-    edges = vtkMumfordShahFilter()
+    edges = edge_filter(0.25)
     u = result_of(edges, surface, "noisy").copy()
     curves = vtkPolyData()
     curves.DeepCopy(edges.GetOutputDataObject(2))
@@ -161,7 +168,7 @@ def draw(surface, name):
     levels = {title: psnr(values, clean) for title, values in denoised.items()}
     print("  denoised: " + ", ".join(f"{title} {dB:.1f} dB" for title, dB in levels.items()))
 
-    hole = vtkMumfordShahFilter()
+    hole = edge_filter(0.15)
     filled = {"edges": result_of(hole, surface, "spoiled", "hole").copy()}
     harmonic = steady_heat()
     harmonic.HoldKnownValuesOn()
