@@ -84,7 +84,7 @@ class Undetermined(unittest.TestCase):
         result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values))
         self.assertEqual(len(found), 1)
         self.assertTrue((np.isnan(result) == np.isnan(values)).all())
-        result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values, result_on_cells=False))
+        result, found = update(lambda: sd.heat(BOTH, time_step=1.0, values=values, result_on_faces=False))
         self.assertTrue((np.isnan(result) == SECOND).all())
 
     def test_labels_are_zero_without_boundaries(self):
