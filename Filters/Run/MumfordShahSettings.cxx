@@ -138,7 +138,7 @@ double MumfordShahSettings::UseFoundScales(
   const std::vector<Index>& begin = mesh.ComponentsBegin();
   const std::vector<EdgeScales> scales =
     FindEdgeScales(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data,
-      { settings.EdgeWidth * mesh.LengthUnit(), NoiseAtVertices(inputs, this->NoiseLevel),
+      { settings.EdgeWidth, NoiseAtVertices(inputs, this->NoiseLevel),
         inputs.Cells && this->NoiseLevel == 0.0 ? FindCellNoiseGain(inputs) : 0.0 });
   if (scales.empty())
   {
@@ -152,9 +152,9 @@ double MumfordShahSettings::UseFoundScales(
     longest = std::max(longest, scales[c].SmoothingLength);
   }
   const auto cost = [&](const EdgeScales& of)
-  { return this->EdgeCost(inputs.Units, of.Threshold, of.SmoothingLength / mesh.LengthUnit()); };
+  { return this->EdgeCost(inputs.Units, of.Threshold, of.SmoothingLength); };
   const EdgeScales& reference = scales[largest];
-  const double length = reference.SmoothingLength / mesh.LengthUnit();
+  const double length = reference.SmoothingLength;
   settings.Fidelity = this->FidelityWeight / (length * length);
   settings.EdgeCost = cost(reference);
   settings.NumberOfStages = 1;
@@ -181,7 +181,7 @@ double MumfordShahSettings::UseFoundScales(
   const MumfordShahSettings defaults;
   WarnOfUnused("EdgeThreshold", this->EdgeThreshold, defaults.EdgeThreshold, result);
   WarnOfUnused("SmoothingLength", this->SmoothingLength, defaults.SmoothingLength, result);
-  return longest / mesh.LengthUnit();
+  return longest;
 }
 
 std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult& result) const

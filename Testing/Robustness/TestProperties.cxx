@@ -160,8 +160,10 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->SetColorModelToOpponent();
       SetInputArray(f, 0, "bytes");
     });
+  // With AutomaticThreshold, three steps are not enough to stop.
   needed["vtkMumfordShahFilter EdgeThreshold"] = needed["vtkMumfordShahFilter SmoothingLength"] =
-    With<Shah>([](Shah* f) { f->AutomaticThresholdOff(); });
+    needed["vtkMumfordShahFilter StopTolerance"] =
+      With<Shah>([](Shah* f) { f->AutomaticThresholdOff(); });
   needed["vtkIntrinsicTVFilter EdgeThreshold"] =
     With<TV>([](TV* f) { f->SetEdgeFunctionToCharbonnier(); });
   needed["vtkIntrinsicTVFilter StopTolerance"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });

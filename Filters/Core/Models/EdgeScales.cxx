@@ -182,10 +182,12 @@ public:
   }
 
 private:
+  /// In the length unit of the mesh, so that products of lengths are within the range of numbers.
   Eigen::RowVector3d Point(Index i) const
   {
     const std::vector<Index>& row = this->Operators.Mesh().InputVertex();
-    return this->Coordinates.row(row[static_cast<std::size_t>(i)]);
+    return this->Coordinates.row(row[static_cast<std::size_t>(i)]) /
+      this->Operators.Mesh().LengthUnit();
   }
 
   void ReadDisk(const std::vector<Index>& disk, Points& offsets, Values& deviations) const

@@ -22,14 +22,14 @@ struct EdgeScales
 
 struct EdgeScalesInput
 {
-  double EdgeWidth = 1.0; ///< eps, in the unit of the points
+  double EdgeWidth = 1.0; ///< eps, in TriangleMesh::LengthUnit()
   double NoiseLevel = 0.0; ///< the standard deviation of the noise of a channel; 0: estimated
   /// Of data that cells were averaged to: times the estimate from neighbours it gives the noise. 0:
   /// of other data.
   double NoiseGain = 0.0;
 };
 
-/// J and L of each connected component, from the data alone. With the mean edge length h, the
+/// J and L, in TriangleMesh::LengthUnit(), of each connected component, from the data alone. With the mean edge length h, the
 /// noise sigma (EstimateNoise(), in the Euclidean norm over the channels), the range R
 /// (RobustBounds(), likewise), and the slope g of the data between their jumps,
 ///   J = max(0.12 R, 3.2 sigma sqrt(8 h / L), g max(sqrt(24 eps L), 2 L)).
