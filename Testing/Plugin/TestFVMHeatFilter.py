@@ -185,21 +185,23 @@ class TestFVMHeatFilter(unittest.TestCase):
         self.assertGreater(min(lengths[0.0]), max(lengths[10.0]))
 
     def check_refusal(self, word, right=None, **wrong):
-        """The error contains the word, the input is unchanged, and valid settings work again."""
+        """The error contains the word, the input is unchanged, and valid settings work again. ParaView
+        may ask for a failed update again, which then gives the same error."""
         heat = FVMHeatFilter(self.sphere)
         right = right or {name: heat.GetPropertyValue(name) for name in wrong}
         errors = errors_of(heat)
         for name, value in wrong.items():
             setattr(heat, name, value)
         heat.UpdatePipeline()
-        self.assertEqual(len(errors), 1, errors)
+        self.assertEqual(len(set(errors)), 1, errors)
         self.assertIn(word, errors[0])
         self.assertIsNone(values(heat, "noisyDiffused"))
         self.assertTrue(values(heat, "noisy") == values(self.sphere, "noisy"))
+        errors.clear()
         for name, value in right.items():
             setattr(heat, name, value)
         self.assertIsNotNone(values(heat, "noisyDiffused"))
-        self.assertEqual(len(errors), 1, errors)
+        self.assertEqual(errors, [])
 
     def test_a_wrong_array_is_an_error(self):
         def check(name, wrong, right):
@@ -226,7 +228,7 @@ class TestFVMHeatFilter(unittest.TestCase):
         heat = FVMHeatFilter(points)
         errors = errors_of(heat)
         heat.UpdatePipeline()
-        self.assertEqual(len(errors), 1)
+        self.assertEqual(len(set(errors)), 1)
         self.assertEqual(servermanager.Fetch(heat).GetNumberOfPoints(), 5)
 
     def test_blocks_are_surfaces_of_their_own(self):

@@ -73,7 +73,7 @@ class TestHarmonicMapFilter(unittest.TestCase):
         harmonic = HarmonicMapFilter(self.sphere, InputArray=["POINTS", "noisy"])
         errors = errors_of(harmonic)
         harmonic.UpdatePipeline()
-        self.assertEqual(len(errors), 1)
+        self.assertEqual(len(set(errors)), 1)
         self.assertIn("noisy", errors[0])
         self.assertIn("2 or more", errors[0])
 
