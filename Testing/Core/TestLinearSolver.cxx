@@ -440,7 +440,7 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
   EXPECT_EQ(choice(44000, 1.0, 10), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(44000, 1.0, 40), SolverMethod::Direct);
   EXPECT_EQ(choice(44000, 1.0, 10, 1e-3), SolverMethod::ConjugateGradient);
-  EXPECT_EQ(choice(178000, 100.0, 40), SolverMethod::Direct);
+  EXPECT_EQ(choice(178000, 100.0, 20), SolverMethod::Direct);
   EXPECT_EQ(choice(178000, 1e4, 1), SolverMethod::Multigrid);
   EXPECT_EQ(choice(711000, 0.1, 10), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(711000, 1e4, 10), SolverMethod::Multigrid);
