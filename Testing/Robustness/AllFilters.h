@@ -121,6 +121,7 @@ inline std::vector<FilterKind> AllFilters()
       [](TV* f)
       {
         f->SetModeToSteadyState();
+        f->SetFidelityWeight(10.0); // the search for a weight takes minutes
         f->SetBlurFWHM(0.3);
         f->SetStopTolerance(1e-2);
       }),
