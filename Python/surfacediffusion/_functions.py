@@ -210,7 +210,7 @@ def _diffusion(
     runner = Runner(name, properties, ARRAYS)
     if name == "heat" and not (properties.get("fwhm") or {"time_step", "mode"} & set(properties)):
         # The width of the default time step would depend on the mesh.
-        raise ValueError("heat() is not told how much to smooth; allowed: one of fwhm (the width of a "
+        raise ValueError("heat() has no width; allowed: one of fwhm (the width of a "
                          "Gaussian, in coordinate units), time_step and mode")
 
     def make(run: Any, found: dict[str, Any]) -> DiffusionResult:

@@ -147,10 +147,10 @@ CASES = [
     (lambda: sd.turing_texture(BODY, kinetics="Gray"), r"kinetics is 'Gray'; allowed: Turing, .*"),
     (lambda: sd.turing_texture(BODY, growth_rate=1),
      r"kinetics is Turing, which has no steady state.*growth_rate above decay_rate.*initial"),
-    (lambda: sd.heat(BODY, Z), r"heat\(\) is not told how much to smooth; allowed: one of fwhm .*, "
+    (lambda: sd.heat(BODY, Z), r"heat\(\) has no width; allowed: one of fwhm .*, "
                                r"time_step and mode"),
-    (lambda: sd.heat(BODY, Z, fwhm=0), r"heat\(\) is not told how much to smooth; allowed: .*"),
-    (lambda: sd.heat(BODY, Z, number_of_time_steps=3, full_output=True), r"heat\(\) is not told .*"),
+    (lambda: sd.heat(BODY, Z, fwhm=0), r"heat\(\) has no width; allowed: .*"),
+    (lambda: sd.heat(BODY, Z, number_of_time_steps=3, full_output=True), r"heat\(\) has no width; .*"),
     (lambda: sd.heat(BODY, Z, fwhm=1, mask=Z, roi=Z), r"mask and roi are both given; allowed: one .*"),
     (lambda: sd.heat(BODY, Z, fwhm=1, roi=Z, mask_mode="Inpaint"),
      r"mask_mode is 'Inpaint' with roi; allowed with roi: Exclude"),

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Results belong to the contents of the inputs at the time of the update, whatever was marked as
+// Results belong to the contents of the inputs at the time of the update, not to what was marked as
 // modified: arrays and points that numpy has edited in place, and one array of many.
 
 #include "AllFilters.h"
