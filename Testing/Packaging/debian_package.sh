@@ -10,6 +10,7 @@ folder=$2
 unset PYTHONPATH LD_LIBRARY_PATH PV_PLUGIN_PATH
 export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export PATH="$PATH:/usr/sbin:/sbin" # dpkg needs programs there, which are not on a user's path
 
 (cd "$source" && cmake --preset package -B "$folder/build" && cmake --build "$folder/build")
 rm -f "$folder"/build/*.deb
