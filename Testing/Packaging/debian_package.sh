@@ -10,7 +10,6 @@ folder=$2
 unset PYTHONPATH LD_LIBRARY_PATH PV_PLUGIN_PATH
 export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export PATH="$PATH:/usr/sbin:/sbin" # dpkg needs programs there, which are not on a user's path
 
 (cd "$source" && cmake --preset package -B "$folder/build" && cmake --build "$folder/build")
 rm -f "$folder"/build/*.deb
@@ -83,7 +82,14 @@ install_into_root()
   cp /var/lib/dpkg/status "$root/var/lib/dpkg" # dependencies are those of this system
   dpkg-query -W -f "$root/var/lib/dpkg/info/\${binary:Package}.list\n" | xargs touch
   as_root=
-  [ "$(id -u)" -eq 0 ] || as_root=fakeroot
+  if [ "$(id -u)" -ne 0 ]; then
+    as_root=fakeroot
+    # dpkg asks for programs of /usr/sbin, which is not on a user's path; ldconfig would write to /etc.
+    mkdir "$copy/bin"
+    printf '#!/bin/sh\n' > "$copy/bin/ldconfig"
+    chmod +x "$copy/bin/ldconfig"
+    PATH="$copy/bin:$PATH:/usr/sbin:/sbin"
+  fi
   dpkg="$as_root dpkg --root=$root --force-script-chrootless --force-not-root --log=$copy/log"
   $dpkg --install "$copy/package.deb"
   # The login script names /usr; here it stands below the root.
