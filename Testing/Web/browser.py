@@ -10,7 +10,6 @@ try:
     import numpy as np
     from PIL import Image
     from selenium import webdriver
-    from selenium.common.exceptions import WebDriverException
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.action_chains import ActionChains
 except ImportError as problem:
@@ -34,12 +33,7 @@ def open_browser(downloads=None):
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     if downloads:
         options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
-    for left in (2, 1, 0):  # on a busy machine the driver may not answer within Selenium's half a minute
-        try:
-            return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
-        except WebDriverException:
-            if not left:
-                raise
+    return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
 
 
 def wait_for(condition, what, seconds=PATIENCE):
