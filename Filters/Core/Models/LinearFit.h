@@ -11,7 +11,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The data of a range of vertices: whole connected components. points: of the input, rows as in
+/// The data of a range of vertices: whole connected components. InputPoints has rows as in
 /// TriangleMesh::InputVertex.
 struct FitData
 {
