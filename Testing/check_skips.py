@@ -13,11 +13,13 @@ from xml.etree import ElementTree
 def reasons_of(case):
     """Why the test, or a part of it, was skipped: one reason for each skipped part. A test of ctest has
     parts if it is a program of GoogleTest (on several processes) or of Python's unittest."""
-    output = case.findtext("system-out") or ""
+    output = re.sub(r"(\[NON-XML-CHAR-0x1B\]|\x1b)\[[0-9;]*m", "", case.findtext("system-out") or "")
     parts = re.findall(r"\.\.\. skipped ['\"](.*)['\"]$", output, re.MULTILINE)
-    parts += re.findall(r": Skipped\n(.*)", output)
+    # By name, since the lines of several processes may stand between a name and its reason
+    why = " ".join(dict.fromkeys(re.findall(r": Skipped\n(.*)", output)))
+    parts += [f"{name}: {why}" for name in dict.fromkeys(
+        re.findall(r"^\[  SKIPPED \] ([^\s,]*\.[^\s,]+)", output, re.MULTILINE))]
     counted = sum(map(int, re.findall(r"^(?:OK|FAILED) \(.*skipped=(\d+)", output, re.MULTILINE)))
-    counted = max(counted, len(set(re.findall(r"^\[  SKIPPED \] (\S+)", output, re.MULTILINE))))
     if counted > len(parts):
         parts.append("no reason in the output")
     skipped = case.find("skipped")

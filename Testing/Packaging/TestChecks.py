@@ -43,7 +43,7 @@ class Skips(unittest.TestCase):
         ])
         self.assertEqual(code, 1)
         self.assertEqual(text.splitlines()[:4], [
-            "skipped: ByCode: skipped: no tool", "skipped: ByGoogleTest: no meshes",
+            "skipped: ByCode: skipped: no tool", "skipped: ByGoogleTest: A.b: no meshes",
             "skipped: ByUnittest: no VTK", "skipped: WithoutReason: no reason in the output"])
 
     def test_only_the_listed_reason_is_allowed(self):
