@@ -359,6 +359,7 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   }
   state.History = state.Run.MakeHistory(state.Step);
   state.Succeeded = group.IsRoot();
+  this->NumberOfUnusedPoints = static_cast<vtkIdType>(state.Run.CountUnusedPoints(group));
   this->TakeResults();
   std::vector<Warning> warnings = state.Run.FindWarnings(group);
   if (!state.ReplacedArrays.empty())
@@ -634,7 +635,8 @@ void vtkSurfaceDiffusionAlgorithm::VisitReported(const std::function<void(double
   double last = this->State->LastStep;
   visit(last);
   this->State->LastStep = static_cast<int>(last);
-  for (vtkIdType* count : { &this->NumberOfIterations, &this->NumberOfStepsComputed })
+  for (vtkIdType* count :
+    { &this->NumberOfIterations, &this->NumberOfUnusedPoints, &this->NumberOfStepsComputed })
   {
     auto number = static_cast<double>(*count);
     visit(number);
@@ -653,5 +655,6 @@ void vtkSurfaceDiffusionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ValueRange: " << this->ValueRange << "\n";
   os << indent << "NumberOfIterations: " << this->NumberOfIterations << "\n";
   os << indent << "Residual: " << this->Residual << "\n";
+  os << indent << "NumberOfUnusedPoints: " << this->NumberOfUnusedPoints << "\n";
   os << indent << "NumberOfStepsComputed: " << this->NumberOfStepsComputed << "\n";
 }

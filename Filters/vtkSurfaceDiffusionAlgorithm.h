@@ -323,13 +323,15 @@ public:
   /**
    * Values of the last update: the unit of time in coordinate and array units (exactly 1 in
    * Absolute), R of natural units, the sum of the solver's iterations, its largest relative
-   * residual, and the total number of time steps computed in the life of the filter (for
-   * profiling).
+   * residual, the number of points that no triangle uses and that keep their values (without those
+   * that the mask excludes), and the total number of time steps computed in the life of the filter
+   * (for profiling).
    */
   vtkGetMacro(TimeUnit, double);
   vtkGetMacro(ValueRange, double);
   vtkGetMacro(NumberOfIterations, vtkIdType);
   vtkGetMacro(Residual, double);
+  vtkGetMacro(NumberOfUnusedPoints, vtkIdType);
   vtkGetMacro(NumberOfStepsComputed, vtkIdType);
   ///@}
 
@@ -432,6 +434,7 @@ private:
   double ValueRange = 0.0;
   vtkIdType NumberOfIterations = 0;
   double Residual = 0.0;
+  vtkIdType NumberOfUnusedPoints = 0;
   vtkIdType NumberOfStepsComputed = 0;
 };
 

@@ -158,6 +158,7 @@ void vtkTuringTextureFilter::TakeResults()
   this->Wavelength = result.Wavelength;
   this->WavelengthGrowthRate = result.WavelengthGrowthRate;
   this->DiffusionRateFactor = result.DiffusionRateFactor;
+  this->CoarseStartVertices = static_cast<vtkIdType>(result.CoarseStartVertices);
 }
 
 void vtkTuringTextureFilter::VisitReported(const std::function<void(double&)>& visit)
@@ -166,6 +167,9 @@ void vtkTuringTextureFilter::VisitReported(const std::function<void(double&)>& v
   visit(this->Wavelength);
   visit(this->WavelengthGrowthRate);
   visit(this->DiffusionRateFactor);
+  auto vertices = static_cast<double>(this->CoarseStartVertices);
+  visit(vertices);
+  this->CoarseStartVertices = static_cast<vtkIdType>(vertices);
 }
 
 void vtkTuringTextureFilter::PrintSelf(ostream& os, vtkIndent indent)
@@ -178,4 +182,5 @@ void vtkTuringTextureFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Wavelength: " << this->Wavelength << "\n";
   os << indent << "WavelengthGrowthRate: " << this->WavelengthGrowthRate << "\n";
   os << indent << "DiffusionRateFactor: " << this->DiffusionRateFactor << "\n";
+  os << indent << "CoarseStartVertices: " << this->CoarseStartVertices << "\n";
 }

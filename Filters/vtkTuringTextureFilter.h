@@ -202,9 +202,9 @@ public:
    * iteration). The steps run in a Galerkin space of smoothed aggregation with 6 vertices per
    * wavelength or more, or at least 3.4 if it has a ninth of the surface's vertices. They end when
    * the relative change per unit of time is 2.5 StopTolerance. The last two steps run on the surface
-   * itself and remove the traces of interpolation. A warning gives the size of the coarser mesh. The
-   * history has all steps, and all states can be requested. With 655,362 vertices, a run takes 12 s
-   * of processor time instead of several minutes.
+   * itself and remove the traces of interpolation. CoarseStartVertices is the size of the coarser
+   * mesh. The history has all steps, and all states can be requested. With 655,362 vertices, a run
+   * takes 12 s of processor time instead of several minutes.
    *
    * Growing waves are within 5 % of their wavelength on the surface, but the pattern differs in
    * detail and is less settled: with the default rates, which give 3.4 vertices per wavelength, it
@@ -316,12 +316,15 @@ public:
   ///@{
   /**
    * Values of the last update: the fastest-growing wavelength along e1 in coordinate units (0 if
-   * there is none), its growth rate in 1/(unit of time), and the factor by which FeatureSize
-   * multiplied the diffusion rates. For composite data they are those of the first block.
+   * there is none), its growth rate in 1/(unit of time), the factor by which FeatureSize multiplied
+   * the diffusion rates, and the number of vertices of the coarser mesh on which the pattern grew (0:
+   * it grew on the surface; see CoarseStartSize). For composite data they are those of the first
+   * block.
    */
   vtkGetMacro(Wavelength, double);
   vtkGetMacro(WavelengthGrowthRate, double);
   vtkGetMacro(DiffusionRateFactor, double);
+  vtkGetMacro(CoarseStartVertices, vtkIdType);
   ///@}
 
   /**
@@ -374,6 +377,7 @@ protected:
   double Wavelength = 0.0;
   double WavelengthGrowthRate = 0.0;
   double DiffusionRateFactor = 1.0;
+  vtkIdType CoarseStartVertices = 0;
 
 private:
   vtkTuringTextureFilter(const vtkTuringTextureFilter&) = delete;

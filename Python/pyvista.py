@@ -50,6 +50,7 @@ _CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS
 # The read-only values of the classes. A report has those that the filter has.
 _REPORTED = (
     "TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual",
+    "NumberOfUnusedPoints", "CoarseStartVertices",
     "EffectiveTimeStep", "EffectiveFidelityWeight", "EffectiveNoiseLevel",
     "EffectiveEdgeThreshold", "EffectiveSmoothingLength", "EstimatedNoiseLevel", "Wavelength",
     "WavelengthGrowthRate",

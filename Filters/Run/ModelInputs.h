@@ -79,6 +79,7 @@ struct RunResult
   double Wavelength = 0.0; ///< of a texture, in coordinate units
   double WavelengthGrowthRate = 0.0;
   double DiffusionRateFactor = 1.0;
+  Index CoarseStartVertices = 0; ///< of the coarser mesh on which a texture grew; 0: there is none
   std::array<double, 2> ContrastLimits = { 0.0, 1.0 }; ///< of a texture, at the current step
   Points MovedPoints; ///< per input point, if vertices were moved; otherwise no row
   VertexMotion Motion;

@@ -138,6 +138,10 @@ public:
   /// The history up to a step.
   History MakeHistory(int step) const;
 
+  /// The number of points, of all surfaces and processes together, that no participating triangle
+  /// uses and that keep their values. Points excluded by the mask do not count.
+  long long CountUnusedPoints(const ProcessGroup& processes) const;
+
   /// The warnings that hold, with the inputs that each is about.
   std::vector<Warning> FindWarnings(const ProcessGroup& processes) const;
 

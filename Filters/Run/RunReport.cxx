@@ -141,6 +141,20 @@ History Run::MakeHistory(int step) const
   return history;
 }
 
+long long Run::CountUnusedPoints(const ProcessGroup& processes) const
+{
+  Index count = 0;
+  for (const auto& block : this->Blocks)
+  {
+    count += block->Surface->Diagnostics().UnusedPoints;
+    if (block->Decomposition)
+    {
+      count -= block->Decomposition->NumberOfCopies();
+    }
+  }
+  return static_cast<long long>(processes.Sum(static_cast<double>(count)));
+}
+
 bool Run::MaskChangesNothing(const ProcessGroup& processes) const
 {
   bool anyMask = false;
@@ -192,11 +206,6 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
   {
     const SurfaceDiagnostics& found = block->Surface->Diagnostics();
     sum.DegenerateTriangles += found.DegenerateTriangles;
-    sum.UnusedPoints += found.UnusedPoints;
-    if (block->Decomposition)
-    {
-      sum.UnusedPoints -= block->Decomposition->NumberOfCopies();
-    }
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
     sum.EdgesLeft += found.EdgesLeft;
@@ -213,7 +222,6 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
     }
   };
   addCount(sum.DegenerateTriangles, " triangles of zero area were left out");
-  addCount(sum.UnusedPoints, " points that no triangle uses keep their values");
   addCount(
     sum.NonManifoldEdges, " edges have three or more triangles, which all exchange over them");
   addCount(sum.CoincidentBoundaryPoints,

@@ -256,10 +256,7 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
   if (space)
   {
     coarse = MakeCoarseModel(*space, inputs, reaction, settings, this->CoarseLimits());
-    result.Warnings.push_back("the pattern grows on a coarser mesh of " +
-      std::to_string(space->NumberOfVertices()) + " vertices, and only the last " +
-      std::to_string(CoarseStart::StepsOnSurface) +
-      " steps run on the surface itself (to run all of them there, set CoarseStartSize to 0)");
+    result.CoarseStartVertices = static_cast<Index>(space->NumberOfVertices());
   }
   auto chemicals =
     MakeChemicals(inputs, rates, std::move(coefficients), settings, space.has_value());

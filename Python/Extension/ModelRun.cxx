@@ -246,6 +246,8 @@ nb::dict ModelRun::GetResults(std::size_t block) const
   numbers["time_unit"] = this->Model.TimeUnit();
   numbers["mean_edge_length"] = this->Model.Units().MeanEdgeLength;
   numbers["value_range"] = this->Model.Units().ValueRange;
+  numbers["number_of_unused_points"] =
+    this->Model.GetBlock(block).Surface->Diagnostics().UnusedPoints;
   numbers["effective_fidelity_weight"] = result.EffectiveFidelityWeight;
   numbers["effective_edge_threshold"] = result.EffectiveEdgeThreshold;
   numbers["effective_smoothing_length"] = result.EffectiveSmoothingLength;
@@ -253,6 +255,7 @@ nb::dict ModelRun::GetResults(std::size_t block) const
   numbers["wavelength"] = result.Wavelength;
   numbers["wavelength_growth_rate"] = result.WavelengthGrowthRate;
   numbers["diffusion_rate_factor"] = result.DiffusionRateFactor;
+  numbers["coarse_start_vertices"] = result.CoarseStartVertices;
   numbers["mean_displacement"] = result.Motion.MeanDisplacement;
   numbers["maximum_displacement"] = result.Motion.MaximumDisplacement;
   numbers["volume_before"] = result.Motion.VolumeBefore;

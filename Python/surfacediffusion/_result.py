@@ -39,6 +39,9 @@ class Result:
         h, in coordinate units.
     value_range : float
         R, in array units.
+    number_of_unused_points : int
+        The points that no triangle uses and that keep their values, without those that the mask
+        excludes.
     """
 
     values: NDArray[Any]
@@ -49,6 +52,7 @@ class Result:
     time_unit: float = field(repr=False)
     mean_edge_length: float = field(repr=False)
     value_range: float = field(repr=False)
+    number_of_unused_points: int = field(repr=False)
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -208,6 +212,9 @@ class TextureResult(Result):
         The growth rate of that wavelength.
     diffusion_rate_factor : float
         The factor by which `feature_size` has scaled the diffusion rates.
+    coarse_start_vertices : int
+        The vertices of the coarser mesh on which the pattern grew, see `coarse_start_size`; 0 if it
+        grew on the surface.
     """
 
     texture: NDArray[Any] = field(default_factory=lambda: np.empty(0), repr=False)
@@ -215,6 +222,7 @@ class TextureResult(Result):
     wavelength: float = 0.0
     wavelength_growth_rate: float = field(default=0.0, repr=False)
     diffusion_rate_factor: float = field(default=1.0, repr=False)
+    coarse_start_vertices: int = field(default=0, repr=False)
 
 
 @dataclass(frozen=True)

@@ -115,8 +115,8 @@ TEST(HeatFilter, PrintSelfNamesEveryProperty)
          "RandomSeed", "AlongDiffusivity", "AcrossDiffusivity", "TimeIntegrator", "Solver",
          "Tolerance", "MaximumNumberOfIterations", "MergeCoincidentPoints", "MergeTolerance",
          "ResultArrayName", "OutputPrecision", "CheckpointMemoryLimit", "TimeUnit",
-         "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual", "FWHM",
-         "AutomaticFidelity", "NoiseLevel", "Mode", "BlurFWHM", "BlurSteps" })
+         "MeanEdgeLength", "ValueRange", "NumberOfIterations", "Residual", "NumberOfUnusedPoints",
+         "FWHM", "AutomaticFidelity", "NoiseLevel", "Mode", "BlurFWHM", "BlurSteps" })
   {
     EXPECT_NE(text.str().find(std::string(property) + ": "), std::string::npos) << property;
   }

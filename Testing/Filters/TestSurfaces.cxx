@@ -93,11 +93,13 @@ TEST(Surfaces, DefectsAreHandledAndReportedInOneWarningWithCounts)
     EXPECT_TRUE(messages.Errors.empty());
     ASSERT_EQ(messages.Warnings.size(), 1u);
     const std::string& text = messages.Warnings[0];
-    for (const char* words : { "2 triangles of zero area", "3 points that no triangle uses",
-           "1 edges have three or more triangles", "12 boundary points coincide" })
+    for (const char* words : { "2 triangles of zero area", "1 edges have three or more triangles",
+           "12 boundary points coincide" })
     {
       EXPECT_NE(text.find(words), std::string::npos) << words << " is not in: " << text;
     }
+    EXPECT_EQ(text.find("no triangle uses"), std::string::npos) << text;
+    EXPECT_EQ(filter->GetNumberOfUnusedPoints(), 3);
     ASSERT_TRUE(AllFinite(Result(filter)));
     for (int k = 0; k < 2; ++k)
     {
@@ -122,6 +124,28 @@ TEST(Surfaces, WithoutDefectsGiveNoWarning)
   auto filter = MakeFilter(sphere);
   Messages messages(filter);
   filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
+}
+
+TEST(Surfaces, PointsThatNoTriangleUsesAreCountedWithoutAWarning)
+{
+  auto sphere = Sphere(2);
+  const vtkIdType strays = 4;
+  for (vtkIdType i = 0; i < strays; ++i)
+  {
+    sphere->GetPoints()->InsertNextPoint(5.0, static_cast<double>(i), 0.0);
+  }
+  AddRough(sphere);
+  AddPointArray(sphere, "mask", 1,
+    [&](vtkIdType i, int) { return i == 0 || i + 1 == sphere->GetNumberOfPoints() ? 1.0 : 0.0; });
+  auto filter = MakeFilter(sphere);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfUnusedPoints(), strays);
+  SetInputArray(filter, 1, "mask");
+  filter->SetMaskModeToExclude();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfUnusedPoints(), strays - 1); // one of them is excluded
   EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
 }
 

@@ -644,6 +644,25 @@ TEST(TuringTextureFilter, FirstAndSecondOrderAgreeForSmallSteps)
   EXPECT_LT(LargestDifference(run(true, 64), exact), 0.1 * coarse);
 }
 
+TEST(TuringTextureFilter, ReportsTheCoarserMeshWithoutAWarning)
+{
+  const auto sphere = Sphere(4);
+  vtkNew<vtkTuringTextureFilter> filter;
+  filter->SetInputData(sphere);
+  filter->SetNumberOfTimeSteps(8);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_EQ(filter->GetCoarseStartVertices(), 0); // below CoarseStartSize
+  filter->SetCoarseStartSize(100);
+  filter->Update();
+  EXPECT_GT(filter->GetCoarseStartVertices(), 10);
+  EXPECT_LT(filter->GetCoarseStartVertices(), sphere->GetNumberOfPoints() / 2);
+  filter->SetCoarseStartSize(0);
+  filter->Update();
+  EXPECT_EQ(filter->GetCoarseStartVertices(), 0);
+  EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
+}
+
 TEST(TuringTextureFilter, PrintsEveryProperty)
 {
   vtkNew<vtkTuringTextureFilter> filter;
@@ -657,7 +676,7 @@ TEST(TuringTextureFilter, PrintsEveryProperty)
       "SubstrateSupply: 1", "FeedRate: 0.05", "KillRate: 0.06", "ReactantA: 2", "ReactantB: 4",
       "InhibitorDecayRate: 1.05", "Saturation: 0", "RecoveryRate: 1.2", "RecoveryDamping: 0.9",
       "Stimulus: 0", "TextureChemical: U1", "ColorOutput: Off", "LowColor: ", "HighColor: ",
-      "Wavelength: ", "WavelengthGrowthRate: ", "DiffusionRateFactor: " })
+      "Wavelength: ", "WavelengthGrowthRate: ", "DiffusionRateFactor: ", "CoarseStartVertices: 0" })
   {
     EXPECT_TRUE(Contains(text.str(), property)) << property;
   }

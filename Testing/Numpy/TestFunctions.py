@@ -477,15 +477,32 @@ class Results(unittest.TestCase):
 
 class Warnings(unittest.TestCase):
     def test_warning_names_the_line_of_the_caller(self):
-        surface = sd.Surface(np.vstack([sd.sphere(2).points, [[5, 5, 5]]]), sd.sphere(2).triangles)
+        sphere = sd.sphere(2)
+        surface = sd.Surface(sphere.points, np.vstack([sphere.triangles, [[0, 0, 6]]]))
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            result = sd.heat(surface, np.zeros(163), fwhm=1, full_output=True)
+            result = sd.heat(surface, np.zeros(162), fwhm=1, full_output=True)
         self.assertEqual(len(caught), 1)
         self.assertIs(caught[0].category, sd.SurfaceDiffusionWarning)
         self.assertEqual(caught[0].filename, __file__)
-        self.assertEqual(str(caught[0].message), "1 points that no triangle uses keep their values")
+        self.assertEqual(str(caught[0].message), "1 triangles of zero area were left out")
         self.assertEqual(result.warnings, [str(caught[0].message)])
+
+    def test_points_that_no_triangle_uses_are_counted_without_a_warning(self):
+        surface = sd.Surface(np.vstack([sd.sphere(2).points, [[5, 5, 5]]]), sd.sphere(2).triangles)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            result = sd.heat(surface, np.arange(163.0), fwhm=1, full_output=True)
+        self.assertEqual(result.number_of_unused_points, 1)
+        self.assertEqual(result.values[-1], 162.0)
+
+    def test_the_coarser_mesh_of_a_texture_is_reported_without_a_warning(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for size, coarse in ((0, False), (100, True)):
+                result = sd.turing_texture(sd.sphere(4), coarse_start_size=size,
+                                           number_of_time_steps=4)
+                self.assertEqual(0 < result.coarse_start_vertices < 1300, coarse)
 
     def test_warning_uses_the_words_of_python(self):
         points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0.0]])

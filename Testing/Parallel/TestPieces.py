@@ -275,7 +275,8 @@ class TestPieces(unittest.TestCase):
             self.assertEqual(output.GetInformation().Get(output.DATA_TIME_STEP()), time)
             steps.append(heat.GetClientSideObject().GetNumberOfStepsComputed())
         self.assertEqual(steps, [7, 7, 10])
-        for name in ("TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations"):
+        for name in ("TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations",
+                     "NumberOfUnusedPoints"):
             get = lambda filter: getattr(filter.GetClientSideObject(), "Get" + name)()
             self.assertAlmostEqual(get(heat), get(alone), delta=1e-12, msg=name)
 
