@@ -340,6 +340,22 @@ TEST_P(EveryProperty, ChangedAloneHasAnEffectAndGivesWhatANewFilterGives)
   }
 }
 
+/// A point that no triangle uses is usual, and so is noise.
+TEST_P(EveryProperty, GivesNoWarningAtItsDefault)
+{
+  auto surface = Sphere(3);
+  surface->GetPoints()->InsertNextPoint(0.0, 0.0, 3.0);
+  AddPointArray(surface, "f", 1,
+    [&](vtkIdType i, int) { return surface->GetPoint(i)[2] + 0.05 * Rough(i, 0); });
+  surface->GetPointData()->SetActiveScalars("f");
+  const auto filter = this->GetParam().Make();
+  Messages messages(filter);
+  filter->SetInputData(surface);
+  filter->Update();
+  EXPECT_EQ(messages.Warnings, std::vector<std::string>());
+  EXPECT_EQ(messages.Errors, std::vector<std::string>());
+}
+
 INSTANTIATE_TEST_SUITE_P(
   AllFilters, EveryProperty, testing::ValuesIn(AllFilterClasses()), ClassName);
 
