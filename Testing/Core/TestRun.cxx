@@ -259,8 +259,8 @@ TEST(Run, SurfacesShareTheirUnits)
 TEST(Run, EachWarningIsReportedOncePerCause)
 {
   RunInput input(Testing::Icosphere(2));
-  input.Vertices.conservativeResize(input.Vertices.rows() + 1, 3);
-  input.Vertices.bottomRows(1).setOnes();
+  input.Faces.conservativeResize(input.Faces.rows() + 1, 3);
+  input.Faces.bottomRows(1) << 0, 0, 6;
   input.Data.Data = Values::Ones(input.Vertices.rows(), 1);
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
@@ -270,7 +270,7 @@ TEST(Run, EachWarningIsReportedOncePerCause)
     StateOf(run, { input.Block() }, settings);
     return log.Report(run.FindWarnings(Alone));
   };
-  EXPECT_EQ(update().size(), 1u); // an unused point
+  EXPECT_EQ(update().size(), 1u); // a triangle of zero area
   run.Seek(3, ProgressMonitor());
   EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty());
   settings.TimeStep = 0.5;
@@ -286,7 +286,7 @@ TEST(Run, EachWarningIsReportedOncePerCause)
   input.Data.Mask[5] = 0;
   EXPECT_EQ(update().size(), 1u); // the mask had an effect in between
   input.Vertices.row(7) *= 1.1;
-  EXPECT_EQ(update().size(), 1u); // another surface with an unused point
+  EXPECT_EQ(update().size(), 1u); // another surface with such a triangle
 }
 
 TEST(Run, HistoryHasARowPerStepAndAConstantTotal)

@@ -227,7 +227,7 @@ TEST(OutputArrays, PointsWithoutTrianglesKeepTheirValueInEveryType)
     filter->Update();
     EXPECT_EQ(Result(filter)->GetComponent(30, 0), 101.0);
     EXPECT_EQ(Result(filter)->GetComponent(30, 1), 102.0);
-    EXPECT_EQ(messages.Warnings.size(), 1u);
+    EXPECT_TRUE(messages.Warnings.empty());
   }
 }
 

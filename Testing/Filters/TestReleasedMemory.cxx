@@ -109,7 +109,7 @@ TEST(ReleasedMemory, IsComputedAgainWithTheSameResult)
 TEST(ReleasedMemory, RepeatsNoWarning)
 {
   auto sphere = Sphere(3);
-  sphere->GetPoints()->InsertNextPoint(2.0, 0.0, 0.0);
+  sphere->GetPolys()->InsertNextCell({ vtkIdType(0), vtkIdType(0), vtkIdType(6) }); // zero area
   AddRough(sphere);
   vtkNew<vtkFVMHeatFilter> filter;
   filter->SetInputData(sphere);
