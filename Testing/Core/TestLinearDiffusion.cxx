@@ -267,6 +267,35 @@ TEST(LinearDiffusion, FidelityOnTheWayIsOfTheSchemesOrder)
   }
 }
 
+/// Diffusion changes no mean, so that the mean follows y' = lambda (f - y) and its scheme alone,
+/// however inexact the solver is: the mean of every solve is corrected, and that of the first
+/// stage before the second stage takes it.
+TEST(LinearDiffusion, MeanFollowsTheSchemeOfTheFidelityWithAnySolver)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const TriangleMesh& mesh = assembler->Mesh();
+  PointData data = PointData::FromValues(Noise(mesh, 2));
+  data.Start = Noise(mesh, 2, 8).array() + 0.5;
+  const double lambda = 2.0, dt = 0.4;
+  const double z = lambda * dt;
+  const double g = 1.0 - std::sqrt(0.5);
+  const double second = (1.0 - (1.0 - 2.0 * g) * z) / ((1.0 + g * z) * (1.0 + g * z));
+  for (const auto& [scheme, factor] :
+    { std::pair(Scheme::BackwardEuler, 1.0 / (1.0 + z)), std::pair(Scheme::SDIRK2, second) })
+  {
+    const std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
+    solver->SetLimits({ 0.05, 1000 });
+    const auto heat = MakeHeat(assembler, data, HeatSettings(mesh, dt, lambda, scheme), solver);
+    heat->Advance(ProgressMonitor());
+    for (int k = 0; k < 2; ++k)
+    {
+      const double given = Total(mesh, data.Given, k);
+      const double expected = given + factor * (Total(mesh, data.Start, k) - given);
+      EXPECT_NEAR(Total(mesh, heat->State(), k), expected, 1e-12 * mesh.ControlAreas().sum());
+    }
+  }
+}
+
 TEST(LinearDiffusion, FixedEndsOfAStripGiveALineBetweenThem)
 {
   const double length = 3.0;

@@ -9,6 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
+#include <limits>
 #include <tuple>
 
 using namespace SurfaceDiffusion;
@@ -348,6 +351,157 @@ TEST(Segmentation, GapBoundsTheDistanceToTheMinimum)
       EXPECT_GE(found.U.minCoeff(), 0.0);
       EXPECT_LT((found.U.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-12);
     }
+  }
+}
+
+namespace
+{
+
+/// The energy of labels as functions on the mesh, triangle by triangle, for given data terms.
+double EnergyOfLabels(
+  const TriangleMesh& mesh, const Values& terms, double fidelity, const std::vector<Index>& labels)
+{
+  double energy = 0.0;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto corners = mesh.TriangleVertices().row(t);
+    for (Index label = 1; label <= static_cast<Index>(terms.cols()); ++label)
+    {
+      const auto u = [&](int a) { return labels[corners[a]] == label ? 1.0 : 0.0; };
+      energy += 0.5 * mesh.Shapes()[t].Area() * Gradient(mesh.Shapes()[t], u(0), u(1), u(2)).norm();
+    }
+  }
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    energy += fidelity * mesh.ControlAreas()[i] * terms(i, labels[i] - 1);
+  }
+  return energy;
+}
+
+/// The least energy of all labels, of which those of `seeds` are given.
+double LeastEnergyOfLabels(
+  const TriangleMesh& mesh, const Values& terms, double fidelity, const std::vector<Index>& seeds)
+{
+  const auto regions = static_cast<Index>(terms.cols());
+  std::vector<Index> labels(seeds.size(), 1);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t digit = 0; digit < labels.size();)
+  {
+    bool allowed = true;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+    {
+      allowed = allowed && (seeds[i] == 0 || labels[i] == seeds[i]);
+    }
+    least = allowed ? std::min(least, EnergyOfLabels(mesh, terms, fidelity, labels)) : least;
+    for (digit = 0; digit < labels.size() && labels[digit] == regions; ++digit)
+    {
+      labels[digit] = 1;
+    }
+    if (digit < labels.size())
+    {
+      ++labels[digit];
+    }
+  }
+  return least;
+}
+
+} // namespace
+
+/// LabelGap() is the energy of the labels above the lower bound that the minimisation has found. No
+/// labels at all have an energy below this bound.
+TEST(Segmentation, LabelGapBoundsTheDistanceToTheBestOfAllLabels)
+{
+  for (const Eigen::Index regions : { 2, 3 })
+  {
+    int problems = 0, wideGaps = 0, openMinimisations = 0, worseThanTheBest = 0;
+    for (std::int64_t seed = 1; seed <= 12; ++seed)
+    {
+      const Domain plate(Jittered(Plate(2, 1.0), 0.3, -0.99, 0.99, -0.99, 0.99, seed));
+      const TriangleMesh& mesh = plate.Mesh;
+      Segmentation::Input input;
+      input.Data = PointData::FromValues(Noise(mesh, regions, seed));
+      input.Seeds.assign(static_cast<std::size_t>(mesh.NumberOfVertices()), 0);
+      input.Seeds[static_cast<std::size_t>(seed % mesh.NumberOfVertices())] = 1 + seed % regions;
+      const Values& terms = input.Data.Given;
+      double smallest = 0.0;
+      Segmentation::Settings settings;
+      settings.Fidelity = std::array<double, 3>{ 1.5, 3.0, 7.0 }[seed % 3] / MeanEdge(mesh);
+      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      {
+        const Index label = input.Seeds[i];
+        smallest += settings.Fidelity * mesh.ControlAreas()[i] *
+          (label > 0 ? terms(i, label - 1) : terms.row(i).minCoeff());
+      }
+      const double best = LeastEnergyOfLabels(mesh, terms, settings.Fidelity, input.Seeds);
+      for (const double tolerance : { 0.3, 1e-6 })
+      {
+        settings.StopTolerance = tolerance;
+        Segmentation model(plate.Operators, input, settings);
+        model.Advance(ProgressMonitor());
+        const double ofLabels = EnergyOfLabels(mesh, terms, settings.Fidelity, model.Labels());
+        const double gap = model.LabelGap() * (ofLabels - smallest);
+        EXPECT_LE(ofLabels - gap, best + 1e-7 * (best - smallest))
+          << regions << " regions, seed " << seed;
+        // The gap of the minimiser is relative to its energy, which has no constant.
+        const double bound = model.Energy() - model.Gap() * (model.Energy() - smallest);
+        EXPECT_NEAR(gap, ofLabels - bound, 1e-7 * (ofLabels - smallest) + 1e-15)
+          << regions << " regions, seed " << seed;
+        ++problems;
+        wideGaps += model.LabelGap() > 0.02;
+        openMinimisations += model.Gap() > 0.01;
+        worseThanTheBest += ofLabels > best + 0.01 * (best - smallest);
+      }
+    }
+    std::printf("%d regions: %d of %d gaps above 0.02, %d open, %d labels not the best\n",
+      static_cast<int>(regions), wideGaps, problems, openMinimisations, worseThanTheBest);
+    EXPECT_GE(wideGaps, 3);
+    EXPECT_GE(openMinimisations, 4);
+  }
+}
+
+/// The first row of squares has a thousand times the width of the last.
+TEST(Segmentation, DataMeansAreWeightedByAreas)
+{
+  Surface s = Strip(12, 4, 12.0, 1.0);
+  for (auto x : s.Vertices.rowwise())
+  {
+    x[0] = std::exp2(x[0]);
+  }
+  const Domain strip(s);
+  const TriangleMesh& mesh = strip.Mesh;
+  const auto base = [](double x) { return x < 100.0 ? 0.0 : 10.0; };
+  const Values f = Sample(
+    mesh, s, [&](const Eigen::RowVector3d& x) { return base(x[0]) + std::log2(x[0]) / 12.0; });
+  Segmentation::Settings settings;
+  settings.Fidelity = 1e3;
+  Segmentation model(strip.Operators, WithMeans(f, { 0.0, 10.0 }), settings);
+  model.Advance(ProgressMonitor());
+  Vector areas = Vector::Zero(s.NumberOfVertices());
+  for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+  {
+    const Eigen::RowVector3d a = s.Vertices.row(s.Faces(t, 0));
+    const Eigen::RowVector3d b = s.Vertices.row(s.Faces(t, 1)) - a;
+    const Eigen::RowVector3d c = s.Vertices.row(s.Faces(t, 2)) - a;
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      areas[s.Faces(t, corner)] += b.cross(c).norm() / 6.0;
+    }
+  }
+  Eigen::Vector2d sums = Eigen::Vector2d::Zero(), weights = sums, plain = sums, counts = sums;
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    const double area = areas[mesh.InputVertex()[i]];
+    const Index k = f(i, 0) < 5.0 ? 0 : 1;
+    EXPECT_EQ(model.Labels()[i], k + 1);
+    sums[k] += area * f(i, 0);
+    weights[k] += area;
+    plain[k] += f(i, 0);
+    counts[k] += 1.0;
+  }
+  for (Index k = 0; k < 2; ++k)
+  {
+    EXPECT_NEAR(model.DataMeans()(k, 0), sums[k] / weights[k], 1e-12);
+    EXPECT_GT(std::abs(model.DataMeans()(k, 0) - plain[k] / counts[k]), 0.05);
   }
 }
 

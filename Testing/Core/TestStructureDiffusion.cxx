@@ -339,6 +339,88 @@ TEST(StructureDiffusion, RotatedColorsGiveTheRotatedResult)
   }
 }
 
+namespace
+{
+
+/// The diffusivities that the first step takes for the data (steep x, flat y) on a plate, from the
+/// energies of x and y: int grad v . D grad v over the area is the diffusivity along grad v.
+void ExpectDiffusivities(
+  Settings settings, double steep, double flat, double acrossEdges, double alongEdges)
+{
+  const Surface s = Rotated(Jittered(Plate(6, 1.0), 0.08, -0.99, 0.99, -0.99, 0.99));
+  const Surface plate = Jittered(Plate(6, 1.0), 0.08, -0.99, 0.99, -0.99, 0.99);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  Values f(mesh.NumberOfVertices(), 2);
+  f << Sample(mesh, plate, [&](const Eigen::RowVector3d& x) { return steep * x[0]; }),
+    Sample(mesh, plate, [&](const Eigen::RowVector3d& x) { return flat * x[1]; });
+  settings.Contrast *= mesh.LengthUnit();
+  StructureDiffusion model(assembler, TangentVectors(), PointData::FromValues(f), settings,
+    MakeStructure(assembler, { 0.0, 0.0 }), MakeCholeskySolver());
+  model.Advance(ProgressMonitor());
+  const CornerWeights& weights = model.DiffusionWeights(0);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto energy = [&](double ofX, double ofY)
+    {
+      const auto corners = mesh.TriangleVertices().row(t);
+      double sum = 0.0;
+      for (int a = 0; a < 3; ++a)
+      {
+        const Index i = mesh.InputVertex()[corners[(a + 1) % 3]];
+        const Index j = mesh.InputVertex()[corners[(a + 2) % 3]];
+        const Eigen::RowVector3d edge = plate.Vertices.row(i) - plate.Vertices.row(j);
+        sum += weights(t, a) * std::pow(ofX * edge[0] + ofY * edge[1], 2);
+      }
+      return sum / (mesh.Shapes()[t].Area() * mesh.LengthUnit() * mesh.LengthUnit());
+    };
+    EXPECT_NEAR(energy(1.0, 0.0), acrossEdges, 1e-9);
+    EXPECT_NEAR(energy(0.0, 1.0), alongEdges, 1e-9);
+    EXPECT_NEAR(energy(1.0, 1.0), acrossEdges + alongEdges, 1e-9); // no entry between the axes
+  }
+}
+
+} // namespace
+
+TEST(StructureDiffusion, EdgeEnhancingHasWeickertsDiffusivity)
+{
+  Settings settings;
+  settings.Model = Kind::EdgeEnhancing;
+  settings.Contrast = 1.3;
+  for (const double steep : { 1.0, 1.3, 1.6, 2.0, 4.0 })
+  {
+    // m1 = steep^2, whatever m2 is.
+    const double flux = 3.31488 * std::pow(1.3 / steep, 8);
+    for (const double flat : { 0.0, 0.4, 0.9 * steep })
+    {
+      ExpectDiffusivities(settings, steep, flat, 1.0 - std::exp(-flux), 1.0);
+    }
+  }
+}
+
+/// The factor 3.31488 makes s g(s^2) largest at s = K: there (1 + 8 c) exp(-c) = 1.
+TEST(StructureDiffusion, FluxOfEdgeEnhancingIsLargestAtTheContrast)
+{
+  const double c = 3.31488;
+  EXPECT_NEAR((1.0 + 8.0 * c) * std::exp(-c), 1.0, 1e-4);
+}
+
+TEST(StructureDiffusion, CoherenceEnhancingHasWeickertsDiffusivity)
+{
+  Settings settings;
+  settings.Model = Kind::CoherenceEnhancing;
+  settings.Contrast = 1.3;
+  settings.Alpha = 0.02;
+  for (const double steep : { 1.0, 1.3, 2.0, 4.0 })
+  {
+    for (const double flat : { 0.0, 0.7 * steep })
+    {
+      const double ratio = 1.3 * 1.3 / (steep * steep - flat * flat); // K^2/(m1 - m2)
+      ExpectDiffusivities(settings, steep, flat, 0.02, 0.02 + 0.98 * std::exp(-ratio * ratio));
+    }
+  }
+}
+
 TEST(StructureDiffusion, AlphaOneIsLinearDiffusion)
 {
   const Surface s = Icosphere(4);
