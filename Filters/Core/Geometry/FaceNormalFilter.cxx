@@ -193,15 +193,14 @@ Points GuideOfSmoothSurface(const FaceGraph& graph, const FaceGeometry& geometry
   return guide;
 }
 
-/// One sweep from `normals` to `next`. Returns the weighted sum of the products of neighbours and
-/// of the normals with n0.
-double Sweep(const FaceGraph& graph, const FaceGeometry& geometry, const Vector& weights,
+/// One sweep from `normals` to `next`.
+void Sweep(const FaceGraph& graph, const FaceGeometry& geometry, const Vector& weights,
   const NormalFilterSettings& settings, bool robust, const Points& normals, Points& next,
   const ParallelFor& parallel)
 {
   const double range = 0.5 / (settings.Range * settings.Range);
   const double fidelity = robust ? settings.Fidelity : 0.0;
-  return Sum(parallel, graph.NumberOfFaces(),
+  ForEach(parallel, graph.NumberOfFaces(),
     [&](Index f)
     {
       const Eigen::RowVector3d own = normals.row(f);
@@ -219,7 +218,6 @@ double Sweep(const FaceGraph& graph, const FaceGeometry& geometry, const Vector&
         sum += weight * geometry.Areas[g] * other;
       }
       next.row(f) = Direction(sum, own);
-      return geometry.Areas[f] * sum.dot(own);
     });
 }
 
@@ -260,17 +258,10 @@ Points FilterNormals(const FaceGraph& graph, const FaceGeometry& geometry, const
   const Vector weights = NeighbourWeights(graph, geometry, guide, settings, parallel);
   Points normals = geometry.Normals;
   Points next(normals.rows(), 3);
-  double before = 0.0;
   for (int sweep = 0; sweep < settings.Sweeps; ++sweep)
   {
     // The first sweep starts from the noise, in which the penalty would see edges everywhere.
-    const double products =
-      Sweep(graph, geometry, weights, settings, sweep > 0, normals, next, parallel);
-    if (sweep > 1 && products < before)
-    {
-      break;
-    }
-    before = products;
+    Sweep(graph, geometry, weights, settings, sweep > 0, normals, next, parallel);
     normals.swap(next);
   }
   return normals;

@@ -48,8 +48,7 @@ Vector NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry, co
 /// the centroids c and the guide m, and the saturating penalty rho(d) = 1 - exp(-d^2 / (2 r^2))
 /// (static/dynamic filtering: J. Zhang, B. Deng, Y. Hong, Y. Peng, W. Qin, L. Liu, TVCG 25(4),
 /// 2019). Each sweep majorises the penalty and sets each normal to the direction of the weighted
-/// sum of its neighbours. A sweep that would lower the sum of the weighted products of normals ends
-/// the filter, so that the energy of the frozen weights never grows.
+/// sum of its neighbours.
 Points FilterNormals(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
   const NormalFilterSettings& settings, const ParallelFor& parallel);
 
