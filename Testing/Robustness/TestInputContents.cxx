@@ -8,6 +8,8 @@
 
 #include "vtkPartitionedDataSet.h"
 
+#include <map>
+
 using namespace FilterTest;
 
 namespace
@@ -182,6 +184,110 @@ vtkSmartPointer<vtkPolyData> TwoRegions()
 }
 
 } // namespace
+
+TEST(InputContents, OfTheDataAloneAreReadAgain)
+{
+  const auto surface = TwoRegions();
+  ExpectReadAlone([] { return vtkSmartPointer<vtkFVMHeatFilter>::New(); }, surface,
+    surface->GetPointData()->GetArray("f"), "fDiffused");
+}
+
+TEST(InputContents, OfAMaskAloneAreReadAgain)
+{
+  for (const int mode :
+    { vtkFVMHeatFilter::MASK_MODE_INPAINT, vtkFVMHeatFilter::MASK_MODE_EXCLUDE })
+  {
+    const auto surface = TwoRegions();
+    vtkDataArray* const mask =
+      AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i < 40; });
+    ExpectReadAlone(
+      [mode]
+      {
+        auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+        filter->SetMaskMode(mode);
+        SetInputArray(filter, 1, "mask");
+        return filter;
+      },
+      surface, mask, "fDiffused");
+  }
+}
+
+TEST(InputContents, OfDirectionsAloneAreReadAgain)
+{
+  const auto surface = TwoRegions();
+  vtkDataArray* const directions =
+    AddPointArray(surface, "e1", 3, [](vtkIdType i, int k) { return k + 0.9 * Rough(i, k); });
+  ExpectReadAlone(
+    []
+    {
+      auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+      filter->SetAcrossDiffusivity(0.1);
+      SetInputArray(filter, 2, "e1");
+      return filter;
+    },
+    surface, directions, "fDiffused");
+}
+
+TEST(InputContents, OfFixedPointsAloneAreReadAgain)
+{
+  const auto surface = TwoRegions();
+  vtkDataArray* const fixed =
+    AddPointArray(surface, "fixed", 1, [](vtkIdType i, int) { return i < 40; });
+  ExpectReadAlone(
+    []
+    {
+      auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+      SetInputArray(filter, 3, "fixed");
+      return filter;
+    },
+    surface, fixed, "fDiffused");
+}
+
+/// The noise of a texture belongs to the ids.
+TEST(InputContents, OfGlobalIdsAloneAreReadAgain)
+{
+  const auto surface = Sphere(3);
+  vtkDataArray* const ids = AddPointArray(
+    surface, "ids", 1, [](vtkIdType i, int) { return i; }, VTK_ID_TYPE);
+  surface->GetPointData()->SetActiveAttribute("ids", vtkDataSetAttributes::GLOBALIDS);
+  ExpectReadAlone(
+    []
+    {
+      auto filter = vtkSmartPointer<vtkTuringTextureFilter>::New();
+      filter->SetNumberOfTimeSteps(2);
+      return filter;
+    },
+    surface, ids, "u1");
+}
+
+/// Arrays of points and cells have the same name and, at the first places, the same values.
+TEST(InputContents, OfCellsInPlaceOfPointsAreReadAgain)
+{
+  const auto surface = TwoRegions();
+  const std::map<int, const char*> names = { { 1, "mask" }, { 3, "fixed" }, { 5, "fidelity" } };
+  const auto value = [](vtkIdType i, int) { return i < 40; };
+  for (const auto& [index, name] : names)
+  {
+    AddPointArray(surface, name, 1, value);
+    surface->GetCellData()->AddArray(
+      MakeArray(VTK_DOUBLE, name, surface->GetNumberOfCells(), 1, value));
+    vtkNew<vtkFVMHeatFilter> kept;
+    kept->SetFidelityWeight(0.5);
+    kept->SetInputData(surface);
+    SetInputArray(kept, index, name);
+    kept->Update();
+    const auto before = Copy(ResultOf(kept, "fDiffused"));
+    SetInputArray(kept, index, name, true);
+    kept->Update();
+    vtkNew<vtkFVMHeatFilter> fresh;
+    fresh->SetFidelityWeight(0.5);
+    fresh->SetInputData(surface);
+    SetInputArray(fresh, index, name, true);
+    fresh->Update();
+    EXPECT_TRUE(Identical(ResultOf(kept, "fDiffused"), ResultOf(fresh, "fDiffused"))) << name;
+    EXPECT_FALSE(Identical(ResultOf(kept, "fDiffused"), before)) << name;
+  }
+}
 
 TEST(InputContents, OfFidelityAloneAreReadAgain)
 {

@@ -13,6 +13,7 @@
 
 #include "vtkCellArray.h"
 
+#include <cstdio>
 #include <cstdlib>
 
 using namespace FilterTest;
@@ -165,8 +166,21 @@ bool AddedIsFinite(vtkPolyData* output, vtkPolyData* input)
   return finite;
 }
 
+/// Of the uses of one class.
+struct Uses
+{
+  int Updates = 0;
+  int Results = 0; ///< updates without an error, which add an array or move points
+};
+
+bool HasResult(vtkPolyDataAlgorithm* filter, const Messages& messages, vtkPolyData* input)
+{
+  return messages.Errors.empty() && !IsUnchanged(filter, input);
+}
+
 /// Updates a filter of one class many times.
-void UseAtRandom(const std::vector<FilterClass>& classes, unsigned int seed)
+void UseAtRandom(
+  const std::vector<FilterClass>& classes, unsigned int seed, std::vector<Uses>& uses)
 {
   Dice dice(seed);
   const FilterClass& kind = classes[seed % classes.size()];
@@ -213,6 +227,8 @@ void UseAtRandom(const std::vector<FilterClass>& classes, unsigned int seed)
     ASSERT_EQ(Difference(filter, twin), "") << name;
     ASSERT_TRUE(!messages.Errors.empty() || AddedIsFinite(filter->GetOutput(), surface)) << name;
     ASSERT_TRUE(messages.Errors.empty() || IsUnchanged(filter, surface)) << messages.Errors[0];
+    ++uses[seed % classes.size()].Updates;
+    uses[seed % classes.size()].Results += HasResult(filter, messages, surface);
     // After an error about half of the properties return to their defaults, to make results likely.
     for (const RandomProperty& property : kind.Properties)
     {
@@ -232,9 +248,17 @@ TEST(RandomUse, GivesWhatANewFilterGives)
   const char* const part = std::getenv("SURFACEDIFFUSION_LONG");
   const unsigned int uses = part ? 30000 : 150;
   const unsigned int first = part ? uses * (std::strtoul(part, nullptr, 10) - 1) : 0;
+  std::vector<Uses> found(classes.size());
   for (unsigned int seed = first; seed < first + uses && !HasFatalFailure(); ++seed)
   {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    UseAtRandom(classes, seed);
+    UseAtRandom(classes, seed, found);
+  }
+  // A comparison of errors alone would hold nothing.
+  for (std::size_t c = 0; c < classes.size(); ++c)
+  {
+    std::printf("%-32s %5d results of %5d updates\n", classes[c].Name.c_str(), found[c].Results,
+      found[c].Updates);
+    EXPECT_GE(5 * found[c].Results, 2 * found[c].Updates) << classes[c].Name;
   }
 }
