@@ -191,8 +191,8 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
     "a vector is not one long");
 }
 
-/// Three steps, of which the last is repeated from the saved state.
-void Run(const TriangleMesh& mesh, Model& model, Promises promises)
+/// Three steps, of which the last is repeated from the saved state. Returns whether all have a result.
+bool Run(const TriangleMesh& mesh, Model& model, Promises promises)
 {
   const Values start = model.State();
   const double energy = model.Energy();
@@ -215,6 +215,7 @@ void Run(const TriangleMesh& mesh, Model& model, Promises promises)
     model.Restore(checkpoint.data());
     model.Advance(ProgressMonitor());
     Require(model.State() == last, "a restored state goes on differently");
+    return mesh.NumberOfVertices() > 0;
   }
   catch (const NotConverged&)
   {
@@ -224,6 +225,7 @@ void Run(const TriangleMesh& mesh, Model& model, Promises promises)
     const bool boundless = std::string(error.what()).find("without bounds") != std::string::npos;
     Require(boundless || !promises.Solution || HasFlatTriangles(mesh), error.what());
   }
+  return false;
 }
 
 bool Any(const Flags& flags)
@@ -231,7 +233,7 @@ bool Any(const Flags& flags)
   return flags.size() > 0 && flags.any();
 }
 
-void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+bool RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames, bool delaunay)
 {
   const TriangleMesh& mesh = assembler->Mesh();
@@ -260,7 +262,7 @@ void RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   std::shared_ptr<LinearSolver> solver = ReadSolver(bytes);
   ReadFidelityFactors(bytes, data);
   LinearDiffusion model(assembler, coefficients, std::move(data), settings, std::move(solver));
-  Run(mesh, model, promises);
+  return Run(mesh, model, promises);
 }
 
 /// Whether the diffusivities along and across every gradient, whose ratio is 1 + b^2 |grad u|^2, differ
@@ -280,7 +282,7 @@ bool IsResolved(const TriangleMesh& mesh, const Values& u, double colorScale)
 }
 
 /// Models whose diffusion tensor follows from the data.
-void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+bool RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames)
 {
   const TriangleMesh& mesh = assembler->Mesh();
@@ -306,8 +308,7 @@ void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
     promises.Solution = IsResolved(mesh, model.State(), scale);
     promises.Energy = promises.Solution && !HasFlatTriangles(mesh);
     promises.Residual = AnswerFactor * SolverTolerance;
-    Run(mesh, model, promises);
-    return;
+    return Run(mesh, model, promises);
   }
   StructureDiffusion::Settings settings;
   settings.TimeStep = timeStep;
@@ -325,10 +326,10 @@ void RunTensor(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
     std::move(integration));
   StructureDiffusion model(
     assembler, frames, std::move(data), settings, std::move(structure), ReadSolver(bytes));
-  Run(mesh, model, promises);
+  return Run(mesh, model, promises);
 }
 
-void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+bool RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames)
 {
   NonlinearDiffusion::Settings settings;
@@ -345,8 +346,7 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
   const TriangleMesh& mesh = assembler->Mesh();
   if (bytes.Flip(3))
   {
-    RunTensor(bytes, assembler, std::move(data), frames);
-    return;
+    return RunTensor(bytes, assembler, std::move(data), frames);
   }
   if (bytes.Flip(3))
   {
@@ -354,7 +354,7 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
     const auto operators = std::make_shared<const Assembler>(edges->Edges());
     if (HasFlatTriangles(mesh))
     {
-      return; // its start solves another system
+      return false; // its start solves another system
     }
     TotalCorrection conserved(mesh, data, settings.Fidelity > 0.0);
     CrouzeixRaviartModel model(assembler, edges, std::move(data), std::move(conserved),
@@ -365,14 +365,13 @@ void RunNonlinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assemble
         return std::make_unique<NonlinearDiffusion>(
           operators, TangentVectors(0, 2), std::move(ofEdges), settings, ReadSolver(bytes));
       });
-    Run(mesh, model, promises);
-    return;
+    return Run(mesh, model, promises);
   }
   NonlinearDiffusion model(assembler, frames, std::move(data), settings, ReadSolver(bytes));
-  Run(mesh, model, promises);
+  return Run(mesh, model, promises);
 }
 
-void RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+bool RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
 {
   const TriangleMesh& mesh = assembler->Mesh();
   const double width = bytes.Size(2.0);
@@ -389,8 +388,7 @@ void RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   {
     TikhonovDeblurring model(assembler, CotanWeights(mesh), std::move(data), fidelity,
       std::move(blur), ReadSolver(bytes), { 1e-10, 1000 });
-    Run(mesh, model, promises);
-    return;
+    return Run(mesh, model, promises);
   }
   promises.Variation = true;
   TotalVariationDeblurring::Settings settings;
@@ -400,7 +398,7 @@ void RunDeblurring(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   settings.MaximumNumberOfIterations = 20;
   TotalVariationDeblurring model(
     assembler, TangentVectors(0, 2), std::move(data), settings, std::move(blur));
-  Run(mesh, model, promises);
+  return Run(mesh, model, promises);
 }
 
 /// Every row of u is a probability, and seeds keep their labels.
@@ -416,7 +414,7 @@ void CheckProbabilities(const Values& u, const std::vector<Index>& seeds)
 }
 
 /// The values are data of K means, or K given data terms if there are at least two columns.
-void RunSegmentation(
+bool RunSegmentation(
   Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
 {
   const TriangleMesh& mesh = assembler->Mesh();
@@ -449,11 +447,12 @@ void RunSegmentation(
   input.Data = std::move(data);
   const std::vector<Index> seeds = input.Seeds;
   Segmentation model(assembler, std::move(input), settings);
-  Run(mesh, model, Promises());
+  const bool hasResult = Run(mesh, model, Promises());
   CheckProbabilities(model.State(), seeds);
+  return hasResult;
 }
 
-void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
+bool RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data,
   const TangentVectors& frames)
 {
   TotalVariationFlow::Settings settings;
@@ -476,19 +475,17 @@ void RunMinimizing(Bytes& bytes, const std::shared_ptr<const Assembler>& assembl
   ReadFidelityFactors(bytes, data);
   if (bytes.Flip(4))
   {
-    RunDeblurring(bytes, assembler, std::move(data));
-    return;
+    return RunDeblurring(bytes, assembler, std::move(data));
   }
   if (bytes.Flip(4))
   {
-    RunSegmentation(bytes, assembler, std::move(data));
-    return;
+    return RunSegmentation(bytes, assembler, std::move(data));
   }
   TotalVariationFlow model(assembler, frames, std::move(data), settings);
-  Run(assembler->Mesh(), model, promises);
+  return Run(assembler->Mesh(), model, promises);
 }
 
-void RunMumfordShah(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+bool RunMumfordShah(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
 {
   MumfordShah::Settings settings;
   settings.Fidelity = bytes.Flip() ? bytes.Size(4.0) : 0.0;
@@ -500,10 +497,10 @@ void RunMumfordShah(Bytes& bytes, const std::shared_ptr<const Assembler>& assemb
   promises.Sum = settings.Fidelity == 0.0 && !Any(data.Fixed) && !HasFlatTriangles(mesh);
   MumfordShah model(
     assembler, CotanWeights(mesh), std::move(data), settings, ReadSolver(bytes), ReadSolver(bytes));
-  Run(mesh, model, promises);
+  return Run(mesh, model, promises);
 }
 
-void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
+bool RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, PointData data)
 {
   const TriangleMesh& mesh = assembler->Mesh();
   HarmonicMap::Settings settings;
@@ -527,10 +524,10 @@ void RunHarmonic(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
   promises.Energy = !paper;
   HarmonicMap model(assembler, CotanWeights(mesh), std::move(data), settings,
     paper ? ReadSolver(bytes) : MakeCholeskySolver());
-  Run(mesh, model, promises);
+  return Run(mesh, model, promises);
 }
 
-void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler)
+bool RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler)
 {
   const TriangleMesh& mesh = assembler->Mesh();
   Reaction reaction;
@@ -552,15 +549,15 @@ void RunReaction(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler
     chemical.Solver = ReadSolver(bytes);
   }
   ReactionDiffusion model(assembler, reaction, chemicals, std::move(data), settings);
-  Run(mesh, model, Promises());
+  return Run(mesh, model, Promises());
 }
 
 } // namespace
 
-void RunFromBytes(const std::uint8_t* begin, std::size_t count)
+Outcome RunFromBytes(const std::uint8_t* begin, std::size_t count)
 {
   Bytes bytes(begin, count);
-  const int model = bytes.Below(7);
+  const int model = bytes.Below(NumberOfModels);
   const Points points = ReadPoints(bytes);
   const Triangles triangles = ReadTriangles(bytes, static_cast<int>(points.rows()));
   const auto original = std::make_shared<TriangleMesh>(points, triangles);
@@ -573,7 +570,7 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   if (model == 5)
   {
     RunGeometry(bytes, Assembler(original), points, triangles, frames);
-    return;
+    return { model, original->NumberOfVertices() > 0 };
   }
   const bool delaunay = bytes.Flip();
   std::shared_ptr<const TriangleMesh> mesh = original;
@@ -586,31 +583,25 @@ void RunFromBytes(const std::uint8_t* begin, std::size_t count)
   const auto assembler = std::make_shared<const Assembler>(mesh);
   if (model == 4)
   {
-    RunReaction(bytes, assembler);
-    return;
+    return { model, RunReaction(bytes, assembler) };
   }
   // The minimiser's accuracy is relative to the change that a step can make.
   PointData data = ReadData(bytes, *mesh, model == 2 ? 3.0 : 90.0);
   if (model == 3)
   {
-    RunHarmonic(bytes, assembler, std::move(data));
-    return;
+    return { model, RunHarmonic(bytes, assembler, std::move(data)) };
   }
   FillMissing(*mesh, data, static_cast<InitialFill>(bytes.Below(3)), 1, Ids(*mesh));
   switch (model)
   {
     case 0:
-      RunLinear(bytes, assembler, std::move(data), frames, delaunay);
-      break;
+      return { model, RunLinear(bytes, assembler, std::move(data), frames, delaunay) };
     case 1:
-      RunNonlinear(bytes, assembler, std::move(data), frames);
-      break;
+      return { model, RunNonlinear(bytes, assembler, std::move(data), frames) };
     case 6:
-      RunMumfordShah(bytes, assembler, std::move(data));
-      break;
+      return { model, RunMumfordShah(bytes, assembler, std::move(data)) };
     default:
-      RunMinimizing(bytes, assembler, std::move(data), frames);
-      break;
+      return { model, RunMinimizing(bytes, assembler, std::move(data), frames) };
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string>
@@ -14,6 +16,7 @@ using namespace SurfaceDiffusion::Testing;
 TEST(RandomRuns, KeepWhatTheCorePromises)
 {
   std::mt19937 random(2026); // the same numbers on every platform
+  std::array<int, NumberOfModels> runs{}, results{};
   for (int run = 0; run < 1500; ++run)
   {
     std::vector<std::uint8_t> bytes(40 + random() % 360);
@@ -21,7 +24,19 @@ TEST(RandomRuns, KeepWhatTheCorePromises)
     {
       byte = static_cast<std::uint8_t>(random() >> 11);
     }
-    EXPECT_NO_THROW(RunFromBytes(bytes.data(), bytes.size())) << "run " << run;
+    EXPECT_NO_THROW({
+      const Outcome outcome = RunFromBytes(bytes.data(), bytes.size());
+      ++runs[outcome.Model];
+      results[outcome.Model] += outcome.HasResult;
+    }) << "run "
+       << run;
+  }
+  // A model that fails in most runs would keep its promises in vain.
+  for (int model = 0; model < NumberOfModels; ++model)
+  {
+    std::printf("model %d: %d results of %d runs\n", model, results[model], runs[model]);
+    EXPECT_GE(4 * results[model], 3 * runs[model]) << "model " << model;
+    EXPECT_GT(runs[model], 100) << "model " << model;
   }
 }
 

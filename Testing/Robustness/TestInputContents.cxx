@@ -260,10 +260,16 @@ TEST(InputContents, OfGlobalIdsAloneAreReadAgain)
     surface, ids, "u1");
 }
 
-/// Arrays of points and cells have the same name and, at the first places, the same values.
+/// There are as many points as cells, and the arrays of both have the same contents.
 TEST(InputContents, OfCellsInPlaceOfPointsAreReadAgain)
 {
-  const auto surface = TwoRegions();
+  const auto surface = Sphere(3);
+  while (surface->GetNumberOfPoints() < surface->GetNumberOfCells())
+  {
+    surface->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0); // unused
+  }
+  ASSERT_EQ(surface->GetNumberOfPoints(), surface->GetNumberOfCells());
+  AddRough(surface);
   const std::map<int, const char*> names = { { 1, "mask" }, { 3, "fixed" }, { 5, "fidelity" } };
   const auto value = [](vtkIdType i, int) { return i < 40; };
   for (const auto& [index, name] : names)
