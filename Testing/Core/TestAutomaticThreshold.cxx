@@ -216,6 +216,28 @@ double UnitStep(const Eigen::RowVector3d& x)
 
 } // namespace
 
+/// 3.2 sigma sqrt(8 h / L) of one channel, in the Euclidean norm over the channels.
+TEST(AutomaticThreshold, OfStrongNoiseGrowsAsTheRootOfTheNumberOfChannels)
+{
+  const Shape plate = Plate(24, 1.0);
+  const auto assembler = MakeAssembler(plate);
+  const TriangleMesh& mesh = assembler->Mesh();
+  EdgeScalesInput input;
+  input.NoiseLevel = 10.0;
+  input.EdgeWidth = 1e-6 * MeanEdge(mesh);
+  for (const Eigen::Index channels : { 1, 4, 9 })
+  {
+    // A checkerboard has no slope.
+    const Values f = Noise(mesh).array().sign().replicate(1, channels);
+    const EdgeScales found =
+      FindEdgeScales(*assembler, plate.Vertices, PointData::FromValues(f), input).front();
+    EXPECT_NEAR(found.SmoothingLength, 24.0 * MeanEdge(mesh), 0.2 * MeanEdge(mesh));
+    const double expected =
+      3.2 * 10.0 * std::sqrt(channels * 8.0 * MeanEdge(mesh) / found.SmoothingLength);
+    EXPECT_NEAR(found.Threshold, expected, 0.01 * expected) << channels << " channels";
+  }
+}
+
 TEST(AutomaticThreshold, RampsHaveNoEdgesAtAnyResolution)
 {
   for (const Index n : { 20, 30, 50, 80, 120, 200 })

@@ -322,6 +322,24 @@ TEST(CellDetail, TotalsOfEachComponentAreKept)
   }
 }
 
+/// The fidelity to cells is to their changes: absolute values are in no model of the detail.
+TEST(CellDetail, ResultOfAbsoluteFidelityMovesWithAConstant)
+{
+  CellInput input(Icosphere(3));
+  const Values noise = WhiteNoise(input.Data.NumberOfCells);
+  input.Data.Data += noise;
+  TotalVariationSettings settings;
+  settings.NumberOfTimeSteps = 3;
+  settings.FidelityWeight = 0.5;
+  settings.AutomaticFidelity = false;
+  settings.FidelityNorm = FidelityNorm::L1;
+  const Values before = CellResultOf(input, settings);
+  EXPECT_GT((before - input.Data.Data).cwiseAbs().maxCoeff(), 0.1);
+  input.Data.Data.array() += 64.0;
+  const Values after = CellResultOf(input, settings);
+  EXPECT_LT(((after - before).array() - 64.0).abs().maxCoeff(), 1e-3);
+}
+
 TEST(CellDetail, TimeStepsTendToTheSteadyState)
 {
   for (CellInput& input : Shapes())

@@ -58,6 +58,29 @@ std::vector<Example> Examples()
 
 } // namespace
 
+TEST(CellTransfer, WeightedMeansKeepWeightedIntegrals)
+{
+  for (const Example& example : Examples())
+  {
+    const auto mesh = MakeMesh(example.Shape);
+    const Index count = example.Cells.back() + 1;
+    const CellTransfer transfer(*mesh, example.Cells, count, SerialFor());
+    const Values f = RandomCells(count, 2);
+    Vector weights(count);
+    for (Index c = 0; c < count; ++c)
+    {
+      weights[c] = c % 5 == 0 ? 0.0 : std::exp2(4.0 * UniformRandom(12, 0, c) - 2.0);
+    }
+    const VertexMeans means = transfer.ToVertices(f, weights);
+    const Vector ofCells = weights.cwiseProduct(transfer.CellAreas());
+    EXPECT_NEAR(means.Weights.sum(), ofCells.sum(), 1e-13 * ofCells.sum());
+    for (Eigen::Index k = 0; k < 2; ++k)
+    {
+      EXPECT_NEAR(means.Weights.dot(means.Of.col(k)), ofCells.dot(f.col(k)), 1e-13 * ofCells.sum());
+    }
+  }
+}
+
 TEST(CellTransfer, KeepsConstantsAndIntegralsAndIsAdjointOnTriangles)
 {
   for (const Example& example : Examples())

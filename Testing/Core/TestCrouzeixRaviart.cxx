@@ -64,6 +64,43 @@ TEST(CrouzeixRaviart, SmoothDataAndNoiseStartFromMeans)
   EXPECT_LT(RootMeanSquare(*edges.Edges(), change), 0.1 * RootMeanSquare(assembler->Mesh(), noise));
 }
 
+/// Of edges between two kinds of vertices.
+TEST(CrouzeixRaviart, EdgesAreKnownIfBothEndsAreAndFixedIfBothAre)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto edges = std::make_shared<MedialMesh>(mesh);
+  const auto onEdges = std::make_shared<Assembler>(edges->Edges());
+  PointData data = PointData::FromValues(Noise(mesh));
+  data.FidelityFactors.resize(mesh.NumberOfVertices());
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    data.Missing[i] = i % 5 == 1;
+    data.Fixed[i] = i % 3 == 0 && i % 5 != 1;
+    data.FidelityFactors[i] = i % 4;
+  }
+  const PointData given = data;
+  PointData ofEdges;
+  CrouzeixRaviartModel model(assembler, edges, std::move(data), TotalCorrection(),
+    [&](PointData edgeData)
+    {
+      ofEdges = edgeData;
+      return MakeExact(onEdges, std::move(edgeData), ExactSettings(mesh, 0.01, 1.0));
+    });
+  int mixed = 0;
+  for (Index e = 0; e < edges->Edges()->NumberOfVertices(); ++e)
+  {
+    const Index i = edges->Ends()[e][0];
+    const Index j = edges->Ends()[e][1];
+    EXPECT_EQ(ofEdges.Missing[e], given.Missing[i] || given.Missing[j]);
+    EXPECT_EQ(ofEdges.Fixed[e], given.Fixed[i] && given.Fixed[j]);
+    mixed += given.Missing[i] != given.Missing[j] && given.Fixed[i] != given.Fixed[j];
+    const double a = given.FidelityFactor(i), b = given.FidelityFactor(j);
+    EXPECT_DOUBLE_EQ(ofEdges.FidelityFactors[e], a * b > 0.0 ? 2.0 / (1.0 / a + 1.0 / b) : 0.0);
+  }
+  EXPECT_GT(mixed, 10);
+}
+
 TEST(CrouzeixRaviart, JumpsStartSharp)
 {
   const Surface s = Icosphere(4);

@@ -3,6 +3,7 @@
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Models/TotalVariationDeblurring.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/MeanCorrection.h"
 #include "EveryMeshFile.h"
 #include "Heat.h"
 #include "TotalVariation.h"
@@ -172,6 +173,22 @@ TEST(HeatBlur, ErrorsAreRelativeToTheContrastOfTheValues)
   blur.Apply(u, report);
   blur.Apply(far, report);
   EXPECT_LT((far.array() - offset - u.array()).abs().maxCoeff(), 1e-8);
+}
+
+TEST(TikhonovDeblurring, KeepsTheTotalWithAnInexactSolver)
+{
+  const BlurredSphere sphere(3);
+  Values f(sphere.Mesh.NumberOfVertices(), 2);
+  f << sphere.Blur(sphere.Cap()), Noise(sphere.Mesh).array() + 3.0;
+  TikhonovDeblurring model(sphere.Operators, CotanWeights(sphere.Mesh), PointData::FromValues(f),
+    100.0, sphere.MakeBlur(), MakeConjugateGradientSolver(), { 0.05, 1000 });
+  model.Advance(ProgressMonitor());
+  EXPECT_GT((model.State() - f).cwiseAbs().maxCoeff(), 0.1);
+  for (int k = 0; k < 2; ++k)
+  {
+    const double total = Total(sphere.Mesh, f, k);
+    EXPECT_NEAR(Total(sphere.Mesh, model.State(), k), total, 1e-12 * total);
+  }
 }
 
 TEST(TikhonovDeblurring, SphericalHarmonicsAreScaledByTheTransferFunctionWithSecondOrder)

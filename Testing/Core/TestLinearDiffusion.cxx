@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Operators/DirichletEnergy.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"
@@ -421,6 +422,21 @@ TEST(LinearDiffusion, EnergyOfAHarmonicIsItsEigenvalueTimesItsNorm)
   const double norm = 4.0 * Pi * std::pow(RootMeanSquare(mesh, f), 2);
   EXPECT_NEAR(energy(0.0), 0.5 * 6.0 * norm, 2e-3 * energy(0.0));
   EXPECT_NEAR(energy(7.0) - energy(0.0), 0.5 * 7.0 * norm, 2e-3 * energy(0.0));
+}
+
+/// The sum of the energy is taken in parts of 524,288 triangles.
+TEST(LinearDiffusion, EnergyOfALinearFunctionIsExactOnAnyNumberOfTriangles)
+{
+  Surface s = Strip(740, 360, 2.0, 1.0);
+  s.Vertices.col(1) = s.Vertices.col(1).array().square().eval(); // uneven weights
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  ASSERT_GT(mesh.NumberOfTriangles(), 256 * BlockSize);
+  const Values f =
+    Sample(mesh, s, [](const Eigen::RowVector3d& x) { return 3.0 * x[0] - 4.0 * x[1]; });
+  const double exact = 0.5 * 2.0 * 25.0;
+  EXPECT_NEAR(DirichletEnergy(mesh, CotanWeights(mesh), f, SerialFor()), exact, 1e-9 * exact);
+  EXPECT_NEAR(DirichletEnergy(mesh, CornerWeights(), f, SerialFor()), exact, 1e-9 * exact);
 }
 
 TEST(LinearDiffusion, EnergyNeverGrows)

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/ResidualSquares.h"
 #include "Core/Solvers/SolverChoice.h"
 #include "Meshes.h"
 
@@ -255,6 +256,31 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, AnySolver,
   [](const auto& parameter) { return parameter.param.Name; });
 
 // Entries of the factor below round-off are dropped, many of them if steps are short.
+/// Few columns, panels of sixteen and others have loops of their own.
+TEST(ResidualSquares, AreWeightedSumsForAnyNumberOfColumns)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const TriangleMesh& mesh = assembler->Mesh();
+  ASSERT_GT(mesh.NumberOfVertices(), BlockSize);
+  const SparseMatrix matrix = HeatMatrix(*assembler, 0.01);
+  const Vector weights = Noise(mesh, 1, 3).array().abs();
+  for (const int columns : { 1, 2, 3, 4, 5, 8, 11, 16, 17, 40 })
+  {
+    const Values b = Noise(mesh, columns, 1);
+    const Values x = Noise(mesh, columns, 2);
+    std::vector<double> squares;
+    ResidualSquares(matrix, b, x, weights, squares, SerialFor());
+    const Values r = b - matrix * x;
+    for (int k = 0; k < columns; ++k)
+    {
+      const double ofR = weights.dot(r.col(k).cwiseAbs2());
+      const double ofB = weights.dot(b.col(k).cwiseAbs2());
+      EXPECT_NEAR(squares[2 * k], ofR, 1e-12 * ofR) << k << " of " << columns;
+      EXPECT_NEAR(squares[2 * k + 1], ofB, 1e-12 * ofB) << k << " of " << columns;
+    }
+  }
+}
+
 TEST(Cholesky, IsExactToRoundOffAtSmallAndLargeSteps)
 {
   const auto assembler = MakeAssembler(Icosphere(4));

@@ -114,6 +114,26 @@ TEST_P(WithSolver, InpaintingWithoutFidelityKeepsTheSum)
   EXPECT_LT(Drift(assembler->Mesh(), data.Start, heat->State()), 1e-12);
 }
 
+/// Columns are solved sixteen at a time.
+TEST(TotalCorrection, EveryColumnOfManyKeepsItsOwnTotal)
+{
+  const auto assembler = MakeAssembler(Joined(Icosphere(2), Disk(6)));
+  const TriangleMesh& mesh = assembler->Mesh();
+  Values start = Noise(mesh, 37);
+  for (Eigen::Index k = 0; k < start.cols(); ++k)
+  {
+    start.col(k).array() += 0.3 * static_cast<double>(k);
+  }
+  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2 })
+  {
+    const auto heat = MakeHeat(assembler, PointData::FromValues(start),
+      HeatSettings(mesh, 0.02, 0.0, scheme), LooseConjugateGradients());
+    Advance(*heat, 3);
+    EXPECT_GT((heat->State() - start).cwiseAbs().maxCoeff(), 0.1);
+    EXPECT_LT(Drift(mesh, start, heat->State()), 1e-12);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(TotalCorrection, WithSolver,
   ::testing::Values(Kind{ "Cholesky", [] { return MakeCholeskySolver(); } },
     Kind{ "ConjugateGradient", [] { return MakeConjugateGradientSolver(); } },

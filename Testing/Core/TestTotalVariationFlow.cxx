@@ -441,6 +441,26 @@ TEST(TotalVariationFlow, EachOfSeveralChannelsComesOutAsIfAlone)
   }
 }
 
+/// Of channels that are minimised one by one, in the norm over all of them.
+TEST(TotalVariationFlow, ErrorBoundOfEqualChannelsGrowsAsTheRootOfTheirNumber)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const TriangleMesh& mesh = assembler->Mesh();
+  TotalVariationFlow::Settings settings = ExactSettings(mesh, 0.05, 1.0, 1e-2);
+  settings.Coupling = ChannelCoupling::PerChannel;
+  const Values f = Noise(mesh);
+  const auto boundOf = [&](int channels)
+  {
+    const auto flow =
+      MakeExact(assembler, PointData::FromValues(f.replicate(1, channels)), settings);
+    return flow->Advance(ProgressMonitor()).ErrorBound;
+  };
+  const double one = boundOf(1);
+  EXPECT_GT(one, 0.0);
+  EXPECT_NEAR(boundOf(2), std::sqrt(2.0) * one, 1e-9 * one);
+  EXPECT_NEAR(boundOf(5), std::sqrt(5.0) * one, 1e-9 * one);
+}
+
 TEST(TotalVariationFlow, ErrorBoundIsBetweenTheErrorAndThatOfTheTolerance)
 {
   const CapProblem cap;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/VertexSplitting.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/TangentVectors.h"
 #include "TotalVariation.h"
@@ -55,6 +56,85 @@ struct Problem
 };
 
 } // namespace
+
+namespace
+{
+
+/// The minimum of a convex function over the ball around `centre`, by steps in random directions.
+template <typename F>
+double MinimumInBall(const F& f, const Eigen::RowVectorXd& centre, double radius)
+{
+  Eigen::RowVectorXd best = centre;
+  double step = 0.5 * radius;
+  std::int64_t number = 0;
+  while (step > 1e-7 * radius)
+  {
+    bool found = false;
+    for (int trial = 0; trial < 60; ++trial, ++number)
+    {
+      Eigen::RowVectorXd next = best;
+      for (Eigen::Index k = 0; k < next.size(); ++k)
+      {
+        next[k] += step * (2.0 * UniformRandom(17, k, number) - 1.0);
+      }
+      const double distance = (next - centre).norm();
+      next = distance > radius ? centre + radius / distance * (next - centre) : next;
+      if (f(next) < f(best))
+      {
+        best = next;
+        found = true;
+      }
+    }
+    step *= found ? 1.0 : 0.5;
+  }
+  return f(best);
+}
+
+} // namespace
+
+/// The minimum over u_i of d . u_i and the terms of vertex i: anywhere if mu > 0, and otherwise
+/// within Range, in each of m channels, of the present value or of f.
+TEST(TotalVariationMinimizer, DualOfTheTermsAtVerticesIsTheirMinimum)
+{
+  const auto mesh = MakeMesh(Tetrahedron());
+  const double area = mesh->ControlAreas()[0];
+  const double range = 0.7;
+  const Values g = Noise(*mesh, 3, 1), f = Noise(*mesh, 3, 2), u = Noise(*mesh, 3, 3);
+  for (const auto& [mu, nu] : { std::pair(0.0, 0.0), { 0.0, 0.9 }, { 1.3, 0.0 }, { 1.3, 0.9 } })
+  {
+    for (const ChannelCoupling coupling : { ChannelCoupling::Joint, ChannelCoupling::PerChannel })
+    {
+      VertexSplitting terms(mesh, Values::Constant(4, 1, mu), Vector::Constant(4, nu),
+        Flags::Constant(4, false), Vector::Ones(4), { EdgeFunction(), coupling, range },
+        SerialFor());
+      terms.Start(g, f, u, false);
+      for (const double size : { 0.1, 1.0, 4.0 })
+      {
+        const Values d = size * area * Noise(*mesh, 3, 4);
+        double expected = 0.0;
+        for (Index i = 0; i < 4; ++i)
+        {
+          const int together = coupling == ChannelCoupling::Joint ? 3 : 1;
+          for (int first = 0; first < 3; first += together)
+          {
+            const auto part = [&](const Values& x)
+            { return Eigen::RowVectorXd(x.row(i).segment(first, together)); };
+            const auto energy = [&](const Eigen::RowVectorXd& x)
+            {
+              return part(d).dot(x) +
+                area * (0.5 * mu * (x - part(g)).squaredNorm() + nu * (x - part(f)).norm());
+            };
+            expected += mu > 0.0
+              ? MinimumInBall(energy, part(g), 20.0)
+              : MinimumInBall(energy, nu > 0.0 ? part(f) : part(u), range * std::sqrt(together));
+          }
+        }
+        EXPECT_NEAR(terms.DualEnergy(d, u), expected, 1e-4 * area * std::max(1.0, size))
+          << mu << ' ' << nu << ' ' << size << ' ' << static_cast<int>(coupling);
+      }
+    }
+  }
+}
 
 TEST(TotalVariationMinimizer, GapBoundsTheDistanceToTheMinimum)
 {

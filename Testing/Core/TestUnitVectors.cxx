@@ -57,6 +57,27 @@ TEST(UnitVectors, ZeroAndNaNAreMissingAndTakeTheMeanDirection)
   }
 }
 
+/// The lines of a rim are the same whichever of two opposite vectors stands for each of them.
+TEST(UnitVectors, LinesSpreadWithoutRegardToTheirSigns)
+{
+  const auto mesh = MakeMesh(Disk(4));
+  const Eigen::RowVector3d line(0.6, 0.0, 0.8);
+  for (std::int64_t seed = 0; seed < 20; ++seed)
+  {
+    Values u(mesh->NumberOfVertices(), 3);
+    Flags known(mesh->NumberOfVertices());
+    for (Index i = 0; i < mesh->NumberOfVertices(); ++i)
+    {
+      known[i] = mesh->InputVertex()[i] >= 7; // all but the inner hexagon
+      u.row(i) = (UniformRandom(seed, 0, i) < 0.5 ? -1.0 : 1.0) * line;
+      u.row(i) *= known[i] ? 1.0 : 0.0;
+    }
+    SpreadUnitVectors(*mesh, u, known, true);
+    EXPECT_TRUE(known.all());
+    EXPECT_LT(((u * line.transpose()).array().abs() - 1.0).abs().maxCoeff(), 1e-14);
+  }
+}
+
 // The normals of a closed surface add up to nothing: a hole is filled from its rim.
 TEST(UnitVectors, WhereNoDirectionPrevailsTheRimSpreadsInwards)
 {
