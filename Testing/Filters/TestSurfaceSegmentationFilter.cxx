@@ -72,6 +72,7 @@ TEST(SegmentationFilter, FindsTheCapWithItsAreaAndBoundary)
   filter->SetFidelityWeight(0.2);
   filter->Update();
   EXPECT_LE(filter->GetGap(), 1e-3);
+  EXPECT_GT(filter->GetLabelGap(), 0.01); // boundaries of labels follow edges
   EXPECT_LT(filter->GetLabelGap(), 0.15);
   EXPECT_GE(filter->GetNumberOfAlternations(), 1);
   EXPECT_NEAR(filter->GetEffectiveMean(1, 0), -1.0, 0.03);

@@ -10,7 +10,7 @@ namespace SurfaceDiffusion::Testing
 
 constexpr int NumberOfModels = 7;
 
-/// Of a run.
+/// Which model a run was of, and whether its steps have results.
 struct Outcome
 {
   int Model; ///< of NumberOfModels

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Bounds of the work of models and filters, which are counted, not timed: factorisations, solves
+// and iterations. Those of iterative solvers are in Testing/Robustness/TestWork.cxx.
+
+#include "Core/Geometry/SmoothLineField.h"
+#include "Core/Geometry/SurfaceDenoising.h"
+#include "NoisySurfaces.h"
+#include "RunInput.h"
+
+#include "Run/HarmonicMapSettings.h"
+#include "Run/HeatSettings.h"
+#include "Run/MumfordShahSettings.h"
+#include "Run/TensorDiffusionSettings.h"
+#include "Run/TextureSettings.h"
+#include "Run/TotalVariationSettings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+
+namespace SurfaceDiffusion
+{
+
+using namespace Testing;
+
+namespace
+{
+
+constexpr int NumberOfSteps = 5;
+
+/// The number of factorisations for each purpose after a run with direct solvers.
+template <typename ModelSettings>
+std::map<SolverPurpose, long> FactorizationsOf(ModelSettings settings)
+{
+  RunInput input(Icosphere(3));
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    input.Data.Data(i, 0) = (input.Vertices(i, 2) > 0.2) + 0.1 * std::cos(7.0 * i);
+  }
+  settings.Solver = SolverMethod::Direct;
+  settings.NumberOfTimeSteps = NumberOfSteps;
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  EXPECT_EQ(run.NumberOfStepsComputed(), NumberOfSteps);
+  std::map<SolverPurpose, long> found;
+  for (const SolverPurpose purpose : { SolverPurpose::Step, SolverPurpose::SecondChemical,
+         SolverPurpose::Blur, SolverPurpose::Edges, SolverPurpose::Structure })
+  {
+    const LinearSolver* const solver = run.GetBlock(0).Solvers.Get(purpose);
+    if (solver)
+    {
+      found[purpose] = solver->NumberOfFactorizations();
+    }
+  }
+  return found;
+}
+
+using Counts = std::map<SolverPurpose, long>;
+
+/// Counts the solves of another solver.
+class CountingSolver : public LinearSolver
+{
+public:
+  void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress) override
+  {
+    this->Solver->SetMatrix(matrix, progress);
+  }
+  SolveReport Solve(const Values& b, Values& x, const ProgressMonitor& progress) override
+  {
+    ++this->NumberOfSolves;
+    return this->Solver->Solve(b, x, progress);
+  }
+  void Precondition(const Values& r, Values& z) override { this->Solver->Precondition(r, z); }
+  long NumberOfFactorizations() const override { return this->Solver->NumberOfFactorizations(); }
+
+  int NumberOfSolves = 0;
+
+private:
+  std::unique_ptr<LinearSolver> Solver = MakeCholeskySolver();
+};
+
+} // namespace
+
+/// The matrix of a linear equation is the same in all steps and stages.
+TEST(Work, OfLinearModelsIsOneFactorisation)
+{
+  EXPECT_EQ(FactorizationsOf(HeatSettings()), (Counts{ { SolverPurpose::Step, 1 } }));
+  EXPECT_EQ(FactorizationsOf(TextureSettings()),
+    (Counts{ { SolverPurpose::Step, 1 }, { SolverPurpose::SecondChemical, 1 } }));
+}
+
+/// The matrix of the old level is another in every step.
+TEST(Work, OfLaggedModelsIsOneFactorisationPerStep)
+{
+  TotalVariationSettings variation;
+  variation.TimeIntegrator = TimeIntegrator::FirstOrder;
+  EXPECT_EQ(FactorizationsOf(variation), (Counts{ { SolverPurpose::Step, NumberOfSteps } }));
+  EXPECT_EQ(FactorizationsOf(TensorDiffusionSettings()),
+    (Counts{ { SolverPurpose::Step, NumberOfSteps } }));
+  TensorDiffusionSettings coherent;
+  coherent.Model = TensorModel::CoherenceEnhancing;
+  EXPECT_EQ(FactorizationsOf(coherent),
+    (Counts{ { SolverPurpose::Step, NumberOfSteps }, { SolverPurpose::Blur, 1 },
+      { SolverPurpose::Structure, 1 } }));
+}
+
+/// A step is one for u and one for v.
+TEST(Work, OfTheMumfordShahModelIsTwoFactorisationsPerStep)
+{
+  EXPECT_EQ(FactorizationsOf(MumfordShahSettings()),
+    (Counts{ { SolverPurpose::Step, NumberOfSteps }, { SolverPurpose::Edges, NumberOfSteps } }));
+}
+
+/// Inverse iteration converges with the ratio of the first two different eigenvalues.
+TEST(Work, OfSmoothestLineFieldsIsOneFactorisationAndFewSolves)
+{
+  for (const Testing::Surface& s : { Icosphere(3), Icosphere(4), Torus(40, 20), Strip(30, 20) })
+  {
+    const auto mesh = MakeMesh(s);
+    const LineFieldOperator lines(mesh);
+    CountingSolver solver;
+    SmoothestLineField(lines, TangentVectors::Ones(s.NumberOfTriangles(), 2),
+      Vector::Ones(s.NumberOfTriangles()), solver);
+    EXPECT_EQ(solver.NumberOfFactorizations(), 1);
+    EXPECT_GE(solver.NumberOfSolves, 1);
+    EXPECT_LE(solver.NumberOfSolves, 10); // 2 to 4
+  }
+}
+
+/// 30 iterations at most, each with one report and a fit of four steps of conjugate gradients,
+/// which reports around and between them, whatever the size of the surface is.
+TEST(Work, OfMeshDenoisingIsThirtyFitsOfFourIterations)
+{
+  for (const Index cells : { 8, 16, 24 })
+  {
+    for (const double noise : { 0.1, 0.3 })
+    {
+      const Testing::Surface s = NoisyAlongNormals(LBlock(cells), noise);
+      const TriangleMesh mesh(s.Vertices, s.Faces);
+      int reports = 0;
+      const ProgressMonitor::Callback count = [&](double)
+      {
+        ++reports;
+        return true;
+      };
+      DenoiseSurface(mesh, GatherVertices(mesh, s.Vertices) / mesh.LengthUnit(), {},
+        DenoisingSettings(), nullptr, SerialFor(), ProgressMonitor(count));
+      EXPECT_GE(reports, 30);
+      EXPECT_LE(reports, 30 * (1 + 4 + 3));
+    }
+  }
+}
+
+} // namespace SurfaceDiffusion
