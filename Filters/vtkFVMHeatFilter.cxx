@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFVMHeatFilter.h"
 
-#include "Conversion/MirroredEnum.h"
 #include "Conversion/RunState.h"
 #include "Run/HeatSettings.h"
 
@@ -12,37 +11,15 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkFVMHeatFilter);
 
-SURFACEDIFFUSION_MIRROR(vtkFVMHeatFilter::MODE_TIME_STEPS, HeatMode::TimeSteps);
-SURFACEDIFFUSION_MIRROR(vtkFVMHeatFilter::MODE_STEADY_STATE, HeatMode::SteadyState);
-
 vtkFVMHeatFilter::vtkFVMHeatFilter()
+  : Superclass(OwnedSettings::Make<HeatSettings>())
 {
-  this->TimeIntegrator = TIME_INTEGRATOR_SECOND_ORDER;
-  this->InitialFill = INITIAL_FILL_HARMONIC;
-}
-
-const char* vtkFVMHeatFilter::GetModeAsString()
-{
-  return this->FindSettingWord("Mode");
 }
 
 void vtkFVMHeatFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
   this->SetModeToTimeSteps();
-}
-
-std::unique_ptr<RunSettings> vtkFVMHeatFilter::MakeSettings() const
-{
-  auto settings = std::make_unique<HeatSettings>();
-  this->CopyProperties(*settings);
-  settings->Mode = static_cast<HeatMode>(this->Mode);
-  settings->FWHM = this->FWHM;
-  settings->AutomaticFidelity = this->AutomaticFidelity;
-  settings->NoiseLevel = this->NoiseLevel;
-  settings->Blur.FWHM = this->BlurFWHM;
-  settings->Blur.Steps = this->BlurSteps;
-  return settings;
 }
 
 void vtkFVMHeatFilter::TakeResults()

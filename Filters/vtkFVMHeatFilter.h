@@ -64,14 +64,11 @@ public:
    * or held values, the minimiser of the energy with lambda, and the mean of each connected
    * component with neither.
    */
-  vtkSetMacro(Mode, int);
-  vtkGetMacro(Mode, int);
+  SURFACEDIFFUSION_CHOICE(Mode);
   void SetModeToTimeSteps() { this->SetMode(MODE_TIME_STEPS); }
   void SetModeToSteadyState() { this->SetMode(MODE_STEADY_STATE); }
-  const char* GetModeAsString();
   ///@}
 
-  ///@{
   /**
    * The full width at half maximum of the Gaussian that the data are convolved with, in coordinate
    * units; 0 (default): off. If it is set, the run takes the time FWHM^2/(16 ln 2) in
@@ -79,11 +76,8 @@ public:
    * regardless of Units. FWHM is an error together with a fidelity, diffusivities other than 1, or
    * Mode SteadyState.
    */
-  vtkSetMacro(FWHM, double);
-  vtkGetMacro(FWHM, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(FWHM, double);
 
-  ///@{
   /**
    * On: lambda is chosen by the discrepancy principle (Morozov 1966), so that the area-weighted
    * root mean square of the difference between the steady state of (16) and the data is that of the
@@ -92,12 +86,8 @@ public:
    * the data, such as a background of 0, have no noise and are left out. Default: off; with BlurFWHM
    * and FidelityWeight 0 always on.
    */
-  vtkSetMacro(AutomaticFidelity, bool);
-  vtkGetMacro(AutomaticFidelity, bool);
-  vtkBooleanMacro(AutomaticFidelity, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 
-  ///@{
   /**
    * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
@@ -106,9 +96,7 @@ public:
    * smoothed, the noise is correlated: a warning gives both values, and the larger is used. For
    * data on cells it is the noise of the cells, and the estimate assumes white noise on them.
    */
-  vtkSetMacro(NoiseLevel, double);
-  vtkGetMacro(NoiseLevel, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
   /**
    * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
@@ -118,7 +106,6 @@ public:
    */
   vtkGetMacro(EffectiveFidelityWeight, double);
 
-  ///@{
   /**
    * The full width at half maximum of a blur that the data have gone through on the surface, in
    * coordinate units, regardless of Units, and that SteadyState removes; 0 (default): none. The
@@ -133,18 +120,13 @@ public:
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */
-  vtkSetMacro(BlurFWHM, double);
-  vtkGetMacro(BlurFWHM, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(BlurFWHM, double);
 
-  ///@{
   /**
    * The number of steps of the blur of BlurFWHM, 2 to 64. More steps make its point spread function
    * more similar to a Gaussian. Default: 4.
    */
-  vtkSetMacro(BlurSteps, int);
-  vtkGetMacro(BlurSteps, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(BlurSteps, int);
 
   /**
    * In addition to the superclass: Mode TimeSteps.
@@ -155,18 +137,11 @@ protected:
   vtkFVMHeatFilter();
   ~vtkFVMHeatFilter() override = default;
 
-  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
   void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   const char* GetResultSuffix() const override { return "Diffused"; }
 
-  int Mode = MODE_TIME_STEPS;
-  double FWHM = 0.0;
-  bool AutomaticFidelity = false;
-  double NoiseLevel = 0.0;
   double EffectiveFidelityWeight = 0.0;
-  double BlurFWHM = 0.0;
-  int BlurSteps = 4;
 
 private:
   vtkFVMHeatFilter(const vtkFVMHeatFilter&) = delete;

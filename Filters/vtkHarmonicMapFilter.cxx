@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkHarmonicMapFilter.h"
 
-#include "Conversion/MirroredEnum.h"
 #include "Conversion/PointNormals.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
@@ -26,11 +25,6 @@
 using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkHarmonicMapFilter);
-
-using Self = vtkHarmonicMapFilter;
-SURFACEDIFFUSION_MIRROR(Self::SCHEME_EXPLICIT_REACTION, HarmonicMap::Scheme::ExplicitReaction);
-SURFACEDIFFUSION_MIRROR(Self::SCHEME_TANGENT_PLANE, HarmonicMap::Scheme::TangentPlane);
-SURFACEDIFFUSION_MIRROR(Self::SCHEME_MINIMIZING_MOVEMENT, HarmonicMap::Scheme::MinimizingMovement);
 
 namespace
 {
@@ -73,17 +67,13 @@ Vector FindBrightness(const Run::Block& block, const InputFields& fields, bool o
 } // namespace
 
 vtkHarmonicMapFilter::vtkHarmonicMapFilter()
+  : Superclass(OwnedSettings::Make<HarmonicMapSettings>())
 {
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
 }
 
 vtkHarmonicMapFilter::~vtkHarmonicMapFilter() = default;
-
-const char* vtkHarmonicMapFilter::GetSchemeAsString()
-{
-  return this->FindSettingWord("Scheme");
-}
 
 void vtkHarmonicMapFilter::UsePaperScheme()
 {
@@ -93,20 +83,6 @@ void vtkHarmonicMapFilter::UsePaperScheme()
   this->SetProjectToSphere(true);
   this->SetLineField(false);
   this->SetMoveVertices(false);
-}
-
-std::unique_ptr<RunSettings> vtkHarmonicMapFilter::MakeSettings() const
-{
-  auto settings = std::make_unique<HarmonicMapSettings>();
-  this->CopyProperties(*settings);
-  settings->Exponent = this->Exponent;
-  settings->Beta = this->Beta;
-  settings->Scheme = static_cast<HarmonicMap::Scheme>(this->Scheme);
-  settings->ConsistentReaction = this->ConsistentReaction;
-  settings->ProjectToSphere = this->ProjectToSphere;
-  settings->LineField = this->LineField;
-  settings->MoveVertices = this->MoveVertices;
-  return settings;
 }
 
 bool vtkHarmonicMapFilter::UsesNormals()
@@ -171,7 +147,7 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
     problems.push_back(label + " has " + std::to_string(fields.Data->GetNumberOfComponents()) +
       " components; allowed: 2 or more, alpha of colours not counted");
   }
-  if (this->MoveVertices && !this->IsNormals(fields, block))
+  if (this->GetMoveVertices() && !this->IsNormals(fields, block))
   {
     problems.push_back("MoveVertices is on but " + label +
       " is not the surface's normals; allowed: off, or the active normals of points or cells, or "
@@ -197,8 +173,8 @@ bool vtkHarmonicMapFilter::CanSolveInPieces(const std::vector<SurfaceBlock>& pie
     }
     InputFields fields;
     Problems reportedLater;
-    if (this->LineField && this->FindFields(block, fields, reportedLater) &&
-      ((fields.Mask && this->MaskMode == MASK_MODE_INPAINT) || HasZeroOrNaN(fields.Data)))
+    if (this->GetLineField() && this->FindFields(block, fields, reportedLater) &&
+      ((fields.Mask && this->GetMaskMode() == MASK_MODE_INPAINT) || HasZeroOrNaN(fields.Data)))
     {
       return false;
     }
@@ -219,7 +195,7 @@ void vtkHarmonicMapFilter::WriteResult(
   const int type = this->FindResultType(fields);
   const bool onCells = this->HasResultOnCells(fields);
   Values vectors = onCells ? MakeCellResult(*block.Cells, block.Path->State(),
-                               ReadValues(fields.Data), this->KeepCellDetail)
+                               ReadValues(fields.Data), this->GetKeepCellDetail())
                            : block.Path->State();
   if (type == VTK_UNSIGNED_CHAR)
   {

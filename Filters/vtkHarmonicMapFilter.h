@@ -68,22 +68,16 @@ public:
   vtkTypeMacro(vtkHarmonicMapFilter, vtkSurfaceDataDiffusionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * The exponent p, in [1, 2]. 1 (default) is (21) and keeps creases; 2 is (20) and smooths evenly.
    */
-  vtkSetMacro(Exponent, double);
-  vtkGetMacro(Exponent, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(Exponent, double);
 
-  ///@{
   /**
    * beta in |grad u|^2 + beta, in 1/length^2 (natural: 1/h^2). Above 0; 0 is allowed with Exponent
    * 2, for which beta has no effect. Default: 1e-6.
    */
-  vtkSetMacro(Beta, double);
-  vtkGetMacro(Beta, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(Beta, double);
 
   enum SchemeType
   {
@@ -100,45 +94,31 @@ public:
    * ExplicitReaction: the paper's scheme, with semi-implicit diffusion of the components with one
    * matrix, explicit reaction, then normalisation.
    */
-  vtkSetMacro(Scheme, int);
-  vtkGetMacro(Scheme, int);
+  SURFACEDIFFUSION_CHOICE(Scheme);
   void SetSchemeToExplicitReaction() { this->SetScheme(SCHEME_EXPLICIT_REACTION); }
   void SetSchemeToTangentPlane() { this->SetScheme(SCHEME_TANGENT_PLANE); }
   void SetSchemeToMinimizingMovement() { this->SetScheme(SCHEME_MINIMIZING_MOVEMENT); }
-  const char* GetSchemeAsString();
   ///@}
 
-  ///@{
   /**
    * The reaction of Scheme ExplicitReaction. Off (default): u |grad u|^p as printed in the paper.
    * On: u g |grad u|^2, which balances the diffusion, so that |u| hardly drifts even without
    * ProjectToSphere.
    */
-  vtkSetMacro(ConsistentReaction, bool);
-  vtkGetMacro(ConsistentReaction, bool);
-  vtkBooleanMacro(ConsistentReaction, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(ConsistentReaction);
 
-  ///@{
   /**
    * On (default): vectors are normalised to u/|u| after each step. Off: lengths drift, and with
    * ExplicitReaction and p = 2 they diverge.
    */
-  vtkSetMacro(ProjectToSphere, bool);
-  vtkGetMacro(ProjectToSphere, bool);
-  vtkBooleanMacro(ProjectToSphere, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(ProjectToSphere);
 
-  ///@{
   /**
    * On: u and -u are the same, as for principal directions. In each triangle the signs of the
    * corners are chosen so that |grad u| is smallest. The sign of the result has no meaning.
    * Default: off.
    */
-  vtkSetMacro(LineField, bool);
-  vtkGetMacro(LineField, bool);
-  vtkBooleanMacro(LineField, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(LineField);
 
   ///@{
   /**
@@ -150,7 +130,6 @@ public:
   vtkBooleanMacro(UseAsNormals, bool);
   ///@}
 
-  ///@{
   /**
    * On: the points of the output are moved so that the normals of its triangles match the result
    * (mesh denoising by vertex updating). They minimise 1/2 int |grad(N . x)|^2 + 1/(2 r^2) int
@@ -161,10 +140,7 @@ public:
    * pieces, only active normals are kept. GetMeanDisplacement() and the following values describe
    * the motion. Default: off.
    */
-  vtkSetMacro(MoveVertices, bool);
-  vtkGetMacro(MoveVertices, bool);
-  vtkBooleanMacro(MoveVertices, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(MoveVertices);
 
   ///@{
   /**
@@ -189,7 +165,6 @@ protected:
   vtkHarmonicMapFilter();
   ~vtkHarmonicMapFilter() override;
 
-  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
   bool CanSolveInPieces(const std::vector<SurfaceBlock>& pieces) override;
@@ -200,14 +175,7 @@ protected:
   void VisitReported(const std::function<void(double&)>& visit) override;
   const char* GetResultSuffix() const override { return "Harmonic"; }
 
-  double Exponent = 1.0;
-  double Beta = 1e-6;
-  int Scheme = SCHEME_TANGENT_PLANE;
-  bool ConsistentReaction = false;
-  bool ProjectToSphere = true;
-  bool LineField = false;
   bool UseAsNormals = true;
-  bool MoveVertices = false;
   double MeanDisplacement = 0.0;
   double MaximumDisplacement = 0.0;
   double VolumeBefore = 0.0;

@@ -111,11 +111,9 @@ public:
    * or Constant and AcrossEdgeFunction Same, and is an error otherwise. On a connected component
    * without fidelity and without fixed values the minimiser is the mean.
    */
-  vtkSetMacro(Mode, int);
-  vtkGetMacro(Mode, int);
+  SURFACEDIFFUSION_CHOICE(Mode);
   void SetModeToTimeSteps() { this->SetMode(MODE_TIME_STEPS); }
   void SetModeToSteadyState() { this->SetMode(MODE_STEADY_STATE); }
-  const char* GetModeAsString();
   ///@}
 
   enum EdgeFunctionType
@@ -142,10 +140,8 @@ public:
    *
    * Perona-Malik and Weickert sharpen edges that are steeper than about K, and equally steep noise.
    */
-  vtkSetMacro(EdgeFunction, int);
-  vtkGetMacro(EdgeFunction, int);
+  SURFACEDIFFUSION_CHOICE(EdgeFunction);
   vtkIntrinsicTVFilterEdgeFunctions(vtkIntrinsicTVFilterSetEdgeFunction);
-  const char* GetEdgeFunctionAsString();
   ///@}
 
   enum AcrossEdgeFunctionType
@@ -160,31 +156,23 @@ public:
    * of the functions above, which makes (4) fully general. A function other than Same needs the
    * direction array, input array 2, and TimeIntegrator FirstOrder.
    */
-  vtkSetMacro(AcrossEdgeFunction, int);
-  vtkGetMacro(AcrossEdgeFunction, int);
+  SURFACEDIFFUSION_CHOICE(AcrossEdgeFunction);
   void SetAcrossEdgeFunctionToSame() { this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_SAME); }
   vtkIntrinsicTVFilterEdgeFunctions(vtkIntrinsicTVFilterSetAcrossEdgeFunction);
-  const char* GetAcrossEdgeFunctionAsString();
   ///@}
 
-  ///@{
   /**
    * beta of TotalVariation, in (R/h)^2. Gradients well below its square root are smoothed as by
    * linear diffusion; larger gradients are preserved as edges. Above 0. Default: 1e-6. Implicit and
    * SteadyState do not use it.
    */
-  vtkSetMacro(Beta, double);
-  vtkGetMacro(Beta, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(Beta, double);
 
-  ///@{
   /**
    * K of the other edge functions, in R/h. Gradients above it count as edges. Above 0. Default:
    * 0.1, a tenth of the range from one vertex to the next.
    */
-  vtkSetMacro(EdgeThreshold, double);
-  vtkGetMacro(EdgeThreshold, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(EdgeThreshold, double);
 
   enum ChannelCouplingType
   {
@@ -199,11 +187,9 @@ public:
    * other. Joint (default): one Euclidean norm over all components, vectorial total variation (P.
    * Blomgren, T. Chan, IEEE Trans. Image Proc. 7(3), 1998), which avoids colour fringes.
    */
-  vtkSetMacro(ChannelCoupling, int);
-  vtkGetMacro(ChannelCoupling, int);
+  SURFACEDIFFUSION_CHOICE(ChannelCoupling);
   void SetChannelCouplingToPerChannel() { this->SetChannelCoupling(CHANNEL_COUPLING_PER_CHANNEL); }
   void SetChannelCouplingToJoint() { this->SetChannelCoupling(CHANNEL_COUPLING_JOINT); }
-  const char* GetChannelCouplingAsString();
   ///@}
 
   enum FidelityNormType
@@ -220,14 +206,11 @@ public:
    * FirstOrder the quotient is rounded over |f - u| < 1e-3 R, and |f - u| is taken at the old
    * level.
    */
-  vtkSetMacro(FidelityNorm, int);
-  vtkGetMacro(FidelityNorm, int);
+  SURFACEDIFFUSION_CHOICE(FidelityNorm);
   void SetFidelityNormToL2() { this->SetFidelityNorm(FIDELITY_NORM_L2); }
   void SetFidelityNormToL1() { this->SetFidelityNorm(FIDELITY_NORM_L1); }
-  const char* GetFidelityNormAsString();
   ///@}
 
-  ///@{
   /**
    * On: lambda is chosen by the discrepancy principle (V. Morozov, 1966), so that the area-weighted
    * root mean square of the difference between the last state of the run and the data is that of
@@ -239,12 +222,8 @@ public:
    * in the residual. Constant parts of the data, such as a background of 0, have no noise and are
    * left out. Default: off; with BlurFWHM and FidelityWeight 3, its default, always on.
    */
-  vtkSetMacro(AutomaticFidelity, bool);
-  vtkGetMacro(AutomaticFidelity, bool);
-  vtkBooleanMacro(AutomaticFidelity, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 
-  ///@{
   /**
    * The standard deviation of the noise for AutomaticFidelity, in the array's own units regardless
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
@@ -252,9 +231,7 @@ public:
    * point. If points farther apart differ by 15 % more, as in data that were interpolated or
    * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
    */
-  vtkSetMacro(NoiseLevel, double);
-  vtkGetMacro(NoiseLevel, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
   /**
    * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
@@ -280,17 +257,14 @@ public:
    * the midpoints and back conservatively. Fidelity then acts on mesh edges with two known ends,
    * and mesh edges with two fixed ends are fixed.
    */
-  vtkSetMacro(Discretization, int);
-  vtkGetMacro(Discretization, int);
+  SURFACEDIFFUSION_CHOICE(Discretization);
   void SetDiscretizationToLinear() { this->SetDiscretization(DISCRETIZATION_LINEAR); }
   void SetDiscretizationToCrouzeixRaviart()
   {
     this->SetDiscretization(DISCRETIZATION_CROUZEIX_RAVIART);
   }
-  const char* GetDiscretizationAsString();
   ///@}
 
-  ///@{
   /**
    * The duality gap, relative to the energy, at which SteadyState and each step of Implicit stop.
    * The gap bounds the difference between the energy and its minimum. In (0, 1). Default: 1e-4. A
@@ -298,11 +272,8 @@ public:
    * Tolerance apply to the linear systems of FirstOrder. The default of Tolerance is 1e-3 in this
    * class, which changes ten steps by 2e-5 of the range and takes a quarter of the time of 1e-10.
    */
-  vtkSetMacro(StopTolerance, double);
-  vtkGetMacro(StopTolerance, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(StopTolerance, double);
 
-  ///@{
   /**
    * The full width at half maximum of a blur that the data have gone through on the surface, in
    * coordinate units, regardless of Units, and that SteadyState removes; 0 (default): none. The
@@ -320,18 +291,13 @@ public:
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */
-  vtkSetMacro(BlurFWHM, double);
-  vtkGetMacro(BlurFWHM, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(BlurFWHM, double);
 
-  ///@{
   /**
    * The number of steps of the blur of BlurFWHM, 2 to 64. More steps make its point spread function
    * more similar to a Gaussian. Default: 4.
    */
-  vtkSetMacro(BlurSteps, int);
-  vtkGetMacro(BlurSteps, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(BlurSteps, int);
 
   enum ColorModelType
   {
@@ -367,47 +333,35 @@ public:
    * StopTolerance of it; the column `Residual` is then this decrease. The energy is not convex, and
    * the result is a stationary point. Sums of A_i u_i are not conserved, and ErrorBound is left out.
    */
-  vtkSetMacro(ColorModel, int);
-  vtkGetMacro(ColorModel, int);
+  SURFACEDIFFUSION_CHOICE(ColorModel);
   void SetColorModelToRGB() { this->SetColorModel(COLOR_MODEL_RGB); }
   void SetColorModelToOpponent() { this->SetColorModel(COLOR_MODEL_OPPONENT); }
   void SetColorModelToChromaticityBrightness()
   {
     this->SetColorModel(COLOR_MODEL_CHROMATICITY_BRIGHTNESS);
   }
-  const char* GetColorModelAsString();
   ///@}
 
-  ///@{
   /**
    * The factor of FidelityWeight on the two axes of colour of ColorModel Opponent. Below 1, colour
    * is smoothed more than brightness. Above 0. Default: 0.2, which was best on photographs with
    * white noise.
    */
-  vtkSetMacro(ChromaWeight, double);
-  vtkGetMacro(ChromaWeight, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(ChromaWeight, double);
 
-  ///@{
   /**
    * p of ColorModel ChromaticityBrightness, from 1 to 2: 1 (default) keeps edges of hue, 2 smooths
    * evenly.
    */
-  vtkSetMacro(ChromaticityExponent, double);
-  vtkGetMacro(ChromaticityExponent, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(ChromaticityExponent, double);
 
-  ///@{
   /**
    * mu of ColorModel ChromaticityBrightness, the weight of the smoothness of C beside that of B. In
    * R h^(p-1) with EdgeFunction TotalVariation, which is R for p = 1, and in R^2 h^(p-2) with others.
    * Above 0. Default: 1.
    */
-  vtkSetMacro(ChromaticityWeight, double);
-  vtkGetMacro(ChromaticityWeight, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(ChromaticityWeight, double);
 
-  ///@{
   /**
    * On: unsigned char colours are decoded from sRGB (IEC 61966-2-1) to linear light, on the
    * same scale from 0 to 255, and the result is encoded, with ColorModel Opponent and
@@ -418,10 +372,7 @@ public:
    * colours: on a photograph with white noise of 10 to 40 % in its bytes, all models restored the
    * bytes by 1.8 to 4 CIEDE2000 better than linear light. Off (default) takes the bytes as they are.
    */
-  vtkSetMacro(LinearLight, bool);
-  vtkGetMacro(LinearLight, bool);
-  vtkBooleanMacro(LinearLight, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(LinearLight);
 
   /// Set TimeIntegrator to Implicit, see the class comment.
   void SetTimeIntegratorToImplicit() { this->SetTimeIntegrator(TIME_INTEGRATOR_IMPLICIT); }
@@ -437,30 +388,11 @@ protected:
   vtkIntrinsicTVFilter();
   ~vtkIntrinsicTVFilter() override = default;
 
-  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
   void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   const char* GetResultSuffix() const override { return "TV"; }
 
-  int Mode = MODE_TIME_STEPS;
-  int EdgeFunction = EDGE_FUNCTION_TOTAL_VARIATION;
-  int AcrossEdgeFunction = ACROSS_EDGE_FUNCTION_SAME;
-  double Beta = 1e-6;
-  double EdgeThreshold = 0.1;
-  int ChannelCoupling = CHANNEL_COUPLING_JOINT;
-  int FidelityNorm = FIDELITY_NORM_L2;
-  bool AutomaticFidelity = false;
-  double NoiseLevel = 0.0;
   double EffectiveFidelityWeight = 0.0;
-  double BlurFWHM = 0.0;
-  int BlurSteps = 4;
-  int ColorModel = COLOR_MODEL_RGB;
-  double ChromaWeight = 0.2;
-  double ChromaticityExponent = 1.0;
-  double ChromaticityWeight = 1.0;
-  bool LinearLight = false;
-  int Discretization = DISCRETIZATION_LINEAR;
-  double StopTolerance = 1e-4;
 
 private:
   vtkIntrinsicTVFilter(const vtkIntrinsicTVFilter&) = delete;

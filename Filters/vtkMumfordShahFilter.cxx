@@ -69,29 +69,12 @@ vtkSmartPointer<vtkPolyData> MakeCurves(const Run& run, const std::string& name)
 } // namespace
 
 vtkMumfordShahFilter::vtkMumfordShahFilter()
+  : Superclass(OwnedSettings::Make<MumfordShahSettings>())
 {
   this->SetNumberOfOutputPorts(3);
-  this->FidelityWeight = 1.0;
-  this->NumberOfTimeSteps = 1000;
-  this->Tolerance = 0.1;
-  this->InitialFill = INITIAL_FILL_HARMONIC;
 }
 
 vtkMumfordShahFilter::~vtkMumfordShahFilter() = default;
-
-std::unique_ptr<RunSettings> vtkMumfordShahFilter::MakeSettings() const
-{
-  auto settings = std::make_unique<MumfordShahSettings>();
-  this->CopyProperties(*settings);
-  settings->AutomaticThreshold = this->AutomaticThreshold;
-  settings->NoiseLevel = this->NoiseLevel;
-  settings->EdgeThreshold = this->EdgeThreshold;
-  settings->SmoothingLength = this->SmoothingLength;
-  settings->EdgeWidth = this->EdgeWidth;
-  settings->StopTolerance = this->StopTolerance;
-  settings->EdgeCurves = this->EdgeCurves;
-  return settings;
-}
 
 void vtkMumfordShahFilter::WriteResult(
   std::size_t index, const InputFields& fields, vtkPolyData* output)

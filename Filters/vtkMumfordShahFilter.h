@@ -89,72 +89,49 @@ public:
   vtkTypeMacro(vtkMumfordShahFilter, vtkSurfaceDataDiffusionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * On (default): EdgeThreshold and SmoothingLength are found from the data, for each connected
    * component and each block of composite data, and the given ones are ignored, with a warning if
    * they were set. Surfaces in pieces are then gathered and solved in process 0.
    */
-  vtkSetMacro(AutomaticThreshold, bool);
-  vtkGetMacro(AutomaticThreshold, bool);
-  vtkBooleanMacro(AutomaticThreshold, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(AutomaticThreshold);
 
-  ///@{
   /**
    * The standard deviation of the noise for AutomaticThreshold, in the array's own units regardless
    * of Units, of one component of the array. 0 (default): estimated from the data, for white noise or
    * noise that is correlated over a few edges.
    */
-  vtkSetMacro(NoiseLevel, double);
-  vtkGetMacro(NoiseLevel, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
-  ///@{
   /**
    * The jump from which on an edge costs less than smoothing, with AutomaticThreshold off: jumps
    * below 0.9 of it are smoothed, jumps above 1.25 of it are kept. Natural units: in R. Positive.
    * Default: 0.2.
    */
-  vtkSetMacro(EdgeThreshold, double);
-  vtkGetMacro(EdgeThreshold, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(EdgeThreshold, double);
 
-  ///@{
   /**
    * The length over which data are smoothed between edges, with AutomaticThreshold off. Natural
    * units: in h. Positive. Default: 8. FidelityWeight (default: 1) is a factor of lambda beside it.
    */
-  vtkSetMacro(SmoothingLength, double);
-  vtkGetMacro(SmoothingLength, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(SmoothingLength, double);
 
-  ///@{
   /**
    * eps, the width of the transition of v beside an edge. Natural units: in h. Positive; below h
    * the triangles do not resolve it, which gives a warning. Default: 2.
    */
-  vtkSetMacro(EdgeWidth, double);
-  vtkGetMacro(EdgeWidth, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(EdgeWidth, double);
 
-  ///@{
   /**
    * The relative decrease of the energy in one step at which the run ends, before
    * NumberOfTimeSteps (default: 1000). In (0, 1). Default: 1e-5.
    */
-  vtkSetMacro(StopTolerance, double);
-  vtkGetMacro(StopTolerance, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(StopTolerance, double);
 
-  ///@{
   /**
    * On (default): output port 2 has the edges as curves.
    */
-  vtkSetMacro(EdgeCurves, bool);
-  vtkGetMacro(EdgeCurves, bool);
-  vtkBooleanMacro(EdgeCurves, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(EdgeCurves);
 
   ///@{
   /**
@@ -177,23 +154,15 @@ protected:
   vtkMumfordShahFilter();
   ~vtkMumfordShahFilter() override;
 
-  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
   void WriteResult(
     std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
   void TakeResults() override;
   void VisitReported(const std::function<void(double&)>& visit) override;
   const char* GetResultSuffix() const override { return "MumfordShah"; }
 
-  bool AutomaticThreshold = true;
-  double NoiseLevel = 0.0;
-  double EdgeThreshold = 0.2;
-  double SmoothingLength = 8.0;
   double EffectiveEdgeThreshold = 0.0;
   double EffectiveSmoothingLength = 0.0;
   double EstimatedNoiseLevel = 0.0;
-  double EdgeWidth = 2.0;
-  double StopTolerance = 1e-5;
-  bool EdgeCurves = true;
   double EdgeLength = 0.0;
 
 private:

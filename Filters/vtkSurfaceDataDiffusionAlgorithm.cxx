@@ -4,28 +4,21 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
-#include "Conversion/MirroredEnum.h"
-#include "Run/RunSettings.h"
+#include "Run/OwnedSettings.h"
 
-SURFACEDIFFUSION_MIRROR(
-  vtkSurfaceDataDiffusionAlgorithm::INITIAL_FILL_INPUT, SurfaceDiffusion::InitialFill::Input);
-SURFACEDIFFUSION_MIRROR(
-  vtkSurfaceDataDiffusionAlgorithm::INITIAL_FILL_MEAN, SurfaceDiffusion::InitialFill::Mean);
-SURFACEDIFFUSION_MIRROR(
-  vtkSurfaceDataDiffusionAlgorithm::INITIAL_FILL_NOISE, SurfaceDiffusion::InitialFill::Noise);
-SURFACEDIFFUSION_MIRROR(
-  vtkSurfaceDataDiffusionAlgorithm::INITIAL_FILL_HARMONIC, SurfaceDiffusion::InitialFill::Harmonic);
+#include <utility>
+
+vtkSurfaceDataDiffusionAlgorithm::vtkSurfaceDataDiffusionAlgorithm(
+  SurfaceDiffusion::OwnedSettings settings)
+  : Superclass(std::move(settings))
+{
+}
 
 void vtkSurfaceDataDiffusionAlgorithm::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
   this->SetHoldKnownValues(false);
   this->SetInitialFillToInput();
-}
-
-const char* vtkSurfaceDataDiffusionAlgorithm::GetInitialFillAsString()
-{
-  return this->FindSettingWord("InitialFill");
 }
 
 bool vtkSurfaceDataDiffusionAlgorithm::FindFields(
@@ -35,17 +28,4 @@ bool vtkSurfaceDataDiffusionAlgorithm::FindFields(
   const SurfaceDiffusion::InputArrays inputs(this, block, fields, problems);
   fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
   return hasData;
-}
-
-void vtkSurfaceDataDiffusionAlgorithm::CopyProperties(
-  SurfaceDiffusion::DataSettings& settings) const
-{
-  this->Superclass::CopyProperties(settings);
-  settings.FidelityWeight = this->FidelityWeight;
-  settings.InitialFill = static_cast<SurfaceDiffusion::InitialFill>(this->InitialFill);
-  settings.HoldKnownValues = this->HoldKnownValues;
-  settings.AlongDiffusivity = this->AlongDiffusivity;
-  settings.AcrossDiffusivity = this->AcrossDiffusivity;
-  settings.ResultOnCells = this->ResultOnCells;
-  settings.KeepCellDetail = this->KeepCellDetail;
 }

@@ -26,25 +26,17 @@
 
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
-namespace SurfaceDiffusion
-{
-struct DataSettings;
-}
-
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDataDiffusionAlgorithm
   : public vtkSurfaceDiffusionAlgorithm
 {
 public:
   vtkTypeMacro(vtkSurfaceDataDiffusionAlgorithm, vtkSurfaceDiffusionAlgorithm);
 
-  ///@{
   /**
    * The weight lambda of the fidelity term lambda chi (f - u) of (16) to (19), in 1/(unit of time).
    * Input array 5 multiplies it point by point. 0 or more. Default: 0.
    */
-  vtkSetMacro(FidelityWeight, double);
-  vtkGetMacro(FidelityWeight, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(FidelityWeight, double);
 
   enum InitialFillType
   {
@@ -64,24 +56,18 @@ public:
    * vectors are normalised; line fields take Mean). Default: Mean; of vtkFVMHeatFilter
    * and vtkMumfordShahFilter Harmonic.
    */
-  vtkSetMacro(InitialFill, int);
-  vtkGetMacro(InitialFill, int);
+  SURFACEDIFFUSION_CHOICE(InitialFill);
   void SetInitialFillToInput() { this->SetInitialFill(INITIAL_FILL_INPUT); }
   void SetInitialFillToMean() { this->SetInitialFill(INITIAL_FILL_MEAN); }
   void SetInitialFillToNoise() { this->SetInitialFill(INITIAL_FILL_NOISE); }
   void SetInitialFillToHarmonic() { this->SetInitialFill(INITIAL_FILL_HARMONIC); }
-  const char* GetInitialFillAsString();
   ///@}
 
-  ///@{
   /**
    * On: known points keep their value exactly (lambda = infinity), so that only missing points
    * change. It is an error if nothing is missing. Default: off.
    */
-  vtkSetMacro(HoldKnownValues, bool);
-  vtkGetMacro(HoldKnownValues, bool);
-  vtkBooleanMacro(HoldKnownValues, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(HoldKnownValues);
 
   ///@{
   /**
@@ -89,23 +75,16 @@ public:
    * (4) are these factors times g(|grad u|), with g = 1 for linear diffusion. 0 or more. Different
    * values need the direction array, input array 2. Default: 1, 1.
    */
-  vtkSetMacro(AlongDiffusivity, double);
-  vtkGetMacro(AlongDiffusivity, double);
-  vtkSetMacro(AcrossDiffusivity, double);
-  vtkGetMacro(AcrossDiffusivity, double);
+  SURFACEDIFFUSION_PROPERTY(AlongDiffusivity, double);
+  SURFACEDIFFUSION_PROPERTY(AcrossDiffusivity, double);
   ///@}
 
-  ///@{
   /**
    * On (default): the result of data on cells is on cells. Off: it is u at the points. No effect on
    * point data.
    */
-  vtkSetMacro(ResultOnCells, bool);
-  vtkGetMacro(ResultOnCells, bool);
-  vtkBooleanMacro(ResultOnCells, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(ResultOnCells);
 
-  ///@{
   /**
    * On (default): a result on cells is P* u + d, see vtkSurfaceDiffusionAlgorithm: the detail d that
    * the points do not resolve, of white noise on triangles 87 %, diffuses beside u with the same
@@ -114,10 +93,7 @@ public:
    * brightness, and deblurring restores no detail. Off: the result is P* u, the mean of u over each
    * cell, which zero steps smooth, too. Both keep constants and the integral.
    */
-  vtkSetMacro(KeepCellDetail, bool);
-  vtkGetMacro(KeepCellDetail, bool);
-  vtkBooleanMacro(KeepCellDetail, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(KeepCellDetail);
 
   /**
    * In addition to the superclass: HoldKnownValues off, InitialFill Input.
@@ -128,16 +104,9 @@ protected:
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
 
-  vtkSurfaceDataDiffusionAlgorithm() = default;
+  /// settings: of a class derived from SurfaceDiffusion::DataSettings.
+  explicit vtkSurfaceDataDiffusionAlgorithm(SurfaceDiffusion::OwnedSettings settings);
   ~vtkSurfaceDataDiffusionAlgorithm() override = default;
-
-  void CopyProperties(SurfaceDiffusion::DataSettings& settings) const;
-
-  double FidelityWeight = 0.0;
-  int InitialFill = INITIAL_FILL_MEAN;
-  bool HoldKnownValues = false;
-  double AlongDiffusivity = 1.0;
-  double AcrossDiffusivity = 1.0;
 
 private:
   vtkSurfaceDataDiffusionAlgorithm(const vtkSurfaceDataDiffusionAlgorithm&) = delete;

@@ -4,11 +4,11 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
-#include "Conversion/MirroredEnum.h"
 #include "Conversion/NewArray.h"
 #include "Conversion/PointNormals.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DenoisingRun.h"
+#include "Run/OwnedSettings.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkObjectFactory.h"
@@ -16,16 +16,10 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <sstream>
 
 using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceDenoisingFilter);
-
-using Self = vtkSurfaceDenoisingFilter;
-SURFACEDIFFUSION_MIRROR(Self::SURFACE_TYPE_AUTOMATIC, SurfaceDiffusion::SurfaceType::Automatic);
-SURFACEDIFFUSION_MIRROR(Self::SURFACE_TYPE_CAD, SurfaceDiffusion::SurfaceType::CAD);
-SURFACEDIFFUSION_MIRROR(Self::SURFACE_TYPE_ORGANIC, SurfaceDiffusion::SurfaceType::Organic);
 
 struct vtkSurfaceDenoisingFilter::RunState
 {
@@ -52,34 +46,20 @@ vtkSmartPointer<vtkDataArray> WriteDisplacement(const DenoisingRun& run, const s
 } // namespace
 
 vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
-  : State(std::make_unique<RunState>())
+  : Superclass(OwnedSettings::Make<DenoisingRunSettings>())
+  , State(std::make_unique<RunState>())
 {
   this->ResultArrayName = "Displacement";
 }
 
 vtkSurfaceDenoisingFilter::~vtkSurfaceDenoisingFilter() = default;
 
-const char* vtkSurfaceDenoisingFilter::GetSurfaceTypeAsString()
-{
-  return FindWord(*this->MakeSettings(), "SurfaceType");
-}
-
-std::unique_ptr<DenoisingRunSettings> vtkSurfaceDenoisingFilter::MakeSettings() const
-{
-  auto settings = std::make_unique<DenoisingRunSettings>();
-  settings->NoiseLevel = this->NoiseLevel;
-  settings->SurfaceType = static_cast<SurfaceDiffusion::SurfaceType>(this->SurfaceType);
-  settings->MergeCoincidentPoints = this->MergeCoincidentPoints;
-  settings->MergeTolerance = this->MergeTolerance;
-  return settings;
-}
-
 void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
 {
-  const auto settings = this->MakeSettings();
+  auto& settings = static_cast<DenoisingRunSettings&>(this->GetSettings());
   Problems problems;
-  CheckRanges(*settings, problems);
+  CheckRanges(settings, problems);
   this->CheckSurfaceProperties(problems);
   if (this->ResultArrayName.empty())
   {
@@ -111,7 +91,7 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
     inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
   }
   auto& runs = this->State->Runs;
-  runs.Update(inputs, *settings, progress);
+  runs.Update(inputs, settings, progress);
   std::vector<vtkSmartPointer<vtkDataArray>> results;
   std::vector<vtkSmartPointer<vtkPoints>> points;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
@@ -194,9 +174,6 @@ void vtkSurfaceDenoisingFilter::ReleaseCache()
 void vtkSurfaceDenoisingFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  std::ostringstream spaces;
-  spaces << indent;
-  os << Describe(*this->MakeSettings(), spaces.str());
   os << indent << "EffectiveNoiseLevel: " << this->EffectiveNoiseLevel << "\n";
   os << indent << "EffectiveSurfaceType: " << this->GetEffectiveSurfaceType() << "\n";
   os << indent << "MeanDisplacement: " << this->MeanDisplacement << "\n";

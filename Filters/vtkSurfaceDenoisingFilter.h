@@ -49,11 +49,6 @@
 
 #include "vtkSurfaceFilter.h"
 
-namespace SurfaceDiffusion
-{
-struct DenoisingRunSettings;
-}
-
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDenoisingFilter : public vtkSurfaceFilter
 {
 public:
@@ -63,16 +58,13 @@ public:
 
   void ReleaseCache() override;
 
-  ///@{
   /**
    * How much noise is removed: the standard deviation of the displacement of the points along the
    * normal, in coordinate units. 0 or more. Default: 0, which means estimated. The estimate is the
    * 0.3 quantile of the distances of points from quadrics through their neighbours, over 0.3853,
    * less 0.03 mean edge lengths, in squares, which surfaces without noise have; see GetEffectiveNoiseLevel().
    */
-  vtkSetMacro(NoiseLevel, double);
-  vtkGetMacro(NoiseLevel, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
   enum SurfaceTypeType
   {
@@ -87,12 +79,10 @@ public:
    * details, such as scans. Automatic (the default): CAD if, after a few iterations, the median of
    * the angles at edges is less than 0.18 of their root mean square.
    */
-  vtkSetMacro(SurfaceType, int);
-  vtkGetMacro(SurfaceType, int);
+  SURFACEDIFFUSION_CHOICE(SurfaceType);
   void SetSurfaceTypeToAutomatic() { this->SetSurfaceType(SURFACE_TYPE_AUTOMATIC); }
   void SetSurfaceTypeToCAD() { this->SetSurfaceType(SURFACE_TYPE_CAD); }
   void SetSurfaceTypeToOrganic() { this->SetSurfaceType(SURFACE_TYPE_ORGANIC); }
-  const char* GetSurfaceTypeAsString();
   ///@}
 
   /**
@@ -134,8 +124,6 @@ protected:
   void CompletePiece(const SurfaceBlock& piece) override;
   void VisitReported(const std::function<void(double&)>& visit) override;
 
-  double NoiseLevel = 0.0;
-  int SurfaceType = SURFACE_TYPE_AUTOMATIC;
   double EffectiveNoiseLevel = 0.0;
   double EffectiveSurfaceType = SURFACE_TYPE_AUTOMATIC; ///< a double, as all that processes share
   double MeanDisplacement = 0.0;
@@ -147,7 +135,6 @@ private:
   vtkSurfaceDenoisingFilter(const vtkSurfaceDenoisingFilter&) = delete;
   void operator=(const vtkSurfaceDenoisingFilter&) = delete;
 
-  std::unique_ptr<SurfaceDiffusion::DenoisingRunSettings> MakeSettings() const;
   /// Take the read-only values from the reports of all surfaces.
   void SummarizeReports();
 

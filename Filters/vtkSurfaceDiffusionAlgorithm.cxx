@@ -3,7 +3,6 @@
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
 #include "Conversion/InputArrays.h"
-#include "Conversion/MirroredEnum.h"
 #include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
@@ -27,21 +26,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace SurfaceDiffusion;
-
-using Self = vtkSurfaceDiffusionAlgorithm;
-SURFACEDIFFUSION_MIRROR(Self::UNITS_NATURAL, UnitsMode::Natural);
-SURFACEDIFFUSION_MIRROR(Self::UNITS_ABSOLUTE, UnitsMode::Absolute);
-SURFACEDIFFUSION_MIRROR(Self::MASK_MODE_INPAINT, MaskMode::Inpaint);
-SURFACEDIFFUSION_MIRROR(Self::MASK_MODE_EXCLUDE, MaskMode::Exclude);
-SURFACEDIFFUSION_MIRROR(Self::TIME_INTEGRATOR_FIRST_ORDER, TimeIntegrator::FirstOrder);
-SURFACEDIFFUSION_MIRROR(Self::TIME_INTEGRATOR_SECOND_ORDER, TimeIntegrator::SecondOrder);
-SURFACEDIFFUSION_MIRROR(Self::TIME_INTEGRATOR_IMPLICIT, TimeIntegrator::Implicit);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_AUTOMATIC, SolverMethod::Automatic);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_DIRECT, SolverMethod::Direct);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_CONJUGATE_GRADIENT, SolverMethod::ConjugateGradient);
-SURFACEDIFFUSION_MIRROR(Self::SOLVER_MULTIGRID, SolverMethod::Multigrid);
 
 namespace
 {
@@ -68,8 +55,9 @@ void ReplaceAbsentDirections(vtkPolyData* block, InputFields& fields)
 
 } // namespace
 
-vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm()
-  : State(std::make_unique<RunState>())
+vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm(OwnedSettings settings)
+  : Superclass(std::move(settings))
+  , State(std::make_unique<RunState>())
 {
   this->SetNumberOfOutputPorts(2);
   this->SetInputArrayToProcess(
@@ -78,29 +66,9 @@ vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm()
 
 vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
 
-const char* vtkSurfaceDiffusionAlgorithm::FindSettingWord(const char* name) const
+RunSettings& vtkSurfaceDiffusionAlgorithm::GetRunSettings() const
 {
-  return FindWord(*this->MakeSettings(), name);
-}
-
-const char* vtkSurfaceDiffusionAlgorithm::GetUnitsAsString()
-{
-  return this->FindSettingWord("Units");
-}
-
-const char* vtkSurfaceDiffusionAlgorithm::GetMaskModeAsString()
-{
-  return this->FindSettingWord("MaskMode");
-}
-
-const char* vtkSurfaceDiffusionAlgorithm::GetTimeIntegratorAsString()
-{
-  return this->FindSettingWord("TimeIntegrator");
-}
-
-const char* vtkSurfaceDiffusionAlgorithm::GetSolverAsString()
-{
-  return this->FindSettingWord("Solver");
+  return static_cast<RunSettings&>(this->GetSettings());
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetOutputPrecisionAsString()
@@ -118,26 +86,7 @@ void vtkSurfaceDiffusionAlgorithm::UsePaperScheme()
 
 double vtkSurfaceDiffusionAlgorithm::GetEffectiveTimeStep()
 {
-  return this->MakeSettings()->DescribeModel().TimeStep;
-}
-
-void vtkSurfaceDiffusionAlgorithm::CopyProperties(RunSettings& settings) const
-{
-  settings.TimeStep = this->TimeStep;
-  settings.NumberOfTimeSteps = this->NumberOfTimeSteps;
-  settings.Units = static_cast<UnitsMode>(this->Units);
-  settings.GenerateTimeSteps = this->GenerateTimeSteps;
-  settings.OutputInterval = this->OutputInterval;
-  settings.MaskMode = static_cast<SurfaceDiffusion::MaskMode>(this->MaskMode);
-  settings.RandomSeed = this->RandomSeed;
-  settings.TimeIntegrator = static_cast<SurfaceDiffusion::TimeIntegrator>(this->TimeIntegrator);
-  settings.Solver = static_cast<SolverMethod>(this->Solver);
-  settings.Tolerance = this->Tolerance;
-  settings.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
-  settings.IntrinsicDelaunay = this->IntrinsicDelaunay;
-  settings.MergeCoincidentPoints = this->MergeCoincidentPoints;
-  settings.MergeTolerance = this->MergeTolerance;
-  settings.CheckpointMemoryLimit = this->CheckpointMemoryLimit;
+  return this->GetRunSettings().DescribeModel().TimeStep;
 }
 
 bool vtkSurfaceDiffusionAlgorithm::FindFields(
@@ -183,12 +132,12 @@ int vtkSurfaceDiffusionAlgorithm::RequestDataObject(
 int vtkSurfaceDiffusionAlgorithm::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  const auto settings = this->MakeSettings();
+  RunSettings& settings = this->GetRunSettings();
   Problems problems;
-  settings->Check(nullptr, problems);
-  if (this->GenerateTimeSteps && problems.empty()) // problems are reported at update
+  settings.Check(nullptr, problems);
+  if (settings.GenerateTimeSteps && problems.empty()) // problems are reported at update
   {
-    PublishTimes(*settings, this->State->KnownLength.Find(*settings), outputs);
+    PublishTimes(settings, this->State->KnownLength.Find(settings), outputs);
   }
   return 1;
 }
@@ -196,7 +145,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestInformation(
 int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  if (this->GenerateTimeSteps)
+  if (this->GetGenerateTimeSteps())
   {
     RequestFirstTime(inputs[0]->GetInformationObject(0));
   }
@@ -216,7 +165,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   }
   RunState& state = *this->State;
   state.Succeeded = false;
-  state.Settings = this->MakeSettings();
+  state.Settings = std::static_pointer_cast<RunSettings>(this->Private->Properties.Copy());
   state.SettingProblems.clear(); // reported with those of the arrays
   state.Settings->Check(nullptr, state.SettingProblems);
   const bool valid = state.SettingProblems.empty();
@@ -233,7 +182,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   }
   this->Curves = nullptr;
   state.History = History();
-  if (this->GenerateTimeSteps && valid)
+  if (state.Settings->GenerateTimeSteps && valid)
   {
     this->UpdateTimes(outputs);
   }
@@ -291,19 +240,20 @@ bool vtkSurfaceDiffusionAlgorithm::SolvesInPieces(
   const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points)
 {
   const SharedProcessGroup group(this->GetController());
-  if (group.GetProcesses().Count() == 1 || this->Solver == SOLVER_DIRECT ||
-    this->IntrinsicDelaunay || this->MergeCoincidentPoints ||
+  const RunSettings& settings = this->GetRunSettings();
+  if (group.GetProcesses().Count() == 1 || settings.Solver == SolverMethod::Direct ||
+    settings.IntrinsicDelaunay || settings.MergeCoincidentPoints ||
     group.Any(!this->CanSolveInPieces(pieces)))
   {
     return false;
   }
   return oneSurface && points > 0.0 &&
-    (this->Solver != SOLVER_AUTOMATIC || points > MaxGatheredPoints);
+    (settings.Solver != SolverMethod::Automatic || points > MaxGatheredPoints);
 }
 
 bool vtkSurfaceDiffusionAlgorithm::CanSolveInPieces(const std::vector<SurfaceBlock>&)
 {
-  return this->MakeSettings()->DescribeModel().CanBeDistributed;
+  return this->GetRunSettings().DescribeModel().CanBeDistributed;
 }
 
 //------------------------------------------------------------------------------------------------
@@ -334,7 +284,7 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
         progress.Report(0.25);
         double found = 0.25;
         state.LastStep = state.Settings->DescribeModel().NumberOfSteps;
-        if (this->GenerateTimeSteps)
+        if (state.Settings->GenerateTimeSteps)
         {
           found = state.Settings->DescribeModel().MayEndEarly ? 0.65 : found;
           state.LastStep = state.Run.FindLastStep(progress.Part(0.25, found));
@@ -488,7 +438,7 @@ std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
   {
     inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
   }
-  const bool excludes = this->MaskMode == MASK_MODE_EXCLUDE;
+  const bool excludes = this->GetMaskMode() == MASK_MODE_EXCLUDE;
   return this->GetProcessGroup().IsShared()
     ? this->State->Inputs.MakeOfPieces(
         inputs, excludes, this->SeamTolerance, this->GetController(), this->Private->AbortRequested)
@@ -516,7 +466,8 @@ void vtkSurfaceDiffusionAlgorithm::WriteResult(
   vtkDataSetAttributes* const attributes = this->FindResultAttributes(fields, output);
   if (this->HasResultOnCells(fields))
   {
-    const Values result = block.CellResult(ReadValues(fields.Data), this->KeepCellDetail, parallel);
+    const Values result = block.CellResult(
+      ReadValues(fields.Data), this->State->Settings->DescribeModel().KeepCellDetail, parallel);
     this->AddResult(
       WriteCellArray(*block.Cells, fields.Data, result, type, name), fields, attributes);
   }
@@ -536,7 +487,7 @@ void vtkSurfaceDiffusionAlgorithm::WriteResult(
 
 bool vtkSurfaceDiffusionAlgorithm::HasResultOnCells(const InputFields& fields) const
 {
-  return fields.DataOnCells && this->ResultOnCells;
+  return fields.DataOnCells && this->GetRunSettings().DescribeModel().ResultOnCells;
 }
 
 vtkDataSetAttributes* vtkSurfaceDiffusionAlgorithm::FindResultAttributes(
@@ -647,9 +598,6 @@ void vtkSurfaceDiffusionAlgorithm::VisitReported(const std::function<void(double
 void vtkSurfaceDiffusionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  std::ostringstream spaces;
-  spaces << indent;
-  os << Describe(*this->MakeSettings(), spaces.str());
   os << indent << "OutputPrecision: " << this->GetOutputPrecisionAsString() << "\n";
   os << indent << "TimeUnit: " << this->TimeUnit << "\n";
   os << indent << "ValueRange: " << this->ValueRange << "\n";

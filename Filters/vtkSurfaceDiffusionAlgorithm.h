@@ -112,23 +112,17 @@ public:
   vtkTypeMacro(vtkSurfaceDiffusionAlgorithm, vtkSurfaceFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * The time step, in the unit that Units selects. Positive. Default: 1.
    */
-  vtkSetMacro(TimeStep, double);
-  vtkGetMacro(TimeStep, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(TimeStep, double);
 
-  ///@{
   /**
    * The number of time steps n. There are n + 1 states, from the initial one on. 0 to 1e9.
    * Default: 10. If only this number is raised, the next update computes the new steps alone,
    * unless a run of that length has another solver with Solver Automatic.
    */
-  vtkSetMacro(NumberOfTimeSteps, int);
-  vtkGetMacro(NumberOfTimeSteps, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(NumberOfTimeSteps, int);
 
   enum UnitsType
   {
@@ -144,14 +138,11 @@ public:
    * known values (1 if that is 0), so that one setting suits any mesh and any array. Each class
    * documents its unit of time; see also GetTimeUnit().
    */
-  vtkSetMacro(Units, int);
-  vtkGetMacro(Units, int);
+  SURFACEDIFFUSION_CHOICE(Units);
   void SetUnitsToNatural() { this->SetUnits(UNITS_NATURAL); }
   void SetUnitsToAbsolute() { this->SetUnits(UNITS_ABSOLUTE); }
-  const char* GetUnitsAsString();
   ///@}
 
-  ///@{
   /**
    * On: the output has time steps, one per OutputInterval steps of the run, and any time can be
    * requested. Between two time steps the output is the earlier one, outside their range it is the
@@ -160,19 +151,13 @@ public:
    * NumberOfTimeSteps are. The input is then requested once, at its own first time if it has times.
    * Off (default): the output is the final state, and the input's time passes through.
    */
-  vtkSetMacro(GenerateTimeSteps, bool);
-  vtkGetMacro(GenerateTimeSteps, bool);
-  vtkBooleanMacro(GenerateTimeSteps, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(GenerateTimeSteps);
 
-  ///@{
   /**
    * The interval k of the published times with GenerateTimeSteps, which are those of steps 0, k, 2
    * k, ... and the last one. 1 or more. Default: 1.
    */
-  vtkSetMacro(OutputInterval, int);
-  vtkGetMacro(OutputInterval, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(OutputInterval, int);
 
   enum MaskModeType
   {
@@ -187,23 +172,18 @@ public:
    * flux over the edges of the remaining region of interest, and masked points and cells keep their
    * value.
    */
-  vtkSetMacro(MaskMode, int);
-  vtkGetMacro(MaskMode, int);
+  SURFACEDIFFUSION_CHOICE(MaskMode);
   void SetMaskModeToInpaint() { this->SetMaskMode(MASK_MODE_INPAINT); }
   void SetMaskModeToExclude() { this->SetMaskMode(MASK_MODE_EXCLUDE); }
-  const char* GetMaskModeAsString();
   ///@}
 
-  ///@{
   /**
    * The seed of all random numbers. A random number is a hash of the seed, the component and the
    * point's global id. Without global ids, its coordinates take the place of the id, and the rank
    * among coincident points. So it is the same on all machines, in one process and in several.
    * Default: 0.
    */
-  vtkSetMacro(RandomSeed, int);
-  vtkGetMacro(RandomSeed, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(RandomSeed, int);
 
   enum TimeIntegratorType
   {
@@ -217,11 +197,9 @@ public:
    * The time integrator. Each class documents its integrators and its default. FirstOrder is the
    * paper's. Second-order schemes do not keep the bounds of the data at large time steps.
    */
-  vtkSetMacro(TimeIntegrator, int);
-  vtkGetMacro(TimeIntegrator, int);
+  SURFACEDIFFUSION_CHOICE(TimeIntegrator);
   void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }
   void SetTimeIntegratorToSecondOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_SECOND_ORDER); }
-  const char* GetTimeIntegratorAsString();
   ///@}
 
   enum SolverType
@@ -242,13 +220,11 @@ public:
    * according to measurements. Where narrow triangles keep the iterations of Automatic or Multigrid
    * from converging, another solver takes over, at last Direct.
    */
-  vtkSetMacro(Solver, int);
-  vtkGetMacro(Solver, int);
+  SURFACEDIFFUSION_CHOICE(Solver);
   void SetSolverToAutomatic() { this->SetSolver(SOLVER_AUTOMATIC); }
   void SetSolverToDirect() { this->SetSolver(SOLVER_DIRECT); }
   void SetSolverToConjugateGradient() { this->SetSolver(SOLVER_CONJUGATE_GRADIENT); }
   void SetSolverToMultigrid() { this->SetSolver(SOLVER_MULTIGRID); }
-  const char* GetSolverAsString();
   ///@}
 
   ///@{
@@ -257,23 +233,17 @@ public:
    * (0, 1), and the largest number of iterations, 1 or more. A solve that does not converge within
    * them is an error. Default: 1e-10 (1e-3 in vtkIntrinsicTVFilter), 1000.
    */
-  vtkSetMacro(Tolerance, double);
-  vtkGetMacro(Tolerance, double);
-  vtkSetMacro(MaximumNumberOfIterations, int);
-  vtkGetMacro(MaximumNumberOfIterations, int);
+  SURFACEDIFFUSION_PROPERTY(Tolerance, double);
+  SURFACEDIFFUSION_PROPERTY(MaximumNumberOfIterations, int);
   ///@}
 
-  ///@{
   /**
    * On: the equations are solved on the intrinsic Delaunay triangulation of the same surface. No
    * vertex moves; edges are flipped along geodesics, on a double cover of the surface if it has a
    * boundary or is not a manifold (N. Sharp, K. Crane, SGP 2020). Linear diffusion with FirstOrder
    * then keeps the bounds of the data at any time step on any surface. Default: off.
    */
-  vtkSetMacro(IntrinsicDelaunay, bool);
-  vtkGetMacro(IntrinsicDelaunay, bool);
-  vtkBooleanMacro(IntrinsicDelaunay, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(IntrinsicDelaunay);
 
   enum OutputPrecisionType
   {
@@ -297,14 +267,11 @@ public:
   const char* GetOutputPrecisionAsString();
   ///@}
 
-  ///@{
   /**
    * The memory in MiB for states that are kept with GenerateTimeSteps so that going back in time is
    * cheap. 0 or more. Default: 512.
    */
-  vtkSetMacro(CheckpointMemoryLimit, int);
-  vtkGetMacro(CheckpointMemoryLimit, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(CheckpointMemoryLimit, int);
 
   /**
    * Select the paper's scheme: TimeIntegrator FirstOrder, IntrinsicDelaunay off, MaskMode Inpaint,
@@ -336,13 +303,11 @@ public:
   ///@}
 
 protected:
-  vtkSurfaceDiffusionAlgorithm();
+  /// settings: of a class derived from SurfaceDiffusion::RunSettings.
+  explicit vtkSurfaceDiffusionAlgorithm(SurfaceDiffusion::OwnedSettings settings);
   ~vtkSurfaceDiffusionAlgorithm() override;
 
-  /// The run that the properties ask for, as a value. A subclass makes its settings and calls
-  /// CopyProperties() of its superclass.
-  virtual std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const = 0;
-  void CopyProperties(SurfaceDiffusion::RunSettings& settings) const;
+  SurfaceDiffusion::RunSettings& GetRunSettings() const;
 
   /// Find and check the arrays of a block. False: the block has no data and passes through.
   virtual bool FindFields(
@@ -378,9 +343,6 @@ protected:
   std::string FindOtherName(const char* name) const;
   int FindResultType(const SurfaceDiffusion::InputFields& fields) const;
 
-  /// The word of a property that is a choice.
-  const char* FindSettingWord(const char* name) const;
-
   void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
     const SurfaceDiffusion::ProgressMonitor& progress) override;
   bool SolvesInPieces(
@@ -393,23 +355,7 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  double TimeStep = 1.0;
-  int NumberOfTimeSteps = 10;
-  int Units = UNITS_NATURAL;
-  bool GenerateTimeSteps = false;
-  int OutputInterval = 1;
-  int MaskMode = MASK_MODE_INPAINT;
-  int RandomSeed = 0;
-  int TimeIntegrator = TIME_INTEGRATOR_FIRST_ORDER;
-  int Solver = SOLVER_AUTOMATIC;
-  double Tolerance = 1e-10;
-  int MaximumNumberOfIterations = 1000;
-  bool IntrinsicDelaunay = false;
   int OutputPrecision = OUTPUT_PRECISION_INPUT;
-  int CheckpointMemoryLimit = 512;
-  /// Of classes whose results may be on cells; these have the properties.
-  bool ResultOnCells = true;
-  bool KeepCellDetail = true;
 
   /// The run, kept between updates.
   struct RunState;

@@ -4,25 +4,17 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
-#include "Conversion/MirroredEnum.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DirectionFieldRun.h"
+#include "Run/OwnedSettings.h"
 
 #include "vtkCellData.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
-#include <sstream>
-
 using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceDirectionFieldFilter);
-
-using Self = vtkSurfaceDirectionFieldFilter;
-SURFACEDIFFUSION_MIRROR(Self::METHOD_PRINCIPAL_CURVATURE, DirectionMethod::PrincipalCurvature);
-SURFACEDIFFUSION_MIRROR(Self::METHOD_CURVATURE_ALIGNED, DirectionMethod::CurvatureAligned);
-SURFACEDIFFUSION_MIRROR(Self::METHOD_SMOOTH, DirectionMethod::Smooth);
-SURFACEDIFFUSION_MIRROR(Self::METHOD_HINTS, DirectionMethod::Hints);
 
 struct vtkSurfaceDirectionFieldFilter::RunState
 {
@@ -30,42 +22,20 @@ struct vtkSurfaceDirectionFieldFilter::RunState
 };
 
 vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter()
-  : State(std::make_unique<RunState>())
+  : Superclass(OwnedSettings::Make<DirectionFieldSettings>())
+  , State(std::make_unique<RunState>())
 {
   this->ResultArrayName = "Direction";
 }
 
 vtkSurfaceDirectionFieldFilter::~vtkSurfaceDirectionFieldFilter() = default;
 
-const char* vtkSurfaceDirectionFieldFilter::GetMethodAsString()
-{
-  return FindWord(*this->MakeSettings(), "Method");
-}
-
-const char* vtkSurfaceDirectionFieldFilter::GetPrincipalDirectionAsString()
-{
-  return FindWord(*this->MakeSettings(), "PrincipalDirection");
-}
-
-std::unique_ptr<DirectionFieldSettings> vtkSurfaceDirectionFieldFilter::MakeSettings() const
-{
-  auto settings = std::make_unique<DirectionFieldSettings>();
-  settings->Method = static_cast<DirectionMethod>(this->Method);
-  settings->PrincipalDirection = this->PrincipalDirection;
-  settings->SmoothingLength = this->SmoothingLength;
-  settings->HintWeight = this->HintWeight;
-  settings->Angle = this->Angle;
-  settings->MergeCoincidentPoints = this->MergeCoincidentPoints;
-  settings->MergeTolerance = this->MergeTolerance;
-  return settings;
-}
-
 void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
 {
-  const auto settings = this->MakeSettings();
+  auto& settings = static_cast<DirectionFieldSettings&>(this->GetSettings());
   Problems problems;
-  settings->Check(nullptr, problems);
+  settings.Check(nullptr, problems);
   this->CheckSurfaceProperties(problems);
   if (this->ResultArrayName.empty())
   {
@@ -75,7 +45,7 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   std::vector<InputFields> fields(surfaces.size());
   BlockSentences found;
   std::vector<std::string> names;
-  const bool hasHints = settings->Method == DirectionMethod::Hints;
+  const bool hasHints = settings.Method == DirectionMethod::Hints;
   for (std::size_t b = 0; b < surfaces.size() && hasHints; ++b)
   {
     Problems here;
@@ -91,7 +61,7 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   {
     Problems here;
     const FieldSummary summary = fields[b].Summarize();
-    settings->Check(&summary, here);
+    settings.Check(&summary, here);
     found.Add(here, surfaces[b].Name);
   }
   found.AppendTo(problems, surfaces.size());
@@ -106,7 +76,7 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
   }
   auto& runs = this->State->Runs;
-  runs.Update(inputs, *settings, progress);
+  runs.Update(inputs, settings, progress);
   std::vector<vtkSmartPointer<vtkDataArray>> results;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
@@ -131,12 +101,4 @@ void vtkSurfaceDirectionFieldFilter::ReleaseCache()
 {
   this->Superclass::ReleaseCache();
   this->State->Runs.Clear();
-}
-
-void vtkSurfaceDirectionFieldFilter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  std::ostringstream spaces;
-  spaces << indent;
-  os << Describe(*this->MakeSettings(), spaces.str());
 }

@@ -49,17 +49,11 @@
 
 #include "vtkSurfaceFilter.h"
 
-namespace SurfaceDiffusion
-{
-struct DirectionFieldSettings;
-}
-
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDirectionFieldFilter : public vtkSurfaceFilter
 {
 public:
   static vtkSurfaceDirectionFieldFilter* New();
   vtkTypeMacro(vtkSurfaceDirectionFieldFilter, vtkSurfaceFilter);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   void ReleaseCache() override;
 
@@ -75,13 +69,11 @@ public:
   /**
    * The method that computes the field, see above. Default: PrincipalCurvature.
    */
-  vtkSetMacro(Method, int);
-  vtkGetMacro(Method, int);
+  SURFACEDIFFUSION_CHOICE(Method);
   void SetMethodToPrincipalCurvature() { this->SetMethod(METHOD_PRINCIPAL_CURVATURE); }
   void SetMethodToCurvatureAligned() { this->SetMethod(METHOD_CURVATURE_ALIGNED); }
   void SetMethodToSmooth() { this->SetMethod(METHOD_SMOOTH); }
   void SetMethodToHints() { this->SetMethod(METHOD_HINTS); }
-  const char* GetMethodAsString();
   ///@}
 
   enum PrincipalDirectionType
@@ -96,8 +88,7 @@ public:
    * cylinder), or the maximum-curvature direction (Maximum), perpendicular to it. Curvatures are
    * compared by their absolute values.
    */
-  vtkSetMacro(PrincipalDirection, int);
-  vtkGetMacro(PrincipalDirection, int);
+  SURFACEDIFFUSION_CHOICE(PrincipalDirection);
   void SetPrincipalDirectionToMinimum()
   {
     this->SetPrincipalDirection(PRINCIPAL_DIRECTION_MINIMUM);
@@ -106,36 +97,26 @@ public:
   {
     this->SetPrincipalDirection(PRINCIPAL_DIRECTION_MAXIMUM);
   }
-  const char* GetPrincipalDirectionAsString();
   ///@}
 
-  ///@{
   /**
    * The full width at half maximum of the Gaussian that smooths the normals before their derivative
    * is taken, in coordinate units. 0: no smoothing; -1 (default): four mean edge lengths.
    */
-  vtkSetMacro(SmoothingLength, double);
-  vtkGetMacro(SmoothingLength, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(SmoothingLength, double);
 
-  ///@{
   /**
    * The weight of hints and curvatures against smoothness, in 1/h^2 with h the mean edge length.
    * The field follows changes of the hints over lengths down to about h/sqrt(HintWeight). Above 0.
    * Default: 0.1.
    */
-  vtkSetMacro(HintWeight, double);
-  vtkGetMacro(HintWeight, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(HintWeight, double);
 
-  ///@{
   /**
    * The angle in degrees by which the field is rotated in the surface at the end, counter-clockwise
    * about the normals of the cells. Default: 0.
    */
-  vtkSetMacro(Angle, double);
-  vtkGetMacro(Angle, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(Angle, double);
 
 protected:
   vtkSurfaceDirectionFieldFilter();
@@ -144,17 +125,9 @@ protected:
   void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
     const SurfaceDiffusion::ProgressMonitor& progress) override;
 
-  int Method = METHOD_PRINCIPAL_CURVATURE;
-  int PrincipalDirection = PRINCIPAL_DIRECTION_MINIMUM;
-  double SmoothingLength = -1.0;
-  double HintWeight = 0.1;
-  double Angle = 0.0;
-
 private:
   vtkSurfaceDirectionFieldFilter(const vtkSurfaceDirectionFieldFilter&) = delete;
   void operator=(const vtkSurfaceDirectionFieldFilter&) = delete;
-
-  std::unique_ptr<SurfaceDiffusion::DirectionFieldSettings> MakeSettings() const;
 
   /// The fields, kept between updates.
   struct RunState;

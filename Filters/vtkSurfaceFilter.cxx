@@ -20,6 +20,8 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <sstream>
+#include <utility>
 
 using namespace SurfaceDiffusion;
 
@@ -38,9 +40,10 @@ std::string JoinSentences(const std::vector<std::string>& sentences)
 
 } // namespace
 
-vtkSurfaceFilter::vtkSurfaceFilter()
+vtkSurfaceFilter::vtkSurfaceFilter(OwnedSettings settings)
   : Private(std::make_unique<Internals>())
 {
+  this->Private->Properties = std::move(settings);
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->HasWholeSurface = false; // only if a user sets null
 }
@@ -60,10 +63,48 @@ void vtkSurfaceFilter::SetController(vtkMultiProcessController* controller)
   vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
 }
 
+Settings& vtkSurfaceFilter::GetSettings() const
+{
+  return this->Private->Properties.Get();
+}
+
+template <typename T>
+void vtkSurfaceFilter::WriteProperty(const char* name, T value)
+{
+  const SettingChange change = WriteSetting(this->GetSettings(), name, value);
+  if (change == SettingChange::Unknown)
+  {
+    vtkErrorMacro(<< "no setting has the name and the type of the property " << name);
+  }
+  else if (change == SettingChange::Changed)
+  {
+    this->Modified();
+  }
+}
+
+template <typename T>
+void vtkSurfaceFilter::ReadProperty(const char* name, T& value) const
+{
+  if (!ReadSetting(this->GetSettings(), name, value))
+  {
+    vtkErrorMacro(<< "no setting has the name and the type of the property " << name);
+  }
+}
+
+template VTKSURFACEDIFFUSION_EXPORT void vtkSurfaceFilter::WriteProperty(const char*, double);
+template VTKSURFACEDIFFUSION_EXPORT void vtkSurfaceFilter::WriteProperty(const char*, int);
+template VTKSURFACEDIFFUSION_EXPORT void vtkSurfaceFilter::WriteProperty(const char*, bool);
+template VTKSURFACEDIFFUSION_EXPORT void vtkSurfaceFilter::ReadProperty(const char*, double&) const;
+template VTKSURFACEDIFFUSION_EXPORT void vtkSurfaceFilter::ReadProperty(const char*, int&) const;
+template VTKSURFACEDIFFUSION_EXPORT void vtkSurfaceFilter::ReadProperty(const char*, bool&) const;
+
+const char* vtkSurfaceFilter::GetPropertyWord(const char* name) const
+{
+  return FindWord(this->GetSettings(), name);
+}
+
 void vtkSurfaceFilter::CheckSurfaceProperties(Problems& problems)
 {
-  Require(SettingRange::NonNegative().Contains(this->MergeTolerance), "MergeTolerance",
-    this->MergeTolerance, SettingRange::NonNegative().Text, problems);
   const SettingRange seam =
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: 1e-6 of the bounding box");
   Require(
@@ -376,6 +417,9 @@ void vtkSurfaceFilter::ShareReported()
 void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  std::ostringstream spaces;
+  spaces << indent;
+  os << Describe(this->GetSettings(), spaces.str());
   os << indent << "SeamTolerance: " << this->SeamTolerance << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";

@@ -48,12 +48,49 @@
 
 namespace SurfaceDiffusion
 {
+class OwnedSettings;
 class ProcessGroup;
 class ProgressMonitor;
+class Settings;
 struct Warning;
 }
 class vtkMultiProcessController;
 class vtkPolyData;
+
+// A property that has the name of a setting of the class (Filters/Run), with its setter and getter.
+// The setting holds the value, the default, the allowed values and, of a choice, the words. A setter
+// that changes the value calls Modified(). The type is double of a number and int of an integer.
+#define SURFACEDIFFUSION_PROPERTY(name, type)                                                      \
+  virtual void Set##name(type value)                                                               \
+  {                                                                                                \
+    this->WriteProperty(#name, value);                                                             \
+  }                                                                                                \
+  virtual type Get##name() const                                                                   \
+  {                                                                                                \
+    type value{};                                                                                  \
+    this->ReadProperty(#name, value);                                                              \
+    return value;                                                                                  \
+  }
+
+// The same for a setting that is on or off.
+#define SURFACEDIFFUSION_SWITCH(name)                                                              \
+  SURFACEDIFFUSION_PROPERTY(name, bool)                                                            \
+  virtual void name##On()                                                                          \
+  {                                                                                                \
+    this->Set##name(true);                                                                         \
+  }                                                                                                \
+  virtual void name##Off()                                                                         \
+  {                                                                                                \
+    this->Set##name(false);                                                                        \
+  }
+
+// The same for a choice, which is the index of a word: one of the enumerators of the class.
+#define SURFACEDIFFUSION_CHOICE(name)                                                              \
+  SURFACEDIFFUSION_PROPERTY(name, int)                                                             \
+  virtual const char* Get##name##AsString() const                                                  \
+  {                                                                                                \
+    return this->GetPropertyWord(#name);                                                           \
+  }
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceFilter : public vtkPolyDataAlgorithm
 {
@@ -67,11 +104,8 @@ public:
    * one point of the surface, as STL files and split normals need. The output keeps the input's
    * points. Off (default): coincident boundary points are counted in a warning.
    */
-  vtkSetMacro(MergeCoincidentPoints, bool);
-  vtkGetMacro(MergeCoincidentPoints, bool);
-  vtkBooleanMacro(MergeCoincidentPoints, bool);
-  vtkSetMacro(MergeTolerance, double);
-  vtkGetMacro(MergeTolerance, double);
+  SURFACEDIFFUSION_SWITCH(MergeCoincidentPoints);
+  SURFACEDIFFUSION_PROPERTY(MergeTolerance, double);
   ///@}
 
   ///@{
@@ -145,8 +179,22 @@ public:
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 protected:
-  vtkSurfaceFilter();
+  /// settings: of the properties of the class, with their defaults.
+  explicit vtkSurfaceFilter(SurfaceDiffusion::OwnedSettings settings);
   ~vtkSurfaceFilter() override;
+
+  /// The settings, which have the values of the properties.
+  SurfaceDiffusion::Settings& GetSettings() const;
+
+  ///@{
+  /// The bodies of setters and getters, for double, int and bool. A name that no setting of this type
+  /// has is an error.
+  template <typename T>
+  void WriteProperty(const char* name, T value);
+  template <typename T>
+  void ReadProperty(const char* name, T& value) const;
+  const char* GetPropertyWord(const char* name) const;
+  ///@}
 
   /// A surface of the input, and its shallow copy in the output.
   struct SurfaceBlock
@@ -203,8 +251,6 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   virtual int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
 
-  bool MergeCoincidentPoints = false;
-  double MergeTolerance = 0.0;
   double SeamTolerance = -1.0;
   int NumberOfThreads = 0;
   std::string ResultArrayName;

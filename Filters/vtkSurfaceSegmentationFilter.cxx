@@ -75,6 +75,7 @@ Values MeansOfLabels(const Values& means, const std::vector<Index>& labels)
 } // namespace
 
 vtkSurfaceSegmentationFilter::vtkSurfaceSegmentationFilter()
+  : Superclass(OwnedSettings::Make<SegmentationSettings>())
 {
   this->SetNumberOfOutputPorts(3);
 }
@@ -85,7 +86,7 @@ void vtkSurfaceSegmentationFilter::SetMean(int region, int component, double val
   if (entry == this->Means.end() || entry->second != value)
   {
     this->Means[{ region, component }] = value;
-    this->Modified();
+    this->PassMeans();
   }
 }
 
@@ -99,8 +100,20 @@ void vtkSurfaceSegmentationFilter::RemoveAllMeans()
   if (!this->Means.empty())
   {
     this->Means.clear();
-    this->Modified();
+    this->PassMeans();
   }
+}
+
+/// The settings have the means in the order of regions and components, without their places.
+void vtkSurfaceSegmentationFilter::PassMeans()
+{
+  auto& means = static_cast<SegmentationSettings&>(this->GetSettings()).Means;
+  means.clear();
+  for (const auto& [place, value] : this->Means)
+  {
+    means.push_back(value);
+  }
+  this->Modified();
 }
 
 void vtkSurfaceSegmentationFilter::AddMean(double region, double component, double value)
@@ -113,27 +126,10 @@ double vtkSurfaceSegmentationFilter::GetEffectiveMean(int region, int component)
   return FindMean(this->EffectiveMeans, region, component);
 }
 
-std::unique_ptr<RunSettings> vtkSurfaceSegmentationFilter::MakeSettings() const
-{
-  auto settings = std::make_unique<SegmentationSettings>();
-  this->CopyProperties(*settings);
-  settings->NumberOfRegions = this->NumberOfRegions;
-  settings->AutomaticFidelity = this->AutomaticFidelity;
-  settings->FidelityWeight = this->FidelityWeight;
-  settings->AutomaticMeans = this->AutomaticMeans;
-  settings->StopTolerance = this->StopTolerance;
-  settings->ResultOnCells = this->ResultOnCells;
-  for (const auto& [place, value] : this->Means) // in the order of the settings
-  {
-    settings->Means.push_back(value);
-  }
-  return settings;
-}
-
 /// The settings check the number of means. If it is right, each region and component has one.
 void vtkSurfaceSegmentationFilter::CheckPlacesOfMeans(int components, Problems& problems) const
 {
-  const std::string regions = "1 to NumberOfRegions " + std::to_string(this->NumberOfRegions);
+  const std::string regions = "1 to NumberOfRegions " + std::to_string(this->GetNumberOfRegions());
   const std::string columns =
     "0 to " + std::to_string(components - 1) + ", the last component of InputArray";
   const std::size_t limit = problems.size() + LargestNumberOfPlaces;
@@ -144,7 +140,7 @@ void vtkSurfaceSegmentationFilter::CheckPlacesOfMeans(int components, Problems& 
       return;
     }
     const auto [region, component] = place;
-    Require(region >= 1 && region <= this->NumberOfRegions, "the region of a Mean", region,
+    Require(region >= 1 && region <= this->GetNumberOfRegions(), "the region of a Mean", region,
       regions.c_str(), problems);
     Require(component >= 0 && component < components, "the component of a Mean", component,
       columns.c_str(), problems);
@@ -166,7 +162,7 @@ bool vtkSurfaceSegmentationFilter::FindFields(
   fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
   fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
   fields.Seeds = inputs.Find(6, "SeedArray", 1, fields.SeedsOnCells);
-  if (fields.Data && !fields.DataAreTerms && !this->AutomaticMeans)
+  if (fields.Data && !fields.DataAreTerms && !this->GetAutomaticMeans())
   {
     this->CheckPlacesOfMeans(NumberOfDataComponents(fields.Data), problems);
   }

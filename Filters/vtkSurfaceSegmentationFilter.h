@@ -94,35 +94,24 @@ public:
   vtkTypeMacro(vtkSurfaceSegmentationFilter, vtkSurfaceDiffusionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * K, the number of regions. 2 to 1000. Default: 2.
    */
-  vtkSetMacro(NumberOfRegions, int);
-  vtkGetMacro(NumberOfRegions, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(NumberOfRegions, int);
 
-  ///@{
   /**
    * On (default): lambda is found from the contrast of the data, see above. FidelityWeight has no
    * effect.
    */
-  vtkSetMacro(AutomaticFidelity, bool);
-  vtkGetMacro(AutomaticFidelity, bool);
-  vtkBooleanMacro(AutomaticFidelity, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 
-  ///@{
   /**
    * lambda, the weight of the data terms, with AutomaticFidelity off. The larger it is, the smaller
    * are the regions that are kept. 0 or more (0: seeds alone), in 1/(h R^2) in natural units, or
    * 1/(h R) with given data terms. Default: 0.3.
    */
-  vtkSetMacro(FidelityWeight, double);
-  vtkGetMacro(FidelityWeight, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(FidelityWeight, double);
 
-  ///@{
   /**
    * On (default): the means c_k are found. The start are clusters of the values by k-means++ with
    * RandomSeed, then the means of the regions and the regions are computed in turn. Regions are
@@ -130,21 +119,14 @@ public:
    * seeds, whose labels they then have. Off: the means are those of SetMean(), or the clusters of
    * the values if none is set. Not used with given data terms.
    */
-  vtkSetMacro(AutomaticMeans, bool);
-  vtkGetMacro(AutomaticMeans, bool);
-  vtkBooleanMacro(AutomaticMeans, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(AutomaticMeans);
 
-  ///@{
   /**
    * On (default): the results of data on cells are on cells: RegionProbability is the mean of u
    * over the cell, and RegionId its largest component, or the seed of the cell. Off: they are on
    * points.
    */
-  vtkSetMacro(ResultOnCells, bool);
-  vtkGetMacro(ResultOnCells, bool);
-  vtkBooleanMacro(ResultOnCells, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(ResultOnCells);
 
   ///@{
   /**
@@ -159,15 +141,12 @@ public:
   void AddMean(double region, double component, double value);
   ///@}
 
-  ///@{
   /**
    * The duality gap at which the minimisation stops, relative to E - lambda int chi min_k r_k, the
    * part of E that depends on u. In (0, 1). Default: 1e-3. A warning reports the gap if 10,000
    * iterations do not reach it. Solver, Tolerance and MaximumNumberOfIterations have no effect.
    */
-  vtkSetMacro(StopTolerance, double);
-  vtkGetMacro(StopTolerance, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(StopTolerance, double);
 
   ///@{
   /**
@@ -198,7 +177,6 @@ protected:
   vtkSurfaceSegmentationFilter();
   ~vtkSurfaceSegmentationFilter() override = default;
 
-  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
   void WriteResult(
@@ -208,16 +186,11 @@ protected:
   const char* GetResultSuffix() const override { return "Segmented"; }
   void VisitReported(const std::function<void(double&)>& visit) override;
 
-  int NumberOfRegions = 2;
-  bool AutomaticFidelity = true;
-  double FidelityWeight = 0.3;
-  bool AutomaticMeans = true;
-  double StopTolerance = 1e-3;
-
 private:
   vtkSurfaceSegmentationFilter(const vtkSurfaceSegmentationFilter&) = delete;
   void operator=(const vtkSurfaceSegmentationFilter&) = delete;
 
+  void PassMeans();
   void CheckPlacesOfMeans(int components, Problems& problems) const;
   vtkSmartPointer<vtkPolyData> MakeBoundaries() const;
 

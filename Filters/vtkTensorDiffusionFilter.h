@@ -69,7 +69,6 @@ class VTKSURFACEDIFFUSION_EXPORT vtkTensorDiffusionFilter : public vtkSurfaceDat
 public:
   static vtkTensorDiffusionFilter* New();
   vtkTypeMacro(vtkTensorDiffusionFilter, vtkSurfaceDataDiffusionAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ModelType
   {
@@ -82,22 +81,17 @@ public:
   /**
    * The diffusion tensor. Default: Beltrami.
    */
-  vtkSetMacro(Model, int);
-  vtkGetMacro(Model, int);
+  SURFACEDIFFUSION_CHOICE(Model);
   void SetModelToBeltrami() { this->SetModel(MODEL_BELTRAMI); }
   void SetModelToCoherenceEnhancing() { this->SetModel(MODEL_COHERENCE_ENHANCING); }
   void SetModelToEdgeEnhancing() { this->SetModel(MODEL_EDGE_ENHANCING); }
-  const char* GetModelAsString();
   ///@}
 
-  ///@{
   /**
    * b of Beltrami: gradients above 1/b are edges. Natural units: in h/R. Positive; small values give
    * linear diffusion. Default: 10.
    */
-  vtkSetMacro(ColorScale, double);
-  vtkGetMacro(ColorScale, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(ColorScale, double);
 
   enum MetricType
   {
@@ -112,81 +106,53 @@ public:
    * sum of A_i u_i is conserved; with one component, steady states are those of the Charbonnier
    * function of vtkIntrinsicTVFilter with EdgeThreshold 1/b. The steady states of both are equal.
    */
-  vtkSetMacro(Metric, int);
-  vtkGetMacro(Metric, int);
+  SURFACEDIFFUSION_CHOICE(Metric);
   void SetMetricToInduced() { this->SetMetric(METRIC_INDUCED); }
   void SetMetricToFixed() { this->SetMetric(METRIC_FIXED); }
-  const char* GetMetricAsString();
   ///@}
 
-  ///@{
   /**
    * sigma, the standard deviation of the Gaussian that smooths the data before their gradients are
    * taken for the structure tensor of CoherenceEnhancing and EdgeEnhancing. The data themselves
    * are not smoothed. Natural units: in h. 0: none. Default: 1.
    */
-  vtkSetMacro(NoiseScale, double);
-  vtkGetMacro(NoiseScale, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(NoiseScale, double);
 
-  ///@{
   /**
    * rho, the standard deviation of the Gaussian that smooths the structure tensor of
    * CoherenceEnhancing: the distance over which the direction of lines is averaged. Natural units: in
    * h. 0: none; below NoiseScale it gives a warning. Default: 4.
    */
-  vtkSetMacro(IntegrationScale, double);
-  vtkGetMacro(IntegrationScale, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(IntegrationScale, double);
 
-  ///@{
   /**
    * K, the gradient above which data are lines for CoherenceEnhancing and edges for EdgeEnhancing.
    * Natural units: in R/h. Positive. Default: 0.05, at which stripes with a period of 11 h in noise
    * of 30 % keep 99 % of their contrast for 10 h^2. R is the range with the noise, and lines are weak
    * in gaps: to close gaps of noisy lines take 0.01.
    */
-  vtkSetMacro(Contrast, double);
-  vtkGetMacro(Contrast, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(Contrast, double);
 
-  ///@{
   /**
    * The diffusivity of CoherenceEnhancing across lines, and in all directions away from lines. From
    * 1e-12 to 1. Default: 1e-3.
    */
-  vtkSetMacro(Alpha, double);
-  vtkGetMacro(Alpha, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(Alpha, double);
 
-  ///@{
   /**
    * On: the output has the cell array `DiffusionAxes`, the direction of the strongest diffusion at
    * the time of the output: unit vectors whose sign has no meaning, zero where diffusion is
    * isotropic. It is an error together with IntrinsicDelaunay. Default: off.
    */
-  vtkSetMacro(DiffusionAxes, bool);
-  vtkGetMacro(DiffusionAxes, bool);
-  vtkBooleanMacro(DiffusionAxes, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(DiffusionAxes);
 
 protected:
   vtkTensorDiffusionFilter();
   ~vtkTensorDiffusionFilter() override = default;
 
-  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
   void WriteResult(
     std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
   const char* GetResultSuffix() const override;
-
-  int Model = MODEL_BELTRAMI;
-  double ColorScale = 10.0;
-  int Metric = METRIC_INDUCED;
-  double NoiseScale = 1.0;
-  double IntegrationScale = 4.0;
-  double Contrast = 0.05;
-  double Alpha = 1e-3;
-  bool DiffusionAxes = false;
 
 private:
   vtkTensorDiffusionFilter(const vtkTensorDiffusionFilter&) = delete;

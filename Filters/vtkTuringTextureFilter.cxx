@@ -3,7 +3,6 @@
 #include "vtkTuringTextureFilter.h"
 
 #include "Conversion/InputArrays.h"
-#include "Conversion/MirroredEnum.h"
 #include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
@@ -22,63 +21,17 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkTuringTextureFilter);
 
-using Self = vtkTuringTextureFilter;
-SURFACEDIFFUSION_MIRROR(Self::KINETICS_TURING, KineticsName::Turing);
-SURFACEDIFFUSION_MIRROR(Self::KINETICS_SCHNAKENBERG, KineticsName::Schnakenberg);
-SURFACEDIFFUSION_MIRROR(Self::KINETICS_GRAY_SCOTT, KineticsName::GrayScott);
-SURFACEDIFFUSION_MIRROR(Self::KINETICS_BRUSSELATOR, KineticsName::Brusselator);
-SURFACEDIFFUSION_MIRROR(Self::KINETICS_GIERER_MEINHARDT, KineticsName::GiererMeinhardt);
-SURFACEDIFFUSION_MIRROR(Self::KINETICS_FITZ_HUGH_NAGUMO, KineticsName::FitzHughNagumo);
-
 vtkTuringTextureFilter::vtkTuringTextureFilter()
+  : Superclass(OwnedSettings::Make<TextureSettings>())
 {
-  this->TimeIntegrator = TIME_INTEGRATOR_SECOND_ORDER;
-  this->TimeStep = 1.0 / 16.0;
-  this->NumberOfTimeSteps = 640;
   // An initial state is optional: the active scalars are not used by default.
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
-}
-
-const char* vtkTuringTextureFilter::GetKineticsAsString()
-{
-  return this->FindSettingWord("Kinetics");
-}
-
-const char* vtkTuringTextureFilter::GetTextureChemicalAsString()
-{
-  return this->FindSettingWord("TextureChemical");
 }
 
 void vtkTuringTextureFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
   this->SetKineticsToTuring();
-}
-
-std::unique_ptr<RunSettings> vtkTuringTextureFilter::MakeSettings() const
-{
-  auto settings = std::make_unique<TextureSettings>();
-  this->CopyProperties(*settings);
-  settings->Kinetics = static_cast<KineticsName>(this->Kinetics);
-  settings->ReactionRate = this->ReactionRate;
-  settings->DiffusionRate1 = this->DiffusionRate1;
-  settings->DiffusionRate2 = this->DiffusionRate2;
-  settings->DiffusionRateAcross1 = this->DiffusionRateAcross1;
-  settings->DiffusionRateAcross2 = this->DiffusionRateAcross2;
-  settings->FeatureSize = this->FeatureSize;
-  settings->InitialNoise = this->InitialNoise;
-  settings->ClampToNonNegative = this->ClampToNonNegative;
-  settings->AutomaticTimeStep = this->AutomaticTimeStep;
-  settings->StopTolerance = this->StopTolerance;
-  settings->CoarseStartSize = this->CoarseStartSize;
-  settings->TextureChemical = this->TextureChemical;
-  settings->ColorOutput = this->ColorOutput;
-  // The order is that of KineticsName, and that of the parameters of each kinetics.
-  settings->Parameters = { { { this->GrowthRate, this->DecayRate, 0.0 },
-    { this->ActivatorSupply, this->SubstrateSupply, 0.0 }, { this->FeedRate, this->KillRate, 0.0 },
-    { this->ReactantA, this->ReactantB, 0.0 }, { this->InhibitorDecayRate, this->Saturation, 0.0 },
-    { this->RecoveryRate, this->RecoveryDamping, this->Stimulus } } };
-  return settings;
 }
 
 bool vtkTuringTextureFilter::FindFields(vtkPolyData* block, InputFields& fields, Problems& problems)
@@ -127,12 +80,13 @@ void vtkTuringTextureFilter::WriteResult(
     vtkDataArray* const elsewhere = fields.DataOnCells ? nullptr : fields.Data.Get();
     this->AddResult(WriteScalars(surface, name, u.col(c), single, elsewhere, c), fields, points);
   }
-  const Vector texture = StretchContrast(u.col(this->TextureChemical), block.Result.ContrastLimits);
+  const Vector texture =
+    StretchContrast(u.col(this->GetTextureChemical()), block.Result.ContrastLimits);
   this->AddResult(
     WriteScalars(surface, this->FindOtherName("Texture"), texture, single, nullptr, 0), fields,
     points);
   std::string active = this->FindOtherName("u1");
-  if (this->ColorOutput)
+  if (this->GetColorOutput())
   {
     active = this->FindOtherName("TextureColor");
     const std::array<double, 3> low = { this->LowColor[0], this->LowColor[1], this->LowColor[2] };

@@ -103,34 +103,27 @@ public:
    * parameters of all kinetics give a pattern, but only those of (24) and the Brusselator do so
    * within the default time.
    */
-  vtkSetMacro(Kinetics, int);
-  vtkGetMacro(Kinetics, int);
+  SURFACEDIFFUSION_CHOICE(Kinetics);
   void SetKineticsToTuring() { this->SetKinetics(KINETICS_TURING); }
   void SetKineticsToSchnakenberg() { this->SetKinetics(KINETICS_SCHNAKENBERG); }
   void SetKineticsToGrayScott() { this->SetKinetics(KINETICS_GRAY_SCOTT); }
   void SetKineticsToBrusselator() { this->SetKinetics(KINETICS_BRUSSELATOR); }
   void SetKineticsToGiererMeinhardt() { this->SetKinetics(KINETICS_GIERER_MEINHARDT); }
   void SetKineticsToFitzHughNagumo() { this->SetKinetics(KINETICS_FITZ_HUGH_NAGUMO); }
-  const char* GetKineticsAsString();
   ///@}
 
-  ///@{
   /**
    * The reaction rate s, in 1/time. Positive. The natural unit of time is 1/s. Default: 1.
    */
-  vtkSetMacro(ReactionRate, double);
-  vtkGetMacro(ReactionRate, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(ReactionRate, double);
 
   ///@{
   /**
    * The diffusion rates of u1 and u2 along e1, or in all directions without a direction array. 0 or
    * more. Default: 21 and 2.6, which in natural units give a wavelength of about 11 h with (24).
    */
-  vtkSetMacro(DiffusionRate1, double);
-  vtkGetMacro(DiffusionRate1, double);
-  vtkSetMacro(DiffusionRate2, double);
-  vtkGetMacro(DiffusionRate2, double);
+  SURFACEDIFFUSION_PROPERTY(DiffusionRate1, double);
+  SURFACEDIFFUSION_PROPERTY(DiffusionRate2, double);
   ///@}
 
   ///@{
@@ -138,53 +131,36 @@ public:
    * The diffusion rates of u1 and u2 along e2, across the direction. 0 or more, or -1 (default):
    * the same as along e1. Rates that differ from those along e1 need the direction array.
    */
-  vtkSetMacro(DiffusionRateAcross1, double);
-  vtkGetMacro(DiffusionRateAcross1, double);
-  vtkSetMacro(DiffusionRateAcross2, double);
-  vtkGetMacro(DiffusionRateAcross2, double);
+  SURFACEDIFFUSION_PROPERTY(DiffusionRateAcross1, double);
+  SURFACEDIFFUSION_PROPERTY(DiffusionRateAcross2, double);
   ///@}
 
-  ///@{
   /**
    * The requested wavelength, in coordinate units; 0 (default): off. All four diffusion rates are
    * multiplied by one factor so that the fastest-growing wavelength along e1 is FeatureSize (with
    * rates per cell: the wavelength for their means over the surface). If no wave grows fastest, the
    * rates do not change and a warning is given.
    */
-  vtkSetMacro(FeatureSize, double);
-  vtkGetMacro(FeatureSize, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(FeatureSize, double);
 
-  ///@{
   /**
    * The half width of the uniform noise around the steady state, relative to it. It is absolute for
    * FitzHughNagumo, whose values have either sign. 0 or more. Default: 0.1.
    */
-  vtkSetMacro(InitialNoise, double);
-  vtkGetMacro(InitialNoise, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(InitialNoise, double);
 
-  ///@{
   /**
    * On (default): concentrations are kept at 0 and above, see the class comment. The values of
    * FitzHughNagumo are not concentrations and are not constrained.
    */
-  vtkSetMacro(ClampToNonNegative, bool);
-  vtkGetMacro(ClampToNonNegative, bool);
-  vtkBooleanMacro(ClampToNonNegative, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(ClampToNonNegative);
 
-  ///@{
   /**
    * On: the time step is 1/8 of the time constant of the kinetics' fastest mode (1/16 for (24)),
    * regardless of TimeStep. Default: off.
    */
-  vtkSetMacro(AutomaticTimeStep, bool);
-  vtkGetMacro(AutomaticTimeStep, bool);
-  vtkBooleanMacro(AutomaticTimeStep, bool);
-  ///@}
+  SURFACEDIFFUSION_SWITCH(AutomaticTimeStep);
 
-  ///@{
   /**
    * The run ends before NumberOfTimeSteps when the pattern is stationary, that is, when the
    * relative change per unit of time (root mean square, relative to that of the pattern) is at most
@@ -192,11 +168,8 @@ public:
    * 0: all steps are computed. Default: 0.02, at which the correlation with the state after all
    * default steps is 0.98 (Turing kinetics, 2,562 vertices), after 284 of 640 steps.
    */
-  vtkSetMacro(StopTolerance, double);
-  vtkGetMacro(StopTolerance, double);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(StopTolerance, double);
 
-  ///@{
   /**
    * On a surface with more vertices than this, the pattern grows on a coarser mesh first (nested
    * iteration). The steps run in a Galerkin space of smoothed aggregation with 6 vertices per
@@ -214,71 +187,56 @@ public:
    * (conjugate gradients), and Tolerance is at least 1e-4 in all steps. 0 or more. Default: 50000,
    * the size up to which a run on the surface takes about 10 s on two cores.
    */
-  vtkSetMacro(CoarseStartSize, int);
-  vtkGetMacro(CoarseStartSize, int);
-  ///@}
+  SURFACEDIFFUSION_PROPERTY(CoarseStartSize, int);
 
   ///@{
   /**
    * The parameters of Turing: gamma and mu, above 0. A steady state needs gamma > mu. Default: 16,
    * 12.
    */
-  vtkSetMacro(GrowthRate, double);
-  vtkGetMacro(GrowthRate, double);
-  vtkSetMacro(DecayRate, double);
-  vtkGetMacro(DecayRate, double);
+  SURFACEDIFFUSION_PROPERTY(GrowthRate, double);
+  SURFACEDIFFUSION_PROPERTY(DecayRate, double);
   ///@}
 
   ///@{
   /**
    * The parameters of Schnakenberg: a and b, above 0. Default: 0.01, 1.
    */
-  vtkSetMacro(ActivatorSupply, double);
-  vtkGetMacro(ActivatorSupply, double);
-  vtkSetMacro(SubstrateSupply, double);
-  vtkGetMacro(SubstrateSupply, double);
+  SURFACEDIFFUSION_PROPERTY(ActivatorSupply, double);
+  SURFACEDIFFUSION_PROPERTY(SubstrateSupply, double);
   ///@}
 
   ///@{
   /**
    * The parameters of GrayScott: f and k, above 0. Default: 0.05, 0.06.
    */
-  vtkSetMacro(FeedRate, double);
-  vtkGetMacro(FeedRate, double);
-  vtkSetMacro(KillRate, double);
-  vtkGetMacro(KillRate, double);
+  SURFACEDIFFUSION_PROPERTY(FeedRate, double);
+  SURFACEDIFFUSION_PROPERTY(KillRate, double);
   ///@}
 
   ///@{
   /**
    * The parameters of Brusselator: A and B, above 0. Default: 2, 4.
    */
-  vtkSetMacro(ReactantA, double);
-  vtkGetMacro(ReactantA, double);
-  vtkSetMacro(ReactantB, double);
-  vtkGetMacro(ReactantB, double);
+  SURFACEDIFFUSION_PROPERTY(ReactantA, double);
+  SURFACEDIFFUSION_PROPERTY(ReactantB, double);
   ///@}
 
   ///@{
   /**
    * The parameters of GiererMeinhardt: nu, above 0, and kappa, 0 or more. Default: 1.05, 0.
    */
-  vtkSetMacro(InhibitorDecayRate, double);
-  vtkGetMacro(InhibitorDecayRate, double);
-  vtkSetMacro(Saturation, double);
-  vtkGetMacro(Saturation, double);
+  SURFACEDIFFUSION_PROPERTY(InhibitorDecayRate, double);
+  SURFACEDIFFUSION_PROPERTY(Saturation, double);
   ///@}
 
   ///@{
   /**
    * The parameters of FitzHughNagumo: epsilon and beta, above 0, and alpha. Default: 1.2, 0.9, 0.
    */
-  vtkSetMacro(RecoveryRate, double);
-  vtkGetMacro(RecoveryRate, double);
-  vtkSetMacro(RecoveryDamping, double);
-  vtkGetMacro(RecoveryDamping, double);
-  vtkSetMacro(Stimulus, double);
-  vtkGetMacro(Stimulus, double);
+  SURFACEDIFFUSION_PROPERTY(RecoveryRate, double);
+  SURFACEDIFFUSION_PROPERTY(RecoveryDamping, double);
+  SURFACEDIFFUSION_PROPERTY(Stimulus, double);
   ///@}
 
   enum TextureChemicalType
@@ -291,11 +249,9 @@ public:
   /**
    * The chemical that Texture and TextureColor show. Default: U1.
    */
-  vtkSetMacro(TextureChemical, int);
-  vtkGetMacro(TextureChemical, int);
+  SURFACEDIFFUSION_CHOICE(TextureChemical);
   void SetTextureChemicalToU1() { this->SetTextureChemical(TEXTURE_CHEMICAL_U1); }
   void SetTextureChemicalToU2() { this->SetTextureChemical(TEXTURE_CHEMICAL_U2); }
-  const char* GetTextureChemicalAsString();
   ///@}
 
   ///@{
@@ -304,9 +260,7 @@ public:
    * (components in [0, 1]) by Texture, as its active scalars. Default: off; the colours are dark
    * brown and sand.
    */
-  vtkSetMacro(ColorOutput, bool);
-  vtkGetMacro(ColorOutput, bool);
-  vtkBooleanMacro(ColorOutput, bool);
+  SURFACEDIFFUSION_SWITCH(ColorOutput);
   vtkSetVector3Macro(LowColor, double);
   vtkGetVector3Macro(LowColor, double);
   vtkSetVector3Macro(HighColor, double);
@@ -336,7 +290,6 @@ protected:
   vtkTuringTextureFilter();
   ~vtkTuringTextureFilter() override = default;
 
-  std::unique_ptr<SurfaceDiffusion::RunSettings> MakeSettings() const override;
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
   void WriteResult(
@@ -345,33 +298,6 @@ protected:
   void VisitReported(const std::function<void(double&)>& visit) override;
   const char* GetResultSuffix() const override { return ""; }
 
-  int Kinetics = KINETICS_TURING;
-  double ReactionRate = 1.0;
-  double DiffusionRate1 = 21.0;
-  double DiffusionRate2 = 2.6;
-  double DiffusionRateAcross1 = -1.0;
-  double DiffusionRateAcross2 = -1.0;
-  double FeatureSize = 0.0;
-  double InitialNoise = 0.1;
-  bool ClampToNonNegative = true;
-  bool AutomaticTimeStep = false;
-  double StopTolerance = 0.02;
-  int CoarseStartSize = 50000;
-  double GrowthRate = 16.0;
-  double DecayRate = 12.0;
-  double ActivatorSupply = 0.01;
-  double SubstrateSupply = 1.0;
-  double FeedRate = 0.05;
-  double KillRate = 0.06;
-  double ReactantA = 2.0;
-  double ReactantB = 4.0;
-  double InhibitorDecayRate = 1.05;
-  double Saturation = 0.0;
-  double RecoveryRate = 1.2;
-  double RecoveryDamping = 0.9;
-  double Stimulus = 0.0;
-  int TextureChemical = TEXTURE_CHEMICAL_U1;
-  bool ColorOutput = false;
   double LowColor[3] = { 0.16, 0.09, 0.05 };
   double HighColor[3] = { 0.93, 0.80, 0.58 };
   double Wavelength = 0.0;

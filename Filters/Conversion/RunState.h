@@ -6,6 +6,7 @@
 
 #include "Conversion/BlockInputs.h"
 #include "Conversion/SMPParallelFor.h"
+#include "Run/OwnedSettings.h"
 #include "Run/Run.h"
 
 #include <memory>

@@ -8,6 +8,7 @@
 #include "Distributed/GatheredSurfaces.h"
 #include "Distributed/SharedProcessGroup.h"
 #include "Distributed/SurfacePieces.h"
+#include "Run/OwnedSettings.h"
 #include "Run/WarningLog.h"
 
 #include "vtkCallbackCommand.h"
@@ -23,6 +24,8 @@
 /// The state of vtkSurfaceFilter that its header hides.
 struct vtkSurfaceFilter::Internals
 {
+  SurfaceDiffusion::OwnedSettings Properties;
+
   std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered;
   SurfaceDiffusion::WarningLog Reported;
 
