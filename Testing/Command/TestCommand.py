@@ -456,13 +456,11 @@ class Reports(CommandTest):
         self.assertEqual([row["name"] for row in report["columns"]], ["one", "two"])
 
     def test_warnings_of_the_library_are_lines_and_in_the_report(self):
-        # Point N is in no face.
-        samples.write_surface("extra.surf.gii", np.vstack([POINTS, [0, 0, 0]]))
-        samples.write_gifti("extra.func.gii", {"one": np.append(NOISE, 1)})
-        code, out, error = run("smooth", "extra.surf.gii", "extra.func.gii", 5, "out.func.gii",
+        samples.write_surface("extra.surf.gii", faces=np.vstack([FACES, [0, 0, 1]]))
+        code, out, error = run("smooth", "extra.surf.gii", "lh.func.gii", 5, "out.func.gii",
                                "--json")
         self.assertEqual(code, 0)
-        self.assertRegex(error, "^surfacediffusion: warning: .*point")
+        self.assertRegex(error, "^surfacediffusion: warning: .*triangles of zero area")
         self.assertEqual(len(json.loads(out)["warnings"]), 1)
 
     def test_errors_are_in_the_report(self):
