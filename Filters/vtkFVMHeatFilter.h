@@ -93,8 +93,18 @@ public:
    * of Units. 0 or more. 0 (default): it is estimated from the median difference of each value from
    * a linear fit to its neighbours. The estimate assumes white noise, independent from point to
    * point. If points farther apart differ by 15 % more, as in data that were interpolated or
-   * smoothed, the noise is correlated: a warning gives both values, and the larger is used. For
-   * data on cells it is the noise of the cells, and the estimate assumes white noise on them.
+   * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
+   *
+   * Noise that was smoothed with a Gaussian kernel of a standard deviation of 3 edges or more is as
+   * smooth as a signal, and the estimate is too small. A warning then says that the data show no white
+   * noise, and gives the deviation of the data, which is that of the noise if there is no signal. A
+   * signal without noise gives the same warning, and so may white noise below a quarter of the
+   * estimate under waves of less than 7 edges. No warning comes for correlated noise together with
+   * white noise of half of the estimate, for fewer than about 300 points, and often where the lengths
+   * of neighbouring edges differ much or the surface has many sharp edges.
+   *
+   * For data on cells it is the noise of the cells. The estimate assumes white noise on them, and no
+   * warning comes.
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Random.h"
 #include "Core/Models/HeatBlur.h"
+#include "Core/Models/NoiseCorrelation.h"
 #include "Core/Models/NoiseLevel.h"
 #include "Core/Operators/CotanWeights.h"
 
@@ -20,6 +21,24 @@ double EstimateBetweenNeighbours(const ModelInputs& inputs, const PointData& dat
 {
   return EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data)
     .BetweenNeighbours;
+}
+
+/// The estimate of noise between neighbours is that of white noise. A warning if there is none.
+void WarnOfSmoothData(const ModelInputs& inputs, double estimate, RunResult& result)
+{
+  const NeighbourVariation variation = MeasureVariation(
+    *inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data, estimate);
+  if (!variation.IsSmooth())
+  {
+    return;
+  }
+  const double unit = inputs.Units.ValueUnit;
+  std::ostringstream text;
+  text << "NoiseLevel: the data show no white noise but are smooth over about " << variation.Width
+       << " (full width at half maximum), as correlated noise is, so that its estimate, "
+       << estimate * unit << ", may be too small; without a signal the noise is "
+       << variation.Deviation * unit << " (set NoiseLevel)";
+  result.Warnings.push_back(text.str());
 }
 
 /// Of the first guess of the search for a weight: keeps data to seven digits.
@@ -142,6 +161,10 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
            << estimate.BetweenNeighbours * unit << " between neighbours and " << noise * unit
            << " farther apart, which AutomaticFidelity uses (to set another, use NoiseLevel)";
       result.Warnings.push_back(text.str());
+    }
+    else
+    {
+      WarnOfSmoothData(inputs, noise, result);
     }
   }
   if (noise == 0.0)

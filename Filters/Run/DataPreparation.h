@@ -38,8 +38,9 @@ double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel);
 
 /// The fidelity weight, in units of the numerics, at which the state after `steps` steps differs
 /// from the data by the noise (discrepancy principle). noiseLevel: in array units; 0: estimated.
-/// makeModel: the model of a fidelity weight. Warns in `result` if the noise is correlated, and if
-/// no weight leaves the noise. blur: applied to the state before it is compared with the data; may
+/// makeModel: the model of a fidelity weight. Warns in `result` if the noise is correlated, if the
+/// data are smooth between neighbours (see NeighbourVariation; not for data on cells), and if no
+/// weight leaves the noise. blur: applied to the state before it is compared with the data; may
 /// be null.
 double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,
   const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result,

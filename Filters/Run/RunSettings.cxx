@@ -138,7 +138,8 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
     automatic);
   visitor.Number({ "NoiseLevel", "values",
                    "The standard deviation of the noise for AutomaticFidelity; 0: estimated, for "
-                   "white noise." },
+                   "white noise. A warning reports correlated noise, and data that are smooth "
+                   "between neighbours, as noise is that was smoothed or resampled." },
     noiseLevel, SettingRange::NonNegative());
 }
 

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Heat.h"
 #include "RunInput.h"
 
 #include "Run/HeatSettings.h"
@@ -155,6 +156,95 @@ TEST(AutomaticWeight, KeepsMasksAndSpikesAndSaysSo)
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_NE(warnings[0].Sentence.find("finds no noise"), std::string::npos);
     EXPECT_NE(warnings[0].Sentence.find("NoiseLevel"), std::string::npos);
+  }
+}
+
+//------------------------------------------------------------------------------------------------
+namespace
+{
+
+/// White noise of deviation 1 smoothed with a Gaussian kernel of a standard deviation of `edges` mean
+/// edge lengths, times `deviation`, added to `input`.
+void AddSmoothedNoise(RunInput& input, double edges, double deviation)
+{
+  const auto mesh = std::make_shared<TriangleMesh>(input.Vertices, input.Faces);
+  const double length =
+    edges * mesh->TotalEdgeLength() / mesh->NumberOfEdges() * mesh->LengthUnit();
+  Values noise(mesh->NumberOfVertices(), 1);
+  for (Index i = 0; i < mesh->NumberOfVertices(); ++i)
+  {
+    noise(i, 0) = Gaussian(i, 17);
+  }
+  noise = Testing::Diffuse(std::make_shared<Assembler>(mesh), PointData::FromValues(noise),
+    length * length / 2.0, 8, 0.0, Testing::Scheme::SDIRK2);
+  noise.array() -= noise.mean();
+  noise *= deviation / std::sqrt(noise.squaredNorm() / static_cast<double>(noise.size()));
+  input.Data.Data += Testing::ToInput(*mesh, noise, static_cast<Index>(input.Vertices.rows()));
+}
+
+template <typename ModelSettings>
+std::vector<Warning> WarningsOf(const RunInput& input, const ModelSettings& settings)
+{
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  return run.FindWarnings(Alone);
+}
+
+/// Of data in other units, on a surface in other units.
+template <typename ModelSettings, typename ModeType>
+void ExpectWordsOnSmoothedNoise(ModeType steady)
+{
+  constexpr double deviation = 250.0;
+  RunInput input(Testing::Icosphere(4, 40.0));
+  input.Data.Data.setConstant(1000.0);
+  AddSmoothedNoise(input, 3.0, deviation);
+  ModelSettings settings;
+  settings.Mode = steady;
+  settings.AutomaticFidelity = true;
+  const std::vector<Warning> warnings = WarningsOf(input, settings);
+  ASSERT_EQ(warnings.size(), 1u);
+  const std::string& text = warnings[0].Sentence;
+  EXPECT_EQ(text.rfind("NoiseLevel: the data show no white noise", 0), 0u) << text;
+  EXPECT_NE(text.find("(set NoiseLevel)"), std::string::npos) << text;
+  const auto numberAfter = [&](const std::string& words)
+  { return std::stod(text.substr(text.find(words) + words.size())); };
+  EXPECT_NEAR(numberAfter("without a signal the noise is "), deviation, 0.001 * deviation);
+  EXPECT_LT(numberAfter("its estimate, "), 0.1 * deviation);
+  // 3 edges of 40 * 0.0747, times 2.35
+  EXPECT_NEAR(numberAfter("smooth over about "), 21.0, 4.0) << text;
+  settings.NoiseLevel = deviation;
+  for (const Warning& warning : WarningsOf(input, settings))
+  {
+    EXPECT_EQ(warning.Sentence.find("no white noise"), std::string::npos) << warning.Sentence;
+  }
+}
+
+} // namespace
+
+TEST(AutomaticWeight, OfNoiseWithoutASignalThatWasSmoothedWarnsOnceAndNamesItsDeviation)
+{
+  ExpectWordsOnSmoothedNoise<HeatSettings>(HeatMode::SteadyState);
+  ExpectWordsOnSmoothedNoise<TotalVariationSettings>(TotalVariationMode::SteadyState);
+}
+
+TEST(AutomaticWeight, OfWhiteNoiseOnASignalWarnsOfNothing)
+{
+  HeatSettings heat;
+  heat.Mode = HeatMode::SteadyState;
+  heat.AutomaticFidelity = true;
+  TotalVariationSettings tv;
+  tv.Mode = TotalVariationMode::SteadyState;
+  tv.AutomaticFidelity = true;
+  for (const double sigma : { 0.02, 0.3 })
+  {
+    RunInput input(Testing::Torus(50, 25));
+    for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+    {
+      input.Data.Data(i, 0) = 0.5 * std::sin(2.0 * input.Vertices(i, 0)) +
+        (input.Vertices(i, 1) > 0.4 ? 1.0 : 0.0) + sigma * Gaussian(static_cast<Index>(i), 3);
+    }
+    EXPECT_TRUE(WarningsOf(input, heat).empty()) << sigma;
+    EXPECT_TRUE(WarningsOf(input, tv).empty()) << sigma;
   }
 }
 

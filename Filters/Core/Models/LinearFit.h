@@ -25,6 +25,10 @@ struct FitData
   Rings MakeRings() const { return Rings(this->Operators.Pattern(), this->Range); }
 };
 
+/// The difference up to which the values of each column are equal: means of equal numbers, such as data
+/// on cells have at vertices, differ by less.
+Eigen::RowVectorXd RoundOffOf(const FitData& data);
+
 /// A linear function, in the tangent plane of a vertex, fitted to known values around it: its value at
 /// the vertex is the sum of Weights times the values at Known.
 struct LinearFit
@@ -36,8 +40,30 @@ struct LinearFit
 /// The fit to the vertices at a distance of `edges` edges that are not missing.
 LinearFit FitAround(Index vertex, int edges, Rings& rings, const FitData& data);
 
-/// 1.4826 times the median of absolute deviations: the standard deviation of Gaussian ones. Reorders
-/// them.
-double RobustDeviation(std::vector<double>& deviations);
+/// The same with a cubic polynomial fitted to the vertices at a distance of 1 and 2 edges, of which it
+/// needs 12.
+LinearFit FitCubicAround(Index vertex, Rings& rings, const FitData& data);
+
+/// Absolute deviations of columns of data.
+class RobustDeviations
+{
+public:
+  explicit RobustDeviations(Eigen::Index columns)
+    : OfColumns(static_cast<std::size_t>(columns))
+  {
+  }
+
+  void Add(Eigen::Index column, double deviation)
+  {
+    this->OfColumns[static_cast<std::size_t>(column)].push_back(deviation);
+  }
+
+  /// The standard deviation of Gaussian ones, 1.4826 times the median, as root mean square over the
+  /// columns. A column without deviations at some of `count` places is constant there. Reorders them.
+  double RootMeanSquare(double count);
+
+private:
+  std::vector<std::vector<double>> OfColumns;
+};
 
 } // namespace SurfaceDiffusion

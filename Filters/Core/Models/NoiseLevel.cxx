@@ -21,23 +21,6 @@ constexpr int FarthestRing = 8;
 constexpr double MostGrowth = 3.0;
 constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 
-/// Means of equal numbers, such as data on cells have at vertices, differ by less, relatively.
-constexpr double RoundOff = 1e-13;
-
-/// The difference up to which the values of each column are equal.
-Eigen::RowVectorXd RoundOffOf(const FitData& data)
-{
-  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(data.Given.cols());
-  for (Index i = data.Range.Begin; i < data.Range.End; ++i)
-  {
-    if (!data.IsMissing(i))
-    {
-      largest = largest.cwiseMax(data.Given.row(i).cwiseAbs());
-    }
-  }
-  return RoundOff * largest;
-}
-
 /// The estimate from the vertices at a distance of `edges` edges.
 double EstimateAt(int edges, const FitData& data)
 {
@@ -45,7 +28,7 @@ double EstimateAt(int edges, const FitData& data)
   const Index stride = 1 + data.Range.Size() / LargestSample;
   Rings rings = data.MakeRings();
   const Eigen::RowVectorXd roundOff = RoundOffOf(data);
-  std::vector<std::vector<double>> deviations(static_cast<std::size_t>(columns));
+  RobustDeviations deviations(columns);
   double count = 0.0;
   for (Index i = data.Range.Begin; i < data.Range.End; i += stride)
   {
@@ -69,19 +52,11 @@ double EstimateAt(int edges, const FitData& data)
       }
       if (varies)
       {
-        deviations[static_cast<std::size_t>(k)].push_back(
-          std::abs(residual) / std::sqrt(1.0 + weights.squaredNorm()));
+        deviations.Add(k, std::abs(residual) / std::sqrt(1.0 + weights.squaredNorm()));
       }
     }
   }
-  double variance = 0.0;
-  for (std::vector<double>& ofColumn : deviations)
-  {
-    // A column may be constant where others vary.
-    const double share = count > 0.0 ? static_cast<double>(ofColumn.size()) / count : 0.0;
-    variance += share * std::pow(RobustDeviation(ofColumn), 2) / static_cast<double>(columns);
-  }
-  return std::sqrt(variance);
+  return deviations.RootMeanSquare(count);
 }
 
 /// See FindVaryingVertices(). Per vertex of the range.

@@ -37,7 +37,8 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 /// 30 % at the end, then the signal bends and the first result is taken. The deviation is 1.4826
 /// times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the fit: robust to edges and
 /// exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf. Theory 41, 1995). Only
-/// varying vertices count, 20,000 of them at most. Root mean square over the columns; 0 if no vertex
+/// varying vertices count, 20,000 of them at most. Noise that was smoothed over more than about an edge
+/// grows as fast as a signal, so that the result is too small: see NeighbourVariation. Root mean square over the columns; 0 if no vertex
 /// has enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
