@@ -154,6 +154,28 @@ vtkDataArray* AddPointArray(
   return array;
 }
 
+/// White noise of deviation 1 smoothed with a Gaussian kernel of a standard deviation of `length`, at a
+/// place: 200 waves whose wave vectors have its spectrum.
+inline double SmoothedNoise(const double* x, double length)
+{
+  const auto random = [](int wave, int k)
+  { return std::fmod(std::abs(std::sin(12.9898 * wave + 78.233 * k + 1.0)) * 43758.5453, 1.0); };
+  const double pi = std::acos(-1.0);
+  double sum = 0.0;
+  for (int wave = 0; wave < 200; ++wave)
+  {
+    double phase = 2.0 * pi * random(wave, 0);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double gaussian = std::sqrt(-2.0 * std::log(1.0 - random(wave, 2 * axis + 1))) *
+        std::cos(2.0 * pi * random(wave, 2 * axis + 2));
+      phase += x[axis] * gaussian / (std::sqrt(2.0) * length);
+    }
+    sum += std::cos(phase);
+  }
+  return sum / 10.0;
+}
+
 /// A function that is smooth nowhere, in [-1, 1), different in each component.
 inline double Rough(vtkIdType i, int k)
 {

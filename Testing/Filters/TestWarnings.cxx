@@ -152,6 +152,43 @@ TEST(ReportedValues, AreThoseOfTheFirstBlockWhicheverWasEditedLast)
   EXPECT_EQ(after, weightOf(makeFilter()));
 }
 
+/// Noise without a signal that was smoothed over three edges, and the same with white noise.
+TEST(Warnings, OfDataWithoutWhiteNoiseAppearOnceAndNotWithANoiseLevel)
+{
+  const auto expectWarning = [](auto filter)
+  {
+    const auto sphere = Sphere(4);
+    const double length = 3.0 * 0.075;
+    AddPointArray(
+      sphere, "f", 1, [&](vtkIdType i, int) { return SmoothedNoise(sphere->GetPoint(i), length); });
+    AddPointArray(sphere, "white", 1,
+      [&](vtkIdType i, int) { return sphere->GetPoint(i)[2] + 0.1 * Rough(i, 0); });
+    filter->SetInputData(sphere);
+    filter->AutomaticFidelityOn();
+    filter->SetModeToSteadyState();
+    SetInputArray(filter, 0, "f");
+    const auto update = [&] { filter->Update(); };
+    {
+      Messages messages(filter);
+      update();
+      ASSERT_EQ(messages.Warnings.size(), 1u);
+      EXPECT_NE(
+        messages.Warnings[0].find("NoiseLevel: the data show no white noise"), std::string::npos)
+        << messages.Warnings[0];
+      EXPECT_NE(messages.Warnings[0].find("(set NoiseLevel)"), std::string::npos);
+    }
+    filter->SetResultArrayName("other");
+    EXPECT_EQ(NumberOfWarnings(filter, update), 0u) << "said before";
+    filter->SetNoiseLevel(0.3);
+    EXPECT_EQ(NumberOfWarnings(filter, update), 0u);
+    filter->SetNoiseLevel(0.0);
+    SetInputArray(filter, 0, "white");
+    EXPECT_EQ(NumberOfWarnings(filter, update), 0u);
+  };
+  expectWarning(vtkSmartPointer<vtkFVMHeatFilter>::New());
+  expectWarning(vtkSmartPointer<vtkIntrinsicTVFilter>::New());
+}
+
 /// AutomaticFidelity finds a weight for each block, from its own noise.
 TEST(ReportedValues, EachBlockHasItsFidelityWeightAsFieldData)
 {

@@ -510,6 +510,22 @@ class Warnings(unittest.TestCase):
         with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "set merge_coincident_points"):
             sd.heat(surface, np.zeros(6), time_step=1)
 
+    def test_noise_that_was_smoothed_is_not_taken_for_white_noise(self):
+        surface = sd.sphere(5)
+        white = np.random.default_rng(7).normal(size=surface.n_points)
+        smoothed = sd.heat(surface, white, fwhm=0.25)
+        smoothed /= smoothed.std()
+        for function in sd.heat, sd.intrinsic_tv:
+            with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "noise_level: the data show no white "
+                                       r"noise.*the noise is 1 \(set noise_level\)"):
+                function(surface, smoothed, automatic_fidelity=True, mode="steady_state")
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                function(surface, surface.points[:, 2] + 0.1 * white, automatic_fidelity=True,
+                         mode="steady_state")
+                function(surface, smoothed, automatic_fidelity=True, noise_level=0.1,
+                         mode="steady_state")
+
 
 class Interruption(unittest.TestCase):
     def long_run(self, **keywords):

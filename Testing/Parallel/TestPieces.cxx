@@ -256,6 +256,39 @@ TEST(Pieces, WithoutAControllerAreSeparateSurfaces)
   EXPECT_EQ(History(heat)->GetNumberOfRows(), 11);
 }
 
+TEST(Pieces, OfNoiseWithoutASignalThatWasSmoothedGiveTheWarningOfTheWholeSurfaceOnce)
+{
+  const int n = 32;
+  const auto makeHeat = [&](vtkPolyData* surface)
+  {
+    AddPointArray(surface, "f", 1,
+      [&](vtkIdType i, int) { return SmoothedNoise(surface->GetPoint(i), 3.0 / n); });
+    auto heat = MakeHeat(surface);
+    heat->AutomaticFidelityOn();
+    heat->SetModeToSteadyState();
+    return heat;
+  };
+  auto pieces = makeHeat(Mine(n));
+  Messages ofPieces(pieces);
+  pieces->Update();
+  auto whole = makeHeat(Strip(0, n, n));
+  whole->SetController(nullptr);
+  Messages ofWhole(whole);
+  whole->Update();
+  ASSERT_EQ(ofWhole.Warnings.size(), 1u);
+  ASSERT_EQ(ofPieces.Warnings.size(), Rank() == 0 ? 1u : 0u);
+  const auto words = [](const std::string& text)
+  {
+    const std::size_t begin = text.find("NoiseLevel: the data show no white noise");
+    return begin == std::string::npos ? std::string() : text.substr(begin);
+  };
+  EXPECT_NE(words(ofWhole.Warnings[0]), "") << ofWhole.Warnings[0];
+  if (Rank() == 0)
+  {
+    EXPECT_EQ(words(ofPieces.Warnings[0]), words(ofWhole.Warnings[0]));
+  }
+}
+
 TEST(Pieces, WithoutTheArrayAreOneError)
 {
   auto mine = Mine(24);
