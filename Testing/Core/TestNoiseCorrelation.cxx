@@ -273,6 +273,23 @@ TEST(NoiseCorrelation, NothingIsSaidOfFewPointsAndOfDataWithoutNoise)
       .IsSmooth());
 }
 
+TEST(NoiseCorrelation, VerticesNearOneOfVeryManyEdgesAreLeftOut)
+{
+  const Index edges = 8000;
+  std::vector<Eigen::RowVector3d> vertices(1, Eigen::RowVector3d::Zero());
+  std::vector<std::array<Index, 3>> faces;
+  for (Index i = 0; i < edges; ++i)
+  {
+    const double angle = 2.0 * Pi * i / edges;
+    vertices.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+    faces.push_back({ 0, 1 + i, 1 + (i + 1) % edges });
+  }
+  const Surface fan = MakeSurface(vertices, faces);
+  const auto assembler = MakeAssembler(fan);
+  const PointData data = PointData::FromValues(GaussianNoise(assembler->Mesh(), 1, 1));
+  EXPECT_EQ(MeasureVariation(*assembler, fan.Vertices, data, 1.0).NumberOfPairs, 0.0);
+}
+
 TEST(NoiseCorrelation, IsFoundOnScannedSurfacesAndNotInTheirWhiteNoise)
 {
   if (!HaveMeshFiles())

@@ -20,6 +20,7 @@ using PlaneCoordinates = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
 constexpr Eigen::Index TermsOfCubic = 10;
 constexpr Eigen::Index LeastValuesOfCubic = 12;
+constexpr Eigen::Index MostValuesOfCubic = 100; ///< near a vertex of very many edges there are more
 
 /// The coordinates of the offsets in their plane, of size 1; none if they do not determine one.
 PlaneCoordinates InPlane(const Eigen::Ref<const Points>& offsets)
@@ -56,7 +57,8 @@ Vector WeightsOfFit(const Eigen::Ref<const Points>& offsets)
 Vector WeightsOfCubicFit(const Eigen::Ref<const Points>& offsets)
 {
   const Eigen::Index count = offsets.rows();
-  PlaneCoordinates inPlane = count < LeastValuesOfCubic ? PlaneCoordinates() : InPlane(offsets);
+  const bool fits = count >= LeastValuesOfCubic && count <= MostValuesOfCubic;
+  PlaneCoordinates inPlane = fits ? InPlane(offsets) : PlaneCoordinates();
   if (inPlane.rows() == 0)
   {
     return Vector();

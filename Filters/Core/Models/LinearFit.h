@@ -41,7 +41,7 @@ struct LinearFit
 LinearFit FitAround(Index vertex, int edges, Rings& rings, const FitData& data);
 
 /// The same with a cubic polynomial fitted to the vertices at a distance of 1 and 2 edges, of which it
-/// needs 12.
+/// needs 12. None to more than 100.
 LinearFit FitCubicAround(Index vertex, Rings& rings, const FitData& data);
 
 /// Absolute deviations of columns of data.
