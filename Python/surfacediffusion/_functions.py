@@ -395,6 +395,7 @@ def tensor_diffusion(
     surface: SurfaceLike,
     values: ArrayLike,
     *,
+    on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
     directions: ArrayLike | None = None,
@@ -426,6 +427,7 @@ def tensor_diffusion(
     ----------
     {surface}
     {values}
+    {on_faces}
     {mask}
     {roi}
     directions : array_like, shape (n, 3) or (m, 3), optional
@@ -464,17 +466,16 @@ def tensor_diffusion(
     if not isinstance(full_output, (bool, np.bool_)):
         raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
     surface = as_surface(surface)
-    data = as_data("values", values, surface.n_points)
-    shape = np.shape(values)
+    data, on_faces = _take("values", values, surface, on_faces)
     find_result_type(data, dtype)
     mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, fidelity=fidelity,
-                  integers=has_integers(values))
+    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
+                  directions=directions, fidelity=fidelity, integers=has_integers(values))
     runner = Runner("tensor_diffusion", properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> TensorDiffusionResult:
         result = make_tensor_diffusion(run, 0, given, runner, dtype, found)
-        return replace(result, values=result.values.reshape(shape))
+        return replace(result, values=_in_shape(result.values, values))
 
     result = _run("tensor_diffusion", given, runner, make, steps, progress, full_output)
     return result if steps or full_output else result.values

@@ -72,7 +72,7 @@ def make_tensor_diffusion(
 ) -> TensorDiffusionResult:
     """The result of tensor_diffusion on one surface, with columns for components."""
     assert given.data is not None
-    output = np.empty(given.data.shape, dtype=find_result_type(given.data, dtype))
+    output = _empty(run, block, given, dtype)
     runner.call(given.write, run, block, output)
     axes = np.empty((given.surface.n_faces, 3))
     if not runner.call(run.write_axes, block, given.surface._core, axes):

@@ -135,10 +135,10 @@ def tensor_diffusion(
     fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
     full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
-    """Smooth a point array along its own edges or lines.
+    """Smooth an array along its own edges or lines.
 
     The arguments are those of heat(); the equations and all other keywords are in
-    help(surfacediffusion.tensor_diffusion). The result is the point array <array>Beltrami,
+    help(surfacediffusion.tensor_diffusion). The result is the array <array>Beltrami,
     <array>Coherent or <array>EdgeEnhanced, with the shape of the data; with diffusion_axes=True there
     is the cell array DiffusionAxes (m, 3), too.
     """

@@ -6,7 +6,8 @@ import unittest
 
 import numpy as np
 from surfacediffusion import (
-    Surface, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, sphere, turing_texture,
+    Surface, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, sphere, tensor_diffusion,
+    turing_texture,
 )
 
 
@@ -43,6 +44,28 @@ class TestFaces(unittest.TestCase):
             (self.surface.n_points,))
         two = np.stack([self.noise, -self.noise], axis=1)
         self.assertEqual(heat(self.surface, two, time_step=1).shape, two.shape)
+
+    def test_tensors_diffuse_values_of_faces(self):
+        areas = face_areas(self.surface)
+        options = {"metric": "Fixed", "number_of_time_steps": 4}
+        kept, mean = (tensor_diffusion(self.surface, self.noise, keep_face_detail=keep, **options)
+                      for keep in (True, False))
+        for result in (kept, mean):
+            self.assertEqual(result.shape, self.noise.shape)
+            np.testing.assert_allclose(areas @ result, areas @ self.noise, atol=1e-11)
+            self.assertLess(result.std(), 0.6 * self.noise.std())
+        self.assertGreater(np.abs(kept - mean).max(), 1e-3)
+        of_points = tensor_diffusion(self.surface, self.noise, result_on_faces=False, **options)
+        self.assertEqual(of_points.shape, (self.surface.n_points,))
+        for model in ("Beltrami", "CoherenceEnhancing", "EdgeEnhancing"):
+            same = tensor_diffusion(self.surface, np.stack([self.noise, -self.noise], axis=1),
+                                    model=model, number_of_time_steps=0, full_output=True)
+            np.testing.assert_array_equal(same.values, np.stack([self.noise, -self.noise], axis=1))
+        torus = quad_torus()
+        values = np.random.default_rng(2).normal(size=torus.n_points)
+        of_faces = tensor_diffusion(torus, values, on_faces=True, number_of_time_steps=1)
+        self.assertGreater(np.abs(of_faces - tensor_diffusion(
+            torus, values, number_of_time_steps=1)).max(), 0.1)
 
     def test_nothing_changes_without_a_step(self):
         same = heat(self.surface, self.noise, number_of_time_steps=0, time_step=1)

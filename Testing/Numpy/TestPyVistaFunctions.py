@@ -74,6 +74,11 @@ class Meshes(unittest.TestCase):
         self.assertEqual(lines.point_data.active_scalars_name, "fCoherent")
         self.assertEqual(lines["DiffusionAxes"].shape, (mesh.n_cells, 3))
         self.assertIn("fBeltrami", tensor_diffusion(mesh, "f", fixed="hole").array_names)
+        mesh.cell_data["of_faces"] = mesh["flow"][:, 0]
+        on_faces = tensor_diffusion(mesh, "of_faces", number_of_time_steps=2)
+        self.assertIn("of_facesBeltrami", on_faces.cell_data)
+        on_points = tensor_diffusion(mesh, "of_faces", number_of_time_steps=2, result_on_faces=False)
+        self.assertEqual(on_points.point_data["of_facesBeltrami"].shape, (mesh.n_points,))
         edges, report = mumford_shah(mesh, "f", mask="hole", full_output=True, edge_threshold=0.5)
         self.assertEqual(edges["Edges"].shape, (mesh.n_points,))
         named = mumford_shah(mesh, "f", number_of_time_steps=1, result_array_name="g")

@@ -42,7 +42,7 @@ def run(name, properties, indices, arrays):
     for array_name, index in indices.items():
         array = numpy_to_vtk(np.ascontiguousarray(arrays[array_name]), deep=True)
         array.SetName(array_name)
-        on_cells = index == 4 or (index == 2 and len(arrays[array_name]) == len(arrays["sizes"]))
+        on_cells = len(arrays[array_name]) == len(arrays["sizes"])
         data = polydata.GetCellData() if on_cells else polydata.GetPointData()
         data.AddArray(array)
         association = (vtkDataObject.FIELD_ASSOCIATION_CELLS if on_cells
