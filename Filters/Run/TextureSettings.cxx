@@ -34,11 +34,16 @@ std::vector<const char*> WordsOfKinetics()
 
 SettingRange RangeOf(const Kinetics::Parameter& parameter)
 {
-  if (parameter.Minimum == 0.0)
+  switch (parameter.Allowed)
   {
-    return SettingRange::Positive();
+    case Kinetics::Range::Positive:
+      return SettingRange::Positive();
+    case Kinetics::Range::NonNegative:
+      return SettingRange::NonNegative();
+    case Kinetics::Range::AnyFinite:
+      return SettingRange::AnyFinite();
   }
-  return std::isfinite(parameter.Minimum) ? SettingRange::NonNegative() : SettingRange::AnyFinite();
+  return SettingRange::Anything();
 }
 
 /// Relative residual that suffices in a coarse space, whose own error is much larger.

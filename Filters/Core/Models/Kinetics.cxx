@@ -165,30 +165,35 @@ Kinetics Row(const char* name, const char* formula, const char* reference,
     &Terms::SteadyState };
 }
 
-const Kinetics::Parameter None = { nullptr, 0.0, 0.0 };
-const double Any = -std::numeric_limits<double>::infinity();
+constexpr auto Positive = Kinetics::Range::Positive;
+constexpr auto NonNegative = Kinetics::Range::NonNegative;
+constexpr auto AnyFinite = Kinetics::Range::AnyFinite;
+const Kinetics::Parameter None = { nullptr, 0.0, AnyFinite };
 
 const std::array<Kinetics, NumberOfKinetics> List = {
   Row<Turing>("Turing", "F = s(gamma - u1 u2), G = s(u1 u2 - u2 - mu)",
     "A. Turing, Phil. Trans. R. Soc. B 237, 1952; G. Turk, SIGGRAPH 1991; (24)",
-    { { { "GrowthRate", 16.0, 0.0 }, { "DecayRate", 12.0, 0.0 }, None } }, true),
+    { { { "GrowthRate", 16.0, Positive }, { "DecayRate", 12.0, Positive }, None } }, true),
   Row<Schnakenberg>("Schnakenberg", "F = s(b - u1 u2^2), G = s(a - u2 + u1 u2^2)",
     "J. Schnakenberg, J. Theor. Biol. 81, 1979",
-    { { { "ActivatorSupply", 0.01, 0.0 }, { "SubstrateSupply", 1.0, 0.0 }, None } }, true),
+    { { { "ActivatorSupply", 0.01, Positive }, { "SubstrateSupply", 1.0, Positive }, None } },
+    true),
   Row<GrayScott>("GrayScott", "F = 25 s(f(1 - u1) - u1 u2^2), G = 25 s(u1 u2^2 - (f + k) u2)",
     "P. Gray, S. Scott, Chem. Eng. Sci. 38, 1983; J. Pearson, Science 261, 1993",
-    { { { "FeedRate", 0.05, 0.0 }, { "KillRate", 0.06, 0.0 }, None } }, true),
+    { { { "FeedRate", 0.05, Positive }, { "KillRate", 0.06, Positive }, None } }, true),
   Row<Brusselator>("Brusselator", "F = s(B u2 - u1 u2^2), G = s(A - (B + 1) u2 + u1 u2^2)",
     "I. Prigogine, R. Lefever, J. Chem. Phys. 48, 1968",
-    { { { "ReactantA", 2.0, 0.0 }, { "ReactantB", 4.0, 0.0 }, None } }, true),
+    { { { "ReactantA", 2.0, Positive }, { "ReactantB", 4.0, Positive }, None } }, true),
   Row<GiererMeinhardt>("GiererMeinhardt",
     "F = s nu(u2^2 - u1), G = s(u2^2/(u1 (1 + kappa u2^2)) - u2)",
     "A. Gierer, H. Meinhardt, Kybernetik 12, 1972",
-    { { { "InhibitorDecayRate", 1.05, 0.0 }, { "Saturation", 0.0, -1e-300 }, None } }, true),
+    { { { "InhibitorDecayRate", 1.05, Positive }, { "Saturation", 0.0, NonNegative }, None } },
+    true),
   Row<FitzHughNagumo>("FitzHughNagumo",
     "F = s epsilon(u2 - beta u1 - alpha), G = s(u2 - u2^3 - u1)",
     "R. FitzHugh, Biophys. J. 1, 1961; J. Nagumo et al., Proc. IRE 50, 1962",
-    { { { "RecoveryRate", 1.2, 0.0 }, { "RecoveryDamping", 0.9, 0.0 }, { "Stimulus", 0.0, Any } } },
+    { { { "RecoveryRate", 1.2, Positive }, { "RecoveryDamping", 0.9, Positive },
+      { "Stimulus", 0.0, AnyFinite } } },
     false)
 };
 

@@ -27,11 +27,19 @@ using KineticsParameters = std::array<double, 3>;
 /// One row of the list of kinetics; see Kinetics.cxx for the formulas.
 struct Kinetics
 {
+  /// The values that a parameter may have.
+  enum class Range
+  {
+    Positive,
+    NonNegative,
+    AnyFinite
+  };
+
   struct Parameter
   {
     const char* Name; ///< nullptr: not used
     double Default; ///< makes a pattern if D1/D2 is about 8
-    double Minimum; ///< values must be above it
+    Range Allowed;
   };
 
   const char* Name;
