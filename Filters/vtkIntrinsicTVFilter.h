@@ -220,7 +220,8 @@ public:
    * FidelityNorm L2. The principle errs on the smooth side: on photographs with noise of 5 to 80 %
    * its result was 1 to 3 dB from that of the best lambda, which leaves 0.88 to 0.99 of the noise
    * in the residual. Constant parts of the data, such as a background of 0, have no noise and are
-   * left out. Default: off; with BlurFWHM and FidelityWeight 3, its default, always on.
+   * left out. Default: off; with BlurFWHM and FidelityWeight 3, its default, always on;
+   * see AutomaticBlurFidelity.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 
@@ -294,8 +295,9 @@ public:
    * shrinkage-thresholding algorithm (MFISTA; A. Beck, M. Teboulle, IEEE Trans. Image Process. 18,
    * 2009). It stops when an iteration changes u by StopTolerance R, which is no bound of the error.
    * BlurFWHM needs Mode SteadyState, FidelityNorm L2 and Discretization Linear.
-   * FidelityWeight 3, the default, then stands for the weight that AutomaticFidelity finds: of
-   * blurred data a weight of 3 leaves little. Any other weight is used. A warning reports a width outside 2 to 8 mean edge lengths.
+   * FidelityWeight 3, the default, then stands for the weight that AutomaticFidelity finds, since of
+   * blurred data a weight of 3 leaves little; see AutomaticBlurFidelity. Any other weight is used. A
+   * warning reports a width outside 2 to 8 mean edge lengths.
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */
@@ -306,6 +308,12 @@ public:
    * more similar to a Gaussian. Default: 4.
    */
   SURFACEDIFFUSION_PROPERTY(BlurSteps, int);
+
+  /**
+   * On (default): with BlurFWHM, FidelityWeight 3 stands for the weight that AutomaticFidelity finds.
+   * Off: FidelityWeight is used, whatever it is. Without BlurFWHM it has no effect.
+   */
+  SURFACEDIFFUSION_SWITCH(AutomaticBlurFidelity);
 
   enum ColorModelType
   {

@@ -66,6 +66,11 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "change of an iteration in the range of the data." },
     this->StopTolerance, SettingRange::OpenUnitInterval());
   this->Blur.Visit(visitor);
+  visitor.Switch(
+    { "AutomaticBlurFidelity", "",
+      "Whether FidelityWeight 3, its default, stands with BlurFWHM for the weight that "
+      "AutomaticFidelity finds. Off: FidelityWeight is used, whatever it is." },
+    this->AutomaticBlurFidelity);
   this->Color.Visit(visitor);
 }
 

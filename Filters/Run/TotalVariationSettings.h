@@ -39,6 +39,8 @@ struct TotalVariationSettings : DataSettings
   SurfaceDiffusion::Discretization Discretization = SurfaceDiffusion::Discretization::Linear;
   double StopTolerance = 1e-4;
   BlurSettings Blur;
+  bool AutomaticBlurFidelity =
+    true; ///< with a blur, the default weight stands for one that is found
   ColorSettings Color;
 
   static constexpr double DefaultFidelityWeight = 3.0;
@@ -70,7 +72,8 @@ private:
   bool FindsFidelity() const
   {
     return this->AutomaticFidelity ||
-      (this->Blur.IsOn() && this->FidelityWeight == DefaultFidelityWeight);
+      (this->Blur.IsOn() && this->AutomaticBlurFidelity &&
+        this->FidelityWeight == DefaultFidelityWeight);
   }
   const char* FindSettingsInRange() const;
   void CheckBlur(Problems& problems) const;

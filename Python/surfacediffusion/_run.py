@@ -160,22 +160,10 @@ class Input:
         run.write_state(block, output, self.data if same else None, first, self.integers)
 
 
-def _with_given_weight(function: str, properties: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The properties with a fidelity weight that is used. With a blur, a weight of the default is one
-    that is found. For the same weight, if the caller gives it, stands the next larger number."""
-    if not properties.get("blur_fwhm") or "blur_fwhm" not in settings_of(function):
-        return properties
-    default = settings_of(function)["fidelity_weight"].default
-    weight = properties.get("fidelity_weight", default)
-    switch = properties.get("automatic_fidelity")
-    given = "fidelity_weight" in properties or switch is not None
-    if given and not switch and default > 0 and np.ndim(weight) == 0 and weight == default:
-        return {**properties, "fidelity_weight": float(np.nextafter(default, np.inf))}
-    return properties
-
-
 #: Settings that are found from the data unless they are given, and the switches of that.
 _FOUND = {
+    "intrinsic_tv": {"fidelity_weight": "automatic_blur_fidelity",
+                     "automatic_fidelity": "automatic_blur_fidelity"},
     "segment": {"means": "automatic_means", "fidelity_weight": "automatic_fidelity"},
     "mumford_shah": {"edge_threshold": "automatic_threshold", "smoothing_length": "automatic_threshold"},
 }
@@ -187,7 +175,7 @@ class Runner:
     def __init__(self, function: str, properties: Mapping[str, Any], arrays: Mapping[str, str]):
         self.function, self.arrays = function, arrays
         off = {switch: False for name, switch in _FOUND.get(function, {}).items() if name in properties}
-        self.settings = convert_all(function, _with_given_weight(function, {**off, **properties}))
+        self.settings = convert_all(function, {**off, **properties})
         interval = settings_of(function).get("output_interval")
         self.interval = self.settings.get("OutputInterval", interval.default if interval else 1)
 

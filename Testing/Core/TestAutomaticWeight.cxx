@@ -313,6 +313,22 @@ TEST(AutomaticWeight, IsTheDefaultOfTotalVariationDeblurring)
   ExpectFoundWeight<TotalVariationSettings>(TotalVariationMode::SteadyState, 0.6);
 }
 
+TEST(AutomaticWeight, CanBeTurnedOffToUseTheDefaultWeightOfTotalVariation)
+{
+  constexpr double width = 0.3;
+  const Noisy data = BlurredCap(3, width, 0.02);
+  TotalVariationSettings settings;
+  settings.Mode = TotalVariationMode::SteadyState;
+  settings.Blur.FWHM = width;
+  settings.AutomaticBlurFidelity = false;
+  SurfaceDiffusion::Run run(SerialFor());
+  const Values given = StateOf(run, { data.Input.Block() }, settings);
+  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, settings.FidelityWeight);
+  settings.AutomaticBlurFidelity = true;
+  EXPECT_GT((StateOf(run, { data.Input.Block() }, settings) - given).norm(), 0.1);
+  EXPECT_GT(run.GetBlock(0).Result.EffectiveFidelityWeight, 10.0);
+}
+
 TEST(AutomaticWeight, IsTheDefaultOfTikhonovDeblurring)
 {
   ExpectFoundWeight<HeatSettings>(HeatMode::SteadyState, 0.85);

@@ -30,6 +30,7 @@ TEST(IntrinsicTVFilter, HasTheDocumentedDefaults)
   EXPECT_EQ(filter->GetNoiseLevel(), 0.0);
   EXPECT_EQ(filter->GetBlurFWHM(), 0.0);
   EXPECT_EQ(filter->GetBlurSteps(), 4);
+  EXPECT_TRUE(filter->GetAutomaticBlurFidelity());
   EXPECT_EQ(filter->GetDiscretization(), Filter::DISCRETIZATION_LINEAR);
   EXPECT_EQ(filter->GetStopTolerance(), 1e-4);
   EXPECT_EQ(filter->GetTolerance(), 1e-3);

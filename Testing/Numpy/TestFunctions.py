@@ -761,8 +761,10 @@ class Restoration(unittest.TestCase):
         self.assertGreater(found, 10.0)
         self.assertEqual(weight(automatic_fidelity=True), found)
         for given in (3.0, 20.0):
-            self.assertAlmostEqual(weight(fidelity_weight=given), given, delta=1e-12)
-        self.assertAlmostEqual(weight(automatic_fidelity=False), 3.0, delta=1e-12)
+            self.assertEqual(weight(fidelity_weight=given), given)
+        self.assertEqual(weight(automatic_fidelity=False), 3.0)
+        self.assertEqual(weight(automatic_blur_fidelity=False), 3.0)
+        self.assertEqual(weight(fidelity_weight=3, automatic_blur_fidelity=True), found)
 
 
 if __name__ == "__main__":

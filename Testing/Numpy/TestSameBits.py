@@ -67,6 +67,7 @@ class SameBits(unittest.TestCase):
         x, y, z = self.points.T
         self.values = np.sign(x) + 0.2 * self.random.normal(size=n)
         self.columns = self.random.normal(size=(n, 3))
+        self.of_faces = self.random.normal(size=(m, 2))
         self.mask = ((x - 0.5) ** 2 + y**2 < 0.05).astype(np.uint8)
         self.around = np.stack([-y, x, 0 * z], axis=1)
         self.normals = self.points + 0.1 * self.random.normal(size=(n, 3))
@@ -94,6 +95,8 @@ class SameBits(unittest.TestCase):
             ("intrinsic_tv", {"values": self.values}, {}),
             ("intrinsic_tv", {"values": colours, "mask": self.mask}, {"Mode": "SteadyState"}),
             ("intrinsic_tv", {"values": self.values}, {"Mode": "SteadyState", "BlurFWHM": 0.2}),
+            ("intrinsic_tv", {"values": self.values},
+             {"Mode": "SteadyState", "BlurFWHM": 0.2, "AutomaticBlurFidelity": False}),
             ("heat", {"values": self.columns},
              {"Mode": "SteadyState", "BlurFWHM": 0.2, "FidelityWeight": 9.0, "BlurSteps": 3}),
             ("intrinsic_tv", {"values": self.values},
@@ -113,6 +116,11 @@ class SameBits(unittest.TestCase):
              {"Model": "CoherenceEnhancing", "AcrossDiffusivity": 0.5, "NumberOfTimeSteps": 2}),
             ("tensor_diffusion", {"values": colours, "fixed": self.mask},
              {"Model": "EdgeEnhancing", "FidelityWeight": 0.1, "DiffusionAxes": True}),
+            ("tensor_diffusion", {"values": self.of_faces}, {"NumberOfTimeSteps": 3}),
+            ("tensor_diffusion", {"values": self.of_faces.astype(np.float32), "mask": self.mask},
+             {"Model": "CoherenceEnhancing", "DiffusionAxes": True, "NumberOfTimeSteps": 2}),
+            ("tensor_diffusion", {"values": self.of_faces},
+             {"ResultOnCells": False, "NumberOfTimeSteps": 2}),
             ("segment", {"values": self.values, "mask": self.mask}, {}),
             ("segment", {"values": self.columns, "fidelity": 1.0 + self.points[:, 2] ** 2},
              {"NumberOfRegions": 3, "AutomaticFidelity": False, "FidelityWeight": 2.0}),

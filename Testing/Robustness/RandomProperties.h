@@ -258,6 +258,7 @@ inline List OfTotalVariation()
     RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, BlurFWHM, dice.Flip(3) ? Positive(dice) : 0.0),
     RANDOM_PROPERTY(F, BlurSteps, dice.Flip(24) ? 1 : 2 + dice.Below(5)),
+    RANDOM_PROPERTY(F, AutomaticBlurFidelity, dice.Flip()),
     RANDOM_PROPERTY(F, Discretization, dice.Flip(3)),
     RANDOM_PROPERTY(F, StopTolerance, dice.Flip(24) ? 1.0 : dice.Logarithmic(1e-6, 0.5)),
     RANDOM_PROPERTY(F, ColorModel, dice.Flip() ? 0 : Choice(dice, 3)),

@@ -145,7 +145,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->SetBlurFWHM(0.2);
     });
   needed["vtkIntrinsicTVFilter BlurFWHM"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
-  needed["vtkIntrinsicTVFilter BlurSteps"] = With<TV>(
+  needed["vtkIntrinsicTVFilter BlurSteps"] = needed["AutomaticBlurFidelity"] = With<TV>(
     [](TV* f)
     {
       f->SetModeToSteadyState();
