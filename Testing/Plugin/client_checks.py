@@ -5,6 +5,7 @@ and each prints one line that the test requires."""
 
 import os
 
+import numpy as np
 from paraview import make_name_valid, smtrace
 from paraview.simple import (
     AssignViewToLayout, ColorBy, CreateView, Delete, FindSource, GetActiveSource, GetActiveView,
@@ -12,25 +13,40 @@ from paraview.simple import (
     GetViews, Hide, SetActiveSource, SetActiveView, Show,
 )
 from plugin_testing import (
-    PICTURE_TOLERANCE, assert_looks_like, assert_looks_unlike, picture_error,
+    PICTURE_TOLERANCE, assert_looks_like, assert_looks_unlike, differences, filter_names,
+    picture_error, results,
 )
 
-# The array that colours the test's picture of a filter, and the array that the first Apply selects.
-COLORS = {
-    "FVMHeatFilter": (("POINTS", "fDiffused"), ("POINTS", "fDiffused")),
-    "IntrinsicTVFilter": (("POINTS", "fTV"), ("POINTS", "fTV")),
-    "HarmonicMapFilter": (("POINTS", "NormalsHarmonic"), ("POINTS", "f")),  # seen in the shading
-    "TuringTextureFilter": (("POINTS", "Texture"), ("POINTS", "u1")),
-    "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), ("POINTS", "f")),
+# The array that colours the test's picture of a filter, the root mean square of its first component,
+# and the array that the first Apply selects.
+RESULTS = {
+    "FVMHeatFilter": (("POINTS", "fDiffused"), 0.0592719, ("POINTS", "fDiffused")),
+    "IntrinsicTVFilter": (("POINTS", "fTV"), 0.0879597, ("POINTS", "fTV")),
+    "HarmonicMapFilter": (("POINTS", "NormalsHarmonic"), 0.528583, ("POINTS", "f")),  # seen in the shading
+    "MumfordShahFilter": (("POINTS", "fMumfordShah"), 0.620381, ("POINTS", "fMumfordShah")),
+    "SurfaceDenoisingFilter": (("POINTS", "Displacement"), 0.00233302, ("POINTS", "f")),
+    "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
+    "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
+    "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
+    "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),
 }
+TOLERANCE = 1e-4  # of these numbers, relative
 
-# A change of each filter that its picture must show: one step fewer, or a rate that is slightly off.
+# A change of each filter that its picture and its number must show: one step fewer, or a value that
+# is slightly off.
 SLIPS = {
     "FVMHeatFilter": lambda heat: {"NumberOfTimeSteps": heat.NumberOfTimeSteps - 1},
     "IntrinsicTVFilter": lambda tv: {"FidelityWeight": 1.2 * tv.FidelityWeight},
     "HarmonicMapFilter": lambda harmonic: {"NumberOfTimeSteps": harmonic.NumberOfTimeSteps - 1},
-    "TuringTextureFilter": lambda turing: {"DiffusionRate2": 1.02 * turing.DiffusionRate2},
+    "MumfordShahFilter": lambda edges: {"EdgeWidth": 1.2 * edges.EdgeWidth},
+    "SurfaceDenoisingFilter": lambda mesh: {
+        "NoiseLevel": 1.2 * mesh.GetPropertyValue("EffectiveNoiseLevel")},
     "SurfaceDirectionFieldFilter": lambda field: {"Angle": field.Angle + 3.0},
+    "SurfaceSegmentationFilter": lambda regions: {
+        "AutomaticFidelity": 0,
+        "FidelityWeight": 0.5 * regions.GetPropertyValue("EffectiveFidelityWeight")},
+    "TensorDiffusionFilter": lambda flow: {"NumberOfTimeSteps": flow.NumberOfTimeSteps - 1},
+    "TuringTextureFilter": lambda turing: {"DiffusionRate2": 1.02 * turing.DiffusionRate2},
 }
 
 
@@ -50,7 +66,7 @@ def render_view():
 def show_result():
     """Colours the picture of the active source by its result."""
     source, view = GetActiveSource(), render_view()
-    array, _ = COLORS[name_of(source)]
+    array, _, _ = RESULTS[name_of(source)]
     display = GetDisplayProperties(source, view)
     display.SetScalarBarVisibility(view, False)
     ColorBy(display, array)
@@ -69,32 +85,65 @@ def looks_like(baseline):
     return picture_error(show_result(), baseline) <= PICTURE_TOLERANCE
 
 
-def check_slip(view, baseline, slip):
-    """Checks that the picture of the active source would show this change of its properties."""
+def has_number(source):
+    """Whether the root mean square of a filter's result is that of its first Apply."""
+    array, expected, _ = RESULTS[name_of(source)]
+    numbers = results(source)[(0,) + array].astype(float)
+    number = np.sqrt(np.mean(numbers.reshape(len(numbers), -1)[:, 0] ** 2))
+    say("%s: %s %.9g" % (name_of(source), array[1], number))
+    return abs(number - expected) <= TOLERANCE * expected
+
+
+def check_slip(view, baseline, slip, number=False):
+    """Checks that the picture of the active source would show this change of its properties, and
+    so would its number."""
     source = GetActiveSource()
     correct = {name: source.GetPropertyValue(name) for name in slip}
     for name, value in slip.items():
         source.SetPropertyWithName(name, value)
     assert_looks_unlike(view, baseline)
+    assert not (number and has_number(source)), "%s does not change the number" % slip
     for name, value in correct.items():
         source.SetPropertyWithName(name, value)
 
 
+def hide(source):
+    """Hides all outputs of a source."""
+    for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+        Hide(source[port], render_view())
+
+
 def check_first_apply():
-    source, view = GetActiveSource(), render_view()
+    """Checks the result of the active source, which has been applied with its default settings."""
+    source, view, data = GetActiveSource(), render_view(), FindSource("Data")
     name = name_of(source)
     display = GetDisplayProperties(source, view)
     assert display.Visibility
-    assert tuple(display.ColorArrayName) == COLORS[name][1], display.ColorArrayName
+    assert tuple(display.ColorArrayName) == RESULTS[name][2], display.ColorArrayName
     assert len(GetViews()) == 1  # the history does not open by default
+    Hide(data, view)
+    assert has_number(source), name
     check_picture("Client" + name)
-    check_slip(view, "Client" + name, SLIPS[name](source))
-    Hide(source, view)
+    source.UpdatePropertyInformation()
+    check_slip(view, "Client" + name, SLIPS[name](source), number=True)
+    hide(source)
     SetActiveView(view)
-    data = FindSource("Data")
     Show(data, view)
     SetActiveSource(data)
     say("as expected: " + name)
+
+
+def applied_filters():
+    """The filters of the scene by name; it must have all that the plugin has."""
+    found = {name_of(source): source for source in GetSources().values()}
+    missing = set(filter_names()) - set(found)
+    assert not missing, "not applied: %s" % missing
+    return {name: found[name] for name in filter_names()}
+
+
+def check_every_filter():
+    """Checks that every filter of the plugin has been applied."""
+    say("as expected: %d filters" % len(applied_filters()))
 
 
 def check_time(time, end):
@@ -120,17 +169,30 @@ def start_recording():
 
 
 def check_recording():
-    """After the filter is deleted, the trace creates it again with the same picture."""
+    """After the filters are deleted, the trace creates them again with the same numbers, and the
+    same picture of the first one."""
     trace = smtrace.stop_trace()
-    name = make_name_valid(GetActiveSource().SMProxy.GetXMLLabel())
-    assert name + "(" in trace and "NumberOfTimeSteps = 10" not in trace, trace
-    Delete(GetActiveSource())
-    assert FindSource(name + "1") is None
+    assert "NumberOfTimeSteps = " not in trace, trace  # a default
+    expected = {}
+    for name, source in applied_filters().items():
+        label = make_name_valid(source.SMProxy.GetXMLLabel())
+        assert label + "(" in trace, trace
+        assert has_number(source), name
+        expected[name] = label + "1", results(source)
+        Delete(source)
+        assert FindSource(label + "1") is None
+    del source  # the last one keeps its proxy
     exec(compile(trace, "trace", "exec"), {"__name__": "trace"})
-    SetActiveSource(FindSource(name + "1"))
-    assert name_of(GetActiveSource()) == "FVMHeatFilter"
+    for name, (label, numbers) in expected.items():
+        source = FindSource(label)
+        assert name_of(source) == name
+        wrong = differences(results(source), numbers)
+        assert not wrong, "%s differs: %s" % (name, wrong)
+        if name != "FVMHeatFilter":
+            hide(source)
+    SetActiveSource(FindSource(expected["FVMHeatFilter"][0]))
     check_steps(10, end=True)
-    say("as expected: trace")
+    say("as expected: trace of %d filters" % len(expected))
 
 
 def open_chart():

@@ -9,10 +9,12 @@ import os
 import random
 import xml.etree.ElementTree
 
+import numpy as np
 from paraview import servermanager
-from paraview.simple import SaveScreenshot, XMLPolyDataReader
+from paraview.simple import Calculator, SaveScreenshot, XMLPolyDataReader
 from paraview.vtk import vtkDoubleArray, vtkStringArray, vtkUnsignedCharArray
 from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_STRING
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -101,6 +103,54 @@ def values(source, name, port=0):
     if array is None:
         return None
     return [array.GetComponent(i, 0) for i in range(array.GetNumberOfTuples())]
+
+
+def outputs(source):
+    """All numbers of the outputs of a source: coordinates and arrays, by port, place and name. The
+    seconds in a history are left out, since they differ between runs."""
+    found = {}
+    for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+        data = servermanager.Fetch(source, idx=port)
+        if data.IsA("vtkPointSet") and data.GetPoints():
+            found[port, "POINTS", "coordinates"] = vtk_to_numpy(data.GetPoints().GetData()).copy()
+        for place, kind in (
+            ("POINTS", vtkDataObject.POINT), ("CELLS", vtkDataObject.CELL), ("ROWS", vtkDataObject.ROW),
+        ):
+            attributes = data.GetAttributes(kind)
+            for i in range(attributes.GetNumberOfArrays() if attributes else 0):
+                array = attributes.GetArray(i)  # None for texts
+                if array and (place, array.GetName()) != ("ROWS", "Seconds"):
+                    found[port, place, array.GetName()] = vtk_to_numpy(array).copy()
+    return found
+
+
+def results(source):
+    """What a filter has changed or added: those of its outputs that its input does not have."""
+    before = outputs(source.Input)
+    found = {
+        key: numbers for key, numbers in outputs(source).items()
+        if key not in before or not np.array_equal(before[key], numbers, equal_nan=True)
+    }
+    assert any(port == 0 for port, _, _ in found), "no result of %s" % source.SMProxy.GetXMLName()
+    return found
+
+
+def differences(found, expected):
+    """The names of the numbers that differ between two dictionaries from outputs() or results()."""
+    return [
+        key for key in sorted(set(found) | set(expected))
+        if key not in found or key not in expected
+        or not np.array_equal(found[key], expected[key], equal_nan=True)
+    ]
+
+
+NOISE = "sin(1e4*coordsX + 2.3e4*coordsY + 3.7e4*coordsZ)"
+
+
+def noisy(source):
+    """The source with noise on its points, and with two regions as noisy data f."""
+    rough = Calculator(source, Function="coords*(1 + 0.02*%s)" % NOISE, CoordinateResults=1)
+    return Calculator(rough, Function="if(coordsX*coordsZ > 0, 1, 0) + 0.5*%s" % NOISE, ResultArrayName="f")
 
 
 def menu(source, name):
