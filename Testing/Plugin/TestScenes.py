@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scene with every filter is saved and loaded again, and the pictures are equal in every pixel.
-Each part runs in a separate process, as for a user who returns the next day."""
+"""A scene with every filter is saved and loaded again, and the pictures are equal in every pixel, the
+results in every bit. Each part runs in a separate process, as for a user who returns the next day."""
 
 import os
 import subprocess
