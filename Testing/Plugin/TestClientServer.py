@@ -18,7 +18,7 @@ PLUGIN = os.path.join(os.environ["PV_PLUGIN_PATH"], "SurfaceDiffusion.so")
 def every_result():
     """What each filter adds to a sphere, by default, and the heat filter at a time, from the process
     in which they run now."""
-    data = noisy(Clean(Sphere(ThetaResolution=16, PhiResolution=16)))
+    data = noisy(Clean(Sphere(ThetaResolution=64, PhiResolution=64)))
     found = {name: results(getattr(simple, name)(data)) for name in filter_names()}
     heat = FVMHeatFilter(data, GenerateTimeSteps=1)
     heat.UpdatePipeline(4.0)
@@ -51,7 +51,7 @@ class TestClientServer(unittest.TestCase):
             if match)
         self.assertIsNotNone(Connect("localhost", port))
         self.addCleanup(Disconnect)
-        LoadPlugin(PLUGIN, remote=True, ns=globals())
+        LoadPlugin(PLUGIN, remote=True, ns=vars(simple))
         there = every_result()
         for name, expected in here.items():
             self.assertEqual(differences(there[name], expected), [], name)

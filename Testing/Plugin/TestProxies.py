@@ -294,6 +294,16 @@ class TestProxies(unittest.TestCase):
             ]
             self.assertEqual(sorted(grouped), sorted(shown), name)
 
+    def test_groups_are_in_the_same_order_in_every_panel(self):
+        """The panel shows a group where its first property is defined."""
+        for name, proxy, _ in proxies():
+            groups = {}
+            for i in range(proxy.SMProxy.GetNumberOfPropertyGroups()):
+                group = proxy.SMProxy.GetPropertyGroup(i)
+                for k in range(group.GetNumberOfProperties()):
+                    groups[group.GetProperty(k).GetXMLName()] = group.GetXMLLabel()
+            found = list(dict.fromkeys(groups[key] for key in offered(proxy)))
+            self.assertEqual(found, [group for group in GROUPS if group in found], name)
 
     def test_the_properties_that_decide_come_first(self):
         """Among the model's properties that the panel shows, those of the class precede those that

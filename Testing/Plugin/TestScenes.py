@@ -9,45 +9,56 @@ import sys
 import tempfile
 import unittest
 
-from paraview import smstate
+import numpy as np
+from paraview import simple, smstate
 from paraview.simple import (
-    ColorBy, FVMHeatFilter, GetActiveCamera, GetActiveViewOrCreate, GetAnimationScene,
-    GetColorTransferFunction, HarmonicMapFilter, IntrinsicTVFilter, LoadState, Render, ResetCamera,
-    SaveScreenshot, SaveState, Show, SurfaceDirectionFieldFilter, TuringTextureFilter,
-    XMLPolyDataReader,
+    ColorBy, FindSource, GetActiveViewOrCreate, GetAnimationScene, GetColorTransferFunction,
+    LoadState, Render, ResetCamera, SaveScreenshot, SaveState, Show, XMLPolyDataReader,
 )
-from plugin_testing import write_sphere
+from plugin_testing import differences, filter_names, results, write_sphere
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-SIZE = [400, 100]
+# Properties that a state must keep, of some filters
+SETTINGS = {
+    "FVMHeatFilter": dict(GenerateTimeSteps=1),
+    "HarmonicMapFilter": dict(InputArray=["POINTS", "east"], LineField=1),
+    "IntrinsicTVFilter": dict(MaskArray=["POINTS", "hole"]),
+    "MumfordShahFilter": dict(AutomaticThreshold=0, EdgeThreshold=0.5),
+    "SurfaceDirectionFieldFilter": dict(Method="Smooth"),
+    "SurfaceSegmentationFilter": dict(NumberOfRegions=3),
+    "TensorDiffusionFilter": dict(NumberOfTimeSteps=4),
+    "TuringTextureFilter": dict(
+        NumberOfTimeSteps=80, DirectionArray=["CELLS", "Direction"], DiffusionRate2=5.2,
+        DiffusionRateAcross2=2.6),
+}
+INPUTS = {"TuringTextureFilter": "SurfaceDirectionFieldFilter"}  # of the others: the sphere
+NAMES = filter_names()
+SIZE = [100 * len(NAMES), 100]
 TIMES = (0, 4)
 
 
 def make(folder):
     """Saves a scene with the results of the filters, both kinds of state, and the pictures."""
     path = os.path.join(folder, "sphere.vtp")
-    write_sphere(path)
+    write_sphere(path, roughness=0.02)
     sphere = XMLPolyDataReader(FileName=[path])
-    chained = TuringTextureFilter(
-        SurfaceDirectionFieldFilter(sphere, Method="Smooth"), NumberOfTimeSteps=80,
-        DirectionArray=["CELLS", "Direction"], DiffusionRate2=5.2, DiffusionRateAcross2=2.6)
-    results = (
-        (FVMHeatFilter(sphere, GenerateTimeSteps=1), "noisyDiffused"),
-        (IntrinsicTVFilter(sphere, MaskArray=["POINTS", "hole"]), "noisyTV"),
-        (HarmonicMapFilter(sphere, InputArray=["POINTS", "east"], LineField=1), "eastHarmonic"),
-        (chained, "Texture"),
-    )
     view = GetActiveViewOrCreate("RenderView")
     view.ViewSize = SIZE
     view.OrientationAxesVisibility = 0
-    for i, (source, array) in enumerate(results):
+    view.CameraParallelProjection = 1
+    for i, name in enumerate(NAMES):
+        source = getattr(simple, name)(
+            FindSource(INPUTS[name]) if name in INPUTS else sphere, registrationName=name,
+            **SETTINGS.get(name, {}))
+        place, array = next(
+            key[1:] for key in results(source) if key[0] == 0 and key[2] != "coordinates")
         display = Show(source, view)
         display.Position = (2.2 * i, 0.0, 0.0)
-        ColorBy(display, ("POINTS", array))
+        ColorBy(display, (place, array))
         display.LookupTable = GetColorTransferFunction(array)
     ResetCamera(view)
-    GetActiveCamera().Dolly(2.4)
+    view.CameraParallelScale /= len(NAMES)
     Render(view)
     SaveState(os.path.join(folder, "scene.pvsm"))
     with open(os.path.join(folder, "scene.py"), "w") as script:
@@ -74,6 +85,11 @@ def draw(folder, name):
         SaveScreenshot(
             os.path.join(folder, "%s%d.png" % (name, time)), GetActiveViewOrCreate("RenderView"),
             ImageResolution=SIZE)
+    for each in NAMES:
+        source = FindSource(each)
+        source.UpdatePipeline(TIMES[-1])
+        found = {"%d %s %s" % key: numbers for key, numbers in results(source).items()}
+        np.savez(os.path.join(folder, "%s_%s.npz" % (name, each)), **found)
 
 
 class TestScenes(unittest.TestCase):
@@ -111,6 +127,11 @@ class TestScenes(unittest.TestCase):
         self.run_alone(part)
         for time in TIMES:
             self.assertEqual(self.differences(("made", time), (part, time)), 0)
+        for name in NAMES:
+            found, expected = (
+                dict(np.load(os.path.join(self.folder, "%s_%s.npz" % (each, name))))
+                for each in (part, "made"))
+            self.assertEqual(differences(found, expected), [], name)
 
 
 if __name__ == "__main__":

@@ -47,9 +47,9 @@ def add_array(attributes, name, values, array=None):
     return array
 
 
-def write_sphere(path, centre=(0.0, 0.0, 0.0)):
+def write_sphere(path, centre=(0.0, 0.0, 0.0), roughness=0.0):
     """A sphere of radius 1 with arrays, among them the smooth `clean` and `noisy`, its noisy
-    copy."""
+    copy. Its points are moved along the normals by at most the roughness."""
     source = vtkSphereSource()
     source.SetRadius(1.0)
     source.SetThetaResolution(64)
@@ -78,6 +78,9 @@ def write_sphere(path, centre=(0.0, 0.0, 0.0)):
     for _ in points:
         names.InsertNextValue("point")
     data.AddArray(names)
+    for i, point in enumerate(points):
+        radius = 1.0 + roughness * noise.uniform(-1.0, 1.0)
+        sphere.GetPoints().SetPoint(i, *(c + radius * x for x, c in zip(point, centre)))
     add_array(sphere.GetCellData(), "up", [(0.0, 0.0, 1.0)] * sphere.GetNumberOfCells())
     add_array(sphere.GetCellData(), "odd", [c % 2 for c in range(sphere.GetNumberOfCells())])
     writer = vtkXMLPolyDataWriter()
@@ -106,12 +109,13 @@ def values(source, name, port=0):
 
 
 def outputs(source):
-    """All numbers of the outputs of a source: coordinates and arrays, by port, place and name. The
-    seconds in a history are left out, since they differ between runs."""
+    """All numbers of the outputs of a source: coordinates and arrays, by port, place and name. Left
+    out are the seconds in a history, which differ between runs, and arrays without values, which
+    servers do not send."""
     found = {}
     for port in range(source.SMProxy.GetNumberOfOutputPorts()):
         data = servermanager.Fetch(source, idx=port)
-        if data.IsA("vtkPointSet") and data.GetPoints():
+        if data.IsA("vtkPointSet") and data.GetNumberOfPoints():
             found[port, "POINTS", "coordinates"] = vtk_to_numpy(data.GetPoints().GetData()).copy()
         for place, kind in (
             ("POINTS", vtkDataObject.POINT), ("CELLS", vtkDataObject.CELL), ("ROWS", vtkDataObject.ROW),
@@ -119,7 +123,8 @@ def outputs(source):
             attributes = data.GetAttributes(kind)
             for i in range(attributes.GetNumberOfArrays() if attributes else 0):
                 array = attributes.GetArray(i)  # None for texts
-                if array and (place, array.GetName()) != ("ROWS", "Seconds"):
+                timing = array and (place, array.GetName()) == ("ROWS", "Seconds")
+                if array and array.GetNumberOfTuples() and not timing:
                     found[port, place, array.GetName()] = vtk_to_numpy(array).copy()
     return found
 
