@@ -155,7 +155,8 @@ NOISE = "sin(1e4*coordsX + 2.3e4*coordsY + 3.7e4*coordsZ)"
 def noisy(source):
     """The source with noise on its points, and with two regions as noisy data f."""
     rough = Calculator(source, Function="coords*(1 + 0.02*%s)" % NOISE, CoordinateResults=1)
-    return Calculator(rough, Function="if(coordsX*coordsZ > 0, 1, 0) + 0.5*%s" % NOISE, ResultArrayName="f")
+    regions = "if(coordsX*coordsZ > 0, 1, 0) + 0.5*%s" % NOISE
+    return Calculator(rough, Function=regions, ResultArrayName="f")
 
 
 def menu(source, name):
