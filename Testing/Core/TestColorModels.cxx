@@ -654,6 +654,21 @@ TEST(OpponentColors, WeightedJointMinimumIsCertifiedAndTheLimitOfTimeSteps)
   EXPECT_NEAR(energy, steady->Energy(), 0.01 * steady->Energy());
 }
 
+TEST(OpponentColors, FixedColoursStayToTheLastBit)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const TriangleMesh& mesh = assembler->Mesh();
+  PointData data = PointData::FromValues(Noise(mesh, 3));
+  data.Fixed.head(50) = true;
+  const Values start = data.Start;
+  OpponentColors model(std::move(data),
+    [&](PointData opponents)
+    { return MakeExact(assembler, std::move(opponents), ExactSettings(mesh, 0.05)); });
+  model.Advance(ProgressMonitor());
+  EXPECT_EQ(model.State().topRows(50), start.topRows(50));
+  EXPECT_GT((model.State() - start).cwiseAbs().maxCoeff(), 0.1);
+}
+
 TEST(OpponentColors, KeepTheTotalsOfColours)
 {
   const Surface s = Icosphere(3);

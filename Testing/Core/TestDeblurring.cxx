@@ -298,6 +298,27 @@ TEST(TotalVariationDeblurring, GainsThreeDecibelsOnTrueHeatFlowWithNoise)
   EXPECT_LT(s.EdgeWidth(model->State()), 0.4 * before);
 }
 
+/// The residual is a mean over the channels, so that they stop where one of them alone does.
+TEST(TotalVariationDeblurring, EqualChannelsHaveTheResidualOfOne)
+{
+  const BlurredSphere s(3);
+  const Values f = s.Blur(s.Cap()) + 0.1 * Noise(s.Mesh);
+  const auto residualOf = [&](int channels)
+  {
+    TotalVariationDeblurring::Settings settings;
+    settings.Fidelity = 10.0 / MeanEdge(s.Mesh);
+    settings.StopTolerance = 1e-6;
+    settings.MaximumNumberOfIterations = 4;
+    settings.Regularization.Coupling = ChannelCoupling::PerChannel;
+    TotalVariationDeblurring model(s.Operators, TangentVectors(),
+      PointData::FromValues(f.replicate(1, channels)), settings, s.MakeBlur());
+    return model.Advance(ProgressMonitor()).Residual;
+  };
+  const double one = residualOf(1);
+  EXPECT_GT(one, 1e-5);
+  EXPECT_NEAR(residualOf(4), one, 1e-6 * one);
+}
+
 TEST(TotalVariationDeblurring, EnergyNeverRises)
 {
   const BlurredSphere s(3);

@@ -177,6 +177,18 @@ TEST(HarmonicMap, JacobiAloneTellsThatItDidNotConverge)
   EXPECT_THROW(map->Advance(ProgressMonitor()), NotConverged);
 }
 
+/// Multigrid with the aggregates of the surface and with its own, Jacobi, and the factor.
+TEST(HarmonicMap, IterationsOfAllMethodsThatWereTriedAreReported)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const TriangleMesh& mesh = assembler->Mesh();
+  auto settings = MapSettings(mesh, 1.0, 10.0);
+  settings.Limits = { 1e-15, 2 };
+  settings.Method = HarmonicMap::Preconditioner::Multigrid;
+  const auto map = MakeMap(assembler, PointData::FromValues(RandomUnitVectors(mesh, 3)), settings);
+  EXPECT_GE(map->Advance(ProgressMonitor()).Iterations, 7);
+}
+
 // An unfinished solution is a step downhill too: the proof does not need the solver's tolerance.
 TEST(HarmonicMap, EnergyFallsWithUnfinishedSolutions)
 {

@@ -81,6 +81,24 @@ Eigen::MatrixXd DenseStiffness(const TriangleMesh& mesh, const Surface& s, const
 
 } // namespace
 
+TEST(NonlinearDiffusion, EnergyWithoutDirectionsIsThatOfTheGeometricMean)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(Noise(mesh));
+  NonlinearDiffusion::Settings settings = LaggedSettings(mesh, 0.01);
+  const auto energyOf = [&](double along, double across)
+  {
+    settings.AlongDiffusivity = along;
+    settings.AcrossDiffusivity = across;
+    NonlinearDiffusion model(assembler, TangentVectors::Zero(mesh.NumberOfTriangles(), 2), data,
+      settings, MakeCholeskySolver());
+    return model.Energy();
+  };
+  EXPECT_NEAR(energyOf(4.0, 1.0), energyOf(2.0, 2.0), 1e-12 * energyOf(2.0, 2.0));
+  EXPECT_NEAR(energyOf(1.0, 9.0), energyOf(3.0, 3.0), 1e-12 * energyOf(3.0, 3.0));
+}
+
 TEST(NonlinearDiffusion, StepSolvesEquation11WithFidelityAndMask)
 {
   const Surface s = Icosphere(2);

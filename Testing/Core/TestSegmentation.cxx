@@ -589,6 +589,65 @@ TEST(Segmentation, FidelityOfZeroIsAMissingValueAndOfTwoTwiceLambda)
   EXPECT_NE(solve(1.0, 1.0, 0.6, false), missing);
 }
 
+namespace
+{
+
+/// Two caps around 0 and 10, each with two values, the rarer of which counts nine times.
+PointData UnevenlyWeighted(const Domain& sphere)
+{
+  PointData data = PointData::FromValues(Values(sphere.Mesh.NumberOfVertices(), 1));
+  data.FidelityFactors.resize(sphere.Mesh.NumberOfVertices());
+  for (Index i = 0; i < sphere.Mesh.NumberOfVertices(); ++i)
+  {
+    const Index id = sphere.Mesh.InputVertex()[i];
+    const bool counts = id % 4 == 0;
+    data.Given(i, 0) = (sphere.Shape.Vertices(id, 2) > 0.2 ? 10.0 : 0.0) + (counts ? 1.0 : 0.0);
+    data.FidelityFactors[i] = counts ? 9.0 : 1.0;
+  }
+  data.Start = data.Given;
+  return data;
+}
+
+/// sum A w u f / sum A w u
+double WeightedMean(const Domain& sphere, const PointData& data, const Vector& u)
+{
+  const Vector weights =
+    sphere.Mesh.ControlAreas().cwiseProduct(data.FidelityFactors).cwiseProduct(u);
+  return weights.dot(data.Given.col(0)) / weights.sum();
+}
+
+} // namespace
+
+TEST(Segmentation, StartsFromMeansThatAreWeightedByFidelityFactors)
+{
+  const Domain sphere(Rotated(Icosphere(3)));
+  const PointData data = UnevenlyWeighted(sphere);
+  const Values means = FindRegionMeans(sphere.Mesh, data, 2, {}, 0, Ids(sphere.Mesh));
+  const Vector upper = (data.Given.col(0).array() > 5.0).cast<double>();
+  EXPECT_NEAR(means(0, 0), WeightedMean(sphere, data, 1.0 - upper.array()), 1e-9);
+  EXPECT_NEAR(means(1, 0), WeightedMean(sphere, data, upper), 1e-9);
+}
+
+TEST(Segmentation, FindsMeansThatAreWeightedByFidelityFactors)
+{
+  const Domain sphere(Rotated(Icosphere(3)));
+  Segmentation::Input input;
+  input.Data = UnevenlyWeighted(sphere);
+  input.Means = Eigen::Vector2d(-1.0, 9.0);
+  Segmentation::Settings settings;
+  settings.UpdateMeans = true;
+  settings.Fidelity = 1.0 / MeanEdge(sphere.Mesh);
+  Segmentation model(sphere.Operators, input, settings);
+  model.Advance(ProgressMonitor());
+  EXPECT_GT(model.NumberOfAlternations(), 1);
+  for (Index k = 0; k < 2; ++k)
+  {
+    // Within the share of the range at which the means have settled.
+    const double expected = WeightedMean(sphere, input.Data, model.State().col(k));
+    EXPECT_NEAR(model.Means()(k, 0), expected, 1e-3 * 10.0);
+  }
+}
+
 TEST(Segmentation, ContrastIsTheSquaredDifferenceOfTheMeans)
 {
   const Domain sphere(Rotated(Icosphere(4)));

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
+#include "Core/Models/ValueRange.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Core/Surface/TangentVectors.h"
@@ -439,6 +440,34 @@ TEST(TotalVariationFlow, EachOfSeveralChannelsComesOutAsIfAlone)
       }
     }
   }
+}
+
+/// What data on cells diffuse by.
+TEST(TotalVariationFlow, DiffusionWeightsHaveTheFactorOfBothDirections)
+{
+  const auto assembler = MakeAssembler(Icosphere(3));
+  const TriangleMesh& mesh = assembler->Mesh();
+  TotalVariationFlow::Settings settings = ExactSettings(mesh, 0.05);
+  const PointData data = PointData::FromValues(Noise(mesh));
+  const CornerWeights one = MakeExact(assembler, data, settings)->DiffusionWeights(0);
+  settings.AlongDiffusivity = settings.AcrossDiffusivity = 3.0;
+  const CornerWeights three = MakeExact(assembler, data, settings)->DiffusionWeights(0);
+  EXPECT_GT(one.cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_LT((three - 3.0 * one).cwiseAbs().maxCoeff(), 1e-12 * three.cwiseAbs().maxCoeff());
+}
+
+TEST(TotalVariationFlow, StartOfAbsoluteFidelityClipsOutliersAlone)
+{
+  const auto mesh = MakeMesh(Icosphere(4));
+  Values f = Noise(*mesh, 2);
+  EXPECT_EQ(WithoutOutliers(f, mesh->GetReduction()), f);
+  f(7, 0) = 1e3;
+  f(8, 1) = -1e3;
+  const Values clipped = WithoutOutliers(f, mesh->GetReduction());
+  EXPECT_LT(clipped.cwiseAbs().maxCoeff(), 4.0);
+  f(7, 0) = clipped(7, 0);
+  f(8, 1) = clipped(8, 1);
+  EXPECT_EQ(clipped, f);
 }
 
 /// Of channels that are minimised one by one, in the norm over all of them.

@@ -98,6 +98,20 @@ TEST(Trajectory, AnySeekAmongAThousandStepsRecomputesAtMostTwiceTheRoot)
   EXPECT_LE(most, 2.0 * std::sqrt(1000.0));
 }
 
+/// Every second checkpoint is dropped when the room is full, the last one kept.
+TEST(Trajectory, AnOddNumberOfCheckpointsReachesToTheEnd)
+{
+  for (const std::size_t room : { 3, 5, 7 })
+  {
+    Trajectory trajectory(NoMesh(), std::make_unique<Counter>(), room * sizeof(double));
+    trajectory.Reserve(1000);
+    trajectory.Seek(1000);
+    EXPECT_LE(trajectory.NumberOfStepsTo(999), 512) << room;
+    trajectory.Seek(999);
+    EXPECT_EQ(trajectory.State()(0, 0), 999.0);
+  }
+}
+
 TEST(Trajectory, WithRoomForAllNothingIsRecomputed)
 {
   Trajectory trajectory(NoMesh(), std::make_unique<Counter>(), Plenty);
