@@ -27,12 +27,14 @@ constexpr double LargestTolerance = 1e-10;
 void BlurSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Number({ "BlurFWHM", "coordinates",
-                   "The full width at half maximum of the blur that the data have gone through and "
-                   "that SteadyState removes; 0: none." },
+                   "Full width at half maximum, in the unit of the coordinates, of a blur that "
+                   "the data have gone through on the surface and that Mode SteadyState removes. "
+                   "0: none. It is meant for widths of 2 to 8 mean edge lengths. The blur of a "
+                   "camera's image is not a blur on the surface." },
     this->FWHM, SettingRange::NonNegative());
   visitor.Integer({ "BlurSteps", "",
-                    "The number of implicit steps of the heat equation that model the blur: the "
-                    "more, the closer it is to a Gaussian." },
+                    "Number of implicit steps that model the blur of BlurFWHM. More steps make "
+                    "its point spread function more similar to a Gaussian." },
     this->Steps, SettingRange::Between(2.0, 64.0, "2 to 64"));
 }
 

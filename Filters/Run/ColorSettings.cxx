@@ -7,30 +7,31 @@ namespace SurfaceDiffusion
 
 void ColorSettings::Visit(SettingVisitor& visitor)
 {
-  visitor.Choice(
-    { "ColorModel", "",
-      "The unknowns of three-component data. RGB: the components. Opponent: brightness "
-      "and two orthonormal axes of colour, with ChromaWeight. ChromaticityBrightness: "
-      "u = B C with the brightness B = |u| and the chromaticity C, a unit vector." },
+  visitor.Choice({ "ColorModel", "",
+                   "The unknowns of colours, which are data of three components (alpha not "
+                   "counted). RGB: the components. Opponent: brightness and two orthonormal axes "
+                   "of colour, which have a fidelity weight of their own. "
+                   "ChromaticityBrightness: the length of the vector of the components by "
+                   "EdgeFunction, and its direction by a harmonic map; it restores colours whose "
+                   "hue is noisy. Both need FidelityNorm L2 and no BlurFWHM." },
     this->Model, { "RGB", "Opponent", "ChromaticityBrightness" });
-  visitor.Number(
-    { "ChromaWeight", "",
-      "The factor of FidelityWeight on the two axes of colour of Opponent; below 1 they "
-      "are smoothed more than brightness." },
+  visitor.Number({ "ChromaWeight", "",
+                   "The factor of the fidelity weight on the two axes of colour of ColorModel "
+                   "Opponent, above 0. Below 1, colour is smoothed more than brightness." },
     this->ChromaWeight, SettingRange::Positive());
-  visitor.Number(
-    { "ChromaticityExponent", "",
-      "p of the energy mu/p int |grad C|^p of ChromaticityBrightness: 1 keeps edges of "
-      "hue, 2 smooths evenly." },
+  visitor.Number({ "ChromaticityExponent", "",
+                   "The power of the gradient in the energy of the direction of colours, from 1, "
+                   "which keeps edges of hue, to 2, which smooths evenly." },
     this->ChromaticityExponent, SettingRange::Between(1.0, 2.0, "numbers from 1 to 2"));
   visitor.Number({ "ChromaticityWeight", "R",
-                   "mu of ChromaticityBrightness, the weight of the smoothness of C beside that of "
-                   "B." },
+                   "The weight of the smoothness of the direction of colours beside that of "
+                   "their length, above 0, in R. A larger weight smooths hue more." },
     this->ChromaticityWeight, SettingRange::Positive());
   visitor.Switch({ "LinearLight", "",
-                   "Whether unsigned char colours are decoded from sRGB to linear light and the "
-                   "result is encoded, with Opponent and ChromaticityBrightness. Off suits noise "
-                   "of equal strength in the bytes." },
+                   "Decode unsigned char colours from sRGB to linear light, and encode the "
+                   "result. Results below 0 and above 255 become 0 and 255. It has no effect on "
+                   "data of other types. Noise is usually of equal strength in the bytes: off "
+                   "then gives the better result." },
     this->LinearLight);
 }
 

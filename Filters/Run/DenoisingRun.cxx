@@ -10,12 +10,13 @@ namespace SurfaceDiffusion
 void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Number({ "NoiseLevel", "coordinates",
-                   "The standard deviation of the noise of the points along the normal; 0: "
-                   "estimated from the surface." },
+                   "How much noise is removed: the standard deviation of the displacement of the "
+                   "points along the normal, in the unit of the coordinates. 0: measured." },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Choice({ "SurfaceType", "",
-                   "CAD: smooth faces with sharp edges; Organic: smooth shapes with details; "
-                   "Automatic: by the angles at the edges of the denoised surface." },
+                   "CAD: smooth faces that meet in sharp edges. Organic: smooth shapes with "
+                   "details, such as scans. Automatic: chosen by the angles at the edges of the "
+                   "surface after a few iterations." },
     this->SurfaceType, { "Automatic", "CAD", "Organic" });
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }

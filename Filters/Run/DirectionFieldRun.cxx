@@ -23,20 +23,27 @@ double RadiansFromDegrees(double degrees)
 
 void DirectionFieldSettings::Visit(SettingVisitor& visitor)
 {
-  visitor.Choice({ "Method", "", "How the line field is made." }, this->Method,
+  visitor.Choice({ "Method", "", "The method that computes the field." }, this->Method,
     { "PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints" });
   visitor.Choice({ "PrincipalDirection", "",
-                   "The direction of the smallest or of the largest absolute curvature." },
+                   "The principal direction: of minimum curvature (the axis of a cylinder) or of "
+                   "maximum curvature, by absolute value. With Method Smooth it selects one of "
+                   "several equally smooth fields." },
     this->PrincipalDirection, { "Minimum", "Maximum" }, {});
   visitor.Number({ "SmoothingLength", "coordinates",
-                   "The full width at half maximum of the Gaussian that smooths the normals; -1: "
-                   "four mean edge lengths." },
+                   "Full width at half maximum of the blur of the normals before curvature is "
+                   "measured, in the unit of the coordinates. 0: none. -1: four mean edge "
+                   "lengths." },
     this->SmoothingLength,
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: four mean edge lengths"));
-  visitor.Number(
-    { "HintWeight", "1/h^2", "The weight of hints and curvatures against smoothness." },
+  visitor.Number({ "HintWeight", "1/h^2",
+                   "The weight of hints and curvature relative to smoothness, above 0, in 1/h^2, "
+                   "where h is the mean edge length. The field follows them over lengths down to "
+                   "h/sqrt(HintWeight). Used by CurvatureAligned and Hints." },
     this->HintWeight, SettingRange::Positive());
-  visitor.Number({ "Angle", "degrees", "The rotation of the field in the surface at the end.",
+  visitor.Number({ "Angle", "degrees",
+                   "The angle, in degrees, by which the field is rotated in the surface at the "
+                   "end, counter-clockwise about the normals.",
                    SettingScope::Output },
     this->Angle, SettingRange::AnyFinite());
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);

@@ -24,24 +24,36 @@ constexpr double UpdateRange = 5.0;
 void HarmonicMapSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  visitor.Number({ "Exponent", "", "p: 1 keeps creases, 2 smooths evenly." }, this->Exponent,
-    SettingRange::Between(1.0, 2.0, "numbers from 1 to 2"));
-  visitor.Number(
-    { "Beta", "1/h^2", "beta in |grad u|^2 + beta." }, this->Beta, SettingRange::NonNegative());
-  visitor.Choice(
-    { "Scheme", "",
-      "The scheme of a step: the paper's explicit reaction, one descent in the tangent "
-      "spaces, or that repeated until backward Euler is solved." },
+  visitor.Number({ "Exponent", "",
+                   "p, from 1 to 2. 1: equation (21), preserves creases. 2: equation (20), "
+                   "smooths evenly." },
+    this->Exponent, SettingRange::Between(1.0, 2.0, "numbers from 1 to 2"));
+  visitor.Number({ "Beta", "1/h^2",
+                   "The regularisation beta in |grad u|^2 + beta, above 0, in 1/length^2 "
+                   "(natural units: 1/h^2). Gradients below its square root are smoothed as with "
+                   "Exponent 2." },
+    this->Beta, SettingRange::NonNegative());
+  visitor.Choice({ "Scheme", "",
+                   "The scheme of a time step. TangentPlane: one linear solve for displacements "
+                   "tangential to the sphere; the energy never increases. MinimizingMovement: "
+                   "the same repeated until the nonlinear step is solved; it takes longer, "
+                   "depends less on TimeStep, and the energy never increases. ExplicitReaction: "
+                   "the scheme of the paper." },
     this->Scheme, { "ExplicitReaction", "TangentPlane", "MinimizingMovement" });
   visitor.Switch({ "ConsistentReaction", "",
-                   "Whether ExplicitReaction has the reaction u g |grad u|^2 that balances the "
-                   "diffusion." },
+                   "Use the reaction term u g |grad u|^2, which balances the diffusion, instead "
+                   "of the paper's u |grad u|^p." },
     this->ConsistentReaction);
-  visitor.Switch({ "ProjectToSphere", "", "Whether vectors are normalised after each step." },
+  visitor.Switch(
+    { "ProjectToSphere", "", "Normalise the vectors after each step. Off: their lengths drift." },
     this->ProjectToSphere);
-  visitor.Switch({ "LineField", "", "Whether u and -u are the same." }, this->LineField);
+  visitor.Switch({ "LineField", "",
+                   "Treat u and -u as equal, as for principal directions. The sign of the result "
+                   "has no meaning." },
+    this->LineField);
   visitor.Switch({ "MoveVertices", "",
-                   "Whether the points are moved so that the triangles' normals match the result.",
+                   "Move the points so that the normals of the triangles match the regularised "
+                   "normals: mesh denoising.",
                    SettingScope::Output },
     this->MoveVertices);
 }

@@ -17,14 +17,16 @@ namespace SurfaceDiffusion
 void HeatSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  visitor.Choice(
-    { "Mode", "",
-      "TimeSteps: NumberOfTimeSteps steps. SteadyState: the limit of infinite time, in "
-      "one solve." },
+  visitor.Choice({ "Mode", "",
+                   "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
+                   "infinite time, in one solve. It is the harmonic function of the fixed or "
+                   "held values, the minimiser of the energy if there is a fidelity term, and "
+                   "otherwise the mean of each connected component." },
     this->Mode, { "TimeSteps", "SteadyState" });
   visitor.Number({ "FWHM", "coordinates",
-                   "The full width at half maximum of the Gaussian that the data are convolved "
-                   "with; 0: off. The run takes the time FWHM^2 / (16 ln 2)." },
+                   "Full width at half maximum of the blur, in the unit of the coordinates. It "
+                   "replaces TimeStep, and times are then in that unit squared. It requires "
+                   "diffusivities of 1 and no fidelity term. 0: off." },
     this->FWHM, SettingRange::NonNegative());
   VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
   this->Blur.Visit(visitor);

@@ -66,32 +66,36 @@ MumfordShahSettings::MumfordShahSettings()
 void MumfordShahSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  visitor.Switch(
-    { "AutomaticThreshold", "",
-      "Whether EdgeThreshold and SmoothingLength are found, for each connected component: "
-      "from the noise, the range of the values without outliers, and their slopes." },
+  visitor.Switch({ "AutomaticThreshold", "",
+                   "Find EdgeThreshold and SmoothingLength from the noise, the range without "
+                   "outliers and the slopes of the data, for each connected component. The given "
+                   "ones are ignored." },
     this->AutomaticThreshold);
   visitor.Number({ "NoiseLevel", "values",
-                   "The standard deviation of the noise for AutomaticThreshold; 0: estimated, for "
-                   "white noise." },
+                   "Standard deviation of the noise, of one component, in the unit of the data. "
+                   "0: estimated from the data." },
     this->NoiseLevel, SettingRange::NonNegative());
-  visitor.Number(
-    { "EdgeThreshold", "R",
-      "The jump from which on an edge costs less than smoothing, with AutomaticThreshold "
-      "off. Noise with a standard deviation above a third of it, over all components "
-      "together, makes edges everywhere, as do slopes above EdgeThreshold/(2 "
-      "SmoothingLength)." },
+  visitor.Number({ "EdgeThreshold", "R",
+                   "The jump from which on an edge costs less than smoothing, above 0, in the "
+                   "unit of values that Units selects (natural units: R). Jumps below 0.9 of it "
+                   "are smoothed, and jumps above 1.25 of it are kept. Noise with a standard "
+                   "deviation above a third of it, over all components together, makes edges "
+                   "everywhere, as do slopes above EdgeThreshold/(2 SmoothingLength). It has no "
+                   "effect with AutomaticThreshold." },
     this->EdgeThreshold, SettingRange::Positive());
   visitor.Number({ "SmoothingLength", "h",
-                   "The length over which data are smoothed between edges, with AutomaticThreshold "
-                   "off; lambda is FidelityWeight over its square." },
+                   "The length over which data are smoothed between edges, above 0, in the unit "
+                   "of lengths that Units selects (natural units: h). lambda is FidelityWeight "
+                   "over its square. It has no effect with AutomaticThreshold." },
     this->SmoothingLength, SettingRange::Positive());
   visitor.Number({ "EdgeWidth", "h",
-                   "eps, the distance over which v rises beside an edge, at least the mean edge "
-                   "length." },
+                   "eps, the width of the transition of v beside an edge, above 0, in the unit "
+                   "of lengths that Units selects (natural units: h). At least the mean edge "
+                   "length h." },
     this->EdgeWidth, SettingRange::Positive());
   visitor.Number({ "StopTolerance", "",
-                   "The relative decrease of the energy in one step at which the run ends." },
+                   "The relative decrease of the energy in one step at which the run ends, "
+                   "between 0 and 1." },
     this->StopTolerance, SettingRange::OpenUnitInterval());
   visitor.Switch(
     { "EdgeCurves", "", "Whether the edges are extracted as curves.", SettingScope::Output },

@@ -25,48 +25,65 @@ constexpr double LargestNumberOfPublishedTimes = 1e6;
 void RunSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Number(
-    { "TimeStep", "time", "The time step." }, this->TimeStep, SettingRange::Positive());
-  visitor.Integer({ "NumberOfTimeSteps", "",
-                    "The number of time steps n. There are n + 1 states, from the initial one on.",
-                    SettingScope::Output }, // a longer run continues a shorter one
+    { "TimeStep", "time", "The time step, above 0, in the unit of time that Units selects." },
+    this->TimeStep, SettingRange::Positive());
+  visitor.Integer(
+    { "NumberOfTimeSteps", "", "The number of time steps. 0: the output is the initial state.",
+      SettingScope::Output }, // a longer run continues a shorter one
     this->NumberOfTimeSteps,
     SettingRange::Between(0.0, LargestNumberOfTimeSteps, "0 to 1000000000"));
   visitor.Choice({ "Units", "",
-                   "The units of times, weights and thresholds. Natural: lengths in the mean edge "
-                   "length h, values in the range R. Absolute: coordinate and array units." },
+                   "The units of times, weights and thresholds. Natural: lengths are in h, the "
+                   "mean edge length of the triangles, and values in R, the largest range (max - "
+                   "min) of any component, so that one setting suits any mesh and any array. "
+                   "Absolute: lengths are in the unit of the coordinates and values in the unit "
+                   "of the data." },
     this->Units, { "Natural", "Absolute" });
-  visitor.Switch({ "GenerateTimeSteps", "", "Whether every published time can be requested." },
+  visitor.Switch({ "GenerateTimeSteps", "",
+                   "Publish time steps; time 0 is the initial state. Off: the output is the "
+                   "final state." },
     this->GenerateTimeSteps);
-  visitor.Integer(
-    { "OutputInterval", "", "The published times are those of steps 0, k, 2 k, ... and the last.",
-      SettingScope::Output },
+  visitor.Integer({ "OutputInterval", "",
+                    "The interval k between published time steps: steps 0, k, 2 k, ... and the "
+                    "last step are published.",
+                    SettingScope::Output },
     this->OutputInterval, SettingRange::AtLeast(1.0, "1 or more"));
-  visitor.Choice(
-    { "MaskMode", "",
-      "Inpaint: masked points are missing and are filled in. Exclude: triangles with a "
-      "masked vertex are ignored." },
+  visitor.Choice({ "MaskMode", "",
+                   "Inpaint: masked points are missing and are filled in. Exclude: triangles "
+                   "with a masked point, and masked cells, are ignored, nothing flows across "
+                   "them, and masked points and cells keep their values. The remaining triangles "
+                   "are the region of interest." },
     this->MaskMode, { "Inpaint", "Exclude" });
-  visitor.Integer({ "RandomSeed", "", "The seed of all random numbers." }, this->RandomSeed,
-    SettingRange::AnyFinite());
-  visitor.Choice({ "TimeIntegrator", "", "The time integrator. FirstOrder is the paper's." },
-    this->TimeIntegrator, { "FirstOrder", "SecondOrder", "Implicit" }, this->AllowedIntegrators());
-  visitor.Choice({ "Solver", "", "How linear systems are solved." }, this->Solver,
-    { "Automatic", "Direct", "ConjugateGradient", "Multigrid" });
-  visitor.Number({ "Tolerance", "",
-                   "The relative residual, in the norm of the inverse diagonal, at which iterative "
-                   "solvers stop." },
+  visitor.Integer({ "RandomSeed", "",
+                    "The seed of all random numbers. The same seed gives the same result on every "
+                    "machine." },
+    this->RandomSeed, SettingRange::AnyFinite());
+  visitor.Choice({ "TimeIntegrator", "", "The time integrator." }, this->TimeIntegrator,
+    { "FirstOrder", "SecondOrder", "Implicit" }, this->AllowedIntegrators());
+  visitor.Choice({ "Solver", "",
+                   "The linear solver. Direct: sparse Cholesky factorisation, reused while the "
+                   "matrix is unchanged. ConjugateGradient: conjugate gradients with a Jacobi "
+                   "preconditioner, as in the paper. Multigrid: conjugate gradients with a "
+                   "smoothed aggregation preconditioner, for large surfaces and long time steps. "
+                   "Automatic: the solver with the lowest estimated cost." },
+    this->Solver, { "Automatic", "Direct", "ConjugateGradient", "Multigrid" });
+  visitor.Number(
+    { "Tolerance", "", "Relative residual at which an iterative solver stops, between 0 and 1." },
     this->Tolerance, SettingRange::OpenUnitInterval());
-  visitor.Integer(
-    { "MaximumNumberOfIterations", "", "The largest number of iterations of a solve." },
+  visitor.Integer({ "MaximumNumberOfIterations", "",
+                    "The maximum number of iterations of an iterative solver. It is an error if "
+                    "the solver does not converge within them." },
     this->MaximumNumberOfIterations, SettingRange::AtLeast(1.0, "1 or more"));
   visitor.Switch({ "IntrinsicDelaunay", "",
-                   "Whether the equation is solved on the intrinsic Delaunay triangulation of the "
-                   "surface.",
+                   "Assemble the Laplace-Beltrami operator on the intrinsic Delaunay "
+                   "triangulation of the same surface. No points are added. Its nonnegative "
+                   "cotan weights let linear diffusion keep the bounds of the data for triangles "
+                   "of any shape.",
                    SettingScope::Surface },
     this->IntrinsicDelaunay);
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
   visitor.Integer({ "CheckpointMemoryLimit", "MiB",
-                    "The memory for states that are kept so that going back in time is cheap." },
+                    "Memory, in MiB, for stored states, which make going back in time cheap." },
     this->CheckpointMemoryLimit, SettingRange::AtLeast(0.0, "0 or more MiB"));
 }
 
@@ -113,33 +130,39 @@ int RunSettings::FindStep(double time, int last) const
 
 void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance)
 {
-  visitor.Switch(
-    { "MergeCoincidentPoints", "",
-      "Whether points within MergeTolerance are one point of the surface.", SettingScope::Surface },
+  visitor.Switch({ "MergeCoincidentPoints", "",
+                   "Treat coincident points as one point of the surface, as STL files and split "
+                   "normals require.",
+                   SettingScope::Surface },
     merge);
-  visitor.Number({ "MergeTolerance", "coordinates", "The largest distance of merged points.",
+  visitor.Number({ "MergeTolerance", "coordinates",
+                   "The largest distance of points that are merged, in the unit of the "
+                   "coordinates. 0: only points with equal coordinates.",
                    SettingScope::Surface },
     tolerance, SettingRange::NonNegative());
 }
 
 void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)
 {
-  visitor.Switch(
-    { "ResultOnCells", "", "Whether data on cells have a result on cells rather than on points.",
-      SettingScope::Output },
+  visitor.Switch({ "ResultOnCells", "",
+                   "Whether the result of data on cells is on cells, too. Off: it is on points. "
+                   "No effect on point data.",
+                   SettingScope::Output },
     onCells);
 }
 
 void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel)
 {
   visitor.Switch({ "AutomaticFidelity", "",
-                   "Whether lambda is chosen by the discrepancy principle (Morozov 1966), over the "
-                   "part of the data that is not constant." },
+                   "Choose the fidelity weight by the discrepancy principle (Morozov 1966): the "
+                   "result differs from the data by the noise level, where the data are not "
+                   "constant. FidelityWeight is ignored." },
     automatic);
   visitor.Number({ "NoiseLevel", "values",
-                   "The standard deviation of the noise for AutomaticFidelity; 0: estimated, for "
-                   "white noise. A warning reports correlated noise, and data that are smooth "
-                   "between neighbours, as noise is that was smoothed or resampled." },
+                   "Standard deviation of the noise for AutomaticFidelity, in the unit of the "
+                   "data. 0: estimated from the data, for white noise (independent from point to "
+                   "point). A warning reports correlated noise, and data that are smooth between "
+                   "neighbours, as noise is that was smoothed or resampled." },
     noiseLevel, SettingRange::NonNegative());
 }
 
@@ -147,29 +170,35 @@ void DataSettings::Visit(SettingVisitor& visitor)
 {
   this->RunSettings::Visit(visitor);
   visitor.Number({ "FidelityWeight", "1/time",
-                   "lambda of (16) to (19), the weight of lambda chi (f - u), with chi the "
-                   "indicator of the known part." },
+                   "lambda, the weight of the fidelity term lambda chi (f - u), in 1/(unit of "
+                   "time). The term pulls the result towards the data wherever they are known "
+                   "(chi = 1)." },
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Choice({ "InitialFill", "",
-                   "The start on missing points: the input itself, the mean of the known values of "
-                   "the connected component, uniform noise between the extreme known values, or "
-                   "the harmonic function of the known values." },
+                   "The initial values at missing points. Input: the damaged values themselves, "
+                   "or Mean at points that are NaN. Mean: the mean of the known values of the "
+                   "connected component. Noise: random values, uniform between the smallest and "
+                   "the largest known value. Harmonic: the harmonic function of the known "
+                   "values." },
     this->InitialFill, { "Input", "Mean", "Noise", "Harmonic" });
   visitor.Switch({ "HoldKnownValues", "",
-                   "Whether known points keep their value exactly, so that only missing points "
-                   "change." },
+                   "Keep the known values exactly and fill in the missing points only. At least "
+                   "one point must be missing, either by MaskArray or because it is NaN." },
     this->HoldKnownValues);
-  visitor.Number({ "AlongDiffusivity", "", "The factor of the diffusivity along e1." },
+  visitor.Number({ "AlongDiffusivity", "",
+                   "Factor of the diffusivity along the direction, 0 or more. If it differs from "
+                   "AcrossDiffusivity, DirectionArray is required." },
     this->AlongDiffusivity, SettingRange::NonNegative());
-  visitor.Number({ "AcrossDiffusivity", "", "The factor of the diffusivity along e2." },
+  visitor.Number(
+    { "AcrossDiffusivity", "", "Factor of the diffusivity across the direction, 0 or more." },
     this->AcrossDiffusivity, SettingRange::NonNegative());
   VisitResultOnCells(visitor, this->ResultOnCells);
-  visitor.Switch(
-    { "KeepCellDetail", "",
-      "Whether differences between cells that the points do not resolve, d = f - P* u(0), "
-      "diffuse on the cells and are added to the result, P* u + d, rather than left out, where "
-      "P* u is the mean over the cell. No time steps then return the data.",
-      SettingScope::Output },
+  visitor.Switch({ "KeepCellDetail", "",
+                   "On: differences between neighbouring cells that the points do not resolve "
+                   "diffuse on the cells, beside the data at the points, and are added to the "
+                   "result. No time steps then return the data. Off: the result is the mean of "
+                   "the smoothed data over the cell.",
+                   SettingScope::Output },
     this->KeepCellDetail);
 }
 

@@ -125,19 +125,27 @@ void WarnOfEmptyRegions(const RegionResults& regions, RunResult& result)
 void SegmentationSettings::Visit(SettingVisitor& visitor)
 {
   this->RunSettings::Visit(visitor);
-  visitor.Integer({ "NumberOfRegions", "", "K, the number of regions." }, this->NumberOfRegions,
-    SettingRange::Between(2.0, LargestNumberOfRegions, "2 to 1000"));
+  visitor.Integer(
+    { "NumberOfRegions", "", "K, the number of regions, 2 or more. Regions can come out empty." },
+    this->NumberOfRegions, SettingRange::Between(2.0, LargestNumberOfRegions, "2 to 1000"));
   visitor.Switch({ "AutomaticFidelity", "",
-                   "Whether FidelityWeight is found: lambda = 0.6/(h D) with the contrast D of the "
-                   "data terms, the mean difference between the smallest two of a point." },
+                   "Find the weight of the data from their contrast, which suits data with and "
+                   "without noise: lambda = 0.6/(h D) with the contrast D of the data terms, the "
+                   "mean difference between the smallest two of a point. FidelityWeight is "
+                   "ignored." },
     this->AutomaticFidelity);
   visitor.Number({ "FidelityWeight", "1/(h R^2)",
-                   "lambda, the weight of the data terms, with AutomaticFidelity off; 1/(h R) for "
-                   "given data terms." },
+                   "lambda, the weight of the data against the length of the boundaries, 0 or "
+                   "more, in 1/(length value^2) (natural units: 1/(h R^2)), and in 1/(length "
+                   "value) for given data terms. The larger it is, the smaller are the regions "
+                   "that are kept. The range R includes the noise: under strong noise lambda has "
+                   "to be many times larger. It has no effect with AutomaticFidelity." },
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Switch({ "AutomaticMeans", "",
-                   "Whether the means of the regions are found: k-means++ clusters of the data at "
-                   "first, then the means of the regions." },
+                   "On: the means of the regions are found, from clusters of the values "
+                   "(k-means++) at first. Regions are numbered by ascending mean, unless there "
+                   "are seeds. Off: the means are the given ones, or the clusters if none are "
+                   "given." },
     this->AutomaticMeans);
   visitor.Numbers(
     { "Means", "values",
@@ -147,8 +155,9 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
     this->AutomaticMeans ? SettingRange::Anything()
                          : SettingRange::Between(-1e300, 1e300, "finite numbers, all of them set"));
   visitor.Number({ "StopTolerance", "",
-                   "The duality gap at which the minimisation stops, relative to the energy above "
-                   "lambda int min_k r_k." },
+                   "The duality gap at which the minimisation stops, between 0 and 1, relative "
+                   "to the part of the energy that depends on the regions. The gap bounds the "
+                   "difference between the energy and its minimum." },
     this->StopTolerance, SettingRange::OpenUnitInterval());
   VisitResultOnCells(visitor, this->ResultOnCells);
 }

@@ -31,34 +31,39 @@ constexpr double SmoothingTolerance = 1e-4;
 void TensorDiffusionSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  visitor.Choice(
-    { "Model", "",
-      "Beltrami: the area of the data as a surface is minimised. CoherenceEnhancing: smoothing "
-      "along lines. EdgeEnhancing: smoothing along edges, and away from them." },
+  visitor.Choice({ "Model", "",
+                   "The diffusion tensor. Beltrami: keeps the edges of colours. "
+                   "CoherenceEnhancing: smooths along lines and closes their gaps. "
+                   "EdgeEnhancing: smooths along edges, and away from them." },
     this->Model, { "Beltrami", "CoherenceEnhancing", "EdgeEnhancing" });
   visitor.Number({ "ColorScale", "h/R",
-                   "b of Beltrami: gradients above 1/b are edges. Small values give linear "
-                   "diffusion." },
+                   "b of Beltrami, above 0, in the unit that Units selects (natural units: h/R). "
+                   "Gradients above 1/b are edges. Small values give linear diffusion." },
     this->ColorScale, SettingRange::Positive());
   visitor.Choice({ "Metric", "",
-                   "The mass of Beltrami. Induced: the area of the data as a surface. Fixed: the "
-                   "area of the surface itself, so that totals are conserved." },
+                   "The area that m of Beltrami measures. Induced: that of the data as a "
+                   "surface, so that edges hardly move. Fixed: that of the surface itself, so "
+                   "that totals are conserved. The steady states are the same." },
     this->Metric, { "Induced", "Fixed" });
   visitor.Number({ "NoiseScale", "h",
                    "sigma, the standard deviation of the Gaussian that smooths the data before "
-                   "gradients are taken for the structure tensor; 0: none." },
+                   "the structure tensor takes their gradients, in the unit of lengths that "
+                   "Units selects (natural units: h). The data themselves are not smoothed by "
+                   "it. 0: none." },
     this->NoiseScale, SettingRange::NonNegative());
   visitor.Number({ "IntegrationScale", "h",
-                   "rho, the standard deviation of the Gaussian that smooths the structure tensor "
-                   "of CoherenceEnhancing; 0: none." },
+                   "rho, the standard deviation of the Gaussian over which CoherenceEnhancing "
+                   "averages the direction of lines, in the unit of lengths that Units selects "
+                   "(natural units: h). 0: none." },
     this->IntegrationScale, SettingRange::NonNegative());
   visitor.Number({ "Contrast", "R/h",
-                   "K, a gradient. CoherenceEnhancing smooths along lines whose gradients are "
-                   "larger, EdgeEnhancing does not smooth across edges whose gradients are." },
+                   "The gradient, above 0, in the unit that Units selects (natural units: R/h), "
+                   "above which CoherenceEnhancing takes data for lines and EdgeEnhancing for "
+                   "edges. To close gaps of noisy lines, take 0.01." },
     this->Contrast, SettingRange::Positive());
   visitor.Number({ "Alpha", "",
-                   "The diffusivity of CoherenceEnhancing across lines, and in all directions away "
-                   "from them." },
+                   "The diffusivity of CoherenceEnhancing across lines, and in all directions "
+                   "away from lines, relative to that along lines, from 1e-12 to 1." },
     this->Alpha, SettingRange::Between(1e-12, 1.0, "1e-12 to 1"));
   visitor.Switch({ "DiffusionAxes", "",
                    "Whether the direction of the strongest diffusion is a result, per cell.",

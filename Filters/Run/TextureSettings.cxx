@@ -75,41 +75,68 @@ std::unique_ptr<ReactionDiffusion> MakeCoarseModel(CoarseSpace& space, const Mod
 void TextureSettings::Visit(SettingVisitor& visitor)
 {
   this->RunSettings::Visit(visitor);
-  visitor.Choice(
-    { "Kinetics", "", "The reaction terms F and G." }, this->Kinetics, WordsOfKinetics());
-  visitor.Number({ "ReactionRate", "1/time", "The rate s of the reaction." }, this->ReactionRate,
-    SettingRange::Positive());
-  visitor.Number({ "DiffusionRate1", "h^2 ReactionRate", "The diffusion rate of u1 along e1." },
+  visitor.Choice({ "Kinetics", "",
+                   "The reaction terms F, G. Turing: gamma - u1 u2, u1 u2 - u2 - mu. "
+                   "Schnakenberg: b - u1 u2^2, a - u2 + u1 u2^2. GrayScott: 25 (f (1 - u1) - u1 "
+                   "u2^2), 25 (u1 u2^2 - (f + k) u2). Brusselator: B u2 - u1 u2^2, A - (B + 1) "
+                   "u2 + u1 u2^2. GiererMeinhardt: nu (u2^2 - u1), u2^2/(u1 (1 + kappa u2^2)) - "
+                   "u2. FitzHughNagumo: epsilon (u2 - beta u1 - alpha), u2 - u2^3 - u1. All are "
+                   "multiplied by ReactionRate. Use AutomaticTimeStep with kinetics other than "
+                   "Turing." },
+    this->Kinetics, WordsOfKinetics());
+  visitor.Number({ "ReactionRate", "1/time",
+                   "s, the factor of F and G, above 0, in 1/time. The natural unit of time is "
+                   "1/s." },
+    this->ReactionRate, SettingRange::Positive());
+  visitor.Number({ "DiffusionRate1", "h^2 ReactionRate",
+                   "Diffusion rate of u1, along the direction if there is one, 0 or more, in "
+                   "length^2/time (natural units: h^2 ReactionRate). With the default kinetics a "
+                   "pattern requires more than four times DiffusionRate2." },
     this->DiffusionRate1, SettingRange::NonNegative());
-  visitor.Number({ "DiffusionRate2", "h^2 ReactionRate", "The diffusion rate of u2 along e1." },
+  visitor.Number({ "DiffusionRate2", "h^2 ReactionRate",
+                   "Diffusion rate of u2, along the direction if there is one, 0 or more, in "
+                   "length^2/time (natural units: h^2 ReactionRate)." },
     this->DiffusionRate2, SettingRange::NonNegative());
   const auto across =
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: as along");
   visitor.Number({ "DiffusionRateAcross1", "h^2 ReactionRate",
-                   "The diffusion rate of u1 along e2; -1: as along e1." },
+                   "Diffusion rate of u1 across the direction, 0 or more, in the unit of "
+                   "DiffusionRate1. -1: the same as along it." },
     this->DiffusionRateAcross1, across);
   visitor.Number({ "DiffusionRateAcross2", "h^2 ReactionRate",
-                   "The diffusion rate of u2 along e2; -1: as along e1." },
+                   "Diffusion rate of u2 across the direction, 0 or more, in the unit of "
+                   "DiffusionRate2. -1: the same as along it." },
     this->DiffusionRateAcross2, across);
   visitor.Number({ "FeatureSize", "coordinates",
-                   "The fastest-growing wavelength along e1 to which the diffusion rates are "
-                   "scaled; 0: off." },
+                   "The wavelength of the pattern: the fastest-growing wavelength along the "
+                   "direction, in the unit of the coordinates. All diffusion rates are "
+                   "multiplied by the factor that gives this wavelength. The mesh should have at "
+                   "least six edges per wavelength. 0: off." },
     this->FeatureSize, SettingRange::NonNegative());
-  visitor.Number(
-    { "InitialNoise", "", "The half width of the uniform relative noise around the steady state." },
+  visitor.Number({ "InitialNoise", "",
+                   "Half width of the uniform noise around the steady state at the start, "
+                   "relative to the steady state." },
     this->InitialNoise, SettingRange::NonNegative());
-  visitor.Switch({ "ClampToNonNegative", "", "Whether concentrations stay at 0 and above." },
+  visitor.Switch({ "ClampToNonNegative", "",
+                   "Keep concentrations nonnegative. Without it, Turing is unstable as soon as "
+                   "u2 becomes negative. (The variables of FitzHughNagumo are not concentrations "
+                   "and are not clamped.)" },
     this->ClampToNonNegative);
   visitor.Switch({ "AutomaticTimeStep", "",
-                   "Whether the time step is 1/8 of the time constant of the kinetics' fastest "
-                   "mode." },
+                   "Choose the time step for the kinetics: 1/8 of the time constant of their "
+                   "fastest mode. TimeStep is ignored." },
     this->AutomaticTimeStep);
   visitor.Number({ "StopTolerance", "1/time",
-                   "The relative change per unit of time at which the run ends; 0: never." },
+                   "Stop before NumberOfTimeSteps when the pattern is stationary, that is, when "
+                   "its relative change per unit of time is at most this value. At 0.05 it looks "
+                   "finished. 0: run all steps." },
     this->StopTolerance, SettingRange::NonNegative());
   visitor.Integer({ "CoarseStartSize", "vertices",
-                    "Above this number of vertices the pattern grows on a coarser mesh, and only "
-                    "the last steps run on the surface itself; 0: never." },
+                    "On a surface with more vertices than this, the pattern grows on a coarser "
+                    "mesh until its relative change is 2.5 StopTolerance, and only the last two "
+                    "steps run on the surface itself. The first result is an order of magnitude "
+                    "sooner, with about the same wavelength, but differs in detail. 0: all steps "
+                    "run on the surface." },
     this->CoarseStartSize, SettingRange::AtLeast(0.0, "0 or more vertices"));
 
   for (int k = 0; k < NumberOfKinetics; ++k)
@@ -121,7 +148,7 @@ void TextureSettings::Visit(SettingVisitor& visitor)
     {
       if (list[p].Name)
       {
-        visitor.Number({ list[p].Name, "", "A parameter of the kinetics.",
+        visitor.Number({ list[p].Name, "", list[p].Documentation,
                          chosen ? SettingScope::Model : SettingScope::Output },
           this->Parameters[static_cast<std::size_t>(k)][p],
           chosen ? RangeOf(list[p]) : SettingRange::Anything());

@@ -38,38 +38,62 @@ EdgeFunctionProperties PropertiesOf(EdgeFunctionKind kind)
 void TotalVariationSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  visitor.Choice(
-    { "Mode", "", "TimeSteps: NumberOfTimeSteps steps. SteadyState: the minimiser of the energy." },
+  visitor.Choice({ "Mode", "",
+                   "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the minimiser "
+                   "of the energy, computed directly. It requires EdgeFunction TotalVariation, "
+                   "Charbonnier or Constant and AcrossEdgeFunction Same." },
     this->Mode, { "TimeSteps", "SteadyState" });
-  visitor.Choice({ "EdgeFunction", "", "The edge-stopping function g." }, this->EdgeFunction,
-    WordsOfEdgeFunctions());
+  visitor.Choice({ "EdgeFunction", "",
+                   "The diffusivity g(s) of s = |grad u|, where K is the edge threshold. "
+                   "TotalVariation: 1/sqrt(s^2 + beta). PeronaMalikExponential: exp(-(s/K)^2). "
+                   "PeronaMalikRational: 1/(1 + (s/K)^2). Charbonnier: 1/sqrt(1 + (s/K)^2). "
+                   "Weickert: 1 - exp(-3.31488/(s/K)^8). Constant: 1, linear diffusion. "
+                   "Perona-Malik and Weickert sharpen edges with a gradient above K; they "
+                   "require Mode TimeSteps, TimeIntegrator FirstOrder and AutomaticFidelity off." },
+    this->EdgeFunction, WordsOfEdgeFunctions());
   std::vector<const char*> across = WordsOfEdgeFunctions();
   across.insert(across.begin(), "Same");
-  visitor.Choice({ "AcrossEdgeFunction", "", "The edge-stopping function across the direction." },
+  visitor.Choice({ "AcrossEdgeFunction", "",
+                   "The function g of g2, across the direction: the same as EdgeFunction or "
+                   "another one. Another one requires TimeIntegrator FirstOrder." },
     this->AcrossEdgeFunction, across, {});
-  visitor.Number({ "Beta", "(R/h)^2", "beta of TotalVariation, a rounding of |grad u|." },
+  visitor.Number({ "Beta", "(R/h)^2",
+                   "The regularisation beta of TotalVariation, above 0, in (R/h)^2. Gradients "
+                   "far below its square root are smoothed as by linear diffusion. "
+                   "TimeIntegrator Implicit and Mode SteadyState do not use it." },
     this->Beta, SettingRange::Positive());
-  visitor.Number({ "EdgeThreshold", "R/h", "K of the other edge-stopping functions." },
+  visitor.Number({ "EdgeThreshold", "R/h",
+                   "The threshold K of the edge function, above 0, in R/h. Steeper gradients "
+                   "count as edges. 0.1 is one tenth of the range of the data between "
+                   "neighbouring points." },
     this->EdgeThreshold, SettingRange::Positive());
-  visitor.Choice(
-    { "ChannelCoupling", "",
-      "PerChannel: each component has its own norm. Joint: one Euclidean norm over all "
-      "components." },
+  visitor.Choice({ "ChannelCoupling", "",
+                   "Joint: one |grad u| over all components, so that the edges of all colour "
+                   "channels stay aligned. PerChannel: each component is treated separately." },
     this->ChannelCoupling, { "PerChannel", "Joint" });
-  visitor.Choice({ "FidelityNorm", "", "L2 for Gaussian noise, L1 for impulse noise." },
+  visitor.Choice({ "FidelityNorm", "",
+                   "L2: lambda (f - u), for Gaussian noise. L1: lambda (f - u)/|f - u|, for "
+                   "salt-and-pepper noise: outliers are replaced and the other values keep their "
+                   "contrast. With L1 a weight of 1 to 2 is suitable." },
     this->FidelityNorm, { "L2", "L1" });
   VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
-  visitor.Choice({ "Discretization", "", "Linear: vertex values. CrouzeixRaviart: edge values." },
+  visitor.Choice({ "Discretization", "",
+                   "Linear: unknowns at the points, as in the paper. CrouzeixRaviart: unknowns "
+                   "at the edges of the mesh, which are three times as many. It reproduces the "
+                   "heights of plateaus to a fraction of a percent." },
     this->Discretization, { "Linear", "CrouzeixRaviart" });
   visitor.Number({ "StopTolerance", "",
-                   "The relative duality gap at which a minimisation stops; with BlurFWHM the "
-                   "change of an iteration in the range of the data." },
+                   "The relative duality gap at which Mode SteadyState and each step of "
+                   "TimeIntegrator Implicit stop, between 0 and 1. The duality gap bounds the "
+                   "difference between the energy and its minimum. With BlurFWHM it is the "
+                   "change of an iteration in the range of the data, and with ColorModel "
+                   "ChromaticityBrightness the relative decrease of the energy in an "
+                   "alternation." },
     this->StopTolerance, SettingRange::OpenUnitInterval());
   this->Blur.Visit(visitor);
-  visitor.Switch(
-    { "AutomaticBlurFidelity", "",
-      "Whether FidelityWeight 3, its default, stands with BlurFWHM for the weight that "
-      "AutomaticFidelity finds. Off: FidelityWeight is used, whatever it is." },
+  visitor.Switch({ "AutomaticBlurFidelity", "",
+                   "On: FidelityWeight 3, its default, stands with BlurFWHM for the weight that "
+                   "AutomaticFidelity finds. Off: FidelityWeight is used, whatever it is." },
     this->AutomaticBlurFidelity);
   this->Color.Visit(visitor);
 }

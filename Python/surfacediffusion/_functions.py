@@ -102,7 +102,7 @@ KeyboardInterrupt
 Warns
 -----
 SurfaceDiffusionWarning
-    For degenerate triangles, unused points, solves above their tolerance, masks without effect.""",
+    For degenerate triangles, solves above their tolerance, masks without effect.""",
 }
 
 
@@ -126,8 +126,9 @@ def _with_settings(function: F) -> F:
         if setting.kind in ("number", "integer"):
             allowed += ", " + setting.allowed
         unit = f", in {setting.unit}" if setting.unit else ""
-        text = textwrap.fill(translate(function.__name__, setting.documentation, {}), 92,
-                             initial_indent="    ", subsequent_indent="    ")
+        text = textwrap.fill(translate(function.__name__, setting.documentation, ARRAYS), 92,
+                             initial_indent="    ", subsequent_indent="    ",
+                             break_on_hyphens=False)
         entries.append(f"{setting.keyword} : {allowed}{unit}, default {setting.default}\n{text}")
     function.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         parameters, return_annotation=inspect.signature(function).return_annotation)

@@ -297,9 +297,10 @@ class Keywords(unittest.TestCase):
                 self.assertEqual(parameters[keyword].default, known[name]["default"], keyword)
                 self.assertIn(f"\n{keyword} : ", function.__doc__)
                 text = sd._settings.translate(
-                    function.__name__, known[name]["documentation"], {})
+                    function.__name__, known[name]["documentation"], sd._models.ARRAYS)
                 self.assertIn(" ".join(text.split()), " ".join(function.__doc__.split()))
                 self.assertNotIn("MergeTolerance", function.__doc__)
+                self.assertNotIn("MaskArray", function.__doc__)
 
     def test_every_keyword_takes_its_default(self):
         surface = sd.sphere(2)

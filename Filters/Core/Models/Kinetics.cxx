@@ -168,32 +168,67 @@ Kinetics Row(const char* name, const char* formula, const char* reference,
 constexpr auto Positive = Kinetics::Range::Positive;
 constexpr auto NonNegative = Kinetics::Range::NonNegative;
 constexpr auto AnyFinite = Kinetics::Range::AnyFinite;
-const Kinetics::Parameter None = { nullptr, 0.0, AnyFinite };
+const Kinetics::Parameter None = { nullptr, 0.0, AnyFinite, nullptr };
 
 const std::array<Kinetics, NumberOfKinetics> List = {
   Row<Turing>("Turing", "F = s(gamma - u1 u2), G = s(u1 u2 - u2 - mu)",
     "A. Turing, Phil. Trans. R. Soc. B 237, 1952; G. Turk, SIGGRAPH 1991; (24)",
-    { { { "GrowthRate", 16.0, Positive }, { "DecayRate", 12.0, Positive }, None } }, true),
+    { { { "GrowthRate", 16.0, Positive,
+          "gamma of Turing, above 0, in units of ReactionRate: the production rate of u1." },
+      { "DecayRate", 12.0, Positive,
+        "mu of Turing, above 0 and below GrowthRate, in units of ReactionRate: the removal rate of "
+        "u2." },
+      None } },
+    true),
   Row<Schnakenberg>("Schnakenberg", "F = s(b - u1 u2^2), G = s(a - u2 + u1 u2^2)",
     "J. Schnakenberg, J. Theor. Biol. 81, 1979",
-    { { { "ActivatorSupply", 0.01, Positive }, { "SubstrateSupply", 1.0, Positive }, None } },
+    { { { "ActivatorSupply", 0.01, Positive,
+          "a of Schnakenberg, above 0, in units of ReactionRate: the supply rate of u2." },
+      { "SubstrateSupply", 1.0, Positive,
+        "b of Schnakenberg, above 0, in units of ReactionRate: the supply rate of u1." },
+      None } },
     true),
   Row<GrayScott>("GrayScott", "F = 25 s(f(1 - u1) - u1 u2^2), G = 25 s(u1 u2^2 - (f + k) u2)",
     "P. Gray, S. Scott, Chem. Eng. Sci. 38, 1983; J. Pearson, Science 261, 1993",
-    { { { "FeedRate", 0.05, Positive }, { "KillRate", 0.06, Positive }, None } }, true),
+    { { { "FeedRate", 0.05, Positive,
+          "f of GrayScott, above 0, in units of 25 ReactionRate: the rate at which the solution is "
+          "replaced by fresh solution." },
+      { "KillRate", 0.06, Positive,
+        "k of GrayScott, above 0, in units of 25 ReactionRate: the removal rate of u2 in addition "
+        "to FeedRate." },
+      None } },
+    true),
   Row<Brusselator>("Brusselator", "F = s(B u2 - u1 u2^2), G = s(A - (B + 1) u2 + u1 u2^2)",
     "I. Prigogine, R. Lefever, J. Chem. Phys. 48, 1968",
-    { { { "ReactantA", 2.0, Positive }, { "ReactantB", 4.0, Positive }, None } }, true),
+    { { { "ReactantA", 2.0, Positive,
+          "A of Brusselator, above 0, in units of ReactionRate: the supply rate of u2." },
+      { "ReactantB", 4.0, Positive,
+        "B of Brusselator, above 0, in units of ReactionRate: the rate at which u2 is converted to "
+        "u1." },
+      None } },
+    true),
   Row<GiererMeinhardt>("GiererMeinhardt",
     "F = s nu(u2^2 - u1), G = s(u2^2/(u1 (1 + kappa u2^2)) - u2)",
     "A. Gierer, H. Meinhardt, Kybernetik 12, 1972",
-    { { { "InhibitorDecayRate", 1.05, Positive }, { "Saturation", 0.0, NonNegative }, None } },
+    { { { "InhibitorDecayRate", 1.05, Positive,
+          "nu of GiererMeinhardt, above 0, in units of ReactionRate: the decay rate of the "
+          "inhibitor u1." },
+      { "Saturation", 0.0, NonNegative,
+        "kappa of GiererMeinhardt, 0 or more, without a unit: the saturation of the activator u2. "
+        "With it, spots become stripes." },
+      None } },
     true),
   Row<FitzHughNagumo>("FitzHughNagumo",
     "F = s epsilon(u2 - beta u1 - alpha), G = s(u2 - u2^3 - u1)",
     "R. FitzHugh, Biophys. J. 1, 1961; J. Nagumo et al., Proc. IRE 50, 1962",
-    { { { "RecoveryRate", 1.2, Positive }, { "RecoveryDamping", 0.9, Positive },
-      { "Stimulus", 0.0, AnyFinite } } },
+    { { { "RecoveryRate", 1.2, Positive,
+          "epsilon of FitzHughNagumo, above 0, in units of ReactionRate: the rate of the recovery "
+          "variable u1." },
+      { "RecoveryDamping", 0.9, Positive,
+        "beta of FitzHughNagumo, above 0, without a unit: the damping of u1." },
+      { "Stimulus", 0.0, AnyFinite,
+        "alpha of FitzHughNagumo, without a unit: 0 gives labyrinths, other values give "
+        "spots." } } },
     false)
 };
 

@@ -40,6 +40,7 @@ struct Kinetics
     const char* Name; ///< nullptr: not used
     double Default; ///< makes a pattern if D1/D2 is about 8
     Range Allowed;
+    const char* Documentation; ///< with its unit
   };
 
   const char* Name;
