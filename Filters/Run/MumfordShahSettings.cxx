@@ -6,6 +6,7 @@
 #include "Core/Models/MumfordShah.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
+#include "Run/Rewording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,22 @@ MumfordShahSettings::MumfordShahSettings()
 
 void MumfordShahSettings::Visit(SettingVisitor& visitor)
 {
-  this->DataSettings::Visit(visitor);
+  Rewording reworded(visitor,
+    { { "TimeStep",
+        { "",
+          "The time between two states with GenerateTimeSteps, above 0, in any unit: the states "
+          "do not depend on it." } },
+      { "NumberOfTimeSteps",
+        { "", "The largest number of steps. 0: the output is the initial state." } },
+      { "Tolerance",
+        { "",
+          "The residual at which linear solves end, as a part of that at their start, between 0 "
+          "and 1. The result hardly depends on it." } },
+      { "FidelityWeight",
+        { "",
+          "A factor of lambda, without a unit: lambda is FidelityWeight/SmoothingLength^2. 0: "
+          "the data act only where they are held fixed." } } });
+  this->DataSettings::Visit(reworded);
   visitor.Switch({ "AutomaticThreshold", "",
                    "Find EdgeThreshold and SmoothingLength from the noise, the range without "
                    "outliers and the slopes of the data, for each connected component. The given "

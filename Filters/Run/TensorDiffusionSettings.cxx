@@ -4,6 +4,7 @@
 
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
+#include "Run/Rewording.h"
 
 #include <algorithm>
 #include <sstream>
@@ -30,7 +31,13 @@ constexpr double SmoothingTolerance = 1e-4;
 
 void TensorDiffusionSettings::Visit(SettingVisitor& visitor)
 {
-  this->DataSettings::Visit(visitor);
+  Rewording reworded(visitor,
+    { { "Tolerance",
+      { "",
+        "Relative residual at which iterative linear solvers stop, between 0 and 1. The change "
+        "of the data in a step is solved for, so that the tolerance is a part of this "
+        "change." } } });
+  this->DataSettings::Visit(reworded);
   visitor.Choice({ "Model", "",
                    "The diffusion tensor. Beltrami: keeps the edges of colours. "
                    "CoherenceEnhancing: smooths along lines and closes their gaps. "

@@ -3,6 +3,7 @@
 #include "Run/TotalVariationSettings.h"
 
 #include "Run/DataPreparation.h"
+#include "Run/Rewording.h"
 #include "Run/TotalVariationModels.h"
 
 #include <algorithm>
@@ -37,7 +38,12 @@ EdgeFunctionProperties PropertiesOf(EdgeFunctionKind kind)
 
 void TotalVariationSettings::Visit(SettingVisitor& visitor)
 {
-  this->DataSettings::Visit(visitor);
+  Rewording reworded(visitor,
+    { { "Tolerance",
+      { "",
+        "Relative residual at which the iterative solver of a FirstOrder step stops, between 0 "
+        "and 1." } } });
+  this->DataSettings::Visit(reworded);
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the minimiser "
                    "of the energy, computed directly. It requires EdgeFunction TotalVariation, "

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/MumfordShahSettings.h"
+#include "Run/OwnedSettings.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
@@ -240,4 +242,65 @@ TEST(Settings, PublishedTimesEndWithTheLastStep)
   EXPECT_EQ(settings.FindStep(1.9, 4), 3);
   EXPECT_EQ(settings.FindStep(2.0, 4), 4);
   EXPECT_EQ(settings.FindStep(3.5, 4), 4);
+}
+
+TEST(OwnedSettings, AreReadAndWrittenByNameAndType)
+{
+  const OwnedSettings owned = OwnedSettings::Make<HeatSettings>();
+  auto& settings = static_cast<HeatSettings&>(owned.Get());
+  double width = 0.0;
+  int choice = 0;
+  bool flag = true;
+  EXPECT_EQ(WriteSetting(owned.Get(), "FWHM", 2.5), SettingChange::Changed);
+  EXPECT_EQ(WriteSetting(owned.Get(), "FWHM", 2.5), SettingChange::None);
+  EXPECT_EQ(settings.FWHM, 2.5);
+  EXPECT_TRUE(ReadSetting(owned.Get(), "FWHM", width));
+  EXPECT_EQ(width, 2.5);
+  EXPECT_EQ(WriteSetting(owned.Get(), "Mode", 1), SettingChange::Changed);
+  EXPECT_EQ(settings.Mode, HeatMode::SteadyState);
+  EXPECT_TRUE(ReadSetting(owned.Get(), "Mode", choice));
+  EXPECT_EQ(choice, 1);
+  EXPECT_TRUE(ReadSetting(owned.Get(), "AutomaticFidelity", flag));
+  EXPECT_FALSE(flag);
+  for (const char* name : { "FWMH", "fwhm", "" })
+  {
+    EXPECT_EQ(WriteSetting(owned.Get(), name, 1.0), SettingChange::Unknown);
+    EXPECT_FALSE(ReadSetting(owned.Get(), name, width));
+  }
+  EXPECT_EQ(WriteSetting(owned.Get(), "FWHM", 1), SettingChange::Unknown); // it is no integer
+  EXPECT_EQ(WriteSetting(owned.Get(), "BlurSteps", 5.0), SettingChange::Unknown);
+  EXPECT_EQ(WriteSetting(owned.Get(), "BlurSteps", true), SettingChange::Unknown);
+  EXPECT_EQ(settings.FWHM, 2.5);
+  EXPECT_EQ(settings.Blur.Steps, 4);
+}
+
+TEST(OwnedSettings, CopiesAreIndependent)
+{
+  const OwnedSettings owned = OwnedSettings::Make<HeatSettings>();
+  WriteSetting(owned.Get(), "FWHM", 2.5);
+  const auto copy = std::dynamic_pointer_cast<HeatSettings>(owned.Copy());
+  ASSERT_NE(copy, nullptr);
+  WriteSetting(owned.Get(), "FWHM", 3.0);
+  EXPECT_EQ(copy->FWHM, 2.5);
+  copy->FWHM = 4.0;
+  double width = 0.0;
+  EXPECT_TRUE(ReadSetting(owned.Get(), "FWHM", width));
+  EXPECT_EQ(width, 3.0);
+}
+
+/// A reworded setting keeps its value, its range and its scope.
+TEST(OwnedSettings, OfAModelWithOtherWordsAreWrittenAndChecked)
+{
+  const OwnedSettings owned = OwnedSettings::Make<MumfordShahSettings>();
+  const SettingsSnapshot before(owned.Get(), SettingScope::Model);
+  EXPECT_EQ(WriteSetting(owned.Get(), "FidelityWeight", -1.0), SettingChange::Changed);
+  EXPECT_EQ(static_cast<MumfordShahSettings&>(owned.Get()).FidelityWeight, -1.0);
+  EXPECT_TRUE(before != SettingsSnapshot(owned.Get(), SettingScope::Model));
+  Problems problems;
+  CheckRanges(owned.Get(), problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0], "FidelityWeight is -1; allowed: finite numbers, 0 or more");
+  const SettingsSnapshot model(owned.Get(), SettingScope::Model);
+  EXPECT_EQ(WriteSetting(owned.Get(), "NumberOfTimeSteps", 3), SettingChange::Changed);
+  EXPECT_TRUE(model == SettingsSnapshot(owned.Get(), SettingScope::Model)); // of the output alone
 }

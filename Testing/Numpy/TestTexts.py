@@ -21,12 +21,9 @@ PROXIES = {
 
 #: Settings of all models that mean something else in a filter, whose proxy says what.
 OTHERWISE = {
-    "IntrinsicTVFilter": {"Tolerance"},
-    "MumfordShahFilter": {"TimeStep", "NumberOfTimeSteps", "Tolerance", "FidelityWeight"},
     "SurfaceSegmentationFilter": {
         "TimeStep", "NumberOfTimeSteps", "GenerateTimeSteps", "OutputInterval", "TimeIntegrator",
         "Solver", "Tolerance", "MaximumNumberOfIterations", "CheckpointMemoryLimit"},
-    "TensorDiffusionFilter": {"Tolerance"},
     "TuringTextureFilter": {"NumberOfTimeSteps"},
 }
 
