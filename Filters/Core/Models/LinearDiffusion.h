@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/DiffusionPanel.h"
 #include "Core/Models/Fidelity.h"
 #include "Core/Models/ImplicitSystem.h"
 #include "Core/Models/Model.h"
@@ -64,19 +65,14 @@ public:
 
 private:
   void Prepare(const ProgressMonitor& progress);
-  /// Call body(i, Shifts of the component) for every vertex i.
-  template <typename Body>
-  void ForEachShifted(const Body& body) const;
-  /// One step of the columns from `first` on that V has room for.
-  void AdvanceColumns(Eigen::Index first, StepReport& report, const ProgressMonitor& progress);
-  /// The loops over the vertices in a step of K columns, or of any number of them if K is 0.
-  template <int K>
-  void StartStep(Eigen::Index first);
-  template <int K>
-  void StartSecondStage(Eigen::Index first);
-  template <int K>
-  void FinishStep(Eigen::Index first);
-  void Solve(Eigen::Index first, StepReport& report, const ProgressMonitor& progress);
+  /// A step of `count` columns from `first` on, up to Panel.Finish().
+  void StepBackwardEuler(
+    Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress);
+  void StepSDIRK2(
+    Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress);
+  void StepToSteadyState(
+    Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress);
+  void Solve(StepReport& report, const ProgressMonitor& progress);
 
   std::shared_ptr<const Assembler> Assembly;
   CornerWeights Coefficients;
@@ -87,13 +83,8 @@ private:
   ImplicitSystem System;
   TotalCorrection Conserved;
   MeanCorrection Balanced;
+  DiffusionPanel Panel;
   bool Prepared = false;
-  /// A few columns at a time go through a step, so that their rows stay in the cache: u minus
-  /// Origin, and the right-hand side.
-  Values V, RightHandSide;
-  /// What the corrections add, component x column: loops over V that follow add it, too.
-  Values Shifts;
-  Eigen::RowVectorXd Origin; ///< mean of the start, from which values are measured in a step
 };
 
 } // namespace SurfaceDiffusion

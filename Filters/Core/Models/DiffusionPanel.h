@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Fidelity.h"
+#include "Core/Operators/MeanCorrection.h"
+
+namespace SurfaceDiffusion
+{
+
+/// The columns of a step of LinearDiffusion that are advanced together: few enough that their rows
+/// stay in the cache from loop to loop. Every loop passes over the vertices once, for a number of
+/// columns that the compiler knows, and adds the corrections of the solve before it on the way.
+/// Values are measured from the mean of the start, so that the errors of a solve are relative to the
+/// contrast of the data.
+class DiffusionPanel
+{
+public:
+  /// The arguments must outlive the panel. start: all columns at t = 0.
+  DiffusionPanel(const TriangleMesh& mesh, const PointData& data, const Fidelity& fit,
+    const Values& start, const ParallelFor& parallel);
+
+  /// The means of the start, per column.
+  const Eigen::RowVectorXd& Means() const { return this->Origin; }
+
+  /// Take columns first .. first + count - 1 of u into Solution, and
+  /// RightHandSide = M (inertia u + dt lambda chi f).
+  void StartStage(
+    const Values& u, Eigen::Index first, Eigen::Index count, double inertia, double dt);
+
+  /// After the first stage: RightHandSide = M (u + ratio (Solution - u) + dt lambda chi f).
+  void StartSecondStage(const Values& u, double ratio, double dt);
+
+  /// Give Solution the mean that the sum of the equations determines, once it has been computed.
+  void Correct(MeanCorrection& correction);
+
+  /// Put Solution into the columns of u, with the values of fixed vertices, and the integrals over
+  /// the surface that `conserved` restores.
+  void Finish(TotalCorrection& conserved, Values& u);
+
+  Eigen::Index First() const { return this->FirstColumn; }
+
+  Values Solution, RightHandSide;
+
+private:
+  template <int K>
+  void FillFirst(const Values& u, double inertia, double dt);
+  template <int K>
+  void FillSecond(const Values& u, double ratio, double dt);
+  template <int K>
+  void AddShifts();
+  template <int K>
+  void Store(Values& u);
+  /// Call body(i, Shifts of the component of i) for every vertex i.
+  template <typename Body>
+  void ForEachShifted(const Body& body) const;
+  const double* FirstOrigin() const { return this->Origin.data() + this->FirstColumn; }
+
+  const TriangleMesh& Mesh;
+  const PointData& Data;
+  const Fidelity& Fit;
+  const ParallelFor& Parallel;
+  Eigen::RowVectorXd Origin;
+  Eigen::Index FirstColumn = 0;
+  Values Shifts; ///< of the last correction, component x column: the loop that follows adds them
+};
+
+} // namespace SurfaceDiffusion
