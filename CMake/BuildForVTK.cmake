@@ -1,4 +1,4 @@
-# The parts that need VTK: the module with the filters, the Python package and ParaView's plugin.
+# The parts that need VTK: the module with the filters, the Python module and ParaView's plugin.
 
 # Dependencies. VTK's components are named because each one brings further packages in.
 if (NOT SURFACEDIFFUSION_HOST STREQUAL "VTK")
@@ -56,12 +56,12 @@ cmake_dependent_option(SURFACEDIFFUSION_BUILD_PLUGIN "Build the ParaView plugin"
 message(STATUS "SurfaceDiffusion: VTK ${VTK_VERSION}, "
   "ParaView ${ParaView_VERSION}, plugin ${SURFACEDIFFUSION_BUILD_PLUGIN}")
 
-# Installation folder of the Python package
+# Installation folder of the Python module
 if (SURFACEDIFFUSION_WRAP_PYTHON)
   vtk_module_python_default_destination(python_destination)
 endif ()
 set(SURFACEDIFFUSION_PYTHON_DIR "${python_destination}" CACHE STRING
-  "Where the Python package goes, relative to the prefix")
+  "Where the Python module goes, relative to the prefix")
 mark_as_advanced(SURFACEDIFFUSION_PYTHON_DIR)
 set(python_destination "${SURFACEDIFFUSION_PYTHON_DIR}")
 if (SKBUILD)
@@ -86,22 +86,21 @@ vtk_module_build(
   ${library_version}
   ENABLE_WRAPPING     ON)
 
-# The Python package
+# The Python module
 if (SURFACEDIFFUSION_WRAP_PYTHON)
   vtk_module_wrap_python(
     MODULES             ${modules}
-    PYTHON_PACKAGE      surfacediffusion
+    PYTHON_PACKAGE      vtkSurfaceDiffusion
     MODULE_DESTINATION  "${python_destination}"
     LIBRARY_DESTINATION "${library_destination}"
     CMAKE_DESTINATION   "${cmake_destination}"
     INSTALL_HEADERS     OFF
     BUILD_STATIC        OFF)
-  set(python_dir "${CMAKE_BINARY_DIR}/${python_destination}/surfacediffusion")
+  # A build folder from before 0.2 has the classes in a package of the name of that for numpy, too.
+  file(REMOVE_RECURSE "${CMAKE_BINARY_DIR}/${python_destination}/surfacediffusion")
+  set(python_dir "${CMAKE_BINARY_DIR}/${python_destination}/vtkSurfaceDiffusion")
   configure_file(CMake/__init__.py.in "${python_dir}/__init__.py" @ONLY)
-  configure_file(Python/pyvista.py "${python_dir}/pyvista.py" COPYONLY)
-  configure_file(Python/surfacediffusion/_meshes.py "${python_dir}/_meshes.py" COPYONLY)
-  set(python_files
-    "${python_dir}/__init__.py" "${python_dir}/pyvista.py" "${python_dir}/_meshes.py")
+  set(python_files "${python_dir}/__init__.py")
 
   # Types and documentation for editors, if this VTK has the generator. The generator loads the
   # module, which sanitizers do not allow.
@@ -129,7 +128,7 @@ if (SURFACEDIFFUSION_WRAP_PYTHON)
     list(APPEND python_files "${stubs}" "${python_dir}/py.typed")
   endif ()
   install(FILES ${python_files}
-    DESTINATION "${python_destination}/surfacediffusion" COMPONENT python)
+    DESTINATION "${python_destination}/vtkSurfaceDiffusion" COMPONENT python)
 endif ()
 
 # The ParaView plugin, and the toolbar with the macros if Qt and VTK's Python interpreter are found

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Write surfacediffusion/vtkSurfaceDiffusion.pyi for editors, which cannot read a compiled module:
+"""Write vtkSurfaceDiffusion/vtkSurfaceDiffusion.pyi for editors, which cannot read a compiled module:
 the types from VTK's own generator, and the documentation of the headers.
 
-    make_stubs.py <folder of the package>
+    make_stubs.py <folder of vtkSurfaceDiffusion>
 """
 
 import inspect
@@ -14,10 +14,10 @@ import sys
 sys.path.insert(0, sys.argv[1])
 from vtkmodules import generate_pyi  # noqa: E402
 
-import surfacediffusion.vtkSurfaceDiffusion as module  # noqa: E402
+import vtkSurfaceDiffusion.vtkSurfaceDiffusion as module  # noqa: E402
 
-folder = pathlib.Path(sys.argv[1]) / "surfacediffusion"
-generate_pyi.main(["generate_pyi", "-p", "surfacediffusion", "-o", str(folder), "vtkSurfaceDiffusion"])
+folder = pathlib.Path(sys.argv[1]) / "vtkSurfaceDiffusion"
+generate_pyi.main(["generate_pyi", "-p", folder.name, "-o", str(folder), "vtkSurfaceDiffusion"])
 
 
 def documentation(thing, indent):
