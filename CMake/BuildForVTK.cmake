@@ -96,7 +96,7 @@ if (SURFACEDIFFUSION_WRAP_PYTHON)
     CMAKE_DESTINATION   "${cmake_destination}"
     INSTALL_HEADERS     OFF
     BUILD_STATIC        OFF)
-  # A build folder from before 0.2 has the classes in a package of the name of that for numpy, too.
+  # Where the classes of earlier sources are in this build folder; it would hide the package for numpy.
   file(REMOVE_RECURSE "${CMAKE_BINARY_DIR}/${python_destination}/surfacediffusion")
   set(python_dir "${CMAKE_BINARY_DIR}/${python_destination}/vtkSurfaceDiffusion")
   configure_file(CMake/__init__.py.in "${python_dir}/__init__.py" @ONLY)

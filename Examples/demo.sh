@@ -51,7 +51,7 @@ display=()
 if [ -z "${DISPLAY:-}" ]; then
   display=(xvfb-run -a -s "-screen 0 1024x768x24 -noreset")
 fi
-modules=$(dirname "$(find build/lib -type d -name surfacediffusion -path '*-packages/*' | head -1)")
+modules=$(dirname "$(find build/lib -type d -name vtkSurfaceDiffusion -path '*-packages/*' | head -1)")
 export PYTHONPATH=$PWD/$modules${PYTHONPATH:+:$PYTHONPATH}
 mkdir -p build/demo
 (cd build/demo && "${display[@]}" "$python" ../../Examples/Python/overview.py \

@@ -22,7 +22,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-from surfacediffusion import vtkFVMHeatFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter
 
 AROUND, ACROSS = 120, 48  # cells
 RADIUS, TUBE = 1.0, 0.4

@@ -25,7 +25,7 @@ from paper_figures import (
     Example, FigureError, FRONT, arguments, prepared, psnr, shown, update,
 )
 from pictures import Panel, save_picture
-from surfacediffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter, vtkTensorDiffusionFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter, vtkTensorDiffusionFilter
 
 COLOUR = 0.2  # standard deviation of the noise of colour alone
 NOISES = (0.1, 0.2, 0.4, "colour")

@@ -16,7 +16,7 @@ from paper_figures import (
     ABOVE, Example, FigureError, FRONT, arguments, painted, prepared, psnr, shown, solve_best, update,
 )
 from pictures import Panel, save_picture
-from surfacediffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter
 
 WIDTH = 4  # of the blur, in mean edge lengths
 NOISE = 0.02  # standard deviation, as a fraction of the range

@@ -30,7 +30,7 @@ from surface_data import (
     DataError, array_of, make_surface, points_of, read_conte69, triangles_of, with_arrays,
 )
 
-from surfacediffusion import vtkFVMHeatFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter
 
 WIDTH = 6  # of the blur, in mm
 WEIGHT = 20  # of fidelity, in natural units

@@ -24,7 +24,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 import surface_data as data
 from pictures import Panel, colour_table, display_missing, save_picture
-from surfacediffusion import vtkFVMHeatFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter
 
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 CELLS = vtkDataObject.FIELD_ASSOCIATION_CELLS

@@ -30,7 +30,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-from surfacediffusion import vtkHarmonicMapFilter
+from vtkSurfaceDiffusion import vtkHarmonicMapFilter
 
 # For each surface: view direction, up direction, and the ball that the close-up shows: its centre
 # as fractions of the bounding box and its radius as a fraction of the longest side.

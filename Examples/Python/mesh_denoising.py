@@ -35,7 +35,7 @@ from surface_data import (
     with_arrays)
 from vtkmodules.vtkFiltersCore import vtkWindowedSincPolyDataFilter
 
-from surfacediffusion import vtkSurfaceDenoisingFilter
+from vtkSurfaceDiffusion import vtkSurfaceDenoisingFilter
 
 PASS_BANDS = (0.3, 0.1, 0.03, 0.01, 0.003)
 LARGEST_ANGLE = 20  # of the colours, in degrees

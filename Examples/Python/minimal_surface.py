@@ -24,7 +24,7 @@ from pictures import Panel, colour_table, display_missing, save_picture
 from surface_data import array_of, make_surface, mean_edge_length, points_of, triangles_of, with_arrays
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from surfacediffusion import vtkFVMHeatFilter, vtkTensorDiffusionFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter, vtkTensorDiffusionFilter
 
 HALF = 1.2  # of the width of the square; Scherk's surface ends at pi/2
 

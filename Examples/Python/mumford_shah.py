@@ -35,7 +35,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkTubeFilter
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from surfacediffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter, vtkMumfordShahFilter
 
 NOISE = 0.04  # standard deviation, of the range of the colours
 VIEW = {"elephant": ((0.75, 0.12, 0.65), (0, 1, 0))}

@@ -12,8 +12,8 @@ import sys
 import time
 
 import numpy as np
-import surfacediffusion as sd
 import surface_data as data
+import vtkSurfaceDiffusion as sd
 from pictures import Panel, colour_table, display_missing, save_picture
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 

@@ -28,7 +28,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 import surface_data as data
 from pictures import Panel, display_missing, save_picture
-from surfacediffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter
+from vtkSurfaceDiffusion import vtkFVMHeatFilter, vtkIntrinsicTVFilter
 
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 DATA, MASK = 0, 1  # the filters' input arrays

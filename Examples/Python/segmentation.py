@@ -41,7 +41,7 @@ from vtkmodules.vtkFiltersHybrid import vtkEarthSource
 from vtkmodules.vtkFiltersSources import vtkPlatonicSolidSource, vtkSphereSource
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from surfacediffusion import vtkSurfaceSegmentationFilter
+from vtkSurfaceDiffusion import vtkSurfaceSegmentationFilter
 
 WATER, LAND = np.array([0.36, 0.58, 0.78]), np.array([0.80, 0.76, 0.52])
 TISSUE = [(0.22, 0.32, 0.62), (0.55, 0.72, 0.80), (0.95, 0.91, 0.78), (0.93, 0.62, 0.36),

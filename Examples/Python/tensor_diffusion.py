@@ -31,7 +31,7 @@ from surface_data import (
     array_of, mean_edge_length, pebble, points_of, read_mesh, refined, with_arrays)
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from surfacediffusion import (
+from vtkSurfaceDiffusion import (
     vtkFVMHeatFilter, vtkSurfaceDirectionFieldFilter, vtkTensorDiffusionFilter,
     vtkTuringTextureFilter)
 

@@ -34,7 +34,7 @@ from surface_data import (
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from surfacediffusion import vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter
+from vtkSurfaceDiffusion import vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter
 
 try:
     from scipy.sparse import coo_matrix

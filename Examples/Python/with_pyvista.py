@@ -9,8 +9,8 @@ heat(mesh, array, ...) takes a pyvista.PolyData and returns a new one, as intrin
 harmonic_map(), turing_texture() and direction_field() do. The program writes with_pyvista.png if
 there is a display.
 
-Try next: intrinsic_tv(mesh, name), which preserves the edges of the data; harmonic_map(mesh,
-MoveVertices=True), which denoises the mesh itself.
+Try next: intrinsic_tv(mesh, name), which preserves the edges of the data; denoise_mesh(mesh),
+which denoises the mesh itself. pip install ".[pyvista]" in a clone of the repository installs the package.
 """
 
 import os
@@ -32,7 +32,7 @@ else:
     mesh, name = pyvista.Icosphere(nsub=5), "height"
     mesh[name] = mesh.points[:, 2] + np.random.default_rng(1).normal(scale=0.2, size=mesh.n_points)
 
-smooth = heat(mesh, name, FWHM=0.1 * mesh.length)
+smooth = heat(mesh, name, fwhm=0.1 * mesh.length)
 
 result = smooth[name + "Diffused"]
 print(f"{name}: standard deviation {mesh[name].std():.3f}, smoothed {result.std():.3f}")

@@ -24,10 +24,14 @@
 return an array; with ``full_output=True`` the first three return a result with history and times, and
 `denoise_mesh` one with the noise level that it found. `harmonic_map`, `mumford_shah` and
 `turing_texture` return a result, since theirs is more than one array. Keywords are the properties of
-the filters for VTK and ParaView in snake_case. The results have the same bits.
+the filters for VTK and ParaView in snake_case. The results have the same bits. The classes of VTK are
+in a module of their own, ``vtkSurfaceDiffusion``, which may be installed beside this package.
 """
 
+import importlib as _importlib
 import os as _os
+import typing as _typing
+import warnings as _warnings
 from importlib.metadata import version as _version
 
 from . import _core
@@ -56,3 +60,22 @@ __all__ = [
 
 if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(after_in_child=_core.after_fork)
+
+if not _typing.TYPE_CHECKING:  # otherwise type checkers would accept every name
+    def __getattr__(name):
+        """The classes of VTK, which were once in a package of this name."""
+        if not name.startswith("vtk"):
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        try:
+            classes = _importlib.import_module("vtkSurfaceDiffusion")
+        except ModuleNotFoundError as error:
+            if error.name != "vtkSurfaceDiffusion":
+                raise
+            raise ImportError(
+                f"{name} is in the module vtkSurfaceDiffusion, which is not installed (pip install "
+                "Packaging/VTK); surfacediffusion has functions of arrays and PyVista meshes",
+                name="vtkSurfaceDiffusion") from None
+        found = getattr(classes, name)
+        _warnings.warn(f"{name} of surfacediffusion is deprecated: import it from vtkSurfaceDiffusion",
+                       DeprecationWarning, stacklevel=2)
+        return found

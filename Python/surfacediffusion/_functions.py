@@ -176,16 +176,20 @@ def _take(name: str, values: Any, surface: Surface, on_faces: bool | None) -> tu
     return as_data(name, values, surface.n_faces, "face"), True
 
 
+def exclude_outside(mask: Any, properties: dict[str, Any]) -> None:
+    """Set mask_mode for a region of interest, beside which no mask is given."""
+    if mask is not None:
+        raise ValueError("mask and roi are both given; allowed: one of them")
+    mode = properties.setdefault("mask_mode", "Exclude")
+    if mode not in ("Exclude", "exclude"):
+        raise ValueError(f"mask_mode is {shorten(mode)} with roi; allowed with roi: Exclude")
+
+
 def _as_mask(mask: Any, roi: Any, surface: Surface, properties: dict[str, Any]) -> Any:
     """The mask, or that of the region of interest, which sets mask_mode."""
     if roi is None:
         return mask
-    if mask is not None:
-        raise ValueError("mask and roi are both given; allowed: one of them")
-    mode = properties.get("mask_mode", "Exclude")
-    if mode not in ("Exclude", "exclude"):
-        raise ValueError(f"mask_mode is {shorten(mode)} with roi; allowed with roi: Exclude")
-    properties["mask_mode"] = mode
+    exclude_outside(mask, properties)
     outside = as_outside(roi, surface.n_points, surface.n_faces)
     return outside if outside.any() else None
 
@@ -209,10 +213,6 @@ def _diffusion(
     given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
                   directions=directions, fidelity=fidelity, integers=has_integers(values))
     runner = Runner(name, properties, ARRAYS)
-    if name == "heat" and not (properties.get("fwhm") or {"time_step", "mode"} & set(properties)):
-        # The width of the default time step would depend on the mesh.
-        raise ValueError("heat() has no width; allowed: one of fwhm (the width of a "
-                         "Gaussian, in coordinate units), time_step and mode")
 
     def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
         result = make_diffusion(run, 0, given, runner, dtype, found)

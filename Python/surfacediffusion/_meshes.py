@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The surfaces of PyVista meshes. The module `pyvista` for the VTK classes has this file, too."""
+"""The surfaces of PyVista meshes."""
 
 from __future__ import annotations
 

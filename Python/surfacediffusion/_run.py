@@ -176,6 +176,11 @@ class Runner:
         self.function, self.arrays = function, arrays
         off = {switch: False for name, switch in _FOUND.get(function, {}).items() if name in properties}
         self.settings = convert_all(function, {**off, **properties})
+        if function == "heat" and not (
+                properties.get("fwhm") or {"time_step", "mode"} & set(properties)):
+            # The width of the default time step would depend on the mesh.
+            raise ValueError("heat() has no width; allowed: one of fwhm (the width of a "
+                             "Gaussian, in coordinate units), time_step and mode")
         interval = settings_of(function).get("output_interval")
         self.interval = self.settings.get("OutputInterval", interval.default if interval else 1)
 

@@ -5,8 +5,8 @@
     from surfacediffusion.pyvista import heat
 
     smooth = heat(mesh, "thickness", fwhm=10)  # adds the point array "thicknessDiffused"
-    states = heat(mesh, "thickness", times=[0, 1, 2, 4])  # a list of four meshes
-    smooth, result = heat(mesh, "thickness", full_output=True)
+    states = heat(mesh, "thickness", time_step=1, times=[0, 1, 2, 4])  # a list of four meshes
+    smooth, result = heat(mesh, "thickness", fwhm=10, full_output=True)
     result.history["Energy"]
 
 With PyVista 0.48 or newer they are also methods, without an import: mesh.diffusion.heat("thickness",
@@ -20,6 +20,8 @@ array      the data: point array (n,) or (n, k) of any numeric type, NaN is miss
            with m rows, whose result is a cell array unless result_on_faces=False; default: the
            active scalars
 mask       point or cell array, nonzero is missing (or excluded with mask_mode="Exclude")
+roi        point or cell array, the region of interest, nonzero is inside: the opposite of a mask with
+           mask_mode="Exclude", and in place of one
 direction  point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along
 fixed      point or cell array, nonzero holds the value fixed (Dirichlet condition)
 fidelity   point or cell array, factors of fidelity_weight, 0 or more
@@ -30,7 +32,8 @@ one. full_output: if True, the function returns a pair: the mesh or the list, an
 MultiBlock, or with times, the list of them). progress: True or a callable, as for arrays.
 result_array_name: in place of the default, and the prefix of the names of further arrays. All other
 keywords are those of the functions on arrays, also in the spelling of VTK and ParaView: FWHM=10 is
-fwhm=10.
+fwhm=10. In place of OutputPrecision there is dtype. As for arrays, heat() needs a width: one of fwhm,
+time_step and mode. The results have the bits of the classes in the module vtkSurfaceDiffusion.
 
 Errors: TypeError if the mesh is not a surface, with the remedy; ValueError if an array or a keyword
 is not allowed, with a message that names it, what was found and what is allowed.
@@ -48,6 +51,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import direction_field as _direction_field
+from ._functions import exclude_outside
 from ._functions import segment as _segment
 from ._meshes import find_polydata
 from ._models import (
@@ -57,7 +61,7 @@ from ._models import (
 from ._result import Result
 from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
-from ._surface import Surface, as_data, has_integers
+from ._surface import Surface, as_data, as_outside, has_integers
 
 __all__ = [
     "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
@@ -68,9 +72,10 @@ _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
 
 def heat(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
+    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
+    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
 ) -> Any:
     """Smooth, denoise or inpaint an array by linear diffusion.
 
@@ -78,14 +83,15 @@ def heat(
     in help(surfacediffusion.heat). The result is the array <array>Diffused, with the shape of
     the data.
     """
-    return _run("heat", mesh, array, (mask, direction, fixed, None, fidelity), times, full_output,
+    return _run("heat", mesh, array, (mask, roi, direction, fixed, None, fidelity), times, full_output,
                 progress, properties)
 
 
 def intrinsic_tv(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
+    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
+    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
 ) -> Any:
     """Denoise or inpaint an array and preserve its edges.
 
@@ -93,14 +99,15 @@ def intrinsic_tv(
     in help(surfacediffusion.intrinsic_tv). The result is the array <array>TV, with the shape of
     the data.
     """
-    return _run("intrinsic_tv", mesh, array, (mask, direction, fixed, None, fidelity), times,
+    return _run("intrinsic_tv", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
                 full_output, progress, properties)
 
 
 def harmonic_map(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
+    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
+    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
 ) -> Any:
     """Regularise normals or other unit vectors, or denoise the mesh.
 
@@ -110,30 +117,32 @@ def harmonic_map(
     point array <array>Harmonic (n, k); NormalsHarmonic for computed normals. With move_vertices=True
     the points are moved.
     """
-    return _run("harmonic_map", mesh, array, (mask, direction, fixed, None, fidelity), times,
+    return _run("harmonic_map", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
                 full_output, progress, properties)
 
 
 def mumford_shah(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
+    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
+    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
 ) -> Any:
     """Find the edges of an array, and smooth or inpaint the data between them.
 
     The arguments are those of heat(); the functional and all other keywords are in
     help(surfacediffusion.mumford_shah). The results are the arrays <array>MumfordShah, with
     the shape of the data, and Edges (n,). The curves along the edges are `curves` of the report that
-    full_output=True returns, a list of arrays of points.
+    full_output=True returns, a list of arrays of points; pyvista.MultipleLines(curve) is a mesh of one.
     """
-    return _run("mumford_shah", mesh, array, (mask, direction, fixed, None, fidelity), times,
+    return _run("mumford_shah", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
                 full_output, progress, properties)
 
 
 def tensor_diffusion(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, fidelity: str | None = None, times: Sequence[float] | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
+    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
+    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
 ) -> Any:
     """Smooth an array along its own edges or lines.
 
@@ -142,14 +151,15 @@ def tensor_diffusion(
     <array>Coherent or <array>EdgeEnhanced, with the shape of the data; with diffusion_axes=True there
     is the cell array DiffusionAxes (m, 3), too.
     """
-    return _run("tensor_diffusion", mesh, array, (mask, direction, fixed, None, fidelity), times,
+    return _run("tensor_diffusion", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
                 full_output, progress, properties)
 
 
 def turing_texture(
-    mesh: Any, initial: str | None = None, *, mask: str | None = None, direction: str | None = None,
-    fixed: str | None = None, rates: str | None = None, times: Sequence[float] | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    mesh: Any, initial: str | None = None, *, mask: str | None = None, roi: str | None = None,
+    direction: str | None = None, fixed: str | None = None, rates: str | None = None,
+    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
 ) -> Any:
     """Grow a texture on the mesh by reaction and diffusion.
 
@@ -158,14 +168,14 @@ def turing_texture(
     equation and all other keywords in help(surfacediffusion.turing_texture). The results are the
     point arrays u1, u2 and Texture (n,), and TextureColor (n, 3) with color_output=True.
     """
-    return _run("turing_texture", mesh, initial, (mask, direction, fixed, rates, None), times,
+    return _run("turing_texture", mesh, initial, (mask, roi, direction, fixed, rates, None), times,
                 full_output, progress, properties)
 
 
 def segment(
     mesh: Any, array: str | None = None, *, terms: str | None = None, seeds: str | None = None,
-    mask: str | None = None, fidelity: str | None = None, full_output: bool = False,
-    progress: Progress = False, **properties: Any,
+    mask: str | None = None, roi: str | None = None, fidelity: str | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Divide the mesh into regions with short boundaries.
 
@@ -192,7 +202,7 @@ def segment(
             raise ValueError("the data are a cell array of triangle strips; allowed: polygons, for "
                              "example mesh.triangulate()")
         marks = {argument: block.find(argument, given, faces=True)[0] for argument, given in (
-            ("seeds", seeds), ("mask", mask), ("fidelity", fidelity))}
+            ("seeds", seeds), ("mask", mask), ("roi", roi), ("fidelity", fidelity))}
         values = data if terms is None else None
         result = _segment(block.surface, values, terms=None if terms is None else data,
                           on_faces=on_faces, progress=progress, **marks, **properties)
@@ -440,10 +450,13 @@ def _prepare(
     if on_faces and block.has_strips:
         raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
                          "polygons, for example mesh.triangulate()")
-    mask, direction, fixed, rates, fidelity = names
+    mask, roi, direction, fixed, rates, fidelity = names
     directions, directed_faces = block.find("direction", direction, faces=True)
     marks = {argument: block.find(argument, given, faces=True)[0]
              for argument, given in (("mask", mask), ("fixed", fixed), ("fidelity", fidelity))}
+    if roi is not None:
+        outside = as_outside(block.find("roi", roi, faces=True)[0], surface.n_points, surface.n_faces)
+        marks["mask"] = outside if outside.any() else None
     block.given = Input(
         surface, data, data_on_faces=on_faces, directions=directions,
         directions_name="direction", on_faces=directed_faces, integers=integers,
@@ -457,6 +470,16 @@ def _suffix(function: str, runner: Runner) -> str:
     return _SUFFIXES.get(function, "")
 
 
+def _activate_vectors(data: Any, name: str, values: Any, are_normals: bool) -> None:
+    """Make a result of harmonic_map active: as normals if the vectors were these or computed."""
+    if are_normals:
+        data.SetActiveNormals(name)
+    elif values.shape[1] == 3 and values.dtype != np.uint8:
+        data.SetActiveVectors(name)
+    else:
+        data.SetActiveScalars(name)
+
+
 def _write_cells(
     function: str, block: _Block, result: Any, name: str | None, suffix: str
 ) -> None:
@@ -468,10 +491,11 @@ def _write_cells(
     cells[active] = values
     if function == "mumford_shah":
         block.add((name or "") + "Edges", result.edges, True)
-    if function != "harmonic_map":
+    if function == "harmonic_map":
+        _activate_vectors(block.mesh.GetCellData(), active, values,
+                          block.name == block.input.cell_data.active_normals_name)
+    else:
         block.mesh.set_active_scalars(active, preference="cell")
-    elif block.name == block.input.cell_data.active_normals_name:
-        block.mesh.GetCellData().SetActiveNormals(active)
 
 
 def _write(
@@ -482,7 +506,7 @@ def _write(
     points = block.mesh.point_data
     values = result.values
     if function == "tensor_diffusion" and len(result.axes) > 0:
-        block.mesh.cell_data[(name or "") + "DiffusionAxes"] = result.axes
+        block.add((name or "") + "DiffusionAxes", result.axes, True)
     if on_faces:
         _write_cells(function, block, result, name, suffix)
         return
@@ -503,10 +527,11 @@ def _write(
     source = given if block.name in given else block.input.cell_data
     single = block.name in source and source[block.name].ndim == 1
     points[active] = values[:, 0] if single else values
-    if function != "harmonic_map":
+    if function == "harmonic_map":
+        _activate_vectors(block.mesh.GetPointData(), active, values,
+                          block.name not in source or block.name == given.active_normals_name)
+    else:
         block.mesh.set_active_scalars(active, preference="point")
-    elif block.name in ("Normals", given.active_normals_name):
-        block.mesh.GetPointData().SetActiveNormals(active)
     if function == "harmonic_map" and result.mean_displacement > 0.0:
         block.move(result.points)
 
@@ -516,6 +541,8 @@ def _run(
     times: Sequence[float] | None, full_output: bool, progress: Progress, properties: dict[str, Any],
 ) -> Any:
     properties, result_name = _keywords(function, properties)
+    if names[1] is not None:
+        exclude_outside(names[0], properties)
     dtype = properties.pop("dtype", None)
     colors = as_colors(properties.pop("low_color", (0.16, 0.09, 0.05)),
                        properties.pop("high_color", (0.93, 0.80, 0.58)))

@@ -22,7 +22,7 @@ from vtkmodules.vtkCommonCore import vtkLogger
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals, vtkSmoothPolyDataFilter
 from vtkmodules.vtkFiltersGeometry import vtkAttributeSmoothingFilter
 
-from surfacediffusion import vtkHarmonicMapFilter
+from vtkSurfaceDiffusion import vtkHarmonicMapFilter
 
 
 def seconds_of(work):

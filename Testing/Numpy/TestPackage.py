@@ -41,6 +41,7 @@ BAD = {
     "harmonic_map(sphere(), steps=True).points": "points",
     'denoise_mesh(sphere(), surface_type="Metal")': "surface_type",
     "denoise_mesh(sphere()).noise_level": "noise_level",
+    "surfacediffusion.vtkFVMHeatFilter()": "vtkFVMHeatFilter",
 }
 
 
@@ -66,6 +67,15 @@ class Package(unittest.TestCase):
         code = "import sys, surfacediffusion; sys.exit(any('vtk' in name for name in sys.modules))"
         subprocess.run([sys.executable, "-c", code], check=True)
 
+    def test_classes_of_vtk_are_an_error_that_says_where_they_are(self):
+        if importlib.util.find_spec("vtkSurfaceDiffusion"):
+            self.skipTest("vtkSurfaceDiffusion is installed")
+        with self.assertRaisesRegex(ImportError, "^vtkFVMHeatFilter is in the module vtkSurfaceDiff"
+                                    "usion, which is not installed [^\n]*$"):
+            from surfacediffusion import vtkFVMHeatFilter  # noqa: F401
+        with self.assertRaisesRegex(ImportError, "cannot import name 'smooth'"):
+            from surfacediffusion import smooth  # noqa: F401
+
     def test_numpy_is_the_only_requirement(self):
         required = importlib.metadata.requires("surfacediffusion")
         self.assertEqual([line for line in required if "extra" not in line], ["numpy>=1.21"])
@@ -82,7 +92,7 @@ class Package(unittest.TestCase):
 
             good = check(GOOD)
             self.assertEqual(good.returncode, 0, good.stdout + good.stderr)
-            imports = "from surfacediffusion import denoise_mesh, heat, harmonic_map, sphere\n"
+            imports = "import surfacediffusion; from surfacediffusion import denoise_mesh, heat, harmonic_map, sphere\n"
             found = check(imports + "\n".join(BAD)).stdout
             for line, (statement, word) in enumerate(BAD.items(), 2):
                 of_line = [text for text in found.splitlines() if f"program.py:{line}:" in text]

@@ -44,12 +44,47 @@ class Meshes(unittest.TestCase):
         self.assertNotIn("fDiffused", mesh.array_names)
         self.assertEqual(mesh.active_scalars_name, before)
 
+    def test_heat_without_a_width_is_the_error_of_the_arrays(self):
+        mesh = noisy_sphere()
+        for keywords in ({}, {"times": [0, 1]}, {"fwhm": 0}, {"number_of_time_steps": 3}):
+            with self.assertRaisesRegex(ValueError, "has no width; allowed: one of fwhm"):
+                heat(mesh, "f", **keywords)
+        for keywords in ({"TimeStep": 1.0}, {"Mode": "SteadyState"}, {"FWHM": 0.1}):
+            self.assertIn("fDiffused", heat(mesh, "f", **keywords).array_names)
+
+    def test_region_of_interest_is_that_of_the_arrays(self):
+        mesh = noisy_sphere()
+        mesh["roi"] = np.where(mesh["hole"] == 0, 1.0, np.nan)
+        mesh.cell_data["faces"] = (mesh.cell_centers().points[:, 0] > 0.2).astype(int)
+        for name in ("roi", "faces"):
+            roi = mesh.point_data[name] if name == "roi" else mesh.cell_data[name]
+            inside = heat(mesh, "f", roi=name, fwhm=0.4)["fDiffused"]
+            np.testing.assert_array_equal(
+                inside, sd.heat(as_surface(mesh), mesh["f"], roi=roi, fwhm=0.4))
+        outside = mesh["hole"] != 0
+        for function, name in ((intrinsic_tv, "fTV"), (tensor_diffusion, "fBeltrami"),
+                               (mumford_shah, "fMumfordShah")):
+            found = function(mesh, "f", roi="roi", number_of_time_steps=1)[name]
+            np.testing.assert_array_equal(found[outside], mesh["f"][outside])
+            self.assertFalse((found == mesh["f"]).all())
+        np.testing.assert_array_equal(segment(mesh, "f", roi="roi")["RegionId"] == 0, outside)
+        mesh["all"] = np.ones(mesh.n_points)
+        np.testing.assert_array_equal(heat(mesh, "f", roi="all", fwhm=0.4)["fDiffused"],
+                                      heat(mesh, "f", fwhm=0.4)["fDiffused"])
+        mesh["none"] = np.zeros(mesh.n_points)
+        for keywords, words in (({"mask": "hole"}, "mask and roi are both given"),
+                                ({"MaskMode": "Inpaint"}, "mask_mode is 'Inpaint' with roi"),
+                                ({"roi": "none"}, "roi is 0 everywhere"),
+                                ({"roi": "nothing"}, "roi is 'nothing'; allowed: point or cell")):
+            with self.assertRaisesRegex(ValueError, words):
+                heat(mesh, "f", fwhm=0.4, **{"roi": "roi", **keywords})
+
     def test_both_spellings_of_keywords(self):
         mesh = noisy_sphere()
         np.testing.assert_array_equal(
             heat(mesh, "f", FWHM=0.4, NumberOfTimeSteps=3)["fDiffused"],
             heat(mesh, "f", fwhm=0.4, number_of_time_steps=3)["fDiffused"])
-        self.assertIn("g", heat(mesh, "f", ResultArrayName="g").array_names)
+        self.assertIn("g", heat(mesh, "f", fwhm=0.4, ResultArrayName="g").array_names)
 
     def test_every_function(self):
         mesh = noisy_sphere()
@@ -58,7 +93,7 @@ class Meshes(unittest.TestCase):
         mesh.cell_data["rates"] = np.tile([21.0, 10.0, 2.6, 1.0], (mesh.n_cells, 1))
         self.assertIn("fTV", intrinsic_tv(mesh, "f", mask="hole").array_names)
         for name in ("east", "flow"):
-            self.assertIn("fDiffused", heat(mesh, "f", direction=name, along_diffusivity=3.0,
+            self.assertIn("fDiffused", heat(mesh, "f", direction=name, time_step=1, along_diffusivity=3.0,
                                             fixed="hole").array_names)
         texture = turing_texture(mesh, rates="rates", direction="flow", number_of_time_steps=3,
                                  color_output=True)
@@ -159,13 +194,15 @@ class Meshes(unittest.TestCase):
 
     def test_times_and_history(self):
         mesh = noisy_sphere()
-        states, results = heat(mesh, "f", times=[3.0, 0.0, 1.5, 99.0], full_output=True)
+        states, results = heat(mesh, "f", time_step=1.0, times=[3.0, 0.0, 1.5, 99.0],
+                               full_output=True)
         np.testing.assert_array_equal(states[1]["fDiffused"], mesh["f"])
         for state, steps in zip(states, (3, 0, 1, 10)):
             np.testing.assert_array_equal(
-                state["fDiffused"], heat(mesh, "f", number_of_time_steps=steps)["fDiffused"])
+                state["fDiffused"],
+                heat(mesh, "f", time_step=1.0, number_of_time_steps=steps)["fDiffused"])
         self.assertEqual([result.step for result in results], [3, 0, 1, 10])
-        _, result = heat(mesh, "f", full_output=True)
+        _, result = heat(mesh, "f", time_step=1, full_output=True)
         self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
 
     def test_blocks_share_their_units_and_empty_ones_pass(self):
@@ -174,7 +211,7 @@ class Meshes(unittest.TestCase):
                                      "nested": pyvista.MultiBlock({"b": far}),
                                      "bare": pyvista.Plane()})
         blocks["a"].points *= 2.0
-        output, results = heat(blocks, "f", full_output=True)
+        output, results = heat(blocks, "f", time_step=1, full_output=True)
         self.assertEqual(list(output.keys()), list(blocks.keys()))
         self.assertEqual(len(results), 2)
         self.assertEqual(results[0].mean_edge_length, results[1].mean_edge_length)
@@ -212,7 +249,7 @@ class Meshes(unittest.TestCase):
         mesh = noisy_sphere()
         np.testing.assert_array_equal(mesh.diffusion.heat("f", fwhm=0.4)["fDiffused"],
                                       heat(mesh, "f", fwhm=0.4)["fDiffused"])
-        self.assertIn("fDiffused", pyvista.MultiBlock([mesh]).diffusion.heat("f")[0].array_names)
+        self.assertIn("fDiffused", pyvista.MultiBlock([mesh]).diffusion.heat("f", fwhm=1)[0].array_names)
 
     def test_answers_to_other_data(self):
         mesh = noisy_sphere()
@@ -220,29 +257,29 @@ class Meshes(unittest.TestCase):
                       mesh.cast_to_unstructured_grid(),
                       pyvista.MultiBlock([mesh, mesh.cast_to_unstructured_grid()])):
             with self.assertRaisesRegex(TypeError, "allowed: pyvista.PolyData.*extract_surface"):
-                heat(other, "f")
+                heat(other, "f", fwhm=1)
         with self.assertRaisesRegex(TypeError, "the mesh is a (pyvista_)?ndarray; allowed: pyvista.PolyData"):
-            heat(np.asarray(mesh.points), "f")
+            heat(np.asarray(mesh.points), "f", fwhm=1)
         with self.assertRaisesRegex(ValueError, "array is 'g'; allowed: point or cell arrays, 'f', 'hole'"):
-            heat(mesh, "g")
+            heat(mesh, "g", fwhm=1)
         with self.assertRaisesRegex(ValueError, "mask is 'h'; allowed: point or cell arrays, 'f', 'hole'"):
-            heat(mesh, "f", mask="h")
+            heat(mesh, "f", mask="h", fwhm=1)
         with self.assertRaisesRegex(ValueError, "the mesh is empty"):
-            heat(pyvista.PolyData(), "f")
+            heat(pyvista.PolyData(), "f", fwhm=1)
         with self.assertRaisesRegex(ValueError, "the mesh has no polygons"):
-            heat(pyvista.Line(), "f")
+            heat(pyvista.Line(), "f", fwhm=1)
         with self.assertRaisesRegex(ValueError, "fwhm is -1; allowed: finite numbers, 0 or more"):
             heat(mesh, "f", fwhm=-1)
         with self.assertRaisesRegex(ValueError, "direction is not set"):
-            heat(mesh, "f", along_diffusivity=2)
+            heat(mesh, "f", time_step=1, along_diffusivity=2)
         with self.assertRaisesRegex(TypeError, "no keyword 'fhwm'; did you mean 'fwhm'"):
             heat(mesh, "f", fhwm=1)
         with self.assertRaisesRegex(ValueError, "times has 'end'; allowed: numbers"):
-            heat(mesh, "f", times=["end"])
+            heat(mesh, "f", fwhm=1, times=["end"])
         bad = mesh.copy()
         bad["f"][3] = np.inf
         with self.assertRaisesRegex(ValueError, "array is infinite at point 3"):
-            heat(bad, "f")
+            heat(bad, "f", fwhm=1)
 
 
 if __name__ == "__main__":

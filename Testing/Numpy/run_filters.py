@@ -16,7 +16,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPolyData
 
-import surfacediffusion
+import vtkSurfaceDiffusion
 
 
 def make_polydata(points, faces, sizes):
@@ -38,7 +38,7 @@ def make_polydata(points, faces, sizes):
 
 def run(name, properties, indices, arrays):
     polydata = make_polydata(arrays["points"], arrays["faces"], arrays["sizes"])
-    algorithm = getattr(surfacediffusion, name)()
+    algorithm = getattr(vtkSurfaceDiffusion, name)()
     for array_name, index in indices.items():
         array = numpy_to_vtk(np.ascontiguousarray(arrays[array_name]), deep=True)
         array.SetName(array_name)

@@ -18,7 +18,7 @@ deb=$(ls "$folder"/build/*.deb)
 
 contents=$(dpkg-deb --contents "$deb")
 for file in usr/share/doc/surfacediffusion/copyright usr/share/doc/surfacediffusion/changelog.gz \
-  usr/lib/python3/dist-packages/surfacediffusion/__init__.py etc/profile.d/surfacediffusion.sh \
+  usr/lib/python3/dist-packages/vtkSurfaceDiffusion/__init__.py etc/profile.d/surfacediffusion.sh \
   SurfaceDiffusionConfig.cmake plugins/SurfaceDiffusion/SurfaceDiffusion.so; do
   echo "$contents" | grep -q "$file" || { echo "the package has no $file"; exit 1; }
 done
@@ -41,7 +41,7 @@ heat.UpdatePipeline()
 print("ParaView loads the plugin", heat.PointData["ElevationDiffused"].GetRange())
 PYTHON
 pvpython use.py
-/usr/bin/python3 -c "import surfacediffusion as s; print('Python imports', s.__version__, 'from', s.__file__)"
+/usr/bin/python3 -c "import vtkSurfaceDiffusion as s; print('Python imports', s.__version__, 'from', s.__file__)"
 SCRIPT
 
 # Mounts the overlay $copy/root of this system, in a mount namespace.
@@ -71,7 +71,7 @@ install_into_overlay()
     chroot "$copy/root" env -i HOME=/root PATH=/usr/bin:/bin OMPI_ALLOW_RUN_AS_ROOT=1 \
       OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 bash --login /tmp/use.sh
     chroot "$copy/root" dpkg --purge surfacediffusion
-    ! chroot "$copy/root" bash --login -c "/usr/bin/python3 -c \"import surfacediffusion\"" 2>/dev/null
+    ! chroot "$copy/root" bash --login -c "/usr/bin/python3 -c \"import vtkSurfaceDiffusion\"" 2>/dev/null
   ' sh "$copy"
 }
 

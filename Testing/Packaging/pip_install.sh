@@ -1,7 +1,8 @@
 #!/bin/sh
-# Usage: pip_install.sh SOURCE FOLDER
+# Usage: pip_install.sh SOURCE FOLDER [WHEELS]
 # Runs "pip install SOURCE" in a new virtual environment in FOLDER, without a network, and checks the
-# installed package, also with another VTK than it was built for. Build dependencies come from
+# installed module, also with another VTK than it was built for, and beside the package for numpy, whose
+# wheel is in the folder WHEELS. Build dependencies come from
 # SURFACEDIFFUSION_WHEEL_DIR; without it the exit code is 77 (skipped).
 set -eu
 source=$1
@@ -25,24 +26,24 @@ import importlib.metadata
 import pathlib
 import sys
 
-import surfacediffusion
+import vtkSurfaceDiffusion
 from vtkmodules.vtkFiltersCore import vtkElevationFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-package = pathlib.Path(surfacediffusion.__file__).parent
+package = pathlib.Path(vtkSurfaceDiffusion.__file__).parent
 assert pathlib.Path(sys.prefix) in package.parents, package
-assert importlib.metadata.version("surfacediffusion") == surfacediffusion.__version__
+assert importlib.metadata.version("vtk-surfacediffusion") == vtkSurfaceDiffusion.__version__
 assert (package / "vtkSurfaceDiffusion.pyi").exists() and (package / "py.typed").exists()
 
 sphere = vtkSphereSource()
 elevation = vtkElevationFilter()
 elevation.SetInputConnection(sphere.GetOutputPort())
-heat = surfacediffusion.vtkFVMHeatFilter()
+heat = vtkSurfaceDiffusion.vtkFVMHeatFilter()
 heat.SetInputConnection(elevation.GetOutputPort())
 heat.Update()
 data = heat.GetOutput().GetPointData()
 assert data.GetArray("ElevationDiffused").GetRange() != data.GetArray("Elevation").GetRange()
-print("surfacediffusion", surfacediffusion.__version__, "in", package)
+print("vtkSurfaceDiffusion", vtkSurfaceDiffusion.__version__, "in", package)
 SCRIPT
 # With another VTK the import is one sentence with both versions and the remedy.
 bin/python - <<'SCRIPT'
@@ -59,7 +60,7 @@ class OtherVersion:
 
 core.vtkVersion = OtherVersion
 try:
-    import surfacediffusion
+    import vtkSurfaceDiffusion
 except ImportError as error:
     for part in ("VTK " + built_for, "VTK 9.99.1", "pip install"):
         assert part in str(error), (part, str(error))
@@ -67,8 +68,18 @@ except ImportError as error:
 else:
     raise AssertionError("imported with a foreign VTK")
 SCRIPT
-bin/pip uninstall -q -y surfacediffusion
-if bin/python -c "import surfacediffusion" 2>/dev/null; then
+if [ -n "${3:-}" ]; then
+  PIP_CONFIG_FILE=/dev/null bin/pip install --quiet --no-deps --no-index "$3"/*.whl
+  for order in "surfacediffusion, vtkSurfaceDiffusion" "vtkSurfaceDiffusion, surfacediffusion"; do
+    bin/python -c "import $order
+ball = surfacediffusion.sphere(3)
+surfacediffusion.heat(ball, ball.points[:, 2], fwhm=0.5)
+vtkSurfaceDiffusion.vtkFVMHeatFilter()"
+  done
+fi
+bin/pip uninstall -q -y vtk-surfacediffusion
+if bin/python -c "import vtkSurfaceDiffusion" 2>/dev/null; then
   echo "still there after pip uninstall"
   exit 1
 fi
+[ -z "${3:-}" ] || bin/python -c "import surfacediffusion" # another distribution

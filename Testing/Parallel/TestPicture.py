@@ -6,7 +6,7 @@ import os
 import sys
 
 import pieces
-import surfacediffusion  # noqa: F401: the classes behind the proxies
+import vtkSurfaceDiffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     ColorBy, CreateRenderView, GetColorTransferFunction, HideScalarBarIfNotNeeded,
     IntrinsicTVFilter, SaveScreenshot, Show, TrivialProducer,

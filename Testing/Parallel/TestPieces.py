@@ -9,7 +9,7 @@ import unittest
 
 import numpy as np
 import pieces
-import surfacediffusion  # noqa: F401: the classes behind the proxies
+import vtkSurfaceDiffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDenoisingFilter,

@@ -8,7 +8,7 @@ import re
 import unittest
 
 import numpy as np
-import surfacediffusion
+import vtkSurfaceDiffusion
 from paraview import make_name_valid, servermanager, simple
 from paraview.modules.vtkRemotingServerManager import vtkSMOrderedPropertyIterator
 from plugin_testing import filter_names
@@ -63,7 +63,7 @@ def in_menu(name):
 def proxies():
     """Each filter: its name, a new proxy of it with the defaults of the XML, its C++ class."""
     for name in filter_names():
-        yield name, getattr(servermanager.filters, name)(), getattr(surfacediffusion, "vtk" + name)
+        yield name, getattr(servermanager.filters, name)(), getattr(vtkSurfaceDiffusion, "vtk" + name)
 
 
 def properties():

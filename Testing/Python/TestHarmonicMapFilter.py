@@ -8,7 +8,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-from surfacediffusion import vtkHarmonicMapFilter
+from vtkSurfaceDiffusion import vtkHarmonicMapFilter
 
 
 def noisy_sphere():

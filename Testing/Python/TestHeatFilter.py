@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkTable
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-from surfacediffusion import vtkFVMHeatFilter, vtkSurfaceDiffusionAlgorithm
+from vtkSurfaceDiffusion import vtkFVMHeatFilter, vtkSurfaceDiffusionAlgorithm
 
 
 def noisy_sphere():
@@ -36,7 +36,7 @@ def result(filter, name="fDiffused"):
 
 class TestHeatFilter(unittest.TestCase):
     def test_import_needs_no_other_module_first(self):
-        code = "from surfacediffusion import vtkFVMHeatFilter; vtkFVMHeatFilter()"
+        code = "from vtkSurfaceDiffusion import vtkFVMHeatFilter; vtkFVMHeatFilter()"
         subprocess.run([sys.executable, "-c", code], check=True, env=os.environ)
 
     def test_smooths_and_conserves(self):

@@ -8,7 +8,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-from surfacediffusion import vtkIntrinsicTVFilter, vtkSurfaceDiffusionAlgorithm
+from vtkSurfaceDiffusion import vtkIntrinsicTVFilter, vtkSurfaceDiffusionAlgorithm
 
 FUNCTIONS = [
     "TotalVariation", "PeronaMalikExponential", "PeronaMalikRational", "Charbonnier", "Weickert",

@@ -6,10 +6,10 @@ prints is a property. Enumerators have the numbers of the settings' words."""
 import re
 import unittest
 
-import surfacediffusion
+import vtkSurfaceDiffusion
 from vtkmodules.vtkCommonCore import vtkCommand
 
-FILTERS = [cls for name, cls in sorted(vars(surfacediffusion).items())
+FILTERS = [cls for name, cls in sorted(vars(vtkSurfaceDiffusion).items())
            if name.startswith("vtk") and name.endswith("Filter") and name != "vtkSurfaceFilter"]
 
 #: Properties without a setting that are not one value each.
@@ -32,7 +32,7 @@ def properties(cls):
     """The names X of the class and its superclasses here that have SetX() and GetX()."""
     own = set()
     for base in cls.__mro__:
-        if base.__module__.startswith(surfacediffusion.__name__):
+        if base.__module__.startswith(vtkSurfaceDiffusion.__name__):
             own |= set(vars(base))
     return sorted(name[3:] for name in own
                   if name.startswith("Set") and "Get" + name[3:] in own and name[3:] not in OTHERS)

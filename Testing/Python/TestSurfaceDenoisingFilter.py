@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Examples" / "Pytho
 import mesh_denoising as example  # noqa: E402
 from surface_data import mean_edge_length, points_of, read_mesh  # noqa: E402
 
-from surfacediffusion import vtkHarmonicMapFilter, vtkSurfaceDenoisingFilter  # noqa: E402
+from vtkSurfaceDiffusion import vtkHarmonicMapFilter, vtkSurfaceDenoisingFilter  # noqa: E402
 
 MESHES = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
 if not MESHES:

@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 
-from surfacediffusion import vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter
+from vtkSurfaceDiffusion import vtkSurfaceDirectionFieldFilter, vtkTuringTextureFilter
 
 
 def plane(cells, size=8.0):

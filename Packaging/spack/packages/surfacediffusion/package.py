@@ -23,7 +23,7 @@ class Surfacediffusion(CMakePackage):
         multi=False,
         description="Build for VTK, for ParaView with its plugin, or the core alone",
     )
-    variant("python", default=True, description="Build the Python package")
+    variant("python", default=True, description="Build the Python module vtkSurfaceDiffusion")
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")
@@ -39,7 +39,7 @@ class Surfacediffusion(CMakePackage):
         depends_on("paraview+python", when="+python")
     extends("python", when="+python")
 
-    conflicts("+python", when="host=none", msg="The Python package needs VTK: add ~python")
+    conflicts("+python", when="host=none", msg="The Python module needs VTK: add ~python")
 
     generator("ninja")
 
