@@ -14,28 +14,11 @@ vtkStandardNewMacro(vtkFVMHeatFilter);
 vtkFVMHeatFilter::vtkFVMHeatFilter()
   : Superclass(OwnedSettings::Make<HeatSettings>())
 {
+  this->DeclareNumber("EffectiveFidelityWeight");
 }
 
 void vtkFVMHeatFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
   this->SetModeToTimeSteps();
-}
-
-void vtkFVMHeatFilter::TakeResults()
-{
-  this->Superclass::TakeResults();
-  this->EffectiveFidelityWeight = this->State->Run.ReportedBlock().Result.EffectiveFidelityWeight;
-}
-
-void vtkFVMHeatFilter::VisitReported(const std::function<void(double&)>& visit)
-{
-  this->Superclass::VisitReported(visit);
-  visit(this->EffectiveFidelityWeight);
-}
-
-void vtkFVMHeatFilter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "EffectiveFidelityWeight: " << this->EffectiveFidelityWeight << "\n";
 }

@@ -49,7 +49,6 @@ class VTKSURFACEDIFFUSION_EXPORT vtkFVMHeatFilter : public vtkSurfaceDataDiffusi
 public:
   static vtkFVMHeatFilter* New();
   vtkTypeMacro(vtkFVMHeatFilter, vtkSurfaceDataDiffusionAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ModeType
   {
@@ -114,7 +113,7 @@ public:
    * since each may have noise of its own. This is then the value of the first block, and each block
    * has its own as field array `EffectiveFidelityWeight`, with ResultArrayName as prefix.
    */
-  vtkGetMacro(EffectiveFidelityWeight, double);
+  SURFACEDIFFUSION_NUMBER(EffectiveFidelityWeight, double);
 
   /**
    * The full width at half maximum of a blur that the data have gone through on the surface, in
@@ -146,12 +145,6 @@ public:
 protected:
   vtkFVMHeatFilter();
   ~vtkFVMHeatFilter() override = default;
-
-  void TakeResults() override;
-  void VisitReported(const std::function<void(double&)>& visit) override;
-  const char* GetResultSuffix() const override { return "Diffused"; }
-
-  double EffectiveFidelityWeight = 0.0;
 
 private:
   vtkFVMHeatFilter(const vtkFVMHeatFilter&) = delete;

@@ -3,7 +3,6 @@
 #include "vtkHarmonicMapFilter.h"
 
 #include "Conversion/PointNormals.h"
-#include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
 #include "Conversion/SurfaceReader.h"
 #include "Run/HarmonicMapSettings.h"
@@ -49,26 +48,15 @@ bool HasZeroOrNaN(vtkDataArray* vectors)
   return false;
 }
 
-/// The lengths of the input's vectors, per vertex or per cell.
-Vector FindBrightness(const Run::Block& block, const InputFields& fields, bool ofCells)
-{
-  Fields colours;
-  colours.Data = ReadValues(fields.Data);
-  if (!fields.DataOnCells)
-  {
-    return MakePointData(*block.Surface, colours, false, 1.0).Given.rowwise().norm();
-  }
-  const Vector lengths = colours.Data.rowwise().norm();
-  return ofCells
-    ? lengths
-    : Vector(block.Cells->Transfer.ToVertices(lengths, Vector::Ones(lengths.size())).Of);
-}
-
 } // namespace
 
 vtkHarmonicMapFilter::vtkHarmonicMapFilter()
   : Superclass(OwnedSettings::Make<HarmonicMapSettings>())
 {
+  this->DeclareNumber("MeanDisplacement");
+  this->DeclareNumber("MaximumDisplacement");
+  this->DeclareNumber("VolumeBefore");
+  this->DeclareNumber("VolumeAfter");
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
 }
@@ -140,6 +128,7 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
   {
     return false;
   }
+  fields.ResultIsNormals = this->UseAsNormals && this->IsNormals(fields, block);
   const std::string label =
     std::string("InputArray \"") + (fields.Data->GetName() ? fields.Data->GetName() : "") + "\"";
   if (NumberOfDataComponents(fields.Data) < 2)
@@ -182,103 +171,8 @@ bool vtkHarmonicMapFilter::CanSolveInPieces(const std::vector<SurfaceBlock>& pie
   return this->Superclass::CanSolveInPieces(pieces);
 }
 
-//------------------------------------------------------------------------------------------------
-void vtkHarmonicMapFilter::WriteResult(
-  std::size_t index, const InputFields& fields, vtkPolyData* output)
-{
-  const Run::Block& block = this->State->Run.GetBlock(index);
-  vtkNew<vtkPolyData> given;
-  given->ShallowCopy(output);
-  vtkDataSetAttributes* const data = this->FindResultAttributes(fields, output);
-  const bool isNormals = this->IsNormals(fields, output);
-  const bool isColour = fields.Data->GetDataType() == VTK_UNSIGNED_CHAR;
-  const int type = this->FindResultType(fields);
-  const bool onCells = this->HasResultOnCells(fields);
-  Values vectors = onCells ? MakeCellResult(*block.Cells, block.Path->State(),
-                               ReadValues(fields.Data), this->GetKeepCellDetail())
-                           : block.Path->State();
-  if (type == VTK_UNSIGNED_CHAR)
-  {
-    vectors.array().colwise() *= FindBrightness(block, fields, onCells).array();
-  }
-  const std::string name = this->FindResultName(fields);
-  this->AddResult(onCells
-      ? WriteCellArray(*block.Cells, fields.Data, vectors, type, name)
-      : WritePointArray(*block.Surface, fields.Data, fields.DataOnCells, vectors, 1.0, type, name),
-    fields, data);
-  const bool isVector = fields.Data->GetNumberOfComponents() == 3 && !isColour;
-  int attribute = isVector ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
-  if (isNormals && this->UseAsNormals)
-  {
-    attribute = vtkDataSetAttributes::NORMALS; // only these: ParaView shades with no vectors
-  }
-  data->SetActiveAttribute(name.c_str(), attribute);
-  if (block.Result.MovedPoints.rows() > 0)
-  {
-    output->SetPoints(WritePoints(block.Result.MovedPoints, output->GetPoints()));
-    UpdateNormals(given, output);
-  }
-}
-
-/// Other normals than the active ones are not gathered.
-void vtkHarmonicMapFilter::CompletePiece(const SurfaceBlock& piece)
-{
-  this->Superclass::CompletePiece(piece);
-  if (piece.Output->GetPoints() != piece.Input->GetPoints())
-  {
-    DropNormals(piece.Input, piece.Output);
-  }
-}
-
-void vtkHarmonicMapFilter::TakeResults()
-{
-  this->Superclass::TakeResults();
-  auto& normals = this->State->Normals;
-  normals.erase(std::remove_if(normals.begin(), normals.end(),
-                  [](const RunState::ComputedNormals& computed) { return !computed.Used; }),
-    normals.end());
-  for (RunState::ComputedNormals& computed : normals)
-  {
-    computed.Used = false; // until the next update
-  }
-  VertexMotion all;
-  double allAreas = 0.0;
-  for (std::size_t b = 0; b < this->State->Run.NumberOfBlocks(); ++b)
-  {
-    const Run::Block& block = this->State->Run.GetBlock(b);
-    const VertexMotion& motion = block.Result.Motion;
-    const TriangleMesh& mesh = block.Surface->InputMesh();
-    const double area = mesh.ControlAreas().sum() * mesh.LengthUnit() * mesh.LengthUnit();
-    allAreas += area;
-    if (allAreas > 0.0)
-    {
-      all.MeanDisplacement += (motion.MeanDisplacement - all.MeanDisplacement) * (area / allAreas);
-    }
-    all.MaximumDisplacement = std::max(all.MaximumDisplacement, motion.MaximumDisplacement);
-    all.VolumeBefore += motion.VolumeBefore;
-    all.VolumeAfter += motion.VolumeAfter;
-  }
-  this->MeanDisplacement = all.MeanDisplacement;
-  this->MaximumDisplacement = all.MaximumDisplacement;
-  this->VolumeBefore = all.VolumeBefore;
-  this->VolumeAfter = all.VolumeAfter;
-}
-
-void vtkHarmonicMapFilter::VisitReported(const std::function<void(double&)>& visit)
-{
-  this->Superclass::VisitReported(visit);
-  visit(this->MeanDisplacement);
-  visit(this->MaximumDisplacement);
-  visit(this->VolumeBefore);
-  visit(this->VolumeAfter);
-}
-
 void vtkHarmonicMapFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "UseAsNormals: " << (this->UseAsNormals ? "On" : "Off") << "\n";
-  os << indent << "MeanDisplacement: " << this->MeanDisplacement << "\n";
-  os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
-  os << indent << "VolumeBefore: " << this->VolumeBefore << "\n";
-  os << indent << "VolumeAfter: " << this->VolumeAfter << "\n";
 }

@@ -149,10 +149,10 @@ public:
    * the orientation. Blocks that are not closed or not consistently oriented have volume 0. All
    * values are 0 if MoveVertices was off.
    */
-  vtkGetMacro(MeanDisplacement, double);
-  vtkGetMacro(MaximumDisplacement, double);
-  vtkGetMacro(VolumeBefore, double);
-  vtkGetMacro(VolumeAfter, double);
+  SURFACEDIFFUSION_NUMBER(MeanDisplacement, double);
+  SURFACEDIFFUSION_NUMBER(MaximumDisplacement, double);
+  SURFACEDIFFUSION_NUMBER(VolumeBefore, double);
+  SURFACEDIFFUSION_NUMBER(VolumeAfter, double);
   ///@}
 
   /**
@@ -168,18 +168,8 @@ protected:
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
   bool CanSolveInPieces(const std::vector<SurfaceBlock>& pieces) override;
-  void WriteResult(
-    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
-  void TakeResults() override;
-  void CompletePiece(const SurfaceBlock& piece) override;
-  void VisitReported(const std::function<void(double&)>& visit) override;
-  const char* GetResultSuffix() const override { return "Harmonic"; }
 
   bool UseAsNormals = true;
-  double MeanDisplacement = 0.0;
-  double MaximumDisplacement = 0.0;
-  double VolumeBefore = 0.0;
-  double VolumeAfter = 0.0;
 
 private:
   vtkHarmonicMapFilter(const vtkHarmonicMapFilter&) = delete;

@@ -14,6 +14,7 @@ vtkStandardNewMacro(vtkIntrinsicTVFilter);
 vtkIntrinsicTVFilter::vtkIntrinsicTVFilter()
   : Superclass(OwnedSettings::Make<TotalVariationSettings>())
 {
+  this->DeclareNumber("EffectiveFidelityWeight");
 }
 
 void vtkIntrinsicTVFilter::UsePaperScheme()
@@ -27,22 +28,4 @@ void vtkIntrinsicTVFilter::UsePaperScheme()
   this->SetAutomaticFidelity(false);
   this->SetDiscretizationToLinear();
   this->SetColorModelToRGB();
-}
-
-void vtkIntrinsicTVFilter::TakeResults()
-{
-  this->Superclass::TakeResults();
-  this->EffectiveFidelityWeight = this->State->Run.ReportedBlock().Result.EffectiveFidelityWeight;
-}
-
-void vtkIntrinsicTVFilter::VisitReported(const std::function<void(double&)>& visit)
-{
-  this->Superclass::VisitReported(visit);
-  visit(this->EffectiveFidelityWeight);
-}
-
-void vtkIntrinsicTVFilter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "EffectiveFidelityWeight: " << this->EffectiveFidelityWeight << "\n";
 }

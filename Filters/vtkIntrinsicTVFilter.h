@@ -95,7 +95,6 @@ class VTKSURFACEDIFFUSION_EXPORT vtkIntrinsicTVFilter : public vtkSurfaceDataDif
 public:
   static vtkIntrinsicTVFilter* New();
   vtkTypeMacro(vtkIntrinsicTVFilter, vtkSurfaceDataDiffusionAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ModeType
   {
@@ -248,7 +247,7 @@ public:
    * since each may have noise of its own. This is then the value of the first block, and each block
    * has its own as field array `EffectiveFidelityWeight`, with ResultArrayName as prefix.
    */
-  vtkGetMacro(EffectiveFidelityWeight, double);
+  SURFACEDIFFUSION_NUMBER(EffectiveFidelityWeight, double);
 
   enum DiscretizationType
   {
@@ -403,12 +402,6 @@ public:
 protected:
   vtkIntrinsicTVFilter();
   ~vtkIntrinsicTVFilter() override = default;
-
-  void TakeResults() override;
-  void VisitReported(const std::function<void(double&)>& visit) override;
-  const char* GetResultSuffix() const override { return "TV"; }
-
-  double EffectiveFidelityWeight = 0.0;
 
 private:
   vtkIntrinsicTVFilter(const vtkIntrinsicTVFilter&) = delete;

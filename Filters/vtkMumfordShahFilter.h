@@ -87,7 +87,6 @@ class VTKSURFACEDIFFUSION_EXPORT vtkMumfordShahFilter : public vtkSurfaceDataDif
 public:
   static vtkMumfordShahFilter* New();
   vtkTypeMacro(vtkMumfordShahFilter, vtkSurfaceDataDiffusionAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
    * On (default): EdgeThreshold and SmoothingLength are found from the data, for each connected
@@ -140,30 +139,19 @@ public:
    * the array's own units, 0 with AutomaticThreshold off. All are those of the connected component
    * with the most points, and for composite data of the first block.
    */
-  vtkGetMacro(EffectiveEdgeThreshold, double);
-  vtkGetMacro(EffectiveSmoothingLength, double);
-  vtkGetMacro(EstimatedNoiseLevel, double);
+  SURFACEDIFFUSION_NUMBER(EffectiveEdgeThreshold, double);
+  SURFACEDIFFUSION_NUMBER(EffectiveSmoothingLength, double);
+  SURFACEDIFFUSION_NUMBER(EstimatedNoiseLevel, double);
   ///@}
 
   /**
    * The length of all curves of the last update, in coordinate units.
    */
-  vtkGetMacro(EdgeLength, double);
+  SURFACEDIFFUSION_NUMBER(EdgeLength, double);
 
 protected:
   vtkMumfordShahFilter();
   ~vtkMumfordShahFilter() override;
-
-  void WriteResult(
-    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
-  void TakeResults() override;
-  void VisitReported(const std::function<void(double&)>& visit) override;
-  const char* GetResultSuffix() const override { return "MumfordShah"; }
-
-  double EffectiveEdgeThreshold = 0.0;
-  double EffectiveSmoothingLength = 0.0;
-  double EstimatedNoiseLevel = 0.0;
-  double EdgeLength = 0.0;
 
 private:
   vtkMumfordShahFilter(const vtkMumfordShahFilter&) = delete;

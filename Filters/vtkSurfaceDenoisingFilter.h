@@ -54,7 +54,6 @@ class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDenoisingFilter : public vtkSurfaceFi
 public:
   static vtkSurfaceDenoisingFilter* New();
   vtkTypeMacro(vtkSurfaceDenoisingFilter, vtkSurfaceFilter);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   void ReleaseCache() override;
 
@@ -89,21 +88,21 @@ public:
    * The noise level of the last update, given or estimated, in coordinate units: the largest over
    * the blocks of composite data.
    */
-  vtkGetMacro(EffectiveNoiseLevel, double);
+  SURFACEDIFFUSION_NUMBER(EffectiveNoiseLevel, double);
 
   /**
    * The kind of surface of the last update, given or found: SURFACE_TYPE_CAD or
    * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, and if the blocks of
    * composite data are of different kinds.
    */
-  int GetEffectiveSurfaceType() const { return static_cast<int>(this->EffectiveSurfaceType); }
+  SURFACEDIFFUSION_NUMBER(EffectiveSurfaceType, int);
 
   ///@{
   /**
    * The mean and the largest displacement of the last update, in coordinate units.
    */
-  vtkGetMacro(MeanDisplacement, double);
-  vtkGetMacro(MaximumDisplacement, double);
+  SURFACEDIFFUSION_NUMBER(MeanDisplacement, double);
+  SURFACEDIFFUSION_NUMBER(MaximumDisplacement, double);
   ///@}
 
   ///@{
@@ -111,8 +110,8 @@ public:
    * The enclosed volume before and after the last update, in coordinate units, signed by the
    * orientation. Blocks that are not closed or not consistently oriented have volume 0.
    */
-  vtkGetMacro(VolumeBefore, double);
-  vtkGetMacro(VolumeAfter, double);
+  SURFACEDIFFUSION_NUMBER(VolumeBefore, double);
+  SURFACEDIFFUSION_NUMBER(VolumeAfter, double);
   ///@}
 
 protected:
@@ -121,22 +120,10 @@ protected:
 
   void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
     const SurfaceDiffusion::ProgressMonitor& progress) override;
-  void CompletePiece(const SurfaceBlock& piece) override;
-  void VisitReported(const std::function<void(double&)>& visit) override;
-
-  double EffectiveNoiseLevel = 0.0;
-  double EffectiveSurfaceType = SURFACE_TYPE_AUTOMATIC; ///< a double, as all that processes share
-  double MeanDisplacement = 0.0;
-  double MaximumDisplacement = 0.0;
-  double VolumeBefore = 0.0;
-  double VolumeAfter = 0.0;
 
 private:
   vtkSurfaceDenoisingFilter(const vtkSurfaceDenoisingFilter&) = delete;
   void operator=(const vtkSurfaceDenoisingFilter&) = delete;
-
-  /// Take the read-only values from the reports of all surfaces.
-  void SummarizeReports();
 
   /// The denoised surfaces, kept between updates.
   struct RunState;

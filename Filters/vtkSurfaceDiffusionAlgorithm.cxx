@@ -60,6 +60,12 @@ vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm(OwnedSettings setting
   , State(std::make_unique<RunState>())
 {
   this->SetNumberOfOutputPorts(2);
+  this->DeclareNumber("TimeUnit", 1.0);
+  for (const char* const name : { "ValueRange", "NumberOfIterations", "Residual",
+         "NumberOfUnusedPoints", "NumberOfStepsComputed" })
+  {
+    this->DeclareNumber(name);
+  }
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::SCALARS);
 }
@@ -172,15 +178,21 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   state.Time = valid ? FindRequestedTime(*state.Settings, request, outputs) : std::nullopt;
   state.LastStep = -1;
   const int result = this->Superclass::RequestData(request, inputs, outputs);
+  auto last = static_cast<double>(state.LastStep);
+  Processes(this->GetController()).Broadcast(&last, 1);
+  state.LastStep = static_cast<int>(last);
   if (state.Succeeded)
   {
-    this->WriteTable(table);
-    if (curves && this->Curves)
+    if (!WriteColumns(state.Outputs, table))
     {
-      curves->ShallowCopy(this->Curves);
+      WriteHistory(state.History, table);
+    }
+    if (curves)
+    {
+      WriteCurves(state.Outputs, this->ResultArrayName, curves);
     }
   }
-  this->Curves = nullptr;
+  state.Outputs.clear();
   state.History = History();
   if (state.Settings->GenerateTimeSteps && valid)
   {
@@ -220,11 +232,6 @@ bool vtkSurfaceDiffusionAlgorithm::RunState::Length::Set(RunSettings& settings, 
   this->NumberOfSteps = settings.DescribeModel().NumberOfSteps;
   this->LastStep = last;
   return isNew;
-}
-
-void vtkSurfaceDiffusionAlgorithm::WriteTable(vtkTable* table)
-{
-  WriteHistory(this->State->History, table);
 }
 
 void vtkSurfaceDiffusionAlgorithm::ReleaseCache()
@@ -308,9 +315,13 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
     throw;
   }
   state.History = state.Run.MakeHistory(state.Step);
+  for (std::size_t b = 0; b < state.Run.NumberOfBlocks(); ++b)
+  {
+    state.Outputs.push_back(state.Run.GetBlock(b).Outputs);
+  }
   state.Succeeded = group.IsRoot();
-  this->NumberOfUnusedPoints = static_cast<vtkIdType>(state.Run.CountUnusedPoints(group));
-  this->TakeResults();
+  this->TakeNumbers();
+  state.ForgetUnusedNormals();
   std::vector<Warning> warnings = state.Run.FindWarnings(group);
   if (!state.ReplacedArrays.empty())
   {
@@ -352,13 +363,16 @@ void vtkSurfaceDiffusionAlgorithm::WriteResults(
 void vtkSurfaceDiffusionAlgorithm::WriteFidelityWeights(const std::vector<SurfaceBlock>& surfaces)
 {
   const auto weightOf = [&](std::size_t b)
-  { return this->State->Run.GetBlock(b).Result.EffectiveFidelityWeight; };
+  {
+    return SurfaceDiffusion::FindNumber(
+      this->State->Run.GetBlock(b).Outputs, "EffectiveFidelityWeight");
+  };
   bool differ = false;
   for (std::size_t b = 1; b < surfaces.size(); ++b)
   {
     differ = differ || weightOf(b) != weightOf(0);
   }
-  const std::string name = this->FindOtherName("EffectiveFidelityWeight");
+  const std::string name = this->ResultArrayName + "EffectiveFidelityWeight";
   for (std::size_t b = 0; differ && b < surfaces.size(); ++b)
   {
     vtkFieldData* const data = surfaces[b].Output->GetFieldData();
@@ -445,59 +459,26 @@ std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
     : this->State->Inputs.Make(inputs, excludes);
 }
 
-void vtkSurfaceDiffusionAlgorithm::AddResult(
-  vtkDataArray* result, const InputFields& fields, vtkDataSetAttributes* attributes)
-{
-  vtkDataArray* const expected =
-    result->GetName() == this->ResultArrayName ? fields.Data.Get() : nullptr;
-  if (ReplaceArray(result, expected, attributes))
-  {
-    this->State->ReplacedArrays.emplace_back(result->GetName());
-  }
-}
-
 void vtkSurfaceDiffusionAlgorithm::WriteResult(
   std::size_t index, const InputFields& fields, vtkPolyData* output)
 {
-  const Run::Block& block = this->State->Run.GetBlock(index);
-  const std::string name = this->FindResultName(fields);
+  RunState& state = *this->State;
+  const Run::Block& block = state.Run.GetBlock(index);
+  OutputSource source{ *block.Surface, SMPParallelFor::Instance() };
+  source.NumberOfCells = output->GetNumberOfCells();
+  source.CellOf = [&cells = state.Inputs.CellsOf(index)](Index t)
+  { return cells[static_cast<std::size_t>(t)]; };
   const int type = this->FindResultType(fields);
-  const ParallelFor& parallel = SMPParallelFor::Instance();
-  vtkDataSetAttributes* const attributes = this->FindResultAttributes(fields, output);
-  if (this->HasResultOnCells(fields))
+  if (vtkDataArray* const data = fields.Data)
   {
-    const Values result = block.CellResult(
-      ReadValues(fields.Data), this->State->Settings->DescribeModel().KeepCellDetail, parallel);
-    this->AddResult(
-      WriteCellArray(*block.Cells, fields.Data, result, type, name), fields, attributes);
+    source.ReadData = [data] { return ReadValues(data); };
+    source.DataAreFloats = data->GetDataType() == VTK_FLOAT || data->GetDataType() == VTK_DOUBLE;
+    source.AsBytes = type == VTK_UNSIGNED_CHAR;
   }
-  else
-  {
-    const auto write = [&](const Values& values, double unit)
-    {
-      return WritePointArray(
-        *block.Surface, fields.Data, fields.DataOnCells, values, unit, type, name);
-    };
-    this->AddResult(block.HasLinearLight ? write(block.EncodedState(parallel), 1.0)
-                                         : write(block.Path->State(), block.Units.ValueUnit),
-      fields, attributes);
-  }
-  attributes->SetActiveScalars(name.c_str());
-}
-
-bool vtkSurfaceDiffusionAlgorithm::HasResultOnCells(const InputFields& fields) const
-{
-  return fields.DataOnCells && this->GetRunSettings().DescribeModel().ResultOnCells;
-}
-
-vtkDataSetAttributes* vtkSurfaceDiffusionAlgorithm::FindResultAttributes(
-  const InputFields& fields, vtkPolyData* output) const
-{
-  if (this->HasResultOnCells(fields))
-  {
-    return output->GetCellData();
-  }
-  return output->GetPointData();
+  source.Block = &block;
+  source.Traits = state.Settings->DescribeModel();
+  WriteOutputs(block.Outputs, source,
+    { output, fields, this->ResultArrayName, type, fields.Data, state.ReplacedArrays });
 }
 
 /// Vertices, lines and hidden cells keep their value, as those of a surface in one piece do.
@@ -515,13 +496,16 @@ void vtkSurfaceDiffusionAlgorithm::CompletePiece(const SurfaceBlock& piece)
   }
   InputFields fields;
   Problems reportedAlready;
-  if (!hasNew || !this->FindFields(piece.Input, fields, reportedAlready) ||
-    !this->HasResultOnCells(fields))
+  if (!hasNew || !this->FindFields(piece.Input, fields, reportedAlready) || !fields.DataOnCells ||
+    !this->GetRunSettings().DescribeModel().ResultOnCells)
   {
     return;
   }
-  vtkDataArray* const result =
-    piece.Output->GetCellData()->GetArray(this->FindResultName(fields).c_str());
+  const char* const name = fields.Data->GetName();
+  const std::string resultName = this->ResultArrayName.empty()
+    ? (name ? name : "") + std::string(this->GetRunSettings().DescribeModel().ResultSuffix)
+    : this->ResultArrayName;
+  vtkDataArray* const result = piece.Output->GetCellData()->GetArray(resultName.c_str());
   if (!result || result == fields.Data)
   {
     return;
@@ -539,59 +523,31 @@ void vtkSurfaceDiffusionAlgorithm::CompletePiece(const SurfaceBlock& piece)
   }
 }
 
-std::string vtkSurfaceDiffusionAlgorithm::FindResultName(const InputFields& fields) const
-{
-  if (!this->ResultArrayName.empty())
-  {
-    return this->ResultArrayName;
-  }
-  const char* name = fields.Data->GetName();
-  return std::string(name ? name : "") + this->GetResultSuffix();
-}
-
-std::string vtkSurfaceDiffusionAlgorithm::FindOtherName(const char* name) const
-{
-  return this->ResultArrayName + name;
-}
-
 int vtkSurfaceDiffusionAlgorithm::FindResultType(const InputFields& fields) const
 {
-  const int inputType = fields.Data->GetDataType();
-  if (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_UNSIGNED_CHAR)
+  const bool likeData = this->OutputPrecision == OUTPUT_PRECISION_INPUT && fields.Data;
+  const int inputType = likeData ? fields.Data->GetDataType() : VTK_DOUBLE;
+  if (inputType == VTK_UNSIGNED_CHAR || inputType == VTK_FLOAT)
   {
-    return VTK_UNSIGNED_CHAR;
+    return inputType;
   }
-  const bool single = this->OutputPrecision == OUTPUT_PRECISION_SINGLE ||
-    (this->OutputPrecision == OUTPUT_PRECISION_INPUT && inputType == VTK_FLOAT);
-  return single ? VTK_FLOAT : VTK_DOUBLE;
+  return this->OutputPrecision == OUTPUT_PRECISION_SINGLE ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-void vtkSurfaceDiffusionAlgorithm::TakeResults()
+void vtkSurfaceDiffusionAlgorithm::TakeNumbers()
 {
   const RunState& state = *this->State;
-  this->TimeUnit = state.Run.TimeUnit();
-  this->MeanEdgeLength = state.Run.Units().MeanEdgeLength;
-  this->ValueRange = state.Run.Units().ValueRange;
-  this->NumberOfIterations = static_cast<vtkIdType>(state.History.NumberOfIterations());
-  this->Residual = state.History.LargestResidual();
-  this->NumberOfStepsComputed = static_cast<vtkIdType>(state.Run.NumberOfStepsComputed());
-}
-
-void vtkSurfaceDiffusionAlgorithm::VisitReported(const std::function<void(double&)>& visit)
-{
-  this->Superclass::VisitReported(visit);
-  visit(this->TimeUnit);
-  visit(this->ValueRange);
-  visit(this->Residual);
-  double last = this->State->LastStep;
-  visit(last);
-  this->State->LastStep = static_cast<int>(last);
-  for (vtkIdType* count :
-    { &this->NumberOfIterations, &this->NumberOfUnusedPoints, &this->NumberOfStepsComputed })
+  auto& numbers = this->Private->Numbers;
+  numbers = FindNumbers(state.Run);
+  for (const auto& [name, number] :
+    { std::pair{ "NumberOfIterations", static_cast<double>(state.History.NumberOfIterations()) },
+      std::pair{ "Residual", state.History.LargestResidual() },
+      std::pair{ "NumberOfUnusedPoints",
+        static_cast<double>(state.Run.CountUnusedPoints(this->GetProcessGroup())) },
+      std::pair{
+        "NumberOfStepsComputed", static_cast<double>(state.Run.NumberOfStepsComputed()) } })
   {
-    auto number = static_cast<double>(*count);
-    visit(number);
-    *count = static_cast<vtkIdType>(number);
+    numbers[name] = Values::Constant(1, 1, number);
   }
 }
 
@@ -599,10 +555,4 @@ void vtkSurfaceDiffusionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "OutputPrecision: " << this->GetOutputPrecisionAsString() << "\n";
-  os << indent << "TimeUnit: " << this->TimeUnit << "\n";
-  os << indent << "ValueRange: " << this->ValueRange << "\n";
-  os << indent << "NumberOfIterations: " << this->NumberOfIterations << "\n";
-  os << indent << "Residual: " << this->Residual << "\n";
-  os << indent << "NumberOfUnusedPoints: " << this->NumberOfUnusedPoints << "\n";
-  os << indent << "NumberOfStepsComputed: " << this->NumberOfStepsComputed << "\n";
 }

@@ -92,7 +92,6 @@
 #ifndef vtkSurfaceDiffusionAlgorithm_h
 #define vtkSurfaceDiffusionAlgorithm_h
 
-#include "vtkSmartPointer.h" // for Curves
 #include "vtkSurfaceFilter.h"
 
 namespace SurfaceDiffusion
@@ -101,10 +100,7 @@ struct BlockInput;
 struct InputFields;
 struct RunSettings;
 }
-class vtkDataArray;
-class vtkDataSetAttributes;
 class vtkPolyData;
-class vtkTable;
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDiffusionAlgorithm : public vtkSurfaceFilter
 {
@@ -294,12 +290,12 @@ public:
    * that the mask excludes), and the total number of time steps computed in the life of the filter
    * (for profiling).
    */
-  vtkGetMacro(TimeUnit, double);
-  vtkGetMacro(ValueRange, double);
-  vtkGetMacro(NumberOfIterations, vtkIdType);
-  vtkGetMacro(Residual, double);
-  vtkGetMacro(NumberOfUnusedPoints, vtkIdType);
-  vtkGetMacro(NumberOfStepsComputed, vtkIdType);
+  SURFACEDIFFUSION_NUMBER(TimeUnit, double);
+  SURFACEDIFFUSION_NUMBER(ValueRange, double);
+  SURFACEDIFFUSION_NUMBER(NumberOfIterations, vtkIdType);
+  SURFACEDIFFUSION_NUMBER(Residual, double);
+  SURFACEDIFFUSION_NUMBER(NumberOfUnusedPoints, vtkIdType);
+  SURFACEDIFFUSION_NUMBER(NumberOfStepsComputed, vtkIdType);
   ///@}
 
 protected:
@@ -317,30 +313,7 @@ protected:
   /// as far as this process knows, on these pieces.
   virtual bool CanSolveInPieces(const std::vector<SurfaceBlock>& pieces);
 
-  /// Add the result of block `index` of the run to its output, with AddResult().
-  virtual void WriteResult(
-    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output);
-
-  /// Write the table of output port 1. The default writes the history.
-  virtual void WriteTable(vtkTable* table);
-
-  /// Take the results of the run other than its states. The default takes the values above.
-  /// Filters with a third output port, polylines, set Curves here.
-  virtual void TakeResults();
-
-  /// The suffix of the result's name, if ResultArrayName is empty.
-  virtual const char* GetResultSuffix() const = 0;
-
-  /// Helpers of WriteResult(). AddResult() replaces an array of that name and its roles, and keeps
-  /// a warning unless the array is the data and has the name of ResultArrayName.
-  void AddResult(vtkDataArray* result, const SurfaceDiffusion::InputFields& fields,
-    vtkDataSetAttributes* attributes);
-  bool HasResultOnCells(const SurfaceDiffusion::InputFields& fields) const;
-  vtkDataSetAttributes* FindResultAttributes(
-    const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) const;
-  std::string FindResultName(const SurfaceDiffusion::InputFields& fields) const;
-  /// The name of an array beside the result.
-  std::string FindOtherName(const char* name) const;
+  /// The numeric type of the result of the data.
   int FindResultType(const SurfaceDiffusion::InputFields& fields) const;
 
   void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
@@ -348,7 +321,6 @@ protected:
   bool SolvesInPieces(
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points) override;
   void CompletePiece(const SurfaceBlock& piece) override;
-  void VisitReported(const std::function<void(double&)>& visit) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -361,8 +333,6 @@ protected:
   struct RunState;
   const std::unique_ptr<RunState> State;
 
-  vtkSmartPointer<vtkPolyData> Curves; ///< for port 2 of the update that is under way
-
 private:
   vtkSurfaceDiffusionAlgorithm(const vtkSurfaceDiffusionAlgorithm&) = delete;
   void operator=(const vtkSurfaceDiffusionAlgorithm&) = delete;
@@ -370,18 +340,14 @@ private:
   void FindAllFields(const std::vector<SurfaceBlock>& blocks, std::vector<SurfaceBlock>& surfaces,
     std::vector<SurfaceDiffusion::InputFields>& fields, Problems& problems);
   void UpdateTimes(vtkInformationVector* outputs);
+  void WriteResult(
+    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output);
+  void TakeNumbers();
   void WriteFidelityWeights(const std::vector<SurfaceBlock>& surfaces);
   void WriteResults(const std::vector<SurfaceBlock>& surfaces,
     const std::vector<SurfaceDiffusion::InputFields>& fields);
   std::vector<SurfaceDiffusion::BlockInput> MakeInputs(const std::vector<SurfaceBlock>& surfaces,
     const std::vector<SurfaceDiffusion::InputFields>& fields);
-
-  double TimeUnit = 1.0;
-  double ValueRange = 0.0;
-  vtkIdType NumberOfIterations = 0;
-  double Residual = 0.0;
-  vtkIdType NumberOfUnusedPoints = 0;
-  vtkIdType NumberOfStepsComputed = 0;
 };
 
 #endif

@@ -4,13 +4,12 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
+#include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DirectionFieldRun.h"
 #include "Run/OwnedSettings.h"
 
-#include "vtkCellData.h"
 #include "vtkObjectFactory.h"
-#include "vtkPolyData.h"
 
 using namespace SurfaceDiffusion;
 
@@ -77,23 +76,17 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   }
   auto& runs = this->State->Runs;
   runs.Update(inputs, settings, progress);
-  std::vector<vtkSmartPointer<vtkDataArray>> results;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    results.push_back(WriteDirections(runs[b].GetSurface(), runs.CellsOf(b), surfaces[b].Input,
-      runs[b].Directions(), this->ResultArrayName, SMPParallelFor::Instance()));
-  }
   this->BeginWriting();
-  ResultAdder adder(this->ResultArrayName);
+  std::vector<vtkPolyData*> outputs;
+  std::vector<vtkDataArray*> hints;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    vtkCellData* const cells = surfaces[b].Output->GetCellData();
-    adder.Add(results[b], fields[b].Direction, cells);
-    cells->SetActiveVectors(this->ResultArrayName.c_str());
+    outputs.push_back(surfaces[b].Output);
+    hints.push_back(fields[b].Direction);
   }
-  this->MeanEdgeLength = runs.MeanEdgeLength();
   std::vector<Warning> warnings = runs.FindWarnings("get no direction");
-  adder.AppendWarning(warnings);
+  runs.Write(outputs, fields, hints, this->ResultArrayName, warnings);
+  this->Private->Numbers = runs.FindNumbers();
   this->ReportWarnings(std::move(warnings));
 }
 

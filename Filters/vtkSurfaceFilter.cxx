@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceFilter.h"
 
+#include "Conversion/PointNormals.h"
 #include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
@@ -13,12 +14,14 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkMultiProcessStream.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <new>
 #include <sstream>
 #include <utility>
@@ -44,6 +47,7 @@ vtkSurfaceFilter::vtkSurfaceFilter(OwnedSettings settings)
   : Private(std::make_unique<Internals>())
 {
   this->Private->Properties = std::move(settings);
+  this->DeclareNumber("MeanEdgeLength");
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->HasWholeSurface = false; // only if a user sets null
 }
@@ -304,10 +308,14 @@ int vtkSurfaceFilter::RequestData(
       [&](const std::string& text) { this->ReportError(text); });
     for (const SurfaceBlock& piece : toBlocks(pieces))
     {
+      if (piece.Output->GetPoints() != piece.Input->GetPoints())
+      {
+        DropNormals(piece.Input, piece.Output); // others than the active ones are not gathered
+      }
       this->CompletePiece(piece);
     }
   }
-  this->ShareReported();
+  this->ShareNumbers();
   if (this->GetReleaseDataFlag() != 0 || vtkDataObject::GetGlobalReleaseDataFlag() != 0)
   {
     this->ReleaseCache();
@@ -395,22 +403,61 @@ void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
 
 void vtkSurfaceFilter::CompletePiece(const SurfaceBlock&) {}
 
-void vtkSurfaceFilter::VisitReported(const std::function<void(double&)>& visit)
+void vtkSurfaceFilter::DeclareNumber(const char* name, double byDefault)
 {
-  visit(this->MeanEdgeLength);
+  this->Private->DefaultNumbers[name] = byDefault;
 }
 
-/// Give all processes the read-only values of process 0.
-void vtkSurfaceFilter::ShareReported()
+double vtkSurfaceFilter::FindNumber(const char* name, int row, int column) const
+{
+  const auto number = this->Private->Numbers.find(name);
+  if (number == this->Private->Numbers.end())
+  {
+    const auto byDefault = this->Private->DefaultNumbers.find(name);
+    return byDefault == this->Private->DefaultNumbers.end()
+      ? std::numeric_limits<double>::quiet_NaN()
+      : byDefault->second;
+  }
+  const Values& matrix = number->second;
+  const bool isInside = row >= 0 && row < matrix.rows() && column >= 0 && column < matrix.cols();
+  return isInside ? matrix(row, column) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Give all processes the numbers of process 0.
+void vtkSurfaceFilter::ShareNumbers()
 {
   const Processes processes(this->Controller);
-  if (processes.Count() > 1)
+  if (processes.Count() == 1)
   {
-    std::vector<double> values;
-    this->VisitReported([&](double& value) { values.push_back(value); });
-    processes.Broadcast(values.data(), static_cast<vtkIdType>(values.size()));
-    auto next = values.begin();
-    this->VisitReported([&](double& value) { value = *next++; });
+    return;
+  }
+  auto& numbers = this->Private->Numbers;
+  vtkMultiProcessStream stream;
+  stream << static_cast<int>(numbers.size());
+  for (const auto& [name, matrix] : numbers)
+  {
+    stream << name << static_cast<int>(matrix.rows()) << static_cast<int>(matrix.cols());
+    for (Eigen::Index i = 0; i < matrix.size(); ++i)
+    {
+      stream << matrix.data()[i];
+    }
+  }
+  this->Controller->Broadcast(stream, 0);
+  int count = 0;
+  stream >> count;
+  numbers.clear();
+  for (int n = 0; n < count; ++n)
+  {
+    std::string name;
+    int rows = 0;
+    int columns = 0;
+    stream >> name >> rows >> columns;
+    Values& matrix = numbers[name];
+    matrix.resize(rows, columns);
+    for (Eigen::Index i = 0; i < matrix.size(); ++i)
+    {
+      stream >> matrix.data()[i];
+    }
   }
 }
 
@@ -424,5 +471,8 @@ void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
-  os << indent << "MeanEdgeLength: " << this->MeanEdgeLength << "\n";
+  for (const auto& [name, byDefault] : this->Private->DefaultNumbers)
+  {
+    os << indent << name << ": " << this->FindNumber(name.c_str()) << "\n";
+  }
 }

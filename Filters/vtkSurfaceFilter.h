@@ -41,7 +41,6 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSurfaceDiffusionModule.h" // for export macro
 
-#include <functional> // for read-only values
 #include <memory> // for the private part
 #include <string> // for messages
 #include <vector> // for messages
@@ -90,6 +89,13 @@ class vtkPolyData;
   virtual const char* Get##name##AsString() const                                                  \
   {                                                                                                \
     return this->GetPropertyWord(#name);                                                           \
+  }
+
+// A read-only value of the last update: the output of this name among the numbers of the run.
+#define SURFACEDIFFUSION_NUMBER(name, type)                                                        \
+  virtual type Get##name() const                                                                   \
+  {                                                                                                \
+    return static_cast<type>(this->FindNumber(#name));                                             \
   }
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceFilter : public vtkPolyDataAlgorithm
@@ -160,7 +166,7 @@ public:
   /**
    * The mean length h of the distinct edges of triangles of positive area, of the last update.
    */
-  vtkGetMacro(MeanEdgeLength, double);
+  SURFACEDIFFUSION_NUMBER(MeanEdgeLength, double);
 
   /**
    * Free the memory that the filter keeps from one update to the next: the surface and its
@@ -216,12 +222,15 @@ protected:
   virtual bool SolvesInPieces(
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points);
 
-  /// Complete the results of a piece of a surface that process 0 has computed: cells that take no
+  /// Complete the arrays of a piece of a surface that process 0 has computed: cells that take no
   /// part are not gathered. The default does nothing.
   virtual void CompletePiece(const SurfaceBlock& piece);
 
-  /// Visit the read-only values, which process 0 shares with all. Superclass first.
-  virtual void VisitReported(const std::function<void(double&)>& visit);
+  /// Declare a read-only value, which the updates take from the numbers among the outputs and which
+  /// process 0 shares with all. byDefault: before the first update, and if there is none.
+  void DeclareNumber(const char* name, double byDefault = 0.0);
+  /// A number of the last update, or an entry of one that is a matrix; NaN beyond its entries.
+  double FindNumber(const char* name, int row = 0, int column = 0) const;
 
   /// Sentences that name a property or array, its value and what is allowed.
   using Problems = std::vector<std::string>;
@@ -254,7 +263,6 @@ protected:
   double SeamTolerance = -1.0;
   int NumberOfThreads = 0;
   std::string ResultArrayName;
-  double MeanEdgeLength = 0.0;
 
   /// What the library keeps between updates and during one; not for other subclasses.
   struct Internals;
@@ -268,7 +276,7 @@ private:
   void ReportError(const std::string& text);
   int EndUpdate();
   bool IsAborted();
-  void ShareReported();
+  void ShareNumbers();
 
   vtkMultiProcessController* Controller = nullptr;
   bool HasWholeSurface = false; ///< the meaning of a null Controller

@@ -154,9 +154,9 @@ public:
    * functions on the mesh, whose boundaries are too long by a tenth; and the number of
    * minimisations. For composite data the largest of the blocks.
    */
-  vtkGetMacro(Gap, double);
-  vtkGetMacro(LabelGap, double);
-  vtkGetMacro(NumberOfAlternations, int);
+  SURFACEDIFFUSION_NUMBER(Gap, double);
+  SURFACEDIFFUSION_NUMBER(LabelGap, double);
+  SURFACEDIFFUSION_NUMBER(NumberOfAlternations, int);
   ///@}
 
   /**
@@ -165,7 +165,7 @@ public:
    * This is then the value of the first block, and each block has its own as field array
    * `EffectiveFidelityWeight`, with ResultArrayName as prefix.
    */
-  vtkGetMacro(EffectiveFidelityWeight, double);
+  SURFACEDIFFUSION_NUMBER(EffectiveFidelityWeight, double);
 
   /**
    * The mean c of a region in the last update, in array units: the one that was given or found.
@@ -179,12 +179,6 @@ protected:
 
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
-  void WriteResult(
-    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
-  void WriteTable(vtkTable* table) override;
-  void TakeResults() override;
-  const char* GetResultSuffix() const override { return "Segmented"; }
-  void VisitReported(const std::function<void(double&)>& visit) override;
 
 private:
   vtkSurfaceSegmentationFilter(const vtkSurfaceSegmentationFilter&) = delete;
@@ -192,16 +186,8 @@ private:
 
   void PassMeans();
   void CheckPlacesOfMeans(int components, Problems& problems) const;
-  vtkSmartPointer<vtkPolyData> MakeBoundaries() const;
 
   std::map<std::pair<int, int>, double> Means; ///< by region and component
-  std::map<std::pair<int, int>, double> EffectiveMeans;
-  /// Of the blocks, during an update.
-  std::vector<std::shared_ptr<const SurfaceDiffusion::RegionResults>> Regions;
-  double EffectiveFidelityWeight = 0.0;
-  double Gap = 0.0;
-  double LabelGap = 0.0;
-  int NumberOfAlternations = 0;
 };
 
 #endif

@@ -150,10 +150,6 @@ protected:
   vtkTensorDiffusionFilter();
   ~vtkTensorDiffusionFilter() override = default;
 
-  void WriteResult(
-    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
-  const char* GetResultSuffix() const override;
-
 private:
   vtkTensorDiffusionFilter(const vtkTensorDiffusionFilter&) = delete;
   void operator=(const vtkTensorDiffusionFilter&) = delete;

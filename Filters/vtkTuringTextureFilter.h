@@ -66,12 +66,16 @@
 
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
+namespace SurfaceDiffusion
+{
+struct TextureSettings;
+}
+
 class VTKSURFACEDIFFUSION_EXPORT vtkTuringTextureFilter : public vtkSurfaceDiffusionAlgorithm
 {
 public:
   static vtkTuringTextureFilter* New();
   vtkTypeMacro(vtkTuringTextureFilter, vtkSurfaceDiffusionAlgorithm);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum KineticsType
   {
@@ -261,10 +265,12 @@ public:
    * brown and sand.
    */
   SURFACEDIFFUSION_SWITCH(ColorOutput);
-  vtkSetVector3Macro(LowColor, double);
-  vtkGetVector3Macro(LowColor, double);
-  vtkSetVector3Macro(HighColor, double);
-  vtkGetVector3Macro(HighColor, double);
+  virtual void SetLowColor(double red, double green, double blue);
+  virtual void SetLowColor(const double color[3]);
+  virtual double* GetLowColor() VTK_SIZEHINT(3);
+  virtual void SetHighColor(double red, double green, double blue);
+  virtual void SetHighColor(const double color[3]);
+  virtual double* GetHighColor() VTK_SIZEHINT(3);
   ///@}
 
   ///@{
@@ -275,10 +281,10 @@ public:
    * it grew on the surface; see CoarseStartSize). For composite data they are those of the first
    * block.
    */
-  vtkGetMacro(Wavelength, double);
-  vtkGetMacro(WavelengthGrowthRate, double);
-  vtkGetMacro(DiffusionRateFactor, double);
-  vtkGetMacro(CoarseStartVertices, vtkIdType);
+  SURFACEDIFFUSION_NUMBER(Wavelength, double);
+  SURFACEDIFFUSION_NUMBER(WavelengthGrowthRate, double);
+  SURFACEDIFFUSION_NUMBER(DiffusionRateFactor, double);
+  SURFACEDIFFUSION_NUMBER(CoarseStartVertices, vtkIdType);
   ///@}
 
   /**
@@ -292,22 +298,12 @@ protected:
 
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
-  void WriteResult(
-    std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output) override;
-  void TakeResults() override;
-  void VisitReported(const std::function<void(double&)>& visit) override;
-  const char* GetResultSuffix() const override { return ""; }
-
-  double LowColor[3] = { 0.16, 0.09, 0.05 };
-  double HighColor[3] = { 0.93, 0.80, 0.58 };
-  double Wavelength = 0.0;
-  double WavelengthGrowthRate = 0.0;
-  double DiffusionRateFactor = 1.0;
-  vtkIdType CoarseStartVertices = 0;
 
 private:
   vtkTuringTextureFilter(const vtkTuringTextureFilter&) = delete;
   void operator=(const vtkTuringTextureFilter&) = delete;
+
+  SurfaceDiffusion::TextureSettings& GetTextureSettings() const;
 };
 
 #endif

@@ -34,6 +34,7 @@ struct InputFields
   vtkSmartPointer<vtkDataArray> Data; ///< index 0
   bool DataOnCells = false;
   bool DataAreComputed = false; ///< normals that the input does not have
+  bool ResultIsNormals = false; ///< the result of the data takes the place of the normals
   vtkDataArray* Mask = nullptr; ///< index 1
   bool MaskOnCells = false;
   vtkDataArray* Direction = nullptr; ///< index 2

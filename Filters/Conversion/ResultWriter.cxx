@@ -3,21 +3,23 @@
 #include "Conversion/ResultWriter.h"
 
 #include "Conversion/NewArray.h"
+#include "Conversion/PointNormals.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/TupleRange.h"
-#include "Run/CellDirections.h"
-#include "Run/ConvertValue.h"
 
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
+#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
-
-#include <cstdint>
 
 #include <algorithm>
 #include <limits>
@@ -30,93 +32,177 @@ namespace
 
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Whether values that nothing determines are NaN, rather than those of the source.
-bool HoldsNaN(vtkDataArray* source)
+vtkSmartPointer<vtkDataArray> NewArrayOfType(
+  int type, const std::string& name, int components, vtkIdType tuples)
 {
-  return source->GetDataType() == VTK_FLOAT || source->GetDataType() == VTK_DOUBLE;
-}
-
-template <typename Array>
-vtkSmartPointer<vtkDataArray> MakeScalars(const Surface& surface, const std::string& name,
-  const Eigen::Ref<const Vector>& values, vtkDataArray* source, int component)
-{
-  const auto count = static_cast<vtkIdType>(surface.Points().rows());
-  auto array = NewArray<Array>(name, 1, count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const Index v = surface.VertexOf(static_cast<Index>(i));
-    const double elsewhere = source ? source->GetComponent(i, component) : 0.0;
-    array->SetValue(i, ConvertValue<typename Array::ValueType>(v >= 0 ? values[v] : elsewhere));
-  }
-  return array;
-}
-
-vtkSmartPointer<vtkDataArray> NewArrayLike(
-  vtkDataArray* source, vtkIdType tuples, int type, const std::string& name)
-{
-  const int components = source->GetNumberOfComponents();
-  vtkSmartPointer<vtkDataArray> result;
   switch (type)
   {
     case VTK_UNSIGNED_CHAR:
-      result = NewArray<vtkUnsignedCharArray>(name, components, tuples);
-      break;
+      return NewArray<vtkUnsignedCharArray>(name, components, tuples);
+    case VTK_INT:
+      return NewArray<vtkIntArray>(name, components, tuples);
     case VTK_FLOAT:
-      result = NewArray<vtkFloatArray>(name, components, tuples);
-      break;
+      return NewArray<vtkFloatArray>(name, components, tuples);
     default:
-      result = NewArray<vtkDoubleArray>(name, components, tuples);
-      break;
+      return NewArray<vtkDoubleArray>(name, components, tuples);
   }
-  result->CopyComponentNames(source);
-  return result;
 }
 
-/// Tuple i becomes row rowOf(i) of values x unit; other(i, k) in components that `values` has not,
-/// and in all of them if the row is negative.
-template <typename RowOf, typename Other>
-void WriteTuples(
-  vtkDataArray* result, const Values& values, double unit, const RowOf& rowOf, const Other& other)
+int TypeOf(OutputType type, int dataType)
 {
-  const int components = result->GetNumberOfComponents();
-  const int dataComponents = static_cast<int>(values.cols());
-  const auto tuples = static_cast<Index>(result->GetNumberOfTuples());
-  const auto write = [&](auto* typed)
+  switch (type)
   {
-    auto to = vtk::DataArrayTupleRange(typed);
-    using T = typename std::decay_t<decltype(to)>::ComponentType;
-    ForEach(SMPParallelFor::Instance(), tuples,
-      [&](Index i)
-      {
-        auto tuple = to[i];
-        const Index row = rowOf(i);
-        for (int k = 0; k < components; ++k)
-        {
-          tuple[k] =
-            ConvertValue<T>(row >= 0 && k < dataComponents ? values(row, k) * unit : other(i, k));
-        }
-      });
-  };
-  using Dispatch =
-    vtkArrayDispatch::DispatchByArray<vtkTypeList::Create<vtkAOSDataArrayTemplate<double>,
-      vtkAOSDataArrayTemplate<float>, vtkAOSDataArrayTemplate<unsigned char>>>;
-  Dispatch::Execute(result, write);
+    case OutputType::Data:
+      return dataType;
+    case OutputType::Real:
+      return dataType == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE;
+    case OutputType::Integer:
+      return VTK_INT;
+    case OutputType::Byte:
+      return VTK_UNSIGNED_CHAR;
+    default:
+      return VTK_DOUBLE;
+  }
 }
 
-template <typename Array>
-vtkSmartPointer<vtkDataArray> MakeRows(const std::string& name, const Values& values)
+vtkSmartPointer<vtkDataArray> WriteMatrix(const Values& rows, int type, const std::string& name)
 {
-  const auto tuples = static_cast<vtkIdType>(values.rows());
-  const int components = static_cast<int>(values.cols());
-  auto array = NewArray<Array>(name, components, tuples);
-  for (vtkIdType i = 0; i < tuples; ++i)
+  const auto array =
+    NewArrayOfType(type, name, static_cast<int>(rows.cols()), static_cast<vtkIdType>(rows.rows()));
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
   {
-    for (int k = 0; k < components; ++k)
+    for (Eigen::Index k = 0; k < rows.cols(); ++k)
     {
-      array->SetTypedComponent(i, k, ConvertValue<typename Array::ValueType>(values(i, k)));
+      array->SetComponent(i, static_cast<int>(k), rows(i, k));
     }
   }
   return array;
+}
+
+vtkSmartPointer<vtkDataArray> WriteArray(
+  const OutputRows& rows, bool likeData, vtkDataArray* data, int type, const std::string& name)
+{
+  const int components =
+    likeData ? data->GetNumberOfComponents() : static_cast<int>(rows.Columns());
+  const auto array = NewArrayOfType(type, name, components, rows.Count());
+  if (likeData)
+  {
+    array->CopyComponentNames(data);
+  }
+  const auto write = [&](const auto& given)
+  {
+    const auto writeTyped = [&](auto* typed)
+    { rows.Write(typed->GetPointer(0), components, -1, given, SMPParallelFor::Instance()); };
+    using Dispatch = vtkArrayDispatch::DispatchByArray<
+      vtkTypeList::Create<vtkAOSDataArrayTemplate<double>, vtkAOSDataArrayTemplate<float>,
+        vtkAOSDataArrayTemplate<int>, vtkAOSDataArrayTemplate<unsigned char>>>;
+    Dispatch::Execute(array, writeTyped);
+  };
+  if (rows.TakesGiven())
+  {
+    VisitTuples(data,
+      [&](const auto& from)
+      {
+        write([&](Index i, Eigen::Index k)
+          { return static_cast<double>(from[i][static_cast<int>(k)]); });
+      });
+  }
+  else
+  {
+    write([](Index, Eigen::Index) { return 0.0; });
+  }
+  return array;
+}
+
+/// The vectors of a result are vectors in space, which colours and pairs are not.
+int AttributeOf(Role role, const InputFields& fields)
+{
+  if (role == Role::Scalars)
+  {
+    return vtkDataSetAttributes::SCALARS;
+  }
+  if (fields.ResultIsNormals)
+  {
+    return vtkDataSetAttributes::NORMALS; // only these: ParaView shades with no vectors
+  }
+  vtkDataArray* const data = fields.Data;
+  const bool inSpace =
+    !data || (data->GetNumberOfComponents() == 3 && data->GetDataType() != VTK_UNSIGNED_CHAR);
+  return inSpace ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
+}
+
+/// A copy of numbers as an array.
+template <typename Array, typename Value>
+vtkSmartPointer<Array> CopyToArray(const char* name, int components, const std::vector<Value>& from)
+{
+  auto array = NewArray<Array>(name, components, static_cast<vtkIdType>(from.size()) / components);
+  std::copy(from.begin(), from.end(), array->GetPointer(0));
+  return array;
+}
+
+/// The numbers of an output of all surfaces, one after the other.
+struct JoinedColumn
+{
+  const Output* First;
+  std::vector<double> Numbers;
+
+  vtkSmartPointer<vtkDataArray> Write(const std::string& name) const
+  {
+    const Eigen::Index components = this->First->Rows.cols();
+    const auto rows = static_cast<Eigen::Index>(this->Numbers.size()) / components;
+    return WriteMatrix(Eigen::Map<const Values>(this->Numbers.data(), rows, components),
+      TypeOf(this->First->Type, VTK_DOUBLE), name);
+  }
+};
+
+/// Those of one place, in the order of their first appearance, and the numbers of their surfaces.
+/// Where a surface has no output of a name it has NaN.
+std::vector<JoinedColumn> Join(
+  const std::vector<OutputList>& surfaces, Place where, std::vector<int>& surfaceOfRows)
+{
+  std::vector<JoinedColumn> columns;
+  for (std::size_t s = 0; s < surfaces.size(); ++s)
+  {
+    const std::size_t before = surfaceOfRows.size();
+    for (const Output& output : surfaces[s])
+    {
+      if (output.Where != where || output.Lines)
+      {
+        continue;
+      }
+      surfaceOfRows.resize(
+        before + static_cast<std::size_t>(output.Rows.rows()), static_cast<int>(s));
+      auto column = std::find_if(columns.begin(), columns.end(),
+        [&](const JoinedColumn& other) { return other.First->Name == output.Name; });
+      const auto width = static_cast<std::size_t>(output.Rows.cols());
+      if (column == columns.end())
+      {
+        columns.push_back({ &output, std::vector<double>(before * width, NaN) });
+        column = columns.end() - 1;
+      }
+      column->Numbers.insert(
+        column->Numbers.end(), output.Rows.data(), output.Rows.data() + output.Rows.size());
+    }
+    for (JoinedColumn& column : columns)
+    {
+      column.Numbers.resize(
+        surfaceOfRows.size() * static_cast<std::size_t>(column.First->Rows.cols()), NaN);
+    }
+  }
+  return columns;
+}
+
+/// Whether an array of the input was replaced other than `expected`; it may be null.
+bool ReplaceArray(vtkDataArray* result, vtkDataArray* expected, vtkDataSetAttributes* attributes)
+{
+  vtkAbstractArray* const former = attributes->GetAbstractArray(result->GetName());
+  const bool isAnother = former && former != expected;
+  if (former)
+  {
+    attributes->RemoveArray(result->GetName());
+  }
+  attributes->AddArray(result);
+  return isAnother;
 }
 
 template <typename Array, typename Value>
@@ -131,62 +217,6 @@ void AddColumn(vtkTable* table, const std::string& name, int rows, const Value& 
 }
 
 } // namespace
-
-vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArray* source,
-  bool sourceOnCells, const Values& values, double unit, int type, const std::string& name)
-{
-  const auto points = static_cast<vtkIdType>(surface.Points().rows());
-  auto result = NewArrayLike(source, points, type, name);
-  const auto rowOf = [&](Index i) { return surface.VertexOf(i); };
-  const bool holdsNaN = HoldsNaN(source);
-  if (sourceOnCells)
-  {
-    const auto alpha = static_cast<int>(values.cols());
-    WriteTuples(result, values, unit, rowOf,
-      [&](Index i, int k)
-      {
-        const double nothing = holdsNaN && surface.IsUndetermined(i) ? NaN : 0.0;
-        return k < alpha ? nothing : static_cast<double>(VTK_UNSIGNED_CHAR_MAX);
-      });
-    return result;
-  }
-  VisitTuples(source,
-    [&](const auto& from)
-    {
-      WriteTuples(result, values, unit, rowOf,
-        [&](Index i, int k)
-        { return holdsNaN && surface.IsUndetermined(i) ? NaN : static_cast<double>(from[i][k]); });
-    });
-  return result;
-}
-
-vtkSmartPointer<vtkDataArray> WriteCellArray(const CellState& cells, vtkDataArray* source,
-  const Values& values, int type, const std::string& name)
-{
-  auto result = NewArrayLike(source, source->GetNumberOfTuples(), type, name);
-  const bool holdsNaN = HoldsNaN(source);
-  VisitTuples(source,
-    [&](const auto& from)
-    {
-      WriteTuples(
-        result, values, 1.0, [&](Index i) { return cells.Transfer.Participates(i) ? i : -1; },
-        [&](Index i, int k)
-        { return holdsNaN && cells.IsUndetermined(i) ? NaN : static_cast<double>(from[i][k]); });
-    });
-  return result;
-}
-
-vtkSmartPointer<vtkDataArray> WriteScalars(const Surface& surface, const std::string& name,
-  const Eigen::Ref<const Vector>& values, bool single, vtkDataArray* source, int component)
-{
-  return single ? MakeScalars<vtkFloatArray>(surface, name, values, source, component)
-                : MakeScalars<vtkDoubleArray>(surface, name, values, source, component);
-}
-
-vtkSmartPointer<vtkDataArray> WriteRows(const std::string& name, const Values& values, bool single)
-{
-  return single ? MakeRows<vtkFloatArray>(name, values) : MakeRows<vtkDoubleArray>(name, values);
-}
 
 vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like)
 {
@@ -207,32 +237,107 @@ vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like)
   return result;
 }
 
-vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
-  const std::vector<Index>& cells, vtkPolyData* input, const TangentVectors& directions,
-  const std::string& name, const ParallelFor& parallel)
+void WriteOutputs(const OutputList& outputs, const OutputSource& source, const OutputTarget& target)
 {
-  const Points vectors = DirectionsOfCells(
-    surface, directions, input->GetNumberOfCells(),
-    [&](Index t) { return static_cast<std::int64_t>(cells[static_cast<std::size_t>(t)]); },
-    parallel);
-  auto array = NewArray<vtkDoubleArray>(name, 3, input->GetNumberOfCells());
-  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
+  vtkNew<vtkPolyData> input;
+  input->ShallowCopy(target.Surface);
+  vtkDataArray* const data = target.Fields.Data;
+  const std::string& given = target.ResultArrayName;
+  for (const Output& output : outputs)
   {
-    array->SetTuple(cell, vectors.row(cell).data());
+    if (output.Where > Place::PerTriangle || (!output.IsState && output.Rows.cols() == 0))
+    {
+      continue;
+    }
+    if (output.Active == Role::Coordinates)
+    {
+      target.Surface->SetPoints(WritePoints(output.Rows, input->GetPoints()));
+      UpdateNormals(input, target.Surface);
+      continue;
+    }
+    const bool ofData = output.IsResult && data && data->GetName();
+    const std::string name =
+      output.IsResult && !given.empty() ? given : (ofData ? data->GetName() : given) + output.Name;
+    const OutputRows rows(output, source);
+    const auto array = WriteArray(
+      rows, output.Type == OutputType::Data, data, TypeOf(output.Type, target.DataType), name);
+    vtkDataSetAttributes* attributes = target.Surface->GetPointData();
+    if (rows.OnCells())
+    {
+      attributes = target.Surface->GetCellData();
+    }
+    if (ReplaceArray(array, name == given ? target.Expected : nullptr, attributes))
+    {
+      target.Replaced.push_back(name);
+    }
+    if (output.Active != Role::None)
+    {
+      attributes->SetActiveAttribute(name.c_str(), AttributeOf(output.Active, target.Fields));
+    }
   }
-  return array;
 }
 
-bool ReplaceArray(vtkDataArray* result, vtkDataArray* expected, vtkDataSetAttributes* attributes)
+bool WriteColumns(const std::vector<OutputList>& surfaces, vtkTable* table)
 {
-  vtkAbstractArray* const former = attributes->GetAbstractArray(result->GetName());
-  const bool isAnother = former && former != expected;
-  if (former)
+  std::vector<int> blocks;
+  const std::vector<JoinedColumn> columns = Join(surfaces, Place::Column, blocks);
+  if (columns.empty())
   {
-    attributes->RemoveArray(result->GetName());
+    return false;
   }
-  attributes->AddArray(result);
-  return isAnother;
+  table->AddColumn(CopyToArray<vtkIntArray>("Block", 1, blocks));
+  for (const JoinedColumn& column : columns)
+  {
+    table->AddColumn(column.Write(column.First->Name));
+  }
+  return true;
+}
+
+void WriteCurves(
+  const std::vector<OutputList>& surfaces, const std::string& prefix, vtkPolyData* curves)
+{
+  std::vector<double> coordinates;
+  std::vector<vtkTypeInt64> offsets{ 0 }, connectivity;
+  for (const OutputList& surface : surfaces)
+  {
+    for (const Output& output : surface)
+    {
+      if (!output.Lines)
+      {
+        continue;
+      }
+      const Curves& lines = *output.Lines;
+      const auto first = static_cast<vtkTypeInt64>(coordinates.size() / 3);
+      const auto corners = static_cast<vtkTypeInt64>(connectivity.size());
+      coordinates.insert(
+        coordinates.end(), lines.Points.data(), lines.Points.data() + lines.Points.size());
+      for (const Index corner : lines.Corners)
+      {
+        connectivity.push_back(first + corner);
+      }
+      for (auto end = lines.Begin.begin() + 1; end != lines.Begin.end(); ++end)
+      {
+        offsets.push_back(corners + *end);
+      }
+    }
+  }
+  vtkNew<vtkPoints> points;
+  points->SetData(CopyToArray<vtkDoubleArray>("Points", 3, coordinates));
+  vtkNew<vtkCellArray> lines;
+  lines->SetData(CopyToArray<vtkTypeInt64Array>("", 1, offsets),
+    CopyToArray<vtkTypeInt64Array>("", 1, connectivity));
+  curves->SetPoints(points);
+  curves->SetLines(lines);
+  std::vector<int> blocksOfPoints, blocks;
+  for (const JoinedColumn& column : Join(surfaces, Place::PerCurvePoint, blocksOfPoints))
+  {
+    curves->GetPointData()->AddArray(column.Write(prefix + column.First->Name));
+  }
+  for (const JoinedColumn& column : Join(surfaces, Place::PerCurve, blocks))
+  {
+    curves->GetCellData()->AddArray(column.Write(column.First->Name));
+  }
+  curves->GetCellData()->AddArray(CopyToArray<vtkIntArray>("Block", 1, blocks));
 }
 
 std::string DescribeReplacement(const std::vector<std::string>& names)

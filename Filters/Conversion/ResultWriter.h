@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Run/CellFields.h"
+#include "Conversion/FieldReader.h"
 #include "Run/History.h"
-#include "Run/Surface.h"
+#include "Run/Outputs.h"
 
 #include "vtkSmartPointer.h"
 
@@ -12,7 +12,6 @@
 #include <vector>
 
 class vtkDataArray;
-class vtkDataSetAttributes;
 class vtkPoints;
 class vtkPolyData;
 class vtkTable;
@@ -20,39 +19,34 @@ class vtkTable;
 namespace SurfaceDiffusion
 {
 
-/// An array of `type` with the components of `source`, named `name`: values x unit at the points of
-/// participating triangles (rounded and clamped for integer types). At other points and in alpha it
-/// is a copy of the source, or, if that is on cells, 0 and opaque; NaN at undetermined points if the
-/// source has floating-point values. Throws std::runtime_error if `type` cannot hold a value.
-vtkSmartPointer<vtkDataArray> WritePointArray(const Surface& surface, vtkDataArray* source,
-  bool sourceOnCells, const Values& values, double unit, int type, const std::string& name);
-
-/// The same for an array on cells: one row of values per cell. Cells that take no part, and alpha,
-/// are copied from the source, with the same exception.
-vtkSmartPointer<vtkDataArray> WriteCellArray(const CellState& cells, vtkDataArray* source,
-  const Values& values, int type, const std::string& name);
-
-/// One value per point, single or double precision. Points of no participating triangle have that
-/// component of `source`, or 0 without a source.
-vtkSmartPointer<vtkDataArray> WriteScalars(const Surface& surface, const std::string& name,
-  const Eigen::Ref<const Vector>& values, bool single, vtkDataArray* source, int component);
-
-/// One row of `values` per tuple, single or double precision.
-vtkSmartPointer<vtkDataArray> WriteRows(const std::string& name, const Values& values, bool single);
-
 /// Points in single precision if those of `like` are, in double precision otherwise.
 vtkSmartPointer<vtkPoints> WritePoints(const Points& points, vtkPoints* like);
 
-/// An array of unit vectors for the cells of `input`. For a cell with several triangles it is the
-/// main axis of the area-weighted sum of d d^T over their directions d. Zero if there is none.
-vtkSmartPointer<vtkDataArray> WriteDirections(const Surface& surface,
-  const std::vector<Index>& cells, vtkPolyData* input, const TangentVectors& directions,
-  const std::string& name, const ParallelFor& parallel);
+/// The surface that outputs are added to.
+struct OutputTarget
+{
+  vtkPolyData* Surface; ///< a shallow copy of the input
+  const InputFields& Fields;
+  const std::string& ResultArrayName;
+  int DataType; ///< of the result of the data
+  /// The array that a result of the name ResultArrayName may replace; null: none.
+  vtkDataArray* Expected;
+  std::vector<std::string>& Replaced; ///< the names of arrays of the input that are replaced
+};
 
-/// Add a result instead of an array of the same name, whose roles among the attributes are dropped,
-/// since the result may have another number of components. Returns whether an array of the input
-/// was replaced other than `expected`, the one that the user wants to be replaced; it may be null.
-bool ReplaceArray(vtkDataArray* result, vtkDataArray* expected, vtkDataSetAttributes* attributes);
+/// Add the outputs that are arrays or points to a surface, with their roles. Arrays of the same name
+/// are replaced with their roles among the attributes, since the result may have another number of
+/// components. Throws std::runtime_error if a type cannot hold a value.
+void WriteOutputs(
+  const OutputList& outputs, const OutputSource& source, const OutputTarget& target);
+
+/// Write the columns of the outputs of all surfaces, their rows one after the other. Returns whether
+/// there are any.
+bool WriteColumns(const std::vector<OutputList>& surfaces, vtkTable* table);
+
+/// Write the curves of all surfaces as polylines. prefix: of the names of the arrays of points.
+void WriteCurves(
+  const std::vector<OutputList>& surfaces, const std::string& prefix, vtkPolyData* curves);
 
 /// The warning about arrays of the input that results have replaced.
 std::string DescribeReplacement(const std::vector<std::string>& names);

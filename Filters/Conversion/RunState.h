@@ -6,9 +6,11 @@
 
 #include "Conversion/BlockInputs.h"
 #include "Conversion/SMPParallelFor.h"
+#include "Run/Outputs.h"
 #include "Run/OwnedSettings.h"
 #include "Run/Run.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,6 +30,17 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
     bool Used = true; ///< in the current update
   };
   std::vector<ComputedNormals> Normals;
+  /// At the end of an update.
+  void ForgetUnusedNormals()
+  {
+    this->Normals.erase(std::remove_if(this->Normals.begin(), this->Normals.end(),
+                          [](const ComputedNormals& computed) { return !computed.Used; }),
+      this->Normals.end());
+    for (ComputedNormals& computed : this->Normals)
+    {
+      computed.Used = false; // until the next update
+    }
+  }
 
   /// The last step of a run, which may have ended early, and the settings of that run.
   struct Length
@@ -51,5 +64,6 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
   int Step = 0; ///< the requested step
   int LastStep = -1; ///< of the run; -1 if it is not known
   SurfaceDiffusion::History History;
+  std::vector<SurfaceDiffusion::OutputList> Outputs; ///< for the tables and curves
   bool Succeeded = false;
 };

@@ -5,6 +5,7 @@
 #include "vtkSurfaceFilter.h"
 
 #include "Conversion/SMPParallelFor.h"
+#include "Core/Foundation/Types.h"
 #include "Distributed/GatheredSurfaces.h"
 #include "Distributed/SharedProcessGroup.h"
 #include "Distributed/SurfacePieces.h"
@@ -19,12 +20,18 @@
 #include "vtkWeakPointer.h"
 
 #include <cstring>
+#include <map>
 #include <memory>
+#include <string>
 
 /// The state of vtkSurfaceFilter that its header hides.
 struct vtkSurfaceFilter::Internals
 {
   SurfaceDiffusion::OwnedSettings Properties;
+
+  /// Read-only values by their names: those before the first update, and those of the last one.
+  std::map<std::string, double> DefaultNumbers;
+  std::map<std::string, SurfaceDiffusion::Values> Numbers;
 
   std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered;
   SurfaceDiffusion::WarningLog Reported;

@@ -6,9 +6,11 @@
 #include "Conversion/ResultWriter.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Run/BlockSentences.h"
+#include "Run/Outputs.h"
 #include "Run/SurfaceRun.h"
 #include "Run/WarningLog.h"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -48,12 +50,38 @@ public:
     }
   }
 
-  std::size_t Size() const { return this->Runs.size(); }
-  const RunType& operator[](std::size_t surface) const { return *this->Runs[surface]; }
-  /// The cell of each triangle of a surface.
-  const std::vector<Index>& CellsOf(std::size_t surface) const
+  /// Add the outputs of each surface. data: its array that a result of the same name may replace.
+  void Write(const std::vector<vtkPolyData*>& surfaces, const std::vector<InputFields>& fields,
+    const std::vector<vtkDataArray*>& data, const std::string& name,
+    std::vector<Warning>& warnings) const
   {
-    return this->Inputs.CellsOf(surface);
+    std::vector<std::string> replaced;
+    for (std::size_t b = 0; b < surfaces.size(); ++b)
+    {
+      OutputSource source{ this->Runs[b]->GetSurface(), SMPParallelFor::Instance() };
+      source.NumberOfCells = surfaces[b]->GetNumberOfCells();
+      source.CellOf = [&cells = this->Inputs.CellsOf(b)](Index t)
+      { return cells[static_cast<std::size_t>(t)]; };
+      WriteOutputs(this->Runs[b]->Outputs(), source,
+        { surfaces[b], fields[b], name, VTK_DOUBLE, data[b], replaced });
+    }
+    if (!replaced.empty())
+    {
+      warnings.push_back({ DescribeReplacement(replaced), Fingerprint() });
+    }
+  }
+
+  /// The numbers of all surfaces.
+  std::map<std::string, Values> FindNumbers() const
+  {
+    std::vector<const OutputList*> surfaces;
+    for (const auto& run : this->Runs)
+    {
+      surfaces.push_back(&run->Outputs());
+    }
+    std::map<std::string, Values> numbers = CombineNumbers(surfaces, 0);
+    numbers["MeanEdgeLength"] = Values::Constant(1, 1, this->MeanEdgeLength());
+    return numbers;
   }
 
   /// Over all surfaces, in coordinate units; 1 if there is no edge.
@@ -113,35 +141,6 @@ private:
   BlockInputs Inputs;
   std::vector<std::unique_ptr<RunType>> Runs;
   std::vector<std::string> Names;
-};
-
-/// Adds results of one name to the surfaces of an output.
-class ResultAdder
-{
-public:
-  explicit ResultAdder(std::string name)
-    : Name(std::move(name))
-  {
-  }
-
-  /// data: the array that the result was computed from, may be null.
-  void Add(vtkDataArray* result, vtkDataArray* data, vtkDataSetAttributes* attributes)
-  {
-    this->Replaced = ReplaceArray(result, data, attributes) || this->Replaced;
-  }
-
-  /// Append the warning about arrays of the input that were replaced.
-  void AppendWarning(std::vector<Warning>& warnings) const
-  {
-    if (this->Replaced)
-    {
-      warnings.push_back({ DescribeReplacement({ this->Name }), Fingerprint() });
-    }
-  }
-
-private:
-  std::string Name;
-  bool Replaced = false;
 };
 
 } // namespace SurfaceDiffusion

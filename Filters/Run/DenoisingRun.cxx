@@ -78,18 +78,42 @@ void DenoisingRun::Update(
   this->Found.NoiseLevel *= unit;
   this->Found.MeanDisplacement *= unit;
   this->Found.MaximumDisplacement *= unit;
-  this->Moved = surface.Points();
+  Points all = surface.Points();
   for (Index p = 0; p < numberOfPoints; ++p)
   {
     const Index vertex = surface.VertexOf(p);
     if (vertex >= 0)
     {
-      this->Moved.row(p) += unit * (moved.row(vertex) - points.row(vertex));
+      all.row(p) += unit * (moved.row(vertex) - points.row(vertex));
     }
   }
-  this->GivenVolume = EnclosedVolume(mesh, surface.Points(), this->Parallel);
-  this->MovedVolume = EnclosedVolume(mesh, this->Moved, this->Parallel);
+  this->ListResults(all);
   this->Complete(input, settings);
+}
+
+void DenoisingRun::ListResults(const Points& moved)
+{
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = surface.InputMesh();
+  this->Results.clear();
+  if (this->Found.MaximumDisplacement > 0.0)
+  {
+    this->Results.push_back(
+      { "Points", Place::PerPoint, OutputType::Double, moved, Role::Coordinates });
+  }
+  this->Results.push_back(
+    { "Displacement", Place::PerPoint, OutputType::Double, moved - surface.Points() });
+  this->Results.back().IsResult = true;
+  const auto add = [this](const char* name, double value, Combination over)
+  { this->Results.push_back(Output::OfNumber(name, value, over)); };
+  add("EffectiveNoiseLevel", this->Found.NoiseLevel, Combination::Largest);
+  add("EffectiveSurfaceType", static_cast<double>(this->FoundType()), Combination::Common);
+  this->Results.back().Type = OutputType::Integer;
+  add("MeanDisplacement", this->Found.MeanDisplacement, Combination::Mean);
+  this->Results.back().Weight = mesh.NumberOfVertices();
+  add("MaximumDisplacement", this->Found.MaximumDisplacement, Combination::Largest);
+  add("VolumeBefore", EnclosedVolume(mesh, surface.Points(), this->Parallel), Combination::Sum);
+  add("VolumeAfter", EnclosedVolume(mesh, moved, this->Parallel), Combination::Sum);
 }
 
 } // namespace SurfaceDiffusion

@@ -33,23 +33,17 @@ public:
   void Update(
     const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
 
-  /// Per input point, in coordinate units.
-  const Points& MovedPoints() const { return this->Moved; }
   /// Lengths in coordinate units.
   const DenoisingReport& Report() const { return this->Found; }
   /// CAD or Organic, given or found.
   SurfaceType FoundType() const;
-  /// Enclosed volumes in coordinate units, see EnclosedVolume().
-  double VolumeBefore() const { return this->GivenVolume; }
-  double VolumeAfter() const { return this->MovedVolume; }
   /// The warning about coincident points that may come apart, if there are any.
   std::vector<Warning> FindWarnings() const;
 
 private:
-  Points Moved;
+  void ListResults(const Points& moved);
+
   DenoisingReport Found;
-  double GivenVolume = 0.0;
-  double MovedVolume = 0.0;
 };
 
 } // namespace SurfaceDiffusion

@@ -70,8 +70,11 @@ void DirectionFieldRun::Update(
     this->MakeField(input, settings, progress.Part(0.1, 1.0));
     this->Complete(input, settings);
   }
-  this->Rotated = this->Field;
-  RotateLines(this->Rotated, RadiansFromDegrees(settings.Angle), this->Parallel);
+  TangentVectors rotated = this->Field;
+  RotateLines(rotated, RadiansFromDegrees(settings.Angle), this->Parallel);
+  this->Results = { { "Direction", Place::PerTriangle, OutputType::Double, rotated,
+    Role::Vectors } };
+  this->Results.front().IsResult = true;
 }
 
 void DirectionFieldRun::MakeField(

@@ -39,8 +39,6 @@ public:
   void Update(
     const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress);
 
-  /// e1 per triangle of the surface's InputMesh().
-  const TangentVectors& Directions() const { return this->Rotated; }
   /// The warnings about the line field that hold.
   std::vector<Warning> FindWarnings() const;
 
@@ -49,7 +47,6 @@ private:
     const ProgressMonitor& progress);
 
   TangentVectors Field; ///< before the rotation by Angle
-  TangentVectors Rotated;
   LineFieldReport Report;
 };
 

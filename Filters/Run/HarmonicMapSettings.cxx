@@ -74,6 +74,7 @@ ModelTraits HarmonicMapSettings::DescribeModel() const
   traits.Time = { this->Exponent, 0.0 };
   traits.Energy = { 2.0 - this->Exponent, 0.0 };
   traits.HasValueRange = false;
+  traits.ResultSuffix = "Harmonic";
   traits.UsesFidelity = this->FidelityWeight > 0.0;
   traits.StateIsUnitVectors = true;
   traits.StateIsLines = this->LineField;
@@ -108,7 +109,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
                              "fixed vectors must have a direction");
   }
   CompletePreparation(*this, inputs, result);
-  result.EffectiveFidelityWeight = this->FidelityWeight;
+  result.AddNumber("EffectiveFidelityWeight", this->FidelityWeight);
 
   const double p = this->Exponent;
   const double fastest = this->LargestDiffusivity();
@@ -140,32 +141,50 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
     std::move(inputs.Data), settings, solver, inputs.Parallel);
 }
 
-void HarmonicMapSettings::Finish(const RunState& state, RunResult& result) const
+std::vector<Output> HarmonicMapSettings::Finish(const RunState& state, RunResult& result) const
 {
-  result.MovedPoints.resize(0, 3);
-  result.Motion = VertexMotion();
-  if (!this->MoveVertices)
+  std::vector<Output> outputs = this->DataSettings::Finish(state, result);
+  outputs.front().Active = Role::Vectors;
+  VertexMotion motion;
+  if (this->MoveVertices)
   {
-    return;
+    outputs.push_back({ "Points", Place::PerPoint, OutputType::Double,
+      this->MovePoints(state, motion), Role::Coordinates });
   }
+  result.MissedByFinish = motion.MissedResidual;
+  const TriangleMesh& mesh = state.Surface.InputMesh();
+  outputs.push_back(
+    Output::OfNumber("MeanDisplacement", motion.MeanDisplacement, Combination::Mean));
+  outputs.back().Weight = mesh.ControlAreas().sum() * mesh.LengthUnit() * mesh.LengthUnit();
+  outputs.push_back(
+    Output::OfNumber("MaximumDisplacement", motion.MaximumDisplacement, Combination::Largest));
+  outputs.push_back(Output::OfNumber("VolumeBefore", motion.VolumeBefore, Combination::Sum));
+  outputs.push_back(Output::OfNumber("VolumeAfter", motion.VolumeAfter, Combination::Sum));
+  return outputs;
+}
+
+/// The points of the input, moved to fit the normals of the state.
+Points HarmonicMapSettings::MovePoints(const RunState& state, VertexMotion& motion) const
+{
   const Surface& surface = state.Surface;
   const TriangleMesh& mesh = surface.InputMesh();
   IterationLimits limits;
   limits.Tolerance = this->Tolerance;
   limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   const Points moved = UpdateVerticesFromNormals(mesh, surface.Points(), state.Path.State(),
-    UpdateRange * state.Units.MeanEdgeLength, result.Motion, limits,
+    UpdateRange * state.Units.MeanEdgeLength, motion, limits,
     this->Solver != SolverMethod::ConjugateGradient, state.Parallel, state.Progress);
-  result.MovedPoints = surface.Points();
+  Points points = surface.Points();
   for (Eigen::Index i = 0; i < moved.rows(); ++i)
   {
     const Index v = surface.VertexOf(static_cast<Index>(i));
     if (v >= 0) // points merged into one vertex move together
     {
       const Index vertex = mesh.InputVertex()[static_cast<std::size_t>(v)];
-      result.MovedPoints.row(i) += moved.row(vertex) - surface.Points().row(vertex);
+      points.row(i) += moved.row(vertex) - surface.Points().row(vertex);
     }
   }
+  return points;
 }
 
 } // namespace SurfaceDiffusion

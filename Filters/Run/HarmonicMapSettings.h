@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Geometry/VertexUpdating.h"
 #include "Core/Models/HarmonicMap.h"
 #include "Run/RunSettings.h"
 
@@ -24,13 +25,14 @@ struct HarmonicMapSettings : DataSettings
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
-  void Finish(const RunState& state, RunResult& result) const override;
+  std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
   std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:
+  Points MovePoints(const RunState& state, VertexMotion& motion) const;
   SolverTask MakeTask(const ModelInputs& inputs, double timeStep) const;
 };
 

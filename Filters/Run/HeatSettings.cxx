@@ -61,6 +61,7 @@ ModelTraits HeatSettings::DescribeModel() const
     : this->TimeStep;
   traits.AbsoluteTime = this->FWHM > 0.0 || this->IsAbsolute();
   traits.Time = { 2.0, 0.0 };
+  traits.ResultSuffix = "Diffused";
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
   traits.CanBeDistributed = !this->FindsFidelity() && !this->Blur.IsOn();
@@ -98,7 +99,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
       inputs, this->NoiseLevel, 1.0 / (h * h), 1,
       [&](double weight) { return make(inputs.Data, weight); }, result, blur.get());
   }
-  result.EffectiveFidelityWeight = fidelity / unit;
+  result.AddNumber("EffectiveFidelityWeight", fidelity / unit);
   return make(std::move(inputs.Data), fidelity);
 }
 
@@ -137,7 +138,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     task.DiffusionNumber.reset();
   }
 
-  result.EffectiveFidelityWeight = this->FidelityWeight;
+  double effective = this->FidelityWeight;
   if (this->AutomaticFidelity)
   {
     const auto solver = inputs.Solvers.Find(SolverPurpose::Search, task, solvesPerStep);
@@ -150,8 +151,9 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
         inputs.Surface.SharedAssembler(), weights, inputs.Data, steady, solver, inputs.Parallel);
     };
     settings.Fidelity = FindFidelity(inputs, this->NoiseLevel, 1.0 / (h * h), 1, solve, result);
-    result.EffectiveFidelityWeight = settings.Fidelity / fidelityUnit;
+    effective = settings.Fidelity / fidelityUnit;
   }
+  result.AddNumber("EffectiveFidelityWeight", effective);
   return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
     std::move(inputs.Data), settings, inputs.Solvers.Find(SolverPurpose::Step, task, solvesPerStep),
     inputs.Parallel);

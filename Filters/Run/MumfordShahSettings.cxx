@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/MumfordShahSettings.h"
 
+#include "Core/Geometry/RidgeCurves.h"
 #include "Core/Models/EdgeScales.h"
 #include "Core/Models/MumfordShah.h"
 #include "Run/DataPreparation.h"
@@ -41,6 +42,47 @@ double ShareOfEdges(const TriangleMesh& mesh, const Vector& edges, const Paralle
     [&](Index i) { return edges[i] > 0.5 ? mesh.ControlAreas()[i] : 0.0; });
   mesh.GetReduction().Sum(areas, 2);
   return areas[1] > 0.0 ? areas[0] / areas[1] : 0.0;
+}
+
+/// Add the ridges as curves, with the height of the edges at their points.
+void AddCurves(const Polylines& ridges, const Vector& edges, std::vector<Output>& outputs)
+{
+  Curves curves;
+  std::vector<Index> rows; // of the points of the ridges
+  Values lengths(ridges.NumberOfLines(), 1);
+  for (Index l = 0; l < ridges.NumberOfLines(); ++l)
+  {
+    const Index last = ridges.Begin[l + 1] - 1;
+    const bool closed = ridges.Vertices[ridges.Begin[l]] == ridges.Vertices[last];
+    const auto first = static_cast<Index>(rows.size());
+    for (Index k = ridges.Begin[l]; k < last || (k == last && !closed); ++k)
+    {
+      curves.Corners.push_back(static_cast<Index>(rows.size()));
+      rows.push_back(k);
+    }
+    if (closed)
+    {
+      curves.Corners.push_back(first);
+    }
+    curves.Begin.push_back(static_cast<Index>(curves.Corners.size()));
+    lengths(l, 0) = ridges.Length(l);
+  }
+  curves.Points.resize(static_cast<Eigen::Index>(rows.size()), 3);
+  Values heights(curves.Points.rows(), 1);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    curves.Points.row(static_cast<Eigen::Index>(i)) = ridges.Points.row(rows[i]);
+    heights(static_cast<Eigen::Index>(i), 0) = edges[ridges.Vertices[rows[i]]];
+  }
+  double sum = 0.0;
+  for (Eigen::Index l = 0; l < lengths.rows(); ++l)
+  {
+    sum += lengths(l, 0);
+  }
+  outputs.push_back(Output::OfCurves("Curves", std::move(curves)));
+  outputs.push_back({ "Edges", Place::PerCurvePoint, OutputType::Double, std::move(heights) });
+  outputs.push_back({ "Length", Place::PerCurve, OutputType::Double, std::move(lengths) });
+  outputs.push_back(Output::OfNumber("EdgeLength", sum, Combination::Sum));
 }
 
 void WarnOfUnused(const char* name, double value, double byDefault, RunResult& result)
@@ -123,6 +165,7 @@ ModelTraits MumfordShahSettings::DescribeModel() const
   ModelTraits traits;
   traits.NumberOfSteps = this->NumberOfTimeSteps;
   traits.MayEndEarly = true;
+  traits.ResultSuffix = "MumfordShah";
   traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = this->IsAbsolute();
   traits.Energy = { 0.0, 2.0 };
@@ -146,8 +189,8 @@ double MumfordShahSettings::UseGivenScales(
   settings.Fidelity = this->FidelityWeight / (length * length);
   settings.EdgeCost =
     this->EdgeCost(inputs.Units, inputs.Units.ToCore(this->EdgeThreshold, 0.0, 1.0), length);
-  result.EffectiveEdgeThreshold = this->EdgeThreshold;
-  result.EffectiveSmoothingLength = this->SmoothingLength;
+  result.AddNumber("EffectiveEdgeThreshold", this->EdgeThreshold);
+  result.AddNumber("EffectiveSmoothingLength", this->SmoothingLength);
   return length;
 }
 
@@ -192,12 +235,13 @@ double MumfordShahSettings::UseFoundScales(
         std::pow(reference.SmoothingLength / scales[c].SmoothingLength, 2);
     }
   }
-  result.EffectiveEdgeThreshold = reference.Threshold / inputs.Units.ToCore(1.0, 0.0, 1.0);
-  result.EffectiveSmoothingLength = length / inputs.Units.ToCore(1.0, 1.0, 0.0);
-  result.EstimatedNoiseLevel = this->NoiseLevel > 0.0
-    ? this->NoiseLevel
-    : inputs.Units.FromCore(reference.Noise, 0.0, 1.0) /
-      (inputs.Cells ? inputs.Cells->NoiseGain() : 1.0);
+  result.AddNumber(
+    "EffectiveEdgeThreshold", reference.Threshold / inputs.Units.ToCore(1.0, 0.0, 1.0));
+  result.AddNumber("EffectiveSmoothingLength", length / inputs.Units.ToCore(1.0, 1.0, 0.0));
+  result.AddNumber("EstimatedNoiseLevel",
+    this->NoiseLevel > 0.0 ? this->NoiseLevel
+                           : inputs.Units.FromCore(reference.Noise, 0.0, 1.0) /
+        (inputs.Cells ? inputs.Cells->NoiseGain() : 1.0));
   const MumfordShahSettings defaults;
   WarnOfUnused("EdgeThreshold", this->EdgeThreshold, defaults.EdgeThreshold, result);
   WarnOfUnused("SmoothingLength", this->SmoothingLength, defaults.SmoothingLength, result);
@@ -207,7 +251,7 @@ double MumfordShahSettings::UseFoundScales(
 std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
-  result.EffectiveFidelityWeight = this->FidelityWeight;
+  result.AddNumber("EffectiveFidelityWeight", this->FidelityWeight);
   const double h = inputs.Units.CoreEdgeLength();
   MumfordShah::Settings settings;
   settings.EdgeWidth = inputs.Units.ToCore(this->EdgeWidth, 1.0, 0.0);
@@ -244,7 +288,7 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
 
 /// Says why so much of the surface is an edge.
 void MumfordShahSettings::WarnOfManyEdges(
-  const RunState& state, const MumfordShah& model, double share, RunResult& result) const
+  const RunState& state, double share, RunResult& result) const
 {
   bool noise = false, slopes = false;
   if (!this->AutomaticThreshold && state.Surface.Mesh().GetReduction().IsSerial())
@@ -252,9 +296,9 @@ void MumfordShahSettings::WarnOfManyEdges(
     const double unit = state.Surface.Mesh().LengthUnit();
     const double jump = state.Units.ToCore(this->EdgeThreshold, 0.0, 1.0);
     const double length = state.Units.ToCore(this->SmoothingLength, 1.0, 0.0) * unit;
-    const double channels = std::sqrt(static_cast<double>(model.State().cols()));
+    const double channels = std::sqrt(static_cast<double>(state.Path.State().cols()));
     for (const EdgeScales& found : FindEdgeScales(*state.Surface.SharedAssembler(),
-           state.Surface.Points(), model.GetData(), { unit, 0.0, 0.0 }))
+           state.Surface.Points(), *state.Path.CurrentModel().GivenData(), { unit, 0.0, 0.0 }))
     {
       noise = noise || NoiseOfEdges * channels * found.Noise > jump;
       slopes = slopes || 2.0 * length * found.Slope > jump;
@@ -286,23 +330,27 @@ void MumfordShahSettings::WarnOfManyEdges(
   result.WarnOnce(text.str());
 }
 
-void MumfordShahSettings::Finish(const RunState& state, RunResult& result) const
+std::vector<Output> MumfordShahSettings::Finish(const RunState& state, RunResult& result) const
 {
-  const auto& model = dynamic_cast<const MumfordShah&>(state.Path.CurrentModel());
-  result.Edges = model.Edges();
-  result.EdgeCurves = Polylines();
-  const double share = ShareOfEdges(state.Surface.Mesh(), result.Edges, state.Parallel);
+  const Model& model = state.Path.CurrentModel();
+  const Vector edges = model.Results().at("Edges");
+  const double share = ShareOfEdges(state.Surface.Mesh(), edges, state.Parallel);
   if (model.Finished() && share > LargestShare)
   {
-    this->WarnOfManyEdges(state, model, share, result);
+    this->WarnOfManyEdges(state, share, result);
   }
+  std::vector<Output> outputs{ { "Edges", Place::PerVertex, OutputType::Real, edges } };
+  outputs.push_back(Output::OfState(this->DescribeModel().ResultSuffix));
+  Polylines ridges;
   if (this->EdgeCurves)
   {
     const double width =
       state.Units.ToCore(this->EdgeWidth, 1.0, 0.0) * state.Surface.Mesh().LengthUnit();
-    result.EdgeCurves = FindRidges(state.Surface.InputMesh(), state.Surface.Points(), result.Edges,
+    ridges = FindRidges(state.Surface.InputMesh(), state.Surface.Points(), edges,
       ShortestCurve * width, state.Parallel);
   }
+  AddCurves(ridges, edges, outputs);
+  return outputs;
 }
 
 } // namespace SurfaceDiffusion

@@ -34,7 +34,7 @@ struct MumfordShahSettings : DataSettings
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
-  void Finish(const RunState& state, RunResult& result) const override;
+  std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
   std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
@@ -46,8 +46,7 @@ private:
     const ModelInputs& inputs, MumfordShah::Settings& settings, RunResult& result) const;
   double UseFoundScales(
     ModelInputs& inputs, MumfordShah::Settings& settings, RunResult& result) const;
-  void WarnOfManyEdges(
-    const RunState& state, const MumfordShah& model, double share, RunResult& result) const;
+  void WarnOfManyEdges(const RunState& state, double share, RunResult& result) const;
 };
 
 } // namespace SurfaceDiffusion

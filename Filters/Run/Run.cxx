@@ -345,9 +345,13 @@ void Run::Seek(int step, const ProgressMonitor& progress)
     if (block->FinishedStep != reached || block->FinishSettings != outputSettings)
     {
       block->FinishedStep = -1;
-      this->Settings->Finish(
-        { *block->Surface, block->Units, *block->Path, this->Parallel, progress.Part(1.0, 1.0) },
+      const bool onCells = this->Settings->DescribeModel().ResultOnCells;
+      block->Outputs = this->Settings->Finish(
+        { *block->Surface, block->Units, *block->Path, onCells ? block->Cells.get() : nullptr,
+          this->Parallel, progress.Part(1.0, 1.0) },
         block->Result);
+      const std::vector<Output>& numbers = block->Result.Numbers;
+      block->Outputs.insert(block->Outputs.end(), numbers.begin(), numbers.end());
       block->FinishedStep = reached;
       block->FinishSettings = outputSettings;
     }

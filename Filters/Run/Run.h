@@ -98,8 +98,9 @@ public:
     UnitSystem Units;
     std::unique_ptr<Trajectory> Path;
     RunResult Result;
-    int FinishedStep = -1; ///< the step of Result, which RunSettings::Finish() has completed
-    SettingsSnapshot FinishSettings; ///< of scope Output, that it was completed with
+    std::vector<Output> Outputs; ///< of RunSettings::Finish(), and Result.Numbers
+    int FinishedStep = -1; ///< the step of Outputs
+    SettingsSnapshot FinishSettings; ///< of scope Output, that they were made with
     std::unique_ptr<CellState> Cells; ///< null unless the data are on cells
 
     /// The inputs and settings that the parts above were made from.

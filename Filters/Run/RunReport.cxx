@@ -191,8 +191,8 @@ Shortfalls Run::FindShortfalls() const
     --found.Steps; // the initial state
     found.Inputs.Add(block->SurfaceVersion);
     found.Inputs.Add(block->FieldsVersion);
-    found.MissedResidual = std::max(found.MissedResidual,
-      std::max(block->Result.MissedResidual, block->Result.Motion.MissedResidual));
+    found.MissedResidual = std::max(
+      found.MissedResidual, std::max(block->Result.MissedResidual, block->Result.MissedByFinish));
   }
   return found;
 }

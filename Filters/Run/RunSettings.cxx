@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/RunSettings.h"
 
+#include "Run/Output.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -87,7 +89,10 @@ void RunSettings::Visit(SettingVisitor& visitor)
     this->CheckpointMemoryLimit, SettingRange::AtLeast(0.0, "0 or more MiB"));
 }
 
-void RunSettings::Finish(const RunState&, RunResult&) const {}
+std::vector<Output> RunSettings::Finish(const RunState&, RunResult&) const
+{
+  return { Output::OfState(this->DescribeModel().ResultSuffix) };
+}
 
 void RunSettings::Check(const FieldSummary* fields, Problems& problems)
 {

@@ -14,6 +14,7 @@ namespace SurfaceDiffusion
 {
 
 struct ModelInputs;
+struct Output;
 struct RunResult;
 struct RunState;
 
@@ -72,6 +73,7 @@ struct ModelTraits
   bool ResultOnCells = false; ///< if the data are on cells
   bool KeepCellDetail = true;
   bool NeedsCellDetail() const { return this->KeepCellDetail && this->ResultOnCells; }
+  const char* ResultSuffix = ""; ///< of the name of the result, after that of the data
   bool StateIsUnitVectors = false;
   bool StateIsLines = false; ///< unit vectors whose sign has no meaning
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
@@ -80,7 +82,7 @@ struct ModelTraits
 
 /// The settings of a time-dependent model, in the user's terms. A subclass describes its model with
 /// four virtual functions: Visit() lists the settings, DescribeModel() gives the traits, Make()
-/// makes the model and Finish() completes its results. CheckTogether() has a default.
+/// makes the model and Finish() lists its results. CheckTogether() has a default.
 struct RunSettings : Settings
 {
   double TimeStep = 1.0;
@@ -107,9 +109,10 @@ struct RunSettings : Settings
   /// The model in its initial state. Throws std::runtime_error and Aborted.
   virtual std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const = 0;
 
-  /// Add the results that depend on the current state and may take long or fail. The default adds
-  /// none.
-  virtual void Finish(const RunState& state, RunResult& result) const;
+  /// What the model returns at the current step, except for the numbers of Make(), in the order in
+  /// which it is written. It may take long or fail. The default returns the state as the result of
+  /// the data.
+  virtual std::vector<Output> Finish(const RunState& state, RunResult& result) const;
 
   /// Problems of single settings and of settings that do not go together, all at once. `fields` is
   /// null if the arrays are not known yet.

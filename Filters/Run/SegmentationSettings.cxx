@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/SegmentationSettings.h"
 
+#include "Core/Geometry/RegionBoundaries.h"
 #include "Core/Models/RegionMeans.h"
 #include "Core/Models/Segmentation.h"
 #include "Run/ModelInputs.h"
@@ -71,28 +72,81 @@ Vector AreaFactorsOfPoints(const Surface& surface)
   return factors;
 }
 
-std::shared_ptr<RegionResults> MeasureRegions(
-  const Surface& surface, const Segmentation& model, const ParallelFor& parallel)
+/// The mean of the region of each label; zero for label 0.
+Values MeansOfLabels(const Values& means, const Values& labels)
 {
-  auto regions = std::make_shared<RegionResults>();
-  const auto count = static_cast<Index>(model.State().cols());
-  regions->Labels = model.Labels();
-  const Values u = StateOfPoints(surface, model.State());
-  const Triangles triangles = surface.MakeTriangles();
-  regions->Areas =
-    RegionAreas(surface.Points(), triangles, u, AreaFactorsOfPoints(surface), parallel);
-  regions->Boundaries = FindRegionBoundaries(surface.Points(), triangles, u);
-  regions->BoundaryLengths = Vector::Zero(count);
-  for (const RegionBoundary& curve : regions->Boundaries.Curves)
+  Values rows = Values::Zero(labels.rows(), means.cols());
+  for (Eigen::Index i = 0; i < labels.rows(); ++i)
   {
-    for (const Index region : curve.Regions)
+    if (labels(i, 0) > 0.0)
     {
-      regions->BoundaryLengths[region - 1] += curve.Length;
+      rows.row(i) = means.row(static_cast<Eigen::Index>(labels(i, 0)) - 1);
     }
   }
-  regions->Components =
-    CountRegionComponents(surface.InputMesh().TriangleVertices(), regions->Labels, count);
-  return regions;
+  return rows;
+}
+
+Values AsColumn(const std::vector<Index>& numbers)
+{
+  return Eigen::Map<const Eigen::VectorXi>(
+    numbers.data(), static_cast<Eigen::Index>(numbers.size()))
+    .cast<double>();
+}
+
+/// Add the curves between regions. Returns the length of the boundary of each region.
+Values AddBoundaries(
+  const RegionBoundaries& boundaries, Eigen::Index regions, std::vector<Output>& outputs)
+{
+  const auto count = static_cast<Eigen::Index>(boundaries.Curves.size());
+  Curves curves;
+  curves.Points = boundaries.Points;
+  Values ofCurves(count, 2), lengths(count, 1), sums = Values::Zero(regions, 1);
+  for (Eigen::Index c = 0; c < count; ++c)
+  {
+    const RegionBoundary& curve = boundaries.Curves[static_cast<std::size_t>(c)];
+    curves.Corners.insert(curves.Corners.end(), curve.Points.begin(), curve.Points.end());
+    curves.Begin.push_back(static_cast<Index>(curves.Corners.size()));
+    lengths(c, 0) = curve.Length;
+    for (int side = 0; side < 2; ++side)
+    {
+      ofCurves(c, side) = curve.Regions[side];
+      sums(curve.Regions[side] - 1, 0) += curve.Length;
+    }
+  }
+  outputs.push_back(Output::OfCurves("Boundaries", std::move(curves)));
+  outputs.push_back({ "Regions", Place::PerCurve, OutputType::Integer, std::move(ofCurves) });
+  outputs.push_back({ "Length", Place::PerCurve, OutputType::Double, std::move(lengths) });
+  return sums;
+}
+
+/// Add the measures of the regions and their boundaries. Returns the number of connected components
+/// of each region.
+std::vector<Index> AddRegions(
+  const RunState& state, const Values& labels, const Values& means, std::vector<Output>& outputs)
+{
+  const Surface& surface = state.Surface;
+  const Values u = StateOfPoints(surface, state.Path.State());
+  const Triangles triangles = surface.MakeTriangles();
+  const Eigen::Index count = u.cols();
+  const Values lengths =
+    AddBoundaries(FindRegionBoundaries(surface.Points(), triangles, u), count, outputs);
+  const std::vector<Index> components =
+    CountRegionComponents(surface.InputMesh().TriangleVertices(),
+      std::vector<Index>(labels.data(), labels.data() + labels.size()), static_cast<Index>(count));
+  const auto addColumn = [&](const std::string& name, OutputType type, Values rows) {
+    outputs.push_back({ name, Place::Column, type, std::move(rows) });
+  };
+  addColumn(
+    "Region", OutputType::Integer, Vector::LinSpaced(count, 1.0, static_cast<double>(count)));
+  addColumn("Area", OutputType::Double,
+    RegionAreas(surface.Points(), triangles, u, AreaFactorsOfPoints(surface), state.Parallel));
+  addColumn("BoundaryLength", OutputType::Double, lengths);
+  addColumn("Components", OutputType::Integer, AsColumn(components));
+  for (Eigen::Index k = 0; k < means.cols(); ++k)
+  {
+    addColumn("Mean_" + std::to_string(k), OutputType::Double, means.col(k));
+  }
+  return components;
 }
 
 /// The lambda of AutomaticFidelity, in units of the numerics. Data without contrast need none.
@@ -103,12 +157,12 @@ double FidelityOfContrast(const ModelInputs& inputs, const Segmentation::Input& 
   return contrast > 0.0 ? AutomaticWeight / (inputs.Units.CoreEdgeLength() * contrast) : 0.0;
 }
 
-void WarnOfEmptyRegions(const RegionResults& regions, RunResult& result)
+void WarnOfEmptyRegions(const std::vector<Index>& components, RunResult& result)
 {
   std::string empty;
-  for (std::size_t k = 0; k < regions.Components.size(); ++k)
+  for (std::size_t k = 0; k < components.size(); ++k)
   {
-    if (regions.Components[k] == 0)
+    if (components[k] == 0)
     {
       empty += (empty.empty() ? "" : ", ") + std::to_string(k + 1);
     }
@@ -191,6 +245,7 @@ ModelTraits SegmentationSettings::DescribeModel() const
 {
   ModelTraits traits;
   traits.NumberOfSteps = 1;
+  traits.ResultSuffix = "Segmented";
   traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = true; // no model time
   traits.Energy = { 1.0, 0.0 };
@@ -233,7 +288,7 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   const double unit = inputs.Units.ToCore(1.0, -1.0, inputs.DataAreTerms ? -1.0 : -2.0);
   settings.Fidelity =
     this->AutomaticFidelity ? FidelityOfContrast(inputs, input) : this->FidelityWeight * unit;
-  result.EffectiveFidelityWeight = settings.Fidelity / unit;
+  result.AddNumber("EffectiveFidelityWeight", settings.Fidelity / unit);
   if (this->AutomaticFidelity && this->FidelityWeight != SegmentationSettings().FidelityWeight)
   {
     std::ostringstream text;
@@ -245,31 +300,50 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
     inputs.Surface.SharedAssembler(), std::move(input), settings, inputs.Parallel);
 }
 
-void SegmentationSettings::Finish(const RunState& state, RunResult& result) const
+std::vector<Output> SegmentationSettings::Finish(const RunState& state, RunResult& result) const
 {
-  const auto& model = dynamic_cast<const Segmentation&>(state.Path.CurrentModel());
-  const auto regions = MeasureRegions(state.Surface, model, state.Parallel);
-  if (state.Path.Step() > 0)
+  const std::map<std::string, Values> found = state.Path.CurrentModel().Results();
+  const double unit = state.Units.ValueUnit;
+  const Values means = found.at("Means") * unit;
+  const Values& ofVertices = found.at("Labels");
+  const Place place = state.Cells ? Place::PerCell : Place::PerVertex;
+  const Values labels =
+    state.Cells ? AsColumn(MakeCellLabels(*state.Cells, state.Path.State())) : ofVertices;
+  std::vector<Output> outputs;
+  if (means.rows() > 0)
   {
-    regions->Gap = model.Gap();
-    regions->LabelGap = model.LabelGap();
-    regions->NumberOfAlternations = model.NumberOfAlternations();
+    outputs.push_back(
+      Output::OfData(this->DescribeModel().ResultSuffix, place, MeansOfLabels(means, labels)));
+    outputs.back().Active = Role::None;
   }
-  regions->Means = model.Means() * state.Units.ValueUnit;
-  regions->DataMeans = model.DataMeans() * state.Units.ValueUnit;
-  if (state.Path.Step() > 0)
+  outputs.push_back(Output::OfColumns("RegionProbability", 0, 0));
+  outputs.push_back({ "RegionId", place, OutputType::Integer, labels, Role::Scalars });
+  const std::vector<Index> components =
+    AddRegions(state, ofVertices, found.at("DataMeans") * unit, outputs);
+
+  const bool isDone = state.Path.Step() > 0;
+  for (const char* const name : { "Gap", "LabelGap", "NumberOfAlternations" })
   {
-    WarnOfEmptyRegions(*regions, result);
+    outputs.push_back(
+      Output::OfNumber(name, isDone ? found.at(name)(0, 0) : 0.0, Combination::Largest));
   }
-  if (regions->Gap > this->StopTolerance && !result.HasUnfinishedMinimum)
+  outputs.back().Type = OutputType::Integer;
+  outputs.push_back({ "Means", Place::Number, OutputType::Double, means });
+  outputs.back().Rows.conservativeResize(this->NumberOfRegions, Eigen::NoChange);
+  if (isDone)
+  {
+    WarnOfEmptyRegions(components, result);
+  }
+  const double gap = FindNumber(outputs, "Gap");
+  if (gap > this->StopTolerance && !result.HasUnfinishedMinimum)
   {
     result.HasUnfinishedMinimum = true; // reported once, not at every requested time
     std::ostringstream text;
     text << "the minimisation ended at its largest number of iterations with a relative duality "
-         << "gap of " << regions->Gap << ", above StopTolerance";
+         << "gap of " << gap << ", above StopTolerance";
     result.Warnings.push_back(text.str());
   }
-  result.Regions = regions;
+  return outputs;
 }
 
 } // namespace SurfaceDiffusion

@@ -25,7 +25,7 @@ struct SegmentationSettings : RunSettings
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
-  void Finish(const RunState& state, RunResult& result) const override;
+  std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
   std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Run/Output.h"
 #include "Run/Run.h"
 
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -17,6 +19,8 @@ public:
   const Surface& GetSurface() const { return *this->Domain; }
   /// The surface that the result belongs to.
   const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
+  /// What the computation returns.
+  const std::vector<Output>& Outputs() const { return this->Results; }
   /// Of triangles of positive area, in coordinate units; 1 if there are none.
   double MeanEdgeLength() const;
 
@@ -35,6 +39,7 @@ protected:
   const ParallelFor& Parallel;
   Fingerprint SurfaceVersion, FieldsVersion;
   std::unique_ptr<Surface> Domain;
+  std::vector<Output> Results;
 
 private:
   SettingsSnapshot SurfaceSettings, ModelSettings;

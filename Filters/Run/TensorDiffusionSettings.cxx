@@ -93,6 +93,9 @@ ModelTraits TensorDiffusionSettings::DescribeModel() const
   traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = this->IsAbsolute();
   traits.Time = { 2.0, 0.0 };
+  traits.ResultSuffix = this->Model == TensorModel::CoherenceEnhancing ? "Coherent"
+    : this->Model == TensorModel::EdgeEnhancing                        ? "EdgeEnhanced"
+                                                                       : "Beltrami";
   traits.Energy = beltrami ? Dimension{ 0.0, 2.0 } : Dimension{ 2.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;
   traits.SettingsInRange = beltrami ? "ColorScale" : "Contrast";
@@ -144,7 +147,7 @@ std::unique_ptr<StructureTensor> TensorDiffusionSettings::MakeStructure(ModelInp
 std::unique_ptr<Model> TensorDiffusionSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
-  result.EffectiveFidelityWeight = this->FidelityWeight;
+  result.AddNumber("EffectiveFidelityWeight", this->FidelityWeight);
   const double h = inputs.Units.CoreEdgeLength();
   const double timeStep = inputs.Units.ToCore(this->TimeStep, 2.0, 0.0);
   const double fidelity = this->FidelityWeight * inputs.Units.ToCore(1.0, -2.0, 0.0);
@@ -191,22 +194,15 @@ std::unique_ptr<Model> TensorDiffusionSettings::Make(ModelInputs& inputs, RunRes
     std::move(solver), inputs.Parallel);
 }
 
-void TensorDiffusionSettings::Finish(const RunState& state, RunResult& result) const
+std::vector<Output> TensorDiffusionSettings::Finish(const RunState& state, RunResult& result) const
 {
-  result.DiffusionAxes = TangentVectors(0, 2);
-  if (!this->DiffusionAxes)
+  std::vector<Output> outputs = this->DataSettings::Finish(state, result);
+  if (this->DiffusionAxes)
   {
-    return;
+    outputs.push_back({ "DiffusionAxes", Place::PerTriangle, OutputType::Double,
+      state.Path.CurrentModel().Axes(state.Progress) });
   }
-  const SurfaceDiffusion::Model& model = state.Path.CurrentModel();
-  if (const auto* flow = dynamic_cast<const BeltramiFlow*>(&model))
-  {
-    result.DiffusionAxes = flow->Axes();
-  }
-  else
-  {
-    result.DiffusionAxes = dynamic_cast<const StructureDiffusion&>(model).Axes(state.Progress);
-  }
+  return outputs;
 }
 
 } // namespace SurfaceDiffusion

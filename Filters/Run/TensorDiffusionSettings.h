@@ -40,7 +40,7 @@ struct TensorDiffusionSettings : DataSettings
   ModelTraits DescribeModel() const override;
   std::unique_ptr<SurfaceDiffusion::Model> Make(
     ModelInputs& inputs, RunResult& result) const override;
-  void Finish(const RunState& state, RunResult& result) const override;
+  std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
   std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }

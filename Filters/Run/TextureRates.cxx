@@ -145,13 +145,13 @@ void TextureSettings::ScaleToFeatureSize(
 {
   const Eigen::Matrix2d jacobian = this->JacobianAtRest();
   PatternForecast forecast = ForecastPattern(jacobian, rates.MeanAlong[0], rates.MeanAlong[1]);
-  result.DiffusionRateFactor = 1.0;
+  double scale = 1.0;
   if (this->FeatureSize > 0.0)
   {
     const double factor = FeatureSizeFactor(forecast, this->FeatureSize / inputs.Units.LengthUnit);
     if (std::isfinite(factor) && factor > 0.0)
     {
-      result.DiffusionRateFactor = factor;
+      scale = factor;
       rates.Scale(factor);
       forecast = ForecastPattern(jacobian, rates.MeanAlong[0], rates.MeanAlong[1]);
     }
@@ -161,9 +161,10 @@ void TextureSettings::ScaleToFeatureSize(
                                    "wave grows faster than the uniform state");
     }
   }
-  result.Wavelength = WavelengthOf(forecast) * inputs.Units.LengthUnit;
-  result.WavelengthGrowthRate =
-    forecast.GrowthRate * (this->IsAbsolute() ? this->ReactionRate : 1.0);
+  result.AddNumber("DiffusionRateFactor", scale);
+  result.AddNumber("Wavelength", WavelengthOf(forecast) * inputs.Units.LengthUnit);
+  result.AddNumber(
+    "WavelengthGrowthRate", forecast.GrowthRate * (this->IsAbsolute() ? this->ReactionRate : 1.0));
 }
 
 double TextureSettings::FindSquaredWaveNumber(const Rates& rates) const

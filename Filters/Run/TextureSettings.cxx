@@ -52,6 +52,11 @@ constexpr double CoarseTolerance = 1e-4;
 /// changes it more than the time that is left would.
 constexpr double CoarseStopFactor = 2.5;
 
+std::array<double, 3> AsColor(const std::vector<double>& numbers)
+{
+  return { numbers.at(0), numbers.at(1), numbers.at(2) };
+}
+
 /// The model in the space, from the initial state on the surface. Takes the matrices of the space.
 std::unique_ptr<ReactionDiffusion> MakeCoarseModel(CoarseSpace& space, const ModelInputs& inputs,
   const Reaction& reaction, ReactionDiffusion::Settings settings, const IterationLimits& limits)
@@ -161,6 +166,12 @@ void TextureSettings::Visit(SettingVisitor& visitor)
   visitor.Switch(
     { "ColorOutput", "", "Whether the texture is written as colours, too.", SettingScope::Output },
     this->ColorOutput);
+  visitor.Numbers(
+    { "LowColor", "", "The colour of the texture's 0: red, green and blue.", SettingScope::Output },
+    this->LowColor, SettingRange::ClosedUnitInterval());
+  visitor.Numbers({ "HighColor", "", "The colour of the texture's 1: red, green and blue.",
+                    SettingScope::Output },
+    this->HighColor, SettingRange::ClosedUnitInterval());
 }
 
 TextureSettings::TextureSettings()
@@ -204,6 +215,12 @@ bool TextureSettings::HasDirectedRates() const
 void TextureSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->RunSettings::CheckTogether(fields, problems);
+  for (const auto& [name, color] :
+    { std::pair{ "the number of entries of LowColor", &this->LowColor },
+      std::pair{ "the number of entries of HighColor", &this->HighColor } })
+  {
+    Require(color->size() == 3, name, static_cast<double>(color->size()), "3", problems);
+  }
   if (!fields)
   {
     return;
@@ -288,8 +305,9 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
   if (space)
   {
     coarse = MakeCoarseModel(*space, inputs, reaction, settings, this->CoarseLimits());
-    result.CoarseStartVertices = static_cast<Index>(space->NumberOfVertices());
   }
+  result.AddNumber(
+    "CoarseStartVertices", space ? space->NumberOfVertices() : 0, OutputType::Integer);
   auto chemicals =
     MakeChemicals(inputs, rates, std::move(coefficients), settings, space.has_value());
   auto model = std::make_unique<ReactionDiffusion>(inputs.Surface.SharedAssembler(), reaction,
@@ -387,10 +405,26 @@ std::array<ReactionDiffusion::Chemical, 2> TextureSettings::MakeChemicals(ModelI
   return chemicals;
 }
 
-void TextureSettings::Finish(const RunState& state, RunResult& result) const
+std::vector<Output> TextureSettings::Finish(const RunState& state, RunResult&) const
 {
-  result.ContrastLimits = ContrastLimits(
-    state.Path.State().col(this->TextureChemical), state.Surface.Mesh().GetReduction());
+  std::vector<Output> outputs{ Output::OfColumns("u1", 0, 1), Output::OfColumns("u2", 1, 1) };
+  outputs[0].Given = 0;
+  outputs[1].Given = 1;
+  const Vector shown = state.Path.State().col(this->TextureChemical);
+  const Vector texture =
+    StretchContrast(shown, ContrastLimits(shown, state.Surface.Mesh().GetReduction()));
+  outputs.push_back({ "Texture", Place::PerVertex, OutputType::Real, texture });
+  if (!this->ColorOutput)
+  {
+    outputs[0].Active = Role::Scalars;
+    return outputs;
+  }
+  const auto mix = [this](const Vector& shares) -> Values
+  { return MixColors(shares, AsColor(this->LowColor), AsColor(this->HighColor)).cast<double>(); };
+  outputs.push_back(
+    { "TextureColor", Place::PerVertex, OutputType::Byte, mix(texture), Role::Scalars });
+  outputs.back().Elsewhere = mix(Vector::Zero(1));
+  return outputs;
 }
 
 } // namespace SurfaceDiffusion

@@ -6,6 +6,7 @@
 #include "Run/RunSettings.h"
 
 #include <array>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -29,13 +30,15 @@ struct TextureSettings : RunSettings
   std::array<KineticsParameters, NumberOfKinetics> Parameters;
   int TextureChemical = 0; ///< 0: u1, 1: u2
   bool ColorOutput = false;
+  std::vector<double> LowColor = { 0.16, 0.09, 0.05 }; ///< dark brown
+  std::vector<double> HighColor = { 0.93, 0.80, 0.58 }; ///< sand
 
   TextureSettings();
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
-  void Finish(const RunState& state, RunResult& result) const override;
+  std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
   /// The time step taken: TimeStep, or that of AutomaticTimeStep.
   double EffectiveTimeStep() const;

@@ -204,6 +204,7 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   traits.NumberOfSteps =
     this->Mode == TotalVariationMode::SteadyState ? 1 : this->NumberOfTimeSteps;
   traits.TimeStep = this->TimeStep;
+  traits.ResultSuffix = "TV";
   traits.AbsoluteTime = this->IsAbsolute();
   traits.Time = dimensionless ? Dimension{ 2.0, 0.0 } : Dimension{ 1.0, 1.0 };
   traits.SettingsInRange = this->FindSettingsInRange();
@@ -235,7 +236,7 @@ std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResu
   }
   const double fidelity = this->FindsFidelity() ? maker.FindFidelityWeight(result)
                                                 : this->FidelityWeight * maker.FidelityUnit();
-  result.EffectiveFidelityWeight = fidelity / maker.FidelityUnit();
+  result.AddNumber("EffectiveFidelityWeight", fidelity / maker.FidelityUnit());
   return maker.Make(std::move(inputs.Data), fidelity, this->StopTolerance);
 }
 
@@ -250,7 +251,7 @@ const char* TotalVariationSettings::NameOfResidual() const
   return alternates ? "relative decrease of the energy" : "relative duality gap";
 }
 
-void TotalVariationSettings::Finish(const RunState& state, RunResult& result) const
+std::vector<Output> TotalVariationSettings::Finish(const RunState& state, RunResult& result) const
 {
   double gap = 0.0;
   for (const StepRecord& record : state.Path.Records())
@@ -265,6 +266,7 @@ void TotalVariationSettings::Finish(const RunState& state, RunResult& result) co
          << this->NameOfResidual() << " of " << gap << ", above StopTolerance";
     result.Warnings.push_back(text.str());
   }
+  return this->DataSettings::Finish(state, result);
 }
 
 } // namespace SurfaceDiffusion

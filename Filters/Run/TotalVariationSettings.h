@@ -54,7 +54,7 @@ struct TotalVariationSettings : DataSettings
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
-  void Finish(const RunState& state, RunResult& result) const override;
+  std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
   /// Whether steps minimise an energy, in place of the paper's lagged scheme.
   bool Minimizes() const

@@ -51,6 +51,10 @@ void VisitElements(const Array& array, const F& f)
   {
     call(std::uint8_t());
   }
+  else if (!readOnly && array.dtype() == nanobind::dtype<std::int32_t>())
+  {
+    call(std::int32_t());
+  }
   else
   {
     throw nanobind::type_error("an array is not of type float64, float32 or uint8");

@@ -39,36 +39,16 @@ public:
   /// The sentences of all warnings that hold.
   std::vector<std::string> GetWarnings() const;
   nanobind::dict GetHistory() const;
-  /// Numbers that describe the run on one surface.
+  /// The units of the run, and the number of points without triangle of a surface.
   nanobind::dict GetResults(std::size_t block) const;
-
-  /// Write the current state at the points of a surface, or at its faces if the data are on them and
-  /// the settings say so. `source` gives the values of points or faces that take no part and of
-  /// alpha; without it they are 0 and opaque. first: the column of `output` that the panel
-  /// of columns begins at; columns outside of it are left as they are. -1: all columns are written.
-  /// Where nothing determines a value it is NaN, but that of the source with `integers`.
-  void WriteState(std::size_t block, const OutputArray& output,
-    const std::optional<InputArray>& source, int first, bool integers) const;
-  /// The same for unit vectors of colours, with the brightness of the input.
-  void WriteColorsOfVectors(
-    std::size_t block, const OutputArray& output, const InputFields& source) const;
-  /// The texture, stretched to [0, 1].
-  void WriteTexture(std::size_t block, const OutputArray& output) const;
-  void WriteTextureColors(std::size_t block, const OutputArray& output,
-    const std::array<double, 3>& low, const std::array<double, 3>& high) const;
-  /// 1 - v of the Mumford-Shah model; 0 at points that take no part.
-  void WriteEdges(std::size_t block, const OutputArray& output) const;
-  /// The number of points of each curve along its edges, and the points of all curves.
-  std::vector<Index> GetCurveSizes(std::size_t block) const;
-  void WriteCurves(std::size_t block, const OutputArray& output) const;
-  /// The regions of a segmentation: lists with an entry per region, and their boundaries.
-  nanobind::dict GetRegions(std::size_t block) const;
-  /// The labels of the points; 0 at points that take no part.
-  void WriteLabels(std::size_t block, const OutputArray& output) const;
-  /// The direction of the strongest diffusion per polygon of the surface; false if there is none.
-  bool WriteAxes(std::size_t block, const InputSurface& surface, const OutputArray& output) const;
-  /// The moved points (float64 or float32); false if no point was moved.
-  bool WriteMovedPoints(std::size_t block, const OutputArray& output) const;
+  /// A dict for each output of a surface: its name, place, type, role, shape, and for curves where
+  /// each begins and the rows of its corners.
+  nanobind::list ListOutputs(std::size_t block) const;
+  /// Write an output of the list. source: the input of the surface. first: the column of `output`
+  /// from which on the columns of the output are written, and no others; -1: all columns.
+  /// integers: the data were integers, which what nothing determines keeps in place of NaN.
+  void Write(std::size_t block, std::size_t number, const OutputArray& output,
+    const InputFields& source, int first, bool integers) const;
 
   /// Whether the results are at the faces of the surface.
   bool HasResultOnFaces(std::size_t block) const;
@@ -81,46 +61,34 @@ private:
   int Step = 0;
 };
 
-/// The line field of one surface.
-class DirectionRun
+/// A computation on one surface without time steps, with its settings: a line field or denoised
+/// points.
+template <typename RunType, typename SettingsType>
+class SingleRun
 {
 public:
-  DirectionRun() = default;
-  DirectionRun(const DirectionRun&) = delete;
-  DirectionRun& operator=(const DirectionRun&) = delete;
+  SingleRun() = default;
+  SingleRun(const SingleRun&) = delete;
+  SingleRun& operator=(const SingleRun&) = delete;
 
+  /// The mask of the input is not read.
   void Update(
     const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
-  double MeanEdgeLength() const { return this->Field.MeanEdgeLength(); }
+  double MeanEdgeLength() const { return this->Model.MeanEdgeLength(); }
   /// The sentences of all warnings that hold.
   std::vector<std::string> GetWarnings() const;
-  /// Per polygon of the surface.
-  void Write(const InputSurface& surface, const OutputArray& output) const;
+  /// As those of ModelRun.
+  nanobind::list ListOutputs() const;
+  void Write(std::size_t number, const OutputArray& output, const InputFields& source) const;
 
 private:
-  DirectionFieldRun Field{ PythonThreads::Instance() };
+  RunType Model{ PythonThreads::Instance() };
 };
 
-/// The denoised points of one surface.
-class MeshDenoiser
-{
-public:
-  MeshDenoiser() = default;
-  MeshDenoiser(const MeshDenoiser&) = delete;
-  MeshDenoiser& operator=(const MeshDenoiser&) = delete;
+using DirectionRun = SingleRun<DirectionFieldRun, DirectionFieldSettings>;
+using MeshDenoiser = SingleRun<DenoisingRun, DenoisingRunSettings>;
 
-  /// Only the fixed points or faces of the input are read.
-  void Update(
-    const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
-  /// The attributes of the result, by name.
-  nanobind::dict GetResults() const;
-  /// The sentences of all warnings that hold.
-  std::vector<std::string> GetWarnings() const;
-  /// The moved points.
-  void Write(const OutputArray& output) const;
-
-private:
-  DenoisingRun Run{ PythonThreads::Instance() };
-};
+extern template class SingleRun<DirectionFieldRun, DirectionFieldSettings>;
+extern template class SingleRun<DenoisingRun, DenoisingRunSettings>;
 
 } // namespace SurfaceDiffusion

@@ -12,7 +12,6 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -60,6 +59,18 @@ nb::object GetTriangles(const std::shared_ptr<InputSurface>& surface)
   const Triangles& triangles = surface->GetTriangles();
   return nb::cast(nb::ndarray<nb::numpy, const Index, nb::shape<-1, 3>>(
     triangles.data(), { static_cast<std::size_t>(triangles.rows()), 3 }, nb::cast(surface)));
+}
+
+template <typename RunType>
+void BindSingleRun(nb::module_& m, const char* name)
+{
+  nb::class_<RunType>(m, name)
+    .def(nb::init<>())
+    .def("update", &RunType::Update, "fields"_a, "settings"_a, "progress"_a.none())
+    .def("mean_edge_length", &RunType::MeanEdgeLength)
+    .def("warnings", &RunType::GetWarnings)
+    .def("outputs", &RunType::ListOutputs)
+    .def("write", &RunType::Write, "number"_a, "output"_a, "source"_a);
 }
 
 } // namespace
@@ -117,32 +128,10 @@ NB_MODULE(_core, m)
     .def("history", &ModelRun::GetHistory)
     .def("results", &ModelRun::GetResults, "block"_a)
     .def("has_result_on_faces", &ModelRun::HasResultOnFaces, "block"_a)
-    .def("write_state", &ModelRun::WriteState, "block"_a, "output"_a, "source"_a.none(),
-      "first"_a = -1, "integers"_a = false)
-    .def(
-      "write_colors_of_vectors", &ModelRun::WriteColorsOfVectors, "block"_a, "output"_a, "source"_a)
-    .def("write_texture", &ModelRun::WriteTexture, "block"_a, "output"_a)
-    .def("write_texture_colors", &ModelRun::WriteTextureColors, "block"_a, "output"_a, "low"_a,
-      "high"_a)
-    .def("write_edges", &ModelRun::WriteEdges, "block"_a, "output"_a)
-    .def("curve_sizes", &ModelRun::GetCurveSizes, "block"_a)
-    .def("write_curves", &ModelRun::WriteCurves, "block"_a, "output"_a)
-    .def("regions", &ModelRun::GetRegions, "block"_a)
-    .def("write_labels", &ModelRun::WriteLabels, "block"_a, "output"_a)
-    .def("write_axes", &ModelRun::WriteAxes, "block"_a, "surface"_a, "output"_a)
-    .def("write_moved_points", &ModelRun::WriteMovedPoints, "block"_a, "output"_a);
+    .def("outputs", &ModelRun::ListOutputs, "block"_a)
+    .def("write", &ModelRun::Write, "block"_a, "number"_a, "output"_a, "source"_a, "first"_a = -1,
+      "integers"_a = false);
 
-  nb::class_<DirectionRun>(m, "DirectionRun")
-    .def(nb::init<>())
-    .def("update", &DirectionRun::Update, "fields"_a, "settings"_a, "progress"_a.none())
-    .def("mean_edge_length", &DirectionRun::MeanEdgeLength)
-    .def("warnings", &DirectionRun::GetWarnings)
-    .def("write", &DirectionRun::Write, "surface"_a, "output"_a);
-
-  nb::class_<MeshDenoiser>(m, "MeshDenoiser")
-    .def(nb::init<>())
-    .def("update", &MeshDenoiser::Update, "fields"_a, "settings"_a, "progress"_a.none())
-    .def("results", &MeshDenoiser::GetResults)
-    .def("warnings", &MeshDenoiser::GetWarnings)
-    .def("write", &MeshDenoiser::Write, "output"_a);
+  BindSingleRun<DirectionRun>(m, "DirectionRun");
+  BindSingleRun<MeshDenoiser>(m, "MeshDenoiser");
 }

@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._models import (
-    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
-    make_segmentation, make_tensor_diffusion, make_texture,
+    ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result, read_outputs,
 )
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, SegmentationResult,
@@ -215,7 +214,7 @@ def _diffusion(
     runner = Runner(name, properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
-        result = make_diffusion(run, 0, given, runner, dtype, found)
+        result = make_result(DiffusionResult, find_outputs(run, 0, given, runner, dtype), found)
         return replace(result, values=_in_shape(result.values, values))
 
     if data.shape[1] > PANEL and not (steps or full_output) and _are_independent(name, runner):
@@ -475,7 +474,7 @@ def tensor_diffusion(
     runner = Runner("tensor_diffusion", properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> TensorDiffusionResult:
-        result = make_tensor_diffusion(run, 0, given, runner, dtype, found)
+        result = make_result(TensorDiffusionResult, find_outputs(run, 0, given, runner, dtype), found)
         return replace(result, values=_in_shape(result.values, values))
 
     result = _run("tensor_diffusion", given, runner, make, steps, progress, full_output)
@@ -561,7 +560,7 @@ def mumford_shah(
     runner = Runner("mumford_shah", properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> EdgeResult:
-        result = make_edges(run, 0, given, runner, dtype, found)
+        result = make_result(EdgeResult, find_outputs(run, 0, given, runner, dtype), found)
         return replace(result, values=_in_shape(result.values, values))
 
     return _run("mumford_shah", given, runner, make, steps, progress)
@@ -635,7 +634,9 @@ def harmonic_map(
                   directions=directions, fidelity=fidelity, integers=has_integers(vectors))
     runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
     return _run("harmonic_map", given, runner,
-                lambda run, found: make_harmonic_map(run, 0, given, runner, dtype, found),
+                lambda run, found: make_result(
+                    HarmonicMapResult, find_outputs(run, 0, given, runner, dtype),
+                    {"points": np.array(surface.points), **found}),
                 steps, progress)
 
 
@@ -721,12 +722,14 @@ def denoise_mesh(
         run = surface._runs.setdefault("denoise_mesh", _core.MeshDenoiser())
         runner.call(run.update, inputs.core, runner.settings, reporter.callable)
         reporter.finish_part()
-        points = np.empty((surface.n_points, 3))
-        runner.call(run.write, points)
-        sentences = runner.warnings(run)
-        results = run.results()
-    warn(sentences)
-    return MeshDenoisingResult(points, warnings=sentences, **results) if full_output else points
+        outputs = read_outputs(run.outputs(), run.write, inputs, runner)
+        found = {"points": np.array(surface.points), "mean_edge_length": run.mean_edge_length(),
+                 "warnings": runner.warnings(run)}
+    warn(found["warnings"])
+    result: MeshDenoisingResult = make_result(MeshDenoisingResult, outputs, found)
+    words = settings_of("denoise_mesh")["surface_type"].words
+    result = replace(result, surface_type=words[int(result.surface_type)])
+    return result if full_output else result.points
 
 
 @_with_settings
@@ -789,20 +792,34 @@ def segment(
     >>> bool(abs(result.areas[1] - np.pi) < 0.05 * np.pi), len(result.boundaries)
     (True, 1)
     """
+    return segment_with_outputs(
+        surface, values, terms, on_faces, seeds, mask, roi, fidelity, progress, properties)[0]
+
+
+def segment_with_outputs(
+    surface: Any, values: Any, terms: Any, on_faces: Any, seeds: Any, mask: Any, roi: Any,
+    fidelity: Any, progress: Progress, properties: dict[str, Any],
+) -> tuple[SegmentationResult, list[Output]]:
+    """The result of segment(), and all outputs."""
     surface = as_surface(surface)
     if (values is None) == (terms is None):
         raise ValueError("values and terms are " + ("both" if values is not None else "not") +
                          " given; allowed: one of them")
     name = "values" if terms is None else "terms"
-    data, on_faces = _take(name, values if terms is None else terms, surface, on_faces)
+    array = values if terms is None else terms
+    data, on_faces = _take(name, array, surface, on_faces)
     mask = _as_mask(mask, roi, surface, properties)
     given = Input(surface, data, data_on_faces=on_faces, mask=mask, fidelity=fidelity, seeds=seeds,
-                  data_are_terms=terms is not None)
+                  data_are_terms=terms is not None, integers=has_integers(array))
     runner = Runner("segment", properties, ARRAYS)
-    result: SegmentationResult = _run(
-        "segment", given, runner,
-        lambda run, found: make_segmentation(run, 0, given, runner, found), False, progress)
-    return result
+
+    def make(run: Any, found: dict[str, Any]) -> tuple[SegmentationResult, list[Output]]:
+        outputs = find_outputs(run, 0, given, runner, np.float64)
+        return make_result(SegmentationResult, outputs, found), outputs
+
+    made: tuple[SegmentationResult, list[Output]] = _run(
+        "segment", given, runner, make, False, progress)
+    return made
 
 
 @_with_settings
@@ -815,8 +832,6 @@ def turing_texture(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     rates: ArrayLike | None = None,
-    low_color: tuple[float, float, float] = (0.16, 0.09, 0.05),
-    high_color: tuple[float, float, float] = (0.93, 0.80, 0.58),
     steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
@@ -839,8 +854,6 @@ def turing_texture(
     rates : array_like, shape (m, 4), optional
         Per face, in place of `diffusion_rate1`, `diffusion_rate_across1`, `diffusion_rate2` and
         `diffusion_rate_across2`.
-    low_color, high_color : three floats in [0, 1]
-        Red, green and blue of the texture's 0 and 1, for ``color_output=True``.
     {steps}
     {dtype}
     {progress}
@@ -867,14 +880,13 @@ def turing_texture(
     surface = as_surface(surface)
     data = as_initial(surface, initial)
     find_result_type(data, dtype)
-    colors = as_colors(low_color, high_color)
+    check_colors(properties)
     mask = _as_mask(mask, roi, surface, properties)
     given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, rates=rates)
     runner = Runner("turing_texture", properties, {**ARRAYS, "InputArray": "initial"})
-    if not runner.settings.get("ColorOutput", False):
-        colors = []
     return _run("turing_texture", given, runner,
-                lambda run, found: make_texture(run, 0, given, runner, dtype, found, colors),
+                lambda run, found: make_result(
+                    TextureResult, find_outputs(run, 0, given, runner, dtype), found),
                 steps, progress)
 
 
@@ -924,7 +936,7 @@ def direction_field(
         run = surface._runs.setdefault("direction_field", _core.DirectionRun())
         runner.call(run.update, inputs.core, runner.settings, reporter.callable)
         reporter.finish_part()
-        output = np.empty((surface.n_faces, 3))
-        runner.call(run.write, surface._core, output)
+        (output,) = read_outputs(run.outputs(), run.write, inputs, runner)
         warn(runner.warnings(run))
-    return output
+    field: NDArray[np.float64] = output.values
+    return field

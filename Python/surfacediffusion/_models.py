@@ -1,21 +1,19 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """The parts of the functions that arrays and PyVista meshes share: checks of each model's data, and
-results on one of the surfaces of a run."""
+the outputs of a run on one of its surfaces."""
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, RegionBoundary, SegmentationResult,
-    TensorDiffusionResult, TextureResult,
-)
+from ._result import RegionBoundary
 from ._run import Input, Runner, find_result_type
-from ._settings import shorten
+from ._settings import shorten, snake_case
 from ._surface import Surface, as_data, as_numbers, data_components
 
 #: The keywords of input arrays, by their names in messages.
@@ -24,99 +22,86 @@ ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "direct
           "SeedArray": "seeds", "DataTermArray": "terms"}
 
 
-def make_diffusion(
-    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any]
-) -> DiffusionResult:
-    """The result of heat or intrinsic_tv on one surface, with columns for components."""
-    assert given.data is not None
-    output = _empty(run, block, given, dtype)
-    runner.call(given.write, run, block, output)
-    return DiffusionResult(output, **_pick(DiffusionResult, found))
+@dataclass(frozen=True)
+class Output:
+    """What a model returns, under the name that it has in VTK and ParaView: see Run/Output.h.
+
+    values: an array with a row per point, face, entry of a column, or curve and its points; a number
+    or a matrix of numbers; or a list of curves."""
+
+    name: str
+    place: str  #: "points", "faces", "curve points", "curves", "column" or "number"
+    role: str  #: "scalars", "vectors", "coordinates" or ""
+    is_result: bool  #: named after the data
+    values: Any
 
 
-def make_harmonic_map(
-    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any]
-) -> HarmonicMapResult:
-    """The result of harmonic_map on one surface."""
-    assert given.data is not None
-    output = _empty(run, block, given, dtype)
-    if output.dtype == np.uint8:
-        runner.call(run.write_colors_of_vectors, block, output, given.core)
-    else:
-        runner.call(given.write, run, block, output)
-    points = np.array(given.surface.points)
-    runner.call(run.write_moved_points, block, points)
-    return HarmonicMapResult(output, points=points, **_pick(HarmonicMapResult, found))
-
-
-def make_edges(
-    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any]
-) -> EdgeResult:
-    """The result of mumford_shah on one surface, with columns for components."""
-    assert given.data is not None
+def read_outputs(
+    entries: list[dict[str, Any]], write: Callable[..., None], given: Input, runner: Runner,
+    dtype: Any = None,
+) -> list[Output]:
+    """The outputs of one surface. entries: the list of a run; write: its function of the number of an
+    entry, an array and the input."""
     result_type = find_result_type(given.data, dtype)
-    output = _empty(run, block, given, dtype)
-    runner.call(given.write, run, block, output)
-    single = result_type == np.float32
-    edges = np.empty((len(output), 1), dtype=np.float32 if single else np.float64)
-    runner.call(run.write_edges, block, edges)
-    sizes = run.curve_sizes(block)
-    points = np.empty((sum(sizes), 3))
-    runner.call(run.write_curves, block, points)
-    return EdgeResult(output, edges=edges[:, 0], curves=np.split(points, np.cumsum(sizes))[:-1],
-                      **_pick(EdgeResult, found))
+    real = np.float32 if result_type == np.float32 else np.float64
+    types = {"data": result_type, "real": real, "double": np.float64, "integer": np.int32,
+             "byte": np.uint8}
+    sizes = {"points": given.surface.n_points, "faces": given.surface.n_faces}
+    outputs = []
+    for number, entry in enumerate(entries):
+        place, kind, columns = entry["place"], entry["kind"], entry["columns"]
+        if kind == "data" and given.data is not None:
+            columns = given.data.shape[1]  # with alpha
+        values: Any = np.empty((sizes.get(place, entry["rows"]), columns), dtype=types[kind])
+        runner.call(write, number, values, given.core)
+        if "corners" in entry:
+            corners = np.array(entry["corners"], dtype=np.int64)
+            values = np.split(values[corners], entry["begin"][1:])[:-1]
+        elif place == "number" and values.shape == (1, 1):
+            values = values[0, 0].item()
+        elif kind != "data" and columns == 1 and place != "number":
+            values = values[:, 0].astype(np.int64) if place == "column" and kind == "integer" else (
+                values[:, 0])
+        outputs.append(Output(entry["name"], place, entry["role"], entry["is_result"], values))
+    return outputs
 
 
-def make_tensor_diffusion(
-    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any]
-) -> TensorDiffusionResult:
-    """The result of tensor_diffusion on one surface, with columns for components."""
-    assert given.data is not None
-    output = _empty(run, block, given, dtype)
-    runner.call(given.write, run, block, output)
-    axes = np.empty((given.surface.n_faces, 3))
-    if not runner.call(run.write_axes, block, given.surface._core, axes):
-        axes = np.empty((0, 3))
-    return TensorDiffusionResult(output, axes=axes, **_pick(TensorDiffusionResult, found))
+def find_outputs(run: Any, block: int, given: Input, runner: Runner, dtype: Any = None) -> list[Output]:
+    """The outputs of one of the surfaces of a run."""
+
+    def write(number: int, values: NDArray[Any], source: Any) -> None:
+        run.write(block, number, values, source, -1, given.integers)
+
+    return read_outputs(run.outputs(block), write, given, runner, dtype)
 
 
-def make_texture(
-    run: Any, block: int, given: Input, runner: Runner, dtype: Any, found: dict[str, Any],
-    colors: Sequence[Any] = (),
-) -> TextureResult:
-    """The result of turing_texture on one surface. colors: of the texture's 0 and 1, or none."""
-    n, result_type = given.surface.n_points, find_result_type(given.data, dtype)
-    concentrations = np.empty((n, 2), dtype=result_type)
-    runner.call(run.write_state, block, concentrations, given.data)
-    texture = np.empty((n, 1), dtype=result_type)
-    runner.call(run.write_texture, block, texture)
-    painted = None
-    if colors:
-        painted = np.empty((n, 3), dtype=np.uint8)
-        runner.call(run.write_texture_colors, block, painted, *colors)
-    return TextureResult(concentrations, texture=texture[:, 0], colors=painted,
-                         **_pick(TextureResult, found))
+#: The attributes of results that have other names than their outputs in snake_case.
+_ATTRIBUTES = {
+    "Area": "areas", "BoundaryLength": "boundary_lengths", "DiffusionAxes": "axes",
+    "EffectiveNoiseLevel": "noise_level", "EffectiveSurfaceType": "surface_type",
+    "RegionProbability": "probabilities", "TextureColor": "colors",
+}
 
 
-def make_segmentation(
-    run: Any, block: int, given: Input, runner: Runner, found: dict[str, Any]
-) -> SegmentationResult:
-    """The result of segment on one surface."""
-    n = given.rows(run, block)
-    regions = run.regions(block)
-    labels = np.empty((n, 1))
-    runner.call(run.write_labels, block, labels)
-    probabilities = np.empty((n, len(regions["areas"])))
-    runner.call(run.write_state, block, probabilities, None)
-    points = np.array(regions.pop("points"), dtype=float).reshape(-1, 3)
-    boundaries = [RegionBoundary((first, second), points[curve], length)
-                  for first, second, length, curve in regions.pop("curves")]
-    means = np.array(regions.pop("means"), dtype=float).reshape(probabilities.shape[1], -1)
-    for name in ("areas", "boundary_lengths", "components"):
-        regions[name] = np.array(regions[name])
-    return SegmentationResult(
-        labels[:, 0].astype(np.int32), probabilities=probabilities, means=means,
-        boundaries=boundaries, **regions, **_pick(SegmentationResult, found))
+def make_result(result_class: Any, outputs: list[Output], found: Mapping[str, Any]) -> Any:
+    """A result whose attributes are outputs, and those that were found otherwise."""
+    attributes = dict(found)
+    on_curves = {output.name: output.values for output in outputs if "curve" in output.place}
+    for output in outputs:
+        if output.name not in on_curves or output.place in ("points", "faces"):
+            attributes[_ATTRIBUTES.get(output.name, snake_case(output.name))] = output.values
+        if output.is_result:
+            attributes["values"] = output.values
+    if result_class.VALUES:
+        named = {output.name: output.values for output in outputs}
+        columns = [named[name] for name in result_class.VALUES]
+        attributes["values"] = columns[0] if len(columns) == 1 else np.column_stack(columns)
+    attributes["curves"] = on_curves.get("Curves", [])
+    attributes["boundaries"] = [
+        RegionBoundary((int(pair[0]), int(pair[1])), points, float(length)) for points, pair, length
+        in zip(*(on_curves.get(name, []) for name in ("Boundaries", "Regions", "Length")))]
+    fields = result_class.__dataclass_fields__
+    return result_class(**{name: value for name, value in attributes.items() if name in fields})
 
 
 def as_vectors(surface: Surface, vectors: Any, properties: Mapping[str, Any],
@@ -146,24 +131,11 @@ def as_initial(surface: Surface, initial: Any) -> NDArray[Any] | None:
     return as_data("initial", initial, surface.n_points)
 
 
-def as_colors(low: Any, high: Any) -> list[tuple[float, ...]]:
-    """Two colours as numbers from 0 to 1."""
-    colors = []
-    for name, color in (("low_color", low), ("high_color", high)):
-        parts = as_numbers(name, color)
-        if parts.shape != (3,) or not ((parts >= 0.0) & (parts <= 1.0)).all():
-            raise ValueError(f"{name} is {shorten(color)}; allowed: three numbers from 0 to 1")
-        colors.append(tuple(float(part) for part in parts))
-    return colors
-
-
-def _empty(run: Any, block: int, given: Input, dtype: Any) -> NDArray[Any]:
-    """An array for the result of data."""
-    assert given.data is not None
-    shape = (given.rows(run, block), given.data.shape[1])
-    return np.empty(shape, dtype=find_result_type(given.data, dtype))
-
-
-def _pick(result_class: Any, found: dict[str, Any]) -> dict[str, Any]:
-    """The attributes that a class of results has."""
-    return {name: found[name] for name in result_class.__dataclass_fields__ if name in found}
+def check_colors(properties: Mapping[str, Any]) -> None:
+    """low_color and high_color have to be colours."""
+    for name in ("low_color", "high_color"):
+        if name in properties:
+            parts = as_numbers(name, properties[name])
+            if parts.shape != (3,) or not ((parts >= 0.0) & (parts <= 1.0)).all():
+                raise ValueError(f"{name} is {shorten(properties[name])}; allowed: three numbers from "
+                                 "0 to 1")

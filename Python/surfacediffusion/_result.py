@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,9 @@ class Result:
         The points that no triangle uses and that keep their values, without those that the mask
         excludes.
     """
+
+    #: The outputs that `values` are the columns of; none: the result of the data.
+    VALUES: ClassVar[tuple[str, ...]] = ()
 
     values: NDArray[Any]
     step: int
@@ -147,6 +150,8 @@ class MeshDenoisingResult:
         Everything that was also given as a Python warning.
     """
 
+    VALUES: ClassVar[tuple[str, ...]] = ()
+
     points: NDArray[np.float64] = field(repr=False)
     noise_level: float
     surface_type: str
@@ -217,6 +222,8 @@ class TextureResult(Result):
         grew on the surface.
     """
 
+    VALUES: ClassVar[tuple[str, ...]] = ("u1", "u2")
+
     texture: NDArray[Any] = field(default_factory=lambda: np.empty(0), repr=False)
     colors: NDArray[np.uint8] | None = field(default=None, repr=False)
     wavelength: float = 0.0
@@ -270,6 +277,8 @@ class SegmentationResult(Result):
         The lambda of the run, found if ``automatic_fidelity=True``, in the unit of
         `fidelity_weight`.
     """
+
+    VALUES: ClassVar[tuple[str, ...]] = ("RegionId",)
 
     probabilities: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     means: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))

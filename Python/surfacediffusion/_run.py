@@ -149,15 +149,10 @@ class Input:
             marks["fixed"], directions, rates, marks["fidelity"], marks["seeds"], data_are_terms,
             places)
 
-    def rows(self, run: Any, block: int) -> int:
-        """The number of rows of a result."""
-        on_faces = run.has_result_on_faces(block)
-        return self.surface.n_faces if on_faces else self.surface.n_points
-
-    def write(self, run: Any, block: int, output: NDArray[Any], first: int = -1) -> None:
-        """Write the state of a block; first: as in write_state."""
-        same = self.data_on_faces == run.has_result_on_faces(block)
-        run.write_state(block, output, self.data if same else None, first, self.integers)
+    def write(self, run: Any, block: int, output: NDArray[Any], first: int) -> None:
+        """Write the columns of the result of the data of a block, from column `first` on."""
+        number = [entry["is_result"] for entry in run.outputs(block)].index(True)
+        run.write(block, number, output, self.core, first, self.integers)
 
 
 #: Settings that are found from the data unless they are given, and the switches of that.

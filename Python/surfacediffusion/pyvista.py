@@ -51,14 +51,15 @@ from numpy.typing import NDArray
 from . import _core
 from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import direction_field as _direction_field
-from ._functions import exclude_outside
-from ._functions import segment as _segment
+from ._functions import exclude_outside, segment_with_outputs
 from ._meshes import find_polydata
 from ._models import (
-    ARRAYS, as_colors, as_initial, as_vectors, make_diffusion, make_edges, make_harmonic_map,
-    make_tensor_diffusion, make_texture,
+    ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
 )
-from ._result import Result
+from ._result import (
+    DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
+    TensorDiffusionResult, TextureResult,
+)
 from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
 from ._surface import Surface, as_data, as_outside, has_integers
@@ -203,20 +204,12 @@ def segment(
                              "example mesh.triangulate()")
         marks = {argument: block.find(argument, given, faces=True)[0] for argument, given in (
             ("seeds", seeds), ("mask", mask), ("roi", roi), ("fidelity", fidelity))}
-        values = data if terms is None else None
-        result = _segment(block.surface, values, terms=None if terms is None else data,
-                          on_faces=on_faces, progress=progress, **marks, **properties)
+        result, outputs = segment_with_outputs(
+            block.surface, data if terms is None else None, None if terms is None else data, on_faces,
+            progress=progress, properties=dict(properties), **marks)
         results.append(result)
-        stays = on_faces and properties.get("result_on_faces", True)
-        if values is not None:
-            means = result.means[result.values - 1].reshape(-1, *values.shape[1:])
-            if stays or not on_faces:
-                means[result.values == 0] = values[result.values == 0]
-            block.add(result_name or f"{name}Segmented", means, stays)
-        prefix = result_name or ""
-        block.add(prefix + "RegionProbability", result.probabilities, stays)
-        block.add(prefix + "RegionId", result.values, stays)
-        block.mesh.set_active_scalars(prefix + "RegionId", preference="cell" if stays else "point")
+        block.name = name
+        _write(block, outputs, result_name)
     segmented = _rebuild(mesh, iter(blocks))
     if not full_output:
         return segmented
@@ -280,8 +273,8 @@ def direction_field(
     return _rebuild(mesh, iter(surfaces))
 
 
-_SUFFIXES = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
-             "mumford_shah": "MumfordShah"}
+_RESULTS = {"harmonic_map": HarmonicMapResult, "mumford_shah": EdgeResult, "segment": SegmentationResult,
+            "tensor_diffusion": TensorDiffusionResult, "turing_texture": TextureResult}
 
 
 class _Block:
@@ -463,77 +456,54 @@ def _prepare(
         rates=block.find("rates", rates, points=False, faces=True)[0], **marks)
 
 
-def _suffix(function: str, runner: Runner) -> str:
-    """Of the name of the result."""
-    if function == "tensor_diffusion":
-        return ("Beltrami", "Coherent", "EdgeEnhanced")[runner.settings.get("Model", 0)]
-    return _SUFFIXES.get(function, "")
-
-
-def _activate_vectors(data: Any, name: str, values: Any, are_normals: bool) -> None:
-    """Make a result of harmonic_map active: as normals if the vectors were these or computed."""
-    if are_normals:
-        data.SetActiveNormals(name)
-    elif values.shape[1] == 3 and values.dtype != np.uint8:
-        data.SetActiveVectors(name)
-    else:
-        data.SetActiveScalars(name)
-
-
-def _write_cells(
-    function: str, block: _Block, result: Any, name: str | None, suffix: str
-) -> None:
-    """The same for results on faces. Other cells keep their value."""
-    cells, given = block.mesh.cell_data, np.asarray(block.input.cell_data[block.name])
-    values = np.array(given, dtype=result.values.dtype)
-    values[block.face_cells] = result.values.reshape((-1,) + given.shape[1:])
-    active = name or block.name + suffix
-    cells[active] = values
-    if function == "mumford_shah":
-        block.add((name or "") + "Edges", result.edges, True)
-    if function == "harmonic_map":
-        _activate_vectors(block.mesh.GetCellData(), active, values,
-                          block.name == block.input.cell_data.active_normals_name)
-    else:
-        block.mesh.set_active_scalars(active, preference="cell")
-
-
-def _write(
-    function: str, block: _Block, result: Any, name: str | None, colors: bool, suffix: str,
-    on_faces: bool
-) -> None:
-    """Add the result to the mesh, and make it active."""
-    points = block.mesh.point_data
-    values = result.values
-    if function == "tensor_diffusion" and len(result.axes) > 0:
-        block.add((name or "") + "DiffusionAxes", result.axes, True)
-    if on_faces:
-        _write_cells(function, block, result, name, suffix)
+def _write_result(block: _Block, output: Output, name: str) -> None:
+    """Add an array in place of the data. Cells that are no faces keep the value of the data."""
+    points, cells = block.input.point_data, block.input.cell_data
+    source = points if block.name in points else cells
+    shape = np.shape(source[block.name]) if block.name in source else output.values.shape
+    values = output.values[:, 0] if len(shape) == 1 else output.values
+    if output.place == "points":
+        block.mesh.point_data[name] = values
         return
-    if function == "turing_texture":
-        prefix = name or ""
-        points[prefix + "u1"], points[prefix + "u2"] = values[:, 0], values[:, 1]
-        points[prefix + "Texture"] = result.texture
-        active = prefix + "u1"
-        if colors:
-            active = prefix + "TextureColor"
-            points[active] = result.colors
-        block.mesh.set_active_scalars(active, preference="point")
-        return
-    if function == "mumford_shah":
-        points[(name or "") + "Edges"] = result.edges
-    active = name or block.name + suffix
-    given = block.input.point_data
-    source = given if block.name in given else block.input.cell_data
-    single = block.name in source and source[block.name].ndim == 1
-    points[active] = values[:, 0] if single else values
-    if function == "harmonic_map":
-        _activate_vectors(block.mesh.GetPointData(), active, values,
-                          block.name not in source or block.name == given.active_normals_name)
-    else:
-        block.mesh.set_active_scalars(active, preference="point")
-    if function == "harmonic_map" and result.mean_displacement > 0.0:
-        block.move(result.points)
+    whole = np.array(cells[block.name], dtype=values.dtype)
+    whole[block.face_cells] = values
+    block.mesh.cell_data[name] = whole
+
+
+def _activate(block: _Block, output: Output, name: str) -> None:
+    """Make the array of an output active, as its role says: vectors in place of the normals, given or
+    computed, as normals."""
+    on_faces = output.place == "faces"
+    if output.role == "scalars":
+        block.mesh.set_active_scalars(name, preference="cell" if on_faces else "point")
+    elif output.role == "vectors":
+        given = block.input.cell_data if on_faces else block.input.point_data
+        data = block.mesh.GetCellData() if on_faces else block.mesh.GetPointData()
+        computed = not (block.name in block.input.point_data or block.name in block.input.cell_data)
+        if computed or block.name == given.active_normals_name:
+            data.SetActiveNormals(name)
+        elif output.values.shape[1] == 3 and output.values.dtype != np.uint8:
+            data.SetActiveVectors(name)
+        else:
+            data.SetActiveScalars(name)
+
+
+def _write(block: _Block, outputs: list[Output], name: str | None) -> None:
+    """Add the outputs to the mesh, and make those active that have a role."""
+    for output in outputs:
+        if output.place not in ("points", "faces"):
+            continue
+        if output.role == "coordinates":
+            if not np.array_equal(output.values, block.surface.points):
+                block.move(output.values)
+            continue
+        array = name or block.name + output.name
+        if output.is_result:
+            _write_result(block, output, array)
+        else:
+            array = (name or "") + output.name
+            block.add(array, output.values, output.place == "faces")
+        _activate(block, output, array)
 
 
 def _run(
@@ -544,8 +514,7 @@ def _run(
     if names[1] is not None:
         exclude_outside(names[0], properties)
     dtype = properties.pop("dtype", None)
-    colors = as_colors(properties.pop("low_color", (0.16, 0.09, 0.05)),
-                       properties.pop("high_color", (0.93, 0.80, 0.58)))
+    check_colors(properties)
     runner = Runner(function, properties, {
         **ARRAYS, "DirectionArray": "direction",
         "InputArray": "initial" if function == "turing_texture" else "array"})
@@ -562,11 +531,6 @@ def _run(
             failures.append(error)
     if not blocks:
         raise failures[0]
-    painted = bool(runner.settings.get("ColorOutput", False))
-    make: Callable[..., Any] = {
-        "harmonic_map": make_harmonic_map, "mumford_shah": make_edges,
-        "tensor_diffusion": make_tensor_diffusion, "turing_texture": make_texture}.get(function, make_diffusion)
-    extra = (colors if painted else [],) if function == "turing_texture" else ()
     inputs = [block.given for block in blocks if block.given]
     run = _core.ModelRun(function)
 
@@ -574,10 +538,10 @@ def _run(
         results: list[Result] = []
         written = [block.fresh() for block in blocks]
         for number, block in enumerate(written):
-            result = make(run, number, block.given, runner, dtype, state[number], *extra)
-            _write(function, block, result, result_name, painted, _suffix(function, runner),
-                   run.has_result_on_faces(number))
-            results.append(result)
+            outputs = find_outputs(run, number, block.given, runner, dtype)
+            _write(block, outputs, result_name)
+            found = {"points": np.array(block.surface.points), **state[number]}
+            results.append(make_result(_RESULTS.get(function, DiffusionResult), outputs, found))
         whole = _rebuild(mesh, iter(written))
         return whole, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 

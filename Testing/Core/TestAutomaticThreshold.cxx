@@ -82,9 +82,14 @@ struct Found
 {
   Values U;
   Vector Edges;
-  RunResult Result;
+  std::vector<Output> Outputs;
   double MeanEdgeLength = 0.0;
   std::vector<std::string> Warnings;
+
+  const Curves& EdgeCurves() const
+  {
+    return *FindOutput(this->Outputs, "Curves", Place::PerCurve)->Lines;
+  }
 };
 
 Found FindEdges(const RunInput& input, const MumfordShahSettings& settings = {},
@@ -96,9 +101,10 @@ Found FindEdges(const RunInput& input, const MumfordShahSettings& settings = {},
   const auto& block = run.GetBlock(0);
   const TriangleMesh& mesh = block.Surface->Mesh();
   const auto points = static_cast<Index>(input.Vertices.rows());
-  found.Result = block.Result;
+  found.Outputs = block.Outputs;
   found.U = ToInput(mesh, state, points);
-  found.Edges = ToInput(mesh, block.Result.Edges, points).col(0);
+  found.Edges =
+    ToInput(mesh, FindOutput(block.Outputs, "Edges", Place::PerVertex)->Rows, points).col(0);
   found.MeanEdgeLength = run.Units().MeanEdgeLength;
   for (const Warning& warning : run.FindWarnings(Alone))
   {
@@ -116,10 +122,10 @@ void ExpectNoEdges(const RunInput& input, const char* name)
 {
   const Found found = FindEdges(input);
   std::printf("%s, %d points: threshold %.3f, length %.1f, edges up to %.2f\n", name,
-    static_cast<int>(input.Vertices.rows()), found.Result.EffectiveEdgeThreshold,
-    found.Result.EffectiveSmoothingLength, found.Edges.maxCoeff());
+    static_cast<int>(input.Vertices.rows()), FindNumber(found.Outputs, "EffectiveEdgeThreshold"),
+    FindNumber(found.Outputs, "EffectiveSmoothingLength"), found.Edges.maxCoeff());
   EXPECT_LT(found.Edges.maxCoeff(), 0.5) << name << " of " << input.Vertices.rows() << " points";
-  EXPECT_EQ(found.Result.EdgeCurves.NumberOfLines(), 0);
+  EXPECT_EQ(found.EdgeCurves().NumberOfCurves(), 0);
   EXPECT_TRUE(found.Warnings.empty());
 }
 
@@ -195,15 +201,17 @@ Score Judge(const Shape& surface, const Data& truth, const Found& found)
       hit += strongest > 0.5 ? (cut[0] - cut[1]).norm() : 0.0;
     }
   }
-  const Polylines& curves = found.Result.EdgeCurves;
-  for (Index l = 0; l < curves.NumberOfLines(); ++l)
+  const Curves& curves = found.EdgeCurves();
+  for (Index l = 0; l < curves.NumberOfCurves(); ++l)
   {
     for (Index k = curves.Begin[l]; k + 1 < curves.Begin[l + 1]; ++k)
     {
-      const Eigen::RowVector3d x = curves.Points.row(k);
+      const Eigen::RowVector3d x = curves.Points.row(curves.Corners[k]);
       const bool isNear = std::any_of(middles.begin(), middles.end(),
         [&](const Eigen::RowVector3d& m) { return (m - x).norm() < 4.0 * found.MeanEdgeLength; });
-      wrong += isNear ? 0.0 : (curves.Points.row(k + 1) - curves.Points.row(k)).norm();
+      wrong += isNear
+        ? 0.0
+        : (curves.Points.row(curves.Corners[k + 1]) - curves.Points.row(curves.Corners[k])).norm();
     }
   }
   return { hit / length, wrong / length };
@@ -321,7 +329,7 @@ TEST(AutomaticThreshold, NoiseOfAStepIsRemovedAsByTotalVariation)
         ToInput(run.GetBlock(0).Surface->Mesh(), ofTV, surface.NumberOfVertices()) - truth);
       std::printf("noise %.2f: error %.4f, of total variation %.4f\n", noise, error, errorOfTV);
       EXPECT_LE(error, 1.2 * errorOfTV);
-      EXPECT_NEAR(found.Result.EstimatedNoiseLevel, noise, 0.1 * noise);
+      EXPECT_NEAR(FindNumber(found.Outputs, "EstimatedNoiseLevel"), noise, 0.1 * noise);
     }
   }
 }
@@ -381,13 +389,16 @@ TEST(AutomaticThreshold, ComponentsAndBlocksHaveTheirOwn)
   for (const std::size_t block : { 0, 1 })
   {
     const auto& found = run.GetBlock(block);
-    EXPECT_LT((ToInput(found.Surface->Mesh(), found.Result.Edges, n).col(0) - exact.Edges)
-                .cwiseAbs()
-                .maxCoeff(),
+    EXPECT_LT(
+      (ToInput(found.Surface->Mesh(), FindOutput(found.Outputs, "Edges", Place::PerVertex)->Rows, n)
+          .col(0) -
+        exact.Edges)
+        .cwiseAbs()
+        .maxCoeff(),
       1e-6);
   }
-  EXPECT_NEAR(run.GetBlock(1).Result.EffectiveEdgeThreshold,
-    100.0 * run.GetBlock(0).Result.EffectiveEdgeThreshold, 1e-9);
+  EXPECT_NEAR(FindNumber(run.GetBlock(1).Outputs, "EffectiveEdgeThreshold"),
+    100.0 * FindNumber(run.GetBlock(0).Outputs, "EffectiveEdgeThreshold"), 1e-9);
 }
 
 TEST(AutomaticThreshold, UnitsOffsetsAndNumberingDoNotMatter)
@@ -404,9 +415,10 @@ TEST(AutomaticThreshold, UnitsOffsetsAndNumberingDoNotMatter)
     other.Data.Data = (other.Data.Data.array() * factor + offset).matrix();
     const Found result = FindEdges(other, settings);
     EXPECT_LT((result.Edges - found.Edges).cwiseAbs().maxCoeff(), 1e-6) << factor << " " << offset;
-    EXPECT_NEAR(result.Result.EffectiveEdgeThreshold, found.Result.EffectiveEdgeThreshold, 1e-8);
-    EXPECT_NEAR(
-      result.Result.EstimatedNoiseLevel / std::abs(factor), found.Result.EstimatedNoiseLevel, 1e-8);
+    EXPECT_NEAR(FindNumber(result.Outputs, "EffectiveEdgeThreshold"),
+      FindNumber(found.Outputs, "EffectiveEdgeThreshold"), 1e-8);
+    EXPECT_NEAR(FindNumber(result.Outputs, "EstimatedNoiseLevel") / std::abs(factor),
+      FindNumber(found.Outputs, "EstimatedNoiseLevel"), 1e-8);
   }
   const std::vector<Index> numbers = Permutation(sphere.NumberOfVertices(), 3);
   RunInput renumbered(Renumbered(sphere, numbers));
@@ -458,8 +470,8 @@ TEST(AutomaticThreshold, ColorsCellsAndCorrelatedNoiseHaveTheirEdges)
     [](Index c, const Eigen::RowVector3d& x) { return UnitStep(x) + 0.1 * Gauss(5, c); });
   const Found ofCells = FindEdges(cells);
   EXPECT_GT(ofCells.Edges.maxCoeff(), 0.9);
-  EXPECT_EQ(ofCells.Result.EdgeCurves.NumberOfLines(), 1);
-  EXPECT_NEAR(ofCells.Result.EstimatedNoiseLevel, 0.1, 0.02);
+  EXPECT_EQ(ofCells.EdgeCurves().NumberOfCurves(), 1);
+  EXPECT_NEAR(FindNumber(ofCells.Outputs, "EstimatedNoiseLevel"), 0.1, 0.02);
   CellInput ramp(Icosphere(4));
   ramp.SetData([](Index c, const Eigen::RowVector3d& x) { return x[2] + 0.1 * Gauss(5, c); });
   EXPECT_LT(FindEdges(ramp).Edges.maxCoeff(), 0.5);
@@ -473,9 +485,9 @@ TEST(AutomaticThreshold, OffGivesTheBitsOfTheModelWithTheGivenOnes)
   settings.AutomaticThreshold = false;
   settings.NoiseLevel = 3.0; // has no effect
   const Found found = FindEdges(input, settings);
-  EXPECT_EQ(found.Result.EffectiveEdgeThreshold, 0.2);
-  EXPECT_EQ(found.Result.EffectiveSmoothingLength, 8.0);
-  EXPECT_EQ(found.Result.EstimatedNoiseLevel, 0.0);
+  EXPECT_EQ(FindNumber(found.Outputs, "EffectiveEdgeThreshold"), 0.2);
+  EXPECT_EQ(FindNumber(found.Outputs, "EffectiveSmoothingLength"), 8.0);
+  EXPECT_EQ(FindNumber(found.Outputs, "EstimatedNoiseLevel"), 0.0);
 
   const auto assembler = MakeAssembler(sphere);
   const TriangleMesh& mesh = assembler->Mesh();
@@ -516,7 +528,7 @@ TEST(AutomaticThreshold, NoiseLevelReplacesTheEstimate)
   MumfordShahSettings settings;
   settings.NoiseLevel = 0.6; // larger than every jump shows
   const Found found = FindEdges(input, settings);
-  EXPECT_EQ(found.Result.EstimatedNoiseLevel, 0.6);
+  EXPECT_EQ(FindNumber(found.Outputs, "EstimatedNoiseLevel"), 0.6);
   EXPECT_LT(found.Edges.maxCoeff(), 0.5);
   EXPECT_GT(FindEdges(input).Edges.maxCoeff(), 0.9);
 }

@@ -292,18 +292,19 @@ void ExpectFoundWeight(ModeType steady, double improvement)
   EXPECT_LT(byDefault, improvement * before);
   SurfaceDiffusion::Run run(SerialFor());
   const Values found = StateOf(run, { data.Input.Block() }, settings);
-  const double weight = run.GetBlock(0).Result.EffectiveFidelityWeight;
+  const double weight = FindNumber(run.GetBlock(0).Outputs, "EffectiveFidelityWeight");
   settings.AutomaticFidelity = true;
   EXPECT_EQ((StateOf(run, { data.Input.Block() }, settings) - found).norm(), 0.0);
-  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, weight);
+  EXPECT_EQ(FindNumber(run.GetBlock(0).Outputs, "EffectiveFidelityWeight"), weight);
   settings.AutomaticFidelity = false;
   settings.FidelityWeight = 17.0;
   StateOf(run, { data.Input.Block() }, settings);
-  EXPECT_DOUBLE_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, 17.0);
+  EXPECT_DOUBLE_EQ(FindNumber(run.GetBlock(0).Outputs, "EffectiveFidelityWeight"), 17.0);
   settings.Blur.FWHM = 0.0;
   settings.FidelityWeight = ModelSettings().FidelityWeight;
   StateOf(run, { data.Input.Block() }, settings);
-  EXPECT_DOUBLE_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, settings.FidelityWeight);
+  EXPECT_DOUBLE_EQ(
+    FindNumber(run.GetBlock(0).Outputs, "EffectiveFidelityWeight"), settings.FidelityWeight);
 }
 
 } // namespace

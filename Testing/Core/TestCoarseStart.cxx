@@ -138,7 +138,7 @@ TEST(CoarseStart, PatternsHaveTheWavelengthOfARunOnTheSurface)
     StateOf(run, { input.Block() }, settings);
     waveNumber[coarse] = WaveNumber(*run.GetBlock(0).Path, 0);
     EXPECT_TRUE(run.GetBlock(0).Result.Warnings.empty());
-    EXPECT_EQ(run.GetBlock(0).Result.CoarseStartVertices > 0, coarse);
+    EXPECT_EQ(FindNumber(run.GetBlock(0).Outputs, "CoarseStartVertices") > 0, coarse);
     EXPECT_LT(run.GetBlock(0).Path->Step(), 640); // stationary
   }
   std::printf("wave number %.4f of that on the surface\n", waveNumber[1] / waveNumber[0]);
@@ -217,7 +217,7 @@ TEST(CoarseStart, OnlyPatternsFromNoiseUntilStationaryStartCoarse)
     run.Update(
       { input.Block() }, std::make_shared<TextureSettings>(settings), Alone, ProgressMonitor());
     EXPECT_TRUE(run.GetBlock(0).Result.Warnings.empty());
-    return run.GetBlock(0).Result.CoarseStartVertices > 0;
+    return FindNumber(run.GetBlock(0).Result.Numbers, "CoarseStartVertices") > 0;
   };
   TextureSettings settings = Texture(true);
   EXPECT_TRUE(starts(settings, WithoutData(surface)));

@@ -337,7 +337,7 @@ TEST(Run, ATextureNeedsNoData)
   const Values state = StateOf(run, { input.Block() }, settings);
   EXPECT_EQ(state.cols(), 2);
   EXPECT_TRUE(state.allFinite());
-  EXPECT_GT(run.GetBlock(0).Result.Wavelength, 0.0);
+  EXPECT_GT(FindNumber(run.GetBlock(0).Outputs, "Wavelength"), 0.0);
 }
 
 TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)
@@ -457,7 +457,8 @@ TEST(DirectionFieldRun, IsKeptUntilInputsOrSettingsChange)
     return Fields();
   };
   run.Update(block, settings, ProgressMonitor());
-  const TangentVectors first = run.Directions();
+  const auto directions = [&]() -> const Values& { return run.Outputs().front().Rows; };
+  const Values first = directions();
   run.Update(block, settings, ProgressMonitor());
   EXPECT_EQ(reads, 1);
   settings.Angle = 90.0;
@@ -466,12 +467,12 @@ TEST(DirectionFieldRun, IsKeptUntilInputsOrSettingsChange)
   double largest = 0.0; // the field is turned by a right angle
   for (Eigen::Index t = 0; t < first.rows(); ++t)
   {
-    largest = std::max(largest, std::abs(first.row(t).dot(run.Directions().row(t))));
+    largest = std::max(largest, std::abs(first.row(t).dot(directions().row(t))));
   }
   EXPECT_LT(largest, 1e-12);
   settings.Angle = 0.0;
   run.Update(block, settings, ProgressMonitor());
-  EXPECT_EQ(run.Directions(), first);
+  EXPECT_EQ(directions(), first);
   settings.PrincipalDirection = 1;
   run.Update(block, settings, ProgressMonitor());
   EXPECT_EQ(reads, 2);
@@ -483,10 +484,10 @@ TEST(Run, ResultsAreFinishedAgainOnlyIfTheirStepOrSettingsChange)
   struct Counted : HeatSettings
   {
     int* Count = nullptr;
-    void Finish(const RunState& state, RunResult& result) const override
+    std::vector<Output> Finish(const RunState& state, RunResult& result) const override
     {
       ++*this->Count;
-      this->HeatSettings::Finish(state, result);
+      return this->HeatSettings::Finish(state, result);
     }
   };
   RunInput input(Testing::Icosphere(2));

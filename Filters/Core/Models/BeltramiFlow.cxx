@@ -131,7 +131,7 @@ double BeltramiFlow::Energy() const
   return mesh.GetReduction().Sum(excess + this->FidelityEnergy());
 }
 
-TangentVectors BeltramiFlow::Axes() const
+TangentVectors BeltramiFlow::Axes(const ProgressMonitor& /*progress*/) const
 {
   TangentVectors axes(this->Mesh().NumberOfTriangles(), 2);
   ForEach(this->Parallel, this->Mesh().NumberOfTriangles(),

@@ -61,9 +61,7 @@ public:
   /// Gradients longer than 1e75 count as SumGradients() shortens them: a step may then raise it.
   double Energy() const override;
 
-  /// The direction of the largest diffusivity per triangle, at the current u; zero where D is
-  /// isotropic.
-  TangentVectors Axes() const;
+  TangentVectors Axes(const ProgressMonitor& progress = ProgressMonitor()) const override;
 
 private:
   void FillWeights(Eigen::Index first, Eigen::Index last, StepReport& report,

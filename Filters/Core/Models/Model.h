@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -86,6 +88,20 @@ public:
     static const CornerWeights one;
     return one;
   }
+
+  /// Results beside the state at the current step, in the units of the model: one row per vertex, or
+  /// numbers.
+  virtual std::map<std::string, Values> Results() const { return {}; }
+
+  /// The direction of the strongest diffusion per triangle, zero where diffusion is isotropic; no
+  /// row if it is so everywhere. It may take as long as a step.
+  virtual TangentVectors Axes(const ProgressMonitor& /*progress*/) const
+  {
+    return TangentVectors(0, 2);
+  }
+
+  /// The data that the model was made from; null if it does not keep them.
+  virtual const PointData* GivenData() const { return nullptr; }
 
   /// The model in it, if it is one with something beside its state; otherwise itself.
   virtual const Model& Innermost() const { return *this; }

@@ -79,10 +79,13 @@ public:
   DiffusionStep Diffusion() const override;
   const CornerWeights& DiffusionWeights(Eigen::Index column) override;
 
+  /// Edges().
+  std::map<std::string, Values> Results() const override { return { { "Edges", this->Edges() } }; }
+
   /// 1 - v: 1 on edges. Values that a solver's error puts outside [0, 1] are clamped.
   Vector Edges() const;
 
-  const PointData& GetData() const { return this->Data; }
+  const PointData* GivenData() const override { return &this->Data; }
 
   /// u, v, and the state of the continuation.
   std::size_t CheckpointSize() const override;

@@ -299,6 +299,17 @@ void Segmentation::MeasureLabels(const TotalVariationMinimizer::Report& report)
     ofLabels > smallest ? std::max(0.0, ofLabels - bound) / (ofLabels - smallest) : 0.0;
 }
 
+std::map<std::string, Values> Segmentation::Results() const
+{
+  const auto number = [](double value) -> Values { return Values::Constant(1, 1, value); };
+  const std::vector<Index> labels = this->Labels();
+  return { { "Labels",
+             Eigen::Map<const Eigen::VectorXi>(labels.data(), this->U.rows()).cast<double>() },
+    { "Means", this->Means() }, { "DataMeans", this->DataMeans() }, { "Gap", number(this->Gap()) },
+    { "LabelGap", number(this->LabelGap()) },
+    { "NumberOfAlternations", number(this->NumberOfAlternations()) } };
+}
+
 std::vector<Index> Segmentation::Labels() const
 {
   std::vector<Index> labels(static_cast<std::size_t>(this->U.rows()));

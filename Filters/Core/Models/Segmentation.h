@@ -71,6 +71,9 @@ public:
   Values DataMeans() const;
   /// Minimisations over u in the last step; 0 at the start.
   int NumberOfAlternations() const { return this->Alternations; }
+  /// Labels, Means and DataMeans, Gap and LabelGap, NumberOfAlternations.
+  std::map<std::string, Values> Results() const override;
+
   /// The labels 1 .. K of the largest u_k.
   std::vector<Index> Labels() const;
   /// The relative duality gap of the last minimisation; 0 at the start.

@@ -56,9 +56,7 @@ public:
 
   double Energy() const override;
 
-  /// The direction of the largest diffusivity per triangle, at the current u; zero where D is
-  /// isotropic.
-  TangentVectors Axes(const ProgressMonitor& progress = ProgressMonitor()) const;
+  TangentVectors Axes(const ProgressMonitor& progress = ProgressMonitor()) const override;
 
 private:
   /// S D S = g1 S^2 + (g2 - g1) S e2 (S e2)^T. As a sum of squares it stays positive semi-definite
