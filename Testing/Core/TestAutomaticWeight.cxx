@@ -324,10 +324,11 @@ TEST(AutomaticWeight, CanBeTurnedOffToUseTheDefaultWeightOfTotalVariation)
   settings.AutomaticBlurFidelity = false;
   SurfaceDiffusion::Run run(SerialFor());
   const Values given = StateOf(run, { data.Input.Block() }, settings);
-  EXPECT_EQ(run.GetBlock(0).Result.EffectiveFidelityWeight, settings.FidelityWeight);
+  EXPECT_EQ(
+    FindNumber(run.GetBlock(0).Outputs, "EffectiveFidelityWeight"), settings.FidelityWeight);
   settings.AutomaticBlurFidelity = true;
   EXPECT_GT((StateOf(run, { data.Input.Block() }, settings) - given).norm(), 0.1);
-  EXPECT_GT(run.GetBlock(0).Result.EffectiveFidelityWeight, 10.0);
+  EXPECT_GT(FindNumber(run.GetBlock(0).Outputs, "EffectiveFidelityWeight"), 10.0);
 }
 
 TEST(AutomaticWeight, IsTheDefaultOfTikhonovDeblurring)

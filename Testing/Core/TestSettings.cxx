@@ -39,6 +39,14 @@ public:
       value += 0.25;
     }
   }
+  /// A list is one setting.
+  void Numbers(const SettingInfo& info, std::vector<double>& values, const SettingRange&) override
+  {
+    if (!values.empty() && this->IsNext(info))
+    {
+      values.front() += 0.25;
+    }
+  }
   void Integer(const SettingInfo& info, int& value, const SettingRange&) override
   {
     if (this->IsNext(info))
