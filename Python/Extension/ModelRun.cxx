@@ -328,11 +328,6 @@ void ModelRun::Write(std::size_t block, std::size_t number, const OutputArray& o
   WithValueErrors([&] { WriteOutput(from.Outputs.at(number), source, input, output, first); });
 }
 
-bool ModelRun::HasResultOnFaces(std::size_t block) const
-{
-  return this->Model.GetBlock(block).Cells && this->Settings->DescribeModel().ResultOnCells;
-}
-
 //------------------------------------------------------------------------------------------------
 namespace
 {

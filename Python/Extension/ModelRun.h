@@ -50,9 +50,6 @@ public:
   void Write(std::size_t block, std::size_t number, const OutputArray& output,
     const InputFields& source, int first, bool integers) const;
 
-  /// Whether the results are at the faces of the surface.
-  bool HasResultOnFaces(std::size_t block) const;
-
 private:
   std::string Name;
   std::shared_ptr<RunSettings> Settings;

@@ -127,7 +127,6 @@ NB_MODULE(_core, m)
     .def("warnings", &ModelRun::GetWarnings)
     .def("history", &ModelRun::GetHistory)
     .def("results", &ModelRun::GetResults, "block"_a)
-    .def("has_result_on_faces", &ModelRun::HasResultOnFaces, "block"_a)
     .def("outputs", &ModelRun::ListOutputs, "block"_a)
     .def("write", &ModelRun::Write, "block"_a, "number"_a, "output"_a, "source"_a, "first"_a = -1,
       "integers"_a = false);
