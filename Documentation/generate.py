@@ -168,6 +168,7 @@ def main():
     shutil.rmtree(SITE, ignore_errors=True)
     shutil.copytree(SOURCE / "Documentation", SITE, ignore=shutil.ignore_patterns(
         "generate.py", "effects.py", "build.sh", "Doxyfile", "__pycache__"))
+    shutil.copy(SOURCE / "Examples/Cxx/arrays.cxx", SITE)  # which cpp.md includes
     shutil.copytree(SOURCE / "Examples/Gallery", SITE / "pictures")
     shutil.copytree(SOURCE / "Examples/Gallery", SITE / "extra/pictures")
     (SITE / "extra/scenes").mkdir(parents=True)

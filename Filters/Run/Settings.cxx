@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Settings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -270,6 +271,18 @@ void Require(bool holds, const char* name, double value, const char* allowed, Pr
     text << name << " is " << value << "; allowed: " << allowed;
     problems.push_back(text.str());
   }
+}
+
+std::string JoinProblems(Problems problems)
+{
+  std::sort(problems.begin(), problems.end());
+  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
+  std::string text;
+  for (const std::string& problem : problems)
+  {
+    text += (text.empty() ? "" : "; ") + problem;
+  }
+  return text;
 }
 
 void CheckRanges(Settings& settings, Problems& problems)

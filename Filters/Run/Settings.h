@@ -114,6 +114,9 @@ private:
 /// One sentence per setting: name, value and what is allowed.
 using Problems = std::vector<std::string>;
 
+/// All of them in one text, sorted, each once.
+std::string JoinProblems(Problems problems);
+
 /// Append a sentence for each setting whose value is outside its range.
 void CheckRanges(Settings& settings, Problems& problems);
 

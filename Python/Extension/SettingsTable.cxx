@@ -14,7 +14,7 @@
 
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
+#include <utility>
 
 namespace nb = nanobind;
 
@@ -192,16 +192,9 @@ void AssignSettings(Settings& settings, const nb::dict& values)
 
 void ThrowProblems(Problems problems)
 {
-  std::sort(problems.begin(), problems.end());
-  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
-  std::string text;
-  for (const std::string& problem : problems)
+  if (!problems.empty())
   {
-    text += (text.empty() ? "" : "; ") + problem;
-  }
-  if (!text.empty())
-  {
-    throw nb::value_error(text.c_str());
+    throw nb::value_error(JoinProblems(std::move(problems)).c_str());
   }
 }
 

@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/Solve.h"
+
+#include "Run/Outputs.h"
+#include "Run/Run.h"
+
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+void ThrowProblems(const Problems& problems)
+{
+  if (!problems.empty())
+  {
+    throw std::runtime_error(JoinProblems(problems));
+  }
+}
+
+void RequireRows(
+  const char* name, std::size_t found, std::size_t expected, bool onCells, Problems& problems)
+{
+  if (found != 0 && found != expected)
+  {
+    problems.push_back(std::string(name) + " has " + std::to_string(found) +
+      " rows; allowed: " + std::to_string(expected) + ", one per " + (onCells ? "cell" : "point"));
+  }
+}
+
+/// The arrays of a call, which outlive it.
+class Input
+{
+public:
+  Input(const Points& points, const Triangles& triangles, const Fields& fields)
+    : Vertices(points)
+    , Faces(triangles)
+    , Data(fields)
+  {
+    if (this->Data.HasCells() && this->Data.Cells.empty())
+    {
+      this->Data.Cells.resize(static_cast<std::size_t>(triangles.rows()));
+      std::iota(this->Data.Cells.begin(), this->Data.Cells.end(), 0);
+      this->Data.NumberOfCells = static_cast<Index>(triangles.rows());
+    }
+    Problems problems;
+    const auto require = [&](const char* name, std::size_t rows, bool onCells)
+    {
+      const auto expected =
+        onCells ? this->NumberOfCells() : static_cast<std::size_t>(points.rows());
+      RequireRows(name, rows, expected, onCells, problems);
+    };
+    const auto rowsOf = [](const auto& matrix)
+    { return matrix.cols() > 0 ? static_cast<std::size_t>(matrix.rows()) : 0; };
+    require("Data", rowsOf(fields.Data), fields.DataOnCells);
+    require("Missing", fields.Missing.size(), fields.DataOnCells);
+    require("Mask", fields.Mask.size(), fields.MaskOnCells);
+    require("Fixed", fields.Fixed.size(), fields.FixedOnCells);
+    require("FidelityFactors", fields.FidelityFactors.size(), fields.FidelityOnCells);
+    require("Seeds", fields.Seeds.size(), fields.SeedsOnCells);
+    const auto faces = static_cast<std::size_t>(triangles.rows());
+    RequireRows("Directions", rowsOf(fields.Directions),
+      fields.DirectionsOnTriangles ? faces : static_cast<std::size_t>(points.rows()),
+      fields.DirectionsOnTriangles, problems);
+    RequireRows("Rates", rowsOf(fields.Rates), faces, true, problems);
+    RequireRows("Cells", this->Data.Cells.size(), faces, true, problems);
+    ThrowProblems(problems);
+  }
+
+  FieldSummary Summarize() const
+  {
+    FieldSummary summary;
+    summary.Data = this->Data.Data.cols() > 0;
+    summary.DataComponents = static_cast<int>(this->Data.Data.cols());
+    summary.Directions = this->Data.Directions.rows() > 0;
+    summary.Fixed = !this->Data.Fixed.empty();
+    summary.Rates = this->Data.Rates.rows() > 0;
+    summary.DataAreTerms = this->Data.DataAreTerms;
+    return summary;
+  }
+
+  /// excludes: triangles that the mask marks take no part.
+  BlockInput Block(bool excludes) const
+  {
+    BlockInput block;
+    block.ReadSurface = [this, excludes]
+    {
+      SurfaceArrays arrays{ this->Vertices, this->Faces, {} };
+      if (excludes && !this->Data.MaskOnCells)
+      {
+        arrays.Excluded = this->Data.Mask;
+      }
+      else if (excludes && !this->Data.Mask.empty())
+      {
+        for (const Index cell : this->Data.Cells)
+        {
+          arrays.ExcludedTriangles.push_back(this->Data.Mask[static_cast<std::size_t>(cell)]);
+        }
+      }
+      return arrays;
+    };
+    block.ReadFields = [this] { return this->Data; };
+    return block;
+  }
+
+  void TakeOutputs(const OutputList& outputs, OutputSource& source, Solution& solution) const
+  {
+    source.NumberOfCells = static_cast<std::int64_t>(this->NumberOfCells());
+    source.CellOf = [this](Index t) -> std::int64_t
+    { return this->Data.Cells.empty() ? t : this->Data.Cells[static_cast<std::size_t>(t)]; };
+    source.ReadData = [this] { return this->Data.Data; };
+    source.DataAreFloats = true;
+    for (const Output& output : outputs)
+    {
+      switch (output.Where)
+      {
+        case Place::Number:
+          solution.Numbers[output.Name] = output.Rows;
+          break;
+        case Place::Column:
+        case Place::PerCurvePoint:
+          solution.Columns[output.Name] = output.Rows;
+          break;
+        case Place::PerCurve:
+          if (output.Lines)
+          {
+            solution.Curves[output.Name] = output.Lines;
+          }
+          else
+          {
+            solution.Columns[output.Name] = output.Rows;
+          }
+          break;
+        default:
+          const bool isFirst = solution.Arrays.empty();
+          const Values& written = solution.Arrays[output.Name] = this->Write(output, source);
+          if (isFirst)
+          {
+            solution.Result = written;
+          }
+      }
+    }
+  }
+
+private:
+  std::size_t NumberOfCells() const
+  {
+    return this->Data.Cells.empty() ? static_cast<std::size_t>(this->Faces.rows())
+                                    : static_cast<std::size_t>(this->Data.NumberOfCells);
+  }
+
+  Values Write(const Output& output, const OutputSource& source) const
+  {
+    const OutputRows rows(output, source);
+    Values written(rows.Count(), rows.Columns());
+    rows.Write(
+      written.data(), written.cols(), -1,
+      [this](Index i, Eigen::Index k) { return this->Data.Data(i, k); }, source.Parallel);
+    return written;
+  }
+
+  const Points& Vertices;
+  const Triangles& Faces;
+  Fields Data;
+};
+
+std::vector<std::string> SentencesOf(const std::vector<Warning>& warnings)
+{
+  std::vector<std::string> sentences;
+  for (const Warning& warning : warnings)
+  {
+    sentences.push_back(warning.Sentence);
+  }
+  return sentences;
+}
+
+template <typename RunType, typename SettingsType>
+Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor& parallel)
+{
+  RunType run(parallel);
+  NamingExtremes(settings, [&] { run.Update(input.Block(false), settings, ProgressMonitor()); });
+  Solution solution;
+  OutputSource source{ run.GetSurface(), parallel };
+  input.TakeOutputs(run.Outputs(), source, solution);
+  solution.Warnings = SentencesOf(run.FindWarnings());
+  return solution;
+}
+
+} // namespace
+
+Fields FieldsOf(const Values& ofPoints)
+{
+  Fields fields;
+  fields.Data = ofPoints;
+  return fields;
+}
+
+Solution SolveModel(const Points& points, const Triangles& triangles, const Fields& fields,
+  std::shared_ptr<RunSettings> settings, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
+{
+  const Input input(points, triangles, fields);
+  const FieldSummary summary = input.Summarize();
+  Problems problems;
+  settings->Check(&summary, problems);
+  ThrowProblems(problems);
+
+  const ProcessGroup alone;
+  Run run(parallel);
+  int last = 0;
+  NamingExtremes(*settings,
+    [&]
+    {
+      const bool excludes = settings->MaskMode == MaskMode::Exclude;
+      run.Update({ input.Block(excludes) }, settings, alone, progress.Part(0.0, 0.25));
+      last = run.FindLastStep(progress.Part(0.25, 1.0));
+      run.Seek(last, ProgressMonitor());
+    });
+  const Run::Block& block = run.GetBlock(0);
+  Solution solution;
+  OutputSource source{ *block.Surface, parallel };
+  source.Block = &block;
+  source.Traits = settings->DescribeModel();
+  input.TakeOutputs(block.Outputs, source, solution);
+  solution.Steps = run.MakeHistory(last);
+  solution.Warnings = SentencesOf(run.FindWarnings(alone));
+  return solution;
+}
+
+Solution DirectionField(const Points& points, const Triangles& triangles,
+  DirectionFieldSettings settings, const Fields& fields, const ParallelFor& parallel)
+{
+  const Input input(points, triangles, fields);
+  const FieldSummary summary = input.Summarize();
+  Problems problems;
+  settings.Check(&summary, problems);
+  ThrowProblems(problems);
+  return SolveOnce<DirectionFieldRun>(input, settings, parallel);
+}
+
+Solution DenoiseMesh(const Points& points, const Triangles& triangles,
+  DenoisingRunSettings settings, const Fields& fields, const ParallelFor& parallel)
+{
+  const Input input(points, triangles, fields);
+  Problems problems;
+  CheckRanges(settings, problems);
+  ThrowProblems(problems);
+  Solution solution = SolveOnce<DenoisingRun>(input, settings, parallel);
+  if (solution.Arrays.count("Points") == 0) // nothing has moved
+  {
+    solution.Result = points;
+  }
+  return solution;
+}
+
+} // namespace SurfaceDiffusion

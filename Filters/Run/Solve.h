@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/DenoisingRun.h"
+#include "Run/DirectionFieldRun.h"
+#include "Run/HarmonicMapSettings.h"
+#include "Run/HeatSettings.h"
+#include "Run/History.h"
+#include "Run/MumfordShahSettings.h"
+#include "Run/SegmentationSettings.h"
+#include "Run/TensorDiffusionSettings.h"
+#include "Run/TextureSettings.h"
+#include "Run/TotalVariationSettings.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+// Every model in one call, for one surface that is given as arrays, in programs without VTK:
+//
+//   HeatSettings settings;
+//   settings.FWHM = 6.0;
+//   const Values smoothed = Heat(points, triangles, values, settings).Result;
+//
+// points: n x 3 coordinates. triangles: m x 3 rows of points. values: n x k, or any Fields: data on
+// cells, a mask, fixed values, directions, ... The settings have the names, units, ranges and
+// defaults of the properties of the filters for VTK, whose results these are. All functions throw
+// std::runtime_error, whose text names each setting or array with its value and what is allowed.
+//
+// A program that solves again and again on one surface uses Run, which keeps the matrices and
+// factors that have not changed.
+namespace SurfaceDiffusion
+{
+
+/// The results of a model on one surface, under the names of the arrays and properties in VTK.
+struct Solution
+{
+  /// The main result: that of the data, in their unit, with a row per point (per cell for data on
+  /// cells, if the settings ask for results there). Of a texture u1, of a mesh the moved points.
+  Values Result;
+  /// All results at points or cells, the main one included. A result that is named after the data
+  /// in VTK has its suffix as name, for instance "Diffused".
+  std::map<std::string, Values> Arrays;
+  std::map<std::string, std::shared_ptr<const SurfaceDiffusion::Curves>> Curves;
+  std::map<std::string, Values> Numbers; ///< 1 x 1, or a matrix
+  std::map<std::string, Values> Columns; ///< of tables, a row per region, and attributes of curves
+  History Steps; ///< of models with time steps
+  std::vector<std::string> Warnings;
+};
+
+/// The fields of a surface whose points have these values.
+Fields FieldsOf(const Values& ofPoints);
+
+Solution SolveModel(const Points& points, const Triangles& triangles, const Fields& fields,
+  std::shared_ptr<RunSettings> settings, const ParallelFor& parallel = SerialFor(),
+  const ProgressMonitor& progress = ProgressMonitor());
+
+/// (4), (16), (18): see vtkFVMHeatFilter.
+inline Solution Heat(const Points& points, const Triangles& triangles, const Fields& fields,
+  const HeatSettings& settings = {}, const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(points, triangles, fields, std::make_shared<HeatSettings>(settings), parallel);
+}
+inline Solution Heat(const Points& points, const Triangles& triangles, const Values& values,
+  const HeatSettings& settings = {}, const ParallelFor& parallel = SerialFor())
+{
+  return Heat(points, triangles, FieldsOf(values), settings, parallel);
+}
+
+/// (2), (3), (17), (19): see vtkIntrinsicTVFilter.
+inline Solution IntrinsicTV(const Points& points, const Triangles& triangles, const Fields& fields,
+  const TotalVariationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(
+    points, triangles, fields, std::make_shared<TotalVariationSettings>(settings), parallel);
+}
+inline Solution IntrinsicTV(const Points& points, const Triangles& triangles, const Values& values,
+  const TotalVariationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
+{
+  return IntrinsicTV(points, triangles, FieldsOf(values), settings, parallel);
+}
+
+/// The flow of harmonic maps to the sphere, of n x 3 unit vectors: see vtkHarmonicMapFilter.
+inline Solution HarmonicMapFlow(const Points& points, const Triangles& triangles,
+  const Fields& fields, const HarmonicMapSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(
+    points, triangles, fields, std::make_shared<HarmonicMapSettings>(settings), parallel);
+}
+
+/// Reaction and diffusion of two chemicals; data are optional: see vtkTuringTextureFilter.
+inline Solution TuringTexture(const Points& points, const Triangles& triangles,
+  const TextureSettings& settings = {}, const Fields& fields = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(
+    points, triangles, fields, std::make_shared<TextureSettings>(settings), parallel);
+}
+
+/// Edges, and data that are smooth between them: see vtkMumfordShahFilter.
+inline Solution MumfordShahEdges(const Points& points, const Triangles& triangles,
+  const Fields& fields, const MumfordShahSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(
+    points, triangles, fields, std::make_shared<MumfordShahSettings>(settings), parallel);
+}
+
+/// Regions with short boundaries: see vtkSurfaceSegmentationFilter.
+inline Solution Segment(const Points& points, const Triangles& triangles, const Fields& fields,
+  const SegmentationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(
+    points, triangles, fields, std::make_shared<SegmentationSettings>(settings), parallel);
+}
+
+/// Diffusion with a tensor that follows the data: see vtkTensorDiffusionFilter.
+inline Solution TensorDiffusion(const Points& points, const Triangles& triangles,
+  const Fields& fields, const TensorDiffusionSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(
+    points, triangles, fields, std::make_shared<TensorDiffusionSettings>(settings), parallel);
+}
+
+/// A line field on the triangles, from the curvature or from fields.Directions: see
+/// vtkSurfaceDirectionFieldFilter.
+Solution DirectionField(const Points& points, const Triangles& triangles,
+  DirectionFieldSettings settings = {}, const Fields& fields = {},
+  const ParallelFor& parallel = SerialFor());
+
+/// The surface without noise; points of fields.Fixed stay: see vtkSurfaceDenoisingFilter.
+Solution DenoiseMesh(const Points& points, const Triangles& triangles,
+  DenoisingRunSettings settings = {}, const Fields& fields = {},
+  const ParallelFor& parallel = SerialFor());
+
+} // namespace SurfaceDiffusion
