@@ -158,7 +158,7 @@ TEST(Solve, ErrorsNameTheSettingOrTheArray)
 {
   HeatSettings negative;
   negative.FWHM = -1.0;
-  EXPECT_EQ(ErrorOf(Sphere().Data, negative), "FWHM is -1; allowed: 0 or more");
+  EXPECT_EQ(ErrorOf(Sphere().Data, negative), "FWHM is -1; allowed: finite numbers, 0 or more");
   Fields fields = Sphere().Data;
   fields.Mask.assign(5, 0);
   EXPECT_EQ(ErrorOf(fields, {}), "Mask has 5 rows; allowed: 642, one per point");
