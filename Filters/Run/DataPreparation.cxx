@@ -9,6 +9,7 @@
 #include "Core/Operators/CotanWeights.h"
 
 #include <cmath>
+#include <cstdint>
 #include <sstream>
 
 namespace SurfaceDiffusion
@@ -62,9 +63,12 @@ double FindCellNoiseGain(const ModelInputs& inputs)
 {
   const CellTransfer& cells = *inputs.Cells;
   Values noise(cells.NumberOfCells(), 1);
+  std::int64_t number = 0; // cells that are no polygons, and their numbers, must not matter
   for (Index c = 0; c < cells.NumberOfCells(); ++c)
   {
-    noise(c, 0) = std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, c) - 1.0); // of deviation 1
+    noise(c, 0) = cells.Participates(c)
+      ? std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, number++) - 1.0) // of deviation 1
+      : 0.0;
   }
   const double found = EstimateBetweenNeighbours(
     inputs, PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of));
