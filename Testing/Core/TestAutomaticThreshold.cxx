@@ -477,7 +477,7 @@ TEST(AutomaticThreshold, ColorsCellsAndCorrelatedNoiseHaveTheirEdges)
   EXPECT_LT(FindEdges(ramp).Edges.maxCoeff(), 0.5);
 }
 
-TEST(AutomaticThreshold, OffGivesTheBitsOfTheModelWithTheGivenOnes)
+TEST(AutomaticThreshold, OffGivesTheModelWithTheGivenOnes)
 {
   const Shape sphere = Icosphere(4);
   const RunInput input = MakeInput(sphere, UnitStep, 0.05);
