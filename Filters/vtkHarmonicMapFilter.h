@@ -40,7 +40,7 @@
  * by d.
  *
  * **Schemes.** TangentPlane (default) and MinimizingMovement never increase E, for any time step
- * and any triangles. Core/Models/HarmonicMap.h has the proof. In short, a step minimises the energy
+ * and any triangles. Core/Models/Harmonic/HarmonicMap.h has the proof. In short, a step minimises the energy
  * with frozen g, an upper bound of E, over displacements orthogonal to u at every vertex.
  * Normalising then does not increase the distance of any two vectors. For negative weights, which
  * obtuse triangles cause, the same holds for a vector and the opposite of another one, after the

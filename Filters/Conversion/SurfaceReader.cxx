@@ -4,9 +4,9 @@
 
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/TupleRange.h"
+#include "Core/Surface/Polygons.h"
 #include "Distributed/CellFlags.h"
 #include "Distributed/ContentHash.h"
-#include "Run/Polygons.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/CellFields.h"
 
-#include "Core/Models/UnitVectors.h"
+#include "Core/Models/Harmonic/UnitVectors.h"
 #include "Run/LineTensors.h"
 
 #include <algorithm>

@@ -4,9 +4,9 @@
 
 #include "Core/Foundation/Random.h"
 #include "Core/Models/HeatBlur.h"
-#include "Core/Models/NoiseCorrelation.h"
-#include "Core/Models/NoiseLevel.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Statistics/NoiseCorrelation.h"
+#include "Core/Statistics/NoiseLevel.h"
 
 #include <cmath>
 #include <cstdint>

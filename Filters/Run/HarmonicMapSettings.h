@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Core/Geometry/VertexUpdating.h"
-#include "Core/Models/HarmonicMap.h"
+#include "Core/Models/Harmonic/HarmonicMap.h"
 #include "Run/RunSettings.h"
 
 namespace SurfaceDiffusion

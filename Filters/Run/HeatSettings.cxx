@@ -3,8 +3,8 @@
 #include "Run/HeatSettings.h"
 
 #include "Core/Models/LinearDiffusion.h"
-#include "Core/Models/NoiseLevel.h"
 #include "Core/Models/TikhonovDeblurring.h"
+#include "Core/Statistics/NoiseLevel.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 

@@ -3,8 +3,8 @@
 #include "Run/MumfordShahSettings.h"
 
 #include "Core/Geometry/RidgeCurves.h"
-#include "Core/Models/EdgeScales.h"
 #include "Core/Models/MumfordShah.h"
+#include "Core/Statistics/EdgeScales.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 #include "Run/Rewording.h"

@@ -3,8 +3,8 @@
 #include "Run/SegmentationSettings.h"
 
 #include "Core/Geometry/RegionBoundaries.h"
-#include "Core/Models/RegionMeans.h"
 #include "Core/Models/Segmentation.h"
+#include "Core/Statistics/RegionMeans.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>

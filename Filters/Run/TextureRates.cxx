@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/TextureRates.h"
 
-#include "Core/Models/DispersionRelation.h"
+#include "Core/Models/Textures/DispersionRelation.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>

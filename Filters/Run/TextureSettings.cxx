@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/TextureSettings.h"
 
-#include "Core/Models/CoarseStart.h"
-#include "Core/Models/DispersionRelation.h"
-#include "Core/Models/ReactionDiffusion.h"
-#include "Core/Models/TextureColors.h"
+#include "Core/Models/Textures/CoarseStart.h"
+#include "Core/Models/Textures/DispersionRelation.h"
+#include "Core/Models/Textures/ReactionDiffusion.h"
+#include "Core/Models/Textures/TextureColors.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Run/ModelInputs.h"
 #include "Run/TextureRates.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/Textures/ReactionDiffusion.h"
 #include "Run/RunSettings.h"
 
 #include <array>

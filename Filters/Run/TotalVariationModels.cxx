@@ -3,9 +3,9 @@
 #include "Run/TotalVariationModels.h"
 
 #include "Core/Models/ChromaticityBrightness.h"
-#include "Core/Models/CrouzeixRaviart.h"
 #include "Core/Models/OpponentColors.h"
-#include "Core/Models/TotalVariationDeblurring.h"
+#include "Core/Models/TotalVariation/CrouzeixRaviart.h"
+#include "Core/Models/TotalVariation/TotalVariationDeblurring.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Run/DataPreparation.h"
 #include "Run/TotalVariationSettings.h"

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "Core/Models/EdgeFunctions.h"
-#include "Core/Models/HarmonicMap.h"
+#include "Core/Models/Harmonic/HarmonicMap.h"
 #include "Core/Models/NonlinearDiffusion.h"
-#include "Core/Models/TotalVariationFlow.h"
+#include "Core/Models/TotalVariation/TotalVariationFlow.h"
 #include "Run/ModelInputs.h"
 
 #include <memory>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "InputData.h"
 
-#include "Run/Polygons.h"
+#include "Core/Surface/Polygons.h"
 #include "Threads.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 
 #include "HeatSystem.h"
 
-#include "Core/Models/SlicedSplitting.h"
+#include "Core/Models/TotalVariation/SlicedSplitting.h"
 #include "Core/Solvers/ConjugateGradients.h"
 #include "Core/Solvers/LinearSolver.h"
 #include "Core/Solvers/SlicedMatrix.h"

@@ -23,8 +23,8 @@
 #include "Core/Models/Segmentation.h"
 #include "Core/Models/StructureDiffusion.h"
 #include "Core/Models/TikhonovDeblurring.h"
-#include "Core/Models/TotalVariationDeblurring.h"
-#include "Core/Models/TotalVariationFlow.h"
+#include "Core/Models/TotalVariation/TotalVariationDeblurring.h"
+#include "Core/Models/TotalVariation/TotalVariationFlow.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/CotanWeights.h"
 

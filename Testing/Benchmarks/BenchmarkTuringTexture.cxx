@@ -12,7 +12,7 @@
 #include "MeshFiles.h"
 #include "Meshes.h"
 
-#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/Textures/ReactionDiffusion.h"
 #include "Core/Operators/CotanWeights.h"
 
 #include <benchmark/benchmark.h>

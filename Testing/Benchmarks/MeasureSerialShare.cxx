@@ -11,7 +11,7 @@
 #include "ProcessTime.h"
 
 #include "Core/Geometry/SurfaceDenoising.h"
-#include "Core/Models/TotalVariationFlow.h"
+#include "Core/Models/TotalVariation/TotalVariationFlow.h"
 #include "Core/Solvers/SolverChoice.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 

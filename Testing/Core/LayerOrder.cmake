@@ -6,7 +6,8 @@ set(below_Foundation "")
 set(below_Surface Foundation)
 set(below_Operators Foundation Surface)
 set(below_Solvers Foundation Surface Operators)
-set(below_Models Foundation Surface Operators Solvers)
+set(below_Statistics Foundation Surface Operators)
+set(below_Models Foundation Surface Operators Solvers Statistics)
 set(below_Geometry Foundation Surface Operators Solvers)
 
 file(GLOB folders LIST_DIRECTORIES true RELATIVE "${FOLDER}" "${FOLDER}/*")
@@ -24,7 +25,7 @@ foreach (folder IN LISTS folders)
     foreach (line IN LISTS lines)
       math(EXPR number_of_includes "${number_of_includes} + 1")
       string(REGEX REPLACE ".*\"(.*)\".*" "\\1" file "${line}")
-      string(REGEX MATCH "^Core/([A-Za-z]+)/[A-Za-z]+\\.h$" written_in_full "${file}")
+      string(REGEX MATCH "^Core/([A-Za-z]+)/([A-Za-z]+/)?[A-Za-z]+\\.h$" written_in_full "${file}")
       if (NOT written_in_full OR NOT "${CMAKE_MATCH_1}" IN_LIST below_${folder}
           AND NOT "${CMAKE_MATCH_1}" STREQUAL "${folder}")
         message(SEND_ERROR "${source} includes \"${file}\"; allowed: Core/<folder>/<file>.h of "

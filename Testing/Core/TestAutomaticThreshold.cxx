@@ -5,9 +5,9 @@
 #include "RunInput.h"
 #include "ThreadedFor.h"
 
-#include "Core/Models/EdgeScales.h"
 #include "Core/Models/MumfordShah.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Statistics/EdgeScales.h"
 #include "Heat.h"
 #include "Run/MumfordShahSettings.h"
 #include "Run/TotalVariationSettings.h"

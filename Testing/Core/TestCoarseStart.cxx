@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/CoarseStart.h"
-#include "Core/Models/DispersionRelation.h"
+#include "Core/Models/Textures/CoarseStart.h"
+#include "Core/Models/Textures/DispersionRelation.h"
 #include "Core/Models/Trajectory.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"

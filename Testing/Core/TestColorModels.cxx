@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
 #include "Core/Models/ChromaticityBrightness.h"
+#include "Core/Models/Harmonic/UnitVectors.h"
 #include "Core/Models/OpponentColors.h"
-#include "Core/Models/UnitVectors.h"
 #include "EveryMeshFile.h"
 #include "HarmonicMaps.h"
 #include "Heat.h"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TikhonovDeblurring.h"
-#include "Core/Models/TotalVariationDeblurring.h"
+#include "Core/Models/TotalVariation/TotalVariationDeblurring.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "EveryMeshFile.h"

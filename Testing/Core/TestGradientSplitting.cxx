@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/GradientSplitting.h"
+#include "Core/Models/TotalVariation/GradientSplitting.h"
 #include "ThreadedFor.h"
 #include "TotalVariation.h"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Core/Models/UnitVectors.h"
+#include "Core/Models/Harmonic/UnitVectors.h"
 #include "HarmonicMaps.h"
 #include "Heat.h"
 #include "ThreadedFor.h"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/DispersionRelation.h"
-#include "Core/Models/Kinetics.h"
+#include "Core/Models/Textures/DispersionRelation.h"
+#include "Core/Models/Textures/Kinetics.h"
 
 #include <gtest/gtest.h>
 

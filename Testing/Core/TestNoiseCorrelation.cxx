@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/NoiseCorrelation.h"
-#include "Core/Models/NoiseLevel.h"
+#include "Core/Statistics/NoiseCorrelation.h"
+#include "Core/Statistics/NoiseLevel.h"
 #include "Heat.h"
 #include "MeshFiles.h"
 #include "Meshes.h"

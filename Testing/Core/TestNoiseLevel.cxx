@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/NoiseLevel.h"
+#include "Core/Statistics/NoiseLevel.h"
 #include "Heat.h"
 #include "Meshes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Run/Polygons.h"
+#include "Core/Surface/Polygons.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

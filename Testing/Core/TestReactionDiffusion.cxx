@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Core/Models/DispersionRelation.h"
-#include "Core/Models/ReactionDiffusion.h"
+#include "Core/Models/Textures/DispersionRelation.h"
+#include "Core/Models/Textures/ReactionDiffusion.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"

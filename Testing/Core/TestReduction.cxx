@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Foundation/Reduction.h"
 #include "Core/Models/InitialState.h"
-#include "Core/Models/TextureColors.h"
+#include "Core/Models/Textures/TextureColors.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Meshes.h"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Core/Models/RegionMeans.h"
-#include "Core/Models/SimplexSplitting.h"
+#include "Core/Models/TotalVariation/SimplexSplitting.h"
+#include "Core/Statistics/RegionMeans.h"
 #include "EveryMeshFile.h"
 #include "Regions.h"
 #include "ThreadedFor.h"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Core/Models/GradientTensor.h"
 #include "Core/Models/StructureDiffusion.h"
 #include "Core/Models/Trajectory.h"
+#include "Core/Operators/GradientTensor.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Core/Surface/TangentVectors.h"
 #include "EveryMeshFile.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/TextureColors.h"
+#include "Core/Models/Textures/TextureColors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Allocations.h"
-#include "Core/Models/ValueRange.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/MeanCorrection.h"
+#include "Core/Statistics/ValueRange.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
 #include "ThreadedFor.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/UnitVectors.h"
+#include "Core/Models/Harmonic/UnitVectors.h"
 #include "HarmonicMaps.h"
 
 #include <gtest/gtest.h>

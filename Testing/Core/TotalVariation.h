@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/CrouzeixRaviart.h"
 #include "Core/Models/NonlinearDiffusion.h"
-#include "Core/Models/TotalVariationFlow.h"
+#include "Core/Models/TotalVariation/CrouzeixRaviart.h"
+#include "Core/Models/TotalVariation/TotalVariationFlow.h"
 #include "Meshes.h"
 
 #include <cmath>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/GradientTensor.h"
 #include "Core/Models/LaggedDiffusion.h"
+#include "Core/Operators/GradientTensor.h"
 
 #include <memory>
 

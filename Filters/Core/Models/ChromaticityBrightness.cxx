@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/ChromaticityBrightness.h"
 
+#include "Core/Models/Harmonic/UnitVectors.h"
 #include "Core/Models/InitialState.h"
-#include "Core/Models/UnitVectors.h"
 
 #include <algorithm>
 #include <cmath>

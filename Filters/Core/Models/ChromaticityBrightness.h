@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Models/HarmonicMap.h"
+#include "Core/Models/Harmonic/HarmonicMap.h"
 #include "Core/Models/Model.h"
 #include "Core/Operators/Assembler.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Segmentation.h"
 
-#include "Core/Models/SimplexSplitting.h"
-#include "Core/Models/ValueRange.h"
+#include "Core/Models/TotalVariation/SimplexSplitting.h"
+#include "Core/Statistics/ValueRange.h"
 
 #include <algorithm>
 #include <cmath>

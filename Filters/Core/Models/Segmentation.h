@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Core/Models/Model.h"
-#include "Core/Models/TotalVariationMinimizer.h"
+#include "Core/Models/TotalVariation/TotalVariationMinimizer.h"
 
 #include <memory>
 #include <vector>

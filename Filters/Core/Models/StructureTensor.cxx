@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/StructureTensor.h"
 
-#include "Core/Models/GradientTensor.h"
+#include "Core/Operators/GradientTensor.h"
 
 #include <utility>
 

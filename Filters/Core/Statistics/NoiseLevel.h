@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Operators/Assembler.h"
+#include "Core/Operators/Rings.h"
+#include "Core/Surface/PointData.h"
+
+#include <functional>
+
+namespace SurfaceDiffusion
+{
+
+/// An estimate of the standard deviation of the noise in data, without knowledge of the signal.
+struct NoiseEstimate
+{
+  double BetweenNeighbours = 0.0; ///< from the neighbours of each vertex
+  double Apart = 0.0; ///< from vertices farther apart, as far as correlation was found
+
+  /// White noise has the same deviation at all distances. The differences of correlated noise, of
+  /// data that were interpolated or smoothed, are larger at larger distances.
+  bool IsCorrelated() const { return this->Apart > 1.15 * this->BetweenNeighbours; }
+  double Level() const { return this->IsCorrelated() ? this->Apart : this->BetweenNeighbours; }
+};
+
+/// The known vertices where data have noise, if they have any. Noise differs from vertex to vertex, so
+/// a vertex whose known neighbours all have its own value is in a constant part: a background or a
+/// plateau of a mask. A vertex is varying if neither it nor a neighbour is in such a part. Vertices at
+/// both sides of a jump between constant parts are not; if the varying vertices are less than a third
+/// of those outside of constant parts, then there are jumps and spikes alone, and none is varying.
+Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
+
+/// Estimates the noise from the residuals r_i of local linear fits: the difference of f_i and the
+/// value at vertex i of the linear function, in the tangent plane, fitted to the known vertices at
+/// a distance of 1 edge from i, and then of 2, 4 and 8 edges while the result grows by more than
+/// 15 %, each time less than before: the noise is correlated. If it grows faster, or by more than
+/// 30 % at the end, then the signal bends and the first result is taken. The deviation is 1.4826
+/// times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the fit: robust to edges and
+/// exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf. Theory 41, 1995). Only
+/// varying vertices count, 20,000 of them at most. Noise that was smoothed over more than about an edge
+/// grows as fast as a signal, so that the result is too small: see NeighbourVariation. Root mean square over the columns; 0 if no vertex
+/// has enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
+NoiseEstimate EstimateNoise(
+  const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
+
+/// The same from the vertices of some connected components.
+NoiseEstimate EstimateNoise(const Assembler& assembler, const Eigen::Ref<const Points>& points,
+  const PointData& data, VertexRange range);
+
+/// A fidelity weight, and the root mean square of u - f that it leaves.
+struct FidelityChoice
+{
+  double Weight = 0.0;
+  double Discrepancy = 0.0;
+  bool IsFound = true; ///< false: Weight is the end of the search
+};
+
+/// The fidelity weight at which the mean square of u - f equals the noise: discrepancy principle
+/// (Morozov 1966). discrepancy(lambda), the root mean square of u - f at lambda, must not
+/// increase with lambda. `start` is the first guess, of the right units. Stops at 1 % in lambda. If
+/// even lambda = 1e-8 start leaves less than the noise, that lambda is returned as not found;
+/// likewise 1e8 start.
+FidelityChoice FindFidelityByDiscrepancy(
+  const std::function<double(double)>& discrepancy, double noiseLevel, double start);
+
+/// Root of the area-weighted mean of w (u - f)^2 over the known vertices and the columns, divided by
+/// that of the fidelity factors w.
+double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values& u);
+
+} // namespace SurfaceDiffusion
