@@ -132,6 +132,9 @@ TEST(RandomRuns, StayAsTheyWereMended)
     "00000f110104b704b700000100bf01110104b704ff0672000500357060f41900ffffb70000fffb5c000a0101"
     "10ff23d9010014f1f1f1f1f7483202effe39c6c6d7d719001900ffff012800070549ff11da0002010100ffff"
     "60",
+    // a needle on which the minimiser left the range of numbers, and its gap counted as zero
+    "f7fc3aff011f0000180001dc004a11f7fc31ef01ff0011f7fc31ef01ff00b0180001b1004a11001ec700af8f"
+    "89b10049113aff011f0000180001b1004a11f7001ec700af8f8900130013008f0000003b1a1221",
   };
   for (const std::string& digits : found)
   {

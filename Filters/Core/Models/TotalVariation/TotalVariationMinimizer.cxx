@@ -186,6 +186,10 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   this->Vertices->Start(g, f, u, keepMultipliers);
   this->Initial = this->Vertices->Admissible(u);
   const double startEnergy = this->Energy(this->Initial);
+  if (!std::isfinite(startEnergy))
+  {
+    throw std::runtime_error("the minimisation has no finite solution");
+  }
   const double negligible = std::max(1e-3 * startEnergy, 1e-6 * this->NoiseEnergy());
   const bool grows = this->GrowthRate > 0.0;
   Report report;
@@ -199,6 +203,16 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
       this->MeasureGap(u, negligible, report);
       const double left = std::log(std::max(1.0, report.Gap / this->Options.StopTolerance));
       fraction = std::max(fraction, 1.0 - left / std::log(1.0 / this->Options.StopTolerance));
+    }
+    if (!std::isfinite(report.Gap)) // on nearly degenerate triangles
+    {
+      this->Start(u, false, isSingle);
+      this->Vertices->Start(g, f, u, false);
+      u = this->Initial;
+      report.AbsoluteGap = startEnergy; // no energy is negative
+      report.Gap = startEnergy / std::max(startEnergy, negligible);
+      progress.Report(1.0);
+      return report;
     }
     if (report.Gap <= this->Options.StopTolerance ||
       report.Iterations == this->Options.MaximumNumberOfIterations)
@@ -383,17 +397,15 @@ void TotalVariationMinimizer::UpdateColumns()
     [&](Index i) { use(i, &this->Gathered(i, 0)); });
 }
 
-/// The duality gap of the present u and multipliers, also relative to E or to `negligible`.
+/// The duality gap of the present u and multipliers, also relative to E or to `negligible`; not
+/// finite if they are not.
 void TotalVariationMinimizer::MeasureGap(const Values& u, double negligible, Report& report)
 {
   const double energy = this->Energy(this->Vertices->Admissible(u));
   const double scale = std::max(energy, negligible);
-  report.AbsoluteGap = std::max(0.0, energy - this->DualEnergy(u));
-  report.Gap = scale > 0.0 ? report.AbsoluteGap / scale : 0.0;
-  if (!std::isfinite(report.Gap))
-  {
-    throw std::runtime_error("the minimisation has no finite solution");
-  }
+  const double gap = energy - this->DualEnergy(u);
+  report.AbsoluteGap = gap < 0.0 ? 0.0 : gap; // keeps what is not a number
+  report.Gap = scale > 0.0 || std::isnan(scale) ? report.AbsoluteGap / scale : 0.0;
 }
 
 double TotalVariationMinimizer::Energy(const Values& u) const
