@@ -84,6 +84,17 @@ void Fill(std::vector<double>& color, double red, double green, double blue, vtk
   double* vtkTuringTextureFilter::Get##Name()                                                      \
   {                                                                                                \
     return this->GetTextureSettings().Name.data();                                                 \
+  }                                                                                                \
+  void vtkTuringTextureFilter::Get##Name(double& red, double& green, double& blue)                 \
+  {                                                                                                \
+    const double* const color = this->Get##Name();                                                 \
+    red = color[0];                                                                                \
+    green = color[1];                                                                              \
+    blue = color[2];                                                                               \
+  }                                                                                                \
+  void vtkTuringTextureFilter::Get##Name(double color[3])                                          \
+  {                                                                                                \
+    this->Get##Name(color[0], color[1], color[2]);                                                 \
   }
 COLOR(LowColor)
 COLOR(HighColor)

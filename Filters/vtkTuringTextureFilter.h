@@ -268,9 +268,13 @@ public:
   virtual void SetLowColor(double red, double green, double blue);
   virtual void SetLowColor(const double color[3]);
   virtual double* GetLowColor() VTK_SIZEHINT(3);
+  VTK_WRAPEXCLUDE virtual void GetLowColor(double& red, double& green, double& blue);
+  VTK_WRAPEXCLUDE virtual void GetLowColor(double color[3]);
   virtual void SetHighColor(double red, double green, double blue);
   virtual void SetHighColor(const double color[3]);
   virtual double* GetHighColor() VTK_SIZEHINT(3);
+  VTK_WRAPEXCLUDE virtual void GetHighColor(double& red, double& green, double& blue);
+  VTK_WRAPEXCLUDE virtual void GetHighColor(double color[3]);
   ///@}
 
   ///@{

@@ -491,6 +491,14 @@ TEST(TuringTextureFilter, ColorsInterpolateBetweenTwoColorsByTheTexture)
   filter->ColorOutputOn();
   filter->SetTextureChemicalToU2();
   filter->SetLowColor(0.0, 0.2, 1.0);
+  double red = 1.0, green = 1.0, blue = 0.0;
+  filter->GetLowColor(red, green, blue);
+  EXPECT_EQ(red, 0.0);
+  EXPECT_EQ(green, 0.2);
+  EXPECT_EQ(blue, 1.0);
+  double low[3];
+  filter->GetLowColor(low);
+  EXPECT_EQ(low[1], 0.2);
   filter->SetHighColor(1.0, 0.4, 0.0);
   filter->SetResultArrayName("my");
   filter->Update();
