@@ -170,7 +170,6 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
     curves->Initialize();
   }
   RunState& state = *this->State;
-  state.Succeeded = false;
   state.Settings = std::static_pointer_cast<RunSettings>(this->Private->Properties.Copy());
   state.SettingProblems.clear(); // reported with those of the arrays
   state.Settings->Check(nullptr, state.SettingProblems);
@@ -181,18 +180,16 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   auto last = static_cast<double>(state.LastStep);
   Processes(this->GetController()).Broadcast(&last, 1);
   state.LastStep = static_cast<int>(last);
-  if (state.Succeeded)
+  if (state.Table) // the update has succeeded
   {
-    if (!WriteColumns(state.Outputs, table))
-    {
-      WriteHistory(state.History, table);
-    }
+    table->ShallowCopy(state.Table);
     if (curves)
     {
-      WriteCurves(state.Outputs, this->ResultArrayName, curves);
+      curves->ShallowCopy(state.Curves);
     }
   }
-  state.Outputs.clear();
+  state.Table = nullptr;
+  state.Curves = nullptr;
   state.History = History();
   if (state.Settings->GenerateTimeSteps && valid)
   {
@@ -315,11 +312,7 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
     throw;
   }
   state.History = state.Run.MakeHistory(state.Step);
-  for (std::size_t b = 0; b < state.Run.NumberOfBlocks(); ++b)
-  {
-    state.Outputs.push_back(state.Run.GetBlock(b).Outputs);
-  }
-  state.Succeeded = group.IsRoot();
+  group.RunCollectively([&] { this->MakeTables(); });
   this->TakeNumbers();
   state.ForgetUnusedNormals();
   std::vector<Warning> warnings = state.Run.FindWarnings(group);
@@ -332,6 +325,33 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
     warnings.push_back({ sentence, Fingerprint() });
   }
   this->ReportWarnings(std::move(warnings));
+}
+
+/// The outputs beside the surface, in process 0.
+void vtkSurfaceDiffusionAlgorithm::MakeTables()
+{
+  if (!this->GetProcessGroup().IsRoot())
+  {
+    return;
+  }
+  RunState& state = *this->State;
+  std::vector<const OutputList*> outputs;
+  for (std::size_t b = 0; b < state.Run.NumberOfBlocks(); ++b)
+  {
+    outputs.push_back(&state.Run.GetBlock(b).Outputs);
+  }
+  vtkNew<vtkTable> table;
+  if (!WriteColumns(outputs, table))
+  {
+    WriteHistory(state.History, table);
+  }
+  vtkNew<vtkPolyData> curves;
+  if (this->GetNumberOfOutputPorts() > 2)
+  {
+    WriteCurves(outputs, this->ResultArrayName, curves);
+  }
+  state.Table = table;
+  state.Curves = curves;
 }
 
 void vtkSurfaceDiffusionAlgorithm::WriteResults(

@@ -343,6 +343,7 @@ private:
   void WriteResult(
     std::size_t index, const SurfaceDiffusion::InputFields& fields, vtkPolyData* output);
   void TakeNumbers();
+  void MakeTables();
   void WriteFidelityWeights(const std::vector<SurfaceBlock>& surfaces);
   void WriteResults(const std::vector<SurfaceBlock>& surfaces,
     const std::vector<SurfaceDiffusion::InputFields>& fields);

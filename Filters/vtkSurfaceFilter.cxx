@@ -7,7 +7,7 @@
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Distributed/SurfacePieces.h"
-#include "Run/Settings.h"
+#include "Run/RunSettings.h"
 
 #include "vtkDataObject.h"
 #include "vtkErrorCode.h"
@@ -41,7 +41,23 @@ std::string JoinSentences(const std::vector<std::string>& sentences)
   return text;
 }
 
+struct MergingSettings : Settings
+{
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+
+  void Visit(SettingVisitor& visitor) override
+  {
+    VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+  }
+};
+
 } // namespace
+
+vtkSurfaceFilter::vtkSurfaceFilter()
+  : vtkSurfaceFilter(OwnedSettings::Make<MergingSettings>())
+{
+}
 
 vtkSurfaceFilter::vtkSurfaceFilter(OwnedSettings settings)
   : Private(std::make_unique<Internals>())

@@ -185,6 +185,8 @@ public:
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 protected:
+  /// For a filter without settings other than those of merging points.
+  vtkSurfaceFilter();
   /// settings: of the properties of the class, with their defaults.
   explicit vtkSurfaceFilter(SurfaceDiffusion::OwnedSettings settings);
   ~vtkSurfaceFilter() override;

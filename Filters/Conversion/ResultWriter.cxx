@@ -158,13 +158,13 @@ struct JoinedColumn
 /// Those of one place, in the order of their first appearance, and the numbers of their surfaces.
 /// Where a surface has no output of a name it has NaN.
 std::vector<JoinedColumn> Join(
-  const std::vector<OutputList>& surfaces, Place where, std::vector<int>& surfaceOfRows)
+  const std::vector<const OutputList*>& surfaces, Place where, std::vector<int>& surfaceOfRows)
 {
   std::vector<JoinedColumn> columns;
   for (std::size_t s = 0; s < surfaces.size(); ++s)
   {
     const std::size_t before = surfaceOfRows.size();
-    for (const Output& output : surfaces[s])
+    for (const Output& output : *surfaces[s])
     {
       if (output.Where != where || output.Lines)
       {
@@ -277,7 +277,7 @@ void WriteOutputs(const OutputList& outputs, const OutputSource& source, const O
   }
 }
 
-bool WriteColumns(const std::vector<OutputList>& surfaces, vtkTable* table)
+bool WriteColumns(const std::vector<const OutputList*>& surfaces, vtkTable* table)
 {
   std::vector<int> blocks;
   const std::vector<JoinedColumn> columns = Join(surfaces, Place::Column, blocks);
@@ -294,13 +294,13 @@ bool WriteColumns(const std::vector<OutputList>& surfaces, vtkTable* table)
 }
 
 void WriteCurves(
-  const std::vector<OutputList>& surfaces, const std::string& prefix, vtkPolyData* curves)
+  const std::vector<const OutputList*>& surfaces, const std::string& prefix, vtkPolyData* curves)
 {
   std::vector<double> coordinates;
   std::vector<vtkTypeInt64> offsets{ 0 }, connectivity;
-  for (const OutputList& surface : surfaces)
+  for (const OutputList* const surface : surfaces)
   {
-    for (const Output& output : surface)
+    for (const Output& output : *surface)
     {
       if (!output.Lines)
       {

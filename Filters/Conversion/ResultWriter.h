@@ -42,11 +42,11 @@ void WriteOutputs(
 
 /// Write the columns of the outputs of all surfaces, their rows one after the other. Returns whether
 /// there are any.
-bool WriteColumns(const std::vector<OutputList>& surfaces, vtkTable* table);
+bool WriteColumns(const std::vector<const OutputList*>& surfaces, vtkTable* table);
 
 /// Write the curves of all surfaces as polylines. prefix: of the names of the arrays of points.
 void WriteCurves(
-  const std::vector<OutputList>& surfaces, const std::string& prefix, vtkPolyData* curves);
+  const std::vector<const OutputList*>& surfaces, const std::string& prefix, vtkPolyData* curves);
 
 /// The warning about arrays of the input that results have replaced.
 std::string DescribeReplacement(const std::vector<std::string>& names);

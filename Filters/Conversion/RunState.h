@@ -10,6 +10,11 @@
 #include "Run/OwnedSettings.h"
 #include "Run/Run.h"
 
+#include "vtkDataArray.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTable.h"
+
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -64,6 +69,6 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
   int Step = 0; ///< the requested step
   int LastStep = -1; ///< of the run; -1 if it is not known
   SurfaceDiffusion::History History;
-  std::vector<SurfaceDiffusion::OutputList> Outputs; ///< for the tables and curves
-  bool Succeeded = false;
+  vtkSmartPointer<vtkTable> Table; ///< null until the update has succeeded, in process 0
+  vtkSmartPointer<vtkPolyData> Curves;
 };

@@ -167,10 +167,12 @@ void TextureSettings::Visit(SettingVisitor& visitor)
     { "ColorOutput", "", "Whether the texture is written as colours, too.", SettingScope::Output },
     this->ColorOutput);
   visitor.Numbers(
-    { "LowColor", "", "The colour of the texture's 0: red, green and blue.", SettingScope::Output },
+    { "LowColor", "", "Red, green and blue, from 0 to 1, for low concentrations of the chemical.",
+      SettingScope::Output },
     this->LowColor, SettingRange::ClosedUnitInterval());
-  visitor.Numbers({ "HighColor", "", "The colour of the texture's 1: red, green and blue.",
-                    SettingScope::Output },
+  visitor.Numbers(
+    { "HighColor", "", "Red, green and blue, from 0 to 1, for high concentrations of the chemical.",
+      SettingScope::Output },
     this->HighColor, SettingRange::ClosedUnitInterval());
 }
 
