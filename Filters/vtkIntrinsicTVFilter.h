@@ -219,8 +219,8 @@ public:
    * FidelityNorm L2. The principle errs on the smooth side: on photographs with noise of 5 to 80 %
    * its result was 1 to 3 dB from that of the best lambda, which leaves 0.88 to 0.99 of the noise
    * in the residual. Constant parts of the data, such as a background of 0, have no noise and are
-   * left out. Default: off; with BlurFWHM and FidelityWeight 3, its default, always on;
-   * see AutomaticBlurFidelity.
+   * left out. Default: off; with BlurFWHM and FidelityWeight 3, its default, on unless
+   * AutomaticBlurFidelity is off.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 

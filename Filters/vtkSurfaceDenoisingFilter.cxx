@@ -38,7 +38,10 @@ vtkSurfaceDenoisingFilter::~vtkSurfaceDenoisingFilter() = default;
 void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
 {
-  auto& settings = static_cast<DenoisingRunSettings&>(this->GetSettings());
+  // A copy: an observer of the progress may change properties during the update.
+  const auto copy =
+    std::static_pointer_cast<DenoisingRunSettings>(this->Private->Properties.Copy());
+  DenoisingRunSettings& settings = *copy;
   Problems problems;
   CheckRanges(settings, problems);
   this->CheckSurfaceProperties(problems);

@@ -82,8 +82,8 @@
  *
  * **Invalid properties or arrays** are errors at update that name the property, its value and what
  * is allowed. The output then is the unchanged input. Defects of the surface (zero-area triangles,
- * non-manifold edges, unused or coincident points) are handled and reported in one warning with
- * counts. A warning is repeated only if the arrays or the surface that it is about have changed.
+ * non-manifold edges, coincident points) are handled and reported in one warning with counts;
+ * NumberOfUnusedPoints counts the points of no triangle. A warning is repeated only if the arrays or the surface that it is about have changed.
  *
  * Results do not depend on the number of threads or on the order in which times are requested.
  *

@@ -32,7 +32,10 @@ vtkSurfaceDirectionFieldFilter::~vtkSurfaceDirectionFieldFilter() = default;
 void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
 {
-  auto& settings = static_cast<DirectionFieldSettings&>(this->GetSettings());
+  // A copy: an observer of the progress may change properties during the update.
+  const auto copy =
+    std::static_pointer_cast<DirectionFieldSettings>(this->Private->Properties.Copy());
+  DirectionFieldSettings& settings = *copy;
   Problems problems;
   settings.Check(nullptr, problems);
   this->CheckSurfaceProperties(problems);

@@ -76,16 +76,10 @@
 #ifndef vtkSurfaceSegmentationFilter_h
 #define vtkSurfaceSegmentationFilter_h
 
-#include "vtkSmartPointer.h" // for boundaries
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
 #include <map> // for means
 #include <utility> // for means
-
-namespace SurfaceDiffusion
-{
-struct RegionResults;
-}
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceSegmentationFilter : public vtkSurfaceDiffusionAlgorithm
 {

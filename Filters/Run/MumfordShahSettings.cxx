@@ -111,7 +111,7 @@ void MumfordShahSettings::Visit(SettingVisitor& visitor)
   Rewording reworded(visitor,
     { { "TimeStep",
         { "",
-          "The time between two states with GenerateTimeSteps, above 0, in any unit: the states "
+          "The time between two published states, above 0, in any unit: the states "
           "do not depend on it." } },
       { "NumberOfTimeSteps",
         { "", "The largest number of steps. 0: the output is the initial state." } },

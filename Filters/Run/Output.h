@@ -132,7 +132,7 @@ struct Output
 
   static Output OfCurves(std::string name, Curves curves)
   {
-    Output output{ std::move(name), Place::PerCurve };
+    Output output{ std::move(name), Place::PerCurve, OutputType::Double };
     output.Lines = std::make_shared<const Curves>(std::move(curves));
     return output;
   }

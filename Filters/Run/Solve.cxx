@@ -55,8 +55,7 @@ public:
         onCells ? this->NumberOfCells() : static_cast<std::size_t>(points.rows());
       RequireRows(name, rows, expected, onCells, problems);
     };
-    const auto rowsOf = [](const auto& matrix)
-    { return matrix.cols() > 0 ? static_cast<std::size_t>(matrix.rows()) : 0; };
+    const auto rowsOf = [](const auto& matrix) { return static_cast<std::size_t>(matrix.rows()); };
     require("Data", rowsOf(fields.Data), fields.DataOnCells);
     require("Missing", fields.Missing.size(), fields.DataOnCells);
     require("Mask", fields.Mask.size(), fields.MaskOnCells);
@@ -69,14 +68,33 @@ public:
       fields.DirectionsOnTriangles, problems);
     RequireRows("Rates", rowsOf(fields.Rates), faces, true, problems);
     RequireRows("Cells", this->Data.Cells.size(), faces, true, problems);
+    if (faces == 0)
+    {
+      problems.emplace_back("the surface has 0 triangles; allowed: 1 or more");
+    }
+    if (fields.Rates.cols() != 0 && fields.Rates.cols() != 4)
+    {
+      problems.push_back(
+        "Rates has " + std::to_string(fields.Rates.cols()) + " columns; allowed: 4");
+    }
+    for (const Index cell : this->Data.Cells)
+    {
+      if (cell < 0 || cell >= this->Data.NumberOfCells)
+      {
+        problems.push_back("Cells has the entry " + std::to_string(cell) +
+          "; allowed: 0 or more and below NumberOfCells, " +
+          std::to_string(this->Data.NumberOfCells));
+        break;
+      }
+    }
     ThrowProblems(problems);
   }
 
   FieldSummary Summarize() const
   {
     FieldSummary summary;
-    summary.Data = this->Data.Data.cols() > 0;
-    summary.DataComponents = static_cast<int>(this->Data.Data.cols());
+    summary.Data = this->Data.Data.size() > 0;
+    summary.DataComponents = summary.Data ? static_cast<int>(this->Data.Data.cols()) : 0;
     summary.Directions = this->Data.Directions.rows() > 0;
     summary.Fixed = !this->Data.Fixed.empty();
     summary.Rates = this->Data.Rates.rows() > 0;
@@ -137,9 +155,10 @@ public:
           }
           break;
         default:
+          const bool isMain = output.IsState && output.IsResult;
           const bool isFirst = solution.Arrays.empty();
           const Values& written = solution.Arrays[output.Name] = this->Write(output, source);
-          if (isFirst)
+          if (isFirst || isMain)
           {
             solution.Result = written;
           }
@@ -188,6 +207,12 @@ Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor
   OutputSource source{ run.GetSurface(), parallel };
   input.TakeOutputs(run.Outputs(), source, solution);
   solution.Warnings = SentencesOf(run.FindWarnings());
+  const Index degenerate = run.GetSurface().Diagnostics().DegenerateTriangles;
+  if (degenerate > 0)
+  {
+    solution.Warnings.push_back(
+      std::to_string(degenerate) + " triangles of zero area take no part");
+  }
   return solution;
 }
 
@@ -207,6 +232,17 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Fiel
   const Input input(points, triangles, fields);
   const FieldSummary summary = input.Summarize();
   Problems problems;
+  if (!summary.Data && !dynamic_cast<const TextureSettings*>(settings.get()))
+  {
+    problems.emplace_back("Data has 0 values; allowed: a row for each point or cell");
+  }
+  const auto* const map = dynamic_cast<const HarmonicMapSettings*>(settings.get());
+  if (map && summary.Data &&
+    (map->MoveVertices ? summary.DataComponents != 3 : summary.DataComponents < 2))
+  {
+    problems.push_back("Data has " + std::to_string(summary.DataComponents) +
+      " columns; allowed: " + (map->MoveVertices ? "3 with MoveVertices" : "2 or more"));
+  }
   settings->Check(&summary, problems);
   ThrowProblems(problems);
 
@@ -219,7 +255,7 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Fiel
       const bool excludes = settings->MaskMode == MaskMode::Exclude;
       run.Update({ input.Block(excludes) }, settings, alone, progress.Part(0.0, 0.25));
       last = run.FindLastStep(progress.Part(0.25, 1.0));
-      run.Seek(last, ProgressMonitor());
+      run.Seek(last, progress.Part(0.25, 1.0));
     });
   const Run::Block& block = run.GetBlock(0);
   Solution solution;
@@ -227,6 +263,10 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Fiel
   source.Block = &block;
   source.Traits = settings->DescribeModel();
   input.TakeOutputs(block.Outputs, source, solution);
+  for (const auto& [name, number] : FindNumbers(run))
+  {
+    solution.Numbers[name] = number;
+  }
   solution.Steps = run.MakeHistory(last);
   solution.Warnings = SentencesOf(run.FindWarnings(alone));
   return solution;
@@ -253,7 +293,7 @@ Solution DenoiseMesh(const Points& points, const Triangles& triangles,
   Solution solution = SolveOnce<DenoisingRun>(input, settings, parallel);
   if (solution.Arrays.count("Points") == 0) // nothing has moved
   {
-    solution.Result = points;
+    solution.Result = solution.Arrays["Points"] = points;
   }
   return solution;
 }

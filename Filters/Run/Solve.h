@@ -24,8 +24,9 @@
 //   settings.FWHM = 6.0;
 //   const Values smoothed = Heat(points, triangles, values, settings).Result;
 //
-// points: n x 3 coordinates. triangles: m x 3 rows of points. values: n x k, or any Fields: data on
-// cells, a mask, fixed values, directions, ... The settings have the names, units, ranges and
+// points: n x 3 coordinates. triangles: m x 3 rows of points. Fields have values (n x k) and what
+// else a model reads: data on cells, a mask, fixed values, directions, ... Values alone may stand in
+// place of Fields. The settings have the names, units, ranges and
 // defaults of the properties of the filters for VTK, whose results these are. All functions throw
 // std::runtime_error, whose text names each setting or array with its value and what is allowed.
 //
@@ -90,6 +91,12 @@ inline Solution HarmonicMapFlow(const Points& points, const Triangles& triangles
   return SolveModel(
     points, triangles, fields, std::make_shared<HarmonicMapSettings>(settings), parallel);
 }
+inline Solution HarmonicMapFlow(const Points& points, const Triangles& triangles,
+  const Values& values, const HarmonicMapSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return HarmonicMapFlow(points, triangles, FieldsOf(values), settings, parallel);
+}
 
 /// Reaction and diffusion of two chemicals; data are optional: see vtkTuringTextureFilter.
 inline Solution TuringTexture(const Points& points, const Triangles& triangles,
@@ -108,6 +115,12 @@ inline Solution MumfordShahEdges(const Points& points, const Triangles& triangle
   return SolveModel(
     points, triangles, fields, std::make_shared<MumfordShahSettings>(settings), parallel);
 }
+inline Solution MumfordShahEdges(const Points& points, const Triangles& triangles,
+  const Values& values, const MumfordShahSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return MumfordShahEdges(points, triangles, FieldsOf(values), settings, parallel);
+}
 
 /// Regions with short boundaries: see vtkSurfaceSegmentationFilter.
 inline Solution Segment(const Points& points, const Triangles& triangles, const Fields& fields,
@@ -115,6 +128,11 @@ inline Solution Segment(const Points& points, const Triangles& triangles, const 
 {
   return SolveModel(
     points, triangles, fields, std::make_shared<SegmentationSettings>(settings), parallel);
+}
+inline Solution Segment(const Points& points, const Triangles& triangles, const Values& values,
+  const SegmentationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
+{
+  return Segment(points, triangles, FieldsOf(values), settings, parallel);
 }
 
 /// Diffusion with a tensor that follows the data: see vtkTensorDiffusionFilter.
@@ -124,6 +142,12 @@ inline Solution TensorDiffusion(const Points& points, const Triangles& triangles
 {
   return SolveModel(
     points, triangles, fields, std::make_shared<TensorDiffusionSettings>(settings), parallel);
+}
+inline Solution TensorDiffusion(const Points& points, const Triangles& triangles,
+  const Values& values, const TensorDiffusionSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return TensorDiffusion(points, triangles, FieldsOf(values), settings, parallel);
 }
 
 /// A line field on the triangles, from the curvature or from fields.Directions: see

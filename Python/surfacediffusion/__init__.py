@@ -14,6 +14,7 @@
 `denoise_mesh`       points without noise, sharp edges kept
 `mumford_shah`       edges as curves, and data that are smooth between them
 `tensor_diffusion`   smoothing along the edges or the lines of the data
+`segment`            regions with short boundaries
 `turing_texture`     textures by reaction and diffusion
 `direction_field`    line fields: principal curvature, the smoothest one, from hints
 `estimate_fwhm`      the smoothness of noise maps
@@ -22,8 +23,8 @@
 
 `heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
 return an array; with ``full_output=True`` the first three return a result with history and times, and
-`denoise_mesh` one with the noise level that it found. `harmonic_map`, `mumford_shah` and
-`turing_texture` return a result, since theirs is more than one array. Keywords are the properties of
+`denoise_mesh` one with the noise level that it found. `harmonic_map`, `mumford_shah`,
+`segment` and `turing_texture` return a result, since theirs is more than one array. Keywords are the properties of
 the filters for VTK and ParaView in snake_case. The results have the same bits. The classes of VTK are
 in a module of their own, ``vtkSurfaceDiffusion``, which may be installed beside this package.
 """
@@ -78,4 +79,5 @@ if not _typing.TYPE_CHECKING:  # otherwise type checkers would accept every name
         found = getattr(classes, name)
         _warnings.warn(f"{name} of surfacediffusion is deprecated: import it from vtkSurfaceDiffusion",
                        DeprecationWarning, stacklevel=2)
+        globals()[name] = found  # `from ... import` asks twice
         return found

@@ -798,9 +798,9 @@ def segment(
 
 def segment_with_outputs(
     surface: Any, values: Any, terms: Any, on_faces: Any, seeds: Any, mask: Any, roi: Any,
-    fidelity: Any, progress: Progress, properties: dict[str, Any],
+    fidelity: Any, progress: Progress, properties: dict[str, Any], dtype: Any = np.float64,
 ) -> tuple[SegmentationResult, list[Output]]:
-    """The result of segment(), and all outputs."""
+    """The result of segment(), and all outputs. dtype: of the values; None: that of the data."""
     surface = as_surface(surface)
     if (values is None) == (terms is None):
         raise ValueError("values and terms are " + ("both" if values is not None else "not") +
@@ -814,7 +814,7 @@ def segment_with_outputs(
     runner = Runner("segment", properties, ARRAYS)
 
     def make(run: Any, found: dict[str, Any]) -> tuple[SegmentationResult, list[Output]]:
-        outputs = find_outputs(run, 0, given, runner, np.float64)
+        outputs = find_outputs(run, 0, given, runner, dtype)
         return make_result(SegmentationResult, outputs, found), outputs
 
     made: tuple[SegmentationResult, list[Output]] = _run(

@@ -26,9 +26,9 @@ direction  point or cell array (n, 3) or (m, 3), the direction that along_diffus
 fixed      point or cell array, nonzero holds the value fixed (Dirichlet condition)
 fidelity   point or cell array, factors of fidelity_weight, 0 or more
 
-times: times in the unit of time_step, in any order. The function then returns a list with the mesh
+times (of the functions of time): times in the unit of time_step, in any order. The function then returns a list with the mesh
 at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
-one. full_output: if True, the function returns a pair: the mesh or the list, and the Result (of a
+one. full_output (but of direction_field): if True, the function returns a pair: the mesh or the list, and the Result (of a
 MultiBlock, or with times, the list of them). progress: True or a callable, as for arrays.
 result_array_name: in place of the default, and the prefix of the names of further arrays. All other
 keywords are those of the functions on arrays, also in the spelling of VTK and ParaView: FWHM=10 is
@@ -206,7 +206,7 @@ def segment(
             ("seeds", seeds), ("mask", mask), ("roi", roi), ("fidelity", fidelity))}
         result, outputs = segment_with_outputs(
             block.surface, data if terms is None else None, None if terms is None else data, on_faces,
-            progress=progress, properties=dict(properties), **marks)
+            progress=progress, properties=dict(properties), dtype=None, **marks)
         results.append(result)
         block.name = name
         _write(block, outputs, result_name)
@@ -290,6 +290,7 @@ class _Block:
             self.surface = Surface(mesh.points, faces)
         self.given: Input | None = None
         self.name = ""  #: of the data
+        self.computed = False  #: the data are computed normals, of no array
 
     def find(
         self, argument: str, name: str | None, points: bool = True, faces: bool = False
@@ -428,6 +429,7 @@ def _prepare(
         data = as_vectors(surface, vectors, properties, on_faces)
         integers = has_integers(vectors)
         block.name = name or "Normals"
+        block.computed = name is None
     elif function == "turing_texture":
         data = as_initial(surface, block.find("initial", array)[0])
     else:
@@ -460,7 +462,8 @@ def _write_result(block: _Block, output: Output, name: str) -> None:
     """Add an array in place of the data. Cells that are no faces keep the value of the data."""
     points, cells = block.input.point_data, block.input.cell_data
     source = points if block.name in points else cells
-    shape = np.shape(source[block.name]) if block.name in source else output.values.shape
+    has_data = block.name in source and not block.computed
+    shape = np.shape(source[block.name]) if has_data else output.values.shape
     values = output.values[:, 0] if len(shape) == 1 else output.values
     if output.place == "points":
         block.mesh.point_data[name] = values
@@ -479,8 +482,7 @@ def _activate(block: _Block, output: Output, name: str) -> None:
     elif output.role == "vectors":
         given = block.input.cell_data if on_faces else block.input.point_data
         data = block.mesh.GetCellData() if on_faces else block.mesh.GetPointData()
-        computed = not (block.name in block.input.point_data or block.name in block.input.cell_data)
-        if computed or block.name == given.active_normals_name:
+        if block.computed or block.name == given.active_normals_name:
             data.SetActiveNormals(name)
         elif output.values.shape[1] == 3 and output.values.dtype != np.uint8:
             data.SetActiveVectors(name)

@@ -89,11 +89,12 @@ TEST(Solve, EveryModelHasItsResults)
 
   // A cap, whose boundary is a circle
   const Values cap = (points.col(2).array() > 0.4).cast<double>();
-  const Solution edges = MumfordShahEdges(points, triangles, FieldsOf(cap));
+  const Solution edges = MumfordShahEdges(points, triangles, cap);
+  EXPECT_LT((edges.Result - cap).cwiseAbs().mean(), 0.1);
   EXPECT_GT(edges.Arrays.at("Edges").maxCoeff(), 0.5);
   EXPECT_EQ(edges.Arrays.at("Edges").rows(), n);
 
-  const Solution regions = Segment(points, triangles, FieldsOf(cap));
+  const Solution regions = Segment(points, triangles, cap);
   ASSERT_EQ(regions.Arrays.count("RegionId"), 1U);
   const Values& labels = regions.Arrays.at("RegionId");
   for (Eigen::Index i = 0; i < n; ++i)
@@ -121,6 +122,7 @@ TEST(Solve, EveryModelHasItsResults)
     return std::sqrt((radius.array() - radius.mean()).square().mean());
   };
   EXPECT_LT(roughness(smooth.Result), 0.5 * roughness(rough.Vertices));
+  EXPECT_EQ(smooth.Arrays.at("Points"), smooth.Result);
 }
 
 TEST(Solve, DataOnTrianglesGiveResultsOnTriangles)
@@ -163,6 +165,7 @@ TEST(Solve, ErrorsNameTheSettingOrTheArray)
   fields.Mask.assign(5, 0);
   EXPECT_EQ(ErrorOf(fields, {}), "Mask has 5 rows; allowed: 642, one per point");
   fields.Mask.clear();
+  EXPECT_EQ(ErrorOf(Fields(), {}), "Data has 0 values; allowed: a row for each point or cell");
   fields.Data(7, 0) = std::numeric_limits<double>::infinity();
   EXPECT_NE(ErrorOf(fields, {}).find("InputArray"), std::string::npos);
 }

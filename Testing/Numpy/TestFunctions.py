@@ -245,11 +245,12 @@ class Edges(unittest.TestCase):
         for level in (5, 6):
             surface = sd.sphere(level)
             clean = np.where(surface.points[:, 2] > 0.5, 7.0, 3.0)
-            result = sd.mumford_shah(surface, clean[:, None])
+            result = sd.mumford_shah(surface, clean[:, None].astype(np.float32))
             self.assertEqual(result.values.shape, (surface.n_points, 1))
             self.assertEqual(result.edges.shape, (surface.n_points,))
             self.assertEqual(len(result.curves), 1)
             np.testing.assert_array_equal(result.curves[0][0], result.curves[0][-1])
+            self.assertEqual(result.curves[0].dtype, np.float64)  # as coordinates, for any data
             self.assertAlmostEqual(result.edge_length / (2 * np.pi * np.sqrt(0.75)), 1, delta=0.01)
             self.assertLess(np.abs(result.values[:, 0] - clean).max(), 0.1)
 

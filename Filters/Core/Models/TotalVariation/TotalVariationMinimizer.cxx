@@ -243,7 +243,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   }
   u = this->Vertices->Admissible(u);
   // On nearly degenerate triangles the few inner iterations may not suffice.
-  if (report.Gap > this->Options.StopTolerance && this->Energy(u) > startEnergy)
+  if (report.Gap > this->Options.StopTolerance && !(this->Energy(u) <= startEnergy))
   {
     u = this->Initial;
   }
