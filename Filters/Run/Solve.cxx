@@ -218,18 +218,11 @@ Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor
 
 } // namespace
 
-Fields FieldsOf(const Values& ofPoints)
-{
-  Fields fields;
-  fields.Data = ofPoints;
-  return fields;
-}
-
-Solution SolveModel(const Points& points, const Triangles& triangles, const Fields& fields,
+Solution SolveModel(const Points& points, const Triangles& triangles, const SurfaceData& data,
   std::shared_ptr<RunSettings> settings, const ParallelFor& parallel,
   const ProgressMonitor& progress)
 {
-  const Input input(points, triangles, fields);
+  const Input input(points, triangles, data);
   const FieldSummary summary = input.Summarize();
   Problems problems;
   if (!summary.Data && !dynamic_cast<const TextureSettings*>(settings.get()))
@@ -273,9 +266,9 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Fiel
 }
 
 Solution DirectionField(const Points& points, const Triangles& triangles,
-  DirectionFieldSettings settings, const Fields& fields, const ParallelFor& parallel)
+  DirectionFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  const Input input(points, triangles, fields);
+  const Input input(points, triangles, data);
   const FieldSummary summary = input.Summarize();
   Problems problems;
   settings.Check(&summary, problems);
@@ -284,9 +277,9 @@ Solution DirectionField(const Points& points, const Triangles& triangles,
 }
 
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
-  DenoisingRunSettings settings, const Fields& fields, const ParallelFor& parallel)
+  DenoisingRunSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  const Input input(points, triangles, fields);
+  const Input input(points, triangles, data);
   Problems problems;
   CheckRanges(settings, problems);
   ThrowProblems(problems);

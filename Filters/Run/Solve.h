@@ -26,9 +26,9 @@
 //
 // points: n x 3 coordinates. triangles: m x 3 rows of points. Fields have values (n x k) and what
 // else a model reads: data on cells, a mask, fixed values, directions, ... Values alone may stand in
-// place of Fields. The settings have the names, units, ranges and
-// defaults of the properties of the filters for VTK, whose results these are. All functions throw
-// std::runtime_error, whose text names each setting or array with its value and what is allowed.
+// place of Fields. The settings have the names, units, ranges and defaults of the properties of the
+// filters for VTK, whose results these are. All functions throw std::runtime_error, whose text names
+// each setting or array with its value and what is allowed.
 //
 // A program that solves again and again on one surface uses Run, which keeps the matrices and
 // factors that have not changed.
@@ -51,114 +51,93 @@ struct Solution
   std::vector<std::string> Warnings;
 };
 
-/// The fields of a surface whose points have these values.
-Fields FieldsOf(const Values& ofPoints);
+/// The data of a call: Fields, or values at the points alone.
+struct SurfaceData : Fields
+{
+  SurfaceData() = default;
+  SurfaceData(const Fields& fields) // NOLINT(google-explicit-constructor)
+    : Fields(fields)
+  {
+  }
+  template <typename Derived>
+  SurfaceData(const Eigen::DenseBase<Derived>& ofPoints) // NOLINT(google-explicit-constructor)
+  {
+    this->Data = ofPoints.derived();
+  }
+};
 
-Solution SolveModel(const Points& points, const Triangles& triangles, const Fields& fields,
+Solution SolveModel(const Points& points, const Triangles& triangles, const SurfaceData& data,
   std::shared_ptr<RunSettings> settings, const ParallelFor& parallel = SerialFor(),
   const ProgressMonitor& progress = ProgressMonitor());
 
 /// (4), (16), (18): see vtkFVMHeatFilter.
-inline Solution Heat(const Points& points, const Triangles& triangles, const Fields& fields,
+inline Solution Heat(const Points& points, const Triangles& triangles, const SurfaceData& data,
   const HeatSettings& settings = {}, const ParallelFor& parallel = SerialFor())
 {
-  return SolveModel(points, triangles, fields, std::make_shared<HeatSettings>(settings), parallel);
-}
-inline Solution Heat(const Points& points, const Triangles& triangles, const Values& values,
-  const HeatSettings& settings = {}, const ParallelFor& parallel = SerialFor())
-{
-  return Heat(points, triangles, FieldsOf(values), settings, parallel);
+  return SolveModel(points, triangles, data, std::make_shared<HeatSettings>(settings), parallel);
 }
 
 /// (2), (3), (17), (19): see vtkIntrinsicTVFilter.
-inline Solution IntrinsicTV(const Points& points, const Triangles& triangles, const Fields& fields,
-  const TotalVariationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
+inline Solution IntrinsicTV(const Points& points, const Triangles& triangles,
+  const SurfaceData& data, const TotalVariationSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
 {
   return SolveModel(
-    points, triangles, fields, std::make_shared<TotalVariationSettings>(settings), parallel);
-}
-inline Solution IntrinsicTV(const Points& points, const Triangles& triangles, const Values& values,
-  const TotalVariationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
-{
-  return IntrinsicTV(points, triangles, FieldsOf(values), settings, parallel);
+    points, triangles, data, std::make_shared<TotalVariationSettings>(settings), parallel);
 }
 
 /// The flow of harmonic maps to the sphere, of n x 3 unit vectors: see vtkHarmonicMapFilter.
 inline Solution HarmonicMapFlow(const Points& points, const Triangles& triangles,
-  const Fields& fields, const HarmonicMapSettings& settings = {},
+  const SurfaceData& data, const HarmonicMapSettings& settings = {},
   const ParallelFor& parallel = SerialFor())
 {
   return SolveModel(
-    points, triangles, fields, std::make_shared<HarmonicMapSettings>(settings), parallel);
-}
-inline Solution HarmonicMapFlow(const Points& points, const Triangles& triangles,
-  const Values& values, const HarmonicMapSettings& settings = {},
-  const ParallelFor& parallel = SerialFor())
-{
-  return HarmonicMapFlow(points, triangles, FieldsOf(values), settings, parallel);
+    points, triangles, data, std::make_shared<HarmonicMapSettings>(settings), parallel);
 }
 
 /// Reaction and diffusion of two chemicals; data are optional: see vtkTuringTextureFilter.
 inline Solution TuringTexture(const Points& points, const Triangles& triangles,
-  const TextureSettings& settings = {}, const Fields& fields = {},
+  const TextureSettings& settings = {}, const SurfaceData& data = {},
   const ParallelFor& parallel = SerialFor())
 {
-  return SolveModel(
-    points, triangles, fields, std::make_shared<TextureSettings>(settings), parallel);
+  return SolveModel(points, triangles, data, std::make_shared<TextureSettings>(settings), parallel);
 }
 
 /// Edges, and data that are smooth between them: see vtkMumfordShahFilter.
 inline Solution MumfordShahEdges(const Points& points, const Triangles& triangles,
-  const Fields& fields, const MumfordShahSettings& settings = {},
+  const SurfaceData& data, const MumfordShahSettings& settings = {},
   const ParallelFor& parallel = SerialFor())
 {
   return SolveModel(
-    points, triangles, fields, std::make_shared<MumfordShahSettings>(settings), parallel);
-}
-inline Solution MumfordShahEdges(const Points& points, const Triangles& triangles,
-  const Values& values, const MumfordShahSettings& settings = {},
-  const ParallelFor& parallel = SerialFor())
-{
-  return MumfordShahEdges(points, triangles, FieldsOf(values), settings, parallel);
+    points, triangles, data, std::make_shared<MumfordShahSettings>(settings), parallel);
 }
 
 /// Regions with short boundaries: see vtkSurfaceSegmentationFilter.
-inline Solution Segment(const Points& points, const Triangles& triangles, const Fields& fields,
+inline Solution Segment(const Points& points, const Triangles& triangles, const SurfaceData& data,
   const SegmentationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
 {
   return SolveModel(
-    points, triangles, fields, std::make_shared<SegmentationSettings>(settings), parallel);
-}
-inline Solution Segment(const Points& points, const Triangles& triangles, const Values& values,
-  const SegmentationSettings& settings = {}, const ParallelFor& parallel = SerialFor())
-{
-  return Segment(points, triangles, FieldsOf(values), settings, parallel);
+    points, triangles, data, std::make_shared<SegmentationSettings>(settings), parallel);
 }
 
 /// Diffusion with a tensor that follows the data: see vtkTensorDiffusionFilter.
 inline Solution TensorDiffusion(const Points& points, const Triangles& triangles,
-  const Fields& fields, const TensorDiffusionSettings& settings = {},
+  const SurfaceData& data, const TensorDiffusionSettings& settings = {},
   const ParallelFor& parallel = SerialFor())
 {
   return SolveModel(
-    points, triangles, fields, std::make_shared<TensorDiffusionSettings>(settings), parallel);
-}
-inline Solution TensorDiffusion(const Points& points, const Triangles& triangles,
-  const Values& values, const TensorDiffusionSettings& settings = {},
-  const ParallelFor& parallel = SerialFor())
-{
-  return TensorDiffusion(points, triangles, FieldsOf(values), settings, parallel);
+    points, triangles, data, std::make_shared<TensorDiffusionSettings>(settings), parallel);
 }
 
-/// A line field on the triangles, from the curvature or from fields.Directions: see
+/// A line field on the triangles, from the curvature or from data.Directions: see
 /// vtkSurfaceDirectionFieldFilter.
 Solution DirectionField(const Points& points, const Triangles& triangles,
-  DirectionFieldSettings settings = {}, const Fields& fields = {},
+  DirectionFieldSettings settings = {}, const SurfaceData& data = {},
   const ParallelFor& parallel = SerialFor());
 
-/// The surface without noise; points of fields.Fixed stay: see vtkSurfaceDenoisingFilter.
+/// The surface without noise; points of data.Fixed stay: see vtkSurfaceDenoisingFilter.
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
-  DenoisingRunSettings settings = {}, const Fields& fields = {},
+  DenoisingRunSettings settings = {}, const SurfaceData& data = {},
   const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

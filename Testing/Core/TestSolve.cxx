@@ -78,7 +78,7 @@ TEST(Solve, EveryModelHasItsResults)
   EXPECT_GT(denoised.Numbers.at("EffectiveFidelityWeight")(0, 0), 0.0);
   EXPECT_EQ(denoised.Result.rows(), n);
 
-  const Solution map = HarmonicMapFlow(points, triangles, FieldsOf(points));
+  const Solution map = HarmonicMapFlow(points, triangles, points);
   EXPECT_LT((map.Result.rowwise().norm().array() - 1.0).abs().maxCoeff(), 1e-12);
 
   TextureSettings texture;
@@ -141,7 +141,7 @@ TEST(Solve, DataOnTrianglesGiveResultsOnTriangles)
 
 TEST(Solve, ExcludedPointsKeepTheirValueAndNothingFlowsAcross)
 {
-  Fields fields = FieldsOf((Sphere().Vertices.col(2).array() > 0.0).cast<double>());
+  Fields fields = SurfaceData((Sphere().Vertices.col(2).array() > 0.0).cast<double>());
   for (Eigen::Index i = 0; i < Sphere().Vertices.rows(); ++i)
   {
     fields.Mask.push_back(std::abs(Sphere().Vertices(i, 2)) < 0.2);
