@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFVMHeatFilter.h"
 
-#include "Conversion/RunState.h"
 #include "Run/HeatSettings.h"
+#include "Run/OwnedSettings.h"
 
 #include "vtkObjectFactory.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIntrinsicTVFilter.h"
 
-#include "Conversion/RunState.h"
 #include "Run/TotalVariationSettings.h"
+#include "Run/OwnedSettings.h"
 
 #include "vtkObjectFactory.h"
 

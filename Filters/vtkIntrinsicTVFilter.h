@@ -310,7 +310,7 @@ public:
 
   /**
    * On (default): with BlurFWHM, FidelityWeight 3 stands for the weight that AutomaticFidelity finds.
-   * Off: FidelityWeight is used, whatever it is. Without BlurFWHM it has no effect.
+   * Off: FidelityWeight is used as it is given. Without BlurFWHM it has no effect.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticBlurFidelity);
 

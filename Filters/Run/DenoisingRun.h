@@ -33,8 +33,6 @@ public:
   void Update(
     const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
 
-  /// Lengths in coordinate units.
-  const DenoisingReport& Report() const { return this->Found; }
   /// CAD or Organic, given or found.
   SurfaceType FoundType() const;
   /// The warning about coincident points that may come apart, if there are any.

@@ -53,7 +53,7 @@ struct RunState
 struct RunResult
 {
   bool HasMissing = false;
-  std::vector<Output> Numbers; ///< that the model depends on, whatever its step
+  std::vector<Output> Numbers; ///< that the model depends on, the same at every step
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   double MissedByFinish = 0.0; ///< of the solves of Finish(), likewise
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance

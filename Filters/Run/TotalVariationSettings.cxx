@@ -99,7 +99,7 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
   this->Blur.Visit(visitor);
   visitor.Switch({ "AutomaticBlurFidelity", "",
                    "On: FidelityWeight 3, its default, stands with BlurFWHM for the weight that "
-                   "AutomaticFidelity finds. Off: FidelityWeight is used, whatever it is." },
+                   "AutomaticFidelity finds. Off: FidelityWeight is used as it is given." },
     this->AutomaticBlurFidelity);
   this->Color.Visit(visitor);
 }

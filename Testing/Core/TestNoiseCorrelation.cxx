@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-// Smoothed noise without a signal is told from white noise under any signal.
+// Smoothed noise without a signal is distinguished from white noise under any signal.
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;

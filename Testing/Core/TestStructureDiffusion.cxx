@@ -389,7 +389,7 @@ TEST(StructureDiffusion, EdgeEnhancingHasWeickertsDiffusivity)
   settings.Contrast = 1.3;
   for (const double steep : { 1.0, 1.3, 1.6, 2.0, 4.0 })
   {
-    // m1 = steep^2, whatever m2 is.
+    // m1 = steep^2 for any m2.
     const double flux = 3.31488 * std::pow(1.3 / steep, 8);
     for (const double flat : { 0.0, 0.4, 0.9 * steep })
     {

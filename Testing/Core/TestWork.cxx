@@ -132,7 +132,7 @@ TEST(Work, OfSmoothestLineFieldsIsOneFactorisationAndFewSolves)
 }
 
 /// 30 iterations at most, each with one report and a fit of four steps of conjugate gradients,
-/// which reports around and between them, whatever the size of the surface is.
+/// which reports around and between them, for surfaces of any size.
 TEST(Work, OfMeshDenoisingIsThirtyFitsOfFourIterations)
 {
   for (const Index cells : { 8, 16, 24 })
