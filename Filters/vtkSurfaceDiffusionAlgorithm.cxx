@@ -72,9 +72,9 @@ vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm(OwnedSettings setting
 
 vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
 
-RunSettings& vtkSurfaceDiffusionAlgorithm::GetRunSettings() const
+TimeSettings& vtkSurfaceDiffusionAlgorithm::GetRunSettings() const
 {
-  return static_cast<RunSettings&>(this->GetSettings());
+  return static_cast<TimeSettings&>(this->GetSettings());
 }
 
 const char* vtkSurfaceDiffusionAlgorithm::GetOutputPrecisionAsString()
@@ -138,7 +138,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestDataObject(
 int vtkSurfaceDiffusionAlgorithm::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  RunSettings& settings = this->GetRunSettings();
+  TimeSettings& settings = this->GetRunSettings();
   Problems problems;
   settings.Check(nullptr, problems);
   if (settings.GenerateTimeSteps && problems.empty()) // problems are reported at update
@@ -170,7 +170,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
     curves->Initialize();
   }
   RunState& state = *this->State;
-  state.Settings = std::static_pointer_cast<RunSettings>(this->Private->Properties.Copy());
+  state.Settings = std::static_pointer_cast<TimeSettings>(this->Private->Properties.Copy());
   state.SettingProblems.clear(); // reported with those of the arrays
   state.Settings->Check(nullptr, state.SettingProblems);
   const bool valid = state.SettingProblems.empty();
@@ -202,7 +202,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
 void vtkSurfaceDiffusionAlgorithm::UpdateTimes(vtkInformationVector* outputs)
 {
   RunState& state = *this->State;
-  RunSettings& settings = *state.Settings;
+  TimeSettings& settings = *state.Settings;
   if (state.LastStep >= 0 && state.KnownLength.Set(settings, state.LastStep))
   {
     PublishTimes(settings, state.LastStep, outputs);
@@ -212,7 +212,7 @@ void vtkSurfaceDiffusionAlgorithm::UpdateTimes(vtkInformationVector* outputs)
   SetDataTime(FindStep(settings, state.Time, last) * settings.DescribeModel().TimeStep, outputs);
 }
 
-int vtkSurfaceDiffusionAlgorithm::RunState::Length::Find(RunSettings& settings) const
+int vtkSurfaceDiffusionAlgorithm::RunState::Length::Find(TimeSettings& settings) const
 {
   const int steps = settings.DescribeModel().NumberOfSteps;
   const bool isKnown = this->NumberOfSteps == steps &&
@@ -221,7 +221,7 @@ int vtkSurfaceDiffusionAlgorithm::RunState::Length::Find(RunSettings& settings) 
   return isKnown ? this->LastStep : steps;
 }
 
-bool vtkSurfaceDiffusionAlgorithm::RunState::Length::Set(RunSettings& settings, int last)
+bool vtkSurfaceDiffusionAlgorithm::RunState::Length::Set(TimeSettings& settings, int last)
 {
   const bool isNew = this->Find(settings) != last;
   this->Surface = SettingsSnapshot(settings, SettingScope::Surface);
@@ -244,7 +244,7 @@ bool vtkSurfaceDiffusionAlgorithm::SolvesInPieces(
   const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points)
 {
   const SharedProcessGroup group(this->GetController());
-  const RunSettings& settings = this->GetRunSettings();
+  const TimeSettings& settings = this->GetRunSettings();
   if (group.GetProcesses().Count() == 1 || settings.Solver == SolverMethod::Direct ||
     settings.IntrinsicDelaunay || settings.MergeCoincidentPoints ||
     group.Any(!this->CanSolveInPieces(pieces)))

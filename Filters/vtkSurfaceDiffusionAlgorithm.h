@@ -98,7 +98,7 @@ namespace SurfaceDiffusion
 {
 struct BlockInput;
 struct InputFields;
-struct RunSettings;
+struct TimeSettings;
 }
 class vtkPolyData;
 
@@ -299,11 +299,11 @@ public:
   ///@}
 
 protected:
-  /// settings: of a class derived from SurfaceDiffusion::RunSettings.
+  /// settings: of a class derived from SurfaceDiffusion::TimeSettings.
   explicit vtkSurfaceDiffusionAlgorithm(SurfaceDiffusion::OwnedSettings settings);
   ~vtkSurfaceDiffusionAlgorithm() override;
 
-  SurfaceDiffusion::RunSettings& GetRunSettings() const;
+  SurfaceDiffusion::TimeSettings& GetRunSettings() const;
 
   /// Find and check the arrays of a block. False: the block has no data and passes through.
   virtual bool FindFields(

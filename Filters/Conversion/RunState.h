@@ -55,13 +55,13 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
     int LastStep = -1;
 
     /// The last step of a run with these settings, as far as it is known.
-    int Find(SurfaceDiffusion::RunSettings& settings) const;
+    int Find(SurfaceDiffusion::TimeSettings& settings) const;
     /// Remember the last step. Returns whether it was another one.
-    bool Set(SurfaceDiffusion::RunSettings& settings, int last);
+    bool Set(SurfaceDiffusion::TimeSettings& settings, int last);
   } KnownLength;
 
   // Of one update:
-  std::shared_ptr<SurfaceDiffusion::RunSettings> Settings;
+  std::shared_ptr<SurfaceDiffusion::TimeSettings> Settings;
   std::vector<std::string> SettingProblems;
   std::vector<std::string> InputWarnings; ///< about arrays that some blocks do not have
   std::vector<std::string> ReplacedArrays; ///< of the input, by results

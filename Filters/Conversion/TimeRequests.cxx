@@ -17,7 +17,7 @@ namespace SurfaceDiffusion
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-void PublishTimes(const RunSettings& settings, int last, vtkInformationVector* outputs)
+void PublishTimes(const TimeSettings& settings, int last, vtkInformationVector* outputs)
 {
   const std::vector<double> times = settings.PublishedTimes(last);
   const double range[2] = { times.front(), times.back() };
@@ -46,7 +46,7 @@ void RequestFirstTime(vtkInformation* input)
 }
 
 std::optional<double> FindRequestedTime(
-  const RunSettings& settings, vtkInformation* request, vtkInformationVector* outputs)
+  const TimeSettings& settings, vtkInformation* request, vtkInformationVector* outputs)
 {
   if (settings.GenerateTimeSteps)
   {
@@ -62,7 +62,7 @@ std::optional<double> FindRequestedTime(
   return std::nullopt;
 }
 
-int FindStep(const RunSettings& settings, const std::optional<double>& time, int last)
+int FindStep(const TimeSettings& settings, const std::optional<double>& time, int last)
 {
   return time ? settings.FindStep(*time, last) : last;
 }

@@ -10,10 +10,10 @@ class vtkInformationVector;
 namespace SurfaceDiffusion
 {
 
-struct RunSettings;
+struct TimeSettings;
 
 /// Declare the published times of a run that ends at step `last` at all output ports.
-void PublishTimes(const RunSettings& settings, int last, vtkInformationVector* outputs);
+void PublishTimes(const TimeSettings& settings, int last, vtkInformationVector* outputs);
 
 /// Ask for the input at its own first time if it has times, and at no time otherwise: the requested
 /// time is a diffusion time, which has no meaning upstream.
@@ -22,10 +22,10 @@ void RequestFirstTime(vtkInformation* input);
 /// The time that is requested from the output port that `request` comes from, with
 /// GenerateTimeSteps.
 std::optional<double> FindRequestedTime(
-  const RunSettings& settings, vtkInformation* request, vtkInformationVector* outputs);
+  const TimeSettings& settings, vtkInformation* request, vtkInformationVector* outputs);
 
 /// The step for a requested time of a run that ends at step `last`, which answers no time, too.
-int FindStep(const RunSettings& settings, const std::optional<double>& time, int last);
+int FindStep(const TimeSettings& settings, const std::optional<double>& time, int last);
 
 /// Set the time of the data at all output ports.
 void SetDataTime(double time, vtkInformationVector* outputs);

@@ -67,10 +67,7 @@ void HarmonicMapSettings::CheckTogether(const FieldSummary* fields, Problems& pr
 
 ModelTraits HarmonicMapSettings::DescribeModel() const
 {
-  ModelTraits traits;
-  traits.NumberOfSteps = this->NumberOfTimeSteps;
-  traits.TimeStep = this->TimeStep;
-  traits.AbsoluteTime = this->IsAbsolute();
+  ModelTraits traits = this->DescribeSteps();
   traits.Time = { this->Exponent, 0.0 };
   traits.Energy = { 2.0 - this->Exponent, 0.0 };
   traits.HasValueRange = false;

@@ -54,12 +54,13 @@ void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
 
 ModelTraits HeatSettings::DescribeModel() const
 {
-  ModelTraits traits;
-  traits.NumberOfSteps = this->Mode == HeatMode::SteadyState ? 1 : this->NumberOfTimeSteps;
-  traits.TimeStep = this->FWHM > 0.0
-    ? this->FWHM * this->FWHM / (16.0 * std::log(2.0)) / std::max(1, this->NumberOfTimeSteps)
-    : this->TimeStep;
-  traits.AbsoluteTime = this->FWHM > 0.0 || this->IsAbsolute();
+  ModelTraits traits = this->DescribeSteps(this->Mode == HeatMode::SteadyState);
+  if (this->FWHM > 0.0)
+  {
+    traits.TimeStep =
+      this->FWHM * this->FWHM / (16.0 * std::log(2.0)) / std::max(1, this->NumberOfTimeSteps);
+    traits.AbsoluteTime = true;
+  }
   traits.Time = { 2.0, 0.0 };
   traits.ResultSuffix = "Diffused";
   traits.Energy = { 0.0, 2.0 };

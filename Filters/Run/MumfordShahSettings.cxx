@@ -162,12 +162,9 @@ void MumfordShahSettings::Visit(SettingVisitor& visitor)
 
 ModelTraits MumfordShahSettings::DescribeModel() const
 {
-  ModelTraits traits;
-  traits.NumberOfSteps = this->NumberOfTimeSteps;
+  ModelTraits traits = this->DescribeSteps();
   traits.MayEndEarly = true;
   traits.ResultSuffix = "MumfordShah";
-  traits.TimeStep = this->TimeStep;
-  traits.AbsoluteTime = this->IsAbsolute();
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;
   traits.CanBeDistributed = !this->EdgeCurves && !this->AutomaticThreshold;

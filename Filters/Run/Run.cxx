@@ -184,7 +184,7 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
     [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
   block.Result = RunResult();
   block.FinishedStep = -1;
-  block.Solvers.Configure(*this->Settings, this->Parallel);
+  block.Solvers.Configure(this->Settings->DescribeModel(), this->Parallel);
   PointData data = this->MakeData(block, fields, processes);
   ModelInputs inputs{ *block.Surface, block.Units, std::move(data), std::move(directions),
     fields.Rates,
@@ -283,13 +283,9 @@ PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& 
 /// The memory for the checkpoints of one surface. All processes keep the same steps.
 std::size_t Run::CheckpointMemory(const Model& model, const ProcessGroup& processes) const
 {
-  if (!this->Settings->GenerateTimeSteps)
-  {
-    return 0;
-  }
-  const std::size_t limit = static_cast<std::size_t>(this->Settings->CheckpointMemoryLimit) * 1024 *
-    1024 / this->Blocks.size();
-  if (!processes.IsShared())
+  const std::size_t all = this->Settings->DescribeModel().CheckpointMemory;
+  const std::size_t limit = all / this->Blocks.size();
+  if (all == 0 || !processes.IsShared())
   {
     return limit;
   }

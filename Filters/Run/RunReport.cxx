@@ -262,8 +262,9 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
   const Shortfalls shortfalls = this->FindShortfalls();
   if (shortfalls.MissedResidual > 0.0)
   {
-    warnings.push_back({ DescribeMissedTolerance(shortfalls, this->Settings->Tolerance),
-      shortfalls.Inputs, "MissedResidual" });
+    const double tolerance = this->Settings->DescribeModel().Limits.Tolerance;
+    warnings.push_back(
+      { DescribeMissedTolerance(shortfalls, tolerance), shortfalls.Inputs, "MissedResidual" });
   }
   if (shortfalls.UnsettledDecrease > 0.0)
   {

@@ -26,14 +26,6 @@ constexpr double LargestNumberOfPublishedTimes = 1e6;
 
 void RunSettings::Visit(SettingVisitor& visitor)
 {
-  visitor.Number(
-    { "TimeStep", "time", "The time step, above 0, in the unit of time that Units selects." },
-    this->TimeStep, SettingRange::Positive());
-  visitor.Integer(
-    { "NumberOfTimeSteps", "", "The number of time steps. 0: the output is the initial state.",
-      SettingScope::Output }, // a longer run continues a shorter one
-    this->NumberOfTimeSteps,
-    SettingRange::Between(0.0, LargestNumberOfTimeSteps, "0 to 1000000000"));
   visitor.Choice({ "Units", "",
                    "The units of times, weights and thresholds. Natural: lengths are in h, the "
                    "mean edge length of the triangles, and values in R, the largest range (max - "
@@ -41,15 +33,6 @@ void RunSettings::Visit(SettingVisitor& visitor)
                    "Absolute: lengths are in the unit of the coordinates and values in the unit "
                    "of the data." },
     this->Units, { "Natural", "Absolute" });
-  visitor.Switch({ "GenerateTimeSteps", "",
-                   "Publish time steps; time 0 is the initial state. Off: the output is the "
-                   "final state." },
-    this->GenerateTimeSteps);
-  visitor.Integer({ "OutputInterval", "",
-                    "The interval k between published time steps: steps 0, k, 2 k, ... and the "
-                    "last step are published.",
-                    SettingScope::Output },
-    this->OutputInterval, SettingRange::AtLeast(1.0, "1 or more"));
   visitor.Choice({ "MaskMode", "",
                    "Inpaint: masked points are missing and are filled in. Exclude: triangles "
                    "with a masked point, and masked cells, are ignored, nothing flows across "
@@ -60,6 +43,52 @@ void RunSettings::Visit(SettingVisitor& visitor)
                     "The seed of all random numbers. The same seed gives the same result on every "
                     "machine." },
     this->RandomSeed, SettingRange::AnyFinite());
+  visitor.Switch({ "IntrinsicDelaunay", "",
+                   "Assemble the Laplace-Beltrami operator on the intrinsic Delaunay "
+                   "triangulation of the same surface. No points are added. Its nonnegative "
+                   "cotan weights let linear diffusion keep the bounds of the data for triangles "
+                   "of any shape.",
+                   SettingScope::Surface },
+    this->IntrinsicDelaunay);
+  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+}
+
+std::vector<Output> RunSettings::Finish(const RunState&, RunResult&) const
+{
+  return { Output::OfState(this->DescribeModel().ResultSuffix) };
+}
+
+void RunSettings::Check(const FieldSummary* fields, Problems& problems)
+{
+  CheckRanges(*this, problems);
+  this->CheckTogether(fields, problems);
+}
+
+void RunSettings::CheckTogether(const FieldSummary*, Problems&) const {}
+
+void TimeSettings::Visit(SettingVisitor& visitor)
+{
+  visitor.Number(
+    { "TimeStep", "time", "The time step, above 0, in the unit of time that Units selects." },
+    this->TimeStep, SettingRange::Positive());
+  visitor.Integer(
+    { "NumberOfTimeSteps", "", "The number of time steps. 0: the output is the initial state.",
+      SettingScope::Output }, // a longer run continues a shorter one
+    this->NumberOfTimeSteps,
+    SettingRange::Between(0.0, LargestNumberOfTimeSteps, "0 to 1000000000"));
+  visitor.Switch({ "GenerateTimeSteps", "",
+                   "Publish time steps; time 0 is the initial state. Off: the output is the "
+                   "final state." },
+    this->GenerateTimeSteps);
+  visitor.Integer({ "OutputInterval", "",
+                    "The interval k between published time steps: steps 0, k, 2 k, ... and the "
+                    "last step are published.",
+                    SettingScope::Output },
+    this->OutputInterval, SettingRange::AtLeast(1.0, "1 or more"));
+  visitor.Integer({ "CheckpointMemoryLimit", "MiB",
+                    "Memory, in MiB, for stored states, which make going back in time cheap." },
+    this->CheckpointMemoryLimit, SettingRange::AtLeast(0.0, "0 or more MiB"));
+  this->RunSettings::Visit(visitor);
   visitor.Choice({ "TimeIntegrator", "", "The time integrator." }, this->TimeIntegrator,
     { "FirstOrder", "SecondOrder", "Implicit" }, this->AllowedIntegrators());
   visitor.Choice({ "Solver", "",
@@ -76,29 +105,12 @@ void RunSettings::Visit(SettingVisitor& visitor)
                     "The maximum number of iterations of an iterative solver. It is an error if "
                     "the solver does not converge within them." },
     this->MaximumNumberOfIterations, SettingRange::AtLeast(1.0, "1 or more"));
-  visitor.Switch({ "IntrinsicDelaunay", "",
-                   "Assemble the Laplace-Beltrami operator on the intrinsic Delaunay "
-                   "triangulation of the same surface. No points are added. Its nonnegative "
-                   "cotan weights let linear diffusion keep the bounds of the data for triangles "
-                   "of any shape.",
-                   SettingScope::Surface },
-    this->IntrinsicDelaunay);
-  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
-  visitor.Integer({ "CheckpointMemoryLimit", "MiB",
-                    "Memory, in MiB, for stored states, which make going back in time cheap." },
-    this->CheckpointMemoryLimit, SettingRange::AtLeast(0.0, "0 or more MiB"));
 }
 
-std::vector<Output> RunSettings::Finish(const RunState&, RunResult&) const
+void TimeSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
-  return { Output::OfState(this->DescribeModel().ResultSuffix) };
-}
-
-void RunSettings::Check(const FieldSummary* fields, Problems& problems)
-{
-  CheckRanges(*this, problems);
   const bool rangesHold = problems.empty();
-  this->CheckTogether(fields, problems);
+  this->RunSettings::CheckTogether(fields, problems);
   if (this->GenerateTimeSteps && rangesHold)
   {
     const double times =
@@ -108,9 +120,24 @@ void RunSettings::Check(const FieldSummary* fields, Problems& problems)
   }
 }
 
-void RunSettings::CheckTogether(const FieldSummary*, Problems&) const {}
+ModelTraits TimeSettings::DescribeSteps(bool steady) const
+{
+  ModelTraits traits;
+  traits.IsSteady = steady;
+  traits.NumberOfSteps = steady ? 1 : this->NumberOfTimeSteps;
+  traits.TimeStep = this->TimeStep;
+  traits.AbsoluteTime = this->IsAbsolute();
+  traits.Solver = this->Solver;
+  traits.Limits.Tolerance = this->Tolerance;
+  traits.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
+  if (this->GenerateTimeSteps)
+  {
+    traits.CheckpointMemory = static_cast<std::size_t>(this->CheckpointMemoryLimit) * 1024 * 1024;
+  }
+  return traits;
+}
 
-std::vector<double> RunSettings::PublishedTimes(int last) const
+std::vector<double> TimeSettings::PublishedTimes(int last) const
 {
   const ModelTraits traits = this->DescribeModel();
   std::vector<double> times;
@@ -122,7 +149,7 @@ std::vector<double> RunSettings::PublishedTimes(int last) const
   return times;
 }
 
-int RunSettings::FindStep(double time, int last) const
+int TimeSettings::FindStep(double time, int last) const
 {
   const ModelTraits traits = this->DescribeModel();
   const std::vector<double> times = this->PublishedTimes(last);
@@ -173,7 +200,7 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
 
 void DataSettings::Visit(SettingVisitor& visitor)
 {
-  this->RunSettings::Visit(visitor);
+  this->TimeSettings::Visit(visitor);
   visitor.Number({ "FidelityWeight", "1/time",
                    "lambda, the weight of the fidelity term lambda chi (f - u), in 1/(unit of "
                    "time). The term pulls the result towards the data wherever they are known "
@@ -221,7 +248,7 @@ double DataSettings::Anisotropy() const
 
 void DataSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
-  this->RunSettings::CheckTogether(fields, problems);
+  this->TimeSettings::CheckTogether(fields, problems);
   if (fields && !fields->Directions && this->IsDirected())
   {
     std::ostringstream text;

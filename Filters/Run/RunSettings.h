@@ -4,11 +4,14 @@
 
 #include "Core/Models/InitialState.h"
 #include "Core/Models/Model.h"
+#include "Core/Solvers/LinearSolver.h"
 #include "Core/Solvers/SolverChoice.h"
 #include "Run/Settings.h"
 #include "Run/Units.h"
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -48,11 +51,16 @@ struct FieldSummary
   bool DataAreTerms = false; ///< the data are the data terms of a segmentation, one per region
 };
 
-/// The properties of a model that a run needs before it makes the model.
+/// The properties of a model that a run needs before it makes the model. By default it has no time:
+/// its state is computed in one step.
 struct ModelTraits
 {
-  int NumberOfSteps = 0;
+  bool IsSteady = true; ///< there are no times, neither of the start nor of the one step
+  int NumberOfSteps = 1;
   double TimeStep = 1.0; ///< in the unit that TimeStep is in
+  std::size_t CheckpointMemory = 0; ///< in bytes, for states to which a run goes back
+  SolverMethod Solver = SolverMethod::Automatic; ///< of linear systems
+  IterationLimits Limits; ///< of the same
   bool AbsoluteTime = false; ///< times are in coordinate units even with natural units
   Dimension Time; ///< of the natural unit of time
   double TimeFactor = 1.0; ///< of the natural unit of time, beyond its dimension
@@ -80,26 +88,17 @@ struct ModelTraits
   bool UsesLinearLight = false; ///< unsigned char colours are in sRGB, see LinearLight.h
 };
 
-/// The settings of a time-dependent model, in the user's terms. A subclass describes its model with
-/// four virtual functions: Visit() lists the settings, DescribeModel() gives the traits, Make()
-/// makes the model and Finish() lists its results. CheckTogether() has a default.
+/// The settings that every model has, in the user's terms. A subclass describes its model with four
+/// virtual functions: Visit() lists the settings, DescribeModel() gives the traits, Make() makes the
+/// model and Finish() lists its results. CheckTogether() has a default.
 struct RunSettings : Settings
 {
-  double TimeStep = 1.0;
-  int NumberOfTimeSteps = 10;
   UnitsMode Units = UnitsMode::Natural;
-  bool GenerateTimeSteps = false;
-  int OutputInterval = 1;
   SurfaceDiffusion::MaskMode MaskMode = SurfaceDiffusion::MaskMode::Inpaint;
   int RandomSeed = 0;
-  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
-  SolverMethod Solver = SolverMethod::Automatic;
-  double Tolerance = 1e-10;
-  int MaximumNumberOfIterations = 1000;
   bool IntrinsicDelaunay = false;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
-  int CheckpointMemoryLimit = 512;
 
   void Visit(SettingVisitor& visitor) override;
 
@@ -120,6 +119,26 @@ struct RunSettings : Settings
 
   bool IsAbsolute() const { return this->Units == UnitsMode::Absolute; }
 
+protected:
+  virtual void CheckTogether(const FieldSummary* fields, Problems& problems) const;
+};
+
+/// The settings of a model with time steps: the steps, which of them are published, and the linear
+/// solver of each.
+struct TimeSettings : RunSettings
+{
+  double TimeStep = 1.0;
+  int NumberOfTimeSteps = 10;
+  bool GenerateTimeSteps = false;
+  int OutputInterval = 1;
+  int CheckpointMemoryLimit = 512;
+  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
+  SolverMethod Solver = SolverMethod::Automatic;
+  double Tolerance = 1e-10;
+  int MaximumNumberOfIterations = 1000;
+
+  void Visit(SettingVisitor& visitor) override;
+
   /// The times of the published states of a run that ends at step `last`, in the unit of TimeStep.
   std::vector<double> PublishedTimes(int last) const;
   /// The step of the last of them at or before `time`.
@@ -128,11 +147,14 @@ struct RunSettings : Settings
 protected:
   /// The time integrators that the model has.
   virtual std::vector<bool> AllowedIntegrators() const = 0;
-  virtual void CheckTogether(const FieldSummary* fields, Problems& problems) const;
+  /// The traits that follow from these settings. steady: whether the others ask for the steady state
+  /// in one step.
+  ModelTraits DescribeSteps(bool steady = false) const;
+  void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 };
 
 /// The settings of models of given data: fidelity, diffusivities, and the start on missing points.
-struct DataSettings : RunSettings
+struct DataSettings : TimeSettings
 {
   double FidelityWeight = 0.0;
   SurfaceDiffusion::InitialFill InitialFill = SurfaceDiffusion::InitialFill::Mean;

@@ -178,7 +178,7 @@ void WarnOfEmptyRegions(const std::vector<Index>& components, RunResult& result)
 
 void SegmentationSettings::Visit(SettingVisitor& visitor)
 {
-  this->RunSettings::Visit(visitor);
+  this->TimeSettings::Visit(visitor);
   visitor.Integer(
     { "NumberOfRegions", "", "K, the number of regions, 2 or more. Regions can come out empty." },
     this->NumberOfRegions, SettingRange::Between(2.0, LargestNumberOfRegions, "2 to 1000"));
@@ -218,7 +218,7 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
 
 void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
-  this->RunSettings::CheckTogether(fields, problems);
+  this->TimeSettings::CheckTogether(fields, problems);
   if (!fields)
   {
     return;
@@ -243,10 +243,8 @@ void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& p
 
 ModelTraits SegmentationSettings::DescribeModel() const
 {
-  ModelTraits traits;
-  traits.NumberOfSteps = 1;
+  ModelTraits traits = this->DescribeSteps(true);
   traits.ResultSuffix = "Segmented";
-  traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = true; // no model time
   traits.Energy = { 1.0, 0.0 };
   traits.StateHasUnitOfValues = false;

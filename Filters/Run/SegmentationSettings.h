@@ -11,7 +11,7 @@ namespace SurfaceDiffusion
 
 /// Regions by the convex Chan-Vese and Potts models, see Segmentation: the steady state, in one
 /// step.
-struct SegmentationSettings : RunSettings
+struct SegmentationSettings : TimeSettings
 {
   int NumberOfRegions = 2;
   bool AutomaticFidelity = true;

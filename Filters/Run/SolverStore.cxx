@@ -9,12 +9,11 @@
 namespace SurfaceDiffusion
 {
 
-void SolverStore::Configure(const RunSettings& settings, const ParallelFor& parallel)
+void SolverStore::Configure(const ModelTraits& traits, const ParallelFor& parallel)
 {
-  this->Method = settings.Solver;
-  this->NumberOfSteps = settings.DescribeModel().NumberOfSteps;
-  this->Limits.Tolerance = settings.Tolerance;
-  this->Limits.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
+  this->Method = traits.Solver;
+  this->NumberOfSteps = traits.NumberOfSteps;
+  this->Limits = traits.Limits;
   this->Parallel = &parallel;
   for (Kept& kept : this->Solvers)
   {

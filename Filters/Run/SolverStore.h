@@ -37,10 +37,10 @@ public:
   using DistributedFactory =
     std::function<std::unique_ptr<LinearSolver>(bool multigrid, const ParallelFor& parallel)>;
 
-  void Configure(const RunSettings& settings, const ParallelFor& parallel);
+  void Configure(const ModelTraits& traits, const ParallelFor& parallel);
   void SetDistributedFactory(DistributedFactory factory) { this->Distributed = std::move(factory); }
 
-  /// The solver that the settings ask for. task.Tolerance is set here. solvesPerStep: the number of
+  /// The solver that the traits ask for. task.Tolerance is set here. solvesPerStep: the number of
   /// solves with one matrix in each step of the run, or 0 if task.NumberOfSolves does not depend on
   /// the number of steps.
   std::shared_ptr<LinearSolver> Find(

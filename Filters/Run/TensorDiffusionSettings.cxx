@@ -88,10 +88,7 @@ void TensorDiffusionSettings::CheckTogether(const FieldSummary* fields, Problems
 ModelTraits TensorDiffusionSettings::DescribeModel() const
 {
   const bool beltrami = this->Model == TensorModel::Beltrami;
-  ModelTraits traits;
-  traits.NumberOfSteps = this->NumberOfTimeSteps;
-  traits.TimeStep = this->TimeStep;
-  traits.AbsoluteTime = this->IsAbsolute();
+  ModelTraits traits = this->DescribeSteps();
   traits.Time = { 2.0, 0.0 };
   traits.ResultSuffix = this->Model == TensorModel::CoherenceEnhancing ? "Coherent"
     : this->Model == TensorModel::EdgeEnhancing                        ? "EdgeEnhanced"

@@ -79,7 +79,7 @@ std::unique_ptr<ReactionDiffusion> MakeCoarseModel(CoarseSpace& space, const Mod
 
 void TextureSettings::Visit(SettingVisitor& visitor)
 {
-  this->RunSettings::Visit(visitor);
+  this->TimeSettings::Visit(visitor);
   visitor.Choice({ "Kinetics", "",
                    "The reaction terms F, G. Turing: gamma - u1 u2, u1 u2 - u2 - mu. "
                    "Schnakenberg: b - u1 u2^2, a - u2 + u1 u2^2. GrayScott: 25 (f (1 - u1) - u1 "
@@ -216,7 +216,7 @@ bool TextureSettings::HasDirectedRates() const
 
 void TextureSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
-  this->RunSettings::CheckTogether(fields, problems);
+  this->TimeSettings::CheckTogether(fields, problems);
   for (const auto& [name, color] :
     { std::pair{ "the number of entries of LowColor", &this->LowColor },
       std::pair{ "the number of entries of HighColor", &this->HighColor } })
@@ -263,11 +263,9 @@ double TextureSettings::EffectiveTimeStep() const
 
 ModelTraits TextureSettings::DescribeModel() const
 {
-  ModelTraits traits;
-  traits.NumberOfSteps = this->NumberOfTimeSteps;
+  ModelTraits traits = this->DescribeSteps();
   traits.MayEndEarly = this->StopTolerance > 0.0;
   traits.TimeStep = this->EffectiveTimeStep();
-  traits.AbsoluteTime = this->IsAbsolute();
   traits.TimeFactor = 1.0 / this->ReactionRate;
   traits.Energy = { 2.0, 0.0 };
   traits.HasValueRange = false;

@@ -12,7 +12,7 @@ namespace SurfaceDiffusion
 {
 
 /// Reaction-diffusion of two chemicals, u_t = div(D grad u) + F(u): (22) to (24).
-struct TextureSettings : RunSettings
+struct TextureSettings : TimeSettings
 {
   KineticsName Kinetics = KineticsName::Turing;
   double ReactionRate = 1.0;

@@ -200,12 +200,8 @@ const char* TotalVariationSettings::FindSettingsInRange() const
 ModelTraits TotalVariationSettings::DescribeModel() const
 {
   const bool dimensionless = PropertiesOf(this->EdgeFunction).Dimensionless;
-  ModelTraits traits;
-  traits.NumberOfSteps =
-    this->Mode == TotalVariationMode::SteadyState ? 1 : this->NumberOfTimeSteps;
-  traits.TimeStep = this->TimeStep;
+  ModelTraits traits = this->DescribeSteps(this->Mode == TotalVariationMode::SteadyState);
   traits.ResultSuffix = "TV";
-  traits.AbsoluteTime = this->IsAbsolute();
   traits.Time = dimensionless ? Dimension{ 2.0, 0.0 } : Dimension{ 1.0, 1.0 };
   traits.SettingsInRange = this->FindSettingsInRange();
   traits.Energy = dimensionless ? Dimension{ 0.0, 2.0 } : Dimension{ 1.0, 1.0 };
