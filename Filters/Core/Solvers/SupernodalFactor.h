@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Buffer.h"
+#include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Solvers/DenseTiles.h"
+#include "Core/Solvers/Supernodes.h"
+
+#include <memory>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// P A P^T = L L^T for a symmetric positive definite matrix A by the multifrontal method (I. Duff,
+/// J. Reid, ACM Trans. Math. Softw. 9, 1983) in dense tiles. Made for the matrices of fourth-order
+/// operators, whose factors have four times the entries of those of second order: SparseFactor is
+/// the simpler one where factors are small. All threads take part, and no bit depends on their
+/// number.
+class SupernodalFactor
+{
+public:
+  /// isRegular: of the mesh, see OrderedSupernodes(). The order is kept while the pattern is.
+  /// Throws Aborted. Returns the number of rows whose pivot was not above `resolved` times the
+  /// diagonal entry: L has a huge one in its place, and solutions are zero there.
+  Index Compute(const SparseMatrix& matrix, bool isRegular, double resolved,
+    const ParallelFor& parallel, const ProgressMonitor& progress = ProgressMonitor());
+
+  /// x becomes A^-1 x, n x k.
+  void Solve(Values& x, const ParallelFor& parallel) const;
+
+  /// Diagonal entries of A^-1 by selected inversion (K. Takahashi, J. Fagan, M. Chin, PICA 1973): the
+  /// entries of the inverse in the pattern of L follow from each other, from the last row on.
+  Vector InverseDiagonal(const ParallelFor& parallel) const;
+
+  const Supernodes& Structure() const { return this->Nodes; }
+  /// Bytes of L.
+  std::size_t Memory() const { return this->Entries.size() * sizeof(double); }
+
+private:
+  using Update = std::unique_ptr<double[]>;
+
+  void FactorizeNode(const SparseMatrix& matrix, const Vector& smallest, Index s,
+    std::vector<Update>& updates, Index& replaced, const ParallelFor& parallel);
+  void AddChild(Index s, Index child, const double* update, double* own) const;
+  Index EliminatePivots(Index s, const double* smallest, const ParallelFor& parallel);
+
+  Index DiagonalTiles(Index s) const { return NumberOfTiles(this->Nodes.Pivots(s)); }
+  Index TilesBelow(Index s) const { return NumberOfTiles(this->Nodes.RowsBelow(s)); }
+  double* Panel(Index s) { return this->Entries.data() + this->Begin[s]; }
+  const double* Panel(Index s) const { return this->Entries.data() + this->Begin[s]; }
+
+  void SolvePanel(Values& x, Index first, Index count) const;
+
+  std::vector<Index> Outer, Inner; ///< the pattern that the order is for
+  Supernodes Nodes;
+  /// The panel of supernode s, pivots + rows below by pivots, begins at Entries + Begin[s]: the
+  /// tiles of the pivots' rows, then those of the rows below.
+  std::vector<std::size_t> Begin;
+  Buffer<double> Entries;
+};
+
+} // namespace SurfaceDiffusion
