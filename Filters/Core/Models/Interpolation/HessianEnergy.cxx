@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Interpolation/HessianEnergy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+using Entry = Eigen::Triplet<double, Index>;
+
+/// The edges of a mesh with axes of their own: the first triangle of an edge gives its direction,
+/// and the axis across it points into that triangle.
+struct EdgeAxes
+{
+  explicit EdgeAxes(const TriangleMesh& mesh)
+    : OfCorner(mesh.NumberOfTriangles(), 3)
+    , Along(mesh.NumberOfTriangles(), 3)
+    , Across(mesh.NumberOfTriangles(), 3)
+  {
+    struct Side
+    {
+      std::array<Index, 2> Key;
+      Index Corner; ///< 3 t + a, opposite
+    };
+    const Triangles& vertices = mesh.TriangleVertices();
+    const Triangles& given = mesh.TriangleEdges();
+    std::vector<Side> sides;
+    sides.reserve(3 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        const auto ends = std::minmax(vertices(t, (a + 1) % 3), vertices(t, (a + 2) % 3));
+        const std::array<Index, 2> key = given.rows() > 0
+          ? std::array<Index, 2>{ given(t, a), 0 }
+          : std::array<Index, 2>{ ends.first, ends.second };
+        sides.push_back({ key, 3 * t + a });
+      }
+    }
+    std::sort(sides.begin(), sides.end(),
+      [](const Side& a, const Side& b)
+      { return a.Key != b.Key ? a.Key < b.Key : a.Corner < b.Corner; });
+    Index start = -1;
+    for (std::size_t i = 0; i < sides.size(); ++i)
+    {
+      const Index t = sides[i].Corner / 3;
+      const int a = sides[i].Corner % 3;
+      const Index from = vertices(t, (a + 1) % 3);
+      const bool isFirst = i == 0 || sides[i].Key != sides[i - 1].Key;
+      if (isFirst)
+      {
+        ++this->Count;
+        start = from;
+      }
+      const bool isLoop = from == vertices(t, (a + 2) % 3);
+      this->OfCorner(t, a) = this->Count - 1;
+      this->Along(t, a) = isFirst || (from == start && !isLoop) ? 1.0 : -1.0;
+      this->Across(t, a) = isFirst ? 1.0 : -1.0;
+    }
+  }
+
+  Index Count = 0;
+  Triangles OfCorner; ///< the edge opposite a corner
+  CornerWeights Along, Across; ///< the signs of its axes in the triangle
+};
+
+/// A triangle in its own axes. Row a is of corner a, or of the edge opposite to it.
+struct PlaneTriangle
+{
+  explicit PlaneTriangle(const TriangleMesh::Shape& s)
+    : Area(s.Area())
+  {
+    Corners << 0.0, 0.0, s.Length, 0.0, s.X, s.Y;
+    for (int a = 0; a < 3; ++a)
+    {
+      const Eigen::RowVector2d edge = Corners.row((a + 2) % 3) - Corners.row((a + 1) % 3);
+      const double height = s.Length * s.Y / edge.norm();
+      this->Along.row(a) = edge.normalized();
+      this->Inward.row(a) << -this->Along(a, 1), this->Along(a, 0);
+      this->Basis.row(a) = this->Inward.row(a) / height; // of the linear function of corner a
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const double cosine = -this->Along.row((a + 1) % 3).dot(this->Along.row((a + 2) % 3));
+      this->Angles[a] = std::acos(std::min(1.0, std::max(-1.0, cosine)));
+    }
+  }
+
+  double Area;
+  Eigen::Matrix<double, 3, 2> Corners, Along, Inward, Basis;
+  std::array<double, 3> Angles;
+};
+
+} // namespace
+
+HessianEnergy::HessianEnergy(const TriangleMesh& mesh)
+{
+  constexpr double third = 1.0 / 3.0;
+  const double fullAngle = 2.0 * std::acos(-1.0);
+  const EdgeAxes edges(mesh);
+  const Triangles& vertices = mesh.TriangleVertices();
+  const Index n = mesh.NumberOfVertices();
+  Vector masses = Vector::Zero(edges.Count);
+  Vector angles = Vector::Zero(n);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const PlaneTriangle triangle(mesh.Shapes()[t]);
+    for (int a = 0; a < 3; ++a)
+    {
+      masses[edges.OfCorner(t, a)] += third * triangle.Area;
+      angles[vertices(t, a)] += triangle.Angles[a];
+    }
+  }
+  Vector defects = (fullAngle - angles.array()).matrix();
+  for (const Index i : mesh.BoundaryVertices())
+  {
+    defects[i] = 0.0;
+  }
+
+  std::vector<Entry> gradient, energy;
+  gradient.reserve(18 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
+  energy.reserve(36 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const PlaneTriangle triangle(mesh.Shapes()[t]);
+    // Row 2 a and 2 a + 1: the axes of the edge opposite corner a.
+    Eigen::Matrix<double, 6, 2> axes;
+    std::array<Index, 6> numbers;
+    for (int a = 0; a < 3; ++a)
+    {
+      axes.row(2 * a) = edges.Along(t, a) * triangle.Along.row(a);
+      axes.row(2 * a + 1) = edges.Across(t, a) * triangle.Inward.row(a);
+      numbers[2 * a] = 2 * edges.OfCorner(t, a);
+      numbers[2 * a + 1] = numbers[2 * a] + 1;
+    }
+    for (int e = 0; e < 6; ++e)
+    {
+      const double share = third * triangle.Area / masses[numbers[e] / 2];
+      for (int b = 0; b < 3; ++b)
+      {
+        gradient.emplace_back(
+          numbers[e], vertices(t, b), share * axes.row(e).dot(triangle.Basis.row(b)));
+      }
+    }
+    for (int e = 0; e < 6; ++e)
+    {
+      for (int f = 0; f < 6; ++f)
+      {
+        const int a = e / 2;
+        const int b = f / 2;
+        // The function of an edge is 1 - 2 phi with phi of the opposite corner.
+        double density = 4.0 * triangle.Area * triangle.Basis.row(a).dot(triangle.Basis.row(b));
+        for (int corner = 0; corner < 3; ++corner)
+        {
+          const double sign = (corner == a) == (corner == b) ? 1.0 : -1.0;
+          const Index i = vertices(t, corner);
+          density += sign * defects[i] * triangle.Angles[corner] / angles[i];
+        }
+        energy.emplace_back(numbers[e], numbers[f], density * axes.row(e).dot(axes.row(f)));
+      }
+    }
+  }
+  this->Gradient.resize(2 * edges.Count, n);
+  this->Gradient.setFromTriplets(gradient.begin(), gradient.end());
+  this->Energy.resize(2 * edges.Count, 2 * edges.Count);
+  this->Energy.setFromTriplets(energy.begin(), energy.end());
+}
+
+} // namespace SurfaceDiffusion

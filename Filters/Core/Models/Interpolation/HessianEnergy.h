@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Surface/TriangleMesh.h"
+
+namespace SurfaceDiffusion
+{
+
+/// The Hessian energy of a function u of linear elements,
+///   int |Hessian u|^2 + kappa |grad u|^2 = u^T G^T E G u
+/// with the Gaussian curvature kappa (O. Stein, A. Jacobson, M. Wardetzky, E. Grinspun, A Smoothness
+/// Energy without Boundary Distortion for Curved Surfaces, ACM Trans. Graph. 39, 2020). G takes the
+/// gradients to Crouzeix-Raviart elements, which have a tangent vector at the middle of each edge:
+/// the mean over the triangles of the edge, in the axes along and across it. E is the vector
+/// Dirichlet energy of these elements, and the angle defects of inner vertices in the corners of
+/// their triangles.
+struct HessianEnergy
+{
+  explicit HessianEnergy(const TriangleMesh& mesh);
+
+  SparseMatrix Gradient; ///< G, 2 per edge x n
+  SparseMatrix Energy; ///< E
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Interpolation/InfluenceSpectrum.h"
+
+#include "Core/Foundation/Random.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// W^(1/2) B H^-1 B^T W^(1/2) v.
+Values ApplyInfluence(const SmoothFit& fit, const Vector& roots, const Values& v)
+{
+  Values x = fit.ToVertices(roots.asDiagonal() * v);
+  fit.ApplyInverse(x);
+  return roots.asDiagonal() * fit.AtPoints(x);
+}
+
+/// The share of the data that the residual keeps at mu = ratio mu_0.
+double Left(double s, double ratio)
+{
+  const double left = ratio * (1.0 - s);
+  return left / (s + left);
+}
+
+} // namespace
+
+InfluenceSpectrum::InfluenceSpectrum(
+  const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, bool onlyHere)
+  : IsExact(data.Count() <= FewValues)
+  , Mu(fit.GetSmoothing())
+  , Count(data.Count())
+{
+  if (this->IsExact)
+  {
+    this->Decompose(fit, data);
+    return;
+  }
+  constexpr int steps = 14;
+  this->Sample(fit, data, seed, onlyHere ? 1 : steps);
+}
+
+void InfluenceSpectrum::Decompose(const SmoothFit& fit, const ScatteredValues& data)
+{
+  const Vector roots = data.Weights.cwiseSqrt();
+  Eigen::MatrixXd influence(this->Count, this->Count);
+  constexpr Index panel = 64;
+  for (Index first = 0; first < this->Count; first += panel)
+  {
+    const Index columns = std::min(panel, this->Count - first);
+    Values unit = Values::Zero(this->Count, columns);
+    unit.middleRows(first, columns).setIdentity();
+    influence.middleCols(first, columns) = ApplyInfluence(fit, roots, unit);
+  }
+  const Eigen::MatrixXd symmetric = 0.5 * (influence + influence.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
+  const Vector shares = solver.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
+  for (Index i = 0; i < this->Count; ++i)
+  {
+    this->Trace.emplace_back(shares[i], 1.0);
+  }
+  for (Eigen::Index c = 0; c < data.Given.cols(); ++c)
+  {
+    Measure measure;
+    const Vector values = roots.cwiseProduct(data.Given.col(c));
+    const Vector parts = solver.eigenvectors().transpose() * values;
+    for (Index i = 0; i < this->Count; ++i)
+    {
+      measure.emplace_back(shares[i], parts[i] * parts[i]);
+    }
+    this->Columns.push_back(std::move(measure));
+  }
+}
+
+void InfluenceSpectrum::Sample(
+  const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps)
+{
+  constexpr Eigen::Index probes = 15;
+  const Vector roots = data.Weights.cwiseSqrt();
+  const Eigen::Index ofData = data.Given.cols();
+  const Eigen::Index columns = ofData + probes;
+  Values v(this->Count, columns);
+  for (Index i = 0; i < this->Count; ++i)
+  {
+    v.row(i).head(ofData) = roots[i] * data.Given.row(i);
+    for (Eigen::Index p = 0; p < probes; ++p)
+    {
+      v(i, ofData + p) = UniformRandom(seed, p, i) < 0.5 ? -1.0 : 1.0;
+    }
+  }
+  const Eigen::RowVectorXd squares = v.colwise().squaredNorm();
+  std::vector<std::vector<double>> diagonal(columns), beside(columns);
+  for (Eigen::Index c = 0; c < columns; ++c)
+  {
+    v.col(c) /= squares[c] > 0.0 ? std::sqrt(squares[c]) : 1.0;
+  }
+  std::vector<Values> basis;
+  for (int step = 0; step < std::min<int>(steps, this->Count); ++step)
+  {
+    basis.push_back(v);
+    Values w = ApplyInfluence(fit, roots, v);
+    for (Eigen::Index c = 0; c < columns; ++c)
+    {
+      diagonal[c].push_back(v.col(c).dot(w.col(c)));
+    }
+    for (int pass = 0; pass < 2; ++pass) // orthogonal to all before
+    {
+      for (const Values& known : basis)
+      {
+        const Eigen::RowVectorXd parts = known.cwiseProduct(w).colwise().sum();
+        w -= known * parts.asDiagonal();
+      }
+    }
+    for (Eigen::Index c = 0; c < columns; ++c)
+    {
+      constexpr double resolved = 1e-13; // of the eigenvalue 1
+      const double norm = w.col(c).norm();
+      beside[c].push_back(norm > resolved ? norm : 0.0);
+      w.col(c) *= norm > resolved ? 1.0 / norm : 0.0;
+    }
+    v = std::move(w);
+  }
+  for (Eigen::Index c = 0; c < columns; ++c)
+  {
+    const auto size = static_cast<Eigen::Index>(diagonal[c].size());
+    const Vector main = Eigen::Map<const Vector>(diagonal[c].data(), size);
+    const Vector next = Eigen::Map<const Vector>(beside[c].data(), size - 1);
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.computeFromTridiagonal(main, next);
+    Measure measure;
+    for (Eigen::Index j = 0; j < size; ++j)
+    {
+      const double share = std::min(1.0, std::max(0.0, solver.eigenvalues()[j]));
+      const double first = solver.eigenvectors()(0, j);
+      const double weight = c < ofData ? squares[c] : squares[c] / static_cast<double>(probes);
+      measure.emplace_back(share, weight * first * first);
+    }
+    if (c < ofData)
+    {
+      this->Columns.push_back(std::move(measure));
+      continue;
+    }
+    this->Trace.insert(this->Trace.end(), measure.begin(), measure.end());
+  }
+}
+
+double InfluenceSpectrum::DegreesOfFreedom(double mu) const
+{
+  double sum = 0.0;
+  for (const auto& [share, weight] : this->Trace)
+  {
+    sum += weight * (1.0 - Left(share, mu / this->Mu));
+  }
+  return sum;
+}
+
+double InfluenceSpectrum::Residual(double mu, Eigen::Index column) const
+{
+  double sum = 0.0;
+  for (const auto& [share, weight] : this->Columns[static_cast<std::size_t>(column)])
+  {
+    const double left = Left(share, mu / this->Mu);
+    sum += weight * left * left;
+  }
+  return sum;
+}
+
+double InfluenceSpectrum::Score(double mu, Eigen::Index column) const
+{
+  const double free = this->Count - this->DegreesOfFreedom(mu);
+  return this->Count * this->Residual(mu, column) / (free * free);
+}
+
+double InfluenceSpectrum::BestSmoothing(Eigen::Index column, double noise) const
+{
+  const auto cost = [&](double exponent)
+  {
+    const double mu = this->Mu * std::exp(exponent);
+    return noise > 0.0
+      ? this->Residual(mu, column) + 2.0 * noise * noise * this->DegreesOfFreedom(mu)
+      : this->Score(mu, column);
+  };
+  // The range in which degrees of freedom change, as far as it is resolved.
+  constexpr double margin = 4.6; // a factor of 100
+  constexpr double farthest = 40.0;
+  constexpr double nearest = 4.6;
+  constexpr double resolved = 1e-8;
+  double low = 0.0;
+  double high = 0.0;
+  for (const auto& [share, weight] : this->Trace)
+  {
+    if (share > resolved && share < 1.0 - resolved && weight > 0.0)
+    {
+      const double own = std::log(share / (1.0 - share)); // of its mu over mu_0
+      low = std::min(low, own);
+      high = std::max(high, own);
+    }
+  }
+  low = std::max(this->IsExact ? low - margin : -nearest, -farthest);
+  high = std::min(this->IsExact ? high + margin : nearest, farthest);
+  constexpr int intervals = 200;
+  double best = low;
+  for (int i = 1; i <= intervals; ++i)
+  {
+    const double x = low + (high - low) * i / intervals;
+    best = cost(x) < cost(best) ? x : best;
+  }
+  const double width = (high - low) / intervals;
+  double left = std::max(low, best - width);
+  double right = std::min(high, best + width);
+  constexpr double golden = 0.6180339887498949;
+  while (right - left > 1e-6)
+  {
+    const double a = right - golden * (right - left);
+    const double b = left + golden * (right - left);
+    (cost(a) <= cost(b) ? right : left) = cost(a) <= cost(b) ? b : a;
+  }
+  return this->Mu * std::exp(0.5 * (left + right));
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Interpolation/SmoothFit.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// How a fit depends on mu: the eigenvalues of the influence matrix
+///   S = W^(1/2) B H^-1 B^T W^(1/2),
+/// which takes the data to the fit at their points, at one mu_0. Those at mu are
+///   s mu_0 / (s mu_0 + (1 - s) mu),
+/// so that sums of squares of residuals and degrees of freedom are known at every mu from one
+/// factorisation. With few values the matrix is computed and decomposed; with many, the measures of
+/// the data and of random vectors of signs are, by Lanczos' method (G. Golub, U. von Matt, J. Comput.
+/// Graph. Statist. 6, 1997).
+class InfluenceSpectrum
+{
+public:
+  /// data: those of the fit, which is prepared with mu_0. seed: of the signs. onlyHere: the measures
+  /// are needed at mu_0 alone.
+  InfluenceSpectrum(
+    const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, bool onlyHere = false);
+
+  /// The trace of S at mu: the degrees of freedom of the fit.
+  double DegreesOfFreedom(double mu) const;
+
+  /// sum w (u(p) - d)^2 at mu, of a column of the data.
+  double Residual(double mu, Eigen::Index column) const;
+
+  /// Craven and Wahba's score of generalised cross-validation (Numer. Math. 31, 1979),
+  ///   d Residual / (d - DegreesOfFreedom)^2
+  /// with the number d of values: up to a constant the mean square error of predictions of values
+  /// that were left out.
+  double Score(double mu, Eigen::Index column) const;
+
+  /// The mu with the least score or, with the standard deviation `noise` > 0 of the values at weight
+  /// 1, the least unbiased estimate of the risk (C. Mallows, Technometrics 15, 1973),
+  ///   Residual + 2 noise^2 DegreesOfFreedom.
+  double BestSmoothing(Eigen::Index column, double noise) const;
+
+  /// Whether mu is so near to mu_0 that the measures resolve it.
+  bool Resolves(double mu) const
+  {
+    return this->IsExact || (mu < 30.0 * this->Mu && this->Mu < 30.0 * mu);
+  }
+
+  static constexpr Index FewValues = 300; ///< whose matrix is decomposed
+
+private:
+  /// Eigenvalues with weights.
+  using Measure = std::vector<std::pair<double, double>>;
+
+  void Decompose(const SmoothFit& fit, const ScatteredValues& data);
+  void Sample(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps);
+
+  bool IsExact = false;
+  double Mu;
+  Index Count;
+  Measure Trace;
+  std::vector<Measure> Columns; ///< of the data
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Surface/TriangleMesh.h"
+
+#include <array>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// A point of a surface: barycentric coordinates, which add up to 1, and the vertices they belong
+/// to. Vertices with the coordinate 0 do not count.
+struct SurfacePoint
+{
+  std::array<Index, 3> Vertices = { 0, 0, 0 };
+  std::array<double, 3> Coordinates = { 1.0, 0.0, 0.0 };
+
+  static SurfacePoint AtVertex(Index i) { return { { i, i, i }, { 1.0, 0.0, 0.0 } }; }
+  /// The vertex that the point is at, or -1.
+  Index Vertex() const;
+};
+
+/// Values d at points of a surface with weights w, all finite: d.row(i) at Places[i].
+struct ScatteredValues
+{
+  std::vector<SurfacePoint> Places;
+  Values Given; ///< d, one row per point
+  Vector Weights; ///< w > 0, one per point
+
+  Index Count() const { return static_cast<Index>(this->Places.size()); }
+
+  /// The values at vertices where `known` says so, with weights 1.
+  static ScatteredValues AtVertices(const Values& f, const Flags& known);
+};
+
+/// The values with one row for all that have the same place: the weighted mean of their values with
+/// the sum of their weights, which have the same fit.
+struct MergedValues
+{
+  explicit MergedValues(const ScatteredValues& given);
+
+  ScatteredValues Rows;
+  Index Repeated = 0; ///< rows of the given values that joined another one
+  Index Contradicting = 0; ///< places whose values differ
+};
+
+} // namespace SurfaceDiffusion

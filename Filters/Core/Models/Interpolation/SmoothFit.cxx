@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Interpolation/SmoothFit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+SmoothFit::SmoothFit(const SmoothnessEnergy& energy, const ScatteredValues& data, bool regular,
+  const ParallelFor& parallel)
+  : Energy(energy)
+  , Data(data)
+  , IsRegular(regular)
+  , Parallel(parallel)
+{
+}
+
+Index SmoothFit::Prepare(double mu, const Flags& held, bool exact, const ProgressMonitor& progress)
+{
+  this->Mu = mu;
+  this->Held = held;
+  this->IsExact = exact;
+  this->Weights = this->Data.Weights;
+  const Vector diagonal = this->Energy.Matrix().diagonal();
+  if (exact)
+  {
+    // A penalty as stiff as the energy's own rows: the multipliers converge within a few solves, and
+    // H stays as well conditioned as the energy.
+    constexpr double stiffness = 1e3;
+    for (Index i = 0; i < this->Data.Count(); ++i)
+    {
+      const SurfacePoint& place = this->Data.Places[i];
+      this->Weights[i] = stiffness * mu * diagonal[place.Vertices[0]];
+    }
+  }
+  this->H = mu * this->Energy.Matrix();
+  for (Index i = 0; i < this->Data.Count(); ++i)
+  {
+    const SurfacePoint& place = this->Data.Places[i];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      for (std::size_t b = 0; b < 3; ++b)
+      {
+        const double product = place.Coordinates[a] * place.Coordinates[b];
+        if (product != 0.0)
+        {
+          this->H.coeffRef(place.Vertices[a], place.Vertices[b]) += this->Weights[i] * product;
+        }
+      }
+    }
+  }
+  ForEach(this->Parallel, static_cast<Index>(this->H.rows()),
+    [&](Index j)
+    {
+      for (SparseMatrix::InnerIterator a(this->H, j); a; ++a)
+      {
+        if (held[a.index()] || held[j])
+        {
+          a.valueRef() = a.index() == j ? 1.0 : 0.0;
+        }
+      }
+    });
+  // Without a value the pivot of a constant is round-off; with one it is about a share 1/(20 n).
+  const double resolved = 1e-15 * static_cast<double>(this->H.rows());
+  return this->Factor.Compute(this->H, this->IsRegular, resolved, this->Parallel, progress);
+}
+
+Values SmoothFit::AtPoints(const Values& u) const
+{
+  Values values = Values::Zero(this->Data.Count(), u.cols());
+  for (Index i = 0; i < this->Data.Count(); ++i)
+  {
+    const SurfacePoint& place = this->Data.Places[i];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      if (place.Coordinates[a] != 0.0)
+      {
+        values.row(i) += place.Coordinates[a] * u.row(place.Vertices[a]);
+      }
+    }
+  }
+  return values;
+}
+
+Values SmoothFit::ToVertices(const Values& v) const
+{
+  Values u = Values::Zero(this->H.rows(), v.cols());
+  for (Index i = 0; i < this->Data.Count(); ++i)
+  {
+    const SurfacePoint& place = this->Data.Places[i];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      if (place.Coordinates[a] != 0.0)
+      {
+        u.row(place.Vertices[a]) += place.Coordinates[a] * v.row(i);
+      }
+    }
+  }
+  return u;
+}
+
+void SmoothFit::Derivative(
+  Eigen::Index firstColumn, const Values& u, const Values& forces, Values& derivative) const
+{
+  this->Energy.Multiply(u, derivative);
+  const Values misfit = this->Data.Given.middleCols(firstColumn, u.cols()) - this->AtPoints(u);
+  derivative =
+    this->Mu * derivative - this->ToVertices(this->Weights.asDiagonal() * misfit + forces);
+}
+
+void SmoothFit::ApplyInverse(Values& x) const
+{
+  ForEach(this->Parallel, static_cast<Index>(x.rows()),
+    [&](Index i)
+    {
+      if (this->Held[i])
+      {
+        x.row(i).setZero();
+      }
+    });
+  this->Factor.Solve(x, this->Parallel);
+}
+
+Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u) const
+{
+  constexpr int most = 30;
+  constexpr double resolved = 1e-14; // of the values
+  Values step;
+  Values forces = Values::Zero(this->Data.Count(), u.cols()); // multipliers of exact values
+  const auto data = this->Data.Given.middleCols(firstColumn, u.cols());
+  std::vector<double> last(static_cast<std::size_t>(u.cols()), 0.0);
+  std::vector<char> isDone(last.size(), 0);
+  for (int iteration = 0; iteration < most; ++iteration)
+  {
+    this->Derivative(firstColumn, u, forces, step);
+    this->ApplyInverse(step);
+    // Each column ends by itself, so that it has the bits that it has alone.
+    for (Eigen::Index c = 0; c < u.cols(); ++c)
+    {
+      const auto column = static_cast<std::size_t>(c);
+      const double size = step.col(c).cwiseAbs().maxCoeff();
+      const bool isRoundOff = iteration > 1 && size > 0.5 * last[column];
+      last[column] = size;
+      if (isDone[column] || isRoundOff || !std::isfinite(size))
+      {
+        isDone[column] = 1;
+        continue;
+      }
+      u.col(c) -= step.col(c);
+      isDone[column] = size <= resolved * u.col(c).cwiseAbs().maxCoeff();
+    }
+    if (std::all_of(isDone.begin(), isDone.end(), [](char done) { return done != 0; }))
+    {
+      break;
+    }
+    if (this->IsExact)
+    {
+      forces += this->Weights.asDiagonal() * (data - this->AtPoints(u));
+    }
+  }
+  return forces;
+}
+
+} // namespace SurfaceDiffusion

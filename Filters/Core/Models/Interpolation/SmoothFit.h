@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Interpolation/ScatteredValues.h"
+#include "Core/Models/Interpolation/SmoothnessEnergy.h"
+#include "Core/Solvers/SupernodalFactor.h"
+
+namespace SurfaceDiffusion
+{
+
+/// The smooth function with given values at points,
+///   min  1/2 sum_i w_i (u(p_i) - d_i)^2 + mu/2 u^T Q u
+/// with the energy Q of SmoothnessEnergy, whose linear system is
+///   H u = B^T W d,  H = B^T W B + mu Q,
+/// where the rows of B have the barycentric coordinates of the points. Vertices may be held at
+/// values. The factor of H gives a first answer; the rest of the error, which the condition number
+/// of a fourth-order operator makes large, leaves by repeated solves for the residual.
+class SmoothFit
+{
+public:
+  /// energy, data: must outlive it. regular: whether the mesh is regular; see OrderedSupernodes().
+  SmoothFit(const SmoothnessEnergy& energy, const ScatteredValues& data, bool regular,
+    const ParallelFor& parallel);
+
+  /// Take mu > 0, and hold the vertices of `held`. exact: the values at points inside triangles
+  /// hold, too, by multipliers; their weights do not count.
+  /// Returns the number of rows that neither values nor the energy determine.
+  Index Prepare(double mu, const Flags& held, bool exact, const ProgressMonitor& progress);
+
+  /// u: on entry the values of the held vertices and a start elsewhere, for as many columns of the
+  /// data. Returns the multipliers of exact values, d x k.
+  Values Solve(Eigen::Index firstColumn, Values& u) const;
+
+  /// x becomes H^-1 x, with zeros at held vertices. Not refined.
+  void ApplyInverse(Values& x) const;
+
+  /// B u, d x k.
+  Values AtPoints(const Values& u) const;
+  /// B^T v.
+  Values ToVertices(const Values& v) const;
+
+  /// The diagonal of H^-1.
+  Vector InverseDiagonal() const { return this->Factor.InverseDiagonal(this->Parallel); }
+
+  /// mu Q u - B^T W (d - B u) - B^T forces: the derivative of the energy.
+  void Derivative(
+    Eigen::Index firstColumn, const Values& u, const Values& forces, Values& derivative) const;
+
+  double GetSmoothing() const { return this->Mu; }
+
+private:
+  const SmoothnessEnergy& Energy;
+  const ScatteredValues& Data;
+  const bool IsRegular;
+  const ParallelFor& Parallel;
+  SupernodalFactor Factor;
+  SparseMatrix H;
+  Vector Weights; ///< of the data in H
+  Flags Held;
+  double Mu = 0.0;
+  bool IsExact = false;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Interpolation/SmoothInterpolation.h"
+
+#include "Core/Models/Interpolation/InfluenceSpectrum.h"
+#include "Core/Models/Interpolation/SmoothFit.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/NestedDissection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+/// What a fit needs beside the settings.
+struct SmoothInterpolation::Work
+{
+  Work(const Assembler& assembler, const CornerWeights& coefficients, const Settings& settings,
+    const ScatteredValues& values, const ParallelFor& parallel)
+    : Data(values)
+    , Energy(assembler, coefficients, settings.Kappa, settings.Rim, parallel)
+    , Fit(Energy, Data.Rows, IsRegularMesh(assembler), parallel)
+  {
+  }
+
+  static bool IsRegularMesh(const Assembler& assembler)
+  {
+    return IsRegular(ZeroMatrix(assembler.Pattern()));
+  }
+
+  MergedValues Data;
+  SmoothnessEnergy Energy;
+  SmoothFit Fit;
+  Flags Open; ///< vertices of components without values, which are held at zero
+  Index Parts = 0; ///< components with values
+  double Area = 0.0; ///< of these components
+  bool HasTension = false;
+  Eigen::RowVectorXd Origin; ///< from which values are measured
+  Values Start;
+};
+
+SmoothInterpolation::SmoothInterpolation(std::shared_ptr<const Assembler> assembler,
+  CornerWeights coefficients, const Settings& settings, const ParallelFor& parallel)
+  : Assembly(std::move(assembler))
+  , Coefficients(std::move(coefficients))
+  , Options(settings)
+  , Parallel(parallel)
+{
+}
+
+SmoothInterpolation::Result SmoothInterpolation::Fit(
+  const ScatteredValues& data, const ProgressMonitor& progress) const
+{
+  if (data.Count() == 0)
+  {
+    throw std::runtime_error("no value is known; allowed: one or more");
+  }
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const Index n = mesh.NumberOfVertices();
+  const Eigen::Index columns = data.Given.cols();
+  Work work(*this->Assembly, this->Coefficients, this->Options, data, this->Parallel);
+  ScatteredValues& rows = work.Data.Rows;
+  Result result;
+  result.RepeatedValues = work.Data.Repeated;
+  result.ContradictingPlaces = work.Data.Contradicting;
+  result.Columns.resize(static_cast<std::size_t>(columns));
+
+  // Values are measured from their mean: the errors of a solve are relative to the contrast then.
+  work.Origin = Eigen::RowVectorXd::Zero(columns);
+  for (Index i = 0; i < rows.Count(); ++i)
+  {
+    work.Origin += rows.Weights[i] / rows.Weights.sum() * rows.Given.row(i);
+  }
+  rows.Given.rowwise() -= work.Origin;
+  std::vector<char> isKnown(static_cast<std::size_t>(mesh.NumberOfComponents()), 0);
+  std::vector<Index> component(n);
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    std::fill(component.begin() + mesh.ComponentsBegin()[c],
+      component.begin() + mesh.ComponentsBegin()[c + 1], c);
+  }
+  for (const SurfacePoint& place : rows.Places)
+  {
+    isKnown[component[place.Vertices[0]]] = 1;
+  }
+  work.Open = Flags::Constant(n, false);
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const Index begin = mesh.ComponentsBegin()[c];
+    const Index size = mesh.ComponentsBegin()[c + 1] - begin;
+    if (isKnown[c])
+    {
+      ++work.Parts;
+      work.Area += mesh.ControlAreas().segment(begin, size).sum();
+      continue;
+    }
+    work.Open.segment(begin, size) = true;
+    ++result.UndeterminedComponents;
+  }
+  work.Start = Values::Zero(n, columns);
+
+  constexpr Index fewest = 3;
+  result.U.resize(n, columns);
+  if (this->Options.ComputeError)
+  {
+    result.Error = Values::Zero(n, columns);
+  }
+  result.HasTooFewValues = this->Options.Smoothing == Choice::Automatic && rows.Count() < fewest;
+  if (this->Options.Smoothing == Choice::Exact || result.HasTooFewValues)
+  {
+    this->FitExactly(work, result, progress);
+  }
+  else
+  {
+    this->FitSmoothly(work, result, progress);
+  }
+  result.U.rowwise() += work.Origin;
+  for (Eigen::Index c = 0; c < columns && this->Options.KeepRange; ++c)
+  {
+    // To the last bit, which the origin rounds
+    result.U.col(c) =
+      result.U.col(c).cwiseMax(data.Given.col(c).minCoeff()).cwiseMin(data.Given.col(c).maxCoeff());
+  }
+  for (Index i = 0; i < n; ++i)
+  {
+    if (work.Open[i])
+    {
+      result.U.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      if (this->Options.ComputeError)
+      {
+        result.Error.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      }
+    }
+  }
+  progress.Report(1.0);
+  return result;
+}
+
+/// mu at which the fit smooths over three times the distance of the values.
+double SmoothInterpolation::StartSmoothing(const Work& work) const
+{
+  constexpr double reach = 3.0;
+  const ScatteredValues& rows = work.Data.Rows;
+  const double diffusivity =
+    this->Coefficients.sum() / CotanWeights(this->Assembly->Mesh(), this->Parallel).sum();
+  const double square = reach * reach * work.Area / rows.Count();
+  const double scale =
+    this->Options.Kappa * this->Options.Kappa + std::max(diffusivity, 1e-300) / square;
+  return rows.Weights.sum() / work.Area / (scale * scale);
+}
+
+void SmoothInterpolation::Prepare(
+  Work& work, Result& result, double mu, const Flags& held, const ProgressMonitor& progress) const
+{
+  const bool isExact = this->Options.Smoothing == Choice::Exact || result.HasTooFewValues;
+  const Index open = work.Fit.Prepare(mu, held, isExact, progress);
+  if (open > 0 && !work.HasTension)
+  {
+    // Enough to be resolved, and little beside the energy.
+    const double n = static_cast<double>(held.size());
+    work.Energy.AddTension(std::max(1e-6, 1e-12 * n * n) / work.Area);
+    work.HasTension = true;
+    result.IsFlattest = true;
+    work.Fit.Prepare(mu, held, isExact, progress);
+  }
+}
+
+void SmoothInterpolation::FitExactly(
+  Work& work, Result& result, const ProgressMonitor& progress) const
+{
+  const ScatteredValues& rows = work.Data.Rows;
+  const Eigen::Index columns = rows.Given.cols();
+  Flags held = work.Open;
+  Values u = work.Start;
+  for (Index i = 0; i < rows.Count(); ++i)
+  {
+    const Index vertex = rows.Places[i].Vertex();
+    if (vertex >= 0)
+    {
+      held[vertex] = true;
+      u.row(vertex) = rows.Given.row(i);
+    }
+  }
+  work.Start = u;
+  this->Prepare(work, result, 1.0, held, progress.Part(0.0, 0.7));
+  Values forces = work.Fit.Solve(0, u);
+  progress.Report(0.9);
+  if (this->Options.ComputeError)
+  {
+    // u^T Q u is the variance of the field times a chi-square variable.
+    const Vector variances = work.Fit.InverseDiagonal(); // without bounds
+    const Vector energies = work.Energy.Squares(u);
+    const double free = std::max<double>(1.0, rows.Count() - work.Parts);
+    for (Eigen::Index c = 0; c < columns; ++c)
+    {
+      const double scale = energies[c] / free;
+      for (Eigen::Index i = 0; i < u.rows(); ++i)
+      {
+        result.Error(i, c) = held[i] ? 0.0 : std::sqrt(std::max(0.0, scale * variances[i]));
+      }
+    }
+  }
+  for (Eigen::Index c = 0; c < columns && this->Options.KeepRange; ++c)
+  {
+    Values column = u.col(c);
+    Values forcesOfColumn = forces.col(c);
+    this->KeepInRange(work, result, c, held, column, forcesOfColumn, progress.Part(0.9, 1.0));
+    u.col(c) = column;
+  }
+  result.U = u;
+  for (Eigen::Index c = 0; c < columns; ++c)
+  {
+    Column& found = result.Columns[static_cast<std::size_t>(c)];
+    found.DegreesOfFreedom = rows.Count();
+  }
+}
+
+void SmoothInterpolation::FitSmoothly(
+  Work& work, Result& result, const ProgressMonitor& progress) const
+{
+  const ScatteredValues& rows = work.Data.Rows;
+  const Eigen::Index columns = rows.Given.cols();
+  const bool isGiven = this->Options.Smoothing == Choice::Given;
+  const double noise =
+    this->Options.Smoothing == Choice::NoiseLevel ? this->Options.NoiseLevel : 0.0;
+  const auto measure = [&](double mu, const ProgressMonitor& part)
+  {
+    this->Prepare(work, result, mu, work.Open, part);
+    return InfluenceSpectrum(work.Fit, rows, this->Options.Seed, isGiven);
+  };
+  const auto take = [&](const InfluenceSpectrum& spectrum, double mu, Eigen::Index column)
+  {
+    Column& found = result.Columns[static_cast<std::size_t>(column)];
+    found.Mu = mu;
+    found.Score = spectrum.Score(mu, column);
+    found.DegreesOfFreedom = spectrum.DegreesOfFreedom(mu);
+  };
+  const InfluenceSpectrum start =
+    measure(isGiven ? this->Options.Mu : this->StartSmoothing(work), progress.Part(0.0, 0.4));
+  if (isGiven)
+  {
+    for (Eigen::Index c = 0; c < columns; ++c)
+    {
+      take(start, this->Options.Mu, c);
+    }
+    this->FitColumns(work, result, 0, columns, this->Options.Mu, progress.Part(0.4, 1.0));
+    return;
+  }
+  for (Eigen::Index c = 0; c < columns; ++c)
+  {
+    const auto at = [&](double part)
+    { return 0.4 + 0.6 * (static_cast<double>(c) + part) / static_cast<double>(columns); };
+    double mu = start.BestSmoothing(c, noise);
+    take(start, mu, c);
+    constexpr int most = 3;
+    bool isResolved = start.Resolves(mu);
+    for (int again = 0; again < most && !isResolved; ++again)
+    {
+      const InfluenceSpectrum nearer = measure(mu, progress.Part(at(0.0), at(0.5)));
+      mu = nearer.BestSmoothing(c, noise);
+      take(nearer, mu, c);
+      isResolved = nearer.Resolves(mu);
+    }
+    this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.5), at(1.0)));
+  }
+}
+
+/// With the measures of the columns in place.
+void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index first,
+  Eigen::Index count, double mu, const ProgressMonitor& progress) const
+{
+  const ScatteredValues& rows = work.Data.Rows;
+  if (work.Fit.GetSmoothing() != mu)
+  {
+    this->Prepare(work, result, mu, work.Open, progress.Part(0.0, 0.5));
+  }
+  Values all = work.Start.middleCols(first, count);
+  const Values forces = work.Fit.Solve(first, all);
+  const Vector deviations = this->Options.ComputeError
+    ? Vector(work.Fit.InverseDiagonal().cwiseMax(0.0).cwiseSqrt())
+    : Vector();
+  for (Eigen::Index c = 0; c < count; ++c)
+  {
+    Column& found = result.Columns[static_cast<std::size_t>(first + c)];
+    Values u = all.col(c);
+    if (this->Options.KeepRange)
+    {
+      Values none = forces.col(c);
+      this->KeepInRange(work, result, first + c, work.Open, u, none, progress.Part(0.5, 1.0));
+    }
+    const Vector given = rows.Given.col(first + c);
+    const Vector misfit = given - work.Fit.AtPoints(u).col(0);
+    const double square = rows.Weights.dot(misfit.cwiseAbs2());
+    const double free = std::max(1e-6 * rows.Count(), rows.Count() - found.DegreesOfFreedom);
+    found.Residual = std::sqrt(square / rows.Weights.sum());
+    found.NoiseLevel =
+      this->Options.NoiseLevel > 0.0 ? this->Options.NoiseLevel : std::sqrt(square / free);
+    if (this->Options.ComputeError)
+    {
+      result.Error.col(first + c) = found.NoiseLevel * deviations; // without bounds
+    }
+    result.U.col(first + c) = u;
+  }
+}
+
+/// The minimiser under bounds by a primal-dual active set (M. Hintermueller, K. Ito, K. Kunisch, SIAM
+/// J. Optim. 13, 2002): vertices beyond a bound are held at it, and are released when the energy
+/// draws them inwards. u: the minimiser without bounds on entry; forces: its multipliers.
+void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index column,
+  const Flags& held, Values& u, Values& forces, const ProgressMonitor& progress) const
+{
+  constexpr int mostWithRelease = 30; // the active set may cycle; it grows only, from there on
+  constexpr int most = 60;
+  const auto data = work.Data.Rows.Given.col(column);
+  const double low = data.minCoeff();
+  const double high = data.maxCoeff();
+  const double resolved = 1e-13 * (high - low);
+  const double mu = work.Fit.GetSmoothing();
+  const auto n = static_cast<Index>(u.rows());
+  std::vector<signed char> active(static_cast<std::size_t>(n), 0); // -1, 1: at the low, high bound
+  Values derivative;
+  for (int iteration = 0; iteration < most; ++iteration)
+  {
+    progress.Report(static_cast<double>(iteration) / most);
+    work.Fit.Derivative(column, u, forces, derivative);
+    bool isSettled = true;
+    bool isFeasible = true;
+    for (Index i = 0; i < n; ++i)
+    {
+      if (held[i])
+      {
+        continue;
+      }
+      signed char next = active[i];
+      if (next == 0)
+      {
+        next = u(i, 0) < low - resolved ? -1 : u(i, 0) > high + resolved ? 1 : 0;
+        isFeasible = isFeasible && next == 0;
+      }
+      else if (iteration < mostWithRelease && next * derivative(i, 0) > 0.0)
+      {
+        next = 0; // downhill is inwards
+      }
+      isSettled = isSettled && next == active[i];
+      active[i] = next;
+    }
+    if (isSettled)
+    {
+      result.RangeIsOptimal = result.RangeIsOptimal && iteration < mostWithRelease;
+      return;
+    }
+    if (isFeasible && iteration >= mostWithRelease)
+    {
+      break;
+    }
+    Flags all = held;
+    for (Index i = 0; i < n; ++i)
+    {
+      if (active[i] != 0)
+      {
+        all[i] = true;
+        u(i, 0) = active[i] < 0 ? low : high;
+      }
+    }
+    this->Prepare(work, result, mu, all, ProgressMonitor());
+    forces = work.Fit.Solve(column, u);
+  }
+  result.RangeIsOptimal = false;
+  u = u.cwiseMax(low).cwiseMin(high).eval();
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Interpolation/ScatteredValues.h"
+#include "Core/Models/Interpolation/SmoothnessEnergy.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Interpolation and smoothing of values at a few points of a surface: the minimiser of
+///   E(u) = 1/2 sum_i w_i (u(p_i) - d_i)^2 + mu/2 int (kappa^2 u - div(D grad u))^2,
+/// a thin-plate spline on the surface (G. Wahba, Spline Models for Observational Data, SIAM 1990).
+/// Harmonic interpolation, whose energy is int |grad u|^2, is no method for values at points: a
+/// point has no capacity in two dimensions, and the solution tends to a constant with a spike at
+/// every value as the mesh becomes finer. The energy of second derivatives bounds values at points,
+/// so that this interpolant converges.
+///
+/// With kappa = 0 constants have no energy. With kappa > 0 values are measured from their weighted
+/// mean, to which u returns beyond the distance 1/kappa from the values.
+///
+/// u is also the mean of a Gaussian field with the precision (mu Q + B^T W B) / s^2, where s is the
+/// standard deviation of values with weight 1: from it follow standard errors.
+class SmoothInterpolation
+{
+public:
+  enum class Choice
+  {
+    Exact, ///< the values hold
+    Automatic, ///< mu by generalised cross-validation
+    NoiseLevel, ///< mu by the noise level
+    Given ///< mu
+  };
+
+  struct Settings
+  {
+    double Kappa = 0.0; ///< 1/length, >= 0, in units of the mesh, as mu
+    RimCondition Rim = RimCondition::Natural;
+    Choice Smoothing = Choice::Automatic;
+    double Mu = 0.0; ///< of Given: > 0, in units of w length^2
+    /// s, the standard deviation of values with weight 1; 0: estimated from what the fit leaves.
+    /// NoiseLevel needs it, and standard errors take it if it is given.
+    double NoiseLevel = 0.0;
+    bool KeepRange = false; ///< min d <= u <= max d in each column
+    bool ComputeError = false;
+    std::int64_t Seed = 0; ///< of the random vectors of cross-validation with many values
+  };
+
+  /// What was found for a column of the data.
+  struct Column
+  {
+    double Mu = 0.0; ///< 0: the values hold
+    double Score = 0.0; ///< of cross-validation; 0 if the values hold
+    double Residual = 0.0; ///< root of the weighted mean square of u(p) - d
+    double DegreesOfFreedom = 0.0;
+    double NoiseLevel = 0.0; ///< s, given or estimated; 0 if the values hold
+  };
+
+  struct Result
+  {
+    Values U; ///< n x k; NaN in components without values
+    Values Error; ///< the standard error, n x k; no rows unless asked for
+    std::vector<Column> Columns;
+    Index UndeterminedComponents = 0; ///< without values
+    Index RepeatedValues = 0; ///< at a place that another value has, too
+    Index ContradictingPlaces = 0; ///< whose values differ: their weighted mean counts
+    /// Automatic with fewer than three places, too few for a choice of mu: the values hold.
+    bool HasTooFewValues = false;
+    /// Free, on surfaces on which the values leave a slope open: the flattest function is taken.
+    bool IsFlattest = false;
+    /// Whether the active set of KeepRange settled. If not, u is within the range nevertheless.
+    bool RangeIsOptimal = true;
+  };
+
+  /// coefficients: of K, as in CotanWeights.h.
+  SmoothInterpolation(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
+    const Settings& settings, const ParallelFor& parallel = SerialFor());
+
+  /// Throws Aborted, and std::runtime_error if there is no value.
+  Result Fit(
+    const ScatteredValues& data, const ProgressMonitor& progress = ProgressMonitor()) const;
+
+private:
+  struct Work;
+
+  void FitExactly(Work& work, Result& result, const ProgressMonitor& progress) const;
+  void FitSmoothly(Work& work, Result& result, const ProgressMonitor& progress) const;
+  void FitColumns(Work& work, Result& result, Eigen::Index first, Eigen::Index count, double mu,
+    const ProgressMonitor& progress) const;
+  void KeepInRange(Work& work, Result& result, Eigen::Index column, const Flags& held, Values& u,
+    Values& forces, const ProgressMonitor& progress) const;
+  void Prepare(Work& work, Result& result, double mu, const Flags& held,
+    const ProgressMonitor& progress) const;
+  double StartSmoothing(const Work& work) const;
+
+  std::shared_ptr<const Assembler> Assembly;
+  CornerWeights Coefficients;
+  Settings Options;
+  const ParallelFor& Parallel;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,446 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Surface/TangentVectors.h"
+#include "Heat.h"
+#include "Interpolation.h"
+#include "ThreadedFor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+constexpr Index OfSphere = 162; // vertices of the icosahedron subdivided twice, in all finer ones
+
+/// Harmonic interpolation of the same values.
+Values Harmonic(const std::shared_ptr<const Assembler>& assembler, const ScatteredValues& data)
+{
+  const Index n = assembler->Mesh().NumberOfVertices();
+  PointData known = PointData::FromValues(Values::Zero(n, data.Given.cols()));
+  for (Index i = 0; i < data.Count(); ++i)
+  {
+    known.Start.row(data.Places[i].Vertex()) = data.Given.row(i);
+    known.Fixed[data.Places[i].Vertex()] = true;
+  }
+  LinearDiffusion::Settings settings;
+  settings.TimeScheme = Scheme::SteadyState;
+  const auto heat = MakeHeat(assembler, std::move(known), settings);
+  heat->Advance(ProgressMonitor());
+  return heat->State();
+}
+
+double LargestDifference(const Values& a, const Values& b)
+{
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+} // namespace
+
+TEST(Interpolation, OfExactValuesConvergesWhereHarmonicInterpolationDiverges)
+{
+  double last = 0.03;
+  double lastHarmonic = 0.0;
+  for (int subdivisions = 3; subdivisions <= 6; ++subdivisions)
+  {
+    const Surface s = Icosphere(subdivisions);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values field = Sample(mesh, s, SeaTemperature);
+    const ScatteredValues data = ValuesAt(mesh, field, [](Index i) { return i < OfSphere; });
+    ASSERT_EQ(data.Count(), OfSphere);
+    const Values u = Interpolate(assembler, data, InterpolationSettings(Choice::Exact)).U;
+    const double error = RootMeanSquare(mesh, u - field);
+    const double harmonic = RootMeanSquare(mesh, Harmonic(assembler, data) - field);
+    std::printf("%6d vertices: error %.4f, of harmonic interpolation %.3f\n",
+      mesh.NumberOfVertices(), error, harmonic);
+    for (Index i = 0; i < data.Count(); ++i)
+    {
+      EXPECT_NEAR(u(data.Places[i].Vertex(), 0), data.Given(i, 0), 1e-13);
+    }
+    EXPECT_LT(error, last);
+    EXPECT_GT(harmonic, lastHarmonic + 0.2);
+    last = error;
+    lastHarmonic = harmonic;
+  }
+}
+
+TEST(Interpolation, HoldsValuesInsideTrianglesToo)
+{
+  const Surface s = Torus(40, 24);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto f = [](const Eigen::RowVector3d& x)
+  { return 100.0 + std::sin(x[0]) * x[2] + 0.3 * x[1]; };
+  const Values field = Sample(mesh, s, f);
+  const ScatteredValues data = ValuesInTriangles(mesh, field, 150);
+  for (const double kappa : { 0.0, 0.7 })
+  {
+    Interpolation::Settings settings = InterpolationSettings(Choice::Exact);
+    settings.Kappa = kappa * mesh.LengthUnit();
+    const Values u = Interpolate(assembler, data, settings).U;
+    for (Index i = 0; i < data.Count(); ++i)
+    {
+      double value = 0.0;
+      for (int a = 0; a < 3; ++a)
+      {
+        value += data.Places[i].Coordinates[a] * u(data.Places[i].Vertices[a], 0);
+      }
+      EXPECT_NEAR(value, data.Given(i, 0), 1e-10);
+    }
+    EXPECT_LT(RootMeanSquare(mesh, u - field), 0.1);
+  }
+}
+
+TEST(Interpolation, OfConstantValuesIsTheConstant)
+{
+  for (const Surface& s : { Icosphere(3), Disk(8), Moebius(20, 4), ThreeFins(6) })
+  {
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values field = Values::Constant(mesh.NumberOfVertices(), 1, 37.3);
+    for (const Choice choice : { Choice::Exact, Choice::Automatic })
+    {
+      for (const RimCondition rim : { RimCondition::Natural, RimCondition::Free })
+      {
+        Interpolation::Settings settings = InterpolationSettings(choice);
+        settings.Rim = rim;
+        for (const Index step : { 9, 1000000 }) // many values, and one
+        {
+          const auto data = ValuesAt(mesh, field, [&](Index i) { return i % step == 0; });
+          const Interpolation::Result result = Interpolate(assembler, data, settings);
+          EXPECT_LT(LargestDifference(result.U, field), 1e-10);
+          EXPECT_EQ(result.HasTooFewValues, choice == Choice::Automatic && data.Count() < 3);
+        }
+      }
+    }
+  }
+}
+
+TEST(Interpolation, LeavesComponentsWithoutValuesUndetermined)
+{
+  const Surface s = Joined(Icosphere(2),
+    Joined(Moved(Torus(12, 8), { 9.0, 0.0, 0.0 }), Moved(Icosphere(1), { 0.0, 9.0, 0.0 })));
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Values field = Sample(mesh, s, [](const Eigen::RowVector3d& x) { return x[2] + 5.0; });
+  const Index torus = 162, last = 162 + 96;
+  const auto data =
+    ValuesAt(mesh, field, [&](Index i) { return i % 3 == 0 && (i < torus || i >= last); });
+  for (const Choice choice : { Choice::Exact, Choice::Automatic })
+  {
+    Interpolation::Settings settings = InterpolationSettings(choice);
+    settings.ComputeError = true;
+    const Interpolation::Result result = Interpolate(assembler, data, settings);
+    EXPECT_EQ(result.UndeterminedComponents, 1);
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      const Index input = mesh.InputVertex()[i];
+      const bool isKnown = input < torus || input >= last;
+      EXPECT_EQ(std::isfinite(result.U(i, 0)), isKnown);
+      EXPECT_EQ(std::isfinite(result.Error(i, 0)), isKnown);
+      if (isKnown)
+      {
+        EXPECT_NEAR(result.U(i, 0), field(i, 0), 0.4);
+      }
+    }
+  }
+}
+
+TEST(Interpolation, TakesTheWeightedMeanOfValuesAtOnePlace)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  ScatteredValues repeated;
+  ScatteredValues single;
+  const auto add = [](ScatteredValues& data, Index vertex, double value, double weight)
+  {
+    const Eigen::Index row = data.Count();
+    data.Places.push_back(SurfacePoint::AtVertex(vertex));
+    data.Given.conservativeResize(row + 1, 1);
+    data.Weights.conservativeResize(row + 1);
+    data.Given(row, 0) = value;
+    data.Weights[row] = weight;
+  };
+  for (Index i = 0; i < 160; i += 20)
+  {
+    const double value = std::sin(i);
+    add(single, i, value + (i == 40 ? 0.75 : 0.0), i == 40 ? 4.0 : i == 60 ? 2.0 : 1.0);
+    add(repeated, i, value, 1.0);
+    if (i == 40)
+    {
+      add(repeated, i, value + 1.0, 3.0);
+    }
+    if (i == 60)
+    {
+      add(repeated, i, value, 1.0);
+    }
+  }
+  for (const auto& settings :
+    { InterpolationSettings(Choice::Exact), InterpolationSettings(Choice::Given, 0.01) })
+  {
+    const Interpolation::Result result = Interpolate(assembler, repeated, settings);
+    EXPECT_EQ(result.RepeatedValues, 2);
+    EXPECT_EQ(result.ContradictingPlaces, 1);
+    EXPECT_LT(LargestDifference(result.U, Interpolate(assembler, single, settings).U), 1e-12);
+  }
+}
+
+TEST(Interpolation, WithoutAnyValueIsAnError)
+{
+  const auto assembler = MakeAssembler(Icosphere(1));
+  EXPECT_THROW(
+    Interpolate(assembler, { {}, Values(0, 1), Vector(0) }, InterpolationSettings(Choice::Exact)),
+    std::runtime_error);
+}
+
+TEST(Interpolation, DependsNeitherOnRotationNorOnNumberingNorOnThreads)
+{
+  const Surface s = Icosphere(3);
+  const auto numbers = Permutation(s.NumberOfVertices(), 5);
+  const auto moved = MakeAssembler(Renumbered(Rotated(s, 2.0), numbers));
+  const auto assembler = MakeAssembler(s);
+  const Values field = Sample(assembler->Mesh(), s, SeaTemperature);
+  std::vector<Index> original(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    original[numbers[i]] = static_cast<Index>(i);
+  }
+  const Values input = ToInput(assembler->Mesh(), field, s.NumberOfVertices());
+  Values movedField(field.rows(), 1);
+  for (Index i = 0; i < moved->Mesh().NumberOfVertices(); ++i)
+  {
+    movedField.row(i) = input.row(original[moved->Mesh().InputVertex()[i]]);
+  }
+  for (const RimCondition rim : { RimCondition::Natural, RimCondition::Free })
+  {
+    for (const Choice choice : { Choice::Exact, Choice::Automatic })
+    {
+      Interpolation::Settings settings = InterpolationSettings(choice);
+      settings.Rim = rim;
+      settings.ComputeError = true;
+      const auto known = [](Index i) { return i % 7 == 0; };
+      const auto data = ValuesAt(assembler->Mesh(), field, known);
+      const auto result = Interpolate(assembler, data, settings);
+      const auto again = Interpolate(moved,
+        ValuesAt(moved->Mesh(), movedField, [&](Index i) { return known(original[i]); }), settings);
+      const ThreadedFor threads(3);
+      const auto threaded = Interpolate(assembler, data, settings, threads);
+      EXPECT_EQ(threaded.U, result.U);
+      EXPECT_EQ(threaded.Error, result.Error);
+      const Values u = ToInput(assembler->Mesh(), result.U, s.NumberOfVertices());
+      const Values v = ToInput(moved->Mesh(), again.U, s.NumberOfVertices());
+      double difference = 0.0;
+      for (Index i = 0; i < s.NumberOfVertices(); ++i)
+      {
+        difference = std::max(difference, std::abs(u(i, 0) - v(numbers[i], 0)));
+      }
+      // The field's range is 30. A mu of cross-validation is the minimum of a flat function.
+      EXPECT_LT(difference, 30.0 * (choice == Choice::Exact ? 1e-9 : 1e-6));
+    }
+  }
+}
+
+TEST(Interpolation, ScalesWithTheCoordinatesAndTheValues)
+{
+  const Surface s = Disk(9);
+  const auto f = [](const Eigen::RowVector3d& x) { return std::sin(3.0 * x[0]) + x[1] * x[1]; };
+  Values expected;
+  for (const double size : { 1.0, 1e-7, 3e12 })
+  {
+    const Surface scaled = Scaled(s, size);
+    const auto assembler = MakeAssembler(scaled);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values field = Sample(mesh, s, f);
+    for (const double unit : { 1.0, 1e-9, 1e8 })
+    {
+      const auto data = ValuesAt(mesh, unit * field, [](Index i) { return i % 5 == 0; });
+      Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+      settings.Kappa = 2.0 / size * mesh.LengthUnit();
+      const Values u =
+        ToInput(mesh, Interpolate(assembler, data, settings).U / unit, s.NumberOfVertices());
+      if (expected.rows() == 0)
+      {
+        expected = u;
+      }
+      EXPECT_LT(LargestDifference(u, expected), 1e-6);
+    }
+  }
+}
+
+TEST(Interpolation, OfOneValueDecaysAsTheMaternCorrelation)
+{
+  // The value at the middle against a far one at zero weight in the mean: two values of opposite
+  // signs, each beyond the reach of the other.
+  const Index cells = 240;
+  const double half = 6.0; // kappa = 1: half of the side is six correlation lengths
+  const Surface s = Moved(Strip(2 * cells, cells, 4.0 * half, 2.0 * half), { -half, -half, 0.0 });
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto f = [&](const Eigen::RowVector3d& x) { return x[0] < half ? 1.0 : -1.0; };
+  const Index row = 2 * cells + 1;
+  const Index middle = cells / 2 * row + cells / 2;
+  const Index far = middle + cells;
+  const auto data =
+    ValuesAt(mesh, Sample(mesh, s, f), [&](Index i) { return i == middle || i == far; });
+  Interpolation::Settings settings = InterpolationSettings(Choice::Exact);
+  settings.Kappa = mesh.LengthUnit();
+  const Values u = Interpolate(assembler, data, settings).U;
+  double worst = 0.0;
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    const double r = Eigen::RowVector3d(s.Vertices.row(mesh.InputVertex()[i])).norm();
+    if (r > 0.0 && r < 4.0)
+    {
+      worst = std::max(worst, std::abs(u(i, 0) - r * std::cyl_bessel_k(1.0, r)));
+    }
+  }
+  std::printf("largest difference from the Matern correlation %.4f\n", worst);
+  EXPECT_LT(worst, 0.02);
+}
+
+TEST(Interpolation, FollowsTheDirectionOfStrongDiffusion)
+{
+  // D = diag(16, 1): the energy of u(x / 4, y) is that of u(x, y) without D, up to a factor.
+  const Surface wide = Strip(48, 24, 4.0, 1.0);
+  const Surface square = Strip(48, 24, 1.0, 1.0);
+  const auto ofWide = MakeAssembler(wide);
+  const auto ofSquare = MakeAssembler(square);
+  const auto f = [](const Eigen::RowVector3d& x) { return std::sin(4.0 * x[1]); };
+  const auto known = [](Index i) { return i % 37 == 0; };
+  const TriangleMesh& mesh = ofWide->Mesh();
+  Points along = Points::Zero(wide.Faces.rows(), 3);
+  along.col(0).setOnes();
+  const CornerWeights weights = AnisotropicWeights(mesh, CotanWeights(mesh),
+    TangentVectorsFromTriangleVectors(mesh, wide.Vertices, wide.Faces, along), 16.0, 1.0);
+  const Interpolation::Settings settings = InterpolationSettings(Choice::Exact);
+  const Values u =
+    Interpolation(ofWide, weights, settings).Fit(ValuesAt(mesh, Sample(mesh, wide, f), known)).U;
+  const Values v = Interpolate(
+    ofSquare, ValuesAt(ofSquare->Mesh(), Sample(ofSquare->Mesh(), square, f), known), settings)
+                     .U;
+  EXPECT_LT(LargestDifference(ToInput(mesh, u, wide.NumberOfVertices()),
+              ToInput(ofSquare->Mesh(), v, square.NumberOfVertices())),
+    1e-9);
+}
+
+TEST(Interpolation, KeepsTheRangeOfTheValues)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto f = [](const Eigen::RowVector3d& x) { return x[2] > 0.3 ? 7.0 : 2.0; };
+  const Values field = Sample(mesh, s, f);
+  const auto data = ValuesAt(mesh, field, [](Index i) { return i < OfSphere; });
+  for (const Choice choice : { Choice::Exact, Choice::Automatic })
+  {
+    Interpolation::Settings settings = InterpolationSettings(choice);
+    const Values without = Interpolate(assembler, data, settings).U;
+    EXPECT_GT(without.maxCoeff(), 7.2); // the overshoot of the energy of fourth order
+    EXPECT_LT(without.minCoeff(), 1.8);
+    settings.KeepRange = true;
+    const Interpolation::Result kept = Interpolate(assembler, data, settings);
+    EXPECT_TRUE(kept.RangeIsOptimal);
+    EXPECT_LE(kept.U.maxCoeff(), 7.0 + 1e-12);
+    EXPECT_GE(kept.U.minCoeff(), 2.0 - 1e-12);
+    std::printf("range without bounds %.3f .. %.3f, changed by %.3f\n", without.minCoeff(),
+      without.maxCoeff(), RootMeanSquare(mesh, kept.U - without));
+    // The minimum under bounds is at most that of the clamped function, and smooth inside.
+    const SmoothnessEnergy energy(*assembler, CotanWeights(mesh), 0.0, RimCondition::Natural);
+    const auto cost = [&](const Values& u)
+    {
+      double misfit = 0.0;
+      for (Index i = 0; i < data.Count(); ++i)
+      {
+        misfit += std::pow(u(data.Places[i].Vertex(), 0) - data.Given(i, 0), 2);
+      }
+      return misfit + kept.Columns[0].Mu * energy.Squares(u)[0];
+    };
+    const Values clamped = without.cwiseMax(2.0).cwiseMin(7.0);
+    if (choice == Choice::Automatic)
+    {
+      EXPECT_LT(cost(kept.U), cost(clamped));
+    }
+    else
+    {
+      EXPECT_LT(energy.Squares(kept.U)[0], energy.Squares(clamped)[0]);
+    }
+  }
+}
+
+TEST(Interpolation, IsSmoothAcrossFlatSheetsWhoseSlopeValuesLeaveOpen)
+{
+  const Surface s = Strip(20, 20);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  Interpolation::Settings settings = InterpolationSettings(Choice::Exact);
+  settings.Rim = RimCondition::Free;
+  const Values field = Sample(mesh, s, [](const Eigen::RowVector3d& x) { return 3.0 * x[0]; });
+  // Along a line: the slope across it is open, and the flattest function has none.
+  const auto data = ValuesAt(mesh, field, [](Index i) { return i / 21 == 10 && i % 5 == 0; });
+  const Interpolation::Result result = Interpolate(assembler, data, settings);
+  EXPECT_TRUE(result.IsFlattest);
+  EXPECT_LT(LargestDifference(result.U, field), 1e-3);
+}
+
+TEST(Interpolation, WithFreeBoundaryGivesRampsBackOnFlatMeshes)
+{
+  const auto ramp = [](const Eigen::RowVector3d& x) { return 2.0 * x[0] - 3.0 * x[1] + 0.5; };
+  const Surface surfaces[] = { Strip(30, 20, 1.5, 1.0), Disk(14),
+    Jittered(Strip(24, 24), 0.008, 0.01, 0.99, 0.01, 0.99),
+    Joined(Disk(6), Moved(Disk(9), { 4.0, 0.0, 0.0 })) };
+  for (const Surface& s : surfaces)
+  {
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values field = Sample(mesh, s, ramp);
+    Interpolation::Settings settings = InterpolationSettings(Choice::Exact);
+    const auto data = ValuesAt(mesh, field, [](Index i) { return i % 53 == 7; });
+    const double natural = LargestDifference(Interpolate(assembler, data, settings).U, field);
+    settings.Rim = RimCondition::Free;
+    const Interpolation::Result result = Interpolate(assembler, data, settings);
+    const double free = LargestDifference(result.U, field);
+    std::printf("%d values: natural %.3f, free %.1e\n", data.Count(), natural, free);
+    EXPECT_FALSE(result.IsFlattest);
+    EXPECT_LT(free, 1e-9);
+    EXPECT_GT(natural, 0.1);
+    settings.Smoothing = Choice::Automatic;
+    EXPECT_LT(LargestDifference(Interpolate(assembler, data, settings).U, field), 1e-6);
+  }
+}
+
+TEST(Interpolation, WithFreeBoundaryHasTheNaturalSolutionOnClosedSurfaces)
+{
+  double last = 0.0;
+  for (int subdivisions = 3; subdivisions <= 4; ++subdivisions)
+  {
+    const Surface s = Icosphere(subdivisions);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values field = Sample(mesh, s, SeaTemperature);
+    Interpolation::Settings settings = InterpolationSettings(Choice::Exact);
+    settings.Rim = RimCondition::Free;
+    const Values u =
+      Interpolate(assembler, ValuesAt(mesh, field, [](Index i) { return i < OfSphere; }), settings)
+        .U;
+    const double error = RootMeanSquare(mesh, u - field);
+    std::printf("%d subdivisions: error %.4f\n", subdivisions, error);
+    EXPECT_LT(error, 0.05);
+    // The energy of Y_1 is 2^2 of the mean square.
+    const SmoothnessEnergy energy(*assembler, CotanWeights(mesh), 0.0, RimCondition::Free);
+    const Values z = Sample(mesh, s, [](const Eigen::RowVector3d& x) { return x[2]; });
+    const double area = mesh.LengthUnit() * mesh.LengthUnit();
+    const double square = area * mesh.ControlAreas().dot(z.col(0).cwiseAbs2());
+    const double excess = energy.Squares(z)[0] / area / (4.0 * square) - 1.0;
+    std::printf("relative error of the energy of Y_1 %.5f\n", excess);
+    if (last > 0.0)
+    {
+      EXPECT_LT(std::abs(excess), 0.5 * last);
+    }
+    last = std::abs(excess);
+  }
+}
