@@ -27,9 +27,15 @@
  * smaller for outliers. Tangential displacements are small, so that triangles keep their shapes and
  * boundary curves do not shrink.
  *
- * A surface whose estimated noise is 0 stays as it is. Noise of more than half of the distance
- * between opposite sides of a thin part cannot be removed. Polygons should be oriented consistently,
- * since an edge between triangles of opposite orientation counts as sharp.
+ * Connected components have noise levels, types and units of length of their own, so that several
+ * surfaces in one data set are denoised as each alone. Components with less than 200 points, too few
+ * for statistics, share one noise level, relative to their mean edge lengths, and one type.
+ * Triangles may be oriented at random: those across edges of two triangles are oriented alike inside.
+ * The result does not depend on the numbering of points and cells.
+ *
+ * A surface whose estimated noise is 0 stays as it is, with a warning. Points that move by more than
+ * 10 times the noise level are a warning, too. Noise of more than half of the distance between
+ * opposite sides of a thin part cannot be removed.
  *
  * Input array 3 (points, one component, optional): points with a nonzero value stay where they
  * are. They still guide their neighbours.
@@ -59,9 +65,10 @@ public:
 
   /**
    * How much noise is removed: the standard deviation of the displacement of the points along the
-   * normal, in coordinate units. 0 or more. Default: 0, which means estimated. The estimate is the
-   * 0.3 quantile of the distances of points from quadrics through their neighbours, over 0.3853,
-   * less 0.03 mean edge lengths, in squares, which surfaces without noise have; see GetEffectiveNoiseLevel().
+   * normal, in coordinate units. 0 or more. Default: 0, which means estimated for each connected
+   * component. The estimate is the 0.3 quantile of the distances of points from quadrics through
+   * their neighbours, over 0.3853, less 0.03 mean edge lengths, in squares, which surfaces without
+   * noise have; see GetEffectiveNoiseLevel().
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
@@ -75,8 +82,8 @@ public:
   ///@{
   /**
    * The kind of surface. CAD: smooth faces that meet in sharp edges. Organic: smooth shapes with
-   * details, such as scans. Automatic (the default): CAD if, after a few iterations, the median of
-   * the angles at edges is less than 0.18 of their root mean square.
+   * details, such as scans. Automatic (the default): CAD if, after a few iterations, the 0.8 quantile
+   * of the angles at edges is less than 0.4 of their root mean square, for each connected component.
    */
   SURFACEDIFFUSION_CHOICE(SurfaceType);
   void SetSurfaceTypeToAutomatic() { this->SetSurfaceType(SURFACE_TYPE_AUTOMATIC); }
@@ -85,15 +92,15 @@ public:
   ///@}
 
   /**
-   * The noise level of the last update, given or estimated, in coordinate units: the largest over
-   * the blocks of composite data.
+   * The noise level of the last update, given or estimated, in coordinate units: the root mean
+   * square over the points, and the largest of that over the blocks of composite data.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveNoiseLevel, double);
 
   /**
    * The kind of surface of the last update, given or found: SURFACE_TYPE_CAD or
-   * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, and if the blocks of
-   * composite data are of different kinds.
+   * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, if no noise was found, and
+   * if components or blocks of composite data are of different kinds.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveSurfaceType, int);
 

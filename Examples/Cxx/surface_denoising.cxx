@@ -73,9 +73,8 @@ int main(int argc, char* argv[])
   {
     return 1; // the filter has reported the error
   }
-  const bool isCAD =
-    denoising->GetEffectiveSurfaceType() == vtkSurfaceDenoisingFilter::SURFACE_TYPE_CAD;
-  std::cout << (isCAD ? "a CAD shape" : "an organic shape") << " with noise of "
+  const char* const kinds[] = { "a surface", "a CAD shape", "an organic shape" };
+  std::cout << kinds[denoising->GetEffectiveSurfaceType()] << " with noise of "
             << denoising->GetEffectiveNoiseLevel() << ", or "
             << denoising->GetEffectiveNoiseLevel() / denoising->GetMeanEdgeLength()
             << " mean edge lengths\npoints moved by " << denoising->GetMeanDisplacement()

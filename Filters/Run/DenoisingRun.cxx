@@ -4,6 +4,8 @@
 
 #include "Core/Geometry/VertexUpdating.h"
 
+#include <sstream>
+
 namespace SurfaceDiffusion
 {
 
@@ -21,22 +23,35 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
-SurfaceType DenoisingRun::FoundType() const
-{
-  return this->Found.Kind == SurfaceKind::Sharp ? SurfaceType::CAD : SurfaceType::Organic;
-}
-
 std::vector<Warning> DenoisingRun::FindWarnings() const
 {
+  std::vector<Warning> warnings;
   const Index coincident = this->Domain->Diagnostics().CoincidentBoundaryPoints;
-  if (coincident == 0)
+  if (coincident > 0)
   {
-    return {};
+    warnings.push_back({ std::to_string(coincident) +
+        " boundary points coincide with others and may come apart (to join them, set "
+        "MergeCoincidentPoints)",
+      this->SurfaceVersion });
   }
-  return { { std::to_string(coincident) +
-      " boundary points coincide with others and may come apart (to join them, set "
-      "MergeCoincidentPoints)",
-    this->SurfaceVersion } };
+  if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0)
+  {
+    warnings.push_back(
+      { "no noise was found, so that no point moves (to remove some, set NoiseLevel)",
+        this->SurfaceVersion });
+  }
+  if (this->Found.FarVertices > 0)
+  {
+    std::ostringstream sentence;
+    sentence
+      << this->Found.FarVertices
+      << " points moved by more than 10 times the noise level, the farthest by "
+      << this->Found.MaximumDisplacement
+      << ": outliers, or points at sharpened edges or of thin triangles (to hold points, set "
+         "FixedArray)";
+    warnings.push_back({ sentence.str(), this->SurfaceVersion });
+  }
+  return warnings;
 }
 
 void DenoisingRun::Update(
@@ -107,7 +122,7 @@ void DenoisingRun::ListResults(const Points& moved)
   const auto add = [this](const char* name, double value, Combination over)
   { this->Results.push_back(Output::OfNumber(name, value, over)); };
   add("EffectiveNoiseLevel", this->Found.NoiseLevel, Combination::Largest);
-  add("EffectiveSurfaceType", static_cast<double>(this->FoundType()), Combination::Common);
+  add("EffectiveSurfaceType", static_cast<double>(this->Found.Type), Combination::Common);
   this->Results.back().Type = OutputType::Integer;
   add("MeanDisplacement", this->Found.MeanDisplacement, Combination::Mean);
   this->Results.back().Weight = mesh.NumberOfVertices();

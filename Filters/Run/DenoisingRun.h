@@ -33,9 +33,7 @@ public:
   void Update(
     const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
 
-  /// CAD or Organic, given or found.
-  SurfaceType FoundType() const;
-  /// The warning about coincident points that may come apart, if there are any.
+  /// About coincident points that may come apart, and points that moved far.
   std::vector<Warning> FindWarnings() const;
 
 private:

@@ -665,8 +665,10 @@ def denoise_mesh(
         sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2 + sum_i l_i (N_i . (x_i - x0_i))^2
 
     and a term that keeps tangential displacements small. All weights follow from the noise level: l_i
-    is proportional to the inverse of its square, and smaller for outliers. A surface whose estimated
-    noise is 0 stays as it is. Faces should be oriented consistently.
+    is proportional to the inverse of its square, and smaller for outliers. Connected components have
+    levels, kinds and units of length of their own; those with less than 200 points share one level,
+    relative to their mean edge lengths, and one kind. A surface whose estimated noise is 0 stays as it
+    is. Faces may be oriented at random, and the numbering of points and faces does not matter.
 
     Parameters
     ----------
@@ -698,7 +700,8 @@ def denoise_mesh(
     Warns
     -----
     SurfaceDiffusionWarning
-        For triangles of zero area, and for coincident points that may come apart.
+        For triangles of zero area, for coincident points that may come apart, if no noise was found,
+        and if points moved by more than 10 times the noise level.
 
     Examples
     --------

@@ -136,9 +136,10 @@ class MeshDenoisingResult:
         The denoised points.
     noise_level : float
         The standard deviation of the noise along the normal, given or estimated, in coordinate
-        units.
+        units; the root mean square over the points if connected components differ.
     surface_type : str
-        The kind of surface, given or found: "CAD" or "Organic".
+        The kind of surface, given or found: "CAD" or "Organic". "Automatic" if no noise was found, or
+        if connected components are of different kinds.
     mean_displacement, maximum_displacement : float
         Of the points, in coordinate units.
     volume_before, volume_after : float

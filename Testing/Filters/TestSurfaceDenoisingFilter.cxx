@@ -4,6 +4,9 @@
 
 #include "vtkCell.h"
 #include "vtkCellData.h"
+#include "vtkContourFilter.h"
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
 #include "vtkMinimalStandardRandomSequence.h"
 #include "vtkPolygon.h"
 #include "vtkSurfaceDenoisingFilter.h"
@@ -42,6 +45,60 @@ vtkSmartPointer<vtkPolyData> NoisySphere(double amount, int levels = 5, bool sin
   }
   sphere->SetPoints(points);
   return sphere;
+}
+
+/// An isosurface, most of whose vertices are in triangles of all shapes, some of them needles.
+vtkSmartPointer<vtkPolyData> Isosurface()
+{
+  vtkNew<vtkImageData> image;
+  constexpr int size = 24;
+  image->SetDimensions(size, size, size);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("f");
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    image->GetPoint(i, p);
+    values->InsertNextValue(
+      vtkMath::Distance2BetweenPoints(p, std::array<double, 3>{ 11, 12, 11.5 }.data()) +
+      12.0 * std::sin(0.9 * p[0]) + 12.0 * std::sin(0.8 * p[1]) + 9.0 * std::cos(0.6 * p[2]));
+  }
+  image->GetPointData()->SetScalars(values);
+  vtkNew<vtkContourFilter> contour;
+  contour->SetInputData(image);
+  contour->SetValue(0, 70.0);
+  contour->ComputeNormalsOff();
+  contour->Update();
+  return contour->GetOutput();
+}
+
+/// The same surface with other numbers of its points and triangles, and other first corners. Point
+/// i becomes point factor * i modulo their number.
+vtkSmartPointer<vtkPolyData> Renumbered(vtkPolyData* surface, vtkIdType factor)
+{
+  const vtkIdType n = surface->GetNumberOfPoints();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(surface->GetPoints()->GetDataType());
+  points->SetNumberOfPoints(n);
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    points->SetPoint(factor * i % n, surface->GetPoint(i));
+  }
+  vtkNew<vtkCellArray> triangles;
+  for (vtkIdType c = surface->GetNumberOfCells() - 1; c >= 0; --c)
+  {
+    vtkNew<vtkIdList> corners;
+    surface->GetCellPoints(c, corners);
+    triangles->InsertNextCell(3);
+    for (vtkIdType k = 0; k < 3; ++k)
+    {
+      triangles->InsertCellPoint(factor * corners->GetId((k + c) % 3) % n);
+    }
+  }
+  auto result = vtkSmartPointer<vtkPolyData>::New();
+  result->SetPoints(points);
+  result->SetPolys(triangles);
+  return result;
 }
 
 /// The root mean square of |p| - 1.
@@ -118,6 +175,63 @@ TEST(SurfaceDenoisingFilter, CoincidentPointsAreAWarningUnlessTheyAreMerged)
   filter->Update();
   EXPECT_EQ(messages.Warnings.size(), 1u);
   EXPECT_TRUE(messages.Errors.empty());
+}
+
+TEST(SurfaceDenoisingFilter, IsosurfacesMoveAlikeForAnyNumbering)
+{
+  const auto surface = Isosurface();
+  const vtkIdType n = surface->GetNumberOfPoints();
+  constexpr vtkIdType factor = 1009; // a prime number
+  ASSERT_NE(n % factor, 0);
+  const auto other = Renumbered(surface, factor);
+  for (const double level : { 0.1, 0.3 })
+  {
+    vtkNew<vtkSurfaceDenoisingFilter> filter, again;
+    filter->SetInputData(surface);
+    again->SetInputData(other);
+    for (auto* const f : { filter.Get(), again.Get() })
+    {
+      f->SetNoiseLevel(level);
+      f->SetSurfaceType(level < 0.2 ? vtkSurfaceDenoisingFilter::SURFACE_TYPE_CAD
+                                    : vtkSurfaceDenoisingFilter::SURFACE_TYPE_ORGANIC);
+      f->Update();
+    }
+    vtkDataArray* const moved = filter->GetOutput()->GetPointData()->GetArray("Displacement");
+    vtkDataArray* const found = again->GetOutput()->GetPointData()->GetArray("Displacement");
+    double farthest = 0.0;
+    for (vtkIdType i = 0; i < n; ++i)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        ASSERT_EQ(moved->GetComponent(i, k), found->GetComponent(factor * i % n, k)) << i;
+        farthest = std::max(farthest, std::abs(moved->GetComponent(i, k)));
+      }
+    }
+    EXPECT_GT(farthest, 0.1);
+  }
+}
+
+TEST(SurfaceDenoisingFilter, PointsThatMoveFarAreAWarningAndSoIsASurfaceWithoutNoise)
+{
+  const auto noisy = NoisySphere(0.01, 4);
+  vtkNew<vtkSurfaceDenoisingFilter> filter;
+  filter->SetInputData(noisy);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty());
+  const auto spoilt = NoisySphere(0.01, 4);
+  spoilt->GetPoints()->SetPoint(700, 1.2 * spoilt->GetPoint(700)[0], 1.2 * spoilt->GetPoint(700)[1],
+    1.2 * spoilt->GetPoint(700)[2]);
+  filter->SetInputData(spoilt);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("points moved by more than 10 times the noise level"),
+    std::string::npos);
+  filter->SetInputData(NoisySphere(0.0, 4));
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 2u);
+  EXPECT_NE(messages.Warnings[1].find("no noise was found"), std::string::npos);
+  EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_AUTOMATIC);
 }
 
 TEST(SurfaceDenoisingFilter, DisplacementsLeadFromTheInputToTheOutput)

@@ -4,18 +4,23 @@
 
 #include "Core/Foundation/Types.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
 
+/// A place in a list that may have more entries than an Index counts.
+using Offset = std::ptrdiff_t;
+
 /// Replaces counts by offsets: entry i becomes the sum of the entries before it.
-inline void CountsToOffsets(std::vector<Index>& counts)
+template <typename Integer>
+void CountsToOffsets(std::vector<Integer>& counts)
 {
-  Index sum = 0;
-  for (Index& entry : counts)
+  Integer sum = 0;
+  for (Integer& entry : counts)
   {
-    const Index next = sum + entry;
+    const Integer next = sum + entry;
     entry = sum;
     sum = next;
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/FaceFlips.h"
 
+#include "Core/Geometry/VertexNoise.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
@@ -71,6 +73,21 @@ Eigen::RowVector3d BestPlace(
   return own + matrix.ldlt().solve(right.transpose()).transpose();
 }
 
+/// The median length of the edges at a vertex.
+double TypicalEdge(const TriangleMesh& mesh, const Points& points, Index vertex)
+{
+  std::vector<double> lengths;
+  for (Index k = mesh.VertexCornersBegin()[vertex]; k < mesh.VertexCornersBegin()[vertex + 1]; ++k)
+  {
+    for (const int step : { 1, 2 })
+    {
+      const Index other = mesh.OtherCorner(mesh.VertexCorners()[k], step);
+      lengths.push_back((points.row(other) - points.row(vertex)).norm());
+    }
+  }
+  return QuantileOf(lengths, 0.5);
+}
+
 /// Whether a step was found.
 bool MoveVertex(const TriangleMesh& mesh, const Points& normals, Points& points, Index vertex)
 {
@@ -81,6 +98,7 @@ bool MoveVertex(const TriangleMesh& mesh, const Points& normals, Points& points,
     return false;
   }
   Eigen::RowVector3d step = BestPlace(mesh, normals, points, vertex) - own;
+  step *= std::min(1.0, TypicalEdge(mesh, points, vertex) / step.norm());
   for (int k = 0; k < NumberOfSteps; ++k, step *= 0.5)
   {
     const Star after = MeasureStar(mesh, normals, points, vertex, own + step);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/FaceGraph.h"
 
-#include "Core/Foundation/Offsets.h"
+#include "Core/Geometry/VertexFans.h"
 
 #include <Eigen/Geometry>
 
@@ -27,21 +27,20 @@ int NumberOfSharedVertices(const Triangles& triangles, Index t, Index u)
   return shared;
 }
 
-/// Append the triangles that share a vertex with triangle t.
-void AppendRing(const TriangleMesh& mesh, Index t, std::vector<Index>& entries)
+/// Append the neighbours of triangle t.
+void AppendRing(const VertexFans& fans, Index t, std::vector<Index>& entries)
 {
   const auto first = static_cast<std::ptrdiff_t>(entries.size());
   for (int a = 0; a < 3; ++a)
   {
-    const Index v = mesh.TriangleVertices()(t, a);
-    for (Index k = mesh.VertexCornersBegin()[v]; k < mesh.VertexCornersBegin()[v + 1]; ++k)
-    {
-      const Index other = mesh.VertexCorners()[k] / 3;
-      if (other != t)
+    fans.ForEachNeighbour(t, a,
+      [&](Index other)
       {
-        entries.push_back(other);
-      }
-    }
+        if (other != t)
+        {
+          entries.push_back(other);
+        }
+      });
   }
   const auto begin = entries.begin() + first;
   std::sort(begin, entries.end());
@@ -62,7 +61,7 @@ void FillLists(IndexLists& lists, Index count, const ParallelFor& parallel, cons
       {
         const std::size_t before = entries.size();
         append(i, entries);
-        lists.Begin[i] = static_cast<Index>(entries.size() - before);
+        lists.Begin[i] = static_cast<Offset>(entries.size() - before);
       }
     });
   CountsToOffsets(lists.Begin);
@@ -81,12 +80,13 @@ FaceGraph::FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel)
   : Mesh(mesh)
 {
   const Index count = mesh.NumberOfTriangles();
+  const VertexFans fans(mesh);
   FillLists(this->Ring, count, parallel,
-    [&](Index t, std::vector<Index>& entries) { AppendRing(mesh, t, entries); });
+    [&](Index t, std::vector<Index>& entries) { AppendRing(fans, t, entries); });
   FillLists(this->Across, count, parallel,
     [&](Index t, std::vector<Index>& entries)
     {
-      for (Index k = this->Ring.Begin[t]; k < this->Ring.Begin[t + 1]; ++k)
+      for (Offset k = this->Ring.Begin[t]; k < this->Ring.Begin[t + 1]; ++k)
       {
         if (NumberOfSharedVertices(mesh.TriangleVertices(), t, this->Ring.Entries[k]) > 1)
         {
@@ -101,12 +101,12 @@ FaceGraph::FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel)
       const auto end = this->Ring.Entries.begin() + this->Ring.Begin[t + 1];
       const auto appendPairs = [&](Index f)
       {
-        for (Index k = this->Across.Begin[f]; k < this->Across.Begin[f + 1]; ++k)
+        for (Offset k = this->Across.Begin[f]; k < this->Across.Begin[f + 1]; ++k)
         {
           const Index g = this->Across.Entries[k];
           if (g > f && (g == t || std::binary_search(begin, end, g)))
           {
-            entries.push_back(k);
+            entries.push_back(static_cast<Index>(k));
           }
         }
       };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Offsets.h"
 #include "Core/Surface/TriangleMesh.h"
 
 #include <vector>
@@ -12,7 +13,7 @@ namespace SurfaceDiffusion
 /// Lists of numbers, one list per row.
 struct IndexLists
 {
-  std::vector<Index> Begin; ///< list i is Entries[Begin[i]] .. Entries[Begin[i + 1]]
+  std::vector<Offset> Begin; ///< list i is Entries[Begin[i]] .. Entries[Begin[i + 1]]
   std::vector<Index> Entries;
 };
 
@@ -24,8 +25,10 @@ struct FaceGraph
   Index NumberOfFaces() const { return static_cast<Index>(this->Ring.Begin.size()) - 1; }
 
   const TriangleMesh& Mesh;
-  IndexLists Ring; ///< per triangle: the others that share a vertex with it, ascending
-  IndexLists Across; ///< per triangle: the others that share an edge with it, ascending
+  /// Per triangle: the others that share a vertex with it, ascending. Around vertices with many
+  /// triangles, some of them: see VertexFans.
+  IndexLists Ring;
+  IndexLists Across; ///< per triangle: those of its ring that share an edge with it, ascending
   /// Per triangle: the places in Across.Entries of the pairs of triangles of its patch, itself and
   /// its ring, that share an edge; each pair once.
   IndexLists Inside;

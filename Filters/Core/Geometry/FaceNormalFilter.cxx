@@ -35,13 +35,13 @@ Vector MeasureWidths(
     [&](Index f)
     {
       double sum = 0.0;
-      const Index begin = graph.Ring.Begin[f];
-      const Index end = graph.Ring.Begin[f + 1];
-      for (Index k = begin; k < end; ++k)
+      const Offset begin = graph.Ring.Begin[f];
+      const Offset end = graph.Ring.Begin[f + 1];
+      for (Offset k = begin; k < end; ++k)
       {
         sum += (geometry.Centroids.row(graph.Ring.Entries[k]) - geometry.Centroids.row(f)).norm();
       }
-      widths[f] = end > begin ? sum / (RingDistance * (end - begin)) : 0.0;
+      widths[f] = end > begin ? sum / (RingDistance * static_cast<double>(end - begin)) : 0.0;
     });
   return widths;
 }
@@ -49,11 +49,11 @@ Vector MeasureWidths(
 /// The differences of normals, in the order of graph.Across.Entries.
 Vector DifferencesAcross(const FaceGraph& graph, const Points& normals, const ParallelFor& parallel)
 {
-  Vector differences(static_cast<Index>(graph.Across.Entries.size()));
+  Vector differences(static_cast<Offset>(graph.Across.Entries.size()));
   ForEach(parallel, graph.NumberOfFaces(),
     [&](Index f)
     {
-      for (Index k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
+      for (Offset k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
       {
         differences[k] = (normals.row(f) - normals.row(graph.Across.Entries[k])).norm();
       }
@@ -99,7 +99,7 @@ public:
       values.clear();
     }
     this->Append(normals, f);
-    for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+    for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
     {
       this->Append(normals, graph.Ring.Entries[k]);
     }
@@ -111,7 +111,7 @@ public:
       this->Normals[2].data(), this->Normals[0].size());
     double largestAcross = 0.0;
     double sumAcross = 0.0;
-    for (Index k = graph.Inside.Begin[f]; k < graph.Inside.Begin[f + 1]; ++k)
+    for (Offset k = graph.Inside.Begin[f]; k < graph.Inside.Begin[f + 1]; ++k)
     {
       const double difference = across[graph.Inside.Entries[k]];
       largestAcross = std::max(largestAcross, difference);
@@ -147,7 +147,7 @@ Points GuideOfSharpSurface(
       {
         inconsistency[f] = patch.Inconsistency(graph, geometry.Normals, across, f);
         Eigen::RowVector3d sum = geometry.Areas[f] * geometry.Normals.row(f);
-        for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+        for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
         {
           const Index g = graph.Ring.Entries[k];
           sum += geometry.Areas[g] * geometry.Normals.row(g);
@@ -160,7 +160,7 @@ Points GuideOfSharpSurface(
     [&](Index f)
     {
       Index best = f;
-      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
       {
         const Index g = graph.Ring.Entries[k];
         best = inconsistency[g] < inconsistency[best] ? g : best;
@@ -180,7 +180,7 @@ Points GuideOfSmoothSurface(const FaceGraph& graph, const FaceGeometry& geometry
     {
       const double width = GuideWidth * settings.Width * widths[f];
       Eigen::RowVector3d sum = geometry.Areas[f] * geometry.Normals.row(f);
-      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
       {
         const Index g = graph.Ring.Entries[k];
         const double distance =
@@ -205,7 +205,7 @@ void Sweep(const FaceGraph& graph, const FaceGeometry& geometry, const Vector& w
     {
       const Eigen::RowVector3d own = normals.row(f);
       Eigen::RowVector3d sum = geometry.Areas[f] * (own + fidelity * geometry.Normals.row(f));
-      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
       {
         const Index g = graph.Ring.Entries[k];
         if (weights[k] == 0.0)
@@ -234,13 +234,13 @@ Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
 Vector NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
   const NormalFilterSettings& settings, const ParallelFor& parallel)
 {
-  Vector weights(static_cast<Index>(graph.Ring.Entries.size()));
+  Vector weights(static_cast<Offset>(graph.Ring.Entries.size()));
   const Vector widths = settings.Width * MeasureWidths(graph, geometry, parallel);
   const double range = 0.5 / (settings.Range * settings.Range);
   ForEach(parallel, graph.NumberOfFaces(),
     [&](Index f)
     {
-      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
       {
         const Index g = graph.Ring.Entries[k];
         const double distance =

@@ -33,7 +33,7 @@ Vector MeasureSupport(const FaceGraph& graph, const FaceGeometry& geometry,
     {
       double like = 0.0;
       double all = 0.0;
-      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
       {
         const Index g = graph.Ring.Entries[k];
         const double difference = (geometry.Normals.row(g) - geometry.Normals.row(f)).squaredNorm();
@@ -109,7 +109,7 @@ Points ReplaceUnsupportedNormals(const FaceGraph& graph, const FaceGeometry& geo
     [&](Index f)
     {
       Index best = f;
-      for (Index k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
+      for (Offset k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
       {
         const Index g = graph.Across.Entries[k];
         best = support[g] > support[best] ? g : best;
@@ -144,7 +144,7 @@ Points FitLinearNormals(const FaceGraph& graph, const FaceGeometry& geometry, co
           weight * geometry.Areas[g]);
       };
       add(f, FallOff(range * (geometry.Normals.row(f) - own).squaredNorm()));
-      for (Index k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
       {
         if (weights[k] > 0.0)
         {

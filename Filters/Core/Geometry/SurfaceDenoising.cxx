@@ -3,6 +3,7 @@
 #include "Core/Geometry/SurfaceDenoising.h"
 
 #include "Core/Geometry/DenoisingScheme.h"
+#include "Core/Geometry/SurfaceParts.h"
 #include "Core/Geometry/VertexNoise.h"
 
 #include <algorithm>
@@ -18,19 +19,24 @@ namespace
 constexpr double DetailLevel = 0.03;
 /// Noise below this, in h, is none: that of points in single precision.
 constexpr double SmallestNoise = 1e-4;
-/// AngleRatio below which a surface is sharp, after ProbeIterations for sharp surfaces.
+/// A surface is sharp if, after ProbeIterations for sharp surfaces, the quantile AngleQuantile of
+/// the angles between normals across edges is less than SharpAngleRatio of their root mean square:
+/// a few sharp edges have most of the curvature.
 constexpr double AngleQuantile = 0.8;
 constexpr double SharpAngleRatio = 0.4;
 constexpr int ProbeIterations = 5;
 
-/// DenoisingReport::AngleRatio of normals.
+/// A displacement beyond this many noise levels is reported.
+constexpr double FarDisplacement = 10.0;
+
+/// The quantile of the angles over their root mean square.
 double MeasureAngleRatio(const FaceGraph& graph, const Points& normals)
 {
   std::vector<double> differences;
   double squares = 0.0;
   for (Index f = 0; f < graph.NumberOfFaces(); ++f)
   {
-    for (Index k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
+    for (Offset k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
     {
       const Index g = graph.Across.Entries[k];
       if (g > f)
@@ -58,7 +64,7 @@ double EstimateNoise(const TriangleMesh& mesh, const Points& points, const Paral
 }
 
 SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::vector<char>& fixed,
-  double noise, double& angleRatio, const ParallelFor& parallel, const ProgressMonitor& progress)
+  double noise, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   DenoisingScheme probe = SchemeFor(SurfaceKind::Sharp, noise / MeanEdgeLength(graph.Mesh));
   probe.Iterations = ProbeIterations;
@@ -67,9 +73,75 @@ SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::ve
   FaceGeometry geometry;
   geometry.Measure(graph.Mesh,
     DenoiseWithScheme(graph, points, fixed, noise, probe, parallel, progress), parallel);
-  angleRatio = MeasureAngleRatio(graph, geometry.Normals);
-  return angleRatio < SharpAngleRatio ? SurfaceKind::Sharp : SurfaceKind::Smooth;
+  return MeasureAngleRatio(graph, geometry.Normals) < SharpAngleRatio ? SurfaceKind::Sharp
+                                                                      : SurfaceKind::Smooth;
 }
+
+/// What was found of a part, and the displacements of its rows in their units.
+struct DenoisedPart
+{
+  double NoiseLevel = 0.0; ///< in Units
+  SurfaceType Type = SurfaceType::Automatic;
+  Points Displacements;
+};
+
+/// fixed: per row of the part, may be empty.
+DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed,
+  const DenoisingSettings& settings, const ParallelFor& parallel, const ProgressMonitor& progress)
+{
+  const TriangleMesh mesh(part.Places, part.Faces, parallel);
+  const double unit = mesh.LengthUnit();
+  const Points points = GatherVertices(mesh, part.Places) / unit;
+  const double noise =
+    settings.NoiseLevel > 0.0 ? settings.NoiseLevel / unit : EstimateNoise(mesh, points, parallel);
+  progress.Report(0.05);
+  DenoisedPart result;
+  result.NoiseLevel = noise * unit;
+  result.Displacements = Points::Zero(part.Places.rows(), 3);
+  if (!(noise > SmallestNoise * MeanEdgeLength(mesh)))
+  {
+    return result;
+  }
+  std::vector<char> isFixed;
+  for (Index i = 0; i < mesh.NumberOfVertices() && !fixed.empty(); ++i)
+  {
+    isFixed.push_back(fixed[mesh.InputVertex()[i]]);
+  }
+  const FaceGraph graph(mesh, parallel);
+  progress.Report(0.1);
+  const bool isSharp = settings.Type == SurfaceType::Automatic
+    ? FindKind(graph, points, isFixed, noise, parallel, progress.Part(0.1, 0.25)) ==
+      SurfaceKind::Sharp
+    : settings.Type == SurfaceType::CAD;
+  result.Type = isSharp ? SurfaceType::CAD : SurfaceType::Organic;
+  const Points moved = DenoiseWithScheme(graph, points, isFixed, noise,
+    SchemeFor(isSharp ? SurfaceKind::Sharp : SurfaceKind::Smooth, noise / MeanEdgeLength(mesh)),
+    parallel, progress.Part(0.25, 1.0));
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    result.Displacements.row(mesh.InputVertex()[i]) = unit * (moved.row(i) - points.row(i));
+  }
+  return result;
+}
+
+/// Joins the types of parts, some of which have none.
+class TypeOfParts
+{
+public:
+  void Add(SurfaceType type)
+  {
+    if (type != SurfaceType::Automatic)
+    {
+      this->Differ = this->Differ || (this->Known != SurfaceType::Automatic && this->Known != type);
+      this->Known = type;
+    }
+  }
+  SurfaceType Common() const { return this->Differ ? SurfaceType::Automatic : this->Known; }
+
+private:
+  SurfaceType Known = SurfaceType::Automatic;
+  bool Differ = false;
+};
 
 } // namespace
 
@@ -77,27 +149,41 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
   const std::vector<char>& fixed, const DenoisingSettings& settings, DenoisingReport* report,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
+  const std::vector<SurfacePart> parts = DivideSurface(
+    mesh, points, settings.NoiseLevel > 0.0 ? PartUnit::Common : PartUnit::OwnEdges, parallel);
+  progress.Report(0.02);
   DenoisingReport found;
-  found.NoiseLevel =
-    settings.NoiseLevel > 0.0 ? settings.NoiseLevel : EstimateNoise(mesh, points, parallel);
-  progress.Report(0.05);
+  TypeOfParts type;
   Points moved = points;
-  if (found.NoiseLevel > SmallestNoise * MeanEdgeLength(mesh))
+  const double count = std::max<Index>(1, mesh.NumberOfVertices());
+  double done = 0.0;
+  double variance = 0.0;
+  for (const SurfacePart& part : parts)
   {
-    const FaceGraph graph(mesh, parallel);
-    progress.Report(0.1);
-    found.Kind = settings.Type == SurfaceType::Automatic
-      ? FindKind(graph, points, fixed, found.NoiseLevel, found.AngleRatio, parallel,
-          progress.Part(0.1, 0.25))
-      : (settings.Type == SurfaceType::CAD ? SurfaceKind::Sharp : SurfaceKind::Smooth);
-    moved = DenoiseWithScheme(graph, points, fixed, found.NoiseLevel,
-      SchemeFor(found.Kind, found.NoiseLevel / MeanEdgeLength(mesh)), parallel,
-      progress.Part(0.25, 1.0));
+    const std::size_t size = part.Vertices.size();
+    std::vector<char> isFixed;
+    for (std::size_t i = 0; i < size && !fixed.empty(); ++i)
+    {
+      isFixed.push_back(fixed[part.Vertices[i]]);
+    }
+    const double end = done + static_cast<double>(size) / count;
+    const DenoisedPart denoised = DenoisePart(
+      part, isFixed, settings, parallel, progress.Part(0.02 + 0.98 * done, 0.02 + 0.98 * end));
+    done = end;
+    type.Add(denoised.Type);
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      const Eigen::RowVector3d step = part.Units[i] * denoised.Displacements.row(i);
+      const double level = part.Units[i] * denoised.NoiseLevel;
+      moved.row(part.Vertices[i]) += step;
+      variance += level * level / count;
+      found.MeanDisplacement += step.norm() / count;
+      found.MaximumDisplacement = std::max(found.MaximumDisplacement, step.norm());
+      found.FarVertices += step.norm() > FarDisplacement * level;
+    }
   }
-  const auto displacement = [&](Index i) { return (moved.row(i) - points.row(i)).norm(); };
-  const Index count = mesh.NumberOfVertices();
-  found.MeanDisplacement = Sum(parallel, count, displacement) / std::max<Index>(1, count);
-  found.MaximumDisplacement = Max(parallel, count, displacement);
+  found.NoiseLevel = settings.NoiseLevel > 0.0 ? settings.NoiseLevel : std::sqrt(variance);
+  found.Type = type.Common();
   if (report)
   {
     *report = found;

@@ -18,24 +18,32 @@ enum class SurfaceType
 struct DenoisingSettings
 {
   /// The standard deviation of the noise of the vertices along the normal, in the unit of the
-  /// points; 0: estimated (see EstimateVertexNoise()), less 0.03 mean edge lengths, in squares,
-  /// which surfaces without noise have.
+  /// points; 0: estimated for each part of the surface (see EstimateVertexNoise()), less 0.03 mean
+  /// edge lengths, in squares, which surfaces without noise have.
   double NoiseLevel = 0.0;
   SurfaceType Type = SurfaceType::Automatic;
 };
 
 struct DenoisingReport
 {
-  double NoiseLevel = 0.0; ///< given or estimated, in the unit of the points
-  SurfaceKind Kind = SurfaceKind::Sharp; ///< given or found
-  /// The 0.8 quantile over the root mean square of the angles between filtered normals across
-  /// edges: small if a few sharp edges have most of the curvature.
-  double AngleRatio = 0.0;
+  /// Given or estimated, in the unit of the points: the root mean square over the vertices.
+  double NoiseLevel = 0.0;
+  /// Given or found; Automatic: no noise was found, or parts are of different types.
+  SurfaceType Type = SurfaceType::Automatic;
   double MeanDisplacement = 0.0; ///< of the vertices, in the unit of the points
   double MaximumDisplacement = 0.0;
+  /// The vertices whose displacement is more than 10 times the noise level of their part: outliers,
+  /// edges that were sharpened, or triangles so thin that their normals determine no place.
+  Index FarVertices = 0;
 };
 
 /// Remove the noise of the vertices of a triangulated surface.
+///
+/// Connected components have their own unit of length, noise level and type, so that the result for
+/// several surfaces together is that of each alone. Those with less than 200 vertices, too few for
+/// statistics, share one noise level, relative to their mean edge lengths, and one type. Triangles
+/// are oriented first (see OrientTriangles()), and the result does not depend on the numbering of
+/// vertices and triangles.
 ///
 /// Each iteration filters the normals of the present surface and fits the given points to them
 /// with FitToNormals(): block descent on an energy of positions and normals, whose weights follow
@@ -52,8 +60,7 @@ struct DenoisingReport
 /// Transactions on Image Processing 15(8), 2006), so that regions of fine details keep them.
 ///
 /// points: per vertex of the mesh; fixed: per vertex, nonzero for vertices that stay, may be empty.
-/// Triangles should be oriented consistently: an edge with opposite orientations on its two sides
-/// counts as sharp. Throws Aborted.
+/// Throws Aborted.
 Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
   const std::vector<char>& fixed, const DenoisingSettings& settings,
   DenoisingReport* report = nullptr, const ParallelFor& parallel = SerialFor(),

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/VertexNoise.h"
 
+#include "Core/Geometry/VertexFans.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -41,7 +43,8 @@ struct VertexRange
   std::size_t size() const { return static_cast<std::size_t>(this->Last - this->First); }
 };
 
-/// A vertex and the vertices up to three edges away from it.
+/// A vertex and the vertices up to three edges away from it. A vertex with more than LargestFan
+/// triangles has neighbours of its own, but does not make them neighbours of each other.
 class Neighbourhood
 {
 public:
@@ -60,7 +63,11 @@ public:
     {
       for (const std::size_t last = this->Vertices.size(); first < last; ++first)
       {
-        this->AppendNeighbours(this->Vertices[first], vertex);
+        if (this->Vertices[first] == vertex ||
+          NumberOfTrianglesAt(this->Mesh, this->Vertices[first]) <= LargestFan)
+        {
+          this->AppendNeighbours(this->Vertices[first], vertex);
+        }
       }
       end = this->Vertices.size();
     }
