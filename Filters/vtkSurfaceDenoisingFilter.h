@@ -23,9 +23,9 @@
  *       + sum_i l_i (N_i . (x_i - x0_i))^2 + t |(I - N_i N_i^T) (x_i - x0_i)|^2
  *
  * with the vertex normals N, by four steps of conjugate gradients on CAD shapes and one on organic
- * ones: few steps regularise. l_i is proportional to the inverse of the variance of the noise, and
- * smaller for outliers. Tangential displacements are small, so that triangles keep their shapes and
- * boundary curves do not shrink.
+ * ones: few steps regularise. On CAD shapes, 15 steps towards the last normals follow. l_i is
+ * proportional to the inverse of the variance of the noise, and smaller for outliers. Tangential
+ * displacements are small, so that triangles keep their shapes and boundary curves do not shrink.
  *
  * Connected components have noise levels, types and units of length of their own, so that several
  * surfaces in one data set are denoised as each alone. Components with less than 200 points, too few

@@ -19,6 +19,8 @@ constexpr double ReferenceNoise = 0.3;
 /// Vertices that move farther than the noise, by this factor, are held more firmly.
 constexpr double LargestSpread = 1.1;
 constexpr double LargestTightening = 4.0;
+/// The share of the iterations, without the final fit, in the work.
+constexpr double FinalProgress = 0.9;
 /// Of the local fidelity: the largest displacement that counts, in standard deviations of the
 /// noise, the sweeps of averaging, and the range of the factors.
 constexpr double LargestLocalDisplacement = 1.5;
@@ -84,7 +86,8 @@ public:
     const int count = this->Scheme.Iterations + this->Scheme.LinearIterations;
     for (int i = 0; i < count; ++i)
     {
-      const ProgressMonitor part = progress.Part(static_cast<double>(i) / count, (i + 1.0) / count);
+      const ProgressMonitor part =
+        progress.Part(FinalProgress * i / count, FinalProgress * (i + 1.0) / count);
       part.Report(0.0);
       this->Geometry.Measure(this->Graph.Mesh, this->Moved, this->Parallel);
       if (i < this->Scheme.Iterations)
@@ -95,6 +98,10 @@ public:
       {
         this->IterateLinear(part);
       }
+    }
+    if (this->Scheme.FinalFitIterations > 0)
+    {
+      this->FitFinally(progress.Part(FinalProgress, 1.0));
     }
     return this->Moved;
   }
@@ -126,20 +133,42 @@ private:
     const DenoisingScheme& scheme = this->Scheme;
     const Points guide =
       ReplaceUnsupportedNormals(this->Graph, this->Geometry, scheme.LinearFilter, this->Parallel);
-    const Points normals =
+    this->LinearNormals =
       FitLinearNormals(this->Graph, this->Geometry, guide, scheme.LinearFilter, this->Parallel);
-    this->Fit(normals, scheme.LinearFidelity, progress);
-    TurnFlippedFaces(this->Graph.Mesh, normals, this->Fixed, this->Moved);
+    this->Fit(this->LinearNormals, scheme.LinearFidelity, progress);
+    TurnFlippedFaces(this->Graph.Mesh, this->LinearNormals, this->Fixed, this->Moved);
   }
 
+  void FitFinally(const ProgressMonitor& progress)
+  {
+    const double relative = this->RelativePrecision();
+    this->Fit(this->LinearNormals,
+      std::min(relative, relative * relative) * this->Scheme.FinalFidelity,
+      this->Scheme.FinalFitIterations, progress);
+    TurnFlippedFaces(this->Graph.Mesh, this->LinearNormals, this->Fixed, this->Moved);
+  }
+
+  /// The reciprocal of the noise in units of ReferenceNoise.
+  double RelativePrecision() const
+  {
+    return ReferenceNoise * MeanEdgeLength(this->Graph.Mesh) / this->Noise;
+  }
+
+  /// fidelity: for ReferenceNoise.
   void Fit(const Points& normals, double fidelity, const ProgressMonitor& progress)
   {
-    const double relative = ReferenceNoise * MeanEdgeLength(this->Graph.Mesh) / this->Noise;
+    const double relative = this->RelativePrecision();
+    this->Fit(normals, this->Tightening * relative * relative * fidelity,
+      this->Scheme.FitIterations, progress);
+  }
+
+  void Fit(const Points& normals, double fidelity, int iterations, const ProgressMonitor& progress)
+  {
     NormalFitSettings fit;
-    fit.Fidelity = this->Tightening * relative * relative * fidelity;
+    fit.Fidelity = fidelity;
     fit.FidelityFactors = this->LocalFactors;
     fit.TangentialFidelity = this->Scheme.TangentialFidelity;
-    fit.MaximumNumberOfIterations = this->Scheme.FitIterations;
+    fit.MaximumNumberOfIterations = iterations;
     fit.OutlierDistance = this->Scheme.OutlierLevel * this->Noise;
     FitToNormals(this->Graph.Mesh, this->Given, normals, this->Fixed, fit, this->Moved,
       this->Parallel, progress);
@@ -186,6 +215,7 @@ private:
   const ParallelFor& Parallel;
   Points Moved;
   FaceGeometry Geometry;
+  Points LinearNormals; ///< of the last iteration
   double Tightening = 1.0;
   Vector LocalFactors; ///< of the fidelity, per vertex; no entries: 1
 };
@@ -215,6 +245,7 @@ DenoisingScheme SchemeFor(SurfaceKind kind, double noise)
     scheme.FitIterations = 1;
     scheme.TangentialFidelity = 2.0;
     scheme.HasLocalFidelity = true;
+    scheme.FinalFitIterations = 0;
   }
   return scheme;
 }

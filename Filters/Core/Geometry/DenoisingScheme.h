@@ -22,6 +22,11 @@ struct DenoisingScheme
   NormalFilterSettings LinearFilter;
   int LinearIterations = 15;
   double LinearFidelity = 0.04; ///< of the fit, for noise of 0.3 h
+  /// The end: one fit to the normals of the last iteration that is nearly solved, with a fidelity
+  /// that grows less with weaker noise than those of the iterations, in which too loose a fit would
+  /// lose details step by step. 0 iterations: none.
+  double FinalFidelity = 0.03; ///< for noise of 0.3 h
+  int FinalFitIterations = 15;
   double TangentialFidelity = 0.1;
   int FitIterations = 4; ///< of conjugate gradients in each iteration: few of them regularise
   double OutlierLevel = 1.0; ///< OutlierDistance of the fit, in standard deviations of the noise
