@@ -89,11 +89,11 @@ void StructureDiffusion::FillWeights(
 double StructureDiffusion::Energy() const
 {
   const TriangleMesh& mesh = this->Mesh();
-  Eigen::RowVectorXd mean;
-  FindMeans(mesh, this->U, mean, this->Parallel);
+  FindMeans(mesh, this->U, this->Mean, this->Parallel);
   return mesh.GetReduction().Sum(0.5 *
     Sum(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i) { return mesh.ControlAreas()[i] * (this->U.row(i) - mean).squaredNorm(); }));
+      [&](Index i)
+      { return mesh.ControlAreas()[i] * (this->U.row(i) - this->Mean).squaredNorm(); }));
 }
 
 TangentVectors StructureDiffusion::Axes(const ProgressMonitor& progress) const

@@ -76,6 +76,7 @@ private:
   Settings Options;
   GivenFactors Factors;
   std::unique_ptr<StructureTensor> Structure; ///< evaluated before every use
+  mutable Eigen::RowVectorXd Mean; ///< work of Energy()
 };
 
 } // namespace SurfaceDiffusion

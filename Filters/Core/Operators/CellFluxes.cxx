@@ -325,7 +325,9 @@ void CellFluxes::Assemble(const Vector& diagonal, double scale, SparseMatrix& ma
   const Index rows = this->NumberOfRows();
   if (matrix.rows() != rows)
   {
-    TakePattern(rows, this->RowBegin.data(), this->Columns.data(), matrix, this->Parallel);
+    SparseMatrix taken;
+    TakePattern(rows, this->RowBegin.data(), this->Columns.data(), taken, this->Parallel);
+    matrix.swap(taken); // complete: the loop may have been aborted
   }
   double* const values = matrix.valuePtr();
   const auto entry = [&](Index row, Index column) -> double&

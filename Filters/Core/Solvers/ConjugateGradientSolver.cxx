@@ -286,6 +286,8 @@ private:
     std::optional<ConvergenceForecast> forecast;
     const ColumnCount<K> k(b.cols());
     this->Corrections.assign(k, SinglePrecisionSolver::Column());
+    Values& before = this->Work.P; // iterations in double precision begin with a new one
+    Resize(before, x.rows(), x.cols());
     SolveReport report;
     double done = 0.0;
     while (true)
@@ -303,8 +305,6 @@ private:
         return report;
       }
       const double end = done + (1.0 - done) / passes;
-      Values& before = this->Work.P; // iterations in double precision begin with a new one
-      Resize(before, x.rows(), x.cols());
       ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
         [&](Index, Index first, Index last)
         {

@@ -99,7 +99,7 @@ struct ConjugateGradientWork
     {
       return;
     }
-    this->Rows = rows;
+    this->Rows = 0; // memory may run out
     this->Sums.Resize(rows, systems);
     this->Unit.assign(systems, 1.0);
     this->Reference.assign(systems, 1.0);
@@ -108,6 +108,7 @@ struct ConjugateGradientWork
     {
       numbers->assign(systems, 0.0);
     }
+    this->Rows = rows;
   }
 };
 

@@ -42,7 +42,7 @@ void Multigrid::Resize(int columns)
   {
     return;
   }
-  this->Columns = columns;
+  this->Columns = -1; // memory may run out
   for (Level& level : this->Levels)
   {
     for (Numbers* work : { &level.B, &level.X, &level.R, &level.D, &level.E })
@@ -56,6 +56,7 @@ void Multigrid::Resize(int columns)
   const bool isSerial = this->CoarsestOverProcesses->IsSerial();
   SurfaceDiffusion::Resize(this->CoarsestNumbers,
     isSerial ? rows : static_cast<Eigen::Index>(this->CoarsestRows.size()), columns);
+  this->Columns = columns;
 }
 
 void Multigrid::SetSlices()

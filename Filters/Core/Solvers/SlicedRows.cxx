@@ -89,10 +89,10 @@ void SlicedRows::Set(
       this->Begin[s + 1] = static_cast<std::size_t>(longest) * Lanes;
     });
   std::partial_sum(this->Begin.begin(), this->Begin.end(), this->Begin.begin());
-  if (this->Columns.size() != this->Begin.back())
+  if (this->Entries.size() != this->Begin.back())
   {
     this->Columns = Buffer<Index>(this->Begin.back());
-    this->Entries = Buffer<float>(this->Begin.back());
+    this->Entries = Buffer<float>(this->Begin.back()); // last: memory may run out
   }
   ForEach(parallel, slices,
     [&](Index s)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Statistics/EdgeScales.h"
 
+#include "Core/Foundation/Resize.h"
 #include "Core/Foundation/RobustRange.h"
 #include "Core/Operators/Rings.h"
 #include "Core/Statistics/NoiseLevel.h"
@@ -192,8 +193,8 @@ private:
 
   void ReadDisk(const std::vector<Index>& disk, Points& offsets, Values& deviations) const
   {
-    offsets.resize(static_cast<Eigen::Index>(disk.size()), 3);
-    deviations.resize(offsets.rows(), this->Data.Given.cols());
+    Resize(offsets, static_cast<Eigen::Index>(disk.size()), 3);
+    Resize(deviations, offsets.rows(), this->Data.Given.cols());
     Eigen::Index known = 0;
     for (const Index i : disk)
     {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TotalVariation/TotalVariationMinimizer.h"
 
+#include "Core/Foundation/Resize.h"
 #include "Core/Models/TotalVariation/VertexSplitting.h"
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Statistics/ValueRange.h"
@@ -256,12 +257,14 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
 /// side of zero.
 void TotalVariationMinimizer::Start(const Values& u, bool keepMultipliers, bool isSingle)
 {
-  if (this->RightHandSide.cols() != u.cols())
+  for (Values* work : { &this->RightHandSide, &this->Gathered, &this->Descent.Residual })
   {
-    this->RightHandSide.resize(u.rows(), u.cols());
-    this->Gathered.resize(u.rows(), u.cols());
-    this->Descent.Residual.resize(u.rows(), u.cols());
-    this->Load = Values::Zero(u.rows(), u.cols());
+    Resize(*work, u.rows(), u.cols());
+  }
+  if (this->Load.size() != u.size())
+  {
+    Resize(this->Load, u.rows(), u.cols());
+    this->Load.setZero();
   }
   this->RightHandSide.setZero();
   this->Gradients.Start(static_cast<int>(u.cols()), keepMultipliers, isSingle);
