@@ -9,4 +9,7 @@ namespace SurfaceDiffusion::Testing
 /// Eigen; negative where they cannot be counted (see TestAllocation.cxx).
 long NumberOfAllocations();
 
+/// Let the allocation of this number from now on fail, from 1; 0: none.
+void FailAllocation(long number);
+
 } // namespace SurfaceDiffusion::Testing

@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Models/BeltramiFlow.h"
-#include "Core/Models/Trajectory.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 #include "Core/Surface/TangentVectors.h"
 #include "EveryMeshFile.h"
 #include "Heat.h"
-#include "ThreadedFor.h"
 #include "TotalVariation.h"
 
 #include <Eigen/Eigenvalues>
@@ -451,18 +448,6 @@ TEST(BeltramiFlow, FixedMetricConservesTotalsAndBothKeepConstants)
   }
 }
 
-TEST(BeltramiFlow, FixedVerticesKeepTheirBits)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  PointData data = PointData::FromValues(Noise(assembler->Mesh(), 3));
-  data.Fixed.head(20) = true;
-  const auto flow = MakeFlow(assembler, data, NaturalSettings(assembler->Mesh(), 10.0));
-  Advance(*flow, 3);
-  EXPECT_EQ(flow->State().topRows(20), data.Start.topRows(20));
-  EXPECT_NE(flow->State().row(30), data.Start.row(30));
-}
-
 TEST(BeltramiFlow, KeepsEdgesThatLinearDiffusionLoses)
 {
   const Surface s = Icosphere(4);
@@ -487,70 +472,4 @@ TEST(BeltramiFlow, AxesRunAlongTheLevelLines)
   const Points axes = VectorsInSpace(mesh, s.Vertices, s.Faces, flow->Axes());
   EXPECT_LT((axes * Eigen::Vector3d(1.0, 2.0, 0.0)).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_NEAR(axes.rowwise().norm().minCoeff(), 1.0, 1e-12);
-}
-
-TEST(BeltramiFlow, RestoredCheckpointGivesTheSameBits)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  Trajectory path(assembler->SharedMesh(),
-    MakeFlow(assembler, PointData::FromValues(Noise(mesh, 3)), NaturalSettings(mesh, 1.0),
-      Iterative(1e-3)),
-    std::size_t(1) << 24);
-  path.Seek(8);
-  const Values last = path.State();
-  path.Seek(3);
-  EXPECT_NE(path.State(), last);
-  path.Seek(8);
-  EXPECT_EQ(path.State(), last);
-}
-
-TEST(BeltramiFlow, ThreadsAndNumberingDoNotMatter)
-{
-  const Surface s = Icosphere(5);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Settings settings = NaturalSettings(mesh, 1.0);
-  const PointData data = PointData::FromValues(Noise(mesh, 3));
-  const auto flow = MakeFlow(assembler, data, settings, Iterative(1e-12));
-  Advance(*flow, 3);
-
-  const ThreadedFor threads(4);
-  const auto threaded = MakeFlow(assembler, data, settings, Iterative(1e-12, threads), threads);
-  Advance(*threaded, 3);
-  EXPECT_EQ(threaded->State(), flow->State());
-
-  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 3);
-  const Surface other = Flipped(Renumbered(s, numbers));
-  const auto otherAssembler = MakeAssembler(other);
-  const TriangleMesh& otherMesh = otherAssembler->Mesh();
-  const Values input = ToInput(mesh, data.Given, s.NumberOfVertices());
-  Values moved(input.rows(), input.cols());
-  for (Index i = 0; i < s.NumberOfVertices(); ++i)
-  {
-    moved.row(numbers[i]) = input.row(i);
-  }
-  const auto renumbered = MakeFlow(otherAssembler,
-    PointData::FromValues(GatherVertices(otherMesh, moved)), settings, Iterative(1e-12));
-  Advance(*renumbered, 3);
-  const Values back = ToInput(otherMesh, renumbered->State(), s.NumberOfVertices());
-  const Values expected = ToInput(mesh, flow->State(), s.NumberOfVertices());
-  for (Index i = 0; i < s.NumberOfVertices(); ++i)
-  {
-    EXPECT_LT((back.row(numbers[i]) - expected.row(i)).cwiseAbs().maxCoeff(), 1e-9);
-  }
-}
-
-TEST(BeltramiFlow, LaterStepsDoNotAllocate)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const auto flow = MakeFlow(
-    assembler, PointData::FromValues(Noise(mesh, 3)), NaturalSettings(mesh, 1.0), Iterative(1e-3));
-  Advance(*flow, 1);
-  const auto before = NumberOfAllocations();
-  Advance(*flow, 3);
-  EXPECT_EQ(NumberOfAllocations(), before);
 }

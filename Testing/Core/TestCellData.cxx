@@ -110,21 +110,6 @@ CellInput TorusOfPolygons(Index around, Index across, bool (*cut)(Index, Index),
 
 } // namespace
 
-TEST(CellData, ConstantsStay)
-{
-  CellInput input(Torus(16, 10));
-  input.SetData([](Index, const Eigen::RowVector3d&) { return 0.7; });
-  TotalVariationSettings variation;
-  variation.Mode = TotalVariationMode::SteadyState;
-  for (const bool detail : { true, false })
-  {
-    EXPECT_LT((CellResultOf(input, HeatSettings(), detail).array() - 0.7).abs().maxCoeff(), 1e-14);
-    EXPECT_LT((CellResultOf(input, variation, detail).array() - 0.7).abs().maxCoeff(), 1e-14);
-    EXPECT_LT(
-      (CellResultOf(input, MumfordShahSettings(), detail).array() - 0.7).abs().maxCoeff(), 1e-14);
-  }
-}
-
 TEST(CellData, TotalsAreKept)
 {
   for (const bool quads : { false, true })
@@ -360,25 +345,6 @@ TEST(CellData, ExcludedCellsAreAsIfTheyWereNotThere)
   }
   without.Data.Cells = rows;
   EXPECT_EQ(CellResultOf(without, HeatSettings()), result);
-}
-
-TEST(CellData, FixedCellsKeepTheirBits)
-{
-  CellInput input(Torus(32, 20));
-  input.Data.Fixed = CellsNear(input, { 3.0, 0.0, 0.0 }, 0.7);
-  input.Data.FixedOnCells = true;
-  const Values result = CellResultOf(input, HeatSettings());
-  Index fixed = 0;
-  for (Index c = 0; c < input.Data.NumberOfCells; ++c)
-  {
-    if (input.Data.Fixed[static_cast<std::size_t>(c)] != 0)
-    {
-      ++fixed;
-      EXPECT_EQ(result(c, 0), input.Data.Data(c, 0));
-    }
-  }
-  EXPECT_GT(fixed, 5);
-  EXPECT_GT((result - input.Data.Data).cwiseAbs().maxCoeff(), 0.05);
 }
 
 TEST(CellData, OfFactorZeroHaveNoEffectOnTheSteadyState)

@@ -3,11 +3,9 @@
 //
 // The detail of cells that points do not resolve diffuses, too.
 
-#include "Allocations.h"
 #include "CellRun.h"
 #include "MeshFiles.h"
 #include "Meshes.h"
-#include "ThreadedFor.h"
 
 #include "Core/Operators/CellFluxes.h"
 #include "Core/Operators/CotanWeights.h"
@@ -357,101 +355,6 @@ TEST(CellDetail, TimeStepsTendToTheSteadyState)
     Values change = CellResultOf(input, settings) - input.Data.Data;
     change(5, 0) = 0.0;
     EXPECT_LT(change.cwiseAbs().maxCoeff(), 1e-3);
-  }
-}
-
-TEST(CellDetail, StepsHaveTheSameBitsInAnyOrder)
-{
-  for (CellInput& input : Shapes())
-  {
-    input.Data.Data += 0.3 * WhiteNoise(input.Data.NumberOfCells);
-    const auto check = [&](auto settings)
-    {
-      settings.NumberOfTimeSteps = 8;
-      settings.GenerateTimeSteps = true;
-      for (const int limit : { 0, 512 })
-      {
-        settings.CheckpointMemoryLimit = limit;
-        SurfaceDiffusion::Run forward(SerialFor()), jumping(SerialFor());
-        Start(forward, input, settings);
-        Start(jumping, input, settings);
-        std::vector<Values> results;
-        for (int step = 0; step <= 8; ++step)
-        {
-          results.push_back(ResultAt(forward, input, step));
-        }
-        EXPECT_EQ(results[0], input.Data.Data);
-        EXPECT_NE(results[8], results[7]);
-        for (const int step : { 7, 2, 0, 8, 5, 6 })
-        {
-          EXPECT_EQ(ResultAt(jumping, input, step), results[static_cast<std::size_t>(step)]);
-        }
-      }
-    };
-    check(HeatSettings());
-    check(TotalVariationSettings());
-    check(TensorDiffusionSettings());
-  }
-}
-
-TEST(CellDetail, DoesNotDependOnThreads)
-{
-  CellInput input(Icosphere(4));
-  input.Data.Data = WhiteNoise(input.Data.NumberOfCells, 3);
-  TotalVariationSettings variation;
-  variation.NumberOfTimeSteps = 2;
-  SurfaceDiffusion::Run heat(SerialFor()), flow(SerialFor());
-  const Values ofHeat = CellResultOf(heat, input, HeatSettings());
-  const Values ofFlow = CellResultOf(flow, input, variation);
-  const ThreadedFor threads(3);
-  SurfaceDiffusion::Run heats(threads), flows(threads);
-  EXPECT_EQ(CellResultOf(heats, input, HeatSettings()), ofHeat);
-  EXPECT_EQ(CellResultOf(flows, input, variation), ofFlow);
-}
-
-TEST(CellDetail, DoesNotDependOnTheNumberingBeyondRoundOff)
-{
-  const Testing::Surface surface = Torus(20, 12);
-  CellInput one(surface);
-  one.Data.Data = WhiteNoise(one.Data.NumberOfCells);
-  Testing::Surface renumbered = surface;
-  const std::vector<Index> numbers = Permutation(static_cast<Index>(surface.Vertices.rows()), 5);
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-  {
-    renumbered.Vertices.row(numbers[i]) = surface.Vertices.row(static_cast<Index>(i));
-  }
-  renumbered.Faces =
-    surface.Faces.unaryExpr([&](Index i) { return numbers[static_cast<std::size_t>(i)]; });
-  CellInput other(renumbered);
-  other.Data.Data = one.Data.Data;
-  HeatSettings settings;
-  settings.Tolerance = 1e-13;
-  EXPECT_LT(
-    (CellResultOf(one, settings) - CellResultOf(other, settings)).cwiseAbs().maxCoeff(), 1e-11);
-}
-
-TEST(CellDetail, LaterStepsNeedNoAllocation)
-{
-  for (CellInput& input : Shapes())
-  {
-    for (const Eigen::Index columns : { 1, 3, 16 })
-    {
-      input.Data.Data = WhiteNoise(input.Data.NumberOfCells, columns);
-      HeatSettings settings;
-      settings.Solver = SolverMethod::ConjugateGradient;
-      settings.NumberOfTimeSteps = 13;
-      SurfaceDiffusion::Run run(SerialFor());
-      Start(run, input, settings);
-      run.Seek(2, ProgressMonitor());
-      const auto allocationsUpTo = [&](int step)
-      {
-        const long before = NumberOfAllocations();
-        run.Seek(step, ProgressMonitor());
-        return NumberOfAllocations() - before;
-      };
-      const long ofOneStep = allocationsUpTo(3); // of Run::Seek(), which lists the results
-      EXPECT_LE(allocationsUpTo(13), ofOneStep + 2) << columns;
-    }
   }
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CellRun.h"
 #include "Meshes.h"
-#include "ThreadedFor.h"
 
 #include "Core/Operators/CellTransfer.h"
 
@@ -179,21 +178,6 @@ TEST(CellTransfer, ThereAndBackKeepsAThirdOfWhiteNoise)
   const Values back = transfer.ToCells(pf);
   EXPECT_NEAR(Deviation(transfer.CellAreas(), back), 0.31 * before, 0.01 * before);
   EXPECT_NEAR(Deviation(transfer.CellAreas(), noise - back), 0.87 * before, 0.01 * before);
-}
-
-TEST(CellTransfer, IsTheSameForAnyNumberOfThreads)
-{
-  const Testing::Surface shape = Icosphere(4);
-  const auto mesh = MakeMesh(shape);
-  const CellInput input(shape);
-  const ThreadedFor threads(3);
-  const CellTransfer one(*mesh, input.Data.Cells, input.Data.NumberOfCells, SerialFor());
-  const CellTransfer three(*mesh, input.Data.Cells, input.Data.NumberOfCells, threads);
-  const Values noise = RandomCells(one.NumberOfCells());
-  const Vector ones = Vector::Ones(noise.rows());
-  EXPECT_EQ(one.ToVertices(noise, ones).Of, three.ToVertices(noise, ones).Of);
-  EXPECT_EQ(one.ToCells(Noise(*mesh)), three.ToCells(Noise(*mesh)));
-  EXPECT_EQ(one.NoiseGain(), three.NoiseGain());
 }
 
 } // namespace SurfaceDiffusion

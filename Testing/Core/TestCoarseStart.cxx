@@ -8,7 +8,6 @@
 #include "Meshes.h"
 #include "Run/TextureSettings.h"
 #include "RunInput.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -167,45 +166,18 @@ TEST(CoarseStart, HistoryHasTheIntegralsAndEnergiesOfTheStates)
   }
 }
 
-TEST(CoarseStart, RestartsWithTheSameBits)
+TEST(CoarseStart, HasTheNoiseOnTheSurfaceAsItsInitialState)
 {
   const RunInput input = WithoutData(Icosphere(4));
   TextureSettings settings = Texture(true);
-  SurfaceDiffusion::Run once(SerialFor());
-  const Values final = StateOf(once, { input.Block() }, settings);
-  const int last = once.GetBlock(0).Path->Step();
-
   settings.GenerateTimeSteps = true;
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { input.Block() }, settings);
-  const Trajectory& path = *run.GetBlock(0).Path;
-  EXPECT_EQ(path.State(), final);
   run.Seek(0, ProgressMonitor());
-  const Values start = path.State();
-  run.Seek(last - 3, ProgressMonitor());
-  const Values coarse = path.State();
-  run.Seek(last, ProgressMonitor());
-  EXPECT_EQ(path.State(), final);
-  run.Seek(last - 3, ProgressMonitor());
-  EXPECT_EQ(path.State(), coarse);
-  run.Seek(0, ProgressMonitor());
-  EXPECT_EQ(path.State(), start);
-
-  SurfaceDiffusion::Run never(SerialFor());
   TextureSettings none = Texture(false);
   none.NumberOfTimeSteps = 0;
-  EXPECT_EQ(StateOf(never, { input.Block() }, none), start);
-}
-
-TEST(CoarseStart, ThreadsDoNotChangeABit)
-{
-  const RunInput input = WithoutData(Icosphere(5));
-  TextureSettings settings = Texture(true);
-  settings.StopTolerance = 0.7; // while the pattern grows
-  const ThreadedFor threads(3);
-  SurfaceDiffusion::Run one(SerialFor());
-  SurfaceDiffusion::Run three(threads);
-  EXPECT_EQ(StateOf(one, { input.Block() }, settings), StateOf(three, { input.Block() }, settings));
+  SurfaceDiffusion::Run never(SerialFor());
+  EXPECT_EQ(StateOf(never, { input.Block() }, none), run.GetBlock(0).Path->State());
 }
 
 TEST(CoarseStart, OnlyPatternsFromNoiseUntilStationaryStartCoarse)

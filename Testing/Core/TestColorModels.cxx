@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Models/ChromaticityBrightness.h"
 #include "Core/Models/Harmonic/UnitVectors.h"
 #include "Core/Models/OpponentColors.h"
 #include "EveryMeshFile.h"
 #include "HarmonicMaps.h"
 #include "Heat.h"
-#include "ThreadedFor.h"
 #include "TotalVariation.h"
 
 #include <gtest/gtest.h>
@@ -364,35 +362,6 @@ TEST(ChromaticityBrightness, BlackEverywhereStaysBlack)
   }
 }
 
-TEST(ChromaticityBrightness, MissingDataAreNotReadAndFixedColoursStayToTheLastBit)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  PointData data = PointData::FromValues(Patches(mesh, s, 0.1));
-  data.Missing.head(40) = true;
-  data.Fixed.tail(40) = true;
-  PointData other = data;
-  other.Given.topRows(40).setConstant(17.0);
-  for (const double timeStep : { 0.0, 0.05 })
-  {
-    for (const bool lagged : { false, true })
-    {
-      ColorSettings settings;
-      settings.TimeStep = timeStep;
-      settings.Fidelity = 5.0;
-      settings.Lagged = lagged;
-      settings.Tolerance = 1e-4;
-      const auto a = MakeColors(assembler, data, settings);
-      const auto b = MakeColors(assembler, other, settings);
-      Advance(*a, 2);
-      Advance(*b, 2);
-      EXPECT_TRUE(a->State() == b->State());
-      EXPECT_TRUE(a->State().bottomRows(40) == data.Start.bottomRows(40));
-    }
-  }
-}
-
 TEST(ChromaticityBrightness, SteadyStateWithoutConditionsIsTheMean)
 {
   const Surface s = Joined(Icosphere(2), Moved(Icosphere(2), { 5.0, 0.0, 0.0 }));
@@ -406,91 +375,6 @@ TEST(ChromaticityBrightness, SteadyStateWithoutConditionsIsTheMean)
     EXPECT_NEAR(Total(mesh, model->State(), k), Total(mesh, colors, k), 1e-12);
   }
   EXPECT_NEAR(model->Energy(), 0.0, 1e-12);
-}
-
-TEST(ChromaticityBrightness, RestoresEveryBit)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  const PointData data = PointData::FromValues(Patches(assembler->Mesh(), s, 0.2));
-  for (const bool lagged : { false, true })
-  {
-    ColorSettings settings;
-    settings.TimeStep = 0.02;
-    settings.Fidelity = 5.0;
-    settings.Lagged = lagged;
-    settings.Tolerance = 1e-3;
-    const auto model = MakeColors(assembler, data, settings);
-    std::vector<double> start(model->CheckpointSize()), checkpoint(model->CheckpointSize());
-    model->Save(start.data());
-    Advance(*model, 2);
-    const Values second = model->State();
-    model->Save(checkpoint.data());
-    Advance(*model, 2);
-    const Values last = model->State();
-    const double energy = model->Energy();
-    model->Restore(checkpoint.data());
-    EXPECT_TRUE(model->State() == second);
-    Advance(*model, 2);
-    EXPECT_TRUE(model->State() == last);
-    EXPECT_EQ(model->Energy(), energy);
-    model->Restore(start.data());
-    EXPECT_TRUE(model->State() == data.Start);
-    Advance(*model, 4);
-    EXPECT_TRUE(model->State() == last);
-  }
-}
-
-TEST(ChromaticityBrightness, ThreadsDoNotChangeABit)
-{
-  const Surface s = Icosphere(5);
-  const auto assembler = MakeAssembler(s);
-  const PointData data = PointData::FromValues(Patches(assembler->Mesh(), s, 0.2));
-  const ThreadedFor parallel(3);
-  const auto run = [&](const ParallelFor& loop)
-  {
-    ColorSettings settings;
-    settings.TimeStep = 0.02;
-    settings.Fidelity = 50.0;
-    settings.Tolerance = 1e-2;
-    const auto model = MakeColors(assembler, data, settings, loop);
-    Advance(*model, 2);
-    Values u = model->State();
-    u(0, 0) += model->Energy();
-    return u;
-  };
-  EXPECT_TRUE(run(SerialFor()) == run(parallel));
-}
-
-TEST(ChromaticityBrightness, NumberingAndOrientationDoNotMatter)
-{
-  const Surface s = Icosphere(3);
-  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 17);
-  const auto run = [&](const Surface& surface)
-  {
-    const auto assembler = MakeAssembler(surface);
-    const TriangleMesh& mesh = assembler->Mesh();
-    ColorSettings settings;
-    settings.TimeStep = 0.02;
-    settings.Fidelity = 5.0;
-    settings.Lagged = true;
-    settings.Tolerance = 1e-12;
-    // No data depend on the numbering.
-    Values colors = Patches(mesh, surface, 0.0);
-    colors.col(0) +=
-      Sample(mesh, surface, [](const Eigen::RowVector3d& x) { return 0.1 * std::cos(9.0 * x[2]); });
-    const auto model = MakeColors(assembler, PointData::FromValues(colors), settings);
-    Advance(*model, 3);
-    return ToInput(mesh, model->State(), surface.NumberOfVertices());
-  };
-  const Values u = run(s);
-  const Values flipped = run(Flipped(s));
-  const Values moved = run(Renumbered(s, numbers));
-  EXPECT_LT((u - flipped).cwiseAbs().maxCoeff(), 1e-9);
-  for (Index i = 0; i < s.NumberOfVertices(); ++i)
-  {
-    EXPECT_LT((u.row(i) - moved.row(numbers[i])).cwiseAbs().maxCoeff(), 1e-9);
-  }
 }
 
 TEST(ChromaticityBrightness, RotationsOfColourSpaceCommute)
@@ -510,30 +394,6 @@ TEST(ChromaticityBrightness, RotationsOfColourSpaceCommute)
   Advance(*a, 3);
   Advance(*b, 3);
   EXPECT_LT((a->State() * turn - b->State()).cwiseAbs().maxCoeff(), 1e-9);
-}
-
-TEST(ChromaticityBrightness, StepsAfterTheFirstNeedNoMemory)
-{
-  if (NumberOfAllocations() < 0)
-  {
-    GTEST_SKIP() << "allocations cannot be counted here";
-  }
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const PointData data = PointData::FromValues(Patches(assembler->Mesh(), s, 0.3));
-  for (const bool lagged : { false, true })
-  {
-    ColorSettings settings;
-    settings.TimeStep = 0.01;
-    settings.Fidelity = 5.0;
-    settings.Lagged = lagged;
-    settings.Tolerance = 1e-2;
-    const auto model = MakeColors(assembler, data, settings);
-    Advance(*model, 1);
-    const long before = NumberOfAllocations();
-    Advance(*model, 4);
-    EXPECT_EQ(NumberOfAllocations(), before) << lagged;
-  }
 }
 
 namespace
@@ -654,21 +514,6 @@ TEST(OpponentColors, WeightedJointMinimumIsCertifiedAndTheLimitOfTimeSteps)
   EXPECT_NEAR(energy, steady->Energy(), 0.01 * steady->Energy());
 }
 
-TEST(OpponentColors, FixedColoursStayToTheLastBit)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  const TriangleMesh& mesh = assembler->Mesh();
-  PointData data = PointData::FromValues(Noise(mesh, 3));
-  data.Fixed.head(50) = true;
-  const Values start = data.Start;
-  OpponentColors model(std::move(data),
-    [&](PointData opponents)
-    { return MakeExact(assembler, std::move(opponents), ExactSettings(mesh, 0.05)); });
-  model.Advance(ProgressMonitor());
-  EXPECT_EQ(model.State().topRows(50), start.topRows(50));
-  EXPECT_GT((model.State() - start).cwiseAbs().maxCoeff(), 0.1);
-}
-
 TEST(OpponentColors, KeepTheTotalsOfColours)
 {
   const Surface s = Icosphere(3);
@@ -683,48 +528,6 @@ TEST(OpponentColors, KeepTheTotalsOfColours)
     {
       const double total = Total(mesh, data.Given, k);
       EXPECT_NEAR(Total(mesh, model->State(), k), total, 1e-12 * std::abs(total));
-    }
-  }
-}
-
-TEST(OpponentColors, RestoreEveryBit)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  const PointData data = PointData::FromValues(Patches(assembler->Mesh(), s, 0.2));
-  const auto model = MakeOpponent(assembler, data, 0.25, false, 0.05);
-  std::vector<double> start(model->CheckpointSize()), checkpoint(model->CheckpointSize());
-  model->Save(start.data());
-  Advance(*model, 1);
-  model->Save(checkpoint.data());
-  Advance(*model, 2);
-  const Values last = model->State();
-  model->Restore(checkpoint.data());
-  Advance(*model, 2);
-  EXPECT_TRUE(model->State() == last);
-  model->Restore(start.data());
-  EXPECT_TRUE(model->State() == data.Start);
-}
-
-TEST(OpponentColors, StepsAfterTheFirstNeedNoMemory)
-{
-  if (NumberOfAllocations() < 0)
-  {
-    GTEST_SKIP() << "allocations cannot be counted here";
-  }
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const PointData data = PointData::FromValues(Patches(assembler->Mesh(), s, 0.3));
-  for (const bool lagged : { false, true })
-  {
-    for (const ChannelCoupling coupling : { ChannelCoupling::PerChannel, ChannelCoupling::Joint })
-    {
-      const auto model = MakeOpponent(assembler, data, 0.25, lagged, 0.05, true, coupling, 1e-2);
-      Advance(*model, 1);
-      const long before = NumberOfAllocations();
-      Advance(*model, 2);
-      // The factorisation of the lagged matrices is a library's.
-      EXPECT_TRUE(lagged || NumberOfAllocations() == before);
     }
   }
 }

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/MeanCorrection.h"
-#include "ThreadedFor.h"
 #include "TotalVariation.h"
 
 #include <gtest/gtest.h>
@@ -214,93 +213,4 @@ TEST(CrouzeixRaviart, NoiseDoesNotComeBack)
   const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.05));
   flow->Advance(ProgressMonitor());
   EXPECT_LT(RootMeanSquare(mesh, flow->State()), 0.03 * RootMeanSquare(mesh, data.Start));
-}
-
-TEST(CrouzeixRaviart, ConstantsStay)
-{
-  const auto assembler = MakeAssembler(Disk(8));
-  const TriangleMesh& mesh = assembler->Mesh();
-  const auto constant =
-    MakeOnEdges(assembler, PointData::FromValues(Values::Constant(mesh.NumberOfVertices(), 2, 7.0)),
-      ExactSettings(mesh, 0.1, 1.0));
-  constant->Advance(ProgressMonitor());
-  EXPECT_LT((constant->State().array() - 7.0).abs().maxCoeff(), 1e-14);
-}
-
-TEST(CrouzeixRaviart, StartsFromThePointDataThemselvesAndRestoresEveryBit)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const PointData data = PointData::FromValues(Cap(mesh, s, 1.0) + 0.1 * Noise(mesh));
-  const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.02, 1.0));
-  EXPECT_TRUE(flow->State() == data.Start);
-  std::vector<double> first(flow->CheckpointSize()), second(flow->CheckpointSize());
-  flow->Save(first.data());
-  flow->Advance(ProgressMonitor());
-  const Values one = flow->State();
-  flow->Save(second.data());
-  flow->Advance(ProgressMonitor());
-  const Values two = flow->State();
-  flow->Restore(first.data());
-  EXPECT_TRUE(flow->State() == data.Start);
-  flow->Advance(ProgressMonitor());
-  EXPECT_TRUE(flow->State() == one);
-  flow->Restore(second.data());
-  EXPECT_TRUE(flow->State() == one);
-  flow->Advance(ProgressMonitor());
-  EXPECT_TRUE(flow->State() == two);
-}
-
-TEST(CrouzeixRaviart, ThreadsDoNotChangeABit)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const PointData data = PointData::FromValues(Cap(mesh, s, 1.0) + 0.1 * Noise(mesh));
-  const auto run = [&](const ParallelFor& parallel)
-  {
-    const auto flow = MakeOnEdges(assembler, data, ExactSettings(mesh, 0.01, 0.0, 1e-2), parallel);
-    flow->Advance(ProgressMonitor());
-    return flow->State();
-  };
-  const ThreadedFor parallel(3);
-  EXPECT_TRUE(run(SerialFor()) == run(parallel));
-}
-
-TEST(CrouzeixRaviart, FixedAndMissingVerticesAreHonoured)
-{
-  const auto assembler = MakeAssembler(Strip(20, 4, 5.0, 1.0));
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Index n = mesh.NumberOfVertices();
-  PointData data = PointData::FromValues(Noise(mesh));
-  for (Index i = 0; i < n; ++i)
-  {
-    data.Missing[i] = i % 7 == 0;
-    data.Fixed[i] = i % 5 == 0 && !data.Missing[i];
-    if (data.Missing[i])
-    {
-      data.Start(i, 0) = 0.0;
-    }
-  }
-  PointData other = data;
-  for (Index i = 0; i < n; i += 7)
-  {
-    other.Given(i, 0) = 0.5; // not to be read
-  }
-  const auto run = [&](const PointData& input)
-  {
-    const auto flow = MakeOnEdges(assembler, input, ExactSettings(mesh, 0.0, 2.0));
-    flow->Advance(ProgressMonitor());
-    return flow->State();
-  };
-  const Values u = run(data);
-  for (Index i = 0; i < n; ++i)
-  {
-    if (data.Fixed[i])
-    {
-      EXPECT_EQ(u(i, 0), data.Start(i, 0));
-    }
-  }
-  EXPECT_LT((run(other) - u).cwiseAbs().maxCoeff(), 1e-12);
 }

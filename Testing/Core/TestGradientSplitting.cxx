@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TotalVariation/GradientSplitting.h"
-#include "ThreadedFor.h"
 #include "TotalVariation.h"
 
 #include <gtest/gtest.h>
@@ -236,19 +235,4 @@ TEST(GradientSplitting, OfATinySurfaceIsInDoublePrecision)
   problem.Splitting.Start(1, false, true);
   problem.Start(u);
   EXPECT_LT(problem.Update(u), 1e-12);
-}
-
-TEST(GradientSplitting, ThreadsDoNotChangeABit)
-{
-  const ThreadedFor threads(3);
-  Problem serial(Kind::TotalVariation, ChannelCoupling::Joint, Icosphere(5));
-  Problem threaded(Kind::TotalVariation, ChannelCoupling::Joint, Icosphere(5), threads);
-  for (Problem* problem : { &serial, &threaded })
-  {
-    problem->Splitting.Start(3, false, true);
-    problem->Splitting.Update(Noise(*problem->Mesh, 3), Relaxation);
-    problem->Splitting.SetGrowth(2.0);
-    problem->Splitting.Update(Noise(*problem->Mesh, 3, 1), Relaxation);
-  }
-  EXPECT_TRUE(serial.RightHandSide(3) == threaded.RightHandSide(3));
 }

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Models/Harmonic/UnitVectors.h"
 #include "HarmonicMaps.h"
 #include "Heat.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -39,82 +37,6 @@ PointData Hedgehog(const TriangleMesh& mesh, const Surface& s, double turns)
 }
 
 } // namespace
-
-TEST(HarmonicMap, ConstantMapsStay)
-{
-  const auto assembler = MakeAssembler(Jittered(Strip(12, 12), 0.03, 0.01, 0.99, 0.01, 0.99));
-  const TriangleMesh& mesh = assembler->Mesh();
-  Values constant(mesh.NumberOfVertices(), 3);
-  constant.rowwise() = Eigen::RowVector3d(0.6, 0.0, 0.8);
-  for (const MapScheme scheme : AllSchemes)
-  {
-    for (const double exponent : { 1.0, 1.5, 2.0 })
-    {
-      const auto map = MakeMap(
-        assembler, PointData::FromValues(constant), MapSettings(mesh, exponent, 0.1, 1e-8, scheme));
-      EXPECT_EQ(map->Energy(), 0.0);
-      Advance(*map, 3);
-      EXPECT_LT((map->State() - constant).cwiseAbs().maxCoeff(), 1e-14);
-    }
-  }
-}
-
-TEST(HarmonicMap, BitsDoNotDependOnThreads)
-{
-  const auto assembler = MakeAssembler(Icosphere(5)); // six blocks
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Values f = RandomUnitVectors(mesh, 3);
-  for (const MapScheme scheme : { MapScheme::ExplicitReaction, MapScheme::TangentPlane })
-  {
-    for (const bool lineField : { false, true })
-    {
-      auto settings = MapSettings(mesh, 1.0, 1e-3, 1e-4, scheme);
-      settings.LineField = lineField;
-      const auto serial =
-        MakeMap(assembler, PointData::FromValues(f), settings, MakeConjugateGradientSolver());
-      Advance(*serial, 2);
-      for (const int threads : { 2, 4 })
-      {
-        const ThreadedFor parallel(threads);
-        const auto threaded = MakeMap(assembler, PointData::FromValues(f), settings,
-          MakeConjugateGradientSolver(parallel), parallel);
-        Advance(*threaded, 2);
-        EXPECT_TRUE((threaded->State().array() == serial->State().array()).all());
-        EXPECT_EQ(threaded->Energy(), serial->Energy());
-      }
-    }
-  }
-}
-
-TEST(HarmonicMap, RestartedRunsGiveTheSameBits)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Values f = RandomUnitVectors(mesh, 3);
-  for (const MapScheme scheme : AllSchemes)
-  {
-    for (const auto method : { HarmonicMap::Preconditioner::Automatic,
-           HarmonicMap::Preconditioner::Factor, HarmonicMap::Preconditioner::Multigrid })
-    {
-      auto settings = MapSettings(mesh, 1.5, 0.05, 1e-4, scheme);
-      settings.Method = method;
-      settings.Fidelity = 0.1;
-      const auto map = MakeMap(assembler, PointData::FromValues(f), settings);
-      Advance(*map, 2);
-      std::vector<double> checkpoint(map->CheckpointSize());
-      map->Save(checkpoint.data());
-      Advance(*map, 3);
-      const Values end = map->State();
-      map->Restore(checkpoint.data());
-      Advance(*map, 3);
-      EXPECT_TRUE((map->State().array() == end.array()).all());
-      const auto fresh = MakeMap(assembler, PointData::FromValues(f), settings);
-      fresh->Restore(checkpoint.data());
-      Advance(*fresh, 3);
-      EXPECT_TRUE((fresh->State().array() == end.array()).all());
-    }
-  }
-}
 
 TEST(HarmonicMap, PreconditionersAgree)
 {
@@ -337,34 +259,4 @@ TEST(HarmonicMap, HalfTurnsAreSmoothAsLines)
   const auto vectors = MakeMap(assembler, Hedgehog(mesh, s, 0.5), settings);
   EXPECT_NEAR(half->Energy() / full->Energy(), 0.25, 0.05);
   EXPECT_GT(vectors->Energy(), 2.0 * half->Energy());
-}
-
-TEST(HarmonicMap, StepsAfterTheFirstAllocateNothing)
-{
-  const auto assembler = MakeAssembler(Icosphere(4)); // two blocks
-  const TriangleMesh& mesh = assembler->Mesh();
-  const ProgressMonitor::Callback go = [](double) { return true; };
-  for (const Eigen::Index m : { 2, 3, 5 })
-  {
-    for (const MapScheme scheme : AllSchemes)
-    {
-      for (const bool lineField : { false, true })
-      {
-        auto data = PointData::FromValues(RandomUnitVectors(mesh, m));
-        data.Missing.head(50) = true;
-        data.Fixed.tail(50) = true;
-        auto settings = MapSettings(mesh, 1.5, 1e-3, 1e-4, scheme);
-        settings.Fidelity = 1.0;
-        settings.LineField = lineField;
-        const auto map = MakeMap(assembler, data, settings, MakeConjugateGradientSolver());
-        map->Advance(ProgressMonitor(go));
-        const long before = NumberOfAllocations();
-        map->Advance(ProgressMonitor(go));
-        map->Advance(ProgressMonitor(go));
-        map->Energy();
-        EXPECT_EQ(NumberOfAllocations() - before, 0)
-          << m << " components, scheme " << static_cast<int>(scheme);
-      }
-    }
-  }
 }

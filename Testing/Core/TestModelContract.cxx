@@ -1,27 +1,22 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A run that was aborted within any loop is kept, and the next update continues it. It gives the
-// bits of a run that was never aborted: nothing that was half filled is taken for complete, and no
-// data are left changed. SURFACEDIFFUSION_LONG in the environment selects every loop.
+// What every model promises, for every model of ModelKinds.h. SURFACEDIFFUSION_LONG in the
+// environment selects every place where a run can end early.
+#include "Allocations.h"
+#include "CellRun.h"
 #include "Meshes.h"
-#include "RunInput.h"
-
-#include "Run/HarmonicMapSettings.h"
-#include "Run/HeatSettings.h"
-#include "Run/MumfordShahSettings.h"
-#include "Run/SegmentationSettings.h"
-#include "Run/TensorDiffusionSettings.h"
-#include "Run/TextureSettings.h"
-#include "Run/TotalVariationSettings.h"
+#include "ModelKinds.h"
+#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
+#include <vector>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -47,144 +42,432 @@ public:
   mutable long Left = 0; ///< the number of the loop that is aborted, or 0
 };
 
-struct Kind
+class ModelContract : public testing::TestWithParam<ModelKind>
 {
-  const char* Name;
-  std::function<std::shared_ptr<RunSettings>()> Make;
-};
+protected:
+  const ModelKind& Kind = this->GetParam();
+  std::shared_ptr<RunSettings> Settings = this->Kind.Make(nullptr);
 
-template <typename Settings>
-Kind MakeKind(const char* name, int steps, const std::function<void(Settings&)>& set)
-{
-  return { name,
-    [=]() -> std::shared_ptr<RunSettings>
-    {
-      auto settings = std::make_shared<Settings>();
-      settings->NumberOfTimeSteps = steps;
-      set(*settings);
-      return settings;
-    } };
-}
-
-std::vector<Kind> AllKinds()
-{
-  using Heat = HeatSettings;
-  using TV = TotalVariationSettings;
-  using Harmonic = HarmonicMapSettings;
-  using Shah = MumfordShahSettings;
-  using Tensor = TensorDiffusionSettings;
-  return {
-    MakeKind<Heat>("Heat", 3, [](Heat&) {}),
-    MakeKind<Heat>("HeatMultigrid", 2, [](Heat& s) { s.Solver = SolverMethod::Multigrid; }),
-    MakeKind<Heat>("HeatDelaunay", 1, [](Heat& s) { s.IntrinsicDelaunay = true; }),
-    MakeKind<Heat>("HeatDeblurring", 1,
-      [](Heat& s)
-      {
-        s.Mode = HeatMode::SteadyState;
-        s.FidelityWeight = 2.0;
-        s.Blur.FWHM = 0.15;
-      }),
-    MakeKind<Heat>("HeatAutomaticFidelity", 2, [](Heat& s) { s.AutomaticFidelity = true; }),
-    MakeKind<TV>("TV", 2, [](TV&) {}),
-    MakeKind<TV>("TVImplicit", 1,
-      [](TV& s) { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Implicit; }),
-    MakeKind<TV>("TVAbsolute", 1,
-      [](TV& s)
-      {
-        s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Implicit;
-        s.FidelityNorm = FidelityNorm::L1;
-      }),
-    MakeKind<TV>("TVDeblurring", 1,
-      [](TV& s)
-      {
-        s.Mode = TotalVariationMode::SteadyState;
-        s.Blur.FWHM = 0.15;
-        s.StopTolerance = 1e-2;
-      }),
-    MakeKind<TV>(
-      "CrouzeixRaviart", 2, [](TV& s) { s.Discretization = Discretization::CrouzeixRaviart; }),
-    MakeKind<Harmonic>("Harmonic", 2, [](Harmonic&) {}),
-    MakeKind<Harmonic>("HarmonicMinimizing", 1,
-      [](Harmonic& s) { s.Scheme = HarmonicMap::Scheme::MinimizingMovement; }),
-    MakeKind<Harmonic>("HarmonicLines", 2, [](Harmonic& s) { s.LineField = true; }),
-    MakeKind<Shah>("MumfordShah", 40, [](Shah&) {}),
-    MakeKind<Tensor>("Beltrami", 2, [](Tensor&) {}),
-    MakeKind<Tensor>(
-      "CoherenceEnhancing", 2, [](Tensor& s) { s.Model = TensorModel::CoherenceEnhancing; }),
-    MakeKind<TextureSettings>("Texture", 3, [](TextureSettings&) {}),
-    MakeKind<TextureSettings>(
-      "TextureCoarseStart", 40, [](TextureSettings& s) { s.CoarseStartSize = 2000; }),
-    MakeKind<SegmentationSettings>(
-      "Segmentation", 1, [](SegmentationSettings& s) { s.StopTolerance = 0.1; }),
-  };
-}
-
-/// A noisy step around 100, and the position's direction for maps to the sphere.
-RunInput MakeInput(const RunSettings& settings)
-{
-  RunInput input(Plate(70, 1.0)); // loops over vertices have several blocks
-  const auto n = input.Vertices.rows();
-  if (dynamic_cast<const TextureSettings*>(&settings))
+  /// Minimisers iterate in single precision for tolerances that allow it.
+  bool UsesSinglePrecision() const
   {
-    input.Data.Data.resize(0, 0);
+    const auto* const variation = dynamic_cast<const TotalVariationSettings*>(this->Settings.get());
+    return this->IsSegmentation() || (variation && variation->Minimizes());
+  }
+  bool UsesRandomNumbers() const { return this->Settings->DescribeModel().UsesRandomNumbers; }
+  bool IsSegmentation() const
+  {
+    return dynamic_cast<const SegmentationSettings*>(this->Settings.get()) != nullptr;
+  }
+  int LastStep() const { return this->Settings->DescribeModel().NumberOfSteps; }
+
+  /// A noisy step around 100, or of the direction of unit vectors, with a hole.
+  CellInput MakeInput(const Testing::Surface& surface) const
+  {
+    CellInput input(surface);
+    input.Data.DataOnCells = this->Kind.IsOnCells();
+    if (!this->Kind.IsOnCells())
+    {
+      input.Data.Cells.clear();
+    }
+    if (this->Settings->DescribeModel().NeedsDirections)
+    {
+      input.Data.Directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(input.Vertices.rows(), 1);
+    }
+    if (this->Kind.Data == Content::Nothing)
+    {
+      input.Data.Data.resize(0, 0);
+      return input;
+    }
+    const Points places = this->Kind.IsOnCells() ? input.Centres() : input.Vertices;
+    Values& f = input.Data.Data;
+    f.resize(places.rows(), this->Kind.NumberOfComponents());
+    for (Eigen::Index i = 0; i < f.rows(); ++i)
+    {
+      for (Eigen::Index k = 0; k < f.cols(); ++k)
+      {
+        f(i, k) = (this->Kind.HasUnitVectors() ? (k == 2 ? 3.0 : 0.0) : 100.0) +
+          (places(i, 0) > 0.1 ? 1.0 : 0.0) + UniformRandom(3, k, i);
+      }
+    }
+    f.middleRows(f.rows() / 2, 30).setConstant(std::numeric_limits<double>::quiet_NaN());
     return input;
   }
-  const bool isMap = dynamic_cast<const HarmonicMapSettings*>(&settings) != nullptr;
-  input.Data.Data.resize(n, isMap ? 3 : 1);
-  for (Eigen::Index i = 0; i < n; ++i)
+
+  void Update(SurfaceDiffusion::Run& run, const RunInput& input,
+    const ProgressMonitor& progress = ProgressMonitor()) const
   {
-    for (Eigen::Index k = 0; k < input.Data.Data.cols(); ++k)
+    run.Update({ input.Block() }, this->Settings, Alone, progress);
+  }
+
+  /// All that a run returns at a step.
+  std::vector<Values> ResultsAt(SurfaceDiffusion::Run& run, const RunInput& input, int step,
+    const ProgressMonitor& progress = ProgressMonitor()) const
+  {
+    run.Seek(step, progress);
+    const SurfaceDiffusion::Run::Block& block = run.GetBlock(0);
+    const auto record = static_cast<std::size_t>(block.Path->Step());
+    std::vector<Values> results{ block.Path->State(),
+      Values::Constant(1, 1, block.Path->Records()[record].Energy) };
+    if (this->Kind.IsOnCells() && !this->IsSegmentation())
     {
-      input.Data.Data(i, k) = (isMap ? (k == 2 ? 3.0 : 0.0) : 100.0) +
-        (input.Vertices(i, 0) > 0.1 ? 1.0 : 0.0) + UniformRandom(3, k, i);
+      results.push_back(block.CellResult(input.Data.Data, true, SerialFor()));
+      results.back() = results.back().array().isNaN().select(-1.0, results.back()); // NaN != NaN
     }
+    for (const Output& output : block.Outputs)
+    {
+      results.push_back(output.Rows);
+      if (output.Lines)
+      {
+        results.push_back(output.Lines->Points);
+      }
+    }
+    return results;
   }
-  for (Eigen::Index i = 0; i < 30; ++i)
+
+  std::vector<Values> Compute(SurfaceDiffusion::Run& run, const RunInput& input,
+    const ProgressMonitor& progress = ProgressMonitor()) const
   {
-    input.Data.Data.row(i + n / 2).setConstant(std::numeric_limits<double>::quiet_NaN());
+    this->Update(run, input, progress.Part(0.0, 0.5));
+    return this->ResultsAt(run, input, this->LastStep(), progress.Part(0.5, 1.0));
   }
-  return input;
-}
 
-Values Compute(
-  SurfaceDiffusion::Run& run, const BlockInput& input, const std::shared_ptr<RunSettings>& settings)
+  Values StateOn(const RunInput& input) const
+  {
+    SurfaceDiffusion::Run run(SerialFor());
+    return this->Compute(run, input).front();
+  }
+
+  /// For some of the places 1 .. all where a run may end early: compute with an end at this place,
+  /// which `endAt` sets, and then again without it. Returns the share of the runs that ended.
+  template <typename EndAt>
+  double ExpectRunsToContinue(long all, const ParallelFor& loops, const CellInput& input,
+    const ProgressMonitor& progress, const std::vector<Values>& expected, const EndAt& endAt) const
+  {
+    const bool isLong = std::getenv("SURFACEDIFFUSION_LONG") != nullptr;
+    int runs = 0, ends = 0;
+    for (long place = 1; place <= all; place += isLong ? 1 + place / 100 : 1 + all / 12, ++runs)
+    {
+      SurfaceDiffusion::Run run(loops);
+      endAt(place);
+      try
+      {
+        this->Compute(run, input, progress);
+      }
+      catch (const Aborted&)
+      {
+        ++ends;
+      }
+      catch (const std::bad_alloc&)
+      {
+        ++ends;
+      }
+      endAt(0);
+      EXPECT_TRUE(this->Compute(run, input) == expected) << "place " << place << " of " << all;
+    }
+    return static_cast<double>(ends) / runs;
+  }
+};
+
+/// A torus, a surface with edges of three triangles, and a sphere.
+Testing::Surface ThreeParts()
 {
-  run.Update({ input }, settings, Alone, ProgressMonitor());
-  run.Seek(settings->DescribeModel().NumberOfSteps, ProgressMonitor());
-  return run.GetBlock(0).Path->State();
+  return Rotated(Joined(Joined(Torus(24, 14), Moved(ThreeFins(6), { 5.0, 0.0, 0.0 })),
+    Moved(Icosphere(2), { 0.0, 0.0, 5.0 })));
 }
 
-class AbortedRuns : public testing::TestWithParam<Kind>
+/// The promises of models of given data.
+class DataModelContract : public ModelContract
 {
 };
 
-void PrintTo(const Kind& kind, std::ostream* os)
+/// A model that can be moved by itself, and the run that keeps what it refers to.
+struct LooseModel
 {
-  *os << kind.Name;
-}
+  SurfaceDiffusion::Run Run{ SerialFor() };
+  Model* Moved = nullptr;
+
+  LooseModel(const ModelKind& kind, const RunInput& input)
+  {
+    this->Run.Update({ input.Block() }, kind.Make(&this->Moved), Alone, ProgressMonitor());
+  }
+};
 
 } // namespace
 
-TEST_P(AbortedRuns, ContinueAfterAnAbortInAnyLoop)
+TEST_P(ModelContract, SameBitsInAnyOrderOfSteps)
 {
-  const std::shared_ptr<RunSettings> settings = this->GetParam().Make();
-  const RunInput input = MakeInput(*settings);
-  AbortedFor loops;
-  SurfaceDiffusion::Run reference(loops);
-  const Values expected = Compute(reference, input.Block(), settings);
-  ASSERT_TRUE(expected.allFinite());
-  const long all = -loops.Left;
-  const bool isLong = std::getenv("SURFACEDIFFUSION_LONG") != nullptr;
-  for (long place = 1; place <= all; place += isLong ? 1 + place / 100 : 1 + all / 25)
+  const CellInput input = this->MakeInput(ThreeParts());
+  const int last = this->LastStep();
+  this->Settings->GenerateTimeSteps = true;
+  SurfaceDiffusion::Run forward(SerialFor());
+  this->Update(forward, input);
+  std::vector<std::vector<Values>> expected;
+  for (int step = 0; step <= last; ++step)
   {
-    SurfaceDiffusion::Run run(loops);
-    loops.Left = place;
-    ASSERT_THROW(Compute(run, input.Block(), settings), Aborted) << place;
-    loops.Left = 0;
-    ASSERT_TRUE(Compute(run, input.Block(), settings) == expected)
-      << "loop " << place << " of " << all;
+    expected.push_back(this->ResultsAt(forward, input, step));
+  }
+  EXPECT_FALSE(expected.back() == expected.front());
+  for (const int limit : { 0, 512 }) // one checkpoint, and all
+  {
+    this->Settings->CheckpointMemoryLimit = limit;
+    SurfaceDiffusion::Run jumping(SerialFor());
+    this->Update(jumping, input);
+    for (const int step : { last, last / 2, 0, last, last - 1 })
+    {
+      EXPECT_TRUE(this->ResultsAt(jumping, input, step) == expected[static_cast<std::size_t>(step)])
+        << "step " << step << ", limit " << limit;
+    }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Core, AbortedRuns, testing::ValuesIn(AllKinds()),
-  [](const auto& kind) { return std::string(kind.param.Name); });
+TEST_P(ModelContract, SameBitsFromEveryCheckpoint)
+{
+  const CellInput input = this->MakeInput(ThreeParts());
+  const auto last = static_cast<std::size_t>(this->LastStep());
+  LooseModel first(this->Kind, input), second(this->Kind, input), fresh(this->Kind, input);
+  Model& model = *first.Moved;
+  std::vector<std::vector<double>> checkpoints;
+  std::vector<Values> states;
+  std::vector<double> energies;
+  const auto keep = [&]
+  {
+    checkpoints.emplace_back(model.CheckpointSize());
+    model.Save(checkpoints.back().data());
+    states.push_back(model.State());
+    energies.push_back(model.Energy());
+  };
+  keep();
+  for (std::size_t step = 0; step < last; ++step)
+  {
+    model.Advance(ProgressMonitor());
+    keep();
+  }
+  const auto expectStep = [&](Model& other, std::size_t step)
+  {
+    EXPECT_TRUE(other.State() == states[step]) << "step " << step;
+    EXPECT_EQ(other.Energy(), energies[step]) << "step " << step;
+  };
+  // The last step first, so that nothing fits that the model has from the step before.
+  for (std::size_t step = last; step-- > 0;)
+  {
+    second.Moved->Restore(checkpoints[step].data());
+    expectStep(*second.Moved, step);
+    second.Moved->Advance(ProgressMonitor());
+    expectStep(*second.Moved, step + 1);
+  }
+  fresh.Moved->Restore(checkpoints[last / 2].data());
+  for (std::size_t step = last / 2; step < last; ++step)
+  {
+    fresh.Moved->Advance(ProgressMonitor());
+  }
+  expectStep(*fresh.Moved, last);
+  EXPECT_EQ(fresh.Moved->Finished(), model.Finished());
+}
+
+TEST_P(ModelContract, SameBitsOnThreads)
+{
+  const CellInput input = this->MakeInput(Plate(70, 1.0)); // several blocks
+  const ThreadedFor threads(3);
+  SurfaceDiffusion::Run serial(SerialFor()), threaded(threads);
+  EXPECT_TRUE(this->Compute(serial, input) == this->Compute(threaded, input));
+}
+
+TEST_P(ModelContract, SameResultInAnyNumberingOrientationAndPosture)
+{
+  if (this->Kind.From == Exemption::Numbering)
+  {
+    GTEST_SKIP();
+  }
+  const Testing::Surface surface = ThreeParts();
+  const std::vector<Index> numbers = Permutation(surface.NumberOfVertices(), 17);
+  Testing::Surface renumbered = Renumbered(surface, numbers);
+  for (Index t = 0; t < renumbered.NumberOfTriangles(); t += 3)
+  {
+    std::swap(renumbered.Faces(t, 0), renumbered.Faces(t, 1));
+  }
+  const CellInput input = this->MakeInput(surface);
+  if (!this->Settings->DescribeModel().NeedsDirections && !this->UsesRandomNumbers())
+  {
+    renumbered = Moved(Rotated(renumbered, 2.0), { 3.0, -2.0, 5.0 }); // numbers belong to places
+  }
+  CellInput other = this->MakeInput(renumbered);
+  const std::vector<Index> rows =
+    this->Kind.IsOnCells() ? Permutation(surface.NumberOfTriangles(), 99) : numbers;
+  for (Eigen::Index i = 0; i < input.Data.Data.rows(); ++i)
+  {
+    other.Data.Data.row(rows[static_cast<std::size_t>(i)]) = input.Data.Data.row(i);
+  }
+  this->Settings->Tolerance = 1e-12;
+  SurfaceDiffusion::Run one(SerialFor()), two(SerialFor());
+  const std::vector<Values> ofOne = this->Compute(one, input), ofTwo = this->Compute(two, other);
+  const Values &u = ofOne[0], &v = ofTwo[0];
+  double largest = 0.0;
+  for (Index i = 0; i < surface.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVectorXd a = u.row(one.GetBlock(0).Surface->VertexOf(i));
+    const Eigen::RowVectorXd b =
+      v.row(two.GetBlock(0).Surface->VertexOf(numbers[static_cast<std::size_t>(i)]));
+    const bool isOpposite = this->Settings->DescribeModel().StateIsLines && a.dot(b) < 0.0;
+    largest = std::max(largest, (a - (isOpposite ? -b : b)).cwiseAbs().maxCoeff());
+  }
+  const double tolerance = this->UsesSinglePrecision() ? 1e-7 : 1e-9;
+  EXPECT_LT(largest, tolerance * u.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(ofOne[1](0, 0), ofTwo[1](0, 0), tolerance * ofOne[1](0, 0));
+}
+
+TEST_P(ModelContract, LaterStepsAllocateNothing)
+{
+  if (NumberOfAllocations() < 0 || this->Kind.From == Exemption::Allocation)
+  {
+    GTEST_SKIP() << "allocations cannot be counted here, or are made";
+  }
+  // Factorisations are a library's, and multigrid has other levels for another matrix.
+  this->Settings->Solver = SolverMethod::ConjugateGradient;
+  const CellInput input = this->MakeInput(Plate(50, 1.0)); // two blocks
+  SurfaceDiffusion::Run run(SerialFor());
+  this->Update(run, input);
+  Trajectory& path = *run.GetBlock(0).Path;
+  path.Reserve(this->LastStep());
+  path.Seek(1);
+  const auto allocationsTo = [&](int step)
+  {
+    const long before = NumberOfAllocations();
+    path.Seek(step);
+    return NumberOfAllocations() - before;
+  };
+  // Work that no step before has needed, such as that of a second attempt to solve.
+  EXPECT_LE(allocationsTo(this->LastStep()), 1);
+  path.Seek(0);
+  // A model of one step has no later ones: the vectors of its result.
+  EXPECT_LE(allocationsTo(this->LastStep()), this->LastStep() == 1 ? 16 : 0);
+}
+
+TEST_P(ModelContract, ContinuesAfterAnAbortInAnyLoop)
+{
+  const CellInput input = this->MakeInput(Plate(46, 1.0)); // two blocks of vertices
+  AbortedFor loops;
+  SurfaceDiffusion::Run reference(loops);
+  const std::vector<Values> expected = this->Compute(reference, input);
+  const auto endAt = [&](long place) { loops.Left = place; };
+  EXPECT_EQ(
+    this->ExpectRunsToContinue(-loops.Left, loops, input, ProgressMonitor(), expected, endAt), 1.0);
+}
+
+TEST_P(ModelContract, ContinuesAfterAnAbortAtAnyReport)
+{
+  const CellInput input = this->MakeInput(ThreeParts());
+  long left = 0;
+  const ProgressMonitor::Callback report = [&](double) { return --left != 0; };
+  const ProgressMonitor progress(report);
+  SurfaceDiffusion::Run reference(SerialFor());
+  const std::vector<Values> expected = this->Compute(reference, input, progress);
+  const auto endAt = [&](long place)
+  {
+    EXPECT_TRUE(place > 0 || left >= 0) << "went on after the abort";
+    left = place;
+  };
+  // The number of reports of a factorisation depends on the time that it takes.
+  EXPECT_GT(this->ExpectRunsToContinue(-left, SerialFor(), input, progress, expected, endAt), 0.5);
+}
+
+TEST_P(ModelContract, ContinuesAfterWantOfMemoryAtAnyPlace)
+{
+  if (NumberOfAllocations() < 0)
+  {
+    GTEST_SKIP() << "allocations cannot be made to fail here";
+  }
+  const CellInput input = this->MakeInput(ThreeParts());
+  SurfaceDiffusion::Run reference(SerialFor());
+  const long before = NumberOfAllocations();
+  const std::vector<Values> expected = this->Compute(reference, input);
+  const long all = NumberOfAllocations() - before;
+  // Some algorithms, such as sorting, can do without the memory.
+  EXPECT_GT(this->ExpectRunsToContinue(
+              all, SerialFor(), input, ProgressMonitor(), expected, FailAllocation),
+    0.5);
+}
+
+TEST_P(DataModelContract, ConstantsStay)
+{
+  CellInput input = this->MakeInput(ThreeParts());
+  const Eigen::RowVector3d constant(-273.15, 0.1, 40.0);
+  for (auto row : input.Data.Data.rowwise())
+  {
+    if (!std::isnan(row[0]))
+    {
+      row = constant.head(row.size());
+    }
+  }
+  SurfaceDiffusion::Run run(SerialFor());
+  this->Update(run, input);
+  const Values start = run.GetBlock(0).Path->State();
+  run.Seek(this->LastStep(), ProgressMonitor());
+  const Values change = run.GetBlock(0).Path->State() - start;
+  EXPECT_LE(change.cwiseAbs().maxCoeff(), 1e-14 * start.cwiseAbs().maxCoeff());
+}
+
+TEST_P(DataModelContract, FixedValuesStayToTheLastBit)
+{
+  CellInput input = this->MakeInput(ThreeParts());
+  input.Data.Fixed.assign(static_cast<std::size_t>(input.Data.Data.rows()), 0);
+  std::fill_n(input.Data.Fixed.begin(), 50, 1);
+  input.Data.FixedOnCells = this->Kind.IsOnCells();
+  SurfaceDiffusion::Run run(SerialFor());
+  this->Update(run, input);
+  const auto fixedRows = [&]
+  {
+    const SurfaceDiffusion::Run::Block& block = run.GetBlock(0);
+    if (this->Kind.IsOnCells())
+    {
+      return Values(block.CellResult(input.Data.Data, true, SerialFor()).topRows(50));
+    }
+    Values rows(50, input.Data.Data.cols());
+    for (Index i = 0; i < 50; ++i)
+    {
+      rows.row(i) = block.Path->State().row(block.Surface->VertexOf(i));
+    }
+    return rows;
+  };
+  const Values start = fixedRows();
+  const Values before = run.GetBlock(0).Path->State();
+  run.Seek(this->LastStep(), ProgressMonitor());
+  EXPECT_TRUE(fixedRows() == start);
+  EXPECT_FALSE(run.GetBlock(0).Path->State() == before);
+}
+
+TEST_P(DataModelContract, MissingDataAreNotRead)
+{
+  CellInput input = this->MakeInput(ThreeParts());
+  input.Data.Mask.assign(static_cast<std::size_t>(input.Data.Data.rows()), 0);
+  std::fill_n(input.Data.Mask.begin(), 50, 1);
+  input.Data.MaskOnCells = this->Kind.IsOnCells();
+  const Values state = this->StateOn(input);
+  input.Data.Data.topRows(50).array() += 0.125; // within the range of the data
+  EXPECT_TRUE(this->StateOn(input) == state);
+}
+
+namespace
+{
+std::vector<ModelKind> DataModelKinds()
+{
+  std::vector<ModelKind> kinds;
+  for (const ModelKind& kind : AllModelKinds())
+  {
+    const auto settings = kind.Make(nullptr);
+    if (std::dynamic_pointer_cast<DataSettings>(settings))
+    {
+      kinds.push_back(kind);
+    }
+  }
+  return kinds;
+}
+
+std::string NameOf(const testing::TestParamInfo<ModelKind>& kind)
+{
+  return kind.param.Name;
+}
+}
+
+INSTANTIATE_TEST_SUITE_P(, ModelContract, testing::ValuesIn(AllModelKinds()), NameOf);
+INSTANTIATE_TEST_SUITE_P(, DataModelContract, testing::ValuesIn(DataModelKinds()), NameOf);

@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Geometry/RidgeCurves.h"
 #include "Core/Models/MumfordShah.h"
-#include "Core/Models/Trajectory.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 #include "EveryMeshFile.h"
 #include "Heat.h"
 #include "Meshes.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -343,50 +340,6 @@ TEST(MumfordShah, RotatedColorsHaveTheSameEdges)
   EXPECT_GT(model->Edges().maxCoeff(), 0.9);
 }
 
-TEST(MumfordShah, NumberingAndOrientationDoNotMatter)
-{
-  const Surface s = Icosphere(4);
-  const auto edges = [&](const Surface& surface, Values& u)
-  {
-    const auto assembler = MakeAssembler(surface);
-    const TriangleMesh& mesh = assembler->Mesh();
-    const Values f = Sample(mesh, surface,
-      [](const Eigen::RowVector3d& x)
-      { return (x[2] > 0.3 ? 1.0 : 0.0) + 0.1 * std::sin(40.0 * x[0] + 30.0 * x[1]); });
-    const auto model =
-      MakeModel(assembler, PointData::FromValues(f), NaturalSettings(mesh, 0.3), 1e-10);
-    Finish(*model);
-    u = ToInput(mesh, model->State(), surface.NumberOfVertices());
-    return ToInput(mesh, model->Edges(), surface.NumberOfVertices());
-  };
-  Values u, other;
-  const Values expected = edges(s, u);
-  EXPECT_LT((edges(Flipped(s), other) - expected).cwiseAbs().maxCoeff(), 1e-8);
-  EXPECT_LT((other - u).cwiseAbs().maxCoeff(), 1e-8);
-  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 3);
-  const Values permuted = edges(Renumbered(s, numbers), other);
-  for (Index i = 0; i < s.NumberOfVertices(); ++i)
-  {
-    ASSERT_NEAR(permuted(numbers[i], 0), expected(i, 0), 1e-8);
-    ASSERT_NEAR(other(numbers[i], 0), u(i, 0), 1e-8);
-  }
-}
-
-TEST(MumfordShah, ThreadsDoNotChangeABit)
-{
-  const Surface s = Icosphere(5);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const PointData data = PointData::FromValues(Cap(mesh, s, 0.3, 0.08));
-  const ThreadedFor threads(3);
-  const auto serial = MakeModel(assembler, data, NaturalSettings(mesh, 0.2));
-  const auto threaded = MakeModel(assembler, data, NaturalSettings(mesh, 0.2), Loose, threads);
-  Finish(*serial);
-  Finish(*threaded);
-  EXPECT_EQ(serial->State(), threaded->State());
-  EXPECT_EQ(serial->Edges(), threaded->Edges());
-}
-
 TEST(MumfordShah, HolesAreFilledThroughEdges)
 {
   for (const Index cells : { 48, 96 })
@@ -452,48 +405,4 @@ TEST(MumfordShah, ConstantsStayToTheLastBit)
   EXPECT_EQ(Finish(*model), 3); // one step per stage
   EXPECT_EQ(model->State(), f);
   EXPECT_EQ(model->Edges(), Vector::Zero(f.rows()));
-}
-
-TEST(MumfordShah, CheckpointsContinueWithTheSameBits)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const PointData data = PointData::FromValues(Cap(mesh, s, 0.3, 0.1));
-  const auto make = [&] { return MakeModel(assembler, data, NaturalSettings(mesh, 0.3)); };
-  const auto model = make();
-  const auto other = make();
-  std::vector<double> checkpoint(model->CheckpointSize());
-  while (!model->Finished())
-  {
-    model->Save(checkpoint.data());
-    other->Restore(checkpoint.data());
-    model->Advance(ProgressMonitor());
-    other->Advance(ProgressMonitor());
-    ASSERT_EQ(model->State(), other->State());
-    ASSERT_EQ(model->Edges(), other->Edges());
-    ASSERT_EQ(model->Energy(), other->Energy());
-    ASSERT_EQ(model->Finished(), other->Finished());
-  }
-}
-
-TEST(MumfordShah, LaterStepsDoNotAllocate)
-{
-  for (const int columns : { 1, 3, 5 })
-  {
-    const auto assembler = MakeAssembler(Icosphere(4)); // two blocks
-    const TriangleMesh& mesh = assembler->Mesh();
-    PointData data = PointData::FromValues(Noise(mesh, columns));
-    data.Missing.head(50) = true;
-    data.Fixed.tail(50) = true;
-    Trajectory trajectory(assembler->SharedMesh(),
-      MakeModel(assembler, std::move(data), NaturalSettings(mesh, 3.0)), std::size_t(1) << 28);
-    const ProgressMonitor::Callback go = [](double) { return true; };
-    trajectory.Reserve(40);
-    trajectory.Seek(1, ProgressMonitor(go));
-    const long before = NumberOfAllocations();
-    trajectory.Seek(40, ProgressMonitor(go)); // through all stages
-    trajectory.Seek(3, ProgressMonitor(go));
-    EXPECT_EQ(NumberOfAllocations() - before, 0) << columns << " columns";
-  }
 }

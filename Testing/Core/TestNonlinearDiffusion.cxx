@@ -5,7 +5,6 @@
 #include "Core/Solvers/SolverChoice.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
-#include "ThreadedFor.h"
 #include "TotalVariation.h"
 
 #include <Eigen/LU>
@@ -417,44 +416,4 @@ TEST(NonlinearDiffusion, FixedVerticesKeepTheirValuesAndShapeTheRest)
       EXPECT_EQ(model->State()(i, 0), x(i, 0));
     }
   }
-}
-
-TEST(NonlinearDiffusion, RestoresEveryBit)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  const TriangleMesh& mesh = assembler->Mesh();
-  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
-  solver->SetLimits({ 1e-3, 1000 });
-  const auto model =
-    MakeLagged(assembler, ColourNoise(mesh, 3), LaggedSettings(mesh, 0.02, 1.0), solver);
-  Advance(*model, 2);
-  std::vector<double> checkpoint(model->CheckpointSize());
-  model->Save(checkpoint.data());
-  Advance(*model, 3);
-  const Values u = model->State();
-  model->Restore(checkpoint.data());
-  Advance(*model, 3);
-  EXPECT_TRUE(model->State() == u);
-}
-
-TEST(NonlinearDiffusion, ThreadsDoNotChangeABit)
-{
-  const Surface s = Icosphere(5);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const auto run = [&](const ParallelFor& parallel)
-  {
-    std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver(parallel);
-    solver->SetLimits({ 1e-2, 1000 });
-    auto settings = LaggedSettings(mesh, 0.02, 1.0);
-    settings.AcrossDiffusivity = 0.5;
-    NonlinearDiffusion model(
-      assembler, SkewFrames(mesh, s), ColourNoise(mesh, 3), settings, solver, parallel);
-    Advance(model, 2);
-    Values u = model.State();
-    u(0, 0) += model.Energy();
-    return u;
-  };
-  const ThreadedFor parallel(3);
-  EXPECT_TRUE(run(SerialFor()) == run(parallel));
 }

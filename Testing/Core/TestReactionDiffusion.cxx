@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Models/Textures/DispersionRelation.h"
 #include "Core/Models/Textures/ReactionDiffusion.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -530,57 +528,6 @@ TEST(ReactionDiffusion, FixedVerticesKeepTheirStart)
       }
     }
     EXPECT_GT(moved, 0.1);
-  }
-}
-
-TEST(ReactionDiffusion, RestartsWithTheSameBits)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  for (const bool direct : { true, false })
-  {
-    const auto model = MakeTexture(assembler, Settings(), SerialFor(), direct);
-    Advance(*model, 60);
-    std::vector<double> checkpoint(model->CheckpointSize());
-    model->Save(checkpoint.data());
-    Advance(*model, 20);
-    const Values later = model->State();
-    model->Restore(checkpoint.data());
-    EXPECT_FALSE(model->State() == later);
-    Advance(*model, 20);
-    EXPECT_TRUE(model->State() == later);
-  }
-}
-
-TEST(ReactionDiffusion, ThreadsDoNotChangeABit)
-{
-  const Surface s = Icosphere(4);
-  for (const bool direct : { true, false })
-  {
-    const auto serial = MakeTexture(MakeAssembler(s), Settings(), SerialFor(), direct);
-    Advance(*serial, 8);
-    for (const int threads : { 2, 4 })
-    {
-      const ThreadedFor parallel(threads);
-      const auto threaded = MakeTexture(MakeAssembler(s), Settings(), parallel, direct);
-      Advance(*threaded, 8);
-      EXPECT_TRUE(threaded->State() == serial->State());
-      EXPECT_EQ(threaded->Energy(), serial->Energy());
-    }
-  }
-}
-
-TEST(ReactionDiffusion, StepsAfterTheFirstAllocateNothing)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  for (const bool direct : { false, true })
-  {
-    Settings settings;
-    settings.StopTolerance = 1e-6;
-    const auto model = MakeTexture(assembler, settings, SerialFor(), direct);
-    Advance(*model, 1);
-    const long before = NumberOfAllocations();
-    Advance(*model, 100);
-    EXPECT_EQ(NumberOfAllocations(), before) << direct;
   }
 }
 

@@ -379,37 +379,6 @@ TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)
   EXPECT_EQ(TotalVariationSettings().InitialFill, InitialFill::Mean);
 }
 
-TEST(Run, RandomNumbersBelongToPlacesRegardlessOfTheNumbering)
-{
-  const Testing::Surface sphere = Testing::Icosphere(3);
-  const std::vector<Index> numbers = Testing::Permutation(sphere.NumberOfVertices(), 5);
-  const Testing::Surface renumbered = Testing::Renumbered(sphere, numbers);
-  TextureSettings settings;
-  settings.NumberOfTimeSteps = 0;
-  std::vector<Values> states;
-  for (const Testing::Surface& s : { sphere, renumbered })
-  {
-    RunInput input(s);
-    input.Data.Data.resize(0, 0);
-    SurfaceDiffusion::Run run(SerialFor());
-    const Values u = StateOf(run, { input.Block() }, settings);
-    Values ofPoints(s.NumberOfVertices(), 2);
-    for (Index i = 0; i < s.NumberOfVertices(); ++i)
-    {
-      ofPoints.row(i) = u.row(run.GetBlock(0).Surface->VertexOf(i));
-    }
-    states.push_back(ofPoints);
-  }
-  for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
-  {
-    const Index j = renumbered.Vertices.row(numbers[i]) == sphere.Vertices.row(i)
-      ? numbers[i]
-      : static_cast<Index>(std::find(numbers.begin(), numbers.end(), i) - numbers.begin());
-    ASSERT_EQ(renumbered.Vertices.row(j), sphere.Vertices.row(i));
-    EXPECT_EQ(states[1].row(j), states[0].row(i));
-  }
-}
-
 TEST(Run, CoincidentPointsHaveRandomNumbersOfTheirOwn)
 {
   const Testing::Surface sphere = Testing::Icosphere(2);

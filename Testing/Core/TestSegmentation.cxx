@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Models/TotalVariation/SimplexSplitting.h"
 #include "Core/Statistics/RegionMeans.h"
 #include "EveryMeshFile.h"
 #include "Regions.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -665,119 +663,6 @@ TEST(Segmentation, ContrastIsTheSquaredDifferenceOfTheMeans)
   Values terms(cap.rows(), 3);
   terms << cap, 5.0 + cap.array(), Values::Constant(cap.rows(), 1, 99.0);
   EXPECT_NEAR(contrastOf(terms, Values(0, 3)), 5.0, 1e-12);
-}
-
-TEST(Segmentation, StepIsRepeatedToTheBit)
-{
-  const Domain sphere(Rotated(Icosphere(3)));
-  Segmentation::Input input = WithMeans(
-    Cap(sphere.Mesh, sphere.Shape, CapAngle) + NormalNoise(sphere.Mesh, 0.3), { 0.5, 0.1 });
-  Segmentation::Settings settings;
-  settings.UpdateMeans = true;
-  settings.Fidelity = 3.0;
-  Segmentation model(sphere.Operators, input, settings);
-  std::vector<double> start(model.CheckpointSize());
-  model.Save(start.data());
-  model.Advance(ProgressMonitor());
-  std::vector<double> first(model.CheckpointSize());
-  model.Save(first.data());
-  model.Restore(start.data());
-  model.Advance(ProgressMonitor());
-  std::vector<double> second(model.CheckpointSize());
-  model.Save(second.data());
-  EXPECT_EQ(first, second);
-  EXPECT_NE(first, start);
-}
-
-TEST(Segmentation, ThreadsDoNotChangeABitAndNumberingNotTheResult)
-{
-  const Surface s = Rotated(Icosphere(5));
-  const Domain sphere(s);
-  const auto inputOf = [](const Domain& domain, const std::vector<std::int64_t>& ids)
-  {
-    Segmentation::Input input = WithMeans(Cap(domain.Mesh, domain.Shape, CapAngle), {});
-    for (Index i = 0; i < domain.Mesh.NumberOfVertices(); ++i)
-    {
-      input.Data.Given(i, 0) += 0.3 * (2.0 * UniformRandom(3, 0, ids[i]) - 1.0);
-    }
-    input.Means = FindRegionMeans(domain.Mesh, input.Data, 3, {}, 7, ids);
-    return input;
-  };
-  Segmentation::Settings settings;
-  settings.UpdateMeans = true;
-  settings.MaximumNumberOfAlternations = 3;
-  settings.StopTolerance = 5e-5; // for which the minimiser uses double precision
-  const double fidelity = 0.5 / sphere.EdgeLength;
-  const Segmented serial(sphere, inputOf(sphere, Ids(sphere.Mesh)), fidelity, settings);
-  const ThreadedFor parallel(3);
-  const Segmented threaded(sphere, inputOf(sphere, Ids(sphere.Mesh)), fidelity, settings, parallel);
-  EXPECT_TRUE(serial.U == threaded.U);
-  EXPECT_TRUE(serial.Areas == threaded.Areas);
-
-  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 4);
-  const Domain other(Renumbered(s, numbers));
-  std::vector<std::int64_t> ids(numbers.size());
-  for (std::size_t i = 0; i < ids.size(); ++i)
-  {
-    ids[static_cast<std::size_t>(numbers[i])] = static_cast<std::int64_t>(i);
-  }
-  std::vector<std::int64_t> ofVertices;
-  for (const Index v : other.Mesh.InputVertex())
-  {
-    ofVertices.push_back(ids[static_cast<std::size_t>(v)]);
-  }
-  const Segmented renumbered(other, inputOf(other, ofVertices), fidelity, settings);
-  EXPECT_NEAR(renumbered.Energy, serial.Energy, 1e-9 * serial.Energy);
-  EXPECT_LT((renumbered.Areas - serial.Areas).cwiseAbs().maxCoeff(), 1e-6);
-}
-
-TEST(Segmentation, AlternationsAfterTheFirstNeedNoAllocation)
-{
-  if (NumberOfAllocations() < 0)
-  {
-    GTEST_SKIP() << "allocations cannot be counted here";
-  }
-  // A second step with the sizes of the first takes memory for the history of energies alone.
-  const Domain sphere(Rotated(Icosphere(4)));
-  for (const std::vector<double>& means : { std::vector<double>{ 0.6, 0.3 }, { 0.6, 0.3, 0.1 } })
-  {
-    Segmentation::Settings settings;
-    settings.Fidelity = 3.0;
-    settings.UpdateMeans = true;
-    settings.MaximumNumberOfAlternations = 3;
-    Segmentation model(sphere.Operators,
-      WithMeans(Cap(sphere.Mesh, sphere.Shape, CapAngle) + NormalNoise(sphere.Mesh, 0.3), means),
-      settings);
-    std::vector<double> start(model.CheckpointSize());
-    model.Save(start.data());
-    model.Advance(ProgressMonitor());
-    const std::size_t energies = model.Energies().size();
-    EXPECT_GE(energies, 3u);
-    model.Restore(start.data());
-    const long before = NumberOfAllocations();
-    model.Advance(ProgressMonitor());
-    EXPECT_LE(NumberOfAllocations() - before, 3) << energies << " energies";
-  }
-}
-
-TEST(Segmentation, AbortsWithinAnIteration)
-{
-  const Domain sphere(Rotated(Icosphere(3)));
-  Segmentation::Settings settings = ToGap(1e-9);
-  settings.Fidelity = 3.0;
-  settings.UpdateMeans = true;
-  Segmentation model(
-    sphere.Operators, WithMeans(NormalNoise(sphere.Mesh, 1.0), { 0.5, 0.1 }), settings);
-  int calls = 0;
-  double last = 0.0;
-  const ProgressMonitor::Callback stop = [&](double progress)
-  {
-    EXPECT_GE(progress, last);
-    last = progress;
-    return ++calls < 9;
-  };
-  EXPECT_THROW(model.Advance(ProgressMonitor(stop)), Aborted);
-  EXPECT_EQ(calls, 9);
 }
 
 TEST(Segmentation, EnergyNeverRisesOverTheAlternations)

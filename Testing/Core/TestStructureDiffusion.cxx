@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Models/StructureDiffusion.h"
-#include "Core/Models/Trajectory.h"
 #include "Core/Operators/GradientTensor.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Core/Surface/TangentVectors.h"
 #include "EveryMeshFile.h"
 #include "Heat.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -300,26 +297,6 @@ TEST(StructureDiffusion, SmoothedTensorsDecayAsAPlaneWave)
   EXPECT_GT(ObservedOrder(errors[0], errors[1]), 1.5);
 }
 
-TEST(StructureDiffusion, RotationAndOrientationDoNotMatter)
-{
-  const Surface s = Icosphere(4);
-  for (const Kind kind : BothKinds)
-  {
-    std::vector<Values> results;
-    for (const Surface& shape : { s, Rotated(s, 0.8), Flipped(s) })
-    {
-      const auto assembler = MakeAssembler(shape);
-      const TriangleMesh& mesh = assembler->Mesh();
-      const auto model = MakeModel(
-        assembler, PointData::FromValues(Noise(mesh, 2)), NaturalSettings(mesh, kind, 2.0), 1e-13);
-      Advance(*model, 4);
-      results.push_back(ToInput(mesh, model->State(), s.NumberOfVertices()));
-    }
-    EXPECT_LT((results[1] - results[0]).cwiseAbs().maxCoeff(), 1e-9);
-    EXPECT_LT((results[2] - results[0]).cwiseAbs().maxCoeff(), 1e-9);
-  }
-}
-
 TEST(StructureDiffusion, RotatedColorsGiveTheRotatedResult)
 {
   const Surface s = Icosphere(4);
@@ -518,79 +495,5 @@ TEST(StructureDiffusion, NeighbouringHugeValuesHaveAGradient)
     const PlaneTensor sum = SumGradients(mesh, u, 0).T;
     EXPECT_TRUE(sum.Trace() > 0.0 && std::isfinite(sum.Trace())) << value;
     value = next;
-  }
-}
-
-TEST(StructureDiffusion, ConstantsStayToTheLastBit)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  const Values constant = Values::Constant(assembler->Mesh().NumberOfVertices(), 2, 1.0 / 3.0);
-  for (const Kind kind : BothKinds)
-  {
-    const auto model = MakeModel(
-      assembler, PointData::FromValues(constant), NaturalSettings(assembler->Mesh(), kind, 1e3));
-    Advance(*model, 3);
-    EXPECT_LT((model->State() - constant).cwiseAbs().maxCoeff(), 1e-15);
-  }
-}
-
-TEST(StructureDiffusion, FixedAndMissingVerticesAreRespected)
-{
-  const Surface s = Icosphere(3);
-  const auto assembler = MakeAssembler(s);
-  PointData data = PointData::FromValues(Noise(assembler->Mesh(), 2));
-  data.Fixed.head(20) = true;
-  data.Missing.tail(20) = true;
-  data.Given.bottomRows(20).setConstant(1e9); // never read
-  for (const Kind kind : BothKinds)
-  {
-    Settings settings = NaturalSettings(assembler->Mesh(), kind, 10.0);
-    settings.Fidelity = 0.1;
-    const auto model = MakeModel(assembler, data, settings);
-    Advance(*model, 3);
-    EXPECT_EQ(model->State().topRows(20), data.Start.topRows(20));
-    EXPECT_LT(model->State().cwiseAbs().maxCoeff(), 2.0);
-  }
-}
-
-TEST(StructureDiffusion, CheckpointsAndThreadsGiveTheSameBits)
-{
-  const Surface s = Icosphere(5);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const PointData data = PointData::FromValues(Noise(mesh, 2));
-  for (const Kind kind : BothKinds)
-  {
-    const Settings settings = NaturalSettings(mesh, kind, 1.0);
-    Trajectory path(
-      assembler->SharedMesh(), MakeModel(assembler, data, settings), std::size_t(1) << 26);
-    path.Seek(4);
-    const Values last = path.State();
-    path.Seek(2);
-    EXPECT_NE(path.State(), last);
-    path.Seek(4);
-    EXPECT_EQ(path.State(), last);
-
-    const ThreadedFor threads(4);
-    const auto threaded = MakeModel(assembler, data, settings, 1e-6, threads);
-    Advance(*threaded, 4);
-    EXPECT_EQ(threaded->State(), last);
-  }
-}
-
-TEST(StructureDiffusion, LaterStepsDoNotAllocate)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  for (const Kind kind : BothKinds)
-  {
-    const auto model =
-      MakeModel(assembler, PointData::FromValues(Noise(mesh, 3)), NaturalSettings(mesh, kind, 1.0));
-    Advance(*model, 1);
-    const auto before = NumberOfAllocations();
-    Advance(*model, 3);
-    EXPECT_EQ(NumberOfAllocations(), before);
   }
 }

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Allocations.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Core/Statistics/ValueRange.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Heat.h"
-#include "ThreadedFor.h"
 #include "TotalVariation.h"
 
 #include <gtest/gtest.h>
@@ -275,26 +273,6 @@ TEST(TotalVariationFlow, MissingDataAreNotReadAndFilled)
   EXPECT_LT(flow->State().maxCoeff(), 1.01);
 }
 
-TEST(TotalVariationFlow, FixedVerticesKeepTheirValues)
-{
-  CapProblem cap;
-  cap.Data.Start = Noise(cap.Mesh);
-  for (Index i = 0; i < cap.Mesh.NumberOfVertices(); i += 3)
-  {
-    cap.Data.Fixed[i] = true;
-  }
-  for (const double timeStep : { 0.0, 0.1 })
-  {
-    const auto flow = MakeExact(cap.Operators, cap.Data, ExactSettings(cap.Mesh, timeStep, 1.0));
-    flow->Advance(ProgressMonitor());
-    for (Index i = 0; i < cap.Mesh.NumberOfVertices(); i += 3)
-    {
-      EXPECT_EQ(flow->State()(i, 0), cap.Data.Start(i, 0));
-    }
-    EXPECT_LE(flow->State().cwiseAbs().maxCoeff(), 1.001);
-  }
-}
-
 TEST(TotalVariationFlow, SteadyStateWithoutConditionsIsTheMean)
 {
   const auto assembler = MakeAssembler(Joined(Disk(5), Icosphere(2)));
@@ -524,81 +502,4 @@ TEST(TotalVariationFlow, ErrorBoundIsBetweenTheErrorAndThatOfTheTolerance)
   settings.Norm = FidelityNorm::L1; // not strongly convex
   EXPECT_TRUE(
     std::isinf(MakeExact(cap.Operators, data, settings)->Advance(ProgressMonitor()).ErrorBound));
-}
-
-TEST(TotalVariationFlow, RestoresEveryBit)
-{
-  const CapProblem cap;
-  const auto flow = MakeExact(cap.Operators, cap.Data, ExactSettings(cap.Mesh, 0.02, 1.0, 1e-2));
-  Advance(*flow, 2);
-  std::vector<double> checkpoint(flow->CheckpointSize());
-  flow->Save(checkpoint.data());
-  Advance(*flow, 2);
-  const Values u = flow->State();
-  flow->Restore(checkpoint.data());
-  Advance(*flow, 2);
-  EXPECT_TRUE(flow->State() == u);
-}
-
-TEST(TotalVariationFlow, ThreadsDoNotChangeABit)
-{
-  const Surface s = Icosphere(5);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const PointData data = PointData::FromValues(Noise(mesh, 3));
-  const ThreadedFor parallel(3);
-  for (const FidelityNorm norm : { FidelityNorm::L2, FidelityNorm::L1 })
-  {
-    const auto run = [&](const ParallelFor& loop)
-    {
-      auto settings = ExactSettings(mesh, 0.0, 100.0, 1e-2);
-      settings.Norm = norm;
-      const auto flow = MakeExact(assembler, data, settings, loop);
-      flow->Advance(ProgressMonitor());
-      Values u = flow->State();
-      u(0, 0) += flow->Energy();
-      return u;
-    };
-    EXPECT_TRUE(run(SerialFor()) == run(parallel));
-  }
-}
-
-TEST(TotalVariationFlow, StepsAfterTheFirstNeedNoMemory)
-{
-  if (NumberOfAllocations() < 0)
-  {
-    GTEST_SKIP() << "allocations cannot be counted here";
-  }
-  const auto assembler = MakeAssembler(Icosphere(4)); // two blocks
-  const TriangleMesh& mesh = assembler->Mesh();
-  for (const Index columns : { 1, 3, 5 })
-  {
-    for (const ChannelCoupling coupling : { ChannelCoupling::PerChannel, ChannelCoupling::Joint })
-    {
-      for (const FidelityNorm norm : { FidelityNorm::L2, FidelityNorm::L1 })
-      {
-        PointData data = PointData::FromValues(Noise(mesh, columns));
-        data.Missing.head(50) = true;
-        data.Fixed.tail(50) = true;
-        auto exact = ExactSettings(mesh, 0.01, 1.0, 1e-1);
-        exact.Coupling = coupling;
-        exact.Norm = norm;
-        auto lagged = LaggedSettings(mesh, 0.01, 1.0, 1e-2);
-        lagged.Coupling = coupling;
-        lagged.Norm = norm;
-        const auto solver = std::shared_ptr<LinearSolver>(MakeConjugateGradientSolver());
-        solver->SetLimits({ 1e-2, 1000 });
-        const std::unique_ptr<Model> models[] = { MakeExact(assembler, data, exact),
-          MakeOnEdges(assembler, data, exact), MakeLagged(assembler, data, lagged, solver) };
-        for (const auto& model : models)
-        {
-          model->Advance(ProgressMonitor());
-          const long before = NumberOfAllocations();
-          model->Advance(ProgressMonitor());
-          EXPECT_GT(model->Energy(), 0.0);
-          EXPECT_EQ(NumberOfAllocations(), before) << columns << " columns";
-        }
-      }
-    }
-  }
 }

@@ -57,28 +57,6 @@ std::shared_ptr<const TriangleMesh> NoMesh()
 
 } // namespace
 
-TEST(Trajectory, SeekingGivesTheBitsOfSteppingThrough)
-{
-  const auto assembler = MakeAssembler(Icosphere(2));
-  const auto through = MakeTrajectory(assembler, Plenty, 2);
-  std::vector<Values> states;
-  for (Index step = 0; step <= 50; ++step)
-  {
-    through->Seek(step);
-    states.push_back(through->State());
-  }
-  for (const std::size_t limit : { std::size_t(0), 3 * states[0].size() * sizeof(double), Plenty })
-  {
-    const auto jumping = MakeTrajectory(assembler, limit, 2);
-    for (const Index step : { 40, 10, 40, 0, 50, 49, 3, 25, 50, 0 })
-    {
-      jumping->Seek(step);
-      EXPECT_EQ(jumping->Step(), step);
-      EXPECT_TRUE(jumping->State() == states[step]) << step;
-    }
-  }
-}
-
 TEST(Trajectory, AnySeekAmongAThousandStepsRecomputesAtMostTwiceTheRoot)
 {
   // Room for the root of the number of steps.
@@ -160,23 +138,6 @@ TEST(Trajectory, RecordsEveryStepOnce)
     EXPECT_TRUE(step == 0 || record.Energy < trajectory->Records()[step - 1].Energy);
     EXPECT_NEAR(trajectory->TotalAt(step, 1), trajectory->TotalAt(0, 1), 1e-12 * size);
     EXPECT_NE(trajectory->TotalAt(step, 0), trajectory->TotalAt(step, 1));
-  }
-}
-
-TEST(Trajectory, AnAbortLeavesItUsable)
-{
-  const auto assembler = MakeAssembler(Icosphere(2));
-  const auto trajectory = MakeTrajectory(assembler, Plenty);
-  int calls = 0;
-  const ProgressMonitor::Callback stopLater = [&](double) { return ++calls < 30; };
-  EXPECT_THROW(trajectory->Seek(100, ProgressMonitor(stopLater)), Aborted);
-  EXPECT_LT(trajectory->Step(), 100);
-  const auto undisturbed = MakeTrajectory(assembler, Plenty);
-  for (const Index step : { trajectory->Step(), 2, 20 })
-  {
-    trajectory->Seek(step);
-    undisturbed->Seek(step);
-    EXPECT_TRUE(trajectory->State() == undisturbed->State()) << step;
   }
 }
 

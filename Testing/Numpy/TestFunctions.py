@@ -43,23 +43,6 @@ class Heat(unittest.TestCase):
         decay = np.dot(end, start) / np.dot(start, start)
         self.assertAlmostEqual(decay, np.exp(-6 * 16 / (16 * np.log(2)) / 100), delta=1e-4)
 
-    def test_integral_is_conserved(self):
-        surface = sd.sphere(4)
-        noise = np.random.default_rng(1).normal(size=(surface.n_points, 3))
-        history = sd.heat(surface, noise, fwhm=0.3, full_output=True).history
-        for k in range(3):
-            totals = history[f"Total_{k}"]
-            self.assertLess(np.abs(totals - totals[0]).max(), 1e-12 * np.abs(noise).sum())
-
-    def test_columns_together_are_columns_alone(self):
-        surface = sd.sphere(4)
-        noise = np.random.default_rng(1).normal(size=(surface.n_points, 5))
-        together = sd.heat(surface, noise, fwhm=0.3)
-        self.assertEqual(together.shape, noise.shape)
-        for k in range(5):
-            np.testing.assert_allclose(sd.heat(surface, noise[:, k], fwhm=0.3), together[:, k],
-                                       rtol=0, atol=1e-12)
-
     def test_many_columns_have_the_bits_of_a_run_of_all_of_them(self):
         # Without full_output, many columns are solved in panels, which share their missing points.
         surface = sd.sphere(3)
@@ -465,17 +448,6 @@ class Results(unittest.TestCase):
         self.assertGreater(result.mean_displacement, 0.0)
         self.assertLess(np.linalg.norm(result.points, axis=1).std(), 0.5 * noise.std())
 
-    def test_principal_directions_of_a_cylinder_follow_its_axis(self):
-        angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 40, endpoint=False),
-                                    np.linspace(0, 4, 30), indexing="ij")
-        points = np.stack([np.cos(angle), np.sin(angle), height], axis=-1).reshape(-1, 3)
-        index = np.arange(1200).reshape(40, 30)
-        a, b = index[:, :-1].ravel(), np.roll(index, -1, axis=0)[:, :-1].ravel()
-        surface = sd.Surface(points, np.stack([a, b, b + 1, a + 1], axis=1))
-        field = sd.direction_field(surface)
-        inside = np.abs(points[a][:, 2] - 2) < 1
-        self.assertGreater(np.abs(field[inside, 2]).min(), 0.99)
-
 
 class Warnings(unittest.TestCase):
     def test_warning_names_the_line_of_the_caller(self):
@@ -697,20 +669,6 @@ class Segment(unittest.TestCase):
             self.assertAlmostEqual(steps.sum(), curve.length, places=12)
             np.testing.assert_array_equal(result.values, 1 + result.probabilities.argmax(axis=1))
             np.testing.assert_allclose(result.means.ravel(), [0, 1], atol=0.05)
-
-    def test_the_default_weight_suits_clean_and_noisy_data(self):
-        surface = sd.sphere(5)
-        cap = surface.points[:, 2] > 0.5
-        for deviation in (0.0, 0.25, 0.5):
-            noise = np.random.default_rng(0).normal(scale=deviation, size=surface.n_points)
-            result = sd.segment(surface, cap + noise)
-            self.assertAlmostEqual(result.areas[1], np.pi, delta=0.03 * np.pi)
-            self.assertEqual(len(result.boundaries), 1)
-            given = sd.segment(
-                surface, cap + noise, fidelity_weight=result.effective_fidelity_weight)
-            np.testing.assert_array_equal(given.values, result.values)
-        none = sd.segment(surface, cap + noise, fidelity_weight=0.01)
-        self.assertEqual(len(none.boundaries), 0)
 
     def test_fidelity_of_zero_is_missing(self):
         surface = sd.sphere(4)
