@@ -13,6 +13,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -86,7 +88,10 @@ ModelKind MakeKind(const char* name, int steps, std::function<void(ModelSettings
     [steps, set = std::move(set)](Model** made) -> std::shared_ptr<RunSettings>
     {
       auto settings = std::make_shared<Watched>();
-      settings->NumberOfTimeSteps = steps;
+      if constexpr (std::is_base_of_v<TimeSettings, ModelSettings>)
+      {
+        settings->NumberOfTimeSteps = steps;
+      }
       if (set)
       {
         set(*settings);
