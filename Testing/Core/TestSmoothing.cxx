@@ -225,11 +225,15 @@ TEST(Smoothing, ByCrossValidationTakesAtMostFourTimesOneSolve)
     const auto data = ValuesAt(mesh, field, [&](Index i) { return i % step == 0; });
     const auto seconds = [&](const Interpolation::Settings& settings)
     {
-      const double start = ProcessSeconds();
-      Interpolate(assembler, data, settings);
-      return ProcessSeconds() - start;
+      double least = 1e300; // of three, since other work on the machine disturbs them
+      for (int i = 0; i < 3; ++i)
+      {
+        const double start = ProcessSeconds();
+        Interpolate(assembler, data, settings);
+        least = std::min(least, ProcessSeconds() - start);
+      }
+      return least;
     };
-    seconds(InterpolationSettings(Choice::Exact)); // the first one also touches the memory
     const double exact = seconds(InterpolationSettings(Choice::Exact));
     const double automatic = seconds(InterpolationSettings(Choice::Automatic));
     std::printf("%d values: exact %.3f s, automatic %.3f s\n", data.Count(), exact, automatic);
@@ -317,5 +321,31 @@ TEST(Smoothing, StandardErrorsAreThoseOfTheDenseMatrix)
     const Vector expected = 0.5 * h.inverse().diagonal().cwiseSqrt();
     const Vector error = Interpolate(assembler, data, settings).Error.col(0);
     EXPECT_LT((error - expected).norm(), 1e-8 * expected.norm());
+  }
+}
+
+TEST(Smoothing, TendsToTheExactValuesAndToTheirMean)
+{
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto data =
+    ValuesAt(mesh, Sample(mesh, s, SeaTemperature), [](Index i) { return i < 162; });
+  const Values exact = Interpolate(assembler, data, InterpolationSettings(Choice::Exact)).U;
+  const double mean = data.Given.mean();
+  for (const double small : { 1e-12, 1e-30, 1e-200 })
+  {
+    const auto result = Interpolate(assembler, data, InterpolationSettings(Choice::Given, small));
+    EXPECT_LT((result.U - exact).cwiseAbs().maxCoeff(), 1e-8);
+  }
+  for (const double large : { 1e9, 1e30, 1e200 })
+  {
+    Interpolation::Settings settings = InterpolationSettings(Choice::Given, large);
+    settings.ComputeError = true;
+    settings.NoiseLevel = 2.0;
+    const auto result = Interpolate(assembler, data, settings);
+    EXPECT_LT((result.U.array() - mean).abs().maxCoeff(), 1e-4);
+    EXPECT_LT((result.Error.array() - 2.0 / std::sqrt(162.0)).abs().maxCoeff(), 1e-3);
+    EXPECT_FALSE(result.IsFlattest);
   }
 }

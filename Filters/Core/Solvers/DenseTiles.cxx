@@ -127,10 +127,10 @@ SURFACEDIFFUSION_ANY_VECTORS void SolveTriangle(
   }
 }
 
-Index FactorizeTile(double* l, Index width, const double* smallest)
+PivotCounts FactorizeTile(double* l, Index width, const double* smallest)
 {
   constexpr double huge = 1e100;
-  Index replaced = 0;
+  PivotCounts counts;
   for (Index j = 0; j < width; ++j)
   {
     double pivot = l[j * TileRows + j];
@@ -140,8 +140,9 @@ Index FactorizeTile(double* l, Index width, const double* smallest)
     }
     if (!(pivot > smallest[j]))
     {
+      counts.Negative += pivot < -smallest[j] ? 1 : 0;
+      ++counts.Open;
       pivot = huge;
-      ++replaced;
     }
     const double root = std::sqrt(pivot);
     l[j * TileRows + j] = root;
@@ -159,7 +160,7 @@ Index FactorizeTile(double* l, Index width, const double* smallest)
       l[j * TileRows + i] = entry / root;
     }
   }
-  return replaced;
+  return counts;
 }
 
 } // namespace SurfaceDiffusion

@@ -35,9 +35,21 @@ void SubtractTransposedProduct(const double* a, Index depth, const double* b, do
 /// w becomes L^-1 w, or with `transposed` L^-T w: `width` rows of TileRows numbers.
 void SolveTriangle(const double* l, Index width, bool transposed, double* w);
 
+/// Pivots of a factorisation that are no positive numbers.
+struct PivotCounts
+{
+  Index Open = 0; ///< not above the smallest one that is resolved, negative or not
+  Index Negative = 0; ///< below minus that: the matrix is indefinite
+
+  void Add(const PivotCounts& other)
+  {
+    this->Open += other.Open;
+    this->Negative += other.Negative;
+  }
+};
+
 /// The Cholesky factor of the leading `width` rows and columns of a tile, in place. A pivot that is
 /// not above smallest[i] is replaced by a huge one, which makes the solution zero in its row.
-/// Returns the number of these pivots.
-Index FactorizeTile(double* l, Index width, const double* smallest);
+PivotCounts FactorizeTile(double* l, Index width, const double* smallest);
 
 } // namespace SurfaceDiffusion

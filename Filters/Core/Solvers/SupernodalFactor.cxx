@@ -71,7 +71,7 @@ Supernodes Order(const SparseMatrix& matrix, bool isRegular, const ProgressMonit
 
 } // namespace
 
-Index SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular, double resolved,
+PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular, double resolved,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const auto n = static_cast<Index>(matrix.rows());
@@ -130,7 +130,7 @@ Index SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular, doub
     }
   }
   std::vector<Update> updates(count);
-  std::vector<Index> replaced(count, 0);
+  std::vector<PivotCounts> pivots(count);
   double done = 0.0;
   const ProgressMonitor ofFactor = progress.Part(isKnown ? 0.0 : 0.5, 1.0);
   const auto report = [&] { ofFactor.Report(all > 0.0 ? std::min(1.0, done / all) : 1.0); };
@@ -146,7 +146,7 @@ Index SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular, doub
         const Index root = subtrees[begin + number];
         for (Index s = nodes.FirstDescendant[root]; s <= root; ++s)
         {
-          this->FactorizeNode(matrix, smallest, s, updates, replaced[s], SerialFor());
+          this->FactorizeNode(matrix, smallest, s, updates, pivots[s], SerialFor());
         }
       });
     for (Index number = begin; number < begin + size; ++number)
@@ -157,15 +157,20 @@ Index SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular, doub
   for (const Index s : top)
   {
     report();
-    this->FactorizeNode(matrix, smallest, s, updates, replaced[s], parallel);
+    this->FactorizeNode(matrix, smallest, s, updates, pivots[s], parallel);
     done += nodes.Operations[s];
   }
   progress.Report(1.0);
-  return std::accumulate(replaced.begin(), replaced.end(), 0);
+  PivotCounts total;
+  for (const PivotCounts& ofNode : pivots)
+  {
+    total.Add(ofNode);
+  }
+  return total;
 }
 
 void SupernodalFactor::FactorizeNode(const SparseMatrix& matrix, const Vector& smallest, Index s,
-  std::vector<Update>& updates, Index& replaced, const ParallelFor& parallel)
+  std::vector<Update>& updates, PivotCounts& pivots, const ParallelFor& parallel)
 {
   const Supernodes& nodes = this->Nodes;
   const Index first = nodes.First[s];
@@ -210,7 +215,7 @@ void SupernodalFactor::FactorizeNode(const SparseMatrix& matrix, const Vector& s
       updates[child].reset();
     }
   }
-  replaced = this->EliminatePivots(s, smallest.data() + first, parallel);
+  pivots = this->EliminatePivots(s, smallest.data() + first, parallel);
 
   // Tiles (I, J) of the update, in blocks that stay in the cache.
   constexpr Index depthBlock = 256;
@@ -302,8 +307,8 @@ void SupernodalFactor::AddChild(Index s, Index child, const double* update, doub
   }
 }
 
-/// The panel of s becomes that of L. Returns the number of pivots that were replaced.
-Index SupernodalFactor::EliminatePivots(
+/// The panel of s becomes that of L.
+PivotCounts SupernodalFactor::EliminatePivots(
   Index s, const double* smallest, const ParallelFor& parallel)
 {
   constexpr Index blockTiles = 8;
@@ -312,7 +317,7 @@ Index SupernodalFactor::EliminatePivots(
   const Index tiles = diagonal + this->TilesBelow(s);
   const std::ptrdiff_t tile = static_cast<std::ptrdiff_t>(TileRows) * k;
   double* const panel = this->Panel(s);
-  Index replaced = 0;
+  PivotCounts pivots;
   const auto width = [&](Index j) { return std::min(TileRows, k - j * TileRows); };
   for (Index block = 0; block < diagonal; block += blockTiles)
   {
@@ -360,7 +365,7 @@ Index SupernodalFactor::EliminatePivots(
       }
       SubtractTileProducts(panel + j * tile + columns, 0, panel + j * tile + columns,
         (j - block) * TileRows, panel + j * tile + at, 0, 1, width(j));
-      replaced += FactorizeTile(panel + j * tile + at, width(j), smallest + j * TileRows);
+      pivots.Add(FactorizeTile(panel + j * tile + at, width(j), smallest + j * TileRows));
     }
     ForParts(parallel, tiles - end,
       static_cast<double>(tiles - end) * TileSize * (end - block) * block * TileRows,
@@ -370,7 +375,7 @@ Index SupernodalFactor::EliminatePivots(
         eliminate(end + from, end + to);
       });
   }
-  return replaced;
+  return pivots;
 }
 
 } // namespace SurfaceDiffusion

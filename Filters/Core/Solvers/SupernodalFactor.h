@@ -25,11 +25,19 @@ public:
   /// isRegular: of the mesh, see OrderedSupernodes(). The order is kept while the pattern is.
   /// Throws Aborted. Returns the number of rows whose pivot was not above `resolved` times the
   /// diagonal entry: L has a huge one in its place, and solutions are zero there.
-  Index Compute(const SparseMatrix& matrix, bool isRegular, double resolved,
+  PivotCounts Compute(const SparseMatrix& matrix, bool isRegular, double resolved,
     const ParallelFor& parallel, const ProgressMonitor& progress = ProgressMonitor());
 
   /// x becomes A^-1 x, n x k.
-  void Solve(Values& x, const ParallelFor& parallel) const;
+  void Solve(Values& x, const ParallelFor& parallel) const { this->Solve(x, {}, parallel); }
+
+  /// The same for the rows that are asked for; the others are not defined. With few of these, and
+  /// few rows of x that are not zero in every TileRows columns, most of L is not read.
+  /// needed: of Needed(); empty: all rows.
+  void Solve(Values& x, const std::vector<char>& needed, const ParallelFor& parallel) const;
+
+  /// Per supernode, whether solutions in these rows depend on it.
+  std::vector<char> Needed(const std::vector<Index>& rows) const;
 
   /// Diagonal entries of A^-1 by selected inversion (K. Takahashi, J. Fagan, M. Chin, PICA 1973): the
   /// entries of the inverse in the pattern of L follow from each other, from the last row on.
@@ -43,16 +51,16 @@ private:
   using Update = std::unique_ptr<double[]>;
 
   void FactorizeNode(const SparseMatrix& matrix, const Vector& smallest, Index s,
-    std::vector<Update>& updates, Index& replaced, const ParallelFor& parallel);
+    std::vector<Update>& updates, PivotCounts& pivots, const ParallelFor& parallel);
   void AddChild(Index s, Index child, const double* update, double* own) const;
-  Index EliminatePivots(Index s, const double* smallest, const ParallelFor& parallel);
+  PivotCounts EliminatePivots(Index s, const double* smallest, const ParallelFor& parallel);
 
   Index DiagonalTiles(Index s) const { return NumberOfTiles(this->Nodes.Pivots(s)); }
   Index TilesBelow(Index s) const { return NumberOfTiles(this->Nodes.RowsBelow(s)); }
   double* Panel(Index s) { return this->Entries.data() + this->Begin[s]; }
   const double* Panel(Index s) const { return this->Entries.data() + this->Begin[s]; }
 
-  void SolvePanel(Values& x, Index first, Index count) const;
+  void SolvePanel(Values& x, Index first, Index count, const std::vector<char>& needed) const;
 
   std::vector<Index> Outer, Inner; ///< the pattern that the order is for
   Supernodes Nodes;

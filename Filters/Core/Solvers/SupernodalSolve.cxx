@@ -8,19 +8,37 @@
 namespace SurfaceDiffusion
 {
 
-void SupernodalFactor::Solve(Values& x, const ParallelFor& parallel) const
+std::vector<char> SupernodalFactor::Needed(const std::vector<Index>& rows) const
+{
+  const Supernodes& nodes = this->Nodes;
+  std::vector<char> needed(static_cast<std::size_t>(nodes.Count()), 0);
+  for (const Index row : rows)
+  {
+    const auto above = std::upper_bound(nodes.First.begin(), nodes.First.end(), nodes.Place[row]);
+    for (auto s = static_cast<Index>(above - nodes.First.begin()) - 1; s >= 0 && !needed[s];
+         s = nodes.Parent[s])
+    {
+      needed[s] = 1;
+    }
+  }
+  return needed;
+}
+
+void SupernodalFactor::Solve(
+  Values& x, const std::vector<char>& needed, const ParallelFor& parallel) const
 {
   const auto columns = static_cast<Index>(x.cols());
   ForEachTask(parallel, NumberOfTiles(columns),
     [&](Index panel)
     {
       const Index first = panel * TileRows;
-      this->SolvePanel(x, first, std::min(TileRows, columns - first));
+      this->SolvePanel(x, first, std::min(TileRows, columns - first), needed);
     });
 }
 
 /// Rows of TileRows columns are tiles too: zeros fill up a panel of fewer columns.
-void SupernodalFactor::SolvePanel(Values& x, Index firstColumn, Index count) const
+void SupernodalFactor::SolvePanel(
+  Values& x, Index firstColumn, Index count, const std::vector<char>& needed) const
 {
   const Supernodes& nodes = this->Nodes;
   const auto n = static_cast<Index>(x.rows());
@@ -44,6 +62,10 @@ void SupernodalFactor::SolvePanel(Values& x, Index firstColumn, Index count) con
     const std::ptrdiff_t tile = static_cast<std::ptrdiff_t>(TileRows) * k;
     const double* l = this->Panel(s);
     double* const known = row(nodes.First[s]);
+    if (std::all_of(known, row(nodes.First[s + 1]), [](double number) { return number == 0.0; }))
+    {
+      continue;
+    }
     for (Index j = 0; j < k; j += TileRows, l += tile)
     {
       const Index width = std::min(TileRows, k - j);
@@ -67,6 +89,10 @@ void SupernodalFactor::SolvePanel(Values& x, Index firstColumn, Index count) con
   }
   for (Index s = nodes.Count() - 1; s >= 0; --s)
   {
+    if (!needed.empty() && !needed[s])
+    {
+      continue;
+    }
     const Index k = nodes.Pivots(s);
     const Index r = nodes.RowsBelow(s);
     const Index* const rows = nodes.Below(s);

@@ -100,7 +100,7 @@ struct PlaneTriangle
 
 } // namespace
 
-HessianEnergy::HessianEnergy(const TriangleMesh& mesh)
+HessianEnergy::HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvature)
 {
   constexpr double third = 1.0 / 3.0;
   const double fullAngle = 2.0 * std::acos(-1.0);
@@ -122,6 +122,11 @@ HessianEnergy::HessianEnergy(const TriangleMesh& mesh)
   for (const Index i : mesh.BoundaryVertices())
   {
     defects[i] = 0.0;
+  }
+
+  if (!withNegativeCurvature)
+  {
+    defects = defects.cwiseMax(0.0).eval();
   }
 
   std::vector<Entry> gradient, energy;

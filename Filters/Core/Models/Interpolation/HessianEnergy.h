@@ -17,7 +17,9 @@ namespace SurfaceDiffusion
 /// their triangles.
 struct HessianEnergy
 {
-  explicit HessianEnergy(const TriangleMesh& mesh);
+  /// withNegativeCurvature: as in the equation. On coarse meshes of surfaces with saddles, as in
+  /// handles, E may then be indefinite; without negative angle defects it is not.
+  explicit HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvature = true);
 
   SparseMatrix Gradient; ///< G, 2 per edge x n
   SparseMatrix Energy; ///< E

@@ -18,9 +18,7 @@ namespace
 /// W^(1/2) B H^-1 B^T W^(1/2) v.
 Values ApplyInfluence(const SmoothFit& fit, const Vector& roots, const Values& v)
 {
-  Values x = fit.ToVertices(roots.asDiagonal() * v);
-  fit.ApplyInverse(x);
-  return roots.asDiagonal() * fit.AtPoints(x);
+  return roots.asDiagonal() * fit.InverseAtPoints(roots.asDiagonal() * v);
 }
 
 /// The share of the data that the residual keeps at mu = ratio mu_0.
@@ -43,7 +41,7 @@ InfluenceSpectrum::InfluenceSpectrum(
     this->Decompose(fit, data);
     return;
   }
-  constexpr int steps = 14;
+  constexpr int steps = 10;
   this->Sample(fit, data, seed, onlyHere ? 1 : steps);
 }
 
@@ -79,30 +77,20 @@ void InfluenceSpectrum::Decompose(const SmoothFit& fit, const ScatteredValues& d
   }
 }
 
-void InfluenceSpectrum::Sample(
-  const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps)
+/// The measures of the columns of v by `steps` steps of Lanczos' method.
+std::vector<InfluenceSpectrum::Measure> InfluenceSpectrum::MeasuresOf(
+  const SmoothFit& fit, const Vector& roots, Values v, int steps)
 {
-  constexpr Eigen::Index probes = 15;
-  const Vector roots = data.Weights.cwiseSqrt();
-  const Eigen::Index ofData = data.Given.cols();
-  const Eigen::Index columns = ofData + probes;
-  Values v(this->Count, columns);
-  for (Index i = 0; i < this->Count; ++i)
-  {
-    v.row(i).head(ofData) = roots[i] * data.Given.row(i);
-    for (Eigen::Index p = 0; p < probes; ++p)
-    {
-      v(i, ofData + p) = UniformRandom(seed, p, i) < 0.5 ? -1.0 : 1.0;
-    }
-  }
-  const Eigen::RowVectorXd squares = v.colwise().squaredNorm();
+  const Eigen::Index columns = v.cols();
   std::vector<std::vector<double>> diagonal(columns), beside(columns);
+  std::vector<double> squares(columns);
   for (Eigen::Index c = 0; c < columns; ++c)
   {
+    squares[c] = v.col(c).squaredNorm();
     v.col(c) /= squares[c] > 0.0 ? std::sqrt(squares[c]) : 1.0;
   }
   std::vector<Values> basis;
-  for (int step = 0; step < std::min<int>(steps, this->Count); ++step)
+  for (int step = 0; step < std::min<int>(steps, static_cast<int>(v.rows())); ++step)
   {
     basis.push_back(v);
     Values w = ApplyInfluence(fit, roots, v);
@@ -114,8 +102,10 @@ void InfluenceSpectrum::Sample(
     {
       for (const Values& known : basis)
       {
-        const Eigen::RowVectorXd parts = known.cwiseProduct(w).colwise().sum();
-        w -= known * parts.asDiagonal();
+        for (Eigen::Index c = 0; c < columns; ++c)
+        {
+          w.col(c) -= known.col(c).dot(w.col(c)) * known.col(c);
+        }
       }
     }
     for (Eigen::Index c = 0; c < columns; ++c)
@@ -127,6 +117,7 @@ void InfluenceSpectrum::Sample(
     }
     v = std::move(w);
   }
+  std::vector<Measure> measures;
   for (Eigen::Index c = 0; c < columns; ++c)
   {
     const auto size = static_cast<Eigen::Index>(diagonal[c].size());
@@ -139,15 +130,46 @@ void InfluenceSpectrum::Sample(
     {
       const double share = std::min(1.0, std::max(0.0, solver.eigenvalues()[j]));
       const double first = solver.eigenvectors()(0, j);
-      const double weight = c < ofData ? squares[c] : squares[c] / static_cast<double>(probes);
-      measure.emplace_back(share, weight * first * first);
+      measure.emplace_back(share, squares[c] * first * first);
     }
-    if (c < ofData)
+    measures.push_back(std::move(measure));
+  }
+  return measures;
+}
+
+void InfluenceSpectrum::Sample(
+  const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps)
+{
+  constexpr Eigen::Index probes = 15; // and one column of the data
+  constexpr Eigen::Index panel = 16;
+  const Vector roots = data.Weights.cwiseSqrt();
+  Values first(this->Count, probes + 1);
+  for (Index i = 0; i < this->Count; ++i)
+  {
+    first(i, probes) = roots[i] * data.Given(i, 0);
+    for (Eigen::Index p = 0; p < probes; ++p)
+    {
+      first(i, p) = UniformRandom(seed, p, i) < 0.5 ? -1.0 : 1.0;
+    }
+  }
+  std::vector<Measure> measures = MeasuresOf(fit, roots, std::move(first), steps);
+  this->Columns.push_back(std::move(measures.back()));
+  measures.pop_back();
+  for (const Measure& measure : measures)
+  {
+    for (const auto& [share, weight] : measure)
+    {
+      this->Trace.emplace_back(share, weight / static_cast<double>(probes));
+    }
+  }
+  for (Eigen::Index c = 1; c < data.Given.cols(); c += panel)
+  {
+    const Eigen::Index columns = std::min(panel, data.Given.cols() - c);
+    const Values further = roots.asDiagonal() * data.Given.middleCols(c, columns);
+    for (Measure& measure : MeasuresOf(fit, roots, further, steps))
     {
       this->Columns.push_back(std::move(measure));
-      continue;
     }
-    this->Trace.insert(this->Trace.end(), measure.begin(), measure.end());
   }
 }
 
@@ -215,14 +237,34 @@ double InfluenceSpectrum::BestSmoothing(Eigen::Index column, double noise) const
   const double width = (high - low) / intervals;
   double left = std::max(low, best - width);
   double right = std::min(high, best + width);
-  constexpr double golden = 0.6180339887498949;
-  while (right - left > 1e-6)
+  // The minimum is where the slope changes its sign, which is sharper than the least value.
+  for (int i = 0; i < 60; ++i)
   {
-    const double a = right - golden * (right - left);
-    const double b = left + golden * (right - left);
-    (cost(a) <= cost(b) ? right : left) = cost(a) <= cost(b) ? b : a;
+    const double middle = 0.5 * (left + right);
+    (this->Slope(this->Mu * std::exp(middle), column, noise) > 0.0 ? right : left) = middle;
   }
   return this->Mu * std::exp(0.5 * (left + right));
+}
+
+/// Of the score or the risk by log(mu), up to a positive factor.
+double InfluenceSpectrum::Slope(double mu, Eigen::Index column, double noise) const
+{
+  const double ratio = mu / this->Mu;
+  double residual = 0.0;
+  double freedom = 0.0;
+  for (const auto& [share, weight] : this->Columns[static_cast<std::size_t>(column)])
+  {
+    const double left = Left(share, ratio);
+    residual += 2.0 * weight * left * left * (1.0 - left);
+  }
+  for (const auto& [share, weight] : this->Trace)
+  {
+    const double left = Left(share, ratio);
+    freedom -= weight * left * (1.0 - left);
+  }
+  return noise > 0.0 ? residual + 2.0 * noise * noise * freedom
+                     : residual * (this->Count - this->DegreesOfFreedom(mu)) +
+      2.0 * this->Residual(mu, column) * freedom;
 }
 
 } // namespace SurfaceDiffusion

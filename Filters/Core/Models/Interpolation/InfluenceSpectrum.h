@@ -56,6 +56,9 @@ private:
   /// Eigenvalues with weights.
   using Measure = std::vector<std::pair<double, double>>;
 
+  double Slope(double mu, Eigen::Index column, double noise) const;
+  static std::vector<Measure> MeasuresOf(
+    const SmoothFit& fit, const Vector& roots, Values v, int steps);
   void Decompose(const SmoothFit& fit, const ScatteredValues& data);
   void Sample(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps);
 

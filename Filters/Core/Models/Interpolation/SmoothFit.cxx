@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -17,7 +18,8 @@ SmoothFit::SmoothFit(const SmoothnessEnergy& energy, const ScatteredValues& data
 {
 }
 
-Index SmoothFit::Prepare(double mu, const Flags& held, bool exact, const ProgressMonitor& progress)
+PivotCounts SmoothFit::Prepare(
+  double mu, const Flags& held, bool exact, const ProgressMonitor& progress)
 {
   this->Mu = mu;
   this->Held = held;
@@ -64,7 +66,15 @@ Index SmoothFit::Prepare(double mu, const Flags& held, bool exact, const Progres
     });
   // Without a value the pivot of a constant is round-off; with one it is about a share 1/(20 n).
   const double resolved = 1e-15 * static_cast<double>(this->H.rows());
-  return this->Factor.Compute(this->H, this->IsRegular, resolved, this->Parallel, progress);
+  const PivotCounts pivots =
+    this->Factor.Compute(this->H, this->IsRegular, resolved, this->Parallel, progress);
+  std::vector<Index> vertices;
+  for (const SurfacePoint& place : this->Data.Places)
+  {
+    vertices.insert(vertices.end(), place.Vertices.begin(), place.Vertices.end());
+  }
+  this->NeededAtPoints = this->Factor.Needed(vertices);
+  return pivots;
 }
 
 Values SmoothFit::AtPoints(const Values& u) const
@@ -110,7 +120,7 @@ void SmoothFit::Derivative(
     this->Mu * derivative - this->ToVertices(this->Weights.asDiagonal() * misfit + forces);
 }
 
-void SmoothFit::ApplyInverse(Values& x) const
+void SmoothFit::ReleaseHeld(Values& x) const
 {
   ForEach(this->Parallel, static_cast<Index>(x.rows()),
     [&](Index i)
@@ -120,7 +130,20 @@ void SmoothFit::ApplyInverse(Values& x) const
         x.row(i).setZero();
       }
     });
+}
+
+void SmoothFit::ApplyInverse(Values& x) const
+{
+  this->ReleaseHeld(x);
   this->Factor.Solve(x, this->Parallel);
+}
+
+Values SmoothFit::InverseAtPoints(const Values& v) const
+{
+  Values x = this->ToVertices(v);
+  this->ReleaseHeld(x);
+  this->Factor.Solve(x, this->NeededAtPoints, this->Parallel);
+  return this->AtPoints(x);
 }
 
 Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u) const

@@ -25,8 +25,8 @@ public:
 
   /// Take mu > 0, and hold the vertices of `held`. exact: the values at points inside triangles
   /// hold, too, by multipliers; their weights do not count.
-  /// Returns the number of rows that neither values nor the energy determine.
-  Index Prepare(double mu, const Flags& held, bool exact, const ProgressMonitor& progress);
+  /// Returns the numbers of rows that neither values nor the energy determine.
+  PivotCounts Prepare(double mu, const Flags& held, bool exact, const ProgressMonitor& progress);
 
   /// u: on entry the values of the held vertices and a start elsewhere, for as many columns of the
   /// data. Returns the multipliers of exact values, d x k.
@@ -34,6 +34,9 @@ public:
 
   /// x becomes H^-1 x, with zeros at held vertices. Not refined.
   void ApplyInverse(Values& x) const;
+
+  /// B H^-1 B^T v, d x k: H^-1 at the points of the data. Not refined.
+  Values InverseAtPoints(const Values& v) const;
 
   /// B u, d x k.
   Values AtPoints(const Values& u) const;
@@ -50,11 +53,14 @@ public:
   double GetSmoothing() const { return this->Mu; }
 
 private:
+  void ReleaseHeld(Values& x) const;
+
   const SmoothnessEnergy& Energy;
   const ScatteredValues& Data;
   const bool IsRegular;
   const ParallelFor& Parallel;
   SupernodalFactor Factor;
+  std::vector<char> NeededAtPoints; ///< of the factor
   SparseMatrix H;
   Vector Weights; ///< of the data in H
   Flags Held;

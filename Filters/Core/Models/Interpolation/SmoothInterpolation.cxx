@@ -38,7 +38,6 @@ struct SmoothInterpolation::Work
   Flags Open; ///< vertices of components without values, which are held at zero
   Index Parts = 0; ///< components with values
   double Area = 0.0; ///< of these components
-  bool HasTension = false;
   Eigen::RowVectorXd Origin; ///< from which values are measured
   Values Start;
 };
@@ -153,17 +152,33 @@ double SmoothInterpolation::StartSmoothing(const Work& work) const
   return rows.Weights.sum() / work.Area / (scale * scale);
 }
 
+/// mu beyond which the mean of the values is lost in the last digits of mu Q. Functions without energy
+/// are all that is left long before.
+double SmoothInterpolation::LargestSmoothing(const Work& work)
+{
+  constexpr double resolved = 1e-13;
+  const double n = static_cast<double>(work.Open.size());
+  const double energy = work.Energy.Matrix().diagonal().maxCoeff();
+  return work.Data.Rows.Weights.sum() / (resolved * n * energy);
+}
+
 void SmoothInterpolation::Prepare(
   Work& work, Result& result, double mu, const Flags& held, const ProgressMonitor& progress) const
 {
   const bool isExact = this->Options.Smoothing == Choice::Exact || result.HasTooFewValues;
-  const Index open = work.Fit.Prepare(mu, held, isExact, progress);
-  if (open > 0 && !work.HasTension)
+  PivotCounts pivots = work.Fit.Prepare(mu, held, isExact, progress);
+  const bool isFree = this->Options.Rim == RimCondition::Free;
+  if (pivots.Negative > 0 && isFree && !result.DropsNegativeCurvature)
+  {
+    work.Energy.DropNegativeCurvature();
+    result.DropsNegativeCurvature = true;
+    pivots = work.Fit.Prepare(mu, held, isExact, progress);
+  }
+  if (pivots.Open > 0 && !result.IsFlattest)
   {
     // Enough to be resolved, and little beside the energy.
     const double n = static_cast<double>(held.size());
     work.Energy.AddTension(std::max(1e-6, 1e-12 * n * n) / work.Area);
-    work.HasTension = true;
     result.IsFlattest = true;
     work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -215,6 +230,9 @@ void SmoothInterpolation::FitExactly(
   for (Eigen::Index c = 0; c < columns; ++c)
   {
     Column& found = result.Columns[static_cast<std::size_t>(c)];
+    const Vector given = rows.Given.col(c);
+    const Vector misfit = given - work.Fit.AtPoints(u).col(c);
+    found.Residual = std::sqrt(rows.Weights.dot(misfit.cwiseAbs2()) / rows.Weights.sum());
     found.DegreesOfFreedom = rows.Count();
   }
 }
@@ -227,6 +245,8 @@ void SmoothInterpolation::FitSmoothly(
   const bool isGiven = this->Options.Smoothing == Choice::Given;
   const double noise =
     this->Options.Smoothing == Choice::NoiseLevel ? this->Options.NoiseLevel : 0.0;
+  const double largest = this->LargestSmoothing(work);
+  const double givenMu = std::min(largest, this->Options.Mu);
   const auto measure = [&](double mu, const ProgressMonitor& part)
   {
     this->Prepare(work, result, mu, work.Open, part);
@@ -240,28 +260,28 @@ void SmoothInterpolation::FitSmoothly(
     found.DegreesOfFreedom = spectrum.DegreesOfFreedom(mu);
   };
   const InfluenceSpectrum start =
-    measure(isGiven ? this->Options.Mu : this->StartSmoothing(work), progress.Part(0.0, 0.4));
+    measure(isGiven ? givenMu : this->StartSmoothing(work), progress.Part(0.0, 0.4));
   if (isGiven)
   {
     for (Eigen::Index c = 0; c < columns; ++c)
     {
-      take(start, this->Options.Mu, c);
+      take(start, givenMu, c);
     }
-    this->FitColumns(work, result, 0, columns, this->Options.Mu, progress.Part(0.4, 1.0));
+    this->FitColumns(work, result, 0, columns, givenMu, progress.Part(0.4, 1.0));
     return;
   }
   for (Eigen::Index c = 0; c < columns; ++c)
   {
     const auto at = [&](double part)
     { return 0.4 + 0.6 * (static_cast<double>(c) + part) / static_cast<double>(columns); };
-    double mu = start.BestSmoothing(c, noise);
+    double mu = std::min(largest, start.BestSmoothing(c, noise));
     take(start, mu, c);
     constexpr int most = 3;
     bool isResolved = start.Resolves(mu);
     for (int again = 0; again < most && !isResolved; ++again)
     {
       const InfluenceSpectrum nearer = measure(mu, progress.Part(at(0.0), at(0.5)));
-      mu = nearer.BestSmoothing(c, noise);
+      mu = std::min(largest, nearer.BestSmoothing(c, noise));
       take(nearer, mu, c);
       isResolved = nearer.Resolves(mu);
     }

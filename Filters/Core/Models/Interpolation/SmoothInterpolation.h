@@ -24,7 +24,8 @@ namespace SurfaceDiffusion
 /// mean, to which u returns beyond the distance 1/kappa from the values.
 ///
 /// u is also the mean of a Gaussian field with the precision (mu Q + B^T W B) / s^2, where s is the
-/// standard deviation of values with weight 1: from it follow standard errors.
+/// standard deviation of values with weight 1: from it follow standard errors. They do not contain
+/// the error of the mean from which values are measured with kappa > 0.
 class SmoothInterpolation
 {
 public:
@@ -53,9 +54,11 @@ public:
   /// What was found for a column of the data.
   struct Column
   {
-    double Mu = 0.0; ///< 0: the values hold
+    double Mu = 0.0; ///< 0: the values hold. At most what the mean of the values resolves.
     double Score = 0.0; ///< of cross-validation; 0 if the values hold
-    double Residual = 0.0; ///< root of the weighted mean square of u(p) - d
+    /// Root of the weighted mean square of u(p) - d. Exact: it is round-off unless values at more
+    /// than three places of one triangle contradict each other.
+    double Residual = 0.0;
     double DegreesOfFreedom = 0.0;
     double NoiseLevel = 0.0; ///< s, given or estimated; 0 if the values hold
   };
@@ -72,6 +75,9 @@ public:
     bool HasTooFewValues = false;
     /// Free, on surfaces on which the values leave a slope open: the flattest function is taken.
     bool IsFlattest = false;
+    /// Free, on coarse meshes of surfaces with saddles: the energy was indefinite and is taken without
+    /// negative curvature.
+    bool DropsNegativeCurvature = false;
     /// Whether the active set of KeepRange settled. If not, u is within the range nevertheless.
     bool RangeIsOptimal = true;
   };
@@ -96,6 +102,7 @@ private:
   void Prepare(Work& work, Result& result, double mu, const Flags& held,
     const ProgressMonitor& progress) const;
   double StartSmoothing(const Work& work) const;
+  static double LargestSmoothing(const Work& work);
 
   std::shared_ptr<const Assembler> Assembly;
   CornerWeights Coefficients;

@@ -30,15 +30,27 @@ SmoothnessEnergy::SmoothnessEnergy(const Assembler& assembler, const CornerWeigh
     return;
   }
   assembler.Fill(this->K, none, 1.0, CotanWeights(this->Mesh, parallel), nullptr, parallel);
-  HessianEnergy hessian(this->Mesh);
-  this->Gradient = std::move(hessian.Gradient);
-  this->Second = std::move(hessian.Energy);
   assembler.Fill(first, (square * square) * areas, 2.0 * square, CotanWeights(this->Mesh, parallel),
     nullptr, parallel);
+  this->First = std::move(first);
+  this->TakeHessian(true);
+}
+
+void SmoothnessEnergy::TakeHessian(bool withNegativeCurvature)
+{
+  HessianEnergy hessian(this->Mesh, withNegativeCurvature);
+  this->Gradient = std::move(hessian.Gradient);
+  this->Second = std::move(hessian.Energy);
   const SparseMatrix product = this->Second * this->Gradient;
   const SparseMatrix transposed = this->Gradient.transpose();
   this->Q = transposed * product;
-  this->Q += first;
+  this->Q += this->First;
+}
+
+void SmoothnessEnergy::DropNegativeCurvature()
+{
+  this->TakeHessian(false);
+  this->Q += this->Tension * this->K;
 }
 
 void SmoothnessEnergy::AddTension(double tension)

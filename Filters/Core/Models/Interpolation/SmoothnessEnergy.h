@@ -34,6 +34,9 @@ public:
   SmoothnessEnergy(const Assembler& assembler, const CornerWeights& coefficients, double kappa,
     RimCondition rim, const ParallelFor& parallel = SerialFor());
 
+  /// Of Free: leave negative curvature out, without which no function has a negative energy.
+  void DropNegativeCurvature();
+
   /// Add tension int |grad u|^2 to u^T Q u, in 1/length^2.
   void AddTension(double tension);
 
@@ -48,6 +51,7 @@ public:
   Vector Squares(const Values& u) const;
 
 private:
+  void TakeHessian(bool withNegativeCurvature);
   void MultiplyStiffness(const Values& u, Values& y) const;
 
   const TriangleMesh& Mesh;
@@ -56,6 +60,7 @@ private:
   RimCondition Rim;
   double Tension = 0.0;
   SparseMatrix K, Q;
+  SparseMatrix First; ///< of Free: kappa^4 M + 2 kappa^2 K
   SparseMatrix Gradient, Second; ///< of Free: u^T Gradient^T Second Gradient u
 };
 
