@@ -67,8 +67,9 @@ public:
    * How much noise is removed: the standard deviation of the displacement of the points along the
    * normal, in coordinate units. 0 or more. Default: 0, which means estimated for each connected
    * component. The estimate is the 0.3 quantile of the distances of points from quadrics through
-   * their neighbours, over 0.3853, less 0.03 mean edge lengths, in squares, which surfaces without
-   * noise have; see GetEffectiveNoiseLevel().
+   * their neighbours, over 0.3853, less the share of details, which have larger distances in larger
+   * neighbourhoods. Estimates below 0.005 mean edge lengths are taken for none. See
+   * GetEffectiveNoiseLevel().
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 

@@ -15,9 +15,10 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The estimate, in h, on surfaces without noise that have details as small as their triangles.
-constexpr double DetailLevel = 0.03;
-/// Noise below this, in h, is none: that of points in single precision.
+/// Estimates below this, in h, are taken for none: they are rounded coordinates, and turn normals
+/// by half a degree.
+constexpr double SmallestEstimate = 0.005;
+/// A given level below this, in h, is none: that of points in single precision.
 constexpr double SmallestNoise = 1e-4;
 /// A surface is sharp if, after ProbeIterations for sharp surfaces, the quantile AngleQuantile of
 /// the angles between normals across edges is less than SharpAngleRatio of their root mean square:
@@ -55,12 +56,10 @@ double MeasureAngleRatio(const FaceGraph& graph, const Points& normals)
     std::sqrt(squares / static_cast<double>(differences.size()));
 }
 
-/// The estimated noise, less the details of surfaces without noise.
 double EstimateNoise(const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
-  const double measured = EstimateVertexNoise(mesh, points, parallel);
-  const double details = DetailLevel * MeanEdgeLength(mesh);
-  return std::sqrt(std::max(0.0, measured * measured - details * details));
+  const double estimate = EstimateVertexNoise(mesh, points, parallel);
+  return estimate < SmallestEstimate * MeanEdgeLength(mesh) ? 0.0 : estimate;
 }
 
 SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::vector<char>& fixed,

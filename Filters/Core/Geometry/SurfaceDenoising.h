@@ -18,8 +18,8 @@ enum class SurfaceType
 struct DenoisingSettings
 {
   /// The standard deviation of the noise of the vertices along the normal, in the unit of the
-  /// points; 0: estimated for each part of the surface (see EstimateVertexNoise()), less 0.03 mean
-  /// edge lengths, in squares, which surfaces without noise have.
+  /// points; 0: estimated for each part of the surface (see EstimateVertexNoise()). Estimates below
+  /// 0.005 mean edge lengths are taken for none.
   double NoiseLevel = 0.0;
   SurfaceType Type = SurfaceType::Automatic;
 };

@@ -30,6 +30,8 @@ constexpr double NoiseQuantile = 0.3853;
 constexpr Index EnoughVertices = 20000;
 /// (3/2)^3: the variance of details from three rings of neighbours over that from two.
 constexpr double GrowthOfDetails = 3.375;
+/// R0 of EstimateVertexNoise().
+constexpr double GrowthOfRoughDetails = 1.6;
 
 using Quadric = Eigen::Matrix<double, 6, 1>;
 
@@ -209,8 +211,16 @@ double EstimateVertexNoise(
     });
   const double two = NoiseOf(twoRings);
   const double three = std::max(two, NoiseOf(threeRings));
-  return std::sqrt(
-    std::max(0.0, two * two - (three * three - two * two) / (GrowthOfDetails - 1.0)));
+  if (!(two > 0.0))
+  {
+    return 0.0;
+  }
+  const double growth = three * three / (two * two) - 1.0;
+  const double relative = growth / GrowthOfRoughDetails;
+  const double rest = 1.0 - GrowthOfRoughDetails / (GrowthOfDetails - 1.0);
+  return two *
+    std::sqrt(std::max(
+      0.0, 1.0 - growth / (GrowthOfDetails - 1.0) - rest * relative * relative * relative));
 }
 
 } // namespace SurfaceDiffusion
