@@ -131,11 +131,6 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
   fields.ResultIsNormals = this->UseAsNormals && this->IsNormals(fields, block);
   const std::string label =
     std::string("InputArray \"") + (fields.Data->GetName() ? fields.Data->GetName() : "") + "\"";
-  if (NumberOfDataComponents(fields.Data) < 2)
-  {
-    problems.push_back(label + " has " + std::to_string(fields.Data->GetNumberOfComponents()) +
-      " components; allowed: 2 or more, alpha of colours not counted");
-  }
   if (this->GetMoveVertices() && !this->IsNormals(fields, block))
   {
     problems.push_back("MoveVertices is on but " + label +

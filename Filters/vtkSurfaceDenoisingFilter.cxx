@@ -82,11 +82,11 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   {
     outputs.push_back(surface.Output);
   }
-  std::vector<Warning> warnings = runs.FindWarnings("have no normal");
+  std::vector<Warning> warnings = runs.FindWarnings();
   runs.Write(outputs, fields, std::vector<vtkDataArray*>(surfaces.size(), nullptr),
     this->ResultArrayName, warnings);
   this->Private->Numbers = runs.FindNumbers();
-  for (const std::string& sentence : absences)
+  for (const Sentence& sentence : absences)
   {
     warnings.push_back({ sentence, Fingerprint() });
   }

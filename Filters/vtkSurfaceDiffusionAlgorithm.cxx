@@ -268,8 +268,8 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   const ProcessGroup& group = this->GetProcessGroup();
   Problems problems = state.SettingProblems;
   this->CheckSurfaceProperties(problems);
-  Require(this->OutputPrecision >= 0 && this->OutputPrecision < 3, "OutputPrecision",
-    this->OutputPrecision, ListChoices(WordsOfPrecision).c_str(), problems);
+  Require(this->OutputPrecision >= 0 && this->OutputPrecision < 3, Word::Setting("OutputPrecision"),
+    this->OutputPrecision, ListChoices("OutputPrecision", WordsOfPrecision), problems);
 
   std::vector<SurfaceBlock> surfaces;
   std::vector<InputFields> fields;
@@ -280,7 +280,7 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   }
   try
   {
-    NamingExtremes(*state.Settings,
+    NamingSettings(*state.Settings,
       [&]
       {
         state.Run.Update(
@@ -320,7 +320,7 @@ void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
   {
     warnings.push_back({ DescribeReplacement(state.ReplacedArrays), Fingerprint() });
   }
-  for (const std::string& sentence : state.InputWarnings)
+  for (const Sentence& sentence : state.InputWarnings)
   {
     warnings.push_back({ sentence, Fingerprint() });
   }
@@ -435,7 +435,7 @@ void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>
     }
     problemsOfData.Add(here, block.Name);
   }
-  Problems& warnings = this->State->InputWarnings;
+  std::vector<Sentence>& warnings = this->State->InputWarnings;
   warnings.clear();
   problemsOfData.AppendTo(warnings, blocks.size());
   if (surfaces.empty())
@@ -443,9 +443,9 @@ void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>
     problems.insert(problems.end(), warnings.begin(), warnings.end());
     return;
   }
-  for (std::string& warning : warnings)
+  for (Sentence& warning : warnings)
   {
-    warning += " (without data, a block passes through)";
+    warning << " (without data, a block passes through)";
   }
   const std::size_t before = problems.size();
   SettleAbsence(fields, names, problems, warnings);

@@ -87,7 +87,7 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     outputs.push_back(surfaces[b].Output);
     hints.push_back(fields[b].Direction);
   }
-  std::vector<Warning> warnings = runs.FindWarnings("get no direction");
+  std::vector<Warning> warnings = runs.FindWarnings();
   runs.Write(outputs, fields, hints, this->ResultArrayName, warnings);
   this->Private->Numbers = runs.FindNumbers();
   this->ReportWarnings(std::move(warnings));

@@ -31,16 +31,6 @@ using namespace SurfaceDiffusion;
 namespace
 {
 
-std::string JoinSentences(const std::vector<std::string>& sentences)
-{
-  std::string text;
-  for (const std::string& sentence : sentences)
-  {
-    text += (text.empty() ? "" : "; ") + sentence;
-  }
-  return text;
-}
-
 struct MergingSettings : Settings
 {
   bool MergeCoincidentPoints = false;
@@ -127,9 +117,9 @@ void vtkSurfaceFilter::CheckSurfaceProperties(Problems& problems)
 {
   const SettingRange seam =
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: 1e-6 of the bounding box");
-  Require(
-    seam.Contains(this->SeamTolerance), "SeamTolerance", this->SeamTolerance, seam.Text, problems);
-  Require(this->NumberOfThreads >= 0, "NumberOfThreads", this->NumberOfThreads,
+  Require(seam.Contains(this->SeamTolerance), Word::Setting("SeamTolerance"), this->SeamTolerance,
+    seam.Text, problems);
+  Require(this->NumberOfThreads >= 0, Word::Setting("NumberOfThreads"), this->NumberOfThreads,
     "integers, 0 or more; 0: all", problems);
 }
 
@@ -188,7 +178,7 @@ bool vtkSurfaceFilter::ReportProblems(Problems problems)
 {
   std::sort(problems.begin(), problems.end());
   problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
-  const std::string text = this->GetProcessGroup().FirstMessage(JoinSentences(problems));
+  const std::string text = this->GetProcessGroup().FirstMessage(Join(problems).Text());
   if (text.empty())
   {
     return false;
@@ -209,10 +199,10 @@ void vtkSurfaceFilter::ReportError(const std::string& text)
 
 void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 {
-  const std::vector<std::string> sentences = this->Private->Reported.Report(std::move(warnings));
+  const std::vector<Sentence> sentences = this->Private->Reported.Report(std::move(warnings));
   if (!sentences.empty() && this->GetProcessGroup().IsRoot())
   {
-    vtkWarningMacro(<< JoinSentences(sentences));
+    vtkWarningMacro(<< Join(sentences));
   }
 }
 

@@ -50,6 +50,7 @@ namespace SurfaceDiffusion
 class OwnedSettings;
 class ProcessGroup;
 class ProgressMonitor;
+class Sentence;
 class Settings;
 struct Warning;
 }
@@ -235,7 +236,7 @@ protected:
   double FindNumber(const char* name, int row = 0, int column = 0) const;
 
   /// Sentences that name a property or array, its value and what is allowed.
-  using Problems = std::vector<std::string>;
+  using Problems = std::vector<SurfaceDiffusion::Sentence>;
 
   /// Append the problems of this class's properties.
   void CheckSurfaceProperties(Problems& problems);

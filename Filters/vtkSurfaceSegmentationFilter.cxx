@@ -96,9 +96,9 @@ void vtkSurfaceSegmentationFilter::CheckPlacesOfMeans(int components, Problems& 
     }
     const auto [region, component] = place;
     Require(region >= 1 && region <= this->GetNumberOfRegions(), "the region of a Mean", region,
-      regions.c_str(), problems);
-    Require(component >= 0 && component < components, "the component of a Mean", component,
-      columns.c_str(), problems);
+      regions, problems);
+    Require(component >= 0 && component < components, "the component of a Mean", component, columns,
+      problems);
   }
 }
 

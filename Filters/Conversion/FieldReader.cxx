@@ -27,6 +27,12 @@ std::string NameOf(vtkDataArray* array)
   return array->GetName() ? array->GetName() : "";
 }
 
+Word NameOfData(const InputFields& arrays)
+{
+  return Word::Array(
+    arrays.DataAreTerms ? "DataTermArray" : "InputArray", " \"" + NameOf(arrays.Data) + "\"");
+}
+
 std::vector<char> ReadFlags(vtkDataArray* array)
 {
   std::vector<char> flags;
@@ -101,7 +107,11 @@ FieldSummary InputFields::Summarize() const
 {
   FieldSummary summary;
   summary.Data = this->Data != nullptr;
-  summary.DataComponents = this->Data ? NumberOfDataComponents(this->Data) : 0;
+  if (this->Data)
+  {
+    summary.DataComponents = NumberOfDataComponents(this->Data);
+    summary.DataName = NameOfData(*this);
+  }
   summary.Directions = this->Direction != nullptr;
   summary.Fixed = this->Fixed != nullptr;
   summary.Rates = this->Rates != nullptr;
@@ -172,8 +182,7 @@ Fields ReadFields(
   if (arrays.Data)
   {
     fields.Data = ReadValues(arrays.Data);
-    fields.DataName = std::string(arrays.DataAreTerms ? "DataTermArray" : "InputArray") + " \"" +
-      NameOf(arrays.Data) + "\"";
+    fields.DataName = NameOfData(arrays);
     fields.DataAreTerms = arrays.DataAreTerms;
     fields.DataAreBytes = arrays.Data->GetDataType() == VTK_UNSIGNED_CHAR;
     fields.DataOnCells = arrays.DataOnCells;

@@ -87,8 +87,8 @@ std::string DescribeAbsence(const Choice& choice, vtkPolyData* block)
 
 } // namespace
 
-InputArrays::InputArrays(
-  vtkAlgorithm* filter, vtkPolyData* block, InputFields& fields, std::vector<std::string>& problems)
+InputArrays::InputArrays(vtkAlgorithm* filter, vtkPolyData* block, InputFields& fields,
+  SurfaceDiffusion::Problems& problems)
   : Filter(filter)
   , Block(block)
   , Fields(fields)
@@ -155,7 +155,7 @@ vtkDataArray* InputArrays::Find(
 }
 
 void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std::string>& blocks,
-  std::vector<std::string>& problems, std::vector<std::string>& warnings)
+  Problems& problems, std::vector<Sentence>& warnings)
 {
   struct Absence
   {

@@ -21,8 +21,7 @@ class InputArrays
 public:
   static constexpr int AnyNumberOfComponents = 0;
 
-  InputArrays(vtkAlgorithm* filter, vtkPolyData* block, InputFields& fields,
-    std::vector<std::string>& problems);
+  InputArrays(vtkAlgorithm* filter, vtkPolyData* block, InputFields& fields, Problems& problems);
 
   /// The array at `index`, called `property` in messages. Null if it is not set or absent, and null
   /// with a problem reported if it is not allowed. onCells: whether it is cell data.
@@ -32,12 +31,12 @@ private:
   vtkAlgorithm* Filter;
   vtkPolyData* Block;
   InputFields& Fields;
-  std::vector<std::string>& Problems;
+  SurfaceDiffusion::Problems& Problems;
 };
 
 /// Decides about the absent arrays of all blocks. One that no block has is a problem. One that
 /// another block has counts as not set, with a sentence in `warnings`. blocks: their names.
 void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std::string>& blocks,
-  std::vector<std::string>& problems, std::vector<std::string>& warnings);
+  Problems& problems, std::vector<Sentence>& warnings);
 
 } // namespace SurfaceDiffusion

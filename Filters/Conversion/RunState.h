@@ -62,8 +62,9 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
 
   // Of one update:
   std::shared_ptr<SurfaceDiffusion::TimeSettings> Settings;
-  std::vector<std::string> SettingProblems;
-  std::vector<std::string> InputWarnings; ///< about arrays that some blocks do not have
+  SurfaceDiffusion::Problems SettingProblems;
+  std::vector<SurfaceDiffusion::Sentence>
+    InputWarnings; ///< about arrays that some blocks do not have
   std::vector<std::string> ReplacedArrays; ///< of the input, by results
   std::optional<double> Time; ///< the requested time
   int Step = 0; ///< the requested step

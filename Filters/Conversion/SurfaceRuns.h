@@ -44,9 +44,9 @@ public:
       }
       this->Names[b] = inputs[b].Name;
       const ProgressMonitor part = progress.Part(b / count, (b + 0.95) / count);
-      NameBlockInErrors(this->Names[b],
+      NameBlockInErrors(this->Names[b], settings,
         [&]
-        { NamingExtremes(settings, [&] { this->Runs[b]->Update(inputs[b], settings, part); }); });
+        { NamingSettings(settings, [&] { this->Runs[b]->Update(inputs[b], settings, part); }); });
     }
   }
 
@@ -98,37 +98,15 @@ public:
     return edges > 0.0 ? length / edges : 1.0;
   }
 
-  /// The warnings that hold: about triangles of zero area, and those of each run. consequence: the
-  /// end of the sentence about triangles, such as "have no normal".
-  std::vector<Warning> FindWarnings(const std::string& consequence) const
+  /// The warnings that hold.
+  std::vector<Warning> FindWarnings() const
   {
-    Index degenerate = 0;
-    Fingerprint versions;
-    std::vector<Warning> warnings;
-    BlockSentences ofRuns;
-    Fingerprint causes;
-    for (std::size_t b = 0; b < this->Runs.size(); ++b)
+    std::vector<const SurfaceRun*> runs;
+    for (const auto& run : this->Runs)
     {
-      degenerate += this->Runs[b]->GetSurface().Diagnostics().DegenerateTriangles;
-      versions.Add(this->Runs[b]->GetSurfaceVersion());
-      for (const Warning& warning : this->Runs[b]->FindWarnings())
-      {
-        ofRuns.Add(warning.Sentence, this->Names[b]);
-        causes.Add(warning.Cause);
-      }
+      runs.push_back(run.get());
     }
-    std::vector<std::string> sentences;
-    ofRuns.AppendTo(sentences, this->Runs.size());
-    for (const std::string& sentence : sentences)
-    {
-      warnings.push_back({ sentence, causes });
-    }
-    if (degenerate > 0)
-    {
-      warnings.push_back(
-        { std::to_string(degenerate) + " triangles of zero area " + consequence, versions });
-    }
-    return warnings;
+    return SurfaceRun::FindAllWarnings(runs, this->Names);
   }
 
   void Clear()

@@ -27,7 +27,7 @@ std::string ListBlocks(const std::vector<std::string>& names)
                                : text + " and " + std::to_string(names.size() - shown) + " more";
 }
 
-void BlockSentences::Add(const std::string& sentence, const std::string& block)
+void BlockSentences::Add(const Sentence& sentence, const std::string& block)
 {
   auto entry = std::find_if(this->Entries.begin(), this->Entries.end(),
     [&](const Entry& known) { return known.Sentence == sentence; });
@@ -41,21 +41,21 @@ void BlockSentences::Add(const std::string& sentence, const std::string& block)
   }
 }
 
-void BlockSentences::Add(const std::vector<std::string>& sentences, const std::string& block)
+void BlockSentences::Add(const std::vector<Sentence>& sentences, const std::string& block)
 {
-  for (const std::string& sentence : sentences)
+  for (const Sentence& sentence : sentences)
   {
     this->Add(sentence, block);
   }
 }
 
-void BlockSentences::AppendTo(std::vector<std::string>& sentences, std::size_t blocks) const
+void BlockSentences::AppendTo(std::vector<Sentence>& sentences, std::size_t blocks) const
 {
   for (const Entry& entry : this->Entries)
   {
     const bool holdsForAll = entry.Blocks.size() == blocks || entry.Blocks.front().empty();
-    sentences.push_back(
-      holdsForAll ? entry.Sentence : ListBlocks(entry.Blocks) + ": " + entry.Sentence);
+    Sentence text(holdsForAll ? "" : ListBlocks(entry.Blocks) + ": ");
+    sentences.push_back(text << entry.Sentence);
   }
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Run/ErrorCauses.h"
+
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -18,25 +20,25 @@ std::string ListBlocks(const std::vector<std::string>& names);
 class BlockSentences
 {
 public:
-  void Add(const std::string& sentence, const std::string& block);
-  void Add(const std::vector<std::string>& sentences, const std::string& block);
+  void Add(const Sentence& sentence, const std::string& block);
+  void Add(const std::vector<Sentence>& sentences, const std::string& block);
 
   /// Append each distinct sentence, in the order of the first calls. blocks: the number of all
   /// surfaces.
-  void AppendTo(std::vector<std::string>& sentences, std::size_t blocks) const;
+  void AppendTo(std::vector<Sentence>& sentences, std::size_t blocks) const;
 
 private:
   struct Entry
   {
-    std::string Sentence;
+    SurfaceDiffusion::Sentence Sentence;
     std::vector<std::string> Blocks;
   };
   std::vector<Entry> Entries;
 };
 
-/// Calls a function whose errors name the block.
+/// Calls a function whose errors name the block, and the settings that may be their remedy.
 template <typename Function>
-void NameBlockInErrors(const std::string& block, const Function& function)
+void NameBlockInErrors(const std::string& block, Settings& settings, const Function& function)
 {
   try
   {
@@ -48,7 +50,7 @@ void NameBlockInErrors(const std::string& block, const Function& function)
     {
       throw;
     }
-    throw std::runtime_error(ListBlocks({ block }) + ": " + error.what());
+    throw InputError(Sentence(ListBlocks({ block }) + ": ") << ExplainError(settings, error));
   }
 }
 

@@ -3,7 +3,6 @@
 #include "Run/BlurSettings.h"
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -43,10 +42,11 @@ void BlurSettings::Warn(const ModelInputs& inputs, RunResult& result) const
   const double edges = this->FWHM / inputs.Units.MeanEdgeLength;
   if (edges < LeastWidth || edges > LargestWidth)
   {
-    std::ostringstream text;
-    text << "BlurFWHM is " << this->FWHM << ", " << edges << " mean edge lengths; a restoration is "
+    Sentence text;
+    text << Word::Setting("BlurFWHM") << " is " << this->FWHM << ", " << edges
+         << " mean edge lengths; a restoration is "
          << "reliable from " << LeastWidth << " to " << LargestWidth << " mean edge lengths";
-    result.Warnings.push_back(text.str());
+    result.Warnings.push_back(text);
   }
 }
 

@@ -83,27 +83,13 @@ std::vector<char> MarkCells(
   return marks;
 }
 
-void CheckCellFactors(const std::vector<double>& factors)
-{
-  for (std::size_t c = 0; c < factors.size(); ++c)
-  {
-    if (!(std::isfinite(factors[c]) && factors[c] >= 0.0))
-    {
-      std::ostringstream text;
-      text << "FidelityArray is " << factors[c] << " at cell " << c
-           << "; allowed: finite numbers, 0 or more";
-      throw std::runtime_error(text.str());
-    }
-  }
-}
-
 /// One factor per cell, 1 where none is given.
 Vector ReadCellFactors(const Fields& fields)
 {
   Vector factors = Vector::Ones(fields.NumberOfCells);
   if (fields.FidelityOnCells && !fields.FidelityFactors.empty())
   {
-    CheckCellFactors(fields.FidelityFactors);
+    CheckFidelityFactors(fields);
     factors = Eigen::Map<const Vector>(fields.FidelityFactors.data(), factors.size());
   }
   return factors;
@@ -149,17 +135,17 @@ CellData ReadCells(const Surface& surface, const Fields& fields, const CellReadi
     }
     if (fields.Data.row(c).array().isInf().any())
     {
-      throw DataError(fields, c, "is infinite", "allowed: finite values and NaN");
+      throw ErrorAt(fields.DataName, "is infinite", true, c, "allowed: finite values and NaN");
     }
     const bool finite = !IsSet(fields.Missing, c) && !fields.Data.row(c).hasNaN() &&
       (!reading.UnitVectors || Normalize(data.Of.row(c)));
     const bool isFixed = fields.FixedOnCells && IsSet(fields.Fixed, c);
     if (isFixed && !finite)
     {
-      throw DataError(fields, c,
-        reading.UnitVectors ? "has no direction where FixedArray holds it"
-                            : "is NaN where FixedArray holds it",
-        "allowed there: finite values");
+      throw ErrorAt(fields.DataName,
+        Sentence(reading.UnitVectors ? "has no direction" : "is NaN")
+          << " where " << Word::Array("FixedArray") << " holds it",
+        true, c, "allowed there: finite values");
     }
     const bool known = finite && (isFixed || !(reading.Inpaint && IsSet(fields.Mask, c)));
     data.HasUnknown = data.HasUnknown || !known;
@@ -181,7 +167,7 @@ void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cel
       ofCells = ReadCellFactors(fields);
       if (!fields.FidelityOnCells && !fields.FidelityFactors.empty())
       {
-        ofVertices = MakeFidelityFactors(surface, fields.FidelityFactors);
+        ofVertices = MakeFidelityFactors(surface, fields);
       }
     });
   const Vector ones = Vector::Ones(fields.NumberOfCells);
@@ -231,10 +217,9 @@ void FixVertices(const Surface& surface, const Fields& fields, const CellState& 
     data.Fixed[v] = true;
     if (data.Missing[v] && !(damaged.Weights[v] > 0.0))
     {
-      std::ostringstream text;
-      text << fields.DataName << " is NaN at all cells around point " << point
-           << " where FixedArray holds it; allowed there: finite values";
-      throw std::runtime_error(text.str());
+      throw InputError(Sentence(fields.DataName)
+        << " is NaN at all " << Word::Cells() << " around point " << point << " where "
+        << Word::Array("FixedArray") << " holds it; allowed there: finite values");
     }
     data.Missing[v] = false;
   };

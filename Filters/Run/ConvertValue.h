@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Run/Sentence.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
@@ -23,10 +24,17 @@ T ConvertValue(double value)
   }
   if (std::abs(value) > static_cast<double>(std::numeric_limits<T>::max()))
   {
-    throw std::runtime_error(sizeof(T) < sizeof(double)
-        ? "the result has values that are larger than a float can hold; set OutputPrecision to "
-          "Double"
-        : "the result has values that are larger than a double can hold");
+    Sentence text("the result has values that are larger than a ");
+    if (sizeof(T) < sizeof(double))
+    {
+      text << "float can hold; set " << Word::Setting("OutputPrecision") << " to "
+           << Word::Choice("OutputPrecision", 1, "Double");
+    }
+    else
+    {
+      text << "double can hold";
+    }
+    throw InputError(text);
   }
   return static_cast<T>(value);
 }

@@ -10,7 +10,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -34,12 +33,13 @@ void WarnOfSmoothData(const ModelInputs& inputs, double estimate, RunResult& res
     return;
   }
   const double unit = inputs.Units.ValueUnit;
-  std::ostringstream text;
-  text << "NoiseLevel: the data show no white noise but are smooth over about " << variation.Width
+  const Word level = Word::Setting("NoiseLevel");
+  Sentence text = level;
+  text << ": the data show no white noise but are smooth over about " << variation.Width
        << " (full width at half maximum), as correlated noise is, so that its estimate, "
        << estimate * unit << ", may be too small; without a signal the noise is "
-       << variation.Deviation * unit << " (set NoiseLevel)";
-  result.Warnings.push_back(text.str());
+       << variation.Deviation * unit << " (set " << level << ")";
+  result.Warnings.push_back(text);
 }
 
 /// Of the first guess of the search for a weight: keeps data to seven digits.
@@ -126,7 +126,8 @@ void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunR
   result.HasMissing = inputs.Data.Missing.any();
   if (inputs.Data.FidelityFactors.size() > 0 && !settings.DescribeModel().UsesFidelity)
   {
-    result.Warnings.emplace_back("FidelityArray has no effect, since FidelityWeight is 0");
+    result.Warnings.push_back(Sentence(Word::Array("FidelityArray"))
+      << " has no effect, since " << Word::Setting("FidelityWeight") << " is 0");
   }
   if (settings.HoldKnownValues)
   {
@@ -160,11 +161,10 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
     noise = estimate.Level();
     if (estimate.IsCorrelated())
     {
-      std::ostringstream text;
-      text << "the noise is correlated: its standard deviation is "
-           << estimate.BetweenNeighbours * unit << " between neighbours and " << noise * unit
-           << " farther apart, which AutomaticFidelity uses (to set another, use NoiseLevel)";
-      result.Warnings.push_back(text.str());
+      result.Warnings.push_back(Sentence("the noise is correlated: its standard deviation is ")
+        << estimate.BetweenNeighbours * unit << " between neighbours and " << noise * unit
+        << " farther apart, which " << Word::Setting("AutomaticFidelity")
+        << " uses (to set another, use " << Word::Setting("NoiseLevel") << ")");
     }
     else
     {
@@ -173,9 +173,10 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
   }
   if (noise == 0.0)
   {
-    result.Warnings.emplace_back(
-      "AutomaticFidelity finds no noise in the data, which stay as they "
-      "are (to set the standard deviation of the noise, use NoiseLevel)");
+    result.Warnings.push_back(Sentence(Word::Setting("AutomaticFidelity"))
+      << " finds no noise in the data, which stay as they are (to set the standard deviation of "
+         "the noise, use "
+      << Word::Setting("NoiseLevel") << ")");
     return WeightWithoutNoise * start;
   }
   const PointData compared = WithoutConstantParts(inputs);
@@ -197,11 +198,9 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
   const FidelityChoice choice = FindFidelityByDiscrepancy(discrepancy, noise, start);
   if (!choice.IsFound)
   {
-    std::ostringstream text;
-    text << "AutomaticFidelity found no weight at which the result differs from the data by the "
-         << "noise, " << noise * unit << ": at the end of its search the difference is "
-         << choice.Discrepancy * unit;
-    result.Warnings.push_back(text.str());
+    result.Warnings.push_back(Sentence(Word::Setting("AutomaticFidelity"))
+      << " found no weight at which the result differs from the data by the noise, " << noise * unit
+      << ": at the end of its search the difference is " << choice.Discrepancy * unit);
   }
   return choice.Weight;
 }

@@ -4,8 +4,6 @@
 
 #include "Core/Geometry/VertexUpdating.h"
 
-#include <sstream>
-
 namespace SurfaceDiffusion
 {
 
@@ -23,33 +21,32 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
-std::vector<Warning> DenoisingRun::FindWarnings() const
+std::vector<Warning> DenoisingRun::FindOwnWarnings() const
 {
   std::vector<Warning> warnings;
   const Index coincident = this->Domain->Diagnostics().CoincidentBoundaryPoints;
   if (coincident > 0)
   {
-    warnings.push_back({ std::to_string(coincident) +
-        " boundary points coincide with others and may come apart (to join them, set "
-        "MergeCoincidentPoints)",
-      this->SurfaceVersion });
+    Sentence text;
+    text << coincident
+         << " boundary points coincide with others and may come apart (to join them, set "
+         << Word::Setting("MergeCoincidentPoints") << ")";
+    warnings.push_back({ text, this->SurfaceVersion });
   }
   if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0)
   {
-    warnings.push_back(
-      { "no noise was found, so that no point moves (to remove some, set NoiseLevel)",
-        this->SurfaceVersion });
+    Sentence text("no noise was found, so that no point moves (to remove some, set ");
+    warnings.push_back({ text << Word::Setting("NoiseLevel") << ")", this->SurfaceVersion });
   }
   if (this->Found.FarVertices > 0)
   {
-    std::ostringstream sentence;
-    sentence
-      << this->Found.FarVertices
-      << " points moved by more than 10 times the noise level, the farthest by "
-      << this->Found.MaximumDisplacement
-      << ": outliers, or points at sharpened edges or of thin triangles (to hold points, set "
-         "FixedArray)";
-    warnings.push_back({ sentence.str(), this->SurfaceVersion });
+    Sentence text;
+    text << this->Found.FarVertices
+         << " points moved by more than 10 times the noise level, the farthest by "
+         << this->Found.MaximumDisplacement
+         << ": outliers, or points at sharpened edges or of thin triangles (to hold points, set "
+         << Word::Array("FixedArray") << ")";
+    warnings.push_back({ text, this->SurfaceVersion });
   }
   return warnings;
 }

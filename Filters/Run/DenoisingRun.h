@@ -25,7 +25,7 @@ class DenoisingRun : public SurfaceRun
 {
 public:
   explicit DenoisingRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel)
+    : SurfaceRun(parallel, "have no normal")
   {
   }
 
@@ -33,10 +33,9 @@ public:
   void Update(
     const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
 
-  /// About coincident points that may come apart, and points that moved far.
-  std::vector<Warning> FindWarnings() const;
-
 private:
+  /// About coincident points that may come apart, and points that moved far.
+  std::vector<Warning> FindOwnWarnings() const override;
   void ListResults(const Points& moved);
 
   DenoisingReport Found;

@@ -54,8 +54,11 @@ void DirectionFieldSettings::Check(const FieldSummary* fields, Problems& problem
   CheckRanges(*this, problems);
   if (fields && this->Method == DirectionMethod::Hints && !fields->Directions)
   {
-    problems.emplace_back("Method is Hints but DirectionArray is not set; allowed: an array of "
-                          "directions on points or cells");
+    Sentence text = Word::Setting("Method");
+    text << " is " << Word::Choice("Method", this->Method, "Hints") << " but "
+         << Word::Array("DirectionArray")
+         << " is not set; allowed: an array of directions on points or " << Word::Cells();
+    problems.push_back(text);
   }
 }
 
@@ -95,7 +98,7 @@ void DirectionFieldRun::MakeField(
     this->Domain->MakeTriangles(), hints, core, this->Parallel, progress, &this->Report);
 }
 
-std::vector<Warning> DirectionFieldRun::FindWarnings() const
+std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
 {
   Fingerprint inputs = this->SurfaceVersion;
   inputs.Add(this->FieldsVersion);

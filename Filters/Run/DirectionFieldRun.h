@@ -31,7 +31,7 @@ class DirectionFieldRun : public SurfaceRun
 {
 public:
   explicit DirectionFieldRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel)
+    : SurfaceRun(parallel, "get no direction")
   {
   }
 
@@ -39,10 +39,9 @@ public:
   void Update(
     const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress);
 
-  /// The warnings about the line field that hold.
-  std::vector<Warning> FindWarnings() const;
-
 private:
+  /// About the line field.
+  std::vector<Warning> FindOwnWarnings() const override;
   void MakeField(const BlockInput& input, const DirectionFieldSettings& settings,
     const ProgressMonitor& progress);
 

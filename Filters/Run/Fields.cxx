@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
@@ -44,29 +42,36 @@ std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields
 
 } // namespace
 
-std::runtime_error DataError(
-  const Fields& fields, Eigen::Index row, const char* found, const char* allowed)
+InputError ErrorAt(
+  const Sentence& name, const Sentence& found, bool onCells, Eigen::Index row, const char* allowed)
 {
-  std::ostringstream text;
-  text << fields.DataName << " " << found << (fields.DataOnCells ? " at cell " : " at point ")
-       << row << "; " << allowed;
-  return std::runtime_error(text.str());
+  const Sentence place = onCells ? Sentence(Word::Cell()) : Sentence("point");
+  return InputError(
+    Sentence(name) << " " << found << " at " << place << " " << row << "; " << allowed);
 }
 
-Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& ofPoints)
+void CheckFidelityFactors(const Fields& fields)
 {
+  for (std::size_t i = 0; i < fields.FidelityFactors.size(); ++i)
+  {
+    const double factor = fields.FidelityFactors[i];
+    if (!(std::isfinite(factor) && factor >= 0.0))
+    {
+      throw ErrorAt(Word::Array("FidelityArray"), Sentence("is ") << factor, fields.FidelityOnCells,
+        static_cast<Eigen::Index>(i), "allowed: finite numbers, 0 or more");
+    }
+  }
+}
+
+Vector MakeFidelityFactors(const Surface& surface, const Fields& fields)
+{
+  CheckFidelityFactors(fields);
+  const std::vector<double>& ofPoints = fields.FidelityFactors;
   const Index n = surface.Mesh().NumberOfVertices();
   Vector factors = Vector::Zero(n);
   Vector counts = Vector::Zero(n);
   for (std::size_t i = 0; i < ofPoints.size(); ++i)
   {
-    if (!(std::isfinite(ofPoints[i]) && ofPoints[i] >= 0.0))
-    {
-      std::ostringstream text;
-      text << "FidelityArray is " << ofPoints[i] << " at point " << i
-           << "; allowed: finite numbers, 0 or more";
-      throw std::runtime_error(text.str());
-    }
     const Index v = surface.VertexOf(static_cast<Index>(i));
     if (v >= 0)
     {
@@ -211,7 +216,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   {
     if (values.row(i).array().isInf().any())
     {
-      throw DataError(fields, i, "is infinite", "allowed: finite values and NaN");
+      throw ErrorAt(fields.DataName, "is infinite", false, i, "allowed: finite values and NaN");
     }
     const Index v = surface.VertexOf(static_cast<Index>(i));
     if (v < 0)
@@ -222,8 +227,9 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
     const bool isNaN = IsSet(fields.Missing, i) || values.row(i).hasNaN();
     if (isFixed && isNaN)
     {
-      throw DataError(
-        fields, i, "is NaN where FixedArray holds it", "allowed there: finite values");
+      throw ErrorAt(fields.DataName,
+        Sentence("is NaN where ") << Word::Array("FixedArray") << " holds it", false, i,
+        "allowed there: finite values");
     }
     data.Fixed[v] = data.Fixed[v] || isFixed;
     if (isFixed || !(isNaN || (inpaint && IsSet(fields.Mask, i))))
@@ -253,7 +259,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   }
   if (!fields.FidelityFactors.empty())
   {
-    data.FidelityFactors = MakeFidelityFactors(surface, fields.FidelityFactors);
+    data.FidelityFactors = MakeFidelityFactors(surface, fields);
   }
   return data;
 }
@@ -302,11 +308,10 @@ std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields)
     Index& seed = seeds[static_cast<std::size_t>(v)];
     if (seed != 0 && seed != fields.Seeds[i])
     {
-      std::ostringstream text;
-      text << "SeedArray is " << seed << " and " << fields.Seeds[i]
-           << " at points that are merged into one, point " << i
-           << " among them; allowed: one label there";
-      throw std::runtime_error(text.str());
+      throw InputError(Sentence(Word::Array("SeedArray"))
+        << " is " << seed << " and " << fields.Seeds[i]
+        << " at points that are merged into one, point " << i
+        << " among them; allowed: one label there");
     }
     seed = fields.Seeds[i];
   }

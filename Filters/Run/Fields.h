@@ -10,7 +10,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,7 @@ struct Fields
   /// data. NaN in any component of a row means that the point or cell is missing.
   Values Data;
   bool DataOnCells = false;
-  std::string DataName = "InputArray"; ///< for error messages
+  Word DataName = Word::Array("InputArray"); ///< for error messages
   /// Data may be a panel of the columns of the input, from FirstColumn of AllColumns on. Then NaN
   /// in columns outside of the panel is known by Missing: per point, nonzero: NaN in any column.
   Eigen::Index FirstColumn = 0;
@@ -85,13 +84,15 @@ private:
   double Largest = 0.0;
 };
 
-/// The error of a row of the data, on points or cells.
-std::runtime_error DataError(
-  const Fields& fields, Eigen::Index row, const char* found, const char* allowed);
+/// "`name` `found` at point `row`; `allowed`", or at the cell if the array is on cells.
+InputError ErrorAt(
+  const Sentence& name, const Sentence& found, bool onCells, Eigen::Index row, const char* allowed);
 
-/// The mean factor of each vertex over its participating points. Throws std::runtime_error on
-/// factors that are negative or not finite.
-Vector MakeFidelityFactors(const Surface& surface, const std::vector<double>& ofPoints);
+/// Throws InputError on fidelity factors that are negative or not finite.
+void CheckFidelityFactors(const Fields& fields);
+
+/// The mean factor of each vertex over its participating points. Throws as CheckFidelityFactors().
+Vector MakeFidelityFactors(const Surface& surface, const Fields& fields);
 
 /// Whether a row of the data belongs to a participating triangle.
 std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fields);

@@ -7,7 +7,6 @@
 #include "Run/ModelInputs.h"
 
 #include <cmath>
-#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
@@ -61,8 +60,22 @@ void HarmonicMapSettings::Visit(SettingVisitor& visitor)
 void HarmonicMapSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->DataSettings::CheckTogether(fields, problems);
-  Require(this->Exponent == 2.0 || this->Beta != 0.0, "Beta", this->Beta, "finite numbers above 0",
-    problems);
+  Require(this->Exponent == 2.0 || this->Beta != 0.0, Word::Setting("Beta"), this->Beta,
+    "finite numbers above 0", problems);
+  if (fields && fields->Data)
+  {
+    const int columns = fields->DataComponents;
+    Sentence found = fields->DataName;
+    found << " has " << columns << " components; allowed: ";
+    if (this->MoveVertices && columns != 3)
+    {
+      problems.push_back(found << "3 with " << Word::Setting("MoveVertices"));
+    }
+    else if (columns < 2)
+    {
+      problems.push_back(found << "2 or more, alpha of colours not counted");
+    }
+  }
 }
 
 ModelTraits HarmonicMapSettings::DescribeModel() const
@@ -102,8 +115,9 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   }
   if (inputs.Processes.Any((inputs.Data.Fixed && inputs.Data.Missing).any()))
   {
-    throw std::runtime_error("InputArray has a vector of length zero where FixedArray holds it; "
-                             "fixed vectors must have a direction");
+    throw InputError(Sentence(Word::Array("InputArray"))
+      << " has a vector of length zero where " << Word::Array("FixedArray")
+      << " holds it; allowed there: vectors with a direction");
   }
   CompletePreparation(*this, inputs, result);
   result.AddNumber("EffectiveFidelityWeight", this->FidelityWeight);

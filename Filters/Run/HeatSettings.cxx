@@ -35,21 +35,27 @@ void HeatSettings::Visit(SettingVisitor& visitor)
 void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->DataSettings::CheckTogether(fields, problems);
-  Require(!this->Blur.IsOn() || this->Mode == HeatMode::SteadyState, "Mode", 0.0,
-    "1 SteadyState together with BlurFWHM", problems);
+  if (this->Blur.IsOn())
+  {
+    RequireChoice("Mode", this->Mode, HeatMode::SteadyState, "SteadyState",
+      Word::Setting("BlurFWHM"), problems);
+  }
   if (!(this->FWHM > 0.0))
   {
     return;
   }
-  const char* const off = "0 together with FWHM, whose width it would change";
-  Require(this->FidelityWeight == 0.0, "FidelityWeight", this->FidelityWeight, off, problems);
-  Require(!this->AutomaticFidelity, "AutomaticFidelity", 1.0, off, problems);
-  const char* const one = "1 together with FWHM, whose width it would change";
-  Require(this->AlongDiffusivity == 1.0, "AlongDiffusivity", this->AlongDiffusivity, one, problems);
-  Require(
-    this->AcrossDiffusivity == 1.0, "AcrossDiffusivity", this->AcrossDiffusivity, one, problems);
-  Require(this->Mode == HeatMode::TimeSteps, "Mode", static_cast<double>(this->Mode),
-    "0 TimeSteps together with FWHM: a steady state has no width", problems);
+  Sentence width(" together with ");
+  width << Word::Setting("FWHM") << ", whose width it would change";
+  Require(this->FidelityWeight == 0.0, Word::Setting("FidelityWeight"), this->FidelityWeight,
+    Sentence("0") << width, problems);
+  Require(!this->AutomaticFidelity, Word::Setting("AutomaticFidelity"), Word::SwitchNumber(true),
+    Sentence(Word::SwitchNumber(false)) << width, problems);
+  Require(this->AlongDiffusivity == 1.0, Word::Setting("AlongDiffusivity"), this->AlongDiffusivity,
+    Sentence("1") << width, problems);
+  Require(this->AcrossDiffusivity == 1.0, Word::Setting("AcrossDiffusivity"),
+    this->AcrossDiffusivity, Sentence("1") << width, problems);
+  RequireChoice("Mode", this->Mode, HeatMode::TimeSteps, "TimeSteps",
+    Sentence(Word::Setting("FWHM")) << ": a steady state has no width", problems);
 }
 
 ModelTraits HeatSettings::DescribeModel() const

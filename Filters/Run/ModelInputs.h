@@ -7,6 +7,7 @@
 #include "Run/CellFields.h"
 #include "Run/Fields.h"
 #include "Run/Output.h"
+#include "Run/Sentence.h"
 #include "Run/SolverStore.h"
 #include "Run/Units.h"
 
@@ -57,7 +58,7 @@ struct RunResult
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   double MissedByFinish = 0.0; ///< of the solves of Finish(), likewise
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
-  std::vector<std::string> Warnings;
+  std::vector<Sentence> Warnings;
 
   void AddNumber(const std::string& name, double value, OutputType type = OutputType::Double)
   {
@@ -65,7 +66,7 @@ struct RunResult
   }
 
   /// Add a warning that other steps may have added already.
-  void WarnOnce(const std::string& text)
+  void WarnOnce(const Sentence& text)
   {
     if (std::find(this->Warnings.begin(), this->Warnings.end(), text) == this->Warnings.end())
     {

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -89,10 +88,10 @@ void WarnOfUnused(const char* name, double value, double byDefault, RunResult& r
 {
   if (value != byDefault)
   {
-    std::ostringstream text;
-    text << name << " is " << value
-         << " but AutomaticThreshold finds it (to use the given one, turn AutomaticThreshold off)";
-    result.WarnOnce(text.str());
+    const Word automatic = Word::Setting("AutomaticThreshold");
+    result.WarnOnce(Sentence(Word::Setting(name))
+      << " is " << value << " but " << automatic << " finds it (to use the given one, turn "
+      << automatic << " off)");
   }
 }
 
@@ -257,10 +256,9 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
   settings.StopTolerance = this->StopTolerance;
   if (settings.EdgeWidth < h * (1.0 - 1e-9))
   {
-    std::ostringstream text;
-    text << "EdgeWidth is below the mean edge length, " << inputs.Units.MeanEdgeLength
-         << ": the triangles do not resolve the edges, which then cost more";
-    result.WarnOnce(text.str());
+    result.WarnOnce(Sentence(Word::Setting("EdgeWidth"))
+      << " is below the mean edge length, " << inputs.Units.MeanEdgeLength
+      << ": the triangles do not resolve the edges, which then cost more");
   }
 
   SolverTask task;
@@ -305,26 +303,36 @@ void MumfordShahSettings::WarnOfManyEdges(
   {
     return;
   }
-  std::ostringstream text;
+  const Word automatic = Word::Setting("AutomaticThreshold");
+  const Word threshold = Word::Setting("EdgeThreshold");
+  const Word length = Word::Setting("SmoothingLength");
+  const Word width = Word::Setting("EdgeWidth");
+  Sentence text;
   text << std::lround(100.0 * share) << " % of the surface is an edge: ";
   if (noise)
   {
-    text << "the standard deviation of the noise is above a third of EdgeThreshold (to keep noise "
-            "from making edges, turn AutomaticThreshold on or raise EdgeThreshold)";
+    text << "the standard deviation of the noise is above a third of " << threshold
+         << " (to keep noise from making edges, turn " << automatic << " on or raise " << threshold
+         << ")";
   }
   else if (slopes)
   {
-    text << "slopes above EdgeThreshold/(2 SmoothingLength) break into edges (to keep them smooth, "
-            "turn AutomaticThreshold on, raise EdgeThreshold or lower SmoothingLength)";
+    text << "slopes above " << threshold << "/(2 " << length
+         << ") break into edges (to keep them smooth, turn " << automatic << " on, raise "
+         << threshold << " or lower " << length << ")";
   }
   else
   {
-    text
-      << "edges are 3 EdgeWidth wide, which is more than their distances (to separate them, lower "
-         "EdgeWidth or refine the surface; for fewer edges, raise EdgeThreshold"
-      << (this->AutomaticThreshold ? ", with AutomaticThreshold off)" : ")");
+    text << "edges are 3 " << width
+         << " wide, which is more than their distances (to separate them, lower " << width
+         << " or refine the surface; for fewer edges, raise " << threshold;
+    if (this->AutomaticThreshold)
+    {
+      text << ", with " << automatic << " off";
+    }
+    text << ")";
   }
-  result.WarnOnce(text.str());
+  result.WarnOnce(text);
 }
 
 std::vector<Output> MumfordShahSettings::Finish(const RunState& state, RunResult& result) const

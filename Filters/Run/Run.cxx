@@ -38,7 +38,7 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
     if (processes.Any(!this->IsModelCurrent(block, inputs[b], snapshot, traits)))
     {
       block.Path.reset();
-      NameBlockInErrors(block.Name,
+      NameBlockInErrors(block.Name, *this->Settings,
         [&] { this->ReadFields(inputs[b], processes, block, fields[b], progress.Part(0.6, 0.6)); });
     }
   }
@@ -54,7 +54,7 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
       block.Path.reset();
       block.Units = units;
       const double share = static_cast<double>(count);
-      NameBlockInErrors(block.Name,
+      NameBlockInErrors(block.Name, *this->Settings,
         [&]
         {
           if (!fields[b])
@@ -104,7 +104,7 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
   block.Statistics.Add(
-    *block.Surface, *fields, inpaint, this->Settings->DescribeModel().SettingsInRange != nullptr);
+    *block.Surface, *fields, inpaint, !this->Settings->DescribeModel().SettingsInRange.empty());
   block.HasData = processes.Any(fields->Data.cols() > 0);
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
@@ -301,8 +301,11 @@ void Run::CheckHold(const ProcessGroup& processes) const
     [](const auto& block) { return block->Result.HasMissing; });
   if (this->Settings->DescribeModel().HoldsKnownValues && !processes.Any(missing))
   {
-    throw std::runtime_error("HoldKnownValues is on but nothing is missing, so nothing would "
-                             "change; allowed: on with a mask in mode Inpaint or with NaN");
+    throw InputError(Sentence(Word::Setting("HoldKnownValues"))
+      << " is " << Word::Switch(true)
+      << " but nothing is missing, so nothing would change; allowed: " << Word::Switch(true)
+      << " with a mask in mode " << Word::Choice("MaskMode", MaskMode::Inpaint, "Inpaint")
+      << " or with NaN");
   }
 }
 
@@ -331,7 +334,7 @@ void Run::Seek(int step, const ProgressMonitor& progress)
       all > 0.0 ? progress.Part(done / all, (done + size) / all) : progress;
     done += size;
     const Index before = block->Path->NumberOfAdvances();
-    NameBlockInErrors(block->Name, [&] { block->Path->Seek(step, part); });
+    NameBlockInErrors(block->Name, *this->Settings, [&] { block->Path->Seek(step, part); });
     this->StepsComputed += block->Path->NumberOfAdvances() - before;
   }
   const SettingsSnapshot outputSettings(*this->Settings, SettingScope::Output);

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
+#include "Core/Models/Harmonic/HarmonicMap.h"
 #include "Run/BlockSentences.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -15,10 +15,10 @@ namespace SurfaceDiffusion
 namespace
 {
 
-std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
+Sentence DescribeMissedTolerance(const Shortfalls& found, double tolerance)
 {
-  std::ostringstream text;
-  text << "the linear solver missed its Tolerance " << tolerance << " in ";
+  Sentence text("the linear solver missed its ");
+  text << Word::Setting("Tolerance") << " " << tolerance << " in ";
   if (found.MissedSteps > 0)
   {
     text << found.MissedSteps << " of " << found.Steps << " steps";
@@ -28,19 +28,25 @@ std::string DescribeMissedTolerance(const Shortfalls& found, double tolerance)
     text << "filling in missing values or moving vertices";
   }
   text << "; the largest relative residual is " << found.MissedResidual;
-  return text.str();
+  return text;
 }
 
 /// R counts as that of outliers if it is so many times the range without them.
 constexpr double OutlierFactor = 3.0;
 
-std::string DescribeOutliers(double range, double robust, const char* settings)
+Sentence DescribeOutliers(double range, double robust, const std::vector<const char*>& settings)
 {
-  std::ostringstream text;
+  Sentence names;
+  for (const char* const name : settings)
+  {
+    names << (names.Words().empty() ? "" : " and ") << Word::Setting(name);
+  }
+  Sentence text;
   text << "the range R of the values, " << range << ", is that of outliers: it is " << robust
        << " without the largest and the smallest 0.1 % of the values, and it is the unit of "
-       << settings << " (clip or mask the outliers, or set Units to Absolute)";
-  return text.str();
+       << names << " (clip or mask the outliers, or set " << Word::Setting("Units") << " to "
+       << Word::Choice("Units", UnitsMode::Absolute, "Absolute") << ")";
+  return text;
 }
 
 std::string DescribeUndetermined(long long components)
@@ -50,14 +56,15 @@ std::string DescribeUndetermined(long long components)
     " no known value: results are NaN there, or the input if that is an array of integers";
 }
 
-std::string DescribeUnsettledSteps(const Shortfalls& found)
+Sentence DescribeUnsettledSteps(const Shortfalls& found)
 {
-  std::ostringstream text;
+  Sentence text;
   text << "the repetitions ended at their largest number in " << found.UnsettledSteps << " of "
-       << found.Steps << " steps of MinimizingMovement; the last one still made up to "
-       << 100.0 * found.UnsettledDecrease
+       << found.Steps << " steps of "
+       << Word::Choice("Scheme", HarmonicMap::Scheme::MinimizingMovement, "MinimizingMovement")
+       << "; the last one still made up to " << 100.0 * found.UnsettledDecrease
        << " % of the decrease of the energy (smaller time steps need fewer)";
-  return text.str();
+  return text;
 }
 
 } // namespace
@@ -71,7 +78,7 @@ int Run::FindLastStep(const ProgressMonitor& progress)
     const double share = static_cast<double>(this->Blocks.size());
     Trajectory& path = *this->Blocks[b]->Path;
     const Index before = path.NumberOfAdvances();
-    NameBlockInErrors(this->Blocks[b]->Name,
+    NameBlockInErrors(this->Blocks[b]->Name, *this->Settings,
       [&]
       {
         last = std::max(last,
@@ -213,20 +220,21 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
     masks.Add(block->MaskVersion);
   }
   std::vector<Warning> warnings;
-  const auto addCount = [&](Index here, const char* sentence)
+  const auto addCount = [&](Index here, const Sentence& sentence)
   {
     const auto count = static_cast<long long>(processes.Sum(static_cast<double>(here)));
     if (count > 0)
     {
-      warnings.push_back({ std::to_string(count) + sentence, surfaces });
+      warnings.push_back({ Sentence() << count << sentence, surfaces });
     }
   };
   addCount(sum.DegenerateTriangles, " triangles of zero area were left out");
   addCount(
     sum.NonManifoldEdges, " edges have three or more triangles, which all exchange over them");
   addCount(sum.CoincidentBoundaryPoints,
-    " boundary points coincide with others and nothing flows between them (to join them, set "
-    "MergeCoincidentPoints)");
+    Sentence(" boundary points coincide with others and nothing flows between them (to join them, "
+             "set ")
+      << Word::Setting("MergeCoincidentPoints") << ")");
   addCount(sum.EdgesLeft,
     " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
     "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "
@@ -241,9 +249,9 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
     ofBlocks.Add(block->Result.Warnings, block->Name);
     undetermined += block->Undetermined.NumberOfComponents;
   }
-  std::vector<std::string> sentences;
+  std::vector<Sentence> sentences;
   ofBlocks.AppendTo(sentences, this->Blocks.size());
-  for (const std::string& sentence : sentences)
+  for (const Sentence& sentence : sentences)
   {
     warnings.push_back({ sentence, inputs });
   }
@@ -252,9 +260,9 @@ std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
   {
     warnings.push_back({ DescribeUndetermined(components), inputs });
   }
-  const char* const inRange = this->Settings->DescribeModel().SettingsInRange;
+  const std::vector<const char*> inRange = this->Settings->DescribeModel().SettingsInRange;
   const double range = this->CommonUnits.ValueRange;
-  if (inRange && !this->Settings->IsAbsolute() && this->RobustValueRange > 0.0 &&
+  if (!inRange.empty() && !this->Settings->IsAbsolute() && this->RobustValueRange > 0.0 &&
     range > OutlierFactor * this->RobustValueRange)
   {
     warnings.push_back({ DescribeOutliers(range, this->RobustValueRange, inRange), inputs });

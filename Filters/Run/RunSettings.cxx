@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -66,6 +65,15 @@ void RunSettings::Check(const FieldSummary* fields, Problems& problems)
 
 void RunSettings::CheckTogether(const FieldSummary*, Problems&) const {}
 
+void RunSettings::RequireData(const FieldSummary* fields, Problems& problems)
+{
+  if (fields && !fields->Data)
+  {
+    problems.push_back(Sentence(fields->DataName)
+      << " has 0 values; allowed: a row for each point or " << Word::Cell());
+  }
+}
+
 void TimeSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Number(
@@ -115,8 +123,10 @@ void TimeSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
   {
     const double times =
       std::ceil(static_cast<double>(this->DescribeModel().NumberOfSteps) / this->OutputInterval);
-    Require(times <= LargestNumberOfPublishedTimes, "NumberOfTimeSteps / OutputInterval", times,
-      "up to 1000000 published times; raise OutputInterval", problems);
+    Require(times <= LargestNumberOfPublishedTimes,
+      Sentence(Word::Setting("NumberOfTimeSteps")) << " / " << Word::Setting("OutputInterval"),
+      times, Sentence("up to 1000000 published times; raise ") << Word::Setting("OutputInterval"),
+      problems);
   }
 }
 
@@ -249,13 +259,13 @@ double DataSettings::Anisotropy() const
 void DataSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->TimeSettings::CheckTogether(fields, problems);
+  RequireData(fields, problems);
   if (fields && !fields->Directions && this->IsDirected())
   {
-    std::ostringstream text;
-    text << "AlongDiffusivity is " << this->AlongDiffusivity << " and AcrossDiffusivity is "
-         << this->AcrossDiffusivity << " but DirectionArray is not set; allowed: equal values, or "
-         << "an array of directions";
-    problems.push_back(text.str());
+    problems.push_back(Sentence(Word::Setting("AlongDiffusivity"))
+      << " is " << this->AlongDiffusivity << " and " << Word::Setting("AcrossDiffusivity") << " is "
+      << this->AcrossDiffusivity << " but " << Word::Array("DirectionArray")
+      << " is not set; allowed: equal values, or an array of directions");
   }
 }
 

@@ -45,6 +45,7 @@ struct FieldSummary
 {
   bool Data = false;
   int DataComponents = 0; ///< alpha of colours not counted
+  Word DataName = Word::Array("InputArray");
   bool Directions = false;
   bool Fixed = false;
   bool Rates = false;
@@ -66,8 +67,8 @@ struct ModelTraits
   double TimeFactor = 1.0; ///< of the natural unit of time, beyond its dimension
   Dimension Energy;
   bool HasValueRange = true; ///< false: R is 1
-  /// The settings measured in R that the result depends on, for a warning; null: none.
-  const char* SettingsInRange = nullptr;
+  /// The settings measured in R that the result depends on, for a warning.
+  std::vector<const char*> SettingsInRange;
   bool StateHasUnitOfValues = true; ///< false: u is a pure number
   bool UsesFidelity = false;
   bool NeedsDirections = false; ///< diffusivities along and across differ
@@ -121,6 +122,8 @@ struct RunSettings : Settings
 
 protected:
   virtual void CheckTogether(const FieldSummary* fields, Problems& problems) const;
+  /// Of models that have no result without data.
+  static void RequireData(const FieldSummary* fields, Problems& problems);
 };
 
 /// The settings of a model with time steps: the steps, which of them are published, and the linear

@@ -4,8 +4,6 @@
 
 #include "Run/BlockSentences.h"
 
-#include <stdexcept>
-
 namespace SurfaceDiffusion
 {
 
@@ -45,7 +43,7 @@ void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGro
       block.reset(); // before the new one takes memory
       block = std::make_unique<Block>();
       const double share = static_cast<double>(inputs.size());
-      NameBlockInErrors(inputs[b].Name,
+      NameBlockInErrors(inputs[b].Name, *this->Settings,
         [&]
         {
           block->Surface =
@@ -118,7 +116,7 @@ void Run::RequireKnownValue(
 {
   bool known = false;
   bool undetermined = false;
-  std::string name = Fields().DataName;
+  Word name = Fields().DataName;
   for (std::size_t b = 0; b < this->Blocks.size(); ++b)
   {
     const Undetermined& found = this->Blocks[b]->Undetermined;
@@ -129,9 +127,9 @@ void Run::RequireKnownValue(
   if (processes.Any(undetermined) && !processes.Any(known))
   {
     const bool vectors = this->Settings->DescribeModel().StateIsUnitVectors;
-    throw std::runtime_error(name + " has no known value: it is NaN" +
-      (vectors ? ", of length zero" : "") +
-      " or masked everywhere; allowed: data with a known value");
+    throw InputError(Sentence(name)
+      << " has no known value: it is NaN" << (vectors ? ", of length zero" : "")
+      << " or masked everywhere; allowed: data with a known value");
   }
 }
 

@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
@@ -35,8 +33,9 @@ void CheckSeeds(const std::vector<Index>& seeds, int regions)
   {
     if (seed > regions)
     {
-      throw std::runtime_error("SeedArray has the label " + std::to_string(seed) +
-        "; allowed: 0 to NumberOfRegions " + std::to_string(regions));
+      throw InputError(Sentence(Word::Array("SeedArray"))
+        << " has the label " << seed << "; allowed: 0 to " << Word::Setting("NumberOfRegions")
+        << " " << regions);
     }
   }
 }
@@ -160,17 +159,21 @@ double FidelityOfContrast(const ModelInputs& inputs, const Segmentation::Input& 
 void WarnOfEmptyRegions(const std::vector<Index>& components, RunResult& result)
 {
   std::string empty;
+  int count = 0;
   for (std::size_t k = 0; k < components.size(); ++k)
   {
     if (components[k] == 0)
     {
       empty += (empty.empty() ? "" : ", ") + std::to_string(k + 1);
+      ++count;
     }
   }
   if (!empty.empty())
   {
-    result.WarnOnce("no point is in the regions " + empty +
-      " (to keep smaller regions, turn off AutomaticFidelity and raise FidelityWeight)");
+    result.WarnOnce(Sentence("no point is in the region")
+      << (count == 1 ? " " : "s ") << empty << " (to keep smaller regions, turn off "
+      << Word::Setting("AutomaticFidelity") << " and raise " << Word::Setting("FidelityWeight")
+      << ")");
   }
 }
 
@@ -219,25 +222,27 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
 void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->TimeSettings::CheckTogether(fields, problems);
-  if (!fields)
+  RequireData(fields, problems);
+  if (!fields || !fields->Data)
   {
     return;
   }
   const int components = fields->DataComponents;
   if (fields->DataAreTerms)
   {
-    Require(components == this->NumberOfRegions, "DataTermArray's number of components", components,
-      (std::to_string(this->NumberOfRegions) + ", one per region of NumberOfRegions").c_str(),
+    Require(components == this->NumberOfRegions,
+      Sentence(Word::Array("DataTermArray")) << "'s number of components", components,
+      Sentence() << this->NumberOfRegions << ", one per region of "
+                 << Word::Setting("NumberOfRegions"),
       problems);
     return;
   }
   const auto needed = static_cast<std::size_t>(this->NumberOfRegions) *
     static_cast<std::size_t>(std::max(components, 1));
   Require(this->AutomaticMeans || this->Means.empty() || this->Means.size() == needed,
-    "the number of Means", static_cast<double>(this->Means.size()),
-    (std::to_string(needed) +
-      ", one per region and component of InputArray, or any with AutomaticMeans on")
-      .c_str(),
+    Sentence("the number of ") << Word::Setting("Means"), static_cast<double>(this->Means.size()),
+    Sentence() << needed << ", one per region and component of " << Word::Array("InputArray")
+               << ", or any with " << Word::Setting("AutomaticMeans") << " " << Word::Switch(true),
     problems);
 }
 
@@ -249,7 +254,10 @@ ModelTraits SegmentationSettings::DescribeModel() const
   traits.Energy = { 1.0, 0.0 };
   traits.StateHasUnitOfValues = false;
   traits.UsesFidelity = true;
-  traits.SettingsInRange = this->AutomaticFidelity ? nullptr : "FidelityWeight";
+  if (!this->AutomaticFidelity)
+  {
+    traits.SettingsInRange = { "FidelityWeight" };
+  }
   traits.UsesRandomNumbers = true;
   traits.StartsFromKnownValues = true;
   traits.ResultOnCells = this->ResultOnCells;
@@ -289,10 +297,9 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   result.AddNumber("EffectiveFidelityWeight", settings.Fidelity / unit);
   if (this->AutomaticFidelity && this->FidelityWeight != SegmentationSettings().FidelityWeight)
   {
-    std::ostringstream text;
-    text << "FidelityWeight is " << this->FidelityWeight
-         << " but AutomaticFidelity finds the weight (to use the given one, turn it off)";
-    result.WarnOnce(text.str());
+    result.WarnOnce(Sentence(Word::Setting("FidelityWeight"))
+      << " is " << this->FidelityWeight << " but " << Word::Setting("AutomaticFidelity")
+      << " finds the weight (to use the given one, turn it off)");
   }
   return std::make_unique<Segmentation>(
     inputs.Surface.SharedAssembler(), std::move(input), settings, inputs.Parallel);
@@ -336,10 +343,10 @@ std::vector<Output> SegmentationSettings::Finish(const RunState& state, RunResul
   if (gap > this->StopTolerance && !result.HasUnfinishedMinimum)
   {
     result.HasUnfinishedMinimum = true; // reported once, not at every requested time
-    std::ostringstream text;
-    text << "the minimisation ended at its largest number of iterations with a relative duality "
-         << "gap of " << gap << ", above StopTolerance";
-    result.Warnings.push_back(text.str());
+    result.Warnings.push_back(
+      Sentence("the minimisation ended at its largest number of iterations with a relative duality "
+               "gap of ")
+      << gap << ", above " << Word::Setting("StopTolerance"));
   }
   return outputs;
 }

@@ -93,30 +93,6 @@ SettingRange SettingRange::NonNegativeOr(double special, const char* text)
 namespace
 {
 
-/// A visitor that sees every value as a number.
-class NumberVisitor : public SettingVisitor
-{
-public:
-  using SettingVisitor::Choice;
-  void Number(const SettingInfo& info, double& value, const SettingRange&) override
-  {
-    this->See(info, value);
-  }
-  void Integer(const SettingInfo& info, int& value, const SettingRange&) override
-  {
-    this->See(info, value);
-  }
-  void Switch(const SettingInfo& info, bool& value) override { this->See(info, value ? 1.0 : 0.0); }
-  void Choice(const SettingInfo& info, int& value, const std::vector<const char*>&,
-    const std::vector<bool>&) override
-  {
-    this->See(info, value);
-  }
-
-protected:
-  virtual void See(const SettingInfo& info, double value) = 0;
-};
-
 class Collector : public NumberVisitor
 {
 public:
@@ -149,11 +125,11 @@ public:
   }
   void Number(const SettingInfo& info, double& value, const SettingRange& range) override
   {
-    Require(range.Contains(value), info.Name, value, range.Text, this->Found);
+    Require(range.Contains(value), Word::Setting(info.Name), value, range.Text, this->Found);
   }
   void Integer(const SettingInfo& info, int& value, const SettingRange& range) override
   {
-    Require(range.Contains(value), info.Name, value, range.Text, this->Found);
+    Require(range.Contains(value), Word::Setting(info.Name), value, range.Text, this->Found);
   }
   void Switch(const SettingInfo&, bool&) override {}
   void Choice(const SettingInfo& info, int& value, const std::vector<const char*>& words,
@@ -161,7 +137,8 @@ public:
   {
     const auto index = static_cast<std::size_t>(value);
     const bool holds = value >= 0 && index < words.size() && (allowed.empty() || allowed[index]);
-    Require(holds, info.Name, value, ListChoices(words, allowed).c_str(), this->Found);
+    Require(holds, Word::Setting(info.Name), Word::Number(info.Name, value),
+      ListChoices(info.Name, words, allowed), this->Found);
   }
 
 private:
@@ -236,24 +213,6 @@ private:
   const std::string& Name;
 };
 
-/// Lists the settings whose squares may be too large or too small for a double.
-class ExtremesFinder : public NumberVisitor
-{
-public:
-  std::ostringstream Text;
-
-private:
-  void See(const SettingInfo& info, double value) override
-  {
-    constexpr double large = 1e100;
-    const double size = std::abs(value);
-    if (size > large || (size > 0.0 && size < 1.0 / large))
-    {
-      this->Text << (this->Text.tellp() > 0 ? " and " : "") << info.Name << " is " << value;
-    }
-  }
-};
-
 } // namespace
 
 SettingsSnapshot::SettingsSnapshot(Settings& settings, SettingScope scope)
@@ -262,27 +221,33 @@ SettingsSnapshot::SettingsSnapshot(Settings& settings, SettingScope scope)
   settings.Visit(collector);
 }
 
-void Require(bool holds, const char* name, double value, const char* allowed, Problems& problems)
+void Require(bool holds, const Sentence& subject, const Sentence& value, const Sentence& allowed,
+  Problems& problems)
 {
   if (!holds)
   {
-    std::ostringstream text;
-    text.precision(std::numeric_limits<double>::max_digits10 - 2);
-    text << name << " is " << value << "; allowed: " << allowed;
-    problems.push_back(text.str());
+    problems.emplace_back(subject);
+    problems.back() << " is " << value << "; allowed: " << allowed;
   }
 }
 
-std::string JoinProblems(Problems problems)
+void Require(
+  bool holds, const Sentence& subject, double value, const Sentence& allowed, Problems& problems)
+{
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10 - 2);
+  text << value;
+  Require(holds, subject, Sentence(text.str()), allowed, problems);
+}
+
+void ThrowProblems(Problems problems)
 {
   std::sort(problems.begin(), problems.end());
   problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
-  std::string text;
-  for (const std::string& problem : problems)
+  if (!problems.empty())
   {
-    text += (text.empty() ? "" : "; ") + problem;
+    throw InputError(Join(problems));
   }
-  return text;
 }
 
 void CheckRanges(Settings& settings, Problems& problems)
@@ -305,24 +270,15 @@ const char* FindWord(Settings& settings, const std::string& name)
   return finder.Word;
 }
 
-std::string NameExtremes(Settings& settings, const std::string& failure)
+Sentence ListChoices(
+  const std::string& name, const std::vector<const char*>& words, const std::vector<bool>& allowed)
 {
-  ExtremesFinder finder;
-  settings.Visit(finder);
-  const std::string found = finder.Text.str();
-  return found.empty()
-    ? failure
-    : found + ", with which " + failure + "; allowed: magnitudes whose squares a double can hold";
-}
-
-std::string ListChoices(const std::vector<const char*>& words, const std::vector<bool>& allowed)
-{
-  std::string list;
+  Sentence list;
   for (std::size_t w = 0; w < words.size(); ++w)
   {
     if (allowed.empty() || allowed[w])
     {
-      list += (list.empty() ? "" : ", ") + std::to_string(w) + " " + words[w];
+      list << (list.Words().empty() ? "" : ", ") << Word::NumberedChoice(name, w, words[w]);
     }
   }
   return list;

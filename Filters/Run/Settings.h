@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <stdexcept>
+#include "Run/Sentence.h"
+
 #include <string>
 #include <vector>
 
@@ -84,6 +85,30 @@ public:
   }
 };
 
+/// Sees every value as a number.
+class NumberVisitor : public SettingVisitor
+{
+public:
+  using SettingVisitor::Choice;
+  void Number(const SettingInfo& info, double& value, const SettingRange&) override
+  {
+    this->See(info, value);
+  }
+  void Integer(const SettingInfo& info, int& value, const SettingRange&) override
+  {
+    this->See(info, value);
+  }
+  void Switch(const SettingInfo& info, bool& value) override { this->See(info, value ? 1.0 : 0.0); }
+  void Choice(const SettingInfo& info, int& value, const std::vector<const char*>&,
+    const std::vector<bool>&) override
+  {
+    this->See(info, value);
+  }
+
+protected:
+  virtual void See(const SettingInfo& info, double value) = 0;
+};
+
 /// A set of settings that can list itself. Copies are values; the functions below work on any.
 class Settings
 {
@@ -112,48 +137,38 @@ private:
 };
 
 /// One sentence per setting: name, value and what is allowed.
-using Problems = std::vector<std::string>;
+using Problems = std::vector<Sentence>;
 
-/// All of them in one text, sorted, each once.
-std::string JoinProblems(Problems problems);
+/// Throws InputError with all of them, sorted, each once, if there are any.
+void ThrowProblems(Problems problems);
 
 /// Append a sentence for each setting whose value is outside its range.
 void CheckRanges(Settings& settings, Problems& problems);
 
-/// Append "`name` is `value`; allowed: `allowed`" unless `holds`.
-void Require(bool holds, const char* name, double value, const char* allowed, Problems& problems);
+/// Append "`subject` is `value`; allowed: `allowed`" unless `holds`.
+void Require(bool holds, const Sentence& subject, const Sentence& value, const Sentence& allowed,
+  Problems& problems);
+void Require(
+  bool holds, const Sentence& subject, double value, const Sentence& allowed, Problems& problems);
+
+/// Append "`name` is `value`; allowed: `needed` together with `purpose`" unless the choice `name`
+/// has the value `needed`, whose word is `word`.
+template <typename Enum>
+void RequireChoice(const char* name, Enum value, Enum needed, const char* word,
+  const Sentence& purpose, Problems& problems)
+{
+  Require(value == needed, Word::Setting(name), Word::Number(name, value),
+    Sentence(Word::NumberedChoice(name, needed, word)) << " together with " << purpose, problems);
+}
 
 /// "Name: value" lines, with words for choices, each after `indent`.
 std::string Describe(Settings& settings, const std::string& indent);
 
-/// The text of a failure, after the settings that may be the cause because their squares may be too
-/// large or too small for a double. Without any, the text as it is.
-std::string NameExtremes(Settings& settings, const std::string& failure);
-
-/// work(), whose errors name such settings.
-template <typename Work>
-void NamingExtremes(Settings& settings, const Work& work)
-{
-  try
-  {
-    work();
-  }
-  catch (const std::runtime_error& error)
-  {
-    const std::string text = NameExtremes(settings, error.what());
-    if (text == error.what())
-    {
-      throw;
-    }
-    throw std::runtime_error(text);
-  }
-}
-
 /// The word of the choice `name`; "Unknown" for a number without a word.
 const char* FindWord(Settings& settings, const std::string& name);
 
-/// "0 First, 1 Second" for the words that are allowed.
-std::string ListChoices(
-  const std::vector<const char*>& words, const std::vector<bool>& allowed = {});
+/// "0 First, 1 Second" for the words of a choice that are allowed.
+Sentence ListChoices(const std::string& name, const std::vector<const char*>& words,
+  const std::vector<bool>& allowed = {});
 
 } // namespace SurfaceDiffusion

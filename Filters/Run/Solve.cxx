@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Solve.h"
 
+#include "Run/ErrorCauses.h"
 #include "Run/Outputs.h"
 #include "Run/Run.h"
 
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -15,11 +15,23 @@ namespace SurfaceDiffusion
 namespace
 {
 
-void ThrowProblems(const Problems& problems)
+/// The names of input arrays in Fields.
+const std::map<std::string, std::string> NamesOfArrays = { { "InputArray", "Data" },
+  { "DataTermArray", "Data" }, { "MaskArray", "Mask" }, { "DirectionArray", "Directions" },
+  { "FixedArray", "Fixed" }, { "DiffusionRateArray", "Rates" },
+  { "FidelityArray", "FidelityFactors" }, { "SeedArray", "Seeds" } };
+
+/// work(), whose errors are in the words of this interface.
+template <typename Work>
+Solution WordErrors(const Work& work)
 {
-  if (!problems.empty())
+  try
   {
-    throw std::runtime_error(JoinProblems(problems));
+    return work();
+  }
+  catch (const InputError& error)
+  {
+    throw std::runtime_error(error.Message().Text(NamesOfArrays));
   }
 }
 
@@ -193,7 +205,7 @@ std::vector<std::string> SentencesOf(const std::vector<Warning>& warnings)
   std::vector<std::string> sentences;
   for (const Warning& warning : warnings)
   {
-    sentences.push_back(warning.Sentence);
+    sentences.push_back(warning.Sentence.Text(NamesOfArrays));
   }
   return sentences;
 }
@@ -202,47 +214,26 @@ template <typename RunType, typename SettingsType>
 Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor& parallel)
 {
   RunType run(parallel);
-  NamingExtremes(settings, [&] { run.Update(input.Block(false), settings, ProgressMonitor()); });
+  NamingSettings(settings, [&] { run.Update(input.Block(false), settings, ProgressMonitor()); });
   Solution solution;
   OutputSource source{ run.GetSurface(), parallel };
   input.TakeOutputs(run.Outputs(), source, solution);
   solution.Warnings = SentencesOf(run.FindWarnings());
-  const Index degenerate = run.GetSurface().Diagnostics().DegenerateTriangles;
-  if (degenerate > 0)
-  {
-    solution.Warnings.push_back(
-      std::to_string(degenerate) + " triangles of zero area take no part");
-  }
   return solution;
 }
 
-} // namespace
-
-Solution SolveModel(const Points& points, const Triangles& triangles, const SurfaceData& data,
-  std::shared_ptr<RunSettings> settings, const ParallelFor& parallel,
-  const ProgressMonitor& progress)
+Solution SolveSteps(const Input& input, const std::shared_ptr<RunSettings>& settings,
+  const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  const Input input(points, triangles, data);
   const FieldSummary summary = input.Summarize();
   Problems problems;
-  if (!summary.Data && !dynamic_cast<const TextureSettings*>(settings.get()))
-  {
-    problems.emplace_back("Data has 0 values; allowed: a row for each point or cell");
-  }
-  const auto* const map = dynamic_cast<const HarmonicMapSettings*>(settings.get());
-  if (map && summary.Data &&
-    (map->MoveVertices ? summary.DataComponents != 3 : summary.DataComponents < 2))
-  {
-    problems.push_back("Data has " + std::to_string(summary.DataComponents) +
-      " columns; allowed: " + (map->MoveVertices ? "3 with MoveVertices" : "2 or more"));
-  }
   settings->Check(&summary, problems);
   ThrowProblems(problems);
 
   const ProcessGroup alone;
   Run run(parallel);
   int last = 0;
-  NamingExtremes(*settings,
+  NamingSettings(*settings,
     [&]
     {
       const bool excludes = settings->MaskMode == MaskMode::Exclude;
@@ -265,25 +256,43 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Surf
   return solution;
 }
 
+} // namespace
+
+Solution SolveModel(const Points& points, const Triangles& triangles, const SurfaceData& data,
+  std::shared_ptr<RunSettings> settings, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
+{
+  return WordErrors(
+    [&] { return SolveSteps(Input(points, triangles, data), settings, parallel, progress); });
+}
+
 Solution DirectionField(const Points& points, const Triangles& triangles,
   DirectionFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  const Input input(points, triangles, data);
-  const FieldSummary summary = input.Summarize();
-  Problems problems;
-  settings.Check(&summary, problems);
-  ThrowProblems(problems);
-  return SolveOnce<DirectionFieldRun>(input, settings, parallel);
+  return WordErrors(
+    [&]
+    {
+      const Input input(points, triangles, data);
+      const FieldSummary summary = input.Summarize();
+      Problems problems;
+      settings.Check(&summary, problems);
+      ThrowProblems(problems);
+      return SolveOnce<DirectionFieldRun>(input, settings, parallel);
+    });
 }
 
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
   DenoisingRunSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  const Input input(points, triangles, data);
-  Problems problems;
-  CheckRanges(settings, problems);
-  ThrowProblems(problems);
-  Solution solution = SolveOnce<DenoisingRun>(input, settings, parallel);
+  Solution solution = WordErrors(
+    [&]
+    {
+      const Input input(points, triangles, data);
+      Problems problems;
+      CheckRanges(settings, problems);
+      ThrowProblems(problems);
+      return SolveOnce<DenoisingRun>(input, settings, parallel);
+    });
   if (solution.Arrays.count("Points") == 0) // nothing has moved
   {
     solution.Result = solution.Arrays["Points"] = points;

@@ -3,6 +3,7 @@
 #include "Run/Surface.h"
 
 #include "Core/Surface/MergePoints.h"
+#include "Run/Sentence.h"
 
 #include <algorithm>
 #include <array>
@@ -82,7 +83,9 @@ void CheckArrays(
   RequireFiniteCoordinates(arrays.Points, parallel);
   if (options.IntrinsicDelaunay && !arrays.AreaFactors.empty())
   {
-    throw std::runtime_error("IntrinsicDelaunay is on; allowed: off on surfaces with given areas");
+    throw InputError(Sentence(Word::Setting("IntrinsicDelaunay"))
+      << " is " << Word::Switch(true) << "; allowed: " << Word::Switch(false)
+      << " on surfaces with given areas");
   }
   const auto isPoint = [&](Index point) { return point >= 0 && point < arrays.Points.rows(); };
   const auto count = static_cast<Index>(arrays.Triangles.rows());

@@ -6,6 +6,7 @@
 #include "Run/Run.h"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -16,6 +17,8 @@ namespace SurfaceDiffusion
 class SurfaceRun
 {
 public:
+  virtual ~SurfaceRun() = default;
+
   const Surface& GetSurface() const { return *this->Domain; }
   /// The surface that the result belongs to.
   const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
@@ -23,12 +26,23 @@ public:
   const std::vector<Output>& Outputs() const { return this->Results; }
   /// Of triangles of positive area, in coordinate units; 1 if there are none.
   double MeanEdgeLength() const;
+  /// The warnings that hold.
+  std::vector<Warning> FindWarnings() const { return FindAllWarnings({ this }, { "" }); }
+  /// The warnings about the surfaces of several runs, each with the name of its block. All triangles
+  /// of zero area are counted together.
+  static std::vector<Warning> FindAllWarnings(
+    const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks);
 
 protected:
-  explicit SurfaceRun(const ParallelFor& parallel)
+  /// ofDegenerate: what becomes of triangles of zero area, such as "have no normal".
+  SurfaceRun(const ParallelFor& parallel, const char* ofDegenerate)
     : Parallel(parallel)
+    , OfDegenerate(ofDegenerate)
   {
   }
+
+  /// Those that are not about triangles of zero area.
+  virtual std::vector<Warning> FindOwnWarnings() const = 0;
 
   /// Make the surface unless it is kept. Returns whether the result has to be computed.
   bool Prepare(const BlockInput& input, Settings& settings, const SurfaceOptions& options,
@@ -42,6 +56,7 @@ protected:
   std::vector<Output> Results;
 
 private:
+  const char* OfDegenerate;
   SettingsSnapshot SurfaceSettings, ModelSettings;
   bool HasResult = false;
 };

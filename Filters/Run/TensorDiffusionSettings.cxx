@@ -7,7 +7,6 @@
 #include "Run/Rewording.h"
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -81,8 +80,11 @@ void TensorDiffusionSettings::Visit(SettingVisitor& visitor)
 void TensorDiffusionSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
   this->DataSettings::CheckTogether(fields, problems);
-  Require(!(this->DiffusionAxes && this->IntrinsicDelaunay), "DiffusionAxes", 1.0,
-    "off together with IntrinsicDelaunay, whose triangles are not those of the cells", problems);
+  Require(!(this->DiffusionAxes && this->IntrinsicDelaunay), Word::Setting("DiffusionAxes"),
+    Word::SwitchNumber(true),
+    Sentence(Word::Switch(false)) << " together with " << Word::Setting("IntrinsicDelaunay")
+                                  << ", whose triangles are not those of the " << Word::Cells(),
+    problems);
 }
 
 ModelTraits TensorDiffusionSettings::DescribeModel() const
@@ -95,7 +97,7 @@ ModelTraits TensorDiffusionSettings::DescribeModel() const
                                                                        : "Beltrami";
   traits.Energy = beltrami ? Dimension{ 0.0, 2.0 } : Dimension{ 2.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;
-  traits.SettingsInRange = beltrami ? "ColorScale" : "Contrast";
+  traits.SettingsInRange = { beltrami ? "ColorScale" : "Contrast" };
   traits.CanBeDistributed = this->Model != TensorModel::CoherenceEnhancing && !this->DiffusionAxes;
   DescribeData(*this, traits);
   return traits;
@@ -170,10 +172,10 @@ std::unique_ptr<Model> TensorDiffusionSettings::Make(ModelInputs& inputs, RunRes
   }
   if (this->Model == TensorModel::CoherenceEnhancing && this->IntegrationScale < this->NoiseScale)
   {
-    std::ostringstream text;
-    text << "IntegrationScale is " << this->IntegrationScale << ", below NoiseScale, which is "
-         << this->NoiseScale << ": the direction of lines is that of single gradients";
-    result.Warnings.push_back(text.str());
+    result.Warnings.push_back(Sentence(Word::Setting("IntegrationScale"))
+      << " is " << this->IntegrationScale << ", below " << Word::Setting("NoiseScale")
+      << ", which is " << this->NoiseScale
+      << ": the direction of lines is that of single gradients");
   }
   StructureDiffusion::Settings settings;
   settings.TimeStep = timeStep;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
@@ -133,9 +132,9 @@ void TextureSettings::ReadRates(const ModelInputs& inputs, Rates& rates) const
   const bool directed = rates.Along[0] != rates.Across[0] || rates.Along[1] != rates.Across[1];
   if (directed && inputs.Directions.rows() == 0)
   {
-    throw std::runtime_error("DiffusionRateArray has other rates across than along but "
-                             "DirectionArray is not set; allowed: the same, or an array of "
-                             "directions");
+    throw InputError(Sentence(Word::Array("DiffusionRateArray"))
+      << " has other rates across than along but " << Word::Array("DirectionArray")
+      << " is not set; allowed: the same, or an array of directions");
   }
 }
 
@@ -157,8 +156,9 @@ void TextureSettings::ScaleToFeatureSize(
     }
     else
     {
-      result.Warnings.emplace_back("FeatureSize has no effect: with these rates and parameters no "
-                                   "wave grows faster than the uniform state");
+      result.Warnings.push_back(Sentence(Word::Setting("FeatureSize"))
+        << " has no effect: with these rates and parameters no wave grows faster than the uniform "
+           "state");
     }
   }
   result.AddNumber("DiffusionRateFactor", scale);

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -218,33 +217,41 @@ void TextureSettings::CheckTogether(const FieldSummary* fields, Problems& proble
 {
   this->TimeSettings::CheckTogether(fields, problems);
   for (const auto& [name, color] :
-    { std::pair{ "the number of entries of LowColor", &this->LowColor },
-      std::pair{ "the number of entries of HighColor", &this->HighColor } })
+    { std::pair{ "LowColor", &this->LowColor }, std::pair{ "HighColor", &this->HighColor } })
   {
-    Require(color->size() == 3, name, static_cast<double>(color->size()), "3", problems);
+    Require(color->size() == 3, Sentence("the number of entries of ") << Word::Setting(name),
+      static_cast<double>(color->size()), "3", problems);
   }
   if (!fields)
   {
     return;
   }
-  const auto require = [&](bool holds, const char* problem)
+  const Word data = Word::Array("InputArray");
+  const Word rates = Word::Array("DiffusionRateArray");
+  const Word directions = Word::Array("DirectionArray");
+  if (fields->Data && fields->DataComponents != 2)
   {
-    if (!holds)
-    {
-      problems.emplace_back(problem);
-    }
-  };
-  require(!fields->Data || fields->DataComponents == 2,
-    "InputArray holds colours, whose last component is alpha; allowed: 2 components of a type "
-    "other than unsigned char");
-  require(!fields->Rates || !this->IntrinsicDelaunay,
-    "IntrinsicDelaunay is on but DiffusionRateArray gives rates per cell, whose triangles it would "
-    "replace; allowed: one of the two");
-  require(fields->Directions || fields->Rates || !this->HasDirectedRates(),
-    "DiffusionRateAcross1 or DiffusionRateAcross2 differs from the rate along but DirectionArray "
-    "is not set; allowed: -1, or an array of directions");
-  require(!fields->Fixed || fields->Data,
-    "FixedArray is set but InputArray, the values to hold, is not; allowed: both or neither");
+    problems.push_back(Sentence(data)
+      << " holds colours, whose last component is alpha; allowed: 2 components of a type other "
+         "than unsigned char");
+  }
+  if (fields->Rates && this->IntrinsicDelaunay)
+  {
+    problems.push_back(Sentence(Word::Setting("IntrinsicDelaunay"))
+      << " is " << Word::Switch(true) << " but " << rates << " gives rates per " << Word::Cell()
+      << ", whose triangles it would replace; allowed: one of the two");
+  }
+  if (!fields->Directions && !fields->Rates && this->HasDirectedRates())
+  {
+    problems.push_back(Sentence(Word::Setting("DiffusionRateAcross1"))
+      << " or " << Word::Setting("DiffusionRateAcross2") << " differs from the rate along but "
+      << directions << " is not set; allowed: -1, or an array of directions");
+  }
+  if (fields->Fixed && !fields->Data)
+  {
+    problems.push_back(Sentence(Word::Array("FixedArray"))
+      << " is set but " << data << ", the values to hold, is not; allowed: both or neither");
+  }
 }
 
 double TextureSettings::EffectiveTimeStep() const
@@ -333,9 +340,12 @@ Reaction TextureSettings::MakeStart(ModelInputs& inputs, bool fromNoise) const
   }
   else if (!reaction.Terms->SteadyState(reaction.Parameters).allFinite())
   {
-    throw std::runtime_error(std::string("Kinetics is ") + reaction.Terms->Name +
-      ", which has no steady state with these parameters to start from; allowed: others (for "
-      "Turing GrowthRate above DecayRate), or an initial state as InputArray");
+    throw InputError(Sentence(Word::Setting("Kinetics"))
+      << " is " << Word::Choice("Kinetics", this->Kinetics, reaction.Terms->Name)
+      << ", which has no steady state with these parameters to start from; allowed: others (for "
+      << Word::Choice("Kinetics", KineticsName::Turing, "Turing") << " "
+      << Word::Setting("GrowthRate") << " above " << Word::Setting("DecayRate")
+      << "), or an initial state as " << Word::Array("InputArray"));
   }
   else
   {

@@ -7,7 +7,6 @@
 #include "Run/TotalVariationModels.h"
 
 #include <algorithm>
-#include <sstream>
 
 namespace SurfaceDiffusion
 {
@@ -111,24 +110,29 @@ void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems&
   this->CheckColorModel(fields, problems);
   if (this->Mode == TotalVariationMode::SteadyState)
   {
-    this->RequireConvexEnergy("Mode SteadyState", problems);
+    Sentence purpose = Word::Setting("Mode");
+    this->RequireConvexEnergy(
+      purpose << " " << Word::Choice("Mode", this->Mode, "SteadyState"), problems);
   }
   else if (this->TimeIntegrator == SurfaceDiffusion::TimeIntegrator::Implicit)
   {
-    this->RequireConvexEnergy("TimeIntegrator Implicit", problems);
+    Sentence purpose = Word::Setting("TimeIntegrator");
+    this->RequireConvexEnergy(
+      purpose << " " << Word::Choice("TimeIntegrator", this->TimeIntegrator, "Implicit"), problems);
   }
   if (this->FindsFidelity())
   {
-    this->RequireConvexEnergy("AutomaticFidelity", problems);
-    Require(this->FidelityNorm != SurfaceDiffusion::FidelityNorm::L1, "FidelityNorm",
-      static_cast<double>(this->FidelityNorm), "0 L2 together with AutomaticFidelity", problems);
+    this->RequireConvexEnergy(Word::Setting("AutomaticFidelity"), problems);
+    RequireChoice("FidelityNorm", this->FidelityNorm, SurfaceDiffusion::FidelityNorm::L2, "L2",
+      Word::Setting("AutomaticFidelity"), problems);
   }
   if (fields && !fields->Directions && this->AcrossEdgeFunction != 0)
   {
-    std::ostringstream text;
-    text << "AcrossEdgeFunction is " << this->AcrossEdgeFunction
-         << " but DirectionArray is not set; allowed: 0 Same, or an array of directions";
-    problems.push_back(text.str());
+    const char* const name = "AcrossEdgeFunction";
+    problems.push_back(Sentence(Word::Setting(name))
+      << " is " << Word::Number(name, this->AcrossEdgeFunction) << " but "
+      << Word::Array("DirectionArray") << " is not set; allowed: "
+      << Word::NumberedChoice(name, 0, "Same") << ", or an array of directions");
   }
 }
 
@@ -136,14 +140,14 @@ void TotalVariationSettings::CheckBlur(Problems& problems) const
 {
   if (this->Blur.IsOn())
   {
-    Require(this->Mode == TotalVariationMode::SteadyState, "Mode", 0.0,
-      "1 SteadyState together with BlurFWHM", problems);
-    Require(this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L2, "FidelityNorm",
-      static_cast<double>(this->FidelityNorm), "0 L2 together with BlurFWHM", problems);
-    Require(this->Discretization == SurfaceDiffusion::Discretization::Linear, "Discretization",
-      static_cast<double>(this->Discretization), "0 Linear together with BlurFWHM", problems);
-    Require(this->Color.IsRGB(), "ColorModel", static_cast<double>(this->Color.Model),
-      "0 RGB together with BlurFWHM", problems);
+    const Word blur = Word::Setting("BlurFWHM");
+    RequireChoice(
+      "Mode", this->Mode, TotalVariationMode::SteadyState, "SteadyState", blur, problems);
+    RequireChoice(
+      "FidelityNorm", this->FidelityNorm, SurfaceDiffusion::FidelityNorm::L2, "L2", blur, problems);
+    RequireChoice("Discretization", this->Discretization, SurfaceDiffusion::Discretization::Linear,
+      "Linear", blur, problems);
+    RequireChoice("ColorModel", this->Color.Model, ColorModel::RGB, "RGB", blur, problems);
   }
 }
 
@@ -153,48 +157,51 @@ void TotalVariationSettings::CheckColorModel(const FieldSummary* fields, Problem
   {
     return;
   }
-  Require(this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L2, "FidelityNorm",
-    static_cast<double>(this->FidelityNorm), "0 L2 together with a ColorModel other than RGB",
+  RequireChoice("FidelityNorm", this->FidelityNorm, SurfaceDiffusion::FidelityNorm::L2, "L2",
+    Sentence("a ") << Word::Setting("ColorModel") << " other than "
+                   << Word::Choice("ColorModel", ColorModel::RGB, "RGB"),
     problems);
   if (fields && fields->Data && fields->DataComponents != 3)
   {
-    std::ostringstream text;
-    text << "ColorModel is " << static_cast<int>(this->Color.Model) << " but InputArray has "
-         << fields->DataComponents
-         << " components; allowed: 0 RGB, or an array of 3 components (alpha not counted)";
-    problems.push_back(text.str());
+    problems.push_back(Sentence(Word::Setting("ColorModel"))
+      << " is " << Word::Number("ColorModel", this->Color.Model) << " but "
+      << Word::Array("InputArray") << " has " << fields->DataComponents
+      << " components; allowed: " << Word::NumberedChoice("ColorModel", ColorModel::RGB, "RGB")
+      << ", or an array of 3 components (alpha not counted)");
   }
 }
 
-void TotalVariationSettings::RequireConvexEnergy(const char* purpose, Problems& problems) const
+void TotalVariationSettings::RequireConvexEnergy(const Sentence& purpose, Problems& problems) const
 {
-  const std::string with = std::string(" together with ") + purpose;
+  const Sentence with = Sentence(" together with ") << purpose;
   std::vector<bool> convex;
   for (int kind = 0; kind < NumberOfEdgeFunctions; ++kind)
   {
     convex.push_back(GetEdgeFunction(static_cast<EdgeFunctionKind>(kind)).Convex);
   }
-  Require(PropertiesOf(this->EdgeFunction).Convex, "EdgeFunction",
-    static_cast<double>(this->EdgeFunction),
-    (ListChoices(WordsOfEdgeFunctions(), convex) + with).c_str(), problems);
-  Require(this->AcrossEdgeFunction == 0, "AcrossEdgeFunction", this->AcrossEdgeFunction,
-    ("0 Same" + with).c_str(), problems);
+  Require(PropertiesOf(this->EdgeFunction).Convex, Word::Setting("EdgeFunction"),
+    Word::Number("EdgeFunction", this->EdgeFunction),
+    ListChoices("EdgeFunction", WordsOfEdgeFunctions(), convex) << with, problems);
+  RequireChoice("AcrossEdgeFunction", this->AcrossEdgeFunction, 0, "Same", purpose, problems);
   Require(this->AlongDiffusivity > 0.0 || this->AcrossDiffusivity > 0.0,
-    "AlongDiffusivity and AcrossDiffusivity", 0.0, ("one above 0" + with).c_str(), problems);
+    Sentence(Word::Setting("AlongDiffusivity")) << " and " << Word::Setting("AcrossDiffusivity"),
+    0.0, Sentence("one above 0") << with, problems);
 }
 
 /// The edge functions without a threshold have R in the unit of time.
-const char* TotalVariationSettings::FindSettingsInRange() const
+std::vector<const char*> TotalVariationSettings::FindSettingsInRange() const
 {
   if (PropertiesOf(this->EdgeFunction).Dimensionless)
   {
-    return this->EdgeFunction == EdgeFunctionKind::Constant ? nullptr : "EdgeThreshold";
+    const bool hasThreshold = this->EdgeFunction != EdgeFunctionKind::Constant;
+    return hasThreshold ? std::vector<const char*>{ "EdgeThreshold" } : std::vector<const char*>();
   }
   if (this->Mode == TotalVariationMode::TimeSteps)
   {
-    return "TimeStep and FidelityWeight";
+    return { "TimeStep", "FidelityWeight" };
   }
-  return this->FindsFidelity() ? nullptr : "FidelityWeight";
+  return this->FindsFidelity() ? std::vector<const char*>()
+                               : std::vector<const char*>{ "FidelityWeight" };
 }
 
 ModelTraits TotalVariationSettings::DescribeModel() const
@@ -257,10 +264,9 @@ std::vector<Output> TotalVariationSettings::Finish(const RunState& state, RunRes
   if (this->Minimizes() && gap > this->StopTolerance && !result.HasUnfinishedMinimum)
   {
     result.HasUnfinishedMinimum = true; // reported once, not at every requested time
-    std::ostringstream text;
-    text << "the minimisation ended at its largest number of iterations with a "
-         << this->NameOfResidual() << " of " << gap << ", above StopTolerance";
-    result.Warnings.push_back(text.str());
+    result.Warnings.push_back(
+      Sentence("the minimisation ended at its largest number of iterations with a ")
+      << this->NameOfResidual() << " of " << gap << ", above " << Word::Setting("StopTolerance"));
   }
   return this->DataSettings::Finish(state, result);
 }

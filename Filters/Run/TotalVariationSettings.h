@@ -75,10 +75,10 @@ private:
       (this->Blur.IsOn() && this->AutomaticBlurFidelity &&
         this->FidelityWeight == DefaultFidelityWeight);
   }
-  const char* FindSettingsInRange() const;
+  std::vector<const char*> FindSettingsInRange() const;
   void CheckBlur(Problems& problems) const;
   void CheckColorModel(const FieldSummary* fields, Problems& problems) const;
-  void RequireConvexEnergy(const char* purpose, Problems& problems) const;
+  void RequireConvexEnergy(const Sentence& purpose, Problems& problems) const;
   const char* NameOfResidual() const;
 };
 

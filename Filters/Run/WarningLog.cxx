@@ -8,9 +8,9 @@
 namespace SurfaceDiffusion
 {
 
-std::vector<std::string> WarningLog::Report(std::vector<Warning> warnings)
+std::vector<Sentence> WarningLog::Report(std::vector<Warning> warnings)
 {
-  std::vector<std::string> sentences;
+  std::vector<Sentence> sentences;
   for (const Warning& warning : warnings)
   {
     const bool reported =

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Run/Fingerprint.h"
+#include "Run/Sentence.h"
 
 #include <string>
 #include <vector>
@@ -13,7 +14,7 @@ namespace SurfaceDiffusion
 /// A warning that holds at present, and the inputs that it is about.
 struct Warning
 {
-  std::string Sentence;
+  SurfaceDiffusion::Sentence Sentence;
   Fingerprint Cause;
   /// Not empty: warnings of one kind count as the same, although figures in their sentences differ.
   std::string Kind = {};
@@ -31,7 +32,7 @@ class WarningLog
 {
 public:
   /// The sentences of `warnings`, which are all that hold now, that did not hold at the last call.
-  std::vector<std::string> Report(std::vector<Warning> warnings);
+  std::vector<Sentence> Report(std::vector<Warning> warnings);
 
 private:
   std::vector<Warning> Reported;

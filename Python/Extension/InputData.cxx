@@ -180,7 +180,7 @@ Fields InputFields::Read() const
   Fields fields;
   if (this->Data)
   {
-    fields.DataName = this->DataAreTerms ? "DataTermArray" : "InputArray";
+    fields.DataName = Word::Array(this->DataAreTerms ? "DataTermArray" : "InputArray");
     fields.DataAreTerms = this->DataAreTerms;
     fields.DataAreBytes = this->Data->dtype() == nb::dtype<std::uint8_t>();
     fields.Data.resize(static_cast<Eigen::Index>(this->Data->shape(0)), this->Components);

@@ -3,6 +3,7 @@
 #include "ModelRun.h"
 
 #include "PythonProgress.h"
+#include "Run/ErrorCauses.h"
 #include "Run/Outputs.h"
 #include "SettingsTable.h"
 
@@ -172,12 +173,12 @@ nb::list MakeList(const std::vector<StepRecord>& records, T StepRecord::*member)
   return list;
 }
 
-std::vector<std::string> SentencesOf(const std::vector<Warning>& warnings)
+nb::list SentencesOf(const std::vector<Warning>& warnings)
 {
-  std::vector<std::string> sentences;
+  nb::list sentences;
   for (const Warning& warning : warnings)
   {
-    sentences.push_back(warning.Sentence);
+    sentences.append(ListWords(warning.Sentence));
   }
   return sentences;
 }
@@ -198,7 +199,7 @@ void ClearOnFailure(Run& run, Settings& settings, const Work& work)
 {
   try
   {
-    NamingExtremes(settings, work);
+    NamingSettings(settings, work);
   }
   catch (const Aborted&)
   {
@@ -264,7 +265,7 @@ void ModelRun::Seek(int step, const nb::object& progress)
     });
 }
 
-std::vector<std::string> ModelRun::GetWarnings() const
+nb::list ModelRun::GetWarnings() const
 {
   return SentencesOf(this->Model.FindWarnings(this->Alone));
 }
@@ -354,16 +355,6 @@ void CheckSettings(DenoisingRunSettings& settings, const FieldSummary&, Problems
   CheckRanges(settings, problems);
 }
 
-constexpr const char* ConsequenceOf(const DirectionFieldRun*)
-{
-  return "get no direction";
-}
-
-constexpr const char* ConsequenceOf(const DenoisingRun*)
-{
-  return "have no normal";
-}
-
 } // namespace
 
 template <typename RunType, typename SettingsType>
@@ -378,22 +369,15 @@ void SingleRun<RunType, SettingsType>::Update(
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      NamingExtremes(
+      NamingSettings(
         settings, [&] { this->Model.Update(MakeUnmaskedBlock(input), settings, monitor); });
     });
 }
 
 template <typename RunType, typename SettingsType>
-std::vector<std::string> SingleRun<RunType, SettingsType>::GetWarnings() const
+nb::list SingleRun<RunType, SettingsType>::GetWarnings() const
 {
-  std::vector<std::string> sentences = SentencesOf(this->Model.FindWarnings());
-  const Index degenerate = this->Model.GetSurface().Diagnostics().DegenerateTriangles;
-  if (degenerate > 0)
-  {
-    sentences.push_back(
-      std::to_string(degenerate) + " triangles of zero area " + ConsequenceOf(&this->Model));
-  }
-  return sentences;
+  return SentencesOf(this->Model.FindWarnings());
 }
 
 template <typename RunType, typename SettingsType>

@@ -28,7 +28,7 @@ public:
   ModelRun& operator=(const ModelRun&) = delete;
 
   /// Check and take settings and inputs, a list of InputFields. history: whether the history has
-  /// energy and totals. Throws nanobind::value_error.
+  /// energy and totals. Throws InputError and nanobind::value_error.
   void Update(const nanobind::list& blocks, const nanobind::dict& settings,
     const nanobind::object& progress, bool history);
   /// Move to a step, or to the last one if that is -1.
@@ -36,8 +36,8 @@ public:
 
   int NumberOfSteps() const { return this->Settings->DescribeModel().NumberOfSteps; }
   double TimeStep() const { return this->Settings->DescribeModel().TimeStep; }
-  /// The sentences of all warnings that hold.
-  std::vector<std::string> GetWarnings() const;
+  /// All warnings that hold, as lists of words.
+  nanobind::list GetWarnings() const;
   nanobind::dict GetHistory() const;
   /// The units of the run, and the number of points without triangle of a surface.
   nanobind::dict GetResults(std::size_t block) const;
@@ -72,8 +72,8 @@ public:
   void Update(
     const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
   double MeanEdgeLength() const { return this->Model.MeanEdgeLength(); }
-  /// The sentences of all warnings that hold.
-  std::vector<std::string> GetWarnings() const;
+  /// All warnings that hold, as lists of words.
+  nanobind::list GetWarnings() const;
   /// As those of ModelRun.
   nanobind::list ListOutputs() const;
   void Write(std::size_t number, const OutputArray& output, const InputFields& source) const;

@@ -73,11 +73,34 @@ void BindSingleRun(nb::module_& m, const char* name)
     .def("write", &RunType::Write, "number"_a, "output"_a, "source"_a);
 }
 
+/// InputError becomes an exception of Python with the words of its message.
+void TranslateInputError(const std::exception_ptr& error, void* type)
+{
+  try
+  {
+    std::rethrow_exception(error);
+  }
+  catch (const InputError& found)
+  {
+    nb::object raised = nb::handle(static_cast<PyObject*>(type))(found.what());
+    raised.attr("words") = ListWords(found.Message());
+    PyErr_SetObject(static_cast<PyObject*>(type), raised.ptr());
+  }
+}
+
 } // namespace
 
 NB_MODULE(_core, m)
 {
   m.doc() = "Runs of the numerics on arrays.";
+
+  nb::object inputError = nb::steal(
+    PyErr_NewExceptionWithDoc("surfacediffusion._core.InputError",
+      "An error of the input. words: the words of its message, as in Run/Sentence.h: tuples of a "
+      "kind, the spelling in VTK, the name of a setting or array, and a value.",
+      PyExc_ValueError, nullptr));
+  m.attr("InputError") = inputError;
+  nb::register_exception_translator(TranslateInputError, inputError.release().ptr());
 
   m.def(
     "list_settings", [](const std::string& model) { return ListSettings(*MakeSettings(model)); },

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/LoopWatch.h"
 #include "Core/Foundation/ProgressMonitor.h"
+#include "Run/Sentence.h"
 
 #include <nanobind/nanobind.h>
 
@@ -19,13 +20,17 @@ namespace SurfaceDiffusion
 {
 
 /// Do work, and throw nanobind::value_error instead of std::runtime_error, by which the library
-/// reports errors of its input.
+/// reports errors of its input. An InputError stays, since Python words it.
 template <typename Work>
 void WithValueErrors(const Work& work)
 {
   try
   {
     work();
+  }
+  catch (const InputError&)
+  {
+    throw;
   }
   catch (const std::runtime_error& error)
   {
@@ -43,8 +48,8 @@ public:
   explicit PythonProgress(nanobind::object callable);
 
   /// Do `work`, which takes a ProgressMonitor, without the interpreter's lock. Throws the exception
-  /// of the callable or of a signal, nanobind::value_error instead of std::runtime_error, and
-  /// any other exception of the work.
+  /// of the callable or of a signal, exceptions of WithValueErrors(), and any other exception of
+  /// the work.
   void Run(const std::function<void(const ProgressMonitor&)>& work);
 
 private:

@@ -12,6 +12,7 @@
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
 
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <utility>
@@ -129,7 +130,36 @@ private:
   const nb::dict& Given;
 };
 
+const char* NameOf(Word::Kind kind)
+{
+  switch (kind)
+  {
+    case Word::Kind::Setting:
+      return "setting";
+    case Word::Kind::Array:
+      return "array";
+    case Word::Kind::Choice:
+      return "choice";
+    case Word::Kind::Switch:
+      return "switch";
+    case Word::Kind::Cell:
+      return "face";
+    default:
+      return "text";
+  }
+}
+
 } // namespace
+
+nb::list ListWords(const Sentence& sentence)
+{
+  nb::list words;
+  for (const Word& word : sentence.Words())
+  {
+    words.append(nb::make_tuple(NameOf(word.Type), word.Spelling, word.Name, word.Value));
+  }
+  return words;
+}
 
 std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
 {
@@ -188,14 +218,6 @@ void AssignSettings(Settings& settings, const nb::dict& values)
 {
   Assigner assigner(values);
   settings.Visit(assigner);
-}
-
-void ThrowProblems(Problems problems)
-{
-  if (!problems.empty())
-  {
-    throw nb::value_error(JoinProblems(std::move(problems)).c_str());
-  }
 }
 
 } // namespace SurfaceDiffusion

@@ -26,7 +26,7 @@ nanobind::list ListSettings(Settings& settings);
 /// Set those settings that the dict has: a number, a bool, or the index of a word.
 void AssignSettings(Settings& settings, const nanobind::dict& values);
 
-/// Throw nanobind::value_error with all problems, if there are any.
-void ThrowProblems(Problems problems);
+/// A tuple of kind, spelling, name and value for each word.
+nanobind::list ListWords(const Sentence& sentence);
 
 } // namespace SurfaceDiffusion

@@ -22,7 +22,7 @@ from ._result import (
     TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
-from ._settings import settings_of, shorten, translate
+from ._settings import settings_of, shorten, spell_documentation
 from ._surface import (
     Surface, SurfaceLike, as_data, as_outside, as_surface, find_on_faces, has_integers,
 )
@@ -125,8 +125,8 @@ def _with_settings(function: F) -> F:
         if setting.kind in ("number", "integer"):
             allowed += ", " + setting.allowed
         unit = f", in {setting.unit}" if setting.unit else ""
-        text = textwrap.fill(translate(function.__name__, setting.documentation, ARRAYS), 92,
-                             initial_indent="    ", subsequent_indent="    ",
+        text = textwrap.fill(spell_documentation(function.__name__, setting.documentation, ARRAYS),
+                             92, initial_indent="    ", subsequent_indent="    ",
                              break_on_hyphens=False)
         entries.append(f"{setting.keyword} : {allowed}{unit}, default {setting.default}\n{text}")
     function.__signature__ = inspect.Signature(  # type: ignore[attr-defined]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._settings import convert_all, settings_of, shorten, translate
+from ._settings import convert_all, settings_of, shorten, spell
 from ._surface import (
     Surface, as_factors, as_flags, as_labels, as_numbers, as_rows, data_components, find_place,
 )
@@ -180,15 +180,15 @@ class Runner:
         self.interval = self.settings.get("OutputInterval", interval.default if interval else 1)
 
     def call(self, work: Callable[..., Any], *arguments: Any) -> Any:
-        """work(*arguments), whose ValueError is put in the words of Python."""
+        """work(*arguments), whose errors of the input are put in the words of Python."""
         try:
             return work(*arguments)
-        except ValueError as error:
-            raise ValueError(translate(self.function, str(error), self.arrays)) from None
+        except _core.InputError as error:
+            raise ValueError(spell(self.function, error.words, self.arrays)) from None
 
     def warnings(self, run: Any) -> list[str]:
         """The warnings that hold, in the words of Python."""
-        return [translate(self.function, text, self.arrays) for text in run.warnings()]
+        return [spell(self.function, words, self.arrays) for words in run.warnings()]
 
     def finish(
         self, run: Any, inputs: list[Input], progress: Progress, history: bool = True

@@ -12,7 +12,7 @@ import numbers
 import operator
 import re
 from dataclasses import dataclass
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 
@@ -111,22 +111,33 @@ def convert_all(function: str, properties: Mapping[str, Any]) -> dict[str, Any]:
     return {table[k].name: table[k].convert(value) for k, value in properties.items()}
 
 
-def translate(function: str, message: str, arrays: Mapping[str, str]) -> str:
-    """A message of the library in the words of Python: keywords for properties, words for the
-    numbers of choices. `arrays`: the keywords of input arrays."""
-    for setting in settings_of(function).values():
-        if setting.kind == "choice" and re.search(rf"\b{setting.name}\b", message):
-            for number, word in enumerate(setting.words):
-                message = message.replace(f"{number} {word}", word)
-                message = re.sub(rf"\b{setting.name} is {number}\b", f"{setting.name} is {word}",
-                                 message)
-        elif setting.kind == "switch":
-            message = re.sub(rf"\b{setting.name} is (1|on)\b(; allowed: 0)?",
-                             lambda m: f"{setting.name} is True"
-                             + ("; allowed: False" if m.group(2) else ""), message)
+#: The result type in place of the setting of VTK.
+_DTYPES = {"Single": "float32", "Double": "float64"}
+
+
+def spell(function: str, words: Sequence[tuple[str, str, str, int]], arrays: Mapping[str, str]) -> str:
+    """A sentence of the library in the words of Python: keywords for settings and arrays, the words of
+    choices, faces for cells. arrays: the keywords of input arrays."""
+    table = {setting.name: setting for setting in settings_of(function).values()}
+
+    def spell_one(kind: str, spelling: str, name: str, value: int) -> str:
+        if kind == "setting":
+            return "dtype" if name == "OutputPrecision" else snake_case(name)
+        if kind == "array":
+            return arrays.get(name, spelling)
+        if kind == "choice":
+            return table[name].words[value] if name in table else _DTYPES.get(spelling, spelling)
+        if kind == "switch":
+            return str(bool(value))
+        if kind == "face":
+            return "faces" if value else "face"
+        return spelling
+
+    return "".join(spell_one(*word) for word in words)
+
+
+def spell_documentation(function: str, text: str, arrays: Mapping[str, str]) -> str:
+    """The documentation of a setting with the keywords of settings and arrays."""
     names = {setting.name: setting.keyword for setting in settings_of(function).values()}
-    names.update(arrays)
-    message = message.replace("OutputPrecision to Double", "dtype to float64")
-    message = re.sub(r"\bcell(s?)\b", r"face\1", message)
-    pattern = r"\b(" + "|".join(sorted(names, key=len, reverse=True)) + r")\b"
-    return re.sub(pattern, lambda m: names[m.group(1)], message)
+    names.update(arrays, cell="face", cells="faces")
+    return re.sub(r"\b\w+\b", lambda word: names.get(word.group(), word.group()), text)

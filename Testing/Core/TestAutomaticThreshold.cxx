@@ -108,7 +108,7 @@ Found FindEdges(const RunInput& input, const MumfordShahSettings& settings = {},
   found.MeanEdgeLength = run.Units().MeanEdgeLength;
   for (const Warning& warning : run.FindWarnings(Alone))
   {
-    found.Warnings.push_back(warning.Sentence);
+    found.Warnings.push_back(warning.Sentence.Text());
   }
   return found;
 }

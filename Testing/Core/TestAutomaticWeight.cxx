@@ -154,8 +154,8 @@ TEST(AutomaticWeight, KeepsMasksAndSpikesAndSaysSo)
     }
     const std::vector<Warning> warnings = run.FindWarnings(Alone);
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].Sentence.find("finds no noise"), std::string::npos);
-    EXPECT_NE(warnings[0].Sentence.find("NoiseLevel"), std::string::npos);
+    EXPECT_NE(warnings[0].Sentence.Text().find("finds no noise"), std::string::npos);
+    EXPECT_NE(warnings[0].Sentence.Text().find("NoiseLevel"), std::string::npos);
   }
 }
 
@@ -203,7 +203,7 @@ void ExpectWordsOnSmoothedNoise(ModeType steady)
   settings.AutomaticFidelity = true;
   const std::vector<Warning> warnings = WarningsOf(input, settings);
   ASSERT_EQ(warnings.size(), 1u);
-  const std::string& text = warnings[0].Sentence;
+  const std::string text = warnings[0].Sentence.Text();
   EXPECT_EQ(text.rfind("NoiseLevel: the data show no white noise", 0), 0u) << text;
   EXPECT_NE(text.find("(set NoiseLevel)"), std::string::npos) << text;
   const auto numberAfter = [&](const std::string& words)
@@ -215,7 +215,7 @@ void ExpectWordsOnSmoothedNoise(ModeType steady)
   settings.NoiseLevel = deviation;
   for (const Warning& warning : WarningsOf(input, settings))
   {
-    EXPECT_EQ(warning.Sentence.find("no white noise"), std::string::npos) << warning.Sentence;
+    EXPECT_EQ(warning.Sentence.Text().find("no white noise"), std::string::npos) << warning.Sentence;
   }
 }
 

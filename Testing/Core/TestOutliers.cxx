@@ -31,7 +31,7 @@ int CountIn(const SurfaceDiffusion::Run& run)
   int count = 0;
   for (const Warning& warning : run.FindWarnings(Alone))
   {
-    count += warning.Sentence.find("is that of outliers") != std::string::npos;
+    count += warning.Sentence.Text().find("is that of outliers") != std::string::npos;
   }
   return count;
 }

@@ -89,10 +89,10 @@ TEST(Run, AutomaticFidelityWarnsOfNoiseThatItCannotLeave)
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { input.Block() }, settings);
   WarningLog log;
-  const std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  const std::vector<Sentence> warnings = log.Report(run.FindWarnings(Alone));
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].find("AutomaticFidelity found no weight"), std::string::npos);
-  EXPECT_NE(warnings[0].find("100"), std::string::npos);
+  EXPECT_NE(warnings[0].Text().find("AutomaticFidelity found no weight"), std::string::npos);
+  EXPECT_NE(warnings[0].Text().find("100"), std::string::npos);
 }
 
 TEST(Run, AutomaticFidelityWarnsOfCorrelatedNoise)
@@ -110,9 +110,9 @@ TEST(Run, AutomaticFidelityWarnsOfCorrelatedNoise)
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { input.Block() }, settings);
   WarningLog log;
-  const std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  const std::vector<Sentence> warnings = log.Report(run.FindWarnings(Alone));
   ASSERT_FALSE(warnings.empty());
-  EXPECT_NE(warnings[0].find("the noise is correlated"), std::string::npos);
+  EXPECT_NE(warnings[0].Text().find("the noise is correlated"), std::string::npos);
 }
 
 TEST(Run, WithTheSameInputsAndSettingsComputesNothing)

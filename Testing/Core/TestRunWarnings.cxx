@@ -39,24 +39,25 @@ RunInput NoisyNormals()
 }
 
 template <typename ModelSettings>
-std::vector<std::string> WarningsOf(const RunInput& input, const ModelSettings& settings)
+std::vector<Sentence> WarningsOf(const RunInput& input, const ModelSettings& settings)
 {
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { input.Block() }, settings);
   WarningLog log;
-  std::vector<std::string> warnings = log.Report(run.FindWarnings(Alone));
+  std::vector<Sentence> warnings = log.Report(run.FindWarnings(Alone));
   run.Seek(0, ProgressMonitor());
   run.Seek(settings.NumberOfTimeSteps + 1, ProgressMonitor());
   EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty()) << "warned twice";
   return warnings;
 }
 
-void ExpectOne(const std::vector<std::string>& warnings, const std::vector<std::string>& parts)
+void ExpectOne(const std::vector<Sentence>& warnings, const std::vector<std::string>& parts)
 {
-  ASSERT_EQ(warnings.size(), 1u) << (warnings.size() > 1 ? warnings[1] : "no warning");
+  ASSERT_EQ(warnings.size(), 1u) << (warnings.size() > 1 ? warnings[1].Text() : "no warning");
   for (const std::string& part : parts)
   {
-    EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0] << "\nlacks: " << part;
+    EXPECT_NE(warnings[0].Text().find(part), std::string::npos)
+      << warnings[0] << "\nlacks: " << part;
   }
 }
 

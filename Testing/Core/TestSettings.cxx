@@ -104,9 +104,9 @@ bool HasProblem(RunSettings& settings, const std::string& start)
 {
   Problems problems;
   settings.Check(nullptr, problems);
-  for (const std::string& problem : problems)
+  for (const Sentence& problem : problems)
   {
-    if (problem.compare(0, start.size(), start) == 0)
+    if (problem.Text().compare(0, start.size(), start) == 0)
     {
       return true;
     }

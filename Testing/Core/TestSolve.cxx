@@ -167,5 +167,5 @@ TEST(Solve, ErrorsNameTheSettingOrTheArray)
   fields.Mask.clear();
   EXPECT_EQ(ErrorOf(Fields(), {}), "Data has 0 values; allowed: a row for each point or cell");
   fields.Data(7, 0) = std::numeric_limits<double>::infinity();
-  EXPECT_NE(ErrorOf(fields, {}).find("InputArray"), std::string::npos);
+  EXPECT_EQ(ErrorOf(fields, {}), "Data is infinite at point 7; allowed: finite values and NaN");
 }

@@ -103,7 +103,7 @@ std::vector<std::string> Update(SurfaceDiffusion::Run& run, const std::vector<Bl
   std::vector<std::string> sentences;
   for (const Warning& warning : run.FindWarnings(Alone))
   {
-    sentences.push_back(warning.Sentence);
+    sentences.push_back(warning.Sentence.Text());
   }
   return sentences;
 }

@@ -143,6 +143,27 @@ CASES = [
      r"hold_known_values is True but nothing is missing.*; allowed: .*"),
     (lambda: sd.intrinsic_tv(BODY, Z, mode="SteadyState", edge_function="PeronaMalikRational"),
      r"edge_function is PeronaMalikRational; allowed: TotalVariation, .* together with mode Steady.*"),
+    (lambda: sd.tensor_diffusion(BODY, Z, diffusion_axes=True, intrinsic_delaunay=True),
+     r"diffusion_axes is True; allowed: False together with intrinsic_delaunay, whose triangles are "
+     r"not those of the faces"),
+    (lambda: sd.intrinsic_tv(BODY, Z, blur_fwhm=1.0),
+     r"mode is TimeSteps; allowed: SteadyState together with blur_fwhm"),
+    (lambda: sd.intrinsic_tv(BODY, Z, across_edge_function="Constant"),
+     r"across_edge_function is Constant but directions is not set; allowed: Same, or an array of.*"),
+    (lambda: sd.segment(BODY, Z, means=[1.0]),
+     r"the number of means is 1; allowed: 2, one per region and component of values, or any with "
+     r"automatic_means True"),
+    (lambda: sd.segment(BODY, Z, seeds=[5, 0, 0, 0, 1]),
+     r"seeds has the label 5; allowed: 0 to number_of_regions 2"),
+    (lambda: sd.turing_texture(BODY, kinetics="Turing", growth_rate=1.0, decay_rate=12.0),
+     r"kinetics is Turing, which has no steady state .*; allowed: others \(for Turing growth_rate "
+     r"above decay_rate\), or an initial state as initial"),
+    (lambda: sd.heat(sd.sphere(2), sd.sphere(2).points[:, 2], fwhm=1, tolerance=1e-14,
+                     maximum_number_of_iterations=1, solver="conjugate_gradient"),
+     r"the linear solver stopped after 1 iterations at .*; allow a larger tolerance or "
+     r"maximum_number_of_iterations, or set solver to Direct"),
+    (lambda: sd.heat(BODY, np.full(6, np.inf), time_step=1, on_faces=True),
+     r"values is infinite at face 0; allowed: finite values and NaN"),
     (lambda: sd.harmonic_map(BODY, exponent=3), r"exponent is 3; allowed: numbers from 1 to 2"),
     (lambda: sd.turing_texture(BODY, kinetics="Gray"), r"kinetics is 'Gray'; allowed: Turing, .*"),
     (lambda: sd.turing_texture(BODY, growth_rate=1),

@@ -280,7 +280,7 @@ class Keywords(unittest.TestCase):
                 keyword = sd._settings.snake_case(name)
                 self.assertEqual(parameters[keyword].default, known[name]["default"], keyword)
                 self.assertIn(f"\n{keyword} : ", function.__doc__)
-                text = sd._settings.translate(
+                text = sd._settings.spell_documentation(
                     function.__name__, known[name]["documentation"], sd._models.ARRAYS)
                 self.assertIn(" ".join(text.split()), " ".join(function.__doc__.split()))
                 self.assertNotIn("MergeTolerance", function.__doc__)

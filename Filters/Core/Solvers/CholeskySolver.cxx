@@ -6,6 +6,7 @@
 #include "Core/Foundation/Resize.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/ResidualSquares.h"
+#include "Core/Solvers/NotPositiveDefinite.h"
 #include "Core/Solvers/SparseFactor.h"
 #include "Core/Solvers/Substitution.h"
 
@@ -59,8 +60,7 @@ public:
     }
     if (!factor->IsPositive())
     {
-      throw std::runtime_error("the matrix of the linear system is not positive definite; if "
-                               "triangles are all but flat, IntrinsicDelaunay makes it so");
+      throw NotPositiveDefinite();
     }
     this->Factor = std::move(factor);
   }

@@ -16,8 +16,7 @@ std::string DescribeFailure(const SolveReport& report)
 {
   std::ostringstream text;
   text << "the linear solver stopped after " << report.Iterations
-       << " iterations at a relative residual of " << report.Residual
-       << "; allow a larger Tolerance or MaximumNumberOfIterations, or set Solver to Direct";
+       << " iterations at a relative residual of " << report.Residual;
   return text.str();
 }
 

@@ -282,8 +282,7 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
       this->Assembly->Mesh().GetReduction().Any(
         !(this->RightHandSide[c].array().abs() < boundless).all()))
     {
-      throw std::runtime_error("the concentrations grow without bounds: take a smaller TimeStep, "
-                               "other parameters of the kinetics, or clamp at zero");
+      throw UnboundedGrowth();
     }
     if (solution.Failure)
     {

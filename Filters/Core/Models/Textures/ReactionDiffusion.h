@@ -11,9 +11,19 @@
 #include <array>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
+
+/// Thrown if a concentration leaves all bounds.
+struct UnboundedGrowth : std::runtime_error
+{
+  UnboundedGrowth()
+    : std::runtime_error("the concentrations grow without bounds")
+  {
+  }
+};
 
 /// Reaction-diffusion equations of two chemicals (22), (23),
 ///   u1_t = div(D1 grad u1) + F(u1, u2),  u2_t = div(D2 grad u2) + G(u1, u2),
