@@ -8,8 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -442,6 +444,38 @@ TEST(Interpolation, WithFreeBoundaryHasTheNaturalSolutionOnClosedSurfaces)
       EXPECT_LT(std::abs(excess), 0.5 * last);
     }
     last = std::abs(excess);
+  }
+}
+
+TEST(Interpolation, ReportsItsProgressAndEndsWhenItIsAborted)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Values field = Sample(mesh, s, SeaTemperature);
+  for (const Index step : { 20, 3 }) // few values, and many
+  {
+    const auto data = ValuesAt(mesh, field + Noise(mesh), [&](Index i) { return i % step == 0; });
+    Interpolation::Settings settings;
+    settings.ComputeError = true;
+    settings.KeepRange = true;
+    const Interpolation model(assembler, CotanWeights(mesh), settings);
+    std::vector<double> reports;
+    const ProgressMonitor::Callback note = [&](double fraction)
+    {
+      reports.push_back(fraction);
+      return true;
+    };
+    const Values expected = model.Fit(data, ProgressMonitor(note)).U;
+    ASSERT_GE(reports.size(), 10U);
+    EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
+    EXPECT_EQ(reports.back(), 1.0);
+    for (const double end : { 0.05, 0.3, 0.6, 0.9 })
+    {
+      const ProgressMonitor::Callback stop = [&](double fraction) { return fraction < end; };
+      EXPECT_THROW(model.Fit(data, ProgressMonitor(stop)), Aborted);
+    }
+    EXPECT_EQ(model.Fit(data).U, expected);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -66,14 +67,23 @@ void SubtractProduct(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::
 
 } // namespace
 
-Vector SupernodalFactor::InverseDiagonal(const ParallelFor& parallel) const
+Vector SupernodalFactor::InverseDiagonal(
+  const ParallelFor& parallel, const ProgressMonitor& progress) const
 {
   const Supernodes& nodes = this->Nodes;
   const Index count = nodes.Count();
   std::vector<Eigen::MatrixXd> inverse(count); // in the rows of a supernode: pivots, rows below
   Vector diagonal(static_cast<Eigen::Index>(nodes.Place.size()));
+  double done = 0.0;
+  const double operations = std::accumulate(nodes.Operations.begin(), nodes.Operations.end(), 0.0);
+  constexpr Index often = 64; // supernodes
   for (Index s = count - 1; s >= 0; --s)
   {
+    if (s % often == 0 || nodes.Operations[s] > operations / often)
+    {
+      progress.Report(std::min(1.0, done / operations));
+    }
+    done += nodes.Operations[s];
     const Index k = nodes.Pivots(s);
     const Index r = nodes.RowsBelow(s);
     const Index first = nodes.First[s];

@@ -41,7 +41,8 @@ public:
 
   /// Diagonal entries of A^-1 by selected inversion (K. Takahashi, J. Fagan, M. Chin, PICA 1973): the
   /// entries of the inverse in the pattern of L follow from each other, from the last row on.
-  Vector InverseDiagonal(const ParallelFor& parallel) const;
+  Vector InverseDiagonal(
+    const ParallelFor& parallel, const ProgressMonitor& progress = ProgressMonitor()) const;
 
   const Supernodes& Structure() const { return this->Nodes; }
   /// Bytes of L.

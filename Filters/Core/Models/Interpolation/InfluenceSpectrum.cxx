@@ -30,28 +30,30 @@ double Left(double s, double ratio)
 
 } // namespace
 
-InfluenceSpectrum::InfluenceSpectrum(
-  const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, bool onlyHere)
+InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data,
+  std::int64_t seed, bool onlyHere, const ProgressMonitor& progress)
   : IsExact(data.Count() <= FewValues)
   , Mu(fit.GetSmoothing())
   , Count(data.Count())
 {
   if (this->IsExact)
   {
-    this->Decompose(fit, data);
+    this->Decompose(fit, data, progress);
     return;
   }
   constexpr int steps = 10;
-  this->Sample(fit, data, seed, onlyHere ? 1 : steps);
+  this->Sample(fit, data, seed, onlyHere ? 1 : steps, progress);
 }
 
-void InfluenceSpectrum::Decompose(const SmoothFit& fit, const ScatteredValues& data)
+void InfluenceSpectrum::Decompose(
+  const SmoothFit& fit, const ScatteredValues& data, const ProgressMonitor& progress)
 {
   const Vector roots = data.Weights.cwiseSqrt();
   Eigen::MatrixXd influence(this->Count, this->Count);
-  constexpr Index panel = 64;
+  constexpr Index panel = 32;
   for (Index first = 0; first < this->Count; first += panel)
   {
+    progress.Report(static_cast<double>(first) / this->Count);
     const Index columns = std::min(panel, this->Count - first);
     Values unit = Values::Zero(this->Count, columns);
     unit.middleRows(first, columns).setIdentity();
@@ -79,7 +81,7 @@ void InfluenceSpectrum::Decompose(const SmoothFit& fit, const ScatteredValues& d
 
 /// The measures of the columns of v by `steps` steps of Lanczos' method.
 std::vector<InfluenceSpectrum::Measure> InfluenceSpectrum::MeasuresOf(
-  const SmoothFit& fit, const Vector& roots, Values v, int steps)
+  const SmoothFit& fit, const Vector& roots, Values v, int steps, const ProgressMonitor& progress)
 {
   const Eigen::Index columns = v.cols();
   std::vector<std::vector<double>> diagonal(columns), beside(columns);
@@ -92,6 +94,7 @@ std::vector<InfluenceSpectrum::Measure> InfluenceSpectrum::MeasuresOf(
   std::vector<Values> basis;
   for (int step = 0; step < std::min<int>(steps, static_cast<int>(v.rows())); ++step)
   {
+    progress.Report(static_cast<double>(step) / steps);
     basis.push_back(v);
     Values w = ApplyInfluence(fit, roots, v);
     for (Eigen::Index c = 0; c < columns; ++c)
@@ -137,11 +140,14 @@ std::vector<InfluenceSpectrum::Measure> InfluenceSpectrum::MeasuresOf(
   return measures;
 }
 
-void InfluenceSpectrum::Sample(
-  const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps)
+void InfluenceSpectrum::Sample(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed,
+  int steps, const ProgressMonitor& progress)
 {
   constexpr Eigen::Index probes = 15; // and one column of the data
   constexpr Eigen::Index panel = 16;
+  const auto all = static_cast<double>(probes + data.Given.cols());
+  const auto part = [&](Eigen::Index begin, Eigen::Index end)
+  { return progress.Part(static_cast<double>(begin) / all, static_cast<double>(end) / all); };
   const Vector roots = data.Weights.cwiseSqrt();
   Values first(this->Count, probes + 1);
   for (Index i = 0; i < this->Count; ++i)
@@ -152,7 +158,8 @@ void InfluenceSpectrum::Sample(
       first(i, p) = UniformRandom(seed, p, i) < 0.5 ? -1.0 : 1.0;
     }
   }
-  std::vector<Measure> measures = MeasuresOf(fit, roots, std::move(first), steps);
+  std::vector<Measure> measures =
+    MeasuresOf(fit, roots, std::move(first), steps, part(0, probes + 1));
   this->Columns.push_back(std::move(measures.back()));
   measures.pop_back();
   for (const Measure& measure : measures)
@@ -166,7 +173,8 @@ void InfluenceSpectrum::Sample(
   {
     const Eigen::Index columns = std::min(panel, data.Given.cols() - c);
     const Values further = roots.asDiagonal() * data.Given.middleCols(c, columns);
-    for (Measure& measure : MeasuresOf(fit, roots, further, steps))
+    for (Measure& measure :
+      MeasuresOf(fit, roots, further, steps, part(probes + c, probes + c + columns)))
     {
       this->Columns.push_back(std::move(measure));
     }

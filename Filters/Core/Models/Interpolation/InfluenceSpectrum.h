@@ -24,8 +24,9 @@ class InfluenceSpectrum
 public:
   /// data: those of the fit, which is prepared with mu_0. seed: of the signs. onlyHere: the measures
   /// are needed at mu_0 alone.
-  InfluenceSpectrum(
-    const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, bool onlyHere = false);
+  /// Throws Aborted.
+  InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed,
+    bool onlyHere = false, const ProgressMonitor& progress = ProgressMonitor());
 
   /// The trace of S at mu: the degrees of freedom of the fit.
   double DegreesOfFreedom(double mu) const;
@@ -57,10 +58,12 @@ private:
   using Measure = std::vector<std::pair<double, double>>;
 
   double Slope(double mu, Eigen::Index column, double noise) const;
-  static std::vector<Measure> MeasuresOf(
-    const SmoothFit& fit, const Vector& roots, Values v, int steps);
-  void Decompose(const SmoothFit& fit, const ScatteredValues& data);
-  void Sample(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps);
+  static std::vector<Measure> MeasuresOf(const SmoothFit& fit, const Vector& roots, Values v,
+    int steps, const ProgressMonitor& progress);
+  void Decompose(
+    const SmoothFit& fit, const ScatteredValues& data, const ProgressMonitor& progress);
+  void Sample(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps,
+    const ProgressMonitor& progress);
 
   bool IsExact = false;
   double Mu;

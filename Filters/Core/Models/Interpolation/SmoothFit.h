@@ -44,7 +44,10 @@ public:
   Values ToVertices(const Values& v) const;
 
   /// The diagonal of H^-1.
-  Vector InverseDiagonal() const { return this->Factor.InverseDiagonal(this->Parallel); }
+  Vector InverseDiagonal(const ProgressMonitor& progress) const
+  {
+    return this->Factor.InverseDiagonal(this->Parallel, progress);
+  }
 
   /// mu Q u - B^T W (d - B u) - B^T forces: the derivative of the energy.
   void Derivative(

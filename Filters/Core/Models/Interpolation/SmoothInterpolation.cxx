@@ -203,11 +203,11 @@ void SmoothInterpolation::FitExactly(
   work.Start = u;
   this->Prepare(work, result, 1.0, held, progress.Part(0.0, 0.7));
   Values forces = work.Fit.Solve(0, u);
-  progress.Report(0.9);
+  progress.Report(0.8);
   if (this->Options.ComputeError)
   {
     // u^T Q u is the variance of the field times a chi-square variable.
-    const Vector variances = work.Fit.InverseDiagonal(); // without bounds
+    const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)); // without bounds
     const Vector energies = work.Energy.Squares(u);
     const double free = std::max<double>(1.0, rows.Count() - work.Parts);
     for (Eigen::Index c = 0; c < columns; ++c)
@@ -223,7 +223,7 @@ void SmoothInterpolation::FitExactly(
   {
     Values column = u.col(c);
     Values forcesOfColumn = forces.col(c);
-    this->KeepInRange(work, result, c, held, column, forcesOfColumn, progress.Part(0.9, 1.0));
+    this->KeepInRange(work, result, c, held, column, forcesOfColumn, progress.Part(0.95, 1.0));
     u.col(c) = column;
   }
   result.U = u;
@@ -249,8 +249,8 @@ void SmoothInterpolation::FitSmoothly(
   const double givenMu = std::min(largest, this->Options.Mu);
   const auto measure = [&](double mu, const ProgressMonitor& part)
   {
-    this->Prepare(work, result, mu, work.Open, part);
-    return InfluenceSpectrum(work.Fit, rows, this->Options.Seed, isGiven);
+    this->Prepare(work, result, mu, work.Open, part.Part(0.0, 0.5));
+    return InfluenceSpectrum(work.Fit, rows, this->Options.Seed, isGiven, part.Part(0.5, 1.0));
   };
   const auto take = [&](const InfluenceSpectrum& spectrum, double mu, Eigen::Index column)
   {
@@ -296,12 +296,12 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   const ScatteredValues& rows = work.Data.Rows;
   if (work.Fit.GetSmoothing() != mu)
   {
-    this->Prepare(work, result, mu, work.Open, progress.Part(0.0, 0.5));
+    this->Prepare(work, result, mu, work.Open, progress.Part(0.0, 0.3));
   }
   Values all = work.Start.middleCols(first, count);
   const Values forces = work.Fit.Solve(first, all);
   const Vector deviations = this->Options.ComputeError
-    ? Vector(work.Fit.InverseDiagonal().cwiseMax(0.0).cwiseSqrt())
+    ? Vector(work.Fit.InverseDiagonal(progress.Part(0.4, 0.8)).cwiseMax(0.0).cwiseSqrt())
     : Vector();
   for (Eigen::Index c = 0; c < count; ++c)
   {
@@ -310,7 +310,7 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     if (this->Options.KeepRange)
     {
       Values none = forces.col(c);
-      this->KeepInRange(work, result, first + c, work.Open, u, none, progress.Part(0.5, 1.0));
+      this->KeepInRange(work, result, first + c, work.Open, u, none, progress.Part(0.8, 1.0));
     }
     const Vector given = rows.Given.col(first + c);
     const Vector misfit = given - work.Fit.AtPoints(u).col(0);
