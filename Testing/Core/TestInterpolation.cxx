@@ -374,6 +374,27 @@ TEST(Interpolation, KeepsTheRangeOfTheValues)
   }
 }
 
+TEST(Interpolation, KeepsTheRangeAroundABumpInAPlain)
+{
+  // Nearly all of the surface is at the bound.
+  const Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto f = [](const Eigen::RowVector3d& x)
+  { return std::exp(-40.0 * (x - Eigen::RowVector3d(0.0, 0.0, 1.0)).squaredNorm()); };
+  const auto data = ValuesAt(mesh, Sample(mesh, s, f), [](Index i) { return i < OfSphere; });
+  for (const Choice choice : { Choice::Exact, Choice::Automatic })
+  {
+    Interpolation::Settings settings = InterpolationSettings(choice);
+    EXPECT_LT(Interpolate(assembler, data, settings).U.minCoeff(), -0.005);
+    settings.KeepRange = true;
+    const Interpolation::Result kept = Interpolate(assembler, data, settings);
+    EXPECT_TRUE(kept.RangeIsOptimal);
+    EXPECT_GE(kept.U.minCoeff(), data.Given.minCoeff());
+    EXPECT_LE(kept.U.maxCoeff(), data.Given.maxCoeff());
+  }
+}
+
 TEST(Interpolation, IsSmoothAcrossFlatSheetsWhoseSlopeValuesLeaveOpen)
 {
   const Surface s = Strip(20, 20);

@@ -333,8 +333,10 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
 void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index column,
   const Flags& held, Values& u, Values& forces, const ProgressMonitor& progress) const
 {
-  constexpr int mostWithRelease = 30; // the active set may cycle; it grows only, from there on
-  constexpr int most = 60;
+  // The rim of the active set moves by about a row of triangles per step. The set may cycle: it grows
+  // only, after so many steps.
+  constexpr int mostWithRelease = 300;
+  constexpr int most = 350;
   const auto data = work.Data.Rows.Given.col(column);
   const double low = data.minCoeff();
   const double high = data.maxCoeff();
