@@ -70,9 +70,10 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
 
   // Values are measured from their mean: the errors of a solve are relative to the contrast then.
   work.Origin = Eigen::RowVectorXd::Zero(columns);
+  const double allWeights = rows.Weights.sum();
   for (Index i = 0; i < rows.Count(); ++i)
   {
-    work.Origin += rows.Weights[i] / rows.Weights.sum() * rows.Given.row(i);
+    work.Origin += rows.Weights[i] / allWeights * rows.Given.row(i);
   }
   rows.Given.rowwise() -= work.Origin;
   std::vector<char> isKnown(static_cast<std::size_t>(mesh.NumberOfComponents()), 0);
