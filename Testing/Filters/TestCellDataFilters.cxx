@@ -229,38 +229,6 @@ TEST(CellDataFilters, ColoursStayColoursAndKeepTheirAlpha)
   }
 }
 
-TEST(CellDataFilters, MissingAndMaskedCellsAreFilledInAndExcludedOnesKept)
-{
-  auto plane = Grid(21, 21);
-  const auto centre = [&](vtkIdType c)
-  { return std::hypot((c / 2) % 20 - 10.0, (c / 2) / 20 - 10.0); };
-  AddCellArray(
-    plane, "mask", 1, [&](vtkIdType c, int) { return centre(c) < 4.0; }, VTK_CHAR);
-  vtkDataArray* const f = AddCellArray(plane, "c", 1,
-    [&](vtkIdType c, int) { return centre(c) < 4.0 ? 100.0 : 1.0 + 0.1 * Rough(c, 0); });
-  vtkDataArray* const holes = AddCellArray(plane, "nan", 1,
-    [&](vtkIdType c, int) { return centre(c) < 4.0 ? NaN : f->GetComponent(c, 0); });
-  auto heat = MakeFilter<vtkFVMHeatFilter>(plane, "c");
-  SetInputArray(heat, 1, "mask", true);
-  heat->Update();
-  auto other = MakeFilter<vtkFVMHeatFilter>(plane, "nan");
-  other->Update();
-  EXPECT_TRUE(Identical(CellResult(heat, "cDiffused"), CellResult(other, "nanDiffused")));
-  for (vtkIdType c = 0; c < holes->GetNumberOfTuples(); ++c)
-  {
-    EXPECT_LT(CellResult(heat, "cDiffused")->GetComponent(c, 0), 1.2);
-  }
-  heat->SetMaskModeToExclude();
-  Messages messages(heat);
-  heat->Update();
-  EXPECT_TRUE(messages.Errors.empty() && messages.Warnings.empty());
-  for (vtkIdType c = 0; c < holes->GetNumberOfTuples(); ++c)
-  {
-    const double value = CellResult(heat, "cDiffused")->GetComponent(c, 0);
-    EXPECT_TRUE(centre(c) < 4.0 ? value == 100.0 : value < 1.2);
-  }
-}
-
 TEST(CellDataFilters, MumfordShahHasTheEdgesOnCells)
 {
   auto plane = Grid(31, 31);

@@ -58,79 +58,6 @@ double Encoded(double light)
 
 } // namespace
 
-TEST(ColorModels, OpponentWithChromaWeightOneIsRGB)
-{
-  auto sphere = Sphere(3);
-  AddColors(sphere);
-  for (const bool steady : { false, true })
-  {
-    auto rgb = MakeFilter(sphere);
-    auto opponent = MakeFilter(sphere);
-    opponent->SetColorModelToOpponent();
-    opponent->SetChromaWeight(1.0);
-    for (Filter* filter : { rgb.Get(), opponent.Get() })
-    {
-      filter->SetMode(steady);
-      filter->SetStopTolerance(1e-7);
-      filter->SetTolerance(1e-12);
-      filter->Update();
-    }
-    EXPECT_LT(LargestDifference(Result(rgb), Result(opponent)), steady ? 1e-3 : 1e-9);
-    opponent->SetChromaWeight(0.25);
-    opponent->Update();
-    EXPECT_GT(LargestDifference(Result(rgb), Result(opponent)), 0.02);
-  }
-}
-
-TEST(ColorModels, BrightnessOfGreyIsTheScalarRun)
-{
-  auto sphere = Sphere(3);
-  AddPointArray(sphere, "f", 3,
-    [&](vtkIdType i, int) { return 0.5 + Cap(sphere->GetPoint(i)) + 0.1 * Rough(i, 0); });
-  AddPointArray(sphere, "s", 1,
-    [&](vtkIdType i, int)
-    { return std::sqrt(3.0) * sphere->GetPointData()->GetArray("f")->GetComponent(i, 0); });
-  auto colors = MakeFilter(sphere);
-  SetInputArray(colors, 0, "f");
-  colors->SetColorModelToChromaticityBrightness();
-  auto scalar = MakeFilter(sphere);
-  SetInputArray(scalar, 0, "s");
-  scalar->SetResultArrayName("result");
-  for (Filter* filter : { colors.Get(), scalar.Get() })
-  {
-    filter->SetUnitsToAbsolute();
-    filter->SetTimeStep(0.02);
-    filter->SetTolerance(1e-12);
-    filter->Update();
-  }
-  const auto expected = MakeArray(VTK_DOUBLE, "e", sphere->GetNumberOfPoints(), 3,
-    [&](vtkIdType i, int)
-    { return FilterTest::Result(scalar, "result")->GetComponent(i, 0) / std::sqrt(3.0); });
-  EXPECT_LT(LargestDifference(Result(colors), expected), 1e-9);
-}
-
-TEST(ColorModels, PowersOfTwoScaleTheResultToTheLastBit)
-{
-  auto sphere = Sphere(3);
-  auto larger = Sphere(3);
-  AddColors(sphere);
-  AddColors(larger, 64.0);
-  for (const bool steady : { false, true })
-  {
-    auto one = MakeFilter(sphere);
-    auto other = MakeFilter(larger);
-    for (Filter* filter : { one.Get(), other.Get() })
-    {
-      filter->SetColorModelToChromaticityBrightness();
-      filter->SetMode(steady);
-      filter->Update();
-    }
-    const auto expected = MakeArray(VTK_DOUBLE, "e", sphere->GetNumberOfPoints(), 3,
-      [&](vtkIdType i, int k) { return 64.0 * Result(one)->GetComponent(i, k); });
-    EXPECT_TRUE(Identical(Result(other), expected));
-  }
-}
-
 TEST(ColorModels, NaturalSettingsAreTheAbsoluteOnesInTheirUnits)
 {
   auto sphere = Sphere(3);
@@ -172,97 +99,6 @@ TEST(ColorModels, NaturalSettingsAreTheAbsoluteOnesInTheirUnits)
     // Many alternations amplify the last bits of h.
     EXPECT_LT(LargestDifference(natural, Result(filter)), filter->GetMode() ? 1e-5 : 1e-7)
       << "case " << (&set - cases);
-  }
-}
-
-TEST(ColorModels, EnergyNeverGrows)
-{
-  auto sphere = Sphere(3);
-  AddColors(sphere);
-  const Setting cases[] = { [](Filter*) {}, [](Filter* f) { f->SetTimeIntegratorToImplicit(); },
-    [](Filter* f) { f->SetEdgeFunctionToCharbonnier(); },
-    [](Filter* f) { f->SetEdgeFunctionToPeronaMalikRational(); },
-    [](Filter* f) { f->SetChromaticityExponent(1.5); },
-    [](Filter* f) { f->SetDiscretizationToCrouzeixRaviart(); } };
-  for (const int model : Colored)
-  {
-    for (const Setting& set : cases)
-    {
-      auto filter = MakeFilter(sphere);
-      filter->SetColorModel(model);
-      set(filter);
-      Messages messages(filter);
-      filter->Update();
-      EXPECT_TRUE(messages.Errors.empty());
-      EXPECT_TRUE(messages.Warnings.empty());
-      for (vtkIdType row = 1; row <= 10; ++row)
-      {
-        EXPECT_LE(
-          HistoryAt(filter, row, "Energy"), HistoryAt(filter, row - 1, "Energy") * (1.0 + 1e-12));
-      }
-    }
-  }
-}
-
-TEST(ColorModels, AnyTimeCanBeRequestedInAnyOrder)
-{
-  auto sphere = Sphere(3);
-  AddColors(sphere);
-  for (const int model : Colored)
-  {
-    for (const bool implicit : { false, true })
-    {
-      auto filter = MakeFilter(sphere);
-      filter->SetColorModel(model);
-      filter->SetTimeIntegrator(
-        implicit ? Filter::TIME_INTEGRATOR_IMPLICIT : Filter::TIME_INTEGRATOR_FIRST_ORDER);
-      filter->GenerateTimeStepsOn();
-      UpdateAt(filter, 0.0);
-      EXPECT_TRUE(Identical(Result(filter), sphere->GetPointData()->GetArray("f")));
-      UpdateAt(filter, 7.0);
-      const auto seventh = Copy(Result(filter));
-      UpdateAt(filter, 10.0);
-      const auto last = Copy(Result(filter));
-      UpdateAt(filter, 7.0);
-      EXPECT_TRUE(Identical(Result(filter), seventh));
-      filter->GenerateTimeStepsOff();
-      filter->Update();
-      EXPECT_TRUE(Identical(Result(filter), last));
-    }
-  }
-}
-
-TEST(ColorModels, MissingAndFixedPoints)
-{
-  auto sphere = Sphere(3);
-  AddColors(sphere);
-  vtkDataArray* f = sphere->GetPointData()->GetArray("f");
-  AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i % 5 == 0; });
-  AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 7 == 0 && i % 5 != 0; });
-  for (const int model : Colored)
-  {
-    for (const bool steady : { false, true })
-    {
-      for (const bool excludes : { false, true })
-      {
-        auto filter = MakeFilter(sphere);
-        filter->SetColorModel(model);
-        filter->SetMode(steady);
-        filter->SetMaskMode(excludes);
-        SetInputArray(filter, 1, "mask");
-        SetInputArray(filter, 3, "fixed");
-        filter->Update();
-        ASSERT_NE(Result(filter), nullptr);
-        for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
-        {
-          const bool kept = i % 5 == 0 || (excludes && i % 7 == 0);
-          for (int k = 0; kept && k < 3; ++k)
-          {
-            ASSERT_EQ(Result(filter)->GetComponent(i, k), f->GetComponent(i, k)) << i;
-          }
-        }
-      }
-    }
   }
 }
 
@@ -371,29 +207,6 @@ TEST(ColorModels, LinearLightLeavesRGBAsItIs)
   filter->LinearLightOff();
   filter->Update();
   EXPECT_TRUE(Identical(Result(filter), on));
-}
-
-TEST(ColorModels, BytesStayBytesWithAlphaAndTheStartIsTheInput)
-{
-  auto sphere = Sphere(3);
-  AddBytes(sphere, 4);
-  vtkDataArray* f = sphere->GetPointData()->GetArray("f");
-  for (const int model : Colored)
-  {
-    auto filter = MakeFilter(sphere);
-    filter->SetColorModel(model);
-    filter->SetNumberOfTimeSteps(0);
-    filter->Update();
-    EXPECT_TRUE(Identical(Result(filter), f));
-    filter->SetNumberOfTimeSteps(3);
-    filter->Update();
-    EXPECT_EQ(Result(filter)->GetDataType(), VTK_UNSIGNED_CHAR);
-    EXPECT_GT(LargestDifference(Result(filter), f), 0.0);
-    for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
-    {
-      ASSERT_EQ(Result(filter)->GetComponent(i, 3), f->GetComponent(i, 3));
-    }
-  }
 }
 
 TEST(ColorModels, ColoursOutsideTheRangeOfBytesAreClamped)

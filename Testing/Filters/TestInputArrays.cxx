@@ -254,36 +254,6 @@ TEST(InputArrays, MeanFillIsTheMeanOfTheConnectedComponent)
   EXPECT_NEAR(Result(filter)->GetComponent(18, 0), 8.0, 1e-14);
 }
 
-TEST(InputArrays, MissingValuesNeverEnterTheFidelityTerm)
-{
-  auto plane = Grid(10, 10);
-  AddRough(plane);
-  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
-  AddPointArray(
-    plane, "damaged", 1, [](vtkIdType i, int k) { return InHole(i) ? 1e3 : Rough(i, k); });
-  vtkSmartPointer<vtkDataArray> first;
-  for (const char* name : { "f", "damaged" })
-  {
-    for (int fill = 0; fill < 3; ++fill)
-    {
-      auto filter = MakeFilter(plane);
-      SetInputArray(filter, 0, name);
-      SetInputArray(filter, 1, "mask");
-      filter->SetFidelityWeight(0.5);
-      filter->SetInitialFill(fill);
-      filter->SetModeToSteadyState();
-      filter->SetSolverToDirect();
-      filter->SetResultArrayName("u");
-      filter->Update();
-      if (!first)
-      {
-        first = Result(filter, "u");
-      }
-      EXPECT_LT(LargestDifference(first, Result(filter, "u")), 1e-9);
-    }
-  }
-}
-
 TEST(InputArrays, NoiseDependsOnTheGlobalIds)
 {
   auto plane = Grid(10, 10);

@@ -53,52 +53,6 @@ TEST(IntrinsicTVData, MissingValuesAreNotReadAndAnEdgeIsContinued)
   }
 }
 
-TEST(IntrinsicTVData, FixedAndHeldValuesKeepTheirBits)
-{
-  auto sphere = Sphere(3);
-  vtkDataArray* f = AddRough(sphere, 2);
-  AddPointArray(
-    sphere, "fixed", 1, [&](vtkIdType i, int) { return std::abs(sphere->GetPoint(i)[2]) > 0.7; });
-  const Setting cases[] = { [](Filter*) {}, [](Filter* g) { g->SetTimeIntegratorToImplicit(); },
-    [](Filter* g) { g->SetModeToSteadyState(); },
-    [](Filter* g) { g->SetDiscretizationToCrouzeixRaviart(); },
-    [](Filter* g)
-    {
-      g->SetDiscretizationToCrouzeixRaviart();
-      g->SetModeToSteadyState();
-      g->SetFidelityWeight(0.0);
-    } };
-  for (std::size_t c = 0; c < std::size(cases); ++c)
-  {
-    for (const bool hold : { false, true })
-    {
-      auto filter = MakeFilter(sphere);
-      cases[c](filter);
-      filter->SetHoldKnownValues(hold);
-      // The points whose mask is 0 are known, and held.
-      SetInputArray(filter, hold ? 1 : 3, "fixed");
-      filter->Update();
-      ASSERT_NE(Result(filter), nullptr) << c;
-      double change = 0.0;
-      for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
-      {
-        const bool kept = (std::abs(sphere->GetPoint(i)[2]) > 0.7) != hold;
-        for (int k = 0; k < 2; ++k)
-        {
-          const double difference =
-            std::abs(Result(filter)->GetComponent(i, k) - f->GetComponent(i, k));
-          if (kept)
-          {
-            ASSERT_EQ(difference, 0.0) << c << ' ' << hold;
-          }
-          change = std::max(change, difference);
-        }
-      }
-      EXPECT_GT(change, 0.1) << c << ' ' << hold;
-    }
-  }
-}
-
 TEST(IntrinsicTVData, L1RemovesImpulsesAndKeepsContrastEvenWithAMask)
 {
   // A sphere with two values, with impulses on a twelfth of the points and with missing points.
@@ -175,37 +129,6 @@ TEST(IntrinsicTVData, AcrossEdgeFunctionActsAcrossTheDirection)
   EXPECT_NEAR(decay(false, mixed), decay(false, constants), 1e-3);
   EXPECT_NEAR(decay(true, mixed), decay(true, same), 1e-3);
   EXPECT_GT(decay(true, mixed), decay(true, constants) + 0.1);
-}
-
-TEST(IntrinsicTVData, DiffusivitiesAlongAndAcrossActInEveryScheme)
-{
-  // Only the across diffusivity affects data that vary along e2.
-  auto grid = Grid(25, 24);
-  AddPointArray(grid, "e1", 3, [](vtkIdType, int k) { return k == 0; });
-  AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return i / 25 > 11 ? 1.0 : 0.0; });
-  for (const bool implicit : { false, true })
-  {
-    const auto plateau = [&](double along, double across)
-    {
-      auto filter = MakeFilter(grid);
-      SetInputArray(filter, 0, "f");
-      SetInputArray(filter, 2, "e1");
-      filter->SetTimeIntegrator(
-        implicit ? Filter::TIME_INTEGRATOR_IMPLICIT : Filter::TIME_INTEGRATOR_FIRST_ORDER);
-      filter->SetAlongDiffusivity(along);
-      filter->SetAcrossDiffusivity(across);
-      filter->SetFidelityWeight(0.0);
-      filter->SetTimeStep(0.1);
-      filter->Update();
-      return Result(filter)->GetComponent(12 + 25 * 3, 0);
-    };
-    // Half the grid, 11.5 high, rises at 1/11.5 per unit of time; h is 1.14.
-    const double once = plateau(1.0, 1.0);
-    EXPECT_NEAR(once, 1.14 / 11.5, 0.01) << implicit;
-    EXPECT_NEAR(plateau(0.1, 1.0), once, 0.003) << implicit;
-    EXPECT_NEAR(plateau(1.0, 2.0), 2.0 * once, 0.02) << implicit;
-    EXPECT_NEAR(plateau(1.0, 0.0), 0.0, 0.003) << implicit;
-  }
 }
 
 // --- Fidelity chosen automatically ---

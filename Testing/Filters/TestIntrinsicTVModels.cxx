@@ -12,48 +12,6 @@ using namespace IntrinsicTVTest;
 
 // --- Models ---
 
-TEST(IntrinsicTVModels, ConstantEdgeFunctionIsTheHeatEquation)
-{
-  auto sphere = Sphere(3);
-  AddRough(sphere, 2);
-  vtkNew<vtkFVMHeatFilter> heat;
-  heat->SetInputData(sphere);
-  heat->SetTimeIntegratorToFirstOrder();
-  auto filter = MakeFilter(sphere);
-  filter->SetEdgeFunctionToConstant();
-  filter->SetSolverToDirect();
-  heat->SetFidelityWeight(filter->GetFidelityWeight());
-  heat->Update();
-  filter->Update();
-  EXPECT_LT(LargestDifference(Result(filter), FilterTest::Result(heat)), 1e-9);
-  filter->SetTimeIntegratorToImplicit();
-  filter->SetStopTolerance(1e-9);
-  filter->Update();
-  EXPECT_LT(LargestDifference(Result(filter), FilterTest::Result(heat)), 1e-4);
-}
-
-TEST(IntrinsicTVModels, ConstantStaysConstant)
-{
-  auto sphere = Sphere(2);
-  AddPointArray(sphere, "f", 2, [](vtkIdType, int k) { return k == 0 ? 1.0 / 3.0 : -7.7; });
-  sphere->GetPointData()->SetActiveScalars("f");
-  const auto given = Copy(sphere->GetPointData()->GetArray("f"));
-  for (int edge = 0; edge < 6; ++edge)
-  {
-    auto filter = MakeFilter(sphere);
-    filter->SetEdgeFunction(edge);
-    filter->Update();
-    EXPECT_EQ(LargestDifference(Result(filter), given), 0.0) << edge;
-    if (edge == Filter::EDGE_FUNCTION_TOTAL_VARIATION || edge == Filter::EDGE_FUNCTION_CHARBONNIER)
-    {
-      filter->SetTimeIntegratorToImplicit();
-      filter->SetDiscretizationToCrouzeixRaviart();
-      filter->Update();
-      EXPECT_LT(LargestDifference(Result(filter), given), 1e-12) << edge;
-    }
-  }
-}
-
 TEST(IntrinsicTVModels, TotalIsConserved)
 {
   auto sphere = Sphere(3);
@@ -94,29 +52,6 @@ TEST(IntrinsicTVModels, TotalIsConserved)
         << c;
     }
     EXPECT_GT(LargestDifference(Result(filter), f), 0.01) << c;
-  }
-}
-
-TEST(IntrinsicTVModels, AConstantStateStopsAtOnce)
-{
-  // The state is constant long before the last step. Without diffusion across e1 nothing flows at
-  // all.
-  auto grid = Grid(12, 12);
-  AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return 1e3 + (i / 12 > 5 ? 1.0 : 0.0); });
-  AddPointArray(grid, "e1", 3, [](vtkIdType, int k) { return k == 0; });
-  for (const double across : { 1.0, 0.0 })
-  {
-    auto filter = MakeFilter(grid);
-    SetInputArray(filter, 0, "f");
-    SetInputArray(filter, 2, "e1");
-    filter->SetTimeIntegratorToImplicit();
-    filter->SetFidelityWeight(0.0);
-    filter->SetTimeStep(5.0);
-    filter->SetAcrossDiffusivity(across);
-    Messages messages(filter);
-    filter->Update();
-    EXPECT_TRUE(messages.Warnings.empty()) << across;
-    EXPECT_LE(HistoryAt(filter, 10, "Iterations"), 20.0) << across;
   }
 }
 
@@ -264,70 +199,7 @@ TEST(IntrinsicTVModels, TheColumnErrorBoundIsNotBelowTheError)
   EXPECT_EQ(History(lagged)->GetColumnByName("ErrorBound"), nullptr);
 }
 
-TEST(IntrinsicTVModels, SteadyStateWithoutConstraintsIsTheMean)
-{
-  auto sphere = Sphere(2);
-  AddRough(sphere);
-  for (int discretization = 0; discretization < 2; ++discretization)
-  {
-    auto filter = MakeFilter(sphere);
-    filter->SetModeToSteadyState();
-    filter->SetFidelityWeight(0.0);
-    filter->SetDiscretization(discretization);
-    filter->Update();
-    const auto areas = ControlAreas(sphere);
-    double area = 0.0;
-    for (const double a : areas)
-    {
-      area += a;
-    }
-    const double mean = Total(areas, sphere->GetPointData()->GetArray("f")) / area;
-    for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
-    {
-      // The transfer to the edges and back conserves the total but leaves some of the rough data.
-      ASSERT_NEAR(Result(filter)->GetComponent(i, 0), mean, discretization == 0 ? 1e-12 : 0.02);
-    }
-  }
-}
-
 // --- Channels ---
-
-TEST(IntrinsicTVModels, PerChannelTreatsEachChannelSeparately)
-{
-  auto sphere = Sphere(3);
-  vtkDataArray* f = AddRough(sphere, 3);
-  const Setting cases[] = { [](Filter*) {}, [](Filter* g) { g->SetTimeIntegratorToImplicit(); },
-    [](Filter* g) { g->SetFidelityNormToL1(); } };
-  for (const Setting& set : cases)
-  {
-    auto together = MakeFilter(sphere);
-    together->SetChannelCouplingToPerChannel();
-    together->SetUnitsToAbsolute();
-    together->SetTimeStep(0.02);
-    together->SetFidelityWeight(20.0);
-    together->SetStopTolerance(1e-8);
-    set(together);
-    together->Update();
-    for (int k = 0; k < 3; ++k)
-    {
-      vtkNew<vtkPolyData> channel;
-      channel->ShallowCopy(sphere);
-      AddPointArray(channel, "f", 1, [&](vtkIdType i, int) { return f->GetComponent(i, k); });
-      auto alone = MakeFilter(channel);
-      SetInputArray(alone, 0, "f");
-      alone->SetUnitsToAbsolute();
-      alone->SetTimeStep(0.02);
-      alone->SetFidelityWeight(20.0);
-      alone->SetStopTolerance(1e-8);
-      set(alone);
-      alone->Update();
-      for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
-      {
-        ASSERT_NEAR(Result(together)->GetComponent(i, k), Result(alone)->GetComponent(i, 0), 1e-3);
-      }
-    }
-  }
-}
 
 TEST(IntrinsicTVModels, JointCouplingIsInvariantUnderRotationsOfColorSpace)
 {

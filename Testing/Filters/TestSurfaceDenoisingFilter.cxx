@@ -234,26 +234,6 @@ TEST(SurfaceDenoisingFilter, PointsThatMoveFarAreAWarningAndSoIsASurfaceWithoutN
   EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_AUTOMATIC);
 }
 
-TEST(SurfaceDenoisingFilter, DisplacementsLeadFromTheInputToTheOutput)
-{
-  const auto noisy = NoisySphere(0.01, 3);
-  vtkNew<vtkSurfaceDenoisingFilter> filter;
-  filter->SetInputData(noisy);
-  filter->Update();
-  vtkPolyData* const output = filter->GetOutput();
-  vtkDataArray* const displacement = output->GetPointData()->GetArray("Displacement");
-  ASSERT_NE(displacement, nullptr);
-  for (vtkIdType i = 0; i < noisy->GetNumberOfPoints(); ++i)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      EXPECT_NEAR(
-        noisy->GetPoint(i)[k] + displacement->GetComponent(i, k), output->GetPoint(i)[k], 1e-14);
-    }
-  }
-  EXPECT_EQ(output->GetPolys()->GetNumberOfCells(), noisy->GetPolys()->GetNumberOfCells());
-}
-
 TEST(SurfaceDenoisingFilter, FixedPointsStayAndPointsKeepTheirPrecision)
 {
   const auto noisy = NoisySphere(0.01, 4, true);
@@ -387,14 +367,4 @@ TEST(SurfaceDenoisingFilter, ErrorsNamePropertyValueAndRange)
       { f->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent"); })
       .find("FixedArray"),
     std::string::npos);
-}
-
-TEST(SurfaceDenoisingFilter, SurfaceTypeHasWords)
-{
-  vtkNew<vtkSurfaceDenoisingFilter> filter;
-  EXPECT_STREQ(filter->GetSurfaceTypeAsString(), "Automatic");
-  filter->SetSurfaceTypeToCAD();
-  EXPECT_STREQ(filter->GetSurfaceTypeAsString(), "CAD");
-  filter->SetSurfaceTypeToOrganic();
-  EXPECT_STREQ(filter->GetSurfaceTypeAsString(), "Organic");
 }

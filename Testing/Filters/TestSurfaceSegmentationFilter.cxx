@@ -190,41 +190,6 @@ TEST(SegmentationFilter, AutomaticFidelityReplacesFidelityWeight)
   EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 0);
 }
 
-TEST(SegmentationFilter, FidelityOfZeroIsAMaskAndOfTwoTwiceTheWeight)
-{
-  auto sphere = SphereWithCap(4);
-  BandedImage::Noise noise;
-  vtkDataArray* const f = sphere->GetPointData()->GetArray("f");
-  for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
-  {
-    f->SetComponent(i, 0, f->GetComponent(i, 0) + noise(i, 0));
-  }
-  const auto inHole = [&](vtkIdType i) { return std::abs(sphere->GetPoint(i)[0] - 0.4) < 0.2; };
-  AddPointArray(sphere, "hole", 1, [&](vtkIdType i, int) { return inHole(i) ? 1.0 : 0.0; });
-  AddPointArray(sphere, "w", 1, [&](vtkIdType i, int) { return inHole(i) ? 0.0 : 1.0; });
-  AddPointArray(sphere, "2w", 1, [&](vtkIdType i, int) { return inHole(i) ? 0.0 : 2.0; });
-  auto masked = MakeFilter(sphere);
-  SetInputArray(masked, 1, "hole");
-  masked->Update();
-  const auto expected = Copy(Result(masked, "RegionProbability"));
-  auto weighted = MakeFilter(sphere);
-  SetInputArray(weighted, 5, "w");
-  weighted->Update();
-  EXPECT_TRUE(Identical(Result(weighted, "RegionProbability"), expected));
-  masked->AutomaticFidelityOff();
-  masked->SetUnitsToAbsolute(); // R is that of the points without a mask
-  masked->SetFidelityWeight(4.0);
-  masked->Update();
-  EXPECT_FALSE(Identical(Result(masked, "RegionProbability"), expected));
-  SetInputArray(weighted, 5, "2w");
-  weighted->AutomaticFidelityOff();
-  weighted->SetUnitsToAbsolute();
-  weighted->SetFidelityWeight(2.0);
-  weighted->Update();
-  EXPECT_TRUE(
-    Identical(Result(weighted, "RegionProbability"), Result(masked, "RegionProbability")));
-}
-
 TEST(SegmentationFilter, GivenMeansAreUsedAsTheyAre)
 {
   auto filter = MakeFilter(SphereWithCap(4));

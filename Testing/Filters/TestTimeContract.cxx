@@ -208,62 +208,6 @@ TEST(TimeContract, EveryPublishedTimeIsFoundAgain)
   }
 }
 
-TEST(TimeContract, TheLastStateEqualsTheRunWithoutTimeSteps)
-{
-  auto sphere = Sphere(3);
-  AddRough(sphere, 3);
-  for (const int solver : { vtkFVMHeatFilter::SOLVER_AUTOMATIC, vtkFVMHeatFilter::SOLVER_DIRECT,
-         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
-  {
-    auto with = MakeFilter(sphere);
-    auto without = MakeFilter(sphere, false);
-    with->SetOutputInterval(3);
-    for (vtkFVMHeatFilter* filter : { with.Get(), without.Get() })
-    {
-      filter->SetSolver(solver);
-      filter->Update();
-    }
-    EXPECT_TRUE(Identical(Result(with), Result(without)));
-  }
-}
-
-TEST(TimeContract, OrderOfTheRequestsDoesNotMatter)
-{
-  auto sphere = Sphere(3);
-  AddRough(sphere);
-  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
-         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
-  {
-    auto through = MakeFilter(sphere);
-    auto jumping = MakeFilter(sphere);
-    for (vtkFVMHeatFilter* filter : { through.Get(), jumping.Get() })
-    {
-      filter->SetNumberOfTimeSteps(50);
-      filter->SetSolver(solver);
-    }
-    jumping->SetCheckpointMemoryLimit(0); // so that going back recomputes steps
-    std::vector<vtkSmartPointer<vtkDataArray>> states;
-    for (int step = 0; step <= 40; ++step)
-    {
-      UpdateAt(through, step);
-      states.push_back(Copy(Result(through)));
-    }
-    for (const int step : { 40, 10, 40, 0, 39 })
-    {
-      UpdateAt(jumping, step);
-      EXPECT_TRUE(Identical(Result(jumping), states[step])) << step;
-      for (int row = 0; row <= step; ++row)
-      {
-        for (const char* column : { "Step", "Time", "Total_0", "Energy", "Iterations", "Residual" })
-        {
-          UpdateAt(through, step);
-          ASSERT_EQ(HistoryAt(jumping, row, column), HistoryAt(through, row, column)) << column;
-        }
-      }
-    }
-  }
-}
-
 TEST(TimeContract, AnySeekAmongAThousandStepsRecomputesFew)
 {
   auto plane = Grid(40, 40);

@@ -101,28 +101,6 @@ bool Contains(const std::string& text, const std::string& part)
 
 } // namespace
 
-TEST(TuringTextureFilter, HasTheDocumentedDefaults)
-{
-  vtkNew<vtkTuringTextureFilter> filter;
-  EXPECT_EQ(filter->GetTimeStep(), 1.0 / 16.0);
-  EXPECT_EQ(filter->GetNumberOfTimeSteps(), 640);
-  EXPECT_STREQ(filter->GetKineticsAsString(), "Turing");
-  EXPECT_STREQ(filter->GetTimeIntegratorAsString(), "SecondOrder");
-  EXPECT_EQ(filter->GetDiffusionRate1(), 21.0);
-  EXPECT_EQ(filter->GetDiffusionRate2(), 2.6);
-  EXPECT_EQ(filter->GetDiffusionRateAcross1(), -1.0);
-  EXPECT_EQ(filter->GetDiffusionRateAcross2(), -1.0);
-  EXPECT_EQ(filter->GetReactionRate(), 1.0);
-  EXPECT_EQ(filter->GetGrowthRate(), 16.0);
-  EXPECT_EQ(filter->GetDecayRate(), 12.0);
-  EXPECT_EQ(filter->GetInitialNoise(), 0.1);
-  EXPECT_TRUE(filter->GetClampToNonNegative());
-  EXPECT_EQ(filter->GetFeatureSize(), 0.0);
-  EXPECT_EQ(filter->GetStopTolerance(), 0.02);
-  EXPECT_EQ(filter->GetCoarseStartSize(), 50000);
-  EXPECT_FALSE(filter->GetColorOutput());
-}
-
 TEST(TuringTextureFilter, GrowsSpotsFromNoise)
 {
   auto sphere = Sphere(5);
@@ -159,28 +137,6 @@ TEST(TuringTextureFilter, EveryKineticsMakesAPatternWithItsDefaults)
     const double size = std::max(std::abs(High(u2)), std::abs(Low(u2)));
     EXPECT_GT(High(u2) - Low(u2), 0.5 * size) << filter->GetKineticsAsString();
   }
-}
-
-TEST(TuringTextureFilter, FeatureSizeGivesTheSameSpotsOnCoarseAndFineMeshes)
-{
-  int pieces[2];
-  for (const int fine : { 0, 1 })
-  {
-    auto sphere = Sphere(4 + fine);
-    const auto filter = MakeFilter(sphere, 400);
-    filter->SetTimeStep(0.125);
-    filter->SetDiffusionRate1(13.0); // 5 times DiffusionRate2: round spots
-    filter->SetFeatureSize(0.75);
-    EXPECT_EQ(WarningOf(filter), "");
-    EXPECT_NEAR(filter->GetWavelength(), 0.75, 1e-9);
-    pieces[fine] = CountPieces(sphere, Result(filter, "u1"), 4.2);
-  }
-  std::printf("%d and %d spots\n", pieces[0], pieces[1]);
-  // A hexagonal array of that distance between rows would have 4 pi sqrt(3)/2 / 0.75^2 = 19 spots,
-  // one of that distance between spots 26.
-  EXPECT_GE(std::min(pieces[0], pieces[1]), 17);
-  EXPECT_LE(std::max(pieces[0], pieces[1]), 28);
-  EXPECT_LE(std::abs(pieces[0] - pieces[1]), 5);
 }
 
 TEST(TuringTextureFilter, WarnsOnceWhyNoPatternGrows)
@@ -261,52 +217,6 @@ TEST(TuringTextureFilter, RejectsInvalidSettings)
   Messages messages(filter);
   filter->Update();
   EXPECT_TRUE(messages.Errors.empty());
-}
-
-TEST(TuringTextureFilter, TimesMayBeRequestedInAnyOrder)
-{
-  const auto filter = MakeFilter(Sphere(3), 40);
-  filter->Update();
-  const auto last = Copy(Result(filter, "u1"));
-  filter->GenerateTimeStepsOn();
-  filter->SetOutputInterval(8);
-  const std::vector<double> times = PublishedTimes(filter);
-  ASSERT_EQ(times.size(), 6u);
-  EXPECT_EQ(times.back(), 2.5);
-  UpdateAt(filter, times[5]);
-  EXPECT_TRUE(Identical(Result(filter, "u1"), last));
-  EXPECT_EQ(History(filter)->GetNumberOfRows(), 41);
-  UpdateAt(filter, times[2]);
-  const auto early = Copy(Result(filter, "u1"));
-  EXPECT_FALSE(Identical(early, last));
-  UpdateAt(filter, times[5]);
-  EXPECT_TRUE(Identical(Result(filter, "u1"), last));
-  UpdateAt(filter, times[2]);
-  EXPECT_TRUE(Identical(Result(filter, "u1"), early));
-  UpdateAt(filter, 0.0);
-  EXPECT_NEAR(High(Result(filter, "u1")), 4.4, 0.01); // noise of one tenth around 4
-  EXPECT_NEAR(Low(Result(filter, "u1")), 3.6, 0.01);
-}
-
-TEST(TuringTextureFilter, ARunEndsWhenThePatternIsStationary)
-{
-  const auto filter = MakeFilter(Sphere(3), 1500);
-  filter->SetStopTolerance(0.05);
-  filter->Update();
-  const vtkIdType rows = History(filter)->GetNumberOfRows();
-  std::printf("stationary after %d steps\n", static_cast<int>(rows - 1));
-  EXPECT_GT(rows, 50);
-  EXPECT_LT(rows, 1200);
-  const auto standing = Copy(Result(filter, "u1"));
-
-  filter->GenerateTimeStepsOn();
-  UpdateAt(filter, 1500.0 / 16.0);
-  EXPECT_TRUE(Identical(Result(filter, "u1"), standing));
-  EXPECT_EQ(History(filter)->GetNumberOfRows(), rows);
-  UpdateAt(filter, 1.0);
-  EXPECT_FALSE(Identical(Result(filter, "u1"), standing));
-  UpdateAt(filter, 80.0);
-  EXPECT_TRUE(Identical(Result(filter, "u1"), standing));
 }
 
 TEST(TuringTextureFilter, AStationaryBlockWaitsForTheOthers)
@@ -522,51 +432,6 @@ TEST(TuringTextureFilter, ColorsInterpolateBetweenTwoColorsByTheTexture)
   EXPECT_EQ(darkest, 0.0);
 }
 
-TEST(TuringTextureFilter, DifferentSeedsGiveDifferentPatternsAndTheSameSeedTheSameBits)
-{
-  auto sphere = Sphere(3);
-  const auto filter = MakeFilter(sphere);
-  filter->Update();
-  const auto first = Copy(Result(filter, "u1"));
-  filter->SetRandomSeed(1);
-  filter->Update();
-  EXPECT_GT(LargestDifference(Result(filter, "u1"), first), 0.01);
-  filter->SetRandomSeed(0);
-  filter->Update();
-  EXPECT_TRUE(Identical(Result(filter, "u1"), first));
-}
-
-TEST(TuringTextureFilter, BitsDoNotDependOnThreads)
-{
-  auto sphere = Sphere(5);
-  vtkSmartPointer<vtkDataArray> serial;
-  for (const int threads : { 1, 2, 4 })
-  {
-    vtkSMPTools::Initialize(threads);
-    const auto filter = MakeFilter(sphere, 8);
-    filter->Update();
-    if (!serial)
-    {
-      serial = Copy(Result(filter, "u1"));
-    }
-    EXPECT_TRUE(Identical(Result(filter, "u1"), serial)) << threads;
-  }
-  vtkSMPTools::Initialize(0);
-}
-
-TEST(TuringTextureFilter, SolversAgree)
-{
-  auto sphere = Sphere(4);
-  const auto direct = MakeFilter(sphere, 40);
-  direct->SetSolverToDirect();
-  direct->Update();
-  const auto iterative = MakeFilter(sphere, 40);
-  iterative->SetSolverToConjugateGradient();
-  iterative->Update();
-  EXPECT_GT(iterative->GetNumberOfIterations(), 0);
-  EXPECT_LT(LargestDifference(Result(iterative, "u1"), Result(direct, "u1")), 1e-6);
-}
-
 TEST(TuringTextureFilter, IntrinsicDelaunayChangesNoPointAndLittleElse)
 {
   auto sphere = Sphere(4);
@@ -576,49 +441,6 @@ TEST(TuringTextureFilter, IntrinsicDelaunayChangesNoPointAndLittleElse)
   filter->IntrinsicDelaunayOn();
   filter->Update();
   EXPECT_LT(LargestDifference(Result(filter, "u1"), expected), 0.05);
-}
-
-TEST(TuringTextureFilter, BlocksShareTheirUnits)
-{
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, Sphere(3));
-  blocks->SetBlock(1, Grid(12, 12, 0.1));
-  vtkNew<vtkTuringTextureFilter> filter;
-  filter->SetInputDataObject(blocks);
-  filter->SetNumberOfTimeSteps(16);
-  filter->Update();
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-  for (unsigned int b = 0; b < 2; ++b)
-  {
-    auto* block = vtkPolyData::SafeDownCast(output->GetBlock(b));
-    EXPECT_TRUE(AllFinite(block->GetPointData()->GetArray("u1")));
-  }
-  EXPECT_EQ(History(filter)->GetNumberOfRows(), 17);
-}
-
-TEST(TuringTextureFilter, ObeysAnAbort)
-{
-  const auto filter = MakeFilter(Sphere(4), 200);
-  bool stopped = false;
-  const unsigned long tag = Listen(filter,
-    [&](double amount)
-    {
-      if (amount > 0.5)
-      {
-        filter->AbortExecuteOn();
-        stopped = true;
-      }
-    });
-  filter->Update();
-  EXPECT_TRUE(stopped);
-  EXPECT_EQ(Result(filter, "u1"), nullptr);
-  filter->RemoveObserver(tag);
-  filter->AbortExecuteOff();
-  filter->Modified();
-  filter->Update();
-  const auto fresh = MakeFilter(Sphere(4), 200);
-  fresh->Update();
-  EXPECT_TRUE(Identical(Result(filter, "u1"), Result(fresh, "u1")));
 }
 
 TEST(TuringTextureFilter, PaperSchemeIsTheFirstOrderOne)
@@ -632,24 +454,6 @@ TEST(TuringTextureFilter, PaperSchemeIsTheFirstOrderOne)
   EXPECT_STREQ(filter->GetTimeIntegratorAsString(), "FirstOrder");
   EXPECT_FALSE(filter->GetClampToNonNegative()); // unchanged
   EXPECT_EQ(filter->GetDiffusionRate1(), 5.0);
-}
-
-TEST(TuringTextureFilter, FirstAndSecondOrderAgreeForSmallSteps)
-{
-  auto sphere = Sphere(3);
-  const auto run = [&](bool second, int steps)
-  {
-    const auto filter = MakeFilter(sphere, steps);
-    filter->SetTimeStep(2.0 / steps);
-    filter->SetTimeIntegrator(second ? 1 : 0);
-    filter->Update();
-    return Copy(Result(filter, "u1"));
-  };
-  const auto exact = run(true, 512);
-  const double coarse = LargestDifference(run(false, 64), exact);
-  const double fine = LargestDifference(run(false, 256), exact);
-  EXPECT_LT(fine, 0.35 * coarse);
-  EXPECT_LT(LargestDifference(run(true, 64), exact), 0.1 * coarse);
 }
 
 TEST(TuringTextureFilter, ReportsTheCoarserMeshWithoutAWarning)
@@ -669,23 +473,4 @@ TEST(TuringTextureFilter, ReportsTheCoarserMeshWithoutAWarning)
   filter->Update();
   EXPECT_EQ(filter->GetCoarseStartVertices(), 0);
   EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
-}
-
-TEST(TuringTextureFilter, PrintsEveryProperty)
-{
-  vtkNew<vtkTuringTextureFilter> filter;
-  std::ostringstream text;
-  filter->Print(text);
-  for (const char* property :
-    { "Kinetics: Turing", "ReactionRate: 1", "DiffusionRate1: 21", "DiffusionRate2: 2.6",
-      "DiffusionRateAcross1: -1", "DiffusionRateAcross2: -1", "FeatureSize: 0", "InitialNoise: 0.1",
-      "ClampToNonNegative: On", "AutomaticTimeStep: Off", "StopTolerance: 0.02",
-      "CoarseStartSize: 50000", "GrowthRate: 16", "DecayRate: 12", "ActivatorSupply: 0.01",
-      "SubstrateSupply: 1", "FeedRate: 0.05", "KillRate: 0.06", "ReactantA: 2", "ReactantB: 4",
-      "InhibitorDecayRate: 1.05", "Saturation: 0", "RecoveryRate: 1.2", "RecoveryDamping: 0.9",
-      "Stimulus: 0", "TextureChemical: U1", "ColorOutput: Off", "LowColor: ", "HighColor: ",
-      "Wavelength: ", "WavelengthGrowthRate: ", "DiffusionRateFactor: ", "CoarseStartVertices: 0" })
-  {
-    EXPECT_TRUE(Contains(text.str(), property)) << property;
-  }
 }

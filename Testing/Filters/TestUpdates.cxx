@@ -113,51 +113,6 @@ TEST(Updates, ReportProgressIfNearlyEverythingIsReused)
   }
 }
 
-TEST(Updates, ObeyAnAbortAndWorkAgainAfterwards)
-{
-  auto sphere = Sphere(4);
-  vtkDataArray* f = AddRough(sphere);
-  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
-         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
-  {
-    auto reference = MakeFilter(sphere);
-    reference->SetSolver(solver);
-    reference->Update();
-    for (const double when : { 0.01, 0.1, 0.2, 0.3, 0.6, 0.9 })
-    {
-      auto filter = MakeFilter(sphere);
-      filter->SetSolver(solver);
-      int after = 0;
-      bool aborted = false;
-      const unsigned long tag = Listen(filter,
-        [&](double amount)
-        {
-          after += aborted;
-          if (amount >= when)
-          {
-            aborted = true;
-            filter->AbortExecuteOn();
-          }
-        });
-      Messages messages(filter);
-      filter->Update();
-      ASSERT_TRUE(aborted);
-      EXPECT_LE(after, 1) << "reports after the abort at " << when;
-      vtkPolyData* output = filter->GetOutput();
-      EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), 1) << when;
-      EXPECT_EQ(output->GetPointData()->GetScalars(), f) << when;
-      EXPECT_EQ(output->GetPolys(), sphere->GetPolys()) << when;
-      EXPECT_TRUE(messages.Errors.empty());
-
-      filter->RemoveObserver(tag);
-      filter->AbortExecuteOff();
-      filter->Modified();
-      filter->Update();
-      EXPECT_TRUE(Identical(Result(filter), Result(reference))) << when;
-    }
-  }
-}
-
 /// Taking the abort back is enough; scripts need not mark the filter as modified.
 TEST(Updates, AnAbortedUpdateIsRepeatedByTheNextOne)
 {
@@ -235,75 +190,6 @@ TEST(Updates, ChangesOfTheOutputAloneRecomputeNothing)
   EXPECT_NE(Result(filter, "unrelated"), nullptr);
 }
 
-TEST(Updates, ChangesOfInputsOfTheStepsRecomputeThem)
-{
-  auto sphere = Sphere(3);
-  vtkDataArray* f = AddRough(sphere);
-  AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 4 == 0; });
-  AddPointArray(sphere, "e1", 3, Rough);
-  auto filter = MakeFilter(sphere);
-  SetInputArray(filter, 1, "mask");
-  filter->Update();
-  vtkIdType computed = filter->GetNumberOfStepsComputed();
-  const auto expectAgain = [&](const char* what)
-  {
-    filter->Update();
-    EXPECT_EQ(filter->GetNumberOfStepsComputed(), computed + 10) << what;
-    computed = filter->GetNumberOfStepsComputed();
-    // The result is not stale: a new filter with the same settings gives the same.
-    auto fresh = MakeFilter(sphere);
-    SetInputArray(fresh, 1, "mask");
-    SetInputArray(fresh, 2, "e1");
-    fresh->SetTimeStep(filter->GetTimeStep());
-    fresh->SetUnits(filter->GetUnits());
-    fresh->SetFidelityWeight(filter->GetFidelityWeight());
-    fresh->SetInitialFill(filter->GetInitialFill());
-    fresh->SetRandomSeed(filter->GetRandomSeed());
-    fresh->SetAlongDiffusivity(filter->GetAlongDiffusivity());
-    fresh->SetTimeIntegrator(filter->GetTimeIntegrator());
-    fresh->SetSolver(filter->GetSolver());
-    fresh->SetTolerance(filter->GetTolerance());
-    fresh->SetMaskMode(filter->GetMaskMode());
-    fresh->Update();
-    EXPECT_TRUE(Identical(Result(filter), Result(fresh))) << what;
-  };
-  filter->SetTimeStep(2.0);
-  expectAgain("TimeStep");
-  filter->SetFidelityWeight(0.5);
-  expectAgain("FidelityWeight");
-  filter->SetInitialFillToNoise();
-  expectAgain("InitialFill");
-  filter->SetRandomSeed(3);
-  expectAgain("RandomSeed");
-  SetInputArray(filter, 2, "e1");
-  filter->SetAlongDiffusivity(3.0);
-  expectAgain("AlongDiffusivity");
-  filter->SetTimeIntegratorToFirstOrder();
-  expectAgain("TimeIntegrator");
-  filter->SetSolverToDirect();
-  expectAgain("Solver");
-  filter->SetSolverToConjugateGradient();
-  expectAgain("Solver");
-  filter->SetTolerance(1e-4);
-  expectAgain("Tolerance");
-  filter->SetUnitsToAbsolute();
-  expectAgain("Units");
-  filter->SetMaskModeToExclude();
-  expectAgain("MaskMode");
-  f->SetComponent(7, 0, 5.0);
-  f->Modified();
-  sphere->Modified();
-  expectAgain("data");
-  sphere->GetPoints()->SetPoint(7, 0.0, 0.0, 1.3);
-  sphere->GetPoints()->Modified();
-  sphere->Modified();
-  expectAgain("points");
-  sphere->GetPolys()->ReplaceCellAtId(3, { vtkIdType(0), vtkIdType(1), vtkIdType(2) });
-  sphere->GetPolys()->Modified();
-  sphere->Modified();
-  expectAgain("triangles");
-}
-
 TEST(Updates, MoreTimeStepsComputeOnlyTheNewOnes)
 {
   auto sphere = Sphere(3);
@@ -322,49 +208,6 @@ TEST(Updates, MoreTimeStepsComputeOnlyTheNewOnes)
     EXPECT_TRUE(Identical(Result(filter), Result(fresh)));
     EXPECT_EQ(History(filter)->GetNumberOfRows(), 13);
     EXPECT_EQ(HistoryAt(filter, 12, "Total_0"), HistoryAt(fresh, 12, "Total_0"));
-  }
-}
-
-/// numpy edits an array in place, and the user marks the polydata only.
-TEST(Updates, ArraysThatAreEditedInPlaceAreReadAgain)
-{
-  const auto makeSphere = []
-  {
-    auto sphere = Sphere(3);
-    AddRough(sphere);
-    AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 9 == 0; });
-    AddPointArray(sphere, "fixed", 1, [](vtkIdType i, int) { return i % 11 == 5; });
-    AddPointArray(sphere, "e1", 3, [](vtkIdType, int k) { return k == 0; });
-    return sphere;
-  };
-  const auto makeFilter = [](vtkPolyData* sphere)
-  {
-    auto filter = MakeFilter(sphere);
-    SetInputArray(filter, 1, "mask");
-    SetInputArray(filter, 2, "e1");
-    SetInputArray(filter, 3, "fixed");
-    filter->SetAlongDiffusivity(2.0);
-    return filter;
-  };
-  const auto sphere = makeSphere();
-  const auto filter = makeFilter(sphere);
-  filter->Update();
-  vtkPointData* data = sphere->GetPointData();
-  for (vtkDataArray* array : { data->GetScalars(), data->GetArray("mask"), data->GetArray("fixed"),
-         data->GetArray("e1"), sphere->GetPoints()->GetData() })
-  {
-    ASSERT_NE(array, nullptr);
-    const auto before = vtkSmartPointer<vtkDataArray>::Take(
-      vtkDataArray::SafeDownCast(Result(filter)->NewInstance()));
-    before->DeepCopy(Result(filter));
-    const int last = array->GetNumberOfComponents() - 1;
-    array->SetComponent(40, last, array->GetComponent(40, last) != 0.0 ? 0.0 : 1.0);
-    sphere->vtkObject::Modified();
-    filter->Update();
-    const auto fresh = makeFilter(sphere);
-    fresh->Update();
-    EXPECT_TRUE(Identical(Result(filter), Result(fresh))) << array->GetName();
-    EXPECT_FALSE(Identical(Result(filter), before)) << array->GetName();
   }
 }
 
@@ -389,60 +232,6 @@ TEST(Updates, DataThatDependOnTheMeshAloneAreReused)
   sphere->Modified();
   filter->Update();
   EXPECT_LT(first, kept); // building the surface reports first
-}
-
-TEST(Updates, ResultsDoNotDependOnTheNumberOfThreads)
-{
-  const std::string before = vtkSMPTools::GetBackend();
-  auto sphere = Sphere(6); // 16386 points: several blocks of work
-  AddRough(sphere, 3);
-  AddPointArray(sphere, "e1", 3, Rough);
-  AddPointArray(sphere, "mask", 1, [](vtkIdType i, int) { return i % 11 == 0; });
-  for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
-         vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
-  {
-    vtkSmartPointer<vtkDataArray> first;
-    std::vector<double> history;
-    const auto run = [&](const char* backend, int threads)
-    {
-      if (!vtkSMPTools::SetBackend(backend))
-      {
-        return;
-      }
-      vtkSMPTools::Initialize(threads);
-      auto filter = MakeFilter(sphere);
-      filter->SetNumberOfThreads(threads == 1 ? 1 : 0);
-      SetInputArray(filter, 1, "mask");
-      SetInputArray(filter, 2, "e1");
-      filter->SetInitialFillToNoise();
-      filter->SetSolver(solver);
-      filter->SetAlongDiffusivity(4.0);
-      filter->SetNumberOfTimeSteps(2);
-      filter->Update();
-      if (!first)
-      {
-        first = Result(filter);
-      }
-      EXPECT_TRUE(Identical(first, Result(filter))) << backend << ' ' << threads;
-      std::vector<double> numbers;
-      for (int row = 0; row <= 2; ++row)
-      {
-        for (const char* column : { "Total_0", "Total_2", "Energy", "Iterations", "Residual" })
-        {
-          numbers.push_back(HistoryAt(filter, row, column));
-        }
-      }
-      history = history.empty() ? numbers : history;
-      EXPECT_EQ(history, numbers) << backend << ' ' << threads;
-    };
-    run("Sequential", 1);
-    for (const int threads : { 1, 2, 4 })
-    {
-      run("STDThread", threads);
-    }
-  }
-  vtkSMPTools::SetBackend(before.c_str());
-  vtkSMPTools::Initialize(0);
 }
 
 TEST(Updates, LaterStepsAllocateNothing)

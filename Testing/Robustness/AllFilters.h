@@ -17,6 +17,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -30,7 +31,18 @@ struct FilterKind
   const char* Name;
   std::function<vtkSmartPointer<vtkPolyDataAlgorithm>()> Make; ///< with few time steps
   const char* Result; ///< the array it adds
+  bool IsSlow = false; ///< takes minutes on surfaces that suit the others
+
+  /// The levels of a sphere for tests: those that suit the other kinds, or fewer.
+  int Levels(int ofOthers) const { return this->IsSlow ? std::min(ofOthers, 2) : ofOthers; }
 };
+
+/// The kind with a flag that it is slow.
+inline FilterKind Slow(FilterKind kind)
+{
+  kind.IsSlow = true;
+  return kind;
+}
 
 template <typename Filter>
 FilterKind MakeKind(
@@ -75,6 +87,7 @@ inline std::vector<FilterKind> AllFilters()
     MakeKind<Heat>("Heat", "fDiffused", 3),
     MakeKind<Heat>(
       "HeatConjugateGradient", "fDiffused", 3, [](Heat* f) { f->SetSolverToConjugateGradient(); }),
+    MakeKind<Heat>("HeatDirect", "fDiffused", 3, [](Heat* f) { f->SetSolverToDirect(); }),
     MakeKind<Heat>("HeatDelaunay", "fDiffused", 3, [](Heat* f) { f->IntrinsicDelaunayOn(); }),
     MakeKind<Heat>("HeatSteady", "fDiffused", 1,
       [](Heat* f)
@@ -91,6 +104,13 @@ inline std::vector<FilterKind> AllFilters()
         f->SetBlurFWHM(0.3);
         SetInputArray(f, 1, "mask");
       }),
+    Slow(MakeKind<Heat>("HeatDeblurredFound", "fDiffused", 1,
+      [](Heat* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetBlurFWHM(0.3);
+        f->SetNoiseLevel(0.3);
+      })),
     MakeKind<Heat>("HeatMultigrid", "fDiffused", 3, [](Heat* f) { f->SetSolverToMultigrid(); }),
     MakeKind<Heat>("HeatExcluded", "fDiffused", 3,
       [](Heat* f)
@@ -121,10 +141,19 @@ inline std::vector<FilterKind> AllFilters()
       [](TV* f)
       {
         f->SetModeToSteadyState();
-        f->SetFidelityWeight(10.0); // the search for a weight takes minutes
+        f->SetFidelityWeight(10.0);
         f->SetBlurFWHM(0.3);
         f->SetStopTolerance(1e-2);
       }),
+    Slow(MakeKind<TV>("TVDeblurredFound", "fTV", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetBlurFWHM(0.3);
+        f->SetNoiseLevel(0.3);
+        f->SetStopTolerance(0.1);
+      })),
+    MakeKind<TV>("TVOfCells", "cTV", 2, [](TV* f) { SetInputArray(f, 0, "c", true); }),
     MakeKind<TV>("TVOpponent", "rgbTV", 2,
       [](TV* f)
       {
@@ -157,6 +186,10 @@ inline std::vector<FilterKind> AllFilters()
     MakeKind<Harmonic>("HarmonicMinimizing", "NormalsHarmonic", 1,
       [](Harmonic* f) { f->SetSchemeToMinimizingMovement(); }),
     MakeKind<Shah>("MumfordShah", "fMumfordShah", 4),
+    MakeKind<Shah>(
+      "MumfordShahGiven", "fMumfordShah", 4, [](Shah* f) { f->AutomaticThresholdOff(); }),
+    MakeKind<Shah>(
+      "MumfordShahOfCells", "cMumfordShah", 4, [](Shah* f) { SetInputArray(f, 0, "c", true); }),
     MakeKind<Shah>("MumfordShahDirect", "fMumfordShah", 3,
       [](Shah* f)
       {
@@ -170,6 +203,8 @@ inline std::vector<FilterKind> AllFilters()
         f->SetMetricToFixed();
         f->SetTimeStep(1e4);
       }),
+    MakeKind<Tensor>(
+      "BeltramiOfCells", "cBeltrami", 3, [](Tensor* f) { SetInputArray(f, 0, "c", true); }),
     MakeKind<Tensor>("CoherenceEnhancing", "fCoherent", 2,
       [](Tensor* f)
       {
@@ -208,6 +243,14 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFidelityWeight(50.0);
         f->SetStopTolerance(0.1);
       }),
+    Slow(MakeKind<Segmentation>("SegmentationOfCells", "RegionId", 1,
+      [](Segmentation* f)
+      {
+        f->AutomaticFidelityOff();
+        f->SetFidelityWeight(50.0);
+        f->SetStopTolerance(0.1);
+        SetInputArray(f, 0, "c", true);
+      })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
       "Displacement" },
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },

@@ -73,7 +73,7 @@ protected:
     EXPECT_TRUE(Identical(this->ResultIn(filter), this->ResultIn(this->Reference)));
   }
 
-  vtkSmartPointer<vtkPolyData> Surface = Sphere(4);
+  vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(4));
   vtkSmartPointer<vtkPolyDataAlgorithm> Reference;
 };
 

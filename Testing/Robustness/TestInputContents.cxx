@@ -59,7 +59,7 @@ protected:
     }
   }
 
-  vtkSmartPointer<vtkPolyData> Surface = Sphere(3);
+  vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(3));
   vtkSmartPointer<vtkPolyDataAlgorithm> Filter;
   vtkSmartPointer<vtkDataArray> First;
 };

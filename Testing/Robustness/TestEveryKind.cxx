@@ -1,0 +1,306 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What every kind of run keeps to: its times, values that are held, values that are missing, the
+// type of its data, natural units, and composite data.
+
+#include "Twins.h"
+
+#include "vtkMultiBlockDataSet.h"
+
+#include <cctype>
+
+using namespace FilterTest;
+
+namespace
+{
+
+using Change = std::function<void(vtkPolyDataAlgorithm*)>;
+
+class EveryKind : public testing::TestWithParam<FilterKind>
+{
+protected:
+  EveryKind()
+  {
+    AddRough(this->Surface);
+    AddArraysOfAllFilters(this->Surface);
+  }
+
+  vtkSmartPointer<vtkPolyDataAlgorithm> Run(
+    vtkDataObject* input, const Change& change = [](vtkPolyDataAlgorithm*) {}) const
+  {
+    auto filter = this->GetParam().Make();
+    filter->SetInputDataObject(input);
+    change(filter);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(messages.Errors, std::vector<std::string>());
+    return filter;
+  }
+
+  /// The array that the run diffuses, from the name of its result: "f" of "fDiffused".
+  std::string DataName() const
+  {
+    const std::string result = this->GetParam().Result;
+    for (const std::string name : { "f", "rgb", "c" })
+    {
+      if (result.rfind(name, 0) == 0 && std::isupper(result[name.size()]))
+      {
+        return name;
+      }
+    }
+    return "";
+  }
+  bool IsOnCells() const { return this->DataName() == "c"; }
+  vtkDataSetAttributes* Attributes(vtkPolyData* surface) const
+  {
+    return surface->GetAttributes(this->IsOnCells() ? vtkDataObject::CELL : vtkDataObject::POINT);
+  }
+  vtkDataArray* Data() const
+  {
+    return this->Attributes(this->Surface)->GetArray(this->DataName().c_str());
+  }
+  template <typename Value>
+  void Add(const char* name, int components, Value&& value, int type = VTK_DOUBLE) const
+  {
+    this->Attributes(this->Surface)
+      ->AddArray(MakeArray(type, name, this->Data()->GetNumberOfTuples(), components, value));
+  }
+  /// The result of a run on one of these arrays.
+  vtkSmartPointer<vtkDataArray> ResultOf(const char* array, const char* mask) const
+  {
+    const auto filter = this->Run(this->Surface,
+      [&](vtkPolyDataAlgorithm* f)
+      {
+        SetInputArray(f, 0, array, this->IsOnCells());
+        SetInputArray(f, 1, mask, this->IsOnCells());
+        vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetMaskMode(0);
+        vtkSurfaceFilter::SafeDownCast(f)->SetResultArrayName("result");
+      });
+    return this->Attributes(filter->GetOutput())->GetArray("result");
+  }
+
+  const vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(3));
+};
+
+/// Kinds of runs that diffuse an array.
+class EveryKindWithData : public EveryKind
+{
+protected:
+  void SetUp() override
+  {
+    if (this->DataName().empty())
+    {
+      GTEST_SKIP() << "has no data that it diffuses";
+    }
+  }
+};
+
+bool IsMarked(vtkIdType i)
+{
+  return i % 7 == 3;
+}
+
+/// Lengths and values in the units of the input, not in natural ones.
+template <typename Filter>
+void ScaleUnits(vtkPolyDataAlgorithm* filter, double length, double value)
+{
+  if (auto* f = Filter::SafeDownCast(filter))
+  {
+    f->SetBlurFWHM(length * f->GetBlurFWHM());
+    f->SetNoiseLevel(value * f->GetNoiseLevel());
+  }
+}
+
+} // namespace
+
+TEST_P(EveryKind, HasTheBitsOfEachTimeInAnyOrderOfRequests)
+{
+  const auto make = [this](bool timeSteps)
+  {
+    auto made = this->GetParam().Make();
+    if (auto* diffusion = vtkSurfaceDiffusionAlgorithm::SafeDownCast(made))
+    {
+      diffusion->SetGenerateTimeSteps(timeSteps);
+      diffusion->SetCheckpointMemoryLimit(0); // going back repeats steps
+    }
+    made->SetInputData(this->Surface);
+    return made;
+  };
+  const auto seeking = make(true);
+  const std::vector<double> times = PublishedTimes(seeking);
+  if (times.empty())
+  {
+    GTEST_SKIP() << "has no times";
+  }
+  ASSERT_GE(times.size(), 2u);
+  const double last = times.back();
+  for (const double time : { last, 0.0, last, times[1], 0.0, times[times.size() - 2], last })
+  {
+    const auto direct = make(true);
+    UpdateAt(direct, time);
+    UpdateAt(seeking, time);
+    EXPECT_EQ(Difference(seeking, direct), "") << time;
+  }
+  const auto without = make(false);
+  without->Update();
+  EXPECT_EQ(Difference(seeking, without), "");
+}
+
+TEST_P(EveryKindWithData, KeepsTheBitsOfFixedHeldAndExcludedValues)
+{
+  this->Add("marks", 1, [](vtkIdType i, int) { return IsMarked(i); });
+  const std::pair<const char*, Change> cases[] = {
+    { "fixed", [](auto* f) { SetInputArray(f, 1, ""); } },
+    { "held",
+      [](auto* f) { vtkSurfaceDataDiffusionAlgorithm::SafeDownCast(f)->HoldKnownValuesOn(); } },
+    { "excluded", [](auto* f) { vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetMaskMode(1); } },
+  };
+  for (const auto& [name, change] : cases)
+  {
+    const bool held = std::string(name) == "held";
+    const auto filter = this->Run(this->Surface,
+      [&, set = change](vtkPolyDataAlgorithm* f)
+      {
+        vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetMaskMode(0);
+        SetInputArray(f, std::string(name) == "fixed" ? 3 : 1, "marks", this->IsOnCells());
+        set(f);
+      });
+    vtkDataArray* const result = FilterTest::ResultOf(filter, this->GetParam().Result);
+    ASSERT_NE(result, nullptr) << name;
+    bool changed = false;
+    for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i)
+    {
+      for (int k = 0; k < result->GetNumberOfComponents(); ++k)
+      {
+        const bool same = result->GetComponent(i, k) == this->Data()->GetComponent(i, k);
+        EXPECT_TRUE(same || IsMarked(i) == held) << name << ' ' << i;
+        changed = changed || !same;
+      }
+    }
+    EXPECT_TRUE(changed) << name;
+  }
+}
+
+TEST_P(EveryKindWithData, ReadsNoMissingValue)
+{
+  const auto data = Copy(this->Data());
+  const auto with = [&](double missing)
+  {
+    return [&data, missing](vtkIdType i, int k)
+    { return IsMarked(i) && k == 0 ? missing : data->GetComponent(i, k); };
+  };
+  this->Add("marks", 1, [](vtkIdType i, int) { return IsMarked(i); });
+  this->Add("damaged", data->GetNumberOfComponents(), with(-1e4));
+  this->Add("holed", data->GetNumberOfComponents(), with(vtkMath::Nan()));
+  const auto expected = this->ResultOf("damaged", "marks");
+  EXPECT_TRUE(Identical(this->ResultOf("holed", "marks"), expected));
+  EXPECT_TRUE(Identical(this->ResultOf("holed", ""), expected)); // NaN in a component is missing
+}
+
+TEST_P(EveryKindWithData, KeepsBytesAndTheirAlpha)
+{
+  const auto data = Copy(this->Data());
+  const double scale = data->GetDataType() == VTK_UNSIGNED_CHAR ? 1.0 : 80.0;
+  this->Add(
+    "rgba", 4,
+    [&](vtkIdType i, int k)
+    { return k == 3 ? i % 256 : std::clamp(scale * (data->GetComponent(i, 0) + k), 0.0, 255.0); },
+    VTK_UNSIGNED_CHAR);
+  vtkDataArray* const rgba = this->Attributes(this->Surface)->GetArray("rgba");
+  const auto result = this->ResultOf("rgba", "");
+  ASSERT_NE(result, nullptr);
+  EXPECT_EQ(result->GetDataType(), VTK_UNSIGNED_CHAR);
+  ASSERT_EQ(result->GetNumberOfComponents(), 4);
+  for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i)
+  {
+    ASSERT_EQ(result->GetComponent(i, 3), rgba->GetComponent(i, 3)) << i;
+  }
+}
+
+/// Powers of two scale every number without rounding.
+TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
+{
+  constexpr double length = 64.0, value = 16.0;
+  vtkSmartPointer<vtkPolyDataAlgorithm> filters[2];
+  for (const bool scaled : { false, true })
+  {
+    vtkNew<vtkPolyData> surface;
+    surface->DeepCopy(this->Surface);
+    vtkDataArray* const points = surface->GetPoints()->GetData();
+    for (vtkIdType i = 0; scaled && i < points->GetNumberOfValues(); ++i)
+    {
+      points->SetComponent(i / 3, i % 3, length * points->GetComponent(i / 3, i % 3));
+    }
+    for (vtkDataSetAttributes* attributes :
+      { surface->GetAttributes(vtkDataObject::POINT), surface->GetAttributes(vtkDataObject::CELL) })
+    {
+      for (const char* name : { "f", "rgb", "c" })
+      {
+        if (vtkDataArray* const given = attributes->GetArray(name))
+        {
+          attributes->AddArray(
+            MakeArray(VTK_DOUBLE, name, given->GetNumberOfTuples(), given->GetNumberOfComponents(),
+              [&](vtkIdType i, int k)
+              { return (scaled ? value : 1.0) * given->GetComponent(i, k); }));
+        }
+      }
+    }
+    surface->GetPointData()->SetActiveScalars("f");
+    surface->GetPointData()->SetGlobalIds(MakeArray(VTK_ID_TYPE, "ids",
+      surface->GetNumberOfPoints(), 1, [](vtkIdType i, int) { return i; })); // of the noise
+    filters[scaled] = this->Run(surface,
+      [&](vtkPolyDataAlgorithm* f)
+      {
+        ScaleUnits<vtkFVMHeatFilter>(f, scaled ? length : 1.0, scaled ? value : 1.0);
+        ScaleUnits<vtkIntrinsicTVFilter>(f, scaled ? length : 1.0, scaled ? value : 1.0);
+      });
+  }
+  const std::string name = this->GetParam().Result;
+  const double factor = name == "Displacement" ? length : this->DataName().empty() ? 1.0 : value;
+  vtkDataArray* const expected = FilterTest::ResultOf(filters[0], name.c_str());
+  vtkDataArray* const result = FilterTest::ResultOf(filters[1], name.c_str());
+  ASSERT_TRUE(expected && result);
+  const auto scaled =
+    MakeArray(VTK_DOUBLE, "", expected->GetNumberOfTuples(), expected->GetNumberOfComponents(),
+      [&](vtkIdType i, int k) { return factor * expected->GetComponent(i, k); });
+  // The search for the weight of total variation takes logarithms of it.
+  auto* const tv = vtkIntrinsicTVFilter::SafeDownCast(filters[0]);
+  EXPECT_LE(LargestDifference(result, scaled), tv && tv->GetAutomaticFidelity() ? 1e-12 : 0.0);
+  if (filters[0]->GetNumberOfOutputPorts() > 1 && History(filters[0])->GetColumnByName("Energy"))
+  {
+    const double ratio = HistoryAt(filters[1], 0, "Energy") / HistoryAt(filters[0], 0, "Energy");
+    EXPECT_EQ(std::log2(ratio), std::floor(std::log2(ratio)));
+    for (vtkIdType row = 0; row < History(filters[0])->GetNumberOfRows(); ++row)
+    {
+      EXPECT_EQ(HistoryAt(filters[1], row, "Energy"), ratio * HistoryAt(filters[0], row, "Energy"));
+    }
+  }
+}
+
+TEST_P(EveryKind, TreatsEqualBlocksAsItDoesOneSurface)
+{
+  const auto alone = this->Run(this->Surface);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (unsigned int b = 0; b < 2; ++b)
+  {
+    vtkNew<vtkPolyData> copy;
+    copy->DeepCopy(this->Surface);
+    blocks->SetBlock(b, copy);
+  }
+  const auto both = this->Run(blocks);
+  auto* const output = vtkMultiBlockDataSet::SafeDownCast(both->GetOutputDataObject(0));
+  ASSERT_NE(output, nullptr);
+  for (unsigned int b = 0; b < 2; ++b)
+  {
+    vtkPolyData* const block = vtkPolyData::SafeDownCast(output->GetBlock(b));
+    ASSERT_NE(block, nullptr);
+    vtkPolyData* const one = alone->GetOutput();
+    EXPECT_TRUE(SameValues(block->GetPoints()->GetData(), one->GetPoints()->GetData()));
+    EXPECT_EQ(DifferentArrays(block->GetPointData(), one->GetPointData()), "") << b;
+    EXPECT_EQ(DifferentArrays(block->GetCellData(), one->GetCellData()), "") << b;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind, testing::ValuesIn(AllFilters()), KindName);
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryKindWithData, testing::ValuesIn(AllFilters()), KindName);
