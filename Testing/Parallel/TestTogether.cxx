@@ -20,6 +20,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -106,203 +107,175 @@ struct Case
 {
   const char* Name;
   const char* Result;
-  AnyFilter (*Make)();
-  double Tolerance = 1e-9;
+  std::function<AnyFilter()> Make;
+  double Tolerance;
 };
+
+template <typename Filter>
+Case MakeCase(
+  const char* name, const char* result, const char* array, int steps,
+  void (*set)(Filter*) = [](Filter*) {}, double tolerance = 1e-9)
+{
+  return { name, result,
+    [=]() -> AnyFilter
+    {
+      auto filter = Make<Filter>(array, steps);
+      set(filter);
+      return filter;
+    },
+    tolerance };
+}
 
 std::ostream& operator<<(std::ostream& os, const Case& of)
 {
   return os << of.Name;
 }
 
-AnyFilter Turing()
+/// The runs that the processes solve together. Minimisers differ by their duality gaps.
+std::vector<Case> Cases()
 {
-  return Make<vtkTuringTextureFilter>("", 20);
-}
-
-AnyFilter TuringFirstOrder()
-{
-  auto turing = Make<vtkTuringTextureFilter>("", 20);
-  turing->SetTimeIntegratorToFirstOrder();
-  turing->SetInitialNoise(0.9);
-  return turing;
-}
-
-AnyFilter TuringUntilStationary()
-{
-  auto turing = Make<vtkTuringTextureFilter>("", 300);
-  turing->SetStopTolerance(0.3);
-  return turing;
-}
-
-AnyFilter TuringMultigrid()
-{
-  auto turing = Make<vtkTuringTextureFilter>("", 5);
-  turing->SetSolverToMultigrid();
-  return turing;
-}
-
-AnyFilter Harmonic()
-{
-  return Make<vtkHarmonicMapFilter>("v", 5);
-}
-
-AnyFilter HarmonicLongSteps()
-{
-  auto map = Make<vtkHarmonicMapFilter>("v", 3);
-  map->SetTimeStep(100.0);
-  map->SetExponent(2.0);
-  return map;
-}
-
-AnyFilter HarmonicMultigrid()
-{
-  auto map = Make<vtkHarmonicMapFilter>("v", 3);
-  map->SetSolverToMultigrid();
-  map->SetTimeStep(20.0);
-  return map;
-}
-
-AnyFilter HarmonicInpainting()
-{
-  auto map = Make<vtkHarmonicMapFilter>("v", 5);
-  SetInputArray(map, 1, "hole");
-  SetInputArray(map, 3, "edge");
-  map->SetFidelityWeight(0.2);
-  return map;
-}
-
-AnyFilter HarmonicLines()
-{
-  auto map = Make<vtkHarmonicMapFilter>("v", 5);
-  map->SetLineField(true);
-  return map;
-}
-
-AnyFilter HarmonicPaper()
-{
-  auto map = Make<vtkHarmonicMapFilter>("v", 5);
-  map->UsePaperScheme();
-  SetInputArray(map, 3, "edge");
-  return map;
-}
-
-AnyFilter HarmonicMinimizingMovement()
-{
-  auto map = Make<vtkHarmonicMapFilter>("v", 2);
-  map->SetSchemeToMinimizingMovement();
-  return map;
-}
-
-AnyFilter Edges()
-{
-  auto shah = Make<vtkMumfordShahFilter>("v", 12);
-  shah->EdgeCurvesOff();
-  shah->AutomaticThresholdOff();
-  shah->SetEdgeThreshold(0.8);
-  return shah;
-}
-
-AnyFilter EdgesInpainting()
-{
-  auto shah = Make<vtkMumfordShahFilter>("rough", 12);
-  SetInputArray(shah, 1, "hole");
-  SetInputArray(shah, 3, "edge");
-  shah->EdgeCurvesOff();
-  shah->AutomaticThresholdOff();
-  return shah;
-}
-
-AnyFilter Beltrami()
-{
-  return Make<vtkTensorDiffusionFilter>("v", 5);
-}
-
-AnyFilter BeltramiInpainting()
-{
-  auto tensor = Make<vtkTensorDiffusionFilter>("rough", 5);
-  SetInputArray(tensor, 1, "hole");
-  SetInputArray(tensor, 3, "edge");
-  tensor->SetFidelityWeight(0.2);
-  tensor->SetMetricToFixed();
-  return tensor;
-}
-
-AnyFilter EdgeEnhancing()
-{
-  auto tensor = Make<vtkTensorDiffusionFilter>("v", 5);
-  tensor->SetModelToEdgeEnhancing();
-  return tensor;
-}
-
-AnyFilter Minimum()
-{
-  auto tv = Make<vtkIntrinsicTVFilter>("f", 1);
-  tv->SetModeToSteadyState();
-  tv->SetFidelityWeight(0.3);
-  tv->SetStopTolerance(1e-7);
-  return tv;
-}
-
-AnyFilter MinimumInpainting()
-{
-  auto tv = Make<vtkIntrinsicTVFilter>("rough", 1);
-  tv->SetModeToSteadyState();
-  tv->SetEdgeFunctionToCharbonnier();
-  SetInputArray(tv, 1, "hole");
-  SetInputArray(tv, 3, "edge");
-  tv->SetHoldKnownValues(true);
-  tv->SetStopTolerance(1e-6); // in double precision
-  return tv;
-}
-
-AnyFilter MinimumL1()
-{
-  auto tv = Make<vtkIntrinsicTVFilter>("v", 1);
-  tv->SetModeToSteadyState();
-  tv->SetStopTolerance(1e-5); // in double precision
-  tv->SetFidelityNormToL1();
-  tv->SetFidelityWeight(2.0);
-  return tv;
-}
-
-AnyFilter ImplicitSteps()
-{
-  auto tv = Make<vtkIntrinsicTVFilter>("rough", 4);
-  tv->SetTimeIntegratorToImplicit();
-  tv->SetStopTolerance(1e-7); // the penalty may grow at another iteration
-  return tv;
-}
-
-AnyFilter OpponentMinimum()
-{
-  auto tv = Make<vtkIntrinsicTVFilter>("v", 1);
-  tv->SetColorModelToOpponent();
-  tv->SetModeToSteadyState();
-  tv->SetStopTolerance(1e-6);
-  return tv;
-}
-
-AnyFilter OpponentSteps()
-{
-  auto tv = Make<vtkIntrinsicTVFilter>("v", 4);
-  tv->SetColorModelToOpponent();
-  SetInputArray(tv, 1, "hole");
-  return tv;
-}
-
-AnyFilter Chromaticity()
-{
-  auto tv = Make<vtkIntrinsicTVFilter>("v", 4);
-  tv->SetColorModelToChromaticityBrightness();
-  SetInputArray(tv, 1, "hole");
-  SetInputArray(tv, 3, "edge");
-  return tv;
-}
-
-AnyFilter Heat()
-{
-  return Make<vtkFVMHeatFilter>("f", 5);
+  using Heat = vtkFVMHeatFilter;
+  using Turing = vtkTuringTextureFilter;
+  using Harmonic = vtkHarmonicMapFilter;
+  using Shah = vtkMumfordShahFilter;
+  using Tensor = vtkTensorDiffusionFilter;
+  using TV = vtkIntrinsicTVFilter;
+  return {
+    MakeCase<Heat>("heat", "fDiffused", "f", 5),
+    MakeCase<Turing>("turing", "u1", "", 20),
+    MakeCase<Turing>("turing, first order", "Texture", "", 20,
+      [](Turing* f)
+      {
+        f->SetTimeIntegratorToFirstOrder();
+        f->SetInitialNoise(0.9);
+      }),
+    MakeCase<Turing>(
+      "turing until stationary", "u2", "", 300, [](Turing* f) { f->SetStopTolerance(0.3); }, 1e-7),
+    MakeCase<Turing>(
+      "turing, multigrid", "u1", "", 5, [](Turing* f) { f->SetSolverToMultigrid(); }),
+    MakeCase<Harmonic>("harmonic", "vHarmonic", "v", 5),
+    MakeCase<Harmonic>("harmonic, long steps", "vHarmonic", "v", 3,
+      [](Harmonic* f)
+      {
+        f->SetTimeStep(100.0);
+        f->SetExponent(2.0);
+      }),
+    MakeCase<Harmonic>("harmonic, multigrid", "vHarmonic", "v", 3,
+      [](Harmonic* f)
+      {
+        f->SetSolverToMultigrid();
+        f->SetTimeStep(20.0);
+      }),
+    MakeCase<Harmonic>("harmonic, inpainting", "vHarmonic", "v", 5,
+      [](Harmonic* f)
+      {
+        SetInputArray(f, 1, "hole");
+        SetInputArray(f, 3, "edge");
+        f->SetFidelityWeight(0.2);
+      }),
+    MakeCase<Harmonic>(
+      "harmonic, lines", "vHarmonic", "v", 5, [](Harmonic* f) { f->SetLineField(true); }),
+    MakeCase<Harmonic>("harmonic, paper", "vHarmonic", "v", 5,
+      [](Harmonic* f)
+      {
+        f->UsePaperScheme();
+        SetInputArray(f, 3, "edge");
+      }),
+    MakeCase<Harmonic>("harmonic, minimizing movement", "vHarmonic", "v", 2,
+      [](Harmonic* f) { f->SetSchemeToMinimizingMovement(); }),
+    MakeCase<Shah>("edges", "Edges", "v", 12,
+      [](Shah* f)
+      {
+        f->EdgeCurvesOff();
+        f->AutomaticThresholdOff();
+        f->SetEdgeThreshold(0.8);
+      }),
+    MakeCase<Shah>("edges, values", "vMumfordShah", "v", 12,
+      [](Shah* f)
+      {
+        f->EdgeCurvesOff();
+        f->AutomaticThresholdOff();
+        f->SetEdgeThreshold(0.8);
+      }),
+    MakeCase<Shah>("edges, inpainting", "roughMumfordShah", "rough", 12,
+      [](Shah* f)
+      {
+        SetInputArray(f, 1, "hole");
+        SetInputArray(f, 3, "edge");
+        f->EdgeCurvesOff();
+        f->AutomaticThresholdOff();
+      }),
+    MakeCase<Tensor>("Beltrami", "vBeltrami", "v", 5),
+    MakeCase<Tensor>("Beltrami, inpainting", "roughBeltrami", "rough", 5,
+      [](Tensor* f)
+      {
+        SetInputArray(f, 1, "hole");
+        SetInputArray(f, 3, "edge");
+        f->SetFidelityWeight(0.2);
+        f->SetMetricToFixed();
+      }),
+    MakeCase<Tensor>(
+      "edge enhancing", "vEdgeEnhanced", "v", 5, [](Tensor* f) { f->SetModelToEdgeEnhancing(); }),
+    MakeCase<TV>(
+      "minimum", "fTV", "f", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetFidelityWeight(0.3);
+        f->SetStopTolerance(1e-7);
+      },
+      1e-5),
+    MakeCase<TV>(
+      "minimum, inpainting", "roughTV", "rough", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetEdgeFunctionToCharbonnier();
+        SetInputArray(f, 1, "hole");
+        SetInputArray(f, 3, "edge");
+        f->SetHoldKnownValues(true);
+        f->SetStopTolerance(1e-6); // in double precision
+      },
+      1e-7),
+    MakeCase<TV>("minimum, L1", "vTV", "v", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetStopTolerance(1e-5); // in double precision
+        f->SetFidelityNormToL1();
+        f->SetFidelityWeight(2.0);
+      }),
+    MakeCase<TV>("opponent colours", "vTV", "v", 4,
+      [](TV* f)
+      {
+        f->SetColorModelToOpponent();
+        SetInputArray(f, 1, "hole");
+      }),
+    MakeCase<TV>(
+      "opponent colours, minimum", "vTV", "v", 1,
+      [](TV* f)
+      {
+        f->SetColorModelToOpponent();
+        f->SetModeToSteadyState();
+        f->SetStopTolerance(1e-6);
+      },
+      1e-4),
+    MakeCase<TV>("chromaticity", "vTV", "v", 4,
+      [](TV* f)
+      {
+        f->SetColorModelToChromaticityBrightness();
+        SetInputArray(f, 1, "hole");
+        SetInputArray(f, 3, "edge");
+      }),
+    MakeCase<TV>(
+      "implicit steps", "roughTV", "rough", 4,
+      [](TV* f)
+      {
+        f->SetTimeIntegratorToImplicit();
+        f->SetStopTolerance(1e-7); // the penalty may grow at another iteration
+      },
+      1e-6),
+  };
 }
 
 /// The largest difference from the result of a single process, at points of equal ids, over all
@@ -482,28 +455,7 @@ TEST(MultigridOverProcesses, TakesHardlyMoreIterationsThanOneProcess)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pieces, Together,
-  testing::Values(Case{ "heat", "fDiffused", Heat }, Case{ "turing", "u1", Turing },
-    Case{ "turing, first order", "Texture", TuringFirstOrder },
-    Case{ "turing until stationary", "u2", TuringUntilStationary, 1e-7 },
-    Case{ "turing, multigrid", "u1", TuringMultigrid }, Case{ "harmonic", "vHarmonic", Harmonic },
-    Case{ "harmonic, long steps", "vHarmonic", HarmonicLongSteps },
-    Case{ "harmonic, multigrid", "vHarmonic", HarmonicMultigrid },
-    Case{ "harmonic, inpainting", "vHarmonic", HarmonicInpainting },
-    Case{ "harmonic, lines", "vHarmonic", HarmonicLines },
-    Case{ "harmonic, paper", "vHarmonic", HarmonicPaper },
-    Case{ "harmonic, minimizing movement", "vHarmonic", HarmonicMinimizingMovement },
-    Case{ "edges", "Edges", Edges }, Case{ "edges, values", "vMumfordShah", Edges },
-    Case{ "edges, inpainting", "roughMumfordShah", EdgesInpainting },
-    Case{ "Beltrami", "vBeltrami", Beltrami },
-    Case{ "Beltrami, inpainting", "roughBeltrami", BeltramiInpainting },
-    Case{ "edge enhancing", "vEdgeEnhanced", EdgeEnhancing },
-    Case{ "minimum", "fTV", Minimum, 1e-5 },
-    Case{ "minimum, inpainting", "roughTV", MinimumInpainting, 1e-7 },
-    Case{ "minimum, L1", "vTV", MinimumL1 }, Case{ "opponent colours", "vTV", OpponentSteps },
-    Case{ "opponent colours, minimum", "vTV", OpponentMinimum, 1e-4 },
-    Case{ "chromaticity", "vTV", Chromaticity },
-    Case{ "implicit steps", "roughTV", ImplicitSteps, 1e-6 }));
+INSTANTIATE_TEST_SUITE_P(Pieces, Together, testing::ValuesIn(Cases()));
 
 TEST_P(Together, StopWithinAStepIfOneOfThemIsAborted)
 {
@@ -638,7 +590,7 @@ TEST(PiecesTogether, ReportInvalidRatesOfOneOfThemOnce)
   auto mine = WithData(Mine(N));
   mine->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "rates", mine->GetNumberOfCells(), 4,
     [&](vtkIdType i, int) { return Rank() == Count() - 1 && i == 5 ? -1.0 : 2.0; }));
-  auto turing = Turing();
+  auto turing = Make<vtkTuringTextureFilter>("", 20);
   turing->SetInputData(mine);
   SetInputArray(turing, 4, "rates", true);
   Messages messages(turing);
@@ -666,7 +618,7 @@ TEST(PiecesTogether, PiecesWithoutTrianglesGiveFiniteResults)
   {
     mine->SetPolys(nullptr);
   }
-  auto heat = Heat();
+  auto heat = Make<vtkFVMHeatFilter>("f", 5);
   heat->SetInputData(mine);
   heat->Update();
   ASSERT_NE(Result(heat), nullptr);

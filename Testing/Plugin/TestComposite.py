@@ -7,20 +7,10 @@ import tempfile
 import time
 import unittest
 
-from paraview import servermanager
-from paraview.simple import (
-    FVMHeatFilter, GroupDatasets, HarmonicMapFilter, IntrinsicTVFilter, MumfordShahFilter,
-    SurfaceDenoisingFilter, SurfaceDirectionFieldFilter, TensorDiffusionFilter, TuringTextureFilter,
-)
-from plugin_testing import read_sphere, values
+from paraview import servermanager, simple
+from paraview.simple import FVMHeatFilter, GroupDatasets
+from plugin_testing import filter_names, read_sphere, values
 
-# The arrays that each filter adds.
-FILTERS = (
-    (FVMHeatFilter, "noisyDiffused"), (IntrinsicTVFilter, "noisyTV"),
-    (HarmonicMapFilter, "NormalsHarmonic"), (MumfordShahFilter, "noisyMumfordShah"),
-    (TensorDiffusionFilter, "noisyBeltrami"), (TuringTextureFilter, "u1"),
-    (SurfaceDirectionFieldFilter, "Direction"), (SurfaceDenoisingFilter, "Displacement"),
-)
 KINDS = ("vtkMultiBlockDataSet", "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection")
 
 
@@ -29,6 +19,13 @@ def leaves(data):
     while not iterator.IsDoneWithTraversal():
         yield iterator.GetCurrentDataObject()
         iterator.GoToNextItem()
+
+
+def array_names(surface):
+    """The names of the arrays on its points and cells."""
+    return {attributes.GetArrayName(i)
+            for attributes in (surface.GetPointData(), surface.GetCellData())
+            for i in range(attributes.GetNumberOfArrays())}
 
 
 class TestComposite(unittest.TestCase):
@@ -42,21 +39,21 @@ class TestComposite(unittest.TestCase):
         ]
 
     def test_each_filter_on_each_kind_of_composite_data(self):
-        for name in KINDS:
-            group = GroupDatasets(Input=self.spheres, OutputType=name)
+        for kind in KINDS:
+            group = GroupDatasets(Input=self.spheres, OutputType=kind)
             group.UpdatePipeline()
-            for make, array in FILTERS:
-                filter = make(group)
-                if make is TuringTextureFilter:
+            before = array_names(next(leaves(group.GetClientSideObject().GetOutputDataObject(0))))
+            for name in filter_names():
+                filter = getattr(simple, name)(group)
+                if name == "TuringTextureFilter":
                     filter.NumberOfTimeSteps = 5
                 filter.UpdatePipeline()
                 output = filter.GetClientSideObject().GetOutputDataObject(0)
-                self.assertEqual(output.GetClassName(), name)
-                blocks = list(leaves(output))
-                self.assertEqual(len(blocks), 2, name)
-                for block in blocks:
-                    data = block.GetCellData() if array == "Direction" else block.GetPointData()
-                    self.assertIsNotNone(data.GetArray(array), "%s of %s" % (array, name))
+                self.assertEqual(output.GetClassName(), kind)
+                added = [array_names(block) - before for block in leaves(output)]
+                self.assertEqual(len(added), 2, kind)
+                self.assertEqual(added[0], added[1], "%s of %s" % (name, kind))
+                self.assertNotEqual(added[0], set(), "%s of %s" % (name, kind))
 
     def test_progress_reaches_the_status_bar_and_abort_the_filter(self):
         heat = FVMHeatFilter(self.spheres[0], NumberOfTimeSteps=20)

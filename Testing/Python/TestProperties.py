@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """Every property of every class has a setting of its name and type, and every setting that a filter
-prints is a property. Enumerators have the numbers of the settings' words."""
+prints is a property. Enumerators have the numbers of the settings' words. The defaults are the
+documented ones."""
 
 import re
 import unittest
@@ -51,7 +52,77 @@ def of_each_property(test):
     return tests
 
 
+#: The documented defaults, of all filters, of those with time steps, and of those that diffuse data
+SURFACE = dict(MergeCoincidentPoints=False, MergeTolerance=0.0, SeamTolerance=-1.0,
+               NumberOfThreads=0, ResultArrayName="")
+RUN = dict(
+    Units="Natural", MaskMode="Inpaint", RandomSeed=0, Solver="Automatic", Tolerance=1e-10,
+    MaximumNumberOfIterations=1000, IntrinsicDelaunay=False, OutputPrecision="Input",
+    TimeStep=1.0, NumberOfTimeSteps=10, GenerateTimeSteps=False, OutputInterval=1,
+    CheckpointMemoryLimit=512, TimeIntegrator="FirstOrder", **SURFACE)
+DATA = dict(
+    FidelityWeight=0.0, InitialFill="Harmonic", HoldKnownValues=False, ResultOnCells=True,
+    KeepCellDetail=True, AlongDiffusivity=1.0, AcrossDiffusivity=1.0, **RUN)
+DEFAULTS = {
+    "vtkFVMHeatFilter": {
+        **DATA, "TimeIntegrator": "SecondOrder", "Mode": "TimeSteps", "FWHM": 0.0,
+        "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4},
+    "vtkIntrinsicTVFilter": {
+        **DATA, "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",
+        "EdgeFunction": "TotalVariation", "AcrossEdgeFunction": "Same", "Beta": 1e-6,
+        "EdgeThreshold": 0.1, "ChannelCoupling": "Joint", "FidelityNorm": "L2",
+        "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4,
+        "AutomaticBlurFidelity": True, "Discretization": "Linear", "StopTolerance": 1e-4,
+        "ColorModel": "RGB", "ChromaWeight": 0.2, "ChromaticityExponent": 1.0,
+        "ChromaticityWeight": 1.0, "LinearLight": False},
+    "vtkHarmonicMapFilter": {
+        **DATA, "InitialFill": "Mean", "Exponent": 1.0, "Beta": 1e-6, "Scheme": "TangentPlane",
+        "ConsistentReaction": False, "ProjectToSphere": True, "LineField": False,
+        "UseAsNormals": True, "MoveVertices": False},
+    "vtkMumfordShahFilter": {
+        **DATA, "FidelityWeight": 1.0, "NumberOfTimeSteps": 1000, "Tolerance": 0.1,
+        "AutomaticThreshold": True, "NoiseLevel": 0.0, "SmoothingLength": 8.0,
+        "EdgeThreshold": 0.2, "EdgeWidth": 2.0, "StopTolerance": 1e-5, "EdgeCurves": True},
+    "vtkTensorDiffusionFilter": {
+        **DATA, "Tolerance": 1e-3, "Model": "Beltrami", "ColorScale": 10.0, "Metric": "Induced",
+        "NoiseScale": 1.0, "IntegrationScale": 4.0, "Contrast": 0.05, "Alpha": 1e-3,
+        "DiffusionAxes": False},
+    "vtkTuringTextureFilter": {
+        **RUN, "TimeStep": 1 / 16, "NumberOfTimeSteps": 640, "TimeIntegrator": "SecondOrder",
+        "Kinetics": "Turing", "ReactionRate": 1.0, "DiffusionRate1": 21.0, "DiffusionRate2": 2.6,
+        "DiffusionRateAcross1": -1.0, "DiffusionRateAcross2": -1.0, "FeatureSize": 0.0,
+        "InitialNoise": 0.1, "ClampToNonNegative": True, "AutomaticTimeStep": False,
+        "StopTolerance": 0.02, "CoarseStartSize": 50000, "GrowthRate": 16.0, "DecayRate": 12.0,
+        "ActivatorSupply": 0.01, "SubstrateSupply": 1.0, "FeedRate": 0.05, "KillRate": 0.06,
+        "ReactantA": 2.0, "ReactantB": 4.0, "InhibitorDecayRate": 1.05, "Saturation": 0.0,
+        "RecoveryRate": 1.2, "RecoveryDamping": 0.9, "Stimulus": 0.0, "TextureChemical": "U1",
+        "ColorOutput": False, "LowColor": (0.16, 0.09, 0.05),
+        "HighColor": (0.93, 0.8, 0.58)},
+    "vtkSurfaceSegmentationFilter": {
+        **RUN, "NumberOfRegions": 2, "AutomaticFidelity": True, "FidelityWeight": 0.3,
+        "AutomaticMeans": True, "ResultOnCells": True, "StopTolerance": 1e-3},
+    "vtkSurfaceDenoisingFilter": {
+        **SURFACE, "ResultArrayName": "Displacement", "NoiseLevel": 0.0,
+        "SurfaceType": "Automatic"},
+    "vtkSurfaceDirectionFieldFilter": {
+        **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
+        "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},
+}
+
+
+def value_of(made, name):
+    """The value of a property: the word of a choice."""
+    return getattr(made, f"Get{name}AsString" if hasattr(made, f"Get{name}AsString") else "Get" + name)()
+
+
 class Properties(unittest.TestCase):
+    def test_have_the_documented_defaults(self):
+        self.assertEqual({cls.__name__ for cls in FILTERS}, set(DEFAULTS))
+        for cls in FILTERS:
+            with self.subTest(cls=cls.__name__):
+                found = {name: value_of(cls(), name) for name in properties(cls)}
+                self.assertEqual(found, DEFAULTS[cls.__name__])
+
     @of_each_property
     def test_have_a_setting_of_their_name_and_type(self, made, name):
         value = getattr(made, "Get" + name)()

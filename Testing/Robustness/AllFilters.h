@@ -34,7 +34,7 @@ struct FilterKind
   bool IsSlow = false; ///< takes minutes on surfaces that suit the others
 
   /// The levels of a sphere for tests: those that suit the other kinds, or fewer.
-  int Levels(int ofOthers) const { return this->IsSlow ? std::min(ofOthers, 2) : ofOthers; }
+  int Levels(int ofOthers) const { return this->IsSlow ? std::min(ofOthers, 3) : ofOthers; }
 };
 
 /// The kind with a flag that it is slow.
