@@ -267,14 +267,16 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
   // The search for the weight of total variation takes logarithms of it.
   auto* const tv = vtkIntrinsicTVFilter::SafeDownCast(filters[0]);
   const bool found = tv && tv->GetEffectiveFidelityWeight() != tv->GetFidelityWeight();
-  EXPECT_LE(LargestDifference(result, scaled), found ? 1e-12 : 0.0);
+  const double allowed = found ? 1e-12 : 0.0;
+  EXPECT_LE(LargestDifference(result, scaled), allowed);
   if (filters[0]->GetNumberOfOutputPorts() > 1 && History(filters[0])->GetColumnByName("Energy"))
   {
     const double ratio = HistoryAt(filters[1], 0, "Energy") / HistoryAt(filters[0], 0, "Energy");
-    EXPECT_EQ(std::log2(ratio), std::floor(std::log2(ratio)));
+    EXPECT_NEAR(std::log2(ratio), std::round(std::log2(ratio)), allowed);
     for (vtkIdType row = 0; row < History(filters[0])->GetNumberOfRows(); ++row)
     {
-      EXPECT_EQ(HistoryAt(filters[1], row, "Energy"), ratio * HistoryAt(filters[0], row, "Energy"));
+      const double energy = HistoryAt(filters[1], row, "Energy");
+      EXPECT_NEAR(energy, ratio * HistoryAt(filters[0], row, "Energy"), allowed * energy);
     }
   }
 }

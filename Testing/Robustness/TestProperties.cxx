@@ -379,6 +379,12 @@ TEST(Properties, AreTheOnesOfTheHeaders)
     EXPECT_GT(settable.size(), 5u);
     tested.insert(kind.Name);
   }
+  std::set<std::string> run;
+  for (const FilterKind& kind : AllFilters())
+  {
+    run.insert(kind.Make()->GetClassName());
+  }
+  EXPECT_EQ(run, tested) << "AllFilters.h and RandomProperties.h have different classes";
   for (const auto& file : std::filesystem::directory_iterator(SURFACEDIFFUSION_FILTERS_DIR))
   {
     const std::string name = file.path().stem().string();
