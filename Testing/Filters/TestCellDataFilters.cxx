@@ -15,7 +15,6 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkMultiBlockDataSet.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <gtest/gtest.h>
 

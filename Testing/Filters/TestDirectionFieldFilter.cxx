@@ -10,8 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 using namespace FilterTest;
 
 namespace

@@ -7,14 +7,12 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPolygon.h"
-#include "vtkSMPTools.h"
 #include "vtkStripper.h"
 
 #include <gtest/gtest.h>
 
 #include <iostream>
 #include <limits>
-#include <sstream>
 
 using namespace FilterTest;
 

@@ -7,9 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <iostream>
 #include <random>
-#include <sstream>
 
 using namespace FilterTest;
 

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IntrinsicTVTest.h"
 
-#include "vtkMultiBlockDataSet.h"
 
 #include <gtest/gtest.h>
-
-#include <sstream>
 
 using namespace IntrinsicTVTest;
 

@@ -3,13 +3,9 @@
 #include "FilterTest.h"
 
 #include "vtkCellData.h"
-#include "vtkIntrinsicTVFilter.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkTensorDiffusionFilter.h"
 
 #include <gtest/gtest.h>
-
-#include <sstream>
 
 using namespace FilterTest;
 

@@ -4,12 +4,10 @@
 
 #include "vtkCellData.h"
 #include "vtkMultiBlockDataSet.h"
-#include "vtkSMPTools.h"
 #include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
 
-#include <sstream>
 #include <vector>
 
 using namespace FilterTest;

@@ -3,7 +3,6 @@
 #include "FilterTest.h"
 
 #include "vtkFVMHeatFilter.h"
-#include "vtkSMPTools.h"
 #include "vtkSphereSource.h"
 
 #include <gtest/gtest.h>
