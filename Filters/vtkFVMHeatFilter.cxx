@@ -20,5 +20,6 @@ vtkFVMHeatFilter::vtkFVMHeatFilter()
 void vtkFVMHeatFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
+  this->SetTimeIntegratorToFirstOrder();
   this->SetModeToTimeSteps();
 }

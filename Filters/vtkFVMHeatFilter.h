@@ -59,7 +59,7 @@ public:
   ///@{
   /**
    * TimeSteps (default): NumberOfTimeSteps steps of TimeStep. SteadyState: the limit of infinite
-   * time, computed by one solve, which counts as one step. It is the harmonic inpainting with fixed
+   * time, computed by one solve, without times. It is the harmonic inpainting with fixed
    * or held values, the minimiser of the energy with lambda, and the mean of each connected
    * component with neither.
    */
@@ -136,6 +136,16 @@ public:
    * more similar to a Gaussian. Default: 4.
    */
   SURFACEDIFFUSION_PROPERTY(BlurSteps, int);
+
+  ///@{
+  /**
+   * The time integrator, see the class comment. FirstOrder is the paper's; SecondOrder (default) does
+   * not keep the bounds of the data at large time steps. Implicit is an error.
+   */
+  SURFACEDIFFUSION_CHOICE(TimeIntegrator);
+  void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }
+  void SetTimeIntegratorToSecondOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_SECOND_ORDER); }
+  ///@}
 
   /**
    * In addition to the superclass: Mode TimeSteps.

@@ -66,6 +66,7 @@ vtkHarmonicMapFilter::~vtkHarmonicMapFilter() = default;
 void vtkHarmonicMapFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
+  this->SetTimeIntegratorToFirstOrder();
   this->SetSchemeToExplicitReaction();
   this->SetConsistentReaction(false);
   this->SetProjectToSphere(true);
@@ -142,7 +143,7 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
 
 /// Moving vertices and computing normals need the whole surface, and so do line fields with missing
 /// values, whose initial values depend on the order of their neighbours.
-bool vtkHarmonicMapFilter::CanSolveInPieces(const std::vector<SurfaceBlock>& pieces)
+bool vtkHarmonicMapFilter::NeedsWholeSurface(const std::vector<SurfaceBlock>& pieces)
 {
   for (const SurfaceBlock& piece : pieces)
   {
@@ -153,17 +154,24 @@ bool vtkHarmonicMapFilter::CanSolveInPieces(const std::vector<SurfaceBlock>& pie
     }
     if (this->UsesNormals() && !block->GetPointData()->GetNormals())
     {
-      return false;
+      return true;
     }
     InputFields fields;
     Problems reportedLater;
     if (this->GetLineField() && this->FindFields(block, fields, reportedLater) &&
       ((fields.Mask && this->GetMaskMode() == MASK_MODE_INPAINT) || HasZeroOrNaN(fields.Data)))
     {
-      return false;
+      return true;
     }
   }
-  return this->Superclass::CanSolveInPieces(pieces);
+  return false;
+}
+
+bool vtkHarmonicMapFilter::SolvesInPieces(
+  const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points)
+{
+  return this->Superclass::SolvesInPieces(pieces, oneSurface, points) &&
+    !Processes(this->GetController()).Any(this->NeedsWholeSurface(pieces));
 }
 
 void vtkHarmonicMapFilter::PrintSelf(ostream& os, vtkIndent indent)

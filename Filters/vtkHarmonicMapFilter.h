@@ -155,6 +155,15 @@ public:
   SURFACEDIFFUSION_NUMBER(VolumeAfter, double);
   ///@}
 
+  ///@{
+  /**
+   * The time integrator. FirstOrder (default) is the only one, see Scheme; others are an error.
+   */
+  SURFACEDIFFUSION_CHOICE(TimeIntegrator);
+  void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }
+  void SetTimeIntegratorToSecondOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_SECOND_ORDER); }
+  ///@}
+
   /**
    * In addition to the superclass: Scheme ExplicitReaction, ConsistentReaction off, ProjectToSphere
    * on, LineField and MoveVertices off. Exponent does not change.
@@ -167,7 +176,8 @@ protected:
 
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
-  bool CanSolveInPieces(const std::vector<SurfaceBlock>& pieces) override;
+  bool SolvesInPieces(
+    const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points) override;
 
   bool UseAsNormals = true;
 
@@ -177,6 +187,7 @@ private:
 
   /// Whether no array is requested by name or as an attribute other than normals.
   bool UsesNormals();
+  bool NeedsWholeSurface(const std::vector<SurfaceBlock>& pieces);
   vtkDataArray* FindComputedNormals(vtkPolyData* block);
   bool IsNormals(const SurfaceDiffusion::InputFields& fields, vtkPolyData* block) const;
 };

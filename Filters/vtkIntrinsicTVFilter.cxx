@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIntrinsicTVFilter.h"
 
-#include "Run/TotalVariationSettings.h"
 #include "Run/OwnedSettings.h"
+#include "Run/TotalVariationSettings.h"
 
 #include "vtkObjectFactory.h"
 
@@ -20,6 +20,7 @@ vtkIntrinsicTVFilter::vtkIntrinsicTVFilter()
 void vtkIntrinsicTVFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
+  this->SetTimeIntegratorToFirstOrder();
   this->SetModeToTimeSteps();
   this->SetEdgeFunctionToTotalVariation();
   this->SetAcrossEdgeFunctionToSame();

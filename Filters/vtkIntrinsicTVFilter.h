@@ -106,7 +106,7 @@ public:
   /**
    * TimeSteps (default): NumberOfTimeSteps steps of TimeStep. SteadyState: the minimiser of the
    * energy, computed directly up to StopTolerance, without time steps and for TotalVariation
-   * without beta; it counts as one step. SteadyState needs EdgeFunction TotalVariation, Charbonnier
+   * without beta. SteadyState needs EdgeFunction TotalVariation, Charbonnier
    * or Constant and AcrossEdgeFunction Same, and is an error otherwise. On a connected component
    * without fidelity and without fixed values the minimiser is the mean.
    */
@@ -389,8 +389,16 @@ public:
    */
   SURFACEDIFFUSION_SWITCH(LinearLight);
 
-  /// Set TimeIntegrator to Implicit, see the class comment.
+  ///@{
+  /**
+   * The time integrator, see the class comment. FirstOrder (default) is the paper's. SecondOrder is an
+   * error.
+   */
+  SURFACEDIFFUSION_CHOICE(TimeIntegrator);
+  void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }
+  void SetTimeIntegratorToSecondOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_SECOND_ORDER); }
   void SetTimeIntegratorToImplicit() { this->SetTimeIntegrator(TIME_INTEGRATOR_IMPLICIT); }
+  ///@}
 
   /**
    * In addition to the superclass: Mode TimeSteps, EdgeFunction TotalVariation, AcrossEdgeFunction

@@ -9,7 +9,8 @@
  *     u_t = div(D grad u) + lambda chi (f - u),
  *
  * with the diffusion tensor D of each model and the indicator chi of the known part: 0 where data
- * are missing, 1 elsewhere. See vtkSurfaceDiffusionAlgorithm for arrays, units and time.
+ * are missing, 1 elsewhere. See vtkSurfaceModelAlgorithm for arrays and
+ * units, and vtkSurfaceDiffusionAlgorithm for time.
  *
  * **Fidelity per point or cell.** Input array 5, FidelityArray, is an optional array of one
  * component whose values w >= 0 multiply lambda, for data that are not equally reliable: with noise
@@ -86,7 +87,7 @@ public:
   SURFACEDIFFUSION_SWITCH(ResultOnCells);
 
   /**
-   * On (default): a result on cells is P* u + d, see vtkSurfaceDiffusionAlgorithm: the detail d that
+   * On (default): a result on cells is P* u + d, see vtkSurfaceModelAlgorithm: the detail d that
    * the points do not resolve, of white noise on triangles 87 %, diffuses beside u with the same
    * diffusion tensor and fidelity. A model that changes nothing returns f. With an L1 norm, lambda of
    * d is divided by the distance of the result to f; the models of colours take D and lambda of the

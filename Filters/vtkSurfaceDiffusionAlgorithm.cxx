@@ -2,148 +2,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
-#include "Conversion/InputArrays.h"
-#include "Conversion/NewArray.h"
-#include "Conversion/ResultWriter.h"
 #include "Conversion/RunState.h"
-#include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/TimeRequests.h"
-#include "Distributed/CellFlags.h"
-#include "Run/BlockSentences.h"
+#include "Distributed/Processes.h"
 
-#include "vtkCellData.h"
-#include "vtkDataArray.h"
-#include "vtkDataObject.h"
-#include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
-#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkPointData.h"
-#include "vtkPolyData.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
 
-#include <algorithm>
-#include <cmath>
+#include <optional>
 #include <utility>
 
 using namespace SurfaceDiffusion;
 
-namespace
-{
-
-/// One process solves a surface with at most this many points as fast as several processes do, and
-/// needs less than a GiB.
-constexpr double MaxGatheredPoints = 1e6;
-
-const std::vector<const char*> WordsOfPrecision = { "Single", "Double", "Input" };
-
-constexpr int DirectionIndex = 2;
-
-/// Where there is no direction, diffusion is isotropic.
-void ReplaceAbsentDirections(vtkPolyData* block, InputFields& fields)
-{
-  if (std::any_of(fields.Absent.begin(), fields.Absent.end(),
-        [](const AbsentArray& array) { return array.Index == DirectionIndex; }))
-  {
-    fields.NoDirection = NewArray<vtkDoubleArray>("", 3, block->GetNumberOfPoints());
-    fields.NoDirection->Fill(0.0);
-    fields.Direction = fields.NoDirection;
-  }
-}
-
-} // namespace
-
 vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm(OwnedSettings settings)
   : Superclass(std::move(settings))
-  , State(std::make_unique<RunState>())
+  , KnownLength(std::make_unique<RunLength>())
 {
-  this->SetNumberOfOutputPorts(2);
   this->DeclareNumber("TimeUnit", 1.0);
-  for (const char* const name : { "ValueRange", "NumberOfIterations", "Residual",
-         "NumberOfUnusedPoints", "NumberOfStepsComputed" })
-  {
-    this->DeclareNumber(name);
-  }
-  this->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::SCALARS);
+  this->DeclareNumber("NumberOfStepsComputed");
 }
 
 vtkSurfaceDiffusionAlgorithm::~vtkSurfaceDiffusionAlgorithm() = default;
 
-TimeSettings& vtkSurfaceDiffusionAlgorithm::GetRunSettings() const
+TimeSettings& vtkSurfaceDiffusionAlgorithm::GetTimeSettings() const
 {
   return static_cast<TimeSettings&>(this->GetSettings());
 }
 
-const char* vtkSurfaceDiffusionAlgorithm::GetOutputPrecisionAsString()
-{
-  const bool known = this->OutputPrecision >= 0 && this->OutputPrecision < 3;
-  return known ? WordsOfPrecision[this->OutputPrecision] : "Unknown";
-}
-
 void vtkSurfaceDiffusionAlgorithm::UsePaperScheme()
 {
-  this->SetTimeIntegratorToFirstOrder();
   this->SetIntrinsicDelaunay(false);
   this->SetMaskModeToInpaint();
 }
 
 double vtkSurfaceDiffusionAlgorithm::GetEffectiveTimeStep()
 {
-  return this->GetRunSettings().DescribeModel().TimeStep;
+  return this->GetTimeSettings().DescribeModel().TimeStep;
 }
 
-bool vtkSurfaceDiffusionAlgorithm::FindFields(
-  vtkPolyData* block, InputFields& fields, Problems& problems)
+/// Problems of the settings are reported at update, which then has no time.
+bool vtkSurfaceDiffusionAlgorithm::PublishesTimes() const
 {
-  const InputArrays inputs(this, block, fields, problems);
-  fields.Data =
-    inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents, fields.DataOnCells);
-  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
-  fields.Direction = inputs.Find(2, "DirectionArray", 3, fields.DirectionOnCells);
-  fields.Fixed = inputs.Find(3, "FixedArray", 1, fields.FixedOnCells);
-  return fields.Data != nullptr;
-}
-
-//------------------------------------------------------------------------------------------------
-int vtkSurfaceDiffusionAlgorithm::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  const char* const types[] = { "vtkDataObject", "vtkTable", "vtkPolyData" };
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), types[port]);
-  return 1;
-}
-
-int vtkSurfaceDiffusionAlgorithm::RequestDataObject(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  if (!this->Superclass::RequestDataObject(request, inputs, outputs))
-  {
-    return 0;
-  }
-  if (!vtkTable::GetData(outputs, 1))
-  {
-    vtkNew<vtkTable> table;
-    outputs->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), table);
-  }
-  if (this->GetNumberOfOutputPorts() > 2 && !vtkPolyData::GetData(outputs, 2))
-  {
-    vtkNew<vtkPolyData> curves;
-    outputs->GetInformationObject(2)->Set(vtkDataObject::DATA_OBJECT(), curves);
-  }
-  return 1;
+  TimeSettings& settings = this->GetTimeSettings();
+  Problems problems;
+  settings.Check(nullptr, problems);
+  return problems.empty() && settings.PublishesTimes();
 }
 
 int vtkSurfaceDiffusionAlgorithm::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  TimeSettings& settings = this->GetRunSettings();
-  Problems problems;
-  settings.Check(nullptr, problems);
-  if (settings.GenerateTimeSteps && problems.empty()) // problems are reported at update
+  if (this->PublishesTimes())
   {
-    PublishTimes(settings, this->State->KnownLength.Find(settings), outputs);
+    TimeSettings& settings = this->GetTimeSettings();
+    PublishTimes(settings, this->KnownLength->Find(settings), outputs);
   }
   return 1;
 }
@@ -151,7 +63,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestInformation(
 int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  if (this->GetGenerateTimeSteps())
+  if (this->PublishesTimes())
   {
     RequestFirstTime(inputs[0]->GetInformationObject(0));
   }
@@ -161,418 +73,29 @@ int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
 int vtkSurfaceDiffusionAlgorithm::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkTable* const table = vtkTable::GetData(outputs, 1);
-  table->Initialize();
-  vtkPolyData* const curves =
-    this->GetNumberOfOutputPorts() > 2 ? vtkPolyData::GetData(outputs, 2) : nullptr;
-  if (curves)
-  {
-    curves->Initialize();
-  }
   RunState& state = *this->State;
-  state.Settings = std::static_pointer_cast<TimeSettings>(this->Private->Properties.Copy());
-  state.SettingProblems.clear(); // reported with those of the arrays
-  state.Settings->Check(nullptr, state.SettingProblems);
-  const bool valid = state.SettingProblems.empty();
-  state.Time = valid ? FindRequestedTime(*state.Settings, request, outputs) : std::nullopt;
-  state.LastStep = -1;
+  state.ChooseStep = nullptr;
+  if (!this->PublishesTimes())
+  {
+    return this->Superclass::RequestData(request, inputs, outputs);
+  }
+  const std::optional<double> time = FindRequestedTime(request, outputs);
+  double last = -1.0; // not known, unless the run succeeds in this process
+  state.ChooseStep = [&](int found)
+  {
+    last = found;
+    return FindStep(static_cast<const TimeSettings&>(*state.Settings), time, found);
+  };
   const int result = this->Superclass::RequestData(request, inputs, outputs);
-  auto last = static_cast<double>(state.LastStep);
+  state.ChooseStep = nullptr;
   Processes(this->GetController()).Broadcast(&last, 1);
-  state.LastStep = static_cast<int>(last);
-  if (state.Table) // the update has succeeded
+  auto& settings = static_cast<TimeSettings&>(*state.Settings);
+  if (last >= 0.0 && this->KnownLength->Set(settings, static_cast<int>(last)))
   {
-    table->ShallowCopy(state.Table);
-    if (curves)
-    {
-      curves->ShallowCopy(state.Curves);
-    }
-  }
-  state.Table = nullptr;
-  state.Curves = nullptr;
-  state.History = History();
-  if (state.Settings->GenerateTimeSteps && valid)
-  {
-    this->UpdateTimes(outputs);
-  }
-  return result;
-}
-
-/// Publish the times of the run, which may have ended before its last step.
-void vtkSurfaceDiffusionAlgorithm::UpdateTimes(vtkInformationVector* outputs)
-{
-  RunState& state = *this->State;
-  TimeSettings& settings = *state.Settings;
-  if (state.LastStep >= 0 && state.KnownLength.Set(settings, state.LastStep))
-  {
-    PublishTimes(settings, state.LastStep, outputs);
+    PublishTimes(settings, static_cast<int>(last), outputs);
     this->Modified(); // filters downstream, which have not seen these times
   }
-  const int last = state.KnownLength.Find(settings);
-  SetDataTime(FindStep(settings, state.Time, last) * settings.DescribeModel().TimeStep, outputs);
-}
-
-int vtkSurfaceDiffusionAlgorithm::RunState::Length::Find(TimeSettings& settings) const
-{
-  const int steps = settings.DescribeModel().NumberOfSteps;
-  const bool isKnown = this->NumberOfSteps == steps &&
-    this->Surface == SettingsSnapshot(settings, SettingScope::Surface) &&
-    this->Model == SettingsSnapshot(settings, SettingScope::Model);
-  return isKnown ? this->LastStep : steps;
-}
-
-bool vtkSurfaceDiffusionAlgorithm::RunState::Length::Set(TimeSettings& settings, int last)
-{
-  const bool isNew = this->Find(settings) != last;
-  this->Surface = SettingsSnapshot(settings, SettingScope::Surface);
-  this->Model = SettingsSnapshot(settings, SettingScope::Model);
-  this->NumberOfSteps = settings.DescribeModel().NumberOfSteps;
-  this->LastStep = last;
-  return isNew;
-}
-
-void vtkSurfaceDiffusionAlgorithm::ReleaseCache()
-{
-  this->Superclass::ReleaseCache();
-  RunState& state = *this->State;
-  state.Run.Clear();
-  state.Inputs = BlockInputs();
-  state.Normals = {};
-}
-
-bool vtkSurfaceDiffusionAlgorithm::SolvesInPieces(
-  const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points)
-{
-  const SharedProcessGroup group(this->GetController());
-  const TimeSettings& settings = this->GetRunSettings();
-  if (group.GetProcesses().Count() == 1 || settings.Solver == SolverMethod::Direct ||
-    settings.IntrinsicDelaunay || settings.MergeCoincidentPoints ||
-    group.Any(!this->CanSolveInPieces(pieces)))
-  {
-    return false;
-  }
-  return oneSurface && points > 0.0 &&
-    (settings.Solver != SolverMethod::Automatic || points > MaxGatheredPoints);
-}
-
-bool vtkSurfaceDiffusionAlgorithm::CanSolveInPieces(const std::vector<SurfaceBlock>&)
-{
-  return this->GetRunSettings().DescribeModel().CanBeDistributed;
-}
-
-//------------------------------------------------------------------------------------------------
-void vtkSurfaceDiffusionAlgorithm::ProcessSurfaces(
-  const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
-{
-  RunState& state = *this->State;
-  const ProcessGroup& group = this->GetProcessGroup();
-  Problems problems = state.SettingProblems;
-  this->CheckSurfaceProperties(problems);
-  Require(this->OutputPrecision >= 0 && this->OutputPrecision < 3, Word::Setting("OutputPrecision"),
-    this->OutputPrecision, ListChoices("OutputPrecision", WordsOfPrecision), problems);
-
-  std::vector<SurfaceBlock> surfaces;
-  std::vector<InputFields> fields;
-  this->FindAllFields(this->SelectSurfaces(blocks, problems), surfaces, fields, problems);
-  if (this->ReportProblems(problems))
-  {
-    return;
-  }
-  try
-  {
-    NamingSettings(*state.Settings,
-      [&]
-      {
-        state.Run.Update(
-          this->MakeInputs(surfaces, fields), state.Settings, group, progress.Part(0.0, 0.25));
-        progress.Report(0.25);
-        double found = 0.25;
-        state.LastStep = state.Settings->DescribeModel().NumberOfSteps;
-        if (state.Settings->GenerateTimeSteps)
-        {
-          found = state.Settings->DescribeModel().MayEndEarly ? 0.65 : found;
-          state.LastStep = state.Run.FindLastStep(progress.Part(0.25, found));
-        }
-        state.Step = FindStep(*state.Settings, state.Time, state.LastStep);
-        // If at most one step is left to do, writing the result is much of the work.
-        const double written = state.Run.NumberOfStepsTo(state.Step) > 1 ? 0.95 : 0.7;
-        state.Run.Seek(state.Step, progress.Part(found, written));
-        progress.Report(written);
-      });
-    this->BeginWriting();
-    this->WriteResults(surfaces, fields);
-  }
-  catch (const Aborted&)
-  {
-    throw;
-  }
-  catch (...)
-  {
-    state.Run.Clear();
-    throw;
-  }
-  state.History = state.Run.MakeHistory(state.Step);
-  group.RunCollectively([&] { this->MakeTables(); });
-  this->TakeNumbers();
-  state.ForgetUnusedNormals();
-  std::vector<Warning> warnings = state.Run.FindWarnings(group);
-  if (!state.ReplacedArrays.empty())
-  {
-    warnings.push_back({ DescribeReplacement(state.ReplacedArrays), Fingerprint() });
-  }
-  for (const Sentence& sentence : state.InputWarnings)
-  {
-    warnings.push_back({ sentence, Fingerprint() });
-  }
-  this->ReportWarnings(std::move(warnings));
-}
-
-/// The outputs beside the surface, in process 0.
-void vtkSurfaceDiffusionAlgorithm::MakeTables()
-{
-  if (!this->GetProcessGroup().IsRoot())
-  {
-    return;
-  }
-  RunState& state = *this->State;
-  std::vector<const OutputList*> outputs;
-  for (std::size_t b = 0; b < state.Run.NumberOfBlocks(); ++b)
-  {
-    outputs.push_back(&state.Run.GetBlock(b).Outputs);
-  }
-  vtkNew<vtkTable> table;
-  if (!WriteColumns(outputs, table))
-  {
-    WriteHistory(state.History, table);
-  }
-  vtkNew<vtkPolyData> curves;
-  if (this->GetNumberOfOutputPorts() > 2)
-  {
-    WriteCurves(outputs, this->ResultArrayName, curves);
-  }
-  state.Table = table;
-  state.Curves = curves;
-}
-
-void vtkSurfaceDiffusionAlgorithm::WriteResults(
-  const std::vector<SurfaceBlock>& surfaces, const std::vector<InputFields>& fields)
-{
-  RunState& state = *this->State;
-  const ProcessGroup& group = this->GetProcessGroup();
-  state.ReplacedArrays.clear();
-  group.RunCollectively(
-    [&]
-    {
-      for (std::size_t b = 0; b < surfaces.size(); ++b)
-      {
-        if (!group.IsShared() || surfaces[b].Input->GetNumberOfPoints() > 0)
-        {
-          this->WriteResult(b, fields[b], surfaces[b].Output);
-        }
-      }
-    });
-  this->WriteFidelityWeights(surfaces);
-  for (std::size_t b = 0; group.IsShared() && b < surfaces.size(); ++b)
-  {
-    state.Inputs.GetDecomposition()->UpdateCopies(
-      surfaces[b].Input->GetPointData(), surfaces[b].Output->GetPointData());
-  }
-}
-
-/// If blocks have different weights, which AutomaticFidelity finds, each has its own as field data.
-void vtkSurfaceDiffusionAlgorithm::WriteFidelityWeights(const std::vector<SurfaceBlock>& surfaces)
-{
-  const auto weightOf = [&](std::size_t b)
-  {
-    return SurfaceDiffusion::FindNumber(
-      this->State->Run.GetBlock(b).Outputs, "EffectiveFidelityWeight");
-  };
-  bool differ = false;
-  for (std::size_t b = 1; b < surfaces.size(); ++b)
-  {
-    differ = differ || weightOf(b) != weightOf(0);
-  }
-  const std::string name = this->ResultArrayName + "EffectiveFidelityWeight";
-  for (std::size_t b = 0; differ && b < surfaces.size(); ++b)
-  {
-    vtkFieldData* const data = surfaces[b].Output->GetFieldData();
-    if (data->HasArray(name.c_str()))
-    {
-      this->State->ReplacedArrays.push_back(name);
-    }
-    const auto weight = NewArray<vtkDoubleArray>(name, 1, 1);
-    weight->SetValue(0, weightOf(b));
-    data->AddArray(weight);
-  }
-}
-
-/// The surfaces with data, their fields, and the problems of both. Blocks without data pass through
-/// if at least one block has data.
-void vtkSurfaceDiffusionAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& blocks,
-  std::vector<SurfaceBlock>& surfaces, std::vector<InputFields>& fields, Problems& problems)
-{
-  BlockSentences problemsOfData, problemsOfBlocks;
-  std::vector<std::string> names;
-  std::vector<Problems> found;
-  for (const SurfaceBlock& block : blocks)
-  {
-    InputFields arrays;
-    Problems here;
-    const bool takesPart = this->GetProcessGroup().IsShared() &&
-      block.Input->GetNumberOfPoints() == 0; // in collective calls
-    if (takesPart || this->FindFields(block.Input, arrays, here))
-    {
-      arrays.GlobalIds = block.Input->GetPointData()->GetGlobalIds();
-      surfaces.push_back(block);
-      fields.push_back(arrays);
-      found.push_back(here);
-      names.push_back(block.Name);
-      continue;
-    }
-    for (const AbsentArray& array : arrays.Absent)
-    {
-      here.push_back(array.Problem);
-    }
-    problemsOfData.Add(here, block.Name);
-  }
-  std::vector<Sentence>& warnings = this->State->InputWarnings;
-  warnings.clear();
-  problemsOfData.AppendTo(warnings, blocks.size());
-  if (surfaces.empty())
-  {
-    problems.insert(problems.end(), warnings.begin(), warnings.end());
-    return;
-  }
-  for (Sentence& warning : warnings)
-  {
-    warning << " (without data, a block passes through)";
-  }
-  const std::size_t before = problems.size();
-  SettleAbsence(fields, names, problems, warnings);
-  const bool allAreFound = problems.size() == before;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    ReplaceAbsentDirections(surfaces[b].Input, fields[b]);
-    // An array that is not found would be reported as not set, too.
-    if (found[b].empty() && allAreFound && surfaces[b].Input->GetNumberOfPoints() > 0)
-    {
-      const FieldSummary summary = fields[b].Summarize();
-      this->State->Settings->Check(&summary, found[b]);
-    }
-    problemsOfBlocks.Add(found[b], names[b]);
-  }
-  problemsOfBlocks.AppendTo(problems, surfaces.size());
-}
-
-std::vector<BlockInput> vtkSurfaceDiffusionAlgorithm::MakeInputs(
-  const std::vector<SurfaceBlock>& surfaces, const std::vector<InputFields>& fields)
-{
-  std::vector<SurfaceInput> inputs;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-  }
-  const bool excludes = this->GetMaskMode() == MASK_MODE_EXCLUDE;
-  return this->GetProcessGroup().IsShared()
-    ? this->State->Inputs.MakeOfPieces(
-        inputs, excludes, this->SeamTolerance, this->GetController(), this->Private->AbortRequested)
-    : this->State->Inputs.Make(inputs, excludes);
-}
-
-void vtkSurfaceDiffusionAlgorithm::WriteResult(
-  std::size_t index, const InputFields& fields, vtkPolyData* output)
-{
-  RunState& state = *this->State;
-  const Run::Block& block = state.Run.GetBlock(index);
-  OutputSource source{ *block.Surface, SMPParallelFor::Instance() };
-  source.NumberOfCells = output->GetNumberOfCells();
-  source.CellOf = [&cells = state.Inputs.CellsOf(index)](Index t)
-  { return cells[static_cast<std::size_t>(t)]; };
-  const int type = this->FindResultType(fields);
-  if (vtkDataArray* const data = fields.Data)
-  {
-    source.ReadData = [data] { return ReadValues(data); };
-    source.DataAreFloats = data->GetDataType() == VTK_FLOAT || data->GetDataType() == VTK_DOUBLE;
-    source.AsBytes = type == VTK_UNSIGNED_CHAR;
-  }
-  source.Block = &block;
-  source.Traits = state.Settings->DescribeModel();
-  WriteOutputs(block.Outputs, source,
-    { output, fields, this->ResultArrayName, type, fields.Data, state.ReplacedArrays });
-}
-
-/// Vertices, lines and hidden cells keep their value, as those of a surface in one piece do.
-void vtkSurfaceDiffusionAlgorithm::CompletePiece(const SurfaceBlock& piece)
-{
-  const auto isNew = [&](int array)
-  {
-    vtkAbstractArray* const after = piece.Output->GetCellData()->GetAbstractArray(array);
-    return piece.Input->GetCellData()->GetAbstractArray(after->GetName()) != after;
-  };
-  bool hasNew = false;
-  for (int a = 0; a < piece.Output->GetCellData()->GetNumberOfArrays(); ++a)
-  {
-    hasNew = hasNew || isNew(a);
-  }
-  InputFields fields;
-  Problems reportedAlready;
-  if (!hasNew || !this->FindFields(piece.Input, fields, reportedAlready) || !fields.DataOnCells ||
-    !this->GetRunSettings().DescribeModel().ResultOnCells)
-  {
-    return;
-  }
-  const char* const name = fields.Data->GetName();
-  const std::string resultName = this->ResultArrayName.empty()
-    ? (name ? name : "") + std::string(this->GetRunSettings().DescribeModel().ResultSuffix)
-    : this->ResultArrayName;
-  vtkDataArray* const result = piece.Output->GetCellData()->GetArray(resultName.c_str());
-  if (!result || result == fields.Data)
-  {
-    return;
-  }
-  const std::vector<unsigned char> flags = FindCellFlags(piece.Input);
-  const vtkIdType polygons = piece.Input->GetNumberOfVerts() + piece.Input->GetNumberOfLines();
-  for (vtkIdType c = 0; c < result->GetNumberOfTuples(); ++c)
-  {
-    const bool isHidden = !flags.empty() &&
-      (flags[static_cast<std::size_t>(c)] & vtkDataSetAttributes::HIDDENCELL) != 0;
-    for (int k = 0; (c < polygons || isHidden) && k < result->GetNumberOfComponents(); ++k)
-    {
-      result->SetComponent(c, k, fields.Data->GetComponent(c, k));
-    }
-  }
-}
-
-int vtkSurfaceDiffusionAlgorithm::FindResultType(const InputFields& fields) const
-{
-  const bool likeData = this->OutputPrecision == OUTPUT_PRECISION_INPUT && fields.Data;
-  const int inputType = likeData ? fields.Data->GetDataType() : VTK_DOUBLE;
-  if (inputType == VTK_UNSIGNED_CHAR || inputType == VTK_FLOAT)
-  {
-    return inputType;
-  }
-  return this->OutputPrecision == OUTPUT_PRECISION_SINGLE ? VTK_FLOAT : VTK_DOUBLE;
-}
-
-void vtkSurfaceDiffusionAlgorithm::TakeNumbers()
-{
-  const RunState& state = *this->State;
-  auto& numbers = this->Private->Numbers;
-  numbers = FindNumbers(state.Run);
-  for (const auto& [name, number] :
-    { std::pair{ "NumberOfIterations", static_cast<double>(state.History.NumberOfIterations()) },
-      std::pair{ "Residual", state.History.LargestResidual() },
-      std::pair{ "NumberOfUnusedPoints",
-        static_cast<double>(state.Run.CountUnusedPoints(this->GetProcessGroup())) },
-      std::pair{
-        "NumberOfStepsComputed", static_cast<double>(state.Run.NumberOfStepsComputed()) } })
-  {
-    numbers[name] = Values::Constant(1, 1, number);
-  }
-}
-
-void vtkSurfaceDiffusionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "OutputPrecision: " << this->GetOutputPrecisionAsString() << "\n";
+  const int step = FindStep(settings, time, this->KnownLength->Find(settings));
+  SetDataTime(step * settings.DescribeModel().TimeStep, outputs);
+  return result;
 }

@@ -33,7 +33,7 @@
  * that has succeeded or was aborted). The output is the unchanged input. The next update tries again
  * and reports the error again, until something has changed.
  *
- * @sa vtkSurfaceDiffusionAlgorithm vtkSurfaceDirectionFieldFilter
+ * @sa vtkSurfaceModelAlgorithm vtkSurfaceDiffusionAlgorithm vtkSurfaceDirectionFieldFilter
  */
 #ifndef vtkSurfaceFilter_h
 #define vtkSurfaceFilter_h

@@ -52,8 +52,7 @@
  * minimised over in turn until no mean changes by more than a thousandth of their range. E never
  * rises. For given means or data terms u is the global minimiser up to the tolerance. The
  * relaxation is exact for K = 2. With AutomaticMeans the result is a local minimum. The result is a
- * steady state, in one step: TimeStep and NumberOfTimeSteps have no effect, and with
- * GenerateTimeSteps the first time shows the labels of the smallest data terms.
+ * steady state: there are no time steps.
  *
  * **Output.** Port 0: the input with the point arrays `RegionId` (int, 1 to K, 0 at points of no
  * participating triangle; active), `RegionProbability` (u, K components) and, unless data terms are
@@ -76,16 +75,16 @@
 #ifndef vtkSurfaceSegmentationFilter_h
 #define vtkSurfaceSegmentationFilter_h
 
-#include "vtkSurfaceDiffusionAlgorithm.h"
+#include "vtkSurfaceModelAlgorithm.h"
 
 #include <map> // for means
 #include <utility> // for means
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceSegmentationFilter : public vtkSurfaceDiffusionAlgorithm
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceSegmentationFilter : public vtkSurfaceModelAlgorithm
 {
 public:
   static vtkSurfaceSegmentationFilter* New();
-  vtkTypeMacro(vtkSurfaceSegmentationFilter, vtkSurfaceDiffusionAlgorithm);
+  vtkTypeMacro(vtkSurfaceSegmentationFilter, vtkSurfaceModelAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -138,7 +137,7 @@ public:
   /**
    * The duality gap at which the minimisation stops, relative to E - lambda int chi min_k r_k, the
    * part of E that depends on u. In (0, 1). Default: 1e-3. A warning reports the gap if 10,000
-   * iterations do not reach it. Solver, Tolerance and MaximumNumberOfIterations have no effect.
+   * iterations do not reach it.
    */
   SURFACEDIFFUSION_PROPERTY(StopTolerance, double);
 

@@ -36,7 +36,7 @@
  *
  * The unit of time in natural units is h^2 (h the mean edge length). Steps are semi-implicit: each
  * takes D and m at the old level and solves one linear system for the change of u. The solve ends at
- * Tolerance (default: 1e-3). FirstOrder is the only TimeIntegrator. A step of Beltrami costs about as
+ * Tolerance (default: 1e-3). A step of Beltrami costs about as
  * much as one of vtkIntrinsicTVFilter. One of CoherenceEnhancing costs about ten times as
  * much, since the structure tensor lives on edges.
  *

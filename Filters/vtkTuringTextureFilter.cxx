@@ -31,6 +31,7 @@ vtkTuringTextureFilter::vtkTuringTextureFilter()
 void vtkTuringTextureFilter::UsePaperScheme()
 {
   this->Superclass::UsePaperScheme();
+  this->SetTimeIntegratorToFirstOrder();
   this->SetKineticsToTuring();
 }
 

@@ -291,6 +291,16 @@ public:
   SURFACEDIFFUSION_NUMBER(CoarseStartVertices, vtkIdType);
   ///@}
 
+  ///@{
+  /**
+   * The time integrator, see the class comment. FirstOrder is the paper's. SecondOrder (default) is
+   * more accurate. Implicit is an error.
+   */
+  SURFACEDIFFUSION_CHOICE(TimeIntegrator);
+  void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }
+  void SetTimeIntegratorToSecondOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_SECOND_ORDER); }
+  ///@}
+
   /**
    * In addition to the superclass: Kinetics Turing.
    */

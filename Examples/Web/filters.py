@@ -124,8 +124,7 @@ def run_regions(mesh, data, options, progress):
         settings.update(fidelity_weight=options["weight"], automatic_fidelity=False)
     result = sd.segment(mesh.surface, data, progress=progress, **settings)
     areas = ", ".join(f"{area:.4g}" for area in result.areas)
-    return Outcome(result.values, {"Region": result.values}, history=result.history, labels=True,
-                   note=f"areas {areas}")
+    return Outcome(result.values, {"Region": result.values}, labels=True, note=f"areas {areas}")
 
 
 def run_normals(mesh, data, options, progress):

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "vtkSurfaceDiffusionAlgorithm.h"
+#include "vtkSurfaceModelAlgorithm.h"
 
 #include "Conversion/BlockInputs.h"
 #include "Conversion/SMPParallelFor.h"
@@ -16,13 +16,13 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-/// The state of vtkSurfaceDiffusionAlgorithm that its header hides.
-struct vtkSurfaceDiffusionAlgorithm::RunState
+/// The state of vtkSurfaceModelAlgorithm that its header hides.
+struct vtkSurfaceModelAlgorithm::RunState
 {
   SurfaceDiffusion::Run Run{ SurfaceDiffusion::SMPParallelFor::Instance() };
   SurfaceDiffusion::BlockInputs Inputs;
@@ -47,28 +47,15 @@ struct vtkSurfaceDiffusionAlgorithm::RunState
     }
   }
 
-  /// The last step of a run, which may have ended early, and the settings of that run.
-  struct Length
-  {
-    SurfaceDiffusion::SettingsSnapshot Surface, Model;
-    int NumberOfSteps = -1;
-    int LastStep = -1;
-
-    /// The last step of a run with these settings, as far as it is known.
-    int Find(SurfaceDiffusion::TimeSettings& settings) const;
-    /// Remember the last step. Returns whether it was another one.
-    bool Set(SurfaceDiffusion::TimeSettings& settings, int last);
-  } KnownLength;
-
   // Of one update:
-  std::shared_ptr<SurfaceDiffusion::TimeSettings> Settings;
+  std::shared_ptr<SurfaceDiffusion::RunSettings> Settings;
   SurfaceDiffusion::Problems SettingProblems;
   std::vector<SurfaceDiffusion::Sentence>
     InputWarnings; ///< about arrays that some blocks do not have
   std::vector<std::string> ReplacedArrays; ///< of the input, by results
-  std::optional<double> Time; ///< the requested time
-  int Step = 0; ///< the requested step
-  int LastStep = -1; ///< of the run; -1 if it is not known
+  /// The step of the output in a run that ends at step `last`; null: the last one.
+  std::function<int(int last)> ChooseStep;
+  int Step = 0; ///< of the output
   SurfaceDiffusion::History History;
   vtkSmartPointer<vtkTable> Table; ///< null until the update has succeeded, in process 0
   vtkSmartPointer<vtkPolyData> Curves;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/TimeRequests.h"
 
-#include "Run/RunSettings.h"
-
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -45,19 +43,15 @@ void RequestFirstTime(vtkInformation* input)
   }
 }
 
-std::optional<double> FindRequestedTime(
-  const TimeSettings& settings, vtkInformation* request, vtkInformationVector* outputs)
+std::optional<double> FindRequestedTime(vtkInformation* request, vtkInformationVector* outputs)
 {
-  if (settings.GenerateTimeSteps)
+  const int port = request->Has(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT())
+    ? std::max(0, request->Get(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT()))
+    : 0;
+  vtkInformation* const info = outputs->GetInformationObject(port);
+  if (info->Has(Pipeline::UPDATE_TIME_STEP()))
   {
-    const int port = request->Has(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT())
-      ? std::max(0, request->Get(vtkDemandDrivenPipeline::FROM_OUTPUT_PORT()))
-      : 0;
-    vtkInformation* const info = outputs->GetInformationObject(port);
-    if (info->Has(Pipeline::UPDATE_TIME_STEP()))
-    {
-      return info->Get(Pipeline::UPDATE_TIME_STEP());
-    }
+    return info->Get(Pipeline::UPDATE_TIME_STEP());
   }
   return std::nullopt;
 }
@@ -75,6 +69,25 @@ void SetDataTime(double time, vtkInformationVector* outputs)
       ->GetInformation()
       ->Set(vtkDataObject::DATA_TIME_STEP(), time);
   }
+}
+
+int RunLength::Find(TimeSettings& settings) const
+{
+  const int steps = settings.DescribeModel().NumberOfSteps;
+  const bool isKnown = this->NumberOfSteps == steps &&
+    this->Surface == SettingsSnapshot(settings, SettingScope::Surface) &&
+    this->Model == SettingsSnapshot(settings, SettingScope::Model);
+  return isKnown ? this->LastStep : steps;
+}
+
+bool RunLength::Set(TimeSettings& settings, int last)
+{
+  const bool isNew = this->Find(settings) != last;
+  this->Surface = SettingsSnapshot(settings, SettingScope::Surface);
+  this->Model = SettingsSnapshot(settings, SettingScope::Model);
+  this->NumberOfSteps = settings.DescribeModel().NumberOfSteps;
+  this->LastStep = last;
+  return isNew;
 }
 
 } // namespace SurfaceDiffusion

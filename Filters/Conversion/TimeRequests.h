@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Run/RunSettings.h"
+
 #include <optional>
 
 class vtkInformation;
@@ -10,8 +12,6 @@ class vtkInformationVector;
 namespace SurfaceDiffusion
 {
 
-struct TimeSettings;
-
 /// Declare the published times of a run that ends at step `last` at all output ports.
 void PublishTimes(const TimeSettings& settings, int last, vtkInformationVector* outputs);
 
@@ -19,15 +19,28 @@ void PublishTimes(const TimeSettings& settings, int last, vtkInformationVector* 
 /// time is a diffusion time, which has no meaning upstream.
 void RequestFirstTime(vtkInformation* input);
 
-/// The time that is requested from the output port that `request` comes from, with
-/// GenerateTimeSteps.
-std::optional<double> FindRequestedTime(
-  const TimeSettings& settings, vtkInformation* request, vtkInformationVector* outputs);
+/// The time that is requested from the output port that `request` comes from.
+std::optional<double> FindRequestedTime(vtkInformation* request, vtkInformationVector* outputs);
 
 /// The step for a requested time of a run that ends at step `last`, which answers no time, too.
 int FindStep(const TimeSettings& settings, const std::optional<double>& time, int last);
 
 /// Set the time of the data at all output ports.
 void SetDataTime(double time, vtkInformationVector* outputs);
+
+/// The last step of a run, which may have ended early, with the settings of that run.
+class RunLength
+{
+public:
+  /// The last step of a run with these settings, as far as it is known.
+  int Find(TimeSettings& settings) const;
+  /// Remember the last step. Returns whether it was another one.
+  bool Set(TimeSettings& settings, int last);
+
+private:
+  SettingsSnapshot Surface, Model;
+  int NumberOfSteps = -1;
+  int LastStep = -1;
+};
 
 } // namespace SurfaceDiffusion

@@ -13,6 +13,7 @@ namespace SurfaceDiffusion
 /// u_t = div(|grad u|^(p-2) grad u) + u |grad u|^p + lambda chi (f - u), |u| = 1: (20), (21).
 struct HarmonicMapSettings : DataSettings
 {
+  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
   double Exponent = 1.0;
   double Beta = 1e-6;
   HarmonicMap::Scheme Scheme = HarmonicMap::Scheme::TangentPlane;
@@ -28,7 +29,6 @@ struct HarmonicMapSettings : DataSettings
   std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
-  std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:

@@ -17,6 +17,7 @@ namespace SurfaceDiffusion
 void HeatSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false });
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
                    "infinite time, in one solve. It is the harmonic function of the fixed or "

@@ -18,23 +18,19 @@ enum class HeatMode
 struct HeatSettings : DataSettings
 {
   HeatMode Mode = HeatMode::TimeSteps;
+  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder;
   double FWHM = 0.0; ///< in coordinate units; 0: TimeStep is used
   bool AutomaticFidelity = false;
   double NoiseLevel = 0.0;
   BlurSettings Blur;
 
-  HeatSettings()
-  {
-    this->TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder;
-    this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic;
-  }
+  HeatSettings() { this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic; }
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
 
 protected:
-  std::vector<bool> AllowedIntegrators() const override { return { true, true, false }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:

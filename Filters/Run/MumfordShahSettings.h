@@ -37,8 +37,6 @@ struct MumfordShahSettings : DataSettings
   std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
-  std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
-
 private:
   double EdgeCost(const UnitSystem& units, double jump, double length) const;
   /// Set lambda and beta. Both return the longest SmoothingLength, in the unit of the mesh.

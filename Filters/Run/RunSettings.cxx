@@ -97,8 +97,6 @@ void TimeSettings::Visit(SettingVisitor& visitor)
                     "Memory, in MiB, for stored states, which make going back in time cheap." },
     this->CheckpointMemoryLimit, SettingRange::AtLeast(0.0, "0 or more MiB"));
   this->RunSettings::Visit(visitor);
-  visitor.Choice({ "TimeIntegrator", "", "The time integrator." }, this->TimeIntegrator,
-    { "FirstOrder", "SecondOrder", "Implicit" }, this->AllowedIntegrators());
   visitor.Choice({ "Solver", "",
                    "The linear solver. Direct: sparse Cholesky factorisation, reused while the "
                    "matrix is unchanged. ConjugateGradient: conjugate gradients with a Jacobi "
@@ -119,7 +117,7 @@ void TimeSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
 {
   const bool rangesHold = problems.empty();
   this->RunSettings::CheckTogether(fields, problems);
-  if (this->GenerateTimeSteps && rangesHold)
+  if (rangesHold && this->PublishesTimes())
   {
     const double times =
       std::ceil(static_cast<double>(this->DescribeModel().NumberOfSteps) / this->OutputInterval);
@@ -140,7 +138,7 @@ ModelTraits TimeSettings::DescribeSteps(bool steady) const
   traits.Solver = this->Solver;
   traits.Limits.Tolerance = this->Tolerance;
   traits.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
-  if (this->GenerateTimeSteps)
+  if (this->GenerateTimeSteps && !steady)
   {
     traits.CheckpointMemory = static_cast<std::size_t>(this->CheckpointMemoryLimit) * 1024 * 1024;
   }
@@ -182,6 +180,13 @@ void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance)
                    "coordinates. 0: only points with equal coordinates.",
                    SettingScope::Surface },
     tolerance, SettingRange::NonNegative());
+}
+
+void VisitTimeIntegrator(
+  SettingVisitor& visitor, TimeIntegrator& integrator, const std::vector<bool>& allowed)
+{
+  visitor.Choice({ "TimeIntegrator", "", "The time integrator." }, integrator,
+    { "FirstOrder", "SecondOrder", "Implicit" }, allowed);
 }
 
 void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)

@@ -135,21 +135,20 @@ struct TimeSettings : RunSettings
   bool GenerateTimeSteps = false;
   int OutputInterval = 1;
   int CheckpointMemoryLimit = 512;
-  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
   SolverMethod Solver = SolverMethod::Automatic;
   double Tolerance = 1e-10;
   int MaximumNumberOfIterations = 1000;
 
   void Visit(SettingVisitor& visitor) override;
 
+  /// Whether there are published times.
+  bool PublishesTimes() const { return this->GenerateTimeSteps && !this->DescribeModel().IsSteady; }
   /// The times of the published states of a run that ends at step `last`, in the unit of TimeStep.
   std::vector<double> PublishedTimes(int last) const;
   /// The step of the last of them at or before `time`.
   int FindStep(double time, int last) const;
 
 protected:
-  /// The time integrators that the model has.
-  virtual std::vector<bool> AllowedIntegrators() const = 0;
   /// The traits that follow from these settings. steady: whether the others ask for the steady state
   /// in one step.
   ModelTraits DescribeSteps(bool steady = false) const;
@@ -179,6 +178,10 @@ protected:
 
 /// The settings MergeCoincidentPoints and MergeTolerance.
 void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance);
+
+/// The setting TimeIntegrator of a model with these time integrators.
+void VisitTimeIntegrator(
+  SettingVisitor& visitor, TimeIntegrator& integrator, const std::vector<bool>& allowed);
 
 /// The setting ResultOnCells.
 void VisitResultOnCells(SettingVisitor& visitor, bool& onCells);

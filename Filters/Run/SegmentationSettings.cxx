@@ -181,7 +181,7 @@ void WarnOfEmptyRegions(const std::vector<Index>& components, RunResult& result)
 
 void SegmentationSettings::Visit(SettingVisitor& visitor)
 {
-  this->TimeSettings::Visit(visitor);
+  this->RunSettings::Visit(visitor);
   visitor.Integer(
     { "NumberOfRegions", "", "K, the number of regions, 2 or more. Regions can come out empty." },
     this->NumberOfRegions, SettingRange::Between(2.0, LargestNumberOfRegions, "2 to 1000"));
@@ -221,7 +221,7 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
 
 void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
 {
-  this->TimeSettings::CheckTogether(fields, problems);
+  this->RunSettings::CheckTogether(fields, problems);
   RequireData(fields, problems);
   if (!fields || !fields->Data)
   {
@@ -248,9 +248,8 @@ void SegmentationSettings::CheckTogether(const FieldSummary* fields, Problems& p
 
 ModelTraits SegmentationSettings::DescribeModel() const
 {
-  ModelTraits traits = this->DescribeSteps(true);
+  ModelTraits traits;
   traits.ResultSuffix = "Segmented";
-  traits.AbsoluteTime = true; // no model time
   traits.Energy = { 1.0, 0.0 };
   traits.StateHasUnitOfValues = false;
   traits.UsesFidelity = true;

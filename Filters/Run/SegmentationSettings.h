@@ -9,9 +9,8 @@
 namespace SurfaceDiffusion
 {
 
-/// Regions by the convex Chan-Vese and Potts models, see Segmentation: the steady state, in one
-/// step.
-struct SegmentationSettings : TimeSettings
+/// Regions by the convex Chan-Vese and Potts models, see Segmentation: the steady state.
+struct SegmentationSettings : RunSettings
 {
   int NumberOfRegions = 2;
   bool AutomaticFidelity = true;
@@ -28,7 +27,6 @@ struct SegmentationSettings : TimeSettings
   std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
-  std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 };
 

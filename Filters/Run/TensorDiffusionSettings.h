@@ -43,7 +43,6 @@ struct TensorDiffusionSettings : DataSettings
   std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
-  std::vector<bool> AllowedIntegrators() const override { return { true, false, false }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:

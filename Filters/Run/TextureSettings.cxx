@@ -79,6 +79,7 @@ std::unique_ptr<ReactionDiffusion> MakeCoarseModel(CoarseSpace& space, const Mod
 void TextureSettings::Visit(SettingVisitor& visitor)
 {
   this->TimeSettings::Visit(visitor);
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false });
   visitor.Choice({ "Kinetics", "",
                    "The reaction terms F, G. Turing: gamma - u1 u2, u1 u2 - u2 - mu. "
                    "Schnakenberg: b - u1 u2^2, a - u2 + u1 u2^2. GrayScott: 25 (f (1 - u1) - u1 "
@@ -177,7 +178,6 @@ void TextureSettings::Visit(SettingVisitor& visitor)
 
 TextureSettings::TextureSettings()
 {
-  this->TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder;
   this->TimeStep = 1.0 / 16.0;
   this->NumberOfTimeSteps = 640;
   for (int k = 0; k < NumberOfKinetics; ++k)

@@ -14,6 +14,7 @@ namespace SurfaceDiffusion
 /// Reaction-diffusion of two chemicals, u_t = div(D grad u) + F(u): (22) to (24).
 struct TextureSettings : TimeSettings
 {
+  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder;
   KineticsName Kinetics = KineticsName::Turing;
   double ReactionRate = 1.0;
   double DiffusionRate1 = 21.0;
@@ -44,7 +45,6 @@ struct TextureSettings : TimeSettings
   double EffectiveTimeStep() const;
 
 protected:
-  std::vector<bool> AllowedIntegrators() const override { return { true, true, false }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:

@@ -28,6 +28,7 @@ enum class Discretization
 struct TotalVariationSettings : DataSettings
 {
   TotalVariationMode Mode = TotalVariationMode::TimeSteps;
+  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
   EdgeFunctionKind EdgeFunction = EdgeFunctionKind::TotalVariation;
   int AcrossEdgeFunction = 0; ///< 0: the same; k: the edge function k - 1
   double Beta = 1e-6;
@@ -64,7 +65,6 @@ struct TotalVariationSettings : DataSettings
   }
 
 protected:
-  std::vector<bool> AllowedIntegrators() const override { return { true, false, true }; }
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:

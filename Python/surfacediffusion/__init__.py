@@ -42,8 +42,8 @@ from ._functions import (
 )
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, RegionBoundary, Result,
-    SegmentationResult, TensorDiffusionResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, ModelResult, RegionBoundary,
+    Result, SegmentationResult, TensorDiffusionResult, TextureResult,
 )
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
@@ -53,7 +53,7 @@ __version__ = _version("surfacediffusion")
 
 __all__ = [
     "DiffusionResult", "EdgeResult", "FWHMEstimate", "HarmonicMapResult", "MeshDenoisingResult",
-    "RegionBoundary", "Result", "SegmentationResult", "Surface", "SurfaceDiffusionWarning",
+    "ModelResult", "RegionBoundary", "Result", "SegmentationResult", "Surface", "SurfaceDiffusionWarning",
     "TensorDiffusionResult", "TextureResult", "denoise_mesh", "direction_field", "estimate_fwhm",
     "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
     "set_number_of_threads", "smooth_to_fwhm", "sphere", "tensor_diffusion", "turing_texture",

@@ -12,14 +12,48 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
-class Result:
-    """A state of a run. ``numpy.asarray(result)`` is `values`.
+class ModelResult:
+    """The result of a model. ``numpy.asarray(result)`` is `values`.
 
     Attributes
     ----------
     values : ndarray
         The result at the points, or at the faces if the data are on faces and `result_on_faces` is
         on, with as many dimensions as the input.
+    warnings : list of str
+        Everything that was also given as a Python warning.
+    mean_edge_length : float
+        h, in coordinate units.
+    value_range : float
+        R, in array units.
+    number_of_unused_points : int
+        The points that no triangle uses and that keep their values, without those that the mask
+        excludes.
+    number_of_iterations : int
+        The iterations of all solves together; 0 for direct solvers.
+    """
+
+    #: The outputs that `values` are the columns of; none: the result of the data.
+    VALUES: ClassVar[tuple[str, ...]] = ()
+
+    values: NDArray[Any]
+    warnings: list[str] = field(repr=False)
+    mean_edge_length: float = field(repr=False)
+    value_range: float = field(repr=False)
+    number_of_unused_points: int = field(repr=False)
+    number_of_iterations: int = field(repr=False)
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+
+@dataclass(frozen=True)
+class Result(ModelResult):
+    """A state of a run in time steps: a :class:`ModelResult` with
+
+    Attributes
+    ----------
     step : int
         The number of time steps done.
     time : float
@@ -31,31 +65,14 @@ class Result:
         surface, sum of A_i u_i, in coordinate and array units); ``"Energy"``; ``"Iterations"``,
         ``"Residual"`` and ``"Seconds"`` of each step; for textures ``"Clamped"``; for minimisers of
         total variation ``"ErrorBound"``, a bound of the RMS error of the values.
-    warnings : list of str
-        Everything that was also given as a Python warning.
     time_unit : float
         The unit of times in coordinate and array units; 1 if times are absolute.
-    mean_edge_length : float
-        h, in coordinate units.
-    value_range : float
-        R, in array units.
-    number_of_unused_points : int
-        The points that no triangle uses and that keep their values, without those that the mask
-        excludes.
     """
 
-    #: The outputs that `values` are the columns of; none: the result of the data.
-    VALUES: ClassVar[tuple[str, ...]] = ()
-
-    values: NDArray[Any]
     step: int
     time: float
     history: dict[str, NDArray[Any]] = field(repr=False)
-    warnings: list[str] = field(repr=False)
     time_unit: float = field(repr=False)
-    mean_edge_length: float = field(repr=False)
-    value_range: float = field(repr=False)
-    number_of_unused_points: int = field(repr=False)
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -63,18 +80,9 @@ class Result:
         return self.history["Time"]
 
     @property
-    def number_of_iterations(self) -> int:
-        """The iterations of all solves together; 0 for direct solvers."""
-        return int(self.history["Iterations"].sum())
-
-    @property
     def residual(self) -> float:
         """The largest relative residual of a solve."""
         return float(self.history["Residual"].max())
-
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
-        return array.copy() if copy else array
 
 
 @dataclass(frozen=True)
@@ -252,9 +260,9 @@ class RegionBoundary:
 
 
 @dataclass(frozen=True)
-class SegmentationResult(Result):
-    """A state of :func:`segment`: a :class:`Result` whose `values` (n,) are the labels 1 to K of the
-    points, 0 at points that take no part, with
+class SegmentationResult(ModelResult):
+    """The result of :func:`segment`: a :class:`ModelResult` whose `values` (n,) are the labels 1 to K
+    of the points, 0 at points that take no part, with
 
     Attributes
     ----------

@@ -263,6 +263,7 @@ class Runner:
         for block in range(len(inputs)):
             results = run.results(block)
             results.update(history=history, step=step, warnings=sentences,
-                           time=float(history["Time"][-1]))
+                           time=float(history["Time"][-1]),
+                           number_of_iterations=int(history["Iterations"].sum()))
             attributes.append(results)
         return attributes

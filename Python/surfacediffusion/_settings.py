@@ -21,12 +21,6 @@ from . import _core
 #: Settings of pipelines: an iterator over time steps needs no requests of times.
 HIDDEN = {"GenerateTimeSteps", "CheckpointMemoryLimit"}
 
-#: Settings that a function does not use.
-UNUSED = {
-    "segment": {"TimeStep", "NumberOfTimeSteps", "OutputInterval", "TimeIntegrator", "Solver",
-                "Tolerance", "MaximumNumberOfIterations"},
-}
-
 RENAMED = {"RandomSeed": "seed", "ResultOnCells": "result_on_faces",
            "KeepCellDetail": "keep_face_detail"}
 
@@ -91,7 +85,7 @@ def settings_of(function: str) -> dict[str, Setting]:
     """The settings of a function by keyword, in the order of C++."""
     table = {}
     for entry in _core.list_settings(function):
-        if entry["name"] not in HIDDEN | UNUSED.get(function, set()):
+        if entry["name"] not in HIDDEN:
             for list_name in ("words", "usable"):
                 entry[list_name] = tuple(entry.get(list_name, ()))
             setting = Setting(keyword=snake_case(entry["name"]), **entry)

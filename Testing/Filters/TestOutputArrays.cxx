@@ -376,7 +376,7 @@ TEST(OutputArrays, ResultArrayNameIsThePrefixOfTheOtherArrays)
   tensor->SetModelToEdgeEnhancing();
   tensor->DiffusionAxesOn();
   const auto expect =
-    [&](vtkSurfaceDiffusionAlgorithm* filter, const Names& automatic, const Names& named)
+    [&](vtkSurfaceModelAlgorithm* filter, const Names& automatic, const Names& named)
   {
     filter->SetInputData(plane);
     filter->Update();

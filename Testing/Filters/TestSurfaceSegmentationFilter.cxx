@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 using namespace FilterTest;
 using IntrinsicTVTest::AddCap;
 using IntrinsicTVTest::Height;
@@ -311,23 +313,27 @@ TEST(SegmentationFilter, BlocksHaveRowsAndCurvesOfTheirOwn)
   EXPECT_EQ(Boundaries(filter)->GetCellData()->GetArray("Block")->GetComponent(1, 0), 1.0);
 }
 
-TEST(SegmentationFilter, FirstTimeIsTheLabelOfTheNearestMean)
+/// Regions are a steady state: nothing that concerns time is there to be set or to be read.
+TEST(SegmentationFilter, HasNeitherTimesNorPropertiesOfTimeSteps)
 {
-  auto sphere = SphereWithCap(4);
-  vtkDataArray* const f = sphere->GetPointData()->GetArray("f");
-  f->SetComponent(0, 0, f->GetComponent(0, 0) > 0.0 ? -1.0 : 2.0); // one wrong value
-  auto filter = MakeFilter(sphere);
-  filter->AutomaticMeansOff();
-  filter->SetMean(1, 0, -1.0);
-  filter->SetMean(2, 0, 2.0);
-  filter->GenerateTimeStepsOn();
-  filter->UpdateInformation();
-  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0, 1.0 }));
-  UpdateAt(filter, 0.0);
-  EXPECT_EQ(Labels(filter)->GetComponent(0, 0), f->GetComponent(0, 0) > 0.0 ? 2.0 : 1.0);
-  EXPECT_EQ(filter->GetGap(), 0.0);
-  UpdateAt(filter, 1.0);
-  EXPECT_EQ(Labels(filter)->GetComponent(0, 0), f->GetComponent(0, 0) > 0.0 ? 1.0 : 2.0);
+  auto filter = MakeFilter(SphereWithCap(4));
+  filter->Update();
+  EXPECT_TRUE(PublishedTimes(filter).empty());
+  for (int port = 0; port < 3; ++port)
+  {
+    EXPECT_FALSE(
+      filter->GetOutputInformation(port)->Has(vtkStreamingDemandDrivenPipeline::TIME_RANGE()));
+    EXPECT_FALSE(
+      filter->GetOutputDataObject(port)->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()));
+  }
+  std::ostringstream text;
+  filter->Print(text);
+  for (const char* const name : { "TimeStep", "NumberOfTimeSteps", "GenerateTimeSteps",
+         "OutputInterval", "CheckpointMemoryLimit", "TimeIntegrator", "Solver", "Tolerance",
+         "MaximumNumberOfIterations", "TimeUnit", "NumberOfStepsComputed" })
+  {
+    EXPECT_EQ(text.str().find("\n  " + std::string(name) + ":"), std::string::npos) << name;
+  }
 }
 
 TEST(SegmentationFilter, PortsKeepTheirResultsIfMemoryIsReleased)

@@ -184,7 +184,6 @@ TEST(TensorDiffusionFilter, PropertiesAreChecked)
   expect("IntegrationScale is nan", [](Tensor* f) { f->SetIntegrationScale(vtkMath::Nan()); });
   expect("Contrast is 0", [](Tensor* f) { f->SetContrast(0.0); });
   expect("Alpha is 0", [](Tensor* f) { f->SetAlpha(0.0); });
-  expect("TimeIntegrator is 1", [](Tensor* f) { f->SetTimeIntegratorToSecondOrder(); });
   expect("DiffusionAxes is 1",
     [](Tensor* f)
     {

@@ -4,6 +4,7 @@
 
 #include "vtkFVMHeatFilter.h"
 #include "vtkInformationVector.h"
+#include "vtkIntrinsicTVFilter.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkMumfordShahFilter.h"
 #include "vtkObjectFactory.h"
@@ -126,7 +127,7 @@ TEST(TimeContract, OutputIntervalThinsTheTimesAndKeepsTheLast)
   EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0 }));
 }
 
-TEST(TimeContract, FWHMAndSteadyStatePublishTheirOwnTimes)
+TEST(TimeContract, FWHMPublishesItsOwnTimes)
 {
   auto plane = Grid(6, 6);
   AddRough(plane);
@@ -138,13 +139,45 @@ TEST(TimeContract, FWHMAndSteadyStatePublishTheirOwnTimes)
   EXPECT_NEAR(PublishedTimes(filter).back(), last, 1e-15);
   filter->Update();
   EXPECT_NEAR(HistoryAt(filter, 4, "Time"), last, 1e-15);
-  filter->SetFWHM(0.0);
+}
+
+TEST(TimeContract, ASteadyStateHasNoTimes)
+{
+  auto plane = Grid(6, 6);
+  AddRough(plane);
+  vtkNew<vtkFVMHeatFilter> heat;
+  heat->SetModeToSteadyState();
+  vtkNew<vtkIntrinsicTVFilter> variation;
+  variation->SetModeToSteadyState();
+  variation->SetFidelityWeight(0.0);
+  for (vtkSurfaceDiffusionAlgorithm* filter : { static_cast<vtkSurfaceDiffusionAlgorithm*>(heat),
+         static_cast<vtkSurfaceDiffusionAlgorithm*>(variation) })
+  {
+    filter->SetInputData(plane);
+    filter->SetResultArrayName("u");
+    filter->GenerateTimeStepsOn();
+    EXPECT_TRUE(PublishedTimes(filter).empty());
+    EXPECT_FALSE(filter->GetOutputInformation(0)->Has(Pipeline::TIME_RANGE()));
+    UpdateAt(filter, 0.0);
+    vtkDataArray* const u = Result(filter, "u");
+    EXPECT_LT(u->GetRange()[1] - u->GetRange()[0], 1e-12);
+    EXPECT_FALSE(filter->GetOutput()->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()));
+    EXPECT_EQ(History(filter)->GetNumberOfRows(), 2); // its start and itself
+    EXPECT_LT(HistoryAt(filter, 1, "Energy"), 1e-12 * HistoryAt(filter, 0, "Energy"));
+  }
+}
+
+TEST(TimeContract, TheInputsOwnTimePassesThroughASteadyState)
+{
+  vtkNew<TimeSource> source;
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputConnection(source->GetOutputPort());
   filter->SetModeToSteadyState();
-  EXPECT_EQ(PublishedTimes(filter).size(), 2u); // before and after
-  UpdateAt(filter, 0.0);
-  EXPECT_TRUE(Identical(Result(filter), plane->GetPointData()->GetArray("f")));
-  UpdateAt(filter, PublishedTimes(filter).back());
-  EXPECT_LT(Result(filter)->GetRange()[1] - Result(filter)->GetRange()[0], 1e-12);
+  filter->GenerateTimeStepsOn();
+  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 10.0, 20.0, 30.0 }));
+  UpdateAt(filter, 20.0);
+  EXPECT_EQ(source->LastTime, 20.0);
+  EXPECT_EQ(DataTime(filter), 20.0);
 }
 
 TEST(TimeContract, ARequestGetsTheLatestPublishedStateAtOrBeforeIt)

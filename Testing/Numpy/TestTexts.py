@@ -20,12 +20,7 @@ PROXIES = {
 }
 
 #: Settings of all models that mean something else in a filter, whose proxy says what.
-OTHERWISE = {
-    "SurfaceSegmentationFilter": {
-        "TimeStep", "NumberOfTimeSteps", "GenerateTimeSteps", "OutputInterval", "TimeIntegrator",
-        "Solver", "Tolerance", "MaximumNumberOfIterations", "CheckpointMemoryLimit"},
-    "TuringTextureFilter": {"NumberOfTimeSteps"},
-}
+OTHERWISE = {"TuringTextureFilter": {"NumberOfTimeSteps"}}
 
 
 def one_line(text):

@@ -16,7 +16,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkPolyDataAlgorithm
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-GROUPS = ("Data", "Model", "Time", "Constraints", "Solver")
+GROUPS = ("Data", "Model", "Constraints", "Solver", "Time")
 # All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
@@ -227,8 +227,9 @@ class TestProxies(unittest.TestCase):
             self.assertEqual(found, ports, name)
 
     def test_abstract_proxies_are_hidden(self):
-        self.assertFalse(hasattr(simple, "SurfaceDiffusionAlgorithm"))
-        self.assertFalse(hasattr(simple, "SurfaceDataDiffusionAlgorithm"))
+        for name in ("SurfaceModelAlgorithm", "SurfaceDiffusionAlgorithm",
+                     "SurfaceDataDiffusionAlgorithm"):
+            self.assertFalse(hasattr(simple, name))
 
     def test_every_property_is_documented(self):
         for name, _, prop, _ in properties():
@@ -350,13 +351,11 @@ class TestProxies(unittest.TestCase):
 
     def test_the_panel_offers_no_property_that_has_no_effect(self):
         for name, values, hidden in (
-            ("SurfaceSegmentationFilter", {},
-             {"DirectionArray", "FixedArray", "TimeStep", "NumberOfTimeSteps", "GenerateTimeSteps",
-              "OutputInterval", "CheckpointMemoryLimit", "TimeIntegrator", "Solver", "Tolerance",
-              "MaximumNumberOfIterations", "Mean"}),
-            ("MumfordShahFilter", {}, {"TimeIntegrator", "TimeStep", "RandomSeed"}),
-            ("TensorDiffusionFilter", {}, {"TimeIntegrator", "RandomSeed"}),
-            ("HarmonicMapFilter", {}, {"TimeIntegrator"}),
+            ("SurfaceSegmentationFilter", {}, {"Mean"}),
+            ("MumfordShahFilter", {}, {"TimeStep", "RandomSeed"}),
+            ("TensorDiffusionFilter", {}, {"RandomSeed"}),
+            ("HarmonicMapFilter", {}, {"TimeIntegrator"}),  # it has only one
+            ("FVMHeatFilter", dict(Mode=1), {"GenerateTimeSteps"}),
             ("TuringTextureFilter", dict(InputArray=["POINTS", "pair"]), {"InitialNoise"}),
             ("TuringTextureFilter", dict(DiffusionRateArray=["CELLS", "rates"]),
              {"DiffusionRate1", "DiffusionRate2"}),
@@ -373,6 +372,22 @@ class TestProxies(unittest.TestCase):
         self.assertIn("Mean", list(offered(regions)))
         heat = servermanager.filters.FVMHeatFilter(InitialFill="Noise")
         self.assertIn("RandomSeed", list(offered(heat)))
+
+    def test_filters_without_time_steps_have_no_properties_of_them(self):
+        time = {"TimeStep", "NumberOfTimeSteps", "GenerateTimeSteps", "OutputInterval",
+                "CheckpointMemoryLimit", "TimestepValues", "TimeUnit"}
+        for name, proxy, cxx in proxies():
+            expected = time if issubclass(cxx, vtkSurfaceDiffusion.vtkSurfaceDiffusionAlgorithm) else set()
+            self.assertEqual(time & set(proxy.ListProperties()), expected, name)
+        regions = servermanager.filters.SurfaceSegmentationFilter()
+        unused = {"TimeIntegrator", "Solver", "Tolerance", "MaximumNumberOfIterations",
+                  "DirectionArray", "FixedArray"}
+        self.assertEqual(unused & set(regions.ListProperties()), set())
+
+    def test_no_documentation_says_that_a_property_has_no_effect(self):
+        for name, _, prop, _ in properties():
+            text = " ".join((prop.GetDocumentation().GetDescription() or "").split())
+            self.assertNotRegex(text, "^It has no effect", name)
 
     def test_lengths_have_a_domain_with_a_reset_button_and_are_off_at_first(self):
         lengths = {"FWHM", "FeatureSize", "SmoothingLength", "MergeTolerance"}

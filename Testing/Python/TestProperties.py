@@ -52,23 +52,25 @@ def of_each_property(test):
     return tests
 
 
-#: The documented defaults, of all filters, of those with time steps, and of those that diffuse data
+#: The documented defaults, of all filters, of those with a model, of those with time steps, and of
+#: those that diffuse data
 SURFACE = dict(MergeCoincidentPoints=False, MergeTolerance=0.0, SeamTolerance=-1.0,
                NumberOfThreads=0, ResultArrayName="")
-RUN = dict(
-    Units="Natural", MaskMode="Inpaint", RandomSeed=0, Solver="Automatic", Tolerance=1e-10,
-    MaximumNumberOfIterations=1000, IntrinsicDelaunay=False, OutputPrecision="Input",
+MODEL = dict(Units="Natural", MaskMode="Inpaint", RandomSeed=0, IntrinsicDelaunay=False,
+             OutputPrecision="Input", **SURFACE)
+STEPS = dict(
     TimeStep=1.0, NumberOfTimeSteps=10, GenerateTimeSteps=False, OutputInterval=1,
-    CheckpointMemoryLimit=512, TimeIntegrator="FirstOrder", **SURFACE)
+    CheckpointMemoryLimit=512, Solver="Automatic", Tolerance=1e-10,
+    MaximumNumberOfIterations=1000, **MODEL)
 DATA = dict(
     FidelityWeight=0.0, InitialFill="Harmonic", HoldKnownValues=False, ResultOnCells=True,
-    KeepCellDetail=True, AlongDiffusivity=1.0, AcrossDiffusivity=1.0, **RUN)
+    KeepCellDetail=True, AlongDiffusivity=1.0, AcrossDiffusivity=1.0, **STEPS)
 DEFAULTS = {
     "vtkFVMHeatFilter": {
         **DATA, "TimeIntegrator": "SecondOrder", "Mode": "TimeSteps", "FWHM": 0.0,
         "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4},
     "vtkIntrinsicTVFilter": {
-        **DATA, "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",
+        **DATA, "TimeIntegrator": "FirstOrder", "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",
         "EdgeFunction": "TotalVariation", "AcrossEdgeFunction": "Same", "Beta": 1e-6,
         "EdgeThreshold": 0.1, "ChannelCoupling": "Joint", "FidelityNorm": "L2",
         "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4,
@@ -76,7 +78,7 @@ DEFAULTS = {
         "ColorModel": "RGB", "ChromaWeight": 0.2, "ChromaticityExponent": 1.0,
         "ChromaticityWeight": 1.0, "LinearLight": False},
     "vtkHarmonicMapFilter": {
-        **DATA, "InitialFill": "Mean", "Exponent": 1.0, "Beta": 1e-6, "Scheme": "TangentPlane",
+        **DATA, "TimeIntegrator": "FirstOrder", "InitialFill": "Mean", "Exponent": 1.0, "Beta": 1e-6, "Scheme": "TangentPlane",
         "ConsistentReaction": False, "ProjectToSphere": True, "LineField": False,
         "UseAsNormals": True, "MoveVertices": False},
     "vtkMumfordShahFilter": {
@@ -88,7 +90,7 @@ DEFAULTS = {
         "NoiseScale": 1.0, "IntegrationScale": 4.0, "Contrast": 0.05, "Alpha": 1e-3,
         "DiffusionAxes": False},
     "vtkTuringTextureFilter": {
-        **RUN, "TimeStep": 1 / 16, "NumberOfTimeSteps": 640, "TimeIntegrator": "SecondOrder",
+        **STEPS, "TimeStep": 1 / 16, "NumberOfTimeSteps": 640, "TimeIntegrator": "SecondOrder",
         "Kinetics": "Turing", "ReactionRate": 1.0, "DiffusionRate1": 21.0, "DiffusionRate2": 2.6,
         "DiffusionRateAcross1": -1.0, "DiffusionRateAcross2": -1.0, "FeatureSize": 0.0,
         "InitialNoise": 0.1, "ClampToNonNegative": True, "AutomaticTimeStep": False,
@@ -99,7 +101,7 @@ DEFAULTS = {
         "ColorOutput": False, "LowColor": (0.16, 0.09, 0.05),
         "HighColor": (0.93, 0.8, 0.58)},
     "vtkSurfaceSegmentationFilter": {
-        **RUN, "NumberOfRegions": 2, "AutomaticFidelity": True, "FidelityWeight": 0.3,
+        **MODEL, "NumberOfRegions": 2, "AutomaticFidelity": True, "FidelityWeight": 0.3,
         "AutomaticMeans": True, "ResultOnCells": True, "StopTolerance": 1e-3},
     "vtkSurfaceDenoisingFilter": {
         **SURFACE, "ResultArrayName": "Displacement", "NoiseLevel": 0.0,

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 /// The filters for tests of properties that all of them have.
@@ -29,7 +30,8 @@ namespace FilterTest
 struct FilterKind
 {
   const char* Name;
-  std::function<vtkSmartPointer<vtkPolyDataAlgorithm>()> Make; ///< with few time steps
+  std::function<vtkSmartPointer<vtkPolyDataAlgorithm>()>
+    Make; ///< with few time steps, if it has any
   const char* Result; ///< the array it adds
   bool IsSlow = false; ///< takes minutes on surfaces that suit the others
 
@@ -53,7 +55,10 @@ FilterKind MakeKind(
     [=]() -> vtkSmartPointer<vtkPolyDataAlgorithm>
     {
       auto filter = vtkSmartPointer<Filter>::New();
-      filter->SetNumberOfTimeSteps(steps);
+      if constexpr (std::is_base_of_v<vtkSurfaceDiffusionAlgorithm, Filter>)
+      {
+        filter->SetNumberOfTimeSteps(steps);
+      }
       set(filter);
       return filter;
     },

@@ -134,28 +134,46 @@ List OfSurface()
   };
 }
 
-/// The properties of filters with time steps. Bit i of timeIntegrators is set if the class has
-/// integrator i.
+/// The properties of filters with a model of arrays.
 template <typename F>
-List OfDiffusion(int timeIntegrators)
+List OfModel()
 {
-  List list{
-    RANDOM_PROPERTY(F, TimeStep, Positive(dice)),
-    RANDOM_PROPERTY(F, NumberOfTimeSteps, dice.Below(6) - (dice.Flip(24) ? 7 : 0)),
+  return {
     RANDOM_PROPERTY(F, Units, Choice(dice, 2)),
-    RANDOM_PROPERTY(F, GenerateTimeSteps, !dice.Flip(3)),
-    RANDOM_PROPERTY(F, OutputInterval, 1 + dice.Below(3)),
     RANDOM_PROPERTY(F, MaskMode, Choice(dice, 2)),
     RANDOM_PROPERTY(F, RandomSeed, dice.Below(5)),
-    RANDOM_PROPERTY(F, Solver, Choice(dice, 4)),
-    RANDOM_PROPERTY(F, Tolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-12, 0.5)),
-    RANDOM_PROPERTY(
-      F, MaximumNumberOfIterations, dice.Flip(4) ? dice.Below(4) : 100 + dice.Below(900)),
     RANDOM_PROPERTY(F, IntrinsicDelaunay, dice.Flip()),
     RANDOM_PROPERTY(F, OutputPrecision, Choice(dice, 3)),
-    RANDOM_PROPERTY(F, CheckpointMemoryLimit, dice.Below(2)),
-    RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)),
   };
+}
+
+/// The properties of filters with time steps.
+template <typename F>
+List OfDiffusion()
+{
+  List list = OfModel<F>();
+  for (const RandomProperty& property : {
+         RANDOM_PROPERTY(F, TimeStep, Positive(dice)),
+         RANDOM_PROPERTY(F, NumberOfTimeSteps, dice.Below(6) - (dice.Flip(24) ? 7 : 0)),
+         RANDOM_PROPERTY(F, GenerateTimeSteps, !dice.Flip(3)),
+         RANDOM_PROPERTY(F, OutputInterval, 1 + dice.Below(3)),
+         RANDOM_PROPERTY(F, CheckpointMemoryLimit, dice.Below(2)),
+         RANDOM_PROPERTY(F, Solver, Choice(dice, 4)),
+         RANDOM_PROPERTY(F, Tolerance, dice.Flip(24) ? 2.0 : dice.Logarithmic(1e-12, 0.5)),
+         RANDOM_PROPERTY(
+           F, MaximumNumberOfIterations, dice.Flip(4) ? dice.Below(4) : 100 + dice.Below(900)),
+       })
+  {
+    list.push_back(property);
+  }
+  return list;
+}
+
+/// The property TimeIntegrator. Bit i of timeIntegrators is set if the class has integrator i.
+template <typename F>
+List OfTimeIntegrators(int timeIntegrators)
+{
+  List list{ RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)) };
   list.back().Set = [timeIntegrators](vtkPolyDataAlgorithm* filter, Dice& dice)
   {
     const int choice = Choice(dice, 3);
@@ -167,9 +185,9 @@ List OfDiffusion(int timeIntegrators)
 
 /// The properties of filters with time steps that diffuse an input array.
 template <typename F>
-List OfDataDiffusion(int timeIntegrators)
+List OfDataDiffusion()
 {
-  List list = OfDiffusion<F>(timeIntegrators);
+  List list = OfDiffusion<F>();
   for (const RandomProperty& property : {
          RANDOM_PROPERTY(F, FidelityWeight, ZeroOrPositive(dice)),
          RANDOM_PROPERTY(F, InitialFill, Choice(dice, 4)),
@@ -398,17 +416,20 @@ inline std::vector<FilterClass> AllFilterClasses()
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   return {
-    MakeClass<Heat>({ OfSurface<Heat>(), OfDataDiffusion<Heat>(0b011), OfHeat() }),
-    MakeClass<TV>({ OfSurface<TV>(), OfDataDiffusion<TV>(0b101), OfTotalVariation() }),
-    MakeClass<Harmonic>(
-      { OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(0b001), OfHarmonicMap() }),
-    MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(0b001), OfMumfordShah() }),
-    MakeClass<Tensor>({ OfSurface<Tensor>(), OfDataDiffusion<Tensor>(0b001), OfTensorDiffusion() }),
-    MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(0b011), OfTexture() }),
+    MakeClass<Heat>(
+      { OfSurface<Heat>(), OfDataDiffusion<Heat>(), OfTimeIntegrators<Heat>(0b011), OfHeat() }),
+    MakeClass<TV>(
+      { OfSurface<TV>(), OfDataDiffusion<TV>(), OfTimeIntegrators<TV>(0b101), OfTotalVariation() }),
+    MakeClass<Harmonic>({ OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(),
+      OfTimeIntegrators<Harmonic>(0b001), OfHarmonicMap() }),
+    MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(), OfMumfordShah() }),
+    MakeClass<Tensor>({ OfSurface<Tensor>(), OfDataDiffusion<Tensor>(), OfTensorDiffusion() }),
+    MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(),
+      OfTimeIntegrators<Turing>(0b011), OfTexture() }),
     MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),
-      OfDiffusion<vtkSurfaceSegmentationFilter>(0b001), OfSegmentation() }),
+      OfModel<vtkSurfaceSegmentationFilter>(), OfSegmentation() }),
   };
 }
 

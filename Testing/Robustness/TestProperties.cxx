@@ -32,12 +32,7 @@ const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controll
   "ClampToNonNegative" };
 const std::set<std::string> WithoutEffectInClass = {
   "vtkHarmonicMapFilter TimeIntegrator", // it has only one
-  "vtkMumfordShahFilter TimeIntegrator",
   "vtkMumfordShahFilter EdgeCurves", // three steps find no edge that is long enough
-  "vtkTensorDiffusionFilter TimeIntegrator",
-  "vtkSurfaceSegmentationFilter TimeIntegrator", // a steady state
-  "vtkSurfaceSegmentationFilter TimeStep", "vtkSurfaceSegmentationFilter NumberOfTimeSteps",
-  "vtkSurfaceSegmentationFilter OutputInterval",
   "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
 };
 
@@ -203,8 +198,6 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   needed["vtkSurfaceSegmentationFilter FidelityWeight"] =
     needed["vtkSurfaceSegmentationFilter Units"] =
       With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
-  needed["vtkSurfaceSegmentationFilter GenerateTimeSteps"] =
-    With<Segmentation>([](Segmentation* f) { f->SetTimeStep(5.0); });
   needed["NoiseScale"] = needed["IntegrationScale"] = needed["Contrast"] = needed["Alpha"] =
     With<Tensor>([](Tensor* f) { f->SetModelToCoherenceEnhancing(); });
   needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =

@@ -66,7 +66,7 @@ TEST(Work, OfIterativeSolversPerStepIsBounded)
   {
     SCOPED_TRACE(kind.Name);
     const auto filter = kind.Make();
-    auto* const diffusion = vtkSurfaceDiffusionAlgorithm::SafeDownCast(filter);
+    auto* const diffusion = vtkSurfaceModelAlgorithm::SafeDownCast(filter);
     if (!diffusion)
     {
       continue;
