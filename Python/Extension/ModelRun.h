@@ -15,7 +15,7 @@
 namespace SurfaceDiffusion
 {
 
-/// A run of a time-dependent model on one or more surfaces, which Python drives. Surfaces, orderings
+/// A run of a model on one or more surfaces, which Python drives. Surfaces, orderings
 /// and factors are kept from update to update as far as they do not change.
 class ModelRun
 {

@@ -14,7 +14,7 @@ namespace SurfaceDiffusion
 
 struct RunSettings;
 
-/// The settings of a time-dependent model by the name of its Python function, with their defaults.
+/// The settings of a model by the name of its Python function, with their defaults.
 std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model);
 
 /// The same for any function, also for those without time steps.

@@ -253,18 +253,6 @@ TEST(IntrinsicTVFilter, NaturalSettingsSuitAnySizeAndAnyRange)
   ExpectSameInNaturalUnits(1e3, 70.0, 1e-5);
 }
 
-// --- Time ---
-
-TEST(IntrinsicTVFilter, SteadyStateIsOneStep)
-{
-  auto sphere = Sphere(2);
-  AddRough(sphere);
-  auto filter = MakeFilter(sphere);
-  filter->SetModeToSteadyState();
-  filter->GenerateTimeStepsOn();
-  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0, 1.0 }));
-}
-
 // --- Composite data, robustness ---
 
 TEST(IntrinsicTVFilter, AnyBetaAndTimeStepGiveFiniteValuesWithinBounds)
