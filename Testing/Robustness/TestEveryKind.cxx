@@ -74,7 +74,7 @@ protected:
       {
         SetInputArray(f, 0, array, this->IsOnCells());
         SetInputArray(f, 1, mask, this->IsOnCells());
-        vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetMaskMode(0);
+        vtkSurfaceModelAlgorithm::SafeDownCast(f)->SetMaskMode(0);
         vtkSurfaceFilter::SafeDownCast(f)->SetResultArrayName("result");
       });
     return this->Attributes(filter->GetOutput())->GetArray("result");
@@ -154,7 +154,7 @@ TEST_P(EveryKindWithData, KeepsTheBitsOfFixedHeldAndExcludedValues)
     { "fixed", [](auto* f) { SetInputArray(f, 1, ""); } },
     { "held",
       [](auto* f) { vtkSurfaceDataDiffusionAlgorithm::SafeDownCast(f)->HoldKnownValuesOn(); } },
-    { "excluded", [](auto* f) { vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetMaskMode(1); } },
+    { "excluded", [](auto* f) { vtkSurfaceModelAlgorithm::SafeDownCast(f)->SetMaskMode(1); } },
   };
   for (const auto& [name, change] : cases)
   {
@@ -162,7 +162,7 @@ TEST_P(EveryKindWithData, KeepsTheBitsOfFixedHeldAndExcludedValues)
     const auto filter = this->Run(this->Surface,
       [&, set = change](vtkPolyDataAlgorithm* f)
       {
-        vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetMaskMode(0);
+        vtkSurfaceModelAlgorithm::SafeDownCast(f)->SetMaskMode(0);
         SetInputArray(f, std::string(name) == "fixed" ? 3 : 1, "marks", this->IsOnCells());
         set(f);
       });
