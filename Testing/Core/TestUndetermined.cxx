@@ -138,7 +138,10 @@ template <typename ModelSettings, typename Change>
 std::shared_ptr<RunSettings> Make(const Change& change)
 {
   auto settings = std::make_shared<ModelSettings>();
-  settings->NumberOfTimeSteps = 3;
+  if constexpr (std::is_base_of_v<TimeSettings, ModelSettings>)
+  {
+    settings->NumberOfTimeSteps = 3;
+  }
   change(*settings);
   return settings;
 }
