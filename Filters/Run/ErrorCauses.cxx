@@ -8,6 +8,7 @@
 #include "Core/Solvers/SolverChoice.h"
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,30 +18,34 @@ namespace SurfaceDiffusion
 namespace
 {
 
-class NameFinder : public NumberVisitor
+class ValueFinder : public NumberVisitor
 {
 public:
-  explicit NameFinder(std::string name)
+  explicit ValueFinder(std::string name)
     : Name(std::move(name))
   {
   }
 
-  bool Found = false;
+  std::optional<double> Value;
 
 private:
-  void See(const SettingInfo& info, double) override
+  void See(const SettingInfo& info, double value) override
   {
-    this->Found = this->Found || this->Name == info.Name;
+    if (this->Name == info.Name)
+    {
+      this->Value = value;
+    }
   }
 
   const std::string Name;
 };
 
-bool HasSetting(Settings& settings, const std::string& name)
+/// The number, or the number of the choice; none if there is no such setting.
+std::optional<double> FindValue(Settings& settings, const std::string& name)
 {
-  NameFinder finder(name);
+  ValueFinder finder(name);
   settings.Visit(finder);
-  return finder.Found;
+  return finder.Value;
 }
 
 /// Lists the settings whose squares may be too large or too small for a double.
@@ -71,14 +76,14 @@ Sentence ExplainError(Settings& settings, const std::runtime_error& error)
     return worded->Message();
   }
   Sentence text(error.what());
-  if (dynamic_cast<const NotConverged*>(&error) && HasSetting(settings, "Solver"))
+  if (dynamic_cast<const NotConverged*>(&error) && FindValue(settings, "Solver"))
   {
     text << "; allow a larger " << Word::Setting("Tolerance") << " or "
          << Word::Setting("MaximumNumberOfIterations") << ", or set " << Word::Setting("Solver")
          << " to " << Word::Choice("Solver", SolverMethod::Direct, "Direct");
   }
   else if (dynamic_cast<const NotPositiveDefinite*>(&error) &&
-    HasSetting(settings, "IntrinsicDelaunay"))
+    FindValue(settings, "IntrinsicDelaunay") == 0.0)
   {
     text << "; if triangles are all but flat, " << Word::Setting("IntrinsicDelaunay")
          << " makes it so";

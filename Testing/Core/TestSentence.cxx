@@ -88,6 +88,8 @@ TEST(Sentence, OfAFailureNamesOnlySettingsThatTheModelHas)
       "; allow a larger Tolerance or MaximumNumberOfIterations, or set Solver to Direct");
   EXPECT_NE(
     ExplainError(heat, NotPositiveDefinite()).Text().find("IntrinsicDelaunay"), std::string::npos);
+  heat.IntrinsicDelaunay = true;
+  EXPECT_EQ(ExplainError(heat, NotPositiveDefinite()).Text(), NotPositiveDefinite().what());
   DenoisingRunSettings denoising;
   EXPECT_EQ(ExplainError(denoising, NotConverged(report)).Text(), NotConverged(report).what());
   EXPECT_EQ(ExplainError(denoising, NotPositiveDefinite()).Text(), NotPositiveDefinite().what());

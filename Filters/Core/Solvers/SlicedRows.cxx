@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -91,8 +92,11 @@ void SlicedRows::Set(
   std::partial_sum(this->Begin.begin(), this->Begin.end(), this->Begin.begin());
   if (this->Entries.size() != this->Begin.back())
   {
-    this->Columns = Buffer<Index>(this->Begin.back());
-    this->Entries = Buffer<float>(this->Begin.back()); // last: memory may run out
+    // Memory may run out: both buffers have the same size at any time.
+    Buffer<Index> numbers(this->Begin.back());
+    Buffer<float> entries(this->Begin.back());
+    this->Columns = std::move(numbers);
+    this->Entries = std::move(entries);
   }
   ForEach(parallel, slices,
     [&](Index s)
