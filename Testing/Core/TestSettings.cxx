@@ -122,7 +122,7 @@ TEST(Settings, EveryChangedSettingChangesTheSnapshotOfItsScopeAlone)
   {
     EachSetting counter(-1);
     make()->Visit(counter);
-    ASSERT_GT(counter.Count, 15);
+    ASSERT_GT(counter.Count, 10);
     for (int i = 0; i < counter.Count; ++i)
     {
       const auto before = make();

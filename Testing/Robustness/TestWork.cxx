@@ -23,8 +23,11 @@ const std::map<std::string, int> LargestNumbers = {
   { "HeatMultigrid", 25 },
   // Preconditioned without the blur: the condition is that of the blur's lowest waves.
   { "HeatDeblurred", 30 },
+  // A restoration for each weight that is tried.
+  { "HeatDeblurredFound", 260 },
   // One solve to 1e-3, and on edges one of a larger system.
   { "TV", 40 },
+  { "TVOfCells", 40 },
   { "TVOpponent", 40 },
   { "TVChromaticity", 50 },
   { "TVCrouzeixRaviart", 80 },
@@ -36,9 +39,11 @@ const std::map<std::string, int> LargestNumbers = {
   { "TVAutomatic", 30 },
   { "TVAbsolute", 600 },
   { "TVDeblurred", 12 },
+  { "TVDeblurredFound", 4 },
   { "Segmentation", 50 },
   { "SegmentationOfThree", 30 },
   { "SegmentationDefaults", 1200 },
+  { "SegmentationOfCells", 7500 },
   // Solves in the tangent planes, whose weights 1/|grad u| differ by large factors.
   { "Harmonic", 60 },
   { "HarmonicMoved", 60 },
@@ -47,8 +52,11 @@ const std::map<std::string, int> LargestNumbers = {
   { "HarmonicMinimizing", 400 },
   // One solve for u and one for v.
   { "MumfordShah", 60 },
+  { "MumfordShahOfCells", 60 },
+  { "MumfordShahGiven", 16 },
   // One solve of an anisotropy of b^2 |grad u|^2, with a large time step in the second.
   { "Beltrami", 20 },
+  { "BeltramiOfCells", 20 },
   { "BeltramiFixed", 100 },
   // The solves on the coarse space, which has few unknowns.
   { "TuringCoarseStart", 12 },
