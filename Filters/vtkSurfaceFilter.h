@@ -38,19 +38,20 @@
 #ifndef vtkSurfaceFilter_h
 #define vtkSurfaceFilter_h
 
+#include "Run/Sentence.h" // for messages
+
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSurfaceDiffusionModule.h" // for export macro
 
 #include <memory> // for the private part
-#include <string> // for messages
-#include <vector> // for messages
+#include <string> // for names
+#include <vector> // for surfaces
 
 namespace SurfaceDiffusion
 {
 class OwnedSettings;
 class ProcessGroup;
 class ProgressMonitor;
-class Sentence;
 class Settings;
 struct Warning;
 }

@@ -7,14 +7,6 @@
 namespace SurfaceDiffusion
 {
 
-Sentence::Sentence(const Word& word)
-{
-  if (!word.Spelling.empty())
-  {
-    this->All.push_back(word);
-  }
-}
-
 Sentence& Sentence::operator<<(const Sentence& more)
 {
   for (const Word& word : std::vector<Word>(more.All))

@@ -75,7 +75,13 @@ public:
     : Sentence(Word{ Word::Kind::Text, text })
   {
   }
-  Sentence(const Word& word); // NOLINT(google-explicit-constructor)
+  Sentence(const Word& word) // NOLINT(google-explicit-constructor)
+  {
+    if (!word.Spelling.empty())
+    {
+      this->All.push_back(word);
+    }
+  }
 
   Sentence& operator<<(const Sentence& more);
   template <typename T, typename = std::enable_if_t<std::is_arithmetic_v<T>>>

@@ -47,7 +47,7 @@ class Areas(unittest.TestCase):
                                (nan, "areas has nan at point 7")):
             with self.assertRaisesRegex(ValueError, message):
                 Surface(POINTS, FACES, areas)
-        with self.assertRaisesRegex((ValueError, RuntimeError), "allowed: off on surfaces with given"):
+        with self.assertRaisesRegex((ValueError, RuntimeError), "allowed: False on surfaces with given"):
             heat(Surface(POINTS, FACES, AREAS), VALUES, fwhm=6, intrinsic_delaunay=True)
 
 

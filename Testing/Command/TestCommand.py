@@ -379,7 +379,7 @@ class OtherCommands(CommandTest):
         np.testing.assert_array_equal(found.points, expected.astype(found.points.dtype))
 
     def test_denoise_mesh_merges_split_vertices(self):
-        noisy = POINTS * (1 + np.random.default_rng(9).normal(0, 0.005, (N, 1)))
+        noisy = POINTS * (1 + np.random.default_rng(9).normal(0, 0.02, (N, 1)))
         split = noisy[FACES].reshape(-1, 3)
         samples.write_surface("soup.surf.gii", split, np.arange(len(split)).reshape(-1, 3))
         code, _, error = run("denoise-mesh", "soup.surf.gii", "apart.surf.gii")
