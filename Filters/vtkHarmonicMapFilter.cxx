@@ -89,8 +89,9 @@ bool vtkHarmonicMapFilter::UsesNormals()
 
 bool vtkHarmonicMapFilter::IsNormals(const InputFields& fields, vtkPolyData* block) const
 {
-  return fields.DataAreComputed || fields.Data == block->GetPointData()->GetNormals() ||
-    fields.Data == block->GetCellData()->GetNormals();
+  vtkDataArray* const data = fields.Data.Values;
+  return fields.DataAreComputed || data == block->GetPointData()->GetNormals() ||
+    data == block->GetCellData()->GetNormals();
 }
 
 /// The normals of a block without any, computed again only if its surface has changed.
@@ -130,8 +131,8 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
     return false;
   }
   fields.ResultIsNormals = this->UseAsNormals && this->IsNormals(fields, block);
-  const std::string label =
-    std::string("InputArray \"") + (fields.Data->GetName() ? fields.Data->GetName() : "") + "\"";
+  const char* const name = fields.Data.Values->GetName();
+  const std::string label = std::string("InputArray \"") + (name ? name : "") + "\"";
   if (this->GetMoveVertices() && !this->IsNormals(fields, block))
   {
     problems.push_back("MoveVertices is on but " + label +
@@ -159,7 +160,8 @@ bool vtkHarmonicMapFilter::NeedsWholeSurface(const std::vector<SurfaceBlock>& pi
     InputFields fields;
     Problems reportedLater;
     if (this->GetLineField() && this->FindFields(block, fields, reportedLater) &&
-      ((fields.Mask && this->GetMaskMode() == MASK_MODE_INPAINT) || HasZeroOrNaN(fields.Data)))
+      ((fields.Mask.Values && this->GetMaskMode() == MASK_MODE_INPAINT) ||
+        HasZeroOrNaN(fields.Data.Values)))
     {
       return true;
     }

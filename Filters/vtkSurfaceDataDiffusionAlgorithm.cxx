@@ -26,6 +26,6 @@ bool vtkSurfaceDataDiffusionAlgorithm::FindFields(
 {
   const bool hasData = this->Superclass::FindFields(block, fields, problems);
   const SurfaceDiffusion::InputArrays inputs(this, block, fields, problems);
-  fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
+  fields.Fidelity = inputs.Find(5, "FidelityArray", 1);
   return hasData;
 }

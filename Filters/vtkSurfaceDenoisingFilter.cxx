@@ -57,7 +57,7 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
   {
     Problems here;
     const InputArrays inputs(this, surfaces[b].Input, fields[b], here);
-    fields[b].Fixed = inputs.Find(3, "FixedArray", 1, fields[b].FixedOnCells);
+    fields[b].Fixed = inputs.Find(3, "FixedArray", 1);
     found.Add(here, surfaces[b].Name);
     names.push_back(surfaces[b].Name);
   }

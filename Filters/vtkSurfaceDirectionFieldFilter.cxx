@@ -51,8 +51,8 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   for (std::size_t b = 0; b < surfaces.size() && hasHints; ++b)
   {
     Problems here;
-    fields[b].Direction = InputArrays(this, surfaces[b].Input, fields[b], here)
-                            .Find(2, "DirectionArray", 3, fields[b].DirectionOnCells);
+    fields[b].Direction =
+      InputArrays(this, surfaces[b].Input, fields[b], here).Find(2, "DirectionArray", 3);
     found.Add(here, surfaces[b].Name);
     names.push_back(surfaces[b].Name);
   }
@@ -85,7 +85,7 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
     outputs.push_back(surfaces[b].Output);
-    hints.push_back(fields[b].Direction);
+    hints.push_back(fields[b].Direction.Values);
   }
   std::vector<Warning> warnings = runs.FindWarnings();
   runs.Write(outputs, fields, hints, this->ResultArrayName, warnings);

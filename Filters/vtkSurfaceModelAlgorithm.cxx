@@ -47,7 +47,7 @@ void ReplaceAbsentDirections(vtkPolyData* block, InputFields& fields)
   {
     fields.NoDirection = NewArray<vtkDoubleArray>("", 3, block->GetNumberOfPoints());
     fields.NoDirection->Fill(0.0);
-    fields.Direction = fields.NoDirection;
+    fields.Direction.Values = fields.NoDirection;
   }
 }
 
@@ -84,12 +84,11 @@ bool vtkSurfaceModelAlgorithm::FindFields(
   vtkPolyData* block, InputFields& fields, Problems& problems)
 {
   const InputArrays inputs(this, block, fields, problems);
-  fields.Data =
-    inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents, fields.DataOnCells);
-  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
-  fields.Direction = inputs.Find(2, "DirectionArray", 3, fields.DirectionOnCells);
-  fields.Fixed = inputs.Find(3, "FixedArray", 1, fields.FixedOnCells);
-  return fields.Data != nullptr;
+  fields.Data = inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents);
+  fields.Mask = inputs.Find(1, "MaskArray", 1);
+  fields.Direction = inputs.Find(2, "DirectionArray", 3);
+  fields.Fixed = inputs.Find(3, "FixedArray", 1);
+  return fields.Data.Values != nullptr;
 }
 
 //------------------------------------------------------------------------------------------------
@@ -397,7 +396,7 @@ void vtkSurfaceModelAlgorithm::WriteResult(
   source.CellOf = [&cells = state.Inputs.CellsOf(index)](Index t)
   { return cells[static_cast<std::size_t>(t)]; };
   const int type = this->FindResultType(fields);
-  if (vtkDataArray* const data = fields.Data)
+  if (vtkDataArray* const data = fields.Data.Values)
   {
     source.ReadData = [data] { return ReadValues(data); };
     source.DataAreFloats = data->GetDataType() == VTK_FLOAT || data->GetDataType() == VTK_DOUBLE;
@@ -406,7 +405,7 @@ void vtkSurfaceModelAlgorithm::WriteResult(
   source.Block = &block;
   source.Traits = state.Settings->DescribeModel();
   WriteOutputs(block.Outputs, source,
-    { output, fields, this->ResultArrayName, type, fields.Data, state.ReplacedArrays });
+    { output, fields, this->ResultArrayName, type, fields.Data.Values, state.ReplacedArrays });
 }
 
 /// Vertices, lines and hidden cells keep their value, as those of a surface in one piece do.
@@ -424,17 +423,17 @@ void vtkSurfaceModelAlgorithm::CompletePiece(const SurfaceBlock& piece)
   }
   InputFields fields;
   Problems reportedAlready;
-  if (!hasNew || !this->FindFields(piece.Input, fields, reportedAlready) || !fields.DataOnCells ||
+  if (!hasNew || !this->FindFields(piece.Input, fields, reportedAlready) || !fields.Data.OnCells ||
     !this->GetRunSettings().DescribeModel().ResultOnCells)
   {
     return;
   }
-  const char* const name = fields.Data->GetName();
+  const char* const name = fields.Data.Values->GetName();
   const std::string resultName = this->ResultArrayName.empty()
     ? (name ? name : "") + std::string(this->GetRunSettings().DescribeModel().ResultSuffix)
     : this->ResultArrayName;
   vtkDataArray* const result = piece.Output->GetCellData()->GetArray(resultName.c_str());
-  if (!result || result == fields.Data)
+  if (!result || result == fields.Data.Values)
   {
     return;
   }
@@ -446,15 +445,15 @@ void vtkSurfaceModelAlgorithm::CompletePiece(const SurfaceBlock& piece)
       (flags[static_cast<std::size_t>(c)] & vtkDataSetAttributes::HIDDENCELL) != 0;
     for (int k = 0; (c < polygons || isHidden) && k < result->GetNumberOfComponents(); ++k)
     {
-      result->SetComponent(c, k, fields.Data->GetComponent(c, k));
+      result->SetComponent(c, k, fields.Data.Values->GetComponent(c, k));
     }
   }
 }
 
 int vtkSurfaceModelAlgorithm::FindResultType(const InputFields& fields) const
 {
-  const bool likeData = this->OutputPrecision == OUTPUT_PRECISION_INPUT && fields.Data;
-  const int inputType = likeData ? fields.Data->GetDataType() : VTK_DOUBLE;
+  const bool likeData = this->OutputPrecision == OUTPUT_PRECISION_INPUT && fields.Data.Values;
+  const int inputType = likeData ? fields.Data.Values->GetDataType() : VTK_DOUBLE;
   if (inputType == VTK_UNSIGNED_CHAR || inputType == VTK_FLOAT)
   {
     return inputType;

@@ -108,20 +108,20 @@ bool vtkSurfaceSegmentationFilter::FindFields(
   const InputArrays inputs(this, block, fields, problems);
   const std::size_t before = problems.size();
   constexpr int any = InputArrays::AnyNumberOfComponents;
-  fields.Data = inputs.Find(7, "DataTermArray", any, fields.DataOnCells);
-  fields.DataAreTerms = fields.Data != nullptr;
+  fields.Data = inputs.Find(7, "DataTermArray", any);
+  fields.DataAreTerms = fields.Data.Values != nullptr;
   if (!fields.DataAreTerms && problems.size() == before && fields.Absent.empty())
   {
-    fields.Data = inputs.Find(0, "InputArray", any, fields.DataOnCells);
+    fields.Data = inputs.Find(0, "InputArray", any);
   }
-  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
-  fields.Fidelity = inputs.Find(5, "FidelityArray", 1, fields.FidelityOnCells);
-  fields.Seeds = inputs.Find(6, "SeedArray", 1, fields.SeedsOnCells);
-  if (fields.Data && !fields.DataAreTerms && !this->GetAutomaticMeans())
+  fields.Mask = inputs.Find(1, "MaskArray", 1);
+  fields.Fidelity = inputs.Find(5, "FidelityArray", 1);
+  fields.Seeds = inputs.Find(6, "SeedArray", 1);
+  if (fields.Data.Values && !fields.DataAreTerms && !this->GetAutomaticMeans())
   {
-    this->CheckPlacesOfMeans(NumberOfDataComponents(fields.Data), problems);
+    this->CheckPlacesOfMeans(NumberOfDataComponents(fields.Data.Values), problems);
   }
-  return fields.Data != nullptr;
+  return fields.Data.Values != nullptr;
 }
 
 void vtkSurfaceSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)

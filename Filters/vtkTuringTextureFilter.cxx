@@ -43,14 +43,14 @@ bool vtkTuringTextureFilter::FindFields(vtkPolyData* block, InputFields& fields,
     data->Has(vtkDataObject::FIELD_NAME()) ? data->Get(vtkDataObject::FIELD_NAME()) : "";
   if (data->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()) || (name && *name))
   {
-    fields.Data = inputs.Find(0, "InputArray", 2, fields.DataOnCells);
+    fields.Data = inputs.Find(0, "InputArray", 2);
   }
-  fields.Mask = inputs.Find(1, "MaskArray", 1, fields.MaskOnCells);
-  fields.Direction = inputs.Find(2, "DirectionArray", 3, fields.DirectionOnCells);
-  fields.Fixed = inputs.Find(3, "FixedArray", 1, fields.FixedOnCells);
-  bool onCells = true;
-  fields.Rates = inputs.Find(4, "DiffusionRateArray", 4, onCells);
-  if (fields.Rates && !onCells)
+  fields.Mask = inputs.Find(1, "MaskArray", 1);
+  fields.Direction = inputs.Find(2, "DirectionArray", 3);
+  fields.Fixed = inputs.Find(3, "FixedArray", 1);
+  const LocatedArray rates = inputs.Find(4, "DiffusionRateArray", 4);
+  fields.Rates = rates.Values;
+  if (rates.Values && !rates.OnCells)
   {
     problems.emplace_back(
       "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell");

@@ -22,9 +22,9 @@ std::vector<BlockInput> BlockInputs::Describe(
   {
     vtkPolyData* const data = surfaces[b].Data;
     const InputFields& arrays = *surfaces[b].Fields;
-    vtkDataArray* const excluded = excludeMasked ? arrays.Mask : nullptr;
+    vtkDataArray* const excluded = excludeMasked ? arrays.Mask.Values.Get() : nullptr;
     std::vector<Index>& cells = this->Cells[b];
-    const bool onCells = arrays.MaskOnCells;
+    const bool onCells = arrays.Mask.OnCells;
     inputs[b].Name = surfaces[b].Name;
     inputs[b].SurfaceVersion = FingerprintSurface(data, excluded, onCells);
     inputs[b].FieldsVersion = FingerprintFields(arrays);

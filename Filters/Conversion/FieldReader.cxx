@@ -29,8 +29,8 @@ std::string NameOf(vtkDataArray* array)
 
 Word NameOfData(const InputFields& arrays)
 {
-  return Word::Array(
-    arrays.DataAreTerms ? "DataTermArray" : "InputArray", " \"" + NameOf(arrays.Data) + "\"");
+  return Word::Array(arrays.DataAreTerms ? "DataTermArray" : "InputArray",
+    " \"" + NameOf(arrays.Data.Values) + "\"");
 }
 
 std::vector<char> ReadFlags(vtkDataArray* array)
@@ -43,9 +43,20 @@ std::vector<char> ReadFlags(vtkDataArray* array)
   return flags;
 }
 
-std::vector<Index> ReadSeeds(vtkDataArray* array, bool onCells)
+std::vector<double> ReadFactors(vtkDataArray* array)
 {
-  const char* const place = onCells ? "cell" : "point";
+  std::vector<double> factors;
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    factors.push_back(array->GetComponent(i, 0));
+  }
+  return factors;
+}
+
+std::vector<Index> ReadSeeds(const LocatedArray& given)
+{
+  vtkDataArray* const array = given.Values;
+  const char* const place = given.OnCells ? "cell" : "point";
   std::vector<Index> seeds;
   for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
   {
@@ -106,14 +117,14 @@ Values ReadRates(vtkDataArray* array, const std::vector<Index>& cells)
 FieldSummary InputFields::Summarize() const
 {
   FieldSummary summary;
-  summary.Data = this->Data != nullptr;
-  if (this->Data)
+  summary.Data = this->Data.Values != nullptr;
+  if (summary.Data)
   {
-    summary.DataComponents = NumberOfDataComponents(this->Data);
+    summary.DataComponents = NumberOfDataComponents(this->Data.Values);
     summary.DataName = NameOfData(*this);
   }
-  summary.Directions = this->Direction != nullptr;
-  summary.Fixed = this->Fixed != nullptr;
+  summary.Directions = this->Direction.Values != nullptr;
+  summary.Fixed = this->Fixed.Values != nullptr;
   summary.Rates = this->Rates != nullptr;
   summary.DataAreTerms = this->DataAreTerms;
   return summary;
@@ -121,17 +132,17 @@ FieldSummary InputFields::Summarize() const
 
 std::vector<vtkDataArray*> InputFields::List() const
 {
-  return { this->Data, this->Mask, this->Direction, this->Fixed, this->Rates, this->Fidelity,
-    this->Seeds, this->GlobalIds };
+  return { this->Data.Values, this->Mask.Values, this->Direction.Values, this->Fixed.Values,
+    this->Rates, this->Fidelity.Values, this->Seeds.Values, this->GlobalIds };
 }
 
 unsigned int InputFields::Associations() const
 {
   unsigned int bits = 0;
-  for (const bool onCells : { this->DataOnCells, this->MaskOnCells, this->DirectionOnCells,
-         this->FixedOnCells, this->FidelityOnCells, this->SeedsOnCells })
+  for (const LocatedArray* const array :
+    { &this->Data, &this->Mask, &this->Direction, &this->Fixed, &this->Fidelity, &this->Seeds })
   {
-    bits = 2 * bits + (onCells ? 1 : 0);
+    bits = 2 * bits + (array->OnCells ? 1 : 0);
   }
   return bits;
 }
@@ -179,45 +190,33 @@ Fields ReadFields(
   const InputFields& arrays, const std::vector<Index>& cells, vtkIdType numberOfCells)
 {
   Fields fields;
-  if (arrays.Data)
+  if (vtkDataArray* const data = arrays.Data.Values)
   {
-    fields.Data = ReadValues(arrays.Data);
+    fields.Data = { ReadValues(data), arrays.Data.OnCells };
     fields.DataName = NameOfData(arrays);
     fields.DataAreTerms = arrays.DataAreTerms;
-    fields.DataAreBytes = arrays.Data->GetDataType() == VTK_UNSIGNED_CHAR;
-    fields.DataOnCells = arrays.DataOnCells;
+    fields.DataAreBytes = data->GetDataType() == VTK_UNSIGNED_CHAR;
   }
-  fields.MaskOnCells = arrays.MaskOnCells;
-  fields.FixedOnCells = arrays.FixedOnCells;
-  fields.FidelityOnCells = arrays.FidelityOnCells;
-  fields.SeedsOnCells = arrays.SeedsOnCells;
+  fields.Mask = { ReadFlags(arrays.Mask.Values), arrays.Mask.OnCells };
+  fields.Fixed = { ReadFlags(arrays.Fixed.Values), arrays.Fixed.OnCells };
+  fields.FidelityFactors = { ReadFactors(arrays.Fidelity.Values), arrays.Fidelity.OnCells };
+  fields.Seeds = { ReadSeeds(arrays.Seeds), arrays.Seeds.OnCells };
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(numberOfCells);
     fields.Cells.assign(cells.begin(), cells.end());
   }
-  fields.Mask = ReadFlags(arrays.Mask);
-  fields.Fixed = ReadFlags(arrays.Fixed);
-  for (vtkIdType i = 0; arrays.Fidelity && i < arrays.Fidelity->GetNumberOfTuples(); ++i)
+  if (arrays.Direction.Values)
   {
-    fields.FidelityFactors.push_back(arrays.Fidelity->GetComponent(i, 0));
-  }
-  fields.Seeds = ReadSeeds(arrays.Seeds, arrays.SeedsOnCells);
-  if (arrays.Direction)
-  {
-    const Points vectors = ReadDirections(arrays.Direction);
-    fields.DirectionsOnTriangles = arrays.DirectionOnCells;
-    if (arrays.DirectionOnCells)
+    fields.Directions = { ReadDirections(arrays.Direction.Values), arrays.Direction.OnCells };
+    if (fields.Directions.OnCells)
     {
-      fields.Directions.resize(static_cast<Eigen::Index>(cells.size()), 3);
+      const Points ofCells = fields.Directions.Values;
+      fields.Directions.Values.resize(static_cast<Eigen::Index>(cells.size()), 3);
       for (std::size_t t = 0; t < cells.size(); ++t)
       {
-        fields.Directions.row(static_cast<Eigen::Index>(t)) = vectors.row(cells[t]);
+        fields.Directions.Values.row(static_cast<Eigen::Index>(t)) = ofCells.row(cells[t]);
       }
-    }
-    else
-    {
-      fields.Directions = vectors;
     }
   }
   if (arrays.Rates)

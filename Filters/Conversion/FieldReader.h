@@ -26,26 +26,22 @@ struct AbsentArray
   std::string Problem; ///< the sentence if no block has it
 };
 
+using LocatedArray = Located<vtkSmartPointer<vtkDataArray>>;
+
 /// The input arrays of one block, found and checked.
 struct InputFields
 {
   std::vector<AbsentArray> Absent;
   vtkSmartPointer<vtkDataArray> NoDirection; ///< zeros: a block without the directions of others
-  vtkSmartPointer<vtkDataArray> Data; ///< index 0
-  bool DataOnCells = false;
+  LocatedArray Data; ///< index 0
   bool DataAreComputed = false; ///< normals that the input does not have
   bool ResultIsNormals = false; ///< the result of the data takes the place of the normals
-  vtkDataArray* Mask = nullptr; ///< index 1
-  bool MaskOnCells = false;
-  vtkDataArray* Direction = nullptr; ///< index 2
-  bool DirectionOnCells = false;
-  vtkDataArray* Fixed = nullptr; ///< index 3
-  bool FixedOnCells = false;
+  LocatedArray Mask; ///< index 1
+  LocatedArray Direction; ///< index 2
+  LocatedArray Fixed; ///< index 3
   vtkDataArray* Rates = nullptr; ///< index 4
-  vtkDataArray* Fidelity = nullptr; ///< index 5
-  bool FidelityOnCells = false;
-  vtkDataArray* Seeds = nullptr; ///< index 6
-  bool SeedsOnCells = false;
+  LocatedArray Fidelity; ///< index 5
+  LocatedArray Seeds; ///< index 6
   bool DataAreTerms = false; ///< Data is index 7
   vtkDataArray* GlobalIds = nullptr; ///< of the points
 

@@ -96,21 +96,19 @@ InputArrays::InputArrays(vtkAlgorithm* filter, vtkPolyData* block, InputFields& 
 {
 }
 
-vtkDataArray* InputArrays::Find(
-  int index, const char* property, int components, bool& onCells) const
+LocatedArray InputArrays::Find(int index, const char* property, int components) const
 {
-  onCells = false;
   const Choice choice(this->Filter->GetInputArrayInformation(index));
   if (!choice.IsSet && index != 0)
   {
-    return nullptr;
+    return {};
   }
   const std::string label =
     property + (choice.HasName() ? " \"" + std::string(choice.Name) + "\"" : std::string());
   const auto report = [&](const std::string& what)
   {
     this->Problems.push_back(label + ' ' + what);
-    return nullptr;
+    return LocatedArray();
   };
   if (!choice.IsKnownAssociation())
   {
@@ -129,7 +127,7 @@ vtkDataArray* InputArrays::Find(
   {
     this->Fields.Absent.push_back(
       { index, label, label + ' ' + DescribeAbsence(choice, this->Block) });
-    return nullptr;
+    return {};
   }
   vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!array)
@@ -150,8 +148,7 @@ vtkDataArray* InputArrays::Find(
       (components == AnyNumberOfComponents ? std::string("1 or more")
                                            : std::to_string(components)));
   }
-  onCells = isOnCells;
-  return array;
+  return { array, isOnCells };
 }
 
 void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std::string>& blocks,

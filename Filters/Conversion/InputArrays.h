@@ -24,8 +24,8 @@ public:
   InputArrays(vtkAlgorithm* filter, vtkPolyData* block, InputFields& fields, Problems& problems);
 
   /// The array at `index`, called `property` in messages. Null if it is not set or absent, and null
-  /// with a problem reported if it is not allowed. onCells: whether it is cell data.
-  vtkDataArray* Find(int index, const char* property, int components, bool& onCells) const;
+  /// with a problem reported if it is not allowed.
+  LocatedArray Find(int index, const char* property, int components) const;
 
 private:
   vtkAlgorithm* Filter;

@@ -125,7 +125,7 @@ int AttributeOf(Role role, const InputFields& fields)
   {
     return vtkDataSetAttributes::NORMALS; // only these: ParaView shades with no vectors
   }
-  vtkDataArray* const data = fields.Data;
+  vtkDataArray* const data = fields.Data.Values;
   const bool inSpace =
     !data || (data->GetNumberOfComponents() == 3 && data->GetDataType() != VTK_UNSIGNED_CHAR);
   return inSpace ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
@@ -241,7 +241,7 @@ void WriteOutputs(const OutputList& outputs, const OutputSource& source, const O
 {
   vtkNew<vtkPolyData> input;
   input->ShallowCopy(target.Surface);
-  vtkDataArray* const data = target.Fields.Data;
+  vtkDataArray* const data = target.Fields.Data.Values;
   const std::string& given = target.ResultArrayName;
   for (const Output& output : outputs)
   {

@@ -87,10 +87,10 @@ std::vector<char> MarkCells(
 Vector ReadCellFactors(const Fields& fields)
 {
   Vector factors = Vector::Ones(fields.NumberOfCells);
-  if (fields.FidelityOnCells && !fields.FidelityFactors.empty())
+  if (fields.FidelityFactors.OnCells && !fields.FidelityFactors.Values.empty())
   {
     CheckFidelityFactors(fields);
-    factors = Eigen::Map<const Vector>(fields.FidelityFactors.data(), factors.size());
+    factors = Eigen::Map<const Vector>(fields.FidelityFactors.Values.data(), factors.size());
   }
   return factors;
 }
@@ -124,22 +124,22 @@ struct CellData
 
 CellData ReadCells(const Surface& surface, const Fields& fields, const CellReading& reading)
 {
-  CellData data{ fields.Data / reading.Unit, Vector::Zero(fields.NumberOfCells),
+  CellData data{ fields.Data.Values / reading.Unit, Vector::Zero(fields.NumberOfCells),
     Vector::Zero(fields.NumberOfCells) };
   const std::vector<char> participates = FindParticipatingRows(surface, fields);
-  for (Index c = 0; c < static_cast<Index>(fields.Data.rows()); ++c)
+  for (Index c = 0; c < static_cast<Index>(fields.Data.Values.rows()); ++c)
   {
     if (!IsSet(participates, c))
     {
       continue;
     }
-    if (fields.Data.row(c).array().isInf().any())
+    if (fields.Data.Values.row(c).array().isInf().any())
     {
       throw ErrorAt(fields.DataName, "is infinite", true, c, "allowed: finite values and NaN");
     }
-    const bool finite = !IsSet(fields.Missing, c) && !fields.Data.row(c).hasNaN() &&
+    const bool finite = !IsSet(fields.Missing, c) && !fields.Data.Values.row(c).hasNaN() &&
       (!reading.UnitVectors || Normalize(data.Of.row(c)));
-    const bool isFixed = fields.FixedOnCells && IsSet(fields.Fixed, c);
+    const bool isFixed = fields.Fixed.OnCells && IsSet(fields.Fixed.Values, c);
     if (isFixed && !finite)
     {
       throw ErrorAt(fields.DataName,
@@ -147,7 +147,7 @@ CellData ReadCells(const Surface& surface, const Fields& fields, const CellReadi
           << " where " << Word::Array("FixedArray") << " holds it",
         true, c, "allowed there: finite values");
     }
-    const bool known = finite && (isFixed || !(reading.Inpaint && IsSet(fields.Mask, c)));
+    const bool known = finite && (isFixed || !(reading.Inpaint && IsSet(fields.Mask.Values, c)));
     data.HasUnknown = data.HasUnknown || !known;
     data.Known[c] = known ? 1.0 : 0.0;
     data.Damaged[c] = finite && !known ? 1.0 : 0.0;
@@ -165,7 +165,7 @@ void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cel
     [&]
     {
       ofCells = ReadCellFactors(fields);
-      if (!fields.FidelityOnCells && !fields.FidelityFactors.empty())
+      if (!fields.FidelityFactors.OnCells && !fields.FidelityFactors.Values.empty())
       {
         ofVertices = MakeFidelityFactors(surface, fields);
       }
@@ -189,12 +189,12 @@ void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cel
 void FixVertices(const Surface& surface, const Fields& fields, const CellState& cells,
   const CellData& given, const VertexMeans& damaged, const ProcessGroup& processes, PointData& data)
 {
-  if (processes.Any(fields.FixedOnCells))
+  if (processes.Any(fields.Fixed.OnCells))
   {
     Vector weights = Vector::Zero(fields.NumberOfCells);
     for (Index c = 0; c < fields.NumberOfCells; ++c)
     {
-      weights[c] = IsSet(fields.Fixed, c) ? given.Known[c] : 0.0;
+      weights[c] = IsSet(fields.Fixed.Values, c) ? given.Known[c] : 0.0;
     }
     const VertexMeans fixed = Average(cells, given.Of, weights);
     for (Eigen::Index v = 0; v < fixed.Of.rows(); ++v)
@@ -210,7 +210,7 @@ void FixVertices(const Surface& surface, const Fields& fields, const CellState& 
   const auto fix = [&](Index point)
   {
     const Index v = surface.VertexOf(point);
-    if (v < 0 || !IsSet(fields.Fixed, point))
+    if (v < 0 || !IsSet(fields.Fixed.Values, point))
     {
       return;
     }
@@ -226,7 +226,7 @@ void FixVertices(const Surface& surface, const Fields& fields, const CellState& 
   processes.RunCollectively(
     [&]
     {
-      for (std::size_t i = 0; i < fields.Fixed.size(); ++i)
+      for (std::size_t i = 0; i < fields.Fixed.Values.size(); ++i)
       {
         fix(static_cast<Index>(i));
       }
@@ -239,11 +239,11 @@ std::vector<char> FindHeldCells(
 {
   const auto count = static_cast<std::size_t>(fields.NumberOfCells);
   std::vector<char> held(count, 0);
-  if (processes.Any(fields.FixedOnCells))
+  if (processes.Any(fields.Fixed.OnCells))
   {
     for (std::size_t c = 0; c < count; ++c)
     {
-      held[c] = static_cast<char>(IsSet(fields.Fixed, static_cast<Index>(c)));
+      held[c] = static_cast<char>(IsSet(fields.Fixed.Values, static_cast<Index>(c)));
     }
     return held;
   }
@@ -278,32 +278,34 @@ CellTransfer MakeCellTransfer(
 void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup& processes,
   const ParallelFor& parallel)
 {
-  if (processes.Any(fields.DataOnCells))
+  if (processes.Any(fields.Data.OnCells))
   {
-    if (!fields.Mask.empty() && !fields.MaskOnCells)
+    if (!fields.Mask.Values.empty() && !fields.Mask.OnCells)
     {
-      fields.Mask = MarkCells(surface, fields, fields.Mask);
+      fields.Mask.Values = MarkCells(surface, fields, fields.Mask.Values);
     }
-    fields.MaskOnCells = true;
+    fields.Mask.OnCells = true;
     return;
   }
-  if (processes.Any(fields.MaskOnCells))
+  if (processes.Any(fields.Mask.OnCells))
   {
-    fields.Mask = SpreadToPoints<char>(surface, MarkVertices(surface, fields, fields.Mask), 0);
+    fields.Mask.Values =
+      SpreadToPoints<char>(surface, MarkVertices(surface, fields, fields.Mask.Values), 0);
   }
-  if (processes.Any(fields.FixedOnCells))
+  if (processes.Any(fields.Fixed.OnCells))
   {
-    fields.Fixed = SpreadToPoints<char>(surface, MarkVertices(surface, fields, fields.Fixed), 0);
+    fields.Fixed.Values =
+      SpreadToPoints<char>(surface, MarkVertices(surface, fields, fields.Fixed.Values), 0);
   }
-  if (processes.Any(fields.FidelityOnCells))
+  if (processes.Any(fields.FidelityFactors.OnCells))
   {
     Values factors;
     processes.RunCollectively([&] { factors = ReadCellFactors(fields); });
     const CellTransfer transfer = MakeCellTransfer(surface, fields, parallel);
-    fields.FidelityFactors = SpreadToPoints<double>(surface,
+    fields.FidelityFactors.Values = SpreadToPoints<double>(surface,
       Vector(transfer.ToVertices(factors, Vector::Ones(fields.NumberOfCells)).Of.col(0)), 1.0);
   }
-  fields.MaskOnCells = fields.FixedOnCells = fields.FidelityOnCells = false;
+  fields.Mask.OnCells = fields.Fixed.OnCells = fields.FidelityFactors.OnCells = false;
 }
 
 PointData MakePointDataOfCells(
@@ -330,7 +332,7 @@ PointData MakePointDataOfCells(
   }
   cells.Factors = given.Known;
   const bool hasUnknown = cells.Reading.UsesFidelity && given.HasUnknown;
-  if (processes.Any(hasUnknown || !fields.FidelityFactors.empty()))
+  if (processes.Any(hasUnknown || !fields.FidelityFactors.Values.empty()))
   {
     WeightFidelity(surface, fields, cells, given, processes, data);
   }

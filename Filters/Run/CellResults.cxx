@@ -47,7 +47,7 @@ Values FirstDetail(const Fields& fields, const CellState& cells)
       detail.row(c).setZero();
       continue;
     }
-    Values given = fields.Data.row(c) / reading.Unit;
+    Values given = fields.Data.Values.row(c) / reading.Unit;
     if (reading.UnitVectors)
     {
       Normalize(given.row(0));

@@ -72,12 +72,12 @@ void DenoisingRun::Update(
   }
   Fields fields = input.ReadFields();
   MoveMarksToData(surface, fields, ProcessGroup(), this->Parallel);
-  std::vector<char> fixed(fields.Fixed.empty() ? 0 : static_cast<std::size_t>(count), 0);
+  std::vector<char> fixed(fields.Fixed.Values.empty() ? 0 : static_cast<std::size_t>(count), 0);
   const auto numberOfPoints = static_cast<Index>(surface.Points().rows());
   for (Index p = 0; p < numberOfPoints && !fixed.empty(); ++p)
   {
     const Index vertex = surface.VertexOf(p);
-    if (vertex >= 0 && fields.Fixed[p])
+    if (vertex >= 0 && fields.Fixed.Values[p])
     {
       fixed[vertex] = 1;
     }

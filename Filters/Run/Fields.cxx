@@ -29,7 +29,7 @@ std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields
   {
     const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
     const Index cell = fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))];
-    const Index label = fields.Seeds[static_cast<std::size_t>(cell)];
+    const Index label = fields.Seeds.Values[static_cast<std::size_t>(cell)];
     for (int a = 0; a < 3 && label != none; ++a)
     {
       Index& seed = seeds[static_cast<std::size_t>(mesh.TriangleVertices()(t, a))];
@@ -52,13 +52,14 @@ InputError ErrorAt(
 
 void CheckFidelityFactors(const Fields& fields)
 {
-  for (std::size_t i = 0; i < fields.FidelityFactors.size(); ++i)
+  for (std::size_t i = 0; i < fields.FidelityFactors.Values.size(); ++i)
   {
-    const double factor = fields.FidelityFactors[i];
+    const double factor = fields.FidelityFactors.Values[i];
     if (!(std::isfinite(factor) && factor >= 0.0))
     {
-      throw ErrorAt(Word::Array("FidelityArray"), Sentence("is ") << factor, fields.FidelityOnCells,
-        static_cast<Eigen::Index>(i), "allowed: finite numbers, 0 or more");
+      throw ErrorAt(Word::Array("FidelityArray"), Sentence("is ") << factor,
+        fields.FidelityFactors.OnCells, static_cast<Eigen::Index>(i),
+        "allowed: finite numbers, 0 or more");
     }
   }
 }
@@ -66,7 +67,7 @@ void CheckFidelityFactors(const Fields& fields)
 Vector MakeFidelityFactors(const Surface& surface, const Fields& fields)
 {
   CheckFidelityFactors(fields);
-  const std::vector<double>& ofPoints = fields.FidelityFactors;
+  const std::vector<double>& ofPoints = fields.FidelityFactors.Values;
   const Index n = surface.Mesh().NumberOfVertices();
   Vector factors = Vector::Zero(n);
   Vector counts = Vector::Zero(n);
@@ -84,8 +85,8 @@ Vector MakeFidelityFactors(const Surface& surface, const Fields& fields)
 
 std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fields)
 {
-  std::vector<char> found(static_cast<std::size_t>(fields.Data.rows()), 0);
-  if (fields.DataOnCells)
+  std::vector<char> found(static_cast<std::size_t>(fields.Data.Values.rows()), 0);
+  if (fields.Data.OnCells)
   {
     for (const Index row : surface.InputMesh().InputTriangle())
     {
@@ -110,9 +111,9 @@ void ValueStatistics::Widen(
 
 void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint, bool robust)
 {
-  const Values& values = fields.Data;
+  const Values& values = fields.Data.Values;
   const std::vector<char> participates = FindParticipatingRows(surface, fields);
-  const bool fixedHere = fields.FixedOnCells == fields.DataOnCells;
+  const bool fixedHere = fields.Fixed.OnCells == fields.Data.OnCells;
   std::vector<Index> known;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
@@ -121,7 +122,7 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
       continue;
     }
     this->Largest = std::max(this->Largest, values.row(i).cwiseAbs().maxCoeff());
-    if (!inpaint || !IsSet(fields.Mask, i) || (fixedHere && IsSet(fields.Fixed, i)))
+    if (!inpaint || !IsSet(fields.Mask.Values, i) || (fixedHere && IsSet(fields.Fixed.Values, i)))
     {
       known.push_back(static_cast<Index>(i));
     }
@@ -205,7 +206,7 @@ double ValueStatistics::RobustRange() const
 PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit)
 {
   const Index n = surface.Mesh().NumberOfVertices();
-  const Values& values = fields.Data;
+  const Values& values = fields.Data.Values;
   PointData data;
   data.Given = Values::Zero(n, values.cols());
   data.Missing = Flags::Constant(n, true);
@@ -223,7 +224,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
     {
       continue;
     }
-    const bool isFixed = IsSet(fields.Fixed, i);
+    const bool isFixed = IsSet(fields.Fixed.Values, i);
     const bool isNaN = IsSet(fields.Missing, i) || values.row(i).hasNaN();
     if (isFixed && isNaN)
     {
@@ -232,7 +233,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
         "allowed there: finite values");
     }
     data.Fixed[v] = data.Fixed[v] || isFixed;
-    if (isFixed || !(isNaN || (inpaint && IsSet(fields.Mask, i))))
+    if (isFixed || !(isNaN || (inpaint && IsSet(fields.Mask.Values, i))))
     {
       data.Given.row(v) += values.row(i) / unit;
       data.Missing[v] = false;
@@ -257,7 +258,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
       data.Given.row(v) /= count;
     }
   }
-  if (!fields.FidelityFactors.empty())
+  if (!fields.FidelityFactors.Values.empty())
   {
     data.FidelityFactors = MakeFidelityFactors(surface, fields);
   }
@@ -267,20 +268,20 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
 TangentVectors MakeDirections(
   const Surface& surface, const Fields& fields, const ParallelFor& parallel)
 {
-  if (fields.Directions.rows() == 0)
+  if (fields.Directions.Values.rows() == 0)
   {
     return TangentVectors(0, 2);
   }
-  if (!fields.DirectionsOnTriangles)
+  if (!fields.Directions.OnCells)
   {
     return TransportToMesh(surface,
       TangentVectorsFromPointVectors(surface.InputMesh(), surface.Points(), surface.MakeTriangles(),
-        fields.Directions, parallel));
+        fields.Directions.Values, parallel));
   }
   SurfaceDiffusion::Points ofTriangles(surface.NumberOfTriangles(), 3);
   for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
   {
-    ofTriangles.row(t) = fields.Directions.row(surface.InputTriangle(static_cast<Index>(t)));
+    ofTriangles.row(t) = fields.Directions.Values.row(surface.InputTriangle(static_cast<Index>(t)));
   }
   return TransportToMesh(surface,
     TangentVectorsFromTriangleVectors(
@@ -289,31 +290,31 @@ TangentVectors MakeDirections(
 
 std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields)
 {
-  if (fields.Seeds.empty())
+  if (fields.Seeds.Values.empty())
   {
     return {};
   }
-  if (fields.SeedsOnCells)
+  if (fields.Seeds.OnCells)
   {
     return MakeSeedsOfCells(surface, fields);
   }
   std::vector<Index> seeds(static_cast<std::size_t>(surface.Mesh().NumberOfVertices()), 0);
-  for (std::size_t i = 0; i < fields.Seeds.size(); ++i)
+  for (std::size_t i = 0; i < fields.Seeds.Values.size(); ++i)
   {
     const Index v = surface.VertexOf(static_cast<Index>(i));
-    if (v < 0 || fields.Seeds[i] == 0)
+    if (v < 0 || fields.Seeds.Values[i] == 0)
     {
       continue;
     }
     Index& seed = seeds[static_cast<std::size_t>(v)];
-    if (seed != 0 && seed != fields.Seeds[i])
+    if (seed != 0 && seed != fields.Seeds.Values[i])
     {
       throw InputError(Sentence(Word::Array("SeedArray"))
-        << " is " << seed << " and " << fields.Seeds[i]
+        << " is " << seed << " and " << fields.Seeds.Values[i]
         << " at points that are merged into one, point " << i
         << " among them; allowed: one label there");
     }
-    seed = fields.Seeds[i];
+    seed = fields.Seeds.Values[i];
   }
   return seeds;
 }

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/RobustRange.h"
 #include "Core/Models/Model.h"
+#include "Run/Located.h"
 #include "Run/ProcessGroup.h"
 #include "Run/RunSettings.h"
 #include "Run/Surface.h"
@@ -21,8 +22,7 @@ struct Fields
 {
   /// f, one row per input point or cell and one column per component; no column if there are no
   /// data. NaN in any component of a row means that the point or cell is missing.
-  Values Data;
-  bool DataOnCells = false;
+  Located<Values> Data;
   Word DataName = Word::Array("InputArray"); ///< for error messages
   /// Data may be a panel of the columns of the input, from FirstColumn of AllColumns on. Then NaN
   /// in columns outside of the panel is known by Missing: per point, nonzero: NaN in any column.
@@ -30,31 +30,29 @@ struct Fields
   Eigen::Index AllColumns = 0; ///< 0: Data has all columns
   std::vector<char> Missing; ///< may be empty
   /// Per point or cell, nonzero: missing or excluded; may be empty. See MoveMarksToData().
-  std::vector<char> Mask;
-  bool MaskOnCells = false;
-  std::vector<char> Fixed; ///< per point or cell, nonzero: Dirichlet; may be empty
-  bool FixedOnCells = false;
-  std::vector<double> FidelityFactors; ///< per point or cell, 0 or more; empty: 1 everywhere
-  bool FidelityOnCells = false;
-  /// e1, per point or per input triangle; no row if there are no directions. Finite or NaN.
-  SurfaceDiffusion::Points Directions;
-  bool DirectionsOnTriangles = false;
+  Located<std::vector<char>> Mask;
+  Located<std::vector<char>> Fixed; ///< per point or cell, nonzero: Dirichlet; may be empty
+  /// Per point or cell, 0 or more; empty: 1 everywhere.
+  Located<std::vector<double>> FidelityFactors;
+  /// e1, per point or, OnCells, per input triangle; no row if there are no directions. Finite or
+  /// NaN.
+  Located<SurfaceDiffusion::Points> Directions;
   /// Diffusion rates of a texture, per input triangle; no row if there are none.
   Values Rates;
   /// Makes numbers per point, for random numbers; empty: they are made from the coordinates.
   std::function<std::vector<std::int64_t>()> MakeIds;
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
   bool DataAreBytes = false; ///< unsigned char, which models of colours take for sRGB
-  std::vector<Index> Seeds; ///< per point or cell, the label 1, 2, ... it keeps, or 0; may be empty
-  bool SeedsOnCells = false;
+  /// Per point or cell, the label 1, 2, ... that it keeps, or 0; may be empty.
+  Located<std::vector<Index>> Seeds;
   /// The cell of each input triangle, below NumberOfCells, if one of the arrays is on cells.
   std::vector<Index> Cells;
   Index NumberOfCells = 0;
 
   bool HasCells() const
   {
-    return this->DataOnCells || this->MaskOnCells || this->FixedOnCells || this->FidelityOnCells ||
-      this->SeedsOnCells;
+    return this->Data.OnCells || this->Mask.OnCells || this->Fixed.OnCells ||
+      this->FidelityFactors.OnCells || this->Seeds.OnCells;
   }
 };
 

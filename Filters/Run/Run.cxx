@@ -94,10 +94,11 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   block.HasLinearLight = fields->DataAreBytes && this->Settings->DescribeModel().UsesLinearLight;
   if (block.HasLinearLight)
   {
-    DecodeColors(fields->Data, this->Parallel);
+    DecodeColors(fields->Data.Values, this->Parallel);
   }
-  const std::vector<char> mask = fields->Mask; // as it was given
-  fields->DataOnCells = processes.Any(fields->DataOnCells); // that of a process without points, too
+  const std::vector<char> mask = fields->Mask.Values; // as it was given
+  fields->Data.OnCells =
+    processes.Any(fields->Data.OnCells); // that of a process without points, too
   MoveMarksToData(
     block.WholeSurface ? *block.WholeSurface : *block.Surface, *fields, processes, this->Parallel);
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
@@ -105,7 +106,7 @@ void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Blo
   block.Statistics = ValueStatistics();
   block.Statistics.Add(
     *block.Surface, *fields, inpaint, !this->Settings->DescribeModel().SettingsInRange.empty());
-  block.HasData = processes.Any(fields->Data.cols() > 0);
+  block.HasData = processes.Any(fields->Data.Values.cols() > 0);
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
   block.MaskVersion = Fingerprint();
@@ -191,12 +192,13 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
     this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)
                                                       : std::vector<std::int64_t>(),
     this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
-    std::max(fields.AllColumns, fields.Data.cols()),
-    fields.FirstColumn + fields.Data.cols() >= fields.AllColumns, fields.DataAreTerms,
+    std::max(fields.AllColumns, fields.Data.Values.cols()),
+    fields.FirstColumn + fields.Data.Values.cols() >= fields.AllColumns, fields.DataAreTerms,
     MakeSeeds(*block.Surface, fields), block.Cells ? &block.Cells->Transfer : nullptr };
-  if (fields.SeedsOnCells && !fields.Seeds.empty())
+  if (fields.Seeds.OnCells && !fields.Seeds.Values.empty())
   {
-    inputs.LargestCellSeed = *std::max_element(fields.Seeds.begin(), fields.Seeds.end());
+    inputs.LargestCellSeed =
+      *std::max_element(fields.Seeds.Values.begin(), fields.Seeds.Values.end());
   }
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
@@ -231,21 +233,21 @@ PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& 
     return data;
   }
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
-  if (fields.DataOnCells)
+  if (fields.Data.OnCells)
   {
     const ModelTraits traits = this->Settings->DescribeModel();
     const CellReading reading{ inpaint, traits.UsesFidelity, traits.StateIsUnitVectors,
       traits.StateIsLines, traits.HoldsKnownValues, block.Units.ValueUnit };
     block.Cells = std::make_unique<CellState>(
       CellState{ MakeCellTransfer(*block.Surface, fields, this->Parallel), {}, false, {}, reading,
-        fields.SeedsOnCells ? fields.Seeds : std::vector<Index>(), {}, {}, nullptr,
+        fields.Seeds.OnCells ? fields.Seeds.Values : std::vector<Index>(), {}, {}, nullptr,
         block.Undetermined.Cells });
     return MakePointDataOfCells(*block.Surface, fields, *block.Cells, processes);
   }
   processes.RunCollectively(
     [&]
     {
-      if (fields.Data.cols() > 0)
+      if (fields.Data.Values.cols() > 0)
       {
         data = MakePointData(*block.Surface, fields, inpaint, block.Units.ValueUnit);
       }

@@ -68,16 +68,17 @@ public:
       RequireRows(name, rows, expected, onCells, problems);
     };
     const auto rowsOf = [](const auto& matrix) { return static_cast<std::size_t>(matrix.rows()); };
-    require("Data", rowsOf(fields.Data), fields.DataOnCells);
-    require("Missing", fields.Missing.size(), fields.DataOnCells);
-    require("Mask", fields.Mask.size(), fields.MaskOnCells);
-    require("Fixed", fields.Fixed.size(), fields.FixedOnCells);
-    require("FidelityFactors", fields.FidelityFactors.size(), fields.FidelityOnCells);
-    require("Seeds", fields.Seeds.size(), fields.SeedsOnCells);
+    require("Data", rowsOf(fields.Data.Values), fields.Data.OnCells);
+    require("Missing", fields.Missing.size(), fields.Data.OnCells);
+    require("Mask", fields.Mask.Values.size(), fields.Mask.OnCells);
+    require("Fixed", fields.Fixed.Values.size(), fields.Fixed.OnCells);
+    require(
+      "FidelityFactors", fields.FidelityFactors.Values.size(), fields.FidelityFactors.OnCells);
+    require("Seeds", fields.Seeds.Values.size(), fields.Seeds.OnCells);
     const auto faces = static_cast<std::size_t>(triangles.rows());
-    RequireRows("Directions", rowsOf(fields.Directions),
-      fields.DirectionsOnTriangles ? faces : static_cast<std::size_t>(points.rows()),
-      fields.DirectionsOnTriangles, problems);
+    RequireRows("Directions", rowsOf(fields.Directions.Values),
+      fields.Directions.OnCells ? faces : static_cast<std::size_t>(points.rows()),
+      fields.Directions.OnCells, problems);
     RequireRows("Rates", rowsOf(fields.Rates), faces, true, problems);
     RequireRows("Cells", this->Data.Cells.size(), faces, true, problems);
     if (faces == 0)
@@ -105,10 +106,10 @@ public:
   FieldSummary Summarize() const
   {
     FieldSummary summary;
-    summary.Data = this->Data.Data.size() > 0;
-    summary.DataComponents = summary.Data ? static_cast<int>(this->Data.Data.cols()) : 0;
-    summary.Directions = this->Data.Directions.rows() > 0;
-    summary.Fixed = !this->Data.Fixed.empty();
+    summary.Data = this->Data.Data.Values.size() > 0;
+    summary.DataComponents = summary.Data ? static_cast<int>(this->Data.Data.Values.cols()) : 0;
+    summary.Directions = this->Data.Directions.Values.rows() > 0;
+    summary.Fixed = !this->Data.Fixed.Values.empty();
     summary.Rates = this->Data.Rates.rows() > 0;
     summary.DataAreTerms = this->Data.DataAreTerms;
     return summary;
@@ -121,15 +122,16 @@ public:
     block.ReadSurface = [this, excludes]
     {
       SurfaceArrays arrays{ this->Vertices, this->Faces, {} };
-      if (excludes && !this->Data.MaskOnCells)
+      if (excludes && !this->Data.Mask.OnCells)
       {
-        arrays.Excluded = this->Data.Mask;
+        arrays.Excluded = this->Data.Mask.Values;
       }
-      else if (excludes && !this->Data.Mask.empty())
+      else if (excludes && !this->Data.Mask.Values.empty())
       {
         for (const Index cell : this->Data.Cells)
         {
-          arrays.ExcludedTriangles.push_back(this->Data.Mask[static_cast<std::size_t>(cell)]);
+          arrays.ExcludedTriangles.push_back(
+            this->Data.Mask.Values[static_cast<std::size_t>(cell)]);
         }
       }
       return arrays;
@@ -143,7 +145,7 @@ public:
     source.NumberOfCells = static_cast<std::int64_t>(this->NumberOfCells());
     source.CellOf = [this](Index t) -> std::int64_t
     { return this->Data.Cells.empty() ? t : this->Data.Cells[static_cast<std::size_t>(t)]; };
-    source.ReadData = [this] { return this->Data.Data; };
+    source.ReadData = [this] { return this->Data.Data.Values; };
     source.DataAreFloats = true;
     for (const Output& output : outputs)
     {
@@ -191,7 +193,7 @@ private:
     Values written(rows.Count(), rows.Columns());
     rows.Write(
       written.data(), written.cols(), -1,
-      [this](Index i, Eigen::Index k) { return this->Data.Data(i, k); }, source.Parallel);
+      [this](Index i, Eigen::Index k) { return this->Data.Data.Values(i, k); }, source.Parallel);
     return written;
   }
 

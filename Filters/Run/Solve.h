@@ -62,7 +62,7 @@ struct SurfaceData : Fields
   template <typename Derived>
   SurfaceData(const Eigen::DenseBase<Derived>& ofPoints) // NOLINT(google-explicit-constructor)
   {
-    this->Data = ofPoints.derived();
+    this->Data.Values = ofPoints.derived();
   }
 };
 

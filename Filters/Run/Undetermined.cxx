@@ -19,12 +19,12 @@ bool IsSet(const std::vector<char>& flags, Eigen::Index i)
 /// Per row of the data.
 std::vector<char> FindKnownRows(const Fields& fields, bool inpaint, bool unitVectors)
 {
-  std::vector<char> known(static_cast<std::size_t>(fields.Data.rows()), 0);
-  for (Eigen::Index i = 0; i < fields.Data.rows(); ++i)
+  std::vector<char> known(static_cast<std::size_t>(fields.Data.Values.rows()), 0);
+  for (Eigen::Index i = 0; i < fields.Data.Values.rows(); ++i)
   {
-    const auto row = fields.Data.row(i);
+    const auto row = fields.Data.Values.row(i);
     known[static_cast<std::size_t>(i)] = !IsSet(fields.Missing, i) && !row.hasNaN() &&
-      !(inpaint && IsSet(fields.Mask, i)) && !(unitVectors && row.isZero(0.0));
+      !(inpaint && IsSet(fields.Mask.Values, i)) && !(unitVectors && row.isZero(0.0));
   }
   return known;
 }
@@ -76,12 +76,12 @@ public:
 
   /// Count the marks of each component in a column of `counts`.
   template <typename T>
-  void Count(const std::vector<T>& marks, bool onCells, Values& counts) const
+  void Count(const Located<std::vector<T>>& marks, Values& counts) const
   {
-    if (!marks.empty())
+    if (!marks.Values.empty())
     {
-      this->ForEach(
-        onCells, [&](Index c, std::size_t i) { counts(c, 0) += marks[i] != 0 ? 1.0 : 0.0; });
+      this->ForEach(marks.OnCells,
+        [&](Index c, std::size_t i) { counts(c, 0) += marks.Values[i] != 0 ? 1.0 : 0.0; });
     }
   }
 
@@ -98,7 +98,7 @@ Undetermined FindUndetermined(const Surface& surface, const Fields& fields, bool
   bool unitVectors, const ProcessGroup& processes)
 {
   Undetermined found;
-  if (!processes.Any(fields.Data.cols() > 0))
+  if (!processes.Any(fields.Data.Values.cols() > 0))
   {
     return found;
   }
@@ -115,9 +115,9 @@ Undetermined FindUndetermined(const Surface& surface, const Fields& fields, bool
   const Index components = mesh.NumberOfComponents();
   Values counts = Values::Zero(components, 2);
   const ComponentMarks marks(surface, fields);
-  marks.Count(known, fields.DataOnCells, counts);
-  marks.Count(fields.Fixed, fields.FixedOnCells, counts);
-  marks.Count(fields.Seeds, fields.SeedsOnCells, counts);
+  marks.Count(Located<std::vector<char>>{ known, fields.Data.OnCells }, counts);
+  marks.Count(fields.Fixed, counts);
+  marks.Count(fields.Seeds, counts);
   for (Index c = 0; c < components; ++c)
   {
     counts(c, 1) = mesh.ComponentsBegin()[c + 1] - mesh.ComponentsBegin()[c];
@@ -141,7 +141,7 @@ Undetermined FindUndetermined(const Surface& surface, const Fields& fields, bool
   { marks.ForEach(onCells, [&](Index c, std::size_t i) { flags[i] = !(counts(c, 0) > 0.0); }); };
   found.Points.assign(static_cast<std::size_t>(surface.Points().rows()), 0);
   mark(false, found.Points);
-  if (fields.DataOnCells)
+  if (fields.Data.OnCells)
   {
     found.Cells.assign(static_cast<std::size_t>(fields.NumberOfCells), 0);
     mark(true, found.Cells);

@@ -140,36 +140,36 @@ void InputSurface::SetAreaFactors(const FactorArray& factors)
     this->AreaFactors.data(), sizeof(double) * this->AreaFactors.size(), PythonThreads::Instance());
 }
 
-SurfaceArrays InputSurface::Read(const std::optional<FlagArray>& excluded, bool onFaces) const
+SurfaceArrays InputSurface::Read(const Located<std::optional<FlagArray>>& excluded) const
 {
   SurfaceArrays arrays{ this->Coordinates, this->TriangleRows, {}, this->AreaFactors };
-  if (!onFaces)
+  if (!excluded.OnCells)
   {
-    arrays.Excluded = ReadFlags(excluded);
+    arrays.Excluded = ReadFlags(excluded.Values);
     return arrays;
   }
-  for (Index t = 0; excluded && t < static_cast<Index>(this->TriangleRows.rows()); ++t)
+  for (Index t = 0; excluded.Values && t < static_cast<Index>(this->TriangleRows.rows()); ++t)
   {
-    arrays.ExcludedTriangles.push_back(excluded->data()[this->FaceOf(t)] != 0);
+    arrays.ExcludedTriangles.push_back(excluded.Values->data()[this->FaceOf(t)] != 0);
   }
   return arrays;
 }
 
-Fingerprint InputSurface::Version(const std::optional<FlagArray>& excluded, bool onFaces) const
+Fingerprint InputSurface::Version(const Located<std::optional<FlagArray>>& excluded) const
 {
   Fingerprint version = this->Contents;
-  AddArray(version, excluded);
-  version.AddNumber(std::uint64_t{ onFaces ? 1U : 0U });
+  AddArray(version, excluded.Values);
+  version.AddNumber(std::uint64_t{ excluded.OnCells ? 1U : 0U });
   return version;
 }
 
 FieldSummary InputFields::Summarize() const
 {
   FieldSummary summary;
-  summary.Data = this->Data.has_value();
+  summary.Data = this->Data.Values.has_value();
   summary.DataComponents = this->Components;
-  summary.Directions = this->Directions.has_value();
-  summary.Fixed = this->Fixed.has_value();
+  summary.Directions = this->Directions.Values.has_value();
+  summary.Fixed = this->Fixed.Values.has_value();
   summary.Rates = this->Rates.has_value();
   summary.DataAreTerms = this->DataAreTerms;
   return summary;
@@ -178,22 +178,24 @@ FieldSummary InputFields::Summarize() const
 Fields InputFields::Read() const
 {
   Fields fields;
-  if (this->Data)
+  fields.Data.OnCells = this->Data.OnCells;
+  if (this->Data.Values)
   {
     fields.DataName = Word::Array(this->DataAreTerms ? "DataTermArray" : "InputArray");
     fields.DataAreTerms = this->DataAreTerms;
-    fields.DataAreBytes = this->Data->dtype() == nb::dtype<std::uint8_t>();
-    fields.Data.resize(static_cast<Eigen::Index>(this->Data->shape(0)), this->Components);
-    const auto stride = static_cast<Eigen::Index>(this->Data->shape(1));
-    VisitElements(*this->Data,
+    fields.DataAreBytes = this->Data.Values->dtype() == nb::dtype<std::uint8_t>();
+    Values& values = fields.Data.Values;
+    values.resize(static_cast<Eigen::Index>(this->Data.Values->shape(0)), this->Components);
+    const auto stride = static_cast<Eigen::Index>(this->Data.Values->shape(1));
+    VisitElements(*this->Data.Values,
       [&](const auto* from)
       {
-        ForEach(PythonThreads::Instance(), static_cast<Index>(fields.Data.rows()),
+        ForEach(PythonThreads::Instance(), static_cast<Index>(values.rows()),
           [&](Index i)
           {
-            for (Eigen::Index k = 0; k < fields.Data.cols(); ++k)
+            for (Eigen::Index k = 0; k < values.cols(); ++k)
             {
-              fields.Data(i, k) = static_cast<double>(from[i * stride + this->FirstColumn + k]);
+              values(i, k) = static_cast<double>(from[i * stride + this->FirstColumn + k]);
             }
           });
       });
@@ -204,11 +206,10 @@ Fields InputFields::Read() const
     fields.AllColumns = this->AllColumns;
     fields.Missing = *this->Missing;
   }
-  fields.DataOnCells = this->DataOnFaces;
-  fields.MaskOnCells = this->MaskOnFaces;
-  fields.FixedOnCells = this->FixedOnFaces;
-  fields.FidelityOnCells = this->FidelityOnFaces;
-  fields.SeedsOnCells = this->SeedsOnFaces;
+  fields.Mask = { ReadFlags(this->Mask.Values), this->Mask.OnCells };
+  fields.Fixed = { ReadFlags(this->Fixed.Values), this->Fixed.OnCells };
+  fields.FidelityFactors.OnCells = this->FidelityFactors.OnCells;
+  fields.Seeds.OnCells = this->Seeds.OnCells;
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(this->Surface->NumberOfFaces());
@@ -218,28 +219,25 @@ Fields InputFields::Read() const
       fields.Cells[t] = static_cast<Index>(this->Surface->FaceOf(static_cast<Index>(t)));
     }
   }
-  fields.Mask = ReadFlags(this->Mask);
-  fields.Fixed = ReadFlags(this->Fixed);
-  if (this->Directions)
+  if (const auto& given = this->Directions.Values)
   {
-    fields.DirectionsOnTriangles = this->DirectionsOnFaces;
-    fields.Directions = this->DirectionsOnFaces
-      ? ReadOnTriangles<Points>(*this->Surface, *this->Directions)
-      : Points(Eigen::Map<const Points>(
-          this->Directions->data(), static_cast<Eigen::Index>(this->Directions->shape(0)), 3));
+    fields.Directions.OnCells = this->Directions.OnCells;
+    fields.Directions.Values = this->Directions.OnCells
+      ? ReadOnTriangles<Points>(*this->Surface, *given)
+      : Points(
+          Eigen::Map<const Points>(given->data(), static_cast<Eigen::Index>(given->shape(0)), 3));
   }
   if (this->Rates)
   {
     fields.Rates = ReadOnTriangles<Values>(*this->Surface, *this->Rates);
   }
-  if (this->FidelityFactors)
+  if (const auto& given = this->FidelityFactors.Values)
   {
-    const double* const begin = this->FidelityFactors->data();
-    fields.FidelityFactors.assign(begin, begin + this->FidelityFactors->size());
+    fields.FidelityFactors.Values.assign(given->data(), given->data() + given->size());
   }
-  if (this->Seeds)
+  if (const auto& given = this->Seeds.Values)
   {
-    fields.Seeds.assign(this->Seeds->data(), this->Seeds->data() + this->Seeds->size());
+    fields.Seeds.Values.assign(given->data(), given->data() + given->size());
   }
   return fields;
 }
@@ -249,7 +247,7 @@ InputFields InputFields::Columns(int first, int count) const
   static std::atomic<std::uint64_t> panels{ 0 };
   if (!this->Found)
   {
-    this->Found = std::make_shared<const std::vector<char>>(FindMissing(*this->Data));
+    this->Found = std::make_shared<const std::vector<char>>(FindMissing(*this->Data.Values));
   }
   InputFields panel = *this;
   panel.FirstColumn = first;
@@ -266,17 +264,17 @@ Fingerprint InputFields::Version() const
   version.AddNumber(this->PanelNumber);
   if (this->PanelNumber == 0)
   {
-    AddArray(version, this->Data);
+    AddArray(version, this->Data.Values);
   }
-  AddArray(version, this->Mask);
-  AddArray(version, this->Fixed);
-  AddArray(version, this->Directions);
+  AddArray(version, this->Mask.Values);
+  AddArray(version, this->Fixed.Values);
+  AddArray(version, this->Directions.Values);
   AddArray(version, this->Rates);
-  AddArray(version, this->FidelityFactors);
-  AddArray(version, this->Seeds);
+  AddArray(version, this->FidelityFactors.Values);
+  AddArray(version, this->Seeds.Values);
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
-  for (const bool onFaces : { this->DirectionsOnFaces, this->DataOnFaces, this->MaskOnFaces,
-         this->FixedOnFaces, this->FidelityOnFaces, this->SeedsOnFaces })
+  for (const bool onFaces : { this->Directions.OnCells, this->Data.OnCells, this->Mask.OnCells,
+         this->Fixed.OnCells, this->FidelityFactors.OnCells, this->Seeds.OnCells })
   {
     version.AddNumber(std::uint64_t{ onFaces ? 1U : 0U });
   }

@@ -80,9 +80,9 @@ public:
   /// See SurfaceArrays::AreaFactors; one per point.
   void SetAreaFactors(const FactorArray& factors);
 
-  /// excluded: per point or face, nonzero for those that are left out.
-  SurfaceArrays Read(const std::optional<FlagArray>& excluded, bool onFaces) const;
-  Fingerprint Version(const std::optional<FlagArray>& excluded, bool onFaces) const;
+  /// excluded: per point or face (cell), nonzero for those that are left out.
+  SurfaceArrays Read(const Located<std::optional<FlagArray>>& excluded) const;
+  Fingerprint Version(const Located<std::optional<FlagArray>>& excluded) const;
 
 private:
   Points Coordinates;
@@ -98,20 +98,13 @@ class InputFields
 {
 public:
   std::shared_ptr<const InputSurface> Surface;
-  std::optional<InputArray> Data; ///< points or faces x components
-  bool DataOnFaces = false;
+  Located<std::optional<InputArray>> Data; ///< points or faces x components
   int Components = 0; ///< of the data, alpha not counted
-  std::optional<FlagArray> Mask; ///< of points or faces, as all that follow
-  bool MaskOnFaces = false;
-  std::optional<FlagArray> Fixed;
-  bool FixedOnFaces = false;
-  std::optional<DoubleArray> Directions; ///< points or faces x 3
-  bool DirectionsOnFaces = false;
+  Located<std::optional<FlagArray>> Mask, Fixed;
+  Located<std::optional<DoubleArray>> Directions; ///< points or faces x 3
   std::optional<DoubleArray> Rates; ///< faces x 4
-  std::optional<FactorArray> FidelityFactors;
-  bool FidelityOnFaces = false;
-  std::optional<LongArray> Seeds; ///< labels, 0 = free
-  bool SeedsOnFaces = false;
+  Located<std::optional<FactorArray>> FidelityFactors;
+  Located<std::optional<LongArray>> Seeds; ///< labels, 0 = free
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
   /// The same with a panel of the data's columns, which Components counts.

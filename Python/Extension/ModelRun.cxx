@@ -133,9 +133,9 @@ void WriteOutput(const Output& from, OutputSource& source, const InputFields& in
     write([](Index, Eigen::Index) { return 0.0; });
     return;
   }
-  const auto columns = static_cast<Eigen::Index>(input.Data->shape(1));
+  const auto columns = static_cast<Eigen::Index>(input.Data.Values->shape(1));
   const Eigen::Index start = std::max(first, 0);
-  VisitElements(*input.Data,
+  VisitElements(*input.Data.Values,
     [&](const auto* old)
     {
       write(
@@ -242,11 +242,14 @@ void ModelRun::Update(
       for (std::size_t b = 0; b < blocks.size(); ++b)
       {
         const InputFields& fields = *blocks[b];
-        const auto excluded = excludes ? fields.Mask : std::nullopt;
-        inputs[b].SurfaceVersion = fields.Surface->Version(excluded, fields.MaskOnFaces);
+        auto excluded = fields.Mask;
+        if (!excludes)
+        {
+          excluded.Values.reset();
+        }
+        inputs[b].SurfaceVersion = fields.Surface->Version(excluded);
         inputs[b].FieldsVersion = fields.Version();
-        inputs[b].ReadSurface = [&fields, excluded]
-        { return fields.Surface->Read(excluded, fields.MaskOnFaces); };
+        inputs[b].ReadSurface = [&fields, excluded] { return fields.Surface->Read(excluded); };
         inputs[b].ReadFields = [&fields] { return fields.Read(); };
       }
       ClearOnFailure(this->Model, *this->Settings,
@@ -316,11 +319,11 @@ void ModelRun::Write(std::size_t block, std::size_t number, const OutputArray& o
 {
   const Run::Block& from = this->Model.GetBlock(block);
   OutputSource source{ *from.Surface, PythonThreads::Instance() };
-  if (input.Data)
+  if (input.Data.Values)
   {
     const Eigen::Index count = first < 0 ? input.Components : from.Path->State().cols();
     source.ReadData = [&input, first, count]
-    { return ReadData(*input.Data, std::max(first, 0), count); };
+    { return ReadData(*input.Data.Values, std::max(first, 0), count); };
     source.DataAreFloats = !integers;
     source.AsBytes = output.dtype() == nb::dtype<std::uint8_t>();
   }
@@ -337,9 +340,9 @@ namespace
 BlockInput MakeUnmaskedBlock(const InputFields& input)
 {
   BlockInput block;
-  block.SurfaceVersion = input.Surface->Version(std::nullopt, false);
+  block.SurfaceVersion = input.Surface->Version({});
   block.FieldsVersion = input.Version();
-  block.ReadSurface = [&] { return input.Surface->Read(std::nullopt, false); };
+  block.ReadSurface = [&] { return input.Surface->Read({}); };
   block.ReadFields = [&] { return input.Read(); };
   return block;
 }

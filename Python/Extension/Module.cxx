@@ -36,21 +36,15 @@ InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optiona
   { return std::find(onFaces.begin(), onFaces.end(), name) != onFaces.end(); };
   InputFields fields;
   fields.Surface = std::move(surface);
-  fields.Data = std::move(data);
+  fields.Data = { std::move(data), isOnFaces("data") };
   fields.Components = components;
-  fields.Mask = std::move(mask);
-  fields.Fixed = std::move(fixed);
-  fields.Directions = std::move(directions);
+  fields.Mask = { std::move(mask), isOnFaces("mask") };
+  fields.Fixed = { std::move(fixed), isOnFaces("fixed") };
+  fields.Directions = { std::move(directions), isOnFaces("directions") };
   fields.Rates = std::move(rates);
-  fields.FidelityFactors = std::move(fidelity);
-  fields.Seeds = std::move(seeds);
+  fields.FidelityFactors = { std::move(fidelity), isOnFaces("fidelity") };
+  fields.Seeds = { std::move(seeds), isOnFaces("seeds") };
   fields.DataAreTerms = dataAreTerms;
-  fields.DataOnFaces = isOnFaces("data");
-  fields.MaskOnFaces = isOnFaces("mask");
-  fields.FixedOnFaces = isOnFaces("fixed");
-  fields.DirectionsOnFaces = isOnFaces("directions");
-  fields.FidelityOnFaces = isOnFaces("fidelity");
-  fields.SeedsOnFaces = isOnFaces("seeds");
   return fields;
 }
 
@@ -94,11 +88,10 @@ NB_MODULE(_core, m)
 {
   m.doc() = "Runs of the numerics on arrays.";
 
-  nb::object inputError = nb::steal(
-    PyErr_NewExceptionWithDoc("surfacediffusion._core.InputError",
-      "An error of the input. words: the words of its message, as in Run/Sentence.h: tuples of a "
-      "kind, the spelling in VTK, the name of a setting or array, and a value.",
-      PyExc_ValueError, nullptr));
+  nb::object inputError = nb::steal(PyErr_NewExceptionWithDoc("surfacediffusion._core.InputError",
+    "An error of the input. words: the words of its message, as in Run/Sentence.h: tuples of a "
+    "kind, the spelling in VTK, the name of a setting or array, and a value.",
+    PyExc_ValueError, nullptr));
   m.attr("InputError") = inputError;
   nb::register_exception_translator(TranslateInputError, inputError.release().ptr());
 

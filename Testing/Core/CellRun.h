@@ -27,7 +27,7 @@ struct CellInput : RunInput
       cells.resize(static_cast<std::size_t>(surface.NumberOfTriangles()));
       std::iota(cells.begin(), cells.end(), 0);
     }
-    this->Data.DataOnCells = true;
+    this->Data.Data.OnCells = true;
     this->Data.NumberOfCells = cells.back() + 1;
     this->Data.Cells = std::move(cells);
     this->SetData(
@@ -37,7 +37,7 @@ struct CellInput : RunInput
   /// f(cell, mean of the corners of its triangles)
   void SetData(const std::function<double(Index, const Eigen::RowVector3d&)>& f)
   {
-    this->Data.Data.resize(this->Data.NumberOfCells, 1);
+    this->Data.Data.Values.resize(this->Data.NumberOfCells, 1);
     const Points centres = this->Centres();
     for (Index c = 0; c < this->Data.NumberOfCells; ++c)
     {
@@ -68,7 +68,7 @@ Values CellResultOf(SurfaceDiffusion::Run& run, const CellInput& input,
   const ModelSettings& settings, bool keepDetail = true)
 {
   const Values state = StateOf(run, { input.Block() }, settings);
-  return MakeCellResult(*run.GetBlock(0).Cells, state, input.Data.Data, keepDetail);
+  return MakeCellResult(*run.GetBlock(0).Cells, state, input.Data.Data.Values, keepDetail);
 }
 
 template <typename ModelSettings>

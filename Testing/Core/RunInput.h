@@ -24,7 +24,7 @@ struct RunInput
     : Vertices(surface.Vertices)
     , Faces(surface.Faces)
   {
-    this->Data.Data = Values(this->Vertices.rows(), 1);
+    this->Data.Data.Values = Values(this->Vertices.rows(), 1);
     for (Eigen::Index i = 0; i < this->Vertices.rows(); ++i)
     {
       this->Data.Data(i, 0) = this->Vertices(i, 2) + 0.1 * std::cos(7.0 * i);
@@ -41,9 +41,9 @@ struct RunInput
     };
     add(block.SurfaceVersion, this->Vertices);
     add(block.SurfaceVersion, this->Faces);
-    add(block.FieldsVersion, this->Data.Data);
-    add(block.FieldsVersion, this->Data.Directions);
-    block.FieldsVersion.AddBytes(this->Data.Mask.data(), this->Data.Mask.size());
+    add(block.FieldsVersion, this->Data.Data.Values);
+    add(block.FieldsVersion, this->Data.Directions.Values);
+    block.FieldsVersion.AddBytes(this->Data.Mask.Values.data(), this->Data.Mask.Values.size());
     block.ReadSurface = [this] { return SurfaceArrays{ this->Vertices, this->Faces, {} }; };
     block.ReadFields = [this] { return this->Data; };
     return block;

@@ -364,9 +364,9 @@ TEST(AutomaticThreshold, ComponentsAndBlocksHaveTheirOwn)
   const Index n = sphere.NumberOfVertices();
   const RunInput alone = MakeInput(sphere, UnitStep, 0.05);
   RunInput large = alone;
-  large.Data.Data *= 100.0;
+  large.Data.Data.Values *= 100.0;
   RunInput both(Joined(sphere, Moved(Scaled(sphere, 2.0), { 5.0, 0.0, 0.0 })));
-  both.Data.Data << alone.Data.Data, large.Data.Data;
+  both.Data.Data.Values << alone.Data.Data.Values, large.Data.Data.Values;
   const Found one = FindEdges(alone);
   const Found two = FindEdges(both);
   EXPECT_GT(Judge(sphere, UnitStep, one).Recall, 0.99);
@@ -374,7 +374,7 @@ TEST(AutomaticThreshold, ComponentsAndBlocksHaveTheirOwn)
   EXPECT_GT(two.Edges.tail(n).maxCoeff(), 0.9);
 
   RunInput twins(Joined(sphere, Moved(sphere, { 5.0, 0.0, 0.0 })));
-  twins.Data.Data << alone.Data.Data, large.Data.Data;
+  twins.Data.Data.Values << alone.Data.Data.Values, large.Data.Data.Values;
   MumfordShahSettings settings;
   settings.Tolerance = 1e-8;
   settings.StopTolerance = 1e-7;
@@ -412,7 +412,7 @@ TEST(AutomaticThreshold, UnitsOffsetsAndNumberingDoNotMatter)
     std::vector<std::pair<double, double>>{ { 1e-6, 0.0 }, { 1.0, 1e4 }, { -3e8, 1.0 } })
   {
     RunInput other = input;
-    other.Data.Data = (other.Data.Data.array() * factor + offset).matrix();
+    other.Data.Data.Values = (other.Data.Data.Values.array() * factor + offset).matrix();
     const Found result = FindEdges(other, settings);
     EXPECT_LT((result.Edges - found.Edges).cwiseAbs().maxCoeff(), 1e-6) << factor << " " << offset;
     EXPECT_NEAR(FindNumber(result.Outputs, "EffectiveEdgeThreshold"),
@@ -424,7 +424,8 @@ TEST(AutomaticThreshold, UnitsOffsetsAndNumberingDoNotMatter)
   RunInput renumbered(Renumbered(sphere, numbers));
   for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
   {
-    renumbered.Data.Data.row(numbers[static_cast<std::size_t>(i)]) = input.Data.Data.row(i);
+    renumbered.Data.Data.Values.row(numbers[static_cast<std::size_t>(i)]) =
+      input.Data.Data.Values.row(i);
   }
   const Found again = FindEdges(renumbered, settings);
   for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
@@ -437,7 +438,7 @@ TEST(AutomaticThreshold, ColorsCellsAndCorrelatedNoiseHaveTheirEdges)
 {
   const Shape sphere = Icosphere(5);
   RunInput colors(sphere);
-  colors.Data.Data.resize(sphere.NumberOfVertices(), 3);
+  colors.Data.Data.Values.resize(sphere.NumberOfVertices(), 3);
   for (Index i = 0; i < sphere.NumberOfVertices(); ++i)
   {
     for (int k = 0; k < 3; ++k)
@@ -456,11 +457,11 @@ TEST(AutomaticThreshold, ColorsCellsAndCorrelatedNoiseHaveTheirEdges)
   Values data(mesh->NumberOfVertices(), 1);
   for (Index v = 0; v < mesh->NumberOfVertices(); ++v)
   {
-    data.row(v) = blurred.Data.Data.row(mesh->InputVertex()[static_cast<std::size_t>(v)]);
+    data.row(v) = blurred.Data.Data.Values.row(mesh->InputVertex()[static_cast<std::size_t>(v)]);
   }
   data = Diffuse(std::make_shared<Assembler>(mesh), PointData::FromValues(data), h * h, 1, 0.0,
     Scheme::BackwardEuler);
-  blurred.Data.Data = ToInput(*mesh, data, sphere.NumberOfVertices());
+  blurred.Data.Data.Values = ToInput(*mesh, data, sphere.NumberOfVertices());
   const Score ofBlurred = Judge(sphere, UnitStep, FindEdges(blurred));
   EXPECT_GT(ofBlurred.Recall, 0.99);
   EXPECT_LT(ofBlurred.False, 0.05);
@@ -494,7 +495,7 @@ TEST(AutomaticThreshold, OffGivesTheModelWithTheGivenOnes)
   Values data(mesh.NumberOfVertices(), 1);
   for (Index v = 0; v < mesh.NumberOfVertices(); ++v)
   {
-    data.row(v) = input.Data.Data.row(mesh.InputVertex()[static_cast<std::size_t>(v)]);
+    data.row(v) = input.Data.Data.Values.row(mesh.InputVertex()[static_cast<std::size_t>(v)]);
   }
   const double h = MeanEdge(mesh);
   const double jump = 0.2 * (data.maxCoeff() - data.minCoeff());
@@ -566,7 +567,7 @@ TEST(AutomaticThreshold, ConstantsAndTinySurfacesAreLeft)
   {
     const RunInput input = MakeInput(Icosphere(3), [&](const auto&) { return value; });
     const Found found = FindEdges(input);
-    EXPECT_EQ(found.U, input.Data.Data);
+    EXPECT_EQ(found.U, input.Data.Data.Values);
     EXPECT_EQ(found.Edges.maxCoeff(), 0.0);
   }
   for (const Shape& surface : { Tetrahedron(), Strip(1, 1) })

@@ -179,7 +179,8 @@ void AddSmoothedNoise(RunInput& input, double edges, double deviation)
     length * length / 2.0, 8, 0.0, Testing::Scheme::SDIRK2);
   noise.array() -= noise.mean();
   noise *= deviation / std::sqrt(noise.squaredNorm() / static_cast<double>(noise.size()));
-  input.Data.Data += Testing::ToInput(*mesh, noise, static_cast<Index>(input.Vertices.rows()));
+  input.Data.Data.Values +=
+    Testing::ToInput(*mesh, noise, static_cast<Index>(input.Vertices.rows()));
 }
 
 template <typename ModelSettings>
@@ -196,7 +197,7 @@ void ExpectWordsOnSmoothedNoise(ModeType steady)
 {
   constexpr double deviation = 250.0;
   RunInput input(Testing::Icosphere(4, 40.0));
-  input.Data.Data.setConstant(1000.0);
+  input.Data.Data.Values.setConstant(1000.0);
   AddSmoothedNoise(input, 3.0, deviation);
   ModelSettings settings;
   settings.Mode = steady;
@@ -215,7 +216,8 @@ void ExpectWordsOnSmoothedNoise(ModeType steady)
   settings.NoiseLevel = deviation;
   for (const Warning& warning : WarningsOf(input, settings))
   {
-    EXPECT_EQ(warning.Sentence.Text().find("no white noise"), std::string::npos) << warning.Sentence;
+    EXPECT_EQ(warning.Sentence.Text().find("no white noise"), std::string::npos)
+      << warning.Sentence;
   }
 }
 
@@ -287,7 +289,7 @@ void ExpectFoundWeight(ModeType steady, double improvement)
   settings.Blur.FWHM = width;
   bool warned = false;
   const double byDefault = ErrorOf(data, everywhere, settings, warned);
-  const double before = (data.Input.Data.Data.col(0) - data.Clean).norm() /
+  const double before = (data.Input.Data.Data.Values.col(0) - data.Clean).norm() /
     std::sqrt(static_cast<double>(data.Clean.size()));
   EXPECT_LT(byDefault, improvement * before);
   SurfaceDiffusion::Run run(SerialFor());

@@ -127,11 +127,11 @@ TEST(CellData, TotalsAreKept)
         SurfaceDiffusion::Run run(SerialFor());
         const Values smooth = CellResultOf(run, input, heat, detail);
         const CellState& cells = *run.GetBlock(0).Cells;
-        const double size = Total(cells, input.Data.Data.cwiseAbs());
-        EXPECT_GT((smooth - input.Data.Data).cwiseAbs().maxCoeff(), 0.05);
-        EXPECT_NEAR(Total(cells, smooth), Total(cells, input.Data.Data), 1e-12 * size);
+        const double size = Total(cells, input.Data.Data.Values.cwiseAbs());
+        EXPECT_GT((smooth - input.Data.Data.Values).cwiseAbs().maxCoeff(), 0.05);
+        EXPECT_NEAR(Total(cells, smooth), Total(cells, input.Data.Data.Values), 1e-12 * size);
         EXPECT_NEAR(Total(cells, CellResultOf(input, variation, detail)),
-          Total(cells, input.Data.Data), 1e-12 * size);
+          Total(cells, input.Data.Data.Values), 1e-12 * size);
       }
     }
   }
@@ -144,7 +144,7 @@ TEST(CellData, AModelThatChangesNothingReturnsTheirBits)
   HeatSettings none;
   none.NumberOfTimeSteps = 0;
   const Values same = CellResultOf(input, none);
-  EXPECT_EQ(same, input.Data.Data);
+  EXPECT_EQ(same, input.Data.Data.Values);
   EXPECT_TRUE(std::signbit(same(3, 0)));
 
   // Held values: lambda is infinite.
@@ -184,7 +184,7 @@ TEST(CellData, AnEigenfunctionDecaysAtItsEigenvalueWithSecondOrder)
       settings.TimeStep = time / n;
       const Values result = CellResultOf(input, settings);
       errors.push_back(
-        (result - std::exp(-Pi * Pi * time) * input.Data.Data).cwiseAbs().maxCoeff());
+        (result - std::exp(-Pi * Pi * time) * input.Data.Data.Values).cwiseAbs().maxCoeff());
     }
     EXPECT_LT(errors.back(), 5e-4);
     for (std::size_t e = 1; e < errors.size(); ++e)
@@ -212,10 +212,10 @@ TEST(CellData, AnEigenfunctionOfTheSphereDecaysAtItsEigenvalueWithSecondOrderOnT
     SurfaceDiffusion::Run run(SerialFor());
     const Values result = CellResultOf(run, input, settings);
     const Vector& areas = run.GetBlock(0).Cells->Transfer.CellAreas();
-    const Values difference = result - std::exp(-2.0 * time) * input.Data.Data;
-    const double size = areas.dot(input.Data.Data.col(0).cwiseAbs2());
+    const Values difference = result - std::exp(-2.0 * time) * input.Data.Data.Values;
+    const double size = areas.dot(input.Data.Data.Values.col(0).cwiseAbs2());
     errors.push_back(
-      std::abs(areas.dot(difference.col(0).cwiseProduct(input.Data.Data.col(0)))) / size);
+      std::abs(areas.dot(difference.col(0).cwiseProduct(input.Data.Data.Values.col(0)))) / size);
     deviations.push_back(Deviation(areas, difference));
   }
   EXPECT_LT(errors.back(), 1e-3);
@@ -236,10 +236,10 @@ TEST(CellData, AreNotSmoothedByTheRoundTrip)
   settings.TimeStep = 1e-7;
   SurfaceDiffusion::Run run(SerialFor());
   const Values kept = CellResultOf(run, input, settings);
-  EXPECT_LT((kept - input.Data.Data).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT((kept - input.Data.Data.Values).cwiseAbs().maxCoeff(), 1e-5);
   // Strong smoothing removes the detail that the vertices do not resolve, too.
   const Vector areas = run.GetBlock(0).Cells->Transfer.CellAreas();
-  const double noise = Deviation(areas, input.Data.Data);
+  const double noise = Deviation(areas, input.Data.Data.Values);
   const HeatSettings strong = SteadyState(0.0);
   EXPECT_LT(Deviation(areas, CellResultOf(input, strong)), 1e-9 * noise);
   EXPECT_LT(Deviation(areas, CellResultOf(input, strong, false)), 1e-9 * noise);
@@ -263,9 +263,9 @@ TEST(CellData, OfPolygonsDependOnTheDiagonalsBySecondOrder)
       {
         const CellInput first = TorusOfPolygons(2 * n, n, rising, quadsPerCell);
         const CellInput second = TorusOfPolygons(2 * n, n, other, quadsPerCell);
-        ASSERT_EQ(first.Data.Data, second.Data.Data);
+        ASSERT_EQ(first.Data.Data.Values, second.Data.Data.Values);
         const Values result = CellResultOf(first, settings);
-        EXPECT_GT((result - first.Data.Data).cwiseAbs().maxCoeff(), 0.1);
+        EXPECT_GT((result - first.Data.Data.Values).cwiseAbs().maxCoeff(), 0.1);
         differences.push_back((result - CellResultOf(second, settings)).cwiseAbs().maxCoeff());
       }
       for (std::size_t e = 1; e < differences.size(); ++e)
@@ -284,7 +284,7 @@ TEST(CellData, AreFilledInWhereTheyAreMissing)
   {
     CellInput input(Strip(n, n));
     input.SetData([](Index, const Eigen::RowVector3d& x) { return x[0]; });
-    const Values exact = input.Data.Data;
+    const Values exact = input.Data.Data.Values;
     SetMissing(input, CellsNear(input, { 0.5, 0.5, 0.0 }, 0.25));
     HeatSettings settings = SteadyState(0.0);
     settings.HoldKnownValues = true;
@@ -295,11 +295,11 @@ TEST(CellData, AreFilledInWhereTheyAreMissing)
 TEST(CellData, MaskedAndNaNCellsAreMissingAlike)
 {
   CellInput masked(Torus(16, 10));
-  masked.Data.Mask = CellsNear(masked, { 3.0, 0.0, 0.0 }, 0.7);
-  masked.Data.MaskOnCells = true;
+  masked.Data.Mask.Values = CellsNear(masked, { 3.0, 0.0, 0.0 }, 0.7);
+  masked.Data.Mask.OnCells = true;
   CellInput missing = masked;
-  missing.Data.Mask.clear();
-  SetMissing(missing, masked.Data.Mask);
+  missing.Data.Mask.Values.clear();
+  SetMissing(missing, masked.Data.Mask.Values);
   TotalVariationSettings settings;
   EXPECT_EQ(CellResultOf(masked, settings), CellResultOf(missing, settings));
 }
@@ -321,7 +321,8 @@ TEST(CellData, ExcludedCellsAreAsIfTheyWereNotThere)
   SurfaceDiffusion::Run run(SerialFor());
   StateOf(run, { exclude(input.Block()) }, HeatSettings());
   const Run::Block& block = run.GetBlock(0);
-  const Values result = MakeCellResult(*block.Cells, block.Path->State(), input.Data.Data, true);
+  const Values result =
+    MakeCellResult(*block.Cells, block.Path->State(), input.Data.Data.Values, true);
   EXPECT_TRUE(run.FindWarnings(Alone).empty());
 
   CellInput without(Torus(16, 10));
@@ -353,10 +354,10 @@ TEST(CellData, OfFactorZeroHaveNoEffectOnTheSteadyState)
   const std::vector<char> near = CellsNear(doubted, { 3.0, 0.0, 0.0 }, 0.7);
   CellInput missing = doubted;
   SetMissing(missing, near);
-  doubted.Data.FidelityOnCells = true;
+  doubted.Data.FidelityFactors.OnCells = true;
   for (const char isNear : near)
   {
-    doubted.Data.FidelityFactors.push_back(isNear != 0 ? 0.0 : 1.0);
+    doubted.Data.FidelityFactors.Values.push_back(isNear != 0 ? 0.0 : 1.0);
   }
   SurfaceDiffusion::Run first(SerialFor()), second(SerialFor());
   HeatSettings settings = SteadyState(0.1);
@@ -371,10 +372,10 @@ TEST(CellData, OfFactorZeroHaveNoEffectOnTheSteadyState)
 TEST(CellData, TheFidelityTermIsThatOfTheCells)
 {
   CellInput input(Strip(12, 8));
-  input.Data.FidelityOnCells = true;
+  input.Data.FidelityFactors.OnCells = true;
   for (Index c = 0; c < input.Data.NumberOfCells; ++c)
   {
-    input.Data.FidelityFactors.push_back(0.5 + UniformRandom(2, 0, c));
+    input.Data.FidelityFactors.Values.push_back(0.5 + UniformRandom(2, 0, c));
   }
   SetMissing(input, CellsNear(input, { 0.5, 0.5, 0.0 }, 0.2));
   HeatSettings settings = SteadyState(7.0);
@@ -398,8 +399,8 @@ TEST(CellData, TheFidelityTermIsThatOfTheCells)
         at[a] = values(v, 0);
         if (!std::isnan(input.Data.Data(row, 0)))
         {
-          sum += 3.5 * input.Data.FidelityFactors[static_cast<std::size_t>(row)] * area / 3.0 *
-            std::pow(input.Data.Data(row, 0) - at[a], 2);
+          sum += 3.5 * input.Data.FidelityFactors.Values[static_cast<std::size_t>(row)] * area /
+            3.0 * std::pow(input.Data.Data(row, 0) - at[a], 2);
         }
       }
       const Eigen::RowVector3d edge1 = x[1] - x[0], edge2 = x[2] - x[0];
@@ -425,14 +426,14 @@ TEST(CellData, TheFidelityTermIsThatOfTheCells)
 TEST(CellData, MarksOfPointsMarkTheirCells)
 {
   CellInput onPoints(Torus(16, 10));
-  onPoints.Data.Mask.assign(static_cast<std::size_t>(onPoints.Vertices.rows()), 0);
-  onPoints.Data.Mask[17] = 1;
+  onPoints.Data.Mask.Values.assign(static_cast<std::size_t>(onPoints.Vertices.rows()), 0);
+  onPoints.Data.Mask.Values[17] = 1;
   CellInput onCells = onPoints;
-  onCells.Data.MaskOnCells = true;
-  onCells.Data.Mask.clear();
+  onCells.Data.Mask.OnCells = true;
+  onCells.Data.Mask.Values.clear();
   for (const auto& face : onCells.Faces.rowwise())
   {
-    onCells.Data.Mask.push_back((face.array() == 17).any());
+    onCells.Data.Mask.Values.push_back((face.array() == 17).any());
   }
   EXPECT_EQ(CellResultOf(onPoints, HeatSettings()), CellResultOf(onCells, HeatSettings()));
 }
@@ -443,18 +444,19 @@ TEST(CellData, MarksOfCellsMarkTheirPoints)
   RunInput expected(Torus(16, 10));
   RunInput given = expected;
   const std::vector<char> near = CellsNear(cells, { 3.0, 0.0, 0.0 }, 0.7);
-  expected.Data.Mask.assign(static_cast<std::size_t>(expected.Vertices.rows()), 0);
+  expected.Data.Mask.Values.assign(static_cast<std::size_t>(expected.Vertices.rows()), 0);
   for (std::size_t t = 0; t < near.size(); ++t)
   {
     for (int a = 0; a < 3 && near[t] != 0; ++a)
     {
-      expected.Data.Mask[static_cast<std::size_t>(cells.Faces(static_cast<Index>(t), a))] = 1;
+      expected.Data.Mask.Values[static_cast<std::size_t>(cells.Faces(static_cast<Index>(t), a))] =
+        1;
     }
   }
   given.Data.Cells = cells.Data.Cells;
   given.Data.NumberOfCells = cells.Data.NumberOfCells;
-  given.Data.Mask = near;
-  given.Data.MaskOnCells = true;
+  given.Data.Mask.Values = near;
+  given.Data.Mask.OnCells = true;
   SurfaceDiffusion::Run first(SerialFor()), second(SerialFor());
   EXPECT_EQ(StateOf(first, { given.Block() }, HeatSettings()),
     StateOf(second, { expected.Block() }, HeatSettings()));
@@ -465,12 +467,12 @@ TEST(CellData, UnitVectorsStayUnitAndConstantOnesStay)
   for (const bool lines : { false, true })
   {
     CellInput input(Torus(16, 10));
-    input.Data.Data.resize(input.Data.NumberOfCells, 3);
+    input.Data.Data.Values.resize(input.Data.NumberOfCells, 3);
     for (Index c = 0; c < input.Data.NumberOfCells; ++c)
     {
       const double sign = lines && c % 3 == 0 ? -1.0 : 1.0;
       const double angle = 0.4 * (UniformRandom(4, 0, c) - 0.5);
-      input.Data.Data.row(c) << sign * std::cos(angle), sign * std::sin(angle), 0.0;
+      input.Data.Data.Values.row(c) << sign * std::cos(angle), sign * std::sin(angle), 0.0;
     }
     HarmonicMapSettings settings;
     settings.LineField = lines;
@@ -479,17 +481,18 @@ TEST(CellData, UnitVectorsStayUnitAndConstantOnesStay)
     for (Index c = 0; c < input.Data.NumberOfCells; ++c)
     {
       EXPECT_NEAR(detailed.row(c).norm(), 1.0, 1e-14);
-      EXPECT_GT(detailed.row(c).dot(input.Data.Data.row(c)), 0.9);
+      EXPECT_GT(detailed.row(c).dot(input.Data.Data.Values.row(c)), 0.9);
       EXPECT_NEAR(result.row(c).norm(), 1.0, 1e-14);
       EXPECT_GT(std::abs(result(c, 0)), 0.99);
     }
     settings.NumberOfTimeSteps = 0;
-    EXPECT_LT((CellResultOf(input, settings) - input.Data.Data).cwiseAbs().maxCoeff(), 1e-15);
+    EXPECT_LT(
+      (CellResultOf(input, settings) - input.Data.Data.Values).cwiseAbs().maxCoeff(), 1e-15);
     for (Index c = 0; c < input.Data.NumberOfCells; ++c)
     {
-      input.Data.Data.row(c) << (lines && c % 3 == 0 ? -2.0 : 2.0), 0.0, 0.0;
+      input.Data.Data.Values.row(c) << (lines && c % 3 == 0 ? -2.0 : 2.0), 0.0, 0.0;
     }
-    EXPECT_LT((CellResultOf(input, HarmonicMapSettings(settings)) - 0.5 * input.Data.Data)
+    EXPECT_LT((CellResultOf(input, HarmonicMapSettings(settings)) - 0.5 * input.Data.Data.Values)
                 .cwiseAbs()
                 .maxCoeff(),
       1e-14);
@@ -500,9 +503,9 @@ TEST(CellData, SegmentsHaveTheLabelsOfTwoValuesAndOfSeeds)
 {
   CellInput input(Icosphere(4));
   input.SetData([](Index, const Eigen::RowVector3d& x) { return x[2] > 0.3 ? 5.0 : 1.0; });
-  input.Data.Seeds.assign(static_cast<std::size_t>(input.Data.NumberOfCells), 0);
-  input.Data.Seeds[7] = 2;
-  input.Data.SeedsOnCells = true;
+  input.Data.Seeds.Values.assign(static_cast<std::size_t>(input.Data.NumberOfCells), 0);
+  input.Data.Seeds.Values[7] = 2;
+  input.Data.Seeds.OnCells = true;
   SurfaceDiffusion::Run run(SerialFor());
   const Values u = StateOf(run, { input.Block() }, SegmentationSettings());
   const std::vector<Index> labels = MakeCellLabels(*run.GetBlock(0).Cells, u);
@@ -515,7 +518,7 @@ TEST(CellData, SegmentsHaveTheLabelsOfTwoValuesAndOfSeeds)
       EXPECT_EQ(labels[static_cast<std::size_t>(c)], centres(c, 2) > 0.3 ? 2 : 1) << c;
     }
   }
-  input.Data.Seeds[9] = 3;
+  input.Data.Seeds.Values[9] = 3;
   SurfaceDiffusion::Run another(SerialFor());
   EXPECT_THROW(StateOf(another, { input.Block() }, SegmentationSettings()), std::runtime_error);
 }
@@ -567,13 +570,13 @@ TEST(CellData, ErrorsNameTheCell)
   EXPECT_EQ(messageOf(bad), "InputArray is infinite at cell 5; allowed: finite values and NaN");
   bad = good;
   bad.Data.Data(5, 0) = NaN;
-  bad.Data.Fixed.assign(static_cast<std::size_t>(bad.Data.NumberOfCells), 1);
-  bad.Data.FixedOnCells = true;
+  bad.Data.Fixed.Values.assign(static_cast<std::size_t>(bad.Data.NumberOfCells), 1);
+  bad.Data.Fixed.OnCells = true;
   EXPECT_NE(messageOf(bad).find("is NaN where FixedArray holds it at cell 5"), std::string::npos);
   bad = good;
-  bad.Data.FidelityFactors.assign(static_cast<std::size_t>(bad.Data.NumberOfCells), 1.0);
-  bad.Data.FidelityFactors[8] = -1.0;
-  bad.Data.FidelityOnCells = true;
+  bad.Data.FidelityFactors.Values.assign(static_cast<std::size_t>(bad.Data.NumberOfCells), 1.0);
+  bad.Data.FidelityFactors.Values[8] = -1.0;
+  bad.Data.FidelityFactors.OnCells = true;
   EXPECT_EQ(messageOf(bad), "FidelityArray is -1 at cell 8; allowed: finite numbers, 0 or more");
 }
 

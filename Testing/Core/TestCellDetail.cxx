@@ -87,7 +87,7 @@ Values ResultAt(SurfaceDiffusion::Run& run, const CellInput& input, int step)
 {
   run.Seek(step, ProgressMonitor());
   return MakeCellResult(
-    *run.GetBlock(0).Cells, run.GetBlock(0).Path->State(), input.Data.Data, true);
+    *run.GetBlock(0).Cells, run.GetBlock(0).Path->State(), input.Data.Data.Values, true);
 }
 
 template <typename ModelSettings>
@@ -163,12 +163,12 @@ TEST(CellDetail, ImpulsesSpreadAsWidelyAsOnPoints)
         for (const Index place : { 3, 500, 777, 1200 })
         {
           SurfaceDiffusion::Run run(SerialFor()), other(SerialFor());
-          cells.Data.Data.setZero();
+          cells.Data.Data.Values.setZero();
           cells.Data.Data(place, 0) = 1.0;
           const Values onCells = CellResultOf(run, cells, settings);
           const CellTransfer& transfer = run.GetBlock(0).Cells->Transfer;
           ofCells += Width(transfer.CellAreas(), onCells / transfer.CellAreas()[place]);
-          points.Data.Data.setZero();
+          points.Data.Data.Values.setZero();
           points.Data.Data(place, 0) = 1.0;
           const Values onPoints = StateOf(other, { points.Block() }, settings);
           const Vector& areas = other.GetBlock(0).Surface->Mesh().ControlAreas();
@@ -184,11 +184,11 @@ TEST(CellDetail, WhiteNoiseLeavesAtTheDefaultsOfHeat)
 {
   for (CellInput& input : Shapes())
   {
-    input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+    input.Data.Data.Values = WhiteNoise(input.Data.NumberOfCells);
     SurfaceDiffusion::Run run(SerialFor());
     const Values result = CellResultOf(run, input, HeatSettings());
     const Vector& areas = run.GetBlock(0).Cells->Transfer.CellAreas();
-    EXPECT_LT(Deviation(areas, result), 0.12 * Deviation(areas, input.Data.Data));
+    EXPECT_LT(Deviation(areas, result), 0.12 * Deviation(areas, input.Data.Data.Values));
   }
 }
 
@@ -197,16 +197,16 @@ TEST(CellDetail, WhiteNoiseLeavesInAllModels)
 {
   for (CellInput& input : Shapes())
   {
-    input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+    input.Data.Data.Values = WhiteNoise(input.Data.NumberOfCells);
     const auto left = [&](const auto& settings)
     {
       SurfaceDiffusion::Run run(SerialFor());
       const Values result = CellResultOf(run, input, settings);
       const CellState& cells = *run.GetBlock(0).Cells;
       const Values smooth =
-        MakeCellResult(cells, run.GetBlock(0).Path->State(), input.Data.Data, false);
+        MakeCellResult(cells, run.GetBlock(0).Path->State(), input.Data.Data.Values, false);
       const Vector& areas = cells.Transfer.CellAreas();
-      return Deviation(areas, result - smooth) / Deviation(areas, input.Data.Data);
+      return Deviation(areas, result - smooth) / Deviation(areas, input.Data.Data.Values);
     };
     HeatSettings steady;
     steady.Mode = HeatMode::SteadyState;
@@ -260,9 +260,10 @@ TEST(CellDetail, TheResultKeepsTheRangeOfTheDataWherePointsDo)
         for (int step = 1; step <= 8; ++step)
         {
           const Values result = ResultAt(run, input, step);
-          EXPECT_LT(Excess(result, input.Data.Data), 1e-12)
+          EXPECT_LT(Excess(result, input.Data.Data.Values), 1e-12)
             << quads << ' ' << kind << ' ' << timeStep << ' ' << step;
-          EXPECT_NEAR(areas.dot((result - input.Data.Data).col(0)), 0.0, 1e-12 * areas.sum());
+          EXPECT_NEAR(
+            areas.dot((result - input.Data.Data.Values).col(0)), 0.0, 1e-12 * areas.sum());
         }
       }
     }
@@ -273,7 +274,7 @@ TEST(CellDetail, TotalsOfEachComponentAreKept)
 {
   for (CellInput& input : Shapes())
   {
-    input.Data.Data = WhiteNoise(input.Data.NumberOfCells, 2).array() + 0.3;
+    input.Data.Data.Values = WhiteNoise(input.Data.NumberOfCells, 2).array() + 0.3;
     const auto check = [&](const auto& settings)
     {
       SurfaceDiffusion::Run run(SerialFor());
@@ -295,8 +296,8 @@ TEST(CellDetail, TotalsOfEachComponentAreKept)
           if (isHere[static_cast<std::size_t>(cell)] != 0)
           {
             const double area = cells.CellAreas()[cell];
-            change += area * (result.row(cell) - input.Data.Data.row(cell));
-            size += area * input.Data.Data.row(cell).norm();
+            change += area * (result.row(cell) - input.Data.Data.Values.row(cell));
+            size += area * input.Data.Data.Values.row(cell).norm();
           }
         }
         EXPECT_LT(change.norm(), 1e-12 * size);
@@ -325,15 +326,15 @@ TEST(CellDetail, ResultOfAbsoluteFidelityMovesWithAConstant)
 {
   CellInput input(Icosphere(3));
   const Values noise = WhiteNoise(input.Data.NumberOfCells);
-  input.Data.Data += noise;
+  input.Data.Data.Values += noise;
   TotalVariationSettings settings;
   settings.NumberOfTimeSteps = 3;
   settings.FidelityWeight = 0.5;
   settings.AutomaticFidelity = false;
   settings.FidelityNorm = FidelityNorm::L1;
   const Values before = CellResultOf(input, settings);
-  EXPECT_GT((before - input.Data.Data).cwiseAbs().maxCoeff(), 0.1);
-  input.Data.Data.array() += 64.0;
+  EXPECT_GT((before - input.Data.Data.Values).cwiseAbs().maxCoeff(), 0.1);
+  input.Data.Data.Values.array() += 64.0;
   const Values after = CellResultOf(input, settings);
   EXPECT_LT(((after - before).array() - 64.0).abs().maxCoeff(), 1e-3);
 }
@@ -342,7 +343,7 @@ TEST(CellDetail, TimeStepsTendToTheSteadyState)
 {
   for (CellInput& input : Shapes())
   {
-    input.Data.Data += 0.3 * WhiteNoise(input.Data.NumberOfCells);
+    input.Data.Data.Values += 0.3 * WhiteNoise(input.Data.NumberOfCells);
     input.Data.Data(5, 0) = NaN;
     HeatSettings settings = Heat(1e4, 6, TimeIntegrator::FirstOrder);
     settings.FidelityWeight = 0.2;
@@ -352,7 +353,7 @@ TEST(CellDetail, TimeStepsTendToTheSteadyState)
     EXPECT_LT((late - steady).cwiseAbs().maxCoeff(), 1e-6);
     // Data that are pulled strongly enough stay.
     settings.FidelityWeight = 1e6;
-    Values change = CellResultOf(input, settings) - input.Data.Data;
+    Values change = CellResultOf(input, settings) - input.Data.Data.Values;
     change(5, 0) = 0.0;
     EXPECT_LT(change.cwiseAbs().maxCoeff(), 1e-3);
   }
@@ -361,7 +362,7 @@ TEST(CellDetail, TimeStepsTendToTheSteadyState)
 TEST(CellDetail, FlowsThroughEdgesOfManyTriangles)
 {
   CellInput input(ThreeFins(10));
-  input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+  input.Data.Data.Values = WhiteNoise(input.Data.NumberOfCells);
   SurfaceDiffusion::Run run(SerialFor());
   const Values result = CellResultOf(run, input, Heat(1e5, 3, TimeIntegrator::FirstOrder));
   const Vector& areas = run.GetBlock(0).Cells->Transfer.CellAreas();
@@ -374,21 +375,21 @@ TEST(CellDetail, OfDirectionsLeavesLessThanItsNoise)
   {
     CellInput input(Icosphere(3));
     const Values noise = WhiteNoise(input.Data.NumberOfCells);
-    input.Data.Data.resize(input.Data.NumberOfCells, 3);
+    input.Data.Data.Values.resize(input.Data.NumberOfCells, 3);
     for (Index c = 0; c < input.Data.NumberOfCells; ++c)
     {
       const double sign = lines && c % 3 == 0 ? -1.0 : 1.0;
-      input.Data.Data.row(c) << sign * std::cos(0.2 * noise(c, 0)),
+      input.Data.Data.Values.row(c) << sign * std::cos(0.2 * noise(c, 0)),
         sign * std::sin(0.2 * noise(c, 0)), 0.0;
     }
     HarmonicMapSettings settings;
     settings.LineField = lines;
     const Values result = CellResultOf(input, settings);
-    EXPECT_LT(result.col(1).norm(), 0.15 * input.Data.Data.col(1).norm());
+    EXPECT_LT(result.col(1).norm(), 0.15 * input.Data.Data.Values.col(1).norm());
     for (Index c = 0; c < input.Data.NumberOfCells; ++c)
     {
       EXPECT_NEAR(result.row(c).norm(), 1.0, 1e-14);
-      EXPECT_GT(result.row(c).dot(input.Data.Data.row(c)), 0.8);
+      EXPECT_GT(result.row(c).dot(input.Data.Data.Values.row(c)), 0.8);
     }
   }
 }
@@ -402,7 +403,7 @@ TEST(CellDetail, OfAScanLeaves)
   for (const char* name : { "cow", "mannequin-devil", "cross_quad" })
   {
     CellInput input(ReadMeshFile(name));
-    input.Data.Data = WhiteNoise(input.Data.NumberOfCells);
+    input.Data.Data.Values = WhiteNoise(input.Data.NumberOfCells);
     for (const bool delaunay : { false, true })
     {
       HeatSettings settings;
@@ -411,9 +412,9 @@ TEST(CellDetail, OfAScanLeaves)
       const Values result = CellResultOf(run, input, settings);
       const CellState& cells = *run.GetBlock(0).Cells;
       const Values smooth =
-        MakeCellResult(cells, run.GetBlock(0).Path->State(), input.Data.Data, false);
+        MakeCellResult(cells, run.GetBlock(0).Path->State(), input.Data.Data.Values, false);
       const Vector& areas = cells.Transfer.CellAreas();
-      EXPECT_LT(Deviation(areas, result - smooth), 0.05 * Deviation(areas, input.Data.Data));
+      EXPECT_LT(Deviation(areas, result - smooth), 0.05 * Deviation(areas, input.Data.Data.Values));
     }
   }
 }

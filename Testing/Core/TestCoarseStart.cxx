@@ -43,7 +43,7 @@ TextureSettings Texture(bool coarse)
 RunInput WithoutData(const Testing::Surface& surface)
 {
   RunInput input(surface);
-  input.Data.Data.resize(0, 0);
+  input.Data.Data.Values.resize(0, 0);
   return input;
 }
 
@@ -200,6 +200,6 @@ TEST(CoarseStart, OnlyPatternsFromNoiseUntilStationaryStartCoarse)
   EXPECT_FALSE(starts(settings, WithoutData(surface)));
   settings = Texture(true);
   RunInput given(surface);
-  given.Data.Data = Values::Constant(given.Vertices.rows(), 2, 4.0);
+  given.Data.Data.Values = Values::Constant(given.Vertices.rows(), 2, 4.0);
   EXPECT_FALSE(starts(settings, given));
 }

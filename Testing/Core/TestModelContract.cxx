@@ -75,22 +75,23 @@ protected:
   CellInput MakeInput(const Testing::Surface& surface) const
   {
     CellInput input(surface);
-    input.Data.DataOnCells = this->Kind.IsOnCells();
+    input.Data.Data.OnCells = this->Kind.IsOnCells();
     if (!this->Kind.IsOnCells())
     {
       input.Data.Cells.clear();
     }
     if (this->Settings->DescribeModel().NeedsDirections)
     {
-      input.Data.Directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(input.Vertices.rows(), 1);
+      input.Data.Directions.Values =
+        Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(input.Vertices.rows(), 1);
     }
     if (this->Kind.Data == Content::Nothing)
     {
-      input.Data.Data.resize(0, 0);
+      input.Data.Data.Values.resize(0, 0);
       return input;
     }
     const Points places = this->Kind.IsOnCells() ? input.Centres() : input.Vertices;
-    Values& f = input.Data.Data;
+    Values& f = input.Data.Data.Values;
     f.resize(places.rows(), this->Kind.NumberOfComponents());
     for (Eigen::Index i = 0; i < f.rows(); ++i)
     {
@@ -121,7 +122,7 @@ protected:
       Values::Constant(1, 1, block.Path->Records()[record].Energy) };
     if (this->Kind.IsOnCells() && !this->IsSegmentation())
     {
-      results.push_back(block.CellResult(input.Data.Data, true, SerialFor()));
+      results.push_back(block.CellResult(input.Data.Data.Values, true, SerialFor()));
       results.back() = results.back().array().isNaN().select(-1.0, results.back()); // NaN != NaN
     }
     for (const Output& output : block.Outputs)
@@ -310,9 +311,9 @@ TEST_P(NumberingContract, SameResultInAnyNumberingOrientationAndPosture)
   CellInput other = this->MakeInput(renumbered);
   const std::vector<Index> rows =
     this->Kind.IsOnCells() ? Permutation(surface.NumberOfTriangles(), 99) : numbers;
-  for (Eigen::Index i = 0; i < input.Data.Data.rows(); ++i)
+  for (Eigen::Index i = 0; i < input.Data.Data.Values.rows(); ++i)
   {
-    other.Data.Data.row(rows[static_cast<std::size_t>(i)]) = input.Data.Data.row(i);
+    other.Data.Data.Values.row(rows[static_cast<std::size_t>(i)]) = input.Data.Data.Values.row(i);
   }
   this->Set([](TimeSettings& s) { s.Tolerance = 1e-12; });
   SurfaceDiffusion::Run one(SerialFor()), two(SerialFor());
@@ -408,7 +409,7 @@ TEST_P(DataModelContract, ConstantsStay)
 {
   CellInput input = this->MakeInput(ThreeParts());
   const Eigen::RowVector3d constant(-273.15, 0.1, 40.0);
-  for (auto row : input.Data.Data.rowwise())
+  for (auto row : input.Data.Data.Values.rowwise())
   {
     if (!std::isnan(row[0]))
     {
@@ -426,9 +427,9 @@ TEST_P(DataModelContract, ConstantsStay)
 TEST_P(DataModelContract, FixedValuesStayToTheLastBit)
 {
   CellInput input = this->MakeInput(ThreeParts());
-  input.Data.Fixed.assign(static_cast<std::size_t>(input.Data.Data.rows()), 0);
-  std::fill_n(input.Data.Fixed.begin(), 50, 1);
-  input.Data.FixedOnCells = this->Kind.IsOnCells();
+  input.Data.Fixed.Values.assign(static_cast<std::size_t>(input.Data.Data.Values.rows()), 0);
+  std::fill_n(input.Data.Fixed.Values.begin(), 50, 1);
+  input.Data.Fixed.OnCells = this->Kind.IsOnCells();
   SurfaceDiffusion::Run run(SerialFor());
   this->Update(run, input);
   const auto fixedRows = [&]
@@ -436,9 +437,9 @@ TEST_P(DataModelContract, FixedValuesStayToTheLastBit)
     const SurfaceDiffusion::Run::Block& block = run.GetBlock(0);
     if (this->Kind.IsOnCells())
     {
-      return Values(block.CellResult(input.Data.Data, true, SerialFor()).topRows(50));
+      return Values(block.CellResult(input.Data.Data.Values, true, SerialFor()).topRows(50));
     }
-    Values rows(50, input.Data.Data.cols());
+    Values rows(50, input.Data.Data.Values.cols());
     for (Index i = 0; i < 50; ++i)
     {
       rows.row(i) = block.Path->State().row(block.Surface->VertexOf(i));
@@ -455,11 +456,11 @@ TEST_P(DataModelContract, FixedValuesStayToTheLastBit)
 TEST_P(DataModelContract, MissingDataAreNotRead)
 {
   CellInput input = this->MakeInput(ThreeParts());
-  input.Data.Mask.assign(static_cast<std::size_t>(input.Data.Data.rows()), 0);
-  std::fill_n(input.Data.Mask.begin(), 50, 1);
-  input.Data.MaskOnCells = this->Kind.IsOnCells();
+  input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Data.Data.Values.rows()), 0);
+  std::fill_n(input.Data.Mask.Values.begin(), 50, 1);
+  input.Data.Mask.OnCells = this->Kind.IsOnCells();
   const Values state = this->StateOn(input);
-  input.Data.Data.topRows(50).array() += 0.125; // within the range of the data
+  input.Data.Data.Values.topRows(50).array() += 0.125; // within the range of the data
   EXPECT_TRUE(this->StateOn(input) == state);
 }
 

@@ -101,7 +101,7 @@ TEST(ModelsAfterFailure, HarmonicMapsAreAsNew)
 TEST(ModelsAfterFailure, ATextureThatGrewWithoutBoundsIsAsNewAfterTheCorrection)
 {
   RunInput input(Icosphere(3));
-  input.Data.Data.resize(0, 0);
+  input.Data.Data.Values.resize(0, 0);
   for (const SolverMethod method : { SolverMethod::Automatic, SolverMethod::Direct,
          SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
   {

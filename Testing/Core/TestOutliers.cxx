@@ -78,8 +78,8 @@ TEST(Outliers, OfOnePointAreAWarning)
     TensorDiffusionSettings absolute;
     absolute.Units = UnitsMode::Absolute;
     EXPECT_EQ(NumberOfWarnings({ input.Block() }, absolute), 0);
-    input.Data.Mask.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
-    input.Data.Mask[40] = 1;
+    input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
+    input.Data.Mask.Values[40] = 1;
     EXPECT_EQ(NumberOfWarnings({ input.Block() }, TensorDiffusionSettings()), 0) << "masked";
   }
 }

@@ -71,7 +71,7 @@ TEST(Outputs, FurtherOutputsOfAModelStandBesideItsState)
   EXPECT_NE(FindOutput(outputs, "EffectiveFidelityWeight", Place::Number), nullptr);
   EXPECT_DOUBLE_EQ(FindNumber(outputs, "LargestSquare"), state.array().square().maxCoeff());
 
-  const OutputSource source = SourceOf(run, settings, input.Data.Data);
+  const OutputSource source = SourceOf(run, settings, input.Data.Data.Values);
   const Values u = Written(outputs[0], source);
   const Values squares = Written(outputs[1], source);
   for (Index i = 0; i < static_cast<Index>(u.rows()); ++i)
@@ -87,13 +87,13 @@ TEST(Outputs, PointsThatTakeNoPartKeepTheDataAndAreZeroInOtherOutputs)
   const Eigen::Index n = input.Vertices.rows();
   input.Vertices.conservativeResize(n + 1, 3);
   input.Vertices.row(n) << 5.0, 5.0, 5.0; // of no triangle
-  input.Data.Data.conservativeResize(n + 1, 1);
+  input.Data.Data.Values.conservativeResize(n + 1, 1);
   input.Data.Data(n, 0) = 7.25;
   SurfaceDiffusion::Run run(SerialFor());
   const WithSquares settings;
   StateOf(run, { input.Block() }, settings);
   std::vector<Output> outputs = run.GetBlock(0).Outputs;
-  OutputSource source = SourceOf(run, settings, input.Data.Data);
+  OutputSource source = SourceOf(run, settings, input.Data.Data.Values);
   EXPECT_EQ(Written(outputs[0], source)(n, 0), 7.25);
   EXPECT_EQ(Written(outputs[1], source)(n, 0), 0.0);
   outputs[1].Elsewhere = Values::Constant(1, 1, -1.0);
@@ -107,13 +107,13 @@ TEST(Outputs, OutputsAtVerticesGoToTheCellsOfDataOnCells)
   WithSquares settings;
   const Values state = StateOf(run, { input.Block() }, settings);
   const SurfaceDiffusion::Run::Block& block = run.GetBlock(0);
-  const OutputSource onCells = SourceOf(run, settings, input.Data.Data);
+  const OutputSource onCells = SourceOf(run, settings, input.Data.Data.Values);
   const Values squares = Written(block.Outputs[1], onCells);
   EXPECT_EQ(squares, block.Cells->Transfer.ToCells(state.array().square()));
   EXPECT_EQ(Written(block.Outputs[0], onCells),
-    block.CellResult(input.Data.Data, true, SerialFor())); // with the detail
+    block.CellResult(input.Data.Data.Values, true, SerialFor())); // with the detail
   settings.ResultOnCells = false;
-  const OutputSource onPoints = SourceOf(run, settings, input.Data.Data);
+  const OutputSource onPoints = SourceOf(run, settings, input.Data.Data.Values);
   EXPECT_EQ(Written(block.Outputs[1], onPoints).rows(), input.Vertices.rows());
 }
 

@@ -32,7 +32,7 @@ TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 {
   // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2 z.
   RunInput input(Testing::Icosphere(5));
-  input.Data.Data = input.Vertices.col(2);
+  input.Data.Data.Values = input.Vertices.col(2);
   HeatSettings settings;
   settings.Units = UnitsMode::Absolute;
   settings.TimeStep = 0.01;
@@ -103,7 +103,8 @@ TEST(Run, AutomaticFidelityWarnsOfCorrelatedNoise)
   const double h = mesh->TotalEdgeLength() / mesh->NumberOfEdges() * mesh->LengthUnit();
   noise = Testing::Diffuse(std::make_shared<Assembler>(mesh), PointData::FromValues(noise), h * h,
     1, 0.0, Testing::Scheme::BackwardEuler);
-  input.Data.Data = Testing::ToInput(*mesh, noise, static_cast<Index>(input.Vertices.rows()));
+  input.Data.Data.Values =
+    Testing::ToInput(*mesh, noise, static_cast<Index>(input.Vertices.rows()));
   TotalVariationSettings settings;
   settings.Mode = TotalVariationMode::SteadyState;
   settings.AutomaticFidelity = true;
@@ -141,8 +142,8 @@ TEST(Run, AfterAnyEditEqualsANewRun)
   };
   input.Data.Data(7, 0) = 3.0;
   expectAsNew("data");
-  input.Data.Mask.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
-  input.Data.Mask[9] = 1;
+  input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
+  input.Data.Mask.Values[9] = 1;
   expectAsNew("mask");
   input.Vertices.row(5) *= 1.5;
   expectAsNew("points");
@@ -226,7 +227,7 @@ TEST(Run, ALongerRunGivesTheBitsOfAFreshOne)
 {
   const RunInput input(Testing::Icosphere(3));
   RunInput nothing(Testing::Icosphere(3));
-  nothing.Data.Data.resize(0, 0);
+  nothing.Data.Data.Values.resize(0, 0);
   for (const SolverMethod solver : { SolverMethod::Automatic, SolverMethod::Direct,
          SolverMethod::ConjugateGradient, SolverMethod::Multigrid })
   {
@@ -261,7 +262,7 @@ TEST(Run, EachWarningIsReportedOncePerCause)
   RunInput input(Testing::Icosphere(2));
   input.Faces.conservativeResize(input.Faces.rows() + 1, 3);
   input.Faces.bottomRows(1) << 0, 0, 6;
-  input.Data.Data = Values::Ones(input.Vertices.rows(), 1);
+  input.Data.Data.Values = Values::Ones(input.Vertices.rows(), 1);
   SurfaceDiffusion::Run run(SerialFor());
   HeatSettings settings;
   WarningLog log;
@@ -277,13 +278,13 @@ TEST(Run, EachWarningIsReportedOncePerCause)
   EXPECT_TRUE(update().empty());
   input.Data.Data(3, 0) = 2.0;
   EXPECT_TRUE(update().empty());
-  input.Data.Mask.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
+  input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
   EXPECT_EQ(update().size(), 1u); // a mask without effect
   settings.TimeStep = 0.25;
   EXPECT_TRUE(update().empty());
-  input.Data.Mask[5] = 1;
+  input.Data.Mask.Values[5] = 1;
   EXPECT_TRUE(update().empty());
-  input.Data.Mask[5] = 0;
+  input.Data.Mask.Values[5] = 0;
   EXPECT_EQ(update().size(), 1u); // the mask had an effect in between
   input.Vertices.row(7) *= 1.1;
   EXPECT_EQ(update().size(), 1u); // another surface with such a triangle
@@ -330,7 +331,7 @@ TEST(Run, WithoutHistoryTheStatesAreTheSameAndTheHistoryComesWhenItIsWanted)
 TEST(Run, ATextureNeedsNoData)
 {
   RunInput input(Testing::Icosphere(3));
-  input.Data.Data.resize(0, 0);
+  input.Data.Data.Values.resize(0, 0);
   SurfaceDiffusion::Run run(SerialFor());
   TextureSettings settings;
   settings.NumberOfTimeSteps = 4;
@@ -352,17 +353,17 @@ TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)
     const auto x = input.Vertices.row(i);
     return std::cos(9.0 * x[0]) * std::cos(9.0 * x[1]) * std::cos(9.0 * x[2]) > 0.3;
   };
-  input.Data.Mask.resize(static_cast<std::size_t>(input.Vertices.rows()));
+  input.Data.Mask.Values.resize(static_cast<std::size_t>(input.Vertices.rows()));
   double missing = 0.0;
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
     input.Data.Data(i, 0) = input.Vertices(i, 2) + 0.3 * std::sin(3.0 * input.Vertices(i, 0));
-    input.Data.Mask[static_cast<std::size_t>(i)] = patch(i);
+    input.Data.Mask.Values[static_cast<std::size_t>(i)] = patch(i);
     missing += patch(i);
   }
   EXPECT_NEAR(missing / static_cast<double>(input.Vertices.rows()), 0.2, 0.1);
   RunInput whole = input;
-  whole.Data.Mask.clear();
+  whole.Data.Mask.Values.clear();
   const auto errorOf = [&](InitialFill fill)
   {
     SurfaceDiffusion::Run reference(SerialFor()), run(SerialFor());
@@ -383,7 +384,7 @@ TEST(Run, CoincidentPointsHaveRandomNumbersOfTheirOwn)
 {
   const Testing::Surface sphere = Testing::Icosphere(2);
   RunInput input(Testing::Joined(sphere, sphere));
-  input.Data.Data.resize(0, 0);
+  input.Data.Data.Values.resize(0, 0);
   TextureSettings settings;
   settings.NumberOfTimeSteps = 0;
   SurfaceDiffusion::Run run(SerialFor());

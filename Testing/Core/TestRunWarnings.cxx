@@ -27,7 +27,7 @@ using Testing::StateOf;
 RunInput NoisyNormals()
 {
   RunInput input(Testing::Icosphere(3));
-  input.Data.Data = Values(input.Vertices.rows(), 3);
+  input.Data.Data.Values = Values(input.Vertices.rows(), 3);
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
     for (int k = 0; k < 3; ++k)
@@ -161,11 +161,11 @@ TEST(RunWarnings, EdgesLeftByTheIntrinsicDelaunayTriangulationAreReported)
 TEST(RunWarnings, SettingsWithoutEffectOrOutsideTheirRangeAreReported)
 {
   RunInput input = NoisyNormals();
-  input.Data.FidelityFactors.assign(static_cast<std::size_t>(input.Vertices.rows()), 2.0);
+  input.Data.FidelityFactors.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 2.0);
   HeatSettings heat;
   ExpectOne(WarningsOf(input, heat), { "FidelityArray has no effect", "FidelityWeight is 0" });
 
-  input.Data.FidelityFactors.clear();
+  input.Data.FidelityFactors.Values.clear();
   heat.Mode = HeatMode::SteadyState;
   heat.FidelityWeight = 1.0;
   heat.Blur.FWHM = 4.0;

@@ -61,8 +61,8 @@ TEST(Solve, ThreadsDoNotChangeABit)
 {
   const RunInput fine(Testing::Icosphere(5));
   const ThreadPool threads(3);
-  EXPECT_EQ(Heat(fine.Vertices, fine.Faces, fine.Data.Data).Result,
-    Heat(fine.Vertices, fine.Faces, fine.Data.Data, {}, threads).Result);
+  EXPECT_EQ(Heat(fine.Vertices, fine.Faces, fine.Data.Data.Values).Result,
+    Heat(fine.Vertices, fine.Faces, fine.Data.Data.Values, {}, threads).Result);
 }
 
 TEST(Solve, EveryModelHasItsResults)
@@ -128,8 +128,8 @@ TEST(Solve, EveryModelHasItsResults)
 TEST(Solve, DataOnTrianglesGiveResultsOnTriangles)
 {
   Fields fields;
-  fields.Data = Values::Random(Sphere().Faces.rows(), 2);
-  fields.DataOnCells = true;
+  fields.Data.Values = Values::Random(Sphere().Faces.rows(), 2);
+  fields.Data.OnCells = true;
   const Solution solution = Heat(Sphere().Vertices, Sphere().Faces, fields);
   EXPECT_EQ(solution.Result.rows(), Sphere().Faces.rows());
   EXPECT_LT(solution.Result.cwiseAbs().maxCoeff(), 1.01);
@@ -144,15 +144,16 @@ TEST(Solve, ExcludedPointsKeepTheirValueAndNothingFlowsAcross)
   Fields fields = SurfaceData((Sphere().Vertices.col(2).array() > 0.0).cast<double>());
   for (Eigen::Index i = 0; i < Sphere().Vertices.rows(); ++i)
   {
-    fields.Mask.push_back(std::abs(Sphere().Vertices(i, 2)) < 0.2);
+    fields.Mask.Values.push_back(std::abs(Sphere().Vertices(i, 2)) < 0.2);
   }
   HeatSettings settings;
   settings.MaskMode = MaskMode::Exclude;
   const Solution solution = Heat(Sphere().Vertices, Sphere().Faces, fields, settings);
-  EXPECT_LT((solution.Result - fields.Data).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_GT((Heat(Sphere().Vertices, Sphere().Faces, fields.Data).Result - fields.Data)
-              .cwiseAbs()
-              .maxCoeff(),
+  EXPECT_LT((solution.Result - fields.Data.Values).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_GT(
+    (Heat(Sphere().Vertices, Sphere().Faces, fields.Data.Values).Result - fields.Data.Values)
+      .cwiseAbs()
+      .maxCoeff(),
     0.1);
 }
 
@@ -162,9 +163,9 @@ TEST(Solve, ErrorsNameTheSettingOrTheArray)
   negative.FWHM = -1.0;
   EXPECT_EQ(ErrorOf(Sphere().Data, negative), "FWHM is -1; allowed: finite numbers, 0 or more");
   Fields fields = Sphere().Data;
-  fields.Mask.assign(5, 0);
+  fields.Mask.Values.assign(5, 0);
   EXPECT_EQ(ErrorOf(fields, {}), "Mask has 5 rows; allowed: 642, one per point");
-  fields.Mask.clear();
+  fields.Mask.Values.clear();
   EXPECT_EQ(ErrorOf(Fields(), {}), "Data has 0 values; allowed: a row for each point or cell");
   fields.Data(7, 0) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(ErrorOf(fields, {}), "Data is infinite at point 7; allowed: finite values and NaN");

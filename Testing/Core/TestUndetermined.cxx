@@ -48,7 +48,7 @@ Testing::Surface SecondSphere()
 RunInput TwoSpheres(Eigen::Index columns = 1)
 {
   RunInput input(Testing::Joined(FirstSphere(), SecondSphere()));
-  input.Data.Data.resize(input.Vertices.rows(), columns);
+  input.Data.Data.Values.resize(input.Vertices.rows(), columns);
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
     for (Eigen::Index k = 0; k < columns; ++k)
@@ -70,10 +70,10 @@ RunInput First(const RunInput& both)
 {
   RunInput input(FirstSphere());
   input.Data = both.Data;
-  input.Data.Data = both.Data.Data.topRows(SizeOfFirst()).eval();
-  if (!both.Data.Mask.empty())
+  input.Data.Data.Values = both.Data.Data.Values.topRows(SizeOfFirst()).eval();
+  if (!both.Data.Mask.Values.empty())
   {
-    input.Data.Mask.resize(static_cast<std::size_t>(SizeOfFirst()));
+    input.Data.Mask.Values.resize(static_cast<std::size_t>(SizeOfFirst()));
   }
   return input;
 }
@@ -217,7 +217,7 @@ std::vector<std::pair<std::string, std::shared_ptr<RunSettings>>> AllModels()
 TEST(Undetermined, ComponentsTakeNoPartInAnyModel)
 {
   RunInput input = TwoSpheres();
-  input.Data.Data.bottomRows(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
+  input.Data.Data.Values.bottomRows(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
   for (const auto& [name, settings] : AllModels())
   {
     ExpectFirstAsAlone(input, settings, name == "segmentation" ? 1e-3 : 2e-3, name);
@@ -227,9 +227,9 @@ TEST(Undetermined, ComponentsTakeNoPartInAnyModel)
 TEST(Undetermined, MaskedValuesAreUnknown)
 {
   RunInput input = TwoSpheres();
-  input.Data.Mask.assign(static_cast<std::size_t>(input.Vertices.rows()), 1);
-  std::fill_n(input.Data.Mask.begin(), SizeOfFirst(), char{ 0 });
-  input.Data.Mask[3] = 1;
+  input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 1);
+  std::fill_n(input.Data.Mask.Values.begin(), SizeOfFirst(), char{ 0 });
+  input.Data.Mask.Values[3] = 1;
   for (const InitialFill fill :
     { InitialFill::Input, InitialFill::Mean, InitialFill::Noise, InitialFill::Harmonic })
   {
@@ -241,7 +241,7 @@ TEST(Undetermined, MaskedValuesAreUnknown)
 TEST(Undetermined, ChannelsWithoutAKnownValueMakeAComponentUndetermined)
 {
   RunInput input = TwoSpheres(3);
-  input.Data.Data.col(1).tail(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
+  input.Data.Data.Values.col(1).tail(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
   for (const auto& [name, settings] : AllModels())
   {
     if (name == "heat" || name == "steady TV" || name == "Beltrami" || name == "segmentation")
@@ -254,11 +254,11 @@ TEST(Undetermined, ChannelsWithoutAKnownValueMakeAComponentUndetermined)
 TEST(Undetermined, VectorsWithoutDirectionsAreUnknown)
 {
   RunInput input = TwoSpheres(3);
-  input.Data.Data = input.Vertices;
-  input.Data.Data.bottomRows(input.Vertices.rows() - SizeOfFirst()).setZero();
+  input.Data.Data.Values = input.Vertices;
+  input.Data.Data.Values.bottomRows(input.Vertices.rows() - SizeOfFirst()).setZero();
   ExpectFirstAsAlone(
     input, Make<HarmonicMapSettings>([](HarmonicMapSettings&) {}), 1e-6, "zero vectors");
-  input.Data.Data.bottomRows(1).setConstant(NaN);
+  input.Data.Data.Values.bottomRows(1).setConstant(NaN);
   ExpectFirstAsAlone(input,
     Make<HarmonicMapSettings>([](HarmonicMapSettings& s) { s.LineField = true; }), 1e-6, "lines");
 }
@@ -267,18 +267,18 @@ TEST(Undetermined, FixedAndSeededPointsDetermineTheirComponent)
 {
   RunInput input = TwoSpheres();
   const auto n = static_cast<std::size_t>(input.Vertices.rows());
-  input.Data.Mask.assign(n, 1);
-  std::fill_n(input.Data.Mask.begin(), SizeOfFirst(), char{ 0 });
-  input.Data.Fixed.assign(n, 0);
-  input.Data.Fixed.back() = 1;
+  input.Data.Mask.Values.assign(n, 1);
+  std::fill_n(input.Data.Mask.Values.begin(), SizeOfFirst(), char{ 0 });
+  input.Data.Fixed.Values.assign(n, 0);
+  input.Data.Fixed.Values.back() = 1;
   const auto heat = Make<HeatSettings>([](HeatSettings& s) { s.Mode = HeatMode::SteadyState; });
   SurfaceDiffusion::Run run(SerialFor());
   EXPECT_EQ(Count(Update(run, { input.Block() }, heat), "no known value"), 0);
   EXPECT_NEAR(AtPoints(run.GetBlock(0))(SizeOfFirst(), 0), input.Data.Data(n - 1, 0), 1e-6);
 
-  input.Data.Fixed.clear();
-  input.Data.Seeds.assign(n, 0);
-  input.Data.Seeds.back() = 2;
+  input.Data.Fixed.Values.clear();
+  input.Data.Seeds.Values.assign(n, 0);
+  input.Data.Seeds.Values.back() = 2;
   SurfaceDiffusion::Run segmentation(SerialFor());
   const auto regions = Make<SegmentationSettings>([](SegmentationSettings&) {});
   EXPECT_EQ(Count(Update(segmentation, { input.Block() }, regions), "no known value"), 0);
@@ -290,7 +290,7 @@ TEST(Undetermined, DataWithoutAnyKnownValueAreAnError)
   for (const auto& [name, settings] : AllModels())
   {
     RunInput input = TwoSpheres();
-    input.Data.Data.setConstant(NaN);
+    input.Data.Data.Values.setConstant(NaN);
     SurfaceDiffusion::Run run(SerialFor());
     EXPECT_THROW(
       try {
@@ -308,9 +308,9 @@ TEST(Undetermined, DataWithoutAnyKnownValueAreAnError)
 TEST(Undetermined, BlocksWithoutAKnownValueAreCountedWithTheOthers)
 {
   RunInput known = TwoSpheres();
-  known.Data.Data.bottomRows(known.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
+  known.Data.Data.Values.bottomRows(known.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
   RunInput unknown = TwoSpheres();
-  unknown.Data.Data.setConstant(NaN);
+  unknown.Data.Data.Values.setConstant(NaN);
   for (const auto& [name, settings] : AllModels())
   {
     SurfaceDiffusion::Run run(SerialFor());
@@ -332,9 +332,9 @@ TEST(Undetermined, LaterDataAreThoseOfANewRun)
 {
   const RunInput known = TwoSpheres();
   RunInput second = known;
-  second.Data.Data.bottomRows(known.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
+  second.Data.Data.Values.bottomRows(known.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
   RunInput first = known;
-  first.Data.Data.topRows(SizeOfFirst()).setConstant(NaN);
+  first.Data.Data.Values.topRows(SizeOfFirst()).setConstant(NaN);
   const auto settings = Make<HeatSettings>([](HeatSettings&) {});
   SurfaceDiffusion::Run run(SerialFor());
   const std::vector<const RunInput*> inputs = { &known, &second, &second, &first, &known, &first };
@@ -354,12 +354,12 @@ TEST(Undetermined, LaterDataAreThoseOfANewRun)
 TEST(Undetermined, SurfacesAreNotMadeAgainForDataWithTheSameUnknownComponents)
 {
   RunInput input = TwoSpheres();
-  input.Data.Data.bottomRows(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
+  input.Data.Data.Values.bottomRows(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
   const auto settings = Make<HeatSettings>([](HeatSettings&) {});
   SurfaceDiffusion::Run run(SerialFor());
   Update(run, { input.Block() }, settings);
   const Surface* const made = run.GetBlock(0).Surface.get();
-  input.Data.Data *= 2.0;
+  input.Data.Data.Values *= 2.0;
   Update(run, { input.Block() }, settings);
   EXPECT_EQ(run.GetBlock(0).Surface.get(), made);
 }
@@ -368,7 +368,7 @@ TEST(Undetermined, CellsWithoutAKnownValueTakeNoPart)
 {
   Testing::CellInput input(Testing::Joined(FirstSphere(), SecondSphere()));
   const Index ofFirst = FirstSphere().NumberOfTriangles();
-  input.Data.Data.bottomRows(input.Data.NumberOfCells - ofFirst).setConstant(NaN);
+  input.Data.Data.Values.bottomRows(input.Data.NumberOfCells - ofFirst).setConstant(NaN);
   for (const auto& [name, settings] : AllModels())
   {
     SurfaceDiffusion::Run run(SerialFor());
@@ -386,7 +386,7 @@ TEST(Undetermined, CellsWithoutAKnownValueTakeNoPart)
 TEST(Undetermined, HoldingKnownValuesIsNoErrorWhereComponentsAreUnknown)
 {
   RunInput input = TwoSpheres();
-  input.Data.Data.bottomRows(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
+  input.Data.Data.Values.bottomRows(input.Vertices.rows() - SizeOfFirst()).setConstant(NaN);
   const auto settings = Make<HeatSettings>([](HeatSettings& s) { s.HoldKnownValues = true; });
   SurfaceDiffusion::Run run(SerialFor());
   EXPECT_EQ(Count(Update(run, { input.Block() }, settings), "no known value"), 1);
