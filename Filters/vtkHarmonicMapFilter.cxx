@@ -3,9 +3,9 @@
 #include "vtkHarmonicMapFilter.h"
 
 #include "Conversion/PointNormals.h"
-#include "Conversion/RunState.h"
 #include "Conversion/SurfaceReader.h"
 #include "Run/HarmonicMapSettings.h"
+#include "vtkSurfaceModelAlgorithmInternals.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -100,7 +100,7 @@ vtkDataArray* vtkHarmonicMapFilter::FindComputedNormals(vtkPolyData* block)
   auto& known = this->State->Normals;
   const Fingerprint version = FingerprintSurface(block, nullptr);
   auto found = std::find_if(known.begin(), known.end(),
-    [&](const RunState::ComputedNormals& normals) { return normals.SurfaceVersion == version; });
+    [&](const UpdateState::ComputedNormals& normals) { return normals.SurfaceVersion == version; });
   if (found == known.end())
   {
     known.push_back({ version, ComputePointNormals(block), true });

@@ -4,10 +4,10 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
-#include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DenoisingRun.h"
 #include "Run/OwnedSettings.h"
+#include "vtkSurfaceFilterInternals.h"
 
 #include "vtkObjectFactory.h"
 
@@ -15,14 +15,14 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceDenoisingFilter);
 
-struct vtkSurfaceDenoisingFilter::RunState
+struct vtkSurfaceDenoisingFilter::UpdateState
 {
   SurfaceRuns<DenoisingRun> Runs;
 };
 
 vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
   : Superclass(OwnedSettings::Make<DenoisingRunSettings>())
-  , State(std::make_unique<RunState>())
+  , State(std::make_unique<UpdateState>())
 {
   this->DeclareNumber("EffectiveNoiseLevel");
   this->DeclareNumber("EffectiveSurfaceType");

@@ -134,8 +134,8 @@ private:
   void operator=(const vtkSurfaceDenoisingFilter&) = delete;
 
   /// The denoised surfaces, kept between updates.
-  struct RunState;
-  const std::unique_ptr<RunState> State;
+  struct UpdateState;
+  const std::unique_ptr<UpdateState> State;
 };
 
 #endif

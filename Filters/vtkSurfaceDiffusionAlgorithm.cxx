@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
-#include "Conversion/RunState.h"
 #include "Conversion/TimeRequests.h"
 #include "Distributed/Processes.h"
+#include "vtkSurfaceModelAlgorithmInternals.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -73,7 +73,7 @@ int vtkSurfaceDiffusionAlgorithm::RequestUpdateExtent(
 int vtkSurfaceDiffusionAlgorithm::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  RunState& state = *this->State;
+  UpdateState& state = *this->State;
   state.ChooseStep = nullptr;
   if (!this->PublishesTimes())
   {

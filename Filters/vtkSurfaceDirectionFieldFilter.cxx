@@ -4,10 +4,10 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
-#include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DirectionFieldRun.h"
 #include "Run/OwnedSettings.h"
+#include "vtkSurfaceFilterInternals.h"
 
 #include "vtkObjectFactory.h"
 
@@ -15,14 +15,14 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceDirectionFieldFilter);
 
-struct vtkSurfaceDirectionFieldFilter::RunState
+struct vtkSurfaceDirectionFieldFilter::UpdateState
 {
   SurfaceRuns<DirectionFieldRun> Runs;
 };
 
 vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter()
   : Superclass(OwnedSettings::Make<DirectionFieldSettings>())
-  , State(std::make_unique<RunState>())
+  , State(std::make_unique<UpdateState>())
 {
   this->ResultArrayName = "Direction";
 }

@@ -130,8 +130,8 @@ private:
   void operator=(const vtkSurfaceDirectionFieldFilter&) = delete;
 
   /// The fields, kept between updates.
-  struct RunState;
-  const std::unique_ptr<RunState> State;
+  struct UpdateState;
+  const std::unique_ptr<UpdateState> State;
 };
 
 #endif

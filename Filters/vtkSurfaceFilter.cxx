@@ -3,11 +3,12 @@
 #include "vtkSurfaceFilter.h"
 
 #include "Conversion/PointNormals.h"
-#include "Conversion/SurfaceFilterInternals.h"
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Distributed/SurfacePieces.h"
+#include "Run/Collective.h"
 #include "Run/RunSettings.h"
+#include "vtkSurfaceFilterInternals.h"
 
 #include "vtkDataObject.h"
 #include "vtkErrorCode.h"
@@ -128,16 +129,15 @@ bool vtkSurfaceFilter::SolvesInPieces(const std::vector<SurfaceBlock>&, bool, do
   return false;
 }
 
-const ProcessGroup& vtkSurfaceFilter::GetProcessGroup() const
+const Reduction& vtkSurfaceFilter::GetProcesses() const
 {
-  static const ProcessGroup alone;
-  return this->Private->Group ? *this->Private->Group : alone;
+  return this->Private->Processes ? *this->Private->Processes : Reduction::Serial();
 }
 
 std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
   const std::vector<SurfaceBlock>& blocks, Problems& problems) const
 {
-  const ProcessGroup& group = this->GetProcessGroup();
+  const Reduction& processes = this->GetProcesses();
   std::vector<SurfaceBlock> selected;
   bool anyPoint = false;
   bool anyPolygon = false;
@@ -148,13 +148,13 @@ std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
     const bool polygons =
       data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0;
     anyPolygon = anyPolygon || polygons;
-    if (polygons || group.IsShared())
+    if (polygons || !processes.IsSerial())
     {
       selected.push_back(block);
     }
   }
-  anyPoint = group.Any(anyPoint);
-  anyPolygon = group.Any(anyPolygon);
+  anyPoint = processes.Any(anyPoint);
+  anyPolygon = processes.Any(anyPolygon);
   const InputDescription& input = this->Private->Input;
   if (!anyPoint && !input.OtherTypes.empty())
   {
@@ -178,7 +178,7 @@ bool vtkSurfaceFilter::ReportProblems(Problems problems)
 {
   std::sort(problems.begin(), problems.end());
   problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
-  const std::string text = this->GetProcessGroup().FirstMessage(Join(problems).Text());
+  const std::string text = FirstMessage(this->GetProcesses(), Join(problems).Text());
   if (text.empty())
   {
     return false;
@@ -191,7 +191,7 @@ bool vtkSurfaceFilter::ReportProblems(Problems problems)
 void vtkSurfaceFilter::ReportError(const std::string& text)
 {
   this->Private->HasFailed = true;
-  if (this->GetProcessGroup().IsRoot())
+  if (this->GetProcesses().Rank() == 0)
   {
     vtkErrorMacro(<< text);
   }
@@ -200,7 +200,7 @@ void vtkSurfaceFilter::ReportError(const std::string& text)
 void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 {
   const std::vector<Sentence> sentences = this->Private->Reported.Report(std::move(warnings));
-  if (!sentences.empty() && this->GetProcessGroup().IsRoot())
+  if (!sentences.empty() && this->GetProcesses().Rank() == 0)
   {
     vtkWarningMacro(<< Join(sentences));
   }
@@ -208,8 +208,7 @@ void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 
 void vtkSurfaceFilter::BeginWriting()
 {
-  if (this->GetProcessGroup().IsShared() &&
-    this->GetProcessGroup().Any(*this->Private->AbortRequested))
+  if (!this->GetProcesses().IsSerial() && this->GetProcesses().Any(*this->Private->AbortRequested))
   {
     throw Aborted();
   }
@@ -290,12 +289,12 @@ int vtkSurfaceFilter::RequestData(
   const Processes processes(this->Controller);
   const PieceSummary summary =
     processes.Count() > 1 ? SummarizePieces(processes, pieces) : PieceSummary();
-  this->Private->Group.reset();
+  this->Private->Processes.reset();
   if (processes.Count() > 1 &&
     this->SolvesInPieces(toBlocks(pieces), summary.OneSurface, summary.NumberOfPoints))
   {
     this->Private->Gathered.reset();
-    this->Private->Group = std::make_unique<SharedProcessGroup>(this->Controller);
+    this->Private->Processes = std::make_unique<ProcessReduction>(this->Controller);
     vtkNew<vtkPolyData> nothing;
     vtkNew<vtkPolyData> noResult;
     std::vector<SurfaceBlock> blocks = toBlocks(pieces);
@@ -304,7 +303,7 @@ int vtkSurfaceFilter::RequestData(
       blocks.push_back({ nothing, noResult });
     }
     this->ProcessGuarded(blocks);
-    this->Private->Group.reset();
+    this->Private->Processes.reset();
   }
   else
   {
@@ -362,7 +361,7 @@ void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
 {
   double reported = 0.0;
   *this->Private->AbortRequested = false;
-  const bool shared = this->GetProcessGroup().IsShared();
+  const bool shared = !this->GetProcesses().IsSerial();
   const ProgressMonitor::Callback callback = [&](double fraction)
   {
     reported = std::max(reported, fraction);

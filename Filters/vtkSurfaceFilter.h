@@ -50,7 +50,7 @@
 namespace SurfaceDiffusion
 {
 class OwnedSettings;
-class ProcessGroup;
+class Reduction;
 class ProgressMonitor;
 class Settings;
 struct Warning;
@@ -257,7 +257,7 @@ protected:
   void ReportWarnings(std::vector<SurfaceDiffusion::Warning> warnings);
 
   /// The processes that work on this update together: one, unless SolvesInPieces().
-  const SurfaceDiffusion::ProcessGroup& GetProcessGroup() const;
+  const SurfaceDiffusion::Reduction& GetProcesses() const;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;

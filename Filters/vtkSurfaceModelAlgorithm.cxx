@@ -5,10 +5,11 @@
 #include "Conversion/InputArrays.h"
 #include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
-#include "Conversion/RunState.h"
-#include "Conversion/SurfaceFilterInternals.h"
 #include "Distributed/CellFlags.h"
 #include "Run/BlockSentences.h"
+#include "Run/Collective.h"
+#include "vtkSurfaceFilterInternals.h"
+#include "vtkSurfaceModelAlgorithmInternals.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -55,7 +56,7 @@ void ReplaceAbsentDirections(vtkPolyData* block, InputFields& fields)
 
 vtkSurfaceModelAlgorithm::vtkSurfaceModelAlgorithm(OwnedSettings settings)
   : Superclass(std::move(settings))
-  , State(std::make_unique<RunState>())
+  , State(std::make_unique<UpdateState>())
 {
   this->SetNumberOfOutputPorts(2);
   for (const char* const name :
@@ -130,7 +131,7 @@ int vtkSurfaceModelAlgorithm::RequestData(
   {
     curves->Initialize();
   }
-  RunState& state = *this->State;
+  UpdateState& state = *this->State;
   state.Settings = std::static_pointer_cast<RunSettings>(this->Private->Properties.Copy());
   state.SettingProblems.clear(); // reported with those of the arrays
   state.Settings->Check(nullptr, state.SettingProblems);
@@ -152,7 +153,7 @@ int vtkSurfaceModelAlgorithm::RequestData(
 void vtkSurfaceModelAlgorithm::ReleaseCache()
 {
   this->Superclass::ReleaseCache();
-  RunState& state = *this->State;
+  UpdateState& state = *this->State;
   state.Run.Clear();
   state.Inputs = BlockInputs();
   state.Normals = {};
@@ -172,8 +173,8 @@ bool vtkSurfaceModelAlgorithm::SolvesInPieces(
 void vtkSurfaceModelAlgorithm::ProcessSurfaces(
   const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
 {
-  RunState& state = *this->State;
-  const ProcessGroup& group = this->GetProcessGroup();
+  UpdateState& state = *this->State;
+  const Reduction& processes = this->GetProcesses();
   Problems problems = state.SettingProblems;
   this->CheckSurfaceProperties(problems);
   Require(this->OutputPrecision >= 0 && this->OutputPrecision < 3, Word::Setting("OutputPrecision"),
@@ -192,7 +193,7 @@ void vtkSurfaceModelAlgorithm::ProcessSurfaces(
       [&]
       {
         state.Run.Update(
-          this->MakeInputs(surfaces, fields), state.Settings, group, progress.Part(0.0, 0.25));
+          this->MakeInputs(surfaces, fields), state.Settings, processes, progress.Part(0.0, 0.25));
         progress.Report(0.25);
         double found = 0.25;
         state.Step = state.Settings->DescribeModel().NumberOfSteps;
@@ -219,10 +220,10 @@ void vtkSurfaceModelAlgorithm::ProcessSurfaces(
     throw;
   }
   state.History = state.Run.MakeHistory(state.Step);
-  group.RunCollectively([&] { this->MakeTables(); });
+  RunCollectively(processes, [&] { this->MakeTables(); });
   this->TakeNumbers();
   state.ForgetUnusedNormals();
-  std::vector<Warning> warnings = state.Run.FindWarnings(group);
+  std::vector<Warning> warnings = state.Run.FindWarnings(processes);
   if (!state.ReplacedArrays.empty())
   {
     warnings.push_back({ DescribeReplacement(state.ReplacedArrays), Fingerprint() });
@@ -237,11 +238,11 @@ void vtkSurfaceModelAlgorithm::ProcessSurfaces(
 /// The outputs beside the surface, in process 0.
 void vtkSurfaceModelAlgorithm::MakeTables()
 {
-  if (!this->GetProcessGroup().IsRoot())
+  if (this->GetProcesses().Rank() != 0)
   {
     return;
   }
-  RunState& state = *this->State;
+  UpdateState& state = *this->State;
   std::vector<const OutputList*> outputs;
   for (std::size_t b = 0; b < state.Run.NumberOfBlocks(); ++b)
   {
@@ -264,22 +265,22 @@ void vtkSurfaceModelAlgorithm::MakeTables()
 void vtkSurfaceModelAlgorithm::WriteResults(
   const std::vector<SurfaceBlock>& surfaces, const std::vector<InputFields>& fields)
 {
-  RunState& state = *this->State;
-  const ProcessGroup& group = this->GetProcessGroup();
+  UpdateState& state = *this->State;
+  const Reduction& processes = this->GetProcesses();
   state.ReplacedArrays.clear();
-  group.RunCollectively(
+  RunCollectively(processes,
     [&]
     {
       for (std::size_t b = 0; b < surfaces.size(); ++b)
       {
-        if (!group.IsShared() || surfaces[b].Input->GetNumberOfPoints() > 0)
+        if (processes.IsSerial() || surfaces[b].Input->GetNumberOfPoints() > 0)
         {
           this->WriteResult(b, fields[b], surfaces[b].Output);
         }
       }
     });
   this->WriteFidelityWeights(surfaces);
-  for (std::size_t b = 0; group.IsShared() && b < surfaces.size(); ++b)
+  for (std::size_t b = 0; !processes.IsSerial() && b < surfaces.size(); ++b)
   {
     state.Inputs.GetDecomposition()->UpdateCopies(
       surfaces[b].Input->GetPointData(), surfaces[b].Output->GetPointData());
@@ -325,7 +326,7 @@ void vtkSurfaceModelAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bl
   {
     InputFields arrays;
     Problems here;
-    const bool takesPart = this->GetProcessGroup().IsShared() &&
+    const bool takesPart = !this->GetProcesses().IsSerial() &&
       block.Input->GetNumberOfPoints() == 0; // in collective calls
     if (takesPart || this->FindFields(block.Input, arrays, here))
     {
@@ -380,7 +381,7 @@ std::vector<BlockInput> vtkSurfaceModelAlgorithm::MakeInputs(
     inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
   }
   const bool excludes = this->GetMaskMode() == MASK_MODE_EXCLUDE;
-  return this->GetProcessGroup().IsShared()
+  return !this->GetProcesses().IsSerial()
     ? this->State->Inputs.MakeOfPieces(
         inputs, excludes, this->SeamTolerance, this->GetController(), this->Private->AbortRequested)
     : this->State->Inputs.Make(inputs, excludes);
@@ -389,7 +390,7 @@ std::vector<BlockInput> vtkSurfaceModelAlgorithm::MakeInputs(
 void vtkSurfaceModelAlgorithm::WriteResult(
   std::size_t index, const InputFields& fields, vtkPolyData* output)
 {
-  RunState& state = *this->State;
+  UpdateState& state = *this->State;
   const Run::Block& block = state.Run.GetBlock(index);
   OutputSource source{ *block.Surface, SMPParallelFor::Instance() };
   source.NumberOfCells = output->GetNumberOfCells();
@@ -463,14 +464,14 @@ int vtkSurfaceModelAlgorithm::FindResultType(const InputFields& fields) const
 
 void vtkSurfaceModelAlgorithm::TakeNumbers()
 {
-  const RunState& state = *this->State;
+  const UpdateState& state = *this->State;
   auto& numbers = this->Private->Numbers;
   numbers = FindNumbers(state.Run);
   for (const auto& [name, number] :
     { std::pair{ "NumberOfIterations", static_cast<double>(state.History.NumberOfIterations()) },
       std::pair{ "Residual", state.History.LargestResidual() },
       std::pair{ "NumberOfUnusedPoints",
-        static_cast<double>(state.Run.CountUnusedPoints(this->GetProcessGroup())) },
+        static_cast<double>(state.Run.CountUnusedPoints(this->GetProcesses())) },
       std::pair{
         "NumberOfStepsComputed", static_cast<double>(state.Run.NumberOfStepsComputed()) } })
   {

@@ -222,8 +222,8 @@ protected:
   int OutputPrecision = OUTPUT_PRECISION_INPUT;
 
   /// The run, kept between updates; not for subclasses outside of this library.
-  struct RunState;
-  const std::unique_ptr<RunState> State;
+  struct UpdateState;
+  const std::unique_ptr<UpdateState> State;
 
 private:
   vtkSurfaceModelAlgorithm(const vtkSurfaceModelAlgorithm&) = delete;

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <initializer_list>
 #include <map>
-#include <string>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -106,19 +105,6 @@ public:
       this->Shared->AllReduce(&mine, &any, 1, vtkCommunicator::MAX_OP);
     }
     return any != 0;
-  }
-
-  /// The message of the process of lowest rank that has one; empty if none has.
-  std::string FirstMessage(const std::string& here) const
-  {
-    for (const auto& text : this->GatherPerProcess(std::vector<char>(here.begin(), here.end())))
-    {
-      if (!text.empty())
-      {
-        return std::string(text.begin(), text.end());
-      }
-    }
-    return std::string();
   }
 
   /// Every process gets the values of process 0.

@@ -3,6 +3,7 @@
 #include "Run/CellFields.h"
 
 #include "Core/Models/Harmonic/UnitVectors.h"
+#include "Run/Collective.h"
 #include "Run/LineTensors.h"
 
 #include <algorithm>
@@ -157,11 +158,11 @@ CellData ReadCells(const Surface& surface, const Fields& fields, const CellReadi
 
 /// Given and FidelityFactors of data with fidelity factors or missing cells.
 void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cells,
-  const CellData& given, const ProcessGroup& processes, PointData& data)
+  const CellData& given, const Reduction& processes, PointData& data)
 {
   Vector ofCells;
   Vector ofVertices = Vector::Ones(data.Missing.size());
-  processes.RunCollectively(
+  RunCollectively(processes,
     [&]
     {
       ofCells = ReadCellFactors(fields);
@@ -187,7 +188,7 @@ void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cel
 
 /// Fix the vertices of fixed cells and of fixed points.
 void FixVertices(const Surface& surface, const Fields& fields, const CellState& cells,
-  const CellData& given, const VertexMeans& damaged, const ProcessGroup& processes, PointData& data)
+  const CellData& given, const VertexMeans& damaged, const Reduction& processes, PointData& data)
 {
   if (processes.Any(fields.Fixed.OnCells))
   {
@@ -223,7 +224,7 @@ void FixVertices(const Surface& surface, const Fields& fields, const CellState& 
     }
     data.Missing[v] = false;
   };
-  processes.RunCollectively(
+  RunCollectively(processes,
     [&]
     {
       for (std::size_t i = 0; i < fields.Fixed.Values.size(); ++i)
@@ -235,7 +236,7 @@ void FixVertices(const Surface& surface, const Fields& fields, const CellState& 
 
 /// The fixed cells, or with fixed points those whose vertices are all fixed.
 std::vector<char> FindHeldCells(
-  const Surface& surface, const Fields& fields, const Flags& fixed, const ProcessGroup& processes)
+  const Surface& surface, const Fields& fields, const Flags& fixed, const Reduction& processes)
 {
   const auto count = static_cast<std::size_t>(fields.NumberOfCells);
   std::vector<char> held(count, 0);
@@ -275,8 +276,8 @@ CellTransfer MakeCellTransfer(
     surface.InputMesh(), CellsOfTriangles(surface, fields), fields.NumberOfCells, parallel);
 }
 
-void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup& processes,
-  const ParallelFor& parallel)
+void MoveMarksToData(
+  const Surface& surface, Fields& fields, const Reduction& processes, const ParallelFor& parallel)
 {
   if (processes.Any(fields.Data.OnCells))
   {
@@ -300,7 +301,7 @@ void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup&
   if (processes.Any(fields.FidelityFactors.OnCells))
   {
     Values factors;
-    processes.RunCollectively([&] { factors = ReadCellFactors(fields); });
+    RunCollectively(processes, [&] { factors = ReadCellFactors(fields); });
     const CellTransfer transfer = MakeCellTransfer(surface, fields, parallel);
     fields.FidelityFactors.Values = SpreadToPoints<double>(surface,
       Vector(transfer.ToVertices(factors, Vector::Ones(fields.NumberOfCells)).Of.col(0)), 1.0);
@@ -309,10 +310,10 @@ void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup&
 }
 
 PointData MakePointDataOfCells(
-  const Surface& surface, const Fields& fields, CellState& cells, const ProcessGroup& processes)
+  const Surface& surface, const Fields& fields, CellState& cells, const Reduction& processes)
 {
   CellData given;
-  processes.RunCollectively([&] { given = ReadCells(surface, fields, cells.Reading); });
+  RunCollectively(processes, [&] { given = ReadCells(surface, fields, cells.Reading); });
   double components = static_cast<double>(given.Of.cols());
   surface.InputMesh().GetReduction().Max(&components, 1);
   given.Of.conservativeResize(given.Of.rows(), static_cast<Eigen::Index>(components));

@@ -24,8 +24,8 @@ CellTransfer MakeCellTransfer(
 /// masked or fixed, and the fidelity factor of a point is the mean over its control cell. With data
 /// on cells, a cell with a masked point is masked; marks of points that hold a vertex stay. Throws
 /// std::runtime_error on fidelity factors that are negative or not finite. Collective.
-void MoveMarksToData(const Surface& surface, Fields& fields, const ProcessGroup& processes,
-  const ParallelFor& parallel);
+void MoveMarksToData(
+  const Surface& surface, Fields& fields, const Reduction& processes, const ParallelFor& parallel);
 
 /// How a model reads data on cells.
 struct CellReading
@@ -70,7 +70,7 @@ struct CellState
 /// mean of the fixed cells around them. Lines are averaged as tensors u u^T. Writes cells.Known,
 /// Factors and Held. Throws as MakePointData(). Collective.
 PointData MakePointDataOfCells(
-  const Surface& surface, const Fields& fields, CellState& cells, const ProcessGroup& processes);
+  const Surface& surface, const Fields& fields, CellState& cells, const Reduction& processes);
 
 /// Put the detail of the cells beside a model of their data, whose state is cells.Start. Returns a
 /// model that does not diffuse as it is.

@@ -71,7 +71,7 @@ void DenoisingRun::Update(
     points.row(i) = surface.Points().row(mesh.InputVertex()[i]) / unit;
   }
   Fields fields = input.ReadFields();
-  MoveMarksToData(surface, fields, ProcessGroup(), this->Parallel);
+  MoveMarksToData(surface, fields, Reduction::Serial(), this->Parallel);
   std::vector<char> fixed(fields.Fixed.Values.empty() ? 0 : static_cast<std::size_t>(count), 0);
   const auto numberOfPoints = static_cast<Index>(surface.Points().rows());
   for (Index p = 0; p < numberOfPoints && !fixed.empty(); ++p)

@@ -155,9 +155,9 @@ void ValueStatistics::Merge(const ValueStatistics& other)
   }
 }
 
-void ValueStatistics::Merge(const ProcessGroup& processes)
+void ValueStatistics::Merge(const Reduction& processes)
 {
-  if (!processes.IsShared())
+  if (processes.IsSerial())
   {
     return;
   }
@@ -169,7 +169,7 @@ void ValueStatistics::Merge(const ProcessGroup& processes)
     mine.insert(mine.end(),
       { this->All[k].Low, this->All[k].High, this->Robust[k].Low, this->Robust[k].High });
   }
-  const std::vector<double> all = processes.GatherAll(mine);
+  const std::vector<double> all = processes.Gather(mine);
   for (std::size_t i = 0; i < all.size();)
   {
     this->Largest = std::max(this->Largest, all[i]);

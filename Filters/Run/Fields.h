@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/RobustRange.h"
 #include "Core/Models/Model.h"
 #include "Run/Located.h"
-#include "Run/ProcessGroup.h"
 #include "Run/RunSettings.h"
 #include "Run/Surface.h"
 
@@ -65,7 +65,7 @@ public:
   /// robust: whether RobustRange() is wanted, which takes longer.
   void Add(const Surface& surface, const Fields& fields, bool inpaint, bool robust);
   void Merge(const ValueStatistics& other);
-  void Merge(const ProcessGroup& processes);
+  void Merge(const Reduction& processes);
 
   /// R: the largest over the components of max - min; 1 if no value differs.
   double Range() const;

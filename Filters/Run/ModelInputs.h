@@ -30,7 +30,7 @@ struct ModelInputs
   const ParallelFor& Parallel;
   ProgressMonitor Progress;
   SolverStore& Solvers;
-  const ProcessGroup& Processes;
+  const Reduction& Processes;
   Eigen::Index Columns = 0; ///< of all panels of the data together; see Fields
   bool IsLastPanel = true; ///< of them
   bool DataAreTerms = false; ///< as in Fields

@@ -3,6 +3,7 @@
 #include "Run/Run.h"
 
 #include "Run/BlockSentences.h"
+#include "Run/Collective.h"
 #include "Run/LinearLight.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ constexpr double SmallestMagnitude = 1e-100;
 } // namespace
 
 void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSettings> settings,
-  const ProcessGroup& processes, const ProgressMonitor& progress)
+  const Reduction& processes, const ProgressMonitor& progress)
 {
   this->Settings = std::move(settings);
   this->UpdateSurfaces(inputs, processes, progress.Part(0.0, 0.6));
@@ -87,10 +88,10 @@ bool Run::IsModelCurrent(const Block& block, const BlockInput& input,
     block.Solvers.ServesRunOf(traits.NumberOfSteps);
 }
 
-void Run::ReadFields(const BlockInput& input, const ProcessGroup& processes, Block& block,
+void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block& block,
   std::unique_ptr<Fields>& fields, const ProgressMonitor& progress)
 {
-  processes.RunCollectively([&] { fields = std::make_unique<Fields>(input.ReadFields()); });
+  RunCollectively(processes, [&] { fields = std::make_unique<Fields>(input.ReadFields()); });
   block.HasLinearLight = fields->DataAreBytes && this->Settings->DescribeModel().UsesLinearLight;
   if (block.HasLinearLight)
   {
@@ -135,7 +136,7 @@ Values Run::Block::CellResult(Values given, bool keepDetail, const ParallelFor& 
 }
 
 /// h and R of all surfaces together.
-void Run::MeasureUnits(const ProcessGroup& processes)
+void Run::MeasureUnits(const Reduction& processes)
 {
   double length = 0.0;
   double edges = 0.0;
@@ -177,12 +178,12 @@ void Run::MeasureUnits(const ProcessGroup& processes)
       std::pow(units.ValueRange, traits.Time.Value) * traits.TimeFactor;
 }
 
-void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& processes,
-  const ProgressMonitor& progress)
+void Run::MakeModel(
+  Block& block, const Fields& fields, const Reduction& processes, const ProgressMonitor& progress)
 {
   TangentVectors directions;
-  processes.RunCollectively(
-    [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
+  RunCollectively(
+    processes, [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
   block.Result = RunResult();
   block.FinishedStep = -1;
   block.Solvers.Configure(this->Settings->DescribeModel(), this->Parallel);
@@ -224,7 +225,7 @@ void Run::MakeModel(Block& block, const Fields& fields, const ProcessGroup& proc
 
 /// The data of the vertices. A vertex on an interface takes the data of its owner, or the mean of
 /// the cells of all processes.
-PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& processes) const
+PointData Run::MakeData(Block& block, const Fields& fields, const Reduction& processes) const
 {
   PointData data;
   block.Cells.reset();
@@ -244,7 +245,7 @@ PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& 
         block.Undetermined.Cells });
     return MakePointDataOfCells(*block.Surface, fields, *block.Cells, processes);
   }
-  processes.RunCollectively(
+  RunCollectively(processes,
     [&]
     {
       if (fields.Data.Values.cols() > 0)
@@ -283,21 +284,21 @@ PointData Run::MakeData(Block& block, const Fields& fields, const ProcessGroup& 
 }
 
 /// The memory for the checkpoints of one surface. All processes keep the same steps.
-std::size_t Run::CheckpointMemory(const Model& model, const ProcessGroup& processes) const
+std::size_t Run::CheckpointMemory(const Model& model, const Reduction& processes) const
 {
   const std::size_t all = this->Settings->DescribeModel().CheckpointMemory;
   const std::size_t limit = all / this->Blocks.size();
-  if (all == 0 || !processes.IsShared())
+  if (all == 0 || processes.IsSerial())
   {
     return limit;
   }
   const std::size_t mine = std::max<std::size_t>(model.CheckpointSize(), 1) * sizeof(double);
-  const std::vector<double> sizes = processes.GatherAll({ static_cast<double>(mine) });
+  const std::vector<double> sizes = processes.Gather({ static_cast<double>(mine) });
   const auto largest = static_cast<std::size_t>(*std::max_element(sizes.begin(), sizes.end()));
   return std::max<std::size_t>(limit / largest, 1) * mine;
 }
 
-void Run::CheckHold(const ProcessGroup& processes) const
+void Run::CheckHold(const Reduction& processes) const
 {
   const bool missing = std::any_of(this->Blocks.begin(), this->Blocks.end(),
     [](const auto& block) { return block->Result.HasMissing; });

@@ -71,7 +71,7 @@ public:
   /// Take the inputs and the settings, which must have passed Check(). Throws std::runtime_error,
   /// std::bad_alloc, and Aborted, after which a later Update() continues.
   void Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSettings> settings,
-    const ProcessGroup& processes, const ProgressMonitor& progress);
+    const Reduction& processes, const ProgressMonitor& progress);
 
   /// The last step of the run: of all steps, or where the last surface has become stationary. A run
   /// that may end early is computed to its end, once.
@@ -141,32 +141,32 @@ public:
 
   /// The number of points, of all surfaces and processes together, that no participating triangle
   /// uses and that keep their values. Points excluded by the mask do not count.
-  long long CountUnusedPoints(const ProcessGroup& processes) const;
+  long long CountUnusedPoints(const Reduction& processes) const;
 
   /// The warnings that hold, with the inputs that each is about.
-  std::vector<Warning> FindWarnings(const ProcessGroup& processes) const;
+  std::vector<Warning> FindWarnings(const Reduction& processes) const;
 
 private:
   bool IsModelCurrent(const Block& block, const BlockInput& input, const SettingsSnapshot& settings,
     const ModelTraits& traits) const;
-  void UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
+  void UpdateSurfaces(const std::vector<BlockInput>& inputs, const Reduction& processes,
     const ProgressMonitor& progress);
-  std::unique_ptr<Surface> MakeSurface(const BlockInput& input, const ProcessGroup& processes,
+  std::unique_ptr<Surface> MakeSurface(const BlockInput& input, const Reduction& processes,
     std::vector<char> undetermined, const ProgressMonitor& progress) const;
-  void ReadFields(const BlockInput& input, const ProcessGroup& processes, Block& block,
+  void ReadFields(const BlockInput& input, const Reduction& processes, Block& block,
     std::unique_ptr<Fields>& fields, const ProgressMonitor& progress);
   void LeaveOutUndetermined(const BlockInput& input, const Fields& fields,
-    const ProcessGroup& processes, Block& block, const ProgressMonitor& progress);
+    const Reduction& processes, Block& block, const ProgressMonitor& progress);
   void RequireKnownValue(
-    const std::vector<std::unique_ptr<Fields>>& fields, const ProcessGroup& processes) const;
-  void MeasureUnits(const ProcessGroup& processes);
-  void MakeModel(Block& block, const Fields& fields, const ProcessGroup& processes,
+    const std::vector<std::unique_ptr<Fields>>& fields, const Reduction& processes) const;
+  void MeasureUnits(const Reduction& processes);
+  void MakeModel(Block& block, const Fields& fields, const Reduction& processes,
     const ProgressMonitor& progress);
-  PointData MakeData(Block& block, const Fields& fields, const ProcessGroup& processes) const;
-  std::size_t CheckpointMemory(const Model& model, const ProcessGroup& processes) const;
-  void CheckHold(const ProcessGroup& processes) const;
+  PointData MakeData(Block& block, const Fields& fields, const Reduction& processes) const;
+  std::size_t CheckpointMemory(const Model& model, const Reduction& processes) const;
+  void CheckHold(const Reduction& processes) const;
   Shortfalls FindShortfalls() const;
-  bool MaskChangesNothing(const ProcessGroup& processes) const;
+  bool MaskChangesNothing(const Reduction& processes) const;
 
   const ParallelFor& Parallel;
   std::shared_ptr<RunSettings> Settings;

@@ -148,7 +148,7 @@ History Run::MakeHistory(int step) const
   return history;
 }
 
-long long Run::CountUnusedPoints(const ProcessGroup& processes) const
+long long Run::CountUnusedPoints(const Reduction& processes) const
 {
   Index count = 0;
   for (const auto& block : this->Blocks)
@@ -162,7 +162,7 @@ long long Run::CountUnusedPoints(const ProcessGroup& processes) const
   return static_cast<long long>(processes.Sum(static_cast<double>(count)));
 }
 
-bool Run::MaskChangesNothing(const ProcessGroup& processes) const
+bool Run::MaskChangesNothing(const Reduction& processes) const
 {
   bool anyMask = false;
   bool anyMasked = false;
@@ -204,7 +204,7 @@ Shortfalls Run::FindShortfalls() const
   return found;
 }
 
-std::vector<Warning> Run::FindWarnings(const ProcessGroup& processes) const
+std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
 {
   SurfaceDiagnostics sum;
   Fingerprint surfaces;

@@ -3,6 +3,7 @@
 #include "Run/Run.h"
 
 #include "Run/BlockSentences.h"
+#include "Run/Collective.h"
 
 namespace SurfaceDiffusion
 {
@@ -29,7 +30,7 @@ void Attach(Run::Block& block)
 
 } // namespace
 
-void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGroup& processes,
+void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const Reduction& processes,
   const ProgressMonitor& progress)
 {
   const SettingsSnapshot snapshot(*this->Settings, SettingScope::Surface);
@@ -58,7 +59,7 @@ void Run::UpdateSurfaces(const std::vector<BlockInput>& inputs, const ProcessGro
   }
 }
 
-std::unique_ptr<Surface> Run::MakeSurface(const BlockInput& input, const ProcessGroup& processes,
+std::unique_ptr<Surface> Run::MakeSurface(const BlockInput& input, const Reduction& processes,
   std::vector<char> undetermined, const ProgressMonitor& progress) const
 {
   SurfaceOptions options = MakeOptions(*this->Settings);
@@ -67,7 +68,7 @@ std::unique_ptr<Surface> Run::MakeSurface(const BlockInput& input, const Process
     options.LengthUnit = input.Decomposition->FindLengthUnit();
   }
   std::unique_ptr<Surface> surface;
-  processes.RunCollectively(
+  RunCollectively(processes,
     [&]
     {
       SurfaceArrays arrays = input.ReadSurface();
@@ -80,7 +81,7 @@ std::unique_ptr<Surface> Run::MakeSurface(const BlockInput& input, const Process
 /// Makes a surface of the determined components if there are others. The whole surface is kept, to
 /// find the components of the next data.
 void Run::LeaveOutUndetermined(const BlockInput& input, const Fields& fields,
-  const ProcessGroup& processes, Block& block, const ProgressMonitor& progress)
+  const Reduction& processes, Block& block, const ProgressMonitor& progress)
 {
   const ModelTraits traits = this->Settings->DescribeModel();
   if (!traits.StartsFromKnownValues)
@@ -112,7 +113,7 @@ void Run::LeaveOutUndetermined(const BlockInput& input, const Fields& fields,
 
 /// Blocks without data have no undetermined components.
 void Run::RequireKnownValue(
-  const std::vector<std::unique_ptr<Fields>>& fields, const ProcessGroup& processes) const
+  const std::vector<std::unique_ptr<Fields>>& fields, const Reduction& processes) const
 {
   bool known = false;
   bool undetermined = false;

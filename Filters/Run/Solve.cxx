@@ -232,14 +232,14 @@ Solution SolveSteps(const Input& input, const std::shared_ptr<RunSettings>& sett
   settings->Check(&summary, problems);
   ThrowProblems(problems);
 
-  const ProcessGroup alone;
   Run run(parallel);
   int last = 0;
   NamingSettings(*settings,
     [&]
     {
       const bool excludes = settings->MaskMode == MaskMode::Exclude;
-      run.Update({ input.Block(excludes) }, settings, alone, progress.Part(0.0, 0.25));
+      run.Update(
+        { input.Block(excludes) }, settings, Reduction::Serial(), progress.Part(0.0, 0.25));
       last = run.FindLastStep(progress.Part(0.25, 1.0));
       run.Seek(last, progress.Part(0.25, 1.0));
     });
@@ -254,7 +254,7 @@ Solution SolveSteps(const Input& input, const std::shared_ptr<RunSettings>& sett
     solution.Numbers[name] = number;
   }
   solution.Steps = run.MakeHistory(last);
-  solution.Warnings = SentencesOf(run.FindWarnings(alone));
+  solution.Warnings = SentencesOf(run.FindWarnings(Reduction::Serial()));
   return solution;
 }
 

@@ -3,6 +3,7 @@
 #include "Run/TextureRates.h"
 
 #include "Core/Models/Textures/DispersionRelation.h"
+#include "Run/Collective.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>
@@ -94,7 +95,7 @@ TextureSettings::Rates TextureSettings::MakeRates(const ModelInputs& inputs) con
     rates.Along[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c]);
     rates.Across[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c + 1]);
   }
-  inputs.Processes.RunCollectively(
+  RunCollectively(inputs.Processes,
     [&]
     {
       if (inputs.Rates.rows() > 0)

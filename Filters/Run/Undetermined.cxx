@@ -95,7 +95,7 @@ private:
 } // namespace
 
 Undetermined FindUndetermined(const Surface& surface, const Fields& fields, bool inpaint,
-  bool unitVectors, const ProcessGroup& processes)
+  bool unitVectors, const Reduction& processes)
 {
   Undetermined found;
   if (!processes.Any(fields.Data.Values.cols() > 0))

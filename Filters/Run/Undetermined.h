@@ -3,7 +3,6 @@
 #pragma once
 
 #include "Run/Fields.h"
-#include "Run/ProcessGroup.h"
 #include "Run/Surface.h"
 
 #include <vector>
@@ -24,6 +23,6 @@ struct Undetermined
 /// `inpaint`, or if it is fixed or has a seed; with unitVectors its vector must have a direction,
 /// too. Without data nothing is undetermined. Collective.
 Undetermined FindUndetermined(const Surface& surface, const Fields& fields, bool inpaint,
-  bool unitVectors, const ProcessGroup& processes);
+  bool unitVectors, const Reduction& processes);
 
 } // namespace SurfaceDiffusion

@@ -253,7 +253,9 @@ void ModelRun::Update(
         inputs[b].ReadFields = [&fields] { return fields.Read(); };
       }
       ClearOnFailure(this->Model, *this->Settings,
-        [&] { this->Model.Update(inputs, this->Settings, this->Alone, monitor.Part(0.0, 0.25)); });
+        [&] {
+          this->Model.Update(inputs, this->Settings, Reduction::Serial(), monitor.Part(0.0, 0.25));
+        });
     });
 }
 
@@ -270,7 +272,7 @@ void ModelRun::Seek(int step, const nb::object& progress)
 
 nb::list ModelRun::GetWarnings() const
 {
-  return SentencesOf(this->Model.FindWarnings(this->Alone));
+  return SentencesOf(this->Model.FindWarnings(Reduction::Serial()));
 }
 
 nb::dict ModelRun::GetHistory() const

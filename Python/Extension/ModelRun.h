@@ -54,7 +54,6 @@ private:
   std::string Name;
   std::shared_ptr<RunSettings> Settings;
   SurfaceDiffusion::Run Model{ PythonThreads::Instance() };
-  ProcessGroup Alone;
   int Step = 0;
 };
 

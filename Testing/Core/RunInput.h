@@ -50,7 +50,7 @@ struct RunInput
   }
 };
 
-inline const ProcessGroup Alone;
+inline const Reduction& Alone = Reduction::Serial();
 
 /// The state at the last step.
 template <typename ModelSettings>

@@ -12,9 +12,9 @@
 namespace SurfaceDiffusion
 {
 
-/// Reductions over the processes of a domain decomposition: sums, maxima and the exchange at the
-/// interfaces. This class is that of one process, which has the whole surface: its arguments are
-/// the results already. A distributed one overrides it.
+/// Reductions over the processes that work together on a run: sums, maxima and the exchange at the
+/// interfaces of a domain decomposition. This class is that of one process, which has the whole
+/// surface: its arguments are the results already. A distributed one overrides it.
 ///
 /// In a decomposition each triangle belongs to one process. A vertex on an interface is in all
 /// processes whose triangles use it, and one of them owns it. A vector over the vertices is

@@ -7,7 +7,7 @@
 #include "Conversion/SMPParallelFor.h"
 #include "Core/Foundation/Types.h"
 #include "Distributed/GatheredSurfaces.h"
-#include "Distributed/SharedProcessGroup.h"
+#include "Distributed/ProcessReduction.h"
 #include "Distributed/SurfacePieces.h"
 #include "Run/OwnedSettings.h"
 #include "Run/WarningLog.h"
@@ -39,8 +39,8 @@ struct vtkSurfaceFilter::Internals
   /// During an update: what messages say about the input.
   SurfaceDiffusion::InputDescription Input;
 
-  /// During an update: the processes, if each works on its piece.
-  std::unique_ptr<SurfaceDiffusion::SharedProcessGroup> Group;
+  /// During an update: the processes, if each works on its piece; otherwise null.
+  std::unique_ptr<SurfaceDiffusion::ProcessReduction> Processes;
   SurfaceDiffusion::LoopWatch* Watch = nullptr;
   /// Whether an abort was requested. Processes that work together stop together.
   const std::shared_ptr<bool> AbortRequested = std::make_shared<bool>(false);

@@ -22,7 +22,7 @@
 #include <vector>
 
 /// The state of vtkSurfaceModelAlgorithm that its header hides.
-struct vtkSurfaceModelAlgorithm::RunState
+struct vtkSurfaceModelAlgorithm::UpdateState
 {
   SurfaceDiffusion::Run Run{ SurfaceDiffusion::SMPParallelFor::Instance() };
   SurfaceDiffusion::BlockInputs Inputs;
