@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/TextureRates.h"
 
-#include "Core/Models/Textures/DispersionRelation.h"
 #include "Run/Collective.h"
-#include "Run/ModelInputs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,13 +52,6 @@ std::string ExplainObstacle(const PatternForecast& forecast, double rate1, doubl
   return std::string();
 }
 
-double WavelengthOf(const PatternForecast& forecast)
-{
-  return forecast.SquaredWaveNumber > 0.0
-    ? 2.0 * std::acos(-1.0) / std::sqrt(forecast.SquaredWaveNumber)
-    : 0.0;
-}
-
 /// The area-weighted mean over the surface.
 double MeanOverSurface(const TriangleMesh& mesh, const Vector& rate)
 {
@@ -78,47 +69,47 @@ double MeanOverSurface(const TriangleMesh& mesh, const Vector& rate)
 
 } // namespace
 
-TextureSettings::Rates TextureSettings::MakeRates(const ModelInputs& inputs) const
+double WavelengthOf(const PatternForecast& forecast)
+{
+  return forecast.SquaredWaveNumber > 0.0
+    ? 2.0 * std::acos(-1.0) / std::sqrt(forecast.SquaredWaveNumber)
+    : 0.0;
+}
+
+TextureRates::TextureRates(
+  const std::array<double, 4>& constant, double unit, const ModelInputs& inputs)
 {
   const TriangleMesh& mesh = inputs.Surface.Mesh();
-  const UnitSystem& units = inputs.Units;
-  const double unit = units.ToCore(1.0, 2.0, 0.0) / (units.Natural ? 1.0 : this->ReactionRate);
-  const auto orAlong = [](double across, double along) { return across == -1.0 ? along : across; };
-  const double constant[4] = { this->DiffusionRate1,
-    orAlong(this->DiffusionRateAcross1, this->DiffusionRate1), this->DiffusionRate2,
-    orAlong(this->DiffusionRateAcross2, this->DiffusionRate2) };
-  Rates rates;
   for (int c = 0; c < 2; ++c)
   {
-    rates.MeanAlong[c] = unit * constant[2 * c];
-    rates.MeanAcross[c] = unit * constant[2 * c + 1];
-    rates.Along[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c]);
-    rates.Across[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c + 1]);
+    this->MeanAlong[c] = unit * constant[2 * c];
+    this->MeanAcross[c] = unit * constant[2 * c + 1];
+    this->Along[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c]);
+    this->Across[c] = Vector::Constant(mesh.NumberOfTriangles(), constant[2 * c + 1]);
   }
   RunCollectively(inputs.Processes,
     [&]
     {
       if (inputs.Rates.rows() > 0)
       {
-        this->ReadRates(inputs, rates);
+        this->Read(inputs);
       }
     });
   const bool perTriangle = inputs.Processes.Any(inputs.Rates.rows() > 0);
   for (int c = 0; c < 2; ++c)
   {
-    rates.Along[c] *= unit;
-    rates.Across[c] *= unit;
+    this->Along[c] *= unit;
+    this->Across[c] *= unit;
     if (perTriangle)
     {
-      rates.MeanAlong[c] = MeanOverSurface(mesh, rates.Along[c]);
-      rates.MeanAcross[c] = MeanOverSurface(mesh, rates.Across[c]);
+      this->MeanAlong[c] = MeanOverSurface(mesh, this->Along[c]);
+      this->MeanAcross[c] = MeanOverSurface(mesh, this->Across[c]);
     }
   }
-  return rates;
 }
 
 /// The rates per triangle, in the user's unit.
-void TextureSettings::ReadRates(const ModelInputs& inputs, Rates& rates) const
+void TextureRates::Read(const ModelInputs& inputs)
 {
   const TriangleMesh& mesh = inputs.Surface.Mesh();
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
@@ -127,10 +118,10 @@ void TextureSettings::ReadRates(const ModelInputs& inputs, Rates& rates) const
       inputs.Surface.InputTriangle(mesh.InputTriangle()[static_cast<std::size_t>(t)]);
     for (int k = 0; k < 4; ++k)
     {
-      (k % 2 == 0 ? rates.Along : rates.Across)[k / 2][t] = inputs.Rates(row, k);
+      (k % 2 == 0 ? this->Along : this->Across)[k / 2][t] = inputs.Rates(row, k);
     }
   }
-  const bool directed = rates.Along[0] != rates.Across[0] || rates.Along[1] != rates.Across[1];
+  const bool directed = this->Along[0] != this->Across[0] || this->Along[1] != this->Across[1];
   if (directed && inputs.Directions.rows() == 0)
   {
     throw InputError(Sentence(Word::Array("DiffusionRateArray"))
@@ -139,43 +130,30 @@ void TextureSettings::ReadRates(const ModelInputs& inputs, Rates& rates) const
   }
 }
 
-/// Scale the rates to FeatureSize, and report the wavelength.
-void TextureSettings::ScaleToFeatureSize(
-  const ModelInputs& inputs, Rates& rates, RunResult& result) const
+double TextureRates::ScaleToFeatureSize(double featureSize, const Eigen::Matrix2d& jacobian)
 {
-  const Eigen::Matrix2d jacobian = this->JacobianAtRest();
-  PatternForecast forecast = ForecastPattern(jacobian, rates.MeanAlong[0], rates.MeanAlong[1]);
-  double scale = 1.0;
-  if (this->FeatureSize > 0.0)
+  const double factor = FeatureSizeFactor(this->ForecastAlong(jacobian), featureSize);
+  if (!std::isfinite(factor) || factor <= 0.0)
   {
-    const double factor = FeatureSizeFactor(forecast, this->FeatureSize / inputs.Units.LengthUnit);
-    if (std::isfinite(factor) && factor > 0.0)
-    {
-      scale = factor;
-      rates.Scale(factor);
-      forecast = ForecastPattern(jacobian, rates.MeanAlong[0], rates.MeanAlong[1]);
-    }
-    else
-    {
-      result.Warnings.push_back(Sentence(Word::Setting("FeatureSize"))
-        << " has no effect: with these rates and parameters no wave grows faster than the uniform "
-           "state");
-    }
+    return 0.0;
   }
-  result.AddNumber("DiffusionRateFactor", scale);
-  result.AddNumber("Wavelength", WavelengthOf(forecast) * inputs.Units.LengthUnit);
-  result.AddNumber(
-    "WavelengthGrowthRate", forecast.GrowthRate * (this->IsAbsolute() ? this->ReactionRate : 1.0));
+  for (int c = 0; c < 2; ++c)
+  {
+    this->Along[c] *= factor;
+    this->Across[c] *= factor;
+    this->MeanAlong[c] *= factor;
+    this->MeanAcross[c] *= factor;
+  }
+  return factor;
 }
 
-double TextureSettings::FindSquaredWaveNumber(const Rates& rates) const
+double TextureRates::FindSquaredWaveNumber(const Eigen::Matrix2d& jacobian) const
 {
-  const Eigen::Matrix2d jacobian = this->JacobianAtRest();
   double product = 1.0;
   int count = 0;
-  for (const auto* mean : { &rates.MeanAlong, &rates.MeanAcross })
+  for (const PatternForecast& wave :
+    { this->ForecastAlong(jacobian), this->ForecastAcross(jacobian) })
   {
-    const PatternForecast wave = ForecastPattern(jacobian, (*mean)[0], (*mean)[1]);
     if (wave.Obstacle == PatternObstacle::None && wave.SquaredWaveNumber > 0.0)
     {
       product *= wave.SquaredWaveNumber;
@@ -186,16 +164,14 @@ double TextureSettings::FindSquaredWaveNumber(const Rates& rates) const
   return count == 2 ? std::sqrt(product) : count * product;
 }
 
-void TextureSettings::WarnOfObstacles(
-  const ModelInputs& inputs, const Rates& rates, RunResult& result) const
+void TextureRates::WarnOfObstacles(
+  const Eigen::Matrix2d& jacobian, const UnitSystem& units, RunResult& result) const
 {
-  const Eigen::Matrix2d jacobian = this->JacobianAtRest();
-  const PatternForecast along = ForecastPattern(jacobian, rates.MeanAlong[0], rates.MeanAlong[1]);
-  const PatternForecast across =
-    ForecastPattern(jacobian, rates.MeanAcross[0], rates.MeanAcross[1]);
+  const PatternForecast along = this->ForecastAlong(jacobian);
+  const PatternForecast across = this->ForecastAcross(jacobian);
   const bool grows =
     along.Obstacle == PatternObstacle::None || across.Obstacle == PatternObstacle::None;
-  const std::string reason = ExplainObstacle(along, rates.MeanAlong[0], rates.MeanAlong[1]);
+  const std::string reason = ExplainObstacle(along, this->MeanAlong[0], this->MeanAlong[1]);
   if (!grows && !reason.empty())
   {
     result.Warnings.push_back(reason);
@@ -203,13 +179,13 @@ void TextureSettings::WarnOfObstacles(
   double shortest = 0.0; // of the waves that grow
   for (const PatternForecast& wave : { along, across })
   {
-    const double length = WavelengthOf(wave) * inputs.Units.LengthUnit;
+    const double length = WavelengthOf(wave) * units.LengthUnit;
     if (wave.Obstacle == PatternObstacle::None && length > 0.0)
     {
       shortest = shortest > 0.0 ? std::min(shortest, length) : length;
     }
   }
-  const double h = inputs.Units.MeanEdgeLength;
+  const double h = units.MeanEdgeLength;
   if (shortest > 0.0 && shortest < EdgesPerWavelength * h)
   {
     result.Warnings.push_back("the pattern's wavelength " + Quantity(shortest) + " is only " +

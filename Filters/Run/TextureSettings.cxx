@@ -283,9 +283,7 @@ ModelTraits TextureSettings::DescribeModel() const
 
 std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
-  Rates rates = this->MakeRates(inputs);
-  this->ScaleToFeatureSize(inputs, rates, result);
-  this->WarnOfObstacles(inputs, rates, result);
+  const TextureRates rates = this->MakeRates(inputs, result);
 
   const bool fromNoise = inputs.Data.Given.cols() == 0;
   const Reaction reaction = this->MakeStart(inputs, fromNoise);
@@ -301,7 +299,8 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
   settings.StopTolerance = this->StopTolerance / perTime;
 
   std::array<CornerWeights, 2> coefficients = MakeCoefficients(inputs, rates);
-  const double squaredWaveNumber = fromNoise ? this->FindSquaredWaveNumber(rates) : 0.0;
+  const double squaredWaveNumber =
+    fromNoise ? rates.FindSquaredWaveNumber(this->JacobianAtRest()) : 0.0;
   std::optional<CoarseSpace> space;
   if (this->MayStartCoarse(inputs) && squaredWaveNumber > 0.0)
   {
@@ -325,6 +324,38 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
   }
   return std::make_unique<CoarseStart>(
     std::move(*space), std::move(coarse), std::move(model), inputs.Parallel);
+}
+
+/// The rates, scaled to FeatureSize. Reports the wavelength.
+TextureRates TextureSettings::MakeRates(const ModelInputs& inputs, RunResult& result) const
+{
+  const UnitSystem& units = inputs.Units;
+  const double unit = units.ToCore(1.0, 2.0, 0.0) / (units.Natural ? 1.0 : this->ReactionRate);
+  const auto orAlong = [](double across, double along) { return across == -1.0 ? along : across; };
+  TextureRates rates(
+    { this->DiffusionRate1, orAlong(this->DiffusionRateAcross1, this->DiffusionRate1),
+      this->DiffusionRate2, orAlong(this->DiffusionRateAcross2, this->DiffusionRate2) },
+    unit, inputs);
+  const Eigen::Matrix2d jacobian = this->JacobianAtRest();
+  double scale = 1.0;
+  if (this->FeatureSize > 0.0)
+  {
+    scale = rates.ScaleToFeatureSize(this->FeatureSize / units.LengthUnit, jacobian);
+    if (scale == 0.0)
+    {
+      scale = 1.0;
+      result.Warnings.push_back(Sentence(Word::Setting("FeatureSize"))
+        << " has no effect: with these rates and parameters no wave grows faster than the uniform "
+           "state");
+    }
+  }
+  const PatternForecast forecast = rates.ForecastAlong(jacobian);
+  result.AddNumber("DiffusionRateFactor", scale);
+  result.AddNumber("Wavelength", WavelengthOf(forecast) * units.LengthUnit);
+  result.AddNumber(
+    "WavelengthGrowthRate", forecast.GrowthRate * (this->IsAbsolute() ? this->ReactionRate : 1.0));
+  rates.WarnOfObstacles(jacobian, units, result);
+  return rates;
 }
 
 /// The reaction, in units of 1/ReactionRate, and the initial state, which is put into inputs.Data.
@@ -370,7 +401,7 @@ IterationLimits TextureSettings::CoarseLimits() const
 }
 
 std::array<CornerWeights, 2> TextureSettings::MakeCoefficients(
-  const ModelInputs& inputs, const Rates& rates)
+  const ModelInputs& inputs, const TextureRates& rates)
 {
   const TriangleMesh& mesh = inputs.Surface.Mesh();
   const CornerWeights isotropic = CotanWeights(mesh, inputs.Parallel);
@@ -388,7 +419,7 @@ std::array<CornerWeights, 2> TextureSettings::MakeCoefficients(
 
 /// The chemicals on the surface. startsCoarse: only the last steps run there.
 std::array<ReactionDiffusion::Chemical, 2> TextureSettings::MakeChemicals(ModelInputs& inputs,
-  const Rates& rates, std::array<CornerWeights, 2> coefficients,
+  const TextureRates& rates, std::array<CornerWeights, 2> coefficients,
   const ReactionDiffusion::Settings& settings, bool startsCoarse) const
 {
   const double h = inputs.Units.CoreEdgeLength();

@@ -11,6 +11,8 @@
 namespace SurfaceDiffusion
 {
 
+struct TextureRates;
+
 /// Reaction-diffusion of two chemicals, u_t = div(D grad u) + F(u): (22) to (24).
 struct TextureSettings : TimeSettings
 {
@@ -48,27 +50,20 @@ protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:
-  struct Rates;
-
   bool HasKnownKinetics() const;
   const KineticsParameters& ChosenParameters() const;
   Eigen::Matrix2d JacobianAtRest() const;
   /// Whether a rate across differs from the rate along.
   bool HasDirectedRates() const;
-  Rates MakeRates(const ModelInputs& inputs) const;
+  TextureRates MakeRates(const ModelInputs& inputs, RunResult& result) const;
   Reaction MakeStart(ModelInputs& inputs, bool fromNoise) const;
   bool MayStartCoarse(const ModelInputs& inputs) const;
   static std::array<CornerWeights, 2> MakeCoefficients(
-    const ModelInputs& inputs, const Rates& rates);
+    const ModelInputs& inputs, const TextureRates& rates);
   IterationLimits CoarseLimits() const;
-  std::array<ReactionDiffusion::Chemical, 2> MakeChemicals(ModelInputs& inputs, const Rates& rates,
-    std::array<CornerWeights, 2> coefficients, const ReactionDiffusion::Settings& settings,
-    bool startsCoarse) const;
-  void ReadRates(const ModelInputs& inputs, Rates& rates) const;
-  void ScaleToFeatureSize(const ModelInputs& inputs, Rates& rates, RunResult& result) const;
-  /// Of the pattern on a surface with these rates, in the mesh's LengthUnit()^-2; 0 if none grows.
-  double FindSquaredWaveNumber(const Rates& rates) const;
-  void WarnOfObstacles(const ModelInputs& inputs, const Rates& rates, RunResult& result) const;
+  std::array<ReactionDiffusion::Chemical, 2> MakeChemicals(ModelInputs& inputs,
+    const TextureRates& rates, std::array<CornerWeights, 2> coefficients,
+    const ReactionDiffusion::Settings& settings, bool startsCoarse) const;
 };
 
 } // namespace SurfaceDiffusion

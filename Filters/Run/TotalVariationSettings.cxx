@@ -4,7 +4,6 @@
 
 #include "Run/DataPreparation.h"
 #include "Run/Rewording.h"
-#include "Run/TotalVariationModels.h"
 
 #include <algorithm>
 
@@ -224,24 +223,6 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   DescribeData(*this, traits);
   traits.NeedsDirections = traits.NeedsDirections || this->AcrossEdgeFunction != 0;
   return traits;
-}
-
-std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResult& result) const
-{
-  PrepareData(*this, inputs, result);
-  TotalVariationModels maker(*this, inputs);
-  if (this->Blur.IsOn())
-  {
-    this->Blur.Warn(inputs, result);
-  }
-  if (this->Discretization == SurfaceDiffusion::Discretization::CrouzeixRaviart)
-  {
-    maker.MakeEdges();
-  }
-  const double fidelity = this->FindsFidelity() ? maker.FindFidelityWeight(result)
-                                                : this->FidelityWeight * maker.FidelityUnit();
-  result.AddNumber("EffectiveFidelityWeight", fidelity / maker.FidelityUnit());
-  return maker.Make(std::move(inputs.Data), fidelity, this->StopTolerance);
 }
 
 const char* TotalVariationSettings::NameOfResidual() const
