@@ -10,11 +10,11 @@
  * errors, after which the output is the unchanged input.
  *
  * Polygons and strips are triangulated internally. Vertices and lines pass through. Ghost and
- * hidden cells are ignored, and so are cells with a hidden point (vtkDataSetAttributes::HIDDENPOINT),
- * which keeps its value. Each block of composite input is a surface of its own, and blocks of other
- * types pass through. Messages that do not hold for all blocks name theirs, by the block's name or
- * its indices, such as 0/2. Any type of input is accepted; if it has no surface, an error names the
- * type and the remedy.
+ * hidden cells are ignored, and so are cells with a hidden point
+ * (vtkDataSetAttributes::HIDDENPOINT), which keeps its value. Each block of composite input is a
+ * surface of its own, and blocks of other types pass through. Messages that do not hold for all
+ * blocks name theirs, by the block's name or its indices, such as 0/2. Any type of input is
+ * accepted; if it has no surface, an error names the type and the remedy.
  *
  * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with
  * a piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one
@@ -30,8 +30,8 @@
  *
  * **Errors.** An update that reports an error fails: GetExecutive()->Update() returns 0, filters
  * behind this one do not execute, and GetErrorCode() is vtkErrorCode::UserError (0 after an update
- * that has succeeded or was aborted). The output is the unchanged input. The next update tries again
- * and reports the error again, until something has changed.
+ * that has succeeded or was aborted). The output is the unchanged input. The next update tries
+ * again and reports the error again, until something has changed.
  *
  * @sa vtkSurfaceModelAlgorithm vtkSurfaceDiffusionAlgorithm vtkSurfaceDirectionFieldFilter
  */
@@ -59,8 +59,9 @@ class vtkMultiProcessController;
 class vtkPolyData;
 
 // A property that has the name of a setting of the class (Filters/Run), with its setter and getter.
-// The setting holds the value, the default, the allowed values and, of a choice, the words. A setter
-// that changes the value calls Modified(). The type is double of a number and int of an integer.
+// The setting holds the value, the default, the allowed values and, of a choice, the words. A
+// setter that changes the value calls Modified(). The type is double of a number and int of an
+// integer.
 #define SURFACEDIFFUSION_PROPERTY(name, type)                                                      \
   virtual void Set##name(type value)                                                               \
   {                                                                                                \
@@ -129,8 +130,8 @@ public:
 
   ///@{
   /**
-   * The largest number of threads of an update. 0 or more; 0 (default) means all that VTK's back end
-   * of vtkSMPTools has. If that back end is Sequential, as at the start of Debian's VTK and
+   * The largest number of threads of an update. 0 or more; 0 (default) means all that VTK's back
+   * end of vtkSMPTools has. If that back end is Sequential, as at the start of Debian's VTK and
    * ParaView, and nobody has chosen it, an update starts as many threads of its own as there are
    * processors, and ends them. With several processes it does so only if this number is greater
    * than 1. Sequential counts as chosen if the environment variable VTK_SMP_BACKEND_IN_USE is set,
@@ -197,8 +198,8 @@ protected:
   SurfaceDiffusion::Settings& GetSettings() const;
 
   ///@{
-  /// The bodies of setters and getters, for double, int and bool. A name that no setting of this type
-  /// has is an error.
+  /// The bodies of setters and getters, for double, int and bool. A name that no setting of this
+  /// type has is an error.
   template <typename T>
   void WriteProperty(const char* name, T value);
   template <typename T>
@@ -262,7 +263,6 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  virtual int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
 
   double SeamTolerance = -1.0;
   int NumberOfThreads = 0;
@@ -276,6 +276,7 @@ private:
   vtkSurfaceFilter(const vtkSurfaceFilter&) = delete;
   void operator=(const vtkSurfaceFilter&) = delete;
 
+  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
   void ProcessGuarded(const std::vector<SurfaceBlock>& blocks);
   void ReportError(const std::string& text);
   int EndUpdate();

@@ -95,28 +95,9 @@ bool vtkSurfaceModelAlgorithm::FindFields(
 //------------------------------------------------------------------------------------------------
 int vtkSurfaceModelAlgorithm::FillOutputPortInformation(int port, vtkInformation* info)
 {
+  // The executive makes the objects of ports 1 and 2, and RequestDataObject() that of port 0.
   const char* const types[] = { "vtkDataObject", "vtkTable", "vtkPolyData" };
   info->Set(vtkDataObject::DATA_TYPE_NAME(), types[port]);
-  return 1;
-}
-
-int vtkSurfaceModelAlgorithm::RequestDataObject(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  if (!this->Superclass::RequestDataObject(request, inputs, outputs))
-  {
-    return 0;
-  }
-  if (!vtkTable::GetData(outputs, 1))
-  {
-    vtkNew<vtkTable> table;
-    outputs->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), table);
-  }
-  if (this->GetNumberOfOutputPorts() > 2 && !vtkPolyData::GetData(outputs, 2))
-  {
-    vtkNew<vtkPolyData> curves;
-    outputs->GetInformationObject(2)->Set(vtkDataObject::DATA_OBJECT(), curves);
-  }
   return 1;
 }
 

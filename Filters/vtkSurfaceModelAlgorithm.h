@@ -81,8 +81,8 @@
  * **Invalid properties or arrays** are errors at update that name the property, its value and what
  * is allowed. The output then is the unchanged input. Defects of the surface (zero-area triangles,
  * non-manifold edges, coincident points) are handled and reported in one warning with counts;
- * NumberOfUnusedPoints counts the points of no triangle. A warning is repeated only if the arrays or
- * the surface that it is about have changed.
+ * NumberOfUnusedPoints counts the points of no triangle. A warning is repeated only if the arrays
+ * or the surface that it is about have changed.
  *
  * Results do not depend on the number of threads.
  *
@@ -216,7 +216,6 @@ protected:
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points) override;
   void CompletePiece(const SurfaceBlock& piece) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int OutputPrecision = OUTPUT_PRECISION_INPUT;

@@ -25,7 +25,8 @@ enum class SolverPurpose
   Edges, ///< v of the Mumford-Shah model
   Structure, ///< the integration of structure tensors
   Chromaticity, ///< C of the chromaticity-brightness model
-  Detail ///< of data on cells
+  Detail, ///< of data on cells
+  Count ///< the number of purposes
 };
 
 /// The linear solvers of the runs on one surface. An ordering or a factor that is still valid is
@@ -77,7 +78,7 @@ private:
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
   DistributedFactory Distributed;
-  std::array<Kept, 9> Solvers;
+  std::array<Kept, static_cast<std::size_t>(SolverPurpose::Count)> Solvers;
 };
 
 } // namespace SurfaceDiffusion
