@@ -82,8 +82,8 @@ public:
    * root mean square of the difference between the steady state of (16) and the data is that of the
    * noise. FidelityWeight is ignored. The principle errs on the smooth side: on photographs with
    * noise of 5 to 80 % its result was 1.3 to 2.6 dB from that of the best lambda. Constant parts of
-   * the data, such as a background of 0, have no noise and are left out. Default: off; with BlurFWHM
-   * and FidelityWeight 0 always on.
+   * the data, such as a background of 0, have no noise and are left out. Default: off; with
+   * BlurFWHM and FidelityWeight 0 always on.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 
@@ -95,15 +95,15 @@ public:
    * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
    *
    * Noise that was smoothed with a Gaussian kernel of a standard deviation of 3 edges or more is as
-   * smooth as a signal, and the estimate is too small. A warning then says that the data show no white
-   * noise, and gives the deviation of the data, which is that of the noise if there is no signal. A
-   * signal without noise gives the same warning, and so may white noise below a quarter of the
-   * estimate under waves of less than 7 edges. No warning comes for correlated noise together with
-   * white noise of half of the estimate, for fewer than about 300 points, and often where the lengths
-   * of neighbouring edges differ much or the surface has many sharp edges.
+   * smooth as a signal, and the estimate is too small. A warning then says that the data show no
+   * white noise, and gives the deviation of the data, which is that of the noise if there is no
+   * signal. A signal without noise gives the same warning, and so may white noise below a quarter
+   * of the estimate under waves of less than 7 edges. No warning comes for correlated noise
+   * together with white noise of half of the estimate, for fewer than about 300 points, and often
+   * where the lengths of neighbouring edges differ much or the surface has many sharp edges.
    *
-   * For data on cells it is the noise of the cells. The estimate assumes white noise on them, and no
-   * warning comes.
+   * For data on cells it is the noise of the cells. The estimate assumes white noise on them, and
+   * no warning comes.
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
@@ -125,9 +125,9 @@ public:
    * (Tikhonov regularisation), where H is the blur: BlurSteps steps of backward Euler for the heat
    * equation, whose point spread function on the plane has this width. It needs Mode SteadyState.
    * FidelityWeight 0, the default, then stands for the weight that AutomaticFidelity finds: a
-   * restoration has no other weight that suits most data. Any other weight is used. A warning reports a width outside 2 to 8 mean edge lengths.
-   * A camera blurs in its image, not on the surface: its point spread function differs from H where
-   * the surface is oblique.
+   * restoration has no other weight that suits most data. Any other weight is used. A warning
+   * reports a width outside 2 to 8 mean edge lengths. A camera blurs in its image, not on the
+   * surface: its point spread function differs from H where the surface is oblique.
    */
   SURFACEDIFFUSION_PROPERTY(BlurFWHM, double);
 
@@ -139,8 +139,8 @@ public:
 
   ///@{
   /**
-   * The time integrator, see the class comment. FirstOrder is the paper's; SecondOrder (default) does
-   * not keep the bounds of the data at large time steps. Implicit is an error.
+   * The time integrator, see the class comment. FirstOrder is the paper's; SecondOrder (default)
+   * does not keep the bounds of the data at large time steps. Implicit is an error.
    */
   SURFACEDIFFUSION_CHOICE(TimeIntegrator);
   void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }

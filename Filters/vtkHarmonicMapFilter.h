@@ -40,12 +40,12 @@
  * by d.
  *
  * **Schemes.** TangentPlane (default) and MinimizingMovement never increase E, for any time step
- * and any triangles. Core/Models/Harmonic/HarmonicMap.h has the proof. In short, a step minimises the energy
- * with frozen g, an upper bound of E, over displacements orthogonal to u at every vertex.
- * Normalising then does not increase the distance of any two vectors. For negative weights, which
- * obtuse triangles cause, the same holds for a vector and the opposite of another one, after the
- * matrix has been made diagonally dominant there. The paper's splitting, ExplicitReaction, has no
- * such guarantee. On noisy normals TangentPlane and ExplicitReaction are equally accurate and
+ * and any triangles. Core/Models/Harmonic/HarmonicMap.h has the proof. In short, a step minimises
+ * the energy with frozen g, an upper bound of E, over displacements orthogonal to u at every
+ * vertex. Normalising then does not increase the distance of any two vectors. For negative weights,
+ * which obtuse triangles cause, the same holds for a vector and the opposite of another one, after
+ * the matrix has been made diagonally dominant there. The paper's splitting, ExplicitReaction, has
+ * no such guarantee. On noisy normals TangentPlane and ExplicitReaction are equally accurate and
  * equally fast. At equal accuracy MinimizingMovement takes 3 to 5 times as long, but its result
  * depends least on the time step.
  *

@@ -232,12 +232,12 @@ public:
    * smoothed, the noise is correlated: a warning gives both values, and the larger is used.
    *
    * Noise that was smoothed with a Gaussian kernel of a standard deviation of 3 edges or more is as
-   * smooth as a signal, and the estimate is too small. A warning then says that the data show no white
-   * noise, and gives the deviation of the data, which is that of the noise if there is no signal. A
-   * signal without noise gives the same warning, and so may white noise below a quarter of the
-   * estimate under waves of less than 7 edges. No warning comes for correlated noise together with
-   * white noise of half of the estimate, for fewer than about 300 points, and often where the lengths
-   * of neighbouring edges differ much or the surface has many sharp edges.
+   * smooth as a signal, and the estimate is too small. A warning then says that the data show no
+   * white noise, and gives the deviation of the data, which is that of the noise if there is no
+   * signal. A signal without noise gives the same warning, and so may white noise below a quarter
+   * of the estimate under waves of less than 7 edges. No warning comes for correlated noise
+   * together with white noise of half of the estimate, for fewer than about 300 points, and often
+   * where the lengths of neighbouring edges differ much or the surface has many sharp edges.
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
@@ -289,14 +289,14 @@ public:
    *
    *     int psi(|grad u|) + lambda/2 int chi |H u - f|^2,
    *
-   * where H is the blur: BlurSteps steps of backward Euler for the heat equation, whose point spread
-   * function on the plane has this width. The method is the monotone fast iterative
+   * where H is the blur: BlurSteps steps of backward Euler for the heat equation, whose point
+   * spread function on the plane has this width. The method is the monotone fast iterative
    * shrinkage-thresholding algorithm (MFISTA; A. Beck, M. Teboulle, IEEE Trans. Image Process. 18,
    * 2009). It stops when an iteration changes u by StopTolerance R, which is no bound of the error.
    * BlurFWHM needs Mode SteadyState, FidelityNorm L2 and Discretization Linear.
-   * FidelityWeight 3, the default, then stands for the weight that AutomaticFidelity finds, since of
-   * blurred data a weight of 3 leaves little; see AutomaticBlurFidelity. Any other weight is used. A
-   * warning reports a width outside 2 to 8 mean edge lengths.
+   * FidelityWeight 3, the default, then stands for the weight that AutomaticFidelity finds, since
+   * of blurred data a weight of 3 leaves little; see AutomaticBlurFidelity. Any other weight is
+   * used. A warning reports a width outside 2 to 8 mean edge lengths.
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */
@@ -309,8 +309,8 @@ public:
   SURFACEDIFFUSION_PROPERTY(BlurSteps, int);
 
   /**
-   * On (default): with BlurFWHM, FidelityWeight 3 stands for the weight that AutomaticFidelity finds.
-   * Off: FidelityWeight is used as it is given. Without BlurFWHM it has no effect.
+   * On (default): with BlurFWHM, FidelityWeight 3 stands for the weight that AutomaticFidelity
+   * finds. Off: FidelityWeight is used as it is given. Without BlurFWHM it has no effect.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticBlurFidelity);
 
@@ -329,24 +329,25 @@ public:
    * RGB (default): the components of the data.
    *
    * Opponent: the components along the orthonormal axes (1, 1, 1)/sqrt(3) of brightness and
-   * (1, -1, 0)/sqrt(2), (1, 1, -2)/sqrt(6) of colour (J. van de Weijer, T. Gevers, A. Bagdanov, IEEE
-   * PAMI 28(1), 2006). lambda is ChromaWeight times FidelityWeight on the axes of colour. With
+   * (1, -1, 0)/sqrt(2), (1, 1, -2)/sqrt(6) of colour (J. van de Weijer, T. Gevers, A. Bagdanov,
+   * IEEE PAMI 28(1), 2006). lambda is ChromaWeight times FidelityWeight on the axes of colour. With
    * ChromaWeight 1 and ChannelCoupling Joint the result is that of RGB.
    *
    * ChromaticityBrightness: u = B C with the brightness B = |u| and the chromaticity C, a unit
-   * vector (T. Chan, S. Kang, J. Shen, J. Vis. Commun. Image Represent. 12, 2001; B. Tang, G. Sapiro,
-   * V. Caselles, IEEE Trans. Image Process. 10, 2001), by the flow of
+   * vector (T. Chan, S. Kang, J. Shen, J. Vis. Commun. Image Represent. 12, 2001; B. Tang, G.
+   * Sapiro, V. Caselles, IEEE Trans. Image Process. 10, 2001), by the flow of
    *
    *     int psi(|grad B|) + mu/p int |grad C|^p + lambda/2 int chi |B C - f|^2,
    *
    * with p = ChromaticityExponent and mu = ChromaticityWeight. EdgeFunction acts on B. C is a
    * p-harmonic map into the unit sphere (vtkHarmonicMapFilter) with beta = Beta in 1/h^2. The
    * fidelity binds C by lambda B |f|, so that the hue of dark points, which is mostly noise, has
-   * little weight; that of black points is missing, and continued from around them. A time step moves
-   * B and then C, for fixed values of the other, in the metric |dB|^2 + R^2 |dC|^2; the energy never
-   * grows. SteadyState alternates long steps until one decreases the energy by less than
-   * StopTolerance of it; the column `Residual` is then this decrease. The energy is not convex, and
-   * the result is a stationary point. Sums of A_i u_i are not conserved, and ErrorBound is left out.
+   * little weight; that of black points is missing, and continued from around them. A time step
+   * moves B and then C, for fixed values of the other, in the metric |dB|^2 + R^2 |dC|^2; the
+   * energy never grows. SteadyState alternates long steps until one decreases the energy by less
+   * than StopTolerance of it; the column `Residual` is then this decrease. The energy is not
+   * convex, and the result is a stationary point. Sums of A_i u_i are not conserved, and ErrorBound
+   * is left out.
    */
   SURFACEDIFFUSION_CHOICE(ColorModel);
   void SetColorModelToRGB() { this->SetColorModel(COLOR_MODEL_RGB); }
@@ -372,27 +373,28 @@ public:
 
   /**
    * mu of ColorModel ChromaticityBrightness, the weight of the smoothness of C beside that of B. In
-   * R h^(p-1) with EdgeFunction TotalVariation, which is R for p = 1, and in R^2 h^(p-2) with others.
-   * Above 0. Default: 1.
+   * R h^(p-1) with EdgeFunction TotalVariation, which is R for p = 1, and in R^2 h^(p-2) with
+   * others. Above 0. Default: 1.
    */
   SURFACEDIFFUSION_PROPERTY(ChromaticityWeight, double);
 
   /**
    * On: unsigned char colours are decoded from sRGB (IEC 61966-2-1) to linear light, on the
    * same scale from 0 to 255, and the result is encoded, with ColorModel Opponent and
-   * ChromaticityBrightness. Range, noise level, energy and totals are those of linear light. Results
-   * below 0 and above 255 become 0 and 255, also if OutputPrecision is Single or Double. Data of
-   * other types are taken as they are, and so are all data with ColorModel RGB.
+   * ChromaticityBrightness. Range, noise level, energy and totals are those of linear light.
+   * Results below 0 and above 255 become 0 and 255, also if OutputPrecision is Single or Double.
+   * Data of other types are taken as they are, and so are all data with ColorModel RGB.
    * Linear light is additive. But noise of equal strength in the bytes becomes strong in bright
    * colours: on a photograph with white noise of 10 to 40 % in its bytes, all models restored the
-   * bytes by 1.8 to 4 CIEDE2000 better than linear light. Off (default) takes the bytes as they are.
+   * bytes by 1.8 to 4 CIEDE2000 better than linear light. Off (default) takes the bytes as they
+   * are.
    */
   SURFACEDIFFUSION_SWITCH(LinearLight);
 
   ///@{
   /**
-   * The time integrator, see the class comment. FirstOrder (default) is the paper's. SecondOrder is an
-   * error.
+   * The time integrator, see the class comment. FirstOrder (default) is the paper's. SecondOrder is
+   * an error.
    */
   SURFACEDIFFUSION_CHOICE(TimeIntegrator);
   void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }

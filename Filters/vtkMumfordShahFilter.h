@@ -23,8 +23,8 @@
  * - EdgeThreshold: a smaller jump is smoothed, a larger one is an edge, beta = EdgeThreshold^2/(4
  *   SmoothingLength)/(1 + h/(4 EdgeWidth)); the last factor is what an edge costs too much on a
  *   mesh, on which two vertices have v = 0 across it;
- * - EdgeWidth: eps, the width of the transition of v, which is 1 - exp(-d/(2 eps)) at the distance d
- *   from an edge.
+ * - EdgeWidth: eps, the width of the transition of v, which is 1 - exp(-d/(2 eps)) at the distance
+ *   d from an edge.
  *
  * **AutomaticThreshold** (default: on) finds EdgeThreshold J and SmoothingLength L for each
  * connected component, from the noise sigma, the range R of the component's values without the
@@ -35,9 +35,9 @@
  *
  * so that neither noise nor slopes become edges. L is what noise needs for J = 0.12 R, in 4 h to 24
  * h. If slopes then ask for a larger J, then L is shorter, down to 2 h, where noise and slopes ask
- * for the same J. White noise of 10 % of the range, in data with jumps of 25 %, leaves 85 % of the edges or
- * more. GetEffectiveEdgeThreshold() and GetEffectiveSmoothingLength() return what was found. The
- * edges then form with eps = EdgeWidth from the start.
+ * for the same J. White noise of 10 % of the range, in data with jumps of 25 %, leaves 85 % of the
+ * edges or more. GetEffectiveEdgeThreshold() and GetEffectiveSmoothingLength() return what was
+ * found. The edges then form with eps = EdgeWidth from the start.
  *
  * With AutomaticThreshold off, noise with a standard deviation above a third of EdgeThreshold makes
  * edges everywhere, in the Euclidean norm over all components, and so do slopes above
@@ -50,12 +50,13 @@
  * (InitialFill), since a start with jumps at the hole would keep them. Fixed values act on u.
  *
  * A time step minimises E over u, then over v. Both are linear systems, which are solved for the
- * change up to Tolerance (default: 0.1), a part of the residual at the start of the solve; to 1e-3 at
- * most if data are missing. The energy falls in
- * every half step on any mesh and with any tolerance. The steps end when one lowers the energy by
- * less than StopTolerance. With AutomaticThreshold off they start with eps = 4 EdgeWidth, which is
+ * change up to Tolerance (default: 0.1), a part of the residual at the start of the solve; to 1e-3
+ * at most if data are missing. The energy falls in every
+ * half step on any mesh and with any tolerance. The steps end when one lowers the energy by less
+ * than StopTolerance. With AutomaticThreshold off they start with eps = 4 EdgeWidth, which is
  * halved twice, each time when a step lowers the energy by less than 100 times StopTolerance. Some
- * 30 steps are usual, and up to 300 if jumps are near EdgeThreshold. The unit of time is 1: steps have no physical time.
+ * 30 steps are usual, and up to 300 if jumps are near EdgeThreshold. The unit of time is 1: steps
+ * have no physical time.
  *
  * E is not convex, and the result is a local minimum.
  * 0 <= v <= 1 holds for the exact v on Delaunay meshes (IntrinsicDelaunay); on others v may leave
@@ -97,8 +98,8 @@ public:
 
   /**
    * The standard deviation of the noise for AutomaticThreshold, in the array's own units regardless
-   * of Units, of one component of the array. 0 (default): estimated from the data, for white noise or
-   * noise that is correlated over a few edges.
+   * of Units, of one component of the array. 0 (default): estimated from the data, for white noise
+   * or noise that is correlated over a few edges.
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 

@@ -89,10 +89,10 @@ public:
   /**
    * On (default): a result on cells is P* u + d, see vtkSurfaceModelAlgorithm: the detail d that
    * the points do not resolve, of white noise on triangles 87 %, diffuses beside u with the same
-   * diffusion tensor and fidelity. A model that changes nothing returns f. With an L1 norm, lambda of
-   * d is divided by the distance of the result to f; the models of colours take D and lambda of the
-   * brightness, and deblurring restores no detail. Off: the result is P* u, the mean of u over each
-   * cell, which zero steps smooth, too. Both keep constants and the integral.
+   * diffusion tensor and fidelity. A model that changes nothing returns f. With an L1 norm, lambda
+   * of d is divided by the distance of the result to f; the models of colours take D and lambda of
+   * the brightness, and deblurring restores no detail. Off: the result is P* u, the mean of u over
+   * each cell, which zero steps smooth, too. Both keep constants and the integral.
    */
   SURFACEDIFFUSION_SWITCH(KeepCellDetail);
 

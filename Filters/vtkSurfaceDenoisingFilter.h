@@ -28,13 +28,13 @@
  * displacements are small, so that triangles keep their shapes and boundary curves do not shrink.
  *
  * Connected components have noise levels, types and units of length of their own, so that several
- * surfaces in one data set are denoised as each alone. Components with less than 200 points, too few
- * for statistics, share one noise level, relative to their mean edge lengths, and one type.
- * Triangles may be oriented at random: those across edges of two triangles are oriented alike inside.
- * The result does not depend on the numbering of points and cells.
+ * surfaces in one data set are denoised as each alone. Components with less than 200 points, too
+ * few for statistics, share one noise level, relative to their mean edge lengths, and one type.
+ * Triangles may be oriented at random: those across edges of two triangles are oriented alike
+ * inside. The result does not depend on the numbering of points and cells.
  *
- * A surface whose estimated noise is 0 stays as it is, with a warning. Points that move by more than
- * 10 times the noise level are a warning, too. Noise of more than half of the distance between
+ * A surface whose estimated noise is 0 stays as it is, with a warning. Points that move by more
+ * than 10 times the noise level are a warning, too. Noise of more than half of the distance between
  * opposite sides of a thin part cannot be removed.
  *
  * Input array 3 (points, one component, optional): points with a nonzero value stay where they
@@ -83,8 +83,9 @@ public:
   ///@{
   /**
    * The kind of surface. CAD: smooth faces that meet in sharp edges. Organic: smooth shapes with
-   * details, such as scans. Automatic (the default): CAD if, after a few iterations, the 0.8 quantile
-   * of the angles at edges is less than 0.4 of their root mean square, for each connected component.
+   * details, such as scans. Automatic (the default): CAD if, after a few iterations, the 0.8
+   * quantile of the angles at edges is less than 0.4 of their root mean square, for each connected
+   * component.
    */
   SURFACEDIFFUSION_CHOICE(SurfaceType);
   void SetSurfaceTypeToAutomatic() { this->SetSurfaceType(SURFACE_TYPE_AUTOMATIC); }
@@ -100,8 +101,8 @@ public:
 
   /**
    * The kind of surface of the last update, given or found: SURFACE_TYPE_CAD or
-   * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, if no noise was found, and
-   * if components or blocks of composite data are of different kinds.
+   * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, if no noise was found,
+   * and if components or blocks of composite data are of different kinds.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveSurfaceType, int);
 

@@ -9,9 +9,9 @@
  * SteadyState, which some classes have, no times are published, and the history has two rows: the
  * start and the steady state.
  *
- * **Output port 1** is a vtkTable, the history: row 0 is the initial state, then one row per step with
- * columns `Step`, `Time`, `Total_0` ... (sum of A_i u_i of each component), `Energy`, `Iterations`,
- * `Residual`, `Seconds`.
+ * **Output port 1** is a vtkTable, the history: row 0 is the initial state, then one row per step
+ * with columns `Step`, `Time`, `Total_0` ... (sum of A_i u_i of each component), `Energy`,
+ * `Iterations`, `Residual`, `Seconds`.
  *
  * Results do not depend on the order in which times are requested.
  *
@@ -112,9 +112,9 @@ public:
   SURFACEDIFFUSION_PROPERTY(CheckpointMemoryLimit, int);
 
   /**
-   * Select the paper's scheme: IntrinsicDelaunay off, MaskMode Inpaint, TimeIntegrator FirstOrder in
-   * classes that have it, and the settings that subclasses add. Units, times, weights and the solver
-   * do not change.
+   * Select the paper's scheme: IntrinsicDelaunay off, MaskMode Inpaint, TimeIntegrator FirstOrder
+   * in classes that have it, and the settings that subclasses add. Units, times, weights and the
+   * solver do not change.
    */
   virtual void UsePaperScheme();
 

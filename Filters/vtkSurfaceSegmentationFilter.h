@@ -9,7 +9,7 @@
  * surfaces C. Wu, J. Zhang, Y. Duan, X.-C. Tai, J. Sci. Comput. 50, 2012): the minimum over u, a
  * probability of each region at each point, of
  *
- *     E(u) = 1/2 sum_k int |grad u_k| + lambda sum_k int chi w u_k r_k,   u_k >= 0,   sum_k u_k = 1,
+ *     E(u) = 1/2 sum_k int |grad u_k| + lambda sum_k int chi w u_k r_k, u_k >= 0, sum_k u_k = 1,
  *
  * the length of the boundaries plus lambda times the data terms r_k = |f - c_k|^2, where c_k is the
  * mean of region k. chi is the indicator of the known part, and w the fidelity of each point, 1 by
@@ -26,11 +26,11 @@
  * | --- | --- | --- |
  * | 5 | points or cells | FidelityArray: w, one component, 0 or more. 0: missing |
  * | 6 | points or cells | seeds, one component: the labels 1 ... K, 0 = free |
- * | 7 | points or cells | the data terms r_k, K components, in place of f; NaN in any component: missing |
+ * | 7 | points or cells | the data terms r_k, K components, in place of f; NaN in one: missing |
  *
  * Input arrays 2 and 3 are not used. Missing points (mask, NaN) take the region that makes the
- * boundaries shortest. Points excluded by MaskMode Exclude, and connected components without a known
- * value or seed, have the label 0 and no boundaries.
+ * boundaries shortest. Points excluded by MaskMode Exclude, and connected components without a
+ * known value or seed, have the label 0 and no boundaries.
  *
  * **The weight.** A disk of radius r is kept if lambda > 2/(r d^2) for data of two values with the
  * difference d. A cap of the angle theta on the unit sphere is kept if lambda d^2 > cot(theta/2).

@@ -178,10 +178,10 @@ public:
    * On a surface with more vertices than this, the pattern grows on a coarser mesh first (nested
    * iteration). The steps run in a Galerkin space of smoothed aggregation with 6 vertices per
    * wavelength or more, or at least 3.4 if it has a ninth of the surface's vertices. They end when
-   * the relative change per unit of time is 2.5 StopTolerance. The last two steps run on the surface
-   * itself and remove the traces of interpolation. CoarseStartVertices is the size of the coarser
-   * mesh. The history has all steps, and all states can be requested. With 655,362 vertices, a run
-   * takes 12 s of processor time instead of several minutes.
+   * the relative change per unit of time is 2.5 StopTolerance. The last two steps run on the
+   * surface itself and remove the traces of interpolation. CoarseStartVertices is the size of the
+   * coarser mesh. The history has all steps, and all states can be requested. With 655,362
+   * vertices, a run takes 12 s of processor time instead of several minutes.
    *
    * Growing waves are within 5 % of their wavelength on the surface, but the pattern differs in
    * detail and is less settled: with the default rates, which give 3.4 vertices per wavelength, it
@@ -281,9 +281,9 @@ public:
   /**
    * Values of the last update: the fastest-growing wavelength along e1 in coordinate units (0 if
    * there is none), its growth rate in 1/(unit of time), the factor by which FeatureSize multiplied
-   * the diffusion rates, and the number of vertices of the coarser mesh on which the pattern grew (0:
-   * it grew on the surface; see CoarseStartSize). For composite data they are those of the first
-   * block.
+   * the diffusion rates, and the number of vertices of the coarser mesh on which the pattern grew
+   * (0: it grew on the surface; see CoarseStartSize). For composite data they are those of the
+   * first block.
    */
   SURFACEDIFFUSION_NUMBER(Wavelength, double);
   SURFACEDIFFUSION_NUMBER(WavelengthGrowthRate, double);

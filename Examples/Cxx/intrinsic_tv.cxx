@@ -14,8 +14,8 @@
 //
 // Try next: SetFidelityWeight(6), which removes less; SetAutomaticFidelity(true), which chooses
 // lambda; SetColorModelToOpponent(), which smooths colour more than brightness;
-// SetFidelityNormToL1() with FidelityWeight 1.2, for salt-and-pepper noise; a mask as input array 1,
-// whose points are filled in.
+// SetFidelityNormToL1() with FidelityWeight 1.2, for salt-and-pepper noise; a mask as input array
+// 1, whose points are filled in.
 
 #include <vtkDataObject.h>
 #include <vtkIntrinsicTVFilter.h>

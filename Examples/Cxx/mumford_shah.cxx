@@ -14,8 +14,8 @@
 // The result is written to mumford_shah.vtp: u, and the array Edges, 1 - v. The third output of the
 // filter has the edges as curves.
 //
-// Try next: AutomaticThresholdOff() and SetEdgeThreshold(0.5), which keeps fewer edges; a mask as input array 1, whose points are
-// filled in, with their edges.
+// Try next: AutomaticThresholdOff() and SetEdgeThreshold(0.5), which keeps fewer edges; a mask as
+// input array 1, whose points are filled in, with their edges.
 
 #include <vtkDataObject.h>
 #include <vtkDoubleArray.h>

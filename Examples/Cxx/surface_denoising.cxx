@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Remove the noise of the points of a surface, and keep its sharp edges. The normals of the triangles
-// are regularised by descent on
+// Remove the noise of the points of a surface, and keep its sharp edges. The normals of the
+// triangles are regularised by descent on
 //
 //     sum w_fg rho(|n_f - n_g|) + mu sum |n_f - n0_f|^2,   |n_f| = 1,
 //

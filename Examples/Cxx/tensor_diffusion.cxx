@@ -5,9 +5,10 @@
 //
 //     u_t = div(D grad u),
 //
-// where D is 1 along the lines of the data and Alpha = 0.001 across them. The direction of the lines
-// is that of the structure tensor, which is averaged over 4 mean edge lengths with the parallel
-// transport of the surface. Noise disappears, gaps are closed, and stripes keep their contrast.
+// where D is 1 along the lines of the data and Alpha = 0.001 across them. The direction of the
+// lines is that of the structure tensor, which is averaged over 4 mean edge lengths with the
+// parallel transport of the surface. Noise disappears, gaps are closed, and stripes keep their
+// contrast.
 //
 //     tensor_diffusion                        noisy stripes on a sphere, generated here
 //     tensor_diffusion surface.vtp array      your own data

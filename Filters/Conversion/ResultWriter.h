@@ -34,14 +34,14 @@ struct OutputTarget
   std::vector<std::string>& Replaced; ///< the names of arrays of the input that are replaced
 };
 
-/// Add the outputs that are arrays or points to a surface, with their roles. Arrays of the same name
-/// are replaced with their roles among the attributes, since the result may have another number of
-/// components. Throws std::runtime_error if a type cannot hold a value.
+/// Add the outputs that are arrays or points to a surface, with their roles. Arrays of the same
+/// name are replaced with their roles among the attributes, since the result may have another
+/// number of components. Throws std::runtime_error if a type cannot hold a value.
 void WriteOutputs(
   const OutputList& outputs, const OutputSource& source, const OutputTarget& target);
 
-/// Write the columns of the outputs of all surfaces, their rows one after the other. Returns whether
-/// there are any.
+/// Write the columns of the outputs of all surfaces, their rows one after the other. Returns
+/// whether there are any.
 bool WriteColumns(const std::vector<const OutputList*>& surfaces, vtkTable* table);
 
 /// Write the curves of all surfaces as polylines. prefix: of the names of the arrays of points.

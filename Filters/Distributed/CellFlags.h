@@ -10,8 +10,8 @@ namespace SurfaceDiffusion
 {
 
 /// The ghost flags of each cell (vtkDataSetAttributes::CellGhostTypes), where a cell that uses a
-/// hidden point is hidden, too. Empty if no cell has a flag. Arrays of flags that have not one tuple
-/// per point or cell are ignored.
+/// hidden point is hidden, too. Empty if no cell has a flag. Arrays of flags that have not one
+/// tuple per point or cell are ignored.
 std::vector<unsigned char> FindCellFlags(vtkPolyData* surface);
 
 /// Per point, nonzero for hidden points. Empty if there are none.

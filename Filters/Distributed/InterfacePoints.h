@@ -56,10 +56,10 @@ std::vector<PieceEntry> ListPieces(
 std::vector<int> FindNeighbours(
   const Processes& processes, const std::vector<PieceEntry>& list, double reach);
 
-/// The points that may be points of several pieces, ordered by label: those of this process's pieces
-/// that lie inside the bounding box of another piece of the same surface, enlarged by `reach`, and
-/// those of the neighbours' pieces that lie inside such a box of a piece of this process.
-/// list[first] is the first piece of this process. Every process calls it.
+/// The points that may be points of several pieces, ordered by label: those of this process's
+/// pieces that lie inside the bounding box of another piece of the same surface, enlarged by
+/// `reach`, and those of the neighbours' pieces that lie inside such a box of a piece of this
+/// process. list[first] is the first piece of this process. Every process calls it.
 std::vector<InterfacePoint> FindInterfacePoints(const Processes& processes,
   const std::vector<int>& neighbours, const std::vector<SurfacePiece>& pieces,
   const std::vector<PieceEntry>& list, std::size_t first, double reach, bool byId);

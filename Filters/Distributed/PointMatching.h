@@ -14,8 +14,8 @@ namespace SurfaceDiffusion
 /// index of the point that owns it, itself if no other matches. points: ordered by label.
 ///
 /// What a point matches depends only on points within ReachOfMatching tolerances: those with which
-/// it may share the first point within the tolerance are two tolerances away, and their first points
-/// one more. Processes that know these points therefore agree.
+/// it may share the first point within the tolerance are two tolerances away, and their first
+/// points one more. Processes that know these points therefore agree.
 constexpr double ReachOfMatching = 3.0;
 std::vector<std::size_t> MatchPoints(
   std::vector<InterfacePoint> points, bool byId, double tolerance);

@@ -10,8 +10,8 @@
 namespace SurfaceDiffusion
 {
 
-/// The unit vectors of a line field on the cells that the triangles of a surface were cut from; zero
-/// for cells without direction. A cell of several triangles takes the main axis of the sum of
+/// The unit vectors of a line field on the cells that the triangles of a surface were cut from;
+/// zero for cells without direction. A cell of several triangles takes the main axis of the sum of
 /// area d dᵀ, in which the sign of d does not matter.
 ///
 /// directions: per triangle of surface.InputMesh(). cellOf: the cell of a triangle of the surface's

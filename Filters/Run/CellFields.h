@@ -78,8 +78,8 @@ std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface
   const Fields& fields, CellState& cells, double valueRange, SolverStore& solvers,
   const ParallelFor& parallel);
 
-/// The result on the cells, in array units, one row per cell. With P* of CellTransfer and the detail
-/// d = f - P* u_0 of CellDetail at the start, which diffuses too, it is
+/// The result on the cells, in array units, one row per cell. With P* of CellTransfer and the
+/// detail d = f - P* u_0 of CellDetail at the start, which diffuses too, it is
 ///
 ///     P* u + d = f + P*(u - u_0) + (d - d_0),
 ///     P* u if keepDetail is false,

@@ -30,7 +30,8 @@ constexpr double LargestShareOfJumps = 0.8;
 /// The threshold below which noise of deviation 1 makes edges, with the default lengths.
 constexpr double NoiseOfEdges = 3.0;
 
-/// A part of a hole that edges enclose hangs on kappa alone. With larger tolerances its values drift.
+/// A part of a hole that edges enclose hangs on kappa alone. With larger tolerances its values
+/// drift.
 constexpr double ToleranceInHoles = 1e-3;
 
 /// The share of the surface where v is below a half.

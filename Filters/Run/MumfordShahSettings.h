@@ -16,9 +16,9 @@ namespace SurfaceDiffusion
 /// A jump j that is smoothed away has the energy j^2 / (4 SmoothingLength) per length, and an edge
 /// of the discrete model beta (1 + h / (4 EdgeWidth)): two vertices have v = 0 across it.
 ///
-/// With AutomaticThreshold each connected component has the EdgeThreshold and the SmoothingLength of
-/// FindEdgeScales(). Its edges then form with eps = EdgeWidth, without the continuation in eps: near
-/// the edges of a large eps noise is not smoothed, and makes edges that stay when eps falls.
+/// With AutomaticThreshold each connected component has the EdgeThreshold and the SmoothingLength
+/// of FindEdgeScales(). Its edges then form with eps = EdgeWidth, without the continuation in eps:
+/// near the edges of a large eps noise is not smoothed, and makes edges that stay when eps falls.
 struct MumfordShahSettings : DataSettings
 {
   bool AutomaticThreshold = true;

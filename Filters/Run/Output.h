@@ -65,8 +65,8 @@ struct Curves
   Index NumberOfCurves() const { return static_cast<Index>(this->Begin.size()) - 1; }
 };
 
-/// One result of a run on one surface: what a model returns, under which name and where. The classes
-/// for VTK and the functions for numpy write any list of outputs.
+/// One result of a run on one surface: what a model returns, under which name and where. The
+/// classes for VTK and the functions for numpy write any list of outputs.
 struct Output
 {
   std::string Name = {};

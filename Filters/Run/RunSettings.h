@@ -90,8 +90,8 @@ struct ModelTraits
 };
 
 /// The settings that every model has, in the user's terms. A subclass describes its model with four
-/// virtual functions: Visit() lists the settings, DescribeModel() gives the traits, Make() makes the
-/// model and Finish() lists its results. CheckTogether() has a default.
+/// virtual functions: Visit() lists the settings, DescribeModel() gives the traits, Make() makes
+/// the model and Finish() lists its results. CheckTogether() has a default.
 struct RunSettings : Settings
 {
   UnitsMode Units = UnitsMode::Natural;
@@ -149,8 +149,8 @@ struct TimeSettings : RunSettings
   int FindStep(double time, int last) const;
 
 protected:
-  /// The traits that follow from these settings. steady: whether the others ask for the steady state
-  /// in one step.
+  /// The traits that follow from these settings. steady: whether the others ask for the steady
+  /// state in one step.
   ModelTraits DescribeSteps(bool steady = false) const;
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 };

@@ -25,10 +25,10 @@
 //   const Values smoothed = Heat(points, triangles, values, settings).Result;
 //
 // points: n x 3 coordinates. triangles: m x 3 rows of points. Fields have values (n x k) and what
-// else a model reads: data on cells, a mask, fixed values, directions, ... Values alone may stand in
-// place of Fields. The settings have the names, units, ranges and defaults of the properties of the
-// filters for VTK, whose results these are. All functions throw std::runtime_error, whose text names
-// each setting or array with its value and what is allowed.
+// else a model reads: data on cells, a mask, fixed values, directions, ... Values alone may stand
+// in place of Fields. The settings have the names, units, ranges and defaults of the properties of
+// the filters for VTK, whose results these are. All functions throw std::runtime_error, whose text
+// names each setting or array with its value and what is allowed.
 //
 // A program that solves again and again on one surface uses Run, which keeps the matrices and
 // factors that have not changed.

@@ -28,8 +28,8 @@ public:
   double MeanEdgeLength() const;
   /// The warnings that hold.
   std::vector<Warning> FindWarnings() const { return FindAllWarnings({ this }, { "" }); }
-  /// The warnings about the surfaces of several runs, each with the name of its block. All triangles
-  /// of zero area are counted together.
+  /// The warnings about the surfaces of several runs, each with the name of its block. All
+  /// triangles of zero area are counted together.
   static std::vector<Warning> FindAllWarnings(
     const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks);
 

@@ -19,9 +19,9 @@ struct Undetermined
   bool HasKnown = false; ///< a value is known somewhere on the surface
 };
 
-/// Finds them. A point or cell is known if no component of its data is NaN and it is not masked with
-/// `inpaint`, or if it is fixed or has a seed; with unitVectors its vector must have a direction,
-/// too. Without data nothing is undetermined. Collective.
+/// Finds them. A point or cell is known if no component of its data is NaN and it is not masked
+/// with `inpaint`, or if it is fixed or has a seed; with unitVectors its vector must have a
+/// direction, too. Without data nothing is undetermined. Collective.
 Undetermined FindUndetermined(const Surface& surface, const Fields& fields, bool inpaint,
   bool unitVectors, const Reduction& processes);
 

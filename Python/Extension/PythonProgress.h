@@ -38,9 +38,9 @@ void WithValueErrors(const Work& work)
   }
 }
 
-/// Reports progress to Python and obeys Ctrl-C. At most every 50 ms it takes the interpreter's lock,
-/// handles signals, and calls a Python callable with the fraction done. An exception of either, such
-/// as KeyboardInterrupt, ends the work.
+/// Reports progress to Python and obeys Ctrl-C. At most every 50 ms it takes the interpreter's
+/// lock, handles signals, and calls a Python callable with the fraction done. An exception of
+/// either, such as KeyboardInterrupt, ends the work.
 class PythonProgress
 {
 public:

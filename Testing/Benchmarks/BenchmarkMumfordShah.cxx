@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The cost of finding edges, with the default settings, on a scanned surface with patches of 0 and 1
-// on a slope and 5 % noise: the whole run to StopTolerance 1e-5, and the extraction of the curves.
+// The cost of finding edges, with the default settings, on a scanned surface with patches of 0 and
+// 1 on a slope and 5 % noise: the whole run to StopTolerance 1e-5, and the extraction of the
+// curves.
 
 #include "HeatSystem.h"
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// CompareLibraries [<largest level>] compares the linear solvers of this library with those of others,
-// on backward Euler steps of c h^2 from noise, with one and with three columns. It prints a line of
-// JSON per size, c, number of columns and solver: CPU milliseconds of the set-up, of one solve to
-// a relative residual of 1e-10, and that residual, in the norm of SolveReport; and, for the solvers
-// of this library, whether Automatic selects it for 1 and for 10 steps. All solvers start from the
-// same data and run on one thread. The sizes are those of SurfaceOfLevel(), by default up to level 2.
+// CompareLibraries [<largest level>] compares the linear solvers of this library with those of
+// others, on backward Euler steps of c h^2 from noise, with one and with three columns. It prints a
+// line of JSON per size, c, number of columns and solver: CPU milliseconds of the set-up, of one
+// solve to a relative residual of 1e-10, and that residual, in the norm of SolveReport; and, for
+// the solvers of this library, whether Automatic selects it for 1 and for 10 steps. All solvers
+// start from the same data and run on one thread. The sizes are those of SurfaceOfLevel(), by
+// default up to level 2.
 
 #include "HeatSystem.h"
 #include "ProcessTime.h"

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// CompareSolvers [<largest level> | <mesh file>... | needles [<size>]] compares the solver Automatic
-// with all solvers, for runs of several backward Euler steps of c h^2 from noise. It prints a line
-// of JSON per surface, c and number of steps: CPU seconds and iterations per method, the method that
-// Automatic begins with, and its time over that of the fastest. The surfaces are those of
-// SurfaceOfLevel(), by default up to level 2 (178,000 vertices). Mesh files, by their names without
-// an ending, are surfaces on which CalibrateSolvers did not measure; needles are those of
-// NeedleMeshes.h with about size^2 vertices, by default 200^2.
+// CompareSolvers [<largest level> | <mesh file>... | needles [<size>]] compares the solver
+// Automatic with all solvers, for runs of several backward Euler steps of c h^2 from noise. It
+// prints a line of JSON per surface, c and number of steps: CPU seconds and iterations per method,
+// the method that Automatic begins with, and its time over that of the fastest. The surfaces are
+// those of SurfaceOfLevel(), by default up to level 2 (178,000 vertices). Mesh files, by their
+// names without an ending, are surfaces on which CalibrateSolvers did not measure; needles are
+// those of NeedleMeshes.h with about size^2 vertices, by default 200^2.
 
 #include "HeatSystem.h"
 #include "NeedleMeshes.h"
@@ -33,8 +33,8 @@ constexpr SolverMethod Methods[] = { SolverMethod::Direct, SolverMethod::Conjuga
   SolverMethod::Multigrid };
 constexpr const char* Names[] = { "Direct", "ConjugateGradient", "Multigrid" };
 
-/// Seconds of the set-up, and seconds and iterations of each step. Steps after the last measured one
-/// cost as much as it.
+/// Seconds of the set-up, and seconds and iterations of each step. Steps after the last measured
+/// one cost as much as it.
 struct Cost
 {
   double SetUp = 0.0;

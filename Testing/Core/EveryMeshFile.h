@@ -12,8 +12,9 @@
 namespace SurfaceDiffusion::Testing
 {
 
-/// Calls the function with the surface of every file of at most 100 kB, or with SURFACEDIFFUSION_LONG
-/// in the environment of every file, with its name in the messages of failures.
+/// Calls the function with the surface of every file of at most 100 kB, or with
+/// SURFACEDIFFUSION_LONG in the environment of every file, with its name in the messages of
+/// failures.
 template <typename Function>
 void ForEachMeshFile(Function function)
 {

@@ -163,8 +163,8 @@ TEST(AutomaticWeight, KeepsMasksAndSpikesAndSaysSo)
 namespace
 {
 
-/// White noise of deviation 1 smoothed with a Gaussian kernel of a standard deviation of `edges` mean
-/// edge lengths, times `deviation`, added to `input`.
+/// White noise of deviation 1 smoothed with a Gaussian kernel of a standard deviation of `edges`
+/// mean edge lengths, times `deviation`, added to `input`.
 void AddSmoothedNoise(RunInput& input, double edges, double deviation)
 {
   const auto mesh = std::make_shared<TriangleMesh>(input.Vertices, input.Faces);

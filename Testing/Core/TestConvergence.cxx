@@ -30,7 +30,8 @@ double InitialValue(double x)
   return std::cos(Pi * x) + 0.25 * std::cos(2.0 * Pi * x);
 }
 
-/// The same scheme in time on [0, 1], by linear elements of equal lengths with a lumped mass matrix.
+/// The same scheme in time on [0, 1], by linear elements of equal lengths with a lumped mass
+/// matrix.
 std::vector<double> SolveOnLine(const EdgeFunction& g, double fidelity, int cells)
 {
   const double h = 1.0 / cells;

@@ -124,10 +124,10 @@ TEST(HarmonicMap, IdentityOfTheSphereRestsAndHasEnergyFourPi)
 
 TEST(HarmonicMap, PerturbedIdentityDecaysAtTheEigenvalueOfTheJacobiOperator)
 {
-  // |grad u|^2 = 2 for the identity, so that its energy is 4 pi 2^(p/2) / p. The second variation of
-  // the energy in the direction of the gradient of a harmonic of degree l has the eigenvalue
-  // 2^(p/2 - 1) (l (l + 1) - 2 + (p/2 - 1) l (l + 1)). For p = 2 it is 0 for l = 1, the directions of
-  // the conformal maps, all of which have the same energy; for p < 2 they grow.
+  // |grad u|^2 = 2 for the identity, so that its energy is 4 pi 2^(p/2) / p. The second variation
+  // of the energy in the direction of the gradient of a harmonic of degree l has the eigenvalue
+  // 2^(p/2 - 1) (l (l + 1) - 2 + (p/2 - 1) l (l + 1)). For p = 2 it is 0 for l = 1, the directions
+  // of the conformal maps, all of which have the same energy; for p < 2 they grow.
   const double size = 1e-3;
   const double time = 0.2;
   const int steps = 100;

@@ -40,8 +40,8 @@ double MeanEdgeLength(const TriangleMesh& mesh)
   return mesh.TotalEdgeLength() / mesh.NumberOfEdges() * mesh.LengthUnit();
 }
 
-/// White noise smoothed with a Gaussian kernel of a standard deviation of `edges` mean edge lengths;
-/// mean 0, deviation 1.
+/// White noise smoothed with a Gaussian kernel of a standard deviation of `edges` mean edge
+/// lengths; mean 0, deviation 1.
 Values Smoothed(const std::shared_ptr<const Assembler>& assembler, double edges, std::int64_t seed)
 {
   const TriangleMesh& mesh = assembler->Mesh();

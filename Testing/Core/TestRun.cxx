@@ -30,7 +30,8 @@ using Testing::StateOf;
 
 TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 {
-  // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2 z.
+  // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2
+  // z.
   RunInput input(Testing::Icosphere(5));
   input.Data.Data.Values = input.Vertices.col(2);
   HeatSettings settings;

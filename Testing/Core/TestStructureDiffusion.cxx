@@ -465,8 +465,8 @@ TEST(StructureDiffusion, VarianceNeverRisesOnScannedMeshes)
     });
 }
 
-/// With g1 = 0, nothing flows along the gradient. On triangles of 1 : 300, round-off of the entries of D
-/// would.
+/// With g1 = 0, nothing flows along the gradient. On triangles of 1 : 300, round-off of the entries
+/// of D would.
 TEST(StructureDiffusion, OneChannelOnThinTrianglesStaysWhereNothingFlowsAcrossEdges)
 {
   const auto assembler = MakeAssembler(Cylinder(24, 40, 1.0, 40 * 300 * 2.0 * Pi / 24));

@@ -241,8 +241,8 @@ TEST(SurfaceDenoising, LinearFitKeepsTheTurnOfNormalsAtBoundariesWhereTheMeanFla
 namespace
 {
 
-/// E of FilterNormals(), times 2 r^2, with the penalty whose derivative is FallOff(). The weight mu is
-/// Fidelity over r^2.
+/// E of FilterNormals(), times 2 r^2, with the penalty whose derivative is FallOff(). The weight mu
+/// is Fidelity over r^2.
 double EnergyOfNormals(const FaceGraph& graph, const FaceGeometry& geometry, const Vector& weights,
   const NormalFilterSettings& settings, const Points& normals)
 {
@@ -514,8 +514,8 @@ TEST(SurfaceDenoising, TrianglesAroundAVertexOfAnyValenceHaveFewNeighbours)
   }
 }
 
-/// 10,000 triangles take less than a second. With all pairs of triangles as neighbours, 2,000 took 40
-/// seconds, most of them without a report.
+/// 10,000 triangles take less than a second. With all pairs of triangles as neighbours, 2,000 took
+/// 40 seconds, most of them without a report.
 TEST(SurfaceDenoising, LargeFansEndAndReportProgress)
 {
   const Surface fan = Fan(10000);

@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-// Connected components without a known value take no part: the other components have the result that
-// they have alone.
+// Connected components without a known value take no part: the other components have the result
+// that they have alone.
 
 namespace SurfaceDiffusion
 {

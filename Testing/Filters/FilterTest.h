@@ -154,8 +154,8 @@ vtkDataArray* AddPointArray(
   return array;
 }
 
-/// White noise of deviation 1 smoothed with a Gaussian kernel of a standard deviation of `length`, at a
-/// place: 200 waves whose wave vectors have its spectrum.
+/// White noise of deviation 1 smoothed with a Gaussian kernel of a standard deviation of `length`,
+/// at a place: 200 waves whose wave vectors have its spectrum.
 inline double SmoothedNoise(const double* x, double length)
 {
   const auto random = [](int wave, int k)

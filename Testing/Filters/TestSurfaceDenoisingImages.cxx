@@ -98,8 +98,8 @@ vtkSmartPointer<vtkPolyData> NoisyCube()
   return cube;
 }
 
-/// Error of the picture of the filter's output, seen from a corner. Twelve bands show how far points
-/// are outside of the cube, from -Shake to Shake.
+/// Error of the picture of the filter's output, seen from a corner. Twelve bands show how far
+/// points are outside of the cube, from -Shake to Shake.
 double Error(
   vtkSurfaceDenoisingFilter* filter, const std::string& baseline, const std::string& output = "")
 {

@@ -191,7 +191,8 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
     "a vector is not one long");
 }
 
-/// Three steps, of which the last is repeated from the saved state. Returns whether all have a result.
+/// Three steps, of which the last is repeated from the saved state. Returns whether all have a
+/// result.
 bool Run(const TriangleMesh& mesh, Model& model, Promises promises)
 {
   const Values start = model.State();
@@ -265,8 +266,8 @@ bool RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   return Run(mesh, model, promises);
 }
 
-/// Whether the diffusivities along and across every gradient, whose ratio is 1 + b^2 |grad u|^2, differ
-/// by less than round-off: a matrix keeps both then.
+/// Whether the diffusivities along and across every gradient, whose ratio is 1 + b^2 |grad u|^2,
+/// differ by less than round-off: a matrix keeps both then.
 bool IsResolved(const TriangleMesh& mesh, const Values& u, double colorScale)
 {
   constexpr double steepest = 1e8;

@@ -26,8 +26,9 @@ using namespace FilterTest;
 namespace
 {
 
-/// Properties without a visible effect here: they concern memory, threads or several processes, select among
-/// solvers with the same result, or only lead to errors or apply to negative concentrations.
+/// Properties without a visible effect here: they concern memory, threads or several processes,
+/// select among solvers with the same result, or only lead to errors or apply to negative
+/// concentrations.
 const std::set<std::string> WithoutEffect = { "CheckpointMemoryLimit", "Controller",
   "NumberOfThreads", "SeamTolerance", "Solver", "Tolerance", "MaximumNumberOfIterations",
   "ClampToNonNegative" };

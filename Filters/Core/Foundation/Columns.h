@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <type_traits>
 
-// A function with this attribute, and all that is inlined into it, is compiled for several widths of
-// vectors, of which the widest is used. No operations are fused, so that all have the same bits.
+// A function with this attribute, and all that is inlined into it, is compiled for several widths
+// of vectors, of which the widest is used. No operations are fused, so that all have the same bits.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) &&   \
   !defined(__SANITIZE_THREAD__) // it is not set up yet when the width is chosen
 #define SURFACEDIFFUSION_ANY_VECTORS                                                               \
@@ -39,8 +39,8 @@ decltype(auto) ForNumber(Eigen::Index number, const F& f)
   }
 }
 
-/// Many columns are processed in panels of this number. A wider panel shares each pass over a matrix
-/// or a factor among more columns, but its rows stay in the cache for a shorter time.
+/// Many columns are processed in panels of this number. A wider panel shares each pass over a
+/// matrix or a factor among more columns, but its rows stay in the cache for a shorter time.
 constexpr int ColumnPanel = 16;
 constexpr int HalfPanel = ColumnPanel / 2;
 
@@ -80,7 +80,8 @@ struct ColumnCount<0>
   int Columns;
 };
 
-/// Copy K numbers, or `count` of them if K is 0. The compiler need not know that the arrays are apart.
+/// Copy K numbers, or `count` of them if K is 0. The compiler need not know that the arrays are
+/// apart.
 template <int K>
 void CopyColumns(const double* from, double* to, int count)
 {

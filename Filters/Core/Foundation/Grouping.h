@@ -14,9 +14,9 @@
 namespace SurfaceDiffusion
 {
 
-/// Sort the items 0 .. count - 1 by digit(item) in 0 .. digits - 1, items of the same digit in their
-/// order: calls move(item, place) for each. Returns the first place of every digit, and count. Chunks
-/// of the items are counted and moved independently of each other.
+/// Sort the items 0 .. count - 1 by digit(item) in 0 .. digits - 1, items of the same digit in
+/// their order: calls move(item, place) for each. Returns the first place of every digit, and
+/// count. Chunks of the items are counted and moved independently of each other.
 template <typename Digit, typename Move>
 std::vector<Index> DistributeByDigit(
   Index count, Index digits, const ParallelFor& parallel, const Digit& digit, const Move& move)

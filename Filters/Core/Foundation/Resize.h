@@ -7,8 +7,8 @@
 namespace SurfaceDiffusion
 {
 
-/// matrix.resize(rows, columns). If memory runs out, the matrix is empty; Eigen 3.4 alone would leave
-/// it a pointer to what it has freed, which its destructor frees again.
+/// matrix.resize(rows, columns). If memory runs out, the matrix is empty; Eigen 3.4 alone would
+/// leave it a pointer to what it has freed, which its destructor frees again.
 template <typename Matrix>
 void Resize(Matrix& matrix, Eigen::Index rows, Eigen::Index columns)
 {

@@ -37,8 +37,8 @@ struct DenoisingScheme
 /// The scheme with which surfaces of this kind are denoised. noise: its standard deviation in h.
 DenoisingScheme SchemeFor(SurfaceKind kind, double noise);
 
-/// Remove noise of this standard deviation, in the unit of the points, by the iterations of a scheme:
-/// DenoiseSurface() says which.
+/// Remove noise of this standard deviation, in the unit of the points, by the iterations of a
+/// scheme: DenoiseSurface() says which.
 Points DenoiseWithScheme(const FaceGraph& graph, const Points& points,
   const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
   const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());

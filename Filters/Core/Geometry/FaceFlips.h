@@ -19,9 +19,9 @@ Index CountFlippedFaces(const TriangleMesh& mesh, const Points& normals, const P
 ///   sum_f 1/3 sum_{edges (i, j) of f} (n_f . (x_i - x_j))^2 + t mean_j |x_i - x_j|^2
 ///
 /// over x_i, by at most the whole step and the median length of the edges at the vertex, and by the
-/// largest of the steps 1, 1/2, 1/4, 1/8 of that which raises the least height of the triangles around it and flips no more of them. Vertices that no such step
-/// helps stay. Hence the number of flipped triangles never grows. The order is that of the
-/// vertices.
+/// largest of the steps 1, 1/2, 1/4, 1/8 of that which raises the least height of the triangles
+/// around it and flips no more of them. Vertices that no such step helps stay. Hence the number of
+/// flipped triangles never grows. The order is that of the vertices.
 ///
 /// fixed: per vertex, nonzero for vertices that stay; may be empty.
 void TurnFlippedFaces(

@@ -21,8 +21,8 @@ Points ReplaceUnsupportedNormals(const FaceGraph& graph, const FaceGeometry& geo
 /// share a vertex with it are fitted by a linear function of the centroids c_g in the plane
 /// orthogonal to the guide m_f,
 ///
-///   min over n, G of  sum_g a_g w_fg |n + G P_f (c_g - c_f) - n_g|^2 + e tr(sum_g a_g w_fg P_f (c_g
-///     - c_f) (c_g - c_f)^T P_f^T) |G|^2,
+///   min over n, G of  sum_g a_g w_fg |n + G P_f (c_g - c_f) - n_g|^2
+///     + e tr(sum_g a_g w_fg P_f (c_g - c_f) (c_g - c_f)^T P_f^T) |G|^2,
 ///
 /// with the areas a, the weights w of FilterNormals(), those of f itself included, and e = 0.05.
 /// The result is the direction of n. A mean of normals is right where normals are constant, and in

@@ -44,8 +44,8 @@ Values NormalTensors(const TriangleMesh& mesh, const Points& normals, const Para
   return tensors;
 }
 
-/// The heat equation (8) by backward Euler, until the Gaussian has this full width at half maximum. Returns
-/// PrincipalDirections::MissedResidual.
+/// The heat equation (8) by backward Euler, until the Gaussian has this full width at half maximum.
+/// Returns PrincipalDirections::MissedResidual.
 double Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& solver,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {

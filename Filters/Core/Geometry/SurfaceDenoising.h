@@ -51,7 +51,8 @@ struct DenoisingReport
 /// normals and sharpens edges. The last ones use FitLinearNormals() with the normals of the present
 /// surface as guide, for piecewise linear normals, and TurnFlippedFaces(). On sharp surfaces, a
 /// fit to the last normals that is nearly solved follows. Tangential displacements are small, so
-/// that triangles and boundaries keep their shape. A noise level of 0 leaves the points as they are.
+/// that triangles and boundaries keep their shape. A noise level of 0 leaves the points as they
+/// are.
 ///
 /// Displacements along the normal should have the variance of the noise (the discrepancy
 /// principle). If their median shows more, the fidelity grows. On organic surfaces it grows and

@@ -24,8 +24,8 @@ public:
   /// The vertices of the curves, ascending.
   const std::vector<Index>& Vertices() const { return this->Members; }
 
-  /// Remove curves and side branches shorter than `shortest`, the shortest first. points: those that
-  /// lengths are measured between, one per entry of Vertices().
+  /// Remove curves and side branches shorter than `shortest`, the shortest first. points: those
+  /// that lengths are measured between, one per entry of Vertices().
   void RemoveShort(const Points& points, double shortest);
 
   /// All curves between ends and junctions, and closed ones, which repeat their first vertex: as

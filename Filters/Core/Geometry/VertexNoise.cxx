@@ -25,8 +25,8 @@ constexpr double MedianOfNormalDistribution = 0.6745; ///< of |x| for the standa
 /// |x| for the standard deviation 1.
 constexpr double NoiseFraction = 0.3;
 constexpr double NoiseQuantile = 0.3853;
-/// Of larger surfaces, every second, third, ... vertex is used: that many have a quantile within about
-/// 1 %.
+/// Of larger surfaces, every second, third, ... vertex is used: that many have a quantile within
+/// about 1 %.
 constexpr Index EnoughVertices = 20000;
 /// (3/2)^3: the variance of details from three rings of neighbours over that from two.
 constexpr double GrowthOfDetails = 3.375;

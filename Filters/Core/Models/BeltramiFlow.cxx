@@ -50,8 +50,8 @@ PlaneTensor BeltramiFlow::Diffusivity(Index t, const Metrics& metrics) const
 
 /// adj(G) = 1 + b^2 sum over the channels of r r^T with r = grad u turned by 90 degrees, and
 /// r . grad(phi_a) = d_a / (2 area) with the difference d_a along the edge opposite corner a. As
-/// squares, the weights of the channels stay positive semi-definite where the entries of D have lost
-/// their small eigenvalue.
+/// squares, the weights of the channels stay positive semi-definite where the entries of D have
+/// lost their small eigenvalue.
 Eigen::RowVector3d BeltramiFlow::Weights(Index t, const Metrics& metrics) const
 {
   const TriangleMesh::Shape& shape = this->Mesh().Shapes()[t];

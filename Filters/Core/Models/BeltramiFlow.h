@@ -20,8 +20,8 @@ namespace SurfaceDiffusion
 /// With the eigenvalues m1 >= m2 of T, D is sqrt((1 + b^2 m2)/(1 + b^2 m1)) along the steepest
 /// direction and the inverse of that across it. The mass density m is sqrt(det G) in the metric of
 /// the drawn surface (Induced: the flow of the paper) and 1 in that of the surface itself (Fixed),
-/// in which the sum of A_i u_i is conserved. Both have the same steady states: minimal surfaces. As b
-/// tends to 0, they become linear diffusion; for one channel E is the Charbonnier energy with
+/// in which the sum of A_i u_i is conserved. Both have the same steady states: minimal surfaces. As
+/// b tends to 0, they become linear diffusion; for one channel E is the Charbonnier energy with
 /// K = 1/b, and D along grad u its diffusivity.
 ///
 /// Constant factors along and across given directions e1 and e2 replace grad by S grad, with
@@ -30,10 +30,10 @@ namespace SurfaceDiffusion
 /// Steps are those of LaggedDiffusion. E never rises, for any time step and on any mesh: sqrt(det
 /// (I + Q)) is concave in Q >= 0 (Minkowski: det^(1/2) is concave on positive semi-definite 2 x 2
 /// matrices), and its derivative is sqrt(det G) G^-1 / 2. So E is at most
-/// the quadratic energy 1/2 int D grad u . grad u + lambda/2 int chi |u - f|^2 with the D of the old
-/// level, up to a constant, and equal to it at the old level; a step lowers that quadratic, since it
-/// minimises its sum with m |u - u_old|^2 / (2 dt). Conjugate gradients lower the sum in every
-/// iteration, so that the tolerance of the solver does not matter.
+/// the quadratic energy 1/2 int D grad u . grad u + lambda/2 int chi |u - f|^2 with the D of the
+/// old level, up to a constant, and equal to it at the old level; a step lowers that quadratic,
+/// since it minimises its sum with m |u - u_old|^2 / (2 dt). Conjugate gradients lower the sum in
+/// every iteration, so that the tolerance of the solver does not matter.
 class BeltramiFlow : public LaggedDiffusion
 {
 public:
@@ -53,7 +53,8 @@ public:
     double AcrossDiffusivity = 1.0;
   };
 
-  /// frames: e1 per triangle, without rows if both factors are the same. solver: kept by the caller.
+  /// frames: e1 per triangle, without rows if both factors are the same. solver: kept by the
+  /// caller.
   BeltramiFlow(std::shared_ptr<const Assembler> assembler, TangentVectors frames, PointData data,
     const Settings& settings, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel = SerialFor());

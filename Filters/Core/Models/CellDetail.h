@@ -15,8 +15,8 @@
 namespace SurfaceDiffusion
 {
 
-/// The part of data f on cells that the vertices do not resolve, d = f - P* u_0 with the transfer P*
-/// from vertices to cells and the initial state u_0. The result on cells is P* u + d. Beside the
+/// The part of data f on cells that the vertices do not resolve, d = f - P* u_0 with the transfer
+/// P* from vertices to cells and the initial state u_0. The result on cells is P* u + d. Beside the
 /// state u, d diffuses as the model does, by one step of backward Euler per step of the model,
 ///
 ///     (A + dt L + dt lambda w chi A) d_new = A (d_old + dt lambda w chi d_0),
@@ -24,12 +24,13 @@ namespace SurfaceDiffusion
 /// with the areas A of the cells, the fluxes L of CellFluxes for the diffusion tensor D of the
 /// model's step, and the model's lambda, factors w and indicator chi of the known cells. The steady
 /// state is the limit of infinite dt; of a connected component without fidelity it is the mean.
-/// With an L1 norm, lambda is divided by the distance of the result to f at the old d. Per connected
-/// component without held cells, the sum of A d is that of the equation, to round-off. All errors of
-/// this step are errors of d, which is of second order in the size of the cells for smooth f.
+/// With an L1 norm, lambda is divided by the distance of the result to f at the old d. Per
+/// connected component without held cells, the sum of A d is that of the equation, to round-off.
+/// All errors of this step are errors of d, which is of second order in the size of the cells for
+/// smooth f.
 ///
-/// P* u and d keep their ranges if the model does, but their sum may leave that of f by some percent
-/// where d decays faster than u: next to jumps between plateaus. CellRange puts it back.
+/// P* u and d keep their ranges if the model does, but their sum may leave that of f by some
+/// percent where d decays faster than u: next to jumps between plateaus. CellRange puts it back.
 class CellDetail
 {
 public:

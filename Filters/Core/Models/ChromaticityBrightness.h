@@ -12,28 +12,29 @@
 namespace SurfaceDiffusion
 {
 
-/// Diffusion of colours u = B C as brightness B = |u| >= 0 and chromaticity C = u/|u|, a map into the
-/// unit sphere, by the gradient flow, or for steady states a minimiser, of
+/// Diffusion of colours u = B C as brightness B = |u| >= 0 and chromaticity C = u/|u|, a map into
+/// the unit sphere, by the gradient flow, or for steady states a minimiser, of
 ///   E(B, C) = int psi(|grad B|) + mu int |grad C|^p / p + lambda/2 int w chi |B C - B_f C_f|^2
 /// (T. Chan, S. Kang, J. Shen, J. Vis. Commun. Image Represent. 12, 2001; B. Tang, G. Sapiro,
-/// V. Caselles, IEEE Trans. Image Process. 10, 2001), with f = B_f C_f, the factors w of the data and
-/// the indicator chi of their known part. A model of scalar data takes care of B and HarmonicMap of
-/// C. They alternate, since the fidelity is that of each for fixed values of the other:
+/// V. Caselles, IEEE Trans. Image Process. 10, 2001), with f = B_f C_f, the factors w of the data
+/// and the indicator chi of their known part. A model of scalar data takes care of B and
+/// HarmonicMap of C. They alternate, since the fidelity is that of each for fixed values of the
+/// other:
 ///   |B C - f|^2 = (B - B_f (C . C_f))^2 + a term without B
 ///               = B B_f |C - C_f|^2 + (B - B_f)^2:
 /// - for fixed C the data of B are B_f (C . C_f), with the weight lambda w;
-/// - for fixed B the data of C are C_f, with the weight lambda w B B_f, so that dark vertices, whose
-///   hue is mostly noise, hardly bind it. Where f = 0 the data of C are missing.
+/// - for fixed B the data of C are C_f, with the weight lambda w B B_f, so that dark vertices,
+///   whose hue is mostly noise, hardly bind it. Where f = 0 the data of C are missing.
 ///
 /// Each of the two steps decreases E, so that E never grows, on any mesh and for any time step, if
-/// the steps of B decrease their energy, as those of NonlinearDiffusion and TotalVariationFlow do. B
-/// that falls below 0 becomes 0 (it can if f has negative values). A step of B that raises E, which
-/// an inexact minimisation may do near the minimum, is not taken.
+/// the steps of B decrease their energy, as those of NonlinearDiffusion and TotalVariationFlow do.
+/// B that falls below 0 becomes 0 (it can if f has negative values). A step of B that raises E,
+/// which an inexact minimisation may do near the minimum, is not taken.
 ///
 /// The time step of C is that of the metric |dB|^2 + R^2 |dC|^2 with the range R of the values. The
-/// steady state is that of alternated steps which are so long that each nearly minimises E: proximal
-/// alternating minimisation (H. Attouch et al., Math. Oper. Res. 35(2), 2010). E is not convex, and
-/// the steady state is a stationary point that depends on the start.
+/// steady state is that of alternated steps which are so long that each nearly minimises E:
+/// proximal alternating minimisation (H. Attouch et al., Math. Oper. Res. 35(2), 2010). E is not
+/// convex, and the steady state is a stationary point that depends on the start.
 class ChromaticityBrightness : public Model
 {
 public:

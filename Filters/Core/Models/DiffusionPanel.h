@@ -11,8 +11,8 @@ namespace SurfaceDiffusion
 /// The columns of a step of LinearDiffusion that are advanced together: few enough that their rows
 /// stay in the cache from loop to loop. Every loop passes over the vertices once, for a number of
 /// columns that the compiler knows, and adds the corrections of the solve before it on the way.
-/// Values are measured from the mean of the start, so that the errors of a solve are relative to the
-/// contrast of the data.
+/// Values are measured from the mean of the start, so that the errors of a solve are relative to
+/// the contrast of the data.
 class DiffusionPanel
 {
 public:

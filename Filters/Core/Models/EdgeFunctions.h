@@ -39,7 +39,8 @@ void ForEachNorm(ChannelCoupling coupling, int channels, const Act& act)
 /// in units of the gradient (beta squared). Perona-Malik and Weickert sharpen edges steeper than
 /// about K: their flux s g(s) decreases there, so that they are not gradients of a convex energy.
 ///
-/// A new function is one struct in EdgeFunctionList, one line in its list and one name here.
+/// ADDING_A_MODEL.md lists what a new function needs besides a struct and a place in
+/// EdgeFunctionList, and a name here.
 enum class EdgeFunctionKind
 {
   TotalVariation,

@@ -28,7 +28,8 @@ public:
   /// width^2/(16 ln 2), as N grows, and is 1.64 times as large at N = 4.
   static double TimeOfWidth(double width, int steps);
 
-  /// Factorise the matrix, or prepare the solver in another way. The first Apply() does it otherwise.
+  /// Factorise the matrix, or prepare the solver in another way. The first Apply() does it
+  /// otherwise.
   void Prepare(const ProgressMonitor& progress = ProgressMonitor());
 
   /// u becomes H u. The solves are added to the report.

@@ -39,7 +39,8 @@ protected:
     const Fidelity::Settings& fidelity, std::shared_ptr<LinearSolver> solver,
     const ParallelFor& parallel);
 
-  /// Fill Weighted for the channels first .. last - 1 at the current u, and what MassDensity() needs.
+  /// Fill Weighted for the channels first .. last - 1 at the current u, and what MassDensity()
+  /// needs.
   virtual void FillWeights(
     Eigen::Index first, Eigen::Index last, StepReport& report, const ProgressMonitor& progress) = 0;
   /// m at vertex i, the mean over its control cell.

@@ -45,8 +45,8 @@ struct StepReport
 /// A time step that reaches the steady state.
 constexpr double InfiniteTime = std::numeric_limits<double>::infinity();
 
-/// The diffusion of the last step of a model, m u_t = div(D grad u) + lambda w chi (f - u), for what
-/// diffuses beside its state: see CellDetail.
+/// The diffusion of the last step of a model, m u_t = div(D grad u) + lambda w chi (f - u), for
+/// what diffuses beside its state: see CellDetail.
 struct DiffusionStep
 {
   double TimeStep = 0.0; ///< infinite: the steady state; 0: nothing diffuses
@@ -81,16 +81,16 @@ public:
 
   /// Whether and how the state diffuses. Counts after a step.
   virtual DiffusionStep Diffusion() const { return {}; }
-  /// The weights (12) of D in a column of the state, per triangle, valid until the next call; no row:
-  /// D = 1.
+  /// The weights (12) of D in a column of the state, per triangle, valid until the next call; no
+  /// row: D = 1.
   virtual const CornerWeights& DiffusionWeights(Eigen::Index /*column*/)
   {
     static const CornerWeights one;
     return one;
   }
 
-  /// Results beside the state at the current step, in the units of the model: one row per vertex, or
-  /// numbers.
+  /// Results beside the state at the current step, in the units of the model: one row per vertex,
+  /// or numbers.
   virtual std::map<std::string, Values> Results() const { return {}; }
 
   /// The direction of the strongest diffusion per triangle, zero where diffusion is isotropic; no

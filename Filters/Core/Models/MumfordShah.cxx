@@ -193,8 +193,8 @@ void MumfordShah::AssembleEdgeStiffness()
   this->EdgeStage = this->Stage;
 }
 
-/// OfTriangles: int D grad u . grad u over triangle t, the sum of c_ij |u_i - u_j|^2 over its edges,
-/// of u times its scale.
+/// OfTriangles: int D grad u . grad u over triangle t, the sum of c_ij |u_i - u_j|^2 over its
+/// edges, of u times its scale.
 void MumfordShah::SquareGradients()
 {
   const Triangles& corners = this->Assembly->Mesh().TriangleVertices();

@@ -16,8 +16,8 @@ namespace SurfaceDiffusion
 
 /// The Mumford-Shah functional in the approximation of Ambrosio and Tortorelli (L. Ambrosio, V.
 /// Tortorelli, CPAM 43, 1990; on meshes N. Bonneel, D. Coeurjolly, P. Gueth, J.-O. Lachaud,
-/// Computer Graphics Forum 37(7), 2018): a piecewise smooth u, and v in (0, 1] that is near 0 on the
-/// edges of u and 1 elsewhere, of minimal
+/// Computer Graphics Forum 37(7), 2018): a piecewise smooth u, and v in (0, 1] that is near 0 on
+/// the edges of u and 1 elsewhere, of minimal
 ///   E(u, v) = lambda/2 int chi |u - f|^2 + 1/2 int (v^2 + kappa) D grad u . grad u
 ///             + beta int (eps |grad v|^2 + (1 - v)^2 / (4 eps)),
 /// with the indicator chi of the known part of the surface and a constant diffusion tensor D (1 in
@@ -69,7 +69,8 @@ public:
 
   /// E with the eps of the current stage.
   double Energy() const override { return this->CurrentEnergy; }
-  /// The part of it that edges cost: beta times their length, and a little more (see the Run layer).
+  /// The part of it that edges cost: beta times their length, and a little more (see the Run
+  /// layer).
   double EdgeEnergy() const;
 
   /// eps of the current stage.

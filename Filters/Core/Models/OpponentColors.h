@@ -14,9 +14,10 @@ namespace SurfaceDiffusion
 /// A model of colours in the opponent basis: its unknowns are the components of u along the
 /// orthonormal axes
 ///   (1, 1, 1)/sqrt(3), (1, -1, 0)/sqrt(2), (1, 1, -2)/sqrt(6),
-/// brightness, red against green, and yellow against blue (J. van de Weijer, T. Gevers, A. Bagdanov,
-/// IEEE PAMI 28(1), 2006). The basis is a rotation: a model whose terms treat all channels alike has
-/// the same states in it. Models with other weights for the two axes of colour use it.
+/// brightness, red against green, and yellow against blue (J. van de Weijer, T. Gevers, A.
+/// Bagdanov, IEEE PAMI 28(1), 2006). The basis is a rotation: a model whose terms treat all
+/// channels alike has the same states in it. Models with other weights for the two axes of colour
+/// use it.
 class OpponentColors : public Model
 {
 public:

@@ -19,12 +19,13 @@ namespace SurfaceDiffusion
 ///   E(u) = 1/2 sum_k int |grad u_k| + lambda sum_k int chi w u_k r_k,   u_k >= 0,   sum_k u_k = 1,
 ///
 /// with data terms r_k = |f - c_k|^2, or given ones, and the fidelity factors w of the data. Each
-/// boundary counts once, since two of the u_k jump there. TotalVariationMinimizer finds it by ADMM, with the clamp to [0, 1] of u_1 = 1 - u_2
-/// if K = 2, and the projection onto the simplex if K > 2. The duality gap bounds E(u) - min E.
+/// boundary counts once, since two of the u_k jump there. TotalVariationMinimizer finds it by ADMM,
+/// with the clamp to [0, 1] of u_1 = 1 - u_2 for two regions, and the projection onto the simplex
+/// for more. The duality gap bounds E(u) - min E.
 ///
 /// With unknown means c_k, minimisations over u and over c alternate: for fixed u the best c_k is
-/// the mean of f with the weights A_i w_i u_k,i. E never rises. It is not convex in u and c together,
-/// so that the result is a local minimum.
+/// the mean of f with the weights A_i w_i u_k,i. E never rises. It is not convex in u and c
+/// together, so that the result is a local minimum.
 ///
 /// The steady state is reached in one step. The start is the label of the smallest data term, and
 /// 1/K at missing vertices.

@@ -13,14 +13,14 @@ namespace SurfaceDiffusion
 
 /// Anisotropic diffusion along the structures of the data,
 ///   u_t = div(D grad u) + lambda chi (f - u),
-/// with the diffusion tensor D = g1 e1 e1^T + g2 e2 e2^T whose axes are those of the structure tensor
-/// J of u with eigenvalues m1 >= m2, e1 across the structures. K is a contrast, in units of the
-/// gradient.
+/// with the diffusion tensor D = g1 e1 e1^T + g2 e2 e2^T whose axes are those of the structure
+/// tensor J of u with eigenvalues m1 >= m2, e1 across the structures. K is a contrast, in units of
+/// the gradient.
 /// - Coherence enhancing (J. Weickert, Int. J. Computer Vision 31, 1999): lines are smoothed along
 ///   themselves, and interrupted ones are closed,
 ///     g1 = alpha,  g2 = alpha + (1 - alpha) exp(-(K^2/(m1 - m2))^2).
-/// - Edge enhancing (J. Weickert, Anisotropic Diffusion in Image Processing, Teubner 1998): smoothing
-///   along edges everywhere, and across them where the gradient is below K,
+/// - Edge enhancing (J. Weickert, Anisotropic Diffusion in Image Processing, Teubner 1998):
+///   smoothing along edges everywhere, and across them where the gradient is below K,
 ///     g1 = 1 - exp(-3.31488 (K^2/m1)^4),  g2 = 1,
 ///   with J at the scale rho = 0.
 /// Constant factors along and across given directions give S D S; see GivenFactors.
@@ -49,7 +49,8 @@ public:
     double AcrossDiffusivity = 1.0;
   };
 
-  /// frames: e1 per triangle, without rows if both factors are the same. solver: kept by the caller.
+  /// frames: e1 per triangle, without rows if both factors are the same. solver: kept by the
+  /// caller.
   StructureDiffusion(std::shared_ptr<const Assembler> assembler, TangentVectors frames,
     PointData data, const Settings& settings, std::unique_ptr<StructureTensor> structure,
     std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel = SerialFor());

@@ -10,13 +10,13 @@
 namespace SurfaceDiffusion
 {
 
-/// The full width at half maximum of a Gaussian of standard deviation 1, 2 sqrt(2 ln 2): the kernels
-/// of the classes below have the widths of Gaussians.
+/// The full width at half maximum of a Gaussian of standard deviation 1, 2 sqrt(2 ln 2): the
+/// kernels of the classes below have the widths of Gaussians.
 constexpr double WidthOfDeviation = 2.3548200450309493;
 
 /// Parallel smoothing of the traceless part of a tensor field on a surface (intrinsic anisotropic
-/// diffusion: L. Naden, T. Maerz, C. Macdonald, arXiv 1403.2131, 2014): N steps of backward Euler for
-/// the heat equation of the connection Laplacian, ((M + tau/N K)^-1 M)^N, with M and K of
+/// diffusion: L. Naden, T. Maerz, C. Macdonald, arXiv 1403.2131, 2014): N steps of backward Euler
+/// for the heat equation of the connection Laplacian, ((M + tau/N K)^-1 M)^N, with M and K of
 /// LineFieldOperator. The traceless part of a symmetric tensor with eigenvalues m1 >= m2 and the
 /// main axis at angle a is the complex number z = (m1 - m2)/2 exp(2 i a). It is smoothed in the
 /// tangent planes, with the parallel transport of the surface, and not by components in space:

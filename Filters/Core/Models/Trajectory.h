@@ -57,8 +57,8 @@ struct StepRecord
 class Trajectory
 {
 public:
-  /// memoryLimit: bytes for checkpoints; 0 if only forward steps are expected. keepsHistory: whether
-  /// energy and totals of each state are recorded; without, they are 0.
+  /// memoryLimit: bytes for checkpoints; 0 if only forward steps are expected. keepsHistory:
+  /// whether energy and totals of each state are recorded; without, they are 0.
   Trajectory(std::shared_ptr<const TriangleMesh> mesh, std::unique_ptr<Model> model,
     std::size_t memoryLimit, const ParallelFor& parallel = SerialFor(), bool keepsHistory = true);
 

@@ -27,8 +27,8 @@ public:
   Index End(Index component) const { return this->Begin(component + 1); }
   Index Cell(Index k) const { return this->ByComponent.Items[k]; }
 
-  /// SumOf(component, k) becomes the sum of f(cell, k), k < columns, over the cells of the component
-  /// in all processes. Collective.
+  /// SumOf(component, k) becomes the sum of f(cell, k), k < columns, over the cells of the
+  /// component in all processes. Collective.
   template <typename F>
   void Sum(Eigen::Index columns, const F& f)
   {

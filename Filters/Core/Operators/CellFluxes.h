@@ -10,7 +10,8 @@
 namespace SurfaceDiffusion
 {
 
-/// The finite volume method of div(D grad w) with one unknown w_c per cell: the outflow of cell c is
+/// The finite volume method of div(D grad w) with one unknown w_c per cell: the outflow of cell c
+/// is
 ///
 ///     (L w)_c = sum over the edges e of c and the other cells c' at e of
 ///               t_ce t_c'e / (sum over the cells at e of t) (w_c - w_c'),
@@ -19,9 +20,9 @@ namespace SurfaceDiffusion
 /// the two-point flux through an edge with the half transmissibilities t, where x_c is the centroid
 /// of the cell, x_e the midpoint of the edge, n its normal in the triangle of the cell at e, and D
 /// that triangle's. With D = 1 in two cells at an edge that is |e| over the distance of their
-/// centres by way of x_e. All cells at an edge of more than two exchange fluxes. L is symmetric, its
-/// columns sum to zero, and its entries off the diagonal are not positive on any surface: backward
-/// Euler keeps the range of w and the sum of A_c w_c.
+/// centres by way of x_e. All cells at an edge of more than two exchange fluxes. L is symmetric,
+/// its columns sum to zero, and its entries off the diagonal are not positive on any surface:
+/// backward Euler keeps the range of w and the sum of A_c w_c.
 ///
 /// The fluxes are not consistent where x_c - x_c' is not normal to e. They are for differences
 /// between cells that last for a few steps, see CellDetail.

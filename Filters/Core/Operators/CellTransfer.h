@@ -41,7 +41,8 @@ class CellTransfer
 {
 public:
   /// cells: the cell of each row of triangles that `mesh` was made from, below `count`. `mesh` must
-  /// live longer than this object. Triangles of zero area and unused cells take no part. Collective.
+  /// live longer than this object. Triangles of zero area and unused cells take no part.
+  /// Collective.
   CellTransfer(const TriangleMesh& mesh, const std::vector<Index>& cells, Index count,
     const ParallelFor& parallel);
 

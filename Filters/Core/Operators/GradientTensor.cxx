@@ -36,8 +36,9 @@ public:
   int Number() const { return this->Count; }
   double GetValueScale() const { return this->ValueScale; }
   double GetScale() const { return this->Scale; }
-  /// To a length of about LongestGradient. Before they are divided by lengths, which may be as small
-  /// as any number, values are made small, by a power of two: neighbouring numbers stay apart.
+  /// To a length of about LongestGradient. Before they are divided by lengths, which may be as
+  /// small as any number, values are made small, by a power of two: neighbouring numbers stay
+  /// apart.
   void Shorten()
   {
     this->ValueScale = std::ldexp(1.0, -660);

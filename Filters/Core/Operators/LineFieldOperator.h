@@ -41,8 +41,8 @@ public:
   void Project(const Eigen::Ref<const TangentVectors>& lines,
     const Eigen::Ref<const Vector>& weights, Vector& load, Vector& diagonal) const;
 
-  /// The load b with z^T b = int z . w for one number w per triangle, real and imaginary part in the
-  /// triangle's axes (m x 2). b: a column, allocated if it has another size.
+  /// The load b with z^T b = int z . w for one number w per triangle, real and imaginary part in
+  /// the triangle's axes (m x 2). b: a column, allocated if it has another size.
   void Integrate(const Eigen::Ref<const TangentVectors>& w, Values& load,
     const ParallelFor& parallel = SerialFor()) const;
 

@@ -45,7 +45,8 @@ private:
 };
 
 /// Preconditioned conjugate gradients (M. Hestenes, E. Stiefel, J. Res. Nat. Bur. Stand. 49, 1952)
-/// for A x = b with a symmetric positive definite matrix A: the one recurrence of all solvers here.
+/// for A x = b with a symmetric positive definite matrix A: the recurrence of all solvers in double
+/// precision. SinglePrecisionSolver has its own.
 /// K: the number of columns, or 0 for any. An iteration makes three passes over memory:
 ///   q = A p, p.q;   r -= alpha q, r.D^-1 r;   x += alpha p, p = B r + beta p.
 /// Nothing but the residual and x is taken over from an earlier solve.

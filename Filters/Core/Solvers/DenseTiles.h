@@ -28,8 +28,8 @@ void SubtractTileProducts(const double* a, std::ptrdiff_t strideA, const double*
 /// C becomes X with X L^T = C for `count` tiles of `width` columns. l: the lower triangular tile L.
 void SolveTiles(const double* l, Index width, double* c, std::ptrdiff_t stride, Index count);
 
-/// C -= A^T B for the tile A of `depth` columns: row p of C, depth x TileRows, minus the sum of A(i, p)
-/// times row i of B, TileRows x TileRows. Both have their rows one after another.
+/// C -= A^T B for the tile A of `depth` columns: row p of C, depth x TileRows, minus the sum of
+/// A(i, p) times row i of B, TileRows x TileRows. Both have their rows one after another.
 void SubtractTransposedProduct(const double* a, Index depth, const double* b, double* c);
 
 /// w becomes L^-1 w, or with `transposed` L^-T w: `width` rows of TileRows numbers.

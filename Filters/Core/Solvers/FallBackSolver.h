@@ -15,8 +15,8 @@ namespace SurfaceDiffusion
 /// Several methods: the first, and the next ones for the systems on which those before fail. If the
 /// first one has a limited patience, the first solve with a matrix is its trial: it ends when its
 /// rate of convergence lets expect more iterations than that (ConvergenceForecast), and later
-/// solves begin with the next method. On needles that nothing but a factorisation resolves, this is the
-/// first method at once. All this depends on the matrix and the first right-hand side only: if
+/// solves begin with the next method. On needles that nothing but a factorisation resolves, this is
+/// the first method at once. All this depends on the matrix and the first right-hand side only: if
 /// later failures were remembered, the bits of a step would depend on the steps computed before it.
 class FallBackSolver : public LinearSolver
 {

@@ -138,8 +138,8 @@ private:
     }
   }
 
-  /// The level with the fewest rows that leaves enough on both sides, or the one in the middle. None
-  /// if there is nothing on one side.
+  /// The level with the fewest rows that leaves enough on both sides, or the one in the middle.
+  /// None if there is nothing on one side.
   std::optional<std::size_t> ChooseLevel() const
   {
     const double count = static_cast<double>(this->Found.size());

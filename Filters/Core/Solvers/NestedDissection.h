@@ -10,10 +10,10 @@ namespace SurfaceDiffusion
 {
 
 /// An ordering for the Cholesky factorisation of a symmetric matrix: the place of every row. Nested
-/// dissection with level structures (A. George, J. Liu, SIAM J. Numer. Anal. 15, 1978): a level of a
-/// breadth-first search from a peripheral vertex separates the graph of the matrix, and comes after
-/// both sides, which are separated in the same way. Parts of a few hundred rows are ordered by
-/// approximate minimum degree.
+/// dissection with level structures (A. George, J. Liu, SIAM J. Numer. Anal. 15, 1978): a level of
+/// a breadth-first search from a peripheral vertex separates the graph of the matrix, and comes
+/// after both sides, which are separated in the same way. Parts of a few hundred rows are ordered
+/// by approximate minimum degree.
 ///
 /// On regular triangulations, such as subdivided icosahedra, the factor takes 0.35 to 0.4 of the
 /// operations that it takes with approximate minimum degree alone, and 0.7 of the entries. On scans

@@ -36,8 +36,8 @@ public:
   /// it every later change of b. It is consistent, as x is.
   Values Residual;
 
-  /// Iterate in single precision, in one process and without shifts. It is for outer iterations that
-  /// renew the residual now and then, of which round-off takes up to 1e-6 per call.
+  /// Iterate in single precision, in one process and without shifts. It is for outer iterations
+  /// that renew the residual now and then, of which round-off takes up to 1e-6 per call.
   void SetSinglePrecision(bool isSingle) { this->IsSingle = isSingle; }
 
   /// Iterations until each column of the residual is reduced by the factor `reduction`, in the norm

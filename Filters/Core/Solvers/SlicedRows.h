@@ -12,10 +12,10 @@
 namespace SurfaceDiffusion
 {
 
-/// A matrix in single precision for products with one vector, in the format SELL-16 (see SlicedMatrix)
-/// with the rows in their own order: slices of 16 rows are stored entry by entry, so that the lanes
-/// of a vector register belong to 16 rows. Bits depend neither on the number of threads nor on the
-/// processor.
+/// A matrix in single precision for products with one vector, in the format SELL-16 (see
+/// SlicedMatrix) with the rows in their own order: slices of 16 rows are stored entry by entry, so
+/// that the lanes of a vector register belong to 16 rows. Bits depend neither on the number of
+/// threads nor on the processor.
 class SlicedRows
 {
 public:

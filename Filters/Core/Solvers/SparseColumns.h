@@ -184,8 +184,8 @@ SparseMatrix CollectColumns(
   return CollectColumns<SparseColumn>(rows, columns, parallel, collect, none);
 }
 
-/// The values of a matrix that CollectColumns() has made with NotedColumn, from a collect() that adds
-/// other numbers to the same rows in the same order.
+/// The values of a matrix that CollectColumns() has made with NotedColumn, from a collect() that
+/// adds other numbers to the same rows in the same order.
 template <typename Collect>
 void CollectAgain(SparseMatrix& matrix, const CollectedPlaces& places, const ParallelFor& parallel,
   const Collect& collect)

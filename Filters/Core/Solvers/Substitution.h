@@ -7,9 +7,9 @@
 namespace SurfaceDiffusion
 {
 
-/// w = L^-T D^-1 L^-1 w for K columns in one pass over the factor. w: row-major, in the order of the
-/// factor. Every column has the bits that it has alone, on any processor. Instantiated for one, two
-/// and three columns, half a panel and a panel.
+/// w = L^-T D^-1 L^-1 w for K columns in one pass over the factor. w: row-major, in the order of
+/// the factor. Every column has the bits that it has alone, on any processor. Instantiated for one,
+/// two and three columns, half a panel and a panel.
 template <int K>
 void SubstituteRows(const SparseFactor& factor, double* w);
 

@@ -39,8 +39,8 @@ public:
   /// Per supernode, whether solutions in these rows depend on it.
   std::vector<char> Needed(const std::vector<Index>& rows) const;
 
-  /// Diagonal entries of A^-1 by selected inversion (K. Takahashi, J. Fagan, M. Chin, PICA 1973): the
-  /// entries of the inverse in the pattern of L follow from each other, from the last row on.
+  /// Diagonal entries of A^-1 by selected inversion (K. Takahashi, J. Fagan, M. Chin, PICA 1973):
+  /// the entries of the inverse in the pattern of L follow from each other, from the last row on.
   Vector InverseDiagonal(
     const ParallelFor& parallel, const ProgressMonitor& progress = ProgressMonitor()) const;
 

@@ -39,8 +39,8 @@ struct Supernodes
   std::vector<double> Operations; ///< products of the factorisation, of each supernode
 };
 
-/// An order of the rows with a sparse factor: by approximate minimum degree, or by nested dissection
-/// if the vertices of the mesh are regular and it takes fewer operations.
+/// An order of the rows with a sparse factor: by approximate minimum degree, or by nested
+/// dissection if the vertices of the mesh are regular and it takes fewer operations.
 Supernodes OrderedSupernodes(const SparseMatrix& matrix, bool isRegular);
 
 } // namespace SurfaceDiffusion

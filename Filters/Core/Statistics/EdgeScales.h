@@ -29,9 +29,10 @@ struct EdgeScalesInput
   double NoiseGain = 0.0;
 };
 
-/// J and L, in TriangleMesh::LengthUnit(), of each connected component, from the data alone. With the mean edge length h, the
-/// noise sigma (EstimateNoise(), in the Euclidean norm over the channels), the range R
-/// (RobustBounds(), likewise), and the slope g of the data between their jumps,
+/// J and L, in TriangleMesh::LengthUnit(), of each connected component, from the data alone. With
+/// the mean edge length h, the noise sigma (EstimateNoise(), in the Euclidean norm over the
+/// channels), the range R (RobustBounds(), likewise), and the slope g of the data between their
+/// jumps,
 ///   J = max(0.12 R, 3.2 sigma sqrt(8 h / L), g max(sqrt(24 eps L), 2 L)).
 /// The second term keeps noise from making edges, measured on spheres, scans and jittered grids.
 /// The third is the gradient limit of the functional (A. Blake, A. Zisserman, Visual

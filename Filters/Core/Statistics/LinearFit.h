@@ -25,12 +25,12 @@ struct FitData
   Rings MakeRings() const { return Rings(this->Operators.Pattern(), this->Range); }
 };
 
-/// The difference up to which the values of each column are equal: means of equal numbers, such as data
-/// on cells have at vertices, differ by less.
+/// The difference up to which the values of each column are equal: means of equal numbers, such as
+/// data on cells have at vertices, differ by less.
 Eigen::RowVectorXd RoundOffOf(const FitData& data);
 
-/// A linear function, in the tangent plane of a vertex, fitted to known values around it: its value at
-/// the vertex is the sum of Weights times the values at Known.
+/// A linear function, in the tangent plane of a vertex, fitted to known values around it: its value
+/// at the vertex is the sum of Weights times the values at Known.
 struct LinearFit
 {
   std::vector<Index> Known;
@@ -40,8 +40,8 @@ struct LinearFit
 /// The fit to the vertices at a distance of `edges` edges that are not missing.
 LinearFit FitAround(Index vertex, int edges, Rings& rings, const FitData& data);
 
-/// The same with a cubic polynomial fitted to the vertices at a distance of 1 and 2 edges, of which it
-/// needs 12. None to more than 100.
+/// The same with a cubic polynomial fitted to the vertices at a distance of 1 and 2 edges, of which
+/// it needs 12. None to more than 100.
 LinearFit FitCubicAround(Index vertex, Rings& rings, const FitData& data);
 
 /// Absolute deviations of columns of data.
@@ -59,7 +59,8 @@ public:
   }
 
   /// The standard deviation of Gaussian ones, 1.4826 times the median, as root mean square over the
-  /// columns. A column without deviations at some of `count` places is constant there. Reorders them.
+  /// columns. A column without deviations at some of `count` places is constant there. Reorders
+  /// them.
   double RootMeanSquare(double count);
 
 private:

@@ -23,11 +23,12 @@ struct NoiseEstimate
   double Level() const { return this->IsCorrelated() ? this->Apart : this->BetweenNeighbours; }
 };
 
-/// The known vertices where data have noise, if they have any. Noise differs from vertex to vertex, so
-/// a vertex whose known neighbours all have its own value is in a constant part: a background or a
-/// plateau of a mask. A vertex is varying if neither it nor a neighbour is in such a part. Vertices at
-/// both sides of a jump between constant parts are not; if the varying vertices are less than a third
-/// of those outside of constant parts, then there are jumps and spikes alone, and none is varying.
+/// The known vertices where data have noise, if they have any. Noise differs from vertex to vertex,
+/// so a vertex whose known neighbours all have its own value is in a constant part: a background or
+/// a plateau of a mask. A vertex is varying if neither it nor a neighbour is in such a part.
+/// Vertices at both sides of a jump between constant parts are not; if the varying vertices are
+/// less than a third of those outside of constant parts, then there are jumps and spikes alone, and
+/// none is varying.
 Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 
 /// Estimates the noise from the residuals r_i of local linear fits: the difference of f_i and the
@@ -35,11 +36,12 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 /// a distance of 1 edge from i, and then of 2, 4 and 8 edges while the result grows by more than
 /// 15 %, each time less than before: the noise is correlated. If it grows faster, or by more than
 /// 30 % at the end, then the signal bends and the first result is taken. The deviation is 1.4826
-/// times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the fit: robust to edges and
-/// exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf. Theory 41, 1995). Only
-/// varying vertices count, 20,000 of them at most. Noise that was smoothed over more than about an edge
-/// grows as fast as a signal, so that the result is too small: see NeighbourVariation. Root mean square over the columns; 0 if no vertex
-/// has enough known ones around. points: of the input, rows as in TriangleMesh::InputVertex.
+/// times the median of |r_i|/sqrt(1 + |v|^2), where v are the weights of the fit: robust to edges
+/// and exact on slopes (median absolute deviation; D. Donoho, IEEE Trans. Inf. Theory 41, 1995).
+/// Only varying vertices count, 20,000 of them at most. Noise that was smoothed over more than
+/// about an edge grows as fast as a signal, so that the result is too small: see
+/// NeighbourVariation. Root mean square over the columns; 0 if no vertex has enough known ones
+/// around. points: of the input, rows as in TriangleMesh::InputVertex.
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
 
@@ -63,8 +65,8 @@ struct FidelityChoice
 FidelityChoice FindFidelityByDiscrepancy(
   const std::function<double(double)>& discrepancy, double noiseLevel, double start);
 
-/// Root of the area-weighted mean of w (u - f)^2 over the known vertices and the columns, divided by
-/// that of the fidelity factors w.
+/// Root of the area-weighted mean of w (u - f)^2 over the known vertices and the columns, divided
+/// by that of the fidelity factors w.
 double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values& u);
 
 } // namespace SurfaceDiffusion

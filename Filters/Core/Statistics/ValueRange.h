@@ -17,7 +17,8 @@ double ValueRange(const Eigen::Ref<const Values>& u, const Reduction& reduction)
 /// the columns. Rarer values count for less.
 double TypicalRange(const Eigen::Ref<const Values>& u, const Reduction& reduction);
 
-/// u with outliers moved to within a typical range of the quantiles of 0.5 and 99.5 % of each column.
+/// u with outliers moved to within a typical range of the quantiles of 0.5 and 99.5 % of each
+/// column.
 Values WithoutOutliers(const Values& u, const Reduction& reduction);
 
 /// The largest max - min over the columns of u at the corners of a triangle.

@@ -24,13 +24,14 @@ public:
   explicit IntrinsicDelaunay(std::shared_ptr<const TriangleMesh> mesh,
     const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 
-  /// The number of edges that are not Delaunay: those of triangles too flat to be flipped, and those
-  /// left when the flips were ended (50 checks per side of a triangle). The maximum principle does
-  /// not hold there.
+  /// The number of edges that are not Delaunay: those of triangles too flat to be flipped, and
+  /// those left when the flips were ended (50 checks per side of a triangle). The maximum principle
+  /// does not hold there.
   Index NumberOfEdgesLeft() const { return this->EdgesLeft; }
 
   /// It has the vertices of the input mesh, in the same order, its control areas, its edge length
-  /// of natural units and its diagnostics. Its triangles are not those of the input: InputTriangle() is empty.
+  /// of natural units and its diagnostics. Its triangles are not those of the input:
+  /// InputTriangle() is empty.
   std::shared_ptr<const TriangleMesh> Mesh() const { return this->Triangulation; }
 
   /// Lines e1 per triangle of Mesh() (see TangentVectors.h) from lines per triangle of the input

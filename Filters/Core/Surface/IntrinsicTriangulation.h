@@ -23,8 +23,8 @@ namespace SurfaceDiffusion
 ///
 /// The edges of nearly degenerate triangles are first made longer, by about 1e-6 of the longest of
 /// their triangle, so that every triangle inequality holds in floating point (mollification, ibid.,
-/// but with a length per edge, so that small parts of a surface keep their shape beside large ones).
-/// Control areas stay those of the surface.
+/// but with a length per edge, so that small parts of a surface keep their shape beside large
+/// ones). Control areas stay those of the surface.
 class IntrinsicTriangulation
 {
 public:

@@ -220,8 +220,8 @@ void HarmonicMap::MinimizingMovementStep(StepReport& report, const ProgressMonit
   report.UnsettledDecrease = (before - objective) / (start - objective);
 }
 
-/// After Freeze(), one step from u that does not raise Objective(), whose value at u is `objective`;
-/// returns the new value.
+/// After Freeze(), one step from u that does not raise Objective(), whose value at u is
+/// `objective`; returns the new value.
 double HarmonicMap::Descend(double objective, StepReport& report, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();

@@ -171,8 +171,8 @@ SolveReport TangentMethods::TryMultigrid(
   return report;
 }
 
-/// The aggregates are those of the stiffness matrix, with as much inertia as keeps it regular. They do
-/// not depend on the state, lest the bits of a step depend on the steps computed before it.
+/// The aggregates are those of the stiffness matrix, with as much inertia as keeps it regular. They
+/// do not depend on the state, lest the bits of a step depend on the steps computed before it.
 std::unique_ptr<LinearSolver> TangentMethods::MakeCycle() const
 {
   constexpr double scale = 1000.0; // of the stiffness matrix to the mean control area

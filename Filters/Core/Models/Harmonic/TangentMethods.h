@@ -11,14 +11,14 @@
 namespace SurfaceDiffusion
 {
 
-/// Solves the linear systems of HarmonicMap's steps by conjugate gradients in the tangent spaces, with
-/// a preconditioner after the other until one converges.
+/// Solves the linear systems of HarmonicMap's steps by conjugate gradients in the tangent spaces,
+/// with a preconditioner after the other until one converges.
 class TangentMethods
 {
 public:
   /// Factor takes the solver of the ImplicitSystem with the matrix without the projections: a
-  /// factorisation, or multigrid. Multigrid is a cycle for the same matrix. Both are good for smooth
-  /// maps and large steps, while for noise Jacobi is fast.
+  /// factorisation, or multigrid. Multigrid is a cycle for the same matrix. Both are good for
+  /// smooth maps and large steps, while for noise Jacobi is fast.
   enum class Preconditioner
   {
     Automatic, ///< as Multigrid in one process if diffusion dominates, else Jacobi, Factor
@@ -27,15 +27,15 @@ public:
     Jacobi
   };
 
-  /// coefficients: of the stiffness matrix without the diffusivities of a step, not copied. lineField:
-  /// whether the matrices have signs.
+  /// coefficients: of the stiffness matrix without the diffusivities of a step, not copied.
+  /// lineField: whether the matrices have signs.
   TangentMethods(std::shared_ptr<const Assembler> assembler, const CornerWeights& coefficients,
     Preconditioner method, bool lineField, const IterationLimits& limits,
     const ParallelFor& parallel);
 
-  /// tangent: the system with the matrix of `system`. If no method converges, the best answer is the
-  /// step, and the report says so. Jacobi alone throws NotConverged unless it is within AnswerFactor
-  /// of the tolerance.
+  /// tangent: the system with the matrix of `system`. If no method converges, the best answer is
+  /// the step, and the report says so. Jacobi alone throws NotConverged unless it is within
+  /// AnswerFactor of the tolerance.
   SolveReport Solve(ImplicitSystem& system, const TangentSystem& tangent, Values& step,
     const ProgressMonitor& progress);
 

@@ -17,9 +17,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// k^2 times the mean area of a vertex, at most: at 3.4 vertices per wavelength on the first level, a
-/// ninth of the vertices, on which patterns are recognisable, and at 6 on further ones, which save
-/// less time.
+/// k^2 times the mean area of a vertex, at most: at 3.4 vertices per wavelength on the first level,
+/// a ninth of the vertices, on which patterns are recognisable, and at 6 on further ones, which
+/// save less time.
 constexpr double CoarsestWave = 3.0;
 constexpr double CoarsestFurtherWave = 0.95;
 /// Of the vertices of a level to those of the finer one: above it, coarsening saves too little.

@@ -11,7 +11,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-// A new kinetics is one struct here, one line in the list below and one name in the enum.
+// ADDING_A_MODEL.md lists what a new kinetics needs besides a struct here and a row of the list.
 
 using P = KineticsParameters;
 

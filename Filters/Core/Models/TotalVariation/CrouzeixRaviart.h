@@ -16,8 +16,8 @@ namespace SurfaceDiffusion
 /// Values at edges from values at vertices: their means, except at clear jumps. There the means
 /// would form a band of intermediate values, which biases the perimeter of the jump; so an edge
 /// takes the value of the end on whose side of the jump its midpoint lies, according to the data
-/// smoothed over two to three rings; sum A w is that of the means as nearly as whole edges allow. An
-/// edge is at a jump if its difference is 3.5 times the mean difference
+/// smoothed over two to three rings; sum A w is that of the means as nearly as whole edges allow.
+/// An edge is at a jump if its difference is 3.5 times the mean difference
 /// around it (4 to 5 times at a straight jump between smooth parts, seldom in noise); from 2.5
 /// times on, the value of the end starts to count.
 Values EdgesFromVertices(const Assembler& vertices, const MedialMesh& edges, const Values& u,

@@ -33,8 +33,8 @@ void ProjectOntoSimplex(double* row, int columns)
     row[0] = std::clamp(row[0], 0.0, 1.0);
     return;
   }
-  // The projection ignores a common summand. Without it the values that stay above 0 are in [-1, 0],
-  // and their sum keeps its digits even if the row is large.
+  // The projection ignores a common summand. Without it the values that stay above 0 are in [-1,
+  // 0], and their sum keeps its digits even if the row is large.
   const double largest = *std::max_element(row, row + columns);
   for (int k = 0; k < columns; ++k)
   {

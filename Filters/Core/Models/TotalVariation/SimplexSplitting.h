@@ -10,7 +10,8 @@ namespace SurfaceDiffusion
 {
 
 /// The nearest point of the convex set S of a row of `columns` values: of [0, 1] for one column, of
-/// the unit simplex {u_k >= 0, sum u_k = 1} for more (C. Michelot, J. Optim. Theory Appl. 50, 1986).
+/// the unit simplex {u_k >= 0, sum u_k = 1} for more (C. Michelot, J. Optim. Theory Appl. 50,
+/// 1986).
 void ProjectOntoSimplex(double* row, int columns);
 
 /// The terms sum_i A_i (a_i . u_i - m_i) of an energy, linear costs a with every u_i in S, which is

@@ -20,11 +20,11 @@ namespace SurfaceDiffusion
 /// Teboulle, IEEE Trans. Image Process. 18, 2009): with L = lambda max(w),
 ///   z_k+1 = the minimiser of int psi(|grad u|) + L/2 int |u - (y_k - lambda/L H w chi (H y_k -
 ///   f))|^2,
-/// which is an implicit step of TotalVariationFlow of the length 1/L, up to a duality gap that falls
-/// like k^-4.5 (M. Schmidt, N. Le Roux, F. Bach, NIPS 2011), followed by an extrapolation of z. u is
-/// the z of least energy so far. The iteration stops when z_k+1 differs from y_k by StopTolerance
-/// times the range of the data in the root mean square. That is no bound of the error: fine detail
-/// that the blur has removed almost entirely comes back slowly.
+/// which is an implicit step of TotalVariationFlow of the length 1/L, up to a duality gap that
+/// falls like k^-4.5 (M. Schmidt, N. Le Roux, F. Bach, NIPS 2011), followed by an extrapolation of
+/// z. u is the z of least energy so far. The iteration stops when z_k+1 differs from y_k by
+/// StopTolerance times the range of the data in the root mean square. That is no bound of the
+/// error: fine detail that the blur has removed almost entirely comes back slowly.
 class TotalVariationDeblurring : public StateModel
 {
 public:

@@ -10,8 +10,8 @@
 namespace SurfaceDiffusion
 {
 
-/// The terms sum_i A_i (mu_i/2 |u_i - g_i|^2 + nu_i |u_i - f_i|) of an energy. The second one acts on
-/// q = u - f. Without it, mu may differ from column to column.
+/// The terms sum_i A_i (mu_i/2 |u_i - g_i|^2 + nu_i |u_i - f_i|) of an energy. The second one acts
+/// on q = u - f. Without it, mu may differ from column to column.
 class VertexSplitting : public VertexTerms
 {
 public:

@@ -13,8 +13,8 @@ namespace SurfaceDiffusion
 
 /// The terms of an energy at the vertices in the alternating direction method of multipliers (see
 /// TotalVariationMinimizer): a sum over the vertices of convex functions of u_i. Those that are not
-/// quadratic act on q, split from u, with a penalty rho and the scaled multiplier c. Some u_i may be
-/// fixed.
+/// quadratic act on q, split from u, with a penalty rho and the scaled multiplier c. Some u_i may
+/// be fixed.
 class VertexTerms
 {
 public:
