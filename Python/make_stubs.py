@@ -9,6 +9,7 @@ checkers, from the signatures that the functions get from the settings in C++.
 import importlib
 import inspect
 import pathlib
+import re
 import sys
 import types
 
@@ -18,33 +19,22 @@ from typing import Any, Iterator, Literal, overload
 from numpy.typing import ArrayLike, NDArray
 import numpy as np
 
-from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, SegmentationResult,
-    TensorDiffusionResult, TextureResult,
-)
+from ._result import {results}
 from ._run import Progress
 from ._surface import SurfaceLike
 
-__all__ = [
-    "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
-    "tensor_diffusion", "turing_texture",
-]
+__all__ = {functions}
 """
 
-#: The return types of a function for the values of its switches.
-RETURNS = {
-    "heat": [({}, "NDArray[Any]"), ({"full_output": True}, "DiffusionResult"),
-             ({"steps": True}, "Iterator[DiffusionResult]")],
-    "harmonic_map": [({}, "HarmonicMapResult"), ({"steps": True}, "Iterator[HarmonicMapResult]")],
-    "mumford_shah": [({}, "EdgeResult"), ({"steps": True}, "Iterator[EdgeResult]")],
-    "turing_texture": [({}, "TextureResult"), ({"steps": True}, "Iterator[TextureResult]")],
-    "denoise_mesh": [({}, "NDArray[np.float64]"), ({"full_output": True}, "MeshDenoisingResult")],
-    "segment": [({}, "SegmentationResult")],
-    "tensor_diffusion": [({}, "NDArray[Any]"), ({"full_output": True}, "TensorDiffusionResult"),
-                         ({"steps": True}, "Iterator[TensorDiffusionResult]")],
-    "direction_field": [({}, "NDArray[np.float64]")],
-}
-RETURNS["intrinsic_tv"] = RETURNS["heat"]
+
+def returns(function):
+    """The return types of a function for the values of its switches: its annotation lists that of
+    neither, of full_output and of steps, in this order."""
+    annotations = str(inspect.signature(function).return_annotation).split(" | ")
+    has_steps = annotations[-1].startswith("Iterator")
+    has_full_output = len(annotations) > 1 + has_steps
+    switches = [{}] + has_full_output * [{"full_output": True}] + has_steps * [{"steps": True}]
+    return list(zip(switches, annotations))
 
 
 def load(folder):
@@ -55,7 +45,7 @@ def load(folder):
     return importlib.import_module("surfacediffusion._functions")
 
 
-def lines_of(name, signature, switches, returned, documentation):
+def lines_of(name, signature, switches, returned, documentation, overloaded):
     """One definition, for given values of the switches."""
     lines, keyword_only = [f"def {name}("], False
     for parameter in signature.parameters.values():
@@ -63,7 +53,7 @@ def lines_of(name, signature, switches, returned, documentation):
             lines.append("    *,")
             keyword_only = True
         annotation, default = parameter.annotation, repr(parameter.default)
-        if parameter.name in ("steps", "full_output") and len(RETURNS[name]) > 1:
+        if parameter.name in ("steps", "full_output") and overloaded:
             if parameter.name in switches:
                 annotation, default = "Literal[True]", None
             elif "steps" not in switches:
@@ -79,15 +69,19 @@ def lines_of(name, signature, switches, returned, documentation):
 
 def main(folder):
     module = load(folder)
-    lines = HEADER.splitlines()
-    for name, variants in RETURNS.items():
+    annotations = {name: returns(getattr(module, name)) for name in module.__all__}
+    results = {match for variants in annotations.values() for _, returned in variants
+               for match in re.findall(r"\w+Result", returned)}
+    lines = HEADER.format(results=", ".join(sorted(results)), functions=module.__all__).splitlines()
+    for name, variants in annotations.items():
         function = getattr(module, name)
         for number, (switches, returned) in enumerate(variants):
             lines.append("")
             if len(variants) > 1:
                 lines.append("@overload")
             documentation = inspect.getdoc(function) if number == 0 else ""
-            lines += lines_of(name, inspect.signature(function), switches, returned, documentation)
+            lines += lines_of(name, inspect.signature(function), switches, returned, documentation,
+                              len(variants) > 1)
     path = folder / "_functions.pyi"
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     compile(path.read_text(encoding="utf-8"), str(path), "exec")

@@ -14,13 +14,13 @@ namespace
 Vector FindBrightness(const OutputSource& source, bool ofCells)
 {
   Fields colors;
-  colors.Data = source.ReadData();
+  colors.Data.Values = source.ReadData();
   const CellState* const cells = source.Block->Cells.get();
   if (!cells)
   {
     return MakePointData(source.Surface, colors, false, 1.0).Given.rowwise().norm();
   }
-  const Vector lengths = colors.Data.rowwise().norm();
+  const Vector lengths = colors.Data.Values.rowwise().norm();
   return ofCells ? lengths
                  : Vector(cells->Transfer.ToVertices(lengths, Vector::Ones(lengths.size())).Of);
 }

@@ -51,6 +51,32 @@ struct Solution
   std::vector<std::string> Warnings;
 };
 
+/// Makes the settings of a model, with their defaults.
+struct NamedSettings
+{
+  const char* Function; ///< its name in Python
+  std::unique_ptr<Settings> (*Make)();
+};
+
+template <typename ModelSettings>
+std::unique_ptr<Settings> MakeDefaults()
+{
+  return std::make_unique<ModelSettings>();
+}
+
+/// All models.
+inline const NamedSettings SettingsOfModels[] = {
+  { "denoise_mesh", &MakeDefaults<DenoisingRunSettings> },
+  { "direction_field", &MakeDefaults<DirectionFieldSettings> },
+  { "harmonic_map", &MakeDefaults<HarmonicMapSettings> },
+  { "heat", &MakeDefaults<HeatSettings> },
+  { "intrinsic_tv", &MakeDefaults<TotalVariationSettings> },
+  { "mumford_shah", &MakeDefaults<MumfordShahSettings> },
+  { "segment", &MakeDefaults<SegmentationSettings> },
+  { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings> },
+  { "turing_texture", &MakeDefaults<TextureSettings> }
+};
+
 /// The data of a call: Fields, or values at the points alone.
 struct SurfaceData : Fields
 {

@@ -2,15 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SettingsTable.h"
 
-#include "Run/DenoisingRun.h"
-#include "Run/DirectionFieldRun.h"
-#include "Run/HarmonicMapSettings.h"
-#include "Run/HeatSettings.h"
-#include "Run/MumfordShahSettings.h"
-#include "Run/SegmentationSettings.h"
-#include "Run/TensorDiffusionSettings.h"
-#include "Run/TextureSettings.h"
-#include "Run/TotalVariationSettings.h"
+#include "Run/Solve.h"
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -161,50 +153,28 @@ nb::list ListWords(const Sentence& sentence)
   return words;
 }
 
-std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
+std::unique_ptr<Settings> MakeSettings(const std::string& model)
 {
-  if (model == "heat")
+  for (const NamedSettings& entry : SettingsOfModels)
   {
-    return std::make_unique<HeatSettings>();
-  }
-  if (model == "intrinsic_tv")
-  {
-    return std::make_unique<TotalVariationSettings>();
-  }
-  if (model == "segment")
-  {
-    return std::make_unique<SegmentationSettings>();
-  }
-  if (model == "harmonic_map")
-  {
-    return std::make_unique<HarmonicMapSettings>();
-  }
-  if (model == "mumford_shah")
-  {
-    return std::make_unique<MumfordShahSettings>();
-  }
-  if (model == "tensor_diffusion")
-  {
-    return std::make_unique<TensorDiffusionSettings>();
-  }
-  if (model == "turing_texture")
-  {
-    return std::make_unique<TextureSettings>();
+    if (model == entry.Function)
+    {
+      return entry.Make();
+    }
   }
   throw nb::key_error(model.c_str());
 }
 
-std::unique_ptr<Settings> MakeSettings(const std::string& model)
+std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)
 {
-  if (model == "direction_field")
+  std::unique_ptr<Settings> settings = MakeSettings(model);
+  auto* const found = dynamic_cast<RunSettings*>(settings.get());
+  if (!found)
   {
-    return std::make_unique<DirectionFieldSettings>();
+    throw nb::key_error(model.c_str());
   }
-  if (model == "denoise_mesh")
-  {
-    return std::make_unique<DenoisingRunSettings>();
-  }
-  return MakeRunSettings(model);
+  settings.release();
+  return std::unique_ptr<RunSettings>(found);
 }
 
 nb::list ListSettings(Settings& settings)

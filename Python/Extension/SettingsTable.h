@@ -15,10 +15,10 @@ namespace SurfaceDiffusion
 struct RunSettings;
 
 /// The settings of a model by the name of its Python function, with their defaults.
-std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model);
-
-/// The same for any function, also for those without time steps.
 std::unique_ptr<Settings> MakeSettings(const std::string& model);
+
+/// The same of a model of arrays, which a Run computes.
+std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model);
 
 /// One dict per setting: name, unit, documentation, kind, default, allowed and words.
 nanobind::list ListSettings(Settings& settings);

@@ -35,16 +35,10 @@ import typing as _typing
 import warnings as _warnings
 from importlib.metadata import version as _version
 
-from . import _core
-from ._functions import (
-    denoise_mesh, direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment,
-    tensor_diffusion, turing_texture,
-)
+from . import _core, _functions, _result
+from ._functions import *  # noqa: F403
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
-from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, ModelResult, RegionBoundary,
-    Result, SegmentationResult, TensorDiffusionResult, TextureResult,
-)
+from ._result import *  # noqa: F403
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
@@ -52,12 +46,11 @@ from ._threads import get_number_of_threads, set_number_of_threads
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "DiffusionResult", "EdgeResult", "FWHMEstimate", "HarmonicMapResult", "MeshDenoisingResult",
-    "ModelResult", "RegionBoundary", "Result", "SegmentationResult", "Surface", "SurfaceDiffusionWarning",
-    "TensorDiffusionResult", "TextureResult", "denoise_mesh", "direction_field", "estimate_fwhm",
-    "get_number_of_threads", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
-    "set_number_of_threads", "smooth_to_fwhm", "sphere", "tensor_diffusion", "turing_texture",
+    "FWHMEstimate", "Surface", "SurfaceDiffusionWarning", "estimate_fwhm", "get_number_of_threads",
+    "set_number_of_threads", "smooth_to_fwhm", "sphere",
 ]
+__all__ += _functions.__all__
+__all__ += _result.__all__
 
 if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(after_in_child=_core.after_fork)

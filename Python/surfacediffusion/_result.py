@@ -11,6 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 
+__all__ = [
+    "DiffusionResult", "EdgeResult", "HarmonicMapResult", "MeshDenoisingResult", "ModelResult",
+    "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
+]
+
+
 @dataclass(frozen=True)
 class ModelResult:
     """The result of a model. ``numpy.asarray(result)`` is `values`.

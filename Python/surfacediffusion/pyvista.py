@@ -42,13 +42,14 @@ is not allowed, with a message that names it, what was found and what is allowed
 from __future__ import annotations
 
 import math
+import textwrap
 from typing import Any, Callable, Iterator, Sequence
 
 import numpy as np
 import pyvista
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, _functions
 from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import direction_field as _direction_field
 from ._functions import exclude_outside, segment_with_outputs
@@ -64,96 +65,53 @@ from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
 from ._surface import Surface, as_data, as_outside, has_integers
 
-__all__ = [
-    "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
-    "tensor_diffusion", "turing_texture",
-]
+__all__: list[str] = []
+__all__ += _functions.__all__
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
 
-def heat(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
-    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
-    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
-    **properties: Any,
-) -> Any:
-    """Smooth, denoise or inpaint an array by linear diffusion.
+def _of_data(name: str, results: str) -> Callable[..., Any]:
+    """The function of a model of data in time steps. results: sentences about them."""
 
-    The arguments are described in help(surfacediffusion.pyvista), the equation and all other keywords
-    in help(surfacediffusion.heat). The result is the array <array>Diffused, with the shape of
-    the data.
-    """
-    return _run("heat", mesh, array, (mask, roi, direction, fixed, None, fidelity), times, full_output,
-                progress, properties)
+    def function(
+        mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
+        direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
+        times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+        **properties: Any,
+    ) -> Any:
+        return _run(name, mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
+                    full_output, progress, properties)
 
-
-def intrinsic_tv(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
-    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
-    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
-    **properties: Any,
-) -> Any:
-    """Denoise or inpaint an array and preserve its edges.
-
-    The arguments are described in help(surfacediffusion.pyvista), the equation and all other keywords
-    in help(surfacediffusion.intrinsic_tv). The result is the array <array>TV, with the shape of
-    the data.
-    """
-    return _run("intrinsic_tv", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
-                full_output, progress, properties)
+    function.__name__ = function.__qualname__ = name
+    summary = (getattr(_functions, name).__doc__ or "").partition("\n")[0]
+    text = ("The arguments are described in help(surfacediffusion.pyvista), the equation and all other "
+            f"keywords in help(surfacediffusion.{name}). {results}")
+    function.__doc__ = f"{summary}\n\n{textwrap.fill(text, 98)}\n"
+    return function
 
 
-def harmonic_map(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
-    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
-    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
-    **properties: Any,
-) -> Any:
-    """Regularise normals or other unit vectors, or denoise the mesh.
+heat = _of_data("heat", "The result is the array <array>Diffused, with the shape of the data.")
 
-    array: the vectors, a point array (n, k) with k > 1; default: the active normals, which are
-    computed if there are none. The other arguments are described in help(surfacediffusion.pyvista),
-    the equation and all other keywords in help(surfacediffusion.harmonic_map). The result is the
-    point array <array>Harmonic (n, k); NormalsHarmonic for computed normals. With move_vertices=True
-    the points are moved.
-    """
-    return _run("harmonic_map", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
-                full_output, progress, properties)
+intrinsic_tv = _of_data(
+    "intrinsic_tv", "The result is the array <array>TV, with the shape of the data.")
 
+harmonic_map = _of_data(
+    "harmonic_map",
+    "array: the vectors, a point or cell array with more than one component; default: the active "
+    "normals, which are computed if there are none. The result is the array <array>Harmonic; "
+    "NormalsHarmonic for computed normals. With move_vertices=True the points are moved.")
 
-def mumford_shah(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
-    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
-    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
-    **properties: Any,
-) -> Any:
-    """Find the edges of an array, and smooth or inpaint the data between them.
+mumford_shah = _of_data(
+    "mumford_shah",
+    "The results are the arrays <array>MumfordShah, with the shape of the data, and Edges (n,). The "
+    "curves along the edges are `curves` of the report that full_output=True returns, a list of "
+    "arrays of points; pyvista.MultipleLines(curve) is a mesh of one.")
 
-    The arguments are those of heat(); the functional and all other keywords are in
-    help(surfacediffusion.mumford_shah). The results are the arrays <array>MumfordShah, with
-    the shape of the data, and Edges (n,). The curves along the edges are `curves` of the report that
-    full_output=True returns, a list of arrays of points; pyvista.MultipleLines(curve) is a mesh of one.
-    """
-    return _run("mumford_shah", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
-                full_output, progress, properties)
-
-
-def tensor_diffusion(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
-    direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
-    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
-    **properties: Any,
-) -> Any:
-    """Smooth an array along its own edges or lines.
-
-    The arguments are those of heat(); the equations and all other keywords are in
-    help(surfacediffusion.tensor_diffusion). The result is the array <array>Beltrami,
-    <array>Coherent or <array>EdgeEnhanced, with the shape of the data; with diffusion_axes=True there
-    is the cell array DiffusionAxes (m, 3), too.
-    """
-    return _run("tensor_diffusion", mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
-                full_output, progress, properties)
+tensor_diffusion = _of_data(
+    "tensor_diffusion",
+    "The result is the array <array>Beltrami, <array>Coherent or <array>EdgeEnhanced, with the shape "
+    "of the data; with diffusion_axes=True there is the cell array DiffusionAxes (m, 3), too.")
 
 
 def turing_texture(
@@ -585,10 +543,10 @@ def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
     return method
 
 
-for _function in (
-        heat, intrinsic_tv, harmonic_map, denoise_mesh, mumford_shah, segment, tensor_diffusion,
-        turing_texture, direction_field):
-    setattr(_Accessor, _function.__name__, _as_method(_function))
+for _name in __all__:
+    if _name not in globals():  # a model without results of a special kind
+        globals()[_name] = _of_data(_name, "The results have the names of those of the filter for VTK.")
+    setattr(_Accessor, _name, _as_method(globals()[_name]))
 
 if hasattr(pyvista, "register_dataset_accessor"):
     for _class in (pyvista.PolyData, pyvista.MultiBlock):

@@ -14,24 +14,13 @@ import unittest
 import numpy as np
 
 import surfacediffusion as sd
+from filter_classes import CLASSES
 from surfacediffusion._settings import snake_case
 
 VTK_PYTHON = os.environ.get("SURFACEDIFFUSION_VTK_PYTHON")
 if not VTK_PYTHON:
     print("SURFACEDIFFUSION_VTK_PYTHON is not set")
     sys.exit(77)
-
-FILTERS = {
-    "heat": "vtkFVMHeatFilter",
-    "intrinsic_tv": "vtkIntrinsicTVFilter",
-    "harmonic_map": "vtkHarmonicMapFilter",
-    "denoise_mesh": "vtkSurfaceDenoisingFilter",
-    "mumford_shah": "vtkMumfordShahFilter",
-    "segment": "vtkSurfaceSegmentationFilter",
-    "tensor_diffusion": "vtkTensorDiffusionFilter",
-    "turing_texture": "vtkTuringTextureFilter",
-    "direction_field": "vtkSurfaceDirectionFieldFilter",
-}
 
 #: Index of each input array of the filters.
 INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
@@ -151,7 +140,7 @@ class SameBits(unittest.TestCase):
             for number, (function, arrays, properties) in enumerate(cases):
                 np.savez(folder / f"case{number}.npz", points=self.points, faces=flat, sizes=sizes,
                          **arrays)
-                listed.append([FILTERS[function], properties, {key: INDEX[key] for key in arrays}])
+                listed.append([CLASSES[function], properties, {key: INDEX[key] for key in arrays}])
             (folder / "cases.json").write_text(json.dumps(listed))
             environment = dict(os.environ, PYTHONPATH=os.environ["SURFACEDIFFUSION_VTK_PATH"])
             script = pathlib.Path(__file__).with_name("run_filters.py")

@@ -7,17 +7,12 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+from filter_classes import CLASSES
 from surfacediffusion import _core
 
 PLUGIN = Path(__file__).resolve().parents[2] / "Plugin"
 
-PROXIES = {
-    "heat": "FVMHeatFilter", "intrinsic_tv": "IntrinsicTVFilter",
-    "harmonic_map": "HarmonicMapFilter", "mumford_shah": "MumfordShahFilter",
-    "tensor_diffusion": "TensorDiffusionFilter", "turing_texture": "TuringTextureFilter",
-    "segment": "SurfaceSegmentationFilter", "direction_field": "SurfaceDirectionFieldFilter",
-    "denoise_mesh": "SurfaceDenoisingFilter",
-}
+PROXIES = {function: name[len("vtk"):] for function, name in CLASSES.items()}
 
 #: Settings of all models that mean something else in a filter, whose proxy says what.
 OTHERWISE = {"TuringTextureFilter": {"NumberOfTimeSteps"}}

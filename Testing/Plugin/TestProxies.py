@@ -373,6 +373,34 @@ class TestProxies(unittest.TestCase):
         heat = servermanager.filters.FVMHeatFilter(InitialFill="Noise")
         self.assertIn("RandomSeed", list(offered(heat)))
 
+    def test_what_needs_a_convex_energy_is_offered_for_the_edge_functions_that_have_one(self):
+        """The class says which: steady states of the others are an error."""
+        functions = servermanager.filters.IntrinsicTVFilter().SMProxy.GetProperty(
+            "EdgeFunction").FindDomain("vtkSMEnumerationDomain")
+        needs = {"Mode", "AutomaticFidelity", "TimeIntegrator"}
+        convex = []
+        for i in range(functions.GetNumberOfEntries()):
+            word = functions.GetEntryText(i)
+            source = vtkSphereSource()
+            source.Update()
+            steady = vtkSurfaceDiffusion.vtkIntrinsicTVFilter()
+            steady.AddObserver("ErrorEvent", lambda *_: None)
+            steady.SetInputDataObject(source.GetOutput())
+            steady.SetInputArrayToProcess(0, 0, 0, 0, "Normals")
+            steady.SetModeToSteadyState()
+            getattr(steady, "SetEdgeFunctionTo" + word)()
+            is_convex = steady.GetExecutive().Update() == 1
+            convex += [word] if is_convex else []
+            proxy = servermanager.filters.IntrinsicTVFilter(EdgeFunction=word)
+            self.assertEqual(needs & set(offered(proxy)), needs if is_convex else set(), word)
+        self.assertGreater(len(convex), 1)
+        self.assertLess(len(convex), functions.GetNumberOfEntries())
+        listed = ", ".join(convex[:-1]) + " or " + convex[-1]
+        for key in ("Mode", "TimeIntegrator"):
+            prop = servermanager.filters.IntrinsicTVFilter().SMProxy.GetProperty(key)
+            text = " ".join(prop.GetDocumentation().GetDescription().split())
+            self.assertIn("It requires EdgeFunction " + listed, text)
+
     def test_filters_without_time_steps_have_no_properties_of_them(self):
         time = {"TimeStep", "NumberOfTimeSteps", "GenerateTimeSteps", "OutputInterval",
                 "CheckpointMemoryLimit", "TimestepValues", "TimeUnit"}

@@ -42,7 +42,7 @@ def properties(cls):
 def of_each_property(test):
     """test(self, filter, name) for each property of each class, after which there are no errors."""
     def tests(self):
-        self.assertEqual(len(FILTERS), 9)
+        self.assertGreater(len(FILTERS), 1)
         for cls in FILTERS:
             for name in properties(cls):
                 with self.subTest(cls=cls.__name__, property=name):

@@ -1,0 +1,19 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The classes for VTK of the functions of arrays."""
+
+import surfacediffusion
+
+CLASSES = {
+    "denoise_mesh": "vtkSurfaceDenoisingFilter",
+    "direction_field": "vtkSurfaceDirectionFieldFilter",
+    "harmonic_map": "vtkHarmonicMapFilter",
+    "heat": "vtkFVMHeatFilter",
+    "intrinsic_tv": "vtkIntrinsicTVFilter",
+    "mumford_shah": "vtkMumfordShahFilter",
+    "segment": "vtkSurfaceSegmentationFilter",
+    "tensor_diffusion": "vtkTensorDiffusionFilter",
+    "turing_texture": "vtkTuringTextureFilter",
+}
+_MISSING = set(surfacediffusion._functions.__all__) ^ set(CLASSES)
+assert not _MISSING, f"functions and classes differ: {sorted(_MISSING)}"
