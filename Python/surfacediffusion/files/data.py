@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,7 +16,6 @@ from .content import NAMES, FileError, write_atomically
 
 ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
            "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK polydata, NumPy (.npy)")
-ON_FACES = ("gifti", "mgh", "nifti", "npy", "vtk", "vtp")  # kinds that can have data at faces
 
 NO_VERTICES = ("an STL file numbers no vertices, so that values at vertices belong to none; allowed: "
                "values at faces, or a surface of another format")
@@ -75,7 +74,8 @@ class Data:
         columns  the numbers of these columns; default: all. Files of meshes keep their other
                  columns, other files then hold these alone
         """
-        if self.kind not in _WRITERS:
+        write = _FORMATS[self.kind].write if self.kind in _FORMATS else None
+        if write is None:
             raise FileError(f"{path}: values cannot be written as {NAMES[self.kind]}, the format of "
                             f"{self.path}; allowed: formats of values")
         self.check_name(path)
@@ -84,22 +84,23 @@ class Data:
             if np.shape(new) != (len(part.values), len(columns)):
                 raise ValueError(f"values have shape {np.shape(new)}; allowed: "
                                  f"{(len(part.values), len(columns))}")
-        write_atomically(path, _WRITERS[self.kind](self, values, columns))
+        write_atomically(path, write(self, values, columns))
 
 
 def read_data(path, on_faces=False) -> Data:
     """Read the data at vertices, or at faces, from a file of one of the formats in ALLOWED, or from its
     Content."""
     content = path if isinstance(path, Content) else read_content(path)
-    if on_faces and content.kind not in ON_FACES:
+    known = _FORMATS.get(content.kind)
+    if on_faces and not (known and known.on_faces):
         raise content.error(f"a {content.name} file, which has no data at faces; allowed: GIFTI, "
                             ".mgh, .mgz, .nii.gz, .npy, VTK polydata")
-    if content.kind not in _READERS:
+    if known is None:
         raise content.error(f"a {content.name} file, which has no data at vertices; "
                             f"allowed: {ALLOWED}")
     with reading(content):
         data = (_read_vtk(content, on_faces) if content.kind in ("vtk", "vtp")
-                else _READERS[content.kind](content))
+                else known.read(content))
         data.on_faces = on_faces
         if not data.names or not data.parts:
             where = "faces" if on_faces else "vertices"
@@ -125,16 +126,15 @@ def new_data(surface, path, names) -> Data:
         usual = list(range(len(names)))
         return Data(surface.path, kind, list(names), [Part(values)], usual=usual,
                     image=(surface.image, [(name, 0) for name in names]))
-    makers = {"gifti": gifti_data.new, "mgh": freesurfer_data.new_mgh, "npy": _new_npy,
-              "curv": freesurfer_data.new_curv}
-    if kind not in makers:
+    make = _FORMATS[kind].new if kind in _FORMATS else None
+    if make is None:
         allowed = ".func.gii, .shape.gii, .mgh, .mgz, .npy"
         if surface.kind in ("ply", "vtk", "vtp"):
             allowed += f", .{surface.kind} as the surface"
         raise FileError(f"{path}: the name announces no format for {len(names)} column(s) at "
                         f"vertices; allowed: {allowed}")
     return Data(surface.path, kind, list(names), [Part(values)], usual=range(len(names)),
-                image=makers[kind](surface, names))
+                image=make(surface, names))
 
 
 # ---- GIFTI ---------------------------------------------------------------------------------------
@@ -357,9 +357,26 @@ def _write_vtk(data, values, columns):
                            **{"cell_data" if data.on_faces else "point_data": arrays})
 
 
-_READERS = {"gifti": _read_gifti, "cifti": _read_cifti, "curv": _read_curv, "mgh": _read_volume,
-            "nifti": _read_volume, "annot": _read_annot, "label": _read_label, "npy": _read_npy,
-            "ply": _read_ply, "vtk": _read_vtk, "vtp": _read_vtk}
-_WRITERS = {"gifti": _write_gifti, "cifti": _write_cifti, "curv": _write_curv, "mgh": _write_volume,
-            "nifti": _write_volume, "label": _write_label, "npy": _write_npy, "ply": _write_ply,
-            "vtk": _write_vtk, "vtp": _write_vtk}
+@dataclass(frozen=True)
+class _Format:
+    """How a kind of file is read and, unless they are None, written and made anew."""
+
+    read: Callable[[Content], Data]
+    write: Callable[[Data, Any, list[int]], bytes] | None = None
+    new: Callable[[Any, Sequence[str]], Any] | None = None
+    on_faces: bool = False  #: files can have data at faces
+
+
+_FORMATS = {
+    "gifti": _Format(_read_gifti, _write_gifti, gifti_data.new, on_faces=True),
+    "cifti": _Format(_read_cifti, _write_cifti),
+    "curv": _Format(_read_curv, _write_curv, freesurfer_data.new_curv),
+    "mgh": _Format(_read_volume, _write_volume, freesurfer_data.new_mgh, on_faces=True),
+    "nifti": _Format(_read_volume, _write_volume, on_faces=True),
+    "annot": _Format(_read_annot),
+    "label": _Format(_read_label, _write_label),
+    "npy": _Format(_read_npy, _write_npy, _new_npy, on_faces=True),
+    "ply": _Format(_read_ply, _write_ply),
+    "vtk": _Format(_read_vtk, _write_vtk, on_faces=True),
+    "vtp": _Format(_read_vtk, _write_vtk, on_faces=True),
+}

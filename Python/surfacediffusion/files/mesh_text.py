@@ -218,5 +218,5 @@ def _has_other_normals(face):
                for corner in corners)
 
 
-READERS = {"off": read_off, "obj": read_obj}
-WRITERS = {"off": write_off, "obj": write_obj}
+#: The reader and the writer of each kind of file.
+FORMATS = {"off": (read_off, write_off), "obj": (read_obj, write_obj)}

@@ -15,7 +15,6 @@ from . import gifti_data, mesh_text, ply, stl, vtk_files
 from .content import Content, check_output_name, import_reader, on_disk, read_content, reading
 from .content import write_atomically
 
-KINDS = ("gifti", "freesurfer", "off", "obj", "ply", "stl", "vtk", "vtp")
 ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, VTK polydata"
 
 
@@ -42,7 +41,8 @@ class SurfaceFile:
         points = np.asarray(points)
         if points.shape != self.points.shape:
             raise ValueError(f"points have shape {points.shape}; allowed: {self.points.shape}")
-        data, normals = _WRITERS[self.kind](self, points)
+        _, write = _FORMATS[self.kind]
+        data, normals = write(self, points)
         write_atomically(path, data)
         return normals
 
@@ -52,10 +52,11 @@ def read_surface(path) -> SurfaceFile:
     content = path if isinstance(path, Content) else read_content(path)
     if content.kind == "curv" and _is_quad_surface(content):
         content = replace(content, kind="freesurfer")
-    if content.kind not in KINDS:
+    if content.kind not in _FORMATS:
         raise content.error(f"a {content.name} file, which has no surface; allowed: {ALLOWED}")
     with reading(content):
-        surface = _READERS[content.kind](content)
+        read, _ = _FORMATS[content.kind]
+        surface = read(content)
         surface.faces = _faces(surface.faces)
         _check(content, surface)
     return surface
@@ -166,13 +167,15 @@ def _write_freesurfer(surface, points):
 # ---- other meshes --------------------------------------------------------------------------------
 
 def _read_text(content):
-    points, faces = mesh_text.READERS[content.kind](content.bytes)
+    read, _ = mesh_text.FORMATS[content.kind]
+    points, faces = read(content.bytes)
     return SurfaceFile(content.path, content.kind, points, faces, image=content.bytes)
 
 
 def _write_text(surface, points):
     normals, _ = _normals(points, surface.faces)
-    return mesh_text.WRITERS[surface.kind](surface.image, points, normals)
+    _, write = mesh_text.FORMATS[surface.kind]
+    return write(surface.image, points, normals)
 
 
 def _read_ply(content):
@@ -211,9 +214,14 @@ def _write_vtk(surface, points):
     return data, "" if not found else "left out" if found[-1] is None else "computed again"
 
 
-_READERS = {"gifti": _read_gifti, "freesurfer": _read_freesurfer, "off": _read_text,
-            "obj": _read_text, "ply": _read_ply, "stl": _read_stl, "vtk": _read_vtk,
-            "vtp": _read_vtk}
-_WRITERS = {"gifti": _write_gifti, "freesurfer": _write_freesurfer, "off": _write_text,
-            "obj": _write_text, "ply": _write_ply, "stl": _write_stl, "vtk": _write_vtk,
-            "vtp": _write_vtk}
+#: The reader and the writer of each kind of file.
+_FORMATS = {
+    "gifti": (_read_gifti, _write_gifti),
+    "freesurfer": (_read_freesurfer, _write_freesurfer),
+    "off": (_read_text, _write_text),
+    "obj": (_read_text, _write_text),
+    "ply": (_read_ply, _write_ply),
+    "stl": (_read_stl, _write_stl),
+    "vtk": (_read_vtk, _write_vtk),
+    "vtp": (_read_vtk, _write_vtk),
+}
