@@ -41,7 +41,7 @@ struct CellInput : RunInput
     const Points centres = this->Centres();
     for (Index c = 0; c < this->Data.NumberOfCells; ++c)
     {
-      this->Data.Data(c, 0) = f(c, centres.row(c));
+      this->Data.Data.Values(c, 0) = f(c, centres.row(c));
     }
   }
 

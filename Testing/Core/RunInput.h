@@ -27,7 +27,7 @@ struct RunInput
     this->Data.Data.Values = Values(this->Vertices.rows(), 1);
     for (Eigen::Index i = 0; i < this->Vertices.rows(); ++i)
     {
-      this->Data.Data(i, 0) = this->Vertices(i, 2) + 0.1 * std::cos(7.0 * i);
+      this->Data.Data.Values(i, 0) = this->Vertices(i, 2) + 0.1 * std::cos(7.0 * i);
     }
   }
 

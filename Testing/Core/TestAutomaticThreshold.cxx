@@ -72,7 +72,8 @@ RunInput MakeInput(const Shape& surface, const Data& f, double noise = 0.0)
   RunInput input(surface);
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
-    input.Data.Data(i, 0) = f(input.Vertices.row(i)) + noise * Gauss(7, static_cast<Index>(i));
+    input.Data.Data.Values(i, 0) =
+      f(input.Vertices.row(i)) + noise * Gauss(7, static_cast<Index>(i));
   }
   return input;
 }
@@ -314,7 +315,7 @@ TEST(AutomaticThreshold, NoiseOfAStepIsRemovedAsByTotalVariation)
   for (const Shape& surface : { Globe(60), Icosphere(4) })
   {
     const Data step = [](const Eigen::RowVector3d& x) { return x[2] > 0.01 ? 1.0 : 0.0; };
-    const Values truth = MakeInput(surface, step).Data.Data;
+    const Values truth = MakeInput(surface, step).Data.Data.Values;
     for (const double noise : { 0.15, 0.2, 0.3 })
     {
       const RunInput input = MakeInput(surface, step, noise);
@@ -340,7 +341,7 @@ TEST(AutomaticThreshold, OneOutlierChangesNothingElsewhere)
   RunInput input = MakeInput(surface, UnitStep, 0.05);
   RunInput damaged = input;
   const Index outlier = 3000;
-  damaged.Data.Data(outlier, 0) = 50.0;
+  damaged.Data.Data.Values(outlier, 0) = 50.0;
   const Found without = FindEdges(input);
   const Found with = FindEdges(damaged);
   double edges = 0.0, values = 0.0;
@@ -443,7 +444,7 @@ TEST(AutomaticThreshold, ColorsCellsAndCorrelatedNoiseHaveTheirEdges)
   {
     for (int k = 0; k < 3; ++k)
     {
-      colors.Data.Data(i, k) =
+      colors.Data.Data.Values(i, k) =
         UnitStep(sphere.Vertices.row(i)) * (k == 1 ? 0.0 : 200.0) + 20.0 * Gauss(3, i, k);
     }
   }

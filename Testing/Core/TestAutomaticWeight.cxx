@@ -68,7 +68,7 @@ Noisy MakeNoisy(const Testing::Surface& s, const std::vector<char>& part, double
   {
     const bool inside = part[static_cast<std::size_t>(i)] != 0;
     data.Clean[i] = background + (inside ? 0.2 * std::sin(3.0 * s.Vertices(i, 1)) : 0.0);
-    data.Input.Data.Data(i, 0) = data.Clean[i] +
+    data.Input.Data.Data.Values(i, 0) = data.Clean[i] +
       (inside || noisyEverywhere ? sigma * Gaussian(static_cast<Index>(i), 4) : 0.0);
   }
   return data;
@@ -143,14 +143,15 @@ TEST(AutomaticWeight, KeepsMasksAndSpikesAndSaysSo)
     RunInput input(s);
     for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
     {
-      input.Data.Data(i, 0) = (spikes ? i % 97 == 0 : s.Vertices(i, 2) > 0.3) ? 1.0 : 0.0;
+      input.Data.Data.Values(i, 0) = (spikes ? i % 97 == 0 : s.Vertices(i, 2) > 0.3) ? 1.0 : 0.0;
     }
     SurfaceDiffusion::Run run(SerialFor());
     const Values u = StateOf(run, { input.Block() }, heat);
     const Surface& surface = *run.GetBlock(0).Surface;
     for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
     {
-      EXPECT_NEAR(u(surface.VertexOf(static_cast<Index>(i)), 0), input.Data.Data(i, 0), 1e-5);
+      EXPECT_NEAR(
+        u(surface.VertexOf(static_cast<Index>(i)), 0), input.Data.Data.Values(i, 0), 1e-5);
     }
     const std::vector<Warning> warnings = run.FindWarnings(Alone);
     ASSERT_EQ(warnings.size(), 1u);
@@ -242,7 +243,7 @@ TEST(AutomaticWeight, OfWhiteNoiseOnASignalWarnsOfNothing)
     RunInput input(Testing::Torus(50, 25));
     for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
     {
-      input.Data.Data(i, 0) = 0.5 * std::sin(2.0 * input.Vertices(i, 0)) +
+      input.Data.Data.Values(i, 0) = 0.5 * std::sin(2.0 * input.Vertices(i, 0)) +
         (input.Vertices(i, 1) > 0.4 ? 1.0 : 0.0) + sigma * Gaussian(static_cast<Index>(i), 3);
     }
     EXPECT_TRUE(WarningsOf(input, heat).empty()) << sigma;
@@ -265,13 +266,14 @@ Noisy BlurredCap(int level, double width, double sigma)
   for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
   {
     data.Clean[i] = s.Vertices(i, 2) > 0.5 ? 1.0 : 0.0;
-    data.Input.Data.Data(i, 0) = data.Clean[i];
+    data.Input.Data.Data.Values(i, 0) = data.Clean[i];
   }
   SurfaceDiffusion::Run run(SerialFor());
   const Values u = StateOf(run, { data.Input.Block() }, blur);
   for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
   {
-    data.Input.Data.Data(i, 0) = u(run.GetBlock(0).Surface->VertexOf(static_cast<Index>(i)), 0) +
+    data.Input.Data.Data.Values(i, 0) =
+      u(run.GetBlock(0).Surface->VertexOf(static_cast<Index>(i)), 0) +
       sigma * Gaussian(static_cast<Index>(i), 7);
   }
   return data;

@@ -62,7 +62,7 @@ void SetMissing(CellInput& input, const std::vector<char>& cells)
   {
     if (cells[c] != 0)
     {
-      input.Data.Data(static_cast<Eigen::Index>(c), 0) = NaN;
+      input.Data.Data.Values(static_cast<Eigen::Index>(c), 0) = NaN;
     }
   }
 }
@@ -140,7 +140,7 @@ TEST(CellData, TotalsAreKept)
 TEST(CellData, AModelThatChangesNothingReturnsTheirBits)
 {
   CellInput input(Torus(32, 20));
-  input.Data.Data(3, 0) = -0.0;
+  input.Data.Data.Values(3, 0) = -0.0;
   HeatSettings none;
   none.NumberOfTimeSteps = 0;
   const Values same = CellResultOf(input, none);
@@ -155,13 +155,13 @@ TEST(CellData, AModelThatChangesNothingReturnsTheirBits)
   Index missing = 0;
   for (Eigen::Index c = 0; c < filled.rows(); ++c)
   {
-    if (std::isnan(input.Data.Data(c, 0)))
+    if (std::isnan(input.Data.Data.Values(c, 0)))
     {
       ++missing;
       EXPECT_TRUE(std::isfinite(filled(c, 0)));
       continue;
     }
-    EXPECT_EQ(filled(c, 0), input.Data.Data(c, 0));
+    EXPECT_EQ(filled(c, 0), input.Data.Data.Values(c, 0));
   }
   EXPECT_GT(missing, 5);
 }
@@ -335,7 +335,7 @@ TEST(CellData, ExcludedCellsAreAsIfTheyWereNotThere)
     }
     else
     {
-      EXPECT_EQ(result(static_cast<Index>(t), 0), input.Data.Data(static_cast<Index>(t), 0));
+      EXPECT_EQ(result(static_cast<Index>(t), 0), input.Data.Data.Values(static_cast<Index>(t), 0));
     }
   }
   ASSERT_LT(rows.size() + 5, excluded.size());
@@ -397,10 +397,10 @@ TEST(CellData, TheFidelityTermIsThatOfTheCells)
         const Index v = mesh.TriangleVertices()(t, a);
         x[a] = input.Vertices.row(mesh.InputVertex()[static_cast<std::size_t>(v)]);
         at[a] = values(v, 0);
-        if (!std::isnan(input.Data.Data(row, 0)))
+        if (!std::isnan(input.Data.Data.Values(row, 0)))
         {
           sum += 3.5 * input.Data.FidelityFactors.Values[static_cast<std::size_t>(row)] * area /
-            3.0 * std::pow(input.Data.Data(row, 0) - at[a], 2);
+            3.0 * std::pow(input.Data.Data.Values(row, 0) - at[a], 2);
         }
       }
       const Eigen::RowVector3d edge1 = x[1] - x[0], edge2 = x[2] - x[0];
@@ -566,10 +566,10 @@ TEST(CellData, ErrorsNameTheCell)
   const CellInput good(Torus(16, 10));
   EXPECT_EQ(messageOf(good), "");
   CellInput bad = good;
-  bad.Data.Data(5, 0) = std::numeric_limits<double>::infinity();
+  bad.Data.Data.Values(5, 0) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(messageOf(bad), "InputArray is infinite at cell 5; allowed: finite values and NaN");
   bad = good;
-  bad.Data.Data(5, 0) = NaN;
+  bad.Data.Data.Values(5, 0) = NaN;
   bad.Data.Fixed.Values.assign(static_cast<std::size_t>(bad.Data.NumberOfCells), 1);
   bad.Data.Fixed.OnCells = true;
   EXPECT_NE(messageOf(bad).find("is NaN where FixedArray holds it at cell 5"), std::string::npos);

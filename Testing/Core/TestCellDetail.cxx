@@ -164,12 +164,12 @@ TEST(CellDetail, ImpulsesSpreadAsWidelyAsOnPoints)
         {
           SurfaceDiffusion::Run run(SerialFor()), other(SerialFor());
           cells.Data.Data.Values.setZero();
-          cells.Data.Data(place, 0) = 1.0;
+          cells.Data.Data.Values(place, 0) = 1.0;
           const Values onCells = CellResultOf(run, cells, settings);
           const CellTransfer& transfer = run.GetBlock(0).Cells->Transfer;
           ofCells += Width(transfer.CellAreas(), onCells / transfer.CellAreas()[place]);
           points.Data.Data.Values.setZero();
-          points.Data.Data(place, 0) = 1.0;
+          points.Data.Data.Values(place, 0) = 1.0;
           const Values onPoints = StateOf(other, { points.Block() }, settings);
           const Vector& areas = other.GetBlock(0).Surface->Mesh().ControlAreas();
           ofPoints += Width(areas, onPoints / areas.dot(onPoints.col(0)));
@@ -344,7 +344,7 @@ TEST(CellDetail, TimeStepsTendToTheSteadyState)
   for (CellInput& input : Shapes())
   {
     input.Data.Data.Values += 0.3 * WhiteNoise(input.Data.NumberOfCells);
-    input.Data.Data(5, 0) = NaN;
+    input.Data.Data.Values(5, 0) = NaN;
     HeatSettings settings = Heat(1e4, 6, TimeIntegrator::FirstOrder);
     settings.FidelityWeight = 0.2;
     const Values late = CellResultOf(input, settings);

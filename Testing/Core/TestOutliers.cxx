@@ -49,7 +49,7 @@ RunInput Sampled(int level, const std::function<double(Index, const Eigen::RowVe
   RunInput input(Testing::Icosphere(level));
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
-    input.Data.Data(i, 0) = f(static_cast<Index>(i), input.Vertices.row(i));
+    input.Data.Data.Values(i, 0) = f(static_cast<Index>(i), input.Vertices.row(i));
   }
   return input;
 }
@@ -67,7 +67,7 @@ TEST(Outliers, OfOnePointAreAWarning)
   {
     RunInput input = Sampled(level, Step);
     EXPECT_EQ(NumberOfWarnings({ input.Block() }, TensorDiffusionSettings()), 0);
-    input.Data.Data(40, 0) = 50.0;
+    input.Data.Data.Values(40, 0) = 50.0;
     EXPECT_EQ(NumberOfWarnings({ input.Block() }, TensorDiffusionSettings()), 1) << level;
     EXPECT_EQ(NumberOfWarnings({ input.Block() }, TotalVariationSettings()), 1);
     SegmentationSettings segmentation;
@@ -118,7 +118,7 @@ TEST(Outliers, AreNotFoundInOrdinaryData)
 TEST(Outliers, AreThoseOfAllBlocksTogether)
 {
   RunInput outlier = Sampled(3, Step);
-  outlier.Data.Data(40, 0) = 50.0;
+  outlier.Data.Data.Values(40, 0) = 50.0;
   const RunInput ordinary = Sampled(3, Step);
   EXPECT_EQ(NumberOfWarnings({ ordinary.Block(), outlier.Block() }, TensorDiffusionSettings()), 1);
   const RunInput large =

@@ -88,7 +88,7 @@ TEST(Outputs, PointsThatTakeNoPartKeepTheDataAndAreZeroInOtherOutputs)
   input.Vertices.conservativeResize(n + 1, 3);
   input.Vertices.row(n) << 5.0, 5.0, 5.0; // of no triangle
   input.Data.Data.Values.conservativeResize(n + 1, 1);
-  input.Data.Data(n, 0) = 7.25;
+  input.Data.Data.Values(n, 0) = 7.25;
   SurfaceDiffusion::Run run(SerialFor());
   const WithSquares settings;
   StateOf(run, { input.Block() }, settings);

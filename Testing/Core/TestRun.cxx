@@ -51,7 +51,7 @@ TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
   RunInput input(Testing::Icosphere(3));
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
-    input.Data.Data(i, 0) =
+    input.Data.Data.Values(i, 0) =
       (input.Vertices(i, 2) > 0.5 ? 1.0 : 0.0) + 0.2 * (2.0 * UniformRandom(3, 0, i) - 1.0);
   }
   TotalVariationSettings settings;
@@ -71,7 +71,7 @@ TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
       Values difference = state;
       for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
       {
-        difference(i, 0) -= input.Data.Data(mesh.InputVertex()[i], 0);
+        difference(i, 0) -= input.Data.Data.Values(mesh.InputVertex()[i], 0);
       }
       EXPECT_NEAR(Testing::RootMeanSquare(mesh, difference), 0.1, 0.002)
         << static_cast<int>(mode) << static_cast<int>(discretization);
@@ -141,7 +141,7 @@ TEST(Run, AfterAnyEditEqualsANewRun)
       StateOf(run, { input.Block() }, settings), StateOf(fresh, { input.Block() }, settings))
       << edit;
   };
-  input.Data.Data(7, 0) = 3.0;
+  input.Data.Data.Values(7, 0) = 3.0;
   expectAsNew("data");
   input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
   input.Data.Mask.Values[9] = 1;
@@ -168,13 +168,13 @@ TEST(Run, FactorisesAgainOnlyIfTheMatrixChanges)
     return run.GetBlock(0).Solvers.Get(SolverPurpose::Step)->NumberOfFactorizations();
   };
   EXPECT_EQ(factorizationsAfterARun(), 1);
-  input.Data.Data(7, 0) += 1.0;
+  input.Data.Data.Values(7, 0) += 1.0;
   EXPECT_EQ(factorizationsAfterARun(), 1);
   settings.NumberOfTimeSteps += 2;
   EXPECT_EQ(factorizationsAfterARun(), 1);
   settings.TimeStep *= 2.0;
   EXPECT_EQ(factorizationsAfterARun(), 2);
-  input.Data.Data(8, 0) += 1.0;
+  input.Data.Data.Values(8, 0) += 1.0;
   EXPECT_EQ(factorizationsAfterARun(), 2);
 }
 
@@ -277,7 +277,7 @@ TEST(Run, EachWarningIsReportedOncePerCause)
   EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty());
   settings.TimeStep = 0.5;
   EXPECT_TRUE(update().empty());
-  input.Data.Data(3, 0) = 2.0;
+  input.Data.Data.Values(3, 0) = 2.0;
   EXPECT_TRUE(update().empty());
   input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
   EXPECT_EQ(update().size(), 1u); // a mask without effect
@@ -358,7 +358,8 @@ TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)
   double missing = 0.0;
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
-    input.Data.Data(i, 0) = input.Vertices(i, 2) + 0.3 * std::sin(3.0 * input.Vertices(i, 0));
+    input.Data.Data.Values(i, 0) =
+      input.Vertices(i, 2) + 0.3 * std::sin(3.0 * input.Vertices(i, 0));
     input.Data.Mask.Values[static_cast<std::size_t>(i)] = patch(i);
     missing += patch(i);
   }
@@ -400,7 +401,7 @@ TEST(Run, CoincidentPointsHaveRandomNumbersOfTheirOwn)
 TEST(Run, InvalidArraysAreErrorsThatNameThem)
 {
   RunInput input(Testing::Icosphere(2));
-  input.Data.Data(3, 0) = std::numeric_limits<double>::infinity();
+  input.Data.Data.Values(3, 0) = std::numeric_limits<double>::infinity();
   SurfaceDiffusion::Run run(SerialFor());
   try
   {
@@ -480,7 +481,7 @@ TEST(Run, ResultsAreFinishedAgainOnlyIfTheirStepOrSettingsChange)
   settings.TimeStep = 0.5;
   StateOf(run, { input.Block() }, settings);
   EXPECT_EQ(count, 5);
-  input.Data.Data(3, 0) += 1.0;
+  input.Data.Data.Values(3, 0) += 1.0;
   StateOf(run, { input.Block() }, settings);
   EXPECT_EQ(count, 6);
 }

@@ -32,7 +32,7 @@ RunInput NoisyNormals()
   {
     for (int k = 0; k < 3; ++k)
     {
-      input.Data.Data(i, k) = input.Vertices(i, k) + std::cos(37.0 * (3.0 * i + k));
+      input.Data.Data.Values(i, k) = input.Vertices(i, k) + std::cos(37.0 * (3.0 * i + k));
     }
   }
   return input;

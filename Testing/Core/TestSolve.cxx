@@ -167,6 +167,6 @@ TEST(Solve, ErrorsNameTheSettingOrTheArray)
   EXPECT_EQ(ErrorOf(fields, {}), "Mask has 5 rows; allowed: 642, one per point");
   fields.Mask.Values.clear();
   EXPECT_EQ(ErrorOf(Fields(), {}), "Data has 0 values; allowed: a row for each point or cell");
-  fields.Data(7, 0) = std::numeric_limits<double>::infinity();
+  fields.Data.Values(7, 0) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(ErrorOf(fields, {}), "Data is infinite at point 7; allowed: finite values and NaN");
 }

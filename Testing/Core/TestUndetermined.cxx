@@ -53,7 +53,7 @@ RunInput TwoSpheres(Eigen::Index columns = 1)
   {
     for (Eigen::Index k = 0; k < columns; ++k)
     {
-      input.Data.Data(i, k) =
+      input.Data.Data.Values(i, k) =
         100.0 + (input.Vertices(i, 2) > 0.2 ? 1.0 : 0.0) + 0.1 * std::cos(37.0 * (3.0 * i + k));
     }
   }
@@ -274,7 +274,7 @@ TEST(Undetermined, FixedAndSeededPointsDetermineTheirComponent)
   const auto heat = Make<HeatSettings>([](HeatSettings& s) { s.Mode = HeatMode::SteadyState; });
   SurfaceDiffusion::Run run(SerialFor());
   EXPECT_EQ(Count(Update(run, { input.Block() }, heat), "no known value"), 0);
-  EXPECT_NEAR(AtPoints(run.GetBlock(0))(SizeOfFirst(), 0), input.Data.Data(n - 1, 0), 1e-6);
+  EXPECT_NEAR(AtPoints(run.GetBlock(0))(SizeOfFirst(), 0), input.Data.Data.Values(n - 1, 0), 1e-6);
 
   input.Data.Fixed.Values.clear();
   input.Data.Seeds.Values.assign(n, 0);
@@ -390,7 +390,7 @@ TEST(Undetermined, HoldingKnownValuesIsNoErrorWhereComponentsAreUnknown)
   const auto settings = Make<HeatSettings>([](HeatSettings& s) { s.HoldKnownValues = true; });
   SurfaceDiffusion::Run run(SerialFor());
   EXPECT_EQ(Count(Update(run, { input.Block() }, settings), "no known value"), 1);
-  EXPECT_EQ(AtPoints(run.GetBlock(0))(5, 0), input.Data.Data(5, 0));
+  EXPECT_EQ(AtPoints(run.GetBlock(0))(5, 0), input.Data.Data.Values(5, 0));
 }
 
 } // namespace SurfaceDiffusion

@@ -39,7 +39,7 @@ std::map<SolverPurpose, long> FactorizationsOf(ModelSettings settings)
   RunInput input(Icosphere(3));
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
-    input.Data.Data(i, 0) = (input.Vertices(i, 2) > 0.2) + 0.1 * std::cos(7.0 * i);
+    input.Data.Data.Values(i, 0) = (input.Vertices(i, 2) > 0.2) + 0.1 * std::cos(7.0 * i);
   }
   settings.Solver = SolverMethod::Direct;
   settings.NumberOfTimeSteps = NumberOfSteps;
