@@ -567,8 +567,8 @@ TEST(Segmentation, FidelityOfZeroIsAMissingValueAndOfTwoTwiceLambda)
   {
     Segmentation::Input input = WithMeans(f, {});
     input.Data.Missing = isMissing ? hole : input.Data.Missing;
-    input.Data.FidelityFactors.Values = Vector::Constant(f.rows(), factor);
-    input.Data.FidelityFactors.Values = hole.select(inHole, input.Data.FidelityFactors.Values);
+    input.Data.FidelityFactors = Vector::Constant(f.rows(), factor);
+    input.Data.FidelityFactors = hole.select(inHole, input.Data.FidelityFactors);
     input.Means = FindRegionMeans(sphere.Mesh, input.Data, 2, {}, 0, Ids(sphere.Mesh));
     Segmentation::Settings settings;
     settings.UpdateMeans = true;
