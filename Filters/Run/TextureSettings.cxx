@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -29,6 +30,18 @@ std::vector<const char*> WordsOfKinetics()
     words.push_back(GetKinetics(static_cast<KineticsName>(k)).Name);
   }
   return words;
+}
+
+std::string DescribeKinetics()
+{
+  std::string text = "The reaction terms F, G. ";
+  for (int k = 0; k < NumberOfKinetics; ++k)
+  {
+    const Kinetics& terms = GetKinetics(static_cast<KineticsName>(k));
+    text += std::string(terms.Name) + ": " + terms.Formula + ". ";
+  }
+  return text +
+    "All are multiplied by ReactionRate. Use AutomaticTimeStep with kinetics other than Turing.";
 }
 
 SettingRange RangeOf(const Kinetics::Parameter& parameter)
@@ -80,15 +93,8 @@ void TextureSettings::Visit(SettingVisitor& visitor)
 {
   this->TimeSettings::Visit(visitor);
   VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false });
-  visitor.Choice({ "Kinetics", "",
-                   "The reaction terms F, G. Turing: gamma - u1 u2, u1 u2 - u2 - mu. "
-                   "Schnakenberg: b - u1 u2^2, a - u2 + u1 u2^2. GrayScott: 25 (f (1 - u1) - u1 "
-                   "u2^2), 25 (u1 u2^2 - (f + k) u2). Brusselator: B u2 - u1 u2^2, A - (B + 1) "
-                   "u2 + u1 u2^2. GiererMeinhardt: nu (u2^2 - u1), u2^2/(u1 (1 + kappa u2^2)) - "
-                   "u2. FitzHughNagumo: epsilon (u2 - beta u1 - alpha), u2 - u2^3 - u1. All are "
-                   "multiplied by ReactionRate. Use AutomaticTimeStep with kinetics other than "
-                   "Turing." },
-    this->Kinetics, WordsOfKinetics());
+  static const std::string kinetics = DescribeKinetics();
+  visitor.Choice({ "Kinetics", "", kinetics.c_str() }, this->Kinetics, WordsOfKinetics());
   visitor.Number({ "ReactionRate", "1/time",
                    "s, the factor of F and G, above 0, in 1/time. The natural unit of time is "
                    "1/s." },

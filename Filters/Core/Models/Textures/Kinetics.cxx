@@ -171,7 +171,7 @@ constexpr auto AnyFinite = Kinetics::Range::AnyFinite;
 const Kinetics::Parameter None = { nullptr, 0.0, AnyFinite, nullptr };
 
 const std::array<Kinetics, NumberOfKinetics> List = {
-  Row<Turing>("Turing", "F = s(gamma - u1 u2), G = s(u1 u2 - u2 - mu)",
+  Row<Turing>("Turing", "gamma - u1 u2, u1 u2 - u2 - mu",
     "A. Turing, Phil. Trans. R. Soc. B 237, 1952; G. Turk, SIGGRAPH 1991; (24)",
     { { { "GrowthRate", 16.0, Positive,
           "gamma of Turing, above 0, in units of ReactionRate: the production rate of u1." },
@@ -180,7 +180,7 @@ const std::array<Kinetics, NumberOfKinetics> List = {
         "u2." },
       None } },
     true),
-  Row<Schnakenberg>("Schnakenberg", "F = s(b - u1 u2^2), G = s(a - u2 + u1 u2^2)",
+  Row<Schnakenberg>("Schnakenberg", "b - u1 u2^2, a - u2 + u1 u2^2",
     "J. Schnakenberg, J. Theor. Biol. 81, 1979",
     { { { "ActivatorSupply", 0.01, Positive,
           "a of Schnakenberg, above 0, in units of ReactionRate: the supply rate of u2." },
@@ -188,7 +188,7 @@ const std::array<Kinetics, NumberOfKinetics> List = {
         "b of Schnakenberg, above 0, in units of ReactionRate: the supply rate of u1." },
       None } },
     true),
-  Row<GrayScott>("GrayScott", "F = 25 s(f(1 - u1) - u1 u2^2), G = 25 s(u1 u2^2 - (f + k) u2)",
+  Row<GrayScott>("GrayScott", "25 (f (1 - u1) - u1 u2^2), 25 (u1 u2^2 - (f + k) u2)",
     "P. Gray, S. Scott, Chem. Eng. Sci. 38, 1983; J. Pearson, Science 261, 1993",
     { { { "FeedRate", 0.05, Positive,
           "f of GrayScott, above 0, in units of 25 ReactionRate: the rate at which the solution is "
@@ -198,7 +198,7 @@ const std::array<Kinetics, NumberOfKinetics> List = {
         "to FeedRate." },
       None } },
     true),
-  Row<Brusselator>("Brusselator", "F = s(B u2 - u1 u2^2), G = s(A - (B + 1) u2 + u1 u2^2)",
+  Row<Brusselator>("Brusselator", "B u2 - u1 u2^2, A - (B + 1) u2 + u1 u2^2",
     "I. Prigogine, R. Lefever, J. Chem. Phys. 48, 1968",
     { { { "ReactantA", 2.0, Positive,
           "A of Brusselator, above 0, in units of ReactionRate: the supply rate of u2." },
@@ -207,8 +207,7 @@ const std::array<Kinetics, NumberOfKinetics> List = {
         "u1." },
       None } },
     true),
-  Row<GiererMeinhardt>("GiererMeinhardt",
-    "F = s nu(u2^2 - u1), G = s(u2^2/(u1 (1 + kappa u2^2)) - u2)",
+  Row<GiererMeinhardt>("GiererMeinhardt", "nu (u2^2 - u1), u2^2/(u1 (1 + kappa u2^2)) - u2",
     "A. Gierer, H. Meinhardt, Kybernetik 12, 1972",
     { { { "InhibitorDecayRate", 1.05, Positive,
           "nu of GiererMeinhardt, above 0, in units of ReactionRate: the decay rate of the "
@@ -218,8 +217,7 @@ const std::array<Kinetics, NumberOfKinetics> List = {
         "With it, spots become stripes." },
       None } },
     true),
-  Row<FitzHughNagumo>("FitzHughNagumo",
-    "F = s epsilon(u2 - beta u1 - alpha), G = s(u2 - u2^3 - u1)",
+  Row<FitzHughNagumo>("FitzHughNagumo", "epsilon (u2 - beta u1 - alpha), u2 - u2^3 - u1",
     "R. FitzHugh, Biophys. J. 1, 1961; J. Nagumo et al., Proc. IRE 50, 1962",
     { { { "RecoveryRate", 1.2, Positive,
           "epsilon of FitzHughNagumo, above 0, in units of ReactionRate: the rate of the recovery "

@@ -44,7 +44,7 @@ struct Kinetics
   };
 
   const char* Name;
-  const char* Formula;
+  const char* Formula; ///< F and G, divided by the reaction rate
   const char* Reference;
   std::array<Parameter, 3> Parameters;
   bool NonNegative; ///< u1, u2 are concentrations
