@@ -267,15 +267,12 @@ inline std::vector<ModelKind> AllModelKinds()
       },
       Content::ColorsOnCells),
   };
-  for (const auto& [name, kinetics] : { std::pair("Turing", KineticsName::Turing),
-         std::pair("Schnakenberg", KineticsName::Schnakenberg),
-         std::pair("GrayScott", KineticsName::GrayScott),
-         std::pair("Brusselator", KineticsName::Brusselator),
-         std::pair("GiererMeinhardt", KineticsName::GiererMeinhardt),
-         std::pair("FitzHughNagumo", KineticsName::FitzHughNagumo) })
+  for (int k = 0; k < NumberOfKinetics; ++k)
   {
+    const auto kinetics = static_cast<KineticsName>(k);
     kinds.push_back(MakeKind<Texture>(
-      name, 3, [kinetics = kinetics](Texture& s) { s.Kinetics = kinetics; }, Content::Nothing));
+      GetKinetics(kinetics).Name, 3, [kinetics](Texture& s) { s.Kinetics = kinetics; },
+      Content::Nothing));
   }
   for (const auto& [lagged, implicit, steady, model] :
     { std::tuple("OpponentColors", "OpponentColorsImplicit", "OpponentColorsSteadyState",
