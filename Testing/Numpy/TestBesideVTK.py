@@ -127,7 +127,7 @@ CASES = [
 ]
 
 
-def run_class(filter_classes.CLASSES[function], mesh, arrays, properties):
+def run_class(name, mesh, arrays, properties):
     """The output of the filter."""
     algorithm = getattr(vtkSurfaceDiffusion, name)()
     for keyword, array in arrays.items():
@@ -164,7 +164,8 @@ class BesideVTK(unittest.TestCase):
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore", sd.SurfaceDiffusionWarning)
                     found = getattr(functions, function)(mesh, **arrays, **properties)
-                self.assert_same(found, run_class(filter_classes.CLASSES[function], mesh, arrays, properties))
+                name = filter_classes.CLASSES[function]
+                self.assert_same(found, run_class(name, mesh, arrays, properties))
 
     def test_blocks_give_the_bits_of_the_classes(self):
         blocks = pyvista.MultiBlock([rough_ball(), None, rough_ball().scale(3.0, inplace=False)])
