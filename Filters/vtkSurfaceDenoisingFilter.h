@@ -102,7 +102,8 @@ public:
   /**
    * The kind of surface of the last update, given or found: SURFACE_TYPE_CAD or
    * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, if no noise was found,
-   * and if components or blocks of composite data are of different kinds.
+   * and if components or blocks of composite data are of different kinds; those without noise do
+   * not count.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveSurfaceType, int);
 

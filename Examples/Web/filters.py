@@ -143,7 +143,9 @@ def run_surface_denoising(mesh, _, options, progress):
     result = sd.denoise_mesh(mesh.surface, noise_level=options["noise"], full_output=True,
                              surface_type=SURFACES[int(options["type"])], progress=progress)
     return Outcome(None, {"Displacement": result.points - mesh.surface.points}, points=result.points,
-                   note=f"{result.surface_type} surface, noise of {result.noise_level:.3g}")
+                   note="no noise was found" if result.noise_level == 0 else
+                   f"{result.surface_type.replace('Automatic', 'mixed')} surface, "
+                   f"noise of {result.noise_level:.3g}")
 
 
 def run_texture(mesh, _, options, progress):

@@ -36,7 +36,14 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
   if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0)
   {
     Sentence text("no noise was found, so that no point moves (to remove some, set ");
-    warnings.push_back({ text << Word::Setting("NoiseLevel") << ")", this->SurfaceVersion });
+    text << Word::Setting("NoiseLevel") << ")";
+    if (this->Found.NoiseLevel > 0.0) // given
+    {
+      text = Sentence(Word::Setting("NoiseLevel"));
+      text << " is " << this->Found.NoiseLevel
+           << ", less than 1e-4 mean edge lengths, so that no point moves";
+    }
+    warnings.push_back({ text, this->SurfaceVersion });
   }
   if (this->Found.FarVertices > 0)
   {

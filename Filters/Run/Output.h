@@ -51,7 +51,7 @@ enum class Combination
   Sum,
   Largest,
   Mean, ///< weighted by Output::Weight
-  Common ///< 0 if they differ
+  Common ///< that of all surfaces that have one other than 0; 0 if they differ
 };
 
 /// Polylines. Curve l has the points Corners[Begin[l]] to Corners[Begin[l + 1] - 1], which are rows

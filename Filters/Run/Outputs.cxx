@@ -4,6 +4,8 @@
 
 #include "Run/CellDirections.h"
 
+#include <set>
+
 namespace SurfaceDiffusion
 {
 
@@ -142,6 +144,7 @@ std::map<std::string, Values> CombineNumbers(
 {
   std::map<std::string, Values> numbers;
   std::map<std::string, double> weights;
+  std::set<std::string> different; ///< of the numbers that should be common
   for (std::size_t s = 0; s < surfaces.size(); ++s)
   {
     for (const Output& output : *surfaces[s])
@@ -172,12 +175,23 @@ std::map<std::string, Values> CombineNumbers(
                                  : Values(Values::Zero(number.rows(), number.cols()));
           break;
         case Combination::Common:
-          number *= number == output.Rows ? 1.0 : 0.0;
+          if (number.isZero(0.0))
+          {
+            number = output.Rows;
+          }
+          else if (!output.Rows.isZero(0.0) && number != output.Rows)
+          {
+            different.insert(output.Name);
+          }
           break;
         case Combination::Reported:
           break;
       }
     }
+  }
+  for (const std::string& name : different)
+  {
+    numbers[name].setZero();
   }
   return numbers;
 }

@@ -378,6 +378,16 @@ class OtherCommands(CommandTest):
                                 fixed=north)
         np.testing.assert_array_equal(found.points, expected.astype(found.points.dtype))
 
+    def test_denoise_mesh_says_if_no_point_moves(self):
+        points, faces = samples.sphere(4)
+        samples.write_surface("clean.surf.gii", points, faces)
+        for options, text in (("", "no noise was found, no point moved"),
+                              ("--noise 1e-9", "no point moved")):
+            code, out, error = run("denoise-mesh", "clean.surf.gii", "same.surf.gii", *options.split())
+            self.assertEqual(code, 0)
+            self.assertRegex(out, rf"^same.surf.gii: {text}, ")
+            self.assertIn("so that no point moves", error)
+
     def test_denoise_mesh_merges_split_vertices(self):
         noisy = POINTS * (1 + np.random.default_rng(9).normal(0, 0.02, (N, 1)))
         split = noisy[FACES].reshape(-1, 3)

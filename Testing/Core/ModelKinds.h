@@ -39,13 +39,13 @@ enum class Exemption
 {
   None,
   Numbering, ///< it starts on a coarser mesh, which depends on the numbering
-  Allocation ///< one solver is used for systems with different numbers of columns in turn
+  Energy ///< its energy can rise: eps is halved, or the scheme is explicit
 };
 
 /// A model with settings that take a way of their own through its code.
 struct ModelKind
 {
-  const char* Name;
+  std::string Name;
   /// The settings. The model that is made with them is written to `made`, if that is not null.
   std::function<std::shared_ptr<RunSettings>(Model** made)> Make;
   Content Data = Content::Scalars;
@@ -56,10 +56,11 @@ struct ModelKind
   {
     return this->Data == Content::UnitVectors || this->Data == Content::UnitVectorsOnCells;
   }
-  int NumberOfComponents() const
+  bool HasScalars() const
   {
-    return this->Data == Content::Scalars || this->Data == Content::ScalarsOnCells ? 1 : 3;
+    return this->Data == Content::Scalars || this->Data == Content::ScalarsOnCells;
   }
+  int NumberOfComponents() const { return this->HasScalars() ? 1 : 3; }
 };
 
 inline void PrintTo(const ModelKind& kind, std::ostream* os)
@@ -68,7 +69,7 @@ inline void PrintTo(const ModelKind& kind, std::ostream* os)
 }
 
 template <typename ModelSettings>
-ModelKind MakeKind(const char* name, int steps, std::function<void(ModelSettings&)> set = {},
+ModelKind MakeKind(std::string name, int steps, std::function<void(ModelSettings&)> set = {},
   Content data = Content::Scalars, Exemption from = Exemption::None)
 {
   struct Watched : ModelSettings
@@ -84,7 +85,7 @@ ModelKind MakeKind(const char* name, int steps, std::function<void(ModelSettings
       return model;
     }
   };
-  return { name,
+  return { std::move(name),
     [steps, set = std::move(set)](Model** made) -> std::shared_ptr<RunSettings>
     {
       auto settings = std::make_shared<Watched>();
@@ -197,7 +198,7 @@ inline std::vector<ModelKind> AllModelKinds()
     MakeKind<Harmonic>("Harmonic", 2, {}, Content::UnitVectors),
     MakeKind<Harmonic>(
       "HarmonicExplicit", 2, [](Harmonic& s) { s.Scheme = HarmonicMap::Scheme::ExplicitReaction; },
-      Content::UnitVectors),
+      Content::UnitVectors, Exemption::Energy),
     MakeKind<Harmonic>(
       "HarmonicMinimizing", 1,
       [](Harmonic& s) { s.Scheme = HarmonicMap::Scheme::MinimizingMovement; },
@@ -211,7 +212,7 @@ inline std::vector<ModelKind> AllModelKinds()
         s.Scheme = HarmonicMap::Scheme::ExplicitReaction;
         s.LineField = true;
       },
-      Content::UnitVectors),
+      Content::UnitVectors, Exemption::Energy),
     MakeKind<Harmonic>(
       "HarmonicDirect", 2,
       [](Harmonic& s)
@@ -231,12 +232,13 @@ inline std::vector<ModelKind> AllModelKinds()
       Content::UnitVectors),
     MakeKind<Harmonic>("HarmonicOnCells", 2, {}, Content::UnitVectorsOnCells),
 
-    MakeKind<Shah>("MumfordShah", 40),
+    MakeKind<Shah>("MumfordShah", 40, {}, Content::Scalars, Exemption::Energy),
     MakeKind<Shah>(
-      "MumfordShahGivenScales", 20, [](Shah& s) { s.AutomaticThreshold = false; }, Content::Colors),
+      "MumfordShahGivenScales", 20, [](Shah& s) { s.AutomaticThreshold = false; }, Content::Colors,
+      Exemption::Energy),
     MakeKind<Shah>(
       "MumfordShahOnCells", 10, [](Shah& s) { s.AutomaticThreshold = false; },
-      Content::ScalarsOnCells),
+      Content::ScalarsOnCells, Exemption::Energy),
 
     MakeKind<Tensor>("Beltrami", 2, {}, Content::Colors),
     MakeKind<Tensor>("BeltramiOnCells", 4, {}, Content::ScalarsOnCells),
@@ -289,8 +291,7 @@ inline std::vector<ModelKind> AllModelKinds()
         set(s);
       };
     };
-    kinds.push_back(MakeKind<TV>(lagged, 2, setModel, Content::Colors,
-      model == ColorModel::Opponent ? Exemption::Allocation : Exemption::None));
+    kinds.push_back(MakeKind<TV>(lagged, 2, setModel, Content::Colors));
     kinds.push_back(MakeKind<TV>(implicit, 2, and_(setImplicit), Content::Colors));
     kinds.push_back(MakeKind<TV>(steady, 1, and_(setSteady), Content::Colors));
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CellRun.h"
 #include "Meshes.h"
+#include "ThreadedFor.h"
 
 #include "Core/Operators/CellTransfer.h"
 
@@ -174,6 +175,9 @@ TEST(CellTransfer, ThereAndBackKeepsAThirdOfWhiteNoise)
   const double before = Deviation(transfer.CellAreas(), noise);
   const Values pf = transfer.ToVertices(noise, Vector::Ones(noise.rows())).Of;
   EXPECT_NEAR(transfer.NoiseGain(), 1.0 / std::sqrt(6.0), 0.01);
+  const ThreadedFor threads(3);
+  const CellTransfer threaded(*mesh, input.Data.Cells, input.Data.NumberOfCells, threads);
+  EXPECT_EQ(threaded.NoiseGain(), transfer.NoiseGain());
   EXPECT_NEAR(Deviation(mesh->ControlAreas(), pf), before * transfer.NoiseGain(), 0.005 * before);
   const Values back = transfer.ToCells(pf);
   EXPECT_NEAR(Deviation(transfer.CellAreas(), back), 0.31 * before, 0.01 * before);

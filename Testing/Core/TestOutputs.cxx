@@ -139,5 +139,8 @@ TEST(Outputs, NumbersOfSeveralSurfacesAreCombinedAsTheySay)
   EXPECT_EQ(numbers.at("mean")(0, 0), 2.0);
   EXPECT_EQ(numbers.at("common")(0, 0), 0.0);
   EXPECT_EQ(CombineNumbers({ &b, &b }, 0).at("common")(0, 0), 5.0);
+  const OutputList none = list(0.0, 1.0);
+  EXPECT_EQ(CombineNumbers({ &none, &b, &none }, 0).at("common")(0, 0), 5.0);
+  EXPECT_EQ(CombineNumbers({ &a, &b, &b }, 0).at("common")(0, 0), 0.0);
   EXPECT_EQ(CombineNumbers({ &a }, 0).at("mean")(0, 0), 1.0);
 }

@@ -382,6 +382,50 @@ TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)
   EXPECT_EQ(TotalVariationSettings().InitialFill, InitialFill::Mean);
 }
 
+TEST(Run, SteadyStateDoesNotDependOnTheInitialFillNorOnMissingData)
+{
+  RunInput input(Testing::Icosphere(3));
+  input.Data.Mask.Values.assign(static_cast<std::size_t>(input.Vertices.rows()), 0);
+  std::fill_n(input.Data.Mask.Values.begin(), 60, 1);
+  HeatSettings settings;
+  settings.Mode = HeatMode::SteadyState;
+  settings.FidelityWeight = 0.5;
+  std::vector<Values> states;
+  for (const InitialFill fill :
+    { InitialFill::Mean, InitialFill::Input, InitialFill::Noise, InitialFill::Harmonic })
+  {
+    settings.InitialFill = fill;
+    SurfaceDiffusion::Run run(SerialFor());
+    states.push_back(StateOf(run, { input.Block() }, settings));
+    EXPECT_LT((states.back() - states.front()).cwiseAbs().maxCoeff(), 1e-9);
+    input.Data.Data.Values(7, 0) += 0.3; // within the range of the data
+  }
+}
+
+TEST(Run, NoiseOfTexturesHasTheWidthOfItsSettingAroundTheSteadyState)
+{
+  RunInput input(Testing::Icosphere(5));
+  input.Data.Data.Values.resize(0, 0);
+  for (int k = 0; k < NumberOfKinetics; ++k)
+  {
+    TextureSettings settings;
+    settings.Kinetics = static_cast<KineticsName>(k);
+    settings.NumberOfTimeSteps = 0;
+    const auto start = [&](double noise)
+    {
+      settings.InitialNoise = noise;
+      SurfaceDiffusion::Run run(SerialFor());
+      return StateOf(run, { input.Block() }, settings);
+    };
+    const Values steady = start(0.0);
+    const bool isRelative = settings.Kinetics != KineticsName::FitzHughNagumo;
+    const Values scale = isRelative ? steady : Values(Values::Ones(steady.rows(), 2));
+    const Values noise = (start(0.2) - steady).cwiseQuotient(scale);
+    EXPECT_LE(noise.cwiseAbs().maxCoeff(), 0.2 + 1e-12) << k;
+    EXPECT_NEAR(std::sqrt(noise.cwiseAbs2().mean()), 0.2 / std::sqrt(3.0), 1e-3) << k;
+  }
+}
+
 TEST(Run, CoincidentPointsHaveRandomNumbersOfTheirOwn)
 {
   const Testing::Surface sphere = Testing::Icosphere(2);

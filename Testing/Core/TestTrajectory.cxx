@@ -57,6 +57,24 @@ std::shared_ptr<const TriangleMesh> NoMesh()
 
 } // namespace
 
+TEST(Trajectory, SeekingGivesTheBitsOfSteppingThrough)
+{
+  const auto assembler = MakeAssembler(Icosphere(2));
+  const auto through = MakeTrajectory(assembler, Plenty, 2);
+  std::vector<Values> states;
+  for (Index step = 0; step <= 50; ++step)
+  {
+    through->Seek(step);
+    states.push_back(through->State());
+  }
+  const auto jumping = MakeTrajectory(assembler, 3 * states[0].size() * sizeof(double), 2);
+  for (const Index step : { 40, 10, 40, 0, 50, 49, 3, 25, 50, 0 })
+  {
+    jumping->Seek(step);
+    EXPECT_TRUE(jumping->State() == states[static_cast<std::size_t>(step)]) << step;
+  }
+}
+
 TEST(Trajectory, AnySeekAmongAThousandStepsRecomputesAtMostTwiceTheRoot)
 {
   // Room for the root of the number of steps.

@@ -232,6 +232,11 @@ TEST(SurfaceDenoisingFilter, PointsThatMoveFarAreAWarningAndSoIsASurfaceWithoutN
   ASSERT_EQ(messages.Warnings.size(), 2u);
   EXPECT_NE(messages.Warnings[1].find("no noise was found"), std::string::npos);
   EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_AUTOMATIC);
+  filter->SetNoiseLevel(1e-7);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 3u);
+  EXPECT_NE(messages.Warnings[2].find("NoiseLevel is 1e-07, less than 1e-4"), std::string::npos)
+    << messages.Warnings[2];
 }
 
 TEST(SurfaceDenoisingFilter, FixedPointsStayAndPointsKeepTheirPrecision)

@@ -191,6 +191,16 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(field.shape, (3, 3))
         self.assertEqual([len(face) for face in surface.faces], [4, 3, 5])
 
+    def test_principal_directions_of_a_cylinder_follow_its_axis(self):
+        angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 40, endpoint=False),
+                                    np.linspace(0, 4, 30), indexing="ij")
+        points = np.stack([np.cos(angle), np.sin(angle), height], axis=-1).reshape(-1, 3)
+        index = np.arange(1200).reshape(40, 30)
+        a, b = index[:, :-1].ravel(), np.roll(index, -1, axis=0)[:, :-1].ravel()
+        field = sd.direction_field(sd.Surface(points, np.stack([a, b, b + 1, a + 1], axis=1)))
+        inside = np.abs(points[a][:, 2] - 2) < 1
+        self.assertGreater(np.abs(field[inside, 2]).min(), 0.99)
+
     def test_later_calls_keep_the_mesh(self):
         # Measured in work, not in time: the second call of a run with the same input does no step.
         surface = sd.sphere(4)
@@ -406,6 +416,14 @@ class Results(unittest.TestCase):
         self.assertEqual(len(result.times), 5)
         self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
         self.assertTrue((np.diff(result.times) > 0).all())
+
+    def test_history_has_the_integral_of_each_column(self):
+        values = np.stack([self.values + 3, self.values - 1], axis=1)
+        history = sd.heat(self.surface, values, fwhm=0.5, full_output=True).history
+        for k, mean in ((0, 3), (1, -1)):
+            totals = history[f"Total_{k}"]
+            self.assertAlmostEqual(totals[0], 4 * np.pi * (mean + self.values.mean()), delta=0.5)
+            np.testing.assert_allclose(totals, totals[0], rtol=1e-12)
 
     def test_automatic_fidelity_reports_its_weight(self):
         result = sd.heat(self.surface, self.values + 3 * self.surface.points[:, 2],

@@ -39,21 +39,23 @@ class TestComposite(unittest.TestCase):
         ]
 
     def test_each_filter_on_each_kind_of_composite_data(self):
+        alone = {name: array_names(self.output(name, self.spheres[0])) for name in filter_names()}
         for kind in KINDS:
             group = GroupDatasets(Input=self.spheres, OutputType=kind)
             group.UpdatePipeline()
-            before = array_names(next(leaves(group.GetClientSideObject().GetOutputDataObject(0))))
-            for name in filter_names():
-                filter = getattr(simple, name)(group)
-                if name == "TuringTextureFilter":
-                    filter.NumberOfTimeSteps = 5
-                filter.UpdatePipeline()
-                output = filter.GetClientSideObject().GetOutputDataObject(0)
-                self.assertEqual(output.GetClassName(), kind)
-                added = [array_names(block) - before for block in leaves(output)]
-                self.assertEqual(len(added), 2, kind)
-                self.assertEqual(added[0], added[1], "%s of %s" % (name, kind))
-                self.assertNotEqual(added[0], set(), "%s of %s" % (name, kind))
+            for name, names in alone.items():
+                with self.subTest(kind=kind, filter=name):
+                    output = self.output(name, group)
+                    self.assertEqual(output.GetClassName(), kind)
+                    self.assertGreater(names, {"noisy"})
+                    self.assertEqual([array_names(block) for block in leaves(output)], [names, names])
+
+    def output(self, name, source):
+        filter = getattr(simple, name)(source)
+        if name == "TuringTextureFilter":
+            filter.NumberOfTimeSteps = 5
+        filter.UpdatePipeline()
+        return filter.GetClientSideObject().GetOutputDataObject(0)
 
     def test_progress_reaches_the_status_bar_and_abort_the_filter(self):
         heat = FVMHeatFilter(self.spheres[0], NumberOfTimeSteps=20)

@@ -111,6 +111,27 @@ DEFAULTS = {
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},
 }
 
+#: The words of choices in the order of their numbers 0, 1, ..., which scripts may use
+EDGE_FUNCTIONS = ("TotalVariation", "PeronaMalikExponential", "PeronaMalikRational", "Charbonnier",
+                  "Weickert", "Constant")
+WORDS = {
+    "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),
+    "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),
+    "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit"),
+    "Solver": ("Automatic", "Direct", "ConjugateGradient", "Multigrid"),
+    "OutputPrecision": ("Single", "Double", "Input"), "EdgeFunction": EDGE_FUNCTIONS,
+    "AcrossEdgeFunction": ("Same", *EDGE_FUNCTIONS), "ChannelCoupling": ("PerChannel", "Joint"),
+    "FidelityNorm": ("L2", "L1"), "Discretization": ("Linear", "CrouzeixRaviart"),
+    "ColorModel": ("RGB", "Opponent", "ChromaticityBrightness"),
+    "Scheme": ("ExplicitReaction", "TangentPlane", "MinimizingMovement"),
+    "Model": ("Beltrami", "CoherenceEnhancing", "EdgeEnhancing"), "Metric": ("Induced", "Fixed"),
+    "Kinetics": ("Turing", "Schnakenberg", "GrayScott", "Brusselator", "GiererMeinhardt",
+                 "FitzHughNagumo"),
+    "TextureChemical": ("U1", "U2"), "SurfaceType": ("Automatic", "CAD", "Organic"),
+    "Method": ("PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints"),
+    "PrincipalDirection": ("Minimum", "Maximum"),
+}
+
 
 def value_of(made, name):
     """The value of a property: the word of a choice."""
@@ -156,6 +177,15 @@ class Properties(unittest.TestCase):
             numbers = [getattr(made, e) for e in dir(made)
                        if e.isupper() and e.replace("_", "") == (name + word).upper()]
             self.assertEqual(numbers, [getattr(made, "Get" + name)()])
+
+    @of_each_property
+    def test_number_their_words_in_order_and_have_none_for_other_numbers(self, made, name):
+        self.assertEqual(hasattr(made, f"Get{name}AsString"), name in WORDS)
+        words = WORDS.get(name, ())
+        for number in range(-1, len(words) + 1) if words else ():
+            getattr(made, "Set" + name)(number)
+            self.assertEqual(getattr(made, f"Get{name}AsString")(),
+                             words[number] if 0 <= number < len(words) else "Unknown")
 
     def test_are_all_the_settings_that_a_filter_prints(self):
         for cls in FILTERS:

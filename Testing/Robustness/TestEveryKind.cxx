@@ -6,8 +6,10 @@
 
 #include "Twins.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkMultiBlockDataSet.h"
 
+#include <algorithm>
 #include <cctype>
 #include <functional>
 #include <string>
@@ -71,12 +73,26 @@ protected:
     this->Attributes(this->Surface)
       ->AddArray(MakeArray(type, name, this->Data()->GetNumberOfTuples(), components, value));
   }
+  /// Adds the bytes "rgba" that follow the data, with an alpha.
+  vtkDataArray* AddBytes() const
+  {
+    const auto data = Copy(this->Data());
+    const double scale = data->GetDataType() == VTK_UNSIGNED_CHAR ? 1.0 : 80.0;
+    this->Add(
+      "rgba", 4,
+      [&](vtkIdType i, int k)
+      { return k == 3 ? i % 256 : std::clamp(scale * (data->GetComponent(i, 0) + k), 0.0, 255.0); },
+      VTK_UNSIGNED_CHAR);
+    return this->Attributes(this->Surface)->GetArray("rgba");
+  }
   /// The result of a run on one of these arrays.
-  vtkSmartPointer<vtkDataArray> ResultOf(const char* array, const char* mask) const
+  vtkSmartPointer<vtkDataArray> ResultOf(
+    const char* array, const char* mask, const Change& change = [](vtkPolyDataAlgorithm*) {}) const
   {
     const auto filter = this->Run(this->Surface,
       [&](vtkPolyDataAlgorithm* f)
       {
+        change(f);
         SetInputArray(f, 0, array, this->IsOnCells());
         SetInputArray(f, 1, mask, this->IsOnCells());
         vtkSurfaceModelAlgorithm::SafeDownCast(f)->SetMaskMode(0);
@@ -93,6 +109,10 @@ class EveryKindWithData : public EveryKind
 };
 
 class EveryKindWithTimes : public EveryKind
+{
+};
+
+class EveryKindOfParts : public EveryKind
 {
 };
 
@@ -113,6 +133,23 @@ std::vector<FilterKind> KindsWith(const std::function<bool(const FilterKind&)>& 
 std::vector<FilterKind> KindsWithData()
 {
   return KindsWith([](const FilterKind& kind) { return !DataNameOf(kind).empty(); });
+}
+
+/// Kinds of runs that find nothing, such as a weight or a mean, from all data of a surface.
+std::vector<FilterKind> KindsOfParts()
+{
+  return KindsWith(
+    [](const FilterKind& kind)
+    {
+      const std::string name = kind.Name;
+      bool finds = name.find("MumfordShah") == 0 && name != "MumfordShahGiven";
+      for (const char* const found :
+        { "Automatic", "Found", "CoarseStart", "Segmentation", "Direction" })
+      {
+        finds = finds || name.find(found) != std::string::npos;
+      }
+      return !finds;
+    });
 }
 
 /// Kinds of runs that publish times.
@@ -136,6 +173,29 @@ std::vector<FilterKind> KindsWithTimes()
 bool IsMarked(vtkIdType i)
 {
   return i % 7 == 3;
+}
+
+/// The factor of the energy for lengths and values of these factors.
+double EnergyScale(const FilterKind& kind, double length, double value)
+{
+  const std::pair<std::string, double> scales[] = {
+    { "Heat", value * value }, // int |grad u|^2
+    { "TV", length * value }, // int |grad u|
+    { "PeronaMalik", value * value }, { "Harmonic", length }, // int |grad n|
+    { "MumfordShah", value * value }, { "Beltrami", value * value },
+    { "CoherenceEnhancing", length * length * value * value }, // int u^2
+    { "EdgeEnhancing", length * length * value * value }, { "Turing", length * length },
+    { "Segmentation", length }, // of boundaries
+  };
+  for (const auto& [name, scale] : scales)
+  {
+    if (std::string(kind.Name).rfind(name, 0) == 0)
+    {
+      return scale;
+    }
+  }
+  ADD_FAILURE() << kind.Name << " has an energy that is not listed";
+  return 0.0;
 }
 
 /// Lengths and values in the units of the input, not in natural ones.
@@ -233,14 +293,7 @@ TEST_P(EveryKindWithData, ReadsNoMissingValue)
 
 TEST_P(EveryKindWithData, KeepsBytesAndTheirAlpha)
 {
-  const auto data = Copy(this->Data());
-  const double scale = data->GetDataType() == VTK_UNSIGNED_CHAR ? 1.0 : 80.0;
-  this->Add(
-    "rgba", 4,
-    [&](vtkIdType i, int k)
-    { return k == 3 ? i % 256 : std::clamp(scale * (data->GetComponent(i, 0) + k), 0.0, 255.0); },
-    VTK_UNSIGNED_CHAR);
-  vtkDataArray* const rgba = this->Attributes(this->Surface)->GetArray("rgba");
+  vtkDataArray* const rgba = this->AddBytes();
   const auto result = this->ResultOf("rgba", "");
   ASSERT_NE(result, nullptr);
   EXPECT_EQ(result->GetDataType(), VTK_UNSIGNED_CHAR);
@@ -248,6 +301,20 @@ TEST_P(EveryKindWithData, KeepsBytesAndTheirAlpha)
   for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i)
   {
     ASSERT_EQ(result->GetComponent(i, 3), rgba->GetComponent(i, 3)) << i;
+  }
+}
+
+TEST_P(EveryKindWithTimes, StartsFromTheBitsOfItsData)
+{
+  if (this->DataName().empty())
+  {
+    return;
+  }
+  const auto before = [](vtkPolyDataAlgorithm* f)
+  { vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetNumberOfTimeSteps(0); };
+  for (vtkDataArray* const given : { this->Data(), this->AddBytes() })
+  {
+    EXPECT_TRUE(Identical(this->ResultOf(given->GetName(), "", before), given)) << given->GetName();
   }
 }
 
@@ -304,13 +371,103 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
   EXPECT_LE(LargestDifference(result, scaled), allowed);
   if (filters[0]->GetNumberOfOutputPorts() > 1 && History(filters[0])->GetColumnByName("Energy"))
   {
-    const double ratio = HistoryAt(filters[1], 0, "Energy") / HistoryAt(filters[0], 0, "Energy");
-    EXPECT_NEAR(std::log2(ratio), std::round(std::log2(ratio)), allowed);
+    const double ratio = EnergyScale(this->GetParam(), length, value);
     for (vtkIdType row = 0; row < History(filters[0])->GetNumberOfRows(); ++row)
     {
       const double energy = HistoryAt(filters[1], row, "Energy");
       EXPECT_NEAR(energy, ratio * HistoryAt(filters[0], row, "Energy"), allowed * energy);
     }
+  }
+  if (std::string(this->GetParam().Name) == "MumfordShahGiven") // finds edges
+  {
+    const auto edgeLength = [&](int i)
+    { return vtkMumfordShahFilter::SafeDownCast(filters[i])->GetEdgeLength(); };
+    EXPECT_GT(edgeLength(0), 0.0);
+    EXPECT_EQ(edgeLength(1), length * edgeLength(0));
+  }
+}
+
+/// Blocks share their units, those of all parts together.
+TEST_P(EveryKindOfParts, TreatsUnequalBlocksAsItDoesPartsOfOneSurface)
+{
+  vtkNew<vtkPolyData> other;
+  other->DeepCopy(this->Surface);
+  vtkDataArray* const points = other->GetPoints()->GetData();
+  for (vtkIdType i = 0; i < points->GetNumberOfValues(); ++i)
+  {
+    points->SetComponent(i / 3, i % 3, 2.5 * points->GetComponent(i / 3, i % 3) + 7.0);
+  }
+  for (vtkDataArray* const data : { other->GetPointData()->GetArray("f"),
+         other->GetPointData()->GetArray("rgb"), other->GetCellData()->GetArray("c") })
+  {
+    for (vtkIdType i = 0; i < data->GetNumberOfTuples(); ++i)
+    {
+      data->SetComponent(i, 0, 0.3 * data->GetComponent(data->GetNumberOfTuples() - 1 - i, 0));
+    }
+  }
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  vtkNew<vtkAppendPolyData> append;
+  for (vtkPolyData* const part : { this->Surface.Get(), other.Get() })
+  {
+    blocks->SetBlock(blocks->GetNumberOfBlocks(), part);
+    append->AddInputData(part);
+  }
+  append->Update();
+  const auto exactly = [](vtkPolyDataAlgorithm* f)
+  {
+    if (auto* const diffusion = vtkSurfaceDiffusionAlgorithm::SafeDownCast(f))
+    {
+      diffusion->SetTolerance(1e-12);
+    }
+    if (auto* const tv = vtkIntrinsicTVFilter::SafeDownCast(f))
+    {
+      tv->SetStopTolerance(1e-8);
+    }
+  };
+  const auto apart = this->Run(blocks, exactly);
+  const auto together = this->Run(append->GetOutput(), exactly);
+  const auto whole = FilterTest::ResultOf(together, this->GetParam().Result);
+  ASSERT_NE(whole, nullptr);
+  auto* const output = vtkMultiBlockDataSet::SafeDownCast(apart->GetOutputDataObject(0));
+  double largest = 0.0;
+  vtkIdType row = 0;
+  for (unsigned int b = 0; b < 2; ++b)
+  {
+    vtkPolyData* const block = vtkPolyData::SafeDownCast(output->GetBlock(b));
+    vtkDataArray* result = block->GetPointData()->GetArray(this->GetParam().Result);
+    result = result ? result : block->GetCellData()->GetArray(this->GetParam().Result);
+    ASSERT_NE(result, nullptr);
+    for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i, ++row)
+    {
+      for (int k = 0; k < result->GetNumberOfComponents(); ++k)
+      {
+        largest =
+          std::max(largest, std::abs(result->GetComponent(i, k) - whole->GetComponent(row, k)));
+      }
+    }
+  }
+  // Minimisers end when the energy of all parts is within a tolerance.
+  const bool isTV = vtkIntrinsicTVFilter::SafeDownCast(apart) != nullptr;
+  EXPECT_LE(largest, isTV ? 1e-4 : 1e-11);
+}
+
+TEST_P(EveryKindWithTimes, AgreesForAllSolvers)
+{
+  vtkSmartPointer<vtkDataArray> first;
+  for (const int solver : { vtkSurfaceDiffusionAlgorithm::SOLVER_DIRECT,
+         vtkSurfaceDiffusionAlgorithm::SOLVER_CONJUGATE_GRADIENT,
+         vtkSurfaceDiffusionAlgorithm::SOLVER_MULTIGRID })
+  {
+    const auto filter = this->Run(this->Surface,
+      [solver](vtkPolyDataAlgorithm* f)
+      {
+        auto* const diffusion = vtkSurfaceDiffusionAlgorithm::SafeDownCast(f);
+        diffusion->SetSolver(solver);
+        diffusion->SetTolerance(1e-10);
+      });
+    const auto result = Copy(FilterTest::ResultOf(filter, this->GetParam().Result));
+    first = first ? first : result;
+    EXPECT_LE(LargestDifference(first, result), 1e-7) << solver;
   }
 }
 
@@ -341,3 +498,4 @@ TEST_P(EveryKind, TreatsEqualBlocksAsItDoesOneSurface)
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind, testing::ValuesIn(AllFilters()), KindName);
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryKindWithData, testing::ValuesIn(KindsWithData()), KindName);
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryKindWithTimes, testing::ValuesIn(KindsWithTimes()), KindName);
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryKindOfParts, testing::ValuesIn(KindsOfParts()), KindName);

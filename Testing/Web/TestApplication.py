@@ -13,6 +13,7 @@ import time
 import unittest
 from http.client import HTTPConnection
 from pathlib import Path
+from types import SimpleNamespace
 from urllib.request import urlopen
 
 from browser import difference, drag, open_browser, picture_of, wait_for
@@ -232,6 +233,11 @@ class TestApplication(unittest.TestCase):
         points = np.loadtxt(path.read_text().splitlines()[2:2 + noisy.n_points])
         error = np.abs(np.linalg.norm(points, axis=1) - 50)
         self.assertLess(error.mean(), 0.5 * np.abs(np.linalg.norm(noisy.points, axis=1) - 50).mean())
+
+    def test_a_surface_without_noise_is_said_to_have_none(self):
+        outcome = FILTERS["denoise_mesh"].run(
+            SimpleNamespace(surface=self.surface), None, {"noise": 0.0, "type": 0}, False)
+        self.assertEqual(outcome.note, "no noise was found")
 
     def test_every_filter_runs_and_shows_no_message(self):
         self.open()

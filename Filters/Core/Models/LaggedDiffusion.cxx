@@ -48,7 +48,11 @@ void LaggedDiffusion::MakeGroups()
     if (buffer == this->Unknowns.size())
     {
       const Values zero = Values::Zero(this->U.rows(), last - first);
-      this->Unknowns.push_back({ zero, zero, this->Data.Fixed.any() ? zero : Values() });
+      this->Unknowns.push_back({ zero, zero });
+      if (this->Data.Fixed.any() && zero.cols() > this->NoChange.cols())
+      {
+        this->NoChange = zero;
+      }
     }
     this->Groups.push_back({ first, last, buffer });
     first = last;
@@ -116,9 +120,9 @@ void LaggedDiffusion::AdvanceGroup(
       [&](Index i) { this->Diagonal[i] = DiagonalEntry(this->System.GetMatrix(), i); });
     this->System.AddToDiagonal(this->Damping, this->Diagonal);
   }
-  if (unknowns.NoChange.size() > 0)
+  if (this->NoChange.size() > 0)
   {
-    this->System.Constrain(this->Data.Fixed, unknowns.NoChange);
+    this->System.Constrain(this->Data.Fixed, this->NoChange);
   }
   this->System.SetUpSolver(progress.Part(0.2, 0.5));
   unknowns.Change.setZero();

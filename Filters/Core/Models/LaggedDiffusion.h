@@ -72,7 +72,6 @@ private:
   struct Buffers
   {
     Values Change, RightHandSide;
-    Values NoChange; ///< the Dirichlet conditions of Change
   };
 
   void MakeGroups();
@@ -89,6 +88,7 @@ private:
   Eigen::Index TensorColumns;
   std::vector<Group> Groups;
   std::vector<Buffers> Unknowns; ///< of groups of the same size
+  Values NoChange; ///< the Dirichlet conditions of Change of the largest group; empty: none
 };
 
 } // namespace SurfaceDiffusion

@@ -161,6 +161,11 @@ private:
     const Values& b = this->OverProcesses.Accumulated(accumulatedB, this->ConsistentB);
     const ColumnCount<K> k(b.cols());
     const Index n = static_cast<Index>(b.rows());
+    if (this->Residual.cols() != k)
+    {
+      std::swap(this->Residual, this->OtherResidual);
+      std::swap(this->Work, this->OtherWork);
+    }
     Resize(this->Residual, n, k);
     this->Scales.resize(k);
     this->Work.ResizeSums(n, k);
@@ -431,6 +436,9 @@ private:
   Values ConsistentB; ///< over several processes
   std::vector<double> Scales;
   ConjugateGradientWork Work;
+  // Those of another number of columns, for which the solver may be used in turn:
+  Values OtherResidual;
+  ConjugateGradientWork OtherWork;
 };
 
 } // namespace

@@ -83,9 +83,15 @@ def denoise_mesh(arguments, report):
         report.facts[name] = number(getattr(result, name))
     report.facts["surface_type"] = result.surface_type
     _say_written(arguments, report,
-                 f"{result.surface_type}, noise {result.noise_level:.4g}, points moved by "
-                 f"{result.mean_displacement:.4g} on average, at most "
-                 f"{result.maximum_displacement:.4g}{_normals_text(report)}")
+                 f"{_denoising_text(result)}{_normals_text(report)}")
+
+
+def _denoising_text(result):
+    if result.maximum_displacement == 0:
+        return "no noise was found, no point moved" if result.noise_level == 0 else "no point moved"
+    kind = {"Automatic": "CAD and Organic parts"}.get(result.surface_type, result.surface_type)
+    return (f"{kind}, noise {result.noise_level:.4g}, points moved by "
+            f"{result.mean_displacement:.4g} on average, at most {result.maximum_displacement:.4g}")
 
 
 def inpaint(arguments, report):
