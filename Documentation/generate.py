@@ -20,6 +20,7 @@ import surfacediffusion as sd
 
 SOURCE, SITE = (Path(argument).resolve() for argument in sys.argv[1:3])
 sys.path[:0] = [str(SOURCE / "Examples/Python"), str(SOURCE / "Examples/Web")]
+import command_reference  # noqa: E402
 from effects import write_scenes  # noqa: E402
 
 
@@ -167,7 +168,7 @@ def main():
     warnings.simplefilter("error", sd.SurfaceDiffusionWarning)
     shutil.rmtree(SITE, ignore_errors=True)
     shutil.copytree(SOURCE / "Documentation", SITE, ignore=shutil.ignore_patterns(
-        "generate.py", "effects.py", "build.sh", "Doxyfile", "__pycache__"))
+        "generate.py", "effects.py", "command_reference.py", "build.sh", "Doxyfile", "__pycache__"))
     shutil.copy(SOURCE / "Examples/Cxx/arrays.cxx", SITE)  # which cpp.md includes
     shutil.copytree(SOURCE / "Examples/Gallery", SITE / "pictures")
     shutil.copytree(SOURCE / "Examples/Gallery", SITE / "extra/pictures")
@@ -176,6 +177,7 @@ def main():
         (SITE / "filters" / f"{entry.name}.md").write_text(filter_page(entry))
     (SITE / "filters/index.md").write_text(
         "# Filters\n\n```{toctree}\n:maxdepth: 1\n\n" + "\n".join(f.name for f in FILTERS) + "\n```\n")
+    (SITE / "command.md").write_text(command_reference.page())
     for path, name in PAGES.items():
         (SITE / f"{name}.md").write_text(copied_page(path))
 

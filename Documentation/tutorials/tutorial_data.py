@@ -23,20 +23,35 @@ def scan(name):
     return surface.points, surface.faces
 
 
+def brain_file(package, member):
+    """The bytes of a file of a wheel with brains."""
+    wheels = sorted(Path(os.environ.get("SURFACEDIFFUSION_BRAIN_DIR", "")).glob(f"{package}-*.whl"))
+    if not wheels:
+        print(f"skipped: SURFACEDIFFUSION_BRAIN_DIR has no {package} (.ci/fetch-test-data)")
+        sys.exit(77)
+    with zipfile.ZipFile(wheels[0]) as wheel:
+        return wheel.read(member)
+
+
 def cortex():
     """Points and triangles of fsaverage5's left white surface, and its thickness in mm."""
-    wheels = sorted(Path(os.environ.get("SURFACEDIFFUSION_BRAIN_DIR", "")).glob("nilearn-*.whl"))
-    if not wheels:
-        print("skipped: SURFACEDIFFUSION_BRAIN_DIR has no nilearn (.ci/fetch-test-data)")
-        sys.exit(77)
-    with zipfile.ZipFile(wheels[0]) as wheel, tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder:
         files = {}
         for kind in ("white", "thick"):
             path = Path(folder, f"{kind}_left.gii.gz")
-            path.write_bytes(wheel.read(f"nilearn/datasets/data/fsaverage5/{path.name}"))
+            path.write_bytes(brain_file("nilearn", f"nilearn/datasets/data/fsaverage5/{path.name}"))
             files[kind] = path
         surface, data = read_surface(files["white"]), read_data(files["thick"])
     return surface.points, surface.faces, data.parts[0].values[:, 0].astype(float)
+
+
+def medial_wall():
+    """Where fsaverage5's left surface is no cortex. A time series on it is 0 there at all times."""
+    name = "sub-010188_ses-02_task-rest_acq-AP_run-01.fsa5.lh.mgz"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, name)
+        path.write_bytes(brain_file("brainspace", f"brainspace/datasets/preprocessing/{name}"))
+        return ~read_data(path).parts[0].values.any(axis=1)
 
 
 def show(points, faces, arrays, view=(0, 0, 1), up=(0, 1, 0), **options):

@@ -19,6 +19,8 @@
 `direction_field`    line fields: principal curvature, the smoothest one, from hints
 `estimate_fwhm`      the smoothness of noise maps
 `smooth_to_fwhm`     smoothing up to a given smoothness
+`smooth_img`         smoothing of surface images of nilearn
+`estimate_fwhm_img`  the smoothness of their noise
 ==================== ============================================================================
 
 `heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
@@ -38,6 +40,7 @@ from importlib.metadata import version as _version
 from . import _core, _functions, _result
 from ._functions import *  # noqa: F403
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
+from ._images import estimate_fwhm_img, smooth_img
 from ._result import *  # noqa: F403
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
@@ -46,8 +49,8 @@ from ._threads import get_number_of_threads, set_number_of_threads
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "FWHMEstimate", "Surface", "SurfaceDiffusionWarning", "estimate_fwhm", "get_number_of_threads",
-    "set_number_of_threads", "smooth_to_fwhm", "sphere",
+    "FWHMEstimate", "Surface", "SurfaceDiffusionWarning", "estimate_fwhm", "estimate_fwhm_img",
+    "get_number_of_threads", "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
 ]
 __all__ += _functions.__all__
 __all__ += _result.__all__

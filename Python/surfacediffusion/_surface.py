@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import threading
-from typing import Any, Sequence, Tuple, Union
+from typing import Any, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -171,6 +171,10 @@ def _as_polygons(faces: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 class Surface:
     """A triangulated surface, which keeps its mesh, ordering and factors between calls.
 
+    Functions take a surface as this, as a tuple (points, faces), or as a mesh of nilearn
+    (``.coordinates``, ``.faces``), trimesh (``.vertices``, ``.faces``), LaPy (``.v``, ``.t``), PyVista or
+    `surfacediffusion.files` (``.points``, ``.faces``). All but this are converted at each call.
+
     Parameters
     ----------
     points : array_like, shape (n, 3)
@@ -323,16 +327,78 @@ def _restore(points: Any, connectivity: Any, offsets: Any, areas: Any = None) ->
     return Surface(points, np.split(connectivity, offsets[1:-1]), areas)
 
 
-SurfaceLike = Union[Surface, Tuple[ArrayLike, Any]]
+class _PointsAndFaces(Protocol):
+    """PyVista's PolyData and SurfaceFile of surfacediffusion.files."""
+
+    @property
+    def points(self) -> Any: ...
+    @property
+    def faces(self) -> Any: ...
+
+
+class _CoordinatesAndFaces(Protocol):
+    """Meshes of nilearn."""
+
+    @property
+    def coordinates(self) -> Any: ...
+    @property
+    def faces(self) -> Any: ...
+
+
+class _VerticesAndFaces(Protocol):
+    """trimesh."""
+
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def faces(self) -> Any: ...
+
+
+class _VerticesAndTriangles(Protocol):
+    """TriaMesh of LaPy."""
+
+    @property
+    def v(self) -> Any: ...
+    @property
+    def t(self) -> Any: ...
+
+
+SurfaceLike = Union[Surface, Tuple[ArrayLike, Any], _PointsAndFaces, _CoordinatesAndFaces,
+                    _VerticesAndFaces, _VerticesAndTriangles]
+
+#: The attributes by which packages name points and faces.
+_NAMES = (("points", "faces"), ("coordinates", "faces"), ("vertices", "faces"), ("v", "t"))
 
 
 def as_surface(surface: Any) -> Surface:
-    """A Surface, or one of a tuple (points, faces)."""
+    """A Surface, or one of a tuple (points, faces) or of a mesh of another package."""
     if isinstance(surface, Surface):
         return surface
     if isinstance(surface, (tuple, list)) and len(surface) == 2:
         return Surface(*surface)
-    raise ValueError(f"surface is {shorten(surface)}; allowed: a Surface or a tuple (points, faces)")
+    for points, faces in _NAMES:
+        if hasattr(surface, points) and hasattr(surface, faces):
+            found = getattr(surface, faces)
+            if np.ndim(found) == 1 and hasattr(surface, "n_strips"):
+                found = _faces_of_vtk(surface)
+            return Surface(getattr(surface, points), found)
+    raise ValueError(f"surface is {shorten(surface)}; allowed: a Surface, a tuple (points, faces), or a "
+                     "mesh of nilearn, trimesh, LaPy, PyVista or surfacediffusion.files")
+
+
+def _faces_of_vtk(mesh: Any) -> Any:
+    """Faces of PyVista: the number of corners before those of each face."""
+    cells = np.asarray(mesh.faces)
+    if mesh.n_strips or cells.size == 0:
+        raise ValueError(f"surface is a mesh with {mesh.n_strips} triangle strips and "
+                         f"{mesh.n_cells} cells; allowed: polygons (mesh.triangulate())")
+    if cells.size % 4 == 0 and (cells[::4] == 3).all():
+        return cells.reshape(-1, 4)[:, 1:]
+    faces, at = [], 0
+    while at < cells.size:
+        faces.append(cells[at + 1:at + 1 + cells[at]])
+        at += 1 + cells[at]
+    return faces
 
 
 def sphere(subdivisions: int = 4, radius: float = 1.0) -> Surface:

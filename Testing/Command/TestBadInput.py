@@ -228,7 +228,7 @@ CASES = [
                                                  "written as GIFTI"),
     ("smooth lh.surf.gii lh.func.gii 5 no/out.func.gii", "no/out.func.gii: cannot be written: "
                                                          "there is no folder"),
-    ("smooth lh.surf.gii lh.func.gii 5 folder", "folder: cannot be written: it is a folder"),
+    ("inpaint lh.surf.gii lh.func.gii folder", "folder: cannot be written: it is a folder"),
     ("smooth lh.surf.gii lh.func.gii 5 pipe.func.gii", "pipe.func.gii: cannot be written: "
                                                        "it is not a regular file"),
 ]

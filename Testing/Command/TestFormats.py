@@ -232,11 +232,11 @@ class Names(FormatTest):
         samples.write_surface("l.surf.gii")
         from nibabel import cifti2
 
-        models = cifti2.BrainModelAxis.from_surface(np.arange(N), N, "CEREBELLUM")
+        models = cifti2.BrainModelAxis.from_surface(np.arange(N), N, "HIPPOCAMPUS_LEFT")
         image = cifti2.Cifti2Image(NOISE[None], cifti2.Cifti2Header.from_axes(
             (cifti2.ScalarAxis(["a"]), models)))
         nib.save(image, "a.dscalar.nii")
-        self.refused("data at vertices of Cerebellum; allowed: CortexLeft, CortexRight", "smooth",
+        self.refused("data at vertices of HippocampusLeft; allowed: CortexLeft, CortexRight, Cereb", "smooth",
                      "a.dscalar.nii", 5, "b.dscalar.nii", "--left", "l.surf.gii")
 
 

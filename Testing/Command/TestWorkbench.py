@@ -58,10 +58,24 @@ class Words(WorkbenchTest):
         self.assertIn("2 columns, FWHM 23.5 (sigma 10), ", out)
 
     def test_words_without_a_meaning_here_are_refused(self):
-        for word in (["-method", "GEO_GAUSS"], ["-roi", "roi.func.gii", "-match-columns"]):
-            code, _, error = run("metric-smoothing", "lh.surf.gii", "lh.func.gii", 2, "o.func.gii", *word)
-            self.assertEqual((code, error.count("\n")), (2, 1), error)
-            self.assertIn(word[-1], error)
+        code, _, error = run("metric-smoothing", "lh.surf.gii", "lh.func.gii", 2, "o.func.gii", "-method",
+                             "GEO_GAUSS")
+        self.assertEqual((code, error.count("\n")), (2, 1), error)
+        self.assertIn("GEO_GAUSS", error)
+
+    def test_each_column_may_have_its_region(self):
+        samples.write_gifti("two.func.gii", {"up": POINTS[:, 2] > -6, "down": POINTS[:, 2] < 6})
+        samples.write_gifti("down.func.gii", {"down": POINTS[:, 2] < 6})
+        words = "metric-smoothing lh.surf.gii lh.func.gii 2"
+        self.succeed(*f"{words} both.func.gii -roi two.func.gii -match-columns".split())
+        found = read_data("both.func.gii").parts[0].values
+        for i, (name, roi) in enumerate((("one", "roi"), ("two", "down"))):
+            self.succeed(*f"{words} single.func.gii -roi {roi}.func.gii -column {name}".split())
+            single = read_data("single.func.gii").parts[0].values[:, 0]
+            np.testing.assert_allclose(found[:, i], single, atol=1e-6)
+        code, _, error = run(*f"{words} o.func.gii -roi roi.func.gii -match-columns".split())
+        self.assertEqual(code, 2)
+        self.assertIn("roi.func.gii has 1 columns, but lh.func.gii has 2", error)
 
 
 @unittest.skipUnless(shutil.which("wb_command"), "needs Connectome Workbench")

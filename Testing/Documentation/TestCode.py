@@ -11,7 +11,7 @@ import unittest
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parents[2] / "Documentation"
-MADE = {"gallery", "pictures", "cpp"}  # by the build of the site
+MADE = {"gallery", "pictures", "cpp", "command.md"}  # by the build of the site
 
 try:
     import pyvista
@@ -61,6 +61,22 @@ class TestCode(unittest.TestCase):
                     known = re.findall(r'": "(\w+)"', (FOLDER / "generate.py").read_text())
                     self.assertTrue(Path(target).parts[0] in MADE or (FOLDER / target).is_file()
                                     or Path(target).stem in known)
+
+    def test_the_page_of_the_command_has_every_option(self):
+        from surfacediffusion.command.arguments import make_parser
+
+        sys.path.insert(0, str(FOLDER))
+        import command_reference
+
+        page = command_reference.page()
+        commands = make_parser()._subparsers._group_actions[0].choices
+        self.assertEqual(re.findall(r"^## (.+)", page, re.M), list(commands))
+        for name, parser in commands.items():
+            part = page.split(f"\n## {name}\n")[1].split("\n## ")[0]
+            self.assertIn(f"surfacediffusion {name} ", part)
+            for option in re.findall(r"(?<=[ ,\[])--?[a-z][a-z-]+", parser.format_usage()):
+                if option not in ("-h", "--help"):
+                    self.assertRegex(part, f"`.*{option}[ ,`]")
 
     def test_tutorials_run(self):
         if not os.environ.get("SURFACEDIFFUSION_MESH_DIR"):

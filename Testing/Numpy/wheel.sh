@@ -48,6 +48,16 @@ environment/bin/pip install --quiet tqdm mypy
 # For the tests of files and of PyVista, whose VTK is that of PyPI
 environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist
 
+# The same with other packages for surfaces, which that environment must do without
+if [ -d "$wheels/../peers" ]; then
+  rm -rf peers
+  "${PYTHON:-/usr/bin/python3}" -m venv peers
+  for site in environment/lib/python*/site-packages; do
+    echo "$folder/$site" > "peers/${site#environment/}/environment.pth"
+  done
+  peers/bin/pip install --quiet --no-deps "$wheels"/../peers/*.whl "$wheels"/../brains/nilearn-*.whl
+fi
+
 rm -rf system
 "${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages system
 system/bin/pip install --quiet --no-deps dist/*.whl

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import re
 import textwrap
 
@@ -16,8 +17,8 @@ PROGRAM = "surfacediffusion"
 
 FILES = """
 SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
-DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left and --right
-instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), or a PLY or VTK
+DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right and
+--cerebellum instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), or a PLY or VTK
 file with data at its vertices; with --faces, where there is that option, at the faces. Files are
 recognised by their content, and may be compressed by gzip, or pipes. OUTPUT has the format and the
 metadata of DATA. NaN means missing: the value is not used, and the output has a value there.
@@ -27,9 +28,26 @@ metadata of DATA. NaN means missing: the value is not used, and the output has a
 def parse(argv):
     """The arguments of the command line, with the function that carries them out as `run`."""
     # A CIFTI file has a surface per hemisphere, by --left and --right instead of SURFACE.
-    hemispheres = any(word.split("=")[0] in ("--left", "--right", "-left-surface",
-                                             "-right-surface") for word in argv)
-    return make_parser(hemispheres).parse_args(argv)
+    hemispheres = any(word.split("=")[0] in _SIDES for word in argv) or (
+        len(argv) > 1 and re.search(r"\.d[a-z]+\.nii$", argv[1]) is not None)
+    parser = make_parser(hemispheres)
+    arguments = parser.parse_args(argv)
+    if getattr(arguments, "cortex", False):
+        arguments.roi = _cortex_label(parser, arguments)
+    return arguments
+
+
+def _cortex_label(parser, arguments):
+    """The label of the cortex that FreeSurfer wrote for the subject of a surface."""
+    surface = arguments.surface or "with --left and --right"
+    folder, name = os.path.split(os.path.abspath(surface))
+    label = f"{name.split('.')[0]}.cortex.label"
+    paths = [os.path.join(folder, "..", "label", label), os.path.join(folder, label)]
+    for path in paths:
+        if arguments.surface and os.path.isfile(path):
+            return os.path.normpath(path)
+    parser.error(f"--cortex: no {label} in ../label of the folder of {surface}; allowed: a surface in the "
+                 "folder surf of a subject of FreeSurfer, or --roi")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -37,6 +55,9 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message):
         self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+_SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface", "-cerebellum-surface")
 
 
 def make_parser(hemispheres=False):
@@ -94,13 +115,17 @@ class _Commands:
                                 help="the surface of the left hemisphere, for CIFTI files")
             parser.add_argument("--right", "-right-surface", metavar="FILE",
                                 help="the surface of the right hemisphere")
+            parser.add_argument("--cerebellum", "-cerebellum-surface", metavar="FILE",
+                                help="the surface of the cerebellum, for files with its vertices")
         else:
-            parser.set_defaults(left=None, right=None)
+            parser.set_defaults(left=None, right=None, cerebellum=None)
             parser.add_argument("surface", metavar="SURFACE", help="the surface")
 
-    def data(self, parser, output=True):
+    def data(self, parser, many=False):
         self.surface(parser)
-        parser.add_argument("data", metavar="DATA", help="the values at its vertices")
+        parser.add_argument("data", metavar="DATA", nargs="+" if many else None,
+                            help="the values at its vertices" + "; several files, if OUTPUT is a folder"
+                            * many)
         return parser
 
     @staticmethod
@@ -112,7 +137,11 @@ class _Commands:
 
     @staticmethod
     def choices(parser):
-        parser.add_argument("--roi", "-roi", metavar="FILE",
+        region = parser.add_mutually_exclusive_group()
+        region.add_argument("--cortex", action="store_true",
+                            help="work inside the cortex that FreeSurfer labelled: lh.cortex.label in "
+                                 "the folder label beside that of SURFACE")
+        region.add_argument("--roi", "-roi", metavar="FILE",
                             help="work inside this region alone, where its first column is above "
                                  "0: nothing flows across its boundary; outside, OUTPUT is 0. "
                                  "FILE may be a FreeSurfer .label, or FILE:LABEL for one label of an "
@@ -181,18 +210,43 @@ def _smooth(commands):
         "smooth", tasks.smooth, text,
         [f"{PROGRAM} smooth lh.midthickness.surf.gii lh.thickness.shape.gii 10 lh.smooth.shape.gii",
          f"{PROGRAM} smooth bold.dtseries.nii 4 smooth.dtseries.nii --left L.surf.gii "
-         "--right R.surf.gii"])
-    commands.data(parser)
+         "--right R.surf.gii",
+         f"{PROGRAM} smooth lh.white sub-*.lh.thickness.mgh 10 smooth/ --cortex --jobs 4"])
+    commands.data(parser, many=True)
     parser.add_argument("width", metavar="FWHM", type=_positive,
                         help="the width in the unit of the surface's coordinates (mm)")
-    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    parser.add_argument("output", metavar="OUTPUT",
+                        help="the result, or the folder of the results, which have the names of DATA")
+    parser.add_argument("--jobs", metavar="N", type=_count, default=1,
+                        help="the number of processes that share several files (default 1). Each has its "
+                             "part of the threads")
+    parser.add_argument("--to-fwhm", action="store_true",
+                        help="smooth until the noise of DATA has the smoothness FWHM, so that data of "
+                             "different smoothness become alike. The noise is that of --residuals, else "
+                             "the columns minus their mean, else the one column")
+    parser.add_argument("--residuals", metavar="FILE", help="the noise for --to-fwhm")
     commands.choices(parser)
     commands.faces(parser)
+    _match_columns(parser)
+    voxels = parser.add_mutually_exclusive_group()
+    voxels.add_argument("--surface-only", action="store_true",
+                        help="copy the voxels of a CIFTI file. Default: they are smoothed within "
+                             "each structure by a Gaussian")
+    voxels.add_argument("--volume-fwhm", metavar="W", type=_not_negative,
+                        help="the width among voxels (default: FWHM)")
+    parser.add_argument("--merged-volume", "-merged-volume", action="store_true",
+                        help="smooth voxels across the boundaries of their structures, too")
     _areas_and_steps(parser)
     width = parser.add_mutually_exclusive_group()
     width.add_argument("--sigma", action="store_true",
                        help="FWHM is given as a standard deviation: FWHM = 2.3548 sigma")
     width.add_argument("-fwhm", dest="is_fwhm", action="store_true", help=argparse.SUPPRESS)
+
+
+def _match_columns(parser):
+    parser.add_argument("--match-columns", "-match-columns", action="store_true",
+                        help="each column of DATA has the column of the same number in the file of --roi "
+                             "as its region")
 
 
 def _areas_and_steps(parser):
@@ -219,7 +273,9 @@ def _metric_smoothing(commands):
     parser.add_argument("-fwhm", dest="sigma", action="store_false",
                         help="KERNEL is the full width at half maximum: sigma = FWHM / 2.3548")
     commands.choices(parser)
-    parser.set_defaults(faces=False)
+    parser.set_defaults(faces=False, surface_only=False, volume_fwhm=None, merged_volume=False, jobs=1,
+                        to_fwhm=False, residuals=None)
+    _match_columns(parser)
     _areas_and_steps(parser)
     parser.add_argument("-method", choices=("GEO_GAUSS_AREA",), default="GEO_GAUSS_AREA",
                         help="the kernel of Workbench that this one is like, its default; the others "

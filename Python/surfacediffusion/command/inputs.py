@@ -9,8 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .._surface import Surface
 from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
 from ..files.data import NO_VERTICES
+
+
+#: The options that name the surface of a structure
+SIDES = {"left": "CortexLeft", "right": "CortexRight", "cerebellum": "Cerebellum"}
 
 
 class ArgumentProblem(ValueError):
@@ -23,7 +28,8 @@ class Patch:
     if the data are at faces.
 
     values   (n, k) float, NaN is missing; 0 where excluded
-    excluded (n,) bool: outside the region, or without data in the file
+    excluded (n,) bool: outside the region, or without data in the file; (n, k) if each column has a
+             region of its own
     """
 
     surface: SurfaceFile
@@ -31,23 +37,45 @@ class Patch:
     values: np.ndarray
     excluded: np.ndarray
 
+    def excluded_of(self, column):
+        """(n,) bool, of this one of the k columns."""
+        return self.excluded if self.excluded.ndim == 1 else self.excluded[:, column]
+
     def to_part(self, values):
         """The rows of the part. Outside the region the values are 0."""
-        values = np.where(self.excluded[:, None], 0, values)
+        values = np.where(self.excluded.reshape(len(values), -1), 0, values)
         return values if self.part.vertices is None else values[self.part.vertices]
 
 
 def read_surfaces(arguments):
-    """{structure: surface}; the structure is "" for SURFACE, which takes any data."""
+    """{structure: surface}; the structure is "" for SURFACE, which takes any data. They are read once for
+    many files."""
+    if not hasattr(arguments, "surfaces"):
+        arguments.surfaces = _read_surfaces(arguments)
+    return arguments.surfaces
+
+
+def make_solver(arguments, surface: SurfaceFile, areas):
+    """The surface for functions of the package, with the areas that were given for it or None. It is made
+    once for many files, and keeps its factors."""
+    solvers = vars(arguments).setdefault("solvers", {})
+    try:
+        if id(surface) not in solvers:
+            solvers[id(surface)] = Surface(surface.points, surface.faces, areas)
+    except ValueError as error:
+        raise FileError(f"{surface.path}: {error}") from error
+    return solvers[id(surface)]
+
+
+def _read_surfaces(arguments):
     if arguments.surface is not None:
         return {"": read_surface(arguments.surface)}
     surfaces = {}
-    for side in ("left", "right"):
+    for side, structure in SIDES.items():
         path = getattr(arguments, side)
         if path is not None:
             surface = read_surface(path)
-            structure = f"Cortex{side.capitalize()}"
-            if surface.structure.startswith("Cortex") and surface.structure != structure:
+            if surface.structure in SIDES.values() and surface.structure != structure:
                 raise FileError(f"{path}: a surface of {surface.structure}; allowed for --{side}: "
                                 f"{structure}")
             surfaces[structure] = surface
@@ -83,49 +111,52 @@ def make_patches(surfaces, data: Data, columns, arguments):
         raise FileError(f"{data.path}: labels, which have no mean; allowed: real values")
     regions = {}
     if arguments.roi is not None:
-        regions = dict(_regions(arguments, surfaces, data.on_faces))
+        own = data if getattr(arguments, "match_columns", False) else None
+        regions = dict(_regions(arguments, surfaces, data.on_faces, own, columns))
     patches = []
     for part in data.parts:
-        surface = _surface_for(part, surfaces, data)
+        surface = surface_for(part, surfaces, data)
         values = np.array(part.values[:, columns], order="C", dtype=_float_type(part.values))
-        _require_finite(values, data, part, columns)
+        require_finite(values, data, part, columns)
         if arguments.fix_zeros:
             values[values == 0] = np.nan
-        values, excluded = _on_surface(part, values, surface, data)
+        values, excluded = on_surface(part, values, surface, data)
         if arguments.roi is not None:
-            excluded |= ~regions[id(surface)]
-        if excluded.all():
+            excluded = (excluded | ~regions[id(surface)].T).T
+        if excluded.all(axis=0).any():
             what = "face" if data.on_faces else "vertex"
             raise FileError(f"{arguments.roi or data.path}: no {what} of {surface.path} is in the "
                             "region; allowed: at least one")
-        values[excluded] = 0
+        values[np.broadcast_to(excluded.T, values.T.shape).T] = 0
         patches.append(Patch(surface, part, values, excluded))
     return patches
 
 
-def read_marks(path, surfaces, on_faces=False):
+def read_marks(path, surfaces, on_faces=False, columns=None):
     """For each surface, a bool per vertex or face: whether the first column is above 0, or has the
-    label that is named after a colon, as in lh.aparc.annot:precentral."""
-    path, label = _split_label(path)
+    label that is named after a colon, as in lh.aparc.annot:precentral. columns: the numbers of others;
+    each then has a column of bools."""
+    path, label = split_label(path)
     data = read_data(path, on_faces)
     if data.kind == "annot" and label is None:
         raise FileError(f"{path}: an atlas without a label; allowed: {path}:LABEL with "
                         f"{_labels_text(data)}")
-    number = None if label is None else _find_label(data, label)
+    number = None if label is None else find_label(data, label)
+    chosen = [0] if columns is None else columns
     for part in data.parts:
-        surface = _surface_for(part, surfaces, data)
+        surface = surface_for(part, surfaces, data)
         if data.kind == "label":
             inside = np.ones((len(part.values), 1), dtype=bool)
         elif number is not None:
-            inside = part.values[:, :1] == number
+            inside = part.values[:, chosen] == number
         else:
             with np.errstate(invalid="ignore"):
-                inside = part.values[:, :1] > 0
-        marks, _ = _on_surface(part, inside, surface, data)
-        yield id(surface), marks[:, 0].astype(bool)
+                inside = part.values[:, chosen] > 0
+        marks, _ = on_surface(part, inside, surface, data)
+        yield id(surface), marks[:, 0].astype(bool) if columns is None else marks.astype(bool)
 
 
-def _split_label(path):
+def split_label(path):
     """The file and the label of FILE:LABEL; None if no label is named. Both may have colons."""
     if not os.path.exists(path):
         for colon in re.finditer(":", path):
@@ -134,7 +165,7 @@ def _split_label(path):
     return path, None
 
 
-def _find_label(data, label):
+def find_label(data, label):
     """The number of a label that is given by its name or number."""
     if not data.labels:
         raise FileError(f"{data.path}: values, which have no label {label!r}; allowed: an atlas (.annot, "
@@ -158,8 +189,8 @@ def read_areas(path, surfaces):
         return {}
     data, found = read_data(path), {}
     for part in data.parts:
-        surface = _surface_for(part, surfaces, data)
-        areas, absent = _on_surface(part, part.values[:, :1].astype(float), surface, data)
+        surface = surface_for(part, surfaces, data)
+        areas, absent = on_surface(part, part.values[:, :1].astype(float), surface, data)
         areas = np.where(absent, vertex_areas(surface), areas[:, 0])
         wrong = ~(np.isfinite(areas) & (areas > 0))
         if wrong.any():
@@ -170,8 +201,14 @@ def read_areas(path, surfaces):
     return found
 
 
-def _regions(arguments, surfaces, on_faces):
-    found = dict(read_marks(arguments.roi, surfaces, on_faces))
+def _regions(arguments, surfaces, on_faces, own, columns):
+    """{id of the surface: its flags}. own: data of which each column has its own region."""
+    if own is not None:
+        count = len(read_data(split_label(arguments.roi)[0], on_faces).names)
+        if count != len(own.names):
+            raise ArgumentProblem(f"{arguments.roi} has {count} columns, but {own.path} has "
+                                  f"{len(own.names)}; allowed with --match-columns: the same number")
+    found = dict(read_marks(arguments.roi, surfaces, on_faces, columns if own is not None else None))
     for surface in surfaces.values():
         if id(surface) not in found:
             raise FileError(f"{arguments.roi}: nothing for {surface.path}; allowed: a region on "
@@ -179,14 +216,14 @@ def _regions(arguments, surfaces, on_faces):
     return found
 
 
-def _surface_for(part, surfaces, data):
+def surface_for(part, surfaces, data):
     if "" not in surfaces:
         if data.kind != "cifti":
             raise ArgumentProblem(f"--left and --right are for CIFTI files; {data.path} has one "
                                   "surface: give SURFACE")
-        if part.structure not in ("CortexLeft", "CortexRight"):
-            raise FileError(f"{data.path}: data at vertices of {part.structure}; allowed: CortexLeft, "
-                            "CortexRight")
+        if part.structure not in SIDES.values():
+            raise FileError(f"{data.path}: data at vertices of {part.structure}; allowed: "
+                            + ", ".join(SIDES.values()))
         if part.structure not in surfaces:
             side = part.structure.replace("Cortex", "").lower()
             raise ArgumentProblem(f"--{side} is missing: {data.path} has data of {part.structure}")
@@ -202,7 +239,7 @@ def _surface_for(part, surfaces, data):
     return surface
 
 
-def _on_surface(part, values, surface, data):
+def on_surface(part, values, surface, data):
     """Values (n, k) with 0 where the file has none, and a bool per vertex or face: whether it has
     none."""
     path, what = data.path, "faces" if data.on_faces else "points"
@@ -231,7 +268,7 @@ def _float_type(values):
     return np.float32 if values.dtype.kind == "f" and values.dtype.itemsize <= 4 else np.float64
 
 
-def _require_finite(values, data, part, columns):
+def require_finite(values, data, part, columns):
     bad = np.argwhere(np.isinf(values))
     if len(bad):
         row, column = bad[0]

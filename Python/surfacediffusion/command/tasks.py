@@ -11,7 +11,7 @@ import numpy as np
 from ..files import FileError, new_data, read_data, read_surface
 from ..files.content import (
     check_output_folder, check_output_name, kind_of_name, read_content)
-from . import inputs
+from . import batch, inputs
 from .inputs import choose_columns, make_patches, read_surfaces
 from .report import number
 
@@ -19,17 +19,70 @@ SIGMA_TO_FWHM = math.sqrt(8 * math.log(2))
 
 
 def smooth(arguments, report):
-    from .. import heat
+    batch.run(arguments, report, _smooth_file)
+
+
+def _smooth_file(arguments, report):
+    from .. import heat, smooth_to_fwhm
 
     width = arguments.width * (SIGMA_TO_FWHM if arguments.sigma else 1)
     report.facts.update(fwhm=width, sigma=width / SIGMA_TO_FWHM, steps=arguments.steps)
+    content = read_content(arguments.data)
+    if content.kind == "cifti" and not arguments.to_fwhm:
+        _smooth_cifti(arguments, report, content, width)
+        return
+    if arguments.residuals and not arguments.to_fwhm:
+        raise inputs.ArgumentProblem("--residuals without --to-fwhm; allowed: both")
 
     def compute(surface, values, mask, progress):
         return heat(surface, values, on_faces=arguments.faces, mask=mask, mask_mode="Exclude",
                     fwhm=width, number_of_time_steps=arguments.steps, progress=progress)
 
+    def reach(surface, values, mask, progress):
+        noise = _read_noise(arguments, values, mask)
+        return smooth_to_fwhm(surface, values, width, residuals=noise, mask=mask)
+
+    if arguments.to_fwhm:
+        if arguments.faces:
+            raise inputs.ArgumentProblem("--to-fwhm with --faces; allowed: data at vertices")
+        _change_data(arguments, report, "Smoothing", reach, _one_group, content=content,
+                     say=lambda surface: "smoothed to " + _width_text(width, surface))
+        return
     _change_data(arguments, report, "Smoothing", compute, _groups_of_missing,
-                 say=lambda surface: _width_text(width, surface))
+                 say=lambda surface: _width_text(width, surface), content=content)
+
+
+def _one_group(data, columns, patch):
+    """The noise of all columns has one smoothness."""
+    return [list(range(len(columns)))]
+
+
+def _read_noise(arguments, values, mask):
+    """The columns of --residuals on the surface of `values`; None without."""
+    if arguments.residuals is None:
+        return None
+    surfaces = read_surfaces(arguments)
+    noise = read_data(arguments.residuals)
+    if len(noise.parts) > 1 or len(surfaces) > 1:
+        raise inputs.ArgumentProblem("--residuals with several surfaces; allowed: one SURFACE")
+    (surface,) = surfaces.values()
+    found, absent = inputs.on_surface(noise.parts[0], noise.parts[0].values, surface, noise)
+    found = np.where(absent[:, None], np.nan, found)
+    return found if mask is None else np.where(mask[:, None], np.nan, found)
+
+
+def _smooth_cifti(arguments, report, content, width):
+    """Surfaces and voxels; the width of these may be another one."""
+    from . import grayordinates
+
+    voxel_width = width if arguments.volume_fwhm is None else arguments.volume_fwhm
+    columns = grayordinates.smooth(arguments, report, content, width, voxel_width)
+    what = (f"{len(columns)} column{'s' * (len(columns) > 1)}, FWHM {width:.3g} mm (sigma "
+            f"{width / SIGMA_TO_FWHM:.3g})")
+    voxels = report.facts["voxels"]
+    if voxels:
+        what += f", {voxels} voxels" + (f" FWHM {voxel_width:.3g} mm" if voxel_width != width else "")
+    _say_written(arguments, report, what)
 
 
 def _width_text(fwhm, surface):
@@ -380,9 +433,9 @@ def _info_line(entry):
 
 # ---- common parts --------------------------------------------------------------------------------
 
-def _read(arguments, missing=None):
+def _read(arguments, missing=None, content=None):
     surfaces = read_surfaces(arguments)
-    data = read_data(arguments.data, getattr(arguments, "faces", False))
+    data = read_data(content or arguments.data, getattr(arguments, "faces", False))
     columns = choose_columns(data, arguments.column)
     patches = make_patches(surfaces, data, columns, arguments)
     if missing is not None:
@@ -392,12 +445,13 @@ def _read(arguments, missing=None):
     return surfaces, data, columns, patches
 
 
-def _change_data(arguments, report, title, compute, groups, missing=None, say=None):
+def _change_data(arguments, report, title, compute, groups, missing=None, say=None, content=None):
     """Applies compute(surface, values, mask, progress) to the groups of columns of each surface
-    and writes the result in the format of DATA. say(surface): a part of the summary."""
+    and writes the result in the format of DATA. say(surface): a part of the summary. content: of DATA, if
+    it has been read."""
     check_output_folder(arguments.output)
     with report.timed("read"):
-        surfaces, data, columns, patches = _read(arguments, missing)
+        surfaces, data, columns, patches = _read(arguments, missing, content)
         areas = inputs.read_areas(getattr(arguments, "areas", None), surfaces)
         data.check_name(arguments.output)
     if data.extra:
@@ -407,10 +461,11 @@ def _change_data(arguments, report, title, compute, groups, missing=None, say=No
     done = 0
     with report.progress(title) as progress:
         for patch in patches:
-            surface = _make_surface(patch, areas)
-            mask = patch.excluded if patch.excluded.any() else None
+            surface = inputs.make_solver(arguments, patch.surface, areas.get(id(patch.surface)))
             new = np.empty_like(patch.values)
             for group in groups(data, columns, patch):
+                excluded = patch.excluded_of(group[0])
+                mask = excluded if excluded.any() else None
                 _require_known(patch, group, data, columns)
                 chosen = slice(None) if len(group) == len(columns) else group
                 with report.timed("compute"):
@@ -429,16 +484,6 @@ def _change_data(arguments, report, title, compute, groups, missing=None, say=No
     _say_written(arguments, report, what)
 
 
-def _make_surface(patch, areas):
-    """The surface, with the areas that were given for it."""
-    from .. import Surface
-
-    try:
-        return Surface(patch.surface.points, patch.surface.faces, areas.get(id(patch.surface)))
-    except ValueError as error:
-        raise FileError(f"{patch.surface.path}: {error}") from error
-
-
 def _part_of(progress, start, share):
     if progress is None:
         return None
@@ -448,11 +493,12 @@ def _part_of(progress, start, share):
 def _groups_of_missing(data, columns, patch):
     """Columns whose missing values are at the same vertices are solved together."""
     missing = np.isnan(patch.values)
-    if not missing.any():
+    if not missing.any() and patch.excluded.ndim == 1:
         return [list(range(len(columns)))]
     groups = {}
     for i in range(len(columns)):
-        groups.setdefault(np.packbits(missing[:, i]).tobytes(), []).append(i)
+        key = np.packbits(missing[:, i]).tobytes(), np.packbits(patch.excluded_of(i)).tobytes()
+        groups.setdefault(key, []).append(i)
     return list(groups.values())
 
 
@@ -472,29 +518,37 @@ def _groups_of_arrays(data, columns, patch):
 
 def _require_known(patch, group, data, columns):
     missing = np.isnan(patch.values[:, group]).any(axis=1)
-    if (missing | patch.excluded).all():
+    if (missing | patch.excluded_of(group[0])).all():
         raise FileError(f"{data.path}: column {columns[group[0]] + 1} has no known value in the "
                         "region; allowed: at least one")
 
 
 def _add_totals(report, data, columns, patch, new, areas):
     """The integrals over the region before (known values alone) and after."""
-    given = areas.get(id(patch.surface))
+    given = None if data.on_faces else areas.get(id(patch.surface))
+    missing = np.isnan(patch.values).sum(axis=0)
+    rows = report.facts.setdefault("columns", [])
+    regions = [slice(None)] if patch.excluded.ndim == 1 else [[i] for i in range(len(columns))]
+    for region in regions:
+        excluded = patch.excluded_of(0 if isinstance(region, slice) else region[0])
+        sizes = _sizes(data, patch, excluded, given)
+        before, after = _integrals(sizes, patch.values[:, region]), _integrals(sizes, new[:, region])
+        for k, i in enumerate(range(len(columns))[region] if isinstance(region, slice) else region):
+            rows.append({"column": columns[i] + 1, "name": data.names[columns[i]],
+                         "structure": patch.part.structure or patch.surface.structure,
+                         "missing": int(missing[i]), "excluded": int(excluded.sum()),
+                         "total_before": number(before[k]), "total_after": number(after[k])})
+
+
+def _sizes(data, patch, excluded, given):
+    """The areas that vertices or faces have in integrals. given: those of the vertices, or None."""
     if data.on_faces:
-        areas = np.where(patch.excluded, 0, inputs.face_areas(patch.surface))
-    else:
-        areas = inputs.vertex_areas(patch.surface, patch.excluded)
-    if given is not None and not data.on_faces:
+        return np.where(excluded, 0, inputs.face_areas(patch.surface))
+    areas = inputs.vertex_areas(patch.surface, excluded)
+    if given is not None:
         whole = inputs.vertex_areas(patch.surface)
         areas = np.divide(areas * given, whole, out=areas, where=whole > 0)
-    missing = np.isnan(patch.values).sum(axis=0)
-    before, after = _integrals(areas, patch.values), _integrals(areas, new)
-    rows = report.facts.setdefault("columns", [])
-    for i, column in enumerate(columns):
-        rows.append({"column": column + 1, "name": data.names[column],
-                     "structure": patch.part.structure or patch.surface.structure,
-                     "missing": int(missing[i]), "excluded": int(patch.excluded.sum()),
-                     "total_before": number(before[i]), "total_after": number(after[i])})
+    return areas
 
 
 def _integrals(areas, values):

@@ -10,6 +10,7 @@ import logging
 import math
 import os
 import re
+import stat
 import struct
 import tempfile
 import zlib
@@ -39,9 +40,12 @@ class FileError(ValueError):
 
 @dataclass
 class Content:
+    """partial: `bytes` are the beginning alone, since the file is large and on disk."""
+
     path: str
     bytes: bytes
     kind: str
+    partial: bool = False
 
     @property
     def name(self):
@@ -56,6 +60,8 @@ def read_content(path) -> Content:
     path = os.fspath(path)
     try:
         with open(path, "rb") as file:
+            if _is_cifti_on_disk(file):
+                return Content(path, b"", "cifti", partial=True)
             data = file.read()
     except OSError as error:
         raise FileError(f"{path}: cannot be read: {error.strerror}") from error
@@ -71,6 +77,15 @@ def read_content(path) -> Content:
         raise FileError(f"{path}: a file of unknown kind that starts with {data[:12]!r}; allowed: "
                         + ", ".join(NAMES.values()))
     return Content(path, data, kind)
+
+
+def _is_cifti_on_disk(file):
+    """Not of compressed files and of pipes, which are read at once. nibabel goes by the name."""
+    if not stat.S_ISREG(os.fstat(file.fileno()).st_mode) or not file.name.lower().endswith(".nii"):
+        return False
+    head = file.read(540)
+    file.seek(0)
+    return _is_cifti(head)
 
 
 @contextlib.contextmanager
@@ -111,11 +126,18 @@ def _find_xml_kind(data):
     return None
 
 
+def _is_nifti2(data, order):
+    return len(data) >= 540 and struct.unpack_from(order + "i", data)[0] == 540
+
+
+def _is_cifti(data):
+    return any(_is_nifti2(data, order) and 3000 <= struct.unpack_from(order + "i", data, 504)[0] < 3100
+               for order in "<>")
+
+
 def _find_binary_kind(data):
-    for order in "<>":
-        if len(data) >= 540 and struct.unpack_from(order + "i", data)[0] == 540:  # NIfTI-2
-            intent = struct.unpack_from(order + "i", data, 504)[0]
-            return "cifti" if 3000 <= intent < 3100 else "nifti"
+    if _is_nifti2(data, "<") or _is_nifti2(data, ">"):
+        return "cifti" if _is_cifti(data) else "nifti"
     if len(data) >= 348 and data[344:347] in (b"n+1", b"ni1"):
         return "nifti"
     if len(data) >= 284 and struct.unpack_from(">i", data)[0] == 1:
@@ -173,7 +195,7 @@ def reading(content):
     """Turns any exception of a reader into one line. Readers raise exceptions of many kinds for
     damaged files, hence the broad clause."""
     try:
-        with _silent_log("nibabel.global"):  # it reports headers that it mends, on standard error
+        with silent_log():  # nibabel reports headers that it mends, on standard error
             yield
     except FileError:
         raise
@@ -183,7 +205,7 @@ def reading(content):
 
 
 @contextlib.contextmanager
-def _silent_log(name):
+def silent_log(name="nibabel.global"):
     logger = logging.getLogger(name)
     level = logger.level
     logger.setLevel(logging.CRITICAL)
@@ -236,20 +258,31 @@ def check_output_folder(path):
 
 def write_atomically(path, data: bytes):
     """Writes `data`, compressed if the name ends in .gz or .mgz. The output appears complete or
-    not at all: a temporary file beside it is renamed."""
+    not at all."""
+    if is_compressed(path):
+        data = gzip.compress(data, 1, mtime=0)  # as nibabel: floats hardly shrink more
+    with writing_atomically(path) as temporary, open(temporary, "wb") as file:
+        file.write(data)
+
+
+def is_compressed(path):
+    """Whether the name of an output asks for compression."""
+    return os.fspath(path).lower().endswith((".gz", ".mgz"))
+
+
+@contextlib.contextmanager
+def writing_atomically(path):
+    """The path of a temporary file beside the output, which takes its name at the end."""
     path = os.fspath(path)
     check_output_folder(path)
-    if path.lower().endswith((".gz", ".mgz")):
-        data = gzip.compress(data, 1, mtime=0)  # as nibabel: floats hardly shrink more
     # A link is followed, and keeps being a link.
     target = os.path.realpath(path)
     temporary = None
     try:
         handle, temporary = tempfile.mkstemp(
             dir=os.path.dirname(target), prefix="." + os.path.basename(target) + ".")
-        with open(handle, "wb") as file:
-            file.write(data)
-            file.flush()
+        with open(handle, "rb") as file:
+            yield temporary
             os.fsync(file.fileno())
         os.chmod(temporary, _permissions(target))
         os.replace(temporary, target)

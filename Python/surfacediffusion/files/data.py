@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from . import freesurfer_data, gifti_data, ply, vtk_files
-from .content import Content, check_output_name, import_reader, kind_of_name, read_content, reading
+from .cifti import open_cifti
+from .content import Content, check_output_name, kind_of_name, read_content, reading
 from .content import NAMES, FileError, write_atomically
 
 ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
@@ -74,8 +75,8 @@ class Data:
         columns  the numbers of these columns; default: all. Files of meshes keep their other
                  columns, other files then hold these alone
         """
-        write = _FORMATS[self.kind].write if self.kind in _FORMATS else None
-        if write is None:
+        known = _FORMATS.get(self.kind)
+        if known is None or not (known.write or known.save):
             raise FileError(f"{path}: values cannot be written as {NAMES[self.kind]}, the format of "
                             f"{self.path}; allowed: formats of values")
         self.check_name(path)
@@ -84,7 +85,10 @@ class Data:
             if np.shape(new) != (len(part.values), len(columns)):
                 raise ValueError(f"values have shape {np.shape(new)}; allowed: "
                                  f"{(len(part.values), len(columns))}")
-        write_atomically(path, write(self, values, columns))
+        if known.save is not None:
+            known.save(path, self, values, columns)
+        else:
+            write_atomically(path, known.write(self, values, columns))
 
 
 def read_data(path, on_faces=False) -> Data:
@@ -163,70 +167,23 @@ def _write_gifti(data, values, columns):
 # ---- CIFTI ---------------------------------------------------------------------------------------
 
 def _read_cifti(content):
-    cifti2 = import_reader("nibabel.cifti2", content)
-    image = cifti2.Cifti2Image.from_bytes(content.bytes)
-    axes = [image.header.get_axis(i) for i in range(image.ndim)]
-    if len(axes) != 2 or not isinstance(axes[1], cifti2.BrainModelAxis) or not isinstance(
-            axes[0], (cifti2.ScalarAxis, cifti2.SeriesAxis, cifti2.LabelAxis)):
-        kinds = " by ".join(type(axis).__name__.replace("Axis", "") for axis in axes)
-        raise content.error(f"a CIFTI file of {kinds}; allowed: dscalar, dtseries")
-    values = np.asanyarray(image.dataobj)
-    parts, slices, volumes = [], [], 0
-    for name, block, model in axes[1].iter_structures():
-        if model.volume_mask.any():
-            volumes += len(model)
-            continue
-        rows = range(*block.indices(len(axes[1])))
-        parts.append(Part(values[:, rows.start:rows.stop].T, np.asarray(model.vertex),
-                          int(axes[1].nvertices[name]), _structure(name)))
-        slices.append(slice(rows.start, rows.stop))
-    extra = f"{volumes} voxels are copied unchanged" if volumes else ""
-    series = isinstance(axes[0], cifti2.SeriesAxis)
-    labels = isinstance(axes[0], cifti2.LabelAxis)
-    names = [str(i + 1) for i in range(len(axes[0]))] if series else [str(n) for n in axes[0].name]
-    label_names = {key: name for key, (name, _) in axes[0].label[0].items()} if labels else {}
-    return Data(content.path, content.kind, names, parts, labels=labels, label_names=label_names,
-                extra=extra, image=(image, values, slices),
-                rows="dtseries" if series else "dlabel" if labels else "dscalar")
+    file = open_cifti(content)
+    values = np.asanyarray(file.values)
+    surfaces = [entry for entry in file.structures if entry.vertices is not None]
+    parts = [Part(values[:, entry.place].T, entry.vertices, entry.size, entry.name) for entry in surfaces]
+    voxels = sum(len(entry.voxels) for entry in file.structures if entry.voxels is not None)
+    return Data(content.path, content.kind, file.names, parts, labels=file.rows == "dlabel",
+                label_names=file.label_names, image=(file, values, surfaces), rows=file.rows,
+                extra=f"{voxels} voxels are copied unchanged" if voxels else "")
 
 
-def _structure(name):
-    """"CortexLeft" for CIFTI_STRUCTURE_CORTEX_LEFT, as GIFTI has it."""
-    return "".join(word.capitalize() for word in name.replace("CIFTI_STRUCTURE_", "").split("_"))
-
-
-def _choose_times(data, axis, columns):
-    """The times of some columns of a series."""
-    strides = set(np.diff(columns)) or {1}
-    if len(strides) > 1 or min(strides) < 1:
-        chosen = ", ".join(str(column + 1) for column in columns)
-        raise FileError(f"{data.path}: the columns {chosen} of a time series; allowed: columns at "
-                        "equal intervals, or all")
-    return type(axis)(axis.start + columns[0] * axis.step, axis.step * min(strides), len(columns),
-                      axis.unit)
-
-
-def _write_cifti(data, values, columns):
-    from nibabel import cifti2
-
-    image, before, slices = data.image
+def _save_cifti(path, data, values, columns):
+    file, before, surfaces = data.image
     rows = np.array(before[columns], dtype=np.float32)
-    for place, new in zip(slices, values):
-        rows[:, place] = np.asarray(new).T
-    header = image.header
-    if columns != list(range(len(data.names))):
-        axes = [header.get_axis(i) for i in range(2)]
-        if isinstance(axes[0], cifti2.SeriesAxis):
-            first = _choose_times(data, axes[0], columns)
-        else:
-            first = cifti2.ScalarAxis(axes[0].name[columns], axes[0].meta[columns])
-        metadata = header.matrix.metadata
-        header = cifti2.Cifti2Header.from_axes((first, axes[1]))
-        header.matrix.metadata = metadata
-    new_image = cifti2.Cifti2Image(rows, header, image.nifti_header)
-    new_image.nifti_header.set_data_dtype(np.float32)
-    new_image.update_headers()
-    return new_image.to_bytes()
+    for entry, new in zip(surfaces, values):
+        rows[:, entry.place] = np.asarray(new).T
+    with file.writing(path, columns) as write:
+        write(0, [slice(0, rows.shape[1])], rows)
 
 
 # ---- FreeSurfer and NumPy ------------------------------------------------------------------------
@@ -363,19 +320,20 @@ class _Format:
 
     read: Callable[[Content], Data]
     write: Callable[[Data, Any, list[int]], bytes] | None = None
+    save: Callable[[Any, Data, Any, list[int]], None] | None = None  #: where memory is too small for that
     new: Callable[[Any, Sequence[str]], Any] | None = None
     on_faces: bool = False  #: files can have data at faces
 
 
 _FORMATS = {
-    "gifti": _Format(_read_gifti, _write_gifti, gifti_data.new, on_faces=True),
-    "cifti": _Format(_read_cifti, _write_cifti),
-    "curv": _Format(_read_curv, _write_curv, freesurfer_data.new_curv),
-    "mgh": _Format(_read_volume, _write_volume, freesurfer_data.new_mgh, on_faces=True),
+    "gifti": _Format(_read_gifti, _write_gifti, new=gifti_data.new, on_faces=True),
+    "cifti": _Format(_read_cifti, save=_save_cifti),
+    "curv": _Format(_read_curv, _write_curv, new=freesurfer_data.new_curv),
+    "mgh": _Format(_read_volume, _write_volume, new=freesurfer_data.new_mgh, on_faces=True),
     "nifti": _Format(_read_volume, _write_volume, on_faces=True),
     "annot": _Format(_read_annot),
     "label": _Format(_read_label, _write_label),
-    "npy": _Format(_read_npy, _write_npy, _new_npy, on_faces=True),
+    "npy": _Format(_read_npy, _write_npy, new=_new_npy, on_faces=True),
     "ply": _Format(_read_ply, _write_ply),
     "vtk": _Format(_read_vtk, _write_vtk, on_faces=True),
     "vtp": _Format(_read_vtk, _write_vtk, on_faces=True),

@@ -4,6 +4,7 @@
 only."""
 from __future__ import annotations
 
+import base64
 import re
 
 import numpy as np
@@ -19,9 +20,11 @@ def read(content):
 
         if b"PolyData" not in content.bytes[:4096]:
             raise content.error("a VTK XML file of another type; allowed: PolyData")
+        _check_sizes(content.bytes)
     else:
         from vtkmodules.vtkIOLegacy import vtkPolyDataReader as Reader
 
+        _check_version(content.bytes)
     # Errors of readers and of their parsers go to the output window, and to a log on standard error.
     before = core.vtkOutputWindow.GetInstance()
     verbosity = core.vtkLogger.GetCurrentVerbosityCutoff()
@@ -51,6 +54,46 @@ def read(content):
         if kind == "ERROR" or text.startswith("Error"):
             raise ValueError(text.replace(path, content.path))
     return reader.GetOutput()
+
+
+def _check_version(data):
+    """Raises ValueError if cells are not as the version in the first line has them: VTK would read beyond
+    its memory."""
+    version = re.match(rb"# vtk DataFile Version (\d)\.\d\s", data)
+    if version is None:
+        raise ValueError(f"the version in the first line is {data[23:33]!r}; allowed: 1.0 to 5.1")
+    for cells in re.finditer(rb"\n(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS)[ \t]+\d+[ \t]+\d+\s*\n"
+                             rb"(OFFSETS)?", data):
+        if (cells[1] is not None) != (version[1] >= b"5"):
+            raise ValueError(f"cells of another version than {version[1].decode()}, that of the first line")
+
+
+def _check_sizes(data):
+    """Raises ValueError if an array announces more bytes than the file can hold: VTK would allocate them,
+    and end the process where it cannot."""
+    root = re.search(rb"<VTKFile\b[^>]*>", data)
+    if root is None:
+        return
+    number = np.dtype("u8" if b'"UInt64"' in root[0] else "u4").newbyteorder(
+        ">" if b'"BigEndian"' in root[0] else "<")
+    compressed = b"compressor=" in root[0]
+    appended = re.search(rb"<AppendedData\b[^>]*>\s*_", data)
+    for array in re.finditer(rb"<DataArray\b[^>]*>", data[:appended.start() if appended else None]):
+        offset = re.search(rb'offset="(\d{1,18})"', array[0])
+        if b'"binary"' in array[0]:
+            start, raw = array.end(), False
+        elif b'"appended"' in array[0] and offset and appended:
+            start, raw = appended.end() + int(offset[1]), b'"raw"' in appended[0]
+        else:
+            continue
+        count = number.itemsize * (2 if compressed else 1)
+        start += 0 if raw else len(data[start:start + 100]) - len(data[start:start + 100].lstrip())
+        head = data[start:start + (count if raw else (count + 2) // 3 * 4)]
+        sizes = np.frombuffer((head if raw else base64.b64decode(head))[:count], number).tolist()
+        # Blocks of a compressed array have a length each, and zlib packs a thousand bytes in one.
+        if sizes and (sizes[0] > len(data) or np.prod(sizes, dtype=float) > 10000.0 * len(data)):
+            raise ValueError(f"an array announces {' blocks of '.join(map(str, sizes))} bytes, the file has "
+                             f"{len(data)}")
 
 
 def points_and_faces(mesh):

@@ -1,0 +1,156 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Meshes of nilearn, trimesh, LaPy and PyVista are taken as surfaces, and surface images of nilearn are
+smoothed."""
+
+import contextlib
+import io
+import os
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import surfacediffusion as sd
+import surfacediffusion.files
+from surfacediffusion import Surface, estimate_fwhm, estimate_fwhm_img, heat, smooth_img
+from surfacediffusion._surface import as_surface
+
+try:
+    import lapy
+    import nibabel as nib
+    import pyvista
+    import trimesh
+    from nilearn.surface import InMemoryMesh, PolyMesh, SurfaceImage
+except ImportError as missing:
+    print(missing)
+    sys.exit(77)  # skipped
+
+SPHERE = sd.sphere(4, 50.0)
+POINTS, FACES = np.asarray(SPHERE.points), np.asarray(SPHERE.triangles)
+N = len(POINTS)
+RNG = np.random.default_rng(1)
+
+
+class Meshes(unittest.TestCase):
+    values = RNG.normal(size=N)
+    expected = heat(SPHERE, values, fwhm=12)
+
+    def check(self, mesh):
+        np.testing.assert_array_equal(heat(mesh, self.values, fwhm=12), self.expected)
+        noise = RNG.normal(size=(N, 3))
+        self.assertEqual(estimate_fwhm(mesh, noise).pooled, estimate_fwhm(SPHERE, noise).pooled)
+
+    def test_arrays(self):
+        self.check((POINTS, FACES))
+        self.check([POINTS.tolist(), FACES.tolist()])
+
+    def test_nilearn(self):
+        self.check(InMemoryMesh(POINTS, FACES))
+
+    def test_trimesh(self):
+        self.check(trimesh.Trimesh(POINTS, FACES, process=False))
+
+    def test_lapy(self):
+        self.check(lapy.TriaMesh(POINTS, FACES))
+
+    def test_pyvista(self):
+        self.check(pyvista.PolyData.from_regular_faces(POINTS, FACES))
+        square = pyvista.Plane(i_resolution=3, j_resolution=2)
+        self.assertEqual([len(face) for face in as_surface(square).faces], [4] * 6)
+        mixed = pyvista.PolyData(np.eye(5, 3), [4, 0, 1, 2, 3, 3, 0, 1, 4])
+        self.assertEqual([len(face) for face in as_surface(mixed).faces], [4, 3])
+        with self.assertRaisesRegex(ValueError, "[0-9]+ triangle strips .* allowed: polygons"):
+            as_surface(square.triangulate().strip())
+        with self.assertRaisesRegex(ValueError, "surface is .* allowed: a Surface, a tuple"):
+            as_surface("lh.white")
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "lh.white")
+            nib.freesurfer.write_geometry(path, POINTS, FACES)
+            surface = sd.files.read_surface(path)
+            np.testing.assert_array_equal(
+                heat(surface, self.values, fwhm=12),
+                heat(Surface(surface.points, surface.faces), self.values, fwhm=12))
+
+
+class Images(unittest.TestCase):
+    def setUp(self):
+        self.mesh = PolyMesh(left=InMemoryMesh(POINTS, FACES), right=InMemoryMesh(POINTS * 0.9, FACES))
+        self.data = {"left": RNG.normal(size=(N, 3)), "right": RNG.normal(size=(N, 3))}
+        self.image = SurfaceImage(self.mesh, self.data)
+
+    def part(self, image, name):
+        return image.data.parts[name]
+
+    def test_each_hemisphere_is_smoothed_on_its_mesh(self):
+        before = {name: values.copy() for name, values in self.data.items()}
+        smooth = smooth_img(self.image, 10)
+        self.assertIsInstance(smooth, SurfaceImage)
+        self.assertEqual(smooth.shape, self.image.shape)
+        for name, scale in (("left", 1.0), ("right", 0.9)):
+            expected = heat((POINTS * scale, FACES), before[name], fwhm=10, number_of_time_steps=3)
+            np.testing.assert_array_equal(self.part(smooth, name), expected)
+            np.testing.assert_array_equal(self.part(self.image, name), before[name])
+            self.assertIs(smooth.mesh.parts[name], self.mesh.parts[name])
+
+    def test_the_values_are_those_of_the_command(self):
+        from surfacediffusion.command import main
+
+        with tempfile.TemporaryDirectory() as folder:
+            self.mesh.to_filename(os.path.join(folder, "mesh.gii"))
+            surface = os.path.join(folder, "mesh_hemi-L.gii")
+            np.save(os.path.join(folder, "a.npy"), self.data["left"])
+            with contextlib.redirect_stdout(io.StringIO()):
+                code = main(["smooth", surface, os.path.join(folder, "a.npy"), "10",
+                             os.path.join(folder, "b.npy")])
+            self.assertEqual(code, 0)
+            found = np.load(os.path.join(folder, "b.npy"))
+        # The file holds coordinates in single precision.
+        np.testing.assert_allclose(self.part(smooth_img(self.image, 10), "left"), found, atol=1e-5)
+
+    def test_a_mask_is_the_inside_and_missing_values_are_filled(self):
+        inside = {"left": POINTS[:, 2] > -10, "right": POINTS[:, 0] > 0}
+        mask = SurfaceImage(self.mesh, {k: v.astype(np.float32) for k, v in inside.items()})
+        self.data["left"][::50, 1] = np.nan
+        smooth = smooth_img(self.image, 10, mask_img=mask)
+        for name, flags in inside.items():
+            found = self.part(smooth, name)
+            np.testing.assert_array_equal(found[~flags], 0)
+            self.assertTrue(np.isfinite(found).all())
+        expected = heat((POINTS, FACES), np.where(inside["left"], self.data["left"][:, 0], 0), fwhm=10,
+                        roi=inside["left"], number_of_time_steps=3)
+        np.testing.assert_allclose(self.part(smooth, "left")[:, 0], expected, atol=1e-12)
+
+    def test_lists_types_and_one_dimension(self):
+        flat = SurfaceImage(self.mesh, {k: v[:, 0].astype(np.float32) for k, v in self.data.items()})
+        found = smooth_img([flat, self.image], 10)
+        self.assertEqual(len(found), 2)
+        self.assertEqual(self.part(found[0], "left").dtype, np.float32)
+        np.testing.assert_allclose(np.ravel(self.part(found[0], "left")),
+                                   self.part(found[1], "left")[:, 0], atol=1e-5)
+
+    def test_smoothness_is_that_of_each_mesh(self):
+        smooth = smooth_img(self.image, 15)
+        found = estimate_fwhm_img(smooth)
+        self.assertEqual(sorted(found), ["left", "right"])
+        self.assertEqual(found["left"].pooled,
+                         estimate_fwhm((POINTS, FACES), self.part(smooth, "left")).pooled)
+        for estimate in found.values():
+            self.assertAlmostEqual(estimate.pooled / 15, 1, delta=0.1)
+
+    def test_what_is_no_image_or_no_width_is_an_error(self):
+        for image in (self.mesh, "image.gii", None):
+            with self.assertRaisesRegex(ValueError, "img is .*; allowed: a SurfaceImage of nilearn"):
+                smooth_img(image, 10)
+        for fwhm in (0, -1, None, np.nan, [10]):
+            with self.assertRaisesRegex(ValueError, "fwhm is .*; allowed: finite numbers above 0"):
+                smooth_img(self.image, fwhm)
+        with self.assertRaisesRegex(ValueError, "mask_img is .*; allowed: a SurfaceImage"):
+            smooth_img(self.image, 10, mask_img=self.data)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
