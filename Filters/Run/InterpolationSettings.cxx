@@ -187,6 +187,7 @@ ModelTraits InterpolationSettings::DescribeModel() const
   traits.UsesKnownValues = true;
   traits.MaximumDistance = this->MaximumDistance;
   traits.NeedsDirections = this->IsDirected();
+  traits.UsesRandomNumbers = !this->Exact;
   traits.StartsFromKnownValues = true;
   traits.ResultOnCells = this->ResultOnCells;
   traits.KeepCellDetail = false;
@@ -256,7 +257,7 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
     output.Elsewhere = none;
     output.DataName = model.NameOfSamples;
   }
-  if (this->ComputeError)
+  if (found.Error.rows() > 0)
   {
     Output error{ "Error", Place::PerVertex, OutputType::Real, unit * found.Error };
     error.IsBesideResult = true;

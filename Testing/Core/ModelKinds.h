@@ -4,6 +4,7 @@
 
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/InterpolationSettings.h"
 #include "Run/MumfordShahSettings.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/TensorDiffusionSettings.h"
@@ -112,6 +113,7 @@ inline std::vector<ModelKind> AllModelKinds()
   using Tensor = TensorDiffusionSettings;
   using Texture = TextureSettings;
   using Segments = SegmentationSettings;
+  using Spline = InterpolationSettings;
   const auto setImplicit = [](TV& s)
   { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Implicit; };
   const auto setSteady = [](TV& s)
@@ -266,6 +268,20 @@ inline std::vector<ModelKind> AllModelKinds()
         s.StopTolerance = 0.1;
       },
       Content::ColorsOnCells),
+
+    MakeKind<Spline>("Interpolation", 1),
+    MakeKind<Spline>(
+      "InterpolationOfColors", 1,
+      [](Spline& s)
+      {
+        s.KeepRange = true;
+        s.ComputeError = true;
+        s.CorrelationLength = 0.5;
+      },
+      Content::Colors),
+    MakeKind<Spline>(
+      "InterpolationFree", 1, [](Spline& s) { s.Boundary = RimCondition::Free; },
+      Content::ScalarsOnCells),
   };
   for (int k = 0; k < NumberOfKinetics; ++k)
   {

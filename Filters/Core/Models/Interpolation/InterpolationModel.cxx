@@ -28,26 +28,38 @@ InterpolationModel::InterpolationModel(std::shared_ptr<const Assembler> assemble
 {
   const Values misfit = this->Data.Given.rowwise() - this->U.row(0);
   this->EnergyOfStart = 0.5 * this->Data.Weights.dot(misfit.rowwise().squaredNorm());
-  this->EnergyOfState = this->EnergyOfStart;
 }
 
 StepReport InterpolationModel::Advance(const ProgressMonitor& progress)
 {
   this->Last = this->Method.Fit(this->Data, progress);
   this->U = std::move(this->Last.U);
-  this->EnergyOfState = 0.0;
+  this->EnergyOfFit = 0.0;
   for (const SmoothInterpolation::Column& column : this->Last.Columns)
   {
-    this->EnergyOfState += 0.5 * column.Mu * column.Roughness +
+    this->EnergyOfFit += 0.5 * column.Mu * column.Roughness +
       0.5 * this->Data.Weights.sum() * column.Residual * column.Residual;
   }
+  this->IsFitted = true;
   return {};
+}
+
+/// The state, and whether it is the fit.
+std::size_t InterpolationModel::CheckpointSize() const
+{
+  return this->StateModel::CheckpointSize() + 1;
+}
+
+void InterpolationModel::Save(double* checkpoint) const
+{
+  this->StateModel::Save(checkpoint);
+  checkpoint[this->U.size()] = this->IsFitted ? 1.0 : 0.0;
 }
 
 void InterpolationModel::Restore(const double* checkpoint)
 {
   this->StateModel::Restore(checkpoint);
-  this->EnergyOfState = this->EnergyOfStart;
+  this->IsFitted = checkpoint[this->U.size()] != 0.0;
 }
 
 } // namespace SurfaceDiffusion

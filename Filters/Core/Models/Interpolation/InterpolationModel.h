@@ -20,19 +20,28 @@ public:
   /// Throws as SmoothInterpolation::Fit().
   StepReport Advance(const ProgressMonitor& progress) override;
   /// E(u) with the mu that was found; with exact values, its limit as mu tends to 0.
-  double Energy() const override { return this->EnergyOfState; }
+  double Energy() const override
+  {
+    return this->IsFitted ? this->EnergyOfFit : this->EnergyOfStart;
+  }
+  std::size_t CheckpointSize() const override;
+  void Save(double* checkpoint) const override;
   void Restore(const double* checkpoint) override;
 
-  /// Of the last step.
-  const SmoothInterpolation::Result& Found() const { return this->Last; }
+  /// What the step found; nothing at the start.
+  const SmoothInterpolation::Result& Found() const
+  {
+    return this->IsFitted ? this->Last : this->None;
+  }
   Index NumberOfValues() const { return this->Data.Count(); }
 
 private:
   SmoothInterpolation Method;
   ScatteredValues Data;
-  SmoothInterpolation::Result Last;
+  SmoothInterpolation::Result Last, None;
+  bool IsFitted = false; ///< the state is that of Last
   double EnergyOfStart;
-  double EnergyOfState;
+  double EnergyOfFit = 0.0;
 };
 
 } // namespace SurfaceDiffusion
