@@ -73,6 +73,7 @@ inline const NamedSettings SettingsOfModels[] = {
   { "heat", &MakeDefaults<HeatSettings> },
   { "intrinsic_tv", &MakeDefaults<TotalVariationSettings> },
   { "mumford_shah", &MakeDefaults<MumfordShahSettings> },
+  { "interpolate", &MakeDefaults<InterpolationSettings> },
   { "segment", &MakeDefaults<SegmentationSettings> },
   { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings> },
   { "turing_texture", &MakeDefaults<TextureSettings> }
