@@ -20,22 +20,21 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The chosen point array; null if there is none.
-vtkDataArray* FindArray(
-  vtkAlgorithm* filter, vtkPointSet* points, int index, const char* property, Problems& problems)
+/// The chosen point array; null if there is none. isNeeded: the active scalars if none is chosen.
+vtkDataArray* FindArray(vtkAlgorithm* filter, vtkPointSet* points, int index, bool isNeeded,
+  const char* property, Problems& problems)
 {
   vtkInformation* const info = filter->GetInputArrayInformation(index);
   const char* const name =
     info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   const bool hasName = name && *name;
-  if (!hasName && !info->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+  if (!hasName && !isNeeded)
   {
     return nullptr;
   }
   vtkPointData* const attributes = points->GetPointData();
-  vtkAbstractArray* const found = hasName
-    ? attributes->GetAbstractArray(name)
-    : attributes->GetAbstractAttribute(info->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()));
+  vtkAbstractArray* const found =
+    hasName ? attributes->GetAbstractArray(name) : attributes->GetScalars();
   const std::string label = property + (hasName ? " \"" + std::string(name) + "\"" : std::string());
   if (!found)
   {
@@ -91,9 +90,9 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkAlgorithm* filter, vtkDa
   else if (points->GetNumberOfPoints() > 0 || processes.Count() == 1)
   {
     vtkDataArray* const values =
-      FindArray(filter, points, indices.Values, "PointValueArray", problems);
+      FindArray(filter, points, indices.Values, true, "PointValueArray", problems);
     vtkDataArray* const weights =
-      FindArray(filter, points, indices.Weights, "PointWeightArray", problems);
+      FindArray(filter, points, indices.Weights, false, "PointWeightArray", problems);
     if (weights && weights->GetNumberOfComponents() != 1)
     {
       problems.emplace_back("PointWeightArray has " +

@@ -311,12 +311,16 @@ class OtherCommands(CommandTest):
         places = 1.05 * POINTS[::5]
         rows = [f"{x:.17g},{y:.17g},{z:.17g},{z:.17g}" for x, y, z in places]
         Path("values.csv").write_text("x,y,z,height\n" + "\n".join(rows) + "\n99,0,0,7\n")
-        report = self.report("interpolate lh.surf.gii values.csv out.shape.gii --exact --within 2 "
-                             "--error errors.npy")
+        code, out, error = run(*"interpolate lh.surf.gii values.csv out.shape.gii --exact --within 2 "
+                               "--error errors.npy --json".split())
+        self.assertEqual(code, 0, error)
+        self.assertIn("1 value is farther from the surface than", error)
+        report = json.loads(out)
         self.assertEqual((report["values"], report["far_values"]), (len(places), 1))
         self.assertEqual(report["columns"][0]["name"], "height")
         self.assertLess(abs(self.column("out.shape.gii")[::5] - places[:, 2]).max(), 1e-4)
-        self.assertLess(abs(self.column("out.shape.gii") - 1.05 * POINTS[:, 2]).max(), 0.5)
+        expected = interpolate(self.surface, places[:, 2], places, exact=True).values
+        np.testing.assert_allclose(self.column("out.shape.gii"), expected, rtol=1e-5, atol=1e-5)
         errors = np.load("errors.npy").ravel()
         self.assertGreater(errors.max(), 0.0)
         self.assertLess(errors[::5].max(), 0.2 * errors.max())
@@ -334,7 +338,7 @@ class OtherCommands(CommandTest):
                 ("1 2 3 4\n1 2 3 x\n", "line 2 is '1 2 3 x'")):
             Path("bad.txt").write_text(text)
             code, _, error = run("interpolate", "lh.surf.gii", "bad.txt", "out.npy")
-            self.assertEqual(code, 1)
+            self.assertEqual(code, 2)
             self.assertIn(problem, error)
 
     def test_segment_labels_the_sides_of_a_step(self):

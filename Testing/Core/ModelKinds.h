@@ -40,7 +40,7 @@ enum class Exemption
 {
   None,
   Numbering, ///< it starts on a coarser mesh, which depends on the numbering
-  Allocation ///< one solver is used for systems with different numbers of columns in turn
+  Allocation ///< one solver is used for different systems in turn
 };
 
 /// A model with settings that take a way of their own through its code.
@@ -269,7 +269,7 @@ inline std::vector<ModelKind> AllModelKinds()
       },
       Content::ColorsOnCells),
 
-    MakeKind<Spline>("Interpolation", 1),
+    MakeKind<Spline>("Interpolation", 1, {}, Content::Scalars, Exemption::Allocation),
     MakeKind<Spline>(
       "InterpolationOfColors", 1,
       [](Spline& s)
@@ -278,10 +278,10 @@ inline std::vector<ModelKind> AllModelKinds()
         s.ComputeError = true;
         s.CorrelationLength = 0.5;
       },
-      Content::Colors),
+      Content::Colors, Exemption::Allocation),
     MakeKind<Spline>(
       "InterpolationFree", 1, [](Spline& s) { s.Boundary = RimCondition::Free; },
-      Content::ScalarsOnCells),
+      Content::ScalarsOnCells, Exemption::Allocation),
   };
   for (int k = 0; k < NumberOfKinetics; ++k)
   {
