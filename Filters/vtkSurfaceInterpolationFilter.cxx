@@ -9,7 +9,6 @@
 #include "Run/OwnedSettings.h"
 
 #include "vtkDataObject.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
@@ -18,13 +17,6 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceInterpolationFilter);
 
-namespace
-{
-
-constexpr PointInputIndices Indices = { 8, 9 };
-
-} // namespace
-
 vtkSurfaceInterpolationFilter::vtkSurfaceInterpolationFilter()
   : Superclass(OwnedSettings::Make<InterpolationSettings>())
 {
@@ -32,8 +24,6 @@ vtkSurfaceInterpolationFilter::vtkSurfaceInterpolationFilter()
   this->DeclareNumber("NumberOfValues");
   this->DeclareNumber("NumberOfFarValues");
   this->SetNumberOfInputPorts(2);
-  this->SetInputArrayToProcess(
-    Indices.Values, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
 
 int vtkSurfaceInterpolationFilter::FillInputPortInformation(int port, vtkInformation* info)
@@ -58,8 +48,8 @@ int vtkSurfaceInterpolationFilter::RequestData(
   this->ProblemsOfPoints.clear();
   if (points)
   {
-    this->Samples =
-      ReadPointSamples(this, points, Indices, this->GetController(), this->ProblemsOfPoints);
+    this->Samples = ReadPointSamples(points, { this->PointValueArray, this->PointWeightArray },
+      this->GetController(), this->ProblemsOfPoints);
   }
   const int result = this->Superclass::RequestData(request, inputs, outputs);
   this->Samples.reset();
@@ -80,4 +70,11 @@ bool vtkSurfaceInterpolationFilter::FindFields(
   fields.Mask = inputs.Find(1, "MaskArray", 1);
   fields.Direction = inputs.Find(2, "DirectionArray", 3);
   return fields.Data.Values != nullptr || fields.Samples != nullptr;
+}
+
+void vtkSurfaceInterpolationFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointValueArray: " << this->PointValueArray << "\n";
+  os << indent << "PointWeightArray: " << this->PointWeightArray << "\n";
 }

@@ -32,11 +32,9 @@
  * **Input arrays** in addition to those of the superclass (0, the data, 1, the mask, and 2,
  * directions e1 for AlongDiffusivity and AcrossDiffusivity):
  *
- * | idx | port | association | meaning |
- * | --- | --- | --- | --- |
- * | 5 | 0 | points or cells | FidelityArray: the weights w of the data, 0 or more; 0: unknown |
- * | 8 | 1 | points | PointValueArray: the values, any number of components. NaN: unknown. Default: active scalars |
- * | 9 | 1 | points | PointWeightArray: their weights w, likewise |
+ * | idx | association | meaning |
+ * | --- | --- | --- |
+ * | 5 | points or cells | FidelityArray: the weights w of the data, 0 or more; 0: unknown |
  *
  * Values with standard deviations s_i have the weights 1/s_i^2, and NoiseLevel 1. Input array 3 is
  * not used.
@@ -83,6 +81,7 @@
 #include "vtkSurfaceModelAlgorithm.h"
 
 #include <memory> // for the values
+#include <string> // for names
 
 namespace SurfaceDiffusion
 {
@@ -94,6 +93,7 @@ class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceInterpolationFilter : public vtkSurfa
 public:
   static vtkSurfaceInterpolationFilter* New();
   vtkTypeMacro(vtkSurfaceInterpolationFilter, vtkSurfaceModelAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum BoundaryType
   {
@@ -106,6 +106,18 @@ public:
    */
   void SetPointsConnection(vtkAlgorithmOutput* points) { this->SetInputConnection(1, points); }
   void SetPointsData(vtkDataObject* points) { this->SetInputData(1, points); }
+
+  ///@{
+  /**
+   * The names of point arrays of these points: the values, with any number of components, NaN:
+   * unknown (default: empty, their active scalars), and the weights w, one component, 0 or more, 0:
+   * unknown (default: empty, 1 everywhere).
+   */
+  vtkSetStdStringFromCharMacro(PointValueArray);
+  vtkGetCharFromStdStringMacro(PointValueArray);
+  vtkSetStdStringFromCharMacro(PointWeightArray);
+  vtkGetCharFromStdStringMacro(PointWeightArray);
+  ///@}
 
   /**
    * On: u has the values exactly. Off (default): u is smoothed, as noisy values need.
@@ -203,6 +215,8 @@ private:
   vtkSurfaceInterpolationFilter(const vtkSurfaceInterpolationFilter&) = delete;
   void operator=(const vtkSurfaceInterpolationFilter&) = delete;
 
+  std::string PointValueArray;
+  std::string PointWeightArray;
   bool HasPoints = false; ///< during an update
   std::shared_ptr<const SurfaceDiffusion::PointSamples> Samples; ///< likewise
   Problems ProblemsOfPoints; ///< likewise

@@ -5,10 +5,8 @@
 #include "Conversion/FieldReader.h"
 #include "Distributed/Processes.h"
 
-#include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
-#include "vtkInformation.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
@@ -20,22 +18,15 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The chosen point array; null if there is none. isNeeded: the active scalars if none is chosen.
-vtkDataArray* FindArray(vtkAlgorithm* filter, vtkPointSet* points, int index, bool isNeeded,
-  const char* property, Problems& problems)
+/// The array of this name or, without one, the active scalars; null with a problem if there is none.
+vtkDataArray* FindArray(
+  vtkPointSet* points, const std::string& name, const char* property, Problems& problems)
 {
-  vtkInformation* const info = filter->GetInputArrayInformation(index);
-  const char* const name =
-    info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  const bool hasName = name && *name;
-  if (!hasName && !isNeeded)
-  {
-    return nullptr;
-  }
+  const bool hasName = !name.empty();
   vtkPointData* const attributes = points->GetPointData();
   vtkAbstractArray* const found =
-    hasName ? attributes->GetAbstractArray(name) : attributes->GetScalars();
-  const std::string label = property + (hasName ? " \"" + std::string(name) + "\"" : std::string());
+    hasName ? attributes->GetAbstractArray(name.c_str()) : attributes->GetScalars();
+  const std::string label = property + (hasName ? " \"" + name + "\"" : std::string());
   if (!found)
   {
     problems.emplace_back(label +
@@ -72,8 +63,8 @@ void Gather(const Processes& processes, PointSamples& samples)
 
 } // namespace
 
-std::shared_ptr<const PointSamples> ReadPointSamples(vtkAlgorithm* filter, vtkDataObject* data,
-  const PointInputIndices& indices, vtkMultiProcessController* controller, Problems& problems)
+std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
+  const PointInputNames& names, vtkMultiProcessController* controller, Problems& problems)
 {
   const Processes processes(controller);
   auto samples = std::make_shared<PointSamples>();
@@ -89,10 +80,10 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkAlgorithm* filter, vtkDa
   // A process without points need not have the arrays of the others.
   else if (points->GetNumberOfPoints() > 0 || processes.Count() == 1)
   {
-    vtkDataArray* const values =
-      FindArray(filter, points, indices.Values, true, "PointValueArray", problems);
-    vtkDataArray* const weights =
-      FindArray(filter, points, indices.Weights, false, "PointWeightArray", problems);
+    vtkDataArray* const values = FindArray(points, names.Values, "PointValueArray", problems);
+    vtkDataArray* const weights = names.Weights.empty()
+      ? nullptr
+      : FindArray(points, names.Weights, "PointWeightArray", problems);
     if (weights && weights->GetNumberOfComponents() != 1)
     {
       problems.emplace_back("PointWeightArray has " +

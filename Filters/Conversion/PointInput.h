@@ -7,25 +7,25 @@
 #include "Run/Settings.h"
 
 #include <memory>
+#include <string>
 
-class vtkAlgorithm;
 class vtkDataObject;
 class vtkMultiProcessController;
 
 namespace SurfaceDiffusion
 {
 
-/// The arrays that SetInputArrayToProcess() chooses on points with values.
-struct PointInputIndices
+/// The names of point arrays of points with values.
+struct PointInputNames
 {
-  int Values;
-  int Weights;
+  const std::string& Values; ///< empty: the active scalars
+  const std::string& Weights; ///< empty: 1 everywhere
 };
 
 /// The points of a vtkPointSet with the chosen values and weights; those of all processes together.
 /// Null, with problems, if the data are of another type or have no such array. Collective.
-std::shared_ptr<const PointSamples> ReadPointSamples(vtkAlgorithm* filter, vtkDataObject* data,
-  const PointInputIndices& indices, vtkMultiProcessController* controller, Problems& problems);
+std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
+  const PointInputNames& names, vtkMultiProcessController* controller, Problems& problems);
 
 /// Add the hash of everything in it.
 void AddSamples(Fingerprint& fingerprint, const PointSamples& samples);

@@ -151,7 +151,7 @@ TEST(InterpolationFilter, TakesValuesOfPointsBesideTheSurface)
   EXPECT_NE(Result(filter, "u"), nullptr);
   EXPECT_NE(Result(filter, "uError"), nullptr);
 
-  filter->SetInputArrayToProcess(9, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "w");
+  filter->SetPointWeightArray("w");
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfValues(), 40);
 
@@ -199,10 +199,10 @@ TEST(InterpolationFilter, ReportsBadPointsWithValues)
     std::string::npos);
   auto probes = Probes(5, 1.0);
   filter->SetPointsData(probes);
-  filter->SetInputArrayToProcess(8, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
+  filter->SetPointValueArray("none");
   EXPECT_NE(ErrorOf(filter).find("PointValueArray \"none\" is not among the point arrays"),
     std::string::npos);
-  filter->SetInputArrayToProcess(8, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "t");
+  filter->SetPointValueArray("t");
   EXPECT_EQ(ErrorOf(filter), "");
   probes->GetPointData()->GetArray("t")->Fill(NaN);
   probes->Modified();

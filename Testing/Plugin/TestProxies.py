@@ -20,8 +20,7 @@ GROUPS = ("Data", "Model", "Constraints", "Solver", "Time")
 # All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
-    "FidelityArray", "SeedArray", "DataTermArray", "PointsWithValues", "PointValueArray",
-    "PointWeightArray", "TimestepValues",
+    "FidelityArray", "SeedArray", "DataTermArray", "PointsWithValues", "TimestepValues",
     "Mean",  # a list: SetMean(region, component, value)
 }
 PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"],

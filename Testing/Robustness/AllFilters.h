@@ -258,12 +258,12 @@ inline std::vector<FilterKind> AllFilters()
         f->SetStopTolerance(0.1);
         SetInputArray(f, 0, "c", true);
       })),
-    MakeKind<Spline>("Interpolation", "fInterpolated", 1,
+    Slow(MakeKind<Spline>("Interpolation", "fInterpolated", 1,
       [](Spline* f)
       {
         SetInputArray(f, 1, "mask");
         f->ComputeErrorOn();
-      }),
+      })),
     MakeKind<Spline>("InterpolationFree", "fInterpolated", 1,
       [](Spline* f)
       {
@@ -271,8 +271,8 @@ inline std::vector<FilterKind> AllFilters()
         f->SetBoundaryToFree();
         f->ExactOn();
       }),
-    MakeKind<Spline>("InterpolationOfCells", "cInterpolated", 1,
-      [](Spline* f) { SetInputArray(f, 0, "c", true); }),
+    Slow(MakeKind<Spline>("InterpolationOfCells", "cInterpolated", 1,
+      [](Spline* f) { SetInputArray(f, 0, "c", true); })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
       "Displacement" },
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
