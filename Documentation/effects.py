@@ -86,6 +86,12 @@ EFFECTS = {
         Effect("fidelity_weight", (4.0, 8.0, 30.0), "A smaller weight λ gives shorter boundaries, a larger "
                "one follows the noise.", {"automatic_fidelity": False, "number_of_regions": 3}),
     ),
+    "interpolate": (
+        Effect("exact", (True, False), "Values at 150 points have noise. Exact follows it; smoothing by "
+               "cross-validation does not.", {}, "sparse"),
+        Effect("correlation_length", (0.0, 0.3, 0.1), "The result returns to the mean of the values beyond "
+               "the correlation length; 0 continues smoothly.", {}, "sparse"),
+    ),
     "turing_texture": (
         Effect("feature_size", (0.5, 0.75, 1.1), "The feature size is the distance between spots."),
         Effect("kinetics", ("Turing", "GrayScott", "Schnakenberg"), "The reaction decides between spots, "
@@ -136,6 +142,17 @@ def torn():
     surface, values = stripes()
     x, y, _ = surface.points.T
     return surface, np.where(np.abs(np.sin(4 * x + 3 * y)) < 0.3, np.nan, values)
+
+
+def sparse():
+    """A smooth field with noise at a few points, and NaN elsewhere."""
+    surface = pebble()
+    x, y, z = surface.points.T
+    random = np.random.default_rng(3)
+    known = random.choice(x.size, 150, replace=False)
+    values = np.full(x.size, np.nan)
+    values[known] = (np.sin(3 * x + y) + z**2)[known] + random.normal(scale=0.2, size=150)
+    return surface, values
 
 
 def blurred():

@@ -42,6 +42,8 @@ FILTERS = [
     Filter("tensor_diffusion", "vtkTensorDiffusionFilter", ("BeltramiFlow", "StructureDiffusion")),
     Filter("mumford_shah", "vtkMumfordShahFilter", ("MumfordShah",)),
     Filter("segment", "vtkSurfaceSegmentationFilter", ("Segmentation", "RegionBoundaries")),
+    Filter("interpolate", "vtkSurfaceInterpolationFilter",
+           ("Interpolation", "InterpolationField", "InterpolationRun")),
     Filter("harmonic_map", "vtkHarmonicMapFilter",
            ("HarmonicMap", "HarmonicMapBehaviour", "HarmonicMapEnergy", "VertexUpdating")),
     Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", ("SurfaceDenoising",)),

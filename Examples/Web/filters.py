@@ -127,6 +127,15 @@ def run_regions(mesh, data, options, progress):
     return Outcome(result.values, {"Region": result.values}, labels=True, note=f"areas {areas}")
 
 
+def run_interpolation(mesh, data, options, progress):
+    result = sd.interpolate(
+        mesh.surface, data, progress=progress, exact=options["exact"] > 0,
+        keep_range=options["range"] > 0, correlation_length=options["length"], compute_error=True)
+    arrays = {"Result": result.values, "Error": result.error}
+    return Outcome(result.values, arrays, note=f"{result.number_of_values} values, misfit "
+                   + ", ".join(f"{misfit:.3g}" for misfit in result.misfit))
+
+
 def run_normals(mesh, data, options, progress):
     result = sd.harmonic_map(
         mesh.surface, data, progress=progress, exponent=options["exponent"],
@@ -191,6 +200,11 @@ FILTERS = {entry.name: entry for entry in (
     Filter("segment", "Regions", "values", (
         Slider("regions", "Number of regions", 2, 8, 1, 2),
         WEIGHT), run_regions),
+    Filter("interpolate", "Values at few points (NaN elsewhere): spline", "values", (
+        Slider("exact", "Keep the values exactly", 0, 1, 1, 0),
+        Slider("range", "Stay between the smallest and the largest value", 0, 1, 1, 0),
+        Slider("length", "Correlation length (0: infinite)", 0, 0.5, 0.001, 0, True)),
+        run_interpolation),
     Filter("harmonic_map", "Normals and vectors: harmonic map", "vectors", (
         Slider("exponent", "Exponent p: 1 keeps creases, 2 smooths evenly", 1, 2, 0.05, 1),
         Slider("time", "Time", 0.1, 50, 0.1, 10),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/FieldReader.h"
 
+#include "Conversion/PointInput.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/SurfaceReader.h"
 #include "Conversion/TupleRange.h"
@@ -123,6 +124,11 @@ FieldSummary InputFields::Summarize() const
     summary.DataComponents = NumberOfDataComponents(this->Data.Values);
     summary.DataName = NameOfData(*this);
   }
+  if (this->Samples)
+  {
+    summary.Data = true;
+    summary.DataComponents = static_cast<int>(this->Samples->Given.cols());
+  }
   summary.Directions = this->Direction.Values != nullptr;
   summary.Fixed = this->Fixed.Values != nullptr;
   summary.Rates = this->Rates != nullptr;
@@ -182,6 +188,10 @@ Fingerprint FingerprintFields(const InputFields& arrays)
     AddArray(fingerprint, array, SMPParallelFor::Instance());
   }
   fingerprint.AddNumber(std::uint64_t{ arrays.Associations() });
+  if (arrays.Samples)
+  {
+    AddSamples(fingerprint, *arrays.Samples);
+  }
   fingerprint.AddNumber(std::uint64_t{ arrays.DataAreTerms ? 1u : 0u });
   return fingerprint;
 }
@@ -197,6 +207,7 @@ Fields ReadFields(
     fields.DataAreTerms = arrays.DataAreTerms;
     fields.DataAreBytes = data->GetDataType() == VTK_UNSIGNED_CHAR;
   }
+  fields.Samples = arrays.Samples;
   fields.Mask = { ReadFlags(arrays.Mask.Values), arrays.Mask.OnCells };
   fields.Fixed = { ReadFlags(arrays.Fixed.Values), arrays.Fixed.OnCells };
   fields.FidelityFactors = { ReadFactors(arrays.Fidelity.Values), arrays.Fidelity.OnCells };

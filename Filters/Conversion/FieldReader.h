@@ -9,6 +9,7 @@
 #include "vtkType.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct InputFields
   LocatedArray Fidelity; ///< index 5
   LocatedArray Seeds; ///< index 6
   bool DataAreTerms = false; ///< Data is index 7
+  std::shared_ptr<const PointSamples> Samples; ///< in place of Data
   vtkDataArray* GlobalIds = nullptr; ///< of the points
 
   FieldSummary Summarize() const;

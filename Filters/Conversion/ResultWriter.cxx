@@ -255,9 +255,10 @@ void WriteOutputs(const OutputList& outputs, const OutputSource& source, const O
       UpdateNormals(input, target.Surface);
       continue;
     }
-    const bool ofData = output.IsResult && data && data->GetName();
+    const bool ofData = output.IsResult || (output.IsBesideResult && given.empty());
+    const std::string nameOfData = data && data->GetName() ? data->GetName() : output.DataName;
     const std::string name =
-      output.IsResult && !given.empty() ? given : (ofData ? data->GetName() : given) + output.Name;
+      output.IsResult && !given.empty() ? given : (ofData ? nameOfData : given) + output.Name;
     const OutputRows rows(output, source);
     const auto array = WriteArray(
       rows, output.Type == OutputType::Data, data, TypeOf(output.Type, target.DataType), name);

@@ -6,11 +6,13 @@
 #include "Core/Foundation/RobustRange.h"
 #include "Core/Models/Model.h"
 #include "Run/Located.h"
+#include "Run/PointSamples.h"
 #include "Run/RunSettings.h"
 #include "Run/Surface.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,9 @@ struct Fields
   bool DataAreBytes = false; ///< unsigned char, which models of colours take for sRGB
   /// Per point or cell, the label 1, 2, ... that it keeps, or 0; may be empty.
   Located<std::vector<Index>> Seeds;
+  /// In place of Data; null if there are none.
+  std::shared_ptr<const PointSamples> Samples;
+  std::shared_ptr<const std::vector<ProjectedSample>> Projected; ///< of ProjectSamples()
   /// The cell of each input triangle, below NumberOfCells, if one of the arrays is on cells.
   std::vector<Index> Cells;
   Index NumberOfCells = 0;

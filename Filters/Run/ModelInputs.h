@@ -37,6 +37,7 @@ struct ModelInputs
   std::vector<Index> Seeds; ///< per vertex, see MakeSeeds()
   const CellTransfer* Cells = nullptr; ///< that has made the data; null if they are on points
   Index LargestCellSeed = 0; ///< of seeds on cells, which vertices between cells do not have
+  KnownValues Known = {}; ///< of models that use them
 };
 
 /// A run on one surface at its current step.

@@ -78,6 +78,8 @@ struct Output
   /// The name is that of the data followed by Name, or ResultArrayName if that is set. The names of
   /// other outputs begin with ResultArrayName.
   bool IsResult = false;
+  bool IsBesideResult = false; ///< the name is that of the data, or ResultArrayName, and then Name
+  std::string DataName = {}; ///< the name of the data, if they are samples
 
   /// The rows are those of the state, of NumberOfColumns columns from FirstColumn on. For Type Data
   /// they are its values in array units, with the detail of cells and the encoding of colours.

@@ -92,6 +92,10 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   std::unique_ptr<Fields>& fields, const ProgressMonitor& progress)
 {
   RunCollectively(processes, [&] { fields = std::make_unique<Fields>(input.ReadFields()); });
+  if (fields->Samples)
+  {
+    ProjectSamples(input.ReadSurface(), this->Settings->DescribeModel().MaximumDistance, *fields);
+  }
   block.HasLinearLight = fields->DataAreBytes && this->Settings->DescribeModel().UsesLinearLight;
   if (block.HasLinearLight)
   {
@@ -200,6 +204,12 @@ void Run::MakeModel(
   {
     inputs.LargestCellSeed =
       *std::max_element(fields.Seeds.Values.begin(), fields.Seeds.Values.end());
+  }
+  const ModelTraits wanted = this->Settings->DescribeModel();
+  if (wanted.UsesKnownValues)
+  {
+    inputs.Known = FindKnownValues(*block.Surface, fields,
+      this->Settings->MaskMode == MaskMode::Inpaint, block.Units.ValueUnit, wanted.MaximumDistance);
   }
   progress.Report(0.2);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);

@@ -71,6 +71,8 @@ struct ModelTraits
   std::vector<const char*> SettingsInRange;
   bool StateHasUnitOfValues = true; ///< false: u is a pure number
   bool UsesFidelity = false;
+  bool UsesKnownValues = false; ///< see KnownValues; the data may be samples
+  double MaximumDistance = 0.0; ///< of samples from the surface; 0: any
   bool NeedsDirections = false; ///< diffusivities along and across differ
   bool HoldsKnownValues = false;
   bool MaskHasEffect = true; ///< in mode Inpaint, if there are data

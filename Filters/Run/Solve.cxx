@@ -69,6 +69,13 @@ public:
     };
     const auto rowsOf = [](const auto& matrix) { return static_cast<std::size_t>(matrix.rows()); };
     require("Data", rowsOf(fields.Data.Values), fields.Data.OnCells);
+    if (fields.Samples)
+    {
+      RequireRows(
+        "Samples", rowsOf(fields.Samples->Given), rowsOf(fields.Samples->Places), false, problems);
+      RequireRows(
+        "Weights", fields.Samples->Weights.size(), rowsOf(fields.Samples->Places), false, problems);
+    }
     require("Missing", fields.Missing.size(), fields.Data.OnCells);
     require("Mask", fields.Mask.Values.size(), fields.Mask.OnCells);
     require("Fixed", fields.Fixed.Values.size(), fields.Fixed.OnCells);
@@ -108,6 +115,11 @@ public:
     FieldSummary summary;
     summary.Data = this->Data.Data.Values.size() > 0;
     summary.DataComponents = summary.Data ? static_cast<int>(this->Data.Data.Values.cols()) : 0;
+    if (this->Data.Samples)
+    {
+      summary.Data = true;
+      summary.DataComponents = static_cast<int>(this->Data.Samples->Given.cols());
+    }
     summary.Directions = this->Data.Directions.Values.rows() > 0;
     summary.Fixed = !this->Data.Fixed.Values.empty();
     summary.Rates = this->Data.Rates.rows() > 0;

@@ -7,6 +7,7 @@
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
 #include "Run/History.h"
+#include "Run/InterpolationSettings.h"
 #include "Run/MumfordShahSettings.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/TensorDiffusionSettings.h"
@@ -72,6 +73,7 @@ inline const NamedSettings SettingsOfModels[] = {
   { "heat", &MakeDefaults<HeatSettings> },
   { "intrinsic_tv", &MakeDefaults<TotalVariationSettings> },
   { "mumford_shah", &MakeDefaults<MumfordShahSettings> },
+  { "interpolate", &MakeDefaults<InterpolationSettings> },
   { "segment", &MakeDefaults<SegmentationSettings> },
   { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings> },
   { "turing_texture", &MakeDefaults<TextureSettings> }
@@ -144,6 +146,16 @@ inline Solution Segment(const Points& points, const Triangles& triangles, const 
 {
   return SolveModel(
     points, triangles, data, std::make_shared<SegmentationSettings>(settings), parallel);
+}
+
+/// Smooth functions through the known values of data, or through data.Samples: see
+/// vtkSurfaceInterpolationFilter.
+inline Solution Interpolate(const Points& points, const Triangles& triangles,
+  const SurfaceData& data, const InterpolationSettings& settings = {},
+  const ParallelFor& parallel = SerialFor())
+{
+  return SolveModel(
+    points, triangles, data, std::make_shared<InterpolationSettings>(settings), parallel);
 }
 
 /// Diffusion with a tensor that follows the data: see vtkTensorDiffusionFilter.

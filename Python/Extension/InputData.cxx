@@ -168,6 +168,11 @@ FieldSummary InputFields::Summarize() const
   FieldSummary summary;
   summary.Data = this->Data.Values.has_value();
   summary.DataComponents = this->Components;
+  if (this->Samples)
+  {
+    summary.Data = true;
+    summary.DataComponents = static_cast<int>(this->Samples->Given.cols());
+  }
   summary.Directions = this->Directions.Values.has_value();
   summary.Fixed = this->Fixed.Values.has_value();
   summary.Rates = this->Rates.has_value();
@@ -206,6 +211,7 @@ Fields InputFields::Read() const
     fields.AllColumns = this->AllColumns;
     fields.Missing = *this->Missing;
   }
+  fields.Samples = this->Samples;
   fields.Mask = { ReadFlags(this->Mask.Values), this->Mask.OnCells };
   fields.Fixed = { ReadFlags(this->Fixed.Values), this->Fixed.OnCells };
   fields.FidelityFactors.OnCells = this->FidelityFactors.OnCells;
@@ -242,6 +248,21 @@ Fields InputFields::Read() const
   return fields;
 }
 
+void InputFields::SetSamples(
+  const DoubleArray& places, const DoubleArray& values, const std::optional<FactorArray>& weights)
+{
+  const auto count = static_cast<Eigen::Index>(values.shape(0));
+  auto samples = std::make_shared<PointSamples>();
+  samples->Places = Eigen::Map<const Points>(places.data(), count, 3);
+  samples->Given =
+    Eigen::Map<const Values>(values.data(), count, static_cast<Eigen::Index>(values.shape(1)));
+  if (weights)
+  {
+    samples->Weights.assign(weights->data(), weights->data() + weights->size());
+  }
+  this->Samples = std::move(samples);
+}
+
 InputFields InputFields::Columns(int first, int count) const
 {
   static std::atomic<std::uint64_t> panels{ 0 };
@@ -272,6 +293,18 @@ Fingerprint InputFields::Version() const
   AddArray(version, this->Rates);
   AddArray(version, this->FidelityFactors.Values);
   AddArray(version, this->Seeds.Values);
+  if (this->Samples)
+  {
+    const auto add = [&](const auto& numbers)
+    {
+      const auto count = static_cast<std::size_t>(numbers.size());
+      version.AddNumber(std::uint64_t{ count });
+      version.AddBytes(numbers.data(), count * sizeof(double), SerialFor());
+    };
+    add(this->Samples->Places);
+    add(this->Samples->Given);
+    add(this->Samples->Weights);
+  }
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
   for (const bool onFaces : { this->Directions.OnCells, this->Data.OnCells, this->Mask.OnCells,
          this->Fixed.OnCells, this->FidelityFactors.OnCells, this->Seeds.OnCells })

@@ -107,6 +107,11 @@ public:
   Located<std::optional<LongArray>> Seeds; ///< labels, 0 = free
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
+  std::shared_ptr<const PointSamples> Samples; ///< in place of Data
+
+  void SetSamples(const DoubleArray& places, const DoubleArray& values,
+    const std::optional<FactorArray>& weights);
+
   /// The same with a panel of the data's columns, which Components counts.
   InputFields Columns(int first, int count) const;
   FieldSummary Summarize() const;

@@ -81,6 +81,7 @@ nb::list ListAll(
     entry["kind"] = NameOf(output.Type);
     entry["role"] = NameOf(output.Active);
     entry["is_result"] = output.IsResult;
+    entry["is_beside_result"] = output.IsBesideResult;
     entry["rows"] = output.Lines ? output.Lines->Points.rows() : output.Rows.rows();
     entry["columns"] = CountColumns(output, block);
     if (output.Lines)

@@ -131,6 +131,7 @@ NB_MODULE(_core, m)
       "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
       "directions"_a.none(), "rates"_a.none(), "fidelity"_a.none(), "seeds"_a.none(),
       "data_are_terms"_a, "on_faces"_a)
+    .def("set_samples", &InputFields::SetSamples, "places"_a, "values"_a, "weights"_a.none())
     .def("columns", &InputFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")

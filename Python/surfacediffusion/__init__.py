@@ -15,6 +15,7 @@
 `mumford_shah`       edges as curves, and data that are smooth between them
 `tensor_diffusion`   smoothing along the edges or the lines of the data
 `segment`            regions with short boundaries
+`interpolate`        smooth functions through values at a few points, with their standard error
 `turing_texture`     textures by reaction and diffusion
 `direction_field`    line fields: principal curvature, the smoothest one, from hints
 `estimate_fwhm`      the smoothness of noise maps
@@ -25,10 +26,10 @@
 
 `heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
 return an array; with ``full_output=True`` the first three return a result with history and times, and
-`denoise_mesh` one with the noise level that it found. `harmonic_map`, `mumford_shah`,
-`segment` and `turing_texture` return a result, since theirs is more than one array. Keywords are the properties of
-the filters for VTK and ParaView in snake_case. The results have the same bits. The classes of VTK are
-in a module of their own, ``vtkSurfaceDiffusion``, which may be installed beside this package.
+`denoise_mesh` one with the noise level that it found. `harmonic_map`, `interpolate`, `mumford_shah`,
+`segment` and `turing_texture` return a result, since theirs is more than one array. Keywords are the
+properties of the filters for VTK and ParaView in snake_case. The results have the same bits. The
+classes of VTK are in a module of their own, ``vtkSurfaceDiffusion``, which may be installed beside this package.
 """
 
 import importlib as _importlib

@@ -36,6 +36,9 @@ class Fields:
         data_are_terms: bool,
         on_faces: Sequence[str],
     ) -> None: ...
+    def set_samples(
+        self, places: NDArray[Any], values: NDArray[Any], weights: Optional[NDArray[Any]]
+    ) -> None: ...
     def columns(self, first: int, count: int) -> Fields: ...
 
 class ModelRun:

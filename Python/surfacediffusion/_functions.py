@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._models import (
-    ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result, read_outputs,
+    ARRAYS, Output, as_initial, as_samples, as_vectors, check_colors, find_outputs, make_result,
+    read_outputs,
 )
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, MeshDenoisingResult, SegmentationResult,
-    TensorDiffusionResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, InterpolationResult, MeshDenoisingResult,
+    SegmentationResult, TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, spell_documentation
@@ -28,8 +29,8 @@ from ._surface import (
 )
 
 __all__ = [
-    "denoise_mesh", "direction_field", "harmonic_map", "heat", "intrinsic_tv", "mumford_shah", "segment",
-    "tensor_diffusion", "turing_texture",
+    "denoise_mesh", "direction_field", "harmonic_map", "heat", "interpolate", "intrinsic_tv",
+    "mumford_shah", "segment", "tensor_diffusion", "turing_texture",
 ]
 
 #: The number of columns of data that a run holds in double precision, if they are independent.
@@ -822,6 +823,99 @@ def segment_with_outputs(
 
     made: tuple[SegmentationResult, list[Output]] = _run(
         "segment", given, runner, make, False, progress)
+    return made
+
+
+@_with_settings
+def interpolate(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    points: ArrayLike | None = None,
+    *,
+    on_faces: bool | None = None,
+    mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    fidelity: ArrayLike | None = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> InterpolationResult:
+    """Compute a smooth function on a surface from values at a few points.
+
+    Minimises 1/2 sum_i w_i abs(u(p_i) - d_i)^2 + mu/2 int (kappa^2 u - div(D grad u))^2 over functions
+    u on the surface, a thin-plate spline with values d_i at points p_i. Unlike diffusion with held
+    values, it converges as the mesh becomes finer.
+
+    Parameters
+    ----------
+    {surface}
+    values : array_like, shape (p,) or (p, k), or (n,) or (n, k), or (m,) or (m, k)
+        The values d at `points` or, without them, at the points or faces of the surface. NaN in any
+        component is unknown.
+    points : array_like, shape (p, 3), optional
+        Where the values are: the nearest points of the surface to these. Values far away are left out
+        by `maximum_distance`.
+    {on_faces}
+    {mask}
+    {roi}
+    {directions}
+    fidelity : array_like, one number per value, optional
+        The weights w >= 0 of the values, such as 1/s^2 for standard deviations s, with
+        ``noise_level=1``; 0 is unknown.
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    InterpolationResult
+        If `smoothing` is given, `automatic_smoothing` is off unless it is given, too. Connected
+        components of the surface without a value are NaN.
+
+    {problems}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import interpolate, sphere
+    >>> ball = sphere(5)
+    >>> places = np.random.default_rng(0).normal(size=(60, 3))
+    >>> places /= np.linalg.norm(places, axis=1, keepdims=True)
+    >>> result = interpolate(ball, places[:, 2] ** 2, places, exact=True)
+    >>> bool(abs(result.values - ball.points[:, 2] ** 2).max() < 0.1), result.number_of_values
+    (True, 60)
+    """
+    return interpolate_with_outputs(
+        surface, values, points, on_faces, mask, roi, directions, fidelity, progress, properties)[0]
+
+
+def interpolate_with_outputs(
+    surface: Any, values: Any, points: Any, on_faces: Any, mask: Any, roi: Any, directions: Any,
+    fidelity: Any, progress: Progress, properties: dict[str, Any], dtype: Any = np.float64,
+) -> tuple[InterpolationResult, list[Output]]:
+    """The result of interpolate(), and all outputs. dtype: of the values; None: that of the data."""
+    surface = as_surface(surface)
+    mask = _as_mask(mask, roi, surface, properties)
+    if points is None:
+        data, on_faces = _take("values", values, surface, on_faces)
+        given = Input(surface, data, data_on_faces=on_faces, mask=mask, directions=directions,
+                      fidelity=fidelity, integers=has_integers(values))
+    else:
+        given = Input(surface, mask=mask, directions=directions,
+                      samples=as_samples(points, values, fidelity))
+    runner = Runner("interpolate", properties, ARRAYS)
+
+    def make(run: Any, found: dict[str, Any]) -> tuple[InterpolationResult, list[Output]]:
+        outputs = find_outputs(run, 0, given, runner, dtype)
+        result = make_result(InterpolationResult, outputs, found)
+        shape = (-1,) if np.ndim(values) == 1 else (len(result.values), -1)
+        return replace(result, values=result.values.reshape(shape),
+                       error=result.error.reshape(shape) if result.error.size else result.error), outputs
+
+    made: tuple[InterpolationResult, list[Output]] = _run(
+        "interpolate", given, runner, make, False, progress)
     return made
 
 

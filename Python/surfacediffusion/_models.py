@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ._result import RegionBoundary
 from ._run import Input, Runner, find_result_type
 from ._settings import shorten, snake_case
-from ._surface import Surface, as_data, as_numbers, data_components
+from ._surface import Surface, as_data, as_factors, as_numbers, data_components
 
 #: The keywords of input arrays, by their names in messages.
 ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
@@ -34,6 +34,7 @@ class Output:
     role: str  #: "scalars", "vectors", "coordinates" or ""
     is_result: bool  #: named after the data
     values: Any
+    is_beside_result: bool = False  #: named after the data, too
 
 
 def read_outputs(
@@ -62,7 +63,8 @@ def read_outputs(
         elif kind != "data" and columns == 1 and place != "number":
             values = values[:, 0].astype(np.int64) if place == "column" and kind == "integer" else (
                 values[:, 0])
-        outputs.append(Output(entry["name"], place, entry["role"], entry["is_result"], values))
+        outputs.append(Output(entry["name"], place, entry["role"], entry["is_result"], values,
+                              entry["is_beside_result"]))
     return outputs
 
 
@@ -129,6 +131,25 @@ def as_initial(surface: Surface, initial: Any) -> NDArray[Any] | None:
         raise ValueError(f"initial has shape {found.shape}; allowed: ({surface.n_points}, 2), one row "
                          "per point")
     return as_data("initial", initial, surface.n_points)
+
+
+def as_samples(
+    points: Any, values: Any, fidelity: Any
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None]:
+    """Places (p, 3), values (p, k) and weights (p,) of interpolate."""
+    places = np.ascontiguousarray(as_numbers("points", points), dtype=np.float64)
+    if places.ndim != 2 or places.shape[1] != 3:
+        raise ValueError(f"points has shape {places.shape}; allowed: (p, 3), one row per value")
+    found = np.ascontiguousarray(as_numbers("values", values), dtype=np.float64)
+    p = len(places)
+    if found.ndim not in (1, 2) or len(found) != p or (found.ndim == 2 and found.shape[1] == 0):
+        raise ValueError(f"values has shape {found.shape}; allowed: ({p},) or ({p}, k), one row per "
+                         "point of points")
+    weights = as_factors("fidelity", fidelity)
+    if weights is not None and weights.shape != (p,):
+        raise ValueError(f"fidelity has shape {weights.shape}; allowed: ({p},), one number per point "
+                         "of points")
+    return places, found.reshape(p, -1 if found.size else 1), weights
 
 
 def check_colors(properties: Mapping[str, Any]) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "DiffusionResult", "EdgeResult", "HarmonicMapResult", "MeshDenoisingResult", "ModelResult",
-    "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
+    "InterpolationResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
 ]
 
 
@@ -263,6 +263,41 @@ class RegionBoundary:
     regions: tuple[int, int]
     points: NDArray[np.float64] = field(repr=False)
     length: float
+
+
+@dataclass(frozen=True)
+class InterpolationResult(ModelResult):
+    """The result of :func:`interpolate`: a :class:`ModelResult` whose `values` are those of the smooth
+    function at the points, with
+
+    Attributes
+    ----------
+    error : ndarray
+        With ``compute_error=True`` the standard error of each of the values. No row otherwise.
+    smoothing : ndarray, shape (k,)
+        mu of each component, found or given, in the unit of `smoothing`; 0 if the values hold.
+    score : ndarray, shape (k,)
+        Of generalised cross-validation.
+    misfit : ndarray, shape (k,)
+        The root of the weighted mean square of the differences from the given values.
+    degrees_of_freedom : ndarray, shape (k,)
+        The trace of the matrix that takes the given values to the fitted ones.
+    noise_level : ndarray, shape (k,)
+        The standard deviation of values with weight 1, given or estimated.
+    number_of_values : int
+        The values that were used.
+    number_of_far_values : int
+        Those that were left out, farther from the surface than `maximum_distance`.
+    """
+
+    error: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
+    smoothing: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    score: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
+    misfit: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    degrees_of_freedom: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    noise_level: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
+    number_of_values: int = 0
+    number_of_far_values: int = 0
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,7 @@ def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
 class Input:
     """The input of a run on one surface. data_on_faces: where the data are. on_faces: where the
     directions are; None: by their number. Masks and the like are on points or faces by their
-    number. integers: the data were, so that results keep them where nothing determines a value, in
+    number. samples: places, values and weights in place of data. integers: the data were, so that results keep them where nothing determines a value, in
     place of NaN."""
 
     def __init__(
@@ -113,6 +113,7 @@ class Input:
         seeds: Any = None,
         data_are_terms: bool = False,
         integers: bool = False,
+        samples: tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None] | None = None,
     ) -> None:
         n, m = surface.n_points, surface.n_faces
         self.surface, self.data, self.integers = surface, data, integers
@@ -148,6 +149,8 @@ class Input:
             surface._core, data, 0 if data is None else data_components(data), marks["mask"],
             marks["fixed"], directions, rates, marks["fidelity"], marks["seeds"], data_are_terms,
             places)
+        if samples is not None:
+            self.core.set_samples(*samples)
 
     def write(self, run: Any, block: int, output: NDArray[Any], first: int) -> None:
         """Write the columns of the result of the data of a block, from column `first` on."""
@@ -160,6 +163,7 @@ _FOUND = {
     "intrinsic_tv": {"fidelity_weight": "automatic_blur_fidelity",
                      "automatic_fidelity": "automatic_blur_fidelity"},
     "segment": {"means": "automatic_means", "fidelity_weight": "automatic_fidelity"},
+    "interpolate": {"smoothing": "automatic_smoothing"},
     "mumford_shah": {"edge_threshold": "automatic_threshold", "smoothing_length": "automatic_threshold"},
 }
 

@@ -52,7 +52,7 @@ from numpy.typing import NDArray
 from . import _core, _functions
 from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import direction_field as _direction_field
-from ._functions import exclude_outside, segment_with_outputs
+from ._functions import exclude_outside, interpolate_with_outputs, segment_with_outputs
 from ._meshes import find_polydata
 from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
@@ -172,6 +172,60 @@ def segment(
     if not full_output:
         return segmented
     return segmented, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+
+def interpolate(
+    mesh: Any, array: str | None = None, *, points: Any = None, mask: str | None = None,
+    roi: str | None = None, direction: str | None = None, fidelity: str | None = None,
+    full_output: bool = False, progress: Progress = False, **properties: Any,
+) -> Any:
+    """Compute a smooth function on the mesh from values at a few points.
+
+    array: the values, a point array of `points` or, without them, a point or cell array of the mesh
+    with NaN where nothing is known; points: a data set whose points have the values, which count at
+    the nearest points of the mesh; fidelity: array of weights of the values, such as 1/s^2, in the same
+    place. The equation and all other keywords are described in help(surfacediffusion.interpolate). The
+    results are the arrays <array>Interpolated (active) and, with compute_error=True, <array>Error.
+    Each block of a MultiBlock takes all points. full_output: if True, the function returns a pair: the
+    mesh, and the InterpolationResult, of a MultiBlock the list of them.
+    """
+    properties, result_name = _keywords("interpolate", properties)
+    blocks, results = _find_surfaces(mesh), []
+    for block in blocks:
+        names = block.mesh.point_data if points is None else points.point_data
+        name = array or names.active_scalars_name or (
+            block.mesh.cell_data.active_scalars_name if points is None else None)
+        if name is None:
+            raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
+                             "array")
+        values, weights, places, on_faces = None, None, None, False
+        if points is None:
+            values, on_faces = block.find("array", name, faces=True)
+            if on_faces and block.has_strips:
+                raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
+                                 "polygons, for example mesh.triangulate()")
+            weights = block.find("fidelity", fidelity, faces=True)[0]
+        else:
+            for argument, given in (("array", name), ("fidelity", fidelity)):
+                if given is not None and given not in points.point_data:
+                    raise ValueError(f"{argument} is {shorten(given)}; allowed: point arrays of points, "
+                                     + (", ".join(map(repr, points.point_data.keys()))
+                                        or "of which there are none"))
+            places = np.asarray(points.points)
+            values = np.asarray(points.point_data[name])
+            weights = None if fidelity is None else np.asarray(points.point_data[fidelity])
+        result, outputs = interpolate_with_outputs(
+            block.surface, values, places, on_faces if points is None else None,
+            block.find("mask", mask, faces=True)[0], block.find("roi", roi, faces=True)[0],
+            block.find("direction", direction, faces=True)[0], weights, progress, dict(properties), None)
+        results.append(result)
+        block.name = name
+        block.computed = points is not None
+        _write(block, outputs, result_name)
+    written = _rebuild(mesh, iter(blocks))
+    if not full_output:
+        return written
+    return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 
 
 def denoise_mesh(
@@ -422,7 +476,7 @@ def _write_result(block: _Block, output: Output, name: str) -> None:
     source = points if block.name in points else cells
     has_data = block.name in source and not block.computed
     shape = np.shape(source[block.name]) if has_data else output.values.shape
-    values = output.values[:, 0] if len(shape) == 1 else output.values
+    values = output.values[:, 0] if len(shape) < output.values.ndim else output.values
     if output.place == "points":
         block.mesh.point_data[name] = values
         return
@@ -460,6 +514,8 @@ def _write(block: _Block, outputs: list[Output], name: str | None) -> None:
         array = name or block.name + output.name
         if output.is_result:
             _write_result(block, output, array)
+        elif output.is_beside_result:
+            block.add(array, output.values, output.place == "faces")
         else:
             array = (name or "") + output.name
             block.add(array, output.values, output.place == "faces")

@@ -19,8 +19,8 @@ import numpy as np
 import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
-from surfacediffusion import (Surface, denoise_mesh, get_number_of_threads, heat, intrinsic_tv,
-                              set_number_of_threads)
+from surfacediffusion import (Surface, denoise_mesh, get_number_of_threads, heat, interpolate,
+                              intrinsic_tv, set_number_of_threads)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
@@ -307,6 +307,40 @@ class OtherCommands(CommandTest):
         self.assertEqual(code, 2)
         self.assertIn("curves.func.gii: the name announces no format for curves", error)
 
+    def test_interpolate_takes_points_beside_the_surface(self):
+        places = 1.05 * POINTS[::5]
+        rows = [f"{x:.17g},{y:.17g},{z:.17g},{z:.17g}" for x, y, z in places]
+        Path("values.csv").write_text("x,y,z,height\n" + "\n".join(rows) + "\n99,0,0,7\n")
+        code, out, error = run(*"interpolate lh.surf.gii values.csv out.shape.gii --exact --within 2 "
+                               "--error errors.npy --json".split())
+        self.assertEqual(code, 0, error)
+        self.assertIn("1 value is farther from the surface than", error)
+        report = json.loads(out)
+        self.assertEqual((report["values"], report["far_values"]), (len(places), 1))
+        self.assertEqual(report["columns"][0]["name"], "height")
+        self.assertLess(abs(self.column("out.shape.gii")[::5] - places[:, 2]).max(), 1e-4)
+        expected = interpolate(self.surface, places[:, 2], places, exact=True).values
+        np.testing.assert_allclose(self.column("out.shape.gii"), expected, rtol=1e-5, atol=1e-5)
+        errors = np.load("errors.npy").ravel()
+        self.assertGreater(errors.max(), 0.0)
+        self.assertLess(errors[::5].max(), 0.2 * errors.max())
+
+    def test_interpolate_takes_values_at_vertices(self):
+        sparse = np.where(np.arange(N) % 4 == 0, SMOOTH, np.nan)
+        samples.write_gifti("sparse.func.gii", {"one": sparse})
+        self.succeed("interpolate lh.surf.gii sparse.func.gii out.func.gii --smoothing 0.01")
+        expected = interpolate(self.surface, self.column("sparse.func.gii"), smoothing=0.01).values
+        np.testing.assert_allclose(self.column("out.func.gii"), expected, rtol=1e-6)
+
+    def test_interpolate_names_what_is_wrong_with_a_table(self):
+        for text, problem in (
+                ("x y z t\n1 2 3\n", "line 2 has 3 numbers"), ("", "no row of numbers"),
+                ("1 2 3 4\n1 2 3 x\n", "line 2 is '1 2 3 x'")):
+            Path("bad.txt").write_text(text)
+            code, _, error = run("interpolate", "lh.surf.gii", "bad.txt", "out.npy")
+            self.assertEqual(code, 2)
+            self.assertIn(problem, error)
+
     def test_segment_labels_the_sides_of_a_step(self):
         step = np.where(SMOOTH > SMOOTH.mean(), 5.0, 2.0)
         samples.write_gifti("step.func.gii", {"one": step})
@@ -501,7 +535,7 @@ class Reports(CommandTest):
 
     def test_help_of_every_command_shows_an_example(self):
         _, out, _ = run("--help")
-        commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "segment",
+        commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "interpolate", "segment",
                     "texture", "directions", "normals", "fwhm", "info")
         for command in commands:
             self.assertIn(command, out)

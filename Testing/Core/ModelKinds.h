@@ -4,6 +4,7 @@
 
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/InterpolationSettings.h"
 #include "Run/MumfordShahSettings.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/TensorDiffusionSettings.h"
@@ -39,7 +40,8 @@ enum class Exemption
 {
   None,
   Numbering, ///< it starts on a coarser mesh, which depends on the numbering
-  Energy ///< its energy can rise: eps is halved, or the scheme is explicit
+  Energy, ///< its energy can rise: eps is halved, or the scheme is explicit
+  Allocation ///< one solver is used for different systems in turn
 };
 
 /// A model with settings that take a way of their own through its code.
@@ -113,6 +115,7 @@ inline std::vector<ModelKind> AllModelKinds()
   using Tensor = TensorDiffusionSettings;
   using Texture = TextureSettings;
   using Segments = SegmentationSettings;
+  using Spline = InterpolationSettings;
   const auto setImplicit = [](TV& s)
   { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Implicit; };
   const auto setSteady = [](TV& s)
@@ -268,6 +271,20 @@ inline std::vector<ModelKind> AllModelKinds()
         s.StopTolerance = 0.1;
       },
       Content::ColorsOnCells),
+
+    MakeKind<Spline>("Interpolation", 1, {}, Content::Scalars, Exemption::Allocation),
+    MakeKind<Spline>(
+      "InterpolationOfColors", 1,
+      [](Spline& s)
+      {
+        s.KeepRange = true;
+        s.ComputeError = true;
+        s.CorrelationLength = 0.5;
+      },
+      Content::Colors, Exemption::Allocation),
+    MakeKind<Spline>(
+      "InterpolationFree", 1, [](Spline& s) { s.Boundary = RimCondition::Free; },
+      Content::ScalarsOnCells, Exemption::Allocation),
   };
   for (int k = 0; k < NumberOfKinetics; ++k)
   {

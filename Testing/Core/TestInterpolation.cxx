@@ -201,6 +201,18 @@ TEST(Interpolation, WithoutAnyValueIsAnError)
     std::runtime_error);
 }
 
+TEST(Interpolation, RefusesSmoothingAndNoiseThatAreNotPositive)
+{
+  const auto assembler = MakeAssembler(Icosphere(1));
+  const Values field = Values::Random(assembler->Mesh().NumberOfVertices(), 1);
+  const auto data = ValuesAt(assembler->Mesh(), field, [](Index) { return true; });
+  for (const Choice choice : { Choice::Given, Choice::NoiseLevel })
+  {
+    EXPECT_THROW(
+      Interpolate(assembler, data, InterpolationSettings(choice, 0.0)), std::invalid_argument);
+  }
+}
+
 TEST(Interpolation, DependsNeitherOnRotationNorOnNumberingNorOnThreads)
 {
   const Surface s = Icosphere(3);
@@ -372,6 +384,23 @@ TEST(Interpolation, KeepsTheRangeOfTheValues)
       EXPECT_LT(energy.Squares(kept.U)[0], energy.Squares(clamped)[0]);
     }
   }
+}
+
+TEST(Interpolation, KeepsTheRangeOfAColumnWithTheBitsThatItHasAlone)
+{
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto f = [](const Eigen::RowVector3d& x) { return x[2] > 0.3 ? 7.0 : 2.0; };
+  const Values field = Sample(mesh, s, f);
+  Values twice(field.rows(), 2);
+  twice << field, field;
+  const auto data = ValuesAt(mesh, twice, [](Index i) { return i < OfSphere; });
+  Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+  settings.KeepRange = true;
+  const Values u = Interpolate(assembler, data, settings).U;
+  EXPECT_GT((u.col(0).array() == 7.0).count(), OfSphere / 4); // an active set
+  EXPECT_EQ(u.col(0), u.col(1));
 }
 
 TEST(Interpolation, KeepsTheRangeAroundABumpInAPlain)

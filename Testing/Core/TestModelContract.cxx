@@ -232,6 +232,10 @@ class NumberingContract : public ModelContract
 };
 
 /// The promises of models of given data.
+class AllocationContract : public ModelContract
+{
+};
+
 class DataModelContract : public ModelContract
 {
 };
@@ -372,7 +376,7 @@ TEST_P(NumberingContract, SameResultInAnyNumberingOrientationAndPosture)
   EXPECT_NEAR(ofOne[1](0, 0), ofTwo[1](0, 0), tolerance * ofOne[1](0, 0));
 }
 
-TEST_P(ModelContract, LaterStepsAllocateNothing)
+TEST_P(AllocationContract, LaterStepsAllocateNothing)
 {
   if (NumberOfAllocations() < 0)
   {
@@ -624,5 +628,7 @@ std::string NameOf(const testing::TestParamInfo<ModelKind>& kind)
 INSTANTIATE_TEST_SUITE_P(, ModelContract, testing::ValuesIn(AllModelKinds()), NameOf);
 INSTANTIATE_TEST_SUITE_P(
   , NumberingContract, testing::ValuesIn(Without(Exemption::Numbering, AllModelKinds())), NameOf);
+INSTANTIATE_TEST_SUITE_P(
+  , AllocationContract, testing::ValuesIn(Without(Exemption::Allocation, AllModelKinds())), NameOf);
 INSTANTIATE_TEST_SUITE_P(, DataModelContract, testing::ValuesIn(DataModelKinds()), NameOf);
 INSTANTIATE_TEST_SUITE_P(, EnergyContract, testing::ValuesIn(EnergyKinds()), NameOf);

@@ -115,6 +115,12 @@ class SameBits(unittest.TestCase):
              {"NumberOfRegions": 3, "AutomaticFidelity": False, "FidelityWeight": 2.0}),
             ("segment", {"terms": self.columns, "seeds": np.where(self.mask, 2, 0)},
              {"NumberOfRegions": 3, "StopTolerance": 0.01}),
+            ("interpolate", {"values": nan}, {"ComputeError": True}),
+            ("interpolate", {"values": np.where(np.arange(len(nan)) % 40 == 0, nan, np.nan),
+                             "fidelity": 1.0 + self.points[:, 2] ** 2},
+             {"Exact": True, "CorrelationLength": 2.0}),
+            ("interpolate", {"values": self.of_faces, "directions": self.around},
+             {"AcrossDiffusivity": 0.2, "KeepRange": True}),
             ("harmonic_map", {}, {"MoveVertices": True}),
             ("harmonic_map", {"vectors": self.normals}, {"Exponent": 2.0}),
             ("harmonic_map", {"vectors": self.normals.astype(np.float32)}, {"LineField": True}),
@@ -165,7 +171,8 @@ class SameBits(unittest.TestCase):
                 found["TextureColor"] = result.colors
         else:
             suffix = {"heat": "Diffused", "intrinsic_tv": "TV", "harmonic_map": "Harmonic",
-                      "mumford_shah": "MumfordShah", "segment": "Segmented",
+                      "interpolate": "Interpolated", "mumford_shah": "MumfordShah",
+                      "segment": "Segmented",
                       "tensor_diffusion": {"CoherenceEnhancing": "Coherent",
                                            "EdgeEnhancing": "EdgeEnhanced"}.get(
                                                properties.get("Model"), "Beltrami")}[function]
@@ -175,13 +182,20 @@ class SameBits(unittest.TestCase):
             found = self.regions(result, arrays)
             expected = {key: array for key, array in expected.items()
                         if key != "history Block" and not key.startswith("history Mean_")}
+        if function == "interpolate":
+            found.update({f"history {column}": getattr(result, snake_case(column)) for column in (
+                "Smoothing", "Score", "Misfit", "DegreesOfFreedom", "NoiseLevel")})
+            found["history Component"] = np.arange(len(result.smoothing))
+            if properties.get("ComputeError"):
+                found["valuesError"] = result.error
+            expected.pop("history Block")
         if function == "mumford_shah":
             found["Edges"] = result.edges
         if function == "tensor_diffusion" and properties.get("DiffusionAxes"):
             found["DiffusionAxes"] = result.axes
         if function == "harmonic_map":
             found["points"] = result.points
-        if function not in ("denoise_mesh", "direction_field", "segment"):
+        if function not in ("denoise_mesh", "direction_field", "interpolate", "segment"):
             found.update({"history " + key: column for key, column in result.history.items()
                           if key != "Seconds"})
         self.assertEqual(set(expected) - {"points", "history Step"}, set(found) - {"points"})

@@ -11,6 +11,7 @@ CLASSES = {
     "heat": "vtkFVMHeatFilter",
     "intrinsic_tv": "vtkIntrinsicTVFilter",
     "mumford_shah": "vtkMumfordShahFilter",
+    "interpolate": "vtkSurfaceInterpolationFilter",
     "segment": "vtkSurfaceSegmentationFilter",
     "tensor_diffusion": "vtkTensorDiffusionFilter",
     "turing_texture": "vtkTuringTextureFilter",

@@ -20,10 +20,11 @@ GROUPS = ("Data", "Model", "Constraints", "Solver", "Time")
 # All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
-    "FidelityArray", "SeedArray", "DataTermArray", "TimestepValues",
+    "FidelityArray", "SeedArray", "DataTermArray", "PointsWithValues", "TimestepValues",
     "Mean",  # a list: SetMean(region, component, value)
 }
-PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"]}
+PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"],
+         "SurfaceInterpolationFilter": ["Surface", "Fit"]}
 
 
 # What users type into ParaView's search, which finds words of labels only.
@@ -37,6 +38,9 @@ SEARCHES = {
     "lines": {"TensorDiffusionFilter"},
     "regions": {"SurfaceSegmentationFilter"},
     "segment": {"SurfaceSegmentationFilter"},
+    "interpolate": {"SurfaceInterpolationFilter"},
+    "points": {"SurfaceInterpolationFilter"},
+    "spline": {"SurfaceInterpolationFilter"},
     "mesh": {"SurfaceDenoisingFilter"},
     "normals": {"HarmonicMapFilter", "SurfaceDenoisingFilter"},
     "texture": {"TuringTextureFilter"},

@@ -26,6 +26,7 @@ SETTINGS = {
     "IntrinsicTVFilter": dict(MaskArray=["POINTS", "hole"]),
     "MumfordShahFilter": dict(AutomaticThreshold=0, EdgeThreshold=0.5),
     "SurfaceDirectionFieldFilter": dict(Method="Smooth"),
+    "SurfaceInterpolationFilter": dict(ComputeError=1),
     "SurfaceSegmentationFilter": dict(NumberOfRegions=3),
     "TensorDiffusionFilter": dict(NumberOfTimeSteps=4),
     "TuringTextureFilter": dict(

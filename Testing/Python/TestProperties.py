@@ -103,6 +103,11 @@ DEFAULTS = {
     "vtkSurfaceSegmentationFilter": {
         **MODEL, "NumberOfRegions": 2, "AutomaticFidelity": True, "FidelityWeight": 0.3,
         "AutomaticMeans": True, "ResultOnCells": True, "StopTolerance": 1e-3},
+    "vtkSurfaceInterpolationFilter": {
+        **MODEL, "CorrelationLength": 0.0, "Exact": False, "AutomaticSmoothing": True,
+        "NoiseLevel": 0.0, "Smoothing": 1.0, "KeepRange": False, "ComputeError": False,
+        "Boundary": "Natural", "MaximumDistance": 0.0, "AlongDiffusivity": 1.0,
+        "AcrossDiffusivity": 1.0, "ResultOnCells": True},
     "vtkSurfaceDenoisingFilter": {
         **SURFACE, "ResultArrayName": "Displacement", "NoiseLevel": 0.0,
         "SurfaceType": "Automatic"},

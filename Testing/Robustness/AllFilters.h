@@ -11,6 +11,7 @@
 #include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
@@ -86,6 +87,7 @@ inline std::vector<FilterKind> AllFilters()
   using Harmonic = vtkHarmonicMapFilter;
   using Shah = vtkMumfordShahFilter;
   using Segmentation = vtkSurfaceSegmentationFilter;
+  using Spline = vtkSurfaceInterpolationFilter;
   using Tensor = vtkTensorDiffusionFilter;
   using Turing = vtkTuringTextureFilter;
   return {
@@ -256,6 +258,21 @@ inline std::vector<FilterKind> AllFilters()
         f->SetStopTolerance(0.1);
         SetInputArray(f, 0, "c", true);
       })),
+    Slow(MakeKind<Spline>("Interpolation", "fInterpolated", 1,
+      [](Spline* f)
+      {
+        SetInputArray(f, 1, "mask");
+        f->ComputeErrorOn();
+      })),
+    MakeKind<Spline>("InterpolationFree", "fInterpolated", 1,
+      [](Spline* f)
+      {
+        SetInputArray(f, 1, "mask");
+        f->SetBoundaryToFree();
+        f->ExactOn();
+      }),
+    Slow(MakeKind<Spline>("InterpolationOfCells", "cInterpolated", 1,
+      [](Spline* f) { SetInputArray(f, 0, "c", true); })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
       "Displacement" },
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },

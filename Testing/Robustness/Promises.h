@@ -378,6 +378,13 @@ inline std::string ExpectPromises(
   {
     return ExpectLabelsAndProbabilities(segmentation, u);
   }
+  if (auto* spline = vtkSurfaceInterpolationFilter::SafeDownCast(filter))
+  {
+    EXPECT_GE(spline->GetNumberOfValues(), 1);
+    EXPECT_EQ(spline->GetExact(), spline->GetEffectiveSmoothing() == 0.0);
+    return std::to_string(spline->GetNumberOfValues()) + " values, smoothing " +
+      std::to_string(spline->GetEffectiveSmoothing());
+  }
   if (vtkSurfaceDenoisingFilter::SafeDownCast(filter))
   {
     return ExpectMovedPoints(input, filter->GetOutput(), u);

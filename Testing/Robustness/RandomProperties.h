@@ -11,6 +11,7 @@
 #include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
@@ -213,6 +214,25 @@ inline List OfHeat()
     RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, BlurFWHM, dice.Flip(3) ? Positive(dice) : 0.0),
     RANDOM_PROPERTY(F, BlurSteps, dice.Flip(24) ? 1 : 2 + dice.Below(5)),
+  };
+}
+
+inline List OfInterpolation()
+{
+  using F = vtkSurfaceInterpolationFilter;
+  return {
+    RANDOM_PROPERTY(F, Exact, dice.Flip()),
+    RANDOM_PROPERTY(F, AutomaticSmoothing, dice.Flip()),
+    RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, Smoothing, Positive(dice)),
+    RANDOM_PROPERTY(F, CorrelationLength, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, KeepRange, dice.Flip(4)),
+    RANDOM_PROPERTY(F, ComputeError, dice.Flip()),
+    RANDOM_PROPERTY(F, Boundary, Choice(dice, 2)),
+    RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
+    RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
+    RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
   };
 }
 
@@ -430,6 +450,8 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),
       OfModel<vtkSurfaceSegmentationFilter>(), OfSegmentation() }),
+    MakeClass<vtkSurfaceInterpolationFilter>({ OfSurface<vtkSurfaceInterpolationFilter>(),
+      OfModel<vtkSurfaceInterpolationFilter>(), OfInterpolation() }),
   };
 }
 

@@ -252,6 +252,11 @@ TEST_P(EveryKindWithData, KeepsTheBitsOfFixedHeldAndExcludedValues)
   for (const auto& [name, change] : cases)
   {
     const bool held = std::string(name) == "held";
+    if (std::string(name) != "excluded" &&
+      !vtkSurfaceDataDiffusionAlgorithm::SafeDownCast(this->GetParam().Make()))
+    {
+      continue; // it has neither
+    }
     const auto filter = this->Run(this->Surface,
       [&, set = change](vtkPolyDataAlgorithm* f)
       {

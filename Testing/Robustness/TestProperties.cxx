@@ -36,6 +36,7 @@ const std::set<std::string> WithoutEffectInClass = {
   "vtkHarmonicMapFilter TimeIntegrator", // it has only one
   "vtkMumfordShahFilter EdgeCurves", // three steps find no edge that is long enough
   "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
+  "vtkSurfaceInterpolationFilter MaximumDistance", // of points on the second input
 };
 
 /// An ellipsoid with obtuse triangles. One patch has points of its own: the others are at most 0.01
@@ -101,6 +102,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   using Turing = vtkTuringTextureFilter;
   using Direction = vtkSurfaceDirectionFieldFilter;
   using Segmentation = vtkSurfaceSegmentationFilter;
+  using Spline = vtkSurfaceInterpolationFilter;
   using Shah = vtkMumfordShahFilter;
   using Tensor = vtkTensorDiffusionFilter;
   using Denoising = vtkSurfaceDenoisingFilter;
@@ -200,6 +202,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   needed["vtkSurfaceSegmentationFilter FidelityWeight"] =
     needed["vtkSurfaceSegmentationFilter Units"] =
       With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
+  needed["Smoothing"] = needed["vtkSurfaceInterpolationFilter Units"] =
+    With<Spline>([](Spline* f) { f->AutomaticSmoothingOff(); });
   needed["NoiseScale"] = needed["IntegrationScale"] = needed["Contrast"] = needed["Alpha"] =
     With<Tensor>([](Tensor* f) { f->SetModelToCoherenceEnhancing(); });
   needed["vtkSurfaceDirectionFieldFilter SmoothingLength"] =

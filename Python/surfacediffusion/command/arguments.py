@@ -68,8 +68,8 @@ def make_parser(hemispheres=False):
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
-    for add in (_smooth, _metric_smoothing, _denoise, _denoise_mesh, _inpaint, _enhance, _edges, _segment, _texture,
-                _directions, _normals, _fwhm, _info):
+    for add in (_smooth, _metric_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
+                _edges, _segment, _texture, _directions, _normals, _fwhm, _info):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -348,6 +348,51 @@ def _inpaint(commands):
     parser.add_argument("--model", choices=("heat", "tv"), default="heat",
                         help="heat: harmonic functions, smooth (default); tv: total variation, "
                              "which continues edges")
+
+
+POINTS = """
+SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
+VALUES: a text file with a row x, y, z, value, ... for each point, separated by commas or spaces and
+with or without a line of names, whose points count at the nearest points of SURFACE; or data with a
+value for each vertex, in the formats of the other commands. NaN, and an empty value in a text file, is
+unknown.
+The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk, .vtp if
+SURFACE is such a file.
+"""
+
+
+def _interpolate(commands):
+    text = ("Compute a smooth map from values at a few points, on the surface or beside it. The values "
+            "are smoothed by an amount that generalised cross-validation finds, unless --exact or "
+            "--noise is given. Parts of the surface that are connected to no value are NaN.")
+    parser = commands.add(
+        "interpolate", tasks.interpolate, text,
+        [f"{PROGRAM} interpolate atrium.vtp electrodes.csv times.vtp --error errors.npy",
+         f"{PROGRAM} interpolate lh.pial.surf.gii implants.txt map.shape.gii --exact"], POINTS)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("values", metavar="VALUES", help="the values, with their points or at vertices")
+    parser.add_argument("output", metavar="OUTPUT", help="the map, values at the vertices")
+    level = parser.add_mutually_exclusive_group()
+    level.add_argument("--exact", action="store_true", help="keep the values exactly")
+    level.add_argument("--noise", metavar="SD", type=_positive,
+                       help="the standard deviation of the values' noise, in their unit (default: "
+                            "estimated)")
+    level.add_argument("--smoothing", metavar="MU", type=_positive,
+                       help="the strength of the smoothing, in squared mean edge lengths (default: "
+                            "found)")
+    parser.add_argument("--length", metavar="L", type=_positive,
+                        help="the distance beyond which the map returns to the mean of the values, in "
+                             "the unit of the coordinates (default: it continues smoothly)")
+    parser.add_argument("--free", action="store_true",
+                        help="continue slopes at the boundary of the surface, in place of becoming flat")
+    parser.add_argument("--keep-range", action="store_true",
+                        help="stay between the smallest and the largest value")
+    parser.add_argument("--within", metavar="D", type=_positive,
+                        help="leave out points farther than D from the surface, in the unit of the "
+                             "coordinates (default: none)")
+    parser.add_argument("--error", metavar="FILE",
+                        help="write the standard error of the map, which is large where nothing was "
+                             "measured, in one of the formats of OUTPUT")
 
 
 def _enhance(commands):

@@ -82,6 +82,56 @@ def _read_surfaces(arguments):
     return surfaces
 
 
+def read_values(path, surface):
+    """The values of `interpolate`: places (p, 3) or None, values (p, k) or (n, k), and the names of the
+    columns."""
+    table = _read_table(path)
+    if table is not None:
+        rows, names = table
+        return rows[:, :3], rows[:, 3:], names
+    data = read_data(path)
+    part = data.parts[0]
+    values = np.asarray(part.values, dtype=float)
+    if len(data.parts) != 1 or len(values) != len(surface.points):
+        raise FileError(f"{path}: {len(values)} values; allowed: {len(surface.points)}, one per vertex "
+                        "of SURFACE, or a text file with rows x, y, z, value")
+    columns = list(data.usual)
+    return None, values[:, columns], [data.names[c] for c in columns]
+
+
+def _read_table(path):
+    """The rows x, y, z, value, ... of a text file and the names of the values; None if it is none."""
+    if not re.search(r"\.(csv|tsv|txt)$", path, re.IGNORECASE):
+        return None
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            lines = [line.strip() for line in file]
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(f"{path}: {getattr(error, 'strerror', None) or 'no text'}") from error
+    rows, names = [], []
+    for i, line in enumerate(lines, start=1):
+        if not line or line.startswith("#"):
+            continue
+        separator = "," if "," in line else ";" if ";" in line else "\t" if "\t" in line else None
+        words = [word.strip().strip('"') for word in line.split(separator)]
+        try:
+            row = [float(word) if word else np.nan for word in words]
+        except ValueError:
+            if rows or names:
+                raise FileError(f"{path}: line {i} is {line[:40]!r}; allowed: numbers x, y, z, value"
+                                ) from None
+            names = words
+            continue
+        width = len(rows[0]) if rows else len(names) or len(row)
+        if len(row) != width or width < 4:
+            raise FileError(f"{path}: line {i} has {len(row)} numbers; allowed: x, y, z and as many "
+                            "values as the other lines, one or more")
+        rows.append(row)
+    if not rows:
+        raise FileError(f"{path}: no row of numbers; allowed: rows x, y, z, value")
+    return np.array(rows), names[3:] or [f"Value{k + 1}" for k in range(len(rows[0]) - 3)]
+
+
 def choose_columns(data: Data, choices):
     """The numbers of the chosen columns, in the order of the file."""
     if not choices:

@@ -165,6 +165,41 @@ def inpaint(arguments, report):
         report.warn(f"{arguments.data}: nothing is missing, the values are unchanged")
 
 
+def interpolate(arguments, report):
+    from .. import Surface
+    from .. import interpolate as fit
+
+    surface = _read_surface_for_output(arguments, report)
+    if arguments.error is not None:
+        check_output_folder(arguments.error)
+    with report.timed("read"):
+        places, values, names = inputs.read_values(arguments.values, surface)
+    target = new_data(surface, arguments.output, names)
+    errors = new_data(surface, arguments.error, names) if arguments.error else None
+    options = {"exact": arguments.exact, "noise_level": arguments.noise or 0.0,
+               "correlation_length": arguments.length or 0.0,
+               "boundary": "Free" if arguments.free else "Natural",
+               "keep_range": arguments.keep_range, "maximum_distance": arguments.within or 0.0,
+               "compute_error": errors is not None}
+    if arguments.smoothing:
+        options["smoothing"] = arguments.smoothing
+    with report.timed("compute"), report.progress("Interpolation") as progress:
+        result = fit(Surface(surface.points, surface.faces), values, places, progress=progress,
+                     **options)
+    rows = zip(result.smoothing, result.misfit, result.degrees_of_freedom, result.noise_level)
+    report.facts.update(
+        values=result.number_of_values, far_values=result.number_of_far_values,
+        columns=[{"name": name, "smoothing": number(mu), "misfit": number(misfit),
+                  "degrees_of_freedom": number(freedom), "noise": number(noise)}
+                 for name, (mu, misfit, freedom, noise) in zip(names, rows)])
+    with report.timed("write"):
+        target.save(arguments.output, [result.values.astype(np.float32)])
+        if errors is not None:
+            errors.save(arguments.error, [result.error.astype(np.float32)])
+    _say_written(arguments, report, f"{result.number_of_values} values, misfit "
+                 + ", ".join(f"{misfit:.4g}" for misfit in result.misfit))
+
+
 def enhance(arguments, report):
     from .. import tensor_diffusion
 

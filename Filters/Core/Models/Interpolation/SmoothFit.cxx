@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/SmoothFit.h"
 
+#include "Core/Solvers/NotPositiveDefinite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -164,9 +166,13 @@ Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u) const
     {
       const auto column = static_cast<std::size_t>(c);
       const double size = step.col(c).cwiseAbs().maxCoeff();
+      if (!std::isfinite(size))
+      {
+        throw NotPositiveDefinite();
+      }
       const bool isRoundOff = iteration > 1 && size > 0.5 * last[column];
       last[column] = size;
-      if (isDone[column] || isRoundOff || !std::isfinite(size))
+      if (isDone[column] || isRoundOff)
       {
         isDone[column] = 1;
         continue;

@@ -6,6 +6,7 @@
 #include "Core/Models/Interpolation/SmoothFit.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Solvers/NestedDissection.h"
+#include "Core/Solvers/NotPositiveDefinite.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +58,14 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   if (data.Count() == 0)
   {
     throw std::runtime_error("no value is known; allowed: one or more");
+  }
+  if (this->Options.Smoothing == Choice::Given && !(this->Options.Mu > 0.0))
+  {
+    throw std::invalid_argument("the given mu is not above 0");
+  }
+  if (this->Options.Smoothing == Choice::NoiseLevel && !(this->Options.NoiseLevel > 0.0))
+  {
+    throw std::invalid_argument("the given noise level is not above 0");
   }
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const Index n = mesh.NumberOfVertices();
@@ -145,8 +154,9 @@ double SmoothInterpolation::StartSmoothing(const Work& work) const
 {
   constexpr double reach = 3.0;
   const ScatteredValues& rows = work.Data.Rows;
-  const double diffusivity =
-    this->Coefficients.sum() / CotanWeights(this->Assembly->Mesh(), this->Parallel).sum();
+  const double diffusivity = this->Options.Rim == RimCondition::Free
+    ? 1.0
+    : this->Coefficients.sum() / CotanWeights(this->Assembly->Mesh(), this->Parallel).sum();
   const double square = reach * reach * work.Area / rows.Count();
   const double scale =
     this->Options.Kappa * this->Options.Kappa + std::max(diffusivity, 1e-300) / square;
@@ -181,7 +191,11 @@ void SmoothInterpolation::Prepare(
     const double n = static_cast<double>(held.size());
     work.Energy.AddTension(std::max(1e-6, 1e-12 * n * n) / work.Area);
     result.IsFlattest = true;
-    work.Fit.Prepare(mu, held, isExact, progress);
+    pivots = work.Fit.Prepare(mu, held, isExact, progress);
+  }
+  if (pivots.Open > 0)
+  {
+    throw NotPositiveDefinite();
   }
 }
 
@@ -235,6 +249,7 @@ void SmoothInterpolation::FitExactly(
     const Vector misfit = given - work.Fit.AtPoints(u).col(c);
     found.Residual = std::sqrt(rows.Weights.dot(misfit.cwiseAbs2()) / rows.Weights.sum());
     found.DegreesOfFreedom = rows.Count();
+    found.Roughness = work.Energy.Squares(u.col(c))[0];
   }
 }
 
@@ -260,8 +275,8 @@ void SmoothInterpolation::FitSmoothly(
     found.Score = spectrum.Score(mu, column);
     found.DegreesOfFreedom = spectrum.DegreesOfFreedom(mu);
   };
-  const InfluenceSpectrum start =
-    measure(isGiven ? givenMu : this->StartSmoothing(work), progress.Part(0.0, 0.4));
+  const InfluenceSpectrum start = measure(
+    isGiven ? givenMu : std::min(largest, this->StartSmoothing(work)), progress.Part(0.0, 0.4));
   if (isGiven)
   {
     for (Eigen::Index c = 0; c < columns; ++c)
@@ -271,6 +286,8 @@ void SmoothInterpolation::FitSmoothly(
     this->FitColumns(work, result, 0, columns, givenMu, progress.Part(0.4, 1.0));
     return;
   }
+  const bool wasFlattest = result.IsFlattest;
+  const bool didDrop = result.DropsNegativeCurvature;
   for (Eigen::Index c = 0; c < columns; ++c)
   {
     const auto at = [&](double part)
@@ -288,6 +305,11 @@ void SmoothInterpolation::FitSmoothly(
     }
     this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.5), at(1.0)));
   }
+  if (columns > 1 && (result.IsFlattest != wasFlattest || result.DropsNegativeCurvature != didDrop))
+  {
+    // One energy for all columns, in whatever order they are.
+    this->FitSmoothly(work, result, progress.Part(1.0, 1.0));
+  }
 }
 
 /// With the measures of the columns in place.
@@ -295,7 +317,9 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   Eigen::Index count, double mu, const ProgressMonitor& progress) const
 {
   const ScatteredValues& rows = work.Data.Rows;
-  if (work.Fit.GetSmoothing() != mu)
+  // The factor may be that of the active set of the column before.
+  const bool isOfBounds = this->Options.KeepRange && first > 0;
+  if (work.Fit.GetSmoothing() != mu || isOfBounds)
   {
     this->Prepare(work, result, mu, work.Open, progress.Part(0.0, 0.3));
   }
@@ -324,6 +348,7 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     {
       result.Error.col(first + c) = found.NoiseLevel * deviations; // without bounds
     }
+    found.Roughness = work.Energy.Squares(u)[0];
     result.U.col(first + c) = u;
   }
 }
@@ -389,7 +414,8 @@ void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index c
         u(i, 0) = active[i] < 0 ? low : high;
       }
     }
-    this->Prepare(work, result, mu, all, ProgressMonitor());
+    const double done = static_cast<double>(iteration) / most;
+    this->Prepare(work, result, mu, all, progress.Part(done, done));
     forces = work.Fit.Solve(column, u);
   }
   result.RangeIsOptimal = false;

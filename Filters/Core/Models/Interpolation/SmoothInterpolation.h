@@ -61,6 +61,7 @@ public:
     double Residual = 0.0;
     double DegreesOfFreedom = 0.0;
     double NoiseLevel = 0.0; ///< s, given or estimated; 0 if the values hold
+    double Roughness = 0.0; ///< u^T Q u
   };
 
   struct Result
@@ -86,7 +87,8 @@ public:
   SmoothInterpolation(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
     const Settings& settings, const ParallelFor& parallel = SerialFor());
 
-  /// Throws Aborted, and std::runtime_error if there is no value.
+  /// Throws Aborted, std::runtime_error if there is no value or no factor, and std::invalid_argument
+  /// on a mu or a noise level that is needed and not above 0.
   Result Fit(
     const ScatteredValues& data, const ProgressMonitor& progress = ProgressMonitor()) const;
 

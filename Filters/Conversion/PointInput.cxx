@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conversion/PointInput.h"
+
+#include "Conversion/FieldReader.h"
+#include "Distributed/Processes.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+
+#include <string>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// The array of this name or, without one, the active scalars; null with a problem if there is none.
+vtkDataArray* FindArray(
+  vtkPointSet* points, const std::string& name, const char* property, Problems& problems)
+{
+  const bool hasName = !name.empty();
+  vtkPointData* const attributes = points->GetPointData();
+  vtkAbstractArray* const found =
+    hasName ? attributes->GetAbstractArray(name.c_str()) : attributes->GetScalars();
+  const std::string label = property + (hasName ? " \"" + name + "\"" : std::string());
+  if (!found)
+  {
+    problems.emplace_back(label +
+      (hasName ? " is not among the point arrays of the points with values; choose one of them"
+               : " is not set and the points with values have no active scalars; choose an array"));
+    return nullptr;
+  }
+  vtkDataArray* const array = vtkDataArray::SafeDownCast(found);
+  if (!array)
+  {
+    problems.emplace_back(label + " is a " + found->GetClassName() + "; allowed: numeric arrays");
+  }
+  return array;
+}
+
+template <typename Matrix>
+std::vector<double> Flat(const Matrix& matrix)
+{
+  return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
+}
+
+/// The points of all processes, in every process.
+void Gather(const Processes& processes, PointSamples& samples)
+{
+  const std::vector<double> places = processes.GatherAll(Flat(samples.Places));
+  const std::vector<double> values = processes.GatherAll(Flat(samples.Given));
+  samples.Weights = processes.GatherAll(samples.Weights);
+  const auto count = static_cast<Eigen::Index>(places.size() / 3);
+  samples.Places = Eigen::Map<const Points>(places.data(), count, 3);
+  const auto columns =
+    count > 0 ? static_cast<Eigen::Index>(values.size()) / count : samples.Given.cols();
+  samples.Given = Eigen::Map<const Values>(values.data(), count, columns);
+}
+
+} // namespace
+
+std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
+  const PointInputNames& names, vtkMultiProcessController* controller, Problems& problems)
+{
+  const Processes processes(controller);
+  auto samples = std::make_shared<PointSamples>();
+  samples->Places.resize(0, 3);
+  vtkPointSet* const points = vtkPointSet::SafeDownCast(data);
+  const std::size_t before = problems.size();
+  if (!points)
+  {
+    problems.emplace_back(std::string("the points with values are a ") + data->GetClassName() +
+      "; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
+      "vtkTableToPolyData)");
+  }
+  // A process without points need not have the arrays of the others.
+  else if (points->GetNumberOfPoints() > 0 || processes.Count() == 1)
+  {
+    vtkDataArray* const values = FindArray(points, names.Values, "PointValueArray", problems);
+    vtkDataArray* const weights = names.Weights.empty()
+      ? nullptr
+      : FindArray(points, names.Weights, "PointWeightArray", problems);
+    if (weights && weights->GetNumberOfComponents() != 1)
+    {
+      problems.emplace_back("PointWeightArray has " +
+        std::to_string(weights->GetNumberOfComponents()) + " components; allowed: 1");
+    }
+    if (values && problems.size() == before)
+    {
+      const vtkIdType count = points->GetNumberOfPoints();
+      samples->Name = values->GetName() ? values->GetName() : "";
+      samples->Given = ReadValues(values);
+      samples->Places.resize(count, 3);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        points->GetPoint(i, samples->Places.row(i).data());
+      }
+      for (vtkIdType i = 0; weights && i < count; ++i)
+      {
+        samples->Weights.push_back(weights->GetComponent(i, 0));
+      }
+    }
+  }
+  if (processes.Any(problems.size() > before))
+  {
+    return nullptr;
+  }
+  if (processes.Count() > 1)
+  {
+    samples->Name = processes.FirstMessage(samples->Name);
+    Gather(processes, *samples);
+  }
+  return samples;
+}
+
+void AddSamples(Fingerprint& fingerprint, const PointSamples& samples)
+{
+  const auto add = [&](const double* numbers, std::size_t count)
+  {
+    fingerprint.AddNumber(std::uint64_t{ count });
+    fingerprint.AddBytes(numbers, count * sizeof(double), SerialFor());
+  };
+  add(samples.Places.data(), static_cast<std::size_t>(samples.Places.size()));
+  add(samples.Given.data(), static_cast<std::size_t>(samples.Given.size()));
+  add(samples.Weights.data(), samples.Weights.size());
+  fingerprint.AddBytes(samples.Name.data(), samples.Name.size(), SerialFor());
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/Fingerprint.h"
+#include "Run/PointSamples.h"
+#include "Run/Settings.h"
+
+#include <memory>
+#include <string>
+
+class vtkDataObject;
+class vtkMultiProcessController;
+
+namespace SurfaceDiffusion
+{
+
+/// The names of point arrays of points with values.
+struct PointInputNames
+{
+  const std::string& Values; ///< empty: the active scalars
+  const std::string& Weights; ///< empty: 1 everywhere
+};
+
+/// The points of a vtkPointSet with the chosen values and weights; those of all processes together.
+/// Null, with problems, if the data are of another type or have no such array. Collective.
+std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
+  const PointInputNames& names, vtkMultiProcessController* controller, Problems& problems);
+
+/// Add the hash of everything in it.
+void AddSamples(Fingerprint& fingerprint, const PointSamples& samples);
+
+} // namespace SurfaceDiffusion

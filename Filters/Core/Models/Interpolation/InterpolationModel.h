@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Interpolation/SmoothInterpolation.h"
+#include "Core/Models/Model.h"
+
+namespace SurfaceDiffusion
+{
+
+/// SmoothInterpolation as a model: one step from the weighted mean of the values to the fit.
+class InterpolationModel : public StateModel
+{
+public:
+  /// data: at least one value.
+  InterpolationModel(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
+    ScatteredValues data, const SmoothInterpolation::Settings& settings,
+    const ParallelFor& parallel = SerialFor());
+
+  /// Throws as SmoothInterpolation::Fit().
+  StepReport Advance(const ProgressMonitor& progress) override;
+  /// E(u) with the mu that was found; with exact values, its limit as mu tends to 0.
+  double Energy() const override
+  {
+    return this->IsFitted ? this->EnergyOfFit : this->EnergyOfStart;
+  }
+  std::size_t CheckpointSize() const override;
+  void Save(double* checkpoint) const override;
+  void Restore(const double* checkpoint) override;
+
+  /// What the step found; nothing at the start.
+  const SmoothInterpolation::Result& Found() const
+  {
+    return this->IsFitted ? this->Last : this->None;
+  }
+  Index NumberOfValues() const { return this->Data.Count(); }
+
+private:
+  SmoothInterpolation Method;
+  ScatteredValues Data;
+  SmoothInterpolation::Result Last, None;
+  bool IsFitted = false; ///< the state is that of Last
+  double EnergyOfStart;
+  double EnergyOfFit = 0.0;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/InterpolationSettings.h"
+
+#include "Core/Models/Interpolation/InterpolationModel.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Run/ModelInputs.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// The model with what its data were.
+class FitOfKnownValues : public InterpolationModel
+{
+public:
+  FitOfKnownValues(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
+    KnownValues known, const SmoothInterpolation::Settings& settings, const ParallelFor& parallel)
+    : InterpolationModel(
+        std::move(assembler), std::move(coefficients), std::move(known.Values), settings, parallel)
+    , AreSamples(known.AreSamples)
+    , NameOfSamples(std::move(known.SamplesName))
+  {
+  }
+
+  const bool AreSamples;
+  const std::string NameOfSamples;
+};
+
+void WarnOf(Index count, const char* ofOne, const char* ofSeveral, RunResult& result)
+{
+  if (count > 0)
+  {
+    result.WarnOnce(Sentence() << count << (count == 1 ? ofOne : ofSeveral));
+  }
+}
+
+void WarnOfValues(const KnownValues& known, double maximumDistance, RunResult& result)
+{
+  if (known.TooFar > 0)
+  {
+    result.WarnOnce(Sentence() << known.TooFar << (known.TooFar == 1 ? " value is" : " values are")
+                               << " farther from the surface than "
+                               << Word::Setting("MaximumDistance") << " " << maximumDistance
+                               << " and left out");
+  }
+  if (known.Outside > 0)
+  {
+    result.WarnOnce(Sentence() << known.Outside
+                               << (known.Outside == 1 ? " value is" : " values are")
+                               << " where nothing is computed, outside of the mask, and left out");
+  }
+  const Values& given = known.Values.Given;
+  if (given.rows() > 1 && (given.rowwise() - given.row(0)).isZero(0.0))
+  {
+    result.WarnOnce("all known values are equal, and so is the result");
+  }
+}
+
+void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
+{
+  WarnOf(found.ContradictingPlaces, " place has different values: their weighted mean counts",
+    " places have different values: their weighted means count", result);
+  if (found.HasTooFewValues)
+  {
+    result.WarnOnce(Sentence("fewer than 3 places have a value, too few for ")
+      << Word::Setting("AutomaticSmoothing") << ": the values hold exactly");
+  }
+  if (found.IsFlattest)
+  {
+    result.WarnOnce(Sentence("the values leave slopes open with ")
+      << Word::Setting("Boundary") << " " << Word::Choice("Boundary", RimCondition::Free, "Free")
+      << ": the flattest result is taken");
+  }
+  if (found.DropsNegativeCurvature)
+  {
+    result.WarnOnce(Sentence("the mesh is too coarse for its saddles with ")
+      << Word::Setting("Boundary") << " " << Word::Choice("Boundary", RimCondition::Free, "Free")
+      << ": negative curvature is left out of the energy");
+  }
+  if (!found.RangeIsOptimal)
+  {
+    result.WarnOnce(Sentence(Word::Setting("KeepRange"))
+      << ": the set of points at the bounds did not settle; the result is within the range but not "
+         "the smoothest one");
+  }
+}
+
+} // namespace
+
+void InterpolationSettings::Visit(SettingVisitor& visitor)
+{
+  this->RunSettings::Visit(visitor);
+  visitor.Number({ "CorrelationLength", "coordinates",
+                   "1/kappa, the distance beyond which the result returns to the mean of the "
+                   "values, in the unit of the coordinates, 0 or more. 0: infinite, the result "
+                   "continues smoothly." },
+    this->CorrelationLength, SettingRange::NonNegative());
+  visitor.Switch({ "Exact", "",
+                   "On: the result has the known values exactly. Off: it is smoothed, as noisy "
+                   "values need." },
+    this->Exact);
+  visitor.Switch({ "AutomaticSmoothing", "",
+                   "Without Exact. On: find mu, the strength of the smoothing, by generalised "
+                   "cross-validation, or from NoiseLevel if that is above 0. Off: mu is "
+                   "Smoothing." },
+    this->AutomaticSmoothing);
+  visitor.Number({ "NoiseLevel", "values",
+                   "The standard deviation of the noise of values with weight 1, in the unit of "
+                   "the data, 0 or more. AutomaticSmoothing and the standard errors use it. 0: "
+                   "estimated from what the smoothed result leaves of the values." },
+    this->NoiseLevel, SettingRange::NonNegative());
+  visitor.Number({ "Smoothing", "h^2",
+                   "mu, with AutomaticSmoothing off: the weight of the energy against the values, "
+                   "above 0, in length^2 (natural units: h^2)." },
+    this->Smoothing,
+    this->AutomaticSmoothing || this->Exact ? SettingRange::Anything() : SettingRange::Positive());
+  visitor.Switch({ "KeepRange", "",
+                   "Keep the result between the smallest and the largest known value of each "
+                   "component." },
+    this->KeepRange);
+  visitor.Switch({ "ComputeError", "",
+                   "Add the standard error of the result, which shows where nothing was "
+                   "measured." },
+    this->ComputeError);
+  visitor.Choice({ "Boundary", "",
+                   "The condition at the boundary of the surface. Natural: the result becomes "
+                   "flat towards it. Free: the result continues its slope, and linear functions "
+                   "on flat pieces come back exactly from a few values." },
+    this->Boundary, { "Natural", "Free" });
+  visitor.Number({ "MaximumDistance", "coordinates",
+                   "The largest distance of points with values from the surface, in the unit of "
+                   "the coordinates, 0 or more. Farther ones are counted and left out. 0: any." },
+    this->MaximumDistance, SettingRange::NonNegative());
+  visitor.Number({ "AlongDiffusivity", "",
+                   "Factor of the diffusivity along the direction, above 0. If it differs from "
+                   "AcrossDiffusivity, DirectionArray is required." },
+    this->AlongDiffusivity, SettingRange::Positive());
+  visitor.Number(
+    { "AcrossDiffusivity", "", "Factor of the diffusivity across the direction, above 0." },
+    this->AcrossDiffusivity, SettingRange::Positive());
+  VisitResultOnCells(visitor, this->ResultOnCells);
+}
+
+void InterpolationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
+{
+  this->RunSettings::CheckTogether(fields, problems);
+  RequireData(fields, problems);
+  const bool isFree = this->Boundary == RimCondition::Free;
+  if (isFree && (this->AlongDiffusivity != 1.0 || this->AcrossDiffusivity != 1.0))
+  {
+    problems.push_back(Sentence(Word::Setting("Boundary"))
+      << " is " << Word::Choice("Boundary", RimCondition::Free, "Free") << " but "
+      << Word::Setting("AlongDiffusivity") << " is " << this->AlongDiffusivity << " and "
+      << Word::Setting("AcrossDiffusivity") << " is " << this->AcrossDiffusivity
+      << "; allowed: both 1, or " << Word::Choice("Boundary", RimCondition::Natural, "Natural"));
+  }
+  if (isFree && this->IntrinsicDelaunay)
+  {
+    problems.push_back(Sentence(Word::Setting("Boundary"))
+      << " is " << Word::Choice("Boundary", RimCondition::Free, "Free") << " but "
+      << Word::Setting("IntrinsicDelaunay") << " is " << Word::Switch(true)
+      << "; allowed: " << Word::Switch(false) << ", or "
+      << Word::Choice("Boundary", RimCondition::Natural, "Natural"));
+  }
+  if (fields && !fields->Directions && this->IsDirected())
+  {
+    problems.push_back(Sentence(Word::Setting("AlongDiffusivity"))
+      << " is " << this->AlongDiffusivity << " and " << Word::Setting("AcrossDiffusivity") << " is "
+      << this->AcrossDiffusivity << " but " << Word::Array("DirectionArray")
+      << " is not set; allowed: equal values, or an array of directions");
+  }
+}
+
+ModelTraits InterpolationSettings::DescribeModel() const
+{
+  ModelTraits traits;
+  traits.ResultSuffix = "Interpolated";
+  traits.Energy = { 0.0, 2.0 };
+  traits.UsesFidelity = true;
+  traits.UsesKnownValues = true;
+  traits.MaximumDistance = this->MaximumDistance;
+  traits.NeedsDirections = this->IsDirected();
+  traits.UsesRandomNumbers = !this->Exact;
+  traits.StartsFromKnownValues = true;
+  traits.ResultOnCells = this->ResultOnCells;
+  traits.KeepCellDetail = false;
+  traits.CanBeDistributed = false;
+  return traits;
+}
+
+SmoothInterpolation::Settings InterpolationSettings::MakeCoreSettings(const UnitSystem& units) const
+{
+  using Choice = SmoothInterpolation::Choice;
+  SmoothInterpolation::Settings settings;
+  settings.Kappa = this->CorrelationLength > 0.0 ? units.LengthUnit / this->CorrelationLength : 0.0;
+  settings.Rim = this->Boundary;
+  settings.Smoothing = this->Exact ? Choice::Exact
+    : !this->AutomaticSmoothing    ? Choice::Given
+    : this->NoiseLevel > 0.0       ? Choice::NoiseLevel
+                                   : Choice::Automatic;
+  settings.Mu = units.ToCore(this->Smoothing, 2.0, 0.0);
+  settings.NoiseLevel = this->NoiseLevel / units.ValueUnit;
+  settings.KeepRange = this->KeepRange;
+  settings.ComputeError = this->ComputeError;
+  settings.Seed = this->RandomSeed;
+  return settings;
+}
+
+std::unique_ptr<Model> InterpolationSettings::Make(ModelInputs& inputs, RunResult& result) const
+{
+  KnownValues& known = inputs.Known;
+  if (known.Values.Count() == 0)
+  {
+    throw InputError("no value is known; allowed: one or more with a weight above 0");
+  }
+  result.HasMissing = inputs.Data.Missing.any();
+  WarnOfValues(known, this->MaximumDistance, result);
+  result.Numbers.push_back(Output::OfNumber(
+    "NumberOfValues", known.Values.Count(), Combination::Sum, OutputType::Integer));
+  result.Numbers.push_back(
+    Output::OfNumber("NumberOfFarValues", known.TooFar, Combination::Sum, OutputType::Integer));
+  const TriangleMesh& mesh = inputs.Surface.Mesh();
+  const CornerWeights isotropic = CotanWeights(mesh, inputs.Parallel);
+  CornerWeights coefficients = this->IsDirected()
+    ? AnisotropicWeights(mesh, isotropic, inputs.Directions, this->AlongDiffusivity,
+        this->AcrossDiffusivity, inputs.Parallel)
+    : CornerWeights(this->AlongDiffusivity * isotropic);
+  return std::make_unique<FitOfKnownValues>(inputs.Surface.SharedAssembler(),
+    std::move(coefficients), std::move(known), this->MakeCoreSettings(inputs.Units),
+    inputs.Parallel);
+}
+
+std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResult& result) const
+{
+  const auto& model = static_cast<const FitOfKnownValues&>(state.Path.CurrentModel().Innermost());
+  const SmoothInterpolation::Result& found = model.Found();
+  WarnOfFit(found, result);
+  const double unit = state.Units.ValueUnit;
+  const Eigen::RowVectorXd none =
+    Eigen::RowVectorXd::Constant(model.State().cols(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<Output> outputs;
+  outputs.push_back(Output::OfState(this->DescribeModel().ResultSuffix));
+  if (model.AreSamples)
+  {
+    Output& output = outputs.back();
+    output.Type = OutputType::Real;
+    output.IsState = false;
+    output.Rows = unit * model.State();
+    output.Given = -1;
+    output.Elsewhere = none;
+    output.DataName = model.NameOfSamples;
+  }
+  if (found.Error.rows() > 0)
+  {
+    Output error{ "Error", Place::PerVertex, OutputType::Real, unit * found.Error };
+    error.IsBesideResult = true;
+    error.Elsewhere = none;
+    error.DataName = model.NameOfSamples;
+    outputs.push_back(std::move(error));
+  }
+  const auto columns = static_cast<Eigen::Index>(found.Columns.size());
+  Values rows(columns, 6);
+  const double ofSmoothing = 1.0 / state.Units.ToCore(1.0, 2.0, 0.0);
+  for (Eigen::Index c = 0; c < columns; ++c)
+  {
+    const SmoothInterpolation::Column& column = found.Columns[static_cast<std::size_t>(c)];
+    rows.row(c) << static_cast<double>(c), column.Mu * ofSmoothing, column.Score * unit * unit,
+      column.Residual * unit, column.DegreesOfFreedom, column.NoiseLevel * unit;
+  }
+  const char* const names[] = { "Component", "Smoothing", "Score", "Misfit", "DegreesOfFreedom",
+    "NoiseLevel" };
+  for (Eigen::Index k = 0; k < rows.cols(); ++k)
+  {
+    outputs.push_back(
+      { names[k], Place::Column, k == 0 ? OutputType::Integer : OutputType::Double, rows.col(k) });
+  }
+  outputs.push_back(Output::OfNumber("EffectiveSmoothing", columns > 0 ? rows(0, 1) : 0.0));
+  return outputs;
+}
+
+} // namespace SurfaceDiffusion

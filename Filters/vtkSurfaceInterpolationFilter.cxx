@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSurfaceInterpolationFilter.h"
+
+#include "Conversion/FieldReader.h"
+#include "Conversion/InputArrays.h"
+#include "Conversion/PointInput.h"
+#include "Run/InterpolationSettings.h"
+#include "Run/OwnedSettings.h"
+
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+
+using namespace SurfaceDiffusion;
+
+vtkStandardNewMacro(vtkSurfaceInterpolationFilter);
+
+vtkSurfaceInterpolationFilter::vtkSurfaceInterpolationFilter()
+  : Superclass(OwnedSettings::Make<InterpolationSettings>())
+{
+  this->DeclareNumber("EffectiveSmoothing");
+  this->DeclareNumber("NumberOfValues");
+  this->DeclareNumber("NumberOfFarValues");
+  this->SetNumberOfInputPorts(2);
+}
+
+int vtkSurfaceInterpolationFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    return this->Superclass::FillInputPortInformation(port, info);
+  }
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  // Other data are an error, whose message says what to do.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+  return 1;
+}
+
+int vtkSurfaceInterpolationFilter::RequestData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* const points =
+    inputs[1]->GetNumberOfInformationObjects() > 0 ? vtkDataObject::GetData(inputs[1]) : nullptr;
+  this->HasPoints = points != nullptr;
+  this->ProblemsOfPoints.clear();
+  if (points)
+  {
+    this->Samples = ReadPointSamples(points, { this->PointValueArray, this->PointWeightArray },
+      this->GetController(), this->ProblemsOfPoints);
+  }
+  const int result = this->Superclass::RequestData(request, inputs, outputs);
+  this->Samples.reset();
+  return result;
+}
+
+bool vtkSurfaceInterpolationFilter::FindFields(
+  vtkPolyData* block, InputFields& fields, Problems& problems)
+{
+  const InputArrays inputs(this, block, fields, problems);
+  fields.Samples = this->Samples;
+  problems.insert(problems.end(), this->ProblemsOfPoints.begin(), this->ProblemsOfPoints.end());
+  if (!this->HasPoints)
+  {
+    fields.Data = inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents);
+    fields.Fidelity = inputs.Find(5, "FidelityArray", 1);
+  }
+  fields.Mask = inputs.Find(1, "MaskArray", 1);
+  fields.Direction = inputs.Find(2, "DirectionArray", 3);
+  return fields.Data.Values != nullptr || fields.Samples != nullptr;
+}
+
+void vtkSurfaceInterpolationFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointValueArray: " << this->PointValueArray << "\n";
+  os << indent << "PointWeightArray: " << this->PointWeightArray << "\n";
+}

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Interpolation as the mean of a Gaussian field, and its smoothing of noise.
+#include "Core/Models/Interpolation/SmoothnessEnergy.h"
+#include "Interpolation.h"
+
+#include <Eigen/SparseCholesky>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+constexpr Index OfSphere = 162; // vertices of the icosahedron subdivided twice, in all finer ones
+
+struct Harmonic
+{
+  int Degree;
+  std::function<double(const Eigen::RowVector3d&)> At;
+};
+
+} // namespace
+
+TEST(InterpolationField, SphericalHarmonicsDecayByTheirEigenvalue)
+{
+  const double mu = 0.02;
+  const double kappa = 1.5;
+  const Harmonic harmonics[] = { { 1, [](const Eigen::RowVector3d& x) { return x[2]; } },
+    { 2, [](const Eigen::RowVector3d& x) { return x[0] * x[1]; } },
+    { 4, [](const Eigen::RowVector3d& x) {
+       return 35.0 * std::pow(x[2], 4) - 30.0 * x[2] * x[2] + 3.0;
+     } } };
+  for (const Harmonic& harmonic : harmonics)
+  {
+    const double eigenvalue = harmonic.Degree * (harmonic.Degree + 1.0) + kappa * kappa;
+    const double factor = 1.0 / (1.0 + mu * eigenvalue * eigenvalue);
+    double last = 0.0;
+    for (int subdivisions = 3; subdivisions <= 5; ++subdivisions)
+    {
+      const Surface s = Icosphere(subdivisions);
+      const auto assembler = MakeAssembler(s);
+      const TriangleMesh& mesh = assembler->Mesh();
+      const Values field = Sample(mesh, s, harmonic.At);
+      ScatteredValues data = ValuesAt(mesh, field, [](Index) { return true; });
+      data.Weights = mesh.ControlAreas(); // the integral of the square
+      const double unit = mesh.LengthUnit();
+      Interpolation::Settings settings =
+        InterpolationSettings(Choice::Given, mu / std::pow(unit, 4));
+      settings.Kappa = kappa * unit;
+      const Values u = Interpolate(assembler, data, settings).U;
+      const double largest = field.cwiseAbs().maxCoeff();
+      const double error = (u - factor * field).cwiseAbs().maxCoeff() / (factor * largest);
+      std::printf("degree %d, %6d vertices: factor %.4f, relative error %.5f\n", harmonic.Degree,
+        mesh.NumberOfVertices(), factor, error);
+      if (subdivisions > 3)
+      {
+        EXPECT_LT(error, 0.55 * last); // at least of order 1, as the Laplacian at vertices has
+      }
+      last = error;
+    }
+    EXPECT_LT(last, 0.01);
+  }
+}
+
+TEST(InterpolationField, SmoothsNoiseOnEveryMesh)
+{
+  for (int subdivisions = 3; subdivisions <= 5; ++subdivisions)
+  {
+    const Surface s = Icosphere(subdivisions);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values field = Sample(mesh, s, SeaTemperature);
+    Values noisy = field;
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      noisy(i, 0) += Gaussian(1, 0, mesh.InputVertex()[i]);
+    }
+    const auto data = ValuesAt(mesh, noisy, [](Index i) { return i < OfSphere; });
+    const Interpolation::Result result =
+      Interpolate(assembler, data, InterpolationSettings(Choice::Automatic));
+    const double error = RootMeanSquare(mesh, result.U - field);
+    const Interpolation::Result exact =
+      Interpolate(assembler, data, InterpolationSettings(Choice::Exact));
+    std::printf("%6d vertices: error %.3f, with exact values %.3f, noise estimated as %.3f\n",
+      mesh.NumberOfVertices(), error, RootMeanSquare(mesh, exact.U - field),
+      result.Columns[0].NoiseLevel);
+    EXPECT_LE(error, 0.55);
+    EXPECT_GT(RootMeanSquare(mesh, exact.U - field), 1.4 * error);
+    // Three standard deviations of an estimate with so many degrees of freedom.
+    const double free = OfSphere - result.Columns[0].DegreesOfFreedom;
+    EXPECT_NEAR(result.Columns[0].NoiseLevel, 1.0, 3.0 / std::sqrt(2.0 * free));
+  }
+}
+
+TEST(InterpolationField, NinetyPercentOfTruthsAreInsideTheBandOfTheirError)
+{
+  // Fields of the prior, u = s (mu Q)^(-1/2) x, and values of them with noise s. The mean of values,
+  // from which they are measured, is near that of the fields on a sphere of many correlation lengths.
+  constexpr int fields = 1000;
+  const double noise = 0.5;
+  const double kappa = 8.0;
+  const double deviation = 1.0; // of the field
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Index n = mesh.NumberOfVertices();
+  const double unit = mesh.LengthUnit();
+  Interpolation::Settings settings = InterpolationSettings(Choice::Given);
+  settings.Kappa = kappa * unit;
+  // The variance of the field is noise^2/(4 pi kappa^2 mu).
+  settings.Mu = std::pow(noise / deviation, 2) / (4.0 * Pi * settings.Kappa * settings.Kappa);
+  settings.NoiseLevel = noise;
+  settings.ComputeError = true;
+
+  SparseMatrix root(n, n);
+  TakePattern(assembler->Pattern(), root, SerialFor());
+  assembler->Fill(root, settings.Kappa * settings.Kappa * mesh.ControlAreas(), 1.0,
+    CotanWeights(mesh), nullptr, SerialFor());
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> factor(root);
+  Eigen::MatrixXd truths(n, fields);
+  for (Index i = 0; i < n; ++i)
+  {
+    for (int f = 0; f < fields; ++f)
+    {
+      truths(i, f) = std::sqrt(mesh.ControlAreas()[i]) * Gaussian(11, f, i);
+    }
+  }
+  truths = (noise / std::sqrt(settings.Mu) * factor.solve(truths)).eval();
+  Values noisy = truths;
+  for (Index i = 0; i < n; ++i)
+  {
+    for (int f = 0; f < fields; ++f)
+    {
+      noisy(i, f) += noise * Gaussian(12, f, i);
+    }
+  }
+  const auto data = ValuesAt(mesh, noisy, [](Index i) { return i % 4 == 0; });
+  const Interpolation::Result result = Interpolate(assembler, data, settings);
+  constexpr double band = 1.6449; // of 90 %
+  const auto isInside = ((result.U - truths).cwiseAbs().array() <= band * result.Error.array());
+  const double share = static_cast<double>(isInside.count()) / static_cast<double>(truths.size());
+  std::printf("%.2f %% inside, deviation of the fields %.3f, mean error %.3f\n", 100.0 * share,
+    std::sqrt(truths.squaredNorm() / static_cast<double>(truths.size())), result.Error.mean());
+  EXPECT_NEAR(share, 0.90, 0.03);
+  // The error is less at values than between them, and at most the deviation of the field.
+  EXPECT_LT(result.Error.col(0).minCoeff(), 0.45 * deviation);
+  EXPECT_LT(result.Error.col(0).maxCoeff(), 1.1 * deviation);
+}

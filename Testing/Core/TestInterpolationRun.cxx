@@ -1,0 +1,340 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/NearestPoints.h"
+#include "Meshes.h"
+#include "Run/Solve.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+
+using namespace SurfaceDiffusion;
+using Testing::Icosphere;
+using Testing::Joined;
+using Testing::Moved;
+using Testing::Strip;
+using TestSurface = Testing::Surface;
+
+namespace
+{
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+double Field(const Eigen::RowVector3d& x)
+{
+  return 3.0 + x[2] * x[2] + 0.5 * x[0];
+}
+
+Values FieldAt(const TestSurface& s)
+{
+  Values f(s.Vertices.rows(), 1);
+  for (Eigen::Index i = 0; i < f.rows(); ++i)
+  {
+    f(i, 0) = Field(s.Vertices.row(i));
+  }
+  return f;
+}
+
+/// The field at every `step`-th point, and NaN elsewhere.
+Values Sparse(const TestSurface& s, Eigen::Index step)
+{
+  Values f = FieldAt(s);
+  for (Eigen::Index i = 0; i < f.rows(); ++i)
+  {
+    f(i, 0) = i % step == 0 ? f(i, 0) : NaN;
+  }
+  return f;
+}
+
+/// The field at these points.
+Fields SamplesOf(const Points& places)
+{
+  auto samples = std::make_shared<PointSamples>();
+  samples->Places = places;
+  samples->Name = "Probe";
+  samples->Given.resize(places.rows(), 1);
+  for (Eigen::Index i = 0; i < places.rows(); ++i)
+  {
+    samples->Given(i, 0) = Field(places.row(i));
+  }
+  Fields fields;
+  fields.Samples = std::move(samples);
+  return fields;
+}
+
+InterpolationSettings Exact()
+{
+  InterpolationSettings settings;
+  settings.Exact = true;
+  return settings;
+}
+
+Solution Fitted(const TestSurface& s, const Fields& fields, const InterpolationSettings& settings)
+{
+  return Interpolate(s.Vertices, s.Faces, fields, settings);
+}
+
+std::string ErrorOf(
+  const TestSurface& s, const Fields& fields, const InterpolationSettings& settings)
+{
+  try
+  {
+    Fitted(s, fields, settings);
+  }
+  catch (const std::runtime_error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+bool Warns(const Solution& solution, const std::string& text)
+{
+  return std::any_of(solution.Warnings.begin(), solution.Warnings.end(),
+    [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+} // namespace
+
+TEST(InterpolationRun, HoldsTheKnownValuesOfPoints)
+{
+  const TestSurface s = Icosphere(3);
+  const Values f = FieldAt(s);
+  const Values sparse = Sparse(s, 9);
+  const Solution solution = Interpolate(s.Vertices, s.Faces, sparse, Exact());
+  ASSERT_EQ(solution.Result.rows(), f.rows());
+  for (Eigen::Index i = 0; i < f.rows(); i += 9)
+  {
+    EXPECT_NEAR(solution.Result(i, 0), f(i, 0), 1e-12);
+  }
+  EXPECT_LT((solution.Result - f).cwiseAbs().maxCoeff(), 0.03);
+  EXPECT_EQ(solution.Numbers.at("NumberOfValues")(0, 0), (f.rows() + 8) / 9);
+  EXPECT_EQ(solution.Numbers.at("EffectiveSmoothing")(0, 0), 0.0);
+  EXPECT_TRUE(solution.Warnings.empty());
+}
+
+TEST(InterpolationRun, HoldsSamplesAtTheirNearestPoints)
+{
+  const TestSurface s = Icosphere(3);
+  Points places(60, 3);
+  for (Eigen::Index i = 0; i < places.rows(); ++i)
+  {
+    const double z = -0.98 + 1.96 * static_cast<double>(i) / 59.0;
+    const double r = std::sqrt(1.0 - z * z);
+    places.row(i) << 1.2 * r * std::cos(2.4 * i), 1.2 * r * std::sin(2.4 * i), 1.2 * z;
+  }
+  const Fields fields = SamplesOf(places);
+  const Solution solution = Fitted(s, fields, Exact());
+  const NearestPoints nearest(s.Vertices, s.Faces);
+  for (Eigen::Index i = 0; i < places.rows(); ++i)
+  {
+    const NearestPoint found = nearest.Find(places.row(i));
+    double u = 0.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      u += found.Coordinates[static_cast<std::size_t>(a)] *
+        solution.Result(s.Faces(found.Triangle, a), 0);
+    }
+    EXPECT_NEAR(u, fields.Samples->Given(i, 0), 1e-9);
+  }
+  EXPECT_EQ(solution.Arrays.count("Interpolated"), 1U);
+}
+
+TEST(InterpolationRun, GivesSamplesAtPointsTheBitsOfData)
+{
+  const TestSurface s = Icosphere(3);
+  Points places(0, 3);
+  for (Eigen::Index i = 0; i < s.Vertices.rows(); i += 7)
+  {
+    places.conservativeResize(places.rows() + 1, 3);
+    places.row(places.rows() - 1) = s.Vertices.row(i);
+  }
+  for (const bool exact : { true, false })
+  {
+    InterpolationSettings settings = Exact();
+    settings.Exact = exact;
+    EXPECT_EQ(Fitted(s, SamplesOf(places), settings).Result,
+      Interpolate(s.Vertices, s.Faces, Sparse(s, 7), settings).Result);
+  }
+}
+
+TEST(InterpolationRun, HoldsTheValuesOfTriangles)
+{
+  const TestSurface s = Icosphere(3);
+  Fields fields;
+  fields.Data.OnCells = true;
+  fields.Data.Values = Values::Constant(s.Faces.rows(), 1, NaN);
+  for (Eigen::Index t = 0; t < s.Faces.rows(); t += 11)
+  {
+    const Eigen::RowVector3d middle =
+      (s.Vertices.row(s.Faces(t, 0)) + s.Vertices.row(s.Faces(t, 1)) +
+        s.Vertices.row(s.Faces(t, 2))) /
+      3.0;
+    fields.Data.Values(t, 0) = Field(middle);
+  }
+  const Solution solution = Fitted(s, fields, Exact());
+  ASSERT_EQ(solution.Result.rows(), s.Faces.rows());
+  EXPECT_TRUE(solution.Result.allFinite());
+  for (Eigen::Index t = 0; t < s.Faces.rows(); t += 11)
+  {
+    EXPECT_NEAR(solution.Result(t, 0), fields.Data.Values(t, 0), 1e-9);
+  }
+}
+
+TEST(InterpolationRun, CountsFarSamplesAndLeavesThemOut)
+{
+  const TestSurface s = Icosphere(2);
+  Points places(6, 3);
+  places << s.Vertices.topRows(5), 9.0, 0.0, 0.0;
+  InterpolationSettings settings = Exact();
+  settings.MaximumDistance = 0.5;
+  const Solution solution = Fitted(s, SamplesOf(places), settings);
+  EXPECT_EQ(solution.Numbers.at("NumberOfFarValues")(0, 0), 1.0);
+  EXPECT_EQ(solution.Numbers.at("NumberOfValues")(0, 0), 5.0);
+  EXPECT_TRUE(Warns(solution, "1 value is farther from the surface than MaximumDistance 0.5"));
+  EXPECT_EQ(solution.Result, Fitted(s, SamplesOf(places.topRows(5)), Exact()).Result);
+  EXPECT_NE(ErrorOf(s, SamplesOf(places.bottomRows(1)), settings).find("MaximumDistance 0.5"),
+    std::string::npos);
+}
+
+TEST(InterpolationRun, LeavesOutSamplesOutsideOfTheMask)
+{
+  const TestSurface s = Icosphere(3);
+  Fields fields = SamplesOf(s.Vertices.topRows(30));
+  Index inside = 0;
+  for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+  {
+    fields.Mask.Values.push_back(s.Vertices(i, 2) < 0.0);
+    inside += i < 30 && s.Vertices(i, 2) >= 0.0;
+  }
+  InterpolationSettings settings = Exact();
+  settings.MaskMode = MaskMode::Exclude;
+  const Solution solution = Fitted(s, fields, settings);
+  EXPECT_GT(inside, 5);
+  EXPECT_LT(solution.Numbers.at("NumberOfValues")(0, 0), 30.0);
+  EXPECT_TRUE(Warns(solution, "outside of the mask, and left out"));
+  for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+  {
+    EXPECT_EQ(std::isnan(solution.Result(i, 0)), s.Vertices(i, 2) < 0.0);
+  }
+}
+
+TEST(InterpolationRun, IsNaNOnComponentsWithoutValues)
+{
+  const TestSurface ball = Icosphere(2);
+  const TestSurface s = Joined(ball, Moved(Icosphere(1), { 5.0, 0.0, 0.0 }));
+  InterpolationSettings settings = Exact();
+  settings.ComputeError = true;
+  const Solution solution = Fitted(s, SamplesOf(ball.Vertices.topRows(9)), settings);
+  const Eigen::Index n = ball.Vertices.rows();
+  for (const char* const name : { "Interpolated", "Error" })
+  {
+    const Values& found = solution.Arrays.at(name);
+    EXPECT_TRUE(found.topRows(n).allFinite()) << name;
+    EXPECT_TRUE(found.bottomRows(s.Vertices.rows() - n).array().isNaN().all()) << name;
+  }
+  EXPECT_TRUE(Warns(solution, "1 connected component has no known value"));
+}
+
+TEST(InterpolationRun, ReportsEachKindOfBadValuesInOneLine)
+{
+  const TestSurface s = Icosphere(2);
+  EXPECT_NE(
+    ErrorOf(s, SamplesOf(Points(0, 3)), Exact()).find("no value is known"), std::string::npos);
+  Fields fields;
+  fields.Data.Values = Values::Constant(s.Vertices.rows(), 1, NaN);
+  EXPECT_NE(ErrorOf(s, fields, Exact()).find("Data has no known value"), std::string::npos);
+
+  fields.Data.Values(3, 0) = fields.Data.Values(8, 0) = fields.Data.Values(12, 0) = 4.0;
+  const Solution equal = Fitted(s, fields, InterpolationSettings());
+  EXPECT_TRUE(Warns(equal, "all known values are equal"));
+  EXPECT_LT((equal.Result.array() - 4.0).abs().maxCoeff(), 1e-12);
+
+  fields.Data.Values(12, 0) = NaN;
+  fields.Data.Values(8, 0) = 5.0;
+  EXPECT_TRUE(
+    Warns(Fitted(s, fields, InterpolationSettings()), "fewer than 3 places have a value"));
+
+  Points twice(8, 3);
+  twice << s.Vertices.topRows(7), s.Vertices.row(2);
+  Fields repeated = SamplesOf(twice);
+  auto samples = std::make_shared<PointSamples>(*repeated.Samples);
+  samples->Given(7, 0) += 2.0;
+  samples->Weights = { 1.0, 1.0, 3.0, 1.0, 1.0, 1.0, 1.0, 1.0 };
+  repeated.Samples = samples;
+  const Solution mean = Fitted(s, repeated, Exact());
+  EXPECT_TRUE(Warns(mean, "1 place has different values: their weighted mean counts"));
+  EXPECT_NEAR(mean.Result(2, 0), samples->Given(2, 0) + 0.5, 1e-12);
+
+  samples = std::make_shared<PointSamples>(*samples);
+  samples->Weights[1] = -1.0;
+  repeated.Samples = samples;
+  EXPECT_NE(ErrorOf(s, repeated, Exact()).find("is -1 at point 1 of the values; allowed"),
+    std::string::npos);
+  samples = std::make_shared<PointSamples>(*samples);
+  samples->Weights[1] = 1.0;
+  samples->Given(4, 0) = std::numeric_limits<double>::infinity();
+  repeated.Samples = samples;
+  EXPECT_NE(
+    ErrorOf(s, repeated, Exact()).find("a value is infinite at point 4"), std::string::npos);
+}
+
+TEST(InterpolationRun, HasTheSameResultInAllUnits)
+{
+  const TestSurface s = Icosphere(3);
+  const double size = 1e3;
+  const double unit = 1e-5;
+  InterpolationSettings settings;
+  settings.AutomaticSmoothing = false;
+  settings.Smoothing = 2.0;
+  settings.ComputeError = true;
+  const Solution natural = Interpolate(s.Vertices, s.Faces, Sparse(s, 5), settings);
+  const Solution large =
+    Interpolate(Points(size * s.Vertices), s.Faces, Values(unit * Sparse(s, 5)), settings);
+  EXPECT_LT((large.Result / unit - natural.Result).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT(
+    (large.Arrays.at("Error") / unit - natural.Arrays.at("Error")).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(natural.Columns.at("Smoothing")(0, 0), 2.0, 1e-12);
+  settings.Units = UnitsMode::Absolute;
+  settings.Smoothing = 2.0 * std::pow(natural.Numbers.at("MeanEdgeLength")(0, 0), 2);
+  const Solution absolute = Interpolate(s.Vertices, s.Faces, Sparse(s, 5), settings);
+  EXPECT_LT((absolute.Result - natural.Result).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(InterpolationRun, ReturnsToTheMeanBeyondTheCorrelationLength)
+{
+  const TestSurface s = Strip(60, 10, 60.0, 10.0);
+  Values f = Values::Constant(s.Vertices.rows(), 1, NaN);
+  for (Eigen::Index i = 0; i < f.rows(); ++i)
+  {
+    const double x = s.Vertices(i, 0);
+    f(i, 0) = x < 5.0 ? 1.0 + 0.2 * x : NaN; // a trend
+  }
+  InterpolationSettings settings = Exact();
+  const auto last = [&]
+  { return Interpolate(s.Vertices, s.Faces, f, settings).Result(f.rows() - 1, 0); };
+  EXPECT_GT(last(), 1.6); // continues
+  settings.CorrelationLength = 3.0;
+  EXPECT_NEAR(last(), 1.4, 0.01); // of 1, 1.2, ... 1.8
+}
+
+TEST(InterpolationRun, RefusesSettingsThatExcludeEachOther)
+{
+  const TestSurface s = Icosphere(2);
+  Fields fields;
+  fields.Data.Values = Sparse(s, 4);
+  InterpolationSettings settings;
+  settings.AlongDiffusivity = 4.0;
+  EXPECT_NE(ErrorOf(s, fields, settings).find("Directions is not set"), std::string::npos);
+  settings.AcrossDiffusivity = 4.0;
+  settings.Boundary = RimCondition::Free;
+  EXPECT_NE(ErrorOf(s, fields, settings).find("Boundary is Free"), std::string::npos);
+  settings = InterpolationSettings();
+  settings.AutomaticSmoothing = false;
+  settings.Smoothing = 0.0;
+  EXPECT_NE(ErrorOf(s, fields, settings).find("Smoothing"), std::string::npos);
+}

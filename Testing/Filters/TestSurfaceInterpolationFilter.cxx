@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSurfaceInterpolationFilter.h"
+#include "vtkTable.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+using namespace FilterTest;
+
+namespace
+{
+
+using Filter = vtkSurfaceInterpolationFilter;
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+double Field(const double* x)
+{
+  return 3.0 + x[2] * x[2] + 0.5 * x[0];
+}
+
+/// A sphere with the field at every ninth point.
+vtkSmartPointer<vtkPolyData> SparseSphere(int levels)
+{
+  auto sphere = Sphere(levels);
+  AddPointArray(sphere, "f", 1,
+    [&](vtkIdType i, int) { return i % 9 == 0 ? Field(sphere->GetPoint(i)) : NaN; });
+  sphere->GetPointData()->SetActiveScalars("f");
+  return sphere;
+}
+
+/// Points around the sphere, `scale` from its centre, with the field at the sphere.
+vtkSmartPointer<vtkPolyData> Probes(int count, double scale)
+{
+  auto probes = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int i = 0; i < count; ++i)
+  {
+    const double z = -0.98 + 1.96 * i / (count - 1.0);
+    const double r = std::sqrt(1.0 - z * z);
+    points->InsertNextPoint(
+      scale * r * std::cos(2.4 * i), scale * r * std::sin(2.4 * i), scale * z);
+  }
+  probes->SetPoints(points);
+  AddPointArray(probes, "t", 1,
+    [&](vtkIdType i, int)
+    {
+      double x[3];
+      points->GetPoint(i, x);
+      for (double& coordinate : x)
+      {
+        coordinate /= scale;
+      }
+      return Field(x);
+    });
+  AddPointArray(probes, "w", 1, [](vtkIdType i, int) { return i % 2 == 0 ? 1.0 : 0.0; });
+  probes->GetPointData()->SetActiveScalars("t");
+  return probes;
+}
+
+vtkSmartPointer<Filter> MakeFilter(vtkDataObject* surface, vtkDataObject* points = nullptr)
+{
+  auto filter = vtkSmartPointer<Filter>::New();
+  filter->SetInputDataObject(surface);
+  if (points)
+  {
+    filter->SetPointsData(points);
+  }
+  return filter;
+}
+
+double TableAt(Filter* filter, const char* column)
+{
+  return vtkTable::SafeDownCast(filter->GetOutputDataObject(1))
+    ->GetValueByName(0, column)
+    .ToDouble();
+}
+
+double LargestError(Filter* filter, const char* name)
+{
+  vtkDataArray* const u = Result(filter, name);
+  double largest = 0.0;
+  for (vtkIdType i = 0; u && i < u->GetNumberOfTuples(); ++i)
+  {
+    largest =
+      std::max(largest, std::abs(u->GetComponent(i, 0) - Field(filter->GetOutput()->GetPoint(i))));
+  }
+  return u ? largest : NaN;
+}
+
+std::string ErrorOf(Filter* filter)
+{
+  const Messages messages(filter);
+  filter->Update();
+  return messages.Errors.empty() ? "" : messages.Errors[0];
+}
+
+std::string WarningOf(Filter* filter)
+{
+  const Messages messages(filter);
+  filter->Update();
+  return messages.Warnings.empty() ? "" : messages.Warnings[0];
+}
+
+} // namespace
+
+TEST(InterpolationFilter, HasTheKnownValuesOfTheData)
+{
+  auto sphere = SparseSphere(5);
+  auto filter = MakeFilter(sphere);
+  filter->ExactOn();
+  filter->Update();
+  vtkDataArray* const u = Result(filter, "fInterpolated");
+  ASSERT_NE(u, nullptr);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), u);
+  EXPECT_EQ(Result(filter, "fError"), nullptr);
+  for (vtkIdType i = 0; i < u->GetNumberOfTuples(); i += 9)
+  {
+    EXPECT_NEAR(u->GetComponent(i, 0), Field(sphere->GetPoint(i)), 1e-12);
+  }
+  EXPECT_LT(LargestError(filter, "fInterpolated"), 0.03);
+  EXPECT_EQ(filter->GetNumberOfValues(), (u->GetNumberOfTuples() + 8) / 9);
+  EXPECT_EQ(filter->GetEffectiveSmoothing(), 0.0);
+}
+
+TEST(InterpolationFilter, TakesValuesOfPointsBesideTheSurface)
+{
+  auto probes = Probes(80, 1.1);
+  auto filter = MakeFilter(Sphere(4), probes);
+  filter->ExactOn();
+  filter->ComputeErrorOn();
+  filter->Update();
+  EXPECT_LT(LargestError(filter, "tInterpolated"), 0.1);
+  vtkDataArray* const error = Result(filter, "tError");
+  ASSERT_NE(error, nullptr);
+  EXPECT_GT(error->GetRange()[1], 0.0);
+  EXPECT_EQ(TableAt(filter, "DegreesOfFreedom"), 80.0);
+  EXPECT_LT(TableAt(filter, "Misfit"), 1e-9);
+
+  filter->SetResultArrayName("u");
+  filter->Update();
+  EXPECT_NE(Result(filter, "u"), nullptr);
+  EXPECT_NE(Result(filter, "uError"), nullptr);
+
+  filter->SetPointWeightArray("w");
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfValues(), 40);
+
+  probes->GetPointData()->GetArray("w")->Fill(1.0);
+  probes->GetPointData()->GetArray("t")->SetComponent(3, 0, NaN);
+  probes->GetPointData()->GetArray("t")->Modified();
+  probes->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfValues(), 79);
+}
+
+TEST(InterpolationFilter, ReadsValuesThatWereEditedInPlace)
+{
+  auto probes = Probes(30, 1.0);
+  auto filter = MakeFilter(Sphere(3), probes);
+  filter->Update();
+  const auto before = Copy(Result(filter, "tInterpolated"));
+  probes->GetPointData()->GetArray("t")->SetComponent(7, 0, 9.0);
+  filter->Modified();
+  filter->Update();
+  EXPECT_FALSE(Identical(Result(filter, "tInterpolated"), before));
+}
+
+TEST(InterpolationFilter, CountsFarPoints)
+{
+  auto filter = MakeFilter(Sphere(3), Probes(30, 1.5));
+  filter->SetMaximumDistance(0.1);
+  EXPECT_NE(ErrorOf(filter).find("outside of the surface: farther than MaximumDistance 0.1"),
+    std::string::npos);
+  EXPECT_EQ(Result(filter, "tInterpolated"), nullptr);
+  auto both = Probes(30, 1.0);
+  both->GetPoints()->SetPoint(4, 8.0, 0.0, 0.0);
+  filter->SetPointsData(both);
+  EXPECT_NE(WarningOf(filter).find("1 value is farther from the surface than MaximumDistance 0.1"),
+    std::string::npos);
+  EXPECT_EQ(filter->GetNumberOfFarValues(), 1);
+  EXPECT_EQ(filter->GetNumberOfValues(), 29);
+}
+
+TEST(InterpolationFilter, ReportsBadPointsWithValues)
+{
+  vtkNew<vtkTable> table;
+  auto filter = MakeFilter(Sphere(2), table);
+  EXPECT_NE(ErrorOf(filter).find("the points with values are a vtkTable; allowed: a vtkPointSet"),
+    std::string::npos);
+  auto probes = Probes(5, 1.0);
+  filter->SetPointsData(probes);
+  filter->SetPointValueArray("none");
+  EXPECT_NE(ErrorOf(filter).find("PointValueArray \"none\" is not among the point arrays"),
+    std::string::npos);
+  filter->SetPointValueArray("t");
+  EXPECT_EQ(ErrorOf(filter), "");
+  probes->GetPointData()->GetArray("t")->Fill(NaN);
+  probes->Modified();
+  EXPECT_NE(ErrorOf(filter).find("no value is known"), std::string::npos);
+  vtkNew<vtkPolyData> empty;
+  filter->SetPointsData(empty);
+  EXPECT_NE(ErrorOf(filter), "");
+  filter->SetInputData(1, nullptr);
+  filter->RemoveAllInputConnections(1);
+  EXPECT_NE(ErrorOf(filter).find("InputArray"), std::string::npos); // the sphere has no data
+}
+
+TEST(InterpolationFilter, GivesEachBlockTheValues)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, Sphere(2));
+  blocks->SetBlock(1, Sphere(3));
+  auto filter = MakeFilter(blocks, Probes(40, 1.0));
+  filter->Update();
+  auto* const output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  for (unsigned int b = 0; b < 2; ++b)
+  {
+    auto alone = MakeFilter(blocks->GetBlock(b), Probes(40, 1.0));
+    alone->Update();
+    auto* const block = vtkPolyData::SafeDownCast(output->GetBlock(b));
+    ASSERT_NE(block->GetPointData()->GetArray("tInterpolated"), nullptr);
+    EXPECT_EQ(block->GetNumberOfPoints(),
+      block->GetPointData()->GetArray("tInterpolated")->GetNumberOfTuples());
+  }
+}
+
+TEST(InterpolationFilter, ContinuesSlopesWithTheFreeBoundaryOnly)
+{
+  auto plane = Grid(21, 21);
+  const auto ramp = [&](vtkIdType i)
+  { return plane->GetPoint(i)[0] - 2.0 * plane->GetPoint(i)[1]; };
+  AddPointArray(plane, "f", 1, [&](vtkIdType i, int) { return i % 45 == 22 ? ramp(i) : NaN; });
+  plane->GetPointData()->SetActiveScalars("f");
+  auto filter = MakeFilter(plane);
+  filter->ExactOn();
+  const auto largest = [&]
+  {
+    filter->Update();
+    double found = 0.0;
+    for (vtkIdType i = 0; i < plane->GetNumberOfPoints(); ++i)
+    {
+      found =
+        std::max(found, std::abs(Result(filter, "fInterpolated")->GetComponent(i, 0) - ramp(i)));
+    }
+    return found;
+  };
+  const double natural = largest();
+  filter->SetBoundaryToFree();
+  EXPECT_STREQ(filter->GetBoundaryAsString(), "Free");
+  EXPECT_LT(largest(), 1e-9 * plane->GetLength());
+  EXPECT_GT(natural, 1e-2);
+}
