@@ -231,11 +231,12 @@ class NumberingContract : public ModelContract
 {
 };
 
-/// The promises of models of given data.
+/// The promises of models that use a solver for one system.
 class AllocationContract : public ModelContract
 {
 };
 
+/// The promises of models of given data.
 class DataModelContract : public ModelContract
 {
 };
