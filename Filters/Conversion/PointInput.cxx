@@ -11,6 +11,7 @@
 #include "vtkPointSet.h"
 
 #include <string>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -111,7 +112,11 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
   }
   if (processes.Count() > 1)
   {
-    samples->Name = processes.FirstMessage(samples->Name);
+    for (const std::vector<char>& name :
+      processes.GatherPerProcess(std::vector<char>(samples->Name.begin(), samples->Name.end())))
+    {
+      samples->Name = name.empty() ? samples->Name : std::string(name.begin(), name.end());
+    }
     Gather(processes, *samples);
   }
   return samples;

@@ -66,18 +66,16 @@ std::unique_ptr<Settings> MakeDefaults()
 }
 
 /// All models.
-inline const NamedSettings SettingsOfModels[] = {
-  { "denoise_mesh", &MakeDefaults<DenoisingRunSettings> },
+inline const NamedSettings SettingsOfModels[] = { { "denoise_mesh",
+                                                    &MakeDefaults<DenoisingRunSettings> },
   { "direction_field", &MakeDefaults<DirectionFieldSettings> },
-  { "harmonic_map", &MakeDefaults<HarmonicMapSettings> },
-  { "heat", &MakeDefaults<HeatSettings> },
+  { "harmonic_map", &MakeDefaults<HarmonicMapSettings> }, { "heat", &MakeDefaults<HeatSettings> },
   { "intrinsic_tv", &MakeDefaults<TotalVariationSettings> },
   { "mumford_shah", &MakeDefaults<MumfordShahSettings> },
   { "interpolate", &MakeDefaults<InterpolationSettings> },
   { "segment", &MakeDefaults<SegmentationSettings> },
   { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings> },
-  { "turing_texture", &MakeDefaults<TextureSettings> }
-};
+  { "turing_texture", &MakeDefaults<TextureSettings> } };
 
 /// The data of a call: Fields, or values at the points alone.
 struct SurfaceData : Fields

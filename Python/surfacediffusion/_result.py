@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 __all__ = [
     "DiffusionResult", "EdgeResult", "HarmonicMapResult", "MeshDenoisingResult", "ModelResult",
-    "InterpolationResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
+    "InterpolationResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult",
+    "TextureResult",
 ]
 
 
