@@ -8,6 +8,8 @@
 #include "ModelRun.h"
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
+#include "SurfaceDistances.h"
+#include "SurfaceOperators.h"
 #include "Threads.h"
 
 #include <nanobind/nanobind.h>
@@ -147,6 +149,24 @@ NB_MODULE(_core, m)
     .def("outputs", &ModelRun::ListOutputs, "block"_a)
     .def("write", &ModelRun::Write, "block"_a, "number"_a, "output"_a, "source"_a, "first"_a = -1,
       "integers"_a = false);
+
+  nb::class_<SurfaceOperators>(m, "Operators")
+    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool, bool,
+           const nb::object&>(),
+      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "intrinsic_delaunay"_a, "progress"_a.none())
+    .def("masses", &SurfaceOperators::Masses)
+    .def("stiffness", &SurfaceOperators::Stiffness, "diffusivity"_a.none())
+    .def("gradient", &SurfaceOperators::Gradient)
+    .def("modes", &SurfaceOperators::Modes, "diffusivity"_a.none(), "count"_a, "progress"_a.none())
+    .def("number_of_vertices", &SurfaceOperators::NumberOfVertices);
+
+  nb::class_<SurfaceDistances>(m, "Distances")
+    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
+           const std::optional<FactorArray>&, const nb::object&>(),
+      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "slowness"_a.none(), "progress"_a.none())
+    .def("has_point", &SurfaceDistances::HasPoint, "point"_a)
+    .def("from_all", &SurfaceDistances::FromAll, "points"_a, "starts"_a, "progress"_a.none())
+    .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 
   BindSingleRun<DirectionRun>(m, "DirectionRun");
   BindSingleRun<MeshDenoiser>(m, "MeshDenoiser");

@@ -22,6 +22,13 @@
 `smooth_to_fwhm`     smoothing up to a given smoothness
 `smooth_img`         smoothing of surface images of nilearn
 `estimate_fwhm_img`  the smoothness of their noise
+`distance`           distances along the surface, arrival times of fronts
+`nearest_sources`    the same with the source that is nearest
+`distances`          distances between points up to a cutoff, for scipy
+`mass_matrix`        areas of the points' control cells, for scipy
+`stiffness_matrix`   cotangent Laplacian, or that of tensors, for scipy
+`gradient_matrix`    gradients on the triangles, for scipy
+`eigenmodes`         eigenvalues and modes of the surface
 ==================== ============================================================================
 
 `heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
@@ -38,10 +45,12 @@ import typing as _typing
 import warnings as _warnings
 from importlib.metadata import version as _version
 
-from . import _core, _functions, _result
+from . import _core, _distance, _functions, _operators, _result
+from ._distance import *  # noqa: F403
 from ._functions import *  # noqa: F403
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._images import estimate_fwhm_img, smooth_img
+from ._operators import *  # noqa: F403
 from ._result import *  # noqa: F403
 from ._run import SurfaceDiffusionWarning
 from ._surface import Surface, sphere
@@ -53,7 +62,9 @@ __all__ = [
     "FWHMEstimate", "Surface", "SurfaceDiffusionWarning", "estimate_fwhm", "estimate_fwhm_img",
     "get_number_of_threads", "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
 ]
+__all__ += _distance.__all__
 __all__ += _functions.__all__
+__all__ += _operators.__all__
 __all__ += _result.__all__
 
 if hasattr(_os, "register_at_fork"):

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geodesics/GeodesicDistance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr double Never = std::numeric_limits<double>::infinity();
+
+/// A triangle ABC in the plane: A at the origin, B at (Edge, 0), C above.
+struct LaidOut
+{
+  double Edge, X, Y;
+
+  LaidOut(double ab, double ca, double cb)
+    : Edge(ab)
+    , X((ca * ca - cb * cb + ab * ab) / (2.0 * ab))
+    , Y(std::sqrt(std::max(0.0, ca * ca - X * X)))
+  {
+  }
+
+  /// The distance of C from a point below AB at distances da from A and db from B, or infinity if its
+  /// straight line does not cross AB.
+  double FromPoint(double da, double db) const
+  {
+    const double x = (da * da - db * db + this->Edge * this->Edge) / (2.0 * this->Edge);
+    const double square = da * da - x * x;
+    const double y = square > 0.0 ? std::sqrt(square) : 0.0;
+    const double crossing = x * this->Y + this->X * y; // of AB, times Y + y
+    const bool crosses = crossing >= 0.0 && crossing <= this->Edge * (this->Y + y);
+    return crosses && this->Y > 0.0 ? std::hypot(this->X - x, this->Y + y) : Never;
+  }
+
+  /// The same for a plane front.
+  double FromPlane(double da, double db) const
+  {
+    const double along = (db - da) / this->Edge; // of the gradient
+    if (!(std::abs(along) < 1.0))
+    {
+      return Never;
+    }
+    const double up = std::sqrt((1.0 - along) * (1.0 + along));
+    const double crossing = this->X * up - this->Y * along; // of AB, times `up`
+    return crossing >= 0.0 && crossing <= this->Edge * up ? da + along * this->X + up * this->Y
+                                                          : Never;
+  }
+};
+
+} // namespace
+
+GeodesicDistance::GeodesicDistance(
+  std::shared_ptr<const TriangleMesh> mesh, std::vector<double> slowness)
+  : Mesh(std::move(mesh))
+  , Slowness(std::move(slowness))
+{
+  this->FindCorners();
+}
+
+/// The vertices of boundaries and barriers with an open angle above pi.
+void GeodesicDistance::FindCorners()
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
+  std::vector<double> angles(n, 0.0);
+  std::vector<char> isOnRim(n, 0);
+  for (const Index vertex : mesh.BoundaryVertices())
+  {
+    isOnRim[static_cast<std::size_t>(vertex)] = 1;
+  }
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const TriangleMesh::Shape& shape = mesh.Shapes()[static_cast<std::size_t>(t)];
+    const bool isOpen = this->SlownessOf(static_cast<std::size_t>(t)) < Never;
+    const double first = std::atan2(shape.Y, shape.X);
+    const double second = std::atan2(shape.Y, shape.Length - shape.X);
+    const double angle[] = { first, second, std::acos(-1.0) - first - second };
+    for (int a = 0; a < 3; ++a)
+    {
+      const auto vertex = static_cast<std::size_t>(mesh.TriangleVertices()(t, a));
+      // Both sheets of a surface that is covered twice have each angle.
+      angles[vertex] += isOpen ? shape.Weight * angle[a] : 0.0;
+      isOnRim[vertex] = isOnRim[vertex] != 0 || !isOpen;
+    }
+  }
+  const double straight = std::acos(-1.0) * (1.0 + 1e-6);
+  this->IsCorner.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    this->IsCorner[i] = isOnRim[i] != 0 && angles[i] > straight;
+  }
+}
+
+/// The first way to a corner of a triangle through the triangle.
+GeodesicDistance::Way GeodesicDistance::WayThrough(
+  Index corner, const std::vector<FrontSource>& fronts, const Arrival& arrival) const
+{
+  const auto t = static_cast<std::size_t>(corner / 3);
+  const double slowness = this->SlownessOf(t);
+  if (slowness == Never)
+  {
+    return { Never, -1, -1 };
+  }
+  const int a = corner % 3;
+  const TriangleMesh::Shape& shape = this->Mesh->Shapes()[t];
+  const Index second = this->Mesh->OtherCorner(corner, 1);
+  const Index third = this->Mesh->OtherCorner(corner, 2);
+  const double toSecond = shape.EdgeLength((a + 2) % 3);
+  const double toThird = shape.EdgeLength((a + 1) % 3);
+  const double ofSecond = arrival.Times[static_cast<std::size_t>(second)];
+  const double ofThird = arrival.Times[static_cast<std::size_t>(third)];
+  const Index bySecond = arrival.Sources[static_cast<std::size_t>(second)];
+  const Index byThird = arrival.Sources[static_cast<std::size_t>(third)];
+  Way way{ ofSecond + slowness * toSecond, bySecond, second };
+  if (ofThird + slowness * toThird < way.Time)
+  {
+    way = { ofThird + slowness * toThird, byThird, third };
+  }
+  if (bySecond < 0 || byThird < 0)
+  {
+    return way;
+  }
+  const FrontSource& one = fronts[static_cast<std::size_t>(bySecond)];
+  const FrontSource& other = fronts[static_cast<std::size_t>(byThird)];
+  if (one.Label != other.Label)
+  {
+    return way;
+  }
+  const LaidOut triangle(shape.EdgeLength(a), toSecond, toThird);
+  // A corner is a point of the front that goes on from there.
+  const bool isOnePoint = one.Point == other.Point || one.Vertex == third || other.Vertex == second;
+  const FrontSource& point = other.Vertex == second ? other : one;
+  const double start = isOnePoint ? point.Start : std::min(ofSecond, ofThird);
+  const double da = (ofSecond - start) / slowness;
+  const double db = (ofThird - start) / slowness;
+  const double through =
+    start + slowness * (isOnePoint ? triangle.FromPoint(da, db) : triangle.FromPlane(da, db));
+  return through < way.Time ? Way{ through, ofSecond < ofThird ? bySecond : byThird, -1 } : way;
+}
+
+GeodesicDistance::Arrival GeodesicDistance::Find(
+  const std::vector<FrontSource>& sources, double cutoff, const ProgressMonitor& progress) const
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
+  Arrival arrival{ std::vector<double>(n, Never), std::vector<Index>(n, -1) };
+  // The sources, and the corners that ways go around with the numbers of their sources
+  std::vector<FrontSource> fronts = sources;
+  std::vector<Index> sourceOf(sources.size());
+  using Event = std::pair<double, Index>; // time, vertex
+  std::priority_queue<Event, std::vector<Event>, std::greater<>> queue;
+  for (std::size_t k = 0; k < sources.size(); ++k)
+  {
+    const FrontSource& source = sources[k];
+    const auto v = static_cast<std::size_t>(source.Vertex);
+    sourceOf[k] = static_cast<Index>(k);
+    if (source.Time < arrival.Times[v] && source.Time <= cutoff)
+    {
+      arrival.Times[v] = source.Time;
+      arrival.Sources[v] = static_cast<Index>(k);
+      queue.emplace(source.Time, source.Vertex);
+    }
+  }
+  constexpr std::size_t reportEvery = 16384;
+  for (std::size_t visited = 0; !queue.empty();)
+  {
+    const auto [time, vertex] = queue.top();
+    queue.pop();
+    if (time > arrival.Times[static_cast<std::size_t>(vertex)])
+    {
+      continue; // it has been reached earlier since
+    }
+    if (++visited % reportEvery == 0)
+    {
+      progress.Report(std::min(1.0, static_cast<double>(visited) / static_cast<double>(n)));
+    }
+    Index around = -1; // the front from this corner
+    for (Index k = mesh.VertexCornersBegin()[vertex]; k < mesh.VertexCornersBegin()[vertex + 1];
+         ++k)
+    {
+      const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(k)];
+      for (const int step : { 1, 2 })
+      {
+        const Index neighbour = mesh.OtherCorner(corner, step);
+        const Index at = corner - corner % 3 + (corner % 3 + step) % 3;
+        Way way = this->WayThrough(at, fronts, arrival);
+        double& known = arrival.Times[static_cast<std::size_t>(neighbour)];
+        // What falls by round-off alone does not start the front again.
+        constexpr double resolved = 1e-14;
+        if (!(way.Time < Never && way.Time <= cutoff) ||
+          !(known == Never || way.Time < known - resolved * std::abs(known)))
+        {
+          continue;
+        }
+        if (way.Along == vertex && this->IsCorner[static_cast<std::size_t>(vertex)] != 0)
+        {
+          if (around < 0)
+          {
+            const FrontSource& before = fronts[static_cast<std::size_t>(way.Front)];
+            around = static_cast<Index>(fronts.size());
+            const Index point = -1 - vertex; // of no source
+            fronts.push_back({ vertex, time, before.Label, point, time });
+            sourceOf.push_back(sourceOf[static_cast<std::size_t>(way.Front)]);
+          }
+          way.Front = around;
+        }
+        known = way.Time;
+        arrival.Sources[static_cast<std::size_t>(neighbour)] = way.Front;
+        queue.emplace(way.Time, neighbour);
+      }
+    }
+  }
+  for (Index& source : arrival.Sources)
+  {
+    source = source < 0 ? -1 : sourceOf[static_cast<std::size_t>(source)];
+  }
+  return arrival;
+}
+
+} // namespace SurfaceDiffusion

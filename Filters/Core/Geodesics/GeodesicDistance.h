@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Surface/TriangleMesh.h"
+
+#include <memory>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// A vertex that a front reaches first. A source within a triangle has three of these.
+struct FrontSource
+{
+  Index Vertex = 0;
+  double Time = 0.0; ///< of the arrival at the vertex
+  Index Label = 0;
+  Index Point = 0; ///< the number of the point that the front comes from
+  double Start = 0.0; ///< the time at that point
+};
+
+/// Distances from sources along a surface, or arrival times: |grad T| = s, T = T_0 at the sources,
+/// with the slowness s of each triangle, by fast marching on the triangles (R. Kimmel, J. Sethian,
+/// PNAS 95, 1998). The update of a vertex lays the triangle out in the plane. If its other two
+/// vertices are reached from one source point, the place of this point in the plane follows from
+/// their times, and the third time from the length of the straight line from there (M. Novotni,
+/// R. Klein, WSCG 2002): in a plane such distances are exact, and on curved surfaces a front keeps
+/// its curvature. If they are reached from different points, as beside a line of sources, the front
+/// is plane. In both cases the way has to cross the edge between them; others go along an edge.
+///
+/// Every time is that of a way over triangles laid out side by side, whatever the order of the
+/// vertices: a vertex whose time falls later is visited again, so that obtuse triangles need no
+/// unfolding. On an intrinsic Delaunay triangulation (IntrinsicDelaunay) fewer ways go along edges,
+/// and distances have smaller errors; the vertices, and the surface, are the same.
+///
+/// A triangle of infinite slowness is a barrier: no way crosses it, but ways along an edge that
+/// another triangle shares go by. Ways around a corner of a boundary or a barrier, where the open
+/// angle is above pi, go on from there as from a source. Fronts of different labels do not mix: beside the line where they meet, ways go
+/// along edges.
+class GeodesicDistance
+{
+public:
+  /// slowness: s per triangle of the mesh, above 0 and possibly infinite; empty: 1.
+  explicit GeodesicDistance(
+    std::shared_ptr<const TriangleMesh> mesh, std::vector<double> slowness = {});
+
+  /// T per vertex in units of the mesh times slowness, infinite where no front arrives, and the
+  /// number of the source that it comes from, -1 there.
+  struct Arrival
+  {
+    std::vector<double> Times;
+    std::vector<Index> Sources;
+  };
+
+  /// cutoff: fronts end at this time: what is later stays infinite. Throws Aborted.
+  Arrival Find(const std::vector<FrontSource>& sources, double cutoff,
+    const ProgressMonitor& progress = ProgressMonitor()) const;
+
+private:
+  /// A way to a vertex through one triangle.
+  struct Way
+  {
+    double Time;
+    Index Front; ///< that it comes with
+    Index Along; ///< the vertex at the other end of the edge that it goes along; -1: along none
+  };
+
+  Way WayThrough(
+    Index corner, const std::vector<FrontSource>& fronts, const Arrival& arrival) const;
+  double SlownessOf(std::size_t t) const
+  {
+    return this->Slowness.empty() ? 1.0 : this->Slowness[t];
+  }
+  void FindCorners();
+
+  std::shared_ptr<const TriangleMesh> Mesh;
+  std::vector<double> Slowness;
+  std::vector<char> IsCorner; ///< per vertex
+};
+
+} // namespace SurfaceDiffusion
