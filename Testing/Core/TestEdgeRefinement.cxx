@@ -34,6 +34,7 @@ std::vector<Case> Cases()
   return { { "cube", Rotated(Cube(20.0)), 0.7 }, { "cylinder", ClosedCylinder(60, 5.0, 40.0), 0.6 },
     { "frame", Rotated(Frame(), 0.3), 0.05 }, { "bracket", Bracket(), 0.1 },
     { "edge of four triangles", Rotated(twoCubes), 0.07 }, { "fins", Rotated(ThreeFins(1)), 0.06 },
+    { "all edges equal", Tetrahedron(), 0.2 },
     { "needle", MakeSurface({ { 0, 0, 0 }, { 100, 0, 0 }, { 37, 0.01, 0 } }, { { 0, 1, 2 } }),
       0.5 } };
 }
@@ -236,6 +237,10 @@ TEST(EdgeRefinement, OddTrianglesDoNoHarm)
   EXPECT_LE(refined.LongestEdge, 0.1);
   EXPECT_EQ(0, std::count(refined.InputTriangle.begin(), refined.InputTriangle.end(), 0));
   EXPECT_NEAR(1.0, AreaOf(refined.Vertices, refined.Faces), 1e-14);
+  // The same triangle twice stays the same twice: without it there are the same vertices.
+  Triangles once(3, 3);
+  once << odd.Faces.row(0), odd.Faces.row(1), odd.Faces.row(3);
+  EXPECT_EQ(RefineEdges(odd.Vertices, once, 0.1, NoLimit).Vertices, refined.Vertices);
   const RefinedSurface none = RefineEdges(Points(0, 3), Triangles(0, 3), 0.1, NoLimit);
   EXPECT_EQ(0, none.Faces.rows());
   EXPECT_EQ(0.0, none.LongestEdge);
