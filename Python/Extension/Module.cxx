@@ -8,6 +8,7 @@
 #include "ModelRun.h"
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
+#include "ShapeFunctions.h"
 #include "Threads.h"
 
 #include <nanobind/nanobind.h>
@@ -150,4 +151,5 @@ NB_MODULE(_core, m)
 
   BindSingleRun<DirectionRun>(m, "DirectionRun");
   BindSingleRun<MeshDenoiser>(m, "MeshDenoiser");
+  BindShapeFunctions(m);
 }

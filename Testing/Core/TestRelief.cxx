@@ -315,7 +315,7 @@ TEST(SelfIntersections, AreFoundAndTouchingIsNone)
   }
   // A vertex that two triangles share, of which one passes through the other there
   const Surface fan = MakeSurface(
-    { { 0, 0, 0 }, { 2, -1, 0 }, { 2, 1, 0 }, { 2, 0, -1 }, { 2, 0, 1 }, { 3, 0, 1 }, { 3, 0, 2 } },
+    { { 0, 0, 0 }, { 2, -1, 0 }, { 2, 1, 0 }, { 1, 0, -1 }, { 1, 0, 1 }, { 3, 0, 1 }, { 3, 0, 2 } },
     { { 0, 1, 2 }, { 0, 3, 4 }, { 0, 5, 6 } });
   EXPECT_EQ(std::vector<char>({ 1, 1, 0 }), FindSelfIntersections(fan.Vertices, fan.Faces));
 }

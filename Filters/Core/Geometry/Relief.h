@@ -41,7 +41,7 @@ struct Relief
   double SmallestWall = 0.0;
 };
 
-/// Move the vertices of a surface by heights along their normals, outwards if the surface is closed.
+/// Move the vertices of a surface by heights along their normals, outwards if it is closed.
 ///
 /// A vertex moves by h d, where d is the vector with d . n = 1 for the normals n of the triangles
 /// around it, in the sense of least squares weighted by angles. So flat faces at a sharp edge are

@@ -73,7 +73,8 @@ private:
     return false;
   }
 
-  /// Both ends are clearly on different sides of the plane, and the line passes clearly within the triangle.
+  /// Both ends are clearly on different sides of the plane, and the line is clearly within the
+  /// triangle.
   bool Passes(const Eigen::Vector3d& p, const Eigen::Vector3d& q, Index u) const
   {
     const std::array<Eigen::Vector3d, 3> corners{ this->Place(u, 0), this->Place(u, 1),
@@ -83,7 +84,7 @@ private:
     const Eigen::Vector3d normal = along.cross(across);
     const double first = normal.dot(p - corners[0]);
     const double second = normal.dot(q - corners[0]);
-    // A needle has a normal of the rounding of its coordinates, and then a product of its sides above.
+    // The normal of a needle may be rounding alone, and is small against the product of its sides.
     const double least = this->Tolerance * along.norm() * across.norm();
     if (!(std::min(first, second) < -least && std::max(first, second) > least))
     {
@@ -93,8 +94,8 @@ private:
     for (std::size_t a = 0; a < 3; ++a)
     {
       const Eigen::Vector3d side = corners[(a + 1) % 3] - corners[a];
-      if (!(side.cross(through - corners[a]).dot(normal) >
-            this->Tolerance * side.norm() * normal.norm()))
+      const double inside = side.cross(through - corners[a]).dot(normal);
+      if (!(inside > this->Tolerance * side.norm() * normal.norm()))
       {
         return false;
       }
