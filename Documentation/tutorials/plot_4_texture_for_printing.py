@@ -3,7 +3,7 @@ A texture to print
 ==================
 
 A labyrinth grows on a part from CAD, across its edges, and becomes relief for a 3D printer. The command
-``surfacediffusion texture part.stl 1.6mm out.stl --relief 0.12mm`` does the same with a file.
+``surfacediffusion texture part.stl 5mm out.stl --relief 0.3mm`` does the same with a file.
 """
 import tempfile
 from pathlib import Path
@@ -23,16 +23,16 @@ print(part)
 # %%
 # The triangles of CAD are far too large for a pattern. With ``refine_to="Automatic"`` their edges are
 # bisected to eight per wavelength. Flat faces stay flat and sharp edges stay sharp.
-texture = turing_texture(part, feature_size=1.6, diffusion_rate1=2.6 * 18, refine_to="Automatic")
+texture = turing_texture(part, feature_size=5.0, diffusion_rate1=2.6 * 18, refine_to="Automatic")
 fine = texture.surface
 print(fine)
 show(fine.points, fine.triangles, {"texture": texture.texture}, view=(1, 1, 1.5), up=(0, 0, 1))
 
 # %%
-# A smooth relief of 0.12 mm, and one of two levels with slopes of 0.2 mm. The result says whether it is
+# A smooth relief of 0.3 mm, and one of two levels with slopes of 0.4 mm. The result says whether it is
 # closed, whether it crosses itself, and where its thinnest wall is.
-smooth = relief(fine, texture.texture, 0.12)
-levels = relief(fine, texture.texture, 0.12, levels="Two", flank=0.2)
+smooth = relief(fine, texture.texture, 0.3)
+levels = relief(fine, texture.texture, 0.3, levels="Two", flank=0.4)
 print(levels)
 show(fine.points, fine.triangles,
      {"smooth": smooth.surface.points, "two levels": levels.surface.points}, view=(1, 1, 1.5), up=(0, 0, 1))

@@ -129,7 +129,7 @@ TEST(Relief, OfATenthOfTheThicknessDoesNotCrossItself)
   for (const auto& [name, part] : parts)
   {
     SCOPED_TRACE(name);
-    const Surface s = Refined(Rotated(part), 0.25);
+    const Surface s = Refined(Rotated(part), 0.35);
     const Vector heights = RoughHeights(s, -0.2, 0.2);
     const Relief relief = MakeRelief(s.Vertices, s.Faces, heights);
     EXPECT_EQ(0, relief.CrossingTrianglesBefore);

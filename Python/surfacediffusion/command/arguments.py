@@ -554,7 +554,7 @@ def _texture(commands):
     parser.add_argument("--seed", metavar="N", type=_whole, default=0,
                         help="of the initial noise (default 0)")
     parser.add_argument("--steps", metavar="N", type=_count,
-                        help="largest number of time steps (default 640)")
+                        help="largest number of time steps (default 640, for parts to print 2000)")
 
 
 def _directions(commands):

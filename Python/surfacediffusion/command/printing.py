@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._shape import EDGES_PER_WAVELENGTH
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export
 from .inputs import ArgumentProblem
@@ -12,6 +13,10 @@ from .report import number
 
 #: D1/D2 of the default kinetics for each pattern.
 PATTERNS = {"labyrinth": 18.0, "spots": 5.0, "net": 30.0}
+
+#: Patterns from a coarser mesh are flatter: more points than by default may have all steps, which take
+#: a minute of processor time at this size.
+COARSE_START_SIZE = 250_000
 
 
 def is_for_printing(arguments):
@@ -22,7 +27,7 @@ def is_for_printing(arguments):
 
 def print_texture(arguments, surface, report):
     """Refine, grow the texture, raise it as relief, and write the surface. surface: as read."""
-    from .. import Surface, relief, turing_texture
+    from .. import Surface, refine, relief, turing_texture
 
     check_output_folder(arguments.output)
     kind = kind_of_export(arguments.output)
@@ -52,19 +57,21 @@ def print_texture(arguments, surface, report):
                               "corner to corner; allowed: less")
     options = {"kinetics": arguments.kinetics} if arguments.kinetics else {
         "diffusion_rate1": 2.6 * PATTERNS[arguments.pattern or "labyrinth"], "diffusion_rate2": 2.6}
-    if arguments.steps:
-        options["number_of_time_steps"] = arguments.steps
+    with report.timed("refine"), report.progress("Refinement") as progress:
+        fine = refine(part, size / EDGES_PER_WAVELENGTH, progress=progress).surface
+    options.update(coarse_start_size=COARSE_START_SIZE, stop_tolerance=0.02)
+    options["number_of_time_steps"] = arguments.steps or 2000
     with report.timed("texture"), report.progress("Texture") as progress:
-        texture = turing_texture(part, refine_to="Automatic", feature_size=size, seed=arguments.seed,
-                                 progress=progress, **options)
-    points, triangles = texture.surface.points, texture.surface.triangles
+        texture = turing_texture(fine, feature_size=size, seed=arguments.seed, progress=progress,
+                                 **options)
+    points, triangles = fine.points, fine.triangles
     report.facts.update(feature_size=size, unit=unit, seed=arguments.seed, steps=texture.step,
                         wavelength=number(texture.wavelength), triangles=len(triangles))
     said = [f"{len(triangles)} triangles", f"pattern of {size:.4g} {unit}"]
     if height is not None:
         two = arguments.flank is not None
         with report.timed("relief"), report.progress("Relief") as progress:
-            result = relief(texture.surface, texture.texture, height, base=lengths["base"] or 0.0,
+            result = relief(fine, texture.texture, height, base=lengths["base"] or 0.0,
                             levels="Two" if two else "Smooth", flank=lengths["flank"] or 0.0,
                             overhang=arguments.overhang, progress=progress)
         points, triangles = result.surface.points, result.surface.triangles
