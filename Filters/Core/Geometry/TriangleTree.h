@@ -19,9 +19,8 @@ public:
 
   TriangleTree(const Points& points, const Triangles& triangles);
 
-  /// Call visit(t) for every triangle t whose leaf has only boxes that `enters` accepts:
-  /// enters(box) says whether triangles within the box are of interest. It may become stricter
-  /// meanwhile.
+  /// Call visit(t) for the triangles in boxes of interest, and a few beside them. enters(box) says
+  /// whether a triangle within the box may be of interest, and may become stricter meanwhile.
   template <typename Enters, typename Visitor>
   void Visit(const Enters& enters, const Visitor& visit) const
   {
