@@ -8,6 +8,7 @@
 #include "ModelRun.h"
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
+#include "ShapeFunctions.h"
 #include "SurfaceDistances.h"
 #include "SurfaceOperators.h"
 #include "Threads.h"
@@ -170,4 +171,5 @@ NB_MODULE(_core, m)
 
   BindSingleRun<DirectionRun>(m, "DirectionRun");
   BindSingleRun<MeshDenoiser>(m, "MeshDenoiser");
+  BindShapeFunctions(m);
 }

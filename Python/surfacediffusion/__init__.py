@@ -29,6 +29,8 @@
 `stiffness_matrix`   cotangent Laplacian, or that of tensors, for scipy
 `gradient_matrix`    gradients on the triangles, for scipy
 `eigenmodes`         eigenvalues and modes of the surface
+`refine`             shorter edges, for the large triangles of CAD files
+`relief`             values as relief, for printing
 ==================== ============================================================================
 
 `heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
@@ -53,14 +55,16 @@ from ._images import estimate_fwhm_img, smooth_img
 from ._operators import *  # noqa: F403
 from ._result import *  # noqa: F403
 from ._run import SurfaceDiffusionWarning
+from ._shape import RefinedSurface, ReliefResult, refine, relief
 from ._surface import Surface, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
 
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "FWHMEstimate", "Surface", "SurfaceDiffusionWarning", "estimate_fwhm", "estimate_fwhm_img",
-    "get_number_of_threads", "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
+    "FWHMEstimate", "RefinedSurface", "ReliefResult", "Surface", "SurfaceDiffusionWarning",
+    "estimate_fwhm", "estimate_fwhm_img", "get_number_of_threads", "refine", "relief",
+    "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
 ]
 __all__ += _distance.__all__
 __all__ += _functions.__all__

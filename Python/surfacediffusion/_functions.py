@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import textwrap
 from dataclasses import replace
-from typing import Any, Callable, Iterator, TypeVar
+from typing import Any, Callable, Iterator, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ from ._result import (
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, spell_documentation
+from ._shape import refine_for_texture
 from ._surface import (
     Surface, SurfaceLike, as_data, as_outside, as_surface, find_on_faces, has_integers,
 )
@@ -929,6 +930,7 @@ def turing_texture(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     rates: ArrayLike | None = None,
+    refine_to: float | Literal["Automatic"] | None = None,
     steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
@@ -951,6 +953,10 @@ def turing_texture(
     rates : array_like, shape (m, 4), optional
         Per face, in place of `diffusion_rate1`, `diffusion_rate_across1`, `diffusion_rate2` and
         `diffusion_rate_across2`.
+    refine_to : float or "Automatic", optional
+        Edges that are longer are bisected first, as by :func:`refine`, and the result belongs to the
+        points of its `surface`. "Automatic": to 8 edges per `feature_size`, for the large triangles of
+        CAD files. Arrays that belong to the given surface cannot be given then.
     {steps}
     {dtype}
     {progress}
@@ -962,7 +968,7 @@ def turing_texture(
     Returns
     -------
     TextureResult, or iterator of TextureResult
-        `values` are u1 and u2, `texture` is one of them stretched to [0, 1].
+        `values` are u1 and u2, `texture` is one of them stretched to [0, 1], `surface` is that of both.
 
     {problems}
 
@@ -975,6 +981,13 @@ def turing_texture(
     ((2562, 2), 0.0, 1.0)
     """
     surface = as_surface(surface)
+    if refine_to is not None:
+        for name, array in (("initial", initial), ("mask", mask), ("roi", roi), ("fixed", fixed),
+                            ("directions", directions), ("rates", rates)):
+            if array is not None:
+                raise ValueError(f"{name} and refine_to are both given; allowed: one of them, or refine() "
+                                 f"before, and {name} on its surface")
+        surface = refine_for_texture(surface, refine_to, properties.get("feature_size", 0.0)).surface
     data = as_initial(surface, initial)
     find_result_type(data, dtype)
     check_colors(properties)
@@ -983,7 +996,8 @@ def turing_texture(
     runner = Runner("turing_texture", properties, {**ARRAYS, "InputArray": "initial"})
     return _run("turing_texture", given, runner,
                 lambda run, found: make_result(
-                    TextureResult, find_outputs(run, 0, given, runner, dtype), found),
+                    TextureResult, find_outputs(run, 0, given, runner, dtype),
+                    {**found, "surface": surface}),
                 steps, progress)
 
 

@@ -5,10 +5,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ._surface import Surface
 
 
 __all__ = [
@@ -236,6 +239,8 @@ class TextureResult(Result):
     coarse_start_vertices : int
         The vertices of the coarser mesh on which the pattern grew, see `coarse_start_size`; 0 if it
         grew on the surface.
+    surface : Surface
+        The surface that the values belong to: the given one, or one with shorter edges, see `refine_to`.
     """
 
     VALUES: ClassVar[tuple[str, ...]] = ("u1", "u2")
@@ -246,6 +251,7 @@ class TextureResult(Result):
     wavelength_growth_rate: float = field(default=0.0, repr=False)
     diffusion_rate_factor: float = field(default=1.0, repr=False)
     coarse_start_vertices: int = field(default=0, repr=False)
+    surface: Surface | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,9 @@ import os
 import re
 import textwrap
 
+from ..files.export import UNITS
 from . import tasks
+from .printing import PATTERNS
 
 __all__ = ["parse"]
 
@@ -188,6 +190,32 @@ def _whole(text):
 
 def _exponent(text):
     return _number(text, lambda value: 1 <= value <= 2, "a number from 1 to 2")
+
+
+def _degrees(text):
+    return _number(text, lambda value: 0 <= value <= 90, "degrees from 0 to 90")
+
+
+def _positive_length(text):
+    return _length(text, lambda value: value > 0, "a length above 0")
+
+
+def _length_or_zero(text):
+    return _length(text, lambda value: value >= 0, "a length of at least 0")
+
+
+def _length(text, holds=lambda value: True, allowed="a length"):
+    """A number and its unit, or None."""
+    units = ", ".join(UNITS)
+    found = re.fullmatch(r"\s*([-+0-9.eE]+?)\s*([^\W\d_]*)\s*", text)
+    unit = found[2].lower().replace("\u03bc", "u").replace("\u00b5", "u") if found else ""
+    allowed = f"{allowed}, with or without a unit ({units}), such as 4mm"
+    if not found or unit and unit not in UNITS:
+        raise argparse.ArgumentTypeError(f"is {text!r}; allowed: {allowed}")
+    try:
+        return _number(found[1], holds, allowed), unit or None
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"is {text!r}; allowed: {allowed}") from None
 
 
 def _number(text, holds, allowed):
@@ -482,22 +510,51 @@ The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or
 """
 
 
+TEXTURE = """
+Lengths may have a unit: 4mm, 0.2cm, 0.1in, 300um. Files of surfaces name no unit: --unit is that of
+SURFACE.
+
+The name of OUTPUT gives its format. .stl and .3mf are parts for printing and need --relief; .obj and
+.ply have the pattern as grey values, too. For these, vertices at the same place become one, and edges
+are bisected to 8 per FEATURE_SIZE, so that CAD files with few triangles do. .func.gii, .shape.gii,
+.mgh, .mgz, .npy, or .ply, .vtk, .vtp if SURFACE is such a file, are the pattern at the vertices of
+SURFACE as they are.
+"""
+
+
 def _texture(commands):
-    text = "Grow spots, stripes or labyrinths on a surface by reaction and diffusion."
+    text = ("Grow spots or labyrinths on a surface by reaction and diffusion, as values, or as relief "
+            "for printing: without seams, across the edges of a part.")
     parser = commands.add(
         "texture", tasks.texture, text,
-        [f"{PROGRAM} texture lh.pial.surf.gii 8 lh.spots.shape.gii --seed 1"], NEW)
+        [f"{PROGRAM} texture part.stl 4mm out.stl --relief 0.4mm --pattern labyrinth",
+         f"{PROGRAM} texture lh.pial.surf.gii 8 lh.spots.shape.gii --seed 1"], TEXTURE)
     parser.add_argument("surface", metavar="SURFACE", help="the surface")
-    parser.add_argument("size", metavar="FEATURE_SIZE", type=_positive,
-                        help="the wavelength of the pattern, in the unit of the coordinates")
-    parser.add_argument("output", metavar="OUTPUT", help="the pattern, values at the vertices")
-    parser.add_argument("--kinetics", metavar="NAME",
-                        help="the reaction: Turing (default), Schnakenberg, GrayScott, Brusselator, "
-                             "GiererMeinhardt or FitzHughNagumo")
+    parser.add_argument("size", metavar="FEATURE_SIZE", type=_positive_length,
+                        help="the wavelength of the pattern")
+    parser.add_argument("output", metavar="OUTPUT", help="the part, or the pattern as values")
+    parser.add_argument("--relief", metavar="HEIGHT", type=_length,
+                        help="raise the pattern by this height along the normal; --relief=-0.4mm "
+                             "carves it")
+    parser.add_argument("--base", metavar="HEIGHT", type=_length,
+                        help="the height where the pattern is 0 (default 0)")
+    parser.add_argument("--flank", metavar="WIDTH", type=_length_or_zero,
+                        help="relief of two levels with a slope of this width between them; 0: as "
+                             "steep as the triangles allow (default: the relief is smooth)")
+    parser.add_argument("--overhang", metavar="DEGREES", type=_degrees,
+                        help="no relief on faces that face down, against z, more steeply than this")
+    parser.add_argument("--unit", choices=tuple(UNITS), default="mm",
+                        help="the unit of the coordinates of SURFACE (default mm)")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--pattern", choices=tuple(PATTERNS),
+                      help="the pattern (default for .stl, .3mf, .obj and with --relief: labyrinth)")
+    kind.add_argument("--kinetics", metavar="NAME",
+                      help="the reaction: Turing (default), Schnakenberg, GrayScott, Brusselator, "
+                           "GiererMeinhardt or FitzHughNagumo")
     parser.add_argument("--seed", metavar="N", type=_whole, default=0,
                         help="of the initial noise (default 0)")
     parser.add_argument("--steps", metavar="N", type=_count,
-                        help="largest number of time steps (default 640)")
+                        help="largest number of time steps (default 640, for parts to print 2000)")
 
 
 def _directions(commands):

@@ -13,6 +13,7 @@ from ..files.content import (
     check_output_folder, check_output_name, kind_of_name, read_content)
 from . import batch, inputs
 from .inputs import choose_columns, make_patches, read_surfaces
+from .printing import PATTERNS, in_coordinates, is_for_printing, print_texture
 from .report import number
 
 SIGMA_TO_FWHM = math.sqrt(8 * math.log(2))
@@ -302,18 +303,24 @@ def segment(arguments, report):
 
 def texture(arguments, report):
     surface = _read_surface_for_output(arguments, report)
+    if is_for_printing(arguments):
+        print_texture(arguments, surface, report)
+        return
     target = new_data(surface, arguments.output, ["Texture"])
     from .. import Surface, turing_texture
 
+    size = in_coordinates(arguments.size, arguments.unit)
     options = {}
+    if arguments.pattern:
+        options = {"diffusion_rate1": 2.6 * PATTERNS[arguments.pattern], "diffusion_rate2": 2.6}
     if arguments.kinetics:
         options["kinetics"] = arguments.kinetics
     if arguments.steps:
         options["number_of_time_steps"] = arguments.steps
     with report.timed("compute"), report.progress("Texture") as progress:
         result = turing_texture(Surface(surface.points, surface.faces), progress=progress,
-                                feature_size=arguments.size, seed=arguments.seed, **options)
-    report.facts.update(feature_size=arguments.size, seed=arguments.seed, steps=result.step,
+                                feature_size=size, seed=arguments.seed, **options)
+    report.facts.update(feature_size=size, seed=arguments.seed, steps=result.step,
                         wavelength=number(result.wavelength))
     _write_new(arguments, report, target, result.texture[:, None].astype(np.float32))
 

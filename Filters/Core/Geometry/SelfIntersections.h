@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Foundation/Types.h"
+
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Per triangle, whether it crosses another one: an edge of one passes through the other, by more
+/// than 1e-12 of the size of the surface. Triangles that only touch, that lie in one plane, or that
+/// have an edge in common do not cross. Throws Aborted.
+std::vector<char> FindSelfIntersections(const Points& points, const Triangles& triangles,
+  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+
+} // namespace SurfaceDiffusion

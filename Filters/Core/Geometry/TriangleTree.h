@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Types.h"
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Boxes around the triangles of a surface, in a binary tree, to find those near a place.
+class TriangleTree
+{
+public:
+  using Box = Eigen::AlignedBox3d;
+
+  TriangleTree(const Points& points, const Triangles& triangles);
+
+  /// Call visit(t) for the triangles in boxes of interest, and a few beside them. enters(box) says
+  /// whether a triangle within the box may be of interest, and may become stricter meanwhile.
+  template <typename Enters, typename Visitor>
+  void Visit(const Enters& enters, const Visitor& visit) const
+  {
+    constexpr int deepest = 64; // halves of fewer than 2^32 triangles
+    Index stack[deepest];
+    int size = 0;
+    if (!this->Nodes.empty())
+    {
+      stack[size++] = 0;
+    }
+    while (size > 0)
+    {
+      const Node& node = this->Nodes[static_cast<std::size_t>(stack[--size])];
+      if (!enters(node.Bounds))
+      {
+        continue;
+      }
+      if (node.Second < 0)
+      {
+        for (Index k = node.Begin; k < node.End; ++k)
+        {
+          visit(this->Order[static_cast<std::size_t>(k)]);
+        }
+        continue;
+      }
+      stack[size++] = node.Second;
+      stack[size++] = static_cast<Index>(&node - this->Nodes.data()) + 1;
+    }
+  }
+
+private:
+  /// The first child of an inner node follows it.
+  struct Node
+  {
+    Box Bounds;
+    Index Begin, End; ///< of Order
+    Index Second; ///< child; -1 for leaves
+  };
+
+  void Build(const std::vector<Box>& boxes, Index begin, Index end);
+
+  std::vector<Node> Nodes;
+  std::vector<Index> Order; ///< triangles
+};
+
+/// The point of triangle abc that is nearest to p.
+Eigen::Vector3d NearestPoint(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+  const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,116 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Textures for printing: from a part to the part with relief, in one line."""
+from __future__ import annotations
+
+import numpy as np
+
+from .._shape import EDGES_PER_WAVELENGTH
+from ..files.content import check_output_folder
+from ..files.export import UNITS, export, kind_of_export
+from .inputs import ArgumentProblem
+from .report import number
+
+#: D1/D2 of the default kinetics for each pattern.
+PATTERNS = {"labyrinth": 18.0, "spots": 5.0, "net": 30.0}
+
+#: Patterns from a coarser mesh are flatter: more points than by default may have all steps, which take
+#: a minute of processor time at this size.
+COARSE_START_SIZE = 250_000
+
+
+def is_for_printing(arguments):
+    """Whether the output of the command texture is a surface, and not values at its vertices."""
+    kind = kind_of_export(arguments.output)
+    return arguments.relief is not None or kind in ("stl", "3mf", "obj")
+
+
+def print_texture(arguments, surface, report):
+    """Refine, grow the texture, raise it as relief, and write the surface. surface: as read."""
+    from .. import Surface, refine, relief, turing_texture
+
+    check_output_folder(arguments.output)
+    kind = kind_of_export(arguments.output)
+    if kind is None:
+        raise ArgumentProblem(f"{arguments.output}: the name announces no format for a part with relief; "
+                              "allowed: .stl, .3mf, .obj or .ply")
+    if arguments.relief is None and kind in ("stl", "3mf"):
+        raise ArgumentProblem(f"{arguments.output}: without relief nothing of the pattern is in it; "
+                              "allowed: --relief HEIGHT, or .obj or .ply, which have colours")
+    if arguments.relief is None:
+        for name in ("base", "flank", "overhang"):
+            if getattr(arguments, name) is not None:
+                raise ArgumentProblem(f"--{name} is given, but no relief; allowed: with --relief HEIGHT")
+    unit = arguments.unit
+    lengths = {}
+    for name in ("size", "relief", "base", "flank"):
+        _warn_without_unit(name, getattr(arguments, name), unit, report)
+        lengths[name] = in_coordinates(getattr(arguments, name), unit)
+    size, height = lengths["size"], lengths["relief"]
+    part = _welded(surface)
+    extent = float(np.linalg.norm(part.points.max(axis=0) - part.points.min(axis=0)))
+    if not size < extent:
+        raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, but the part is {extent:.4g} {unit} "
+                              "from corner to corner; allowed: smaller features")
+    if height is not None and not abs(height) < extent:
+        raise ArgumentProblem(f"--relief is {height:.4g} {unit}, but the part is {extent:.4g} {unit} from "
+                              "corner to corner; allowed: less")
+    options = {"kinetics": arguments.kinetics} if arguments.kinetics else {
+        "diffusion_rate1": 2.6 * PATTERNS[arguments.pattern or "labyrinth"], "diffusion_rate2": 2.6}
+    with report.timed("refine"), report.progress("Refinement") as progress:
+        fine = refine(part, size / EDGES_PER_WAVELENGTH, progress=progress).surface
+    options.update(coarse_start_size=COARSE_START_SIZE, stop_tolerance=0.02)
+    options["number_of_time_steps"] = arguments.steps or 2000
+    with report.timed("texture"), report.progress("Texture") as progress:
+        texture = turing_texture(fine, feature_size=size, seed=arguments.seed, progress=progress,
+                                 **options)
+    points, triangles = fine.points, fine.triangles
+    report.facts.update(feature_size=size, unit=unit, seed=arguments.seed, steps=texture.step,
+                        wavelength=number(texture.wavelength), triangles=len(triangles))
+    said = [f"{len(triangles)} triangles", f"pattern of {size:.4g} {unit}"]
+    if height is not None:
+        two = arguments.flank is not None
+        with report.timed("relief"), report.progress("Relief") as progress:
+            result = relief(fine, texture.texture, height, base=lengths["base"] or 0.0,
+                            levels="Two" if two else "Smooth", flank=lengths["flank"] or 0.0,
+                            overhang=arguments.overhang, progress=progress)
+        points, triangles = result.surface.points, result.surface.triangles
+        report.facts.update(
+            relief=height, volume_change=number(result.volume_change),
+            lowered_points=result.lowered_points, open_edges=result.open_edges,
+            non_manifold_edges=result.non_manifold_edges,
+            crossing_triangles=result.crossing_triangles, smallest_wall=number(result.smallest_wall))
+        said.append(f"relief of {height:.4g} {unit}")
+        if np.isfinite(result.smallest_wall):
+            said.append(f"smallest wall {result.smallest_wall:.3g} {unit}")
+        said.append("closed" if result.open_edges == 0 else f"{result.open_edges} open edges")
+    shades = np.rint(255 * np.clip(texture.texture, 0, 1)).astype(np.uint8)
+    with report.timed("write"):
+        export(arguments.output, points, triangles, np.repeat(shades[:, None], 3, axis=1), unit)
+    seconds = sum(entry["wall"] for entry in report.seconds.values())
+    report.say(f"{arguments.output}: {', '.join(said)}, {seconds:.2f} s")
+
+
+def _welded(surface):
+    """Vertices at the same place are one: files for viewers have one per face."""
+    from .. import Surface
+
+    faces = Surface(surface.points, surface.faces).triangles
+    points, numbers = np.unique(np.asarray(surface.points, dtype=float) + 0.0, axis=0,
+                                return_inverse=True)
+    return Surface(points, numbers.reshape(-1)[faces])
+
+
+def in_coordinates(length, unit):
+    """A length of the command line, a number and its unit or None, in the unit of the coordinates."""
+    if length is None:
+        return None
+    value, given = length
+    return value if given is None else value * UNITS[given][0] / UNITS[unit][0]
+
+
+def _warn_without_unit(name, length, unit, report):
+    if length is not None and length[1] is None and length[0] != 0:
+        option = "FEATURE_SIZE" if name == "size" else "--" + name
+        report.warn(f"{option} {length[0]:g} has no unit: taken as {length[0]:g} {unit}, the unit of the "
+                    "coordinates (--unit)")
