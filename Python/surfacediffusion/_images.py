@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Surface images of nilearn: data on the meshes of both hemispheres. nilearn itself is not imported."""
+"""Surface images of nilearn: data on the meshes of both hemispheres. nilearn is not imported."""
 
 from __future__ import annotations
 
@@ -89,7 +89,9 @@ def estimate_fwhm_img(
             for name, mesh in meshes.items()}
 
 
-def _parts(img: Any, mask_img: Any) -> tuple[dict[str, Any], dict[str, NDArray[Any]], dict[str, Any]]:
+def _parts(
+    img: Any, mask_img: Any
+) -> tuple[dict[str, Any], dict[str, NDArray[Any]], dict[str, Any]]:
     """Meshes, data and regions by the names of the hemispheres."""
     found = []
     for argument, image in (("img", img), ("mask_img", mask_img)):
@@ -100,12 +102,14 @@ def _parts(img: Any, mask_img: Any) -> tuple[dict[str, Any], dict[str, NDArray[A
             found.append(dict(image.data.parts))
             meshes = dict(image.mesh.parts)
         except AttributeError:
-            raise ValueError(f"{argument} is {shorten(image)}; allowed: a SurfaceImage of nilearn") from None
+            raise ValueError(
+                f"{argument} is {shorten(image)}; allowed: a SurfaceImage of nilearn") from None
         if argument == "img":
             found.insert(0, meshes)
     meshes, data, regions = found
     if regions and set(regions) != set(meshes):
-        raise ValueError(f"mask_img has the parts {', '.join(regions)}; allowed: {', '.join(meshes)}, as img")
+        raise ValueError(f"mask_img has the parts {', '.join(regions)}; allowed: those of img, "
+                         + ", ".join(meshes))
     return meshes, {name: np.asarray(values) for name, values in data.items()}, {
         name: np.asarray(values).reshape(len(values), -1)[:, 0] for name, values in regions.items()}
 

@@ -64,7 +64,8 @@ def write_files():
     models = (cifti2.BrainModelAxis.from_surface(np.flatnonzero(cortex), N, "CORTEX_LEFT")
               + cifti2.BrainModelAxis.from_surface(np.flatnonzero(cortex), N, "CORTEX_RIGHT")
               + cifti2.BrainModelAxis.from_mask(ball, "THALAMUS_LEFT", affine=np.diag([2, 2, 2, 1])))
-    rows = np.concatenate([maps[cortex, :3].T, maps[cortex, 3:6].T, RNG.normal(3, 1, (3, ball.sum()))], axis=1)
+    rows = np.concatenate([maps[cortex, :3].T, maps[cortex, 3:6].T,
+                           RNG.normal(3, 1, (3, ball.sum()))], axis=1)
     write_cifti("bold.dtseries.nii", rows.astype(np.float32), models, True)
     inside = np.concatenate([POINTS[cortex, 1] > 0] * 2 + [np.arange(ball.sum()) % 5 > 0])
     write_cifti("roi.dscalar.nii", inside[None].astype(np.float32), models, False)
@@ -78,8 +79,10 @@ def write_files():
     samples.write_mgh("residuals.mgh", maps - maps.mean(axis=1, keepdims=True))
     chosen = np.flatnonzero(cortex)
     lines = "".join(f"{v} 0 0 0 0\n" for v in chosen)
-    Path("bert/label/lh.cortex.label").write_text(f"#!ascii label, from subject bert\n{len(chosen)}\n{lines}")
-    samples.write_annot("bert/label/lh.aparc.annot", (POINTS[:, 2] > 0).astype(int), ["unknown", "precentral"])
+    Path("bert/label/lh.cortex.label").write_text(
+        f"#!ascii label, from subject bert\n{len(chosen)}\n{lines}")
+    samples.write_annot("bert/label/lh.aparc.annot", (POINTS[:, 2] > 0).astype(int),
+                        ["unknown", "precentral"])
 
     samples.write_surface("lh.central.sub.gii", POINTS, FACES)
     nib.freesurfer.write_morph_data("lh.thickness.sub", maps[:, 0], fnum=len(FACES))

@@ -138,8 +138,8 @@ class CiftiFile:
         strides = set(np.diff(rows)) or {1}
         if len(strides) > 1 or min(strides) < 1:
             chosen = ", ".join(str(row + 1) for row in rows)
-            raise FileError(f"{self.content.path}: the columns {chosen} of a time series; allowed: columns at "
-                            "equal intervals, or all")
+            raise FileError(f"{self.content.path}: the columns {chosen} of a time series; allowed: "
+                            "columns at equal intervals, or all")
         return type(axis)(axis.start + rows[0] * axis.step, axis.step * min(strides), len(rows),
                           axis.unit)
 
