@@ -5,7 +5,7 @@
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Geometry/FaceGraph.h"
 
-#include <array>
+#include <memory>
 
 namespace SurfaceDiffusion
 {
@@ -15,7 +15,6 @@ struct NormalVariationSettings
   double First = 0.15; ///< a1
   double Second = 0.25; ///< a0
   int Iterations = 15; ///< of the splitting
-  int SolverSteps = 2; ///< of conjugate gradients in each of them
 };
 
 /// The total generalised variation of the normals of a surface of triangles (Z. Liu, Y. Li, W.
@@ -33,13 +32,15 @@ struct NormalVariationSettings
 /// a plane have no variation, and jumps have that of their height.
 ///
 /// The energy is split: v = D (n, u) are the differences at the edges, and the alternating direction
-/// method of multipliers takes turns between (n, u), by a few steps of conjugate gradients from the
-/// last ones, and the shrinkage of v. One matrix serves the three components.
+/// method of multipliers takes turns between (n, u), by one step of steepest descent with a
+/// preconditioner from the last ones, and the shrinkage of v. The three components of the normals
+/// share all coefficients.
 class NormalVariation
 {
 public:
   /// unit: of the lengths, such as the mean edge length.
-  NormalVariation(const FaceGraph& graph, double unit, const ParallelFor& parallel);
+  NormalVariation(const FaceGraph& graph, double unit, const ParallelFor& parallel = SerialFor());
+  ~NormalVariation();
 
   /// Take the edges and triangles at these points. (n, u) and the multipliers stay.
   void SetPlaces(const Points& points, const FaceGeometry& geometry);
@@ -62,40 +63,8 @@ public:
   Energy MeasureEnergy() const;
 
 private:
-  /// The normal and the slope of a triangle, or their differences at an edge: of the normal, and of
-  /// the slope along the edge and across it.
-  using Block = Eigen::Matrix3d;
-
-  struct Edge
-  {
-    std::array<Index, 2> Faces;
-    double Length = 0.0;
-    double Weight = 1.0;
-    /// A column per triangle, in its axes: the midpoint from the centroid, and the direction.
-    Eigen::Matrix2d Middle = Eigen::Matrix2d::Zero();
-    Eigen::Matrix2d Along = Eigen::Matrix2d::Zero();
-    /// Per triangle: 1 if its direction, turned to the left, leaves it, otherwise -1.
-    std::array<double, 2> Side{};
-  };
-
-  void ListEdges();
-  Block Factor(const Edge& edge, int side) const;
-  Block Differences(const Edge& edge, const std::vector<Block>& x) const;
-  Block Shrunk(const Edge& edge, const Block& v) const;
-  void Assemble();
-  void Solve(int steps);
-
-  const FaceGraph& Graph;
-  const double Unit;
-  const ParallelFor& Parallel;
-  NormalVariationSettings Settings;
-  std::vector<Edge> Edges;
-  std::vector<std::array<Index, 3>> EdgesOf; ///< per triangle; -1: none
-  Vector Areas; ///< over their mean
-  std::vector<Block> State; ///< (n, u); no entries before the first Minimize()
-  std::vector<Block> Split; ///< per edge: the differences and the last multipliers
-  std::vector<Block> Given, Diagonal, Inverse, Coupling;
-  std::vector<Block> Residual, Direction, Product;
+  class Splitting;
+  std::unique_ptr<Splitting> Work;
 };
 
 } // namespace SurfaceDiffusion

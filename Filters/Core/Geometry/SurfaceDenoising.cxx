@@ -70,6 +70,7 @@ SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::ve
   probe.LinearIterations = 0;
   probe.FitIterations = 10;
   probe.FinalFitIterations = 0;
+  probe.VariationIterations = 0;
   FaceGeometry geometry;
   geometry.Measure(graph.Mesh,
     DenoiseWithScheme(graph, points, fixed, noise, probe, parallel, progress), parallel);

@@ -49,8 +49,9 @@ struct DenoisingReport
 /// with FitToNormals(): block descent on an energy of positions and normals, whose weights follow
 /// from the noise level. The first iterations use FilterNormals(), which suits piecewise constant
 /// normals and sharpens edges. The last ones use FitLinearNormals() with the normals of the present
-/// surface as guide, for piecewise linear normals, and TurnFlippedFaces(). On sharp surfaces, a
-/// fit to the last normals that is nearly solved follows. Tangential displacements are small, so
+/// surface as guide, for piecewise linear normals, and TurnFlippedFaces(). On sharp surfaces,
+/// iterations with NormalVariation follow, and a fit to the last normals that is nearly solved.
+/// Tangential displacements are small, so
 /// that triangles and boundaries keep their shape. A noise level of 0 leaves the points as they are.
 ///
 /// Displacements along the normal should have the variance of the noise (the discrepancy
