@@ -17,8 +17,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// r of the energy, which keeps slopes of triangles without neighbours at 0; and the least area.
-constexpr double Ridge = 1e-4;
+/// r of the energy, which keeps slopes of triangles without neighbours at 0.
+constexpr double Ridge = 1e-6;
+constexpr double SmallestArea = 1e-4; ///< over the mean
 
 /// The normal and the slope of a triangle, or their differences at an edge: of the normal, and of
 /// the slope along the edge and across it. The last column is 0: rows of four are vectors of the
@@ -42,7 +43,7 @@ struct Edge
 };
 
 using EdgesOfFace = std::array<Index, 3>; ///< -1: none
-using Inverse = std::array<float, 9>;
+using Inverse = std::array<double, 6>; ///< a symmetric matrix: xx, xy, xz, yy, yz, zz
 
 /// v += what the differences at the edge have from one of its triangles, x.
 inline void AddDifferences(const Edge& edge, int side, const Block& x, Block& v)
@@ -197,13 +198,12 @@ SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const dou
       }
     }
     Block& d = direction[f];
-    for (int k = 0; k < 3; ++k)
+    for (int c = 0; c < 4; ++c)
     {
-      for (int c = 0; c < 4; ++c)
-      {
-        d.Rows[k][c] =
-          m[3 * k] * r.Rows[0][c] + m[3 * k + 1] * r.Rows[1][c] + m[3 * k + 2] * r.Rows[2][c];
-      }
+      const double x = r.Rows[0][c], y = r.Rows[1][c], z = r.Rows[2][c];
+      d.Rows[0][c] = m[0] * x + m[1] * y + m[2] * z;
+      d.Rows[1][c] = m[1] * x + m[3] * y + m[4] * z;
+      d.Rows[2][c] = m[2] * x + m[4] * y + m[5] * z;
     }
     sum += Product(d, r);
   }
@@ -223,13 +223,15 @@ SURFACEDIFFUSION_ANY_VECTORS double MultiplyAll(
   return sum;
 }
 
-/// The axes of a triangle: along its first edge, and to the left of it.
+/// The axes of a triangle: along the edge after one of its corners, and to the left of it.
 struct Axes
 {
-  Axes(const TriangleMesh& mesh, const Points& points, const FaceGeometry& geometry, Index f)
+  Axes(const TriangleMesh& mesh, const Points& points, const FaceGeometry& geometry, Index f,
+    int corner)
   {
     const auto corners = mesh.TriangleVertices().row(f);
-    this->First = (points.row(corners[1]) - points.row(corners[0])).normalized();
+    this->First =
+      (points.row(corners[(corner + 1) % 3]) - points.row(corners[corner])).normalized();
     this->Second = Eigen::RowVector3d(geometry.Normals.row(f)).cross(this->First);
   }
   Eigen::Vector2d operator()(const Eigen::RowVector3d& v) const
@@ -239,6 +241,17 @@ struct Axes
 
   Eigen::RowVector3d First, Second;
 };
+
+/// The corner of a triangle before its longest edge.
+char CornerBeforeLongestEdge(const TriangleMesh& mesh, const Points& points, Index f)
+{
+  const auto corners = mesh.TriangleVertices().row(f);
+  const auto square = [&](int a)
+  { return (points.row(corners[(a + 1) % 3]) - points.row(corners[a])).squaredNorm(); };
+  int longest = square(1) > square(0) ? 1 : 0;
+  longest = square(2) > square(longest) ? 2 : longest;
+  return static_cast<char>(longest);
+}
 
 /// The corner of triangle f opposite the edge that it shares with triangle g; -1: none.
 int CornerOpposite(const Triangles& triangles, Index f, Index g)
@@ -323,7 +336,13 @@ public:
   {
     const TriangleMesh& mesh = this->Graph.Mesh;
     const double mean = geometry.Areas.sum() / std::max<Index>(1, this->Graph.NumberOfFaces());
-    this->Areas = (geometry.Areas / mean).cwiseMax(Ridge);
+    if (this->FirstCorners.empty())
+    {
+      this->FirstCorners.resize(this->EdgesOf.size());
+      ForEach(this->Parallel, this->Graph.NumberOfFaces(),
+        [&](Index f) { this->FirstCorners[f] = CornerBeforeLongestEdge(mesh, points, f); });
+    }
+    this->Areas = (geometry.Areas / mean).cwiseMax(SmallestArea);
     ForEach(this->Parallel, this->NumberOfEdges(),
       [&](Index e)
       {
@@ -336,7 +355,7 @@ public:
         for (int side = 0; side < 2; ++side)
         {
           const Index t = edge.Faces[side];
-          const Axes axes(mesh, points, geometry, t);
+          const Axes axes(mesh, points, geometry, t, this->FirstCorners[t]);
           const Eigen::Vector2d middle =
             axes(0.5 * (first + last) - geometry.Centroids.row(t)) / this->Unit;
           const Eigen::Vector2d along = axes(last - first).normalized();
@@ -473,8 +492,8 @@ private:
         }
       }
     }
-    Eigen::Map<Eigen::Matrix3f>(this->Inverses[f].data()) =
-      Eigen::Matrix3d(diagonal.inverse()).cast<float>();
+    const Eigen::Matrix3d m = diagonal.inverse();
+    this->Inverses[f] = { m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2) };
   }
 
   /// v = D x + b, and one step of descent of 1/2 x (M + D^T L D) x - (M d + D^T L (v - 2 b)) x.
@@ -522,6 +541,8 @@ private:
   std::vector<Edge> Edges;
   std::vector<EdgesOfFace> EdgesOf;
   std::vector<Inverse> Inverses;
+  /// Of the axes of the triangles: slopes keep their components while points move.
+  std::vector<char> FirstCorners;
   Vector Areas; ///< over their mean
   Points Given;
   std::vector<Block> State; ///< (n, u); no entries before the first Minimize()
@@ -534,6 +555,8 @@ NormalVariation::NormalVariation(const FaceGraph& graph, double unit, const Para
   : Work(std::make_unique<Splitting>(graph, unit, parallel))
 {
 }
+
+NormalVariation::NormalVariation(NormalVariation&& other) noexcept = default;
 
 NormalVariation::~NormalVariation() = default;
 

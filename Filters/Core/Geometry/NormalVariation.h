@@ -27,7 +27,7 @@ struct NormalVariationSettings
 ///     + a0 sum_e w_e l_e |u_f - T_fg u_g|
 ///
 /// for given normals d, with the areas a over their mean, the edges e between two triangles f and
-/// g, their lengths l and midpoints m, the centroids c, the rotation T about the edge, and r = 1e-4.
+/// g, their lengths l and midpoints m, the centroids c, the rotation T about the edge, and r = 1e-6.
 /// Lengths are in the given unit. Functions that are linear on a surface that can be unrolled into
 /// a plane have no variation, and jumps have that of their height.
 ///
@@ -40,6 +40,7 @@ class NormalVariation
 public:
   /// unit: of the lengths, such as the mean edge length.
   NormalVariation(const FaceGraph& graph, double unit, const ParallelFor& parallel = SerialFor());
+  NormalVariation(NormalVariation&& other) noexcept;
   ~NormalVariation();
 
   /// Take the edges and triangles at these points. (n, u) and the multipliers stay.
