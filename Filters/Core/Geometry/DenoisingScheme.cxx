@@ -288,6 +288,16 @@ DenoisingScheme SchemeFor(SurfaceKind kind, double noise)
   return scheme;
 }
 
+DenoisingScheme SchemeForCorrelatedNoise(double length)
+{
+  DenoisingScheme scheme = SchemeFor(SurfaceKind::Sharp, ReferenceNoise);
+  scheme.LinearIterations = 5;
+  scheme.VariationIterations = 20;
+  scheme.FirstVariation = 0.3 * length;
+  scheme.LastVariation = 0.15 * length;
+  return scheme;
+}
+
 Points DenoiseWithScheme(const FaceGraph& graph, const Points& points,
   const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
   const ParallelFor& parallel, const ProgressMonitor& progress)

@@ -47,6 +47,10 @@ struct DenoisingScheme
 /// The scheme with which surfaces of this kind are denoised. noise: its standard deviation in h.
 DenoisingScheme SchemeFor(SurfaceKind kind, double noise);
 
+/// The scheme for noise that is correlated over this length in h, on surfaces of both kinds: the
+/// variation of normals averages over that length.
+DenoisingScheme SchemeForCorrelatedNoise(double length);
+
 /// Remove noise of this standard deviation, in the unit of the points, by the iterations of a scheme:
 /// DenoiseSurface() says which.
 Points DenoiseWithScheme(const FaceGraph& graph, const Points& points,
