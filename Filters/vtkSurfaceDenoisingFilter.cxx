@@ -25,6 +25,7 @@ vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
   , State(std::make_unique<UpdateState>())
 {
   this->DeclareNumber("EffectiveNoiseLevel");
+  this->DeclareNumber("CorrelationLength");
   this->DeclareNumber("EffectiveSurfaceType");
   this->DeclareNumber("MeanDisplacement");
   this->DeclareNumber("MaximumDisplacement");

@@ -100,6 +100,12 @@ public:
   SURFACEDIFFUSION_NUMBER(EffectiveNoiseLevel, double);
 
   /**
+   * The length over which the noise of the last update was correlated, in coordinate units, as that of
+   * depth cameras is: the largest over components and blocks. 0: no correlated noise was found.
+   */
+  SURFACEDIFFUSION_NUMBER(CorrelationLength, double);
+
+  /**
    * The kind of surface of the last update, given or found: SURFACE_TYPE_CAD or
    * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, if no noise was found,
    * and if components or blocks of composite data are of different kinds; those without noise do

@@ -45,6 +45,13 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
     }
     warnings.push_back({ text, this->SurfaceVersion });
   }
+  if (this->Found.CorrelationLength > 0.0)
+  {
+    Sentence text;
+    text << "the noise is correlated over a length of " << this->Found.CorrelationLength
+         << ": details of that size are removed with it";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
   if (this->Found.FarVertices > 0)
   {
     Sentence text;
@@ -95,6 +102,7 @@ void DenoisingRun::Update(
   const Points moved = DenoiseSurface(
     mesh, points, fixed, core, &this->Found, this->Parallel, progress.Part(0.1, 1.0));
   this->Found.NoiseLevel *= unit;
+  this->Found.CorrelationLength *= unit;
   this->Found.MeanDisplacement *= unit;
   this->Found.MaximumDisplacement *= unit;
   Points all = surface.Points();
@@ -126,6 +134,7 @@ void DenoisingRun::ListResults(const Points& moved)
   const auto add = [this](const char* name, double value, Combination over)
   { this->Results.push_back(Output::OfNumber(name, value, over)); };
   add("EffectiveNoiseLevel", this->Found.NoiseLevel, Combination::Largest);
+  add("CorrelationLength", this->Found.CorrelationLength, Combination::Largest);
   add("EffectiveSurfaceType", static_cast<double>(this->Found.Type), Combination::Common);
   this->Results.back().Type = OutputType::Integer;
   add("MeanDisplacement", this->Found.MeanDisplacement, Combination::Mean);

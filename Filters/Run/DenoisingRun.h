@@ -34,7 +34,7 @@ public:
     const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
 
 private:
-  /// About coincident points that may come apart, and points that moved far.
+  /// About coincident points that may come apart, correlated noise, and points that moved far.
   std::vector<Warning> FindOwnWarnings() const override;
   void ListResults(const Points& moved);
 

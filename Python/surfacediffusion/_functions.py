@@ -703,7 +703,7 @@ def denoise_mesh(
     -----
     SurfaceDiffusionWarning
         For triangles of zero area, for coincident points that may come apart, if no noise was found,
-        and if points moved by more than 10 times the noise level.
+        if it is correlated over several edges, and if points moved by more than 10 times its level.
 
     Examples
     --------

@@ -155,6 +155,9 @@ class MeshDenoisingResult:
     noise_level : float
         The standard deviation of the noise along the normal, given or estimated, in coordinate
         units; the root mean square over the points if connected components differ.
+    correlation_length : float
+        The length over which the noise was correlated, as that of depth cameras is, in coordinate
+        units. 0 if no correlated noise was found.
     surface_type : str
         The kind of surface, given or found: "CAD" or "Organic". "Automatic" if no noise was found, or
         if connected components are of different kinds.
@@ -173,6 +176,7 @@ class MeshDenoisingResult:
 
     points: NDArray[np.float64] = field(repr=False)
     noise_level: float
+    correlation_length: float
     surface_type: str
     mean_displacement: float
     maximum_displacement: float

@@ -137,6 +137,75 @@ TEST(SurfaceDenoising, RoughDetailsAreNoNoise)
   EXPECT_EQ(LargestDistance(Denoised(waves), waves), 0.0);
 }
 
+namespace
+{
+
+/// Gaussian noise along the normals with the covariance exp(-d^2 / (2 L^2)), L in mean edge lengths:
+/// white noise after steps of heat flow, each of the variance 1/8 h^2 per axis, to L^2 / 2.
+Surface WithCorrelatedNoise(Surface s, double amount, double length)
+{
+  const Surface white = NoisyAlongNormals(s, 1.0);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  const double h = MeanEdge(mesh) * mesh.LengthUnit();
+  Points offsets = white.Vertices - s.Vertices;
+  for (int step = 0; step < std::lround(4.0 * length * length); ++step)
+  {
+    // Each neighbour is seen twice. The mean square of its distance along an axis is h^2 / 2.
+    Points sums = Points::Zero(offsets.rows(), 3);
+    Vector counts = Vector::Zero(offsets.rows());
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        sums.row(s.Faces(t, a)) +=
+          offsets.row(s.Faces(t, (a + 1) % 3)) + offsets.row(s.Faces(t, (a + 2) % 3));
+        counts[s.Faces(t, a)] += 2.0;
+      }
+    }
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      offsets.row(i) = 0.75 * offsets.row(i) + 0.25 / counts[i] * sums.row(i);
+    }
+  }
+  const double level = std::sqrt(offsets.squaredNorm() / static_cast<double>(offsets.rows()));
+  s.Vertices += amount * h / level * offsets;
+  return s;
+}
+
+} // namespace
+
+TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
+{
+  for (const Surface& surface : { Icosphere(5), Strip(80, 60, 8.0, 6.0) })
+  {
+    const Surface noisy = WithCorrelatedNoise(surface, 0.3, 2.0);
+    const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
+    const double h = MeanEdge(mesh);
+    EXPECT_LT(
+      EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices) / mesh.LengthUnit()), 0.1 * h);
+    DenoisingReport report;
+    const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
+    EXPECT_NEAR(report.NoiseLevel / h, 0.3, 0.1);
+    EXPECT_GT(report.CorrelationLength / h, 1.0);
+    EXPECT_LT(report.CorrelationLength / h, 4.0);
+    EXPECT_LT(MeanAngle(result, surface), 0.25 * MeanAngle(noisy, surface));
+  }
+}
+
+TEST(SurfaceDenoising, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
+{
+  for (const Surface& surface :
+    { Icosphere(5), Torus(80, 40), LBlock(24), NoisyAlongNormals(Icosphere(5), 0.3),
+      NoisyAlongNormals(Torus(80, 40), 0.1), NoisyAlongNormals(LBlock(24), 0.3) })
+  {
+    const TriangleMesh mesh(surface.Vertices, surface.Faces);
+    const CorrelatedNoise found =
+      EstimateCorrelatedNoise(mesh, GatherVertices(mesh, surface.Vertices));
+    EXPECT_EQ(found.Level, 0.0);
+    EXPECT_EQ(found.Length, 0.0);
+  }
+}
+
 TEST(SurfaceDenoising, ImpulsiveNoiseOfABlockIsRemoved)
 {
   const Surface block = LBlock(24);
@@ -340,6 +409,7 @@ TEST(SurfaceDenoising, FollowsRotationsTranslationsAndScalesOfTheSurface)
   const Surface result = Denoised(noisy);
   const double size = noisy.Vertices.rowwise().norm().maxCoeff();
   EXPECT_LT(LargestDistance(Denoised(Rotated(noisy)), Rotated(result)), 1e-9 * size);
+  EXPECT_EQ(Denoised(Scaled(noisy, 1024.0)).Vertices, Scaled(result, 1024.0).Vertices);
   EXPECT_LT(LargestDistance(Denoised(Scaled(noisy, 1e-3)), Scaled(result, 1e-3)), 1e-12 * size);
   EXPECT_LT(LargestDistance(Denoised(Scaled(noisy, 1e60)), Scaled(result, 1e60)), 1e51 * size);
   const Eigen::RowVector3d offset(30.0, -20.0, 10.0);

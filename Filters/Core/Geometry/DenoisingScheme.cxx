@@ -19,8 +19,9 @@ constexpr double ReferenceNoise = 0.3;
 /// Vertices that move farther than the noise, by this factor, are held more firmly.
 constexpr double LargestSpread = 1.1;
 constexpr double LargestTightening = 4.0;
-/// The share of the iterations, without the final fit, in the work.
-constexpr double FinalProgress = 0.9;
+/// The shares of the work up to the third stage, and up to the final fit.
+constexpr double VariationProgress = 0.5;
+constexpr double FinalProgress = 0.95;
 /// Of the local fidelity: the largest displacement that counts, in standard deviations of the
 /// noise, the sweeps of averaging, and the range of the factors.
 constexpr double LargestLocalDisplacement = 1.5;
@@ -84,10 +85,12 @@ public:
   const Points& Run(const ProgressMonitor& progress)
   {
     const int count = this->Scheme.Iterations + this->Scheme.LinearIterations;
+    const bool hasVariation = this->Scheme.VariationIterations > 0;
+    const double iterations = hasVariation ? VariationProgress : FinalProgress;
     for (int i = 0; i < count; ++i)
     {
       const ProgressMonitor part =
-        progress.Part(FinalProgress * i / count, FinalProgress * (i + 1.0) / count);
+        progress.Part(iterations * i / count, iterations * (i + 1.0) / count);
       part.Report(0.0);
       this->Geometry.Measure(this->Graph.Mesh, this->Moved, this->Parallel);
       if (i < this->Scheme.Iterations)
@@ -98,6 +101,10 @@ public:
       {
         this->IterateLinear(part);
       }
+    }
+    if (hasVariation)
+    {
+      this->MinimizeVariation(progress.Part(VariationProgress, FinalProgress));
     }
     if (this->Scheme.FinalFitIterations > 0)
     {
@@ -133,19 +140,49 @@ private:
     const DenoisingScheme& scheme = this->Scheme;
     const Points guide =
       ReplaceUnsupportedNormals(this->Graph, this->Geometry, scheme.LinearFilter, this->Parallel);
-    this->LinearNormals =
+    this->LastNormals =
       FitLinearNormals(this->Graph, this->Geometry, guide, scheme.LinearFilter, this->Parallel);
-    this->Fit(this->LinearNormals, scheme.LinearFidelity, progress);
-    TurnFlippedFaces(this->Graph.Mesh, this->LinearNormals, this->Fixed, this->Moved);
+    this->Fit(this->LastNormals, scheme.LinearFidelity, progress);
+    TurnFlippedFaces(this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved);
+  }
+
+  void MinimizeVariation(const ProgressMonitor& progress)
+  {
+    const DenoisingScheme& scheme = this->Scheme;
+    const TriangleMesh& mesh = this->Graph.Mesh;
+    NormalVariation variation(this->Graph, MeanEdgeLength(mesh), this->Parallel);
+    const int count = scheme.VariationIterations;
+    for (int i = 0; i < count; ++i)
+    {
+      const ProgressMonitor part = progress.Part(i / static_cast<double>(count), (i + 1.0) / count);
+      this->Geometry.Measure(mesh, this->Moved, this->Parallel);
+      if (i == 0)
+      {
+        variation.SetWeights(this->Geometry.Normals, scheme.VariationRange);
+      }
+      const double fraction = count > 1 ? i / (count - 1.0) : 1.0;
+      NormalVariationSettings settings;
+      settings.First =
+        scheme.FirstVariation * std::pow(scheme.LastVariation / scheme.FirstVariation, fraction);
+      settings.Second = scheme.SecondOrder * settings.First;
+      variation.SetPlaces(this->Moved, this->Geometry);
+      this->LastNormals = variation.Minimize(this->Geometry.Normals, settings, part.Part(0.0, 0.8));
+      this->LastNormals.rowwise().normalize();
+      variation.SetWeights(this->LastNormals, scheme.VariationRange);
+      const double relative = this->RelativePrecision();
+      this->Fit(this->LastNormals, scheme.VariationFidelity * relative * relative,
+        scheme.VariationFitIterations, part.Part(0.8, 1.0));
+      TurnFlippedFaces(mesh, this->LastNormals, this->Fixed, this->Moved);
+    }
   }
 
   void FitFinally(const ProgressMonitor& progress)
   {
     const double relative = this->RelativePrecision();
-    this->Fit(this->LinearNormals,
+    this->Fit(this->LastNormals,
       std::min(relative, relative * relative) * this->Scheme.FinalFidelity,
       this->Scheme.FinalFitIterations, progress);
-    TurnFlippedFaces(this->Graph.Mesh, this->LinearNormals, this->Fixed, this->Moved);
+    TurnFlippedFaces(this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved);
   }
 
   /// The reciprocal of the noise in units of ReferenceNoise.
@@ -215,7 +252,7 @@ private:
   const ParallelFor& Parallel;
   Points Moved;
   FaceGeometry Geometry;
-  Points LinearNormals; ///< of the last iteration
+  Points LastNormals; ///< of the last iteration
   double Tightening = 1.0;
   Vector LocalFactors; ///< of the fidelity, per vertex; no entries: 1
 };
@@ -246,7 +283,18 @@ DenoisingScheme SchemeFor(SurfaceKind kind, double noise)
     scheme.TangentialFidelity = 2.0;
     scheme.HasLocalFidelity = true;
     scheme.FinalFitIterations = 0;
+    scheme.VariationIterations = 0;
   }
+  return scheme;
+}
+
+DenoisingScheme SchemeForCorrelatedNoise(double length)
+{
+  DenoisingScheme scheme = SchemeFor(SurfaceKind::Sharp, ReferenceNoise);
+  scheme.LinearIterations = 5;
+  scheme.VariationIterations = 20;
+  scheme.FirstVariation = 0.3 * length;
+  scheme.LastVariation = 0.15 * length;
   return scheme;
 }
 

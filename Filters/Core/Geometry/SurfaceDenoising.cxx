@@ -56,8 +56,14 @@ double MeasureAngleRatio(const FaceGraph& graph, const Points& normals)
     std::sqrt(squares / static_cast<double>(differences.size()));
 }
 
-double EstimateNoise(const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
+/// correlated: what was found of it.
+double EstimateNoise(const TriangleMesh& mesh, const Points& points,
+  const CorrelatedNoise& correlated, const ParallelFor& parallel)
 {
+  if (correlated.Level > 0.0)
+  {
+    return correlated.Level;
+  }
   const double estimate = EstimateVertexNoise(mesh, points, parallel);
   return estimate < SmallestEstimate * MeanEdgeLength(mesh) ? 0.0 : estimate;
 }
@@ -70,6 +76,7 @@ SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::ve
   probe.LinearIterations = 0;
   probe.FitIterations = 10;
   probe.FinalFitIterations = 0;
+  probe.VariationIterations = 0;
   FaceGeometry geometry;
   geometry.Measure(graph.Mesh,
     DenoiseWithScheme(graph, points, fixed, noise, probe, parallel, progress), parallel);
@@ -81,6 +88,7 @@ SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::ve
 struct DenoisedPart
 {
   double NoiseLevel = 0.0; ///< in Units
+  double CorrelationLength = 0.0; ///< the same
   SurfaceType Type = SurfaceType::Automatic;
   Points Displacements;
 };
@@ -92,8 +100,10 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   const TriangleMesh mesh(part.Places, part.Faces, parallel);
   const double unit = mesh.LengthUnit();
   const Points points = GatherVertices(mesh, part.Places) / unit;
-  const double noise =
-    settings.NoiseLevel > 0.0 ? settings.NoiseLevel / unit : EstimateNoise(mesh, points, parallel);
+  const CorrelatedNoise correlated = EstimateCorrelatedNoise(mesh, points, parallel);
+  const double noise = settings.NoiseLevel > 0.0
+    ? settings.NoiseLevel / unit
+    : EstimateNoise(mesh, points, correlated, parallel);
   progress.Report(0.05);
   DenoisedPart result;
   result.NoiseLevel = noise * unit;
@@ -114,9 +124,13 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
       SurfaceKind::Sharp
     : settings.Type == SurfaceType::CAD;
   result.Type = isSharp ? SurfaceType::CAD : SurfaceType::Organic;
-  const Points moved = DenoiseWithScheme(graph, points, isFixed, noise,
-    SchemeFor(isSharp ? SurfaceKind::Sharp : SurfaceKind::Smooth, noise / MeanEdgeLength(mesh)),
-    parallel, progress.Part(0.25, 1.0));
+  const double h = MeanEdgeLength(mesh);
+  const DenoisingScheme scheme = correlated.Length > 0.0
+    ? SchemeForCorrelatedNoise(correlated.Length / h)
+    : SchemeFor(isSharp ? SurfaceKind::Sharp : SurfaceKind::Smooth, noise / h);
+  const Points moved =
+    DenoiseWithScheme(graph, points, isFixed, noise, scheme, parallel, progress.Part(0.25, 1.0));
+  result.CorrelationLength = correlated.Length * unit;
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
     result.Displacements.row(mesh.InputVertex()[i]) = unit * (moved.row(i) - points.row(i));
@@ -177,6 +191,8 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
       const double level = part.Units[i] * denoised.NoiseLevel;
       moved.row(part.Vertices[i]) += step;
       variance += level * level / count;
+      found.CorrelationLength =
+        std::max(found.CorrelationLength, part.Units[i] * denoised.CorrelationLength);
       found.MeanDisplacement += step.norm() / count;
       found.MaximumDisplacement = std::max(found.MaximumDisplacement, step.norm());
       found.FarVertices += step.norm() > FarDisplacement * level;

@@ -18,8 +18,8 @@ enum class SurfaceType
 struct DenoisingSettings
 {
   /// The standard deviation of the noise of the vertices along the normal, in the unit of the
-  /// points; 0: estimated for each part of the surface (see EstimateVertexNoise()). Estimates below
-  /// 0.005 mean edge lengths are taken for none.
+  /// points; 0: estimated for each part of the surface (see EstimateVertexNoise() and
+  /// EstimateCorrelatedNoise()). Estimates below 0.005 mean edge lengths are taken for none.
   double NoiseLevel = 0.0;
   SurfaceType Type = SurfaceType::Automatic;
 };
@@ -30,6 +30,9 @@ struct DenoisingReport
   double NoiseLevel = 0.0;
   /// Given or found; Automatic: no noise was found, or parts are of different types.
   SurfaceType Type = SurfaceType::Automatic;
+  /// The length over which the noise is correlated, in the unit of the points: the largest of the
+  /// parts. 0: none was found (see EstimateCorrelatedNoise()).
+  double CorrelationLength = 0.0;
   double MeanDisplacement = 0.0; ///< of the vertices, in the unit of the points
   double MaximumDisplacement = 0.0;
   /// The vertices whose displacement is more than 10 times the noise level of their part: outliers,
@@ -49,16 +52,18 @@ struct DenoisingReport
 /// with FitToNormals(): block descent on an energy of positions and normals, whose weights follow
 /// from the noise level. The first iterations use FilterNormals(), which suits piecewise constant
 /// normals and sharpens edges. The last ones use FitLinearNormals() with the normals of the present
-/// surface as guide, for piecewise linear normals, and TurnFlippedFaces(). On sharp surfaces, a
-/// fit to the last normals that is nearly solved follows. Tangential displacements are small, so
-/// that triangles and boundaries keep their shape. A noise level of 0 leaves the points as they
-/// are.
+/// surface as guide, for piecewise linear normals, and TurnFlippedFaces(). On sharp surfaces,
+/// iterations with NormalVariation follow, and a fit to the last normals that is nearly solved.
+/// Tangential displacements are small, so that triangles and boundaries keep their shape. A noise
+/// level of 0 leaves the points as they are.
 ///
 /// Displacements along the normal should have the variance of the noise (the discrepancy
 /// principle). If their median shows more, the fidelity grows. On organic surfaces it grows and
 /// falls per vertex, by local means of the squared displacements (G. Gilboa, N. Sochen, Y. Zeevi,
 /// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
 /// Transactions on Image Processing 15(8), 2006), so that regions of fine details keep them.
+///
+/// Noise that is correlated over several edges has a scheme of its own, SchemeForCorrelatedNoise().
 ///
 /// points: per vertex of the mesh; fixed: per vertex, nonzero for vertices that stay, may be empty.
 /// Throws Aborted.

@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -32,6 +31,14 @@ constexpr Index EnoughVertices = 20000;
 constexpr double GrowthOfDetails = 3.375;
 /// R0 of EstimateVertexNoise().
 constexpr double GrowthOfRoughDetails = 1.6;
+/// Of EstimateCorrelatedNoise().
+constexpr Index EnoughWideNeighbourhoods = 1000;
+constexpr double LeastGrowth = 1.3; ///< from two to eight rings
+constexpr double LargestLateGrowth = 1.6; ///< from eight to sixteen rings
+constexpr double SmallestCorrelated = 0.1; ///< in h
+constexpr double LargestCorrelated = 1.0; ///< in h
+constexpr double RadiusOfLength =
+  3.0; ///< at which half of the variance is reached, over the length
 
 using Quadric = Eigen::Matrix<double, 6, 1>;
 
@@ -45,14 +52,15 @@ struct VertexRange
   std::size_t size() const { return static_cast<std::size_t>(this->Last - this->First); }
 };
 
-/// A vertex and the vertices up to three edges away from it. A vertex with more than LargestFan
+/// A vertex and the vertices up to a number of edges away from it. A vertex with more than LargestFan
 /// triangles has neighbours of its own, but does not make them neighbours of each other.
 class Neighbourhood
 {
 public:
-  explicit Neighbourhood(const TriangleMesh& mesh)
+  Neighbourhood(const TriangleMesh& mesh, int rings)
     : Mesh(mesh)
     , FoundFrom(static_cast<std::size_t>(mesh.NumberOfVertices()), -1)
+    , RingEnds(static_cast<std::size_t>(rings))
   {
   }
 
@@ -102,7 +110,7 @@ private:
   const TriangleMesh& Mesh;
   std::vector<Index> FoundFrom; ///< per vertex: the last vertex near to which it was found
   std::vector<Index> Vertices; ///< ring after ring
-  std::array<std::size_t, 3> RingEnds{};
+  std::vector<std::size_t> RingEnds;
 };
 
 /// The rows: two main axes of the points, and the normal.
@@ -160,6 +168,44 @@ double NoiseOf(std::vector<double>& distances)
   return QuantileOf(distances, NoiseFraction) / NoiseQuantile;
 }
 
+/// Every so many vertices are used to have about `enough` of them.
+Index StrideFor(const TriangleMesh& mesh, Index enough)
+{
+  return std::max<Index>(1, mesh.NumberOfVertices() / enough);
+}
+
+/// sigma_r per number of rings in ascending `rings`, of every vertex with the stride.
+std::vector<double> MeasureDeviations(const TriangleMesh& mesh, const Points& points,
+  const std::vector<int>& rings, Index stride, const ParallelFor& parallel)
+{
+  const Index count = mesh.NumberOfVertices() / stride;
+  const double h = MeanEdgeLength(mesh);
+  std::vector<std::vector<double>> distances(
+    rings.size(), std::vector<double>(static_cast<std::size_t>(count)));
+  ForEachBlock(parallel, count,
+    [&](Index, Index begin, Index end)
+    {
+      Neighbourhood neighbourhood(mesh, rings.back());
+      for (Index i = begin; i < end; ++i)
+      {
+        neighbourhood.Find(i * stride);
+        for (std::size_t k = 0; k < rings.size(); ++k)
+        {
+          const VertexRange list = neighbourhood.WithinRings(rings[k]);
+          distances[k][i] = list.size() < SmallestNeighbourhood
+            ? -1.0
+            : StandardizedDistance(points, i * stride, list, h);
+        }
+      }
+    });
+  std::vector<double> deviations;
+  for (std::vector<double>& values : distances)
+  {
+    deviations.push_back(NoiseOf(values));
+  }
+  return deviations;
+}
+
 } // namespace
 
 double QuantileOf(std::vector<double>& values, double fraction)
@@ -187,30 +233,10 @@ double MeanEdgeLength(const TriangleMesh& mesh)
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
-  const Index stride = std::max<Index>(1, mesh.NumberOfVertices() / EnoughVertices);
-  const Index count = mesh.NumberOfVertices() / stride;
-  const double h = MeanEdgeLength(mesh);
-  std::vector<double> twoRings(static_cast<std::size_t>(count));
-  std::vector<double> threeRings(twoRings.size());
-  ForEachBlock(parallel, count,
-    [&](Index, Index begin, Index end)
-    {
-      Neighbourhood neighbourhood(mesh);
-      const auto distance = [&](Index vertex, int rings)
-      {
-        const VertexRange list = neighbourhood.WithinRings(rings);
-        return list.size() < SmallestNeighbourhood ? -1.0
-                                                   : StandardizedDistance(points, vertex, list, h);
-      };
-      for (Index i = begin; i < end; ++i)
-      {
-        neighbourhood.Find(i * stride);
-        twoRings[i] = distance(i * stride, 2);
-        threeRings[i] = distance(i * stride, 3);
-      }
-    });
-  const double two = NoiseOf(twoRings);
-  const double three = std::max(two, NoiseOf(threeRings));
+  const std::vector<double> deviations =
+    MeasureDeviations(mesh, points, { 2, 3 }, StrideFor(mesh, EnoughVertices), parallel);
+  const double two = deviations[0];
+  const double three = std::max(two, deviations[1]);
   if (!(two > 0.0))
   {
     return 0.0;
@@ -221,6 +247,36 @@ double EstimateVertexNoise(
   return two *
     std::sqrt(std::max(
       0.0, 1.0 - growth / (GrowthOfDetails - 1.0) - rest * relative * relative * relative));
+}
+
+CorrelatedNoise EstimateCorrelatedNoise(
+  const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
+{
+  const std::vector<int> rings{ 2, 3, 4, 6, 8, 12, 16 };
+  const std::vector<double> deviations =
+    MeasureDeviations(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);
+  const double h = MeanEdgeLength(mesh);
+  const double first = deviations.front();
+  const double eight = deviations[4];
+  const double level = deviations.back();
+  const bool isFound = eight > LeastGrowth * first && level < LargestLateGrowth * eight &&
+    level > SmallestCorrelated * h && level < LargestCorrelated * h;
+  if (!isFound)
+  {
+    return CorrelatedNoise();
+  }
+  std::size_t k = 1;
+  while (k + 1 < rings.size() && 2.0 * deviations[k] * deviations[k] < level * level)
+  {
+    ++k;
+  }
+  // interpolated between the two numbers of rings
+  const double below = deviations[k - 1] * deviations[k - 1];
+  const double above = deviations[k] * deviations[k];
+  const double share =
+    above > below ? std::clamp((0.5 * level * level - below) / (above - below), 0.0, 1.0) : 1.0;
+  const double radius = rings[k - 1] + share * (rings[k] - rings[k - 1]);
+  return { level, radius * h / RadiusOfLength };
 }
 
 } // namespace SurfaceDiffusion

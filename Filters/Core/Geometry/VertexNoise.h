@@ -45,4 +45,25 @@ double MeanEdgeLength(const TriangleMesh& mesh);
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel = SerialFor());
 
+/// Noise that vertices share with those near them, as that of depth cameras, in the unit of the
+/// points. All 0: none was found.
+struct CorrelatedNoise
+{
+  double Level = 0.0; ///< the standard deviation along the normal
+  double Length = 0.0; ///< over which it is correlated
+};
+
+/// Find correlated noise by the growth of sigma_r, the deviation of vertices from a quadric through
+/// r rings of neighbours (see EstimateVertexNoise()). A quadric follows noise of the correlation
+/// length L (covariance exp(-d^2 / (2 L^2))) as long as r is less than about 3 L / h, and from there
+/// on sigma_r stays at the level of the noise. White noise has one sigma_r for all r. The details of
+/// a surface make sigma_r grow with r all the way, by a factor of 2 and more from r = 8 to r = 16.
+///
+/// Noise is correlated if sigma_8 > 1.3 sigma_2, sigma_16 < 1.6 sigma_8, and sigma_16 is between 0.1
+/// h and h. Its level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of the
+/// level. Longer correlations, L > 3 h, do not end within the sixteen rings, and cannot be told from
+/// shape.
+CorrelatedNoise EstimateCorrelatedNoise(
+  const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel = SerialFor());
+
 } // namespace SurfaceDiffusion

@@ -132,8 +132,8 @@ def denoise_mesh(arguments, report):
         result = remove_noise(Surface(surface.points, surface.faces), full_output=True,
                               progress=progress, **options)
     _write_points(arguments, report, surface, result.points)
-    for name in ("noise_level", "mean_displacement", "maximum_displacement", "volume_before",
-                 "volume_after", "mean_edge_length"):
+    for name in ("noise_level", "correlation_length", "mean_displacement", "maximum_displacement",
+                 "volume_before", "volume_after", "mean_edge_length"):
         report.facts[name] = number(getattr(result, name))
     report.facts["surface_type"] = result.surface_type
     _say_written(arguments, report,
