@@ -101,15 +101,9 @@ public:
     BOUNDARY_FREE
   };
 
-  /**
-   * The points with values, input port 1. None: the values are those of the data.
-   */
-  void SetPointsConnection(vtkAlgorithmOutput* points) { this->SetInputConnection(1, points); }
-  void SetPointsData(vtkDataObject* points) { this->SetInputData(1, points); }
-
   ///@{
   /**
-   * The names of point arrays of these points: the values, with any number of components, NaN:
+   * The names of point arrays of the points on input port 1: the values, with any number of components, NaN:
    * unknown (default: empty, their active scalars), and the weights w, one component, 0 or more, 0:
    * unknown (default: empty, 1 everywhere).
    */

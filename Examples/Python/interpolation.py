@@ -56,7 +56,7 @@ def spline(surface, places, values):
     given.GetPointData().SetScalars(array)
     model = vtkSurfaceInterpolationFilter()
     model.SetInputData(surface)
-    model.SetPointsData(given)
+    model.SetInputData(1, given)
     model.ComputeErrorOn()
     model.Update()
     output = model.GetOutput()

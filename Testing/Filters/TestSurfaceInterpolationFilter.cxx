@@ -73,7 +73,7 @@ vtkSmartPointer<Filter> MakeFilter(vtkDataObject* surface, vtkDataObject* points
   filter->SetInputDataObject(surface);
   if (points)
   {
-    filter->SetPointsData(points);
+    filter->SetInputData(1, points);
   }
   return filter;
 }
@@ -184,7 +184,7 @@ TEST(InterpolationFilter, CountsFarPoints)
   EXPECT_EQ(Result(filter, "tInterpolated"), nullptr);
   auto both = Probes(30, 1.0);
   both->GetPoints()->SetPoint(4, 8.0, 0.0, 0.0);
-  filter->SetPointsData(both);
+  filter->SetInputData(1, both);
   EXPECT_NE(WarningOf(filter).find("1 value is farther from the surface than MaximumDistance 0.1"),
     std::string::npos);
   EXPECT_EQ(filter->GetNumberOfFarValues(), 1);
@@ -198,7 +198,7 @@ TEST(InterpolationFilter, ReportsBadPointsWithValues)
   EXPECT_NE(ErrorOf(filter).find("the points with values are a vtkTable; allowed: a vtkPointSet"),
     std::string::npos);
   auto probes = Probes(5, 1.0);
-  filter->SetPointsData(probes);
+  filter->SetInputData(1, probes);
   filter->SetPointValueArray("none");
   EXPECT_NE(ErrorOf(filter).find("PointValueArray \"none\" is not among the point arrays"),
     std::string::npos);
@@ -208,7 +208,7 @@ TEST(InterpolationFilter, ReportsBadPointsWithValues)
   probes->Modified();
   EXPECT_NE(ErrorOf(filter).find("no value is known"), std::string::npos);
   vtkNew<vtkPolyData> empty;
-  filter->SetPointsData(empty);
+  filter->SetInputData(1, empty);
   EXPECT_NE(ErrorOf(filter), "");
   filter->SetInputData(1, nullptr);
   filter->RemoveAllInputConnections(1);

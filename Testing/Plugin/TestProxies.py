@@ -463,7 +463,8 @@ class TestProxies(unittest.TestCase):
             for _ in range(20):
                 filter = getattr(servermanager.filters, name)(Input=sphere_with_arrays())
                 clicked = []
-                if name in ("FVMHeatFilter", "IntrinsicTVFilter", "SurfaceSegmentationFilter"):
+                if name in ("FVMHeatFilter", "IntrinsicTVFilter", "SurfaceInterpolationFilter",
+                            "SurfaceSegmentationFilter"):
                     filter.InputArray = dice.choice((["POINTS", "f"], ["CELLS", "g"]))
                 if "NumberOfTimeSteps" in filter.ListProperties():
                     filter.NumberOfTimeSteps = 2

@@ -106,7 +106,8 @@ DEFAULTS = {
     "vtkSurfaceInterpolationFilter": {
         **MODEL, "CorrelationLength": 0.0, "Exact": False, "AutomaticSmoothing": True,
         "NoiseLevel": 0.0, "Smoothing": 1.0, "KeepRange": False, "ComputeError": False,
-        "Boundary": "Natural", "MaximumDistance": 0.0, "AlongDiffusivity": 1.0,
+        "PointValueArray": "", "PointWeightArray": "", "Boundary": "Natural",
+        "MaximumDistance": 0.0, "AlongDiffusivity": 1.0,
         "AcrossDiffusivity": 1.0, "ResultOnCells": True},
     "vtkSurfaceDenoisingFilter": {
         **SURFACE, "ResultArrayName": "Displacement", "NoiseLevel": 0.0,
