@@ -242,6 +242,10 @@ KnownValues FindKnownValues(
     known.Values = collector.Take(samples.Given);
     return known;
   }
+  // With data on cells, factors may still be on points.
+  const bool factorsOfPoints = fields.Data.OnCells && !fields.FidelityFactors.OnCells &&
+    !fields.FidelityFactors.Values.empty();
+  const Vector ofVertices = factorsOfPoints ? MakeFidelityFactors(surface, fields) : Vector();
   const std::vector<SurfacePoint> middles =
     fields.Data.OnCells ? MiddlesOfCells(surface, fields) : std::vector<SurfacePoint>();
   for (std::size_t i = 0; i < static_cast<std::size_t>(fields.Data.Values.rows()); ++i)
@@ -254,7 +258,11 @@ KnownValues FindKnownValues(
     }
     if (fields.Data.OnCells && middles[i].Vertices[0] >= 0)
     {
-      collector.Add(middles[i], row, collector.WeightOf(i));
+      const std::array<Index, 3>& corners = middles[i].Vertices;
+      collector.Add(middles[i], row,
+        factorsOfPoints
+          ? (ofVertices[corners[0]] + ofVertices[corners[1]] + ofVertices[corners[2]]) / 3.0
+          : collector.WeightOf(i));
     }
     else if (!fields.Data.OnCells && surface.VertexOf(static_cast<Index>(i)) >= 0)
     {

@@ -185,6 +185,22 @@ TEST(InterpolationRun, HoldsTheValuesOfTriangles)
   }
 }
 
+TEST(InterpolationRun, WeighsTheValuesOfTrianglesByFactorsOfPointsToo)
+{
+  const TestSurface s = Icosphere(2);
+  Fields fields;
+  fields.Data.OnCells = true;
+  fields.Data.Values = Values::Constant(s.Faces.rows(), 1, 1.0);
+  fields.Data.Values.topRows(s.Faces.rows() / 2).setConstant(5.0);
+  InterpolationSettings settings;
+  settings.AutomaticSmoothing = false;
+  settings.Smoothing = 0.1;
+  const Values plain = Fitted(s, fields, settings).Result;
+  fields.FidelityFactors.Values.assign(static_cast<std::size_t>(s.Vertices.rows()), 4.0);
+  settings.Smoothing = 0.4; // the same minimum
+  EXPECT_LT((Fitted(s, fields, settings).Result - plain).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(InterpolationRun, CountsFarSamplesAndLeavesThemOut)
 {
   const TestSurface s = Icosphere(2);
