@@ -142,7 +142,8 @@ class Printing(unittest.TestCase):
                 ("part.stl -4mm out.stl --relief 1mm", ".*"),
                 ("part.stl 4mm out.stl --relief mm", ".*is 'mm'; allowed: a length.*"),
                 ("part.stl 4mm out.stl --relief 1mm --overhang 91", ".*allowed: degrees from 0 to 90.*"),
-                ("part.stl 4mm out.stl --relief 99mm", "--relief is 99 mm, but the part is 41.57 mm .*; allowed: less")):
+                ("part.stl 4mm out.stl --relief 99mm",
+                 "--relief is 99 mm, but the part is 41.57 mm .*; allowed: less")):
             with self.subTest(line):
                 code, out, error = run("texture", *line.split())
                 self.assertEqual((code, out), (2, ""), error)
