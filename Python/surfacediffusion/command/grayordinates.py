@@ -47,7 +47,7 @@ def smooth(arguments, report, content, width, voxel_width):
                     inside = (region if len(region) == 1 else region[chosen])[:, place.of_file]
                     with report.timed("compute"):
                         values, found = _smooth_place(place, file, data, chosen, values, inside,
-                                                      arguments.fix_zeros, report)
+                                                      _fixes_zeros(arguments, place), report)
                         rows += found
                 with report.timed("write"):
                     write(first, place.slices, values)
@@ -57,6 +57,12 @@ def smooth(arguments, report, content, width, voxel_width):
     report.facts.update(data=content.path, output=arguments.output, voxel_fwhm=voxel_width, voxels=sum(
         place.count for place in places if place.is_volume and place.solve is not None))
     return columns
+
+
+def _fixes_zeros(arguments, place):
+    """Whether zeros are missing; with the words of Workbench, on surfaces or among voxels."""
+    word = "fix_zeros_volume" if place.is_volume else "fix_zeros_surface"
+    return arguments.fix_zeros or getattr(arguments, word, False)
 
 
 @dataclass
@@ -129,7 +135,7 @@ def _surface_place(entry, part, surface, areas, width, arguments):
             sizes = np.divide(sizes * areas, whole, out=sizes, where=whole > 0)
         return sizes[entry.vertices]
 
-    return _Place(entry.name, [entry.place], part, solve, measure)
+    return _Place(entry.name, [entry.place], part, solve if width else None, measure)
 
 
 def _volume_place(entries, width):

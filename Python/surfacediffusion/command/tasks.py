@@ -53,6 +53,18 @@ def _smooth_file(arguments, report):
                  say=lambda surface: _width_text(width, surface), content=content)
 
 
+def cifti_smoothing(arguments, report):
+    arguments.volume_fwhm = arguments.volume_kernel * (SIGMA_TO_FWHM if arguments.sigma else 1)
+    if not arguments.width and not arguments.volume_kernel:
+        raise inputs.ArgumentProblem("SURFACE_KERNEL and VOLUME_KERNEL are 0; allowed: one above 0")
+    content = read_content(arguments.data)
+    if content.kind != "cifti":
+        raise content.error(f"a {content.name} file; allowed: CIFTI (.dscalar.nii, .dtseries.nii)")
+    width = arguments.width * (SIGMA_TO_FWHM if arguments.sigma else 1)
+    report.facts.update(fwhm=width, sigma=width / SIGMA_TO_FWHM, steps=arguments.steps)
+    _smooth_cifti(arguments, report, content, width)
+
+
 def _one_group(data, columns, patch):
     """The noise of all columns has one smoothness."""
     return [list(range(len(columns)))]
