@@ -29,8 +29,8 @@ struct Eigenmodes
 ///
 /// The entry of each mode with the largest magnitude is positive; of several that agree to 1e-6 the
 /// one of the first point. The start is random with a fixed seed per point: no bit depends on the
-/// number of threads. count: at most the number of vertices. Throws Aborted, NotConverged and
-/// NotPositiveDefinite.
+/// number of threads. count: at most the number of vertices. Throws Aborted, and std::runtime_error
+/// if K is indefinite or the iteration does not converge.
 Eigenmodes FindEigenmodes(const Assembler& assembler, const CornerWeights& coefficients,
   Index count, const ParallelFor& parallel = SerialFor(),
   const ProgressMonitor& progress = ProgressMonitor());
