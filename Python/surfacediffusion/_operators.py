@@ -25,8 +25,9 @@ class Eigenmodes(NamedTuple):
 
 
 def mass_matrix(surface: SurfaceLike, *, mask: ArrayLike | None = None) -> Any:
-    """The lumped mass matrix M of a surface: the diagonal matrix of the areas of the points' control
-    cells, a third of the triangles at each point. The integral of u over the surface is sum(M @ u).
+    """The lumped mass matrix M of a surface: the diagonal matrix of the areas of the points'
+    control cells, a third of the triangles at each point. The integral of u over the surface is
+    sum(M @ u).
 
     Parameters
     ----------
@@ -69,9 +70,9 @@ def stiffness_matrix(
     intrinsic_delaunay: bool = False,
 ) -> Any:
     """The stiffness matrix K of a surface, the finite-element and finite-volume discretisation of
-    -div(D grad u): u @ K @ u is the integral of grad u . D grad u for the linear interpolation of u.
-    With D = 1 it is the cotangent Laplacian, and M^-1 K u approximates minus the Laplace-Beltrami
-    operator of u, with the matrix M of :func:`mass_matrix`.
+    -div(D grad u): u @ K @ u is the integral of grad u . D grad u for the linear interpolation of
+    u. With D = 1 it is the cotangent Laplacian, and M^-1 K u approximates minus the
+    Laplace-Beltrami operator of u, with the matrix M of :func:`mass_matrix`.
 
     Parameters
     ----------
@@ -83,8 +84,8 @@ def stiffness_matrix(
         D of each face: a number, 0 or more, or a symmetric positive semidefinite tensor in space,
         whose part in the plane of the triangle counts. By default 1.
     intrinsic_delaunay : bool, default False
-        Whether K is that of the intrinsic Delaunay triangulation, whose entries off the diagonal are
-        0 or less. Not with `diffusivity`.
+        Whether K is that of the intrinsic Delaunay triangulation, whose entries off the diagonal
+        are 0 or less. Not with `diffusivity`.
 
     Returns
     -------
@@ -193,14 +194,14 @@ def eigenmodes(
     Returns
     -------
     Eigenmodes
-        `eigenvalues` (n,), ascending, and `modes` (points, n), orthonormal: modes.T @ M @ modes = 1.
-        The entry of each mode with the largest magnitude is positive, the first one of equal
+        `eigenvalues` (n,), ascending, and `modes` (points, n), orthonormal: modes.T @ M @ modes =
+        1. The entry of each mode with the largest magnitude is positive, the first one of equal
         entries. The same input gives the same bits, on any number of threads.
 
     References
     ----------
-    G. Golub, R. Underwood, The block Lanczos method for computing eigenvalues, Mathematical Software
-    III, 1977, 361-377.
+    G. Golub, R. Underwood, The block Lanczos method for computing eigenvalues, Mathematical
+    Software III, 1977, 361-377.
 
     Examples
     --------
@@ -245,8 +246,8 @@ def _as_delaunay(surface: Surface, intrinsic_delaunay: Any, tensors: Any) -> boo
         raise ValueError(f"intrinsic_delaunay is {shorten(intrinsic_delaunay)}; allowed: True or "
                          "False")
     if intrinsic_delaunay and tensors is not None:
-        raise ValueError("intrinsic_delaunay is True, and diffusivity is given for the faces, which "
-                         "are not its triangles; allowed: one of them")
+        raise ValueError("intrinsic_delaunay is True, and diffusivity is given for the faces, "
+                         "which are not its triangles; allowed: one of them")
     if intrinsic_delaunay and surface.areas is not None:
         raise ValueError("intrinsic_delaunay is True; allowed: False on surfaces with given areas")
     return bool(intrinsic_delaunay)
@@ -259,8 +260,8 @@ def _as_tensors(surface: Surface, diffusivity: Any) -> NDArray[np.float64] | Non
     m = surface.n_faces
     array = np.asarray(as_numbers("diffusivity", diffusivity), dtype=np.float64)
     if array.shape not in ((m,), (m, 3, 3)):
-        raise ValueError(f"diffusivity has shape {array.shape}; allowed: ({m},), one number per face, "
-                         f"or ({m}, 3, 3), one tensor per face")
+        raise ValueError(f"diffusivity has shape {array.shape}; allowed: ({m},), one number per "
+                         f"face, or ({m}, 3, 3), one tensor per face")
     if array.ndim == 1:
         array = array[:, None, None] * np.eye(3)
     bad = ~np.isfinite(array).all(axis=(1, 2))
@@ -270,6 +271,6 @@ def _as_tensors(surface: Surface, diffusivity: Any) -> NDArray[np.float64] | Non
         bad |= np.linalg.eigvalsh(array)[:, 0] < -1e-10 * size
     if bad.any():
         row = int(np.argmax(bad))
-        raise ValueError(f"diffusivity is {array[row].tolist()} in row {row}; allowed: finite numbers, "
-                         "0 or more, or symmetric positive semidefinite tensors")
+        raise ValueError(f"diffusivity is {array[row].tolist()} in row {row}; allowed: finite "
+                         "numbers, 0 or more, or symmetric positive semidefinite tensors")
     return np.ascontiguousarray(array.reshape(m, 9))

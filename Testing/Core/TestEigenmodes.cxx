@@ -57,7 +57,6 @@ TEST(Eigenmodes, OfTheSphereHaveOrderTwoAndTheirMultiplicities)
     EXPECT_LT(DefectOfOrthonormality(s, found), 1e-12);
   }
   EXPECT_GT(ObservedOrder(errors[0], errors[1]), 1.9);
-  EXPECT_LT(errors[1], 0.01 * 30.0 / (radius * radius));
 }
 
 TEST(Eigenmodes, AreThoseOfTheDenseProblem)
@@ -72,7 +71,8 @@ TEST(Eigenmodes, AreThoseOfTheDenseProblem)
     const Vector roots = mesh.ControlAreas().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd dense =
       roots.asDiagonal() * Eigen::MatrixXd(stiffness) * roots.asDiagonal();
-    const Vector expected = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues();
+    const Vector expected =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense, Eigen::EigenvaluesOnly).eigenvalues();
     constexpr Index count = 40;
     const Eigenmodes found = FindEigenmodes(*assembler, CotanWeights(mesh), count);
     ASSERT_GT(mesh.NumberOfVertices(), 400) << "solved by iteration";

@@ -93,8 +93,8 @@ TEST(GeodesicDistance, OnASphereIsThatOfGreatCircles)
   EXPECT_LT(fine, 0.005 * Pi) << "of the largest distance";
 }
 
-// Straight lines from one point cross the edges of flat triangles: no error but round-off. Some ways
-// of obtuse triangles go along an edge.
+// Straight lines from one point cross the edges of flat triangles: no error but round-off. Some
+// ways of obtuse triangles go along an edge.
 TEST(GeodesicDistance, InAPlaneIsExact)
 {
   const Surface plate = Rotated(Plate(20, 3.0));
@@ -115,8 +115,8 @@ TEST(GeodesicDistance, InAPlaneIsExact)
   }
 }
 
-// From one end of the short diagonal of a kite of two triangles, on which the heat method is wrong by
-// a quarter.
+// From one end of the short diagonal of a kite of two triangles, on which the heat method is wrong
+// by a quarter.
 TEST(GeodesicDistance, OnAKiteOfTwoTrianglesIsExact)
 {
   const Surface kite = MakeSurface(

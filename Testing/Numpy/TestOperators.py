@@ -45,8 +45,9 @@ def irregular(seed=0):
 class WithoutScipy(unittest.TestCase):
     def test_matrices_say_what_is_missing(self):
         for function in (sd.mass_matrix, sd.stiffness_matrix, sd.gradient_matrix):
-            with self.assertRaisesRegex(ImportError, f"^{function.__name__}\\(\\) returns a matrix of "
-                                        "scipy.sparse, but scipy is not installed; pip install scipy$"):
+            message = (f"^{function.__name__}\\(\\) returns a matrix of scipy.sparse, but scipy is "
+                       "not installed; pip install scipy$")
+            with self.assertRaisesRegex(ImportError, message):
                 function(sd.sphere(1))
 
 
@@ -72,7 +73,8 @@ class Matrices(unittest.TestCase):
 
     def test_gradients_of_linear_functions_are_exact(self):
         points, faces, axes = irregular()
-        gradients = (sd.gradient_matrix((points, faces)) @ (points @ [1.0, -2.0, 3.0])).reshape(-1, 3)
+        values = points @ [1.0, -2.0, 3.0]
+        gradients = (sd.gradient_matrix((points, faces)) @ values).reshape(-1, 3)
         normal = axes[:, 2]
         expected = np.array([1.0, -2.0, 3.0])
         expected = expected - normal * (normal @ expected)
@@ -90,7 +92,8 @@ class Matrices(unittest.TestCase):
             roots = rng.normal(size=(len(faces), 3, 3))
             tensors = roots @ roots.transpose(0, 2, 1)
             numbers = rng.uniform(0.0, 3.0, len(faces))
-            for given, blocks in ((None, np.tile(np.eye(3), (len(faces), 1, 1))), (tensors, tensors),
+            one = np.tile(np.eye(3), (len(faces), 1, 1))
+            for given, blocks in ((None, one), (tensors, tensors),
                                   (numbers, numbers[:, None, None] * np.eye(3))):
                 weights = sparse.block_diag(list(areas[:, None, None] * blocks))
                 expected = (gradient.T @ weights @ gradient).toarray()

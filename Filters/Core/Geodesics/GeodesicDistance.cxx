@@ -28,8 +28,8 @@ struct LaidOut
   {
   }
 
-  /// The distance of C from a point below AB at distances da from A and db from B, or infinity if its
-  /// straight line does not cross AB.
+  /// The distance of C from a point below AB at distances da from A and db from B, or infinity if
+  /// its straight line does not cross AB.
   double FromPoint(double da, double db) const
   {
     const double x = (da * da - db * db + this->Edge * this->Edge) / (2.0 * this->Edge);

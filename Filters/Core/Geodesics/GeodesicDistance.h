@@ -37,8 +37,8 @@ struct FrontSource
 ///
 /// A triangle of infinite slowness is a barrier: no way crosses it, but ways along an edge that
 /// another triangle shares go by. Ways around a corner of a boundary or a barrier, where the open
-/// angle is above pi, go on from there as from a source. Fronts of different labels do not mix: beside the line where they meet, ways go
-/// along edges.
+/// angle is above pi, go on from there as from a source. Fronts of different labels do not mix:
+/// beside the line where they meet, ways go along edges.
 class GeodesicDistance
 {
 public:

@@ -128,8 +128,9 @@ private:
 
   void Factorize(Index wanted, const ProgressMonitor& progress)
   {
-    // A sixteenth of the largest eigenvalue that is wanted, by Weyl's law: smaller shifts separate it
-    // hardly better from the next ones, but powers of A would lose its digits beside the smallest.
+    // A sixteenth of the largest eigenvalue that is wanted, by Weyl's law: smaller shifts separate
+    // it hardly better from the next ones, but powers of A would lose its digits beside the
+    // smallest.
     constexpr double share = 1.0 / 16.0;
     const double largest = 4.0 * std::acos(-1.0) * wanted / this->Area;
     SparseMatrix shifted = this->S;

@@ -15,8 +15,8 @@ struct Eigenmodes
   Values Modes; ///< n x count, one per column: x_k^T M x_l = 1 if k = l, and 0 otherwise
 };
 
-/// The `count` smallest eigenvalues of the operator -div(D grad) on a surface, K x = lambda M x, and
-/// their modes, in units of the mesh: eigenvalues in 1 / LengthUnit()^2 of the coordinates.
+/// The `count` smallest eigenvalues of the operator -div(D grad) on a surface, K x = lambda M x,
+/// and their modes, in units of the mesh: eigenvalues in 1 / LengthUnit()^2 of the coordinates.
 /// coefficients: of D, positive semidefinite, as those of CotanWeights.h.
 ///
 /// Block Lanczos with full orthogonalisation (G. Golub, R. Underwood, Mathematical Software III,
@@ -24,13 +24,13 @@ struct Eigenmodes
 /// solves, which are cheap, and shorter bases, whose orthogonalisation is not. The connected
 /// components have separate modes, which are zero elsewhere: eigenvalues that several parts have in
 /// common are found as often as they occur. Of each component the first mode is constant, and its
-/// eigenvalue exactly 0. An eigenvalue of one component is found as often as it occurs if that is at
-/// most 16 times.
+/// eigenvalue exactly 0. An eigenvalue of one component is found as often as it occurs if that is
+/// at most 16 times.
 ///
 /// The entry of each mode with the largest magnitude is positive; of several that agree to 1e-6 the
 /// one of the first point. The start is random with a fixed seed per point: no bit depends on the
-/// number of threads. count: at most the number of vertices. Throws Aborted, NotConverged and
-/// NotPositiveDefinite.
+/// number of threads. count: at most the number of vertices. Throws Aborted, and std::runtime_error
+/// if K is indefinite or the iteration does not converge.
 Eigenmodes FindEigenmodes(const Assembler& assembler, const CornerWeights& coefficients,
   Index count, const ParallelFor& parallel = SerialFor(),
   const ProgressMonitor& progress = ProgressMonitor());

@@ -12,8 +12,8 @@
 namespace SurfaceDiffusion
 {
 
-/// An orthonormal basis of many columns of n rows, which grows by blocks of BlockColumns columns. Its
-/// products with a block run on dense tiles, and no bit depends on the number of threads.
+/// An orthonormal basis of many columns of n rows, which grows by blocks of BlockColumns columns.
+/// Its products with a block run on dense tiles, and no bit depends on the number of threads.
 class KrylovBasis
 {
 public:
