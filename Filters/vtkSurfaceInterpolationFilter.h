@@ -17,8 +17,8 @@
  *
  * | vertices | 642 | 2,562 | 10,242 | 40,962 | 163,842 |
  * | --- | --- | --- | --- | --- | --- |
- * | held values, steady state of the heat equation | 0.76 | 1.14 | 1.48 | 1.80 | 2.09 |
- * | this filter, Exact | 0.024 | 0.016 | 0.012 | 0.011 | 0.011 |
+ * | held values, steady state of the heat equation | 0.76 | 1.13 | 1.48 | 1.79 | 2.09 |
+ * | this filter, Exact | 0.023 | 0.015 | 0.012 | 0.011 | 0.010 |
  *
  * **The values** are
  * - those of a surface with points on input port 1 (a vtkPointSet), which are projected to the
