@@ -164,6 +164,7 @@ private:
       NormalVariationSettings settings;
       settings.First =
         scheme.FirstVariation * std::pow(scheme.LastVariation / scheme.FirstVariation, fraction);
+      settings.Iterations = scheme.VariationSplittings;
       settings.Second = scheme.SecondOrder * settings.First;
       variation.SetPlaces(this->Moved, this->Geometry);
       this->LastNormals = variation.Minimize(this->Geometry.Normals, settings, part.Part(0.0, 0.8));
@@ -293,6 +294,7 @@ DenoisingScheme SchemeForCorrelatedNoise(double length)
   DenoisingScheme scheme = SchemeFor(SurfaceKind::Sharp, ReferenceNoise);
   scheme.LinearIterations = 5;
   scheme.VariationIterations = 20;
+  scheme.VariationSplittings = 15;
   scheme.FirstVariation = 0.3 * length;
   scheme.LastVariation = 0.15 * length;
   return scheme;

@@ -14,7 +14,7 @@ struct DenoisingScheme
 {
   /// The first stage: FilterNormals(), which finds the edges of the surface.
   NormalFilterSettings Filter;
-  int Iterations = 12;
+  int Iterations = 10;
   /// Fidelity of the fit in the first and in the last iteration for noise of 0.3 h. It is
   /// proportional to the inverse of the variance of the noise.
   double FirstFidelity = 0.45;
@@ -31,6 +31,7 @@ struct DenoisingScheme
   double SecondOrder = 1.3; ///< weight of the second order over that of the first
   double VariationRange = 0.3; ///< of the weights of the edges
   double VariationFidelity = 0.1; ///< of the fit, for noise of 0.3 h
+  int VariationSplittings = 12; ///< in each of them
   int VariationFitIterations = 6;
   /// The end: one fit to the normals of the last iteration that is nearly solved, with a fidelity
   /// that grows less with weaker noise than those of the iterations, in which too loose a fit would

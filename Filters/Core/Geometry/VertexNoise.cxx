@@ -33,6 +33,7 @@ constexpr double GrowthOfDetails = 3.375;
 constexpr double GrowthOfRoughDetails = 1.6;
 /// Of EstimateCorrelatedNoise().
 constexpr Index EnoughWideNeighbourhoods = 1000;
+constexpr Index FewestVertices = 3200; ///< four times those within sixteen rings
 constexpr double LeastGrowth = 1.3; ///< from two to eight rings
 constexpr double LargestLateGrowth = 1.6; ///< from eight to sixteen rings
 constexpr double SmallestCorrelated = 0.1; ///< in h
@@ -252,6 +253,10 @@ double EstimateVertexNoise(
 CorrelatedNoise EstimateCorrelatedNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
+  if (mesh.NumberOfVertices() < FewestVertices)
+  {
+    return CorrelatedNoise();
+  }
   const std::vector<int> rings{ 2, 3, 4, 6, 8, 12, 16 };
   const std::vector<double> deviations =
     MeasureDeviations(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);

@@ -60,7 +60,8 @@ struct CorrelatedNoise
 /// a surface make sigma_r grow with r all the way, by a factor of 2 and more from r = 8 to r = 16.
 ///
 /// Noise is correlated if sigma_8 > 1.3 sigma_2, sigma_16 < 1.6 sigma_8, and sigma_16 is between 0.1
-/// h and h. Its level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of the
+/// h and h, on surfaces of at least 3,200 vertices, of which sixteen rings are a small part. Its
+/// level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of the
 /// level. Longer correlations, L > 3 h, do not end within the sixteen rings, and cannot be told from
 /// shape.
 CorrelatedNoise EstimateCorrelatedNoise(
