@@ -136,7 +136,7 @@ WORDS = {
                  "FitzHughNagumo"),
     "TextureChemical": ("U1", "U2"), "SurfaceType": ("Automatic", "CAD", "Organic"),
     "Method": ("PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints"),
-    "PrincipalDirection": ("Minimum", "Maximum"),
+    "PrincipalDirection": ("Minimum", "Maximum"), "Boundary": ("Natural", "Free"),
 }
 
 

@@ -144,7 +144,7 @@ std::vector<FilterKind> KindsOfParts()
       const std::string name = kind.Name;
       bool finds = name.find("MumfordShah") == 0 && name != "MumfordShahGiven";
       for (const char* const found :
-        { "Automatic", "Found", "CoarseStart", "Segmentation", "Direction" })
+        { "Automatic", "Found", "CoarseStart", "Segmentation", "Direction", "Interpolation" })
       {
         finds = finds || name.find(found) != std::string::npos;
       }
