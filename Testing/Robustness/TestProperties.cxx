@@ -37,6 +37,7 @@ const std::set<std::string> WithoutEffectInClass = {
   "vtkMumfordShahFilter EdgeCurves", // three steps find no edge that is long enough
   "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
   "vtkSurfaceInterpolationFilter MaximumDistance", // of points on the second input
+  "vtkSurfaceInterpolationFilter RandomSeed", // of more values than the surface has
 };
 
 /// An ellipsoid with obtuse triangles. One patch has points of its own: the others are at most 0.01
@@ -202,6 +203,12 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   needed["vtkSurfaceSegmentationFilter FidelityWeight"] =
     needed["vtkSurfaceSegmentationFilter Units"] =
       With<Segmentation>([](Segmentation* f) { f->AutomaticFidelityOff(); });
+  needed["KeepRange"] = With<Spline>(
+    [](Spline* f)
+    {
+      f->ExactOn();
+      SetInputArray(f, 1, "mask");
+    });
   needed["Smoothing"] = needed["vtkSurfaceInterpolationFilter Units"] =
     With<Spline>([](Spline* f) { f->AutomaticSmoothingOff(); });
   needed["NoiseScale"] = needed["IntegrationScale"] = needed["Contrast"] = needed["Alpha"] =
