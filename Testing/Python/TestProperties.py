@@ -121,7 +121,6 @@ DEFAULTS = {
 EDGE_FUNCTIONS = ("TotalVariation", "PeronaMalikExponential", "PeronaMalikRational", "Charbonnier",
                   "Weickert", "Constant")
 WORDS = {
-    "Boundary": ("Natural", "Free"),
     "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),
     "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),
     "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit"),
