@@ -178,14 +178,27 @@ private:
     return this->Orthonormalize(w);
   }
 
+  /// w -= z (z^T w)
   void RemoveConstant(Values& w) const
   {
-    for (Index k = 0; k < Block; ++k)
+    using Row = Eigen::Matrix<double, 1, Block>;
+    std::vector<Row> parts(static_cast<std::size_t>(NumberOfBlocks(this->Size())));
+    ForEachBlock(this->Parallel, this->Size(),
+      [&](Index block, Index begin, Index end)
+      {
+        Row& part = parts[static_cast<std::size_t>(block)];
+        part.setZero();
+        for (Index i = begin; i < end; ++i)
+        {
+          part += this->Z[i] * w.row(i);
+        }
+      });
+    Row product = Row::Zero();
+    for (const Row& part : parts)
     {
-      const double product =
-        Sum(this->Parallel, this->Size(), [&](Index i) { return this->Z[i] * w(i, k); });
-      ForEach(this->Parallel, this->Size(), [&](Index i) { w(i, k) -= product * this->Z[i]; });
+      product += part;
     }
+    ForEach(this->Parallel, this->Size(), [&](Index i) { w.row(i) -= this->Z[i] * product; });
   }
 
   KrylovBasis::Square Gram(const Values& w) const
