@@ -46,7 +46,7 @@ nb::dict Refine(
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      const SurfaceArrays arrays = surface.Read(std::nullopt, false);
+      const SurfaceArrays arrays = surface.Read({});
       refined = RefineEdges(arrays.Points, arrays.Triangles, length, maximumTriangles, monitor);
     });
   std::transform(refined.InputTriangle.begin(), refined.InputTriangle.end(),
@@ -70,7 +70,7 @@ Vector ToVector(const FactorArray& numbers)
 nb::object FindHeights(const InputSurface& surface, const FactorArray& values, double height,
   double base, bool twoLevels, double threshold, double flank)
 {
-  const SurfaceArrays arrays = surface.Read(std::nullopt, false);
+  const SurfaceArrays arrays = surface.Read({});
   return ToNumpy(ReliefHeights(arrays.Points, arrays.Triangles, ToVector(values),
     { height, base, twoLevels, threshold, flank }));
 }
@@ -82,7 +82,7 @@ nb::dict MakeReliefOf(
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      const SurfaceArrays arrays = surface.Read(std::nullopt, false);
+      const SurfaceArrays arrays = surface.Read({});
       relief = MakeRelief(
         arrays.Points, arrays.Triangles, ToVector(heights), PythonThreads::Instance(), monitor);
     });
