@@ -114,7 +114,7 @@ def refine(
     >>> square = Surface([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]])
     >>> fine = refine(square, 0.3)
     >>> fine.surface, fine.longest_edge
-    (<Surface: 25 points, 32 faces>, 0.25)
+    (<Surface: 41 points, 64 faces>, 0.25)
     >>> bool((fine.at_points(square.points) == fine.surface.points).all())
     True
     """
