@@ -23,7 +23,8 @@ print(part)
 # %%
 # The triangles of CAD are far too large for a pattern. With ``refine_to="Automatic"`` their edges are
 # bisected to eight per wavelength. Flat faces stay flat and sharp edges stay sharp.
-texture = turing_texture(part, feature_size=5.0, diffusion_rate1=2.6 * 18, refine_to="Automatic")
+texture = turing_texture(part, feature_size=5.0, diffusion_rate1=2.6 * 18, refine_to="Automatic",
+                         coarse_start_size=0)
 fine = texture.surface
 print(fine)
 show(fine.points, fine.triangles, {"texture": texture.texture}, view=(1, 1, 1.5), up=(0, 0, 1))
