@@ -41,8 +41,8 @@ constexpr double Hardness = 30.0;
 // multigrid not before that.
 constexpr double LeastOfExpected = 1.5;
 constexpr double LeastOfNext = 1.25; // of the time of the next method
-// Needles are in parametric surfaces, whose factor takes longer than that of the scanned surfaces of
-// SolverCosts.h.
+// Parametric surfaces have most needles, and their factor takes longer than that of the scanned
+// surfaces of SolverCosts.h.
 constexpr double FactorOfParametric = 1.7;
 constexpr double MostOfExpected = 5.0;
 // Over several processes longer steps are cheaper with multigrid.

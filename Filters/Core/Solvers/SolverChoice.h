@@ -53,8 +53,8 @@ struct SolverChoice
   /// The number of iterations of the first solve with a matrix from which on Next is expected to be
   /// faster. That solve decides the method for the matrix: see ConvergenceForecast. 0: any number.
   int Patience = 0;
-  /// Of a first method that is conjugate gradients: the iterations that a solve takes on even meshes
-  /// with this diffusion number, from which the matrix lets forecast those that it takes. 0: unknown.
+  /// Of conjugate gradients as the first method: the iterations of a solve on even meshes with this
+  /// diffusion number. Those with the matrix are forecast from them. 0: unknown.
   double ExpectedIterations = 0.0;
   double DiffusionNumber = 0.0;
 
