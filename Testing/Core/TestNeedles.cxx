@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 using namespace SurfaceDiffusion;
@@ -82,6 +83,22 @@ TEST(Needles, AutomaticTakesFewIterationsOnASphereOfMeridians)
 {
   EXPECT_LE(
     HeatSteps(LatitudeLongitudeSphere(150, 150), 1.0).IterationsOf(SolverMethod::Automatic), 150);
+}
+
+// Not one iteration is lost to conjugate gradients, which the matrix shows to be hopeless.
+TEST(Needles, AutomaticBeginsWithMultigridOnASphereOfMeridians)
+{
+  HeatSteps steps(LatitudeLongitudeSphere(200, 200), 1.0);
+  steps.Task.Tolerance = 1e-6;
+  int automatic = 0, multigrid = 0;
+  for (const auto& [method, iterations] : { std::pair(SolverMethod::Automatic, &automatic),
+         std::pair(SolverMethod::Multigrid, &multigrid) })
+  {
+    const auto solver = MakeSolver(method, steps.Task);
+    solver->SetLimits({ 1e-6, 1000 });
+    steps.Run(*solver, *iterations);
+  }
+  EXPECT_EQ(automatic, multigrid);
 }
 
 // Iterations of methods that fail count, too: solvers report their progress after every eighth one.

@@ -16,30 +16,21 @@ namespace SurfaceDiffusion
 namespace
 {
 
+/// Of multigrid, which takes a tenth of them on needles that it resolves.
+constexpr int MostOfSecondTrial = 128;
+
 /// Iterations from the answer of a factorisation rarely come closer.
 constexpr int MostAfterFactorization = 128;
 
 /// Whether triangles are so narrow that iterations end at round-off before they resolve the
 /// differences across them to the tolerance. The diagonal entries of such vertices are 1e8 times
 /// larger than others, and cancel in the row sums, which are the right-hand side of a step from the
-/// constant 1. diagonal, sums: work.
-bool HasUnresolvedNeedles(const SparseMatrix& matrix, double tolerance, const ParallelFor& parallel,
-  Vector& diagonal, Vector& sums)
+/// constant 1.
+bool HasUnresolvedNeedles(
+  const Vector& diagonal, const Vector& sums, double tolerance, const ParallelFor& parallel)
 {
   constexpr double large = 1e8;
-  const auto n = static_cast<Index>(matrix.rows());
-  diagonal.resize(n);
-  sums.resize(n);
-  ForEach(parallel, n,
-    [&](Index i)
-    {
-      diagonal[i] = DiagonalEntry(matrix, i);
-      sums[i] = 0.0;
-      for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
-      {
-        sums[i] += a.value();
-      }
-    });
+  const auto n = static_cast<Index>(diagonal.size());
   const double mean =
     std::exp(Sum(parallel, n, [&](Index i) { return std::log(diagonal[i]); }) / std::max(n, 1));
   if (!(Max(parallel, n, [&](Index i) { return diagonal[i]; }) > large * mean))
@@ -59,9 +50,18 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
 {
   this->Matrix = &matrix;
   this->IsUndecided = true;
+  std::size_t begin = 0;
+  if (this->Patience > 0)
+  {
+    this->MeasureRows(matrix);
+    const double forecast = this->ForecastOf(matrix);
+    const bool isHopeless = forecast > this->Patience;
+    begin = isHopeless ? 1 : 0;
+    this->Needed =
+      std::max(this->Needed, isHopeless ? std::numeric_limits<double>::infinity() : forecast);
+  }
   if (this->Patience > 0 &&
-    HasUnresolvedNeedles(
-      matrix, this->Limits.Tolerance, this->Parallel, this->Diagonal, this->RowSums))
+    HasUnresolvedNeedles(this->Diagonal, this->RowSums, this->Limits.Tolerance, this->Parallel))
   {
     try
     {
@@ -74,7 +74,7 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
     {
     }
   }
-  for (this->First = 0;; ++this->First)
+  for (this->First = begin;; ++this->First)
   {
     try
     {
@@ -90,6 +90,50 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
       }
     }
   }
+}
+
+void FallBackSolver::MeasureRows(const SparseMatrix& matrix)
+{
+  const auto n = static_cast<Index>(matrix.rows());
+  this->Diagonal.resize(n);
+  this->RowSums.resize(n);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      this->Diagonal[i] = DiagonalEntry(matrix, i);
+      this->RowSums[i] = 0.0;
+      for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
+      {
+        this->RowSums[i] += a.value();
+      }
+    });
+}
+
+/// Of conjugate gradients, from MeasureRows(): they need the iterations of even meshes on which the
+/// diffusion number is that of the stiffest fiftieth of the vertices. Few stiffer ones only add few
+/// eigenvalues, which are found one by one. 0: no forecast.
+double FallBackSolver::ForecastOf(const SparseMatrix& matrix)
+{
+  constexpr double perDiffusionNumber = 4.0; // dt K_ii / M_ii on an even mesh
+  constexpr double exponent = 0.4; // of the diffusion number in the model of iterations
+  constexpr Index stiffest = 50; // one of so many vertices
+  const auto n = static_cast<Index>(matrix.rows());
+  if (this->ExpectedIterations == 0.0 || n < stiffest)
+  {
+    return 0.0;
+  }
+  this->Stiffness.resize(n);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      const double sum = this->RowSums[i];
+      this->Stiffness[i] = sum > 0.0 ? (this->Diagonal[i] - sum) / sum : 0.0;
+    });
+  double* const begin = this->Stiffness.data();
+  double* const found = begin + (n - n / stiffest);
+  std::nth_element(begin, found, begin + n);
+  const double ratio = *found / (perDiffusionNumber * this->DiffusionNumber);
+  return this->ExpectedIterations * std::pow(std::max(ratio, 1.0), exponent);
 }
 
 SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMonitor& progress)
@@ -167,7 +211,8 @@ SolveReport FallBackSolver::TrySolve(std::size_t number, IterationLimits limits,
   if (isTrial)
   {
     limits.StopsEarly = true;
-    limits.MaximumNumberOfIterations = std::min(limits.MaximumNumberOfIterations, this->Patience);
+    limits.MaximumNumberOfIterations =
+      std::min(limits.MaximumNumberOfIterations, number == 0 ? this->Patience : MostOfSecondTrial);
   }
   method.SetLimits(limits);
   const SolveReport report = method.Solve(b, x, progress.Part(begin, 1.0));
@@ -186,8 +231,8 @@ void FallBackSolver::Decide(std::size_t method, bool isGood)
 {
   if (this->IsTrial(method))
   {
-    this->First = isGood ? 0 : 1;
-    this->IsUndecided = false;
+    this->IsUndecided = !isGood && method + 1 < this->Methods.size();
+    this->First = this->IsUndecided ? method + 1 : method;
   }
 }
 

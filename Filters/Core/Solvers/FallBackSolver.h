@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SolverChoice.h"
 
 #include <cstddef>
 #include <memory>
@@ -15,18 +16,22 @@ namespace SurfaceDiffusion
 /// Several methods: the first, and the next ones for the systems on which those before fail. If the
 /// first one has a limited patience, the first solve with a matrix is its trial: it ends when its
 /// rate of convergence lets expect more iterations than that (ConvergenceForecast), and later
-/// solves begin with the next method. On needles that nothing but a factorisation resolves, this is
-/// the first method at once. All this depends on the matrix and the first right-hand side only: if
-/// later failures were remembered, the bits of a step would depend on the steps computed before it.
+/// solves begin with the next method. If the matrix lets forecast that many iterations of conjugate
+/// gradients (ForecastOf), all solves do, and the first one is the trial of the next method. On
+/// needles that nothing but a factorisation resolves, this is the first method at once. All this
+/// depends on the matrix and the first right-hand side only: if later failures were remembered, the
+/// bits of a step would depend on the steps computed before it.
 class FallBackSolver : public LinearSolver
 {
 public:
-  /// factor: the number of the method that is a factorisation. patience: SolverChoice::Patience.
+  /// factor: the number of the method that is a factorisation.
   FallBackSolver(std::vector<std::unique_ptr<LinearSolver>> methods, std::size_t factor,
-    int patience, const ParallelFor& parallel)
+    const SolverChoice& choice, const ParallelFor& parallel)
     : Methods(std::move(methods))
     , Factor(factor)
-    , Patience(patience)
+    , Patience(choice.Patience)
+    , ExpectedIterations(choice.ExpectedIterations)
+    , DiffusionNumber(choice.DiffusionNumber)
     , Parallel(parallel)
   {
   }
@@ -48,20 +53,24 @@ private:
     Values& x, const ProgressMonitor& progress);
   bool IsTrial(std::size_t method) const
   {
-    return method == 0 && this->IsUndecided && this->Patience > 0;
+    return method == this->First && method != this->Factor && this->IsUndecided &&
+      this->Patience > 0;
   }
+  double ForecastOf(const SparseMatrix& matrix);
+  void MeasureRows(const SparseMatrix& matrix);
   void Decide(std::size_t method, bool isGood);
 
   std::vector<std::unique_ptr<LinearSolver>> Methods;
   const std::size_t Factor;
   const int Patience;
+  const double ExpectedIterations, DiffusionNumber;
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
   std::size_t First = 0; ///< the method that solves begin with
   std::size_t HasMatrix = 0; ///< the methods before this one have the matrix or are out of use
   bool IsUndecided = true; ///< no solve with the matrix yet
   Values Best;
-  Vector Diagonal, RowSums; ///< of the matrix, kept so that time steps do not allocate
+  Vector Diagonal, RowSums, Stiffness; ///< of the matrix, kept so that time steps do not allocate
   double Needed = 0.0; ///< the least patience of all trials; infinite if one went wrong
 };
 

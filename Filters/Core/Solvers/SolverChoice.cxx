@@ -41,6 +41,9 @@ constexpr double Hardness = 30.0;
 // multigrid not before that.
 constexpr double LeastOfExpected = 1.5;
 constexpr double LeastOfNext = 1.25; // of the time of the next method
+// Parametric surfaces have most needles, and their factor takes longer than that of the scanned
+// surfaces of SolverCosts.h.
+constexpr double FactorOfParametric = 1.7;
 constexpr double MostOfExpected = 5.0;
 // Over several processes longer steps are cheaper with multigrid.
 constexpr double LargestDistributedJacobi = 10.0;
@@ -148,13 +151,18 @@ SolverChoice FindFastest(const SolverTask& task)
   choice.Method = SolverMethod::ConjugateGradient;
   double next = costs.Factorization();
   const double multigrid = costs.Multigrid(Hardness);
-  if (task.AllowMultigrid && (multigrid < next || !hasRoom))
+  if (task.AllowMultigrid && (multigrid < FactorOfParametric * next || !hasRoom))
   {
     choice.Next = SolverMethod::Multigrid;
     next = multigrid;
   }
   choice.Patience = PatienceOf(
     std::max(LeastOfNext * next / costs.Iteration(), LeastOfExpected * costs.Iterations()));
+  if (task.AllowMultigrid && task.DiffusionNumber)
+  {
+    choice.ExpectedIterations = costs.Iterations();
+    choice.DiffusionNumber = std::max(*task.DiffusionNumber, SmallestDiffusionNumber);
+  }
   return choice;
 }
 
@@ -223,7 +231,7 @@ std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const Paral
   }
   const auto factor = std::find(order.begin(), order.end(), SolverMethod::Direct) - order.begin();
   return std::make_unique<FallBackSolver>(
-    std::move(methods), static_cast<std::size_t>(factor), choice.Patience, parallel);
+    std::move(methods), static_cast<std::size_t>(factor), choice, parallel);
 }
 
 bool PreferDistributedMultigrid(SolverMethod method, const SolverTask& task)

@@ -53,11 +53,17 @@ struct SolverChoice
   /// The number of iterations of the first solve with a matrix from which on Next is expected to be
   /// faster. That solve decides the method for the matrix: see ConvergenceForecast. 0: any number.
   int Patience = 0;
+  /// Of conjugate gradients as the first method: the iterations of a solve on even meshes with this
+  /// diffusion number. Those with the matrix are forecast from them. 0: unknown.
+  double ExpectedIterations = 0.0;
+  double DiffusionNumber = 0.0;
 
   bool operator==(const SolverChoice& other) const
   {
     return this->Method == other.Method && this->FallsBack == other.FallsBack &&
-      this->Next == other.Next && this->Patience == other.Patience;
+      this->Next == other.Next && this->Patience == other.Patience &&
+      this->ExpectedIterations == other.ExpectedIterations &&
+      this->DiffusionNumber == other.DiffusionNumber;
   }
   bool operator!=(const SolverChoice& other) const { return !(*this == other); }
 };
@@ -65,7 +71,8 @@ struct SolverChoice
 /// The method asked for, or instead of Automatic the one that is expected to be fastest by a model
 /// of measured times on even meshes. Automatic and Multigrid fall back on the other methods, and if
 /// none converges take the answer that is closest. Where triangles are needles, conjugate gradients
-/// need many more iterations than the model expects, and Automatic goes on with another method.
+/// need many more iterations than the model expects. Automatic then begins with another method if
+/// the matrix shows it, and otherwise goes on with one.
 SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task);
 
 /// Whether the solves so far of a solver that was made for the choice `made` would have been the
