@@ -58,9 +58,9 @@ CASES = [
     (lambda: sd.Surface(POINTS, [[0, 1, 2], [0, 1]]), r"faces has \[0, 1\] in row 1; allowed: three.*"),
     (lambda: sd.Surface(POINTS, 7), r"faces is 7; allowed: .*"),
     (lambda: sd.Surface(POINTS, [["a", "b", "c"]]), r"faces has elements of type <U1; allowed: .*"),
-    (lambda: sd.heat(POINTS, Z), r"surface is array\(.*; allowed: a Surface or a tuple.*"),
-    (lambda: sd.heat(None, Z), r"surface is None; allowed: a Surface or a tuple.*"),
-    (lambda: sd.heat((POINTS, FACES, FACES), Z), r"surface is .*; allowed: a Surface or .*"),
+    (lambda: sd.heat(POINTS, Z), r"surface is array\(.*; allowed: a Surface, a tuple.*"),
+    (lambda: sd.heat(None, Z), r"surface is None; allowed: a Surface, a tuple.*"),
+    (lambda: sd.heat((POINTS, FACES, FACES), Z), r"surface is .*; allowed: a Surface, .*"),
     (lambda: sd.sphere(-1), r"subdivisions is -1; allowed: 0 to 9"),
     (lambda: sd.sphere(1, radius=0), r"radius is 0; allowed: finite numbers above 0"),
     # data

@@ -395,7 +395,7 @@ public:
       this->Differences.assign(this->Edges.size(), Block());
       for (Index f = 0; f < count; ++f)
       {
-        std::copy_n(given.data() + 3 * f, 3, this->State[f].Rows[0]);
+        std::copy_n(given.data() + static_cast<std::ptrdiff_t>(f) * 3, 3, this->State[f].Rows[0]);
       }
     }
     const Lists lists = this->GetLists();
@@ -411,7 +411,7 @@ public:
     Points normals(count, 3);
     for (Index f = 0; f < count; ++f)
     {
-      std::copy_n(this->State[f].Rows[0], 3, normals.data() + 3 * f);
+      std::copy_n(this->State[f].Rows[0], 3, normals.data() + static_cast<std::ptrdiff_t>(f) * 3);
     }
     return normals;
   }

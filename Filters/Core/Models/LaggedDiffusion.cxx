@@ -51,7 +51,7 @@ void LaggedDiffusion::MakeGroups()
       this->Unknowns.push_back({ zero, zero });
       if (this->Data.Fixed.any() && zero.cols() > this->NoChange.cols())
       {
-        this->NoChange = zero;
+        this->NoChange = Values(zero); // by a move, which leaves it usable when memory runs out
       }
     }
     this->Groups.push_back({ first, last, buffer });

@@ -75,13 +75,14 @@ KrylovBasis::Coefficients KrylovBasis::Project(Values& w, Index first) const
     {
       Chunk chunk;
       load(begin, end, chunk);
-      double* const c = partial.data() + size * static_cast<std::size_t>(task);
+      double* const c = partial.data() + static_cast<std::size_t>(task) * size;
       for (Index q = firstBlock; q < count; ++q)
       {
         double* const ofBlock = c + (q - firstBlock) * Halves * BlockTile;
         for (Index i = begin; i < end; i += TileRows)
         {
-          const double* const v = this->Blocks[q].data() + i / TileRows * BlockTile;
+          const double* const v =
+            this->Blocks[q].data() + static_cast<std::size_t>(i / TileRows) * BlockTile;
           for (Index h = 0; h < Halves; ++h)
           {
             SubtractTransposedProduct(v, BlockColumns,
@@ -93,7 +94,7 @@ KrylovBasis::Coefficients KrylovBasis::Project(Values& w, Index first) const
   std::vector<double> products(size, 0.0); // V^T W
   for (Index task = 0; task < tasks; ++task)
   {
-    const double* const c = partial.data() + size * static_cast<std::size_t>(task);
+    const double* const c = partial.data() + static_cast<std::size_t>(task) * size;
     for (std::size_t k = 0; k < size; ++k)
     {
       products[k] -= c[k];
@@ -106,10 +107,12 @@ KrylovBasis::Coefficients KrylovBasis::Project(Values& w, Index first) const
       load(begin, end, chunk);
       for (Index q = firstBlock; q < count; ++q)
       {
-        const double* const c = products.data() + (q - firstBlock) * Halves * BlockTile;
+        const double* const c =
+          products.data() + static_cast<std::size_t>(q - firstBlock) * Halves * BlockTile;
         for (Index i = begin; i < end; i += TileRows)
         {
-          const double* const v = this->Blocks[q].data() + i / TileRows * BlockTile;
+          const double* const v =
+            this->Blocks[q].data() + static_cast<std::size_t>(i / TileRows) * BlockTile;
           for (Index h = 0; h < Halves; ++h)
           {
             SubtractTileProducts(c + h * BlockTile, 0, v, BlockColumns,
@@ -132,7 +135,8 @@ KrylovBasis::Coefficients KrylovBasis::Project(Values& w, Index first) const
     {
       for (Index h = 0; h < Halves; ++h)
       {
-        const double* const from = products.data() + (q * Halves + h) * BlockTile + p * TileRows;
+        const double* const from =
+          products.data() + static_cast<std::size_t>((q * Halves + h) * BlockTile + p * TileRows);
         std::copy_n(from, TileRows, &sum(q * BlockColumns + p, h * TileRows));
       }
     }
@@ -148,7 +152,7 @@ void KrylovBasis::Append(const Values& w)
     {
       for (Index i = begin; i < end; i += TileRows)
       {
-        double* const tile = block.data() + i / TileRows * BlockTile;
+        double* const tile = block.data() + static_cast<std::size_t>(i / TileRows) * BlockTile;
         for (Index p = 0; p < BlockColumns; ++p)
         {
           for (Index row = 0; row < TileRows; ++row)
@@ -171,7 +175,7 @@ Values KrylovBasis::Combine(const Eigen::Ref<const Eigen::MatrixXd>& c) const
   std::vector<double> negative(size * static_cast<std::size_t>(panels), 0.0);
   for (Index k = 0; k < columns; ++k)
   {
-    double* const to = negative.data() + size * static_cast<std::size_t>(k / TileRows);
+    double* const to = negative.data() + static_cast<std::size_t>(k / TileRows) * size;
     for (Index p = 0; p < this->NumberOfColumns(); ++p)
     {
       to[p * TileRows + k % TileRows] = -c(p, k);
@@ -185,14 +189,14 @@ Values KrylovBasis::Combine(const Eigen::Ref<const Eigen::MatrixXd>& c) const
       for (Index panel = 0; panel < panels; ++panel)
       {
         chunk.fill(0.0);
-        const double* const ofPanel = negative.data() + size * static_cast<std::size_t>(panel);
+        const double* const ofPanel = negative.data() + static_cast<std::size_t>(panel) * size;
         for (Index q = 0; q < count; ++q)
         {
           for (Index i = begin; i < end; i += TileRows)
           {
             SubtractTileProducts(ofPanel + q * BlockTile, 0,
-              this->Blocks[q].data() + i / TileRows * BlockTile, BlockColumns,
-              &chunk[(i - begin) * TileRows], 0, 1);
+              this->Blocks[q].data() + static_cast<std::size_t>(i / TileRows) * BlockTile,
+              BlockColumns, &chunk[(i - begin) * TileRows], 0, 1);
           }
         }
         const Index width = std::min(TileRows, columns - panel * TileRows);
