@@ -103,9 +103,9 @@ public:
 
   ///@{
   /**
-   * The names of point arrays of the points on input port 1: the values, with any number of components, NaN:
-   * unknown (default: empty, their active scalars), and the weights w, one component, 0 or more, 0:
-   * unknown (default: empty, 1 everywhere).
+   * The names of point arrays of the points on input port 1: the values, with any number of
+   * components, NaN: unknown (default: empty, their active scalars), and the weights w, one
+   * component, 0 or more, 0: unknown (default: empty, 1 everywhere).
    */
   vtkSetStdStringFromCharMacro(PointValueArray);
   vtkGetCharFromStdStringMacro(PointValueArray);

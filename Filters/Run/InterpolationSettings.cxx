@@ -216,7 +216,7 @@ SmoothInterpolation::Settings InterpolationSettings::MakeCoreSettings(const Unit
 std::unique_ptr<Model> InterpolationSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   KnownValues& known = inputs.Known;
-  if (known.Values.Count() == 0)
+  if (known.Values.Count() == 0 && inputs.Surface.Mesh().NumberOfVertices() > 0)
   {
     throw InputError("no value is known; allowed: one or more with a weight above 0");
   }

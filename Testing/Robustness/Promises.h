@@ -380,8 +380,9 @@ inline std::string ExpectPromises(
   }
   if (auto* spline = vtkSurfaceInterpolationFilter::SafeDownCast(filter))
   {
-    EXPECT_GE(spline->GetNumberOfValues(), 1);
-    EXPECT_EQ(spline->GetExact(), spline->GetEffectiveSmoothing() == 0.0);
+    // Fewer than three values hold, whatever the settings.
+    const bool holds = spline->GetExact() || spline->GetNumberOfValues() < 3;
+    EXPECT_EQ(holds, spline->GetEffectiveSmoothing() == 0.0);
     return std::to_string(spline->GetNumberOfValues()) + " values, smoothing " +
       std::to_string(spline->GetEffectiveSmoothing());
   }

@@ -221,6 +221,8 @@ inline List OfInterpolation()
 {
   using F = vtkSurfaceInterpolationFilter;
   return {
+    RANDOM_PROPERTY(F, PointValueArray, Name(dice)),
+    RANDOM_PROPERTY(F, PointWeightArray, Name(dice)),
     RANDOM_PROPERTY(F, Exact, dice.Flip()),
     RANDOM_PROPERTY(F, AutomaticSmoothing, dice.Flip()),
     RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),

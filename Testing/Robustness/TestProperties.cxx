@@ -37,6 +37,7 @@ const std::set<std::string> WithoutEffectInClass = {
   "vtkMumfordShahFilter EdgeCurves", // three steps find no edge that is long enough
   "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
   "vtkSurfaceInterpolationFilter MaximumDistance", // of points on the second input
+  "vtkSurfaceInterpolationFilter PointValueArray", "vtkSurfaceInterpolationFilter PointWeightArray",
   "vtkSurfaceInterpolationFilter RandomSeed", // of more values than the surface has
 };
 
