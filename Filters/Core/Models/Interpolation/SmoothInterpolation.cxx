@@ -43,41 +43,10 @@ struct SmoothInterpolation::Work
   Values Start;
 };
 
-/// K is applied twice, so that the weights of a needle, which grow with its aspect, enter by their
-/// squares and leave no digits for those of its neighbours. A needle with larger weights than
-/// others by this factor conducts less, in all directions alike, so that its matrix stays
-/// semidefinite; its vertices stay all but equal nevertheless.
-static CornerWeights LimitNeedles(CornerWeights weights)
-{
-  constexpr double largest = 1e5;
-  const Eigen::Index m = weights.rows();
-  if (m == 0)
-  {
-    return weights;
-  }
-  std::vector<double> sizes(static_cast<std::size_t>(m));
-  for (Eigen::Index t = 0; t < m; ++t)
-  {
-    sizes[static_cast<std::size_t>(t)] = weights.row(t).cwiseAbs().maxCoeff();
-  }
-  const auto middle = sizes.begin() + m / 2;
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double limit = largest * *middle;
-  for (Eigen::Index t = 0; t < m; ++t)
-  {
-    const double size = weights.row(t).cwiseAbs().maxCoeff();
-    if (size > limit)
-    {
-      weights.row(t) *= limit / size;
-    }
-  }
-  return weights;
-}
-
 SmoothInterpolation::SmoothInterpolation(std::shared_ptr<const Assembler> assembler,
   CornerWeights coefficients, const Settings& settings, const ParallelFor& parallel)
   : Assembly(std::move(assembler))
-  , Coefficients(LimitNeedles(std::move(coefficients)))
+  , Coefficients(std::move(coefficients))
   , Options(settings)
   , Parallel(parallel)
 {
