@@ -15,8 +15,8 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    denoise_mesh, direction_field, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, tensor_diffusion,
-    turing_texture,
+    denoise_mesh, direction_field, harmonic_map, heat, interpolate, intrinsic_tv, mumford_shah, segment,
+    tensor_diffusion, turing_texture,
 )
 
 
@@ -178,6 +178,50 @@ class Meshes(unittest.TestCase):
         self.assertAlmostEqual(reports[1].areas[0] / reports[0].areas[0], 4.0, places=6)
         with self.assertRaisesRegex(ValueError, "array is None"):
             segment(pyvista.Sphere())
+
+    def test_values_at_points_are_interpolated_as_those_of_arrays(self):
+        mesh = noisy_sphere()
+        probes = pyvista.PolyData(1.1 * mesh.points[::9])
+        probes["t"] = mesh.points[::9, 2].astype(float)
+        probes["w"] = np.where(np.arange(probes.n_points) % 4 == 0, 0.0, 1.0)
+        probes.set_active_scalars("t")
+        result = interpolate(mesh, points=probes, fidelity="w", compute_error=True)
+        expected = sd.interpolate(as_surface(mesh), probes["t"], probes.points, fidelity=probes["w"],
+                                  compute_error=True)
+        np.testing.assert_array_equal(result["tInterpolated"], expected.values)
+        np.testing.assert_array_equal(result["tError"], expected.error)
+        self.assertEqual(result.point_data.active_scalars_name, "tInterpolated")
+        self.assertNotIn("tInterpolated", mesh.array_names)
+        probes["other"] = 2.0 * probes["t"]
+        named = interpolate(mesh, "other", points=probes, exact=True, result_array_name="u")
+        np.testing.assert_allclose(
+            named["u"], 2.0 * interpolate(mesh, "t", points=probes, exact=True)["tInterpolated"], atol=1e-12)
+        blocks, reports = interpolate(pyvista.MultiBlock([mesh, None, mesh.scale(1.2, inplace=False)]),
+                                      points=probes, array="t", full_output=True)
+        self.assertEqual([report.number_of_values for report in reports], [probes.n_points] * 2)
+        np.testing.assert_array_equal(blocks[2]["tInterpolated"], reports[1].values)
+        for message, options in (
+                ("array is 'none'; allowed: point arrays of points, 't', 'w', 'other'", {"array": "none"}),
+                ("fidelity is 'hole'; allowed: point arrays of points", {"array": "t", "fidelity": "hole"})):
+            with self.assertRaisesRegex(ValueError, message):
+                interpolate(mesh, points=probes, **options)
+        with self.assertRaisesRegex(ValueError, "array is None, and there are no active scalars"):
+            interpolate(mesh, points=pyvista.PolyData(mesh.points[:5]))
+
+    def test_values_of_points_and_cells_are_interpolated(self):
+        mesh = noisy_sphere()
+        few = np.arange(mesh.n_points) % 7 == 0
+        mesh["few"] = np.where(few, mesh.points[:, 2].astype(float), np.nan)
+        result, report = interpolate(mesh, "few", exact=True, full_output=True)
+        np.testing.assert_array_equal(result["fewInterpolated"], report.values)
+        np.testing.assert_allclose(result["fewInterpolated"][few], mesh["few"][few], atol=1e-12)
+        self.assertEqual(report.number_of_values, few.sum())
+        heights = mesh.cell_centers().points[:, 2]
+        mesh.cell_data["ofCells"] = np.where(np.arange(mesh.n_cells) % 9 == 0, heights, np.nan)
+        cells = interpolate(mesh, "ofCells", exact=True)
+        self.assertLess(np.abs(cells.cell_data["ofCellsInterpolated"] - heights).max(), 0.05)
+        points = interpolate(mesh, "ofCells", exact=True, result_on_faces=False)
+        self.assertIn("ofCellsInterpolated", points.point_data)
 
     def test_normals_and_moved_points(self):
         mesh = pyvista.Icosphere(nsub=3)

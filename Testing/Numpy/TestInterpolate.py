@@ -1,0 +1,242 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Smooth functions through values at a few points, and one clear line on each kind of bad values."""
+
+import sys
+import unittest
+import warnings
+
+import numpy as np
+
+import surfacediffusion as sd
+
+BALL = sd.sphere(4)
+N, M = BALL.n_points, len(BALL.triangles)
+
+
+def field(points):
+    """A smooth function on the unit sphere."""
+    x, _, z = np.asarray(points).T
+    return 3.0 + z * z + 0.5 * x
+
+
+def places_around(count, radius=1.0):
+    """Points on a spiral from pole to pole."""
+    z = np.linspace(-0.98, 0.98, count)
+    r, angle = np.sqrt(1 - z * z), 2.4 * np.arange(count)
+    return radius * np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+
+
+def sparse(step, values=None):
+    """The field at every step-th point of the ball, and NaN elsewhere."""
+    values = field(BALL.points) if values is None else values
+    return np.where(np.arange(len(values)) % step == 0, values, np.nan)
+
+
+def interpolate(*arguments, **keywords):
+    """The result and the warnings of interpolate()."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        result = sd.interpolate(*arguments, **keywords)
+    return result, [str(warning.message) for warning in found]
+
+
+class Values(unittest.TestCase):
+    def test_nan_in_an_array_is_unknown(self):
+        given = sparse(9)
+        known = ~np.isnan(given)
+        result, found = interpolate(BALL, given, exact=True, compute_error=True)
+        self.assertEqual(found, [])
+        self.assertEqual(result.values.shape, (N,))
+        np.testing.assert_allclose(result.values[known], given[known], atol=1e-12)
+        self.assertLess(np.abs(result.values - field(BALL.points)).max(), 0.03)
+        self.assertEqual(result.number_of_values, known.sum())
+        self.assertEqual((result.smoothing[0], result.degrees_of_freedom[0]), (0.0, known.sum()))
+        self.assertEqual(result.error.shape, (N,))
+        self.assertTrue((result.error[known] == 0.0).all())
+        self.assertTrue((result.error[~known] > 0.0).all())
+
+    def test_places_count_at_the_nearest_points_of_the_surface(self):
+        places = places_around(80, 1.1)
+        result, found = interpolate(BALL, field(places / 1.1), places, exact=True)
+        self.assertEqual(found, [])
+        self.assertLess(np.abs(result.values - field(BALL.points)).max(), 0.1)
+        self.assertEqual(result.number_of_values, 80)
+        at_points, _ = interpolate(BALL, field(BALL.points[::9]), BALL.points[::9], exact=True)
+        of_array, _ = interpolate(BALL, sparse(9), exact=True)
+        np.testing.assert_array_equal(at_points.values, of_array.values)
+
+    def test_columns_have_the_bits_that_each_has_alone(self):
+        places = places_around(60)
+        values = np.stack([field(places), places[:, 1] ** 2], axis=1)
+        both, _ = interpolate(BALL, values, places, compute_error=True)
+        self.assertEqual((both.values.shape, both.error.shape), ((N, 2), (N, 2)))
+        for column in (0, 1):
+            alone, _ = interpolate(BALL, values[:, column], places, compute_error=True)
+            self.assertEqual(alone.values.shape, (N,))
+            np.testing.assert_array_equal(both.values[:, column], alone.values)
+            np.testing.assert_array_equal(both.error[:, column], alone.error)
+            self.assertEqual(both.smoothing[column], alone.smoothing[0])
+        one, _ = interpolate(BALL, values[:, :1], places)
+        self.assertEqual(one.values.shape, (N, 1))
+
+    def test_values_of_faces_hold_on_faces(self):
+        centres = BALL.points[BALL.triangles].mean(axis=1)
+        given = sparse(11, field(centres))
+        known = ~np.isnan(given)
+        result, _ = interpolate(BALL, given, exact=True)
+        self.assertEqual(result.values.shape, (M,))
+        np.testing.assert_allclose(result.values[known], given[known], atol=1e-9)
+        of_points, _ = interpolate(BALL, given, exact=True, result_on_faces=False)
+        self.assertEqual(of_points.values.shape, (N,))
+
+    def test_noise_is_smoothed_by_default(self):
+        noise = np.random.default_rng(2).normal(scale=0.2, size=N)
+        result, _ = interpolate(BALL, sparse(5, field(BALL.points) + noise))
+        error = np.sqrt(np.mean((result.values - field(BALL.points)) ** 2))
+        self.assertLess(error, 0.2 / 3)
+        self.assertGreater(result.smoothing[0], 0.0)
+        self.assertAlmostEqual(result.noise_level[0], 0.2, delta=0.03)
+        again, _ = interpolate(BALL, sparse(5, field(BALL.points) + noise),
+                               smoothing=result.smoothing[0])
+        np.testing.assert_allclose(again.values, result.values, atol=1e-9)
+
+
+class Weights(unittest.TestCase):
+    def test_weights_are_reciprocal_variances(self):
+        # The same minimum: w and mu by the same factor, and two values for one of weight 2.
+        places = places_around(40)
+        values = field(places) + 0.1 * np.cos(37.0 * np.arange(40))
+        plain, _ = interpolate(BALL, values, places, smoothing=0.5)
+        scaled, _ = interpolate(BALL, values, places, fidelity=np.full(40, 4.0), smoothing=2.0)
+        np.testing.assert_allclose(scaled.values, plain.values, atol=1e-9)
+        heavy, _ = interpolate(BALL, values, places, fidelity=1.0 + (np.arange(40) == 7), smoothing=0.5)
+        twice, found = interpolate(
+            BALL, np.append(values, values[7]), np.vstack([places, places[7]]), smoothing=0.5)
+        self.assertEqual(found, [])  # equal values contradict nothing
+        np.testing.assert_allclose(twice.values, heavy.values, atol=1e-9)
+        self.assertGreater(np.abs(heavy.values - plain.values).max(), 1e-4)
+
+    def test_weight_zero_is_unknown(self):
+        places = places_around(40)
+        kept = np.arange(40) % 4 != 0
+        some, _ = interpolate(BALL, field(places), places, fidelity=kept)
+        few, _ = interpolate(BALL, field(places)[kept], places[kept])
+        np.testing.assert_array_equal(some.values, few.values)
+        self.assertEqual(some.number_of_values, 30)
+
+    def test_errors_grow_with_the_noise_level_and_away_from_values(self):
+        places = places_around(40)[:20]  # the lower half
+        low, _ = interpolate(BALL, field(places), places, smoothing=0.5, noise_level=1.0,
+                             compute_error=True)
+        high, _ = interpolate(BALL, field(places), places, smoothing=0.5, noise_level=3.0,
+                              compute_error=True)
+        np.testing.assert_allclose(high.error, 3.0 * low.error, rtol=1e-9)
+        z = BALL.points[:, 2]
+        self.assertGreater(low.error[z > 0.8].min(), 2.0 * low.error[z < -0.2].max())
+
+
+class Bounds(unittest.TestCase):
+    def test_the_range_is_kept(self):
+        values = np.where(places_around(30)[:, 2] > 0, 1.0, 0.0)
+        free, _ = interpolate(BALL, values, places_around(30), exact=True)
+        self.assertGreater(free.values.max(), 1.01)
+        self.assertLess(free.values.min(), -0.01)
+        kept, _ = interpolate(BALL, values, places_around(30), exact=True, keep_range=True)
+        self.assertEqual((kept.values.min(), kept.values.max()), (0.0, 1.0))
+
+
+class BadValues(unittest.TestCase):
+    def test_no_value_is_an_error(self):
+        for message, arguments in (
+                ("no value is known: the values at points are none; allowed: one or more",
+                 ([], np.empty((0, 3)))),
+                ("no value is known: the values at points are all NaN or of weight 0; allowed",
+                 ([np.nan] * 4, places_around(4))),
+                ("values has no known value", (np.full(N, np.nan),))):
+            with self.assertRaisesRegex(ValueError, message):
+                sd.interpolate(BALL, *arguments)
+
+    def test_equal_values_give_the_constant(self):
+        result, found = interpolate(BALL, np.full(5, 4.5), places_around(5))
+        self.assertEqual(found, ["all known values are equal, and so is the result"])
+        np.testing.assert_allclose(result.values, 4.5, atol=1e-12)
+
+    def test_fewer_than_three_values_hold(self):
+        result, found = interpolate(BALL, sparse(2000))
+        self.assertEqual(found, ["fewer than 3 places have a value, too few for automatic_smoothing: "
+                                 "the values hold exactly"])
+        for i in (0, 2000):
+            self.assertAlmostEqual(result.values[i], field(BALL.points)[i], delta=1e-12)
+
+    def test_contradicting_values_count_as_their_weighted_mean(self):
+        places = np.vstack([BALL.points[:40:4], BALL.points[8]])
+        values = np.append(field(BALL.points[:40:4]), field(BALL.points[8:9]) + 2.0)
+        weights = np.where(np.arange(11) == 2, 3.0, 1.0)
+        result, found = interpolate(BALL, values, places, exact=True, fidelity=weights)
+        self.assertEqual(found, ["1 place has different values: their weighted mean counts"])
+        self.assertAlmostEqual(result.values[8], values[2] + 0.5, delta=1e-12)
+
+    def test_far_values_are_counted(self):
+        places = np.vstack([places_around(20), [[0.0, 0.0, 9.0], [7.0, 0.0, 0.0]]])
+        values = np.append(field(places[:20]), [50.0, -50.0])
+        result, found = interpolate(BALL, values, places, exact=True, maximum_distance=0.5)
+        self.assertEqual(found, ["2 values are farther from the surface than maximum_distance 0.5 and "
+                                 "left out"])
+        self.assertEqual((result.number_of_values, result.number_of_far_values), (20, 2))
+        near, _ = interpolate(BALL, values[:20], places[:20], exact=True)
+        np.testing.assert_array_equal(result.values, near.values)
+        with self.assertRaisesRegex(ValueError, "farther than maximum_distance 0.5, or where mask "
+                                                "excludes it; allowed: one value on it"):
+            sd.interpolate(BALL, values[20:], places[20:], maximum_distance=0.5)
+
+    def test_components_without_values_are_nan(self):
+        two = sd.Surface(np.vstack([BALL.points, BALL.points + 5.0]),
+                         np.vstack([BALL.triangles, BALL.triangles + N]))
+        result, found = interpolate(two, field(places_around(20)), places_around(20), exact=True,
+                                    compute_error=True)
+        self.assertEqual(len(found), 1)
+        self.assertIn("1 connected component has no known value", found[0])
+        for array in (result.values, result.error):
+            self.assertTrue(np.isfinite(array[:N]).all())
+            self.assertTrue(np.isnan(array[N:]).all())
+
+    def test_values_outside_of_the_mask_are_counted(self):
+        south = BALL.points[:, 2] < 0.0
+        result, found = interpolate(BALL, field(places_around(20)), places_around(20), exact=True,
+                                    mask=south, mask_mode="Exclude")
+        self.assertEqual(found, ["10 values are where nothing is computed, outside of the mask, and left "
+                                 "out"])
+        self.assertEqual(result.number_of_values, 10)
+        np.testing.assert_array_equal(np.isnan(result.values), south)
+        of_region, _ = interpolate(BALL, field(places_around(20)), places_around(20), exact=True,
+                                   roi=~south)
+        np.testing.assert_array_equal(of_region.values, result.values)
+
+    def test_what_is_not_allowed_is_named(self):
+        places = places_around(5)
+        values = field(places)
+        for message, arguments, options in (
+                (r"points has shape \(5, 2\); allowed: \(p, 3\)", (values, places[:, :2]), {}),
+                (r"values has shape \(4,\); allowed: \(5,\) or \(5, k\)", (values[:4], places), {}),
+                (r"fidelity has shape \(2,\); allowed: \(5,\)", (values, places), {"fidelity": [1, 1]}),
+                ("fidelity is -1.* at point 3 of the values; allowed: finite numbers, 0 or more",
+                 (values, places), {"fidelity": [1, 1, 1, -1, 1]}),
+                ("a value is infinite at point 2 of the values; allowed: finite values and NaN",
+                 (np.where(np.arange(5) == 2, np.inf, values), places), {}),
+                ("a coordinate is not finite at point 1 of the values; allowed: finite coordinates",
+                 (values, np.where(np.arange(5)[:, None] == 1, np.nan, places)), {}),
+                ("smoothing is 0; allowed: finite numbers above 0", (values, places), {"smoothing": 0}),
+                ("noise_level is -1; allowed", (values, places), {"noise_level": -1}),
+                ("correlation_length is -1; allowed", (values, places), {"correlation_length": -1}),
+                ("along_diffusivity is 4 and across_diffusivity is 1 but directions is not set; allowed",
+                 (values, places), {"along_diffusivity": 4}),
+                ("boundary is Free but intrinsic_delaunay is True; allowed: False, or Natural",
+                 (values, places), {"boundary": "Free", "intrinsic_delaunay": True})):
+            with self.assertRaisesRegex(ValueError, message) as caught:
+                sd.interpolate(BALL, *arguments, **options)
+            self.assertNotIn("\n", str(caught.exception))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2, argv=sys.argv)
