@@ -26,6 +26,34 @@ struct Harmonic
   std::function<double(const Eigen::RowVector3d&)> At;
 };
 
+/// The surface with one more vertex, at 1/aspect of an edge of its first triangle from an end of it.
+Surface WithNeedles(const Surface& s, double aspect)
+{
+  const Index a = s.Faces(0, 0);
+  const Index b = s.Faces(0, 1);
+  const auto added = static_cast<Index>(s.Vertices.rows());
+  Surface split = s;
+  split.Vertices.conservativeResize(added + 1, 3);
+  split.Vertices.row(added) = s.Vertices.row(a) + (s.Vertices.row(b) - s.Vertices.row(a)) / aspect;
+  for (Eigen::Index t = 0; t < s.Faces.rows(); ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Index from = s.Faces(t, k);
+      const Index to = s.Faces(t, (k + 1) % 3);
+      if ((from == a && to == b) || (from == b && to == a))
+      {
+        const Index opposite = s.Faces(t, (k + 2) % 3);
+        const Eigen::Index last = split.Faces.rows();
+        split.Faces.conservativeResize(last + 1, 3);
+        split.Faces.row(t) << from, added, opposite;
+        split.Faces.row(last) << added, to, opposite;
+      }
+    }
+  }
+  return split;
+}
+
 } // namespace
 
 TEST(InterpolationField, SphericalHarmonicsDecayByTheirEigenvalue)
@@ -96,6 +124,62 @@ TEST(InterpolationField, SmoothsNoiseOnEveryMesh)
     // Three standard deviations of an estimate with so many degrees of freedom.
     const double free = OfSphere - result.Columns[0].DegreesOfFreedom;
     EXPECT_NEAR(result.Columns[0].NoiseLevel, 1.0, 3.0 / std::sqrt(2.0 * free));
+  }
+}
+
+TEST(InterpolationField, SmoothsNoiseBesideNeedlesAsWithoutThem)
+{
+  const Surface s = Icosphere(4);
+  const auto n = static_cast<Index>(s.Vertices.rows());
+  for (const RimCondition rim : { RimCondition::Natural, RimCondition::Free })
+  {
+    Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+    settings.Rim = rim;
+    settings.ComputeError = true;
+    Values expected(n, 2); // u and its standard error, by input number
+    double mu = 0.0;
+    for (const double aspect : { 1e2, 1e4, 1e6, 1e8, 1e10 })
+    {
+      const auto assembler = MakeAssembler(WithNeedles(s, aspect));
+      const TriangleMesh& mesh = assembler->Mesh();
+      ASSERT_EQ(mesh.NumberOfVertices(), n + 1);
+      Values noisy(n + 1, 1);
+      for (Index i = 0; i <= n; ++i)
+      {
+        const Index input = mesh.InputVertex()[i];
+        noisy(i, 0) =
+          input == n ? 0.0 : SeaTemperature(s.Vertices.row(input)) + Gaussian(1, 0, input);
+      }
+      const auto data = ValuesAt(mesh, noisy, [](Index i) { return i < OfSphere; });
+      const Interpolation::Result result = Interpolate(assembler, data, settings);
+      Values found(n, 2);
+      double ofNeedle = 0.0;
+      for (Index i = 0; i <= n; ++i)
+      {
+        const Index input = mesh.InputVertex()[i];
+        if (input < n)
+        {
+          found.row(input) << result.U(i, 0), result.Error(i, 0);
+        }
+        else
+        {
+          ofNeedle = result.U(i, 0);
+        }
+      }
+      const double length = std::pow(mesh.LengthUnit(), 2);
+      if (aspect == 1e2)
+      {
+        expected = found;
+        mu = result.Columns[0].Mu * length;
+        continue;
+      }
+      const double difference = (found - expected).cwiseAbs().maxCoeff();
+      std::printf("aspect %.0e: mu %.6g of %.6g, difference %.2e, along the short edge %.2e\n",
+        aspect, result.Columns[0].Mu * length, mu, difference, ofNeedle - found(s.Faces(0, 0), 0));
+      EXPECT_NEAR(result.Columns[0].Mu * length, mu, 0.01 * mu);
+      EXPECT_LT(difference, 5e-3); // of values with the deviation 9 and noise of 1
+      EXPECT_NEAR(ofNeedle, found(s.Faces(0, 0), 0), 1e-3);
+    }
   }
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/HessianEnergy.h"
 
+#include "Core/Models/Interpolation/ResolvedShare.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,6 +79,7 @@ struct PlaneTriangle
   explicit PlaneTriangle(const TriangleMesh::Shape& s)
     : Area(s.Area())
   {
+    const double share = std::sqrt(ResolvedShare(s));
     Corners << 0.0, 0.0, s.Length, 0.0, s.X, s.Y;
     for (int a = 0; a < 3; ++a)
     {
@@ -84,7 +87,8 @@ struct PlaneTriangle
       const double height = s.Length * s.Y / edge.norm();
       this->Along.row(a) = edge.normalized();
       this->Inward.row(a) << -this->Along(a, 1), this->Along(a, 0);
-      this->Basis.row(a) = this->Inward.row(a) / height; // of the linear function of corner a
+      this->Basis.row(a) =
+        share / height * this->Inward.row(a); // of the linear function of corner a
     }
     for (int a = 0; a < 3; ++a)
     {

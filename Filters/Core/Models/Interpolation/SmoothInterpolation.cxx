@@ -168,9 +168,7 @@ double SmoothInterpolation::StartSmoothing(const Work& work) const
 double SmoothInterpolation::LargestSmoothing(const Work& work)
 {
   constexpr double resolved = 1e-13;
-  const double n = static_cast<double>(work.Open.size());
-  const double energy = work.Energy.Matrix().diagonal().maxCoeff();
-  return work.Data.Rows.Weights.sum() / (resolved * n * energy);
+  return work.Data.Rows.Weights.sum() / (resolved * work.Energy.Matrix().diagonal().sum());
 }
 
 void SmoothInterpolation::Prepare(

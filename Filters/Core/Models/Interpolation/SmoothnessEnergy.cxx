@@ -3,12 +3,28 @@
 #include "Core/Models/Interpolation/SmoothnessEnergy.h"
 
 #include "Core/Models/Interpolation/HessianEnergy.h"
+#include "Core/Models/Interpolation/ResolvedShare.h"
 #include "Core/Operators/CotanWeights.h"
 
 #include <utility>
 
 namespace SurfaceDiffusion
 {
+
+namespace
+{
+
+/// The coefficients, with those of needles reduced to the size of ResolvedShare().
+CornerWeights Resolved(const TriangleMesh& mesh, CornerWeights coefficients)
+{
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    coefficients.row(t) *= ResolvedShare(mesh.Shapes()[t]);
+  }
+  return coefficients;
+}
+
+} // namespace
 
 SmoothnessEnergy::SmoothnessEnergy(const Assembler& assembler, const CornerWeights& coefficients,
   double kappa, RimCondition rim, const ParallelFor& parallel)
@@ -20,18 +36,18 @@ SmoothnessEnergy::SmoothnessEnergy(const Assembler& assembler, const CornerWeigh
   const Vector& areas = this->Mesh.ControlAreas();
   const Vector none = Vector::Zero(areas.size());
   const double square = kappa * kappa;
+  const CornerWeights resolved = Resolved(
+    this->Mesh, rim == RimCondition::Natural ? coefficients : CotanWeights(this->Mesh, parallel));
   TakePattern(assembler.Pattern(), this->K, parallel);
   SparseMatrix first = this->K;
+  assembler.Fill(this->K, none, 1.0, resolved, nullptr, parallel);
   if (rim == RimCondition::Natural)
   {
-    assembler.Fill(this->K, none, 1.0, coefficients, nullptr, parallel);
-    assembler.Fill(first, square * areas, 1.0, coefficients, nullptr, parallel);
+    assembler.Fill(first, square * areas, 1.0, resolved, nullptr, parallel);
     this->Q = first * areas.cwiseInverse().asDiagonal() * first;
     return;
   }
-  assembler.Fill(this->K, none, 1.0, CotanWeights(this->Mesh, parallel), nullptr, parallel);
-  assembler.Fill(first, (square * square) * areas, 2.0 * square, CotanWeights(this->Mesh, parallel),
-    nullptr, parallel);
+  assembler.Fill(first, (square * square) * areas, 2.0 * square, resolved, nullptr, parallel);
   this->First = std::move(first);
   this->TakeHessian(true);
 }
