@@ -107,9 +107,11 @@ private:
   std::vector<double> Weights;
 };
 
-/// The middle of the largest triangle of each cell; the vertices of cells without one are -1.
+/// The middle of the largest triangle of each cell, of the first one among triangles of equal size,
+/// as those of a square; the vertices of cells without one are -1.
 std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& fields)
 {
+  constexpr double equal = 1e-9; // round-off must not choose
   const TriangleMesh& mesh = surface.InputMesh();
   SurfacePoint none;
   none.Vertices.fill(-1);
@@ -121,7 +123,7 @@ std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& f
     const auto cell =
       static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))]);
     const double area = mesh.Shapes()[static_cast<std::size_t>(t)].Area();
-    if (area > largest[cell])
+    if (area > (1.0 + equal) * largest[cell])
     {
       largest[cell] = area;
       for (std::size_t a = 0; a < 3; ++a)

@@ -7,6 +7,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
@@ -870,4 +871,59 @@ TEST(PiecesTogether, HaveLabelsOfTheirCells)
   EXPECT_EQ(LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), "RegionId"), 0.0);
   EXPECT_LT(
     LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), "RegionProbability"), 1e-6);
+}
+
+/// Values of the surface's points and cells, and points with values of which each process has some.
+TEST(PiecesTogether, InterpolateTheValuesOfAllProcesses)
+{
+  constexpr int probes = 40;
+  const auto pointsOf = [](int process, int count)
+  {
+    auto points = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> places;
+    places->SetDataTypeToDouble();
+    for (int i = probes * process / count; i < probes * (process + 1) / count; ++i)
+    {
+      places->InsertNextPoint(0.5 + 0.5 * Rough(i, 0), 0.5 + 0.5 * Rough(i, 1), 0.05 * Rough(i, 2));
+    }
+    points->SetPoints(places);
+    AddPointArray(points, "t", 1, [&](vtkIdType i, int) { return Data(places->GetPoint(i)); });
+    points->GetPointData()->SetActiveScalars("t");
+    return points;
+  };
+  const auto make = [&](vtkPolyData* surface, const char* array, bool onCells)
+  {
+    auto spline = vtkSmartPointer<vtkSurfaceInterpolationFilter>::New();
+    SetInputArray(spline, 0, array, onCells);
+    spline->ComputeErrorOn();
+    spline->SetInputData(surface);
+    return spline;
+  };
+  for (const char* const kind : { "points", "cells", "beside" })
+  {
+    const bool onCells = kind == std::string("cells");
+    const bool isBeside = kind == std::string("beside");
+    const char* const array = onCells ? "c" : "rough";
+    const auto together =
+      make(WithCells(N * Rank() / Count(), N * (Rank() + 1) / Count(), true, true), array, onCells);
+    const auto alone = make(WithCells(0, N, true, false), array, onCells);
+    alone->SetController(nullptr);
+    if (isBeside)
+    {
+      together->SetInputData(1, pointsOf(Rank(), Count()));
+      alone->SetInputData(1, pointsOf(0, 1));
+    }
+    together->Update();
+    alone->Update();
+    const std::string name = isBeside ? "t" : array;
+    for (const char* const result : { "Interpolated", "Error" })
+    {
+      const std::string of = name + result;
+      const double difference = onCells
+        ? LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), of.c_str())
+        : LargestDifference(together->GetOutput(), alone->GetOutput(), of.c_str());
+      EXPECT_LT(difference, 1e-9) << kind << " " << of;
+    }
+    EXPECT_GT(alone->GetNumberOfValues(), isBeside ? probes - 1 : N * N / 2) << kind;
+  }
 }
