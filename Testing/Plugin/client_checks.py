@@ -26,6 +26,7 @@ RESULTS = {
     "MumfordShahFilter": (("POINTS", "fMumfordShah"), 0.620381, ("POINTS", "fMumfordShah")),
     "SurfaceDenoisingFilter": (("POINTS", "Displacement"), 0.00255440, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
+    "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
     "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),
@@ -42,6 +43,8 @@ SLIPS = {
     "SurfaceDenoisingFilter": lambda mesh: {
         "NoiseLevel": 1.2 * mesh.GetPropertyValue("EffectiveNoiseLevel")},
     "SurfaceDirectionFieldFilter": lambda field: {"Angle": field.Angle + 3.0},
+    "SurfaceInterpolationFilter": lambda spline: {
+        "AutomaticSmoothing": 0, "Smoothing": 1.2 * spline.GetPropertyValue("EffectiveSmoothing")},
     "SurfaceSegmentationFilter": lambda regions: {
         "AutomaticFidelity": 0,
         "FidelityWeight": 0.5 * regions.GetPropertyValue("EffectiveFidelityWeight")},
