@@ -13,8 +13,8 @@ import vtkSurfaceDiffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDenoisingFilter,
-    SurfaceDirectionFieldFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
-    TrivialProducer, TuringTextureFilter,
+    SurfaceDirectionFieldFilter, SurfaceInterpolationFilter, SurfaceSegmentationFilter,
+    TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -68,6 +68,8 @@ CASES = (
      "fCoherent"),
     ("axes, gathered", TensorDiffusionFilter,
      dict(Model="EdgeEnhancing", DiffusionAxes=1, Tolerance=1e-10), "DiffusionAxes"),
+    ("interpolation, inpainting", SurfaceInterpolationFilter, dict(MaskArray=["POINTS", "hole"]),
+     "fInterpolated"),
     ("segmentation", SurfaceSegmentationFilter, dict(AutomaticFidelity=0, FidelityWeight=2.0),
      "RegionId"),
     ("turing", TuringTextureFilter, LABYRINTH, "u1"),
