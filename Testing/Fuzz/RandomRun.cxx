@@ -8,6 +8,7 @@
 #include "Core/Models/Harmonic/HarmonicMap.h"
 #include "Core/Models/Harmonic/UnitVectors.h"
 #include "Core/Models/InitialState.h"
+#include "Core/Models/Interpolation/InterpolationModel.h"
 #include "Core/Models/LinearDiffusion.h"
 #include "Core/Models/MumfordShah.h"
 #include "Core/Models/NonlinearDiffusion.h"
@@ -24,6 +25,7 @@
 #include "Core/Surface/MedialMesh.h"
 #include "Core/Surface/TangentVectors.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -264,6 +266,106 @@ bool RunLinear(Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, 
   ReadFidelityFactors(bytes, data);
   LinearDiffusion model(assembler, coefficients, std::move(data), settings, std::move(solver));
   return Run(mesh, model, promises);
+}
+
+/// Some values at vertices and in triangles.
+ScatteredValues ReadScatteredValues(Bytes& bytes, const TriangleMesh& mesh, const PointData& data)
+{
+  const int oneIn = 1 + bytes.Below(4);
+  Flags known(mesh.NumberOfVertices());
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    known[i] = data.Given.row(i).allFinite() && (oneIn == 1 || bytes.Flip(oneIn));
+  }
+  ScatteredValues values = ScatteredValues::AtVertices(data.Given, known);
+  const int inside = mesh.NumberOfTriangles() > 0 ? bytes.Below(4) : 0;
+  for (int i = 0; i < inside; ++i)
+  {
+    const Index t = bytes.Below(mesh.NumberOfTriangles());
+    SurfacePoint place;
+    const int second = bytes.Below(5);
+    const int third = bytes.Below(5 - second);
+    place.Coordinates = { 1.0 - 0.25 * (second + third), 0.25 * second, 0.25 * third };
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      place.Vertices[a] = mesh.TriangleVertices()(t, static_cast<Eigen::Index>(a));
+    }
+    if (data.Given.row(place.Vertices[0]).allFinite())
+    {
+      values.Places.push_back(place);
+      values.Given.conservativeResize(values.Count(), data.Given.cols());
+      values.Given.row(values.Count() - 1) = data.Given.row(place.Vertices[0]);
+    }
+  }
+  values.Weights = Vector::Ones(values.Count());
+  for (Index i = 0; i < values.Count(); ++i)
+  {
+    values.Weights[i] = bytes.Flip(4) ? bytes.Size(3.0) : 1.0;
+  }
+  return values;
+}
+
+/// Functions through values at a few points, which are NaN in components without a value.
+bool RunInterpolation(
+  Bytes& bytes, const std::shared_ptr<const Assembler>& assembler, const PointData& data)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  const ScatteredValues values = ReadScatteredValues(bytes, mesh, data);
+  SmoothInterpolation::Settings settings;
+  settings.Smoothing = static_cast<SmoothInterpolation::Choice>(bytes.Below(4));
+  settings.Mu = bytes.Size(6.0);
+  settings.NoiseLevel = bytes.Size(3.0);
+  settings.Kappa = bytes.Flip() ? bytes.Size(2.0) : 0.0;
+  settings.Rim = bytes.Flip(4) ? RimCondition::Free : RimCondition::Natural;
+  settings.KeepRange = bytes.Flip(4);
+  settings.ComputeError = bytes.Flip();
+  if (values.Count() == 0)
+  {
+    return true;
+  }
+  InterpolationModel model(assembler, CotanWeights(mesh), values, settings);
+  std::vector<double> start(model.CheckpointSize());
+  model.Save(start.data());
+  try
+  {
+    model.Advance(ProgressMonitor());
+    const Values u = model.State();
+    const SmoothInterpolation::Result found = model.Found();
+    for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+    {
+      const Index begin = mesh.ComponentsBegin()[c];
+      const Index size = mesh.ComponentsBegin()[c + 1] - begin;
+      const bool isKnown = std::any_of(values.Places.begin(), values.Places.end(),
+        [&](const SurfacePoint& place)
+        { return place.Vertices[0] >= begin && place.Vertices[0] < begin + size; });
+      for (const Values* array : { &u, &found.Error })
+      {
+        const auto part =
+          array->middleRows(array->rows() > 0 ? begin : 0, array->rows() > 0 ? size : 0);
+        Require(isKnown ? part.allFinite() : part.array().isNaN().all(),
+          "an interpolation is not finite, or known without a value");
+      }
+    }
+    for (Eigen::Index k = 0; k < u.cols() && settings.KeepRange; ++k)
+    {
+      const double low = values.Given.col(k).minCoeff();
+      const double high = values.Given.col(k).maxCoeff();
+      Require(!(u.col(k).array() < low || u.col(k).array() > high).any(), "a range is not kept");
+    }
+    model.Restore(start.data());
+    model.Advance(ProgressMonitor());
+    Require((u.array() == model.State().array() || u.array().isNaN()).all(),
+      "a restored interpolation differs");
+    return true;
+  }
+  catch (const std::runtime_error& error)
+  {
+    // The operator squares cotangents, up to 1e4, and divides by areas.
+    const double cotangent = std::min(1e4, CotanWeights(mesh).cwiseAbs().maxCoeff());
+    const bool isResolved = cotangent * cotangent < 1e12 * mesh.ControlAreas().minCoeff();
+    Require(!isResolved || HasFlatTriangles(mesh), error.what());
+  }
+  return false;
 }
 
 /// Whether the diffusivities along and across every gradient, whose ratio is 1 + b^2 |grad u|^2,
@@ -596,7 +698,12 @@ Outcome RunFromBytes(const std::uint8_t* begin, std::size_t count)
   switch (model)
   {
     case 0:
-      return { model, RunLinear(bytes, assembler, std::move(data), frames, delaunay) };
+    {
+      const bool hasResult = RunLinear(bytes, assembler, data, frames, delaunay);
+      // Read last, so that the bytes of earlier findings keep their meaning.
+      const bool isFitted = !bytes.Flip() || RunInterpolation(bytes, assembler, data);
+      return { model, hasResult && isFitted };
+    }
     case 1:
       return { model, RunNonlinear(bytes, assembler, std::move(data), frames) };
     case 6:
