@@ -23,8 +23,8 @@
  * **The values** are
  * - those of a surface with points on input port 1 (a vtkPointSet), which are projected to the
  *   nearest points of the surface, inside triangles, too. MaximumDistance leaves out far ones; or
- * - without an input on port 1, those of the data (input array 0) that are neither NaN nor masked. A
- *   cell has its value in the middle of its largest triangle.
+ * - without an input on port 1, those of the data (input array 0) that are neither NaN nor masked.
+ *   A cell has its value in the middle of its largest triangle.
  *
  * Several values at one place count as their weighted mean; a warning reports it if they differ.
  * With composite data, each block takes all values.
@@ -41,9 +41,9 @@
  *
  * **Smoothing.** Exact holds the values. Otherwise mu, the strength of the smoothing, is found for
  * each component by generalised cross-validation (P. Craven, G. Wahba, Numer. Math. 31, 1979) or,
- * with a NoiseLevel, by the unbiased estimate of the risk (C. Mallows, Technometrics 15, 1973). Up to
- * 300 values are decomposed; with more, traces are those of random vectors of signs (RandomSeed).
- * Fewer than three places with values are held.
+ * with a NoiseLevel, by the unbiased estimate of the risk (C. Mallows, Technometrics 15, 1973). Up
+ * to 300 values are decomposed; with more, traces are those of random vectors of signs
+ * (RandomSeed). Fewer than three places with values are held.
  *
  * **The mean.** With CorrelationLength 0, constants have no energy. With CorrelationLength 1/kappa,
  * values are measured from their weighted mean, to which u returns beyond that distance from the
@@ -60,16 +60,16 @@
  * Graph. 39, 2020), which lets linear functions on flat pieces come back exactly.
  *
  * **Scheme.** Linear elements with lumped masses, Q = (kappa^2 M + K) M^-1 (kappa^2 M + K), whose
- * error falls with order 2. The system is factorised; the factor of Q has about three times the
- * entries of that of K.
+ * error falls with order 2. Cotangents of needles count up to 1e4, since Q squares them. The system
+ * is factorised; the factor of Q has about three times the entries of that of K.
  *
  * **Output.** Port 0: the input with `<name>Interpolated` (active) and, with ComputeError,
  * `<name>Error`, where name is that of the array of values. ResultArrayName, if it is not empty, is
- * the name of the former and the prefix of the latter. Connected components without a value are NaN,
- * which a warning counts. Port 1: a table with a row per component of the values: `Block`,
+ * the name of the former and the prefix of the latter. Connected components without a value are
+ * NaN, which a warning counts. Port 1: a table with a row per component of the values: `Block`,
  * `Component`, `Smoothing` (mu, in the unit of Smoothing; 0: the values hold), `Score` (of
- * cross-validation), `Misfit` (the root of the weighted mean square of u(p) - d), `DegreesOfFreedom`,
- * and `NoiseLevel` (s, given or estimated).
+ * cross-validation), `Misfit` (the root of the weighted mean square of u(p) - d),
+ * `DegreesOfFreedom`, and `NoiseLevel` (s, given or estimated).
  *
  * A surface in pieces is gathered in process 0, with the points of all processes.
  *
@@ -135,8 +135,8 @@ public:
   SURFACEDIFFUSION_PROPERTY(Smoothing, double);
 
   /**
-   * 1/kappa, the distance beyond which u returns to the mean of the values, in coordinate units, 0 or
-   * more. 0 (default): infinite.
+   * 1/kappa, the distance beyond which u returns to the mean of the values, in coordinate units, 0
+   * or more. 0 (default): infinite.
    */
   SURFACEDIFFUSION_PROPERTY(CorrelationLength, double);
 
@@ -163,8 +163,8 @@ public:
   ///@}
 
   /**
-   * The largest distance of points on port 1 from the surface, in coordinate units, 0 or more. Farther
-   * ones are counted and left out. 0 (default): any distance.
+   * The largest distance of points on port 1 from the surface, in coordinate units, 0 or more.
+   * Farther ones are counted and left out. 0 (default): any distance.
    */
   SURFACEDIFFUSION_PROPERTY(MaximumDistance, double);
 

@@ -77,8 +77,8 @@ class Values(unittest.TestCase):
             np.testing.assert_array_equal(both.values[:, column], alone.values)
             np.testing.assert_array_equal(both.error[:, column], alone.error)
             self.assertEqual(both.smoothing[column], alone.smoothing[0])
-        one, _ = interpolate(BALL, values[:, :1], places)
-        self.assertEqual(one.values.shape, (N, 1))
+        one, _ = interpolate(BALL, values[:, :1], places, compute_error=True)
+        self.assertEqual((one.values.shape, one.error.shape), ((N, 1), (N, 1)))
 
     def test_values_of_faces_hold_on_faces(self):
         centres = BALL.points[BALL.triangles].mean(axis=1)
