@@ -55,6 +55,16 @@ SmoothInterpolation::SmoothInterpolation(std::shared_ptr<const Assembler> assemb
 SmoothInterpolation::Result SmoothInterpolation::Fit(
   const ScatteredValues& data, const ProgressMonitor& progress) const
 {
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const Index n = mesh.NumberOfVertices();
+  const Eigen::Index columns = data.Given.cols();
+  if (n == 0) // no triangle has an area
+  {
+    Result nothing;
+    nothing.U.resize(0, columns);
+    nothing.Columns.resize(static_cast<std::size_t>(columns));
+    return nothing;
+  }
   if (data.Count() == 0)
   {
     throw std::runtime_error("no value is known; allowed: one or more");
@@ -67,9 +77,6 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   {
     throw std::invalid_argument("the given noise level is not above 0");
   }
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const Index n = mesh.NumberOfVertices();
-  const Eigen::Index columns = data.Given.cols();
   Work work(*this->Assembly, this->Coefficients, this->Options, data, this->Parallel);
   ScatteredValues& rows = work.Data.Rows;
   Result result;

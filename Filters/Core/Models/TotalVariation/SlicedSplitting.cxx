@@ -320,8 +320,10 @@ void SlicedSplitting<Number>::Start(int columns, bool keepMultipliers)
   const bool fits = this->W.size() == 2 * size;
   if (!fits)
   {
-    this->W = Buffer<Number>(2 * size);
+    // W fits only where both do, also after one of them has found no memory.
+    this->W = Buffer<Number>();
     this->AtCorners = Buffer<Number>(3 * size);
+    this->W = Buffer<Number>(2 * size);
   }
   this->Columns = columns;
   if (!fits || !keepMultipliers)
