@@ -3,9 +3,9 @@
 #pragma once
 
 #include "Core/Foundation/Types.h"
+#include "Core/Geometry/TriangleTree.h"
 
 #include <array>
-#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -18,7 +18,7 @@ struct NearestPoint
   double SquaredDistance = 0.0;
 };
 
-/// Finds the points of triangles that are nearest to given points, with a tree of bounding boxes.
+/// Finds the points of triangles that are nearest to given points.
 class NearestPoints
 {
 public:
@@ -29,20 +29,11 @@ public:
   NearestPoint Find(const Eigen::RowVector3d& x) const;
 
 private:
-  struct Node
-  {
-    Eigen::Array3d Low, High;
-    Index Begin = 0, End = 0; ///< of Order
-    Index Right = -1; ///< -1: a leaf; the left one follows its parent
-  };
-
-  void Split(Index begin, Index end, const Points& centers);
   NearestPoint InTriangle(Index t, const Eigen::RowVector3d& x) const;
 
   const Points& Vertices;
   const Triangles& Faces;
-  std::vector<Index> Order; ///< triangles, those of a node one after the other
-  std::vector<Node> Nodes;
+  const TriangleTree Tree;
 };
 
 } // namespace SurfaceDiffusion

@@ -186,8 +186,8 @@ double PartInBall(const TriangleTree& tree, const Points& points, const Triangle
       constexpr int shrinkings = 20; // each touches the triangle nearer to where the ball does
       for (int k = 0; k < shrinkings && radius > 0.0; ++k)
       {
-        const Vector3 nearest = NearestPoint(place + radius * axis, PlaceOf(points, faces(t, 0)),
-          PlaceOf(points, faces(t, 1)), PlaceOf(points, faces(t, 2)));
+        const Vector3 nearest = NearestInTriangle(place + radius * axis,
+          PlaceOf(points, faces(t, 0)), PlaceOf(points, faces(t, 1)), PlaceOf(points, faces(t, 2)));
         const Vector3 offset = nearest - place;
         const double rise = offset.dot(axis);
         // The ball of this radius has `nearest` on its boundary.

@@ -68,7 +68,7 @@ void TriangleTree::Build(const std::vector<Box>& boxes, Index begin, Index end)
   this->Build(boxes, middle, end);
 }
 
-Eigen::Vector3d NearestPoint(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+Eigen::Vector3d NearestInTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
   const Eigen::Vector3d& b, const Eigen::Vector3d& c)
 {
   const auto onSegment = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to)

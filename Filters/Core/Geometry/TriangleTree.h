@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -24,8 +26,7 @@ public:
   template <typename Enters, typename Visitor>
   void Visit(const Enters& enters, const Visitor& visit) const
   {
-    constexpr int deepest = 64; // halves of fewer than 2^32 triangles
-    Index stack[deepest];
+    Index stack[Deepest];
     int size = 0;
     if (!this->Nodes.empty())
     {
@@ -51,7 +52,56 @@ public:
     }
   }
 
+  /// Call visit(t) for triangles near x, nearer boxes first. It returns the squared distance within
+  /// which further triangles are of interest.
+  template <typename Visitor>
+  void VisitNear(const Eigen::Vector3d& x, const Visitor& visit) const
+  {
+    struct Open
+    {
+      Index Number;
+      double Square; ///< of the distance of its box
+    };
+    Open stack[Deepest];
+    int size = 0;
+    const auto push = [&](Index number)
+    {
+      const Node& node = this->Nodes[static_cast<std::size_t>(number)];
+      stack[size++] = { number, node.Bounds.squaredExteriorDistance(x) };
+    };
+    if (!this->Nodes.empty())
+    {
+      push(0);
+    }
+    double square = std::numeric_limits<double>::infinity();
+    while (size > 0)
+    {
+      const Open open = stack[--size];
+      if (open.Square > square)
+      {
+        continue;
+      }
+      const Node& node = this->Nodes[static_cast<std::size_t>(open.Number)];
+      if (node.Second < 0)
+      {
+        for (Index k = node.Begin; k < node.End; ++k)
+        {
+          square = visit(this->Order[static_cast<std::size_t>(k)]);
+        }
+        continue;
+      }
+      push(node.Second);
+      push(open.Number + 1);
+      if (stack[size - 1].Square > stack[size - 2].Square)
+      {
+        std::swap(stack[size - 1], stack[size - 2]);
+      }
+    }
+  }
+
 private:
+  static constexpr int Deepest = 64; ///< halves of fewer than 2^32 triangles
+
   /// The first child of an inner node follows it.
   struct Node
   {
@@ -67,7 +117,7 @@ private:
 };
 
 /// The point of triangle abc that is nearest to p.
-Eigen::Vector3d NearestPoint(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+Eigen::Vector3d NearestInTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
   const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
 } // namespace SurfaceDiffusion
