@@ -3,8 +3,8 @@ Cortical thickness with a given width
 =====================================
 
 Thickness is smoothed by 10 mm. The medial wall, where the surface is no cortex, is left out: nothing
-flows across its boundary. It has 888 of the 10,242 vertices of fsaverage5's left hemisphere. The map itself
-does not tell it: it is 0 at 263 vertices and fades out around them.
+flows across its boundary. It has 888 of the 10,242 vertices of fsaverage5's left hemisphere. The wall
+cannot be read from the map, which is 0 at 263 vertices and small around them.
 
 From file to file this is one line::
 

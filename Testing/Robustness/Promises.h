@@ -380,7 +380,7 @@ inline std::string ExpectPromises(
   }
   if (auto* spline = vtkSurfaceInterpolationFilter::SafeDownCast(filter))
   {
-    // Fewer than three values hold, whatever the settings.
+    // With fewer than three values, the values hold for all settings.
     const bool holds = spline->GetExact() || spline->GetNumberOfValues() < 3;
     EXPECT_EQ(holds, spline->GetEffectiveSmoothing() == 0.0);
     return std::to_string(spline->GetNumberOfValues()) + " values, smoothing " +

@@ -30,9 +30,9 @@ struct FrontSource
 /// its curvature. If they are reached from different points, as beside a line of sources, the front
 /// is plane. In both cases the way has to cross the edge between them; others go along an edge.
 ///
-/// Every time is that of a way over triangles laid out side by side, whatever the order of the
-/// vertices: a vertex whose time falls later is visited again, so that obtuse triangles need no
-/// unfolding. On an intrinsic Delaunay triangulation (IntrinsicDelaunay) fewer ways go along edges,
+/// Each time is the length of a path over triangles laid out side by side. A vertex whose time
+/// decreases later is visited again, so that times do not depend on the order of the vertices, and
+/// obtuse triangles need no unfolding. On an intrinsic Delaunay triangulation (IntrinsicDelaunay) fewer ways go along edges,
 /// and distances have smaller errors; the vertices, and the surface, are the same.
 ///
 /// A triangle of infinite slowness is a barrier: no way crosses it, but ways along an edge that

@@ -61,9 +61,8 @@ struct CorrelatedNoise
 ///
 /// Noise is correlated if sigma_8 > 1.3 sigma_2, sigma_16 < 1.6 sigma_8, and sigma_16 is between 0.1
 /// h and h, on surfaces of at least 3,200 vertices, of which sixteen rings are a small part. Its
-/// level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of the
-/// level. Longer correlations, L > 3 h, do not end within the sixteen rings, and cannot be told from
-/// shape.
+/// level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of the level. Noise with
+/// L > 3 h does not reach its level within sixteen rings and is not found.
 CorrelatedNoise EstimateCorrelatedNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel = SerialFor());
 

@@ -316,7 +316,7 @@ def _write_vtk(data, values, columns):
 
 @dataclass(frozen=True)
 class _Format:
-    """How a kind of file is read and, unless they are None, written and made anew."""
+    """The functions that read, write and create files of one format; None: not supported."""
 
     read: Callable[[Content], Data]
     write: Callable[[Data, Any, list[int]], bytes] | None = None

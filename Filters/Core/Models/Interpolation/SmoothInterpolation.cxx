@@ -312,7 +312,7 @@ void SmoothInterpolation::FitSmoothly(
   }
   if (columns > 1 && (result.IsFlattest != wasFlattest || result.DropsNegativeCurvature != didDrop))
   {
-    // One energy for all columns, in whatever order they are.
+    // All columns have one energy, so that their results do not depend on the order of the columns.
     this->FitSmoothly(work, result, progress.Part(1.0, 1.0));
   }
 }
