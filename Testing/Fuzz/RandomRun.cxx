@@ -167,10 +167,12 @@ void CheckState(const TriangleMesh& mesh, const Model& model, const Values& star
   Require(u.allFinite(), "a state is not finite");
   const double energy = model.Energy();
   Require(std::isfinite(energy) || !promises.Energy, "an energy is not finite");
-  // Even a constant has energy, by round-off, which the fidelity weight multiplies.
+  // Even a constant has energy, by round-off, which the fidelity weight multiplies. An error of energy
+  // e adds up to e + 2 sqrt(e E) to an energy E.
   const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0.0;
+  const double error = promises.RoundOff * largest * std::sqrt(1.0 + promises.Fidelity);
   const double roundOff = 1e-9 * energyAtStart +
-    std::pow(promises.RoundOff * largest, 2.0) * (1.0 + promises.Fidelity) +
+    error * (error + 2.0 * std::sqrt(std::max(energyAtStart, 0.0))) +
     (promises.Variation ? promises.RoundOff * largest * mesh.TotalEdgeLength() : 0.0) +
     std::numeric_limits<double>::min();
   Require(!promises.Energy || energy <= energyBefore + roundOff, "an energy grows");

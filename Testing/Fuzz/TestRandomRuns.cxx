@@ -105,6 +105,9 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // a pass in single precision whose iterates grew until double precision lost the residual
     "0000ffff010000010000111104010001000092193fffffffffffffff8b8b8bff1e0021ff00ffff0400ff0100"
     "000000ffff0fffff0100000100ff0100010000",
+    // values that differ by 1e-5 of their size: round-off changes the energy by its mixed term, too
+    "000053068b613b614f00ff00e8fefe00000000510000efffffd521000100000800075555555555555900ffff"
+    "ff4f",
     // values of 1e29 again, on which a factorisation fails
     "f623b7a3a3a3a3a3a3a3a3a3a3a3a3fffffff7ffff01ff1304020100001df51d0300386f80007d0000000001"
     "0000000d0000004140c801fef8b000f05655ffff000011f7ffffffffffffff17aa0000ffff010000aab00010"
