@@ -183,6 +183,56 @@ TEST(InterpolationField, SmoothsNoiseBesideNeedlesAsWithoutThem)
   }
 }
 
+/// One factor serves all columns, whose mu differ: each must have the minimiser of its own.
+TEST(InterpolationField, IsTheMinimiserOfEveryColumnAtItsOwnSmoothing)
+{
+  const Surface sphere = Icosphere(4);
+  const auto assembler = std::make_shared<const Assembler>(
+    std::make_shared<TriangleMesh>(sphere.Vertices, sphere.Faces));
+  const TriangleMesh& mesh = assembler->Mesh();
+  Values field(mesh.NumberOfVertices(), 4);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    const auto x = sphere.Vertices.row(mesh.InputVertex()[i]);
+    field.row(i).setConstant(x[0] * x[1] + 3.0 * x[2] * x[2]);
+  }
+  ScatteredValues data = ValuesInTriangles(mesh, field, 150);
+  for (Index i = 0; i < data.Count(); ++i)
+  {
+    double noise = 1e-3;
+    for (Eigen::Index c = 0; c < data.Given.cols(); ++c, noise *= 10.0)
+    {
+      data.Given(i, c) += noise * (UniformRandom(7, c, i) - 0.5);
+    }
+  }
+  for (const double kappa : { 0.0, 2.0 })
+  {
+    Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+    settings.Kappa = kappa;
+    const Interpolation::Result all = Interpolate(assembler, data, settings);
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (Eigen::Index c = 0; c < data.Given.cols(); ++c)
+    {
+      const double mu = all.Columns[static_cast<std::size_t>(c)].Mu;
+      least = std::min(least, mu);
+      most = std::max(most, mu);
+      Interpolation::Settings given = InterpolationSettings(Choice::Given, mu);
+      given.Kappa = kappa;
+      ScatteredValues column = data;
+      column.Given = data.Given.col(c);
+      const Interpolation::Result alone = Interpolate(assembler, column, given);
+      EXPECT_LT((all.U.col(c) - alone.U.col(0)).cwiseAbs().maxCoeff(), 1e-10) << mu;
+      EXPECT_NEAR(all.Columns[static_cast<std::size_t>(c)].Residual, alone.Columns[0].Residual,
+        1e-9 * alone.Columns[0].Residual + 1e-13);
+      const Interpolation::Result found = Interpolate(assembler, column, settings);
+      EXPECT_EQ(all.U.col(c), found.U.col(0));
+    }
+    EXPECT_GT(most, 100.0 * least);
+    std::printf("kappa %g: mu %.3g to %.3g\n", kappa, least, most);
+  }
+}
+
 TEST(InterpolationField, NinetyPercentOfTruthsAreInsideTheBandOfTheirError)
 {
   // Fields of the prior, u = s (mu Q)^(-1/2) x, and values of them with noise s. The mean of values,

@@ -61,19 +61,20 @@ void InfluenceSpectrum::Decompose(
   }
   const Eigen::MatrixXd symmetric = 0.5 * (influence + influence.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
-  const Vector shares = solver.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
+  this->Shares = solver.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
+  this->Vectors = solver.eigenvectors();
   for (Index i = 0; i < this->Count; ++i)
   {
-    this->Trace.emplace_back(shares[i], 1.0);
+    this->Trace.emplace_back(this->Shares[i], 1.0);
   }
   for (Eigen::Index c = 0; c < data.Given.cols(); ++c)
   {
     Measure measure;
     const Vector values = roots.cwiseProduct(data.Given.col(c));
-    const Vector parts = solver.eigenvectors().transpose() * values;
+    const Vector parts = this->Vectors.transpose() * values;
     for (Index i = 0; i < this->Count; ++i)
     {
-      measure.emplace_back(shares[i], parts[i] * parts[i]);
+      measure.emplace_back(this->Shares[i], parts[i] * parts[i]);
     }
     this->Columns.push_back(std::move(measure));
   }
@@ -179,6 +180,17 @@ void InfluenceSpectrum::Sample(const SmoothFit& fit, const ScatteredValues& data
       this->Columns.push_back(std::move(measure));
     }
   }
+}
+
+bool InfluenceSpectrum::Rescale(SmoothFit& fit, double mu) const
+{
+  constexpr double most = 1e3;
+  if (!this->IsExact || mu > most * this->Mu || this->Mu > most * mu)
+  {
+    return false;
+  }
+  fit.Rescale(mu, this->Vectors, this->Shares);
+  return true;
 }
 
 double InfluenceSpectrum::DegreesOfFreedom(double mu) const

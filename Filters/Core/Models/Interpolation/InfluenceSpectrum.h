@@ -51,6 +51,11 @@ public:
     return this->IsExact || (mu < 30.0 * this->Mu && this->Mu < 30.0 * mu);
   }
 
+  /// Let the fit, which is prepared with mu_0, take mu without another factorisation. Returns false,
+  /// and does nothing, if the eigenvectors are not known, or if mu is so far from mu_0 that round-off
+  /// counts. The fit must have the factor of mu_0 still.
+  bool Rescale(SmoothFit& fit, double mu) const;
+
   static constexpr Index FewValues = 300; ///< whose matrix is decomposed
 
 private:
@@ -68,6 +73,8 @@ private:
   bool IsExact = false;
   double Mu;
   Index Count;
+  Eigen::MatrixXd Vectors; ///< of S, and its eigenvalues, if they are exact
+  Vector Shares;
   Measure Trace;
   std::vector<Measure> Columns; ///< of the data
 };

@@ -24,6 +24,8 @@ PivotCounts SmoothFit::Prepare(
   double mu, const Flags& held, bool exact, const ProgressMonitor& progress)
 {
   this->Mu = mu;
+  this->FactorMu = mu;
+  this->Vectors.resize(0, 0);
   this->Held = held;
   this->IsExact = exact;
   this->Weights = this->Data.Weights;
@@ -77,6 +79,14 @@ PivotCounts SmoothFit::Prepare(
   }
   this->NeededAtPoints = this->Factor.Needed(vertices);
   return pivots;
+}
+
+void SmoothFit::Rescale(double mu, const Eigen::MatrixXd& vectors, const Vector& shares)
+{
+  const double ratio = mu / this->FactorMu;
+  this->Mu = mu;
+  this->Vectors = vectors;
+  this->Scales = (1.0 - ratio) / (shares.array() + ratio * (1.0 - shares.array()));
 }
 
 Values SmoothFit::AtPoints(const Values& u) const
@@ -138,6 +148,18 @@ void SmoothFit::ApplyInverse(Values& x) const
 {
   this->ReleaseHeld(x);
   this->Factor.Solve(x, this->Parallel);
+  if (this->Vectors.size() == 0)
+  {
+    return;
+  }
+  const Vector roots = this->Weights.cwiseSqrt();
+  const Eigen::MatrixXd parts =
+    this->Vectors.transpose() * (roots.asDiagonal() * this->AtPoints(x));
+  Values change =
+    this->ToVertices(roots.asDiagonal() * (this->Vectors * (this->Scales.asDiagonal() * parts)));
+  this->ReleaseHeld(change);
+  this->Factor.Solve(change, this->Parallel);
+  x = (x - change) * (this->FactorMu / this->Mu);
 }
 
 Values SmoothFit::InverseAtPoints(const Values& v) const

@@ -28,6 +28,12 @@ public:
   /// Returns the numbers of rows that neither values nor the energy determine.
   PivotCounts Prepare(double mu, const Flags& held, bool exact, const ProgressMonitor& progress);
 
+  /// Take mu for mu_0, which the fit is prepared with, and keep the factor of mu_0: with the
+  /// eigenvalues s and eigenvectors V of S = W^(1/2) B H_0^-1 B^T W^(1/2) and r = mu / mu_0,
+  ///   H^-1 = (H_0^-1 - H_0^-1 B^T W^(1/2) V diag((1 - r) / (s + r (1 - s))) V^T W^(1/2) B H_0^-1) / r
+  /// by Woodbury's formula. Not for exact values, nor before InverseDiagonal().
+  void Rescale(double mu, const Eigen::MatrixXd& vectors, const Vector& shares);
+
   /// u: on entry the values of the held vertices and a start elsewhere, for as many columns of the
   /// data. Returns the multipliers of exact values, d x k.
   Values Solve(Eigen::Index firstColumn, Values& u) const;
@@ -43,7 +49,7 @@ public:
   /// B^T v.
   Values ToVertices(const Values& v) const;
 
-  /// The diagonal of H^-1.
+  /// The diagonal of H^-1, of the mu of Prepare().
   Vector InverseDiagonal(const ProgressMonitor& progress) const
   {
     return this->Factor.InverseDiagonal(this->Parallel, progress);
@@ -69,6 +75,9 @@ private:
   Flags Held;
   double Mu = 0.0;
   bool IsExact = false;
+  double FactorMu = 0.0;
+  Eigen::MatrixXd Vectors; ///< of S; empty if the factor is that of mu
+  Vector Scales; ///< of the vectors
 };
 
 } // namespace SurfaceDiffusion

@@ -13,6 +13,7 @@
 #include <limits>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -293,10 +294,26 @@ void SmoothInterpolation::FitSmoothly(
   }
   const bool wasFlattest = result.IsFlattest;
   const bool didDrop = result.DropsNegativeCurvature;
+  // One factor serves all columns that need no other; those first, so that it is there still.
+  const bool needsFactor = this->Options.ComputeError || this->Options.KeepRange;
+  std::vector<Eigen::Index> others;
+  double done = 0.0;
+  const auto at = [&](double part)
+  { return 0.4 + 0.6 * (done + part) / static_cast<double>(columns); };
   for (Eigen::Index c = 0; c < columns; ++c)
   {
-    const auto at = [&](double part)
-    { return 0.4 + 0.6 * (static_cast<double>(c) + part) / static_cast<double>(columns); };
+    const double mu = std::min(largest, start.BestSmoothing(c, noise));
+    if (needsFactor || !start.Rescale(work.Fit, mu))
+    {
+      others.push_back(c);
+      continue;
+    }
+    take(start, mu, c);
+    this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.0), at(1.0)));
+    ++done;
+  }
+  for (const Eigen::Index c : others)
+  {
     double mu = std::min(largest, start.BestSmoothing(c, noise));
     take(start, mu, c);
     constexpr int most = 3;
@@ -309,6 +326,7 @@ void SmoothInterpolation::FitSmoothly(
       isResolved = nearer.Resolves(mu);
     }
     this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.5), at(1.0)));
+    ++done;
   }
   if (columns > 1 && (result.IsFlattest != wasFlattest || result.DropsNegativeCurvature != didDrop))
   {
