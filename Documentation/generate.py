@@ -57,7 +57,8 @@ PAGES = {  # of the repository, by their name on the site
     "Testing/Comparisons/README.md": "comparison", "Testing/Benchmarks/RESULTS.md": "speed",
     "Filters/DISTRIBUTED.md": "processes", "Filters/ADDING_A_MODEL.md": "adding_a_model",
     "Filters/README.md": "layers", "Examples/ParaView/GUIDE.md": "paraview",
-    "CHANGELOG.md": "changelog",
+    "Examples/FIGURES.md": "figures", "Packaging/README.md": "packages",
+    "CONTRIBUTING.md": "contributing", "CHANGELOG.md": "changelog",
 }
 
 

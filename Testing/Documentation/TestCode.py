@@ -62,6 +62,17 @@ class TestCode(unittest.TestCase):
                     self.assertTrue(Path(target).parts[0] in MADE or (FOLDER / target).is_file()
                                     or Path(target).stem in known)
 
+    def test_links_of_the_pages_of_the_repository_lead_to_files(self):
+        root = FOLDER.parent
+        pages = [*root.glob("*.md"), *(path for folder in ("Examples", "Filters", "Packaging", "Plugin",
+                                                           "Testing")
+                                       for path in (root / folder).rglob("*.md"))]
+        self.assertGreater(len(pages), 10)
+        for page in pages:
+            for target in re.findall(r"\]\(([^)#:\s]+)\)", page.read_text(encoding="utf-8")):
+                with self.subTest(f"{page.name}: {target}"):
+                    self.assertTrue((page.parent / target).exists())
+
     def test_the_page_of_the_command_has_every_option(self):
         from surfacediffusion.command.arguments import make_parser
 
