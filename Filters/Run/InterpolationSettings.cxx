@@ -87,8 +87,9 @@ void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
   if (!found.RangeIsOptimal)
   {
     result.WarnOnce(Sentence(Word::Setting("KeepRange"))
-      << ": the set of points at the bounds did not settle; the result is within the range but not "
-         "the smoothest one");
+      << ": the set of points at the bounds did not settle, or exact values inside triangles "
+         "exclude "
+         "each other; the result is within the range but not the smoothest one");
   }
 }
 

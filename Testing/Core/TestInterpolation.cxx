@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <vector>
 
 using namespace SurfaceDiffusion;
@@ -401,6 +402,34 @@ TEST(Interpolation, KeepsTheRangeOfAColumnWithTheBitsThatItHasAlone)
   const Values u = Interpolate(assembler, data, settings).U;
   EXPECT_GT((u.col(0).array() == 7.0).count(), OfSphere / 4); // an active set
   EXPECT_EQ(u.col(0), u.col(1));
+}
+
+TEST(Interpolation, KeepsTheRangeOfExactValuesInsideTriangles)
+{
+  // An extreme value inside a triangle holds at all three vertices: its multiplier has no bound.
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const std::vector<std::function<double(const Eigen::RowVector3d&)>> fields = {
+    [](const Eigen::RowVector3d& x) { return x[2] * x[2]; },
+    [](const Eigen::RowVector3d& x) { return x[0] > 0.2 ? 1.0 : x[1]; },
+    [](const Eigen::RowVector3d& x) { return 1e3 + std::sin(5.0 * x[0]) * x[1]; },
+  };
+  for (std::size_t f = 0; f < fields.size(); ++f)
+  {
+    for (const std::int64_t seed : { 1, 2, 3 })
+    {
+      const ScatteredValues data = ValuesInTriangles(mesh, Sample(mesh, s, fields[f]), 60, seed);
+      Interpolation::Settings settings = InterpolationSettings(Choice::Exact);
+      settings.KeepRange = true;
+      const Interpolation::Result kept = Interpolate(assembler, data, settings);
+      EXPECT_TRUE(kept.RangeIsOptimal) << f << ", seed " << seed;
+      EXPECT_LE(kept.U.maxCoeff(), data.Given.maxCoeff());
+      EXPECT_GE(kept.U.minCoeff(), data.Given.minCoeff());
+      const double range = data.Given.maxCoeff() - data.Given.minCoeff();
+      EXPECT_LT(kept.Columns[0].Residual, 1e-9 * range) << f << ", seed " << seed;
+    }
+  }
 }
 
 TEST(Interpolation, KeepsTheRangeAroundABumpInAPlain)

@@ -3,6 +3,7 @@
 #include "Core/Models/Interpolation/SmoothInterpolation.h"
 
 #include "Core/Models/Interpolation/InfluenceSpectrum.h"
+#include "Core/Models/Interpolation/RangeConstraint.h"
 #include "Core/Models/Interpolation/SmoothFit.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Solvers/NestedDissection.h"
@@ -155,6 +156,17 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   }
   progress.Report(1.0);
   return result;
+}
+
+void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index column,
+  const Flags& held, Values& u, Values& forces, const ProgressMonitor& progress) const
+{
+  const double mu = work.Fit.GetSmoothing();
+  const RangeConstraint range(work.Data.Rows, column, this->Options.Smoothing == Choice::Exact);
+  const auto prepare = [&](const Flags& all, const ProgressMonitor& part)
+  { this->Prepare(work, result, mu, all, part); };
+  const bool isOptimal = range.Impose(work.Fit, prepare, held, u, forces, progress);
+  result.RangeIsOptimal = result.RangeIsOptimal && isOptimal;
 }
 
 /// mu at which the fit smooths over three times the distance of the values.
@@ -374,75 +386,6 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     found.Roughness = work.Energy.Squares(u)[0];
     result.U.col(first + c) = u;
   }
-}
-
-/// The minimiser under bounds by a primal-dual active set (M. Hintermueller, K. Ito, K. Kunisch, SIAM
-/// J. Optim. 13, 2002): vertices beyond a bound are held at it, and are released when the energy
-/// draws them inwards. u: the minimiser without bounds on entry; forces: its multipliers.
-void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index column,
-  const Flags& held, Values& u, Values& forces, const ProgressMonitor& progress) const
-{
-  // The rim of the active set moves by about a row of triangles per step. The set may cycle: it grows
-  // only, after so many steps.
-  constexpr int mostWithRelease = 300;
-  constexpr int most = 350;
-  const auto data = work.Data.Rows.Given.col(column);
-  const double low = data.minCoeff();
-  const double high = data.maxCoeff();
-  const double resolved = 1e-13 * (high - low);
-  const double mu = work.Fit.GetSmoothing();
-  const auto n = static_cast<Index>(u.rows());
-  std::vector<signed char> active(static_cast<std::size_t>(n), 0); // -1, 1: at the low, high bound
-  Values derivative;
-  for (int iteration = 0; iteration < most; ++iteration)
-  {
-    progress.Report(static_cast<double>(iteration) / most);
-    work.Fit.Derivative(column, u, forces, derivative);
-    bool isSettled = true;
-    bool isFeasible = true;
-    for (Index i = 0; i < n; ++i)
-    {
-      if (held[i])
-      {
-        continue;
-      }
-      signed char next = active[i];
-      if (next == 0)
-      {
-        next = u(i, 0) < low - resolved ? -1 : u(i, 0) > high + resolved ? 1 : 0;
-        isFeasible = isFeasible && next == 0;
-      }
-      else if (iteration < mostWithRelease && next * derivative(i, 0) > 0.0)
-      {
-        next = 0; // downhill is inwards
-      }
-      isSettled = isSettled && next == active[i];
-      active[i] = next;
-    }
-    if (isSettled)
-    {
-      result.RangeIsOptimal = result.RangeIsOptimal && iteration < mostWithRelease;
-      return;
-    }
-    if (isFeasible && iteration >= mostWithRelease)
-    {
-      break;
-    }
-    Flags all = held;
-    for (Index i = 0; i < n; ++i)
-    {
-      if (active[i] != 0)
-      {
-        all[i] = true;
-        u(i, 0) = active[i] < 0 ? low : high;
-      }
-    }
-    const double done = static_cast<double>(iteration) / most;
-    this->Prepare(work, result, mu, all, progress.Part(done, done));
-    forces = work.Fit.Solve(column, u);
-  }
-  result.RangeIsOptimal = false;
-  u = u.cwiseMax(low).cwiseMin(high).eval();
 }
 
 } // namespace SurfaceDiffusion
