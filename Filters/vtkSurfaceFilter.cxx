@@ -21,6 +21,7 @@
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <limits>
 #include <new>
@@ -120,6 +121,13 @@ void vtkSurfaceFilter::CheckSurfaceProperties(Problems& problems)
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: 1e-6 of the bounding box");
   Require(seam.Contains(this->SeamTolerance), Word::Setting("SeamTolerance"), this->SeamTolerance,
     seam.Text, problems);
+  const bool automatic = this->MayRefineAutomatically();
+  Require(
+    (automatic ? SettingRange::NonNegativeOr(RefineAutomatically, "") : SettingRange::NonNegative())
+      .Contains(this->RefineTo),
+    Word::Setting("RefineTo"), this->RefineTo,
+    automatic ? "finite numbers, 0 or more, or -1: automatic" : "finite numbers, 0 or more",
+    problems);
   Require(this->NumberOfThreads >= 0, Word::Setting("NumberOfThreads"), this->NumberOfThreads,
     "integers, 0 or more; 0: all", problems);
 }
@@ -199,6 +207,18 @@ void vtkSurfaceFilter::ReportError(const std::string& text)
 
 void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 {
+  const PieceRefinement& refinement = this->Private->Refinement;
+  if (refinement.HasRefined() && !this->Private->RefinementReason.Words().empty())
+  {
+    Sentence text("edges were bisected, to ");
+    text << refinement.NumberOfTriangles() << " triangles, because "
+         << this->Private->RefinementReason;
+    warnings.push_back({ text, Fingerprint() });
+  }
+  if (!refinement.Limit().Words().empty())
+  {
+    warnings.push_back({ refinement.Limit(), Fingerprint() });
+  }
   const std::vector<Sentence> sentences = this->Private->Reported.Report(std::move(warnings));
   if (!sentences.empty() && this->GetProcesses().Rank() == 0)
   {
@@ -264,7 +284,7 @@ int vtkSurfaceFilter::RequestDataObject(
 int vtkSurfaceFilter::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const std::vector<SurfacePiece> pieces =
+  std::vector<SurfacePiece> pieces =
     CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
   this->Private->HasFailed = false;
   const std::string alone = DescribeLonePiece(inputs, this->Controller, this->HasWholeSurface);
@@ -286,6 +306,10 @@ int vtkSurfaceFilter::RequestData(
     }
     return blocks;
   };
+  if (!this->RefineSurfaces(pieces))
+  {
+    return this->EndUpdate();
+  }
   const Processes processes(this->Controller);
   const PieceSummary summary =
     processes.Count() > 1 ? SummarizePieces(processes, pieces) : PieceSummary();
@@ -321,12 +345,55 @@ int vtkSurfaceFilter::RequestData(
     }
   }
   this->ShareNumbers();
+  if (processes.Any(!this->Private->IsComplete))
+  {
+    this->Private->Refinement.Undo();
+  }
   if (this->GetReleaseDataFlag() != 0 || vtkDataObject::GetGlobalReleaseDataFlag() != 0)
   {
     this->ReleaseCache();
   }
   this->Private->HasFailed = processes.Any(this->Private->HasFailed);
   return this->EndUpdate();
+}
+
+double vtkSurfaceFilter::FindRefinement(const std::function<double()>&, Sentence&) const
+{
+  return this->RefineTo > 0.0 && std::isfinite(this->RefineTo) ? this->RefineTo : 0.0;
+}
+
+/// Bisect long edges. False: the update was aborted, or there is not enough memory.
+bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
+{
+  PieceRefinement& refinement = this->Private->Refinement;
+  this->Private->RefinementReason = Sentence();
+  this->Private->IsComplete = true;
+  const ProgressMonitor progress(
+    [this](double)
+    {
+      this->UpdateProgress(0.0);
+      return !this->IsAborted();
+    });
+  try
+  {
+    const double length = this->FindRefinement(
+      [&] { return refinement.FindMeanEdgeLength(pieces); }, this->Private->RefinementReason);
+    refinement.Refine(pieces, length, progress);
+    return true;
+  }
+  catch (const Aborted&)
+  {
+  }
+  catch (const std::bad_alloc&)
+  {
+    this->ReportError(OutOfMemoryMessage);
+  }
+  catch (const std::exception& error)
+  {
+    this->ReportError(error.what());
+  }
+  refinement.Undo();
+  return false;
 }
 
 /// The answer to the pipeline: 0 if the update has failed.
@@ -355,6 +422,7 @@ vtkMTimeType vtkSurfaceFilter::GetMTime()
 void vtkSurfaceFilter::ReleaseCache()
 {
   this->Private->Gathered.reset();
+  this->Private->Refinement = PieceRefinement();
 }
 
 void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
@@ -393,6 +461,7 @@ void vtkSurfaceFilter::ProcessGuarded(const std::vector<SurfaceBlock>& blocks)
     failure = error.what();
   }
   this->Private->Watch = nullptr;
+  this->Private->IsComplete = completed && !this->Private->HasFailed && failure.empty();
   if (!completed)
   {
     for (const SurfaceBlock& block : blocks) // some may have been written already

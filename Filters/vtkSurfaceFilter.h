@@ -43,6 +43,7 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSurfaceDiffusionModule.h" // for export macro
 
+#include <functional> // for refinement
 #include <memory> // for the private part
 #include <string> // for names
 #include <vector> // for surfaces
@@ -53,6 +54,7 @@ class OwnedSettings;
 class Reduction;
 class ProgressMonitor;
 class Settings;
+struct SurfacePiece;
 struct Warning;
 }
 class vtkMultiProcessController;
@@ -227,6 +229,12 @@ protected:
   virtual bool SolvesInPieces(
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points);
 
+  /// The length above which edges are bisected before an update; 0: the surfaces stay as they are.
+  /// meanEdgeLength(): that of all surfaces of this process. With an explanation, a warning says
+  /// that surfaces were refined. The default returns RefineTo, unless it is no length.
+  virtual double FindRefinement(
+    const std::function<double()>& meanEdgeLength, SurfaceDiffusion::Sentence& explanation) const;
+
   /// Complete the arrays of a piece of a surface that process 0 has computed: cells that take no
   /// part are not gathered. The default does nothing.
   virtual void CompletePiece(const SurfaceBlock& piece);
@@ -265,6 +273,9 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   double SeamTolerance = -1.0;
+  double RefineTo = 0.0; ///< a property of the classes that refine
+  static constexpr double RefineAutomatically = -1.0; ///< a value of RefineTo of some
+  virtual bool MayRefineAutomatically() const { return false; }
   int NumberOfThreads = 0;
   std::string ResultArrayName;
 
@@ -276,6 +287,7 @@ private:
   vtkSurfaceFilter(const vtkSurfaceFilter&) = delete;
   void operator=(const vtkSurfaceFilter&) = delete;
 
+  bool RefineSurfaces(std::vector<SurfaceDiffusion::SurfacePiece>& pieces);
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
   void ProcessGuarded(const std::vector<SurfaceBlock>& blocks);
   void ReportError(const std::string& text);

@@ -4,6 +4,7 @@
 
 #include "vtkSurfaceFilter.h"
 
+#include "Conversion/PieceRefinement.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Core/Foundation/Types.h"
 #include "Distributed/GatheredSurfaces.h"
@@ -44,6 +45,10 @@ struct vtkSurfaceFilter::Internals
   SurfaceDiffusion::LoopWatch* Watch = nullptr;
   /// Whether an abort was requested. Processes that work together stop together.
   const std::shared_ptr<bool> AbortRequested = std::make_shared<bool>(false);
+
+  SurfaceDiffusion::PieceRefinement Refinement;
+  SurfaceDiffusion::Sentence RefinementReason; ///< empty: it was asked for
+  bool IsComplete = true; ///< the present update, neither failed nor aborted
 
   bool HasFailed = false; ///< the last update, with an error that was reported
   vtkTimeStamp FailureTime;

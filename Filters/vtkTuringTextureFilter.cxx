@@ -4,6 +4,7 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
+#include "Distributed/Processes.h"
 #include "Run/OwnedSettings.h"
 #include "Run/TextureSettings.h"
 
@@ -11,6 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 
+#include <cmath>
 #include <vector>
 
 using namespace SurfaceDiffusion;
@@ -24,6 +26,7 @@ vtkTuringTextureFilter::vtkTuringTextureFilter()
   this->DeclareNumber("WavelengthGrowthRate");
   this->DeclareNumber("DiffusionRateFactor", 1.0);
   this->DeclareNumber("CoarseStartVertices");
+  this->RefineTo = RefineAutomatically;
   // An initial state is optional: the active scalars are not used by default.
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
 }
@@ -33,6 +36,38 @@ void vtkTuringTextureFilter::UsePaperScheme()
   this->Superclass::UsePaperScheme();
   this->SetTimeIntegratorToFirstOrder();
   this->SetKineticsToTuring();
+}
+
+void vtkTuringTextureFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "RefineTo: " << this->RefineTo << "\n";
+}
+
+double vtkTuringTextureFilter::FindRefinement(
+  const std::function<double()>& meanEdgeLength, Sentence& explanation) const
+{
+  if (this->RefineTo != RefineAutomatically)
+  {
+    return this->Superclass::FindRefinement(meanEdgeLength, explanation);
+  }
+  // The mean over the pieces of all processes is not known here.
+  auto* const processes = const_cast<vtkTuringTextureFilter*>(this)->GetController();
+  const TextureSettings& settings = this->GetTextureSettings();
+  const double size = settings.FeatureSize;
+  if (!(size > 0.0 && std::isfinite(size)) || Processes(processes).Count() > 1)
+  {
+    return 0.0;
+  }
+  const double h = meanEdgeLength();
+  const double length = settings.EdgeLengthForFeatures(h);
+  if (length > 0.0)
+  {
+    explanation << Word::Setting("FeatureSize") << " is " << size << ", only " << size / h
+                << " mean edge lengths (to keep the edges, set " << Word::Setting("RefineTo")
+                << " to 0)";
+  }
+  return length;
 }
 
 bool vtkTuringTextureFilter::FindFields(vtkPolyData* block, InputFields& fields, Problems& problems)

@@ -11,6 +11,7 @@ from typing import Any, Callable
 import numpy as np
 
 import surfacediffusion as sd
+from surfacediffusion.command.printing import EDGES_PER_WAVELENGTH, PATTERNS, welded
 
 STEPS = 10  # time steps within the time of the slider
 
@@ -61,6 +62,7 @@ class Outcome:
     history: dict = field(default_factory=dict)
     labels: bool = False
     note: str = ""
+    triangles: Any = None  # if the result is another surface, for printing: its triangles
 
 
 @dataclass(frozen=True)
@@ -164,6 +166,23 @@ def run_texture(mesh, _, options, progress):
                    note=f"the fastest-growing wavelength is {result.wavelength:.4g}")
 
 
+def run_relief(mesh, _, options, progress):
+    """The part with relief, for printing."""
+    part = welded(mesh.surface)
+    fine = sd.refine(part, options["size"] / EDGES_PER_WAVELENGTH, maximum_triangles=MOST_TRIANGLES)
+    ratio = PATTERNS[list(PATTERNS)[int(options["pattern"])]]
+    texture = sd.turing_texture(
+        fine.surface, feature_size=options["size"], seed=int(options["seed"]), progress=progress,
+        diffusion_rate1=2.6 * ratio, diffusion_rate2=2.6, number_of_time_steps=2000)
+    overhang = options["overhang"] if options["overhang"] < 90 else None
+    result = sd.relief(fine.surface, texture.texture, options["height"], overhang=overhang)
+    wall = f", smallest wall {result.smallest_wall:.3g}" if np.isfinite(result.smallest_wall) else ""
+    closed = "closed" if result.open_edges == 0 else f"{result.open_edges} open edges"
+    return Outcome(texture.texture, {"Texture": texture.texture, "ReliefHeight": result.heights},
+                   points=result.surface.points, triangles=result.surface.triangles,
+                   note=f"{result.surface.n_faces} triangles, {closed}{wall}")
+
+
 def run_directions(mesh, _, options, progress):
     """Directions on the faces, shown by noise that is smeared along them."""
     field_of_lines = sd.direction_field(
@@ -174,6 +193,9 @@ def run_directions(mesh, _, options, progress):
                     time_step=10.0, number_of_time_steps=5)
     return Outcome(lines, {"Lines": lines}, cell_arrays={"Direction": field_of_lines})
 
+
+#: Of a part for printing: a texture on these takes some ten seconds.
+MOST_TRIANGLES = 600_000
 
 SURFACES = ("Automatic", "CAD", "Organic")
 TENSORS = ("Beltrami", "CoherenceEnhancing", "EdgeEnhancing")
@@ -215,6 +237,12 @@ FILTERS = {entry.name: entry for entry in (
     Filter("turing_texture", "Texture: reaction and diffusion", "none", (
         Slider("size", "Width of a spot with its gap", 0.02, 0.3, 0.001, 0.08, True),
         Slider("seed", "Seed of the noise", 0, 100, 1, 0)), run_texture),
+    Filter("relief", "Relief for printing", "none", (
+        choice("pattern", "Pattern", *PATTERNS),
+        Slider("size", "Width of a spot with its gap", 0.02, 0.3, 0.001, 0.1, True),
+        Slider("height", "Height (below 0: carved)", -0.03, 0.03, 0.0005, 0.01, True),
+        Slider("overhang", "No relief below this angle, in degrees (90: everywhere)", 0, 90, 1, 90),
+        Slider("seed", "Seed of the noise", 0, 100, 1, 0)), run_relief),
     Filter("direction_field", "Direction field", "none", (
         Slider("curvature", "Along the curvature, not only smooth", 0, 1, 1, 1),), run_directions),
 )}

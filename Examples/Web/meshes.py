@@ -20,6 +20,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 import surfacediffusion as sd
 from surfacediffusion.files import FileError, new_data, read_data, read_surface
 from surfacediffusion.files.data import NO_VERTICES
+from surfacediffusion.files.export import export
 
 FORMATS = ("OFF, OBJ, PLY, STL, VTK, VTP, GIFTI and FreeSurfer for surfaces; the same, CIFTI apart, "
            "and MGH and NPY for values at their points")
@@ -188,7 +189,9 @@ def result_names(mesh, outcome, array):
     """The names of the files that the result can be downloaded as. The first has the format of the file
     that was dropped, if it can hold the result; the last is a VTP file, which holds everything."""
     names = []
-    if outcome.points is not None:
+    if outcome.triangles is not None:
+        names += ["result.stl", "result.3mf", "result.obj", "result.ply"]
+    elif outcome.points is not None:
         if mesh.file is not None:
             names.append(_result_name(mesh.file.path))
     elif array in mesh.origins and _same_shape(outcome.shown, mesh.arrays[array]):
@@ -219,6 +222,10 @@ def result_file(mesh, outcome, array, name):
         return vtp_file(mesh, outcome)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, name)
+        if outcome.triangles is not None:
+            shades = np.rint(255 * outcome.shown).astype(np.uint8)
+            export(path, outcome.points, outcome.triangles, np.repeat(shades[:, None], 3, axis=1))
+            return path.read_bytes()
         if outcome.points is not None:
             mesh.file.save(path, outcome.points)
             return path.read_bytes()
@@ -234,11 +241,17 @@ def result_file(mesh, outcome, array, name):
 
 def vtp_file(mesh, outcome):
     """The bytes of a VTP file with the input's arrays and those of the outcome."""
+    if outcome.triangles is not None:
+        return _vtp(as_polydata(outcome.points, outcome.triangles, outcome.arrays))
     points = mesh.surface.points if outcome.points is None else outcome.points
     cell_arrays = outcome.cell_arrays if len(mesh.surface.triangles) == mesh.surface.n_faces else {}
+    return _vtp(as_polydata(points, mesh.surface.triangles, {**mesh.arrays, **outcome.arrays},
+                            cell_arrays))
+
+
+def _vtp(surface):
     writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(as_polydata(points, mesh.surface.triangles,
-                                    {**mesh.arrays, **outcome.arrays}, cell_arrays))
+    writer.SetInputData(surface)
     writer.WriteToOutputStringOn()
     writer.SetDataModeToBinary()  # which all versions of VTK and ParaView read
     writer.Write()

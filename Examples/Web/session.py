@@ -191,10 +191,12 @@ class Page:
     def draw(self, reset=False):
         triangles, before, after = self.mesh.surface.triangles, self.data(), None
         points = moved = self.mesh.surface.points
+        turned = triangles
         labels = False
         if self.outcome is not None:
             after, labels = self.outcome.shown, self.outcome.labels
             moved = points if self.outcome.points is None else self.outcome.points
+            turned = triangles if self.outcome.triangles is None else self.outcome.triangles
         if FILTERS[self.state.filter].input == "vectors":
             normals = self.mesh.surface, before is None
             before = colours_of_vectors(vectors_or_normals(*normals, before))
@@ -202,7 +204,7 @@ class Page:
             if self.outcome is not None and self.outcome.points is not None:
                 before = after = None
         bars = (place(self.views[0], points, triangles, before, before),
-                place(self.views[1], moved, triangles, after,
+                place(self.views[1], moved, turned, after,
                       after if labels or before is None else before, labels))
         name = "" if labels or self.data() is None else self.state.array
         unit = self.mesh.unit_of(name) if name else ""

@@ -50,6 +50,7 @@ enum class Combination
   Reported, ///< that of Run::ReportedBlock()
   Sum,
   Largest,
+  Smallest,
   Mean, ///< weighted by Output::Weight
   Common ///< that of all surfaces that have one other than 0; 0 if they differ
 };

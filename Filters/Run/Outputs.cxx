@@ -170,6 +170,9 @@ std::map<std::string, Values> CombineNumbers(
         case Combination::Largest:
           number = number.cwiseMax(output.Rows);
           break;
+        case Combination::Smallest:
+          number = number.cwiseMin(output.Rows);
+          break;
         case Combination::Mean:
           number += weight > 0.0 ? Values((output.Rows - number) * (output.Weight / weight))
                                  : Values(Values::Zero(number.rows(), number.cols()));

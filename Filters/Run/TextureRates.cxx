@@ -14,9 +14,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// A wavelength with fewer mean edge lengths is not resolved by the mesh.
-constexpr double EdgesPerWavelength = 6.0;
-
 std::string Quantity(double value)
 {
   std::ostringstream text;

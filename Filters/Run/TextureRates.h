@@ -18,6 +18,9 @@ struct TextureRates
   std::array<Vector, 2> Along, Across;
   std::array<double, 2> MeanAlong, MeanAcross;
 
+  /// A wavelength with fewer mean edge lengths is not resolved by the mesh.
+  static constexpr double EdgesPerWavelength = 6.0;
+
   /// constant: of u1 along and across, and of u2 likewise, unless inputs.Rates take their place.
   /// unit: that of both. Throws InputError on inputs.Rates that need directions. Collective.
   TextureRates(const std::array<double, 4>& constant, double unit, const ModelInputs& inputs);

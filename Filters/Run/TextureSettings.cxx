@@ -260,6 +260,14 @@ void TextureSettings::CheckTogether(const FieldSummary* fields, Problems& proble
   }
 }
 
+double TextureSettings::EdgeLengthForFeatures(double meanEdgeLength) const
+{
+  constexpr double edgesPerWavelength = 8.0;
+  return this->FeatureSize < TextureRates::EdgesPerWavelength * meanEdgeLength
+    ? this->FeatureSize / edgesPerWavelength
+    : 0.0;
+}
+
 double TextureSettings::EffectiveTimeStep() const
 {
   if (!this->AutomaticTimeStep || !this->HasKnownKinetics())

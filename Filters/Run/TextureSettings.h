@@ -43,6 +43,10 @@ struct TextureSettings : TimeSettings
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
   std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
+  /// The length of edges with which FeatureSize has eight of them, if the mesh with these mean edges
+  /// is too coarse for FeatureSize, and otherwise 0.
+  double EdgeLengthForFeatures(double meanEdgeLength) const;
+
   /// The time step taken: TimeStep, or that of AutomaticTimeStep.
   double EffectiveTimeStep() const;
 

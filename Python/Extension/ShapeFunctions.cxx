@@ -6,12 +6,15 @@
 #include "Core/Surface/EdgeRefinement.h"
 #include "InputData.h"
 #include "PythonProgress.h"
+#include "Run/ReliefRun.h"
 #include "Threads.h"
 
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
+#include <vector>
 
 namespace nb = nanobind;
 using namespace nanobind::literals;
@@ -75,16 +78,27 @@ nb::object FindHeights(const InputSurface& surface, const FactorArray& values, d
     { height, base, twoLevels, threshold, flank }));
 }
 
+nb::object FindOverhangsOf(
+  const InputSurface& surface, double x, double y, double z, double degrees)
+{
+  const SurfaceArrays arrays = surface.Read({});
+  const std::vector<char> found =
+    FindOverhangs(arrays.Points, arrays.Triangles, { x, y, z }, degrees);
+  const std::vector<Index> flags(found.begin(), found.end());
+  return ToNumpy(flags.data(), flags.size(), 1);
+}
+
 nb::dict MakeReliefOf(
   const InputSurface& surface, const FactorArray& heights, const nb::object& progress)
 {
   Relief relief;
+  const Vector wanted = ToVector(heights);
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
       const SurfaceArrays arrays = surface.Read({});
-      relief = MakeRelief(
-        arrays.Points, arrays.Triangles, ToVector(heights), PythonThreads::Instance(), monitor);
+      relief =
+        MakeRelief(arrays.Points, arrays.Triangles, wanted, PythonThreads::Instance(), monitor);
     });
   nb::dict result;
   result["points"] = ToNumpy(relief.Places);
@@ -95,7 +109,14 @@ nb::dict MakeReliefOf(
   result["non_manifold_edges"] = relief.NonManifoldEdges;
   result["crossing_triangles_before"] = relief.CrossingTrianglesBefore;
   result["crossing_triangles"] = relief.CrossingTriangles;
+  result["volume_change"] = relief.VolumeChange;
   result["smallest_wall"] = relief.SmallestWall;
+  nb::list warnings;
+  for (const Sentence& sentence : DescribeRelief(relief, wanted))
+  {
+    warnings.append(nb::str(sentence.Text().c_str()));
+  }
+  result["warnings"] = warnings;
   return result;
 }
 
@@ -106,6 +127,7 @@ void BindShapeFunctions(nb::module_& m)
   m.def("refine", &Refine, "surface"_a, "length"_a, "maximum_triangles"_a, "progress"_a.none());
   m.def("relief_heights", &FindHeights, "surface"_a, "values"_a, "height"_a, "base"_a,
     "two_levels"_a, "threshold"_a, "flank"_a);
+  m.def("relief_overhangs", &FindOverhangsOf, "surface"_a, "x"_a, "y"_a, "z"_a, "degrees"_a);
   m.def("relief", &MakeReliefOf, "surface"_a, "heights"_a, "progress"_a.none());
 }
 

@@ -20,6 +20,9 @@ def relief_heights(
     surface: Surface, values: NDArray[Any], height: float, base: float, two_levels: bool,
     threshold: float, flank: float
 ) -> NDArray[Any]: ...
+def relief_overhangs(
+    surface: Surface, x: float, y: float, z: float, degrees: float
+) -> NDArray[Any]: ...
 def relief(surface: Surface, heights: NDArray[Any], progress: Progress) -> dict[str, Any]: ...
 
 class Surface:

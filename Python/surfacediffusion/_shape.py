@@ -19,9 +19,6 @@ from ._surface import Surface, SurfaceLike, as_flags, as_numbers, as_surface, fi
 #: The triangles that refine() makes at most by default: about 1 GB of memory for a texture.
 MAXIMUM_TRIANGLES = 4_000_000
 
-#: The part of the points with relief that edges make lower without a warning.
-_EXPECTED_TO_BE_LOW = 0.05
-
 #: Edges per wavelength of a texture on a refined surface.
 EDGES_PER_WAVELENGTH = 8
 
@@ -278,15 +275,13 @@ def relief(
     with ProgressReporter(progress) as reporter:
         found = _core.relief(surface._core, heights, reporter.callable)
         reporter.finish_part()
-    sentences = _sentences(found, heights)
+    sentences = list(found["warnings"])
     warn(sentences)
     new = Surface(found["points"], found["triangles"])
     counts = {name: found[name] for name in (
         "lowered_points", "open_edges", "non_manifold_edges", "crossing_triangles_before",
-        "crossing_triangles", "smallest_wall")}
-    before = _volume(surface.points, found["triangles"])
-    return ReliefResult(new, found["heights"][:, 0], _volume(new.points, found["triangles"]) - before,
-                        warnings=sentences, **counts)
+        "crossing_triangles", "smallest_wall", "volume_change")}
+    return ReliefResult(new, found["heights"][:, 0], warnings=sentences, **counts)
 
 
 def _smooth_points(surface: Surface, mask: Any, overhang: Any, up: Any) -> NDArray[np.bool_]:
@@ -306,44 +301,12 @@ def _smooth_points(surface: Surface, mask: Any, overhang: Any, up: Any) -> NDArr
             raise ValueError(f"overhang is {shorten(overhang)}; allowed: 0 to 90 degrees")
         if axis.shape != (3,) or not 0 < np.linalg.norm(axis) < np.inf:
             raise ValueError(f"up is {shorten(up)}; allowed: three numbers that are not all 0")
-        normals = surface._face_normals()[0]
-        if _volume(surface.points, surface.triangles) < 0:
-            normals = -normals
-        down = -normals @ (axis / np.linalg.norm(axis))
-        faces |= down > math.sin(math.radians(angle)) + 1e-9
+        x, y, z = axis.tolist()
+        smooth |= _core.relief_overhangs(surface._core, x, y, z, angle)[:, 0] != 0
     if faces.any():
         sizes = np.diff(surface._offsets)
         smooth[surface._connectivity[np.repeat(faces, sizes)]] = True
     return smooth
-
-
-def _sentences(found: Any, heights: NDArray[np.float64]) -> list[str]:
-    """What the user should know of the result, each in one line."""
-    sentences = []
-    if found["open_edges"]:
-        sentences.append(f"the surface has {found['open_edges']} open edges, where there is no relief: "
-                         "it is not closed, as printing requires")
-    if found["non_manifold_edges"]:
-        sentences.append(f"the surface has {found['non_manifold_edges']} edges of more than two "
-                         "triangles, where there is no relief")
-    if found["crossing_triangles_before"]:
-        sentences.append(f"the surface crosses itself at {found['crossing_triangles_before']} triangles "
-                         "without the relief")
-    if found["crossing_triangles"] > found["crossing_triangles_before"]:
-        sentences.append(f"the relief crosses itself at {found['crossing_triangles']} triangles")
-    wanted = np.abs(heights)
-    lost = wanted - np.abs(found["heights"][:, 0])
-    low = int((lost > 0.5 * wanted.max(initial=0.0)).sum())
-    if low > _EXPECTED_TO_BE_LOW * np.count_nonzero(wanted):
-        sentences.append(f"the relief of up to {wanted.max():.3g} is lowered by more than half of that "
-                         f"at {low} of {len(wanted)} points, where a wall or an edge is near")
-    return sentences
-
-
-def _volume(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> float:
-    center = points.mean(axis=0)
-    a, b, c = (points[triangles[:, i]] - center for i in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def _as_number(name: str, value: Any) -> float:

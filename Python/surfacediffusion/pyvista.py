@@ -63,10 +63,11 @@ from ._result import (
 )
 from ._run import Input, Progress, Runner, find_result_type
 from ._settings import settings_of, shorten
+from ._shape import relief as _relief
 from ._surface import Surface, as_data, as_outside, has_integers
 
 __all__: list[str] = []
-__all__ += _functions.__all__
+__all__ += [*_functions.__all__, "relief"]
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
@@ -259,6 +260,40 @@ def denoise_mesh(
     if not full_output:
         return denoised
     return denoised, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+
+def relief(
+    mesh: Any, array: str, height: float, *, mask: str | None = None, full_output: bool = False,
+    progress: Progress = False, result_array_name: str = "ReliefHeight", **keywords: Any,
+) -> Any:
+    """Raise or carve values on the mesh as relief, for printing.
+
+    array: point array (n,) of the values, usually Texture of turing_texture(). mask: point or cell
+    array; points, and the points of cells, with a nonzero value have no relief. The method and all other
+    keywords are described in help(surfacediffusion.relief). The result has moved points and the point
+    array ReliefHeight (n,), the heights that were used; meshes of triangles are oriented outwards.
+    Active point normals are computed again, and cell normals and tangents are dropped. full_output: if
+    True, the function returns a pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
+    """
+    blocks, results = _find_surfaces(mesh), []
+    for block in blocks:
+        values = block.find("array", array)[0]
+        marks = block.find("mask", mask, faces=True)[0]
+        result = _relief(block.surface, values, height, mask=marks, progress=progress, **keywords)
+        results.append(result)
+        block.add(result_array_name, result.heights, False)
+        block.move(result.surface.points)
+        triangles = result.surface.triangles
+        if not block.has_strips and len(triangles) == block.mesh.n_cells:
+            block.mesh.faces = np.insert(triangles, 0, 3, axis=1).ravel()
+        normals = block.mesh.point_data.active_normals_name
+        if normals is not None:
+            block.mesh.point_data[normals] = result.surface._point_normals()
+            block.mesh.GetPointData().SetActiveNormals(normals)
+    raised = _rebuild(mesh, iter(blocks))
+    if not full_output:
+        return raised
+    return raised, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 
 
 def direction_field(

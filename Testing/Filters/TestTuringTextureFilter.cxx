@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkTuringTextureFilter.h"
@@ -150,6 +151,7 @@ TEST(TuringTextureFilter, WarnsOnceWhyNoPatternGrows)
 
   filter = MakeFilter(sphere);
   filter->SetFeatureSize(0.2);
+  filter->SetRefineTo(0.0);
   const std::string tooSmall = WarningOf(filter);
   EXPECT_TRUE(Contains(tooSmall, "0.2 is only")) << tooSmall;
   EXPECT_TRUE(Contains(tooSmall, "cannot resolve")) << tooSmall;
@@ -471,4 +473,50 @@ TEST(TuringTextureFilter, ReportsTheCoarserMeshWithoutAWarning)
   filter->Update();
   EXPECT_EQ(filter->GetCoarseStartVertices(), 0);
   EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
+}
+
+TEST(TuringTextureFilter, RefinesMeshesThatAreTooCoarseForTheFeatures)
+{
+  auto sphere = Sphere(3);
+  vtkNew<vtkTuringTextureFilter> filter;
+  filter->SetInputData(sphere);
+  filter->SetNumberOfTimeSteps(20);
+  Messages messages(filter);
+  filter->SetFeatureSize(2.0); // that the mesh resolves
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty());
+  EXPECT_EQ(filter->GetOutput()->GetPoints(), sphere->GetPoints());
+  filter->SetFeatureSize(0.4);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("edges were bisected, to "), std::string::npos);
+  EXPECT_NE(messages.Warnings[0].find("because FeatureSize is 0.4, only "), std::string::npos);
+  EXPECT_LE(filter->GetMeanEdgeLength(), 0.05);
+  vtkPolyData* const output = filter->GetOutput();
+  EXPECT_GT(output->GetNumberOfPoints(), 10 * sphere->GetNumberOfPoints());
+  EXPECT_EQ(
+    output->GetPointData()->GetArray("Texture")->GetNumberOfTuples(), output->GetNumberOfPoints());
+  EXPECT_NE(output->GetCellData()->GetArray("vtkOriginalCellIds"), nullptr);
+
+  // The same as that of a surface that was refined before
+  vtkNew<vtkPolyData> refined;
+  refined->CopyStructure(output);
+  vtkNew<vtkTuringTextureFilter> again;
+  again->SetInputData(refined);
+  again->SetNumberOfTimeSteps(20);
+  again->SetFeatureSize(0.4);
+  again->Update();
+  EXPECT_EQ(LargestDifference(output->GetPointData()->GetArray("u1"),
+              again->GetOutput()->GetPointData()->GetArray("u1")),
+    0.0);
+
+  // An abort in the midst gives the unchanged input.
+  filter->SetRefineTo(0.03);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  filter->Update();
+  EXPECT_EQ(filter->GetOutput()->GetPoints(), sphere->GetPoints());
+  EXPECT_EQ(filter->GetOutput()->GetPolys(), sphere->GetPolys());
 }

@@ -15,8 +15,8 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    denoise_mesh, direction_field, harmonic_map, heat, interpolate, intrinsic_tv, mumford_shah, segment,
-    tensor_diffusion, turing_texture,
+    denoise_mesh, direction_field, harmonic_map, heat, interpolate, intrinsic_tv, mumford_shah, relief,
+    segment, tensor_diffusion, turing_texture,
 )
 
 
@@ -162,6 +162,31 @@ class Meshes(unittest.TestCase):
         np.testing.assert_allclose(before + moved["Displacement"], moved.points, atol=1e-7)
         np.testing.assert_allclose(moved.points, sd.denoise_mesh(as_surface(mesh), fixed=north),
                                    atol=1e-7)
+
+    def test_relief_moves_the_points_of_each_block(self):
+        ball = pyvista.PolyData(10 * sd.sphere(4).points, np.insert(sd.sphere(4).triangles, 0, 3, axis=1))
+        ball["v"] = 0.5 + 0.5 * np.sign(ball.points[:, 2])
+        ball.cell_data["c"] = np.arange(ball.n_cells)
+        ball.cell_data["south"] = (ball.cell_centers().points[:, 2] < 0).astype(np.uint8)
+        blocks, reports = relief(pyvista.MultiBlock([ball, None, ball.scale(2.0, inplace=False)]), "v",
+                                 0.5, base=0.1, mask="south", full_output=True)
+        self.assertEqual([report.open_edges for report in reports], [0, 0])
+        for block, size in ((blocks[0], 10), (blocks[2], 20)):
+            radius = np.linalg.norm(block.points, axis=1)
+            north = block.points[:, 2] > 0.2 * size
+            np.testing.assert_allclose(radius[north], size + 0.6, atol=1e-2)
+            np.testing.assert_allclose(radius[block.points[:, 2] < -1e-6], size, rtol=1e-6)
+            np.testing.assert_array_equal(block["ReliefHeight"][north], 0.6)
+        expected = sd.relief(as_surface(ball), ball["v"], 0.5, levels="Two", flank=1.0)
+        inwards = ball.copy()
+        inwards.faces = np.insert(sd.sphere(4).triangles[:, ::-1], 0, 3, axis=1).ravel()
+        for mesh in (ball, inwards):
+            raised = relief(mesh, "v", 0.5, levels="Two", flank=1.0)
+            np.testing.assert_allclose(raised.points, expected.surface.points, atol=1e-5)
+            self.assertGreater(raised.volume, ball.volume)
+            np.testing.assert_array_equal(raised["c"], ball["c"])
+        with self.assertRaisesRegex(ValueError, "array is 'none'; allowed: point arrays"):
+            relief(ball, "none", 1.0)
 
     def test_blocks_are_segmented_one_by_one(self):
         mesh = noisy_sphere()

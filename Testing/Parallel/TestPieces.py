@@ -13,8 +13,8 @@ import vtkSurfaceDiffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDenoisingFilter,
-    SurfaceDirectionFieldFilter, SurfaceInterpolationFilter, SurfaceSegmentationFilter,
-    TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
+    SurfaceDirectionFieldFilter, SurfaceInterpolationFilter, SurfaceReliefFilter,
+    SurfaceSegmentationFilter, TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -79,6 +79,7 @@ CASES = (
      dict(DirectionArray=["CELLS", "around"], DiffusionRateAcross1=5.0, ColorOutput=1, **LABYRINTH),
      "TextureColor"),
     ("denoising", SurfaceDenoisingFilter, {}, "Displacement"),
+    ("relief", SurfaceReliefFilter, dict(InputArray=["POINTS", "f"], Height=0.02), "ReliefHeight"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
@@ -195,7 +196,7 @@ class TestPieces(unittest.TestCase):
             worst = largest_of_all(worst)
             LARGEST[partition, name] = worst
             self.assertLessEqual(worst, TOLERANCE.get(name, 1e-9), "%s, %s" % (partition, name))
-            if make not in (SurfaceDenoisingFilter, SurfaceDirectionFieldFilter):
+            if make not in (SurfaceDenoisingFilter, SurfaceDirectionFieldFilter, SurfaceReliefFilter):
                 rows = algorithm.GetOutputDataObject(1).GetNumberOfRows()
                 self.assertEqual(rows > 0, RANK == 0, "history of " + name)
 

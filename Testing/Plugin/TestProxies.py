@@ -47,6 +47,8 @@ SEARCHES = {
     "pattern": {"TuringTextureFilter"},
     "direction": {"HarmonicMapFilter", "SurfaceDirectionFieldFilter"},
     "curvature": {"SurfaceDirectionFieldFilter"},
+    "relief": {"SurfaceReliefFilter"},
+    "3d printing": {"SurfaceReliefFilter"},
 }
 
 # Shares, factors and exponents, which have no unit.
@@ -324,6 +326,7 @@ class TestProxies(unittest.TestCase):
             ("SurfaceDenoisingFilter", ["SurfaceType", "NoiseLevel"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
+            ("SurfaceReliefFilter", ["Height", "Base", "Levels", "Overhang"]),
             ("SurfaceSegmentationFilter",
              ["NumberOfRegions", "AutomaticFidelity", "AutomaticMeans"]),
             ("TensorDiffusionFilter", ["Model", "ColorScale", "Metric", "FidelityWeight"]),

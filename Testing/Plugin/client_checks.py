@@ -27,6 +27,7 @@ RESULTS = {
     "SurfaceDenoisingFilter": (("POINTS", "Displacement"), 0.00255440, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
+    "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.0, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
     "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),
@@ -45,6 +46,7 @@ SLIPS = {
     "SurfaceDirectionFieldFilter": lambda field: {"Angle": field.Angle + 3.0},
     "SurfaceInterpolationFilter": lambda spline: {
         "AutomaticSmoothing": 0, "Smoothing": 1.2 * spline.GetPropertyValue("EffectiveSmoothing")},
+    "SurfaceReliefFilter": lambda relief: {"Height": 1.2 * relief.Height},
     "SurfaceSegmentationFilter": lambda regions: {
         "AutomaticFidelity": 0,
         "FidelityWeight": 0.5 * regions.GetPropertyValue("EffectiveFidelityWeight")},
@@ -245,13 +247,14 @@ def check_macro():
         "Denoised": ("Denoise", {}),
         "Edges": ("Edges", {"AutomaticThreshold": 0, "EdgeThreshold": 0.9}),
         "Denoised mesh": ("DenoiseMesh", {"SurfaceType": "Organic"}),
+        "Relief": ("Relief", {"Height": 0.034}),
         "Texture": ("Texture", {"DiffusionRate2": 1.02 * 5.2}),
     }[next(key[0] for key, each in GetSources().items() if each == source)]
     if name == "Denoise":
         source.UpdatePropertyInformation()
         weight = source.GetPropertyValue("EffectiveFidelityWeight")
         slip = {"AutomaticFidelity": 0, "FidelityWeight": 1.2 * weight}
-    if name != "DenoiseMesh":
+    if name not in ("DenoiseMesh", "Relief"):
         GetDisplayProperties(source, view).SetScalarBarVisibility(view, False)
     view.OrientationAxesVisibility = 0
     assert_looks_like(view, "Macro" + name)

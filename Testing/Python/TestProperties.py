@@ -92,7 +92,7 @@ DEFAULTS = {
     "vtkTuringTextureFilter": {
         **STEPS, "TimeStep": 1 / 16, "NumberOfTimeSteps": 640, "TimeIntegrator": "SecondOrder",
         "Kinetics": "Turing", "ReactionRate": 1.0, "DiffusionRate1": 21.0, "DiffusionRate2": 2.6,
-        "DiffusionRateAcross1": -1.0, "DiffusionRateAcross2": -1.0, "FeatureSize": 0.0,
+        "DiffusionRateAcross1": -1.0, "DiffusionRateAcross2": -1.0, "FeatureSize": 0.0, "RefineTo": -1.0,
         "InitialNoise": 0.1, "ClampToNonNegative": True, "AutomaticTimeStep": False,
         "StopTolerance": 0.02, "CoarseStartSize": 50000, "GrowthRate": 16.0, "DecayRate": 12.0,
         "ActivatorSupply": 0.01, "SubstrateSupply": 1.0, "FeedRate": 0.05, "KillRate": 0.06,
@@ -112,6 +112,10 @@ DEFAULTS = {
     "vtkSurfaceDenoisingFilter": {
         **SURFACE, "ResultArrayName": "Displacement", "NoiseLevel": 0.0,
         "SurfaceType": "Automatic"},
+    "vtkSurfaceReliefFilter": {
+        **SURFACE, "ResultArrayName": "ReliefHeight", "Height": 1.0, "Base": 0.0, "Levels": "Smooth",
+        "Threshold": 0.5, "Flank": 0.0, "Overhang": -1.0, "UpDirection": (0.0, 0.0, 1.0),
+        "RefineTo": 0.0},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},
@@ -134,6 +138,7 @@ WORDS = {
     "Kinetics": ("Turing", "Schnakenberg", "GrayScott", "Brusselator", "GiererMeinhardt",
                  "FitzHughNagumo"),
     "TextureChemical": ("U1", "U2"), "SurfaceType": ("Automatic", "CAD", "Organic"),
+    "Levels": ("Smooth", "Two"),
     "Method": ("PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints"),
     "PrincipalDirection": ("Minimum", "Maximum"), "Boundary": ("Natural", "Free"),
 }

@@ -12,6 +12,7 @@
 #include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
+#include "vtkSurfaceReliefFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
@@ -275,6 +276,23 @@ inline std::vector<FilterKind> AllFilters()
       [](Spline* f) { SetInputArray(f, 0, "c", true); })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
       "Displacement" },
+    MakeKind<vtkSurfaceReliefFilter>("Relief", "ReliefHeight", 0,
+      [](vtkSurfaceReliefFilter* f)
+      {
+        f->SetHeight(0.02);
+        SetInputArray(f, 0, "f");
+      }),
+    MakeKind<vtkSurfaceReliefFilter>("ReliefOfTwoLevels", "ReliefHeight", 0,
+      [](vtkSurfaceReliefFilter* f)
+      {
+        f->SetHeight(-0.05);
+        f->SetBase(0.03);
+        f->SetLevelsToTwo();
+        f->SetFlank(0.05);
+        f->SetOverhang(60.0);
+        SetInputArray(f, 0, "f");
+        SetInputArray(f, 1, "mask");
+      }),
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

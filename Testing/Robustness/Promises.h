@@ -235,6 +235,25 @@ inline std::string ExpectMovedPoints(
   return Text("points moved by %.1e", largest);
 }
 
+/// Points move by at most twice their heights.
+inline std::string ExpectRelief(vtkPolyData* input, vtkPolyData* output, vtkDataArray* heights)
+{
+  const double roundOff = input->GetPoints()->GetDataType() == VTK_FLOAT ? 1e-6 : 1e-14;
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    double from[3], to[3];
+    input->GetPoint(i, from);
+    output->GetPoint(i, to);
+    const double height = std::abs(heights->GetComponent(i, 0));
+    EXPECT_TRUE(std::isfinite(height)) << "point " << i;
+    const double moved = std::sqrt(vtkMath::Distance2BetweenPoints(from, to));
+    EXPECT_LE(moved, 2.0 * height + roundOff * (vtkMath::Norm(from) + height)) << "point " << i;
+    largest = std::max(largest, height);
+  }
+  return Text("relief of up to %.1e", largest);
+}
+
 /// Concentrations are not negative, and the texture is in [0, 1].
 inline std::string ExpectPatternBounds(vtkPolyDataAlgorithm* filter)
 {
@@ -389,6 +408,10 @@ inline std::string ExpectPromises(
   if (vtkSurfaceDenoisingFilter::SafeDownCast(filter))
   {
     return ExpectMovedPoints(input, filter->GetOutput(), u);
+  }
+  if (vtkSurfaceReliefFilter::SafeDownCast(filter))
+  {
+    return ExpectRelief(input, filter->GetOutput(), u);
   }
   return ExpectTangentialUnitOrZero(input, u);
 }

@@ -12,6 +12,7 @@
 #include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
+#include "vtkSurfaceReliefFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
@@ -364,6 +365,7 @@ inline List OfTexture()
     RANDOM_PROPERTY(F, DiffusionRateAcross1, dice.Flip() ? -1.0 : Near(dice, 21.0)),
     RANDOM_PROPERTY(F, DiffusionRateAcross2, dice.Flip() ? -1.0 : Near(dice, 2.6)),
     RANDOM_PROPERTY(F, FeatureSize, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, RefineTo, dice.Flip() ? 0.0 : 0.3 + dice.Unit()),
     RANDOM_PROPERTY(F, InitialNoise, ZeroOrPositive(dice, 8)),
     RANDOM_PROPERTY(F, ClampToNonNegative, dice.Flip()),
     RANDOM_PROPERTY(F, AutomaticTimeStep, dice.Flip()),
@@ -410,6 +412,21 @@ inline List OfDenoising()
   };
 }
 
+inline List OfRelief()
+{
+  using F = vtkSurfaceReliefFilter;
+  return {
+    RANDOM_PROPERTY(F, Height, (dice.Flip() ? 0.01 : -0.01) * ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, Base, (dice.Flip() ? 0.01 : -0.01) * ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, Levels, Choice(dice, 2)),
+    RANDOM_PROPERTY(F, Threshold, 4.0 * dice.Unit()),
+    RANDOM_PROPERTY(F, Flank, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, Overhang, dice.Flip() ? -1.0 : 90.0 * dice.Unit()),
+    RANDOM_PROPERTY(F, UpDirection, Color(dice).data()),
+    RANDOM_PROPERTY(F, RefineTo, dice.Flip() ? 0.0 : 0.3 + dice.Unit()),
+  };
+}
+
 #undef RANDOM_PROPERTY
 
 template <typename F>
@@ -450,6 +467,7 @@ inline std::vector<FilterClass> AllFilterClasses()
       OfTimeIntegrators<Turing>(0b011), OfTexture() }),
     MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
+    MakeClass<vtkSurfaceReliefFilter>({ OfSurface<vtkSurfaceReliefFilter>(), OfRelief() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),
       OfModel<vtkSurfaceSegmentationFilter>(), OfSegmentation() }),
     MakeClass<vtkSurfaceInterpolationFilter>({ OfSurface<vtkSurfaceInterpolationFilter>(),

@@ -359,10 +359,21 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
       {
         ScaleUnits<vtkFVMHeatFilter>(f, scaled ? length : 1.0, scaled ? value : 1.0);
         ScaleUnits<vtkIntrinsicTVFilter>(f, scaled ? length : 1.0, scaled ? value : 1.0);
+        auto* const relief = vtkSurfaceReliefFilter::SafeDownCast(f);
+        if (relief && scaled)
+        {
+          const bool two = relief->GetLevels() == vtkSurfaceReliefFilter::LEVELS_TWO;
+          relief->SetHeight(relief->GetHeight() * length / (two ? 1.0 : value));
+          relief->SetBase(relief->GetBase() * length);
+          relief->SetThreshold(relief->GetThreshold() * value);
+          relief->SetFlank(relief->GetFlank() * length);
+        }
       });
   }
   const std::string name = this->GetParam().Result;
-  const double factor = name == "Displacement" ? length : this->DataName().empty() ? 1.0 : value;
+  const double factor = name == "Displacement" || name == "ReliefHeight" ? length
+    : this->DataName().empty()                                           ? 1.0
+                                                                         : value;
   vtkDataArray* const expected = FilterTest::ResultOf(filters[0], name.c_str());
   vtkDataArray* const result = FilterTest::ResultOf(filters[1], name.c_str());
   ASSERT_TRUE(expected && result);

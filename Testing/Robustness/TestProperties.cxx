@@ -79,6 +79,7 @@ vtkSmartPointer<vtkPolyData> PatchedEllipsoid()
     surface, "bytes", 3, [](vtkIdType i, int k) { return std::floor(127.0 + 120.0 * Rough(i, k)); },
     VTK_UNSIGNED_CHAR);
   AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 7 == 3; });
+  AddPointArray(surface, "height", 1, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
   surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 3,
     [](vtkIdType i, int k) { return 2.0 + Rough(i, k); }));
   AddPointArray(surface, "e1", 3, [](vtkIdType, int k) { return k == 1 ? 1.0 : 0.3; });
@@ -123,6 +124,27 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed["vtkSurfaceDenoisingFilter MergeCoincidentPoints"] =
       needed["vtkSurfaceDenoisingFilter MergeTolerance"] =
         With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
+  for (const char* name : { "Threshold", "Flank" })
+  {
+    needed[name] = With<vtkSurfaceReliefFilter>(
+      [](vtkSurfaceReliefFilter* f)
+      {
+        f->SetHeight(0.03);
+        f->SetThreshold(2.0);
+        f->SetLevelsToTwo();
+      });
+  }
+  needed["vtkSurfaceReliefFilter Base"] = needed["Levels"] = needed["Overhang"] =
+    needed["vtkSurfaceReliefFilter RefineTo"] = needed["vtkSurfaceReliefFilter ResultArrayName"] =
+      needed["vtkSurfaceReliefFilter MergeCoincidentPoints"] =
+        needed["vtkSurfaceReliefFilter MergeTolerance"] =
+          With<vtkSurfaceReliefFilter>([](vtkSurfaceReliefFilter* f) { f->SetHeight(0.03); });
+  needed["UpDirection"] = With<vtkSurfaceReliefFilter>(
+    [](vtkSurfaceReliefFilter* f)
+    {
+      f->SetHeight(0.03);
+      f->SetOverhang(45.0);
+    });
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
   needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
     With<TV>([](TV* f) { f->SetStopTolerance(0.1); }); // it takes long otherwise
@@ -177,6 +199,7 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed["vtkTuringTextureFilter OutputInterval"] =
       needed["vtkTuringTextureFilter StopTolerance"] =
         With<Turing>([](Turing* f) { f->SetTimeStep(0.5); });
+  needed["FeatureSize"] = With<Turing>([](Turing* f) { f->SetRefineTo(0.0); }); // far too fine
   needed["CoarseStartSize"] = With<Turing>([](Turing* f) { f->SetFeatureSize(8.0); });
   needed["AutomaticTimeStep"] = With<Turing>([](Turing* f) { f->SetTimeStep(0.01); });
   needed["ReactionRate"] = With<Turing>([](Turing* f) { f->SetUnitsToAbsolute(); });
@@ -228,7 +251,8 @@ bool ChangeAlone(const FilterClass& kind, const RandomProperty& property)
   const auto filter = kind.Make();
   filter->SetInputData(surface);
   const bool isTexture = kind.Name == "vtkTuringTextureFilter"; // it starts from noise
-  SetInputArray(filter, 0, isTexture ? "" : "f");
+  const bool isRelief = kind.Name == "vtkSurfaceReliefFilter"; // of one component
+  SetInputArray(filter, 0, isTexture ? "" : isRelief ? "height" : "f");
   SetInputArray(filter, 1, "mask");
   SetInputArray(filter, 2, "e1");
   for (const std::string& name : { property.Name, kind.Name + " " + property.Name })

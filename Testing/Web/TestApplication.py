@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 import unittest
+import zipfile
 from http.client import HTTPConnection
 from pathlib import Path
 from types import SimpleNamespace
@@ -32,6 +33,9 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+from surfacediffusion.files import read_surface
+from surfacediffusion.files.export import export
 
 FOLDER = Path(sys.argv.pop()).resolve()
 sys.path.insert(0, str(FOLDER))
@@ -233,6 +237,32 @@ class TestApplication(unittest.TestCase):
         points = np.loadtxt(path.read_text().splitlines()[2:2 + noisy.n_points])
         error = np.abs(np.linalg.norm(points, axis=1) - 50)
         self.assertLess(error.mean(), 0.5 * np.abs(np.linalg.norm(noisy.points, axis=1) - 50).mean())
+
+    def test_a_dropped_stl_becomes_a_part_with_relief_as_stl_and_3mf(self):
+        self.open()
+        corners = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]) * 20.0
+        squares = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        export(self.folder / "cube.stl", corners,
+               [t for a, b, c, d in squares for t in ((a, b, c), (a, c, d))])
+        runs = self.runs()
+        self.drop("cube.stl")
+        wait_for(lambda: "cube.stl" in self.text("#mesh") and self.runs() > runs, "the mesh")
+        self.choose("filter", FILTERS["relief"].title)
+        wait_for(lambda: "triangles, closed, smallest wall" in self.text("#note"), "its run", 60)
+        self.choose("pattern", "spots")
+        runs = self.runs()
+        wait_for(lambda: self.runs() > runs and self.one("#download").is_enabled(), "the spots", 60)
+        path = self.download()
+        self.assertEqual(path.name, "result.stl")
+        part = read_surface(path)
+        height = float(self.text("#slider-height div").rsplit(": ", 1)[1].split()[0])
+        self.assertAlmostEqual(part.points.max(), 20 + height, delta=1e-3)
+        sides = np.sort(np.concatenate([part.faces[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
+        self.assertTrue((np.unique(sides, axis=0, return_counts=True)[1] == 2).all())
+        self.choose("format", "result.3mf")
+        with zipfile.ZipFile(self.download()) as archive:
+            model = archive.read("3D/3dmodel.model")
+        self.assertEqual(model.count(b"<triangle "), len(part.faces))
 
     def test_a_surface_without_noise_is_said_to_have_none(self):
         outcome = FILTERS["denoise_mesh"].run(

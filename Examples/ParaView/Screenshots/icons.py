@@ -95,6 +95,14 @@ def texture(x, y):
     return painted(disk(x, y), (disk(x, y), YELLOW), (spots, BLUE), rim(x, y))
 
 
+def relief(x, y):
+    """A block with rounded ridges on its top."""
+    top = 0.15 + 0.3 * np.sqrt(np.abs(np.sin(np.pi * 1.67 * (x + 0.9))))
+    block = (np.abs(x) < 0.9) & (y > -0.85) & (y < top)
+    inner = (np.abs(x) < 0.8) & (y > -0.75) & (y < top - 0.1)
+    return painted(block, (block, DARK), (inner, YELLOW), (inner & (y > 0.1), BLUE))
+
+
 def history(x, y):
     axes = (np.abs(x + 0.8) < 0.08) & (y > -0.88) | (np.abs(y + 0.8) < 0.08) & (x > -0.88)
     slope = 3.5 * np.exp(-2.2 * (x + 0.8))
@@ -104,7 +112,8 @@ def history(x, y):
     return painted(place & (axes | curve), (axes, DARK), (curve, RED))
 
 
-ICONS = (denoise, inpaint, deblur, segment, denoise_mesh, edges, enhance_lines, texture, history)
+ICONS = (denoise, inpaint, deblur, segment, denoise_mesh, edges, enhance_lines, texture, relief,
+         history)
 
 
 def draw(icon, size=SIZE):

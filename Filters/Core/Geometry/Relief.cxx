@@ -3,6 +3,7 @@
 #include "Core/Geometry/Relief.h"
 
 #include "Core/Geometry/SelfIntersections.h"
+#include "Core/Geometry/SmallestWall.h"
 #include "Core/Geometry/TriangleOrientation.h"
 #include "Core/Geometry/TriangleTree.h"
 
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -32,8 +32,6 @@ constexpr double PartOfBall = 0.5;
 /// Halvings of heights where triangles cross; then they are 0.
 constexpr int Halvings = 4;
 constexpr int MaximumRounds = 12;
-/// cos 30 degrees: normals of a wall's two sides are opposite within this angle.
-constexpr double WallCosine = 0.866;
 
 Vector3 PlaceOf(const Points& points, Index vertex)
 {
@@ -94,8 +92,7 @@ EdgeCounts CountEdges(const Triangles& faces, Index numberOfVertices)
   return counts;
 }
 
-/// Outwards, if the surface encloses a volume.
-void TurnOutwards(const Points& points, Triangles& faces)
+double VolumeOf(const Points& points, const Triangles& faces)
 {
   const Eigen::RowVector3d center = points.colwise().mean();
   double volume = 0.0;
@@ -104,10 +101,19 @@ void TurnOutwards(const Points& points, Triangles& faces)
     volume +=
       (PlaceOf(points, faces(t, 0)) - center.transpose()).dot(DoubledNormal(points, faces, t));
   }
-  if (volume < 0.0)
+  return volume / 6.0;
+}
+
+/// Orient the triangles alike across edges of two, and outwards if they enclose a volume.
+EdgeCounts TurnOutwards(const Points& points, Triangles& faces)
+{
+  OrientTriangles(points, faces);
+  EdgeCounts edges = CountEdges(faces, static_cast<Index>(points.rows()));
+  if (edges.Open == 0 && VolumeOf(points, faces) < 0.0)
   {
     faces.col(1).swap(faces.col(2));
   }
+  return edges;
 }
 
 double AngleAt(const Vector3& at, const Vector3& p, const Vector3& q)
@@ -207,77 +213,6 @@ Index CountSet(const std::vector<char>& flags)
   return static_cast<Index>(std::count_if(flags.begin(), flags.end(), [](char f) { return f; }));
 }
 
-double FindSmallestWall(const Points& before, const Points& after, const Triangles& faces,
-  const Points& normals, const Points& directions, const ParallelFor& parallel)
-{
-  const TriangleTree tree(after, faces);
-  const auto count = static_cast<Index>(before.rows());
-  std::vector<double> walls(
-    static_cast<std::size_t>(count), std::numeric_limits<double>::infinity());
-  const double least = 1e-9 * (before.colwise().maxCoeff() - before.colwise().minCoeff()).norm();
-  ForEach(parallel, count,
-    [&](Index i)
-    {
-      const double length = directions.row(i).norm();
-      if (!(length > 0.0) || length > 1.05) // edges have no wall opposite
-      {
-        return;
-      }
-      const Vector3 from = PlaceOf(after, i);
-      const Vector3 ray = -directions.row(i).transpose() / length;
-      const Vector3 inverse = ray.cwiseInverse();
-      double& wall = walls[static_cast<std::size_t>(i)];
-      const auto enters = [&](const TriangleTree::Box& box)
-      {
-        const Vector3 low = (box.min() - from).cwiseProduct(inverse);
-        const Vector3 high = (box.max() - from).cwiseProduct(inverse);
-        double first = 0.0;
-        double last = wall;
-        for (int k = 0; k < 3; ++k)
-        {
-          if (ray[k] == 0.0)
-          {
-            if (from[k] < box.min()[k] || from[k] > box.max()[k])
-            {
-              return false;
-            }
-            continue;
-          }
-          first = std::max(first, std::min(low[k], high[k]));
-          last = std::min(last, std::max(low[k], high[k]));
-        }
-        return first <= last;
-      };
-      tree.Visit(enters,
-        [&](Index t)
-        {
-          if (normals.row(t).dot(ray) < WallCosine || faces(t, 0) == i || faces(t, 1) == i ||
-            faces(t, 2) == i)
-          {
-            return;
-          }
-          const Vector3 a = PlaceOf(after, faces(t, 0));
-          const Vector3 b = PlaceOf(after, faces(t, 1));
-          const Vector3 c = PlaceOf(after, faces(t, 2));
-          const Vector3 normal = (b - a).cross(c - a);
-          const double along = normal.dot(ray);
-          if (!(along > 0.0))
-          {
-            return;
-          }
-          const double distance = normal.dot(a - from) / along;
-          const Vector3 hit = from + distance * ray;
-          if (distance > least && distance < wall && (b - a).cross(hit - a).dot(normal) >= 0.0 &&
-            (c - b).cross(hit - b).dot(normal) >= 0.0 && (a - c).cross(hit - c).dot(normal) >= 0.0)
-          {
-            wall = distance;
-          }
-        });
-    });
-  return walls.empty() ? std::numeric_limits<double>::infinity()
-                       : *std::min_element(walls.begin(), walls.end());
-}
-
 } // namespace
 
 Vector ReliefHeights(const Points& points, const Triangles& triangles, const Vector& values,
@@ -326,20 +261,37 @@ Vector ReliefHeights(const Points& points, const Triangles& triangles, const Vec
   return heights;
 }
 
+std::vector<char> FindOverhangs(
+  const Points& points, const Triangles& triangles, const Eigen::Vector3d& up, double degrees)
+{
+  constexpr double roundOff = 1e-9; // faces at the angle itself have relief
+  Triangles faces = triangles;
+  TurnOutwards(points, faces);
+  const double steepest = std::sin(degrees * std::acos(-1.0) / 180.0) + roundOff;
+  const Vector3 down = -up.stableNormalized();
+  std::vector<char> overhangs(static_cast<std::size_t>(points.rows()), 0);
+  for (Index t = 0; t < static_cast<Index>(faces.rows()); ++t)
+  {
+    if (DoubledNormal(points, faces, t).stableNormalized().dot(down) > steepest)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        overhangs[static_cast<std::size_t>(faces(t, a))] = 1;
+      }
+    }
+  }
+  return overhangs;
+}
+
 Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector& heights,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   Relief relief;
   relief.Faces = triangles;
-  OrientTriangles(points, relief.Faces);
   const auto count = static_cast<Index>(points.rows());
-  const EdgeCounts edges = CountEdges(relief.Faces, count);
+  const EdgeCounts edges = TurnOutwards(points, relief.Faces);
   relief.OpenEdges = edges.Open;
   relief.NonManifoldEdges = edges.NonManifold;
-  if (edges.Open == 0)
-  {
-    TurnOutwards(points, relief.Faces);
-  }
   const Triangles& faces = relief.Faces;
   progress.Report(0.1);
   const Points normals = UnitNormals(points, faces, parallel);
@@ -395,6 +347,7 @@ Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector
   {
     relief.LoweredVertices += used[i] != heights[i];
   }
+  relief.VolumeChange = VolumeOf(relief.Places, faces) - VolumeOf(points, faces);
   relief.SmallestWall =
     FindSmallestWall(points, relief.Places, faces, normals, directions, parallel);
   progress.Report(1.0);

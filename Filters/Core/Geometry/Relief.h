@@ -6,6 +6,8 @@
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Foundation/Types.h"
 
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
@@ -25,6 +27,12 @@ struct ReliefProfile
 Vector ReliefHeights(const Points& points, const Triangles& triangles, const Vector& values,
   const ReliefProfile& profile);
 
+/// Per vertex, whether it is a corner of a triangle that faces down more steeply: whose normal is
+/// more than `degrees`, from 0 to 90, below the horizontal. Triangles are oriented as in
+/// MakeRelief(). up: the direction of printing, not 0.
+std::vector<char> FindOverhangs(
+  const Points& points, const Triangles& triangles, const Eigen::Vector3d& up, double degrees);
+
 /// What a relief became.
 struct Relief
 {
@@ -36,9 +44,9 @@ struct Relief
   Index NonManifoldEdges = 0; ///< of three or more triangles
   Index CrossingTrianglesBefore = 0; ///< see FindSelfIntersections()
   Index CrossingTriangles = 0; ///< after the relief
-  /// The smallest distance from a vertex of the relief, against the normal there, to a triangle
-  /// that faced away, within 30 degrees, before the relief; infinite if there is none.
-  double SmallestWall = 0.0;
+  double VolumeChange = 0.0; ///< the volume after the relief less that before, if it is closed
+  double SmallestWall =
+    0.0; ///< after the relief, see FindSmallestWall(); infinite if there is none
 };
 
 /// Move the vertices of a surface by heights along their normals, outwards if it is closed.

@@ -47,7 +47,7 @@ def print_texture(arguments, surface, report):
         _warn_without_unit(name, getattr(arguments, name), unit, report)
         lengths[name] = in_coordinates(getattr(arguments, name), unit)
     size, height = lengths["size"], lengths["relief"]
-    part = _welded(surface)
+    part = welded(surface)
     extent = float(np.linalg.norm(part.points.max(axis=0) - part.points.min(axis=0)))
     if not size < extent:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, but the part is {extent:.4g} {unit} "
@@ -91,7 +91,7 @@ def print_texture(arguments, surface, report):
     report.say(f"{arguments.output}: {', '.join(said)}, {seconds:.2f} s")
 
 
-def _welded(surface):
+def welded(surface):
     """Vertices at the same place are one: files for viewers have one per face."""
     from .. import Surface
 

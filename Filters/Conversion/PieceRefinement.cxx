@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conversion/PieceRefinement.h"
+
+#include "Conversion/NewArray.h"
+#include "Conversion/ResultWriter.h"
+#include "Conversion/SurfaceReader.h"
+#include "Core/Surface/EdgeRefinement.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+bool IsInteger(vtkDataArray* array)
+{
+  return array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
+}
+
+/// The array with a tuple more for each pair of parents.
+vtkSmartPointer<vtkAbstractArray> Interpolate(
+  vtkAbstractArray* from, const std::vector<std::array<Index, 2>>& parents)
+{
+  const vtkIdType count = from->GetNumberOfTuples();
+  const auto more = static_cast<vtkIdType>(parents.size());
+  auto to = vtkSmartPointer<vtkAbstractArray>::Take(from->NewInstance());
+  to->SetName(from->GetName());
+  to->SetNumberOfComponents(from->GetNumberOfComponents());
+  to->CopyComponentNames(from);
+  to->SetNumberOfTuples(count + more);
+  to->InsertTuples(0, count, 0, from);
+  auto* const numbers = vtkDataArray::SafeDownCast(to);
+  const int components = from->GetNumberOfComponents();
+  const bool rounds = numbers && IsInteger(numbers);
+  for (vtkIdType i = 0; i < more; ++i)
+  {
+    const auto& [a, b] = parents[static_cast<std::size_t>(i)];
+    if (!numbers)
+    {
+      to->InsertTuple(count + i, std::min(a, b), to);
+      continue;
+    }
+    for (int k = 0; k < components; ++k)
+    {
+      const double first = numbers->GetComponent(a, k);
+      const double second = numbers->GetComponent(b, k);
+      const double mean = 0.5 * first + 0.5 * second;
+      numbers->SetComponent(count + i, k,
+        !rounds ? mean : (components == 1 ? std::min(first, second) : std::floor(mean + 0.5)));
+    }
+  }
+  return to;
+}
+
+void InterpolatePointData(
+  vtkPointData* from, vtkPointData* to, const std::vector<std::array<Index, 2>>& parents)
+{
+  for (int n = 0; n < from->GetNumberOfArrays(); ++n)
+  {
+    vtkAbstractArray* const array = from->GetAbstractArray(n);
+    const int role = from->IsArrayAnAttribute(n);
+    if (role == vtkDataSetAttributes::GLOBALIDS)
+    {
+      continue;
+    }
+    const int added = to->AddArray(Interpolate(array, parents));
+    if (role >= 0)
+    {
+      to->SetActiveAttribute(added, role);
+    }
+  }
+}
+
+} // namespace
+
+PieceRefinement::Piece& PieceRefinement::Find(std::size_t number, vtkPolyData* input)
+{
+  this->Pieces.resize(std::max(this->Pieces.size(), number + 1));
+  Piece& piece = this->Pieces[number];
+  const Fingerprint version = FingerprintSurface(input);
+  if (piece.Version != version)
+  {
+    piece = Piece();
+    piece.Version = version;
+  }
+  return piece;
+}
+
+double PieceRefinement::FindMeanEdgeLength(const std::vector<SurfacePiece>& pieces)
+{
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+  {
+    Piece& piece = this->Find(p, pieces[p].Input);
+    if (piece.SumOfEdges < 0.0)
+    {
+      std::vector<Index> cells;
+      const SurfaceArrays arrays = ReadSurface(pieces[p].Input, nullptr, false, cells);
+      std::vector<std::pair<Index, Index>> edges;
+      edges.reserve(static_cast<std::size_t>(arrays.Triangles.size()));
+      for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
+      {
+        for (int a = 0; a < 3; ++a)
+        {
+          edges.emplace_back(
+            std::minmax({ arrays.Triangles(t, a), arrays.Triangles(t, (a + 1) % 3) }));
+        }
+      }
+      std::sort(edges.begin(), edges.end());
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      piece.SumOfEdges = 0.0;
+      piece.NumberOfEdges = static_cast<double>(edges.size());
+      for (const auto& [a, b] : edges)
+      {
+        piece.SumOfEdges += (arrays.Points.row(a) - arrays.Points.row(b)).norm();
+      }
+    }
+    sum += piece.SumOfEdges;
+    count += piece.NumberOfEdges;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+void PieceRefinement::Bisect(
+  Piece& piece, vtkPolyData* input, double length, const ProgressMonitor& progress)
+{
+  std::vector<Index> cells;
+  const SurfaceArrays arrays = ReadSurface(input, nullptr, false, cells);
+  RequireFiniteCoordinates(arrays.Points);
+  const RefinedSurface refined =
+    RefineEdges(arrays.Points, arrays.Triangles, length, MaximumTriangles, progress);
+  piece.Points = nullptr;
+  if (!refined.Parents.empty())
+  {
+    piece.Points = WritePoints(refined.Vertices, input->GetPoints());
+    const auto count = static_cast<vtkIdType>(refined.Faces.rows());
+    const auto offsets = NewArray<vtkTypeInt64Array>("", 1, count + 1);
+    const auto corners = NewArray<vtkTypeInt64Array>("", 1, 3 * count);
+    for (vtkIdType t = 0; t <= count; ++t)
+    {
+      offsets->SetValue(t, 3 * t);
+    }
+    std::copy(
+      refined.Faces.data(), refined.Faces.data() + refined.Faces.size(), corners->GetPointer(0));
+    piece.Triangles = vtkSmartPointer<vtkCellArray>::New();
+    piece.Triangles->SetData(offsets, corners);
+    piece.CellOf.clear();
+    for (const Index t : refined.InputTriangle)
+    {
+      piece.CellOf.push_back(cells[static_cast<std::size_t>(t)]);
+    }
+    piece.Parents = refined.Parents;
+  }
+  piece.LongestEdge = refined.LongestEdge;
+  piece.LimitReached = refined.LimitReached;
+  piece.Length = length;
+}
+
+vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vtkPolyData* input)
+{
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
+  surface->SetPoints(piece.Points);
+  surface->SetVerts(input->GetVerts());
+  surface->SetLines(input->GetLines());
+  surface->SetPolys(piece.Triangles);
+  surface->GetFieldData()->ShallowCopy(input->GetFieldData());
+  InterpolatePointData(input->GetPointData(), surface->GetPointData(), piece.Parents);
+  const vtkIdType others = input->GetNumberOfVerts() + input->GetNumberOfLines();
+  const auto ids =
+    NewArray<vtkIdTypeArray>(IdsName, 1, others + static_cast<vtkIdType>(piece.CellOf.size()));
+  vtkNew<vtkIdList> from, to;
+  for (vtkIdType c = 0; c < ids->GetNumberOfTuples(); ++c)
+  {
+    ids->SetValue(c, c < others ? c : piece.CellOf[static_cast<std::size_t>(c - others)]);
+    from->InsertNextId(ids->GetValue(c));
+    to->InsertNextId(c);
+  }
+  vtkCellData* const cells = surface->GetCellData();
+  cells->CopyGlobalIdsOff();
+  cells->CopyAllocate(input->GetCellData(), ids->GetNumberOfTuples());
+  cells->CopyData(input->GetCellData(), from, to);
+  cells->AddArray(ids);
+  return surface;
+}
+
+void PieceRefinement::Refine(
+  std::vector<SurfacePiece>& pieces, double length, const ProgressMonitor& progress)
+{
+  this->Replaced.clear();
+  this->Triangles = 0;
+  this->LimitSentence = Sentence();
+  if (!(length > 0.0))
+  {
+    return;
+  }
+  this->Pieces.resize(pieces.size());
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+  {
+    vtkPolyData* const input = pieces[p].Input;
+    Piece& piece = this->Find(p, input);
+    if (piece.Length != length)
+    {
+      Bisect(piece, input, length, progress);
+    }
+    if (piece.LimitReached)
+    {
+      Sentence text;
+      text << "refinement stopped before " << MaximumTriangles << " triangles, with edges of up to "
+           << piece.LongestEdge << ", longer than " << length;
+      this->LimitSentence = text;
+    }
+    if (piece.Points)
+    {
+      const auto refined = MakeSurface(piece, input);
+      pieces[p].Output->ShallowCopy(refined);
+      this->Replaced.push_back({ input, refined, pieces[p].Output });
+      this->Triangles += static_cast<Index>(piece.CellOf.size());
+      pieces[p].Input = refined;
+    }
+  }
+}
+
+void PieceRefinement::Undo()
+{
+  for (const Replacement& replacement : this->Replaced)
+  {
+    replacement.Output->ShallowCopy(replacement.Before);
+  }
+}
+
+} // namespace SurfaceDiffusion
