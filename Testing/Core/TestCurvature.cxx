@@ -3,13 +3,16 @@
 #include "Core/Geometry/Curvature.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 #include "Meshes.h"
-#include "NoisySurfaces.h"
 #include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <vector>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -39,7 +42,8 @@ Result Estimate(const Surface& s, double fwhm = 0.0, const ParallelFor& parallel
   {
     positions.row(i) = s.Vertices.row(mesh.InputVertex()[i]) / unit;
   }
-  result.Found = EstimateCurvature(mesh, positions, fwhm / unit, getenv("DEL") ? &delaunay : result.Operators.get(), parallel);
+  result.Found = EstimateCurvature(mesh, positions, fwhm / unit, &delaunay,
+    parallel);
   result.Found.Mean /= unit;
   result.Found.Gaussian /= unit * unit;
   result.Found.Principal /= unit;
@@ -105,41 +109,176 @@ Surface UnevenTorus(Index around, Index across, double amount)
   return s;
 }
 
+double Normal(std::int64_t seed, int c, Index i)
+{
+  return std::sqrt(-2.0 * std::log(1.0 - UniformRandom(seed, c, i))) *
+    std::cos(2.0 * Pi * UniformRandom(seed + 1, c, i));
+}
+
+/// The upper part of a sphere, cut at the edges of triangles.
+Surface Cap(int level, double radius)
+{
+  Surface s = Icosphere(level, radius);
+  std::vector<std::array<Index, 3>> faces;
+  for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+  {
+    const auto z = [&](int a) { return s.Vertices(s.Faces(t, a), 2); };
+    if (std::min({ z(0), z(1), z(2) }) > 0.2 * radius)
+    {
+      faces.push_back({ s.Faces(t, 0), s.Faces(t, 1), s.Faces(t, 2) });
+    }
+  }
+  s.Faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  for (std::size_t t = 0; t < faces.size(); ++t)
+  {
+    s.Faces.row(static_cast<Eigen::Index>(t)) << faces[t][0], faces[t][1], faces[t][2];
+  }
+  return s;
+}
+
 } // namespace
 
 TEST(Curvature, HasOrderTwoOnATorus)
 {
-  const TorusErrors coarse = ErrorsOnTorus(Rotated(Torus(48, 24)), 0.0);
-  const TorusErrors c = ErrorsOnTorus(Torus(60, 30));
-  const TorusErrors f = ErrorsOnTorus(Torus(120, 60));
-  (void)coarse;
-  std::printf("torus %g %g %g\n", f.Mean, f.Gaussian, f.Principal);
-  EXPECT_GT(ObservedOrder(c.Mean, f.Mean), 1.9);
-  EXPECT_GT(ObservedOrder(c.Gaussian, f.Gaussian), 1.9);
-  EXPECT_GT(ObservedOrder(c.Principal, f.Principal), 1.9);
-  const TorusErrors uc = ErrorsOnTorus(UnevenTorus(60, 30, 0.3));
-  const TorusErrors uf = ErrorsOnTorus(UnevenTorus(120, 60, 0.3));
-  const TorusErrors uff = ErrorsOnTorus(UnevenTorus(240, 120, 0.3));
-  std::printf("uneven %g %g %g\n", uc.Mean, uf.Mean, uff.Mean);
-  for (double width : {2.0,4.0,8.0})
-  {
+  const TorusErrors coarse = ErrorsOnTorus(Torus(60, 30));
+  const TorusErrors fine = ErrorsOnTorus(Torus(120, 60));
+  std::printf("torus: errors %.2g %.2g %.2g, orders %.2f %.2f %.2f\n", fine.Mean, fine.Gaussian,
+    fine.Principal, ObservedOrder(coarse.Mean, fine.Mean),
+    ObservedOrder(coarse.Gaussian, fine.Gaussian),
+    ObservedOrder(coarse.Principal, fine.Principal));
+  EXPECT_GT(ObservedOrder(coarse.Mean, fine.Mean), 1.9);
+  EXPECT_GT(ObservedOrder(coarse.Gaussian, fine.Gaussian), 1.9);
+  EXPECT_GT(ObservedOrder(coarse.Principal, fine.Principal), 1.9);
+}
+
+TEST(Curvature, ConvergesOnUnevenMeshesAtEveryScale)
+{
   const double h = MeanEdge(*MakeMesh(Torus(120, 60)));
-  const TorusErrors hc = ErrorsOnTorus(UnevenTorus(60, 30, 0.3), 2*width * h);
-  const TorusErrors hf = ErrorsOnTorus(UnevenTorus(120, 60, 0.3), width * h);
-  std::printf("heat %g: %g %g %g, %g %g %g\n", width, hc.Mean, hc.Gaussian, hc.Principal, hf.Mean, hf.Gaussian, hf.Principal);
+  for (const double width : { 0.0, 2.0, 4.0 }) // in edges
+  {
+    const TorusErrors coarse = ErrorsOnTorus(UnevenTorus(60, 30, 0.3), 2.0 * width * h);
+    const TorusErrors fine = ErrorsOnTorus(UnevenTorus(120, 60, 0.3), width * h);
+    std::printf("uneven torus, FWHM %g h: error of H %.2g, order %.2f\n", width, fine.Mean,
+      ObservedOrder(coarse.Mean, fine.Mean));
+    EXPECT_GT(ObservedOrder(coarse.Mean, fine.Mean), 1.0);
+    EXPECT_LT(fine.Mean, 0.012);
   }
-  for (int level : {4,5})
+}
+
+TEST(Curvature, OfANoisySphereIsRightAtItsScale)
+{
+  for (const int level : { 4, 5 })
   {
     Surface s = Icosphere(level);
     const double h = MeanEdge(*MakeMesh(s));
-    for (Index i = 0; i < s.NumberOfVertices(); ++i) for (int a=0;a<3;++a)
-      s.Vertices(i,a) += 0.1*h*std::sqrt(-2*std::log(1-UniformRandom(5, a, i)))*std::cos(2*Pi*UniformRandom(6,a,i));
-    for (double w : {0.0, 2.0, 4.0, 8.0, 12.0, 16.0})
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
     {
-    const Result r = Estimate(s, w * h);
-    double m = 0, g = 0;
-    for (Index i = 0; i < s.NumberOfVertices(); ++i) { m+=r.Found.Mean[i]; g += r.Found.Gaussian[i]; }
-    std::printf("noisy %d %g: bias %g %g rms %g %g\n", level, w, m/s.NumberOfVertices()-1, g/s.NumberOfVertices()-1, RootMeanSquareOf(r, [&](Index i){return r.Found.Mean[i]-1;}), RootMeanSquareOf(r, [&](Index i){return r.Found.Gaussian[i]-1;}));
+      for (int c = 0; c < 3; ++c)
+      {
+        s.Vertices(i, c) += 0.1 * h * Normal(5, c, i);
+      }
+    }
+    const auto errorOf = [](const Result& found)
+    { return RootMeanSquareOf(found, [&](Index i) { return found.Found.Mean[i] - 1.0; }); };
+    const Result own = Estimate(s);
+    const Result smooth = Estimate(s, 8.0 * h);
+    const double ofGaussian =
+      RootMeanSquareOf(smooth, [&](Index i) { return smooth.Found.Gaussian[i] - 1.0; });
+    std::printf("noisy sphere of %d vertices: error of H %.2g, with FWHM 8 h %.4f, of K %.4f\n",
+      s.NumberOfVertices(), errorOf(own), errorOf(smooth), ofGaussian);
+    EXPECT_GT(errorOf(own), 0.3); // the noise
+    EXPECT_LT(errorOf(smooth), 0.03);
+    EXPECT_LT(ofGaussian, 0.03);
+  }
+}
+
+TEST(Curvature, IsOneSidedAtBoundaries)
+{
+  const double radius = 3.0;
+  const Surface s = Cap(4, radius);
+  for (const double fwhm : { 0.0, 0.5, 1.5 })
+  {
+    const Result found = Estimate(s, fwhm);
+    for (Index i = 0; i < found.Mesh().NumberOfVertices(); ++i)
+    {
+      ASSERT_NEAR(found.Found.Mean[i] * radius, 1.0, 0.02) << fwhm;
+      ASSERT_NEAR(found.Found.Gaussian[i] * radius * radius, 1.0, 0.04) << fwhm;
+    }
+  }
+}
+
+TEST(Curvature, HasTheSignOfTheOrientation)
+{
+  const Surface s = Rotated(Cylinder(100, 40, 2.0, 5.0));
+  for (const double fwhm : { 0.0, 0.6 })
+  {
+    const Result found = Estimate(s, fwhm);
+    const Result flipped = Estimate(Flipped(s), fwhm);
+    Surface mixed = s;
+    for (Index t = 0; t < mixed.NumberOfTriangles(); t += 4)
+    {
+      std::swap(mixed.Faces(t, 1), mixed.Faces(t, 2));
+    }
+    const Result same = Estimate(mixed, fwhm);
+    EXPECT_EQ(same.Found.TurnedTriangles, (mixed.NumberOfTriangles() + 3) / 4);
+    EXPECT_EQ(found.Found.TurnedTriangles, 0);
+    const double sign = found.Found.Mean[0] > 0.0 ? 1.0 : -1.0;
+    for (Index i = 0; i < found.Mesh().NumberOfVertices(); ++i)
+    {
+      ASSERT_NEAR(found.Found.Mean[i], sign * 0.25, 0.003);
+      ASSERT_NEAR(found.Found.Gaussian[i], 0.0, 0.002);
+      ASSERT_NEAR(found.Found.ShapeIndex(i), sign * 0.5, 0.02);
+      ASSERT_NEAR(found.Found.Curvedness(i), 0.5 / std::sqrt(2.0), 0.006);
+      ASSERT_NEAR(flipped.Found.Mean[i], -found.Found.Mean[i], 1e-9);
+      ASSERT_NEAR(same.Found.Mean[i], found.Found.Mean[i], 1e-9);
+    }
+  }
+}
+
+TEST(Curvature, OfAPlaneIsZero)
+{
+  const Surface s = Rotated(Jittered(Plate(10, 1.0), 0.05, -0.99, 0.99, -0.99, 0.99));
+  for (const double fwhm : { 0.0, 0.5 })
+  {
+    const Result found = Estimate(s, fwhm);
+    EXPECT_LT(found.Found.Principal.cwiseAbs().maxCoeff(), 1e-6);
+  }
+}
+
+TEST(Curvature, DoesNotDependOnThreadsNumberingOrUnit)
+{
+  const Surface s = UnevenTorus(60, 30, 0.3);
+  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 3);
+  const Surface renumbered = Renumbered(s, numbers);
+  for (const double fwhm : { 0.0, 0.6 })
+  {
+    const Result one = Estimate(s, fwhm);
+    const ThreadedFor threads(4);
+    const Result several = Estimate(s, fwhm, threads);
+    EXPECT_EQ(one.Found.Mean, several.Found.Mean);
+    EXPECT_EQ(one.Found.Gaussian, several.Found.Gaussian);
+    const Result large = Estimate(Moved(Scaled(s, 1e5), { 3e6, 0.0, -1e6 }), 1e5 * fwhm);
+    const auto byInput = [](const Result& found, const Surface& of)
+    { return ToInput(found.Mesh(), found.Found.Mean, of.NumberOfVertices()); };
+    const Values expected = byInput(one, s);
+    EXPECT_LT((1e5 * byInput(large, s) - expected).cwiseAbs().maxCoeff(), 1e-6);
+    const Values other = byInput(Estimate(renumbered, fwhm), renumbered);
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      ASSERT_NEAR(other(numbers[i], 0), expected(i, 0), 1e-6);
+    }
+  }
+}
+
+TEST(Curvature, IsFiniteOnAnySurface)
+{
+  for (const Surface& s : { Tetrahedron(), ThreeFins(4), Moebius(30, 4), Strip(8, 1),
+         MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } }) })
+  {
+    for (const double fwhm : { 0.0, 0.3, 10.0 })
+    {
+      const Result found = Estimate(s, fwhm);
+      EXPECT_TRUE(found.Found.Principal.allFinite());
     }
   }
 }
