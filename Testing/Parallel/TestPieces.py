@@ -12,7 +12,8 @@ import pieces
 import vtkSurfaceDiffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
-    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDenoisingFilter,
+    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceCurvatureFilter,
+    SurfaceDenoisingFilter, SurfaceDerivativesFilter,
     SurfaceDirectionFieldFilter, SurfaceInterpolationFilter, SurfaceSegmentationFilter,
     TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
 )
@@ -79,6 +80,8 @@ CASES = (
      dict(DirectionArray=["CELLS", "around"], DiffusionRateAcross1=5.0, ColorOutput=1, **LABYRINTH),
      "TextureColor"),
     ("denoising", SurfaceDenoisingFilter, {}, "Displacement"),
+    ("curvature", SurfaceCurvatureFilter, dict(FWHM=0.3), "MeanCurvature"),
+    ("derivatives", SurfaceDerivativesFilter, {}, "fGradient"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
@@ -195,7 +198,8 @@ class TestPieces(unittest.TestCase):
             worst = largest_of_all(worst)
             LARGEST[partition, name] = worst
             self.assertLessEqual(worst, TOLERANCE.get(name, 1e-9), "%s, %s" % (partition, name))
-            if make not in (SurfaceDenoisingFilter, SurfaceDirectionFieldFilter):
+            if make not in (SurfaceCurvatureFilter, SurfaceDenoisingFilter, SurfaceDerivativesFilter,
+                            SurfaceDirectionFieldFilter):
                 rows = algorithm.GetOutputDataObject(1).GetNumberOfRows()
                 self.assertEqual(rows > 0, RANK == 0, "history of " + name)
 

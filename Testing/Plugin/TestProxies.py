@@ -46,7 +46,10 @@ SEARCHES = {
     "texture": {"TuringTextureFilter"},
     "pattern": {"TuringTextureFilter"},
     "direction": {"HarmonicMapFilter", "SurfaceDirectionFieldFilter"},
-    "curvature": {"SurfaceDirectionFieldFilter"},
+    "curvature": {"SurfaceCurvatureFilter", "SurfaceDirectionFieldFilter"},
+    "gradient": {"SurfaceDerivativesFilter"},
+    "divergence": {"SurfaceDerivativesFilter"},
+    "laplacian": {"SurfaceDerivativesFilter"},
 }
 
 # Shares, factors and exponents, which have no unit.
@@ -322,6 +325,8 @@ class TestProxies(unittest.TestCase):
             ("MumfordShahFilter",
              ["AutomaticThreshold", "NoiseLevel", "EdgeWidth"]),
             ("SurfaceDenoisingFilter", ["SurfaceType", "NoiseLevel"]),
+            ("SurfaceCurvatureFilter", ["FWHM"]),
+            ("SurfaceDerivativesFilter", ["Quantity", "SmoothingFWHM"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
             ("SurfaceSegmentationFilter",

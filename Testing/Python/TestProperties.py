@@ -112,6 +112,9 @@ DEFAULTS = {
     "vtkSurfaceDenoisingFilter": {
         **SURFACE, "ResultArrayName": "Displacement", "NoiseLevel": 0.0,
         "SurfaceType": "Automatic"},
+    "vtkSurfaceCurvatureFilter": {**SURFACE, "FWHM": 0.0},
+    "vtkSurfaceDerivativesFilter": {
+        **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},
