@@ -26,8 +26,8 @@ vtkSurfaceDerivativesFilter::vtkSurfaceDerivativesFilter()
   : Superclass(OwnedSettings::Make<DerivativesSettings>())
   , State(std::make_unique<UpdateState>())
 {
-  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS,
-    vtkDataSetAttributes::SCALARS);
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::SCALARS);
 }
 
 vtkSurfaceDerivativesFilter::~vtkSurfaceDerivativesFilter() = default;

@@ -45,10 +45,8 @@ void CurvatureRun::Update(
     curvedness(i, 0) = this->Found.Curvedness(i) / unit;
   }
   this->Results.clear();
-  const auto add = [this](const char* name, Values rows, Role role)
-  {
-    this->Results.push_back(
-      { name, Place::PerVertex, OutputType::Double, std::move(rows), role });
+  const auto add = [this](const char* name, Values rows, Role role) {
+    this->Results.push_back({ name, Place::PerVertex, OutputType::Double, std::move(rows), role });
   };
   add("MeanCurvature", this->Found.Mean / unit, Role::Scalars);
   add("GaussianCurvature", this->Found.Gaussian / unit / unit, Role::None);

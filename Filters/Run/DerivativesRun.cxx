@@ -28,9 +28,8 @@ Values MeansOfCorners(const TriangleMesh& mesh, const Values& ofVertices)
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const auto corners = mesh.TriangleVertices().row(t);
-    means.row(t) = (ofVertices.row(corners[0]) + ofVertices.row(corners[1]) +
-                     ofVertices.row(corners[2])) /
-      3.0;
+    means.row(t) =
+      (ofVertices.row(corners[0]) + ofVertices.row(corners[1]) + ofVertices.row(corners[2])) / 3.0;
   }
   return means;
 }
@@ -67,8 +66,8 @@ void DerivativesSettings::Check(const FieldSummary* fields, Problems& problems)
   }
   if (!fields->Data)
   {
-    problems.push_back(
-      Sentence(fields->DataName) << " is not set; allowed: an array on points or " << Word::Cells());
+    problems.push_back(Sentence(fields->DataName)
+      << " is not set; allowed: an array on points or " << Word::Cells());
   }
   else if (this->TakesVectors() && fields->DataComponents % 3 != 0)
   {
@@ -95,8 +94,8 @@ BlockInput DerivativesRun::WithoutMissing(const BlockInput& input)
     {
       if (values.row(i).array().isInf().any())
       {
-        throw ErrorAt(fields.DataName, "is infinite", fields.Data.OnCells, i,
-          "allowed: finite values and NaN");
+        throw ErrorAt(
+          fields.DataName, "is infinite", fields.Data.OnCells, i, "allowed: finite values and NaN");
       }
       this->MissingRows[i] = values.row(i).hasNaN();
       isAny = isAny || this->MissingRows[i];
@@ -222,7 +221,8 @@ Values DerivativesRun::ReadAtVertices(const Fields& fields, const Derivatives& o
     {
       weights[static_cast<Eigen::Index>(c)] = this->MissingRows[c] ? 0.0 : 1.0;
     }
-    u = MakeCellTransfer(surface, fields, this->Parallel).ToVertices(fields.Data.Values, weights).Of;
+    u =
+      MakeCellTransfer(surface, fields, this->Parallel).ToVertices(fields.Data.Values, weights).Of;
   }
   else
   {
@@ -276,8 +276,7 @@ void DerivativesRun::Add(const char* name, Values rows, bool onTriangles)
 {
   if (onTriangles)
   {
-    this->Results.push_back(
-      { name, Place::MeansOfTriangles, OutputType::Double, std::move(rows) });
+    this->Results.push_back({ name, Place::MeansOfTriangles, OutputType::Double, std::move(rows) });
     if (!this->MissingRows.empty())
     {
       this->Results.back().Elsewhere = Values::Constant(1, this->Results.back().Rows.cols(), NaN);

@@ -60,8 +60,8 @@ private:
   /// The surface without the triangles whose data are missing.
   BlockInput WithoutMissing(const BlockInput& input);
   /// The data at the vertices, smoothed if the settings say so.
-  Values ReadAtVertices(const Fields& fields, const Derivatives& operators,
-    const Points& positions, double fwhm, const ProgressMonitor& progress);
+  Values ReadAtVertices(const Fields& fields, const Derivatives& operators, const Points& positions,
+    double fwhm, const ProgressMonitor& progress);
   void AddResult(const char* name, Values ofVertices, const DerivativesSettings& settings);
   void AddVelocity(Values gradients, bool onTriangles);
   void Add(const char* name, Values rows, bool onTriangles);

@@ -32,8 +32,7 @@ Vector FindBrightness(const OutputSource& source, bool ofCells)
 Values MeansOfCells(const Values& ofTriangles, const Values& elsewhere, const OutputSource& source)
 {
   const TriangleMesh& mesh = source.Surface.InputMesh();
-  Values means =
-    Values::Zero(static_cast<Eigen::Index>(source.NumberOfCells), ofTriangles.cols());
+  Values means = Values::Zero(static_cast<Eigen::Index>(source.NumberOfCells), ofTriangles.cols());
   Vector areas = Vector::Zero(means.rows());
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {

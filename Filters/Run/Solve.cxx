@@ -228,7 +228,8 @@ template <typename RunType, typename SettingsType>
 Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor& parallel)
 {
   RunType run(parallel);
-  NamingSettings(settings, [&] { run.Update(input.Block(RunType::ExcludesMasked), settings, ProgressMonitor()); });
+  NamingSettings(settings,
+    [&] { run.Update(input.Block(RunType::ExcludesMasked), settings, ProgressMonitor()); });
   Solution solution;
   OutputSource source{ run.GetSurface(), parallel };
   input.TakeOutputs(run.Outputs(), source, solution);

@@ -68,8 +68,7 @@ std::unique_ptr<Settings> MakeDefaults()
 }
 
 /// All models.
-inline const NamedSettings SettingsOfModels[] = { { "curvature",
-                                                    &MakeDefaults<CurvatureSettings> },
+inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<CurvatureSettings> },
   { "denoise_mesh", &MakeDefaults<DenoisingRunSettings> },
   { "derivatives", &MakeDefaults<DerivativesSettings> },
   { "direction_field", &MakeDefaults<DirectionFieldSettings> },
@@ -176,8 +175,9 @@ Solution DirectionField(const Points& points, const Triangles& triangles,
   const ParallelFor& parallel = SerialFor());
 
 /// Mean, Gaussian and principal curvatures: see vtkSurfaceCurvatureFilter.
-Solution Curvature(const Points& points, const Triangles& triangles, CurvatureSettings settings = {},
-  const SurfaceData& data = {}, const ParallelFor& parallel = SerialFor());
+Solution Curvature(const Points& points, const Triangles& triangles,
+  CurvatureSettings settings = {}, const SurfaceData& data = {},
+  const ParallelFor& parallel = SerialFor());
 
 /// Gradient, divergence, curl or Laplacian of data, or the velocity of a wave from its arrival
 /// times: see vtkSurfaceDerivativesFilter.

@@ -383,9 +383,7 @@ void SingleRun<RunType, SettingsType>::Update(
     [&](const ProgressMonitor& monitor)
     {
       NamingSettings(settings,
-        [&] {
-          this->Model.Update(MakeBlock(input, RunType::ExcludesMasked), settings, monitor);
-        });
+        [&] { this->Model.Update(MakeBlock(input, RunType::ExcludesMasked), settings, monitor); });
     });
 }
 

@@ -42,8 +42,7 @@ Result Estimate(const Surface& s, double fwhm = 0.0, const ParallelFor& parallel
   {
     positions.row(i) = s.Vertices.row(mesh.InputVertex()[i]) / unit;
   }
-  result.Found = EstimateCurvature(mesh, positions, fwhm / unit, &delaunay,
-    parallel);
+  result.Found = EstimateCurvature(mesh, positions, fwhm / unit, &delaunay, parallel);
   result.Found.Mean /= unit;
   result.Found.Gaussian /= unit * unit;
   result.Found.Principal /= unit;
@@ -144,8 +143,7 @@ TEST(Curvature, HasOrderTwoOnATorus)
   const TorusErrors fine = ErrorsOnTorus(Torus(120, 60));
   std::printf("torus: errors %.2g %.2g %.2g, orders %.2f %.2f %.2f\n", fine.Mean, fine.Gaussian,
     fine.Principal, ObservedOrder(coarse.Mean, fine.Mean),
-    ObservedOrder(coarse.Gaussian, fine.Gaussian),
-    ObservedOrder(coarse.Principal, fine.Principal));
+    ObservedOrder(coarse.Gaussian, fine.Gaussian), ObservedOrder(coarse.Principal, fine.Principal));
   EXPECT_GT(ObservedOrder(coarse.Mean, fine.Mean), 1.9);
   EXPECT_GT(ObservedOrder(coarse.Gaussian, fine.Gaussian), 1.9);
   EXPECT_GT(ObservedOrder(coarse.Principal, fine.Principal), 1.9);

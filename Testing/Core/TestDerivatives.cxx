@@ -122,10 +122,8 @@ Case OnTorus(Index across)
     c.S, 3, [&](const auto& p) { return Eigen::RowVector3d(std::cos(at(p).V) * at(p).Along); });
   // grad w = -sin(v) Along, and n x Along = -Around with n = Along x Around inward.
   c.V = Sample(c.S, 3,
-    [&](const auto& p)
-    {
-      return Eigen::RowVector3d(
-        std::cos(at(p).V) * at(p).Along + std::sin(at(p).V) * at(p).Around);
+    [&](const auto& p) {
+      return Eigen::RowVector3d(std::cos(at(p).V) * at(p).Along + std::sin(at(p).V) * at(p).Around);
     });
   c.Divergence = Sample(c.S, 1,
     [&](const auto& p)
@@ -209,8 +207,8 @@ TEST(Derivatives, OfConstantsAndOfLinearFunctionsOnPlanesAreExact)
   const Eigen::RowVector3d tangential = slope - slope.dot(normal) * normal;
   const Values u = Sample(
     s, 1, [&](const auto& p) { return Eigen::RowVectorXd::Constant(1, 5.0 + p.dot(slope)); });
-  const Eigen::Matrix3d a = (Eigen::Matrix3d() << 1.0, 2.0, 0.5, -0.3, 0.8, 0.1, 0.4, 1.5, -1.1)
-                              .finished();
+  const Eigen::Matrix3d a =
+    (Eigen::Matrix3d() << 1.0, 2.0, 0.5, -0.3, 0.8, 0.1, 0.4, 1.5, -1.1).finished();
   const Values v =
     Sample(s, 3, [&](const auto& p) { return Eigen::RowVector3d(p * a.transpose()); });
   // The divergence and the curl of the tangential part, v = a x.
@@ -255,8 +253,7 @@ TEST(Derivatives, ObeyTheTheoremsOfGaussAndStokes)
   // in planes z = 0, of a field that is linear there.
   Drawn plate = Jittered(Plate(12, 1.0), 0.06, -0.99, 0.99, -0.99, 0.99);
   const Values linear = Sample(plate, 3,
-    [](const auto& p)
-    { return Eigen::RowVector3d(2.0 * p[0] + p[1], p[1] - 4.0 * p[0], 0.0); });
+    [](const auto& p) { return Eigen::RowVector3d(2.0 * p[0] + p[1], p[1] - 4.0 * p[0], 0.0); });
   const double area = ControlAreasOf(plate).sum();
   const Values divergence = Compute(plate, linear, Quantity::Divergence);
   const Values curl = Compute(plate, linear, Quantity::Curl);
@@ -272,13 +269,12 @@ TEST(Derivatives, TheCurlOfAGradientIsZero)
       [](const auto& p)
       { return Eigen::RowVectorXd::Constant(1, std::sin(2.0 * p[0]) * p[1] + p[2]); });
     const Values gradient = Compute(s, u, Quantity::Gradient, 0.0, true);
-    EXPECT_LT(
-      Compute(s, gradient, Quantity::Curl, 0.0, false, true).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_LT(Compute(s, gradient, Quantity::Curl, 0.0, false, true).cwiseAbs().maxCoeff(), 1e-11);
     // That of the divergence is the Laplacian.
     const Values laplacian = Compute(s, u, Quantity::Laplacian);
     const Values divergence = Compute(s, gradient, Quantity::Divergence, 0.0, false, true);
-    EXPECT_LT((laplacian - divergence).cwiseAbs().maxCoeff(),
-      1e-11 * laplacian.cwiseAbs().maxCoeff());
+    EXPECT_LT(
+      (laplacian - divergence).cwiseAbs().maxCoeff(), 1e-11 * laplacian.cwiseAbs().maxCoeff());
   }
 }
 
@@ -288,8 +284,8 @@ TEST(Derivatives, FindTheSpeedOfANoisyPlanarWave)
   const Drawn s = Rotated(Scaled(Plate(60, 1.0), 30.0));
   const Eigen::RowVector3d along =
     (s.Vertices.row(s.Faces(0, 1)) - s.Vertices.row(s.Faces(0, 0))).normalized();
-  Values times = Sample(
-    s, 1, [&](const auto& p) { return Eigen::RowVectorXd::Constant(1, 20.0 + p.dot(along) / 0.6); });
+  Values times = Sample(s, 1,
+    [&](const auto& p) { return Eigen::RowVectorXd::Constant(1, 20.0 + p.dot(along) / 0.6); });
   const Values exact = Compute(s, times, Quantity::ConductionVelocity);
   EXPECT_LT((exact.rowwise() - 0.6 * along).cwiseAbs().maxCoeff(), 1e-10);
   for (Index i = 0; i < times.rows(); ++i)
@@ -303,8 +299,8 @@ TEST(Derivatives, FindTheSpeedOfANoisyPlanarWave)
   const Solution found = Derivative(s.Vertices, s.Faces, times, settings);
   const Values& speed = found.Arrays.at("Speed");
   const double error = RootMeanSquareOf(speed.array() - 0.6) / 0.6;
-  std::printf("planar wave: mean speed %.4f, root mean square error %.2f %%\n", speed.mean(),
-    100.0 * error);
+  std::printf(
+    "planar wave: mean speed %.4f, root mean square error %.2f %%\n", speed.mean(), 100.0 * error);
   EXPECT_NEAR(speed.mean(), 0.6, 0.02 * 0.6);
   EXPECT_LT(error, 0.02);
   EXPECT_LT((found.Result.rowwise().norm() - speed).cwiseAbs().maxCoeff(), 1e-12);
@@ -313,8 +309,8 @@ TEST(Derivatives, FindTheSpeedOfANoisyPlanarWave)
 TEST(Derivatives, LeaveOutMissingDataAndMaskedParts)
 {
   const Drawn s = Plate(10, 1.0);
-  Values u = Sample(
-    s, 1, [](const auto& p) { return Eigen::RowVectorXd::Constant(1, 2.0 * p[0] - p[1]); });
+  Values u =
+    Sample(s, 1, [](const auto& p) { return Eigen::RowVectorXd::Constant(1, 2.0 * p[0] - p[1]); });
   const Index hole = 60;
   u(hole, 0) = std::numeric_limits<double>::quiet_NaN();
   const Values found = Compute(s, u, Quantity::Gradient);
@@ -341,9 +337,8 @@ TEST(Derivatives, LeaveOutMissingDataAndMaskedParts)
 TEST(Derivatives, DoNotDependOnThreadsOrOrientation)
 {
   const Drawn s = Icosphere(5);
-  const Values u = Sample(s, 2,
-    [](const auto& p)
-    { return Eigen::RowVector2d(p[0] * p[1], std::exp(p[2])); });
+  const Values u =
+    Sample(s, 2, [](const auto& p) { return Eigen::RowVector2d(p[0] * p[1], std::exp(p[2])); });
   DerivativesSettings settings;
   settings.SmoothingFWHM = 0.2;
   const Values one = Derivative(s.Vertices, s.Faces, u, settings).Result;

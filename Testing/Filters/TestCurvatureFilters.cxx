@@ -152,9 +152,7 @@ TEST(DerivativesFilter, TakesBlocksWithTheArray)
   auto* const output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   ASSERT_NE(output, nullptr);
   const auto has = [&](unsigned int b)
-  {
-    return vtkPolyData::SafeDownCast(output->GetBlock(b))->GetPointData()->HasArray("tGradient");
-  };
+  { return vtkPolyData::SafeDownCast(output->GetBlock(b))->GetPointData()->HasArray("tGradient"); };
   EXPECT_TRUE(has(0));
   EXPECT_FALSE(has(1));
 }

@@ -224,8 +224,8 @@ inline std::string ExpectConsistentCurvatures(vtkPolyData* output)
     const double smaller = principal->GetComponent(i, 1);
     const double scale = std::abs(larger) + std::abs(smaller);
     EXPECT_TRUE(std::isfinite(scale) && larger >= smaller);
-    EXPECT_NEAR(
-      arrays->GetArray("MeanCurvature")->GetComponent(i, 0), 0.5 * (larger + smaller), 1e-9 * scale);
+    EXPECT_NEAR(arrays->GetArray("MeanCurvature")->GetComponent(i, 0), 0.5 * (larger + smaller),
+      1e-9 * scale);
     EXPECT_LE(std::abs(arrays->GetArray("ShapeIndex")->GetComponent(i, 0)), 1.0);
   }
   return "consistent curvatures";

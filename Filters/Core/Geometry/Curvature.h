@@ -42,7 +42,7 @@ struct Curvatures
 /// vertices; not used if fwhm is 0. Those of an intrinsic Delaunay triangulation have no negative
 /// weights, which fits need on narrow Gaussians. Throws Aborted, NotConverged.
 Curvatures EstimateCurvature(const TriangleMesh& mesh, const Points& positions, double fwhm,
-  const Assembler* operators,
-  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+  const Assembler* operators, const ParallelFor& parallel = SerialFor(),
+  const ProgressMonitor& progress = ProgressMonitor());
 
 } // namespace SurfaceDiffusion

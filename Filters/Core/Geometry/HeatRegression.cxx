@@ -96,8 +96,7 @@ double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSo
   {
     const Values b = mesh.ControlAreas().asDiagonal() * u;
     const double part = 0.5 + 0.5 * step / NumberOfSteps;
-    const SolveReport report =
-      solver.Solve(b, u, progress.Part(part, part + 0.5 / NumberOfSteps));
+    const SolveReport report = solver.Solve(b, u, progress.Part(part, part + 0.5 / NumberOfSteps));
     RequireAnswer(report, solver.GetLimits());
     missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
   }

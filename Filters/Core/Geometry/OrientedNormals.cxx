@@ -20,8 +20,7 @@ OrientedNormals FindOrientedNormals(
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      const auto corner = [&](int a)
-      { return Eigen::RowVector3d(positions.row(oriented(t, a))); };
+      const auto corner = [&](int a) { return Eigen::RowVector3d(positions.row(oriented(t, a))); };
       const Eigen::RowVector3d a = corner(1) - corner(0);
       const Eigen::RowVector3d b = corner(2) - corner(0);
       normals.OfTriangles.row(t) = a.cross(b).stableNormalized();
