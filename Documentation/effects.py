@@ -109,6 +109,16 @@ EFFECTS = {
         Effect("smoothing_length", (0.0, 0.2, 0.8), "The normals are smoothed over this length before their "
                "curvature is taken."),
     ),
+    "curvature": (
+        Effect("fwhm", (0.0, 0.2, 0.5), "At the scale of the mesh, noise hides the curvature. A width "
+               "shows that of the bumps, a larger one that of the whole."),
+    ),
+    "derivatives": (
+        Effect("quantity", ("Gradient", "Laplacian", "ConductionVelocity"), "The length of the gradient, the "
+               "Laplacian, and the length of the velocity, if the data are arrival times.", {}, "blurred"),
+        Effect("smoothing_fwhm", (0.1, 0.3, 0.6), "The length of the gradient: the wider the Gaussian, the "
+               "less is left of the noise."),
+    ),
     "denoise_mesh": (
         Effect("noise_level", (0.0, 0.01, 0.05), "0 means that the noise is estimated. A larger level "
                "removes more.", {}, "block"),
@@ -206,6 +216,11 @@ def run(name, surface, values, keywords):
     function = getattr(sd, name)
     if name == "direction_field":
         return points, smeared(surface, function(surface, **keywords))
+    if name == "curvature":
+        return points, function(surface, **keywords).mean
+    if name == "derivatives":
+        found = function(surface, values, **keywords)
+        return points, np.linalg.norm(found, axis=1) if found.ndim == 2 else found
     if name == "turing_texture":
         return points, function(surface, **keywords).texture
     if name == "denoise_mesh":

@@ -49,6 +49,8 @@ FILTERS = [
     Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", ("SurfaceDenoising",)),
     Filter("turing_texture", "vtkTuringTextureFilter",
            ("ReactionDiffusion", "Kinetics", "CoarseStart")),
+    Filter("curvature", "vtkSurfaceCurvatureFilter", ("Curvature",)),
+    Filter("derivatives", "vtkSurfaceDerivativesFilter", ("Derivatives",)),
     Filter("direction_field", "vtkSurfaceDirectionFieldFilter",
            ("SmoothLineField", "PrincipalDirections")),
 ]

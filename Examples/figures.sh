@@ -49,6 +49,7 @@ cd build/figures
   --photos "$photos" --output .
 "${display[@]}" "$python" "$examples/deblurring_cortex.py" || [ $? -eq 77 ] # without wb_command
 "${display[@]}" "$python" "$examples/cell_data.py"
+"${display[@]}" "$python" "$examples/curvature.py"
 "${display[@]}" "$python" "$examples/harmonic_map.py"
 "${display[@]}" "$python" "$examples/interpolation.py"
 "${display[@]}" "$python" "$examples/mesh_denoising.py"

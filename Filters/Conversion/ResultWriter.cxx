@@ -115,9 +115,9 @@ vtkSmartPointer<vtkDataArray> WriteArray(
 }
 
 /// The vectors of a result are vectors in space, which colours and pairs are not.
-int AttributeOf(Role role, const InputFields& fields)
+int AttributeOf(const Output& output, const InputFields& fields, vtkDataArray* array)
 {
-  if (role == Role::Scalars)
+  if (output.Active == Role::Scalars)
   {
     return vtkDataSetAttributes::SCALARS;
   }
@@ -126,8 +126,9 @@ int AttributeOf(Role role, const InputFields& fields)
     return vtkDataSetAttributes::NORMALS; // only these: ParaView shades with no vectors
   }
   vtkDataArray* const data = fields.Data.Values;
-  const bool inSpace =
-    !data || (data->GetNumberOfComponents() == 3 && data->GetDataType() != VTK_UNSIGNED_CHAR);
+  const bool isColor =
+    data && output.Type == OutputType::Data && data->GetDataType() == VTK_UNSIGNED_CHAR;
+  const bool inSpace = array->GetNumberOfComponents() == 3 && !isColor;
   return inSpace ? vtkDataSetAttributes::VECTORS : vtkDataSetAttributes::SCALARS;
 }
 
@@ -273,7 +274,7 @@ void WriteOutputs(const OutputList& outputs, const OutputSource& source, const O
     }
     if (output.Active != Role::None)
     {
-      attributes->SetActiveAttribute(name.c_str(), AttributeOf(output.Active, target.Fields));
+      attributes->SetActiveAttribute(name.c_str(), AttributeOf(output, target.Fields, array));
     }
   }
 }

@@ -32,7 +32,7 @@ public:
   void Update(const std::vector<SurfaceInput>& surfaces, SettingsType& settings,
     const ProgressMonitor& progress)
   {
-    const std::vector<BlockInput> inputs = this->Inputs.Make(surfaces, false);
+    const std::vector<BlockInput> inputs = this->Inputs.Make(surfaces, RunType::ExcludesMasked);
     const double count = static_cast<double>(surfaces.size());
     this->Runs.resize(surfaces.size());
     this->Names.resize(surfaces.size());

@@ -104,13 +104,7 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
   inputs.Add(this->FieldsVersion);
   std::vector<Warning> warnings;
   std::ostringstream text;
-  if (this->Report.MissedResidual > 0.0)
-  {
-    text << "the linear solver missed its tolerance; the largest relative residual is "
-         << this->Report.MissedResidual;
-    warnings.push_back({ text.str(), inputs });
-    text.str("");
-  }
+  this->AppendMissedResidual(this->Report.MissedResidual, warnings);
   if (this->Report.UnsettledChange > 0.0)
   {
     text << "the search for the smoothest field ended at its largest number of steps; the last "

@@ -18,6 +18,8 @@ enum class Place
   PerVertex, ///< of the model; written at the points, or at the cells if the result is on cells
   PerPoint, ///< of the input
   PerCell, ///< of the input
+  /// Of Surface::InputMesh(); written at the cells, as the means of their triangles by area.
+  MeansOfTriangles,
   PerTriangle, ///< of Surface::InputMesh(), tangent vectors up to their sign; written at the cells
   PerCurvePoint,
   PerCurve,

@@ -27,11 +27,41 @@ Vector FindBrightness(const OutputSource& source, bool ofCells)
                  : Vector(cells->Transfer.ToVertices(lengths, Vector::Ones(lengths.size())).Of);
 }
 
+/// The means of rows per triangle of the mesh over the cells, weighted by area. Cells without
+/// triangles have `elsewhere`, one row, or 0 if it has none.
+Values MeansOfCells(const Values& ofTriangles, const Values& elsewhere, const OutputSource& source)
+{
+  const TriangleMesh& mesh = source.Surface.InputMesh();
+  Values means = Values::Zero(static_cast<Eigen::Index>(source.NumberOfCells), ofTriangles.cols());
+  Vector areas = Vector::Zero(means.rows());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto cell = static_cast<Eigen::Index>(
+      source.CellOf(source.Surface.InputTriangle(mesh.InputTriangle()[t])));
+    const double area = mesh.Shapes()[t].Area();
+    means.row(cell) += area * ofTriangles.row(t);
+    areas[cell] += area;
+  }
+  for (Eigen::Index cell = 0; cell < means.rows(); ++cell)
+  {
+    if (areas[cell] > 0.0)
+    {
+      means.row(cell) /= areas[cell];
+    }
+    else if (elsewhere.rows() > 0)
+    {
+      means.row(cell) = elsewhere;
+    }
+  }
+  return means;
+}
+
 } // namespace
 
 bool IsOnCells(const Output& output, const Run::Block* block, const ModelTraits& traits)
 {
-  return output.Where == Place::PerCell || output.Where == Place::PerTriangle ||
+  return output.Where == Place::PerCell || output.Where == Place::MeansOfTriangles ||
+    output.Where == Place::PerTriangle ||
     (output.Where == Place::PerVertex && block && block->Cells && traits.ResultOnCells);
 }
 
@@ -59,6 +89,11 @@ OutputRows::OutputRows(const Output& output, const OutputSource& source)
   {
     this->Own = DirectionsOfCells(
       source.Surface, output.Rows, source.NumberOfCells, source.CellOf, source.Parallel);
+    this->Shared = nullptr;
+  }
+  else if (output.Where == Place::MeansOfTriangles)
+  {
+    this->Own = MeansOfCells(output.Rows, output.Elsewhere, source);
     this->Shared = nullptr;
   }
   else if (this->IsOnCells)

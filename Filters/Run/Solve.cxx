@@ -228,7 +228,8 @@ template <typename RunType, typename SettingsType>
 Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor& parallel)
 {
   RunType run(parallel);
-  NamingSettings(settings, [&] { run.Update(input.Block(false), settings, ProgressMonitor()); });
+  NamingSettings(settings,
+    [&] { run.Update(input.Block(RunType::ExcludesMasked), settings, ProgressMonitor()); });
   Solution solution;
   OutputSource source{ run.GetSurface(), parallel };
   input.TakeOutputs(run.Outputs(), source, solution);
@@ -280,8 +281,13 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Surf
     [&] { return SolveSteps(Input(points, triangles, data), settings, parallel, progress); });
 }
 
-Solution DirectionField(const Points& points, const Triangles& triangles,
-  DirectionFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
+namespace
+{
+
+/// A run without time steps, whose settings are checked together with the arrays.
+template <typename RunType, typename SettingsType>
+Solution CheckAndSolveOnce(const Points& points, const Triangles& triangles,
+  const SurfaceData& data, SettingsType& settings, const ParallelFor& parallel)
 {
   return WordErrors(
     [&]
@@ -291,8 +297,28 @@ Solution DirectionField(const Points& points, const Triangles& triangles,
       Problems problems;
       settings.Check(&summary, problems);
       ThrowProblems(problems);
-      return SolveOnce<DirectionFieldRun>(input, settings, parallel);
+      return SolveOnce<RunType>(input, settings, parallel);
     });
+}
+
+} // namespace
+
+Solution DirectionField(const Points& points, const Triangles& triangles,
+  DirectionFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
+{
+  return CheckAndSolveOnce<DirectionFieldRun>(points, triangles, data, settings, parallel);
+}
+
+Solution Curvature(const Points& points, const Triangles& triangles, CurvatureSettings settings,
+  const SurfaceData& data, const ParallelFor& parallel)
+{
+  return CheckAndSolveOnce<CurvatureRun>(points, triangles, data, settings, parallel);
+}
+
+Solution Derivative(const Points& points, const Triangles& triangles, const SurfaceData& data,
+  DerivativesSettings settings, const ParallelFor& parallel)
+{
+  return CheckAndSolveOnce<DerivativesRun>(points, triangles, data, settings, parallel);
 }
 
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,

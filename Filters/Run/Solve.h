@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Run/CurvatureRun.h"
 #include "Run/DenoisingRun.h"
+#include "Run/DerivativesRun.h"
 #include "Run/DirectionFieldRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
@@ -66,8 +68,9 @@ std::unique_ptr<Settings> MakeDefaults()
 }
 
 /// All models.
-inline const NamedSettings SettingsOfModels[] = { { "denoise_mesh",
-                                                    &MakeDefaults<DenoisingRunSettings> },
+inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<CurvatureSettings> },
+  { "denoise_mesh", &MakeDefaults<DenoisingRunSettings> },
+  { "derivatives", &MakeDefaults<DerivativesSettings> },
   { "direction_field", &MakeDefaults<DirectionFieldSettings> },
   { "harmonic_map", &MakeDefaults<HarmonicMapSettings> }, { "heat", &MakeDefaults<HeatSettings> },
   { "intrinsic_tv", &MakeDefaults<TotalVariationSettings> },
@@ -170,6 +173,16 @@ inline Solution TensorDiffusion(const Points& points, const Triangles& triangles
 Solution DirectionField(const Points& points, const Triangles& triangles,
   DirectionFieldSettings settings = {}, const SurfaceData& data = {},
   const ParallelFor& parallel = SerialFor());
+
+/// Mean, Gaussian and principal curvatures: see vtkSurfaceCurvatureFilter.
+Solution Curvature(const Points& points, const Triangles& triangles,
+  CurvatureSettings settings = {}, const SurfaceData& data = {},
+  const ParallelFor& parallel = SerialFor());
+
+/// Gradient, divergence, curl or Laplacian of data, or the velocity of a wave from its arrival
+/// times: see vtkSurfaceDerivativesFilter.
+Solution Derivative(const Points& points, const Triangles& triangles, const SurfaceData& data,
+  DerivativesSettings settings = {}, const ParallelFor& parallel = SerialFor());
 
 /// The surface without noise; points of data.Fixed stay: see vtkSurfaceDenoisingFilter.
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,

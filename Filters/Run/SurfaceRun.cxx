@@ -66,6 +66,53 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
   return warnings;
 }
 
+BlockInput SurfaceRun::WithoutGivenAreas(const BlockInput& input)
+{
+  BlockInput drawn = input;
+  drawn.ReadSurface = [read = input.ReadSurface]
+  {
+    SurfaceArrays arrays = read();
+    arrays.AreaFactors.clear();
+    return arrays;
+  };
+  return drawn;
+}
+
+Points SurfaceRun::VertexPositions(const Surface& surface)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  Points positions(mesh.NumberOfVertices(), 3);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    positions.row(i) = surface.Points().row(mesh.InputVertex()[i]) / mesh.LengthUnit();
+  }
+  return positions;
+}
+
+void SurfaceRun::AppendTurnedTriangles(Index count, std::vector<Warning>& warnings) const
+{
+  if (count > 0)
+  {
+    Sentence text;
+    text << count
+         << " triangles have another orientation than their neighbours and count as turned: signs "
+            "follow the larger part of the area";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
+}
+
+void SurfaceRun::AppendMissedResidual(double residual, std::vector<Warning>& warnings) const
+{
+  if (residual > 0.0)
+  {
+    Fingerprint inputs = this->SurfaceVersion;
+    inputs.Add(this->FieldsVersion);
+    Sentence text("the linear solver missed its tolerance; the largest relative residual is ");
+    text << residual;
+    warnings.push_back({ text, inputs });
+  }
+}
+
 void SurfaceRun::Complete(const BlockInput& input, Settings& settings)
 {
   this->FieldsVersion = input.FieldsVersion;

@@ -33,6 +33,9 @@ public:
   static std::vector<Warning> FindAllWarnings(
     const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks);
 
+  /// Whether triangles that the mask marks take no part. A subclass may hide it.
+  static constexpr bool ExcludesMasked = false;
+
 protected:
   /// ofDegenerate: what becomes of triangles of zero area, such as "have no normal".
   SurfaceRun(const ParallelFor& parallel, const char* ofDegenerate)
@@ -49,6 +52,16 @@ protected:
     const ProgressMonitor& progress);
   /// The result of this input and these settings has been computed.
   void Complete(const BlockInput& input, Settings& settings);
+
+  /// The same input, whose control cells have the areas of the drawn surface.
+  static BlockInput WithoutGivenAreas(const BlockInput& input);
+  /// Positions of the vertices, in LengthUnit().
+  static Points VertexPositions(const Surface& surface);
+  ///@{
+  /// Append a warning unless the number is 0.
+  void AppendTurnedTriangles(Index count, std::vector<Warning>& warnings) const;
+  void AppendMissedResidual(double residual, std::vector<Warning>& warnings) const;
+  ///@}
 
   const ParallelFor& Parallel;
   Fingerprint SurfaceVersion, FieldsVersion;

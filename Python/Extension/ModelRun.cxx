@@ -339,19 +339,26 @@ void ModelRun::Write(std::size_t block, std::size_t number, const OutputArray& o
 namespace
 {
 
-/// `input` without a mask, for as long as it lives.
-BlockInput MakeUnmaskedBlock(const InputFields& input)
+/// `input`, for as long as it lives. excludes: whether masked triangles are left out; otherwise the
+/// mask is not read.
+BlockInput MakeBlock(const InputFields& input, bool excludes)
 {
+  auto excluded = input.Mask;
+  if (!excludes)
+  {
+    excluded.Values.reset();
+  }
   BlockInput block;
-  block.SurfaceVersion = input.Surface->Version({});
+  block.SurfaceVersion = input.Surface->Version(excluded);
   block.FieldsVersion = input.Version();
-  block.ReadSurface = [&] { return input.Surface->Read({}); };
+  block.ReadSurface = [&input, excluded] { return input.Surface->Read(excluded); };
   block.ReadFields = [&] { return input.Read(); };
   return block;
 }
 
 /// The problems of the settings alone and with the arrays.
-void CheckSettings(DirectionFieldSettings& settings, const FieldSummary& fields, Problems& problems)
+template <typename SettingsType>
+void CheckSettings(SettingsType& settings, const FieldSummary& fields, Problems& problems)
 {
   settings.Check(&fields, problems);
 }
@@ -375,8 +382,8 @@ void SingleRun<RunType, SettingsType>::Update(
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      NamingSettings(
-        settings, [&] { this->Model.Update(MakeUnmaskedBlock(input), settings, monitor); });
+      NamingSettings(settings,
+        [&] { this->Model.Update(MakeBlock(input, RunType::ExcludesMasked), settings, monitor); });
     });
 }
 
@@ -401,6 +408,8 @@ void SingleRun<RunType, SettingsType>::Write(
     [&] { WriteOutput(this->Model.Outputs().at(number), source, input, output, -1); });
 }
 
+template class SingleRun<CurvatureRun, CurvatureSettings>;
+template class SingleRun<DerivativesRun, DerivativesSettings>;
 template class SingleRun<DirectionFieldRun, DirectionFieldSettings>;
 template class SingleRun<DenoisingRun, DenoisingRunSettings>;
 

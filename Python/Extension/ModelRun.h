@@ -3,7 +3,9 @@
 #pragma once
 
 #include "InputData.h"
+#include "Run/CurvatureRun.h"
 #include "Run/DenoisingRun.h"
+#include "Run/DerivativesRun.h"
 #include "Run/DirectionFieldRun.h"
 #include "Run/Run.h"
 #include "Threads.h"
@@ -57,8 +59,8 @@ private:
   int Step = 0;
 };
 
-/// A computation on one surface without time steps, with its settings: a line field or denoised
-/// points.
+/// A computation on one surface without time steps, with its settings: a line field, denoised
+/// points, curvatures or derivatives.
 template <typename RunType, typename SettingsType>
 class SingleRun
 {
@@ -67,7 +69,7 @@ public:
   SingleRun(const SingleRun&) = delete;
   SingleRun& operator=(const SingleRun&) = delete;
 
-  /// The mask of the input is not read.
+  /// The mask of the input is read by those that leave masked triangles out.
   void Update(
     const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
   double MeanEdgeLength() const { return this->Model.MeanEdgeLength(); }
@@ -82,8 +84,12 @@ private:
 };
 
 using DirectionRun = SingleRun<DirectionFieldRun, DirectionFieldSettings>;
+using CurvatureFinder = SingleRun<CurvatureRun, CurvatureSettings>;
+using DerivativesFinder = SingleRun<DerivativesRun, DerivativesSettings>;
 using MeshDenoiser = SingleRun<DenoisingRun, DenoisingRunSettings>;
 
+extern template class SingleRun<CurvatureRun, CurvatureSettings>;
+extern template class SingleRun<DerivativesRun, DerivativesSettings>;
 extern template class SingleRun<DirectionFieldRun, DirectionFieldSettings>;
 extern template class SingleRun<DenoisingRun, DenoisingRunSettings>;
 

@@ -169,6 +169,8 @@ NB_MODULE(_core, m)
     .def("from_all", &SurfaceDistances::FromAll, "points"_a, "starts"_a, "progress"_a.none())
     .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 
+  BindSingleRun<CurvatureFinder>(m, "CurvatureRun");
+  BindSingleRun<DerivativesFinder>(m, "DerivativesRun");
   BindSingleRun<DirectionRun>(m, "DirectionRun");
   BindSingleRun<MeshDenoiser>(m, "MeshDenoiser");
   BindShapeFunctions(m);

@@ -7,36 +7,43 @@
     surface = Surface(points, faces)             # (n, 3) coordinates, (m, 3) rows of points
     smooth = heat(surface, thickness, fwhm=10)   # in the unit of the coordinates
 
-==================== ============================================================================
-`heat`               smoothing, denoising and inpainting by linear diffusion
-`intrinsic_tv`       denoising and inpainting that preserves edges
-`harmonic_map`       regularised normals and unit vectors, and denoised points
-`denoise_mesh`       points without noise, sharp edges kept
-`mumford_shah`       edges as curves, and data that are smooth between them
-`tensor_diffusion`   smoothing along the edges or the lines of the data
-`segment`            regions with short boundaries
-`interpolate`        smooth functions through values at a few points, with their standard error
-`turing_texture`     textures by reaction and diffusion
-`direction_field`    line fields: principal curvature, the smoothest one, from hints
-`estimate_fwhm`      the smoothness of noise maps
-`smooth_to_fwhm`     smoothing up to a given smoothness
-`smooth_img`         smoothing of surface images of nilearn
-`estimate_fwhm_img`  the smoothness of their noise
-`distance`           distances along the surface, arrival times of fronts
-`nearest_sources`    the same with the source that is nearest
-`distances`          distances between points up to a cutoff, for scipy
-`mass_matrix`        areas of the points' control cells, for scipy
-`stiffness_matrix`   cotangent Laplacian, or that of tensors, for scipy
-`gradient_matrix`    gradients on the triangles, for scipy
-`eigenmodes`         eigenvalues and modes of the surface
-`refine`             shorter edges, for the large triangles of CAD files
-`relief`             values as relief, for printing
-==================== ============================================================================
+===================== ============================================================================
+`heat`                smoothing, denoising and inpainting by linear diffusion
+`intrinsic_tv`        denoising and inpainting that preserves edges
+`harmonic_map`        regularised normals and unit vectors, and denoised points
+`denoise_mesh`        points without noise, sharp edges kept
+`mumford_shah`        edges as curves, and data that are smooth between them
+`tensor_diffusion`    smoothing along the edges or the lines of the data
+`segment`             regions with short boundaries
+`interpolate`         smooth functions through values at a few points, with their standard error
+`turing_texture`      textures by reaction and diffusion
+`direction_field`     line fields: principal curvature, the smoothest one, from hints
+`curvature`           mean, Gaussian and principal curvatures at a scale
+`derivatives`         gradients, divergences, curls, Laplacians and velocities of waves
+`gradient`            tangential gradients of data
+`divergence`          divergences of vectors
+`curl`                curls of vectors about the normals
+`laplacian`           Laplacians of data
+`conduction_velocity` velocities of waves from arrival times
+`estimate_fwhm`       the smoothness of noise maps
+`smooth_to_fwhm`      smoothing up to a given smoothness
+`smooth_img`          smoothing of surface images of nilearn
+`estimate_fwhm_img`   the smoothness of their noise
+`distance`            distances along the surface, arrival times of fronts
+`nearest_sources`     the same with the source that is nearest
+`distances`           distances between points up to a cutoff, for scipy
+`mass_matrix`         areas of the points' control cells, for scipy
+`stiffness_matrix`    cotangent Laplacian, or that of tensors, for scipy
+`gradient_matrix`     gradients on the triangles, for scipy
+`eigenmodes`          eigenvalues and modes of the surface
+`refine`              shorter edges, for the large triangles of CAD files
+`relief`              values as relief, for printing
+===================== ============================================================================
 
 `heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
 return an array; with ``full_output=True`` the first three return a result with history and times, and
 `denoise_mesh` one with the noise level that it found. `harmonic_map`, `interpolate`, `mumford_shah`,
-`segment` and `turing_texture` return a result, since theirs is more than one array. Keywords are the
+`segment`, `turing_texture` and `curvature` return a result, since theirs is more than one array. Keywords are the
 properties of the filters for VTK and ParaView in snake_case. The results have the same bits. The
 classes of VTK are in a module of their own, ``vtkSurfaceDiffusion``, which may be installed beside this package.
 """
@@ -47,7 +54,8 @@ import typing as _typing
 import warnings as _warnings
 from importlib.metadata import version as _version
 
-from . import _core, _distance, _functions, _operators, _result
+from . import _core, _derivatives, _distance, _functions, _operators, _result
+from ._derivatives import *  # noqa: F403
 from ._distance import *  # noqa: F403
 from ._functions import *  # noqa: F403
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
@@ -66,6 +74,7 @@ __all__ = [
     "estimate_fwhm", "estimate_fwhm_img", "get_number_of_threads", "refine", "relief",
     "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
 ]
+__all__ += _derivatives.__all__
 __all__ += _distance.__all__
 __all__ += _functions.__all__
 __all__ += _operators.__all__

@@ -19,7 +19,7 @@ from ._models import (
     read_outputs,
 )
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, InterpolationResult, MeshDenoisingResult,
+    CurvatureResult, DerivativesResult, DiffusionResult, EdgeResult, HarmonicMapResult, InterpolationResult, MeshDenoisingResult,
     SegmentationResult, TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
@@ -30,7 +30,7 @@ from ._surface import (
 )
 
 __all__ = [
-    "denoise_mesh", "direction_field", "harmonic_map", "heat", "interpolate", "intrinsic_tv",
+    "curvature", "denoise_mesh", "derivatives", "direction_field", "harmonic_map", "heat", "interpolate", "intrinsic_tv",
     "mumford_shah", "segment", "tensor_diffusion", "turing_texture",
 ]
 
@@ -57,6 +57,11 @@ roi : array_like, shape (n,) or (m,), optional
     "directions": """\
 directions : array_like, shape (n, 3) or (m, 3), optional
     The direction e1 at each point or face, of any length and sign; zero or NaN is none.""",
+    "left_out": """\
+mask : array_like, shape (n,) or (m,), optional
+    Nonzero leaves a point with its faces, or a face, out: the surface ends there.
+roi : array_like, shape (n,) or (m,), optional
+    The region of interest, the opposite of a mask and in place of one: zero and NaN are left out.""",
     "fixed": """\
 fixed : array_like, shape (n,) or (m,), optional
     Nonzero holds the value (Dirichlet condition).""",
@@ -999,6 +1004,188 @@ def turing_texture(
                     TextureResult, find_outputs(run, 0, given, runner, dtype),
                     {**found, "surface": surface}),
                 steps, progress)
+
+
+def _left_out(mask: Any, roi: Any, surface: Surface) -> Any:
+    """The mask of a function that leaves masked parts out, or that of the region of interest."""
+    if roi is None:
+        return mask
+    if mask is not None:
+        raise ValueError("mask and roi are both given; allowed: one of them")
+    return as_outside(roi, surface.n_points, surface.n_faces)
+
+
+@_with_settings
+def curvature(
+    surface: SurfaceLike,
+    *,
+    mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
+    progress: Progress = False,
+    **properties: Any,
+) -> CurvatureResult:
+    """Compute the curvature of a surface at a given scale.
+
+    The principal curvatures are the eigenvalues of the derivative of the unit normals in the tangent
+    plane. They are positive where the surface bends away from its normals: a sphere of radius R whose
+    faces are counter-clockwise from outside has 1/R. Faces with another orientation than their
+    neighbours count as turned, so that signs follow the larger part of the area.
+
+    With ``fwhm=0`` a quadratic polynomial is fitted to the points of at most two edges from each
+    point. The error falls with the square of the length of the edges on even meshes, and with the
+    length on others and at boundaries; noise of the points is amplified by 1/length^2. With a width,
+    the derivative is the slope of the normals over the positions, by linear regression around each
+    point, weighted with the Gaussian of this width on the surface. Spheres keep their curvature at
+    any scale. At boundaries, both are one-sided.
+
+    Parameters
+    ----------
+    {surface}
+    {left_out}
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    CurvatureResult
+        With `mean`, `gaussian`, `principal`, `shape_index` and `curvedness` at the points. Given
+        areas of the surface are not used.
+
+    Raises
+    ------
+    ValueError
+        For settings and arrays that are not allowed; the message names the argument, what was found
+        and what is allowed.
+    KeyboardInterrupt
+        Within a block of work after Ctrl-C. The surface can be used again.
+
+    Warns
+    -----
+    SurfaceDiffusionWarning
+        For triangles of zero area, and for faces that count as turned.
+
+    References
+    ----------
+    S. Petitjean, A survey of methods for recovering quadrics in triangle meshes, ACM Comput. Surv. 34,
+    2002. J. Koenderink, A. van Doorn, Surface shape and curvature scales, Image Vis. Comput. 10, 1992.
+
+    Examples
+    --------
+    >>> from surfacediffusion import curvature, sphere
+    >>> found = curvature(sphere(4, radius=2.0), fwhm=0.5)
+    >>> round(float(found.mean.mean()), 2), round(float(found.gaussian.mean()), 2)
+    (0.5, 0.25)
+    >>> found.principal.shape, bool(found.shape_index.min() > 0.99)
+    ((2562, 2), True)
+    """
+    surface = as_surface(surface)
+    runner = Runner("curvature", properties, {"MaskArray": "mask"})
+    inputs = Input(surface, mask=_left_out(mask, roi, surface))
+    outputs, found = _run_once("curvature", _core.CurvatureRun, inputs, runner, progress)
+    result: CurvatureResult = make_result(CurvatureResult, outputs, found)
+    return result
+
+
+@_with_settings
+def derivatives(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    *,
+    on_faces: bool | None = None,
+    mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
+    full_output: bool = False,
+    progress: Progress = False,
+    **properties: Any,
+) -> NDArray[np.float64] | DerivativesResult:
+    """Compute derivatives of data in the tangent planes of a surface.
+
+    :func:`gradient`, :func:`divergence`, :func:`curl`, :func:`laplacian` and
+    :func:`conduction_velocity` are this function with a `quantity`.
+
+    On a triangle the gradient is that of the linear function; at a point it is the mean of those
+    around it, weighted by area, in the tangent plane. The divergence d of vectors v at a point with
+    the control area A and the basis function phi is
+
+        A d = - sum over the triangles t of a_t v_t . grad phi + integral over the boundary of phi v . nu
+
+    so that it integrates to the flux across the boundary, up to round-off. The curl about the
+    normals is the divergence of v x n, and the Laplacian that of the gradients on the triangles. On
+    planes all are exact for linear functions and fields, at the boundary, too.
+
+    Parameters
+    ----------
+    {surface}
+    values : array_like, shape (n,), (n, k), (m,) or (m, k)
+        Data at points or faces: vectors in space of Divergence and Curl, k being a multiple of 3.
+        NaN is missing: the triangles there take no part. Scalars at faces go to the points first, by
+        the means over their control areas; vectors do so if they are smoothed.
+    {on_faces}
+    {left_out}
+    full_output : bool, default False
+        Return a :class:`DerivativesResult` in place of its `values`.
+    {progress}
+
+    Other Parameters
+    ----------------
+    {settings}
+
+    Returns
+    -------
+    ndarray, or DerivativesResult
+        At the points, or with `result_on_faces` at the faces: (n, 3) gradients or velocities, (n, 3 k)
+        of k components; (n,) divergences, curls or Laplacians, (n, k) of k vectors or components.
+        Points and faces without a triangle that takes part have 0, or NaN if any data are missing.
+
+    Raises
+    ------
+    ValueError
+        For settings and arrays that are not allowed; the message names the argument, what was found
+        and what is allowed.
+    KeyboardInterrupt
+        Within a block of work after Ctrl-C. The surface can be used again.
+
+    Warns
+    -----
+    SurfaceDiffusionWarning
+        For triangles of zero area, and for faces that count as turned.
+
+    Examples
+    --------
+    >>> from surfacediffusion import derivatives, sphere
+    >>> surface = sphere(5)
+    >>> z = surface.points[:, 2]
+    >>> laplacian = derivatives(surface, z, quantity="Laplacian")  # -2 z on the unit sphere
+    >>> round(float(laplacian @ z / (z @ z)), 2)
+    -2.0
+    """
+    if not isinstance(full_output, (bool, np.bool_)):
+        raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
+    surface = as_surface(surface)
+    runner = Runner("derivatives", properties, {**ARRAYS})
+    data, faces = _take("values", values, surface, on_faces)
+    inputs = Input(surface, data, data_on_faces=faces, mask=_left_out(mask, roi, surface))
+    outputs, found = _run_once("derivatives", _core.DerivativesRun, inputs, runner, progress)
+    result: DerivativesResult = make_result(DerivativesResult, outputs, {"speed": None, **found})
+    return result if full_output else result.values
+
+
+def _run_once(
+    name: str, make: Callable[[], Any], inputs: Input, runner: Runner, progress: Progress
+) -> tuple[list[Output], dict[str, Any]]:
+    """The outputs of a computation without time steps, and the attributes of its result."""
+    surface = inputs.surface
+    with surface._lock, ProgressReporter(progress) as reporter:
+        run = surface._runs.setdefault(name, make())
+        runner.call(run.update, inputs.core, runner.settings, reporter.callable)
+        reporter.finish_part()
+        outputs = read_outputs(run.outputs(), run.write, inputs, runner)
+        found = {"mean_edge_length": run.mean_edge_length(), "warnings": runner.warnings(run)}
+    warn(found["warnings"])
+    return outputs, found
 
 
 @_with_settings

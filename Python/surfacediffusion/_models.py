@@ -79,6 +79,7 @@ def find_outputs(run: Any, block: int, given: Input, runner: Runner, dtype: Any 
 
 #: The attributes of results that have other names than their outputs in snake_case.
 _ATTRIBUTES = {
+    "MeanCurvature": "mean", "GaussianCurvature": "gaussian", "PrincipalCurvatures": "principal",
     "Area": "areas", "BoundaryLength": "boundary_lengths", "DiffusionAxes": "axes",
     "EffectiveNoiseLevel": "noise_level", "EffectiveSurfaceType": "surface_type",
     "RegionProbability": "probabilities", "TextureColor": "colors",

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 
 __all__ = [
-    "DiffusionResult", "EdgeResult", "HarmonicMapResult", "MeshDenoisingResult", "ModelResult",
-    "InterpolationResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult",
+    "CurvatureResult", "DerivativesResult", "DiffusionResult", "EdgeResult", "HarmonicMapResult",
+    "MeshDenoisingResult", "ModelResult", "InterpolationResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult",
     "TextureResult",
 ]
 
@@ -142,6 +142,74 @@ class HarmonicMapResult(Result):
     maximum_displacement: float = 0.0
     volume_before: float = field(default=0.0, repr=False)
     volume_after: float = field(default=0.0, repr=False)
+
+
+@dataclass(frozen=True)
+class CurvatureResult:
+    """The result of :func:`curvature`. ``numpy.asarray(result)`` is `mean`.
+
+    Attributes
+    ----------
+    mean : ndarray, shape (n,)
+        H, half the sum of the principal curvatures, in 1 / (unit of the coordinates). Positive where
+        the surface bends away from its normals. Like the others 0 at points without a face.
+    gaussian : ndarray, shape (n,)
+        K, the product of the principal curvatures.
+    principal : ndarray, shape (n, 2)
+        The larger and the smaller principal curvature.
+    shape_index : ndarray, shape (n,)
+        2/pi atan((k1 + k2)/(k1 - k2)): 1 on caps, 1/2 on ridges, 0 on saddles and planes, -1/2 in
+        ruts, -1 in cups.
+    curvedness : ndarray, shape (n,)
+        sqrt((k1^2 + k2^2)/2).
+    mean_edge_length : float
+        h, in coordinate units.
+    warnings : list of str
+        Everything that was also given as a Python warning.
+    """
+
+    VALUES: ClassVar[tuple[str, ...]] = ()
+
+    mean: NDArray[np.float64] = field(repr=False)
+    gaussian: NDArray[np.float64] = field(repr=False)
+    principal: NDArray[np.float64] = field(repr=False)
+    shape_index: NDArray[np.float64] = field(repr=False)
+    curvedness: NDArray[np.float64] = field(repr=False)
+    mean_edge_length: float
+    warnings: list[str] = field(repr=False)
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        array = self.mean if dtype is None else self.mean.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+
+@dataclass(frozen=True)
+class DerivativesResult:
+    """The result of :func:`derivatives` with ``full_output=True``. ``numpy.asarray(result)`` is
+    `values`.
+
+    Attributes
+    ----------
+    values : ndarray
+        The derivatives, as without `full_output`.
+    speed : ndarray, shape (n,) or (n, k), or None
+        The lengths of the conduction velocities, in the unit of the coordinates per unit of time.
+    mean_edge_length : float
+        h, in coordinate units.
+    warnings : list of str
+        Everything that was also given as a Python warning.
+    """
+
+    VALUES: ClassVar[tuple[str, ...]] = ()
+
+    values: NDArray[np.float64] = field(repr=False)
+    speed: NDArray[np.float64] | None = field(repr=False)
+    mean_edge_length: float
+    warnings: list[str] = field(repr=False)
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
+        return array.copy() if copy else array
 
 
 @dataclass(frozen=True)

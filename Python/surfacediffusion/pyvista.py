@@ -50,7 +50,9 @@ import pyvista
 from numpy.typing import NDArray
 
 from . import _core, _functions
+from ._functions import curvature as _curvature
 from ._functions import denoise_mesh as _denoise_mesh
+from ._functions import derivatives as _derivatives
 from ._functions import direction_field as _direction_field
 from ._functions import exclude_outside, interpolate_with_outputs, segment_with_outputs
 from ._meshes import find_polydata
@@ -294,6 +296,82 @@ def relief(
     if not full_output:
         return raised
     return raised, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+
+def curvature(
+    mesh: Any, *, mask: str | None = None, full_output: bool = False, progress: Progress = False,
+    **properties: Any,
+) -> Any:
+    """Compute the curvature of the mesh at a given scale.
+
+    mask: point or cell array; points and cells with a nonzero value are left out, and the surface
+    ends there. All other keywords are those of surfacediffusion.curvature. The results are the point
+    arrays MeanCurvature, which becomes active, GaussianCurvature, PrincipalCurvatures, ShapeIndex and
+    Curvedness; result_array_name is the prefix of their names. full_output: if True, the function
+    returns a pair: the mesh, and the CurvatureResult, of a MultiBlock the list of them.
+    """
+    properties, prefix = _keywords("curvature", properties)
+    blocks, results = _find_surfaces(mesh), []
+    for block in blocks:
+        marks = block.find("mask", mask, faces=True)[0]
+        result = _curvature(block.surface, mask=marks, progress=progress, **properties)
+        results.append(result)
+        for name, values in (
+            ("MeanCurvature", result.mean), ("GaussianCurvature", result.gaussian),
+            ("PrincipalCurvatures", result.principal), ("ShapeIndex", result.shape_index),
+            ("Curvedness", result.curvedness),
+        ):
+            block.add((prefix or "") + name, values, False)
+        block.mesh.set_active_scalars((prefix or "") + "MeanCurvature", "point")
+    written = _rebuild(mesh, iter(blocks))
+    if not full_output:
+        return written
+    return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+
+def derivatives(
+    mesh: Any, array: str | None = None, *, mask: str | None = None, full_output: bool = False,
+    progress: Progress = False, **properties: Any,
+) -> Any:
+    """Compute derivatives of data on the mesh.
+
+    array: point or cell array; default: the active scalars. Blocks without it pass through, if others
+    have it. mask: point or cell array; points and cells with a nonzero value are left out. All other
+    keywords are those of surfacediffusion.derivatives. The result has the name of the array followed
+    by the quantity, for instance tGradient, or result_array_name; velocities have their lengths in
+    tSpeed. full_output: if True, the function returns a pair: the mesh, and the DerivativesResult, of
+    a MultiBlock the list of them.
+    """
+    properties, given = _keywords("derivatives", properties)
+    quantity = settings_of("derivatives")["quantity"]
+    word = quantity.words[quantity.convert(properties.get("quantity", quantity.default))]
+    blocks, results = _find_surfaces(mesh), []
+    names = [array or block.mesh.active_scalars_name for block in blocks]
+    known = [name is not None and (name in block.mesh.point_data or name in block.mesh.cell_data)
+             for name, block in zip(names, blocks)]
+    for name, block, is_known in zip(names, blocks, known):
+        if not is_known and any(known):
+            continue
+        if name is None:
+            raise ValueError("array is not given and the mesh has no active scalars; allowed: point or "
+                             "cell arrays")
+        values, on_faces = block.find("array", name, faces=True)
+        marks = block.find("mask", mask, faces=True)[0]
+        assert values is not None
+        result = _derivatives(block.surface, values, on_faces=on_faces, mask=marks, full_output=True,
+                              progress=progress, **properties)
+        results.append(result)
+        at_cells = bool(properties.get("result_on_faces", False))
+        block.add(given or name + word, result.values, at_cells)
+        if result.speed is not None:
+            block.add((given or name) + "Speed", result.speed, at_cells)
+        attributes = block.mesh.GetCellData() if at_cells else block.mesh.GetPointData()
+        is_vector = word in ("Gradient", "ConductionVelocity") and result.values.shape[1:] == (3,)
+        (attributes.SetActiveVectors if is_vector else attributes.SetActiveScalars)(given or name + word)
+    written = _rebuild(mesh, iter(blocks))
+    if not full_output:
+        return written
+    return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 
 
 def direction_field(

@@ -19,7 +19,7 @@ import numpy as np
 import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
-from surfacediffusion import (Surface, denoise_mesh, get_number_of_threads, heat, interpolate,
+from surfacediffusion import (Surface, denoise_mesh, get_number_of_threads, gradient, heat, interpolate,
                               intrinsic_tv, set_number_of_threads)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
@@ -368,6 +368,29 @@ class OtherCommands(CommandTest):
         np.testing.assert_allclose(np.linalg.norm(field, axis=1), 1)
         np.testing.assert_allclose((field * normals).sum(axis=1), 0, atol=1e-5)
 
+    def test_curvature_of_a_sphere_at_two_scales(self):
+        for width in ("0", "4"):
+            self.succeed(f"curvature lh.surf.gii out.shape.gii --fwhm {width}")
+            data = read_data("out.shape.gii")
+            self.assertEqual(list(data.names),
+                             ["mean", "gaussian", "k1", "k2", "shape_index", "curvedness"])
+            radius = np.linalg.norm(POINTS, axis=1).mean()
+            expected = [1 / radius, 1 / radius**2, 1 / radius, 1 / radius, 1, 1 / radius]
+            sign = np.sign(data.parts[0].values[0, 0]) ** [1, 2, 1, 1, 1, 2]
+            np.testing.assert_allclose(data.parts[0].values.mean(axis=0), sign * expected, rtol=0.06)
+
+    def test_derivatives_are_those_of_the_function(self):
+        self.succeed("derivatives lh.surf.gii lh.func.gii out.func.gii --fwhm 3")
+        data = read_data("out.func.gii")
+        self.assertEqual(list(data.names), [f"{name} {axis}" for name in ("one", "two")
+                                            for axis in "xyz"])
+        expected = gradient(self.surface, SMOOTH, smoothing_fwhm=3)
+        np.testing.assert_allclose(data.parts[0].values[:, 3:], expected, rtol=1e-4, atol=1e-5)
+        self.succeed("derivatives lh.surf.gii out.func.gii curl.func.gii --quantity curl")
+        self.assertEqual(list(read_data("curl.func.gii").names), ["one x", "two x"])
+        self.succeed("derivatives lh.surf.gii lh.func.gii out.npy --quantity velocity --fwhm 3")
+        self.assertEqual(np.load("out.npy").shape, (N, 8))
+
     def test_normals_of_a_sphere_and_a_denoised_sphere(self):
         self.succeed("normals lh.surf.gii out.func.gii")
         np.testing.assert_allclose(read_data("out.func.gii").parts[0].values, POINTS / 10,
@@ -536,7 +559,7 @@ class Reports(CommandTest):
     def test_help_of_every_command_shows_an_example(self):
         _, out, _ = run("--help")
         commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "interpolate", "segment",
-                    "texture", "directions", "normals", "fwhm", "info")
+                    "texture", "directions", "curvature", "derivatives", "normals", "fwhm", "info")
         for command in commands:
             self.assertIn(command, out)
             code, text, _ = run(command, "--help")

@@ -123,6 +123,9 @@ CASES = [
     ("denoise_mesh", {"fixed": "hole"}, {}),
     ("turing_texture", {"rates": "rates", "direction": "flow"},
      {"NumberOfTimeSteps": 20, "ColorOutput": True}),
+    ("curvature", {"mask": "hole"}, {"FWHM": 0.5}),
+    ("derivatives", {"array": "curvature", "mask": "hole"}, {"SmoothingFWHM": 0.5}),
+    ("derivatives", {"array": "pressure"}, {"Quantity": "ConductionVelocity", "ResultOnCells": True}),
     ("direction_field", {"hints": "around"}, {"Method": "Hints"}),
 ]
 

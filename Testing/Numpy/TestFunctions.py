@@ -300,11 +300,11 @@ class Keywords(unittest.TestCase):
         surface = sd.sphere(2)
         z = surface.points[:, 2]
         for name in ("heat", "intrinsic_tv", "mumford_shah", "turing_texture", "harmonic_map",
-                     "direction_field", "denoise_mesh"):
+                     "direction_field", "denoise_mesh", "curvature", "derivatives"):
             table = sd._settings.settings_of(name)
             defaults = {keyword: setting.default for keyword, setting in table.items()}
             function = getattr(sd, name)
-            values = [z] if name in ("heat", "intrinsic_tv", "mumford_shah") else []
+            values = [z] if name in ("heat", "intrinsic_tv", "mumford_shah", "derivatives") else []
             if name == "turing_texture":
                 defaults["number_of_time_steps"] = 3
                 expected = np.asarray(function(surface, *values, number_of_time_steps=3))
@@ -318,7 +318,7 @@ class Keywords(unittest.TestCase):
         surface = sd.sphere(2)
         z = surface.points[:, 2]
         for function in ("heat", "intrinsic_tv", "tensor_diffusion", "mumford_shah", "turing_texture",
-                         "harmonic_map", "direction_field", "denoise_mesh", "segment"):
+                         "harmonic_map", "direction_field", "denoise_mesh", "segment", "derivatives"):
             for setting in sd._settings.settings_of(function).values():
                 for word in setting.usable:
                     spelling = sd._settings.snake_case(word)

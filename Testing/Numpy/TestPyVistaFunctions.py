@@ -15,8 +15,8 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    denoise_mesh, direction_field, harmonic_map, heat, interpolate, intrinsic_tv, mumford_shah, relief,
-    segment, tensor_diffusion, turing_texture,
+    curvature, denoise_mesh, derivatives, direction_field, harmonic_map, heat, interpolate, intrinsic_tv,
+    mumford_shah, relief, segment, tensor_diffusion, turing_texture,
 )
 
 
@@ -130,6 +130,32 @@ class Meshes(unittest.TestCase):
         self.assertTrue((regions["RegionId"][mesh["seeds"] == 2] == 2).all())
         vectors = harmonic_map(mesh, "east")
         self.assertEqual(vectors["eastHarmonic"].shape, (mesh.n_points, 3))
+
+    def test_curvature_and_derivatives(self):
+        ball = pyvista.Icosphere(nsub=4)
+        ball["z"] = np.array(ball.points[:, 2], dtype=float)
+        ball["north"] = (ball.points[:, 2] > 0.3).astype(np.uint8)
+        curved, report = curvature(ball, FWHM=0.2, full_output=True)
+        radius = np.linalg.norm(ball.points, axis=1).mean()
+        np.testing.assert_allclose(np.abs(curved["MeanCurvature"]), 1 / radius, rtol=0.02)
+        self.assertEqual(curved.point_data.active_scalars_name, "MeanCurvature")
+        np.testing.assert_array_equal(curved["PrincipalCurvatures"], report.principal)
+        self.assertIn("myShapeIndex", curvature(ball, result_array_name="my").array_names)
+        found = derivatives(ball, "z", mask="north")
+        self.assertEqual(found["zGradient"].shape, (ball.n_points, 3))
+        self.assertEqual(found.point_data.active_vectors_name, "zGradient")
+        inner = ball.points[:, 2] < 0
+        tangential = np.array([0, 0, 1]) - ball.points * ball.points[:, 2:] / radius**2
+        np.testing.assert_allclose(found["zGradient"][inner], tangential[inner], atol=0.02)
+        waves = derivatives(ball, "z", quantity="ConductionVelocity", ResultOnCells=True)
+        self.assertEqual(waves.cell_data["zSpeed"].shape, (ball.n_cells,))
+        bare = ball.copy()
+        bare.point_data.remove("z")
+        blocks = derivatives(pyvista.MultiBlock([ball, bare]), "z", quantity="Laplacian")
+        self.assertIn("zLaplacian", blocks[0].point_data)
+        self.assertNotIn("zLaplacian", blocks[1].point_data)
+        with self.assertRaisesRegex(ValueError, "array is 'w'; allowed: point or cell arrays"):
+            derivatives(ball, "w")
 
     def test_meshes_are_denoised_block_by_block(self):
         ball = pyvista.Icosphere(nsub=4)

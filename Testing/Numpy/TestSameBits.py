@@ -134,6 +134,12 @@ class SameBits(unittest.TestCase):
              {"NumberOfTimeSteps": 10}),
             ("turing_texture", {"initial": np.abs(self.columns[:, :2].astype(np.float32))},
              {"NumberOfTimeSteps": 10, "FeatureSize": 0.3}),
+            ("curvature", {}, {"FWHM": 0.3}),
+            ("curvature", {"mask": self.mask}, {}),
+            ("derivatives", {"values": self.values, "mask": self.mask}, {"SmoothingFWHM": 0.3}),
+            ("derivatives", {"values": self.normals}, {"Quantity": "Curl"}),
+            ("derivatives", {"values": self.of_faces}, {"ResultOnCells": True}),
+            ("derivatives", {"values": nan}, {"Quantity": "ConductionVelocity"}),
             ("direction_field", {}, {}),
             ("direction_field", {}, {"Method": "Smooth", "Angle": 30.0}),
             ("direction_field", {"hints": self.around}, {"Method": "Hints"}),
@@ -158,11 +164,19 @@ class SameBits(unittest.TestCase):
 
     def compare(self, function, arrays, properties, expected):
         keywords = {snake_case(name): value for name, value in properties.items()}
-        if function in ("heat", "intrinsic_tv", "tensor_diffusion"):
+        if function in ("heat", "intrinsic_tv", "tensor_diffusion", "derivatives"):
             keywords["full_output"] = True
         result = getattr(sd, function)(self.surface, **arrays, **keywords)
         if function == "direction_field":
             found = {"Direction": result}
+        elif function == "curvature":
+            found = {"MeanCurvature": result.mean, "GaussianCurvature": result.gaussian,
+                     "PrincipalCurvatures": result.principal, "ShapeIndex": result.shape_index,
+                     "Curvedness": result.curvedness}
+        elif function == "derivatives":
+            found = {"values" + properties.get("Quantity", "Gradient"): result.values}
+            if result.speed is not None:
+                found["valuesSpeed"] = result.speed
         elif function == "denoise_mesh":
             found = {"points": result, "Displacement": result - self.points}
         elif function == "turing_texture":
@@ -195,7 +209,7 @@ class SameBits(unittest.TestCase):
             found["DiffusionAxes"] = result.axes
         if function == "harmonic_map":
             found["points"] = result.points
-        if function not in ("denoise_mesh", "direction_field", "interpolate", "segment"):
+        if function not in ("curvature", "denoise_mesh", "derivatives", "direction_field", "interpolate", "segment"):
             found.update({"history " + key: column for key, column in result.history.items()
                           if key != "Seconds"})
         self.assertEqual(set(expected) - {"points", "history Step"}, set(found) - {"points"})

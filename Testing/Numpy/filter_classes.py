@@ -5,7 +5,9 @@
 import surfacediffusion
 
 CLASSES = {
+    "curvature": "vtkSurfaceCurvatureFilter",
     "denoise_mesh": "vtkSurfaceDenoisingFilter",
+    "derivatives": "vtkSurfaceDerivativesFilter",
     "direction_field": "vtkSurfaceDirectionFieldFilter",
     "harmonic_map": "vtkHarmonicMapFilter",
     "heat": "vtkFVMHeatFilter",

@@ -12,9 +12,10 @@ import pieces
 import vtkSurfaceDiffusion  # noqa: F401: the classes behind the proxies
 from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
-    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceDenoisingFilter,
-    SurfaceDirectionFieldFilter, SurfaceInterpolationFilter, SurfaceReliefFilter,
-    SurfaceSegmentationFilter, TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
+    IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceCurvatureFilter,
+    SurfaceDenoisingFilter, SurfaceDerivativesFilter, SurfaceDirectionFieldFilter,
+    SurfaceInterpolationFilter, SurfaceReliefFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
+    TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -80,6 +81,8 @@ CASES = (
      "TextureColor"),
     ("denoising", SurfaceDenoisingFilter, {}, "Displacement"),
     ("relief", SurfaceReliefFilter, dict(InputArray=["POINTS", "f"], Height=0.02), "ReliefHeight"),
+    ("curvature", SurfaceCurvatureFilter, dict(FWHM=0.3), "MeanCurvature"),
+    ("derivatives", SurfaceDerivativesFilter, {}, "fGradient"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
@@ -196,7 +199,8 @@ class TestPieces(unittest.TestCase):
             worst = largest_of_all(worst)
             LARGEST[partition, name] = worst
             self.assertLessEqual(worst, TOLERANCE.get(name, 1e-9), "%s, %s" % (partition, name))
-            if make not in (SurfaceDenoisingFilter, SurfaceDirectionFieldFilter, SurfaceReliefFilter):
+            if make not in (SurfaceCurvatureFilter, SurfaceDenoisingFilter, SurfaceDerivativesFilter,
+                            SurfaceDirectionFieldFilter, SurfaceReliefFilter):
                 rows = algorithm.GetOutputDataObject(1).GetNumberOfRows()
                 self.assertEqual(rows > 0, RANK == 0, "history of " + name)
 

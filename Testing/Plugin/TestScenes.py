@@ -25,6 +25,8 @@ SETTINGS = {
     "HarmonicMapFilter": dict(InputArray=["POINTS", "east"], LineField=1),
     "IntrinsicTVFilter": dict(MaskArray=["POINTS", "hole"]),
     "MumfordShahFilter": dict(AutomaticThreshold=0, EdgeThreshold=0.5),
+    "SurfaceCurvatureFilter": dict(FWHM=0.3),
+    "SurfaceDerivativesFilter": dict(Quantity="Laplacian"),
     "SurfaceDirectionFieldFilter": dict(Method="Smooth"),
     "SurfaceInterpolationFilter": dict(ComputeError=1),
     "SurfaceSegmentationFilter": dict(NumberOfRegions=3),

@@ -43,6 +43,8 @@ SLIPS = {
     "MumfordShahFilter": lambda edges: {"EdgeWidth": 1.2 * edges.EdgeWidth},
     "SurfaceDenoisingFilter": lambda mesh: {
         "NoiseLevel": 1.2 * mesh.GetPropertyValue("EffectiveNoiseLevel")},
+    "SurfaceCurvatureFilter": lambda curved: {"FWHM": curved.FWHM + 0.2},
+    "SurfaceDerivativesFilter": lambda derived: {"SmoothingFWHM": derived.SmoothingFWHM + 0.2},
     "SurfaceDirectionFieldFilter": lambda field: {"Angle": field.Angle + 3.0},
     "SurfaceInterpolationFilter": lambda spline: {
         "AutomaticSmoothing": 0, "Smoothing": 1.2 * spline.GetPropertyValue("EffectiveSmoothing")},

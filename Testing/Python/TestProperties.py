@@ -116,6 +116,9 @@ DEFAULTS = {
         **SURFACE, "ResultArrayName": "ReliefHeight", "Height": 1.0, "Base": 0.0, "Levels": "Smooth",
         "Threshold": 0.5, "Flank": 0.0, "Overhang": -1.0, "UpDirection": (0.0, 0.0, 1.0),
         "RefineTo": 0.0},
+    "vtkSurfaceCurvatureFilter": {**SURFACE, "FWHM": 0.0},
+    "vtkSurfaceDerivativesFilter": {
+        **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},

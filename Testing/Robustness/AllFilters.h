@@ -9,7 +9,9 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceCurvatureFilter.h"
 #include "vtkSurfaceDenoisingFilter.h"
+#include "vtkSurfaceDerivativesFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceReliefFilter.h"
@@ -293,6 +295,36 @@ inline std::vector<FilterKind> AllFilters()
         SetInputArray(f, 0, "f");
         SetInputArray(f, 1, "mask");
       }),
+    { "Curvature", [] { return vtkSmartPointer<vtkSurfaceCurvatureFilter>::New(); },
+      "MeanCurvature" },
+    { "CurvatureAtScale",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceCurvatureFilter>::New();
+        filter->SetFWHM(0.3);
+        SetInputArray(filter, 1, "mask");
+        return filter;
+      },
+      "MeanCurvature" },
+    { "Gradient",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceDerivativesFilter>::New();
+        SetInputArray(filter, 0, "f");
+        return filter;
+      },
+      "fGradient" },
+    { "ConductionVelocity",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceDerivativesFilter>::New();
+        SetInputArray(filter, 0, "f");
+        SetInputArray(filter, 1, "mask");
+        filter->SetQuantityToConductionVelocity();
+        filter->SetSmoothingFWHM(0.3);
+        return filter;
+      },
+      "fConductionVelocity" },
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

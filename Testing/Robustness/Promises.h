@@ -213,6 +213,24 @@ inline std::string ExpectTangentialUnitOrZero(vtkPolyData* surface, vtkDataArray
     Text("%.0f without direction", static_cast<double>(zeros));
 }
 
+/// H and K are half the sum and the product of the principal curvatures, all of which are finite.
+inline std::string ExpectConsistentCurvatures(vtkPolyData* output)
+{
+  vtkPointData* const arrays = output->GetPointData();
+  vtkDataArray* const principal = arrays->GetArray("PrincipalCurvatures");
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    const double larger = principal->GetComponent(i, 0);
+    const double smaller = principal->GetComponent(i, 1);
+    const double scale = std::abs(larger) + std::abs(smaller);
+    EXPECT_TRUE(std::isfinite(scale) && larger >= smaller);
+    EXPECT_NEAR(arrays->GetArray("MeanCurvature")->GetComponent(i, 0), 0.5 * (larger + smaller),
+      1e-9 * scale);
+    EXPECT_LE(std::abs(arrays->GetArray("ShapeIndex")->GetComponent(i, 0)), 1.0);
+  }
+  return "consistent curvatures";
+}
+
 /// The points of the output are those of the input plus the displacements, which are finite.
 inline std::string ExpectMovedPoints(
   vtkPolyData* input, vtkPolyData* output, vtkDataArray* displacements)
@@ -412,6 +430,20 @@ inline std::string ExpectPromises(
   if (vtkSurfaceReliefFilter::SafeDownCast(filter))
   {
     return ExpectRelief(input, filter->GetOutput(), u);
+  }
+  if (vtkSurfaceCurvatureFilter::SafeDownCast(filter))
+  {
+    return ExpectConsistentCurvatures(filter->GetOutput());
+  }
+  if (vtkSurfaceDerivativesFilter::SafeDownCast(filter))
+  {
+    double largest = 0.0;
+    for (vtkIdType i = 0; i < u->GetNumberOfValues(); ++i)
+    {
+      EXPECT_FALSE(std::isinf(u->GetVariantValue(i).ToDouble()));
+      largest = std::max(largest, std::abs(u->GetVariantValue(i).ToDouble()));
+    }
+    return "at most " + std::to_string(largest);
   }
   return ExpectTangentialUnitOrZero(input, u);
 }

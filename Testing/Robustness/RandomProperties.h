@@ -9,7 +9,9 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceCurvatureFilter.h"
 #include "vtkSurfaceDenoisingFilter.h"
+#include "vtkSurfaceDerivativesFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceReliefFilter.h"
@@ -427,6 +429,22 @@ inline List OfRelief()
   };
 }
 
+inline List OfCurvature()
+{
+  using F = vtkSurfaceCurvatureFilter;
+  return { RANDOM_PROPERTY(F, FWHM, ZeroOrPositive(dice)) };
+}
+
+inline List OfDerivatives()
+{
+  using F = vtkSurfaceDerivativesFilter;
+  return {
+    RANDOM_PROPERTY(F, Quantity, Choice(dice, 5)),
+    RANDOM_PROPERTY(F, SmoothingFWHM, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),
+  };
+}
+
 #undef RANDOM_PROPERTY
 
 template <typename F>
@@ -466,6 +484,9 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(),
       OfTimeIntegrators<Turing>(0b011), OfTexture() }),
     MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
+    MakeClass<vtkSurfaceCurvatureFilter>({ OfSurface<vtkSurfaceCurvatureFilter>(), OfCurvature() }),
+    MakeClass<vtkSurfaceDerivativesFilter>(
+      { OfSurface<vtkSurfaceDerivativesFilter>(), OfDerivatives() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceReliefFilter>({ OfSurface<vtkSurfaceReliefFilter>(), OfRelief() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/PrincipalDirections.h"
 
+#include "Core/Geometry/HeatRegression.h"
 #include "Core/Operators/CotanWeights.h"
-#include "Core/Operators/SparsePattern.h"
 #include "Core/Surface/TangentVectors.h"
 
 #include <Eigen/Eigenvalues>
@@ -42,30 +42,6 @@ Values NormalTensors(const TriangleMesh& mesh, const Points& normals, const Para
       tensors.row(i) = sum / (3.0 * mesh.ControlAreas()[i]);
     });
   return tensors;
-}
-
-/// The heat equation (8) by backward Euler, until the Gaussian has this full width at half maximum.
-/// Returns PrincipalDirections::MissedResidual.
-double Smooth(const Assembler& assembler, double fwhm, Values& u, LinearSolver& solver,
-  const ParallelFor& parallel, const ProgressMonitor& progress)
-{
-  const TriangleMesh& mesh = assembler.Mesh();
-  constexpr int steps = 4;
-  const double dt = fwhm * fwhm / (16.0 * std::log(2.0)) / steps;
-  SparseMatrix matrix;
-  TakePattern(assembler.Pattern(), matrix, parallel);
-  assembler.Fill(matrix, mesh.ControlAreas(), dt, CotanWeights(mesh, parallel), nullptr, parallel);
-  solver.SetMatrix(matrix, progress.Part(0.0, 0.5));
-  double missed = 0.0;
-  for (int step = 0; step < steps; ++step)
-  {
-    const Values b = mesh.ControlAreas().asDiagonal() * u;
-    const double part = 0.5 + 0.5 * step / steps;
-    const SolveReport report = solver.Solve(b, u, progress.Part(part, part + 0.5 / steps));
-    RequireAnswer(report, solver.GetLimits());
-    missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
-  }
-  return missed;
 }
 
 Eigen::RowVector3d MainNormal(const Values& tensors, Index i)
@@ -127,7 +103,7 @@ PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
   if (fwhm > 0.0)
   {
     principal.MissedResidual =
-      Smooth(assembler, fwhm, tensors, solver, parallel, progress.Part(0.0, 0.9));
+      SmoothByHeat(assembler, fwhm, tensors, solver, parallel, progress.Part(0.0, 0.9));
   }
   Points vertexNormals(mesh.NumberOfVertices(), 3);
   ForEach(parallel, mesh.NumberOfVertices(),

@@ -71,7 +71,7 @@ def make_parser(hemispheres=False):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
     for add in (_smooth, _metric_smoothing, _cifti_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
-                _edges, _segment, _texture, _directions, _normals, _fwhm, _info):
+                _edges, _segment, _texture, _directions, _curvature, _derivatives, _normals, _fwhm, _info):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -598,6 +598,44 @@ def _directions(commands):
     parser.add_argument("output", metavar="OUTPUT", help="unit vectors, or 0, on the faces")
     parser.add_argument("--method", metavar="NAME", default="PrincipalCurvature",
                         help="PrincipalCurvature (default), CurvatureAligned or Smooth")
+
+
+def _curvature(commands):
+    text = ("Compute curvatures of a surface at a scale. They are positive where the surface bends away "
+            "from the normals of its faces, as on a sphere.")
+    parser = commands.add(
+        "curvature", tasks.curvature, text,
+        [f"{PROGRAM} curvature lh.white.surf.gii lh.curvature.shape.gii --fwhm 5",
+         f"{PROGRAM} curvature scan.ply scan.curved.ply --fwhm 2 --merge"], NEW)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("output", metavar="OUTPUT",
+                        help="columns mean, gaussian, k1, k2, shape_index and curvedness")
+    parser.add_argument("--fwhm", metavar="W", type=_not_negative, default=0.0,
+                        help="the full width at half maximum of the Gaussian on the surface, in the "
+                             "unit of the coordinates (default: 0, the scale of the mesh)")
+    parser.add_argument("--merge", action="store_true",
+                        help="vertices at the same place are one vertex of the surface, as files "
+                             "with split normals or texture seams need")
+
+
+def _derivatives(commands):
+    text = ("Compute the gradient or the Laplacian of data on a surface, the divergence or curl of "
+            "vectors, or the conduction velocity of a wave from its arrival times.")
+    parser = commands.add(
+        "derivatives", tasks.derivatives, text,
+        [f"{PROGRAM} derivatives lh.white lh.thickness gradient.shape.gii --fwhm 5",
+         f"{PROGRAM} derivatives atrium.vtp times.npy velocity.vtp --quantity velocity --fwhm 8"], NEW)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("data", metavar="DATA", help="data at its vertices; missing ones are NaN")
+    parser.add_argument("output", metavar="OUTPUT",
+                        help="columns x, y, z of each gradient or velocity, with the speed after that; "
+                             "or one column for each column or vector of DATA")
+    parser.add_argument("--quantity", default="gradient",
+                        choices=("gradient", "divergence", "curl", "laplacian", "velocity"),
+                        help="what to compute (default: gradient); velocity: grad T/|grad T|^2")
+    parser.add_argument("--fwhm", metavar="W", type=_not_negative, default=0.0,
+                        help="the full width at half maximum of the Gaussian on the surface that "
+                             "smooths DATA first, in the unit of the coordinates (default: 0)")
 
 
 def _normals(commands):

@@ -82,10 +82,10 @@ def _read_surfaces(arguments):
     return surfaces
 
 
-def read_values(path, surface):
+def read_values(path, surface, tables=True):
     """The values of `interpolate`: places (p, 3) or None, values (p, k) or (n, k), and the names of the
-    columns."""
-    table = _read_table(path)
+    columns. tables: whether places with values are allowed; otherwise they are at the vertices."""
+    table = _read_table(path) if tables else None
     if table is not None:
         rows, names = table
         return rows[:, :3], rows[:, 3:], names
@@ -94,7 +94,7 @@ def read_values(path, surface):
     values = np.asarray(part.values, dtype=float)
     if len(data.parts) != 1 or len(values) != len(surface.points):
         raise FileError(f"{path}: {len(values)} values; allowed: {len(surface.points)}, one per vertex "
-                        "of SURFACE, or a text file with rows x, y, z, value")
+                        "of SURFACE" + ", or a text file with rows x, y, z, value" * tables)
     columns = list(data.usual)
     return None, values[:, columns], [data.names[c] for c in columns]
 

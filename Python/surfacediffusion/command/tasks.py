@@ -361,6 +361,49 @@ def directions(arguments, report):
     _say_written(arguments, report, f"{len(surface.faces)} directions")
 
 
+def curvature(arguments, report):
+    from .. import Surface
+    from .. import curvature as measure
+
+    surface = _read_surface_for_output(arguments, report)
+    target = new_data(surface, arguments.output,
+                      ["mean", "gaussian", "k1", "k2", "shape_index", "curvedness"])
+    with report.timed("compute"), report.progress("Curvature") as progress:
+        found = measure(Surface(surface.points, surface.faces), fwhm=arguments.fwhm,
+                        merge_coincident_points=arguments.merge, progress=progress)
+    report.facts.update(fwhm=arguments.fwhm, mean_edge_length=number(found.mean_edge_length),
+                        mean_curvature=number(found.mean.mean()))
+    values = np.column_stack([found.mean, found.gaussian, found.principal, found.shape_index,
+                              found.curvedness])
+    _write_new(arguments, report, target, values.astype(np.float32))
+
+
+def derivatives(arguments, report):
+    from .. import Surface
+    from .. import derivatives as derive
+
+    surface = _read_surface_for_output(arguments, report)
+    with report.timed("read"):
+        _, values, names = inputs.read_values(arguments.data, surface, tables=False)
+    word = {"velocity": "ConductionVelocity"}.get(arguments.quantity, arguments.quantity.capitalize())
+    with report.timed("compute"), report.progress(word) as progress:
+        found = derive(Surface(surface.points, surface.faces), values, quantity=word, on_faces=False,
+                       smoothing_fwhm=arguments.fwhm, full_output=True, progress=progress)
+    result = found.values.reshape(len(surface.points), -1)
+    if arguments.quantity in ("gradient", "velocity"):
+        columns = [f"{name} {axis}" for name in names for axis in "xyz"]
+    elif arguments.quantity == "laplacian":
+        columns = list(names)
+    else:
+        columns = list(names[::3])
+    if found.speed is not None:
+        result = np.column_stack([result, found.speed])
+        columns += [f"{name} speed" for name in names]
+    report.facts.update(quantity=arguments.quantity, fwhm=arguments.fwhm)
+    target = new_data(surface, arguments.output, columns)
+    _write_new(arguments, report, target, result.astype(np.float32))
+
+
 def normals(arguments, report):
     from .. import Surface, harmonic_map
 

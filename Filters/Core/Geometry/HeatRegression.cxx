@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/HeatRegression.h"
+
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/SparsePattern.h"
+#include "Core/Solvers/SolverChoice.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr int NumberOfSteps = 4;
+
+double StepOfWidth(double fwhm)
+{
+  return fwhm * fwhm / (16.0 * std::log(2.0)) / NumberOfSteps;
+}
+
+/// The columns of a matrix of moments: x, the six products of x, u, and the products of u with x.
+constexpr Eigen::Index ProductsBegin = 3;
+constexpr Eigen::Index DataBegin = 9;
+
+Values MakeMoments(const Points& x, const Values& u, const ParallelFor& parallel)
+{
+  const Eigen::Index k = u.cols();
+  Values moments(u.rows(), DataBegin + 4 * k);
+  ForEach(parallel, static_cast<Index>(u.rows()),
+    [&](Index i)
+    {
+      const Eigen::RowVector3d p = x.row(i);
+      moments.row(i).head<3>() = p;
+      moments.row(i).segment<6>(ProductsBegin) << p[0] * p[0], p[0] * p[1], p[0] * p[2],
+        p[1] * p[1], p[1] * p[2], p[2] * p[2];
+      for (Eigen::Index c = 0; c < k; ++c)
+      {
+        moments(i, DataBegin + c) = u(i, c);
+        moments.row(i).segment<3>(DataBegin + k + 3 * c) = u(i, c) * p;
+      }
+    });
+  return moments;
+}
+
+/// Two axes perpendicular to a direction; those of the plane z = 0 if it is zero.
+Eigen::Matrix<double, 3, 2> AxesOfPlane(const Eigen::Vector3d& normal)
+{
+  Eigen::Matrix<double, 3, 2> axes = Eigen::Matrix<double, 3, 2>::Identity();
+  if (normal.norm() > 0.0)
+  {
+    const Eigen::Vector3d n = normal.normalized();
+    axes.col(0) = n.unitOrthogonal();
+    axes.col(1) = n.cross(axes.col(0));
+  }
+  return axes;
+}
+
+/// The inverse of a covariance. Directions in which the vertices do not spread, or in which weights
+/// of obtuse triangles, which may be negative, leave no positive spread, are left out.
+Eigen::Matrix2d InvertSpread(const Eigen::Matrix2d& covariance)
+{
+  constexpr double smallest = 1e-6; // of the largest spread
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(covariance);
+  const double bound = smallest * modes.eigenvalues()[1];
+  Eigen::Vector2d inverse = Eigen::Vector2d::Zero();
+  for (int a = 0; a < 2; ++a)
+  {
+    if (modes.eigenvalues()[a] > bound && bound > 0.0)
+    {
+      inverse[a] = 1.0 / modes.eigenvalues()[a];
+    }
+  }
+  return modes.eigenvectors() * inverse.asDiagonal() * modes.eigenvectors().transpose();
+}
+
+} // namespace
+
+double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSolver& solver,
+  const ParallelFor& parallel, const ProgressMonitor& progress)
+{
+  const TriangleMesh& mesh = assembler.Mesh();
+  const double dt = StepOfWidth(fwhm);
+  SparseMatrix matrix;
+  TakePattern(assembler.Pattern(), matrix, parallel);
+  assembler.Fill(matrix, mesh.ControlAreas(), dt, CotanWeights(mesh, parallel), nullptr, parallel);
+  solver.SetMatrix(matrix, progress.Part(0.0, 0.5));
+  double missed = 0.0;
+  for (int step = 0; step < NumberOfSteps; ++step)
+  {
+    const Values b = mesh.ControlAreas().asDiagonal() * u;
+    const double part = 0.5 + 0.5 * step / NumberOfSteps;
+    const SolveReport report = solver.Solve(b, u, progress.Part(part, part + 0.5 / NumberOfSteps));
+    RequireAnswer(report, solver.GetLimits());
+    missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
+  }
+  return missed;
+}
+
+LinearFits FitByHeat(const Assembler& assembler, const Points& positions, const Points& normals,
+  const Values& u, double fwhm, bool smoothedNormals, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
+{
+  const TriangleMesh& mesh = assembler.Mesh();
+  const Index n = mesh.NumberOfVertices();
+  const Eigen::Index k = u.cols();
+  LinearFits fits;
+  fits.Constants.resize(n, k);
+  fits.Slopes.resize(n, 3 * k);
+  if (n == 0 || k == 0)
+  {
+    return fits;
+  }
+  // Covariances are differences of moments, whose digits are lost far from the origin.
+  const Points x = positions.rowwise() - positions.colwise().mean();
+  const Eigen::RowVectorXd middle = u.colwise().mean();
+  Values moments = MakeMoments(x, u.rowwise() - middle, parallel);
+  SolverTask task;
+  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
+  task.NumberOfVertices = n;
+  task.DiffusionNumber = StepOfWidth(fwhm) / (h * h);
+  task.NumberOfSolves = NumberOfSteps;
+  task.NumberOfColumns = static_cast<int>(moments.cols());
+  task.Tolerance = 1e-12; // the covariances are smaller than the moments by (fwhm/size)^2
+  const auto solver = MakeSolver(SolverMethod::Automatic, task, parallel);
+  IterationLimits limits;
+  limits.Tolerance = task.Tolerance;
+  limits.MaximumNumberOfIterations = 20000;
+  solver->SetLimits(limits);
+  fits.MissedResidual =
+    SmoothByHeat(assembler, fwhm, moments, *solver, parallel, progress.Part(0.0, 0.95));
+  ForEach(parallel, n,
+    [&](Index i)
+    {
+      const Eigen::RowVector3d mean = moments.row(i).head<3>();
+      const auto product = moments.row(i).segment<6>(ProductsBegin);
+      Eigen::Matrix3d spread;
+      spread << product[0], product[1], product[2], product[1], product[3], product[4], product[2],
+        product[4], product[5];
+      spread -= mean.transpose() * mean;
+      const auto means = moments.row(i).segment(DataBegin, k);
+      const Eigen::Vector3d normal = smoothedNormals
+        ? Eigen::Vector3d((means + middle).head<3>().transpose())
+        : Eigen::Vector3d(normals.row(i).transpose());
+      const auto axes = AxesOfPlane(normal);
+      const Eigen::Matrix2d inverse = InvertSpread(axes.transpose() * spread * axes);
+      for (Eigen::Index c = 0; c < k; ++c)
+      {
+        const Eigen::RowVector3d common =
+          moments.row(i).segment<3>(DataBegin + k + 3 * c) - means[c] * mean;
+        const Eigen::RowVector3d slope = common * axes * inverse * axes.transpose();
+        fits.Slopes.row(i).segment<3>(3 * c) = slope;
+        fits.Constants(i, c) = middle[c] + means[c] + slope.dot(x.row(i) - mean);
+      }
+    });
+  progress.Report(1.0);
+  return fits;
+}
+
+} // namespace SurfaceDiffusion

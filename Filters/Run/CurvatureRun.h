@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Geometry/Curvature.h"
+#include "Run/SurfaceRun.h"
+#include "Run/WarningLog.h"
+
+namespace SurfaceDiffusion
+{
+
+/// Curvature in the user's terms.
+struct CurvatureSettings : Settings
+{
+  double FWHM = 0.0;
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+
+  void Visit(SettingVisitor& visitor) override;
+  /// Problems of the settings; no array has to agree with them.
+  void Check(const FieldSummary* fields, Problems& problems);
+};
+
+/// The curvatures of one surface, kept as long as neither inputs nor settings change.
+class CurvatureRun : public SurfaceRun
+{
+public:
+  static constexpr bool ExcludesMasked = true;
+
+  explicit CurvatureRun(const ParallelFor& parallel)
+    : SurfaceRun(parallel, "have no curvature")
+  {
+  }
+
+  /// No field is read. Throws std::runtime_error, std::bad_alloc, Aborted.
+  void Update(
+    const BlockInput& input, CurvatureSettings& settings, const ProgressMonitor& progress);
+
+private:
+  /// About turned triangles, and about solves that missed their tolerance.
+  std::vector<Warning> FindOwnWarnings() const override;
+
+  Curvatures Found;
+};
+
+} // namespace SurfaceDiffusion

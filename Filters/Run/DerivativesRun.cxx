@@ -1,0 +1,312 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/DerivativesRun.h"
+
+#include "Core/Geometry/HeatRegression.h"
+#include "Run/CellFields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Columns that are smoothed together: four moments of each are kept.
+constexpr Eigen::Index ColumnsAtOnce = 32;
+
+/// Means over the corners of the triangles.
+Values MeansOfCorners(const TriangleMesh& mesh, const Values& ofVertices)
+{
+  Values means(mesh.NumberOfTriangles(), ofVertices.cols());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto corners = mesh.TriangleVertices().row(t);
+    means.row(t) =
+      (ofVertices.row(corners[0]) + ofVertices.row(corners[1]) + ofVertices.row(corners[2])) / 3.0;
+  }
+  return means;
+}
+
+} // namespace
+
+void DerivativesSettings::Visit(SettingVisitor& visitor)
+{
+  visitor.Choice({ "Quantity", "",
+                   "What is computed: the Gradient of each component, a vector in the tangent "
+                   "plane; the Divergence or the Curl, its component along the normals, of "
+                   "vectors; the Laplacian of each component; or the ConductionVelocity of "
+                   "arrival times T, grad T/|grad T|^2, with its length, the speed." },
+    this->Quantity, { "Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity" });
+  visitor.Number({ "SmoothingFWHM", "coordinates",
+                   "Full width at half maximum of the Gaussian on the surface that smooths the "
+                   "data first, in the unit of the coordinates: each value becomes that of the "
+                   "linear function that fits the data near it. 0: none." },
+    this->SmoothingFWHM, SettingRange::NonNegative());
+  visitor.Switch({ "ResultOnCells", "",
+                   "On: the result is on the cells. A gradient is then that of the linear function "
+                   "on each triangle; other quantities are means of those at the points. Off: it "
+                   "is on the points." },
+    this->ResultOnCells);
+  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+}
+
+void DerivativesSettings::Check(const FieldSummary* fields, Problems& problems)
+{
+  CheckRanges(*this, problems);
+  if (!fields)
+  {
+    return;
+  }
+  if (!fields->Data)
+  {
+    problems.push_back(Sentence(fields->DataName)
+      << " is not set; allowed: an array on points or " << Word::Cells());
+  }
+  else if (this->TakesVectors() && fields->DataComponents % 3 != 0)
+  {
+    const bool isCurl = this->Quantity == DerivativeQuantity::Curl;
+    Sentence text(fields->DataName);
+    text << " has " << fields->DataComponents << " components; allowed with "
+         << Word::Setting("Quantity") << " "
+         << Word::Choice("Quantity", this->Quantity, isCurl ? "Curl" : "Divergence")
+         << ": 3, the vectors, or a multiple of 3";
+    problems.push_back(text);
+  }
+}
+
+BlockInput DerivativesRun::WithoutMissing(const BlockInput& input)
+{
+  if (!this->IsMissingKnown || this->MissingVersion != input.FieldsVersion)
+  {
+    const Fields fields = input.ReadFields();
+    const Values& values = fields.Data.Values;
+    this->MissingRows.assign(static_cast<std::size_t>(values.rows()), 0);
+    this->MissingOnCells = fields.Data.OnCells;
+    bool isAny = false;
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+    {
+      if (values.row(i).array().isInf().any())
+      {
+        throw ErrorAt(
+          fields.DataName, "is infinite", fields.Data.OnCells, i, "allowed: finite values and NaN");
+      }
+      this->MissingRows[i] = values.row(i).hasNaN();
+      isAny = isAny || this->MissingRows[i];
+    }
+    if (!isAny)
+    {
+      this->MissingRows.clear();
+    }
+    this->MissingVersion = input.FieldsVersion;
+    this->IsMissingKnown = true;
+  }
+  BlockInput known = WithoutGivenAreas(input);
+  if (!this->MissingRows.empty())
+  {
+    known.SurfaceVersion.Add(input.FieldsVersion);
+    known.ReadSurface = [this, read = known.ReadSurface, fieldsOf = input.ReadFields]
+    {
+      SurfaceArrays arrays = read();
+      if (!this->MissingOnCells)
+      {
+        arrays.Undetermined = this->MissingRows;
+        return arrays;
+      }
+      const std::vector<Index> cells = fieldsOf().Cells;
+      arrays.ExcludedTriangles.resize(cells.size(), 0);
+      for (std::size_t t = 0; t < cells.size(); ++t)
+      {
+        if (this->MissingRows[cells[t]])
+        {
+          arrays.ExcludedTriangles[t] = 1;
+        }
+      }
+      return arrays;
+    };
+  }
+  return known;
+}
+
+void DerivativesRun::Update(
+  const BlockInput& input, DerivativesSettings& settings, const ProgressMonitor& progress)
+{
+  const BlockInput known = this->WithoutMissing(input);
+  SurfaceOptions options;
+  options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
+  options.MergeTolerance = settings.MergeTolerance;
+  options.IntrinsicDelaunay = true; // of the smoothing: its weights are not negative
+  if (!this->Prepare(known, settings, options, progress.Part(0.0, 0.3)))
+  {
+    return;
+  }
+  this->Results.clear();
+  this->MissedResidual = 0.0;
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = surface.InputMesh();
+  const Points positions = VertexPositions(surface);
+  const Fields fields = input.ReadFields();
+  const Derivatives operators(mesh, positions, this->Parallel);
+  this->Turned = operators.Normals().TurnedTriangles;
+  progress.Report(0.35);
+  const double unit = mesh.LengthUnit();
+  const double fwhm = settings.SmoothingFWHM / unit;
+  const bool isCurl = settings.Quantity == DerivativeQuantity::Curl;
+  if (settings.TakesVectors() && fields.Data.OnCells && !(fwhm > 0.0))
+  {
+    Values ofTriangles(mesh.NumberOfTriangles(), fields.Data.Values.cols());
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      ofTriangles.row(t) =
+        fields.Data.Values.row(fields.Cells[surface.InputTriangle(mesh.InputTriangle()[t])]);
+    }
+    const Values found = isCurl ? operators.Curl(ofTriangles) : operators.Divergence(ofTriangles);
+    this->AddResult(isCurl ? "Curl" : "Divergence", found / unit, settings);
+  }
+  else
+  {
+    const Values u =
+      this->ReadAtVertices(fields, operators, positions, fwhm, progress.Part(0.35, 0.9));
+    switch (settings.Quantity)
+    {
+      case DerivativeQuantity::Divergence:
+        this->AddResult("Divergence", operators.DivergenceOfVertices(u) / unit, settings);
+        break;
+      case DerivativeQuantity::Curl:
+        this->AddResult("Curl", operators.CurlOfVertices(u) / unit, settings);
+        break;
+      case DerivativeQuantity::Laplacian:
+        this->AddResult(
+          "Laplacian", operators.Divergence(operators.Gradients(u)) / unit / unit, settings);
+        break;
+      default:
+      {
+        Values gradients = operators.Gradients(u) / unit;
+        if (!settings.ResultOnCells)
+        {
+          gradients = operators.ToVertices(gradients);
+        }
+        if (settings.Quantity == DerivativeQuantity::Gradient)
+        {
+          this->Add("Gradient", std::move(gradients), settings.ResultOnCells);
+          this->Results.back().Active = Role::Vectors;
+        }
+        else
+        {
+          this->AddVelocity(std::move(gradients), settings.ResultOnCells);
+        }
+      }
+    }
+  }
+  this->Results.front().IsResult = true;
+  progress.Report(1.0);
+  this->Complete(input, settings);
+}
+
+Values DerivativesRun::ReadAtVertices(const Fields& fields, const Derivatives& operators,
+  const Points& positions, double fwhm, const ProgressMonitor& progress)
+{
+  const Surface& surface = *this->Domain;
+  Values u;
+  if (fields.Data.OnCells)
+  {
+    Vector weights = Vector::Ones(fields.Data.Values.rows());
+    for (std::size_t c = 0; c < this->MissingRows.size(); ++c)
+    {
+      weights[static_cast<Eigen::Index>(c)] = this->MissingRows[c] ? 0.0 : 1.0;
+    }
+    u =
+      MakeCellTransfer(surface, fields, this->Parallel).ToVertices(fields.Data.Values, weights).Of;
+  }
+  else
+  {
+    u = MakePointData(surface, fields, false, 1.0).Given;
+  }
+  for (Eigen::Index first = 0; fwhm > 0.0 && first < u.cols(); first += ColumnsAtOnce)
+  {
+    const Eigen::Index count = std::min(ColumnsAtOnce, u.cols() - first);
+    const double columns = static_cast<double>(u.cols());
+    const LinearFits fits = FitByHeat(*surface.SharedAssembler(), positions,
+      operators.Normals().OfVertices, u.middleCols(first, count), fwhm, false, this->Parallel,
+      progress.Part(first / columns, (first + count) / columns));
+    u.middleCols(first, count) = fits.Constants;
+    this->MissedResidual = std::max(this->MissedResidual, fits.MissedResidual);
+  }
+  return u;
+}
+
+void DerivativesRun::AddVelocity(Values gradients, bool onTriangles)
+{
+  constexpr double roundOff = 1e-12; // of the largest gradient: times that do not change
+  Values speeds = Values::Zero(gradients.rows(), gradients.cols() / 3);
+  for (Eigen::Index c = 0; c < speeds.cols(); ++c)
+  {
+    auto slowness = gradients.middleCols(3 * c, 3);
+    const Vector lengths = slowness.rowwise().stableNorm();
+    const double smallest = lengths.size() > 0 ? roundOff * lengths.maxCoeff() : 0.0;
+    for (Eigen::Index i = 0; i < speeds.rows(); ++i)
+    {
+      const double speed = lengths[i] > smallest ? 1.0 / lengths[i] : 0.0;
+      speeds(i, c) = std::isfinite(speed) ? speed : 0.0;
+      slowness.row(i) *= speeds(i, c) * speeds(i, c);
+    }
+  }
+  this->Add("ConductionVelocity", std::move(gradients), onTriangles);
+  this->Results.back().Active = Role::Vectors;
+  this->Add("Speed", std::move(speeds), onTriangles);
+  this->Results.back().IsBesideResult = true;
+}
+
+void DerivativesRun::AddResult(
+  const char* name, Values ofVertices, const DerivativesSettings& settings)
+{
+  this->Add(name,
+    settings.ResultOnCells ? MeansOfCorners(this->Domain->InputMesh(), ofVertices) : ofVertices,
+    settings.ResultOnCells);
+  this->Results.back().Active = Role::Scalars;
+}
+
+void DerivativesRun::Add(const char* name, Values rows, bool onTriangles)
+{
+  if (onTriangles)
+  {
+    this->Results.push_back({ name, Place::MeansOfTriangles, OutputType::Double, std::move(rows) });
+    if (!this->MissingRows.empty())
+    {
+      this->Results.back().Elsewhere = Values::Constant(1, this->Results.back().Rows.cols(), NaN);
+    }
+    return;
+  }
+  const Surface& surface = *this->Domain;
+  const auto count = static_cast<Index>(surface.Points().rows());
+  Values ofPoints = Values::Zero(count, rows.cols());
+  for (Index p = 0; p < count; ++p)
+  {
+    const Index vertex = surface.VertexOf(p);
+    if (vertex >= 0)
+    {
+      ofPoints.row(p) = rows.row(vertex);
+    }
+    else if (!this->MissingRows.empty())
+    {
+      ofPoints.row(p).setConstant(NaN);
+    }
+  }
+  this->Results.push_back({ name, Place::PerPoint, OutputType::Double, std::move(ofPoints) });
+}
+
+std::vector<Warning> DerivativesRun::FindOwnWarnings() const
+{
+  std::vector<Warning> warnings;
+  AppendTurnedTriangles(this->Turned, warnings);
+  AppendMissedResidual(this->MissedResidual, warnings);
+  return warnings;
+}
+
+} // namespace SurfaceDiffusion

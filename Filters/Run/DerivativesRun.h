@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Geometry/Derivatives.h"
+#include "Run/SurfaceRun.h"
+#include "Run/WarningLog.h"
+
+namespace SurfaceDiffusion
+{
+
+/// The derivatives of data on a surface.
+enum class DerivativeQuantity
+{
+  Gradient, ///< of scalars
+  Divergence, ///< of vectors
+  Curl, ///< of vectors: the normal component
+  Laplacian, ///< of scalars
+  ConductionVelocity ///< of times: grad T/|grad T|^2
+};
+
+/// Derivatives in the user's terms.
+struct DerivativesSettings : Settings
+{
+  DerivativeQuantity Quantity = DerivativeQuantity::Gradient;
+  double SmoothingFWHM = 0.0;
+  bool ResultOnCells = false;
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+
+  void Visit(SettingVisitor& visitor) override;
+  /// Problems of the settings, and with `fields` those of settings and data together.
+  void Check(const FieldSummary* fields, Problems& problems);
+
+  bool TakesVectors() const
+  {
+    return this->Quantity == DerivativeQuantity::Divergence ||
+      this->Quantity == DerivativeQuantity::Curl;
+  }
+};
+
+/// The derivatives of data on one surface, kept as long as neither inputs nor settings change.
+class DerivativesRun : public SurfaceRun
+{
+public:
+  static constexpr bool ExcludesMasked = true;
+
+  explicit DerivativesRun(const ParallelFor& parallel)
+    : SurfaceRun(parallel, "have no derivatives")
+  {
+  }
+
+  /// Only Data of the fields are read. Throws std::runtime_error, std::bad_alloc, Aborted.
+  void Update(
+    const BlockInput& input, DerivativesSettings& settings, const ProgressMonitor& progress);
+
+private:
+  /// About turned triangles, and about solves that missed their tolerance.
+  std::vector<Warning> FindOwnWarnings() const override;
+  /// The surface without the triangles whose data are missing.
+  BlockInput WithoutMissing(const BlockInput& input);
+  /// The data at the vertices, smoothed if the settings say so.
+  Values ReadAtVertices(const Fields& fields, const Derivatives& operators, const Points& positions,
+    double fwhm, const ProgressMonitor& progress);
+  void AddResult(const char* name, Values ofVertices, const DerivativesSettings& settings);
+  void AddVelocity(Values gradients, bool onTriangles);
+  void Add(const char* name, Values rows, bool onTriangles);
+
+  Fingerprint MissingVersion; ///< of the data that MissingRows belong to
+  bool IsMissingKnown = false;
+  std::vector<char> MissingRows; ///< per point or cell: not finite; empty if none is
+  bool MissingOnCells = false;
+  Index Turned = 0;
+  double MissedResidual = 0.0;
+};
+
+} // namespace SurfaceDiffusion

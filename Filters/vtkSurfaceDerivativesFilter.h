@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSurfaceDerivativesFilter
+ * @brief   computes derivatives of data on a surface, and conduction velocities
+ *
+ * Input array 0 (points or cells) has the data u: scalars or vectors. The result is named after
+ * them, followed by the Quantity, for instance `uGradient`, or has the name ResultArrayName. It is
+ * made active.
+ *
+ * | Quantity | of | result |
+ * | --- | --- | --- |
+ * | Gradient | k components | 3k: the tangential gradients, in the unit of u per length |
+ * | Divergence | vectors, 3k components | k: the divergence of their tangential parts |
+ * | Curl | vectors, 3k components | k: the curl about the normals of the surface |
+ * | Laplacian | k components | k: the divergence of the gradient, per length^2 |
+ * | ConductionVelocity | times T, k components | 3k: grad T/\|grad T\|^2, and `Speed`, k: 1/\|grad T\| |
+ *
+ * Times in ms on coordinates in mm give velocities in mm/ms = m/s. Where T does not change, the
+ * velocity is not defined and is 0. `Speed` has the name of the data before it, or ResultArrayName.
+ *
+ * With the linear basis functions phi_i of the points, the areas a_t of the triangles and A_i of
+ * the control cells, and the outward conormals nu of the boundary,
+ *
+ *     g_t = sum_i u_i grad phi_i                        (gradient on a triangle)
+ *     g_i = P_i sum_t a_t g_t / sum_t a_t               (at a point, in its tangent plane)
+ *     A_i d_i = - sum_t a_t v_t . grad phi_i + int over the boundary of phi_i v . nu
+ *
+ * is the discretisation; the curl is the divergence of v x n, and the Laplacian that of g_t. So the
+ * divergence integrates to the flux across the boundary, and the curl to the circulation along it,
+ * up to round-off. On planes all are exact for linear functions and fields, at the boundary, too.
+ * The gradient at points has an error of second order in the length of the edges inside of even
+ * meshes, and of first order on others and at boundaries. The Laplacian inside is -K u/A with the
+ * cotangent weights K. Its error is of second order where the points of a mesh look alike, and of
+ * first order, as root mean square, on icospheres. On other meshes its means over several points
+ * converge, but not its values at single points. Edges of three or more triangles are no boundary.
+ * Triangles with another orientation than their neighbours count
+ * as turned, so that the signs of the curl follow the larger part of the area.
+ *
+ * SmoothingFWHM smooths the data first: the value at each point becomes that of the linear function
+ * that fits the data around it, weighted with a Gaussian of this full width at half maximum on
+ * the surface. Linear functions on planes stay as they are, at boundaries, too, where plain
+ * smoothing would flatten them. White noise of standard deviation s at points of distance h leaves
+ * an error of about s h/FWHM^2 in each component of the gradient.
+ *
+ * Scalars on cells, and vectors on cells if they are smoothed, go to the points first, by the means
+ * over the control cells. Vectors on cells are otherwise used as they are.
+ *
+ * Input array 1 (points or cells) is a mask: triangles with a nonzero point or cell take no part,
+ * and the surface ends there; so do triangles with missing data (NaN in any component). Points
+ * without a triangle that takes part, and such cells, get 0, or NaN if any data are missing.
+ * Infinite data are an error.
+ *
+ * Surfaces in pieces, over processes and partitions, are gathered and solved in process 0; see
+ * vtkSurfaceFilter.
+ *
+ * @sa vtkSurfaceCurvatureFilter vtkFVMHeatFilter
+ */
+#ifndef vtkSurfaceDerivativesFilter_h
+#define vtkSurfaceDerivativesFilter_h
+
+#include "vtkSurfaceFilter.h"
+
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDerivativesFilter : public vtkSurfaceFilter
+{
+public:
+  static vtkSurfaceDerivativesFilter* New();
+  vtkTypeMacro(vtkSurfaceDerivativesFilter, vtkSurfaceFilter);
+
+  void ReleaseCache() override;
+
+  enum QuantityType
+  {
+    QUANTITY_GRADIENT = 0,
+    QUANTITY_DIVERGENCE = 1,
+    QUANTITY_CURL = 2,
+    QUANTITY_LAPLACIAN = 3,
+    QUANTITY_CONDUCTION_VELOCITY = 4
+  };
+
+  ///@{
+  /**
+   * What is computed, see above. Default: Gradient.
+   */
+  SURFACEDIFFUSION_CHOICE(Quantity);
+  void SetQuantityToGradient() { this->SetQuantity(QUANTITY_GRADIENT); }
+  void SetQuantityToDivergence() { this->SetQuantity(QUANTITY_DIVERGENCE); }
+  void SetQuantityToCurl() { this->SetQuantity(QUANTITY_CURL); }
+  void SetQuantityToLaplacian() { this->SetQuantity(QUANTITY_LAPLACIAN); }
+  void SetQuantityToConductionVelocity() { this->SetQuantity(QUANTITY_CONDUCTION_VELOCITY); }
+  ///@}
+
+  /**
+   * The full width at half maximum of the Gaussian on the surface that smooths the data first, in
+   * coordinate units. 0 or more. 0 (default): none.
+   */
+  SURFACEDIFFUSION_PROPERTY(SmoothingFWHM, double);
+
+  /**
+   * On: the result is on the cells. A gradient is then that of the linear function on each triangle
+   * (the mean over the triangles of a polygon), and other quantities are means over the cell. Off
+   * (default): the result is on the points.
+   */
+  SURFACEDIFFUSION_SWITCH(ResultOnCells);
+
+protected:
+  vtkSurfaceDerivativesFilter();
+  ~vtkSurfaceDerivativesFilter() override;
+
+  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
+    const SurfaceDiffusion::ProgressMonitor& progress) override;
+
+private:
+  vtkSurfaceDerivativesFilter(const vtkSurfaceDerivativesFilter&) = delete;
+  void operator=(const vtkSurfaceDerivativesFilter&) = delete;
+
+  /// The derivatives, kept between updates.
+  struct UpdateState;
+  const std::unique_ptr<UpdateState> State;
+};
+
+#endif

@@ -1,0 +1,238 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Derivatives of data on surfaces, each by its name."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._functions import derivatives
+from ._run import Progress
+from ._surface import SurfaceLike
+
+__all__ = ["ConductionVelocity", "conduction_velocity", "curl", "divergence", "gradient", "laplacian"]
+
+
+class ConductionVelocity(NamedTuple):
+    """The velocity of a wave, and its length."""
+
+    velocity: NDArray[np.float64]  #: (n, 3), in the tangent planes
+    speed: NDArray[np.float64]  #: (n,)
+
+
+def gradient(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    *,
+    on_faces: bool | None = None,
+    mask: ArrayLike | None = None,
+    smoothing_fwhm: float = 0.0,
+    result_on_faces: bool = False,
+    progress: Progress = False,
+) -> NDArray[np.float64]:
+    """Compute the tangential gradient of data on a surface.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface.
+    values : array_like, shape (n,), (n, k), (m,) or (m, k)
+        Data at points or faces; NaN is missing.
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+        As for :func:`derivatives`, which describes the discretisation.
+
+    Returns
+    -------
+    ndarray, shape (n, 3), or (n, 3 k) of k columns
+        In the unit of the values per unit of the coordinates: x, y and z of the first column, then
+        those of the second. (m, 3) with `result_on_faces`.
+
+    Examples
+    --------
+    >>> from surfacediffusion import gradient, sphere
+    >>> surface = sphere(5)
+    >>> gradient(surface, surface.points[:, 2]).shape
+    (10242, 3)
+    """
+    return derivatives(
+        surface, values, quantity="Gradient", on_faces=on_faces, mask=mask,
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+
+
+def divergence(
+    surface: SurfaceLike,
+    vectors: ArrayLike,
+    *,
+    on_faces: bool | None = None,
+    mask: ArrayLike | None = None,
+    smoothing_fwhm: float = 0.0,
+    result_on_faces: bool = False,
+    progress: Progress = False,
+) -> NDArray[np.float64]:
+    """Compute the divergence of the tangential parts of vectors on a surface.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface.
+    vectors : array_like, shape (n, 3), (n, 3 k), (m, 3) or (m, 3 k)
+        Vectors in space at points or faces, whose tangential parts count; NaN is missing.
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+        As for :func:`derivatives`, which describes the discretisation.
+
+    Returns
+    -------
+    ndarray, shape (n,), or (n, k) of k vectors
+        Per unit of the coordinates. (m,) with `result_on_faces`.
+
+    Examples
+    --------
+    >>> from surfacediffusion import divergence, sphere
+    >>> surface = sphere(5)
+    >>> z = surface.points[:, 2]
+    >>> found = divergence(surface, [[0, 0, 1]] * len(z))  # of grad z: -2 z
+    >>> bool(abs(found + 2 * z).max() < 0.02)
+    True
+    """
+    return derivatives(
+        surface, vectors, quantity="Divergence", on_faces=on_faces, mask=mask,
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+
+
+def curl(
+    surface: SurfaceLike,
+    vectors: ArrayLike,
+    *,
+    on_faces: bool | None = None,
+    mask: ArrayLike | None = None,
+    smoothing_fwhm: float = 0.0,
+    result_on_faces: bool = False,
+    progress: Progress = False,
+) -> NDArray[np.float64]:
+    """Compute the curl about the normals of the tangential parts of vectors on a surface.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface.
+    vectors : array_like, shape (n, 3), (n, 3 k), (m, 3) or (m, 3 k)
+        Vectors in space at points or faces, whose tangential parts count; NaN is missing.
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+        As for :func:`derivatives`, which describes the discretisation.
+
+    Returns
+    -------
+    ndarray, shape (n,), or (n, k) of k vectors
+        Per unit of the coordinates. (m,) with `result_on_faces`. Positive where vectors turn
+        counter-clockwise as seen from the side to which the normals point.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import curl, sphere
+    >>> surface = sphere(5)
+    >>> spin = np.cross([0, 0, 1], surface.points)  # a rotation, whose curl is 2 z
+    >>> bool(abs(curl(surface, spin) - 2 * surface.points[:, 2]).max() < 0.02)
+    True
+    """
+    return derivatives(
+        surface, vectors, quantity="Curl", on_faces=on_faces, mask=mask,
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+
+
+def laplacian(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    *,
+    on_faces: bool | None = None,
+    mask: ArrayLike | None = None,
+    smoothing_fwhm: float = 0.0,
+    result_on_faces: bool = False,
+    progress: Progress = False,
+) -> NDArray[np.float64]:
+    """Compute the Laplacian of data on a surface, the divergence of the gradient.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface.
+    values : array_like, shape (n,), (n, k), (m,) or (m, k)
+        Data at points or faces; NaN is missing.
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+        As for :func:`derivatives`, which describes the discretisation.
+
+    Returns
+    -------
+    ndarray, shape (n,), or (n, k) of k columns
+        In the unit of the values per square of the unit of the coordinates. Inside, -M^-1 K u with
+        the matrices of :func:`mass_matrix` and :func:`stiffness_matrix`. Its values at single
+        points converge where the points of a mesh look alike, and means over several on any mesh.
+        (m,) with `result_on_faces`.
+
+    Examples
+    --------
+    >>> from surfacediffusion import laplacian, sphere
+    >>> surface = sphere(5)
+    >>> z = surface.points[:, 2]
+    >>> bool(abs(laplacian(surface, z) + 2 * z).max() < 0.02)
+    True
+    """
+    return derivatives(
+        surface, values, quantity="Laplacian", on_faces=on_faces, mask=mask,
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+
+
+def conduction_velocity(
+    surface: SurfaceLike,
+    times: ArrayLike,
+    *,
+    on_faces: bool | None = None,
+    mask: ArrayLike | None = None,
+    smoothing_fwhm: float = 0.0,
+    result_on_faces: bool = False,
+    progress: Progress = False,
+) -> ConductionVelocity:
+    """Compute the velocity of a wave on a surface from its arrival times T: grad T/|grad T|^2.
+
+    Times in ms on coordinates in mm give mm/ms = m/s. Where the times do not change, the velocity is
+    not defined and is 0.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface.
+    times : array_like, shape (n,) or (m,)
+        Arrival times at points or faces; NaN is missing. :func:`interpolate` makes them of times at a
+        few points.
+    smoothing_fwhm : float, default 0
+        The width, in the unit of the coordinates, of the Gaussian that smooths the times first:
+        several edges for times with noise. Linear functions on planes stay as they are.
+    on_faces, mask, result_on_faces, progress
+        As for :func:`derivatives`.
+
+    Returns
+    -------
+    ConductionVelocity
+        `velocity` (n, 3) and `speed` (n,), at the faces with `result_on_faces`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import conduction_velocity
+    >>> x, y = np.meshgrid(np.arange(20.0), np.arange(10.0))  # mm
+    >>> points = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
+    >>> first = (np.arange(9)[:, None] * 20 + np.arange(19)).ravel()
+    >>> squares = np.column_stack([first, first + 1, first + 21, first + 20])
+    >>> found = conduction_velocity((points, squares), points[:, 0] / 0.6)  # ms
+    >>> float(found.speed.round(6).min()), found.velocity.shape
+    (0.6, (200, 3))
+    """
+    found = derivatives(
+        surface, times, quantity="ConductionVelocity", on_faces=on_faces, mask=mask,
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, full_output=True,
+        progress=progress)
+    assert found.speed is not None
+    return ConductionVelocity(found.values, found.speed)

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/Curvature.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
+#include "Meshes.h"
+#include "ThreadedFor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <vector>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+/// The curvatures of a surface in coordinate units, per vertex of its mesh.
+struct Result
+{
+  std::shared_ptr<const Assembler> Operators;
+  Curvatures Found;
+
+  const TriangleMesh& Mesh() const { return this->Operators->Mesh(); }
+  Index InputVertex(Index i) const { return this->Mesh().InputVertex()[i]; }
+};
+
+Result Estimate(const Surface& s, double fwhm = 0.0, const ParallelFor& parallel = SerialFor())
+{
+  Result result;
+  result.Operators = MakeAssembler(s);
+  const TriangleMesh& mesh = result.Mesh();
+  const double unit = mesh.LengthUnit();
+  const Assembler delaunay(IntrinsicDelaunay(result.Operators->SharedMesh()).Mesh());
+  Points positions(mesh.NumberOfVertices(), 3);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    positions.row(i) = s.Vertices.row(mesh.InputVertex()[i]) / unit;
+  }
+  result.Found = EstimateCurvature(mesh, positions, fwhm / unit, &delaunay, parallel);
+  result.Found.Mean /= unit;
+  result.Found.Gaussian /= unit * unit;
+  result.Found.Principal /= unit;
+  return result;
+}
+
+/// Root mean square of a value per vertex.
+double RootMeanSquareOf(const Result& result, const std::function<double(Index)>& of)
+{
+  Values values(result.Mesh().NumberOfVertices(), 1);
+  for (Index i = 0; i < values.rows(); ++i)
+  {
+    values(i, 0) = of(i);
+  }
+  return RootMeanSquare(result.Mesh(), values);
+}
+
+constexpr double Major = 2.0;
+constexpr double Minor = 1.0;
+
+/// The principal curvature of a torus of circles about the z axis at a point.
+double SmallerOnTorus(const Eigen::RowVector3d& p)
+{
+  const double r = std::hypot(p[0], p[1]);
+  return (r - Major) / Minor / r;
+}
+
+struct TorusErrors
+{
+  double Mean, Gaussian, Principal;
+};
+
+TorusErrors ErrorsOnTorus(const Surface& s, double fwhm = 0.0)
+{
+  const Result result = Estimate(s, fwhm);
+  const auto smaller = [&](Index i)
+  { return SmallerOnTorus(s.Vertices.row(result.InputVertex(i))); };
+  return { RootMeanSquareOf(result,
+             [&](Index i) { return result.Found.Mean[i] - 0.5 * (1.0 / Minor + smaller(i)); }),
+    RootMeanSquareOf(
+      result, [&](Index i) { return result.Found.Gaussian[i] - smaller(i) / Minor; }),
+    RootMeanSquareOf(result,
+      [&](Index i)
+      {
+        return std::hypot(
+          result.Found.Principal(i, 0) - 1.0 / Minor, result.Found.Principal(i, 1) - smaller(i));
+      }) };
+}
+
+/// A torus whose vertices are moved along it at random, by up to `amount` of an edge.
+Surface UnevenTorus(Index around, Index across, double amount)
+{
+  Surface s = Torus(around, across, Major, Minor);
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVector3d p = s.Vertices.row(i);
+    const auto move = [&](int c) { return amount * (2.0 * UniformRandom(3, c, i) - 1.0); };
+    const double u = std::atan2(p[1], p[0]) + move(0) * 2.0 * Pi / around;
+    const double v = std::atan2(p[2], std::hypot(p[0], p[1]) - Major) + move(1) * 2.0 * Pi / across;
+    const double r = Major + Minor * std::cos(v);
+    s.Vertices.row(i) << r * std::cos(u), r * std::sin(u), Minor * std::sin(v);
+  }
+  return s;
+}
+
+double Normal(std::int64_t seed, int c, Index i)
+{
+  return std::sqrt(-2.0 * std::log(1.0 - UniformRandom(seed, c, i))) *
+    std::cos(2.0 * Pi * UniformRandom(seed + 1, c, i));
+}
+
+/// The upper part of a sphere, cut at the edges of triangles.
+Surface Cap(int level, double radius)
+{
+  Surface s = Icosphere(level, radius);
+  std::vector<std::array<Index, 3>> faces;
+  for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+  {
+    const auto z = [&](int a) { return s.Vertices(s.Faces(t, a), 2); };
+    if (std::min({ z(0), z(1), z(2) }) > 0.2 * radius)
+    {
+      faces.push_back({ s.Faces(t, 0), s.Faces(t, 1), s.Faces(t, 2) });
+    }
+  }
+  s.Faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  for (std::size_t t = 0; t < faces.size(); ++t)
+  {
+    s.Faces.row(static_cast<Eigen::Index>(t)) << faces[t][0], faces[t][1], faces[t][2];
+  }
+  return s;
+}
+
+} // namespace
+
+TEST(Curvature, HasOrderTwoOnATorus)
+{
+  const TorusErrors coarse = ErrorsOnTorus(Torus(60, 30));
+  const TorusErrors fine = ErrorsOnTorus(Torus(120, 60));
+  std::printf("torus: errors %.2g %.2g %.2g, orders %.2f %.2f %.2f\n", fine.Mean, fine.Gaussian,
+    fine.Principal, ObservedOrder(coarse.Mean, fine.Mean),
+    ObservedOrder(coarse.Gaussian, fine.Gaussian), ObservedOrder(coarse.Principal, fine.Principal));
+  EXPECT_GT(ObservedOrder(coarse.Mean, fine.Mean), 1.9);
+  EXPECT_GT(ObservedOrder(coarse.Gaussian, fine.Gaussian), 1.9);
+  EXPECT_GT(ObservedOrder(coarse.Principal, fine.Principal), 1.9);
+}
+
+TEST(Curvature, ConvergesOnUnevenMeshesAtEveryScale)
+{
+  const double h = MeanEdge(*MakeMesh(Torus(120, 60)));
+  for (const double width : { 0.0, 2.0, 4.0 }) // in edges
+  {
+    const TorusErrors coarse = ErrorsOnTorus(UnevenTorus(60, 30, 0.3), 2.0 * width * h);
+    const TorusErrors fine = ErrorsOnTorus(UnevenTorus(120, 60, 0.3), width * h);
+    std::printf("uneven torus, FWHM %g h: error of H %.2g, order %.2f\n", width, fine.Mean,
+      ObservedOrder(coarse.Mean, fine.Mean));
+    EXPECT_GT(ObservedOrder(coarse.Mean, fine.Mean), 1.0);
+    EXPECT_LT(fine.Mean, 0.012);
+  }
+}
+
+TEST(Curvature, OfANoisySphereIsRightAtItsScale)
+{
+  for (const int level : { 4, 5 })
+  {
+    Surface s = Icosphere(level);
+    const double h = MeanEdge(*MakeMesh(s));
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        s.Vertices(i, c) += 0.1 * h * Normal(5, c, i);
+      }
+    }
+    const auto errorOf = [](const Result& found)
+    { return RootMeanSquareOf(found, [&](Index i) { return found.Found.Mean[i] - 1.0; }); };
+    const Result own = Estimate(s);
+    const Result smooth = Estimate(s, 8.0 * h);
+    const double ofGaussian =
+      RootMeanSquareOf(smooth, [&](Index i) { return smooth.Found.Gaussian[i] - 1.0; });
+    std::printf("noisy sphere of %d vertices: error of H %.2g, with FWHM 8 h %.4f, of K %.4f\n",
+      s.NumberOfVertices(), errorOf(own), errorOf(smooth), ofGaussian);
+    EXPECT_GT(errorOf(own), 0.3); // the noise
+    EXPECT_LT(errorOf(smooth), 0.03);
+    EXPECT_LT(ofGaussian, 0.03);
+  }
+}
+
+TEST(Curvature, IsOneSidedAtBoundaries)
+{
+  const double radius = 3.0;
+  const Surface s = Cap(4, radius);
+  for (const double fwhm : { 0.0, 0.5, 1.5 })
+  {
+    const Result found = Estimate(s, fwhm);
+    for (Index i = 0; i < found.Mesh().NumberOfVertices(); ++i)
+    {
+      ASSERT_NEAR(found.Found.Mean[i] * radius, 1.0, 0.02) << fwhm;
+      ASSERT_NEAR(found.Found.Gaussian[i] * radius * radius, 1.0, 0.04) << fwhm;
+    }
+  }
+}
+
+TEST(Curvature, HasTheSignOfTheOrientation)
+{
+  const Surface s = Rotated(Cylinder(100, 40, 2.0, 5.0));
+  for (const double fwhm : { 0.0, 0.6 })
+  {
+    const Result found = Estimate(s, fwhm);
+    const Result flipped = Estimate(Flipped(s), fwhm);
+    Surface mixed = s;
+    for (Index t = 0; t < mixed.NumberOfTriangles(); t += 4)
+    {
+      std::swap(mixed.Faces(t, 1), mixed.Faces(t, 2));
+    }
+    const Result same = Estimate(mixed, fwhm);
+    EXPECT_EQ(same.Found.TurnedTriangles, (mixed.NumberOfTriangles() + 3) / 4);
+    EXPECT_EQ(found.Found.TurnedTriangles, 0);
+    const double sign = found.Found.Mean[0] > 0.0 ? 1.0 : -1.0;
+    for (Index i = 0; i < found.Mesh().NumberOfVertices(); ++i)
+    {
+      ASSERT_NEAR(found.Found.Mean[i], sign * 0.25, 0.003);
+      ASSERT_NEAR(found.Found.Gaussian[i], 0.0, 0.002);
+      ASSERT_NEAR(found.Found.ShapeIndex(i), sign * 0.5, 0.02);
+      ASSERT_NEAR(found.Found.Curvedness(i), 0.5 / std::sqrt(2.0), 0.006);
+      ASSERT_NEAR(flipped.Found.Mean[i], -found.Found.Mean[i], 1e-9);
+      ASSERT_NEAR(same.Found.Mean[i], found.Found.Mean[i], 1e-9);
+    }
+  }
+}
+
+TEST(Curvature, OfAPlaneIsZero)
+{
+  const Surface s = Rotated(Jittered(Plate(10, 1.0), 0.05, -0.99, 0.99, -0.99, 0.99));
+  for (const double fwhm : { 0.0, 0.5 })
+  {
+    const Result found = Estimate(s, fwhm);
+    EXPECT_LT(found.Found.Principal.cwiseAbs().maxCoeff(), 1e-6);
+  }
+}
+
+TEST(Curvature, DoesNotDependOnThreadsNumberingOrUnit)
+{
+  const Surface s = UnevenTorus(60, 30, 0.3);
+  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 3);
+  const Surface renumbered = Renumbered(s, numbers);
+  for (const double fwhm : { 0.0, 0.6 })
+  {
+    const Result one = Estimate(s, fwhm);
+    const ThreadedFor threads(4);
+    const Result several = Estimate(s, fwhm, threads);
+    EXPECT_EQ(one.Found.Mean, several.Found.Mean);
+    EXPECT_EQ(one.Found.Gaussian, several.Found.Gaussian);
+    const Result large = Estimate(Moved(Scaled(s, 1e5), { 3e6, 0.0, -1e6 }), 1e5 * fwhm);
+    const auto byInput = [](const Result& found, const Surface& of)
+    { return ToInput(found.Mesh(), found.Found.Mean, of.NumberOfVertices()); };
+    const Values expected = byInput(one, s);
+    EXPECT_LT((1e5 * byInput(large, s) - expected).cwiseAbs().maxCoeff(), 1e-6);
+    const Values other = byInput(Estimate(renumbered, fwhm), renumbered);
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      ASSERT_NEAR(other(numbers[i], 0), expected(i, 0), 1e-6);
+    }
+  }
+}
+
+TEST(Curvature, IsFiniteOnAnySurface)
+{
+  for (const Surface& s : { Tetrahedron(), ThreeFins(4), Moebius(30, 4), Strip(8, 1),
+         MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } }) })
+  {
+    for (const double fwhm : { 0.0, 0.3, 10.0 })
+    {
+      const Result found = Estimate(s, fwhm);
+      EXPECT_TRUE(found.Found.Principal.allFinite());
+    }
+  }
+}

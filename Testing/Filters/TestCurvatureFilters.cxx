@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkCellData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSurfaceCurvatureFilter.h"
+#include "vtkSurfaceDerivativesFilter.h"
+#include "vtkTriangle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace FilterTest;
+
+namespace
+{
+
+/// A square of quadrilaterals with the side 10 in the plane z = 0, and the point array t = 2 x - y.
+vtkSmartPointer<vtkPolyData> Plane()
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  for (int j = 0; j <= 10; ++j)
+  {
+    for (int i = 0; i <= 10; ++i)
+    {
+      points->InsertNextPoint(i, j, 0.0);
+      if (i < 10 && j < 10)
+      {
+        const vtkIdType a = 11 * j + i;
+        cells->InsertNextCell({ a, a + 1, a + 12, a + 11 });
+      }
+    }
+  }
+  auto plane = vtkSmartPointer<vtkPolyData>::New();
+  plane->SetPoints(points);
+  plane->SetPolys(cells);
+  AddPointArray(plane, "t", 1, [](vtkIdType i, int) { return 2.0 * (i % 11) - (i / 11); });
+  return plane;
+}
+
+} // namespace
+
+TEST(CurvatureFilter, OfASphereIsThatOfItsRadius)
+{
+  const auto sphere = Sphere(5);
+  vtkNew<vtkSurfaceCurvatureFilter> filter;
+  filter->SetInputData(sphere);
+  for (const double fwhm : { 0.0, 0.2 })
+  {
+    filter->SetFWHM(fwhm);
+    filter->Update();
+    vtkPointData* const arrays = filter->GetOutput()->GetPointData();
+    ASSERT_NE(arrays->GetArray("MeanCurvature"), nullptr);
+    EXPECT_EQ(arrays->GetScalars(), arrays->GetArray("MeanCurvature"));
+    double point[3];
+    sphere->GetPoint(0, point);
+    const double radius = vtkMath::Norm(point);
+    // The sign tells whether the normals are outward.
+    double corners[3][3];
+    vtkNew<vtkIdList> ids;
+    sphere->GetCellPoints(0, ids);
+    for (int a = 0; a < 3; ++a)
+    {
+      sphere->GetPoint(ids->GetId(a), corners[a]);
+    }
+    double normal[3];
+    vtkTriangle::ComputeNormal(corners[0], corners[1], corners[2], normal);
+    const double sign = vtkMath::Dot(normal, corners[0]) > 0.0 ? 1.0 : -1.0;
+    for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+    {
+      EXPECT_NEAR(sign * radius * arrays->GetArray("MeanCurvature")->GetComponent(i, 0), 1.0, 0.03);
+      EXPECT_NEAR(
+        radius * radius * arrays->GetArray("GaussianCurvature")->GetComponent(i, 0), 1.0, 0.06);
+      EXPECT_NEAR(
+        sign * radius * arrays->GetArray("PrincipalCurvatures")->GetComponent(i, 1), 1.0, 0.06);
+      EXPECT_GT(sign * arrays->GetArray("ShapeIndex")->GetComponent(i, 0), 0.95);
+      EXPECT_NEAR(radius * arrays->GetArray("Curvedness")->GetComponent(i, 0), 1.0, 0.03);
+    }
+  }
+  filter->SetResultArrayName("My");
+  filter->Update();
+  EXPECT_TRUE(filter->GetOutput()->GetPointData()->HasArray("MyShapeIndex"));
+}
+
+TEST(CurvatureFilter, NamesWhatIsNotAllowed)
+{
+  vtkNew<vtkSurfaceCurvatureFilter> filter;
+  filter->SetInputData(Plane());
+  filter->SetFWHM(-1.0);
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 1u);
+  EXPECT_NE(messages.Errors.front().find("FWHM is -1; allowed: "), std::string::npos)
+    << messages.Errors.front();
+  EXPECT_FALSE(filter->GetOutput()->GetPointData()->HasArray("MeanCurvature"));
+}
+
+TEST(DerivativesFilter, AreExactOnAPlaneOfQuadrilaterals)
+{
+  vtkNew<vtkSurfaceDerivativesFilter> filter;
+  filter->SetInputData(Plane());
+  SetInputArray(filter, 0, "t");
+  for (const bool onCells : { false, true })
+  {
+    filter->SetResultOnCells(onCells);
+    filter->Update();
+    vtkDataSetAttributes* const attributes = onCells
+      ? static_cast<vtkDataSetAttributes*>(filter->GetOutput()->GetCellData())
+      : filter->GetOutput()->GetPointData();
+    vtkDataArray* const gradient = attributes->GetArray("tGradient");
+    ASSERT_NE(gradient, nullptr);
+    EXPECT_EQ(attributes->GetVectors(), gradient);
+    ASSERT_EQ(gradient->GetNumberOfTuples(), onCells ? 100 : 121);
+    for (vtkIdType i = 0; i < gradient->GetNumberOfTuples(); ++i)
+    {
+      EXPECT_NEAR(gradient->GetComponent(i, 0), 2.0, 1e-12);
+      EXPECT_NEAR(gradient->GetComponent(i, 1), -1.0, 1e-12);
+      EXPECT_EQ(gradient->GetComponent(i, 2), 0.0);
+    }
+  }
+  filter->ResultOnCellsOff();
+  filter->SetQuantityToConductionVelocity();
+  filter->SetSmoothingFWHM(3.0);
+  filter->Update();
+  vtkPointData* const arrays = filter->GetOutput()->GetPointData();
+  ASSERT_TRUE(arrays->HasArray("tConductionVelocity") && arrays->HasArray("tSpeed"));
+  for (vtkIdType i = 0; i < 121; ++i)
+  {
+    EXPECT_NEAR(arrays->GetArray("tSpeed")->GetComponent(i, 0), 1.0 / std::sqrt(5.0), 1e-9);
+    EXPECT_NEAR(arrays->GetArray("tConductionVelocity")->GetComponent(i, 0), 0.4, 1e-9);
+  }
+}
+
+TEST(DerivativesFilter, TakesBlocksWithTheArray)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, Plane());
+  const auto bare = Plane();
+  bare->GetPointData()->RemoveArray("t");
+  blocks->SetBlock(1, bare);
+  vtkNew<vtkSurfaceDerivativesFilter> filter;
+  filter->SetInputData(blocks);
+  SetInputArray(filter, 0, "t");
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Errors.empty());
+  EXPECT_EQ(messages.Warnings.size(), 1u);
+  auto* const output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_NE(output, nullptr);
+  const auto has = [&](unsigned int b)
+  { return vtkPolyData::SafeDownCast(output->GetBlock(b))->GetPointData()->HasArray("tGradient"); };
+  EXPECT_TRUE(has(0));
+  EXPECT_FALSE(has(1));
+}
+
+TEST(DerivativesFilter, ReadsArraysThatWereEditedInPlace)
+{
+  const auto plane = Plane();
+  vtkNew<vtkSurfaceDerivativesFilter> filter;
+  filter->SetInputData(plane);
+  SetInputArray(filter, 0, "t");
+  SetInputArray(filter, 1, "mask");
+  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return i == 60 ? 1.0 : 0.0; });
+  plane->GetPointData()->GetArray("t")->SetComponent(60, 0, 1e3); // behind the mask
+  filter->Update();
+  const auto at = [&](vtkIdType i, int c)
+  { return filter->GetOutput()->GetPointData()->GetArray("tGradient")->GetComponent(i, c); };
+  EXPECT_NEAR(at(61, 0), 2.0, 1e-12);
+  EXPECT_EQ(at(60, 0), 0.0);
+  plane->GetPointData()->GetArray("t")->SetComponent(3, 0, vtkMath::Nan());
+  plane->Modified();
+  filter->Update();
+  EXPECT_TRUE(std::isnan(at(3, 0)));
+  EXPECT_NEAR(at(4, 0), 2.0, 1e-12);
+  plane->GetPointData()->GetArray("t")->SetComponent(3, 0, 6.0);
+  plane->Modified();
+  filter->Update();
+  EXPECT_NEAR(at(3, 0), 2.0, 1e-12);
+}
+
+TEST(DerivativesFilter, NamesWhatIsNotAllowed)
+{
+  const auto plane = Plane();
+  vtkNew<vtkSurfaceDerivativesFilter> filter;
+  filter->SetInputData(plane);
+  SetInputArray(filter, 0, "t");
+  filter->SetQuantityToCurl();
+  const auto errorOf = [&]
+  {
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(messages.Errors.size(), 1u);
+    return messages.Errors.empty() ? std::string() : messages.Errors.front();
+  };
+  EXPECT_NE(errorOf().find("has 1 components; allowed with Quantity Curl: 3"), std::string::npos)
+    << errorOf();
+  SetInputArray(filter, 0, "absent");
+  EXPECT_NE(errorOf().find("absent"), std::string::npos);
+  plane->GetPointData()->GetArray("t")->SetComponent(5, 0, vtkMath::Inf());
+  SetInputArray(filter, 0, "t");
+  filter->SetQuantityToGradient();
+  EXPECT_NE(errorOf().find("is infinite at point 5"), std::string::npos) << errorOf();
+}
