@@ -35,22 +35,22 @@ struct Lists
 };
 
 /// b, the multipliers, become those of v = D x + b.
-SURFACEDIFFUSION_ANY_VECTORS void UpdateMultipliers(const Edge* edges, const Block* state,
-  const NormalVariationSettings& settings, Block* multipliers, Index begin, Index end)
+SURFACEDIFFUSION_ANY_VECTORS void UpdateMultipliers(const Edge* edges, const double* state,
+  const NormalVariationSettings& settings, double* multipliers, Index begin, Index end)
 {
   for (Index e = begin; e < end; ++e)
   {
     const Edge& edge = edges[e];
-    Block v = multipliers[e];
-    AddDifferences(edge, 0, state[edge.Faces[0]], v);
-    AddDifferences(edge, 1, state[edge.Faces[1]], v);
+    Block v = LoadBlock(multipliers, e);
+    AddDifferences(edge, 0, LoadBlock(state, edge.Faces[0]), v);
+    AddDifferences(edge, 1, LoadBlock(state, edge.Faces[1]), v);
     Shrink(edge, settings.First, settings.Second, v);
-    multipliers[e] = v;
+    StoreBlock(multipliers, e, v);
   }
 }
 
 /// Row f of D^T L b.
-inline Block ForceOn(const Lists& lists, const Block* multipliers, Index f)
+inline Block ForceOn(const Lists& lists, const double* multipliers, Index f)
 {
   Block force;
   for (const Index e : lists.EdgesOf[f])
@@ -58,18 +58,18 @@ inline Block ForceOn(const Lists& lists, const Block* multipliers, Index f)
     if (e >= 0)
     {
       const Edge& edge = lists.Edges[e];
-      AddForces(edge, edge.Faces[0] == f ? 0 : 1, multipliers[e], force);
+      AddForces(edge, edge.Faces[0] == f ? 0 : 1, LoadBlock(multipliers, e), force);
     }
   }
   return force;
 }
 
 SURFACEDIFFUSION_ANY_VECTORS void FindForces(
-  const Lists& lists, const Block* multipliers, Block* forces, Index begin, Index end)
+  const Lists& lists, const double* multipliers, double* forces, Index begin, Index end)
 {
   for (Index f = begin; f < end; ++f)
   {
-    forces[f] = ForceOn(lists, multipliers, f);
+    StoreBlock(forces, f, ForceOn(lists, multipliers, f));
   }
 }
 
@@ -77,14 +77,15 @@ SURFACEDIFFUSION_ANY_VECTORS void FindForces(
 /// the last ones, b. forces: those of b', and after the call of b. Returns the product of the
 /// directions with the residuals, and adds the part of the areas to the curvature.
 SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const double* given,
-  const Block* state, const Block* multipliers, Block* forces, Block* direction, double& curvature,
-  Index begin, Index end)
+  const double* state, const double* multipliers, double* forces, double* direction,
+  double& curvature, Index begin, Index end)
 {
   double sum = 0.0;
   for (Index f = begin; f < end; ++f)
   {
     const Block force = ForceOn(lists, multipliers, f);
-    const Block& x = state[f];
+    const Block last = LoadBlock(forces, f);
+    const Block x = LoadBlock(state, f);
     const double area = lists.Areas[f];
     double d[4] = {};
     std::copy_n(given + 3 * static_cast<std::ptrdiff_t>(f), 3, d);
@@ -99,10 +100,10 @@ SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const dou
     {
       for (int c = 0; c < 4; ++c)
       {
-        r.Rows[k][c] += forces[f].Rows[k][c] - 2.0 * force.Rows[k][c];
+        r.Rows[k][c] += last.Rows[k][c] - 2.0 * force.Rows[k][c];
       }
     }
-    forces[f] = force;
+    StoreBlock(forces, f, force);
     const Inverse& m = lists.Inverses[f];
     Block p;
     for (int c = 0; c < 4; ++c)
@@ -111,7 +112,7 @@ SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const dou
       p.Rows[1][c] = m[1] * r.Rows[0][c] + m[3] * r.Rows[1][c] + m[4] * r.Rows[2][c];
       p.Rows[2][c] = m[2] * r.Rows[0][c] + m[4] * r.Rows[1][c] + m[5] * r.Rows[2][c];
     }
-    direction[f] = p;
+    StoreBlock(direction, f, p);
     sum += Product(p, r);
     curvature += area * SquareOf(p.Rows[0]) + Ridge * (SquareOf(p.Rows[1]) + SquareOf(p.Rows[2]));
   }
@@ -120,15 +121,15 @@ SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const dou
 
 /// The part of the edges in the curvature.
 SURFACEDIFFUSION_ANY_VECTORS double SumSquaresOfDifferences(
-  const Edge* edges, const Block* direction, Index begin, Index end)
+  const Edge* edges, const double* direction, Index begin, Index end)
 {
   double sum = 0.0;
   for (Index e = begin; e < end; ++e)
   {
     const Edge& edge = edges[e];
     Block v;
-    AddDifferences(edge, 0, direction[edge.Faces[0]], v);
-    AddDifferences(edge, 1, direction[edge.Faces[1]], v);
+    AddDifferences(edge, 0, LoadBlock(direction, edge.Faces[0]), v);
+    AddDifferences(edge, 1, LoadBlock(direction, edge.Faces[1]), v);
     sum += edge.Length * Product(v, v);
   }
   return sum;
@@ -183,20 +184,16 @@ public:
     this->Given = given;
     if (this->State.empty())
     {
-      for (std::vector<Block>* const list : { &this->State, &this->Forces, &this->Direction })
-      {
-        list->assign(static_cast<std::size_t>(count), Block());
-      }
-      this->Multipliers.assign(static_cast<std::size_t>(this->Edges.Size()), Block());
-      for (Index f = 0; f < count; ++f)
-      {
-        std::copy_n(given.data() + static_cast<std::ptrdiff_t>(f) * 3, 3, this->State[f].Rows[0]);
-      }
+      this->Start();
     }
     const Lists lists = this->GetLists();
     ForEach(this->Parallel, this->Edges.Size(),
       [&](Index e)
-      { Shrink(this->Edges[e], settings.First, settings.Second, this->Multipliers[e]); });
+      {
+        Block b = LoadBlock(this->Multipliers.data(), e);
+        Shrink(this->Edges[e], settings.First, settings.Second, b);
+        StoreBlock(this->Multipliers.data(), e, b);
+      });
     ForEachBlock(this->Parallel, count,
       [&](Index, Index begin, Index end)
       { FindForces(lists, this->Multipliers.data(), this->Forces.data(), begin, end); });
@@ -208,7 +205,10 @@ public:
     Points normals(count, 3);
     for (Index f = 0; f < count; ++f)
     {
-      std::copy_n(this->State[f].Rows[0], 3, normals.data() + static_cast<std::ptrdiff_t>(f) * 3);
+      for (int c = 0; c < 3; ++c)
+      {
+        normals(f, c) = this->State[PlaceOf(f) + c];
+      }
     }
     return normals;
   }
@@ -217,29 +217,32 @@ public:
   {
     const NormalVariationSettings& settings = this->Settings;
     double energy = 0.0;
-    std::vector<Block> multipliers = this->Multipliers;
+    std::vector<double> multipliers = this->Multipliers;
     for (Index e = 0; e < this->Edges.Size(); ++e)
     {
       const Edge& edge = this->Edges[e];
       Block v;
-      AddDifferences(edge, 0, this->State[edge.Faces[0]], v);
-      AddDifferences(edge, 1, this->State[edge.Faces[1]], v);
+      AddDifferences(edge, 0, LoadBlock(this->State.data(), edge.Faces[0]), v);
+      AddDifferences(edge, 1, LoadBlock(this->State.data(), edge.Faces[1]), v);
       energy += edge.Length * edge.Weight *
         (settings.First * std::sqrt(SquareOf(v.Rows[0])) +
           settings.Second * std::sqrt(SquareOf(v.Rows[1]) + SquareOf(v.Rows[2])));
-      Shrink(edge, settings.First, settings.Second, multipliers[e]);
+      Block b = LoadBlock(multipliers.data(), e);
+      Shrink(edge, settings.First, settings.Second, b);
+      StoreBlock(multipliers.data(), e, b);
     }
     double dual = 0.0;
     const Lists lists = this->GetLists();
     for (Index f = 0; f < this->Graph.NumberOfFaces(); ++f)
     {
       const Block force = ForceOn(lists, multipliers.data(), f);
+      const Block state = LoadBlock(this->State.data(), f);
       const double area = this->Areas[f];
       for (int c = 0; c < 3; ++c)
       {
         const double d = this->Given(f, c);
         const auto square = [](double x) { return x * x; };
-        const auto& x = this->State[f].Rows;
+        const auto& x = state.Rows;
         energy +=
           0.5 * area * square(x[0][c] - d) + 0.5 * Ridge * (square(x[1][c]) + square(x[2][c]));
         dual += force.Rows[0][c] * (d - 0.5 * force.Rows[0][c] / area) -
@@ -250,6 +253,27 @@ public:
   }
 
 private:
+  /// Of block i in a list.
+  static std::size_t PlaceOf(Index i) { return 9 * static_cast<std::size_t>(i); }
+
+  /// The given normals without slopes.
+  void Start()
+  {
+    const Index count = this->Graph.NumberOfFaces();
+    for (std::vector<double>* const list : { &this->State, &this->Forces, &this->Direction })
+    {
+      list->assign(PlaceOf(count), 0.0);
+    }
+    this->Multipliers.assign(PlaceOf(this->Edges.Size()), 0.0);
+    for (Index f = 0; f < count; ++f)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        this->State[PlaceOf(f) + c] = this->Given(f, c);
+      }
+    }
+  }
+
   Lists GetLists() const
   {
     return { this->Edges.Data(), this->Edges.OfFaces().data(), this->Inverses.data(),
@@ -317,15 +341,12 @@ private:
       return;
     }
     const double length = descent / curvature;
-    ForEach(this->Parallel, count,
-      [&](Index f)
+    ForEachBlock(this->Parallel, count,
+      [&](Index, Index begin, Index end)
       {
-        for (int k = 0; k < 3; ++k)
+        for (std::size_t k = PlaceOf(begin); k < PlaceOf(end); ++k)
         {
-          for (int c = 0; c < 4; ++c)
-          {
-            this->State[f].Rows[k][c] += length * this->Direction[f].Rows[k][c];
-          }
+          this->State[k] += length * this->Direction[k];
         }
       });
   }
@@ -337,10 +358,11 @@ private:
   std::vector<Inverse> Inverses;
   Vector Areas; ///< over their mean
   Points Given;
-  std::vector<Block> State; ///< (n, u); no entries before the first Minimize()
-  std::vector<Block> Forces; ///< D^T L b
-  std::vector<Block> Direction;
-  std::vector<Block> Multipliers; ///< per edge: b
+  // Lists of blocks, see LoadBlock().
+  std::vector<double> State; ///< (n, u); no entries before the first Minimize()
+  std::vector<double> Forces; ///< D^T L b
+  std::vector<double> Direction;
+  std::vector<double> Multipliers; ///< per edge: b
 };
 
 NormalVariation::NormalVariation(const FaceGraph& graph, double unit, const ParallelFor& parallel)

@@ -82,6 +82,7 @@ VariationEdges::VariationEdges(const FaceGraph& graph, double unit)
   , EdgesOf(static_cast<std::size_t>(graph.NumberOfFaces()), { -1, -1, -1 })
 {
   const Triangles& triangles = graph.Mesh.TriangleVertices();
+  this->Edges.reserve(graph.Across.Entries.size() / 2);
   for (Index f = 0; f < graph.NumberOfFaces(); ++f)
   {
     for (int a = 0; a < 3; ++a)

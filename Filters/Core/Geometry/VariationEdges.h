@@ -18,6 +18,31 @@ struct VariationBlock
   double Rows[3][4] = {};
 };
 
+/// Block i of a list without the zeros, nine numbers each.
+inline VariationBlock LoadBlock(const double* list, Index i)
+{
+  const double* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
+  VariationBlock block;
+  for (int c = 0; c < 3; ++c)
+  {
+    block.Rows[0][c] = p[c];
+    block.Rows[1][c] = p[3 + c];
+    block.Rows[2][c] = p[6 + c];
+  }
+  return block;
+}
+
+inline void StoreBlock(double* list, Index i, const VariationBlock& block)
+{
+  double* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
+  for (int c = 0; c < 3; ++c)
+  {
+    p[c] = block.Rows[0][c];
+    p[3 + c] = block.Rows[1][c];
+    p[6 + c] = block.Rows[2][c];
+  }
+}
+
 /// An edge between two triangles, with lengths in the unit of the energy.
 struct VariationEdge
 {
