@@ -156,7 +156,9 @@ def run_surface_denoising(mesh, _, options, progress):
     return Outcome(None, {"Displacement": result.points - mesh.surface.points}, points=result.points,
                    note="no noise was found" if result.noise_level == 0 else
                    f"{result.surface_type.replace('Automatic', 'mixed')} surface, "
-                   f"noise of {result.noise_level:.3g}")
+                   f"noise of {result.noise_level:.3g}" + (
+                       f", correlated over {result.correlation_length:.3g}"
+                       if result.correlation_length > 0 else ""))
 
 
 def run_texture(mesh, _, options, progress):

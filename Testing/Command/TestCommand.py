@@ -420,6 +420,29 @@ class OtherCommands(CommandTest):
                      "volume_after", "mean_edge_length"):
             self.assertEqual(report[name], getattr(expected, name), name)
 
+    def test_denoise_mesh_of_a_scan_says_how_far_its_noise_is_correlated(self):
+        """A depth image of a ball in front of a wall, with noise as depth cameras have it."""
+        y, x = np.mgrid[:70, :90].astype(float)
+        depth = np.sqrt(np.maximum(0, 40**2 - (x - 45) ** 2 - (y - 35) ** 2).clip(30**2)) - 30
+        noise = np.random.default_rng(10).normal(size=x.shape)
+        kernel = np.exp(-np.arange(-6, 7)**2 / 4.0)
+        for axis in (0, 1):
+            noise = np.apply_along_axis(np.convolve, axis, noise, kernel, "same")
+        noise *= 0.3 / noise.std()
+        corner = np.arange(x.size).reshape(x.shape)
+        a, b, c, d = (part.ravel() for part in (
+            corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]))
+        faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+        points = np.stack([x, y, depth + noise], axis=-1).reshape(-1, 3)
+        Path("scan.off").write_text(samples.off_text(points, faces))
+        code, out, error = run("denoise-mesh", "scan.off", "clean.off")
+        self.assertEqual(code, 0, error)
+        self.assertRegex(out, r"^clean.off: \w+, noise 0\.[23]\d*, correlated over [12]\.\d+, points moved")
+        self.assertIn("warning: the noise is correlated over a length of", error)
+        found = read_surface("clean.off")
+        before, after = noise.ravel().std(), (found.points[:, 2] - depth.ravel()).std()
+        self.assertLess(after, 0.8 * before)
+
     def test_denoise_mesh_takes_level_type_and_fixed_vertices(self):
         points, faces = samples.sphere(4)
         noise = np.random.default_rng(8).normal(0, 0.005, (len(points), 1))

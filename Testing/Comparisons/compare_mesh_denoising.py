@@ -389,7 +389,9 @@ def main():
         meshes = read_pairs(Path(arguments.pairs))
         source = ("The meshes are pairs of noisy and original ones that come with the code of Guided "
                   "Mesh Normal\nFiltering (W. Zhang, B. Deng, J. Zhang, S. Bouaziz, L. Liu, CGF 34(7), "
-                  "2015); the number in a name is\nthe noise in mean edge lengths.")
+                  "2015); the number in a name is\nthe noise in mean edge lengths. KinectPyramid, "
+                  "the scan of a depth camera, comes with the data of\nMeshTGV; its noise is "
+                  "correlated over neighbouring points.")
     elif arguments.meshes:
         meshes = spoil_meshes(Path(arguments.meshes))
         source = ("The meshes are those of libcgal-demo, with noise of this standard deviation in mean "

@@ -611,6 +611,40 @@ TEST(SurfaceDenoising, LargeFansEndAndReportProgress)
   }
 }
 
+/// Of processor time: on one thread, under other load.
+TEST(SurfaceDenoising, AbortEndsTheWorkOnALargeFanSoon)
+{
+  const Surface fan = Fan(10000);
+  const TriangleMesh mesh(fan.Vertices, fan.Faces);
+  DenoisingSettings settings;
+  settings.NoiseLevel = 0.01;
+  for (const SurfaceType type : { SurfaceType::Automatic, SurfaceType::CAD, SurfaceType::Organic })
+  {
+    settings.Type = type;
+    for (const double from : { 0.0, 0.04, 0.08, 0.2, 0.4, 0.7, 0.9, 0.97 })
+    {
+      // the user asks for it at once after a report, so that the next one obeys
+      bool isAsked = false;
+      std::clock_t asked = 0;
+      const ProgressMonitor::Callback stop = [&](double fraction)
+      {
+        if (isAsked)
+        {
+          return false;
+        }
+        isAsked = fraction >= from;
+        asked = std::clock();
+        return true;
+      };
+      EXPECT_THROW(DenoiseSurface(mesh, GatherVertices(mesh, fan.Vertices), {}, settings, nullptr,
+                     SerialFor(), ProgressMonitor(stop)),
+        Aborted)
+        << from;
+      EXPECT_LT(static_cast<double>(std::clock() - asked) / CLOCKS_PER_SEC, 0.2) << from;
+    }
+  }
+}
+
 TEST(SurfaceDenoising, FixedPointsStayAndOthersMove)
 {
   const Surface noisy = NoisyAlongNormals(LBlock(12), 0.3);

@@ -269,6 +269,27 @@ class TestApplication(unittest.TestCase):
             SimpleNamespace(surface=self.surface), None, {"noise": 0.0, "type": 0}, False)
         self.assertEqual(outcome.note, "no noise was found")
 
+    def test_a_scan_with_correlated_noise_is_denoised_and_the_noise_described(self):
+        self.open()
+        clean = sd.sphere(5, radius=50.0)
+        rough = sd.heat(clean, np.random.default_rng(5).normal(size=clean.n_points), fwhm=6.0)
+        noisy = sd.Surface(clean.points * (1 + 0.01 * rough[:, None] / rough.std()), clean.triangles)
+        write_off(self.folder / "scan.off", noisy)
+        runs = self.runs()
+        self.drop("scan.off")
+        wait_for(lambda: "scan.off" in self.text("#mesh") and self.runs() > runs, "the mesh")
+        self.choose("filter", FILTERS["denoise_mesh"].title)
+        note = wait_for(lambda: "surface, noise of" in self.text("#note") and self.text("#note"), "its run")
+        found = sd.denoise_mesh(noisy, full_output=True)
+        self.assertGreater(found.correlation_length, 0)
+        self.assertIn(f"noise of {found.noise_level:.3g}, correlated over {found.correlation_length:.3g}",
+                      note)
+        self.assertIn("details of that size are removed with it", note)
+        path = self.download()
+        points = np.loadtxt(path.read_text().splitlines()[2:2 + noisy.n_points])
+        error = np.linalg.norm(points, axis=1) - 50
+        self.assertLess(error.std(), 0.8 * 0.5)  # 0.5: 1 % of the radius
+
     def test_every_filter_runs_and_shows_no_message(self):
         self.open()
         for entry in FILTERS.values():

@@ -3,8 +3,8 @@
 #include "Core/Geometry/NormalVariation.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Geometry/VariationEdges.h"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -21,279 +21,127 @@ namespace
 constexpr double Ridge = 1e-6;
 constexpr double SmallestArea = 1e-4; ///< over the mean
 
-/// The normal and the slope of a triangle, or their differences at an edge: of the normal, and of
-/// the slope along the edge and across it. The last column is 0: rows of four are vectors of the
-/// processor.
-struct Block
-{
-  double Rows[3][4] = {};
-};
-
-/// An edge between two triangles.
-struct Edge
-{
-  std::array<Index, 2> Faces{};
-  double Length = 0.0;
-  double Weight = 1.0;
-  /// Per triangle, in its axes: the midpoint from the centroid, and the direction of the edge.
-  double Middle[2][2] = {};
-  double Along[2][2] = {};
-  /// Per triangle: 1 if the direction, turned to the left, leaves it, otherwise -1.
-  std::array<float, 2> Side{};
-};
-
-using EdgesOfFace = std::array<Index, 3>; ///< -1: none
+using Block = VariationBlock;
+using Edge = VariationEdge;
 using Inverse = std::array<double, 6>; ///< a symmetric matrix: xx, xy, xz, yy, yz, zz
-
-/// v += what the differences at the edge have from one of its triangles, x.
-inline void AddDifferences(const Edge& edge, int side, const Block& x, Block& v)
-{
-  const double sign = side == 0 ? 1.0 : -1.0;
-  const double mx = sign * edge.Middle[side][0], my = sign * edge.Middle[side][1];
-  const double ax = sign * edge.Along[side][0], ay = sign * edge.Along[side][1];
-  const double ox = -edge.Side[side] * edge.Along[side][1];
-  const double oy = edge.Side[side] * edge.Along[side][0];
-  for (int c = 0; c < 4; ++c)
-  {
-    v.Rows[0][c] += sign * x.Rows[0][c] + mx * x.Rows[1][c] + my * x.Rows[2][c];
-    v.Rows[1][c] += ax * x.Rows[1][c] + ay * x.Rows[2][c];
-    v.Rows[2][c] += ox * x.Rows[1][c] + oy * x.Rows[2][c];
-  }
-}
-
-/// y += the transpose of AddDifferences(), times the length.
-inline void AddForces(const Edge& edge, int side, const Block& v, Block& y)
-{
-  const double sign = side == 0 ? edge.Length : -edge.Length;
-  const double mx = sign * edge.Middle[side][0], my = sign * edge.Middle[side][1];
-  const double ax = sign * edge.Along[side][0], ay = sign * edge.Along[side][1];
-  const double ox = -edge.Length * edge.Side[side] * edge.Along[side][1];
-  const double oy = edge.Length * edge.Side[side] * edge.Along[side][0];
-  for (int c = 0; c < 4; ++c)
-  {
-    y.Rows[0][c] += sign * v.Rows[0][c];
-    y.Rows[1][c] += mx * v.Rows[0][c] + ax * v.Rows[1][c] + ox * v.Rows[2][c];
-    y.Rows[2][c] += my * v.Rows[0][c] + ay * v.Rows[1][c] + oy * v.Rows[2][c];
-  }
-}
-
-inline double SquareOf(const double* row)
-{
-  return row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
-}
-
-/// Shrink the rows of v to balls of the radii w a1 and w a0: these are the multipliers.
-inline void Shrink(const Edge& edge, const NormalVariationSettings& settings, Block& v)
-{
-  const double square = SquareOf(v.Rows[0]);
-  const double squares = SquareOf(v.Rows[1]) + SquareOf(v.Rows[2]);
-  const double first = edge.Weight * settings.First;
-  const double second = edge.Weight * settings.Second;
-  const double f = square > first * first ? first / std::sqrt(square) : 1.0;
-  const double s = squares > second * second ? second / std::sqrt(squares) : 1.0;
-  for (int c = 0; c < 4; ++c)
-  {
-    v.Rows[0][c] *= f;
-    v.Rows[1][c] *= s;
-    v.Rows[2][c] *= s;
-  }
-}
-
-inline double Product(const Block& a, const Block& b)
-{
-  double sums[4] = {};
-  for (int c = 0; c < 4; ++c)
-  {
-    sums[c] =
-      a.Rows[0][c] * b.Rows[0][c] + a.Rows[1][c] * b.Rows[1][c] + a.Rows[2][c] * b.Rows[2][c];
-  }
-  return sums[0] + sums[1] + sums[2];
-}
 
 /// What all triangles read.
 struct Lists
 {
   const Edge* Edges;
-  const EdgesOfFace* EdgesOf;
+  const VariationEdges::OfFace* EdgesOf;
   const Inverse* Inverses;
   const double* Areas;
 };
 
-/// Row f of the product of M + D^T L D and x.
-inline Block Multiply(const Lists& lists, const Block* x, Index f)
+/// b, the multipliers, become those of v = D x + b.
+SURFACEDIFFUSION_ANY_VECTORS void UpdateMultipliers(const Edge* edges, const double* state,
+  const NormalVariationSettings& settings, double* multipliers, Index begin, Index end)
 {
-  Block y;
-  for (int c = 0; c < 4; ++c)
+  for (Index e = begin; e < end; ++e)
   {
-    y.Rows[0][c] = lists.Areas[f] * x[f].Rows[0][c];
-    y.Rows[1][c] = Ridge * x[f].Rows[1][c];
-    y.Rows[2][c] = Ridge * x[f].Rows[2][c];
+    const Edge& edge = edges[e];
+    Block v = LoadBlock(multipliers, e);
+    AddDifferences(edge, 0, LoadBlock(state, edge.Faces[0]), v);
+    AddDifferences(edge, 1, LoadBlock(state, edge.Faces[1]), v);
+    Shrink(edge, settings.First, settings.Second, v);
+    StoreBlock(multipliers, e, v);
   }
+}
+
+/// Row f of D^T L b.
+inline Block ForceOn(const Lists& lists, const double* multipliers, Index f)
+{
+  Block force;
   for (const Index e : lists.EdgesOf[f])
   {
     if (e >= 0)
     {
       const Edge& edge = lists.Edges[e];
-      Block v;
-      AddDifferences(edge, 0, x[edge.Faces[0]], v);
-      AddDifferences(edge, 1, x[edge.Faces[1]], v);
-      AddForces(edge, edge.Faces[0] == f ? 0 : 1, v, y);
+      AddForces(edge, edge.Faces[0] == f ? 0 : 1, LoadBlock(multipliers, e), force);
     }
   }
-  return y;
+  return force;
 }
 
-SURFACEDIFFUSION_ANY_VECTORS void SplitEdges(const Edge* edges, const Block* state,
-  const NormalVariationSettings& settings, Block* differences, Index begin, Index end)
+SURFACEDIFFUSION_ANY_VECTORS void FindForces(
+  const Lists& lists, const double* multipliers, double* forces, Index begin, Index end)
 {
-  for (Index e = begin; e < end; ++e)
+  for (Index f = begin; f < end; ++f)
   {
-    const Edge& edge = edges[e];
-    Block v = differences[e];
-    Shrink(edge, settings, v);
-    AddDifferences(edge, 0, state[edge.Faces[0]], v);
-    AddDifferences(edge, 1, state[edge.Faces[1]], v);
-    differences[e] = v;
+    StoreBlock(forces, f, ForceOn(lists, multipliers, f));
   }
 }
 
-/// Directions of descent from the residuals M d + D^T L (v - 2 b) - image, b the multipliers of v.
-/// Returns their product with the residuals.
+/// Directions of descent from the residuals M (d - x) + D^T L (b' - 2 b), b' the multipliers before
+/// the last ones, b. forces: those of b', and after the call of b. Returns the product of the
+/// directions with the residuals, and adds the part of the areas to the curvature.
 SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const double* given,
-  const Block* differences, const NormalVariationSettings& settings, const Block* image,
-  Block* direction, Index begin, Index end)
+  const double* state, const double* multipliers, double* forces, double* direction,
+  double& curvature, Index begin, Index end)
 {
   double sum = 0.0;
   for (Index f = begin; f < end; ++f)
   {
+    const Block force = ForceOn(lists, multipliers, f);
+    const Block last = LoadBlock(forces, f);
+    const Block x = LoadBlock(state, f);
+    const double area = lists.Areas[f];
+    double d[4] = {};
+    std::copy_n(given + 3 * static_cast<std::ptrdiff_t>(f), 3, d);
     Block r;
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 4; ++c)
     {
-      r.Rows[0][c] = lists.Areas[f] * given[3 * f + c];
+      r.Rows[0][c] = area * (d[c] - x.Rows[0][c]);
+      r.Rows[1][c] = -Ridge * x.Rows[1][c];
+      r.Rows[2][c] = -Ridge * x.Rows[2][c];
     }
-    for (const Index e : lists.EdgesOf[f])
-    {
-      if (e >= 0)
-      {
-        const Edge& edge = lists.Edges[e];
-        const Block& v = differences[e];
-        Block force = v;
-        Shrink(edge, settings, force);
-        for (int k = 0; k < 3; ++k)
-        {
-          for (int c = 0; c < 4; ++c)
-          {
-            force.Rows[k][c] = v.Rows[k][c] - 2.0 * force.Rows[k][c];
-          }
-        }
-        AddForces(edge, edge.Faces[0] == f ? 0 : 1, force, r);
-      }
-    }
-    const Inverse& m = lists.Inverses[f];
     for (int k = 0; k < 3; ++k)
     {
       for (int c = 0; c < 4; ++c)
       {
-        r.Rows[k][c] -= image[f].Rows[k][c];
+        r.Rows[k][c] += last.Rows[k][c] - 2.0 * force.Rows[k][c];
       }
     }
-    Block& d = direction[f];
+    StoreBlock(forces, f, force);
+    const Inverse& m = lists.Inverses[f];
+    Block p;
     for (int c = 0; c < 4; ++c)
     {
-      const double x = r.Rows[0][c], y = r.Rows[1][c], z = r.Rows[2][c];
-      d.Rows[0][c] = m[0] * x + m[1] * y + m[2] * z;
-      d.Rows[1][c] = m[1] * x + m[3] * y + m[4] * z;
-      d.Rows[2][c] = m[2] * x + m[4] * y + m[5] * z;
+      p.Rows[0][c] = m[0] * r.Rows[0][c] + m[1] * r.Rows[1][c] + m[2] * r.Rows[2][c];
+      p.Rows[1][c] = m[1] * r.Rows[0][c] + m[3] * r.Rows[1][c] + m[4] * r.Rows[2][c];
+      p.Rows[2][c] = m[2] * r.Rows[0][c] + m[4] * r.Rows[1][c] + m[5] * r.Rows[2][c];
     }
-    sum += Product(d, r);
+    StoreBlock(direction, f, p);
+    sum += Product(p, r);
+    curvature += area * SquareOf(p.Rows[0]) + Ridge * (SquareOf(p.Rows[1]) + SquareOf(p.Rows[2]));
   }
   return sum;
 }
 
-/// Returns the sum of the products of x and y = A x.
-SURFACEDIFFUSION_ANY_VECTORS double MultiplyAll(
-  const Lists& lists, const Block* x, Block* y, Index begin, Index end)
+/// The part of the edges in the curvature.
+SURFACEDIFFUSION_ANY_VECTORS double SumSquaresOfDifferences(
+  const Edge* edges, const double* direction, Index begin, Index end)
 {
   double sum = 0.0;
-  for (Index f = begin; f < end; ++f)
+  for (Index e = begin; e < end; ++e)
   {
-    y[f] = Multiply(lists, x, f);
-    sum += Product(x[f], y[f]);
+    const Edge& edge = edges[e];
+    Block v;
+    AddDifferences(edge, 0, LoadBlock(direction, edge.Faces[0]), v);
+    AddDifferences(edge, 1, LoadBlock(direction, edge.Faces[1]), v);
+    sum += edge.Length * Product(v, v);
   }
   return sum;
 }
 
-/// The axes of a triangle: along the edge after one of its corners, and to the left of it.
-struct Axes
-{
-  Axes(const TriangleMesh& mesh, const Points& points, const FaceGeometry& geometry, Index f,
-    int corner)
-  {
-    const auto corners = mesh.TriangleVertices().row(f);
-    this->First =
-      (points.row(corners[(corner + 1) % 3]) - points.row(corners[corner])).normalized();
-    this->Second = Eigen::RowVector3d(geometry.Normals.row(f)).cross(this->First);
-  }
-  Eigen::Vector2d operator()(const Eigen::RowVector3d& v) const
-  {
-    return { this->First.dot(v), this->Second.dot(v) };
-  }
-
-  Eigen::RowVector3d First, Second;
-};
-
-/// The corner of a triangle before its longest edge.
-char CornerBeforeLongestEdge(const TriangleMesh& mesh, const Points& points, Index f)
-{
-  const auto corners = mesh.TriangleVertices().row(f);
-  const auto square = [&](int a)
-  { return (points.row(corners[(a + 1) % 3]) - points.row(corners[a])).squaredNorm(); };
-  int longest = square(1) > square(0) ? 1 : 0;
-  longest = square(2) > square(longest) ? 2 : longest;
-  return static_cast<char>(longest);
-}
-
-/// The corner of triangle f opposite the edge that it shares with triangle g; -1: none.
-int CornerOpposite(const Triangles& triangles, Index f, Index g)
-{
-  int opposite = -1;
-  int shared = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const Index v = triangles(f, a);
-    const bool isShared = v == triangles(g, 0) || v == triangles(g, 1) || v == triangles(g, 2);
-    shared += isShared;
-    opposite = isShared ? opposite : a;
-  }
-  return shared == 2 ? opposite : -1;
-}
-
-/// The only triangle on the other side of the edge of f opposite a corner; -1: none or several.
-Index OnlyNeighbour(const FaceGraph& graph, Index f, int corner)
-{
-  Index found = -1;
-  for (Offset k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
-  {
-    const Index g = graph.Across.Entries[k];
-    if (CornerOpposite(graph.Mesh.TriangleVertices(), f, g) == corner)
-    {
-      if (found >= 0)
-      {
-        return -1;
-      }
-      found = g;
-    }
-  }
-  return found;
-}
-
-/// The sum over blocks of add(begin, end), in their order.
+/// The sum over blocks of add(block, begin, end), in their order.
 template <typename Add>
 double SumOfBlocks(const ParallelFor& parallel, Index count, const Add& add)
 {
   std::vector<double> sums(NumberOfBlocks(count));
-  ForEachBlock(
-    parallel, count, [&](Index block, Index begin, Index end) { sums[block] = add(begin, end); });
+  ForEachBlock(parallel, count,
+    [&](Index block, Index begin, Index end) { sums[block] = add(block, begin, end); });
   double sum = 0.0;
   for (const double part : sums)
   {
@@ -309,75 +157,23 @@ class NormalVariation::Splitting
 public:
   Splitting(const FaceGraph& graph, double unit, const ParallelFor& parallel)
     : Graph(graph)
-    , Unit(unit)
     , Parallel(parallel)
-    , EdgesOf(static_cast<std::size_t>(graph.NumberOfFaces()), { -1, -1, -1 })
-    , Inverses(EdgesOf.size())
+    , Edges(graph, unit)
+    , Inverses(static_cast<std::size_t>(graph.NumberOfFaces()))
   {
-    const Triangles& triangles = graph.Mesh.TriangleVertices();
-    for (Index f = 0; f < graph.NumberOfFaces(); ++f)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        const Index g = OnlyNeighbour(graph, f, a);
-        if (g > f)
-        {
-          const int b = CornerOpposite(triangles, g, f);
-          this->EdgesOf[f][a] = this->EdgesOf[g][b] = this->NumberOfEdges();
-          Edge edge;
-          edge.Faces = { f, g };
-          this->Edges.push_back(edge);
-        }
-      }
-    }
   }
 
   void SetPlaces(const Points& points, const FaceGeometry& geometry)
   {
-    const TriangleMesh& mesh = this->Graph.Mesh;
     const double mean = geometry.Areas.sum() / std::max<Index>(1, this->Graph.NumberOfFaces());
-    if (this->FirstCorners.empty())
-    {
-      this->FirstCorners.resize(this->EdgesOf.size());
-      ForEach(this->Parallel, this->Graph.NumberOfFaces(),
-        [&](Index f) { this->FirstCorners[f] = CornerBeforeLongestEdge(mesh, points, f); });
-    }
     this->Areas = (geometry.Areas / mean).cwiseMax(SmallestArea);
-    ForEach(this->Parallel, this->NumberOfEdges(),
-      [&](Index e)
-      {
-        Edge& edge = this->Edges[e];
-        const Index f = edge.Faces[0];
-        const int a = CornerOpposite(mesh.TriangleVertices(), f, edge.Faces[1]);
-        const Eigen::RowVector3d first = points.row(mesh.TriangleVertices()(f, (a + 1) % 3));
-        const Eigen::RowVector3d last = points.row(mesh.TriangleVertices()(f, (a + 2) % 3));
-        edge.Length = (last - first).norm() / this->Unit;
-        for (int side = 0; side < 2; ++side)
-        {
-          const Index t = edge.Faces[side];
-          const Axes axes(mesh, points, geometry, t, this->FirstCorners[t]);
-          const Eigen::Vector2d middle =
-            axes(0.5 * (first + last) - geometry.Centroids.row(t)) / this->Unit;
-          const Eigen::Vector2d along = axes(last - first).normalized();
-          const double out = along[0] * middle[1] - along[1] * middle[0];
-          Eigen::Map<Eigen::Vector2d>(edge.Middle[side]) = middle;
-          Eigen::Map<Eigen::Vector2d>(edge.Along[side]) = along;
-          edge.Side[side] = out > 0.0 ? 1.0F : -1.0F;
-        }
-      });
+    this->Edges.SetPlaces(points, geometry, this->Parallel);
     ForEach(this->Parallel, this->Graph.NumberOfFaces(), [&](Index f) { this->SetInverse(f); });
   }
 
   void SetWeights(const Points& normals, double range)
   {
-    ForEach(this->Parallel, this->NumberOfEdges(),
-      [&](Index e)
-      {
-        Edge& edge = this->Edges[e];
-        const double square =
-          (normals.row(edge.Faces[0]) - normals.row(edge.Faces[1])).squaredNorm();
-        edge.Weight = 1.0 / (1.0 + square / (range * range));
-      });
+    this->Edges.SetWeights(normals, range, this->Parallel);
   }
 
   Points Minimize(
@@ -388,30 +184,31 @@ public:
     this->Given = given;
     if (this->State.empty())
     {
-      for (std::vector<Block>* const list : { &this->State, &this->Image, &this->Direction })
-      {
-        list->assign(this->EdgesOf.size(), Block());
-      }
-      this->Differences.assign(this->Edges.size(), Block());
-      for (Index f = 0; f < count; ++f)
-      {
-        std::copy_n(given.data() + static_cast<std::ptrdiff_t>(f) * 3, 3, this->State[f].Rows[0]);
-      }
+      this->Start();
     }
     const Lists lists = this->GetLists();
+    ForEach(this->Parallel, this->Edges.Size(),
+      [&](Index e)
+      {
+        Block b = LoadBlock(this->Multipliers.data(), e);
+        Shrink(this->Edges[e], settings.First, settings.Second, b);
+        StoreBlock(this->Multipliers.data(), e, b);
+      });
     ForEachBlock(this->Parallel, count,
       [&](Index, Index begin, Index end)
-      { MultiplyAll(lists, this->State.data(), this->Image.data(), begin, end); });
-    std::vector<Block> product(this->EdgesOf.size());
+      { FindForces(lists, this->Multipliers.data(), this->Forces.data(), begin, end); });
     for (int iteration = 0; iteration < settings.Iterations; ++iteration)
     {
       progress.Report(static_cast<double>(iteration) / settings.Iterations);
-      this->Iterate(lists, product);
+      this->Iterate(lists);
     }
     Points normals(count, 3);
     for (Index f = 0; f < count; ++f)
     {
-      std::copy_n(this->State[f].Rows[0], 3, normals.data() + static_cast<std::ptrdiff_t>(f) * 3);
+      for (int c = 0; c < 3; ++c)
+      {
+        normals(f, c) = this->State[PlaceOf(f) + c];
+      }
     }
     return normals;
   }
@@ -420,35 +217,32 @@ public:
   {
     const NormalVariationSettings& settings = this->Settings;
     double energy = 0.0;
-    for (const Edge& edge : this->Edges)
+    std::vector<double> multipliers = this->Multipliers;
+    for (Index e = 0; e < this->Edges.Size(); ++e)
     {
+      const Edge& edge = this->Edges[e];
       Block v;
-      AddDifferences(edge, 0, this->State[edge.Faces[0]], v);
-      AddDifferences(edge, 1, this->State[edge.Faces[1]], v);
+      AddDifferences(edge, 0, LoadBlock(this->State.data(), edge.Faces[0]), v);
+      AddDifferences(edge, 1, LoadBlock(this->State.data(), edge.Faces[1]), v);
       energy += edge.Length * edge.Weight *
         (settings.First * std::sqrt(SquareOf(v.Rows[0])) +
           settings.Second * std::sqrt(SquareOf(v.Rows[1]) + SquareOf(v.Rows[2])));
+      Block b = LoadBlock(multipliers.data(), e);
+      Shrink(edge, settings.First, settings.Second, b);
+      StoreBlock(multipliers.data(), e, b);
     }
     double dual = 0.0;
+    const Lists lists = this->GetLists();
     for (Index f = 0; f < this->Graph.NumberOfFaces(); ++f)
     {
-      Block force; // D^T L of the multipliers
-      for (const Index e : this->EdgesOf[f])
-      {
-        if (e >= 0)
-        {
-          const Edge& edge = this->Edges[e];
-          Block multipliers = this->Differences[e];
-          Shrink(edge, settings, multipliers);
-          AddForces(edge, edge.Faces[0] == f ? 0 : 1, multipliers, force);
-        }
-      }
+      const Block force = ForceOn(lists, multipliers.data(), f);
+      const Block state = LoadBlock(this->State.data(), f);
       const double area = this->Areas[f];
       for (int c = 0; c < 3; ++c)
       {
         const double d = this->Given(f, c);
         const auto square = [](double x) { return x * x; };
-        const auto& x = this->State[f].Rows;
+        const auto& x = state.Rows;
         energy +=
           0.5 * area * square(x[0][c] - d) + 0.5 * Ridge * (square(x[1][c]) + square(x[2][c]));
         dual += force.Rows[0][c] * (d - 0.5 * force.Rows[0][c] / area) -
@@ -459,18 +253,38 @@ public:
   }
 
 private:
-  Index NumberOfEdges() const { return static_cast<Index>(this->Edges.size()); }
+  /// Of block i in a list.
+  static std::size_t PlaceOf(Index i) { return 9 * static_cast<std::size_t>(i); }
+
+  /// The given normals without slopes.
+  void Start()
+  {
+    const Index count = this->Graph.NumberOfFaces();
+    for (std::vector<double>* const list : { &this->State, &this->Forces, &this->Direction })
+    {
+      list->assign(PlaceOf(count), 0.0);
+    }
+    this->Multipliers.assign(PlaceOf(this->Edges.Size()), 0.0);
+    for (Index f = 0; f < count; ++f)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        this->State[PlaceOf(f) + c] = this->Given(f, c);
+      }
+    }
+  }
 
   Lists GetLists() const
   {
-    return { this->Edges.data(), this->EdgesOf.data(), this->Inverses.data(), this->Areas.data() };
+    return { this->Edges.Data(), this->Edges.OfFaces().data(), this->Inverses.data(),
+      this->Areas.data() };
   }
 
   /// The inverse of the diagonal block of the system.
   void SetInverse(Index f)
   {
     Eigen::Matrix3d diagonal = Eigen::Vector3d(this->Areas[f], Ridge, Ridge).asDiagonal();
-    for (const Index e : this->EdgesOf[f])
+    for (const Index e : this->Edges.OfFaces()[f])
     {
       if (e >= 0)
       {
@@ -496,59 +310,59 @@ private:
     this->Inverses[f] = { m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2) };
   }
 
-  /// v = D x + b, and one step of descent of 1/2 x (M + D^T L D) x - (M d + D^T L (v - 2 b)) x.
-  void Iterate(const Lists& lists, std::vector<Block>& product)
+  /// The multipliers of v = D x + b, and one step of descent of
+  /// 1/2 x (M + D^T L D) x - (M d + D^T L (v - 2 b)) x.
+  void Iterate(const Lists& lists)
   {
     const Index count = this->Graph.NumberOfFaces();
-    ForEachBlock(this->Parallel, this->NumberOfEdges(),
+    ForEachBlock(this->Parallel, this->Edges.Size(),
       [&](Index, Index begin, Index end)
       {
-        SplitEdges(
-          lists.Edges, this->State.data(), this->Settings, this->Differences.data(), begin, end);
+        UpdateMultipliers(
+          lists.Edges, this->State.data(), this->Settings, this->Multipliers.data(), begin, end);
       });
+    std::vector<double> curvatures(NumberOfBlocks(count));
     const double descent = SumOfBlocks(this->Parallel, count,
-      [&](Index begin, Index end)
+      [&](Index block, Index begin, Index end)
       {
-        return FindDirections(lists, this->Given.data(), this->Differences.data(), this->Settings,
-          this->Image.data(), this->Direction.data(), begin, end);
+        return FindDirections(lists, this->Given.data(), this->State.data(),
+          this->Multipliers.data(), this->Forces.data(), this->Direction.data(), curvatures[block],
+          begin, end);
       });
-    const double curvature = SumOfBlocks(this->Parallel, count,
-      [&](Index begin, Index end)
-      { return MultiplyAll(lists, this->Direction.data(), product.data(), begin, end); });
+    double curvature = SumOfBlocks(this->Parallel, this->Edges.Size(),
+      [&](Index, Index begin, Index end)
+      { return SumSquaresOfDifferences(lists.Edges, this->Direction.data(), begin, end); });
+    for (const double part : curvatures)
+    {
+      curvature += part;
+    }
     if (!(curvature > 0.0))
     {
       return;
     }
     const double length = descent / curvature;
-    ForEach(this->Parallel, count,
-      [&](Index f)
+    ForEachBlock(this->Parallel, count,
+      [&](Index, Index begin, Index end)
       {
-        for (int k = 0; k < 3; ++k)
+        for (std::size_t k = PlaceOf(begin); k < PlaceOf(end); ++k)
         {
-          for (int c = 0; c < 4; ++c)
-          {
-            this->State[f].Rows[k][c] += length * this->Direction[f].Rows[k][c];
-            this->Image[f].Rows[k][c] += length * product[f].Rows[k][c];
-          }
+          this->State[k] += length * this->Direction[k];
         }
       });
   }
 
   const FaceGraph& Graph;
-  const double Unit;
   const ParallelFor& Parallel;
   NormalVariationSettings Settings;
-  std::vector<Edge> Edges;
-  std::vector<EdgesOfFace> EdgesOf;
+  VariationEdges Edges;
   std::vector<Inverse> Inverses;
-  /// Of the axes of the triangles: slopes keep their components while points move.
-  std::vector<char> FirstCorners;
   Vector Areas; ///< over their mean
   Points Given;
-  std::vector<Block> State; ///< (n, u); no entries before the first Minimize()
-  std::vector<Block> Image; ///< the product of the matrix of the system and State
-  std::vector<Block> Direction;
-  std::vector<Block> Differences; ///< per edge: v
+  // Lists of blocks, see LoadBlock().
+  std::vector<double> State; ///< (n, u); no entries before the first Minimize()
+  std::vector<double> Forces; ///< D^T L b
+  std::vector<double> Direction;
+  std::vector<double> Multipliers; ///< per edge: b
 };
 
 NormalVariation::NormalVariation(const FaceGraph& graph, double unit, const ParallelFor& parallel)

@@ -156,7 +156,9 @@ def _denoising_text(result):
     if result.maximum_displacement == 0:
         return "no noise was found, no point moved" if result.noise_level == 0 else "no point moved"
     kind = {"Automatic": "CAD and Organic parts"}.get(result.surface_type, result.surface_type)
-    return (f"{kind}, noise {result.noise_level:.4g}, points moved by "
+    correlated = (f", correlated over {result.correlation_length:.4g}"
+                  if result.correlation_length > 0 else "")
+    return (f"{kind}, noise {result.noise_level:.4g}{correlated}, points moved by "
             f"{result.mean_displacement:.4g} on average, at most {result.maximum_displacement:.4g}")
 
 
