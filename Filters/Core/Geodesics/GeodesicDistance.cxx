@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <queue>
 #include <utility>
 
@@ -149,9 +150,92 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
 GeodesicDistance::Arrival GeodesicDistance::Find(
   const std::vector<FrontSource>& sources, double cutoff, const ProgressMonitor& progress) const
 {
+  const auto n = static_cast<std::size_t>(this->Mesh->NumberOfVertices());
+  Arrival arrival{ std::vector<double>(n, Never), std::vector<Index>(n, -1) };
+  this->March(sources, cutoff, {}, arrival, nullptr, progress);
+  return arrival;
+}
+
+GeodesicDistance::Arrival GeodesicDistance::FindNearest(
+  const std::vector<FrontSource>& sources, const ProgressMonitor& progress) const
+{
+  Arrival nearest = this->Find(sources, Never, progress.Part(0.0, 0.5));
+  std::map<Index, std::vector<Index>> labels;
+  for (std::size_t k = 0; k < sources.size(); ++k)
+  {
+    labels[sources[k].Label].push_back(static_cast<Index>(k));
+  }
+  if (labels.size() < 2)
+  {
+    return nearest;
+  }
+  std::vector<double> latest = this->LongestEdges();
+  constexpr double edges = 3.0;
+  for (std::size_t i = 0; i < latest.size(); ++i)
+  {
+    latest[i] = nearest.Times[i] + edges * latest[i];
+  }
+  Arrival alone{ std::vector<double>(latest.size(), Never), std::vector<Index>(latest.size(), -1) };
+  nearest = alone;
+  std::vector<Index> touched;
+  double done = 0.0;
+  for (const auto& [label, rows] : labels)
+  {
+    std::vector<FrontSource> ofLabel;
+    for (const Index k : rows)
+    {
+      ofLabel.push_back(sources[static_cast<std::size_t>(k)]);
+    }
+    this->March(ofLabel, Never, latest, alone, &touched, ProgressMonitor());
+    for (const Index vertex : touched)
+    {
+      const auto v = static_cast<std::size_t>(vertex);
+      const Index source =
+        alone.Sources[v] < 0 ? -1 : rows[static_cast<std::size_t>(alone.Sources[v])];
+      if (alone.Times[v] < nearest.Times[v] ||
+        (alone.Times[v] == nearest.Times[v] && source >= 0 && source < nearest.Sources[v]))
+      {
+        nearest.Times[v] = alone.Times[v];
+        nearest.Sources[v] = source;
+      }
+      alone.Times[v] = Never;
+      alone.Sources[v] = -1;
+    }
+    touched.clear();
+    progress.Report(0.5 + 0.5 * ++done / static_cast<double>(labels.size()));
+  }
+  return nearest;
+}
+
+/// Per vertex, the longest time along an edge of a triangle around it that is no barrier.
+std::vector<double> GeodesicDistance::LongestEdges() const
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  std::vector<double> longest(static_cast<std::size_t>(mesh.NumberOfVertices()), 0.0);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto row = static_cast<std::size_t>(t);
+    const TriangleMesh::Shape& shape = mesh.Shapes()[row];
+    const double slowness = this->SlownessOf(row);
+    const double edge = std::max({ shape.EdgeLength(0), shape.EdgeLength(1), shape.EdgeLength(2) });
+    for (int a = 0; a < 3 && slowness < Never; ++a)
+    {
+      double& known = longest[static_cast<std::size_t>(mesh.TriangleVertices()(t, a))];
+      known = std::max(known, slowness * edge);
+    }
+  }
+  return longest;
+}
+
+void GeodesicDistance::March(const std::vector<FrontSource>& sources, double cutoff,
+  const std::vector<double>& latest, Arrival& arrival, std::vector<Index>* touched,
+  const ProgressMonitor& progress) const
+{
   const TriangleMesh& mesh = *this->Mesh;
   const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
-  Arrival arrival{ std::vector<double>(n, Never), std::vector<Index>(n, -1) };
+  std::vector<Index> reached;
+  const auto limitAt = [&](std::size_t v)
+  { return latest.empty() ? cutoff : std::min(cutoff, latest[v]); };
   // The sources, and the corners that ways go around with the numbers of their sources
   std::vector<FrontSource> fronts = sources;
   std::vector<Index> sourceOf(sources.size());
@@ -162,8 +246,9 @@ GeodesicDistance::Arrival GeodesicDistance::Find(
     const FrontSource& source = sources[k];
     const auto v = static_cast<std::size_t>(source.Vertex);
     sourceOf[k] = static_cast<Index>(k);
-    if (source.Time < arrival.Times[v] && source.Time <= cutoff)
+    if (source.Time < arrival.Times[v] && source.Time <= limitAt(v))
     {
+      reached.push_back(source.Vertex);
       arrival.Times[v] = source.Time;
       arrival.Sources[v] = static_cast<Index>(k);
       queue.emplace(source.Time, source.Vertex);
@@ -193,9 +278,10 @@ GeodesicDistance::Arrival GeodesicDistance::Find(
         const Index at = corner - corner % 3 + (corner % 3 + step) % 3;
         Way way = this->WayThrough(at, fronts, arrival);
         double& known = arrival.Times[static_cast<std::size_t>(neighbour)];
+        const double limit = limitAt(static_cast<std::size_t>(neighbour));
         // What falls by round-off alone does not start the front again.
         constexpr double resolved = 1e-14;
-        if (!(way.Time < Never && way.Time <= cutoff) ||
+        if (!(way.Time < Never && way.Time <= limit) ||
           !(known == Never || way.Time < known - resolved * std::abs(known)))
         {
           continue;
@@ -212,17 +298,27 @@ GeodesicDistance::Arrival GeodesicDistance::Find(
           }
           way.Front = around;
         }
+        if (known == Never)
+        {
+          reached.push_back(neighbour);
+        }
         known = way.Time;
         arrival.Sources[static_cast<std::size_t>(neighbour)] = way.Front;
         queue.emplace(way.Time, neighbour);
       }
     }
   }
-  for (Index& source : arrival.Sources)
+  std::sort(reached.begin(), reached.end());
+  reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+  for (const Index vertex : reached)
   {
-    source = source < 0 ? -1 : sourceOf[static_cast<std::size_t>(source)];
+    Index& source = arrival.Sources[static_cast<std::size_t>(vertex)];
+    source = sourceOf[static_cast<std::size_t>(source)];
   }
-  return arrival;
+  if (touched)
+  {
+    *touched = std::move(reached);
+  }
 }
 
 } // namespace SurfaceDiffusion

@@ -32,13 +32,13 @@ struct FrontSource
 ///
 /// Each time is the length of a path over triangles laid out side by side. A vertex whose time
 /// decreases later is visited again, so that times do not depend on the order of the vertices, and
-/// obtuse triangles need no unfolding. On an intrinsic Delaunay triangulation (IntrinsicDelaunay) fewer ways go along edges,
-/// and distances have smaller errors; the vertices, and the surface, are the same.
+/// obtuse triangles need no unfolding. On an intrinsic Delaunay triangulation (IntrinsicDelaunay)
+/// fewer ways go along edges, and distances have smaller errors; the vertices, and the surface, are
+/// the same.
 ///
 /// A triangle of infinite slowness is a barrier: no way crosses it, but ways along an edge that
 /// another triangle shares go by. Ways around a corner of a boundary or a barrier, where the open
-/// angle is above pi, go on from there as from a source. Fronts of different labels do not mix:
-/// beside the line where they meet, ways go along edges.
+/// angle is above pi, go on from there as from a source. Fronts of different labels do not mix.
 class GeodesicDistance
 {
 public:
@@ -54,8 +54,16 @@ public:
     std::vector<Index> Sources;
   };
 
-  /// cutoff: fronts end at this time: what is later stays infinite. Throws Aborted.
+  /// The first arrivals of all fronts together. Beside the line where fronts of different labels
+  /// meet, ways go along edges. cutoff: fronts end at this time: what is later stays infinite.
+  /// Throws Aborted.
   Arrival Find(const std::vector<FrontSource>& sources, double cutoff,
+    const ProgressMonitor& progress = ProgressMonitor()) const;
+
+  /// The same, with the label that arrives first, and its time, exactly as if the fronts of each label
+  /// ran alone: each goes three edges beyond the line where it meets others. Of labels that arrive at
+  /// the same time, the one of the earliest source counts. Throws Aborted.
+  Arrival FindNearest(const std::vector<FrontSource>& sources,
     const ProgressMonitor& progress = ProgressMonitor()) const;
 
 private:
@@ -74,6 +82,12 @@ private:
     return this->Slowness.empty() ? 1.0 : this->Slowness[t];
   }
   void FindCorners();
+  /// Find() for times that `arrival` has infinite at first. latest: per vertex, the time from which on
+  /// fronts end there; empty: cutoff alone. Returns the vertices reached, unless `touched` is null.
+  void March(const std::vector<FrontSource>& sources, double cutoff,
+    const std::vector<double>& latest, Arrival& arrival, std::vector<Index>* touched,
+    const ProgressMonitor& progress) const;
+  std::vector<double> LongestEdges() const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
   std::vector<double> Slowness;
