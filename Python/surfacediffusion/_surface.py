@@ -274,9 +274,21 @@ class Surface:
         return triangles
 
     @property
-    def faces(self) -> list[NDArray[np.int64]]:
-        """The faces as given, as a list of arrays."""
+    def faces(self) -> NDArray[np.int64] | list[NDArray[np.int64]]:
+        """The faces as given: an array (m, 3), read-only, if all are triangles, or else a list of
+        arrays."""
+        if (np.diff(self._offsets) == 3).all():
+            triangles = self._connectivity.reshape(-1, 3)
+            triangles.flags.writeable = False
+            return triangles
         return np.split(self._connectivity, self._offsets[1:-1])
+
+    @property
+    def vertex_areas(self) -> NDArray[np.float64]:
+        """The areas (n,) of the control cells of the points: the diagonal of the lumped mass matrix.
+        A third of the triangles at each point, or as given by `areas`. With
+        ``intrinsic_delaunay=True`` functions use those of other triangles."""
+        return self._triangle_areas() if self._areas is None else self._areas.copy()
 
     def __repr__(self) -> str:
         return f"<Surface: {self.n_points} points, {self.n_faces} faces>"

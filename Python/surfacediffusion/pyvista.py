@@ -41,6 +41,7 @@ is not allowed, with a message that names it, what was found and what is allowed
 
 from __future__ import annotations
 
+import inspect
 import math
 import textwrap
 from typing import Any, Callable, Iterator, Sequence
@@ -709,12 +710,28 @@ def _as_method(function: Callable[..., Any]) -> Callable[..., Any]:
         return function(self._mesh, *arguments, **keywords)
 
     method.__name__, method.__doc__ = function.__name__, function.__doc__
+    signature = inspect.signature(function)
+    this = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
+    method.__signature__ = signature.replace(  # type: ignore[attr-defined]
+        parameters=[this, *list(signature.parameters.values())[1:]])
     return method
+
+
+def _show_settings(name: str, function: Callable[..., Any]) -> None:
+    """Give a function the signature with its settings, for editors and help()."""
+    own = inspect.signature(function)
+    settings = [parameter for keyword, parameter
+                in inspect.signature(getattr(_functions, name)).parameters.items()
+                if keyword in settings_of(name) and keyword not in own.parameters]
+    function.__signature__ = own.replace(parameters=[  # type: ignore[attr-defined]
+        *(parameter for parameter in own.parameters.values()
+          if parameter.kind is not inspect.Parameter.VAR_KEYWORD), *settings])
 
 
 for _name in __all__:
     if _name not in globals():  # a model without results of a special kind
         globals()[_name] = _of_data(_name, "The results have the names of those of the filter for VTK.")
+    _show_settings(_name, globals()[_name])
     setattr(_Accessor, _name, _as_method(globals()[_name]))
 
 if hasattr(pyvista, "register_dataset_accessor"):

@@ -190,6 +190,26 @@ class Surfaces(unittest.TestCase):
         field = sd.direction_field(surface, method="Smooth")
         self.assertEqual(field.shape, (3, 3))
         self.assertEqual([len(face) for face in surface.faces], [4, 3, 5])
+        self.assertAlmostEqual(surface.vertex_areas.sum(), 3.0, places=14)
+
+    def test_faces_of_triangles_are_an_array(self):
+        given = sd.sphere(3)
+        surface = sd.Surface(given.points, list(given.triangles))
+        self.assertEqual(surface.faces.shape, (surface.n_faces, 3))
+        np.testing.assert_array_equal(surface.faces, given.triangles)
+        with self.assertRaises(ValueError):
+            surface.faces[0, 0] = 1
+        self.assertEqual(copy.deepcopy(surface).faces.shape, surface.faces.shape)
+
+    def test_vertex_areas_are_those_that_diffusion_keeps_the_integral_with(self):
+        surface = sd.sphere(3, radius=7.0)
+        spot = np.zeros(surface.n_points)
+        spot[5] = 1.0
+        smooth = sd.heat(surface, spot, fwhm=4.0)
+        areas = surface.vertex_areas
+        self.assertAlmostEqual(areas @ smooth, areas[5], places=12)
+        given = sd.Surface(surface.points, surface.faces, areas=2 * areas)
+        np.testing.assert_array_equal(given.vertex_areas, 2 * areas)
 
     def test_principal_directions_of_a_cylinder_follow_its_axis(self):
         angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 40, endpoint=False),

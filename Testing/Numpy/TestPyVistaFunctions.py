@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The functions for PyVista meshes, with any VTK."""
 
+import inspect
 import sys
 import unittest
 
@@ -345,6 +346,21 @@ class Meshes(unittest.TestCase):
         np.testing.assert_array_equal(mesh.diffusion.heat("f", fwhm=0.4)["fDiffused"],
                                       heat(mesh, "f", fwhm=0.4)["fDiffused"])
         self.assertIn("fDiffused", pyvista.MultiBlock([mesh]).diffusion.heat("f", fwhm=1)[0].array_names)
+
+    def test_signatures_have_the_keywords_of_the_arrays(self):
+        import surfacediffusion as sd
+        from surfacediffusion import pyvista as functions
+
+        for name in functions.__all__:
+            own = inspect.signature(getattr(functions, name)).parameters
+            settings = sd._settings.settings_of(name)
+            self.assertGreater(len(settings), 3, name)
+            for keyword in settings:
+                self.assertEqual(
+                    own[keyword].default,
+                    inspect.signature(getattr(sd, name)).parameters[keyword].default, keyword)
+            method = inspect.signature(getattr(functions._Accessor, name)).parameters
+            self.assertEqual(list(method)[1:], list(own)[1:], name)
 
     def test_answers_to_other_data(self):
         mesh = noisy_sphere()
