@@ -49,6 +49,7 @@ FILTERS = [
     Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", ("SurfaceDenoising",)),
     Filter("turing_texture", "vtkTuringTextureFilter",
            ("ReactionDiffusion", "Kinetics", "CoarseStart")),
+    Filter("relief", "vtkSurfaceReliefFilter", ("Relief",)),
     Filter("direction_field", "vtkSurfaceDirectionFieldFilter",
            ("SmoothLineField", "PrincipalDirections")),
 ]
@@ -90,7 +91,7 @@ def sentence(name):
 def settings_table(function):
     """The keywords of a function with their allowed values and what they do, from its docstring."""
     doc = inspect.getdoc(function)
-    part = doc.split("Other Parameters\n----------------\n", 1)[1].split("\n\nReturns", 1)[0]
+    part = re.split(r"\n(?:Other )?Parameters\n-+\n", doc)[-1].split("\n\nReturns", 1)[0]
     rows = ["| property | allowed, default | effect |", "| --- | --- | --- |"]
     for entry in re.split(r"\n(?=\w+ : )", part):
         head, _, body = entry.partition("\n")
