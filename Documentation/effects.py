@@ -119,6 +119,14 @@ EFFECTS = {
         Effect("smoothing_fwhm", (0.1, 0.3, 0.6), "The length of the gradient: the wider the Gaussian, the "
                "less is left of the noise."),
     ),
+    "relief": (
+        Effect("height", (0.02, 0.06, -0.06), "A height below 0 is carved.", {}, "waves"),
+        Effect("levels", ("Smooth", "Two"), "Two levels have flat tops. Their slopes have the width flank.",
+               {"height": 0.06, "flank": 0.08}, "waves"),
+        Effect("overhang", (None, 30.0, 0.0), "No relief on faces that face down more steeply than this "
+               "angle, here away from the top of the picture.",
+               {"height": 0.06, "up": (0.0, 1.0, 0.0)}, "waves"),
+    ),
     "denoise_mesh": (
         Effect("noise_level", (0.0, 0.01, 0.05), "0 means that the noise is estimated. A larger level "
                "removes more.", {}, "block"),
@@ -185,6 +193,13 @@ def lines():
     return surface, pattern + np.random.default_rng(1).normal(scale=0.15, size=2562)
 
 
+def waves():
+    """Values from 0 to 1 on a smooth surface."""
+    ball = sd.sphere(5)
+    x, y, z = ball.points.T
+    return ball, 0.5 + 0.5 * np.sin(12 * x) * np.sin(12 * y) * np.cos(12 * z)
+
+
 def block():
     """A rounded cube with sharp edges and a noisy surface, without data."""
     ball = sd.sphere(4)
@@ -223,6 +238,8 @@ def run(name, surface, values, keywords):
         return points, np.linalg.norm(found, axis=1) if found.ndim == 2 else found
     if name == "turing_texture":
         return points, function(surface, **keywords).texture
+    if name == "relief":
+        return function(surface, values, **keywords).surface.points, None
     if name == "denoise_mesh":
         return function(surface, **keywords), None
     if name == "harmonic_map":

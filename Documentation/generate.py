@@ -51,6 +51,7 @@ FILTERS = [
            ("ReactionDiffusion", "Kinetics", "CoarseStart")),
     Filter("curvature", "vtkSurfaceCurvatureFilter", ("Curvature",)),
     Filter("derivatives", "vtkSurfaceDerivativesFilter", ("Derivatives",)),
+    Filter("relief", "vtkSurfaceReliefFilter", ("Relief",)),
     Filter("direction_field", "vtkSurfaceDirectionFieldFilter",
            ("SmoothLineField", "PrincipalDirections")),
 ]
@@ -93,7 +94,7 @@ def sentence(name):
 def settings_table(function):
     """The keywords of a function with their allowed values and what they do, from its docstring."""
     doc = inspect.getdoc(function)
-    part = doc.split("Other Parameters\n----------------\n", 1)[1].split("\n\nReturns", 1)[0]
+    part = re.split(r"\n(?:Other )?Parameters\n-+\n", doc)[-1].split("\n\nReturns", 1)[0]
     rows = ["| property | allowed, default | effect |", "| --- | --- | --- |"]
     for entry in re.split(r"\n(?=\w+ : )", part):
         head, _, body = entry.partition("\n")

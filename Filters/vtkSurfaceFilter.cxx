@@ -362,7 +362,7 @@ double vtkSurfaceFilter::FindRefinement(const std::function<double()>&, Sentence
   return this->RefineTo > 0.0 && std::isfinite(this->RefineTo) ? this->RefineTo : 0.0;
 }
 
-/// Bisect long edges. False: the update was aborted, or there is not enough memory.
+/// Bisect long edges. False, in all processes: one was aborted or has failed.
 bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
 {
   PieceRefinement& refinement = this->Private->Refinement;
@@ -374,12 +374,13 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
       this->UpdateProgress(0.0);
       return !this->IsAborted();
     });
+  bool completed = false;
   try
   {
     const double length = this->FindRefinement(
       [&] { return refinement.FindMeanEdgeLength(pieces); }, this->Private->RefinementReason);
     refinement.Refine(pieces, length, progress);
-    return true;
+    completed = true;
   }
   catch (const Aborted&)
   {
@@ -392,6 +393,12 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
   {
     this->ReportError(error.what());
   }
+  const Processes processes(this->Controller);
+  if (!processes.Any(!completed))
+  {
+    return true;
+  }
+  this->Private->HasFailed = processes.Any(this->Private->HasFailed);
   refinement.Undo();
   return false;
 }

@@ -63,6 +63,7 @@ class SameBits(unittest.TestCase):
         self.rates = np.tile([30.0, 20.0, 3.0, 2.0], (m, 1))
 
     def test_all_functions(self):
+        x = self.points[:, 0]
         nan = np.where(self.mask != 0, np.nan, self.values)
         colours = self.random.integers(0, 256, (len(self.points), 4), np.uint8)
         cases = [
@@ -143,6 +144,11 @@ class SameBits(unittest.TestCase):
             ("direction_field", {}, {}),
             ("direction_field", {}, {"Method": "Smooth", "Angle": 30.0}),
             ("direction_field", {"hints": self.around}, {"Method": "Hints"}),
+            ("relief", {"values": self.columns[:, 0]}, {"Height": 0.02}),
+            ("relief", {"values": x, "mask": self.mask},
+             {"Height": -0.1, "Base": 0.05, "Levels": "Two", "Flank": 0.1, "Threshold": 0.1}),
+            ("relief", {"values": x, "mask": (self.of_faces[:, 0] > 1.0).astype(np.uint8)},
+             {"Height": 0.1, "Overhang": 30.0}),
         ]
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
@@ -152,7 +158,8 @@ class SameBits(unittest.TestCase):
             for number, (function, arrays, properties) in enumerate(cases):
                 np.savez(folder / f"case{number}.npz", points=self.points, faces=flat, sizes=sizes,
                          **arrays)
-                listed.append([CLASSES[function], properties, {key: INDEX[key] for key in arrays}])
+                listed.append([CLASSES.get(function, "vtkSurfaceReliefFilter"), properties,
+                               {key: INDEX[key] for key in arrays}])
             (folder / "cases.json").write_text(json.dumps(listed))
             environment = dict(os.environ, PYTHONPATH=os.environ["SURFACEDIFFUSION_VTK_PATH"])
             script = pathlib.Path(__file__).with_name("run_filters.py")
@@ -177,6 +184,8 @@ class SameBits(unittest.TestCase):
             found = {"values" + properties.get("Quantity", "Gradient"): result.values}
             if result.speed is not None:
                 found["valuesSpeed"] = result.speed
+        elif function == "relief":
+            found = {"points": result.surface.points, "ReliefHeight": result.heights}
         elif function == "denoise_mesh":
             found = {"points": result, "Displacement": result - self.points}
         elif function == "turing_texture":
@@ -209,7 +218,8 @@ class SameBits(unittest.TestCase):
             found["DiffusionAxes"] = result.axes
         if function == "harmonic_map":
             found["points"] = result.points
-        if function not in ("curvature", "denoise_mesh", "derivatives", "direction_field", "interpolate", "segment"):
+        if function not in ("curvature", "denoise_mesh", "derivatives", "direction_field", "interpolate",
+                            "relief", "segment"):
             found.update({"history " + key: column for key, column in result.history.items()
                           if key != "Seconds"})
         self.assertEqual(set(expected) - {"points", "history Step"}, set(found) - {"points"})

@@ -27,7 +27,7 @@ RESULTS = {
     "SurfaceDenoisingFilter": (("POINTS", "Displacement"), 0.00255440, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
-    "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.0, ("POINTS", "f")),
+    "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.236088, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
     "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),
