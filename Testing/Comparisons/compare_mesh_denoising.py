@@ -8,15 +8,15 @@ MESH_DENOISING.md. compare_mesh_denoising.sh installs what it needs and runs thi
                                               and Original.obj.xz with the same faces
     compare_mesh_denoising.py --meshes DIR    meshes of libcgal-demo, to which noise is added
 
+    compare_mesh_denoising.py --again 'SurfaceDiffusion, `denoise_mesh`' --pairs DIR
+
 Each program runs with its default settings. Rows that are marked as tuned have the setting, of a few,
 whose result is closest to the truth, which no user has."""
 from __future__ import annotations
 
 import argparse
-import datetime
 import lzma
 import os
-import platform
 import sys
 import time
 from dataclasses import dataclass
@@ -33,6 +33,7 @@ from vtkmodules.vtkFiltersCore import vtkWindowedSincPolyDataFilter
 from vtkmodules.vtkFiltersGeneral import vtkDistancePolyDataFilter
 
 import surfacediffusion
+from mesh_denoising_page import OURS, read_page, write_page
 
 MESHES = (  # of libcgal-demo: name, kind of noise, its standard deviation in mean edge lengths
     ("fandisk", "normal", 0.3), ("fandisk", "impulsive", 0.5), ("fandisk", "sparse", 0.5),
@@ -232,7 +233,7 @@ class Program:
 
 TWO_STEP = partial(meshlab, filter_name="apply_coord_two_steps_smoothing")
 PROGRAMS = (
-    Program("SurfaceDiffusion, `denoise_mesh`", "surfacediffusion", surface_denoising),
+    Program(OURS, "surfacediffusion", surface_denoising),
     Program("SurfaceDiffusion, `harmonic_map` with `move_vertices`", "surfacediffusion", harmonic_map,
             tuple({"time_step": step} for step in (0.03, 0.1, 0.3, 1.0, 3.0))),
     Program("VTK, windowed sinc", "vtk", windowed_sinc,
@@ -252,9 +253,14 @@ PROGRAMS = (
 )
 
 
-def compare(mesh: Mesh, programs) -> list[dict[str, Any]]:
+def compare(mesh: Mesh, programs, kept) -> list[dict[str, Any]]:
+    """kept: the rows of programs that need not run again."""
     rows = [{"program": "noisy", **measure(mesh, mesh.points, 0.0)}]
     for program in programs:
+        old = [row for row in kept if row["program"] in (program.name, program.name + ", tuned")]
+        if old:
+            rows += old
+            continue
         rows.append({"program": program.name, **measure(mesh, *run(mesh, program, {}))})
         if program.tuned:
             found = [run(mesh, program, settings) for settings in program.tuned]
@@ -274,92 +280,6 @@ def run(mesh: Mesh, program: Program, settings):
     if points.shape != mesh.points.shape:
         raise ValueError(f"{program.name} returns {len(points)} points for {len(mesh.points)}")
     return points, seconds
-
-
-# ---- the page ------------------------------------------------------------------------------------
-
-TEXT = """# Mesh denoising beside other programs
-
-This page is written by `Testing/Comparisons/compare_mesh_denoising.sh`, which installs the programs
-and measures them side by side. Measured on {date}:
-{versions}.
-{missing}
-{source}
-
-The programs run with their default settings. Rows marked as tuned have the setting, of three to six,
-whose result has the smallest angle to the truth. `denoise_mesh` has no such row.
-
-Methods without a package that installs are not measured here. One is MeshTGV (Z. Liu, Y. Li, W. Wang,
-L. Liu, R. Chen, IEEE TVCG 28(12), 2022), with settings for each mesh. Its released mesh for Block with
-noise of 0.35 in random directions has 2.85 degrees; the 1.9 degrees for Block and 2.2 degrees for Fandisk
-that its files name are those of its filtered normals.
-
-The angle is the mean over the triangles of the angle between the normal and the true one, in degrees.
-Root mean square distances of the points from the original surface are in its mean edge lengths. Then
-follow the change of the volume, the numbers of triangles whose normal is more than 90 degrees off and
-of those that intersect others, and the processor time in seconds, of all threads together and under
-other load, on {processor}.
-
-## Mean angles
-
-{angles}
-
-## All measures
-
-{tables}
-## Where another program is better
-
-Found by the program that writes this page, with all settings of the others, tuned ones too:
-
-{losses}
-"""
-
-
-def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "| " + " | ".join("---" for _ in header) + " |"]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
-
-
-def all_measures(results):
-    parts = []
-    for name, rows in results.items():
-        parts.append(f"### {name}\n\n" + table(
-            ["program", "angle", "distance", "volume", "flipped", "intersecting", "seconds"],
-            [[row["program"], f"{row['angle']:.2f}", f"{row['distance']:.3f}",
-              f"{100 * row['volume']:+.2f} %", str(row["flipped"]),
-              "" if row["intersecting"] is None else str(row["intersecting"]),
-              f"{row['seconds']:.2f}" if row["seconds"] else ""] for row in rows]))
-    return "\n".join(parts)
-
-
-def all_angles(results):
-    programs = [row["program"] for row in next(iter(results.values()))]
-    return table(["program", *results], [
-        [program, *(f"{rows[number]['angle']:.1f}" for rows in results.values())]
-        for number, program in enumerate(programs)])
-
-
-def all_losses(results):
-    lines = []
-    for name, rows in results.items():
-        ours = next(row for row in rows if row["program"] == PROGRAMS[0].name)
-        for key in ("angle", "distance", "volume", "flipped", "intersecting", "seconds"):
-            known = [row for row in rows[1:] if row[key] is not None]
-            best = min(known, key=lambda row: abs(row[key]), default=ours)
-            if ours[key] is not None and abs(best[key]) < abs(ours[key]):
-                lines.append(f"- {name}, {key}: {best['program']}, {best[key]:.3g} "
-                             f"(`denoise_mesh`: {ours[key]:.3g})")
-    return "\n".join(lines) or "nowhere"
-
-
-def write_page(results, source, versions, missing, path):
-    model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo")
-                  if line.startswith("model name")), platform.processor())
-    absent = "".join(f"{name} could not be used: {reason}.\n" for name, reason in missing.items())
-    path.write_text(TEXT.format(
-        date=datetime.date.today().isoformat(), versions=versions, missing=absent, source=source,
-        processor=model or "an unknown processor", angles=all_angles(results),
-        tables=all_measures(results), losses=all_losses(results)))
 
 
 def usable(program: Program, missing) -> bool:
@@ -383,6 +303,9 @@ def main():
                         help="default: $SURFACEDIFFUSION_MESH_DIR, or that of libcgal-demo")
     parser.add_argument("--only", action="append", default=[], metavar="NAME",
                         help="meshes whose names begin so")
+    parser.add_argument("--again", metavar="PROGRAM",
+                        help="run programs whose names begin so, and the others on new meshes only; their "
+                             "other rows are those of the page")
     parser.add_argument("--page", type=Path, default=Path(__file__).parent / "MESH_DENOISING.md")
     arguments = parser.parse_args()
     if arguments.pairs:
@@ -403,10 +326,15 @@ def main():
               if not arguments.only or mesh.name.startswith(tuple(arguments.only))]
     missing: dict[str, str] = {}
     programs = [program for program in PROGRAMS if usable(program, missing)]
-    results = {mesh.name: compare(mesh, programs) for mesh in meshes}
     versions = ", ".join(f"{name} {metadata.version(name)}" for name in
                          dict.fromkeys(program.package for program in programs))
-    write_page(results, source, versions, missing, arguments.page)
+    date, former, kept = read_page(arguments.page) if arguments.again else ("", "", {})
+    if arguments.again and former.replace("\n", " ") != versions:
+        parser.error(f"--again needs the versions of the page, {former}; these are {versions}")
+    kept = {name: [row for row in rows if not row["program"].startswith(arguments.again)]
+            for name, rows in kept.items()}
+    results = {mesh.name: compare(mesh, programs, kept.get(mesh.name, [])) for mesh in meshes}
+    write_page(results, source, versions, missing, date, arguments.page)
 
 
 if __name__ == "__main__":

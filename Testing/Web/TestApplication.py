@@ -273,7 +273,8 @@ class TestApplication(unittest.TestCase):
         self.open()
         clean = sd.sphere(5, radius=50.0)
         rough = sd.heat(clean, np.random.default_rng(5).normal(size=clean.n_points), fwhm=6.0)
-        noisy = sd.Surface(clean.points * (1 + 0.01 * rough[:, None] / rough.std()), clean.triangles)
+        noisy = sd.Surface(np.round(clean.points * (1 + 0.01 * rough[:, None] / rough.std()), 4),
+                           clean.triangles)
         write_off(self.folder / "scan.off", noisy)
         runs = self.runs()
         self.drop("scan.off")
@@ -288,7 +289,7 @@ class TestApplication(unittest.TestCase):
         path = self.download()
         points = np.loadtxt(path.read_text().splitlines()[2:2 + noisy.n_points])
         error = np.linalg.norm(points, axis=1) - 50
-        self.assertLess(error.std(), 0.8 * 0.5)  # 0.5: 1 % of the radius
+        self.assertLess(error.std(), 0.6 * 0.5)  # 0.5: 1 % of the radius
 
     def test_every_filter_runs_and_shows_no_message(self):
         self.open()
