@@ -16,16 +16,13 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from pictures import Panel, colour_table, display_missing, save_picture
+from pictures import COLD_TO_WARM, Panel, colour_table, display_missing, save_picture
 from surface_data import (
     array_of, make_surface, mean_edge_length, pebble, points_of, read_mesh, refined, triangles_of,
     with_arrays,
 )
 
 from vtkSurfaceDiffusion import vtkSurfaceCurvatureFilter
-
-COLD_TO_WARM = [(0.13, 0.30, 0.60), (0.55, 0.72, 0.88), (0.93, 0.93, 0.92), (0.95, 0.70, 0.50),
-                (0.65, 0.10, 0.12)]
 
 
 def mean_curvature(surface, fwhm=0.0):

@@ -22,6 +22,9 @@ from vtkmodules.vtkRenderingCore import (
 
 from scenes import save_scene
 
+# Colours of numbers of both signs.
+COLD_TO_WARM = [(0.13, 0.30, 0.60), (0.55, 0.72, 0.88), (0.93, 0.93, 0.92), (0.95, 0.70, 0.50),
+                (0.65, 0.10, 0.12)]
 INK = (0.13, 0.14, 0.16)
 SMALL = 300  # smaller panels, in pixels of height, have a title only
 ENLARGED = 3  # magnification of close-ups

@@ -97,7 +97,10 @@ BlockInput DerivativesRun::WithoutMissing(const BlockInput& input)
         throw ErrorAt(
           fields.DataName, "is infinite", fields.Data.OnCells, i, "allowed: finite values and NaN");
       }
-      this->MissingRows[i] = values.row(i).hasNaN();
+      // What the mask leaves out does not matter.
+      const bool isMasked = fields.Mask.OnCells == fields.Data.OnCells &&
+        !fields.Mask.Values.empty() && fields.Mask.Values[i] != 0;
+      this->MissingRows[i] = !isMasked && values.row(i).hasNaN();
       isAny = isAny || this->MissingRows[i];
     }
     if (!isAny)

@@ -328,7 +328,7 @@ class TestProxies(unittest.TestCase):
              ["AutomaticThreshold", "NoiseLevel", "EdgeWidth"]),
             ("SurfaceDenoisingFilter", ["SurfaceType", "NoiseLevel"]),
             ("SurfaceCurvatureFilter", ["FWHM"]),
-            ("SurfaceDerivativesFilter", ["Quantity", "SmoothingFWHM"]),
+            ("SurfaceDerivativesFilter", ["Quantity", "SmoothingFWHM", "ResultOnCells"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
             ("SurfaceReliefFilter", ["Height", "Base", "Levels", "Overhang"]),

@@ -128,6 +128,7 @@ DEFAULTS = {
 EDGE_FUNCTIONS = ("TotalVariation", "PeronaMalikExponential", "PeronaMalikRational", "Charbonnier",
                   "Weickert", "Constant")
 WORDS = {
+    "Quantity": ("Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity"),
     "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),
     "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),
     "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit"),
