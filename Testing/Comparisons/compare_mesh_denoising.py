@@ -314,7 +314,8 @@ def main():
                   "Mesh Normal\nFiltering (W. Zhang, B. Deng, J. Zhang, S. Bouaziz, L. Liu, CGF 34(7), "
                   "2015); the number in a name is\nthe noise in mean edge lengths. KinectPyramid, "
                   "the scan of a depth camera, comes with the data of\nMeshTGV; its noise is "
-                  "correlated over neighbouring points.")
+                  "correlated over neighbouring points. It\nis open: its volume is that of the cones over "
+                  "its triangles from a corner of its box.")
     elif arguments.meshes:
         meshes = spoil_meshes(Path(arguments.meshes))
         source = ("The meshes are those of libcgal-demo, with noise of this standard deviation in mean "

@@ -59,7 +59,7 @@ def all_measures(results):
             [[row["program"], f"{row['angle']:.2f}", f"{row['distance']:.3f}",
               f"{100 * row['volume']:+.2f} %", str(row["flipped"]),
               "" if row["intersecting"] is None else str(row["intersecting"]),
-              f"{row['seconds']:.2f}" if row["seconds"] else ""] for row in rows]))
+              "" if row["program"] == "noisy" else f"{row['seconds']:.2f}"] for row in rows]))
     return "\n".join(parts)
 
 
@@ -78,7 +78,7 @@ def all_losses(results):
             known = [row for row in rows[1:] if row[key] is not None]
             best = min(known, key=lambda row: abs(row[key]), default=ours)
             if ours[key] is not None and abs(best[key]) < abs(ours[key]):
-                lines.append(f"- {name}, {key}: {best['program']}, {best[key]:.3g} "
+                lines.append(f"- {name}, {key}: {best['program']}, {best[key] + 0.0:.3g} "
                              f"(`denoise_mesh`: {ours[key]:.3g})")
     return "\n".join(lines) or "nowhere"
 

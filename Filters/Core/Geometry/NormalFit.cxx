@@ -116,7 +116,7 @@ void FitToNormals(const TriangleMesh& mesh, const Points& given, const Points& n
   const FitSystem system(mesh, given, normals, fixed, settings, points, parallel);
   // In displacements from the given points, which may be far from the origin.
   Points x = points - given;
-  Points residual(count, 3), direction(count, 3), product(count, 3);
+  Points residual(count, 3), direction(count, 3), product(count, 3), preconditioned(count, 3);
   double rz = Sum(parallel, count,
     [&](Index i)
     {
@@ -149,12 +149,11 @@ void FitToNormals(const TriangleMesh& mesh, const Points& given, const Points& n
       {
         x.row(i) += length * direction.row(i);
         residual.row(i) -= length * product.row(i);
-        return residual.row(i).dot(system.Precondition(residual.row(i), i));
+        preconditioned.row(i) = system.Precondition(residual.row(i), i);
+        return residual.row(i).dot(preconditioned.row(i));
       });
     ForEach(parallel, count,
-      [&](Index i) {
-        direction.row(i) = system.Precondition(residual.row(i), i) + next / rz * direction.row(i);
-      });
+      [&](Index i) { direction.row(i) = preconditioned.row(i) + next / rz * direction.row(i); });
     rz = next;
   }
   points = given + x;
