@@ -166,7 +166,9 @@ NB_MODULE(_core, m)
            const std::optional<FactorArray>&, const nb::object&>(),
       "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "slowness"_a.none(), "progress"_a.none())
     .def("has_point", &SurfaceDistances::HasPoint, "point"_a)
-    .def("from_all", &SurfaceDistances::FromAll, "points"_a, "starts"_a, "progress"_a.none())
+    .def("from_all", &SurfaceDistances::FromAll, "points"_a, "starts"_a, "apart"_a,
+      "progress"_a.none())
+    .def("by_heat", &SurfaceDistances::ByHeat, "points"_a, "m"_a, "progress"_a.none())
     .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 
   BindSingleRun<CurvatureFinder>(m, "CurvatureRun");

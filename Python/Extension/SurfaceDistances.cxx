@@ -44,7 +44,7 @@ SurfaceDistances::SurfaceDistances(std::shared_ptr<const InputSurface> surface,
 }
 
 nb::tuple SurfaceDistances::FromAll(
-  const LongArray& points, const FactorArray& starts, const nb::object& progress) const
+  const LongArray& points, const FactorArray& starts, bool apart, const nb::object& progress) const
 {
   const TriangleMesh& mesh = this->Built->Mesh();
   const double unit = mesh.LengthUnit();
@@ -60,10 +60,11 @@ nb::tuple SurfaceDistances::FromAll(
         const Index vertex = this->Built->VertexOf(static_cast<Index>(points.data()[k]));
         const auto number = static_cast<Index>(k);
         const double start = starts.data()[k] / unit;
-        sources.push_back({ vertex, start, 0, number, start });
+        sources.push_back({ vertex, start, apart ? number : 0, number, start });
       }
-      const GeodesicDistance::Arrival arrival =
-        this->Fronts->Find(sources, std::numeric_limits<double>::infinity(), monitor);
+      const GeodesicDistance::Arrival arrival = apart
+        ? this->Fronts->FindNearest(sources, monitor)
+        : this->Fronts->Find(sources, std::numeric_limits<double>::infinity(), monitor);
       for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
       {
         const auto point = static_cast<std::size_t>(mesh.InputVertex()[i]);
@@ -72,6 +73,33 @@ nb::tuple SurfaceDistances::FromAll(
       }
     });
   return nb::make_tuple(NewArray(std::move(times)), NewArray(std::move(rows)));
+}
+
+nb::object SurfaceDistances::ByHeat(const LongArray& points, double m, const nb::object& progress)
+{
+  const TriangleMesh& mesh = this->Built->Mesh();
+  std::vector<double> found(this->Input->NumberOfPoints(), std::numeric_limits<double>::infinity());
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      if (!this->Heat)
+      {
+        this->Heat = std::make_unique<const HeatDistance>(
+          this->Built->SharedAssembler(), m, PythonThreads::Instance(), monitor.Part(0.0, 0.7));
+      }
+      std::vector<HeatSource> sources;
+      for (std::size_t k = 0; k < points.size(); ++k)
+      {
+        sources.push_back({ this->Built->VertexOf(static_cast<Index>(points.data()[k])) });
+      }
+      const Values distances = this->Heat->Find({ sources }, monitor.Part(0.7, 1.0));
+      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      {
+        found[static_cast<std::size_t>(mesh.InputVertex()[i])] =
+          distances(i, 0) * mesh.LengthUnit();
+      }
+    });
+  return NewArray(std::move(found));
 }
 
 nb::tuple SurfaceDistances::FromEach(

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Geodesics/GeodesicDistance.h"
+#include "Core/Geodesics/HeatDistance.h"
 #include "InputData.h"
 
 #include <memory>
@@ -28,9 +29,14 @@ public:
   }
 
   /// The times (n) from sources at points with start times, and the row of the source that each
-  /// point is reached from (n): infinite and -1 where none arrives.
-  nanobind::tuple FromAll(
-    const LongArray& points, const FactorArray& starts, const nanobind::object& progress) const;
+  /// point is reached from (n): infinite and -1 where none arrives. apart: fronts of different sources
+  /// do not mix, so that the row is that of the smallest time of one source alone.
+  nanobind::tuple FromAll(const LongArray& points, const FactorArray& starts, bool apart,
+    const nanobind::object& progress) const;
+
+  /// The distances (n) from sources at points by the heat method, without speeds. Its factors are
+  /// kept.
+  nanobind::object ByHeat(const LongArray& points, double m, const nanobind::object& progress);
 
   /// data, indices and indptr of the times up to the cutoff from each of the points, one row each.
   nanobind::tuple FromEach(
@@ -40,6 +46,7 @@ private:
   std::shared_ptr<const InputSurface> Input;
   std::unique_ptr<const Surface> Built;
   std::unique_ptr<const GeodesicDistance> Fronts;
+  std::unique_ptr<const HeatDistance> Heat;
 };
 
 } // namespace SurfaceDiffusion

@@ -17,6 +17,9 @@ from ._surface import Surface, SurfaceLike, as_flags, as_numbers, as_surface, fi
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
 
+#: m of the time step m h^2 of the heat method, as in vtkSurfaceDistanceFilter
+HEAT_STEP = 2.0
+
 
 class NearestSources(NamedTuple):
     """Distances from the nearest of several sources, and which one that is."""
@@ -32,6 +35,7 @@ def distance(
     start: ArrayLike | None = None,
     speed: ArrayLike | None = None,
     mask: ArrayLike | None = None,
+    method: str = "Eikonal",
     progress: Progress = None,
 ) -> NDArray[np.float64]:
     """The distance along a surface from the nearest source, or with `speed` the time at which
@@ -39,8 +43,9 @@ def distance(
 
     Fast marching on the triangles, which lays out the way from the source in the plane of each
     triangle: distances in a plane are exact, and those of an icosphere of 10,242 points have a mean
-    error of 0.07 % of the largest one. Without `speed` the triangles are those of the intrinsic
-    Delaunay triangulation.
+    error of 0.09 % of the largest one. Without `speed` the triangles are those of the intrinsic
+    Delaunay triangulation. The method Heat has smooth level sets and, on the same sphere, an error of
+    0.22 %.
 
     Parameters
     ----------
@@ -56,6 +61,9 @@ def distance(
         are barriers.
     mask : array_like, shape (n,) or (m,), optional
         Nonzero leaves a point with its faces, or a face, out: a barrier, too.
+    method : str
+        "Eikonal", fast marching, or "Heat", the heat method with the step 2 h^2, where h is the mean
+        edge length, without `start` and `speed`.
     progress : bool or callable, optional
         As for :func:`heat`.
 
@@ -67,12 +75,14 @@ def distance(
     Raises
     ------
     ValueError
-        Without sources, and if one is a point that no face uses or that is masked.
+        Without sources, and if one is a point that no face uses or that is masked; with the method
+        Heat and `start` or `speed`.
 
     References
     ----------
     R. Kimmel, J. A. Sethian, Computing geodesic paths on manifolds, PNAS 95, 1998, 8431-8435.
     M. Novotni, R. Klein, Computing geodesic distances on triangular meshes, WSCG 2002.
+    K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat, ACM Trans. Graph. 32(5), 2013.
 
     Examples
     --------
@@ -81,8 +91,18 @@ def distance(
     >>> distance(kite, 1).round(3)
     array([3.162, 0.   , 3.162, 6.   ])
     """
-    return nearest_sources(
-        surface, sources, start=start, speed=speed, mask=mask, progress=progress).distance
+    if method not in ("Eikonal", "Heat"):
+        raise ValueError(f"method is {shorten(method)}; allowed: Eikonal, Heat")
+    if method == "Eikonal":
+        return _march(surface, sources, start, speed, mask, False, progress).distance
+    for name, given in (("start", start), ("speed", speed)):
+        if given is not None:
+            raise ValueError(f"method is Heat; allowed: Eikonal together with {name}")
+    fronts, rows = _prepare(as_surface(surface), sources, None, mask)
+    with ProgressReporter(progress) as reporter:
+        found: NDArray[np.float64] = fronts.by_heat(rows, HEAT_STEP, reporter.callable)
+        reporter.finish_part()
+    return found
 
 
 def nearest_sources(
@@ -94,7 +114,9 @@ def nearest_sources(
     mask: ArrayLike | None = None,
     progress: Progress = None,
 ) -> NearestSources:
-    """The distance from the nearest source, as by :func:`distance`, and the row of this source.
+    """The distance from the nearest source, and the row of this source. Fronts of the sources do not
+    mix: the distance is the smallest of those by :func:`distance` from each source alone. From all
+    sources together, as along a line of points, that function has plane fronts.
 
     Parameters
     ----------
@@ -104,7 +126,7 @@ def nearest_sources(
     Returns
     -------
     NearestSources
-        `distance` (n,) and `source` (n,).
+        `distance` (n,) and `source` (n,); of equally near sources, the first one.
 
     Examples
     --------
@@ -114,15 +136,22 @@ def nearest_sources(
     >>> nearest_sources(strip, [0, 5]).source
     array([0, 0, 1, 0, 1, 1])
     """
-    surface = as_surface(surface)
-    fronts, rows = _prepare(surface, sources, speed, mask)
+    return _march(surface, sources, start, speed, mask, True, progress)
+
+
+def _march(
+    surface: SurfaceLike, sources: Any, start: Any, speed: Any, mask: Any, apart: bool,
+    progress: Progress
+) -> NearestSources:
+    fronts, rows = _prepare(as_surface(surface), sources, speed, mask)
     times = np.zeros(len(rows)) if start is None else np.asarray(
         as_numbers("start", start), dtype=np.float64).reshape(-1)
     if times.shape != rows.shape or not np.isfinite(times).all():
         raise ValueError(f"start is {shorten(start)}; allowed: {len(rows)} finite numbers, one per "
                          "source")
     with ProgressReporter(progress) as reporter:
-        found, source = fronts.from_all(rows, np.ascontiguousarray(times), reporter.callable)
+        found, source = fronts.from_all(
+            rows, np.ascontiguousarray(times), apart, reporter.callable)
         reporter.finish_part()
     return NearestSources(found, source.astype(np.int64))
 
