@@ -180,7 +180,7 @@ void ReliefRun::ListResults(const Triangles& triangles, const Relief& relief)
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   Points moved = surface.Points();
-  Vector heights = Vector::Zero(moved.rows());
+  Vector heights = relief.Heights; // at points of no triangle, which stay, those given
   for (Index p = 0; p < static_cast<Index>(moved.rows()); ++p)
   {
     const Index vertex = surface.VertexOf(p);
