@@ -17,7 +17,7 @@ __all__ = ["ConductionVelocity", "conduction_velocity", "curl", "divergence", "g
 
 
 class ConductionVelocity(NamedTuple):
-    """The velocity of a wave, and its length."""
+    """The velocity of a wave on a surface, and its length, the speed."""
 
     velocity: NDArray[np.float64]  #: (n, 3), in the tangent planes
     speed: NDArray[np.float64]  #: (n,)

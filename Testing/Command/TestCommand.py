@@ -19,8 +19,8 @@ import numpy as np
 import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
-from surfacediffusion import (Surface, denoise_mesh, get_number_of_threads, gradient, heat, interpolate,
-                              intrinsic_tv, set_number_of_threads)
+from surfacediffusion import (Surface, curvature, denoise_mesh, get_number_of_threads, gradient, heat,
+                              interpolate, intrinsic_tv, set_number_of_threads)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
@@ -374,10 +374,11 @@ class OtherCommands(CommandTest):
             data = read_data("out.shape.gii")
             self.assertEqual(list(data.names),
                              ["mean", "gaussian", "k1", "k2", "shape_index", "curvedness"])
-            radius = np.linalg.norm(POINTS, axis=1).mean()
-            expected = [1 / radius, 1 / radius**2, 1 / radius, 1 / radius, 1, 1 / radius]
-            sign = np.sign(data.parts[0].values[0, 0]) ** [1, 2, 1, 1, 1, 2]
-            np.testing.assert_allclose(data.parts[0].values.mean(axis=0), sign * expected, rtol=0.06)
+            found = curvature(self.surface, fwhm=float(width))
+            expected = np.column_stack([found.mean, found.gaussian, found.principal,
+                                        found.shape_index, found.curvedness])
+            np.testing.assert_allclose(data.parts[0].values, expected, rtol=1e-5, atol=1e-6)
+            self.assertAlmostEqual(abs(expected[:, 0].mean()), 0.1, delta=0.01)
 
     def test_derivatives_are_those_of_the_function(self):
         self.succeed("derivatives lh.surf.gii lh.func.gii out.func.gii --fwhm 3")

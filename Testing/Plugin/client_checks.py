@@ -25,6 +25,8 @@ RESULTS = {
     "HarmonicMapFilter": (("POINTS", "NormalsHarmonic"), 0.528583, ("POINTS", "f")),  # seen in the shading
     "MumfordShahFilter": (("POINTS", "fMumfordShah"), 0.620381, ("POINTS", "fMumfordShah")),
     "SurfaceDenoisingFilter": (("POINTS", "Displacement"), 0.00255440, ("POINTS", "f")),
+    "SurfaceCurvatureFilter": (("POINTS", "MeanCurvature"), 17.5400931, ("POINTS", "MeanCurvature")),
+    "SurfaceDerivativesFilter": (("POINTS", "fGradient"), 10.6204755, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.236088, ("POINTS", "f")),
