@@ -12,8 +12,8 @@ from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 # These need an array of the surface; the others work on the surface itself.
 NEED_AN_ARRAY = {
-    "FVMHeatFilter", "IntrinsicTVFilter", "MumfordShahFilter", "SurfaceReliefFilter",
-    "SurfaceSegmentationFilter", "TensorDiffusionFilter",
+    "FVMHeatFilter", "IntrinsicTVFilter", "MumfordShahFilter", "SurfaceDerivativesFilter",
+    "SurfaceReliefFilter", "SurfaceSegmentationFilter", "TensorDiffusionFilter",
 }
 
 
