@@ -36,6 +36,7 @@ from vtkmodules.vtkIOGeometry import vtkSTLWriter
 from vtkSurfaceDiffusion import vtkSurfaceReliefFilter, vtkTuringTextureFilter
 
 REMOVED = 0.8  # of the triangles, by decimation
+PLASTIC = (217, 169, 98)  # of the pictures: red, green, blue
 SAMPLES = 500  # points whose distance to the decimated surface is measured
 
 
@@ -175,7 +176,8 @@ def distance_between(surface, fewer):
     return max(abs(distance.EvaluateFunction(*point)) for point in points[chosen].tolist())
 
 
-def open_edges(surface):
+def unpaired_edges(surface):
+    """The number of edges that do not have two triangles."""
     edges = vtkFeatureEdges()
     edges.SetInputData(surface)
     edges.FeatureEdgesOff()
@@ -189,7 +191,11 @@ def shaded(surface):
     normals.SetInputData(surface)
     normals.SetFeatureAngle(50)
     normals.Update()
-    return normals.GetOutput()
+    output = normals.GetOutput()
+    colours = numpy_to_vtk(np.tile(np.uint8(PLASTIC), (output.GetNumberOfPoints(), 1)), deep=True)
+    colours.SetName("Colour")
+    output.GetPointData().AddArray(colours)
+    return output
 
 
 def main():
@@ -217,10 +223,10 @@ def main():
         print(f"{part.title}: {counts[0]} triangles, with the pattern {counts[1]} ({steps[0]:.1f} s), "
               f"relief of {part.height} mm ({steps[1]:.1f} s), decimated {counts[2]} ({steps[2]:.1f} s, "
               f"moved by {distance_between(relief.GetOutput(), fewer):.3f} mm); "
-              f"{relief.GetOpenEdges()} open edges, {open_edges(fewer)} after decimation, "
+              f"{relief.GetOpenEdges()} open edges, {unpaired_edges(fewer)} unpaired after decimation, "
               f"{relief.GetCrossingTriangles()} crossing triangles, smallest wall "
               f"{relief.GetSmallestWall():.2f} mm, volume {relief.GetVolumeChange():+.0f} mm^3")
-        panels.append(Panel(shaded(relief.GetOutput()), "", part.title,
+        panels.append(Panel(shaded(relief.GetOutput()), "Colour", part.title,
                             f"{part.size:g} mm wide, {abs(part.height):g} mm "
                             + ("high" if part.height > 0 else "deep"),
                             part.view, (0, 0, 1)))

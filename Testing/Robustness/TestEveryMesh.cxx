@@ -270,7 +270,16 @@ TEST_P(EveryBadMesh, IsTakenByEveryModel)
   for (const FilterKind& kind : AllFilters())
   {
     SCOPED_TRACE(kind.Name);
-    this->Run(kind.Make(), kind.Result);
+    const auto filter = kind.Make();
+    if (auto* const relief = vtkSurfaceReliefFilter::SafeDownCast(filter))
+    {
+      // The heights are those of a sphere of radius 1; relief that is larger than a surface is an error.
+      const double scale = std::min(1.0, this->Surface->GetLength() / 3.5);
+      relief->SetHeight(scale * relief->GetHeight());
+      relief->SetBase(scale * relief->GetBase());
+      relief->SetFlank(scale * relief->GetFlank());
+    }
+    this->Run(filter, kind.Result);
   }
 }
 
