@@ -30,8 +30,8 @@ from ._surface import (
 )
 
 __all__ = [
-    "curvature", "denoise_mesh", "derivatives", "direction_field", "harmonic_map", "heat", "interpolate", "intrinsic_tv",
-    "mumford_shah", "segment", "tensor_diffusion", "turing_texture",
+    "curvature", "denoise_mesh", "derivatives", "direction_field", "harmonic_map", "heat", "interpolate",
+    "intrinsic_tv", "mumford_shah", "segment", "tensor_diffusion", "turing_texture",
 ]
 
 #: The number of columns of data that a run holds in double precision, if they are independent.

@@ -731,7 +731,8 @@ def _show_settings(name: str, function: Callable[..., Any]) -> None:
 for _name in __all__:
     if _name not in globals():  # a model without results of a special kind
         globals()[_name] = _of_data(_name, "The results have the names of those of the filter for VTK.")
-    _show_settings(_name, globals()[_name])
+    if _name in _functions.__all__:
+        _show_settings(_name, globals()[_name])
     setattr(_Accessor, _name, _as_method(globals()[_name]))
 
 if hasattr(pyvista, "register_dataset_accessor"):

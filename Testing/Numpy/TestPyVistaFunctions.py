@@ -351,7 +351,7 @@ class Meshes(unittest.TestCase):
         import surfacediffusion as sd
         from surfacediffusion import pyvista as functions
 
-        for name in functions.__all__:
+        for name in sd._functions.__all__:
             own = inspect.signature(getattr(functions, name)).parameters
             settings = sd._settings.settings_of(name)
             self.assertGreater(len(settings), 3, name)
