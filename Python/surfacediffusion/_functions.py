@@ -19,8 +19,8 @@ from ._models import (
     read_outputs,
 )
 from ._result import (
-    CurvatureResult, DerivativesResult, DiffusionResult, EdgeResult, HarmonicMapResult, InterpolationResult, MeshDenoisingResult,
-    SegmentationResult, TensorDiffusionResult, TextureResult,
+    CurvatureResult, DerivativesResult, DiffusionResult, EdgeResult, HarmonicMapResult,
+    InterpolationResult, MeshDenoisingResult, SegmentationResult, TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, spell_documentation

@@ -110,7 +110,7 @@ class Distance(unittest.TestCase):
             "start is .* 1 finite numbers": dict(sources=[1], start=[0.0, 1.0]),
             "speed is -1.0 in row 4; allowed: finite numbers, 0 or more": dict(
                 sources=1, speed=np.where(np.arange(80) == 4, -1.0, 1.0)),
-            "method is Dijkstra; allowed: Eikonal, Heat": dict(sources=1, method="Dijkstra"),
+            "method is 'Dijkstra'; allowed: Eikonal, Heat": dict(sources=1, method="Dijkstra"),
             "method is Heat; allowed: Eikonal together with speed": dict(
                 sources=1, method="Heat", speed=np.ones(80)),
             "method is Heat; allowed: Eikonal together with start": dict(
