@@ -354,7 +354,7 @@ class Meshes(unittest.TestCase):
         for name in sd._functions.__all__:
             own = inspect.signature(getattr(functions, name)).parameters
             settings = sd._settings.settings_of(name)
-            self.assertGreater(len(settings), 3, name)
+            self.assertGreater(len(settings), 1, name)
             for keyword in settings:
                 self.assertEqual(
                     own[keyword].default,

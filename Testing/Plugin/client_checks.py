@@ -29,7 +29,7 @@ RESULTS = {
     "SurfaceDerivativesFilter": (("POINTS", "fGradient"), 10.6204755, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
-    "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.236088, ("POINTS", "f")),
+    "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
     "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),

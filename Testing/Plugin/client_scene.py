@@ -27,7 +27,7 @@ BANDS = 13  # odd: x and -x look the same, since the sign of a direction has no 
 for array, largest in (
     ("fDiffused", 0.2), ("fTV", 1.0), ("NormalsHarmonic", 1.0), ("Texture", 1.0), ("Direction", 1.0),
     ("fMumfordShah", 1.0), ("fBeltrami", 0.5), ("RegionProbability", 1.0), ("Displacement", 0.02),
-    ("fInterpolated", 1.0), ("ReliefHeight", 1.0), ("MeanCurvature", 40.0), ("fGradient", 30.0),
+    ("fInterpolated", 1.0), ("ReliefHeight", 0.02), ("MeanCurvature", 40.0), ("fGradient", 30.0),
 ):
     colors = GetColorTransferFunction(array)
     colors.AutomaticRescaleRangeMode = "Never"

@@ -198,6 +198,15 @@ void UseAtRandom(
   const FilterClass& kind = classes[seed % classes.size()];
   const auto filter = kind.Make();
   const auto untouched = kind.Make();
+  for (vtkPolyDataAlgorithm* either : { filter.Get(), untouched.Get() })
+  {
+    if (auto* const relief = vtkSurfaceReliefFilter::SafeDownCast(either))
+    {
+      // The default height is larger than these surfaces, and relief takes one component.
+      relief->SetHeight(0.02);
+      SetInputArray(relief, 0, "fidelity");
+    }
+  }
   Messages messages(filter);
   vtkSmartPointer<vtkPolyData> surface = RandomSurface(dice);
   AddRandomArrays(dice, surface);

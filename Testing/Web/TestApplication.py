@@ -111,7 +111,8 @@ class TestApplication(unittest.TestCase):
         field.click()
         item = wait_for(lambda: [e for e in self.browser.find_elements(
             By.CSS_SELECTOR, ".v-overlay--active .v-list-item") if e.text.strip() == title], title)
-        item[0].click()
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", item[0])
+        wait_for(lambda: item[0].click() or True, f"a click on {title}")  # the list may scroll still
         wait_for(lambda: not self.browser.find_elements(
             By.CSS_SELECTOR, ".v-overlay--active .v-list-item"), "the closed list")
 
