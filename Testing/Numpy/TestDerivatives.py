@@ -176,4 +176,4 @@ class Derivatives(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)
