@@ -106,6 +106,32 @@ TEST(HeatDistance, OnASphereConvergesToGreatCircles)
   EXPECT_LT(errors[2], 0.002 * Pi);
 }
 
+// The heat of many sources has gradients between them, where the distance is 0.
+TEST(HeatDistance, FromARegionIsThatFromItsRim)
+{
+  const Surface s = Icosphere(4);
+  const Vector angles = GreatCircles(s, 5);
+  std::vector<Index> cap;
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    if (angles[i] < 0.5)
+    {
+      cap.push_back(i);
+    }
+  }
+  Vector exact = Vector::Constant(s.NumberOfVertices(), Never);
+  for (const Index i : cap)
+  {
+    exact = exact.cwiseMin(GreatCircles(s, i));
+  }
+  const Vector found = Distances(s).From({ cap }).col(0);
+  EXPECT_LT((found - exact).cwiseAbs().mean(), 0.01 * Pi);
+  for (const Index i : cap)
+  {
+    EXPECT_NEAR(found[i], 0.0, 0.02);
+  }
+}
+
 // The front of a whole side is plane but at the ends of the side, whose vertices have less area for
 // the same heat.
 TEST(HeatDistance, FromALineIsPlane)

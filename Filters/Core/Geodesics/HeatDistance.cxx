@@ -144,14 +144,23 @@ Values HeatDistance::Directions(const std::vector<HeatSource>* sets, const Value
     {
       times = MarchFrom(this->Operators->SharedMesh(), sets[k]);
     }
+    // Between sources the distance is 0, where the heat has a gradient of any direction.
+    std::vector<char> isSource(static_cast<std::size_t>(heat.rows()), 0);
+    for (const HeatSource& source : sets[k])
+    {
+      isSource[static_cast<std::size_t>(source.Vertex)] |= source.Distance == 0.0 ? 1 : 0;
+    }
     ForEach(this->Parallel, triangles,
       [&](Index t)
       {
         const TriangleMesh::Shape& shape = mesh.Shapes()[static_cast<std::size_t>(t)];
         Eigen::Vector3d u;
+        int sources = 0;
         for (int a = 0; a < 3; ++a)
         {
-          u[a] = -heat(mesh.TriangleVertices()(t, a), k);
+          const Index vertex = mesh.TriangleVertices()(t, a);
+          u[a] = -heat(vertex, k);
+          sources += isSource[static_cast<std::size_t>(vertex)];
         }
         if (isFar && !(u.maxCoeff() < -LeastHeat))
         {
@@ -160,7 +169,7 @@ Values HeatDistance::Directions(const std::vector<HeatSource>* sets, const Value
             u[a] = times[static_cast<std::size_t>(mesh.TriangleVertices()(t, a))];
           }
         }
-        const Eigen::Vector2d x = shape.Area() * UnitGradient(shape, u);
+        const Eigen::Vector2d x = (sources < 3 ? shape.Area() : 0.0) * UnitGradient(shape, u);
         parts[static_cast<std::size_t>(t)] = { x.dot(Gradient(shape, 1.0, 0.0, 0.0)),
           x.dot(Gradient(shape, 0.0, 1.0, 0.0)), x.dot(Gradient(shape, 0.0, 0.0, 1.0)) };
       });
