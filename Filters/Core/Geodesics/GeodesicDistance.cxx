@@ -254,7 +254,7 @@ void GeodesicDistance::March(const std::vector<FrontSource>& sources, double cut
       queue.emplace(source.Time, source.Vertex);
     }
   }
-  constexpr std::size_t reportEvery = 16384;
+  const std::size_t reportEvery = std::clamp<std::size_t>(n / 32, 1, 16384);
   for (std::size_t visited = 0; !queue.empty();)
   {
     const auto [time, vertex] = queue.top();

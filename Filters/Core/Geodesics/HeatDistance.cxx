@@ -111,7 +111,8 @@ void HeatDistance::FindPanel(const std::vector<HeatSource>* sets, Values& distan
   {
     for (const HeatSource& source : sets[k])
     {
-      x(source.Vertex, k) += source.Share;
+      // Not the sum: where samples of a line are dense, it would be hotter than elsewhere.
+      x(source.Vertex, k) = std::max(x(source.Vertex, k), source.Share);
     }
   }
   this->Heat.Solve(x, this->Parallel);
