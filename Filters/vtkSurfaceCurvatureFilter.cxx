@@ -57,28 +57,12 @@ void vtkSurfaceCurvatureFilter::ProcessSurfaces(
     return;
   }
 
-  std::vector<SurfaceInput> inputs;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-  }
   auto& runs = this->State->Runs;
-  runs.Update(inputs, settings, progress);
+  runs.Update(surfaces, fields, settings, progress);
   this->BeginWriting();
-  std::vector<vtkPolyData*> outputs;
-  std::vector<vtkDataArray*> data;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    outputs.push_back(surfaces[b].Output);
-    data.push_back(fields[b].Data.Values);
-  }
-  std::vector<Warning> warnings = runs.FindWarnings();
-  runs.Write(outputs, fields, data, this->ResultArrayName, warnings);
+  std::vector<Warning> warnings =
+    runs.Write(surfaces, fields, nullptr, this->ResultArrayName, absences);
   this->Private->Numbers = runs.FindNumbers();
-  for (const Sentence& sentence : absences)
-  {
-    warnings.push_back({ sentence, Fingerprint() });
-  }
   this->ReportWarnings(std::move(warnings));
 }
 

@@ -70,27 +70,12 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
     return;
   }
 
-  std::vector<SurfaceInput> inputs;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-  }
   auto& runs = this->State->Runs;
-  runs.Update(inputs, settings, progress);
+  runs.Update(surfaces, fields, settings, progress);
   this->BeginWriting();
-  std::vector<vtkPolyData*> outputs;
-  for (const SurfaceBlock& surface : surfaces)
-  {
-    outputs.push_back(surface.Output);
-  }
-  std::vector<Warning> warnings = runs.FindWarnings();
-  runs.Write(outputs, fields, std::vector<vtkDataArray*>(surfaces.size(), nullptr),
-    this->ResultArrayName, warnings);
+  std::vector<Warning> warnings =
+    runs.Write(surfaces, fields, nullptr, this->ResultArrayName, absences);
   this->Private->Numbers = runs.FindNumbers();
-  for (const Sentence& sentence : absences)
-  {
-    warnings.push_back({ sentence, Fingerprint() });
-  }
   this->ReportWarnings(std::move(warnings));
 }
 

@@ -56,14 +56,9 @@ void vtkSurfaceDerivativesFilter::ProcessSurfaces(
   }
   Problems absences;
   SettleAbsence(fields, names, problems, absences);
+  PassBlocksWithoutData(surfaces, fields);
   for (std::size_t b = surfaces.size(); b-- > 0;)
   {
-    if (!fields[b].Data.Values) // a block without the data of others passes through
-    {
-      surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(b));
-      fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(b));
-      continue;
-    }
     Problems here;
     const FieldSummary summary = fields[b].Summarize();
     settings.Check(&summary, here);
@@ -75,28 +70,12 @@ void vtkSurfaceDerivativesFilter::ProcessSurfaces(
     return;
   }
 
-  std::vector<SurfaceInput> inputs;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-  }
   auto& runs = this->State->Runs;
-  runs.Update(inputs, settings, progress);
+  runs.Update(surfaces, fields, settings, progress);
   this->BeginWriting();
-  std::vector<vtkPolyData*> outputs;
-  std::vector<vtkDataArray*> data;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    outputs.push_back(surfaces[b].Output);
-    data.push_back(fields[b].Data.Values);
-  }
-  std::vector<Warning> warnings = runs.FindWarnings();
-  runs.Write(outputs, fields, data, this->ResultArrayName, warnings);
+  std::vector<Warning> warnings =
+    runs.Write(surfaces, fields, &InputFields::Data, this->ResultArrayName, absences);
   this->Private->Numbers = runs.FindNumbers();
-  for (const Sentence& sentence : absences)
-  {
-    warnings.push_back({ sentence, Fingerprint() });
-  }
   this->ReportWarnings(std::move(warnings));
 }
 

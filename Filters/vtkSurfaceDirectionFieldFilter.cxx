@@ -72,23 +72,11 @@ void vtkSurfaceDirectionFieldFilter::ProcessSurfaces(
     return;
   }
 
-  std::vector<SurfaceInput> inputs;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-  }
   auto& runs = this->State->Runs;
-  runs.Update(inputs, settings, progress);
+  runs.Update(surfaces, fields, settings, progress);
   this->BeginWriting();
-  std::vector<vtkPolyData*> outputs;
-  std::vector<vtkDataArray*> hints;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    outputs.push_back(surfaces[b].Output);
-    hints.push_back(fields[b].Direction.Values);
-  }
-  std::vector<Warning> warnings = runs.FindWarnings();
-  runs.Write(outputs, fields, hints, this->ResultArrayName, warnings);
+  std::vector<Warning> warnings =
+    runs.Write(surfaces, fields, &InputFields::Direction, this->ResultArrayName);
   this->Private->Numbers = runs.FindNumbers();
   this->ReportWarnings(std::move(warnings));
 }

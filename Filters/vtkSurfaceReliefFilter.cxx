@@ -116,7 +116,7 @@ void vtkSurfaceReliefFilter::ProcessSurfaces(
   {
     problems.emplace_back("ResultArrayName is empty; allowed: any name");
   }
-  const std::vector<SurfaceBlock> surfaces = this->SelectSurfaces(blocks, problems);
+  std::vector<SurfaceBlock> surfaces = this->SelectSurfaces(blocks, problems);
   std::vector<InputFields> fields(surfaces.size());
   BlockSentences found;
   std::vector<std::string> names;
@@ -140,35 +140,18 @@ void vtkSurfaceReliefFilter::ProcessSurfaces(
   {
     return;
   }
+  PassBlocksWithoutData(surfaces, fields);
 
-  std::vector<SurfaceInput> inputs;
-  std::vector<vtkPolyData*> outputs;
-  std::vector<vtkDataArray*> values;
-  std::vector<InputFields> present;
+  auto& runs = this->State->Runs;
+  runs.Update(surfaces, fields, *copy, progress);
+  this->BeginWriting();
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    if (fields[b].Data.Values) // a block without values passes through
-    {
-      present.push_back(fields[b]);
-      outputs.push_back(surfaces[b].Output);
-      values.push_back(fields[b].Data.Values);
-      inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-    }
+    TurnPolygons(surfaces[b].Output, runs.RunOf(b), runs.CellsOf(b));
   }
-  auto& runs = this->State->Runs;
-  runs.Update(inputs, *copy, progress);
-  this->BeginWriting();
-  for (std::size_t b = 0; b < outputs.size(); ++b)
-  {
-    TurnPolygons(outputs[b], runs.RunOf(b), runs.CellsOf(b));
-  }
-  std::vector<Warning> warnings = runs.FindWarnings();
-  runs.Write(outputs, present, values, this->ResultArrayName, warnings);
+  std::vector<Warning> warnings =
+    runs.Write(surfaces, fields, &InputFields::Data, this->ResultArrayName, absences);
   this->Private->Numbers = runs.FindNumbers();
-  for (const Sentence& sentence : absences)
-  {
-    warnings.push_back({ sentence, Fingerprint() });
-  }
   this->ReportWarnings(std::move(warnings));
 }
 

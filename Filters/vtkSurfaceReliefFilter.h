@@ -13,7 +13,7 @@
  * between them. d is the vector with d . n = 1 for the normals n of the triangles around the point,
  * in the sense of least squares weighted by angles, and has at most length 2. So flat faces at a
  * sharp edge move by h, and a relief of constant height on a box is a larger box. Positive heights
- * go outwards from closed surfaces, whatever the orientation of their cells.
+ * point out of closed surfaces, with any orientation of their cells.
  *
  * Heights are lowered where the surface would come too close to itself: h |d| is at most half of
  * the radius of the largest ball that touches the surface at the point, on the side to which it

@@ -19,6 +19,20 @@
 namespace SurfaceDiffusion
 {
 
+/// Leave out the blocks without the data that others have: they pass through.
+template <typename BlockType>
+void PassBlocksWithoutData(std::vector<BlockType>& blocks, std::vector<InputFields>& fields)
+{
+  for (std::size_t b = blocks.size(); b-- > 0;)
+  {
+    if (!fields[b].Data.Values)
+    {
+      blocks.erase(blocks.begin() + static_cast<std::ptrdiff_t>(b));
+      fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(b));
+    }
+  }
+}
+
 /// The runs of a filter without time steps, one for each surface of its input. They are kept from
 /// update to update, so that unchanged surfaces are not computed again.
 template <typename RunType>
@@ -27,11 +41,17 @@ class SurfaceRuns
   static_assert(std::is_base_of_v<SurfaceRun, RunType>);
 
 public:
-  /// Update the run of each surface. Throws std::runtime_error, std::bad_alloc, Aborted.
-  template <typename SettingsType>
-  void Update(const std::vector<SurfaceInput>& surfaces, SettingsType& settings,
-    const ProgressMonitor& progress)
+  /// Update the run of each surface. fields: the arrays of each block. Throws std::runtime_error,
+  /// std::bad_alloc, Aborted.
+  template <typename BlockType, typename SettingsType>
+  void Update(const std::vector<BlockType>& blocks, const std::vector<InputFields>& fields,
+    SettingsType& settings, const ProgressMonitor& progress)
   {
+    std::vector<SurfaceInput> surfaces;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+    {
+      surfaces.push_back({ blocks[b].Input, &fields[b], blocks[b].Name });
+    }
     const std::vector<BlockInput> inputs = this->Inputs.Make(surfaces, RunType::ExcludesMasked);
     const double count = static_cast<double>(surfaces.size());
     this->Runs.resize(surfaces.size());
@@ -50,25 +70,34 @@ public:
     }
   }
 
-  /// Add the outputs of each surface. data: its array that a result of the same name may replace.
-  void Write(const std::vector<vtkPolyData*>& surfaces, const std::vector<InputFields>& fields,
-    const std::vector<vtkDataArray*>& data, const std::string& name,
-    std::vector<Warning>& warnings) const
+  /// Add the outputs of each surface. data: its array that a result of the same name may replace, or
+  /// null. absences: of arrays in some blocks. Returns the warnings that hold.
+  template <typename BlockType>
+  std::vector<Warning> Write(const std::vector<BlockType>& blocks,
+    const std::vector<InputFields>& fields, LocatedArray InputFields::*data,
+    const std::string& name, const Problems& absences = {}) const
   {
+    std::vector<Warning> warnings = this->FindWarnings();
     std::vector<std::string> replaced;
-    for (std::size_t b = 0; b < surfaces.size(); ++b)
+    for (std::size_t b = 0; b < blocks.size(); ++b)
     {
       OutputSource source{ this->Runs[b]->GetSurface(), SMPParallelFor::Instance() };
-      source.NumberOfCells = surfaces[b]->GetNumberOfCells();
+      source.NumberOfCells = blocks[b].Output->GetNumberOfCells();
       source.CellOf = [&cells = this->Inputs.CellsOf(b)](Index t)
       { return cells[static_cast<std::size_t>(t)]; };
       WriteOutputs(this->Runs[b]->Outputs(), source,
-        { surfaces[b], fields[b], name, VTK_DOUBLE, data[b], replaced });
+        { blocks[b].Output, fields[b], name, VTK_DOUBLE, data ? (fields[b].*data).Values : nullptr,
+          replaced });
     }
     if (!replaced.empty())
     {
       warnings.push_back({ DescribeReplacement(replaced), Fingerprint() });
     }
+    for (const Sentence& sentence : absences)
+    {
+      warnings.push_back({ sentence, Fingerprint() });
+    }
+    return warnings;
   }
 
   const RunType& RunOf(std::size_t surface) const { return *this->Runs[surface]; }

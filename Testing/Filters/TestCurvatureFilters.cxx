@@ -59,7 +59,7 @@ TEST(CurvatureFilter, OfASphereIsThatOfItsRadius)
     double point[3];
     sphere->GetPoint(0, point);
     const double radius = vtkMath::Norm(point);
-    // The sign tells whether the normals are outward.
+    // Positive with the normals outward, negative with the normals inward.
     double corners[3][3];
     vtkNew<vtkIdList> ids;
     sphere->GetCellPoints(0, ids);

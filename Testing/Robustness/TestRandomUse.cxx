@@ -12,6 +12,7 @@
 #include "Twins.h"
 
 #include "vtkCellArray.h"
+#include "vtkInformation.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -149,16 +150,24 @@ bool IsFinite(vtkDataArray* array, vtkIdType point)
 bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 {
   vtkPolyData* const output = filter->GetOutput();
-  const bool spreads = filter->IsA("vtkSurfaceDerivativesFilter");
-  const auto isMissing = [&](vtkDataArray* given, vtkIdType i)
+  bool spreads = false;
+  if (filter->IsA("vtkSurfaceDerivativesFilter"))
   {
-    bool missing = given && !IsFinite(given, i);
-    for (vtkIdType j = 0; given && spreads && !missing && j < given->GetNumberOfTuples(); ++j)
+    vtkInformation* const chosen = filter->GetInputArrayInformation(0);
+    const char* const name = chosen->Get(vtkDataObject::FIELD_NAME());
+    vtkDataSetAttributes* arrays = input->GetCellData();
+    if (chosen->Get(vtkDataObject::FIELD_ASSOCIATION()) != vtkDataObject::FIELD_ASSOCIATION_CELLS)
     {
-      missing = !IsFinite(given, j);
+      arrays = input->GetPointData();
     }
-    return missing;
-  };
+    vtkDataArray* const data = name && *name ? arrays->GetArray(name) : arrays->GetScalars();
+    for (vtkIdType i = 0; data && i < data->GetNumberOfTuples(); ++i)
+    {
+      spreads = spreads || !IsFinite(data, i);
+    }
+  }
+  const auto isMissing = [&](vtkDataArray* given, vtkIdType i)
+  { return spreads || (given && !IsFinite(given, i)); };
   bool finite = true;
   const auto check = [&](vtkDataSetAttributes* added, vtkDataSetAttributes* before)
   {

@@ -68,7 +68,7 @@ void FindDisk(const TriangleMesh& mesh, Index centre, std::vector<Index>& disk)
   }
 }
 
-/// What the quadratic polynomial of a vertex tells.
+/// The normal and the curvatures of the quadratic polynomial at a vertex.
 struct LocalShape
 {
   Eigen::RowVector3d Normal;
