@@ -184,7 +184,7 @@ void InfluenceSpectrum::Sample(const SmoothFit& fit, const ScatteredValues& data
 
 bool InfluenceSpectrum::Rescale(SmoothFit& fit, double mu) const
 {
-  constexpr double most = 1e3;
+  constexpr double most = 1e6;
   if (!this->IsExact || mu > most * this->Mu || this->Mu > most * mu)
   {
     return false;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -89,6 +90,12 @@ void SmoothFit::Rescale(double mu, const Eigen::MatrixXd& vectors, const Vector&
   this->Scales = (1.0 - ratio) / (shares.array() + ratio * (1.0 - shares.array()));
 }
 
+void SmoothFit::Restore()
+{
+  this->Mu = this->FactorMu;
+  this->Vectors.resize(0, 0);
+}
+
 Values SmoothFit::AtPoints(const Values& u) const
 {
   Values values = Values::Zero(this->Data.Count(), u.cols());
@@ -170,7 +177,7 @@ Values SmoothFit::InverseAtPoints(const Values& v) const
   return this->AtPoints(x);
 }
 
-Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u) const
+Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u)
 {
   constexpr int most = 30;
   constexpr double resolved = 1e-14; // of the values
@@ -210,6 +217,13 @@ Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u) const
     {
       forces += this->Weights.asDiagonal() * (data - this->AtPoints(u));
     }
+  }
+  this->LastStep = 0.0;
+  for (Eigen::Index c = 0; c < u.cols(); ++c)
+  {
+    const double size =
+      std::max(u.col(c).cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+    this->LastStep = std::max(this->LastStep, last[static_cast<std::size_t>(c)] / size);
   }
   return forces;
 }

@@ -34,9 +34,16 @@ public:
   /// by Woodbury's formula. Not for exact values, nor before InverseDiagonal().
   void Rescale(double mu, const Eigen::MatrixXd& vectors, const Vector& shares);
 
+  /// Take mu_0 again.
+  void Restore();
+
   /// u: on entry the values of the held vertices and a start elsewhere, for as many columns of the
   /// data. Returns the multipliers of exact values, d x k.
-  Values Solve(Eigen::Index firstColumn, Values& u) const;
+  Values Solve(Eigen::Index firstColumn, Values& u);
+
+  /// Whether the factor of another mu gave Solve() a solution with the round-off of its own: the last
+  /// steps were below 1e-12 of it.
+  bool IsResolved() const { return this->Vectors.size() == 0 || this->LastStep < 1e-12; }
 
   /// x becomes H^-1 x, with zeros at held vertices. Not refined.
   void ApplyInverse(Values& x) const;
@@ -78,6 +85,7 @@ private:
   double FactorMu = 0.0;
   Eigen::MatrixXd Vectors; ///< of S; empty if the factor is that of mu
   Vector Scales; ///< of the vectors
+  double LastStep = 0.0; ///< of Solve(), relative to the solution: the largest of its columns
 };
 
 } // namespace SurfaceDiffusion

@@ -315,14 +315,16 @@ void SmoothInterpolation::FitSmoothly(
   for (Eigen::Index c = 0; c < columns; ++c)
   {
     const double mu = std::min(largest, start.BestSmoothing(c, noise));
-    if (needsFactor || !start.Rescale(work.Fit, mu))
+    take(start, mu, c);
+    if (!needsFactor && start.Rescale(work.Fit, mu) &&
+      this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.0), at(1.0))))
+    {
+      ++done;
+    }
+    else
     {
       others.push_back(c);
-      continue;
     }
-    take(start, mu, c);
-    this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.0), at(1.0)));
-    ++done;
   }
   for (const Eigen::Index c : others)
   {
@@ -347,8 +349,9 @@ void SmoothInterpolation::FitSmoothly(
   }
 }
 
-/// With the measures of the columns in place.
-void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index first,
+/// With the measures of the columns in place. Returns false, and gives nothing, if the factor of
+/// another mu does not resolve this one.
+bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index first,
   Eigen::Index count, double mu, const ProgressMonitor& progress) const
 {
   const ScatteredValues& rows = work.Data.Rows;
@@ -360,6 +363,11 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   }
   Values all = work.Start.middleCols(first, count);
   const Values forces = work.Fit.Solve(first, all);
+  if (!work.Fit.IsResolved())
+  {
+    work.Fit.Restore();
+    return false;
+  }
   const Vector deviations = this->Options.ComputeError
     ? Vector(work.Fit.InverseDiagonal(progress.Part(0.4, 0.8)).cwiseMax(0.0).cwiseSqrt())
     : Vector();
@@ -386,6 +394,7 @@ void SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     found.Roughness = work.Energy.Squares(u)[0];
     result.U.col(first + c) = u;
   }
+  return true;
 }
 
 } // namespace SurfaceDiffusion

@@ -97,7 +97,7 @@ private:
 
   void FitExactly(Work& work, Result& result, const ProgressMonitor& progress) const;
   void FitSmoothly(Work& work, Result& result, const ProgressMonitor& progress) const;
-  void FitColumns(Work& work, Result& result, Eigen::Index first, Eigen::Index count, double mu,
+  bool FitColumns(Work& work, Result& result, Eigen::Index first, Eigen::Index count, double mu,
     const ProgressMonitor& progress) const;
   void KeepInRange(Work& work, Result& result, Eigen::Index column, const Flags& held, Values& u,
     Values& forces, const ProgressMonitor& progress) const;
