@@ -90,6 +90,7 @@ void TranslateInputError(const std::exception_ptr& error, void* type)
 NB_MODULE(_core, m)
 {
   m.doc() = "Runs of the numerics on arrays.";
+  m.attr("build") = SURFACEDIFFUSION_BUILD;
 
   nb::object inputError = nb::steal(PyErr_NewExceptionWithDoc("surfacediffusion._core.InputError",
     "An error of the input. words: the words of its message, as in Run/Sentence.h: tuples of a "

@@ -6,6 +6,9 @@ Progress = Optional[Callable[[float], Any]]
 #: Of a sentence: its kind, its spelling in VTK, the name of a setting or array, and a value.
 Word = tuple[str, str, str, int]
 
+#: The commit, if a clone was built, the compiler, and the build type.
+build: str
+
 class InputError(ValueError):
     words: list[Word]
 

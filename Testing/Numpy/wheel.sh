@@ -44,7 +44,7 @@ if environment/bin/python -c "import vtkmodules" 2>/dev/null; then
   exit 1
 fi
 environment/bin/python -c "import surfacediffusion as s; print('installed', s.__version__)"
-environment/bin/pip install --quiet tqdm mypy
+environment/bin/pip install --quiet tqdm argcomplete mypy
 # For the tests of files and of PyVista, whose VTK is that of PyPI
 environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist
 

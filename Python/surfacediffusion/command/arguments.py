@@ -11,6 +11,7 @@ import textwrap
 
 from ..files.export import UNITS
 from . import tasks
+from .doctor import doctor, version
 from .printing import PATTERNS
 
 __all__ = ["parse"]
@@ -33,10 +34,21 @@ def parse(argv):
     hemispheres = any(word.split("=")[0] in _SIDES for word in argv) or (
         len(argv) > 1 and re.search(r"\.d[a-z]+\.nii$", argv[1]) is not None)
     parser = make_parser(hemispheres)
+    complete(parser)
     arguments = parser.parse_args(argv)
     if getattr(arguments, "cortex", False):
         arguments.roi = _cortex_label(parser, arguments)
     return arguments
+
+
+def complete(parser):
+    """Answer a shell that asks for completions, if argcomplete is installed, and end."""
+    if "_ARGCOMPLETE" in os.environ:
+        try:
+            import argcomplete
+        except ImportError:
+            return
+        argcomplete.autocomplete(parser)
 
 
 def _cortex_label(parser, arguments):
@@ -67,22 +79,13 @@ def make_parser(hemispheres=False):
         prog=PROGRAM, allow_abbrev=False,
         description="Diffusion equations on surfaces, for files.",
         epilog=f"{PROGRAM} COMMAND --help shows the arguments of a command and an example.")
-    parser.add_argument("--version", action="version", version=_version())
+    parser.add_argument("--version", action="version", version=f"{PROGRAM} {version()}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
     for add in (_smooth, _metric_smoothing, _cifti_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
-                _edges, _segment, _texture, _directions, _curvature, _derivatives, _normals, _fwhm, _info):
+                _edges, _segment, _texture, _directions, _curvature, _derivatives, _normals, _fwhm, _info, _doctor):
         add(_Commands(commands, hemispheres))
     return parser
-
-
-def _version():
-    from importlib import metadata
-
-    try:
-        return f"{PROGRAM} {metadata.version('surfacediffusion')}"
-    except metadata.PackageNotFoundError:
-        return PROGRAM
 
 
 class _Commands:
@@ -662,6 +665,12 @@ def _fwhm(commands):
         "fwhm", tasks.fwhm, text, [f"{PROGRAM} fwhm lh.pial residuals.mgh --json"])
     commands.data(parser)
     commands.choices(parser)
+
+
+def _doctor(commands):
+    text = ("Show what is installed, and compare results with exact solutions: version, compiler, threads, "
+            "packages that read files and meshes, VTK and ParaView. Takes about ten seconds.")
+    commands.add("doctor", doctor, text, [f"{PROGRAM} doctor", f"{PROGRAM} doctor --json > report.json"], "")
 
 
 def _info(commands):

@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command tells what is installed here, finds wrong results, and completes its words in a shell."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+from samples import run
+
+import surfacediffusion
+from surfacediffusion import _core
+from surfacediffusion.command import doctor
+
+
+def completions(line):
+    """What a shell gets for the line, whose last word is to be completed."""
+    with tempfile.NamedTemporaryFile("r") as answer:
+        variables = {"_ARGCOMPLETE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)), "COMP_TYPE": "9",
+                     "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_STDOUT_FILENAME": answer.name}
+        subprocess.run([sys.executable, "-m", "surfacediffusion.command"], check=True, timeout=60,
+                       env={**os.environ, **variables}, stdout=subprocess.DEVNULL)
+        return {word.strip() for word in answer.read().split("\n")}
+
+
+class Doctor(unittest.TestCase):
+    def test_every_result_is_right_here(self):
+        code, out, error = run("doctor")
+        self.assertEqual((code, error), (0, ""))
+        self.assertIn(f"surfacediffusion {surfacediffusion.__version__} (", out)
+        self.assertEqual(out.count("\nright: "), len(doctor.CHECKS))
+        self.assertNotIn("WRONG", out)
+
+    def test_the_report_has_versions_and_errors(self):
+        code, out, _ = run("doctor", "--json")
+        report = json.loads(out)
+        self.assertEqual(code, 0)
+        self.assertIn("GNU", report["version"])
+        self.assertEqual(report["packages"]["nibabel"], __import__("nibabel").__version__)
+        for check in report["checks"]:
+            self.assertLessEqual(check["error"], check["allowed"], check)
+        self.assertLess(sum(check["seconds"] for check in report["checks"]), 60)
+
+    def test_a_wrong_result_is_an_error_that_names_it(self):
+        for wrong in (0.3, float("nan")):
+            checks = (("heat against the solution", 0.2, lambda: 0.1), ("distance", 0.2, lambda: wrong))
+            with mock.patch.object(doctor, "CHECKS", checks):
+                code, out, error = run("doctor")
+            self.assertEqual((code, error), (1, "surfacediffusion: wrong results here: distance\n"))
+            self.assertIn("right: heat against the solution", out)
+            self.assertIn("WRONG: distance", out)
+
+    def test_the_checks_see_errors_of_the_numerics(self):
+        """Each error grows beyond what is allowed if the surface is another one."""
+        ball = surfacediffusion.sphere
+        with mock.patch.object(surfacediffusion, "sphere",
+                               lambda subdivisions, radius=1.0: ball(subdivisions, 1.1 * radius)):
+            for name, allowed, check in doctor.CHECKS:
+                if allowed > 0:
+                    self.assertGreater(check(), allowed, name)
+
+
+class Version(unittest.TestCase):
+    def test_it_names_the_compiler(self):
+        code, out, _ = run("--version")
+        self.assertEqual((code, out), (0, f"surfacediffusion {surfacediffusion.__version__} ({_core.build})\n"))
+        self.assertRegex(_core.build, r"^(commit [0-9a-f]{10}(-dirty)?, )?\w+ \d+(\.\d+)+, \w+$")
+
+
+class Completion(unittest.TestCase):
+    def test_commands_and_options_are_completed(self):
+        self.assertEqual(completions("surfacediffusion sm"), {"smooth"})
+        self.assertEqual(completions("surfacediffusion smooth --s"), {"--sigma", "--steps", "--surface-only"})
+
+    def test_nothing_is_said_without_argcomplete(self):
+        variables = {"_ARGCOMPLETE": "1", "COMP_LINE": "surfacediffusion sm", "COMP_POINT": "19"}
+        with mock.patch.dict(sys.modules, {"argcomplete": None}), mock.patch.dict(os.environ, variables):
+            code, out, _ = run("--version")
+        self.assertEqual((code, out.split()[0]), (0, "surfacediffusion"))
+
+
+if __name__ == "__main__":
+    unittest.main()
