@@ -124,8 +124,38 @@ def check_dependencies():
     os.environ.pop("SURFACEDIFFUSION_PYPI_VTK")
 
 
+def check_page():
+    """The page for an index: README.md without links to files, or with their addresses; the version of
+    both packages is that of CMakeLists.txt."""
+    version = re.search(r"VERSION (\d\S+)", (source / "CMakeLists.txt").read_text().split("project(")[1])
+    relative = re.compile(r"\]\((?!https?://|#)[^()]*\)")
+    assert len(relative.findall((source / "README.md").read_text())) > 10
+    sys.path.insert(0, str(source / "Packaging"))
+    from pypi_readme import readme_for_index
+
+    text = "![a](b/c.png) [d](e.md#f) [g](https://h.example/i) [j](#k)"
+    assert readme_for_index(text, "") == " d [g](https://h.example/i) [j](#k)"
+    absolute = readme_for_index(text, "https://x.example/y/")
+    assert absolute.startswith("![a](https://x.example/y/raw/main/b/c.png) "
+                               "[d](https://x.example/y/blob/main/e.md#f) [g](https"), absolute
+    from scikit_build_core.build import prepare_metadata_for_build_wheel
+
+    for package in ("", "Packaging/VTK"):
+        os.chdir(source / package)
+        target = folder / "page" / package
+        target.mkdir(parents=True)
+        name = prepare_metadata_for_build_wheel(str(target))
+        metadata = (target / name / "METADATA").read_text()
+        assert f"\nVersion: {version.group(1)}\n" in metadata, metadata[:600]
+        if not package:
+            _, page = metadata.split("\n\n", 1)
+            assert len(page) > 8000 and not relative.search(page), relative.findall(page)
+            assert "License: BSD-3-Clause\n" in metadata
+
+
 load_build_backend()
 check_dependencies()
+check_page()
 configure(source, "conda", conda_options(source))
 for i, options in enumerate(spack_options(source)):
     configure(source, "spack%d" % i, options)
