@@ -19,7 +19,7 @@ export SURFACEDIFFUSION_MESH_DIR=$PWD/$data/meshes
 export SURFACEDIFFUSION_BRAIN_DIR=$PWD/$data/wheels/brains
 
 "$environment/bin/codespell" --ignore-words-list "te,ue,fo,numer" Documentation Examples/Web \
-  README.md CONTRIBUTING.md CHANGELOG.md Filters/*.md Examples/FIGURES.md Packaging/README.md Examples/ParaView/GUIDE.md Plugin/README.md
+  README.md CONTRIBUTING.md RELEASING.md CHANGELOG.md Filters/*.md Examples/FIGURES.md Packaging/README.md Examples/ParaView/GUIDE.md Plugin/README.md
 "$environment/bin/python" Documentation/generate.py . "$site/source"
 { cat Documentation/Doxyfile; echo "OUTPUT_DIRECTORY = $site/doxygen"; } > "$site/Doxyfile"
 mkdir -p "$site/doxygen"

@@ -61,7 +61,7 @@ PAGES = {  # of the repository, by their name on the site
     "Filters/DISTRIBUTED.md": "processes", "Filters/ADDING_A_MODEL.md": "adding_a_model",
     "Filters/README.md": "layers", "Examples/ParaView/GUIDE.md": "paraview",
     "Examples/FIGURES.md": "figures", "Packaging/README.md": "packages",
-    "CONTRIBUTING.md": "contributing", "CHANGELOG.md": "changelog",
+    "CONTRIBUTING.md": "contributing", "RELEASING.md": "releasing", "CHANGELOG.md": "changelog",
 }
 
 

