@@ -236,7 +236,7 @@ class TestProxies(unittest.TestCase):
             self.assertEqual(found, ports, name)
 
     def test_abstract_proxies_are_hidden(self):
-        for name in ("SurfaceModelAlgorithm", "SurfaceDiffusionAlgorithm",
+        for name in ("SurfaceFilter", "SurfaceModelAlgorithm", "SurfaceDiffusionAlgorithm",
                      "SurfaceDataDiffusionAlgorithm"):
             self.assertFalse(hasattr(simple, name))
 

@@ -333,7 +333,7 @@ def texture(arguments, report):
         options["number_of_time_steps"] = arguments.steps
     with report.timed("compute"), report.progress("Texture") as progress:
         result = turing_texture(Surface(surface.points, surface.faces), progress=progress,
-                                feature_size=size, seed=arguments.seed, **options)
+                                feature_size=size, seed=arguments.seed, refine_to=0, **options)
     report.facts.update(feature_size=size, seed=arguments.seed, steps=result.step,
                         wavelength=number(result.wavelength))
     _write_new(arguments, report, target, result.texture[:, None].astype(np.float32))
