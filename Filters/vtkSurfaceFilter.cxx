@@ -367,12 +367,12 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
     const std::vector<double> all = processes.GatherAll({ number });
     return std::accumulate(all.begin(), all.end(), 0.0);
   };
-  const ProgressMonitor progress(
-    [this](double)
-    {
-      this->UpdateProgress(0.0);
-      return !this->IsAborted();
-    });
+  const ProgressMonitor::Callback report = [this](double)
+  {
+    this->UpdateProgress(0.0);
+    return !this->IsAborted();
+  };
+  const ProgressMonitor progress(report);
   this->Private->RefinementWarnings.clear();
   this->Private->IsComplete = true;
   Sentence reason;
@@ -410,8 +410,8 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
         completed = this->CompleteTogether(bisect);
       }
     }
-    completed = completed &&
-      this->CompleteTogether([&] { triangles = refinement.Replace(pieces); });
+    completed =
+      completed && this->CompleteTogether([&] { triangles = refinement.Replace(pieces); });
     triangles = sum(triangles);
   }
   if (triangles > 0.0 && !reason.Words().empty())

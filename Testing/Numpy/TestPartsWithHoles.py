@@ -123,7 +123,6 @@ class PartsWithHoles(unittest.TestCase):
             u1 = texture.values[:, 0]
             faces = wavelength(surface, u1, away > 2.0)
             edges = wavelength(surface, u1, away < 2.0)
-            print(name, surface, faces, edges, texture.wavelength)
             self.assertAlmostEqual(edges / faces, 1, delta=0.05, msg=name)
 
     def test_change_their_volume_by_the_integral_of_the_relief(self):
