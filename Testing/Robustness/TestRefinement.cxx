@@ -5,7 +5,6 @@
 
 #include "Twins.h"
 
-#include "vtkAppendPolyData.h"
 #include "vtkPartitionedDataSet.h"
 
 using namespace FilterTest;
@@ -37,7 +36,7 @@ struct Spheres
   }
 };
 
-class Refinement : public testing::TestWithParam<FilterKind>
+class RefinementOf : public testing::TestWithParam<FilterKind>
 {
 };
 
@@ -73,7 +72,7 @@ vtkSmartPointer<vtkPolyData> BoxPart(bool upper)
 
 } // namespace
 
-TEST_P(Refinement, GivesWhatTheFilterGivesOnTheRefinedSurface)
+TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
 {
   static const Spheres spheres;
   const auto refining = this->GetParam().Make();
@@ -94,8 +93,7 @@ TEST_P(Refinement, GivesWhatTheFilterGivesOnTheRefinedSurface)
   EXPECT_EQ(Difference(refining, given), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryKind, Refinement, testing::ValuesIn(AllFilters()),
-  [](const testing::TestParamInfo<FilterKind>& info) { return std::string(info.param.Name); });
+INSTANTIATE_TEST_SUITE_P(EveryKind, RefinementOf, testing::ValuesIn(AllFilters()), KindName);
 
 TEST(Refinement, StopsAtTheLimitWithOneWarning)
 {
