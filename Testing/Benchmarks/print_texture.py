@@ -5,9 +5,9 @@
 
     print_texture.py [HALVINGS]
 
-The sides of the box are halved 8 times by default, which gives 1.05 million triangles; each further time
-makes four times as many. Prints the seconds of each step, and those of all processors and of the clock.
-It needs the package and its command in this Python, and about 1.5 GB of memory.
+The shorter sides of the box are halved 8 times by default, which gives 1.8 million triangles; each further
+time makes four times as many. Prints the seconds of each step, and those of all processors and of the
+clock. It needs the package and its command in this Python, and 2 GB of memory.
 """
 
 import json

@@ -132,6 +132,15 @@ class Texture(unittest.TestCase):
                 result = sd.turing_texture(ball, number_of_time_steps=2, **options)
             self.assertIs(result.surface, ball, options)
 
+    def test_features_larger_than_the_part_are_said(self):
+        part = box()  # 53.85 from corner to corner
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "feature_size is 60, but the surface is 53.85"
+                                   ".* from corner to corner: it has no room for a pattern"):
+            sd.turing_texture(part, feature_size=60.0, refine_to=8.0, number_of_time_steps=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            sd.turing_texture(part, feature_size=50.0, refine_to=8.0, number_of_time_steps=2)
+
     def test_bad_lengths_are_one_line(self):
         for options, pattern in (
                 ({"refine_to": "fine"}, "refine_to is 'fine'; allowed: .*"),
