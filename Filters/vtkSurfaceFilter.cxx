@@ -25,6 +25,7 @@
 #include <exception>
 #include <limits>
 #include <new>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -128,6 +129,8 @@ void vtkSurfaceFilter::CheckSurfaceProperties(Problems& problems)
     Word::Setting("RefineTo"), this->RefineTo,
     automatic ? "finite numbers, 0 or more, or -1: automatic" : "finite numbers, 0 or more",
     problems);
+  Require(this->MaximumNumberOfTriangles > 0, Word::Setting("MaximumNumberOfTriangles"),
+    this->MaximumNumberOfTriangles, "integers, 1 or more", problems);
   Require(this->NumberOfThreads >= 0, Word::Setting("NumberOfThreads"), this->NumberOfThreads,
     "integers, 0 or more; 0: all", problems);
 }
@@ -207,17 +210,9 @@ void vtkSurfaceFilter::ReportError(const std::string& text)
 
 void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 {
-  const PieceRefinement& refinement = this->Private->Refinement;
-  if (refinement.HasRefined() && !this->Private->RefinementReason.Words().empty())
+  for (const Sentence& sentence : this->Private->RefinementWarnings)
   {
-    Sentence text("edges were bisected, to ");
-    text << refinement.NumberOfTriangles() << " triangles, because "
-         << this->Private->RefinementReason;
-    warnings.push_back({ text, Fingerprint() });
-  }
-  if (!refinement.Limit().Words().empty())
-  {
-    warnings.push_back({ refinement.Limit(), Fingerprint() });
+    warnings.push_back({ sentence, Fingerprint() });
   }
   const std::vector<Sentence> sentences = this->Private->Reported.Report(std::move(warnings));
   if (!sentences.empty() && this->GetProcesses().Rank() == 0)
@@ -357,7 +352,7 @@ int vtkSurfaceFilter::RequestData(
   return this->EndUpdate();
 }
 
-double vtkSurfaceFilter::FindRefinement(const std::function<double()>&, Sentence&) const
+double vtkSurfaceFilter::FindRefinement(double, Sentence&) const
 {
   return this->RefineTo > 0.0 && std::isfinite(this->RefineTo) ? this->RefineTo : 0.0;
 }
@@ -366,20 +361,80 @@ double vtkSurfaceFilter::FindRefinement(const std::function<double()>&, Sentence
 bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
 {
   PieceRefinement& refinement = this->Private->Refinement;
-  this->Private->RefinementReason = Sentence();
+  const Processes processes(this->Controller);
+  const auto sum = [&](double number)
+  {
+    const std::vector<double> all = processes.GatherAll({ number });
+    return std::accumulate(all.begin(), all.end(), 0.0);
+  };
+  const ProgressMonitor::Callback report = [this](double)
+  {
+    this->UpdateProgress(0.0);
+    return !this->IsAborted();
+  };
+  const ProgressMonitor progress(report);
+  this->Private->RefinementWarnings.clear();
   this->Private->IsComplete = true;
-  const ProgressMonitor progress(
-    [this](double)
+  Sentence reason;
+  double length = 0.0;
+  double left = 0.0;
+  double triangles = 0.0;
+  const int limit = this->MaximumNumberOfTriangles;
+  const auto bisect = [&] { left = refinement.Bisect(pieces, length, limit, progress); };
+  bool completed = true;
+  PieceRefinement::EdgeSum edges;
+  if (this->RefineTo == RefineAutomatically && this->MayRefineAutomatically())
+  {
+    completed = this->CompleteTogether([&] { edges = refinement.SumEdges(pieces); });
+    edges = { sum(edges.Length), sum(edges.Number) };
+  }
+  if (completed && limit > 0)
+  {
+    length = this->FindRefinement(edges.Number > 0.0 ? edges.Length / edges.Number : 0.0, reason);
+  }
+  if (completed && length > 0.0)
+  {
+    const double asked = length;
+    completed = this->CompleteTogether(bisect);
+    const std::vector<double> all = processes.GatherAll({ left });
+    const double longest = *std::max_element(all.begin(), all.end());
+    if (completed && longest > 0.0)
     {
-      this->UpdateProgress(0.0);
-      return !this->IsAborted();
-    });
+      Sentence text("refinement stopped at edges of ");
+      text << longest << ", longer than " << asked << ", because "
+           << Word::Setting("MaximumNumberOfTriangles") << " is " << limit;
+      this->Private->RefinementWarnings.push_back(text);
+      if (sum(static_cast<double>(pieces.size())) > 1.0)
+      {
+        length = longest; // in every piece, so that pieces of a surface fit
+        completed = this->CompleteTogether(bisect);
+      }
+    }
+    completed =
+      completed && this->CompleteTogether([&] { triangles = refinement.Replace(pieces); });
+    triangles = sum(triangles);
+  }
+  if (triangles > 0.0 && !reason.Words().empty())
+  {
+    Sentence text("edges were bisected, to ");
+    text << static_cast<vtkIdType>(triangles) << " triangles, because " << reason;
+    this->Private->RefinementWarnings.push_back(text);
+  }
+  if (!completed)
+  {
+    this->Private->HasFailed = processes.Any(this->Private->HasFailed);
+    refinement.Undo();
+  }
+  return completed;
+}
+
+/// Whether all processes have completed a step. An error is reported, an abort is none.
+bool vtkSurfaceFilter::CompleteTogether(const std::function<void()>& step)
+{
   bool completed = false;
   try
   {
-    const double length = this->FindRefinement(
-      [&] { return refinement.FindMeanEdgeLength(pieces); }, this->Private->RefinementReason);
-    refinement.Refine(pieces, length, progress);
+    step();
     completed = true;
   }
   catch (const Aborted&)
@@ -393,14 +448,7 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
   {
     this->ReportError(error.what());
   }
-  const Processes processes(this->Controller);
-  if (!processes.Any(!completed))
-  {
-    return true;
-  }
-  this->Private->HasFailed = processes.Any(this->Private->HasFailed);
-  refinement.Undo();
-  return false;
+  return !Processes(this->Controller).Any(!completed);
 }
 
 /// The answer to the pipeline: 0 if the update has failed.
@@ -549,6 +597,8 @@ void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
   spaces << indent;
   os << Describe(this->GetSettings(), spaces.str());
   os << indent << "SeamTolerance: " << this->SeamTolerance << "\n";
+  os << indent << "RefineTo: " << this->RefineTo << "\n";
+  os << indent << "MaximumNumberOfTriangles: " << this->MaximumNumberOfTriangles << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";

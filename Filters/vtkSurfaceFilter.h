@@ -43,7 +43,7 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSurfaceDiffusionModule.h" // for export macro
 
-#include <functional> // for refinement
+#include <functional> // for steps of an update
 #include <memory> // for the private part
 #include <string> // for names
 #include <vector> // for surfaces
@@ -128,6 +128,32 @@ public:
    */
   vtkSetMacro(SeamTolerance, double);
   vtkGetMacro(SeamTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * The length above which edges are bisected before the update, in coordinate units, because large
+   * triangles, as in CAD files, have no room for data. 0 or more. 0 (default, except for
+   * vtkTuringTextureFilter, which also allows -1): the surface stays as it is. The longest edge is
+   * always bisected next, in all its triangles at once: flat faces stay flat, sharp edges sharp,
+   * and no crack opens. The output then has triangles in place of polygons and strips, with the
+   * data of their cells and the cell array `vtkOriginalCellIds`, the ids of these. Data of points
+   * are linear along the edges, except that integers of one component, which are labels and marks,
+   * become the smaller of two. Global ids, ghost cells and hidden cells are left out. With
+   * MergeCoincidentPoints, copies of a point stay copies.
+   */
+  vtkSetMacro(RefineTo, double);
+  vtkGetMacro(RefineTo, double);
+  ///@}
+
+  ///@{
+  /**
+   * Refinement stops before a surface, or a piece of one, has more triangles, and a warning gives
+   * the length that is left. All pieces are then refined to this length. 1 or more. Default:
+   * 4000000, which a texture needs about 1 GB for.
+   */
+  vtkSetMacro(MaximumNumberOfTriangles, int);
+  vtkGetMacro(MaximumNumberOfTriangles, int);
   ///@}
 
   ///@{
@@ -230,10 +256,11 @@ protected:
     const std::vector<SurfaceBlock>& pieces, bool oneSurface, double points);
 
   /// The length above which edges are bisected before an update; 0: the surfaces stay as they are.
-  /// meanEdgeLength(): that of all surfaces of this process. With an explanation, a warning says
-  /// that surfaces were refined. The default returns RefineTo, unless it is no length.
+  /// meanEdgeLength: that of all surfaces if RefineTo is -1 and this is allowed; edges count once
+  /// in each piece. With an explanation, a warning says that surfaces were refined. All processes
+  /// give the same answer. The default returns RefineTo, unless it is no length.
   virtual double FindRefinement(
-    const std::function<double()>& meanEdgeLength, SurfaceDiffusion::Sentence& explanation) const;
+    double meanEdgeLength, SurfaceDiffusion::Sentence& explanation) const;
 
   /// Complete the arrays of a piece of a surface that process 0 has computed: cells that take no
   /// part are not gathered. The default does nothing.
@@ -273,7 +300,8 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   double SeamTolerance = -1.0;
-  double RefineTo = 0.0; ///< a property of the classes that refine
+  double RefineTo = 0.0;
+  int MaximumNumberOfTriangles = 4000000;
   static constexpr double RefineAutomatically = -1.0; ///< a value of RefineTo of some
   virtual bool MayRefineAutomatically() const { return false; }
   int NumberOfThreads = 0;
@@ -288,6 +316,7 @@ private:
   void operator=(const vtkSurfaceFilter&) = delete;
 
   bool RefineSurfaces(std::vector<SurfaceDiffusion::SurfacePiece>& pieces);
+  bool CompleteTogether(const std::function<void()>& step);
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
   void ProcessGuarded(const std::vector<SurfaceBlock>& blocks);
   void ReportError(const std::string& text);

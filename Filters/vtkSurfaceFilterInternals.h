@@ -24,6 +24,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 /// The state of vtkSurfaceFilter that its header hides.
 struct vtkSurfaceFilter::Internals
@@ -47,7 +48,7 @@ struct vtkSurfaceFilter::Internals
   const std::shared_ptr<bool> AbortRequested = std::make_shared<bool>(false);
 
   SurfaceDiffusion::PieceRefinement Refinement;
-  SurfaceDiffusion::Sentence RefinementReason; ///< empty: it was asked for
+  std::vector<SurfaceDiffusion::Sentence> RefinementWarnings; ///< of the present update
   bool IsComplete = true; ///< the present update, neither failed nor aborted
 
   bool HasFailed = false; ///< the last update, with an error that was reported

@@ -155,12 +155,6 @@ void vtkSurfaceReliefFilter::ProcessSurfaces(
   this->ReportWarnings(std::move(warnings));
 }
 
-void vtkSurfaceReliefFilter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "RefineTo: " << this->RefineTo << "\n";
-}
-
 void vtkSurfaceReliefFilter::ReleaseCache()
 {
   this->Superclass::ReleaseCache();

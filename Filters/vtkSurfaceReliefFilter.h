@@ -62,8 +62,6 @@ class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceReliefFilter : public vtkSurfaceFilte
 public:
   static vtkSurfaceReliefFilter* New();
   vtkTypeMacro(vtkSurfaceReliefFilter, vtkSurfaceFilter);
-  void PrintSelf(ostream& os, vtkIndent indent) override;
-
   void ReleaseCache() override;
 
   ///@{
@@ -116,22 +114,6 @@ public:
   void SetUpDirection(double x, double y, double z);
   void SetUpDirection(const double direction[3]);
   double* GetUpDirection() VTK_SIZEHINT(3);
-  ///@}
-
-  ///@{
-  /**
-   * The length above which edges are bisected before the update, in coordinate units, because large
-   * triangles have no room for a relief. 0 or more. 0 (default): the surface stays as it is.
-   * The longest edge is always bisected next, in all its triangles at once: flat faces stay flat,
-   * sharp edges sharp, and no crack opens. The output then has triangles in place of polygons and
-   * strips, with the data of their cells and the cell array `vtkOriginalCellIds`, the ids of these.
-   * Data of points are linear along the edges, except that integers of one component, which are
-   * labels and marks, become the smaller of two. Global ids, ghost cells and hidden cells are left
-   * out. A piece has at most 4 million triangles; a warning says so if that is not enough. With
-   * MergeCoincidentPoints, copies of a point stay copies.
-   */
-  vtkSetMacro(RefineTo, double);
-  vtkGetMacro(RefineTo, double);
   ///@}
 
   /**

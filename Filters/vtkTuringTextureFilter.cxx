@@ -4,7 +4,6 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
-#include "Distributed/Processes.h"
 #include "Run/OwnedSettings.h"
 #include "Run/TextureSettings.h"
 
@@ -38,34 +37,24 @@ void vtkTuringTextureFilter::UsePaperScheme()
   this->SetKineticsToTuring();
 }
 
-void vtkTuringTextureFilter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "RefineTo: " << this->RefineTo << "\n";
-}
-
-double vtkTuringTextureFilter::FindRefinement(
-  const std::function<double()>& meanEdgeLength, Sentence& explanation) const
+double vtkTuringTextureFilter::FindRefinement(double meanEdgeLength, Sentence& explanation) const
 {
   if (this->RefineTo != RefineAutomatically)
   {
     return this->Superclass::FindRefinement(meanEdgeLength, explanation);
   }
-  // The mean over the pieces of all processes is not known here.
-  auto* const processes = const_cast<vtkTuringTextureFilter*>(this)->GetController();
   const TextureSettings& settings = this->GetTextureSettings();
   const double size = settings.FeatureSize;
-  if (!(size > 0.0 && std::isfinite(size)) || Processes(processes).Count() > 1)
+  if (!(size > 0.0 && std::isfinite(size)))
   {
     return 0.0;
   }
-  const double h = meanEdgeLength();
-  const double length = settings.EdgeLengthForFeatures(h);
+  const double length = settings.EdgeLengthForFeatures(meanEdgeLength);
   if (length > 0.0)
   {
-    explanation << Word::Setting("FeatureSize") << " is " << size << ", only " << size / h
-                << " mean edge lengths (to keep the edges, set " << Word::Setting("RefineTo")
-                << " to 0)";
+    explanation << Word::Setting("FeatureSize") << " is " << size << ", only "
+                << size / meanEdgeLength << " mean edge lengths (to keep the edges, set "
+                << Word::Setting("RefineTo") << " to 0)";
   }
   return length;
 }

@@ -144,27 +144,12 @@ public:
    * multiplied by one factor so that the fastest-growing wavelength along e1 is FeatureSize (with
    * rates per cell: the wavelength for their means over the surface). If no wave grows fastest, the
    * rates do not change and a warning is given.
+   *
+   * RefineTo -1, the default of this class: edges are bisected to FeatureSize / 8 if FeatureSize is
+   * less than 6 mean edge lengths, which the mesh cannot resolve, and a warning says so. Otherwise,
+   * and with 0, the surface stays as it is.
    */
   SURFACEDIFFUSION_PROPERTY(FeatureSize, double);
-
-  ///@{
-  /**
-   * The length above which edges are bisected before the update, in coordinate units, because large
-   * triangles have no room for a pattern. 0 or more, or -1. 0: the surface stays as it is.
-   * -1 (default): FeatureSize / 8 if FeatureSize is less than 6 mean edge lengths, which the mesh
-   * cannot resolve, and otherwise 0; also 0 without FeatureSize and with several processes. A
-   * warning says that edges were bisected.
-   * The longest edge is always bisected next, in all its triangles at once: flat faces stay flat,
-   * sharp edges sharp, and no crack opens. The output then has triangles in place of polygons and
-   * strips, with the data of their cells and the cell array `vtkOriginalCellIds`, the ids of these.
-   * Data of points are linear along the edges, except that integers of one component, which are
-   * labels and marks, become the smaller of two. Global ids, ghost cells and hidden cells are left
-   * out. A piece has at most 4 million triangles; a warning says so if that is not enough. With
-   * MergeCoincidentPoints, copies of a point stay copies.
-   */
-  vtkSetMacro(RefineTo, double);
-  vtkGetMacro(RefineTo, double);
-  ///@}
 
   /**
    * The half width of the uniform noise around the steady state, relative to it. It is absolute for
@@ -325,15 +310,13 @@ public:
    */
   void UsePaperScheme() override;
 
-  void PrintSelf(ostream& os, vtkIndent indent) override;
-
 protected:
   vtkTuringTextureFilter();
   ~vtkTuringTextureFilter() override = default;
 
   bool MayRefineAutomatically() const override { return true; }
-  double FindRefinement(const std::function<double()>& meanEdgeLength,
-    SurfaceDiffusion::Sentence& explanation) const override;
+  double FindRefinement(
+    double meanEdgeLength, SurfaceDiffusion::Sentence& explanation) const override;
   bool FindFields(
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
 

@@ -21,9 +21,9 @@ part = Surface(points, triangles)
 print(part)
 
 # %%
-# The triangles of CAD are far too large for a pattern. With ``refine_to="Automatic"`` their edges are
-# bisected to eight per wavelength. Flat faces stay flat and sharp edges stay sharp.
-texture = turing_texture(part, feature_size=5.0, diffusion_rate1=2.6 * 18, refine_to="Automatic",
+# The triangles of CAD are far too large for a pattern. Their edges are bisected to eight per wavelength.
+# Flat faces stay flat and sharp edges stay sharp.
+texture = turing_texture(part, feature_size=5.0, diffusion_rate1=2.6 * 18, refine_to=5.0 / 8,
                          coarse_start_size=0)
 fine = texture.surface
 print(fine)

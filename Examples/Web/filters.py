@@ -163,7 +163,7 @@ def run_surface_denoising(mesh, _, options, progress):
 
 def run_texture(mesh, _, options, progress):
     result = sd.turing_texture(mesh.surface, feature_size=options["size"], seed=int(options["seed"]),
-                               progress=progress)
+                               refine_to=0, progress=progress)
     return Outcome(result.texture, {"Texture": result.texture}, history=result.history,
                    note=f"the fastest-growing wavelength is {result.wavelength:.4g}")
 
@@ -171,7 +171,7 @@ def run_texture(mesh, _, options, progress):
 def run_relief(mesh, _, options, progress):
     """The part with relief, for printing."""
     part = welded(mesh.surface)
-    fine = sd.refine(part, options["size"] / EDGES_PER_WAVELENGTH, maximum_triangles=MOST_TRIANGLES)
+    fine = sd.refine(part, options["size"] / EDGES_PER_WAVELENGTH, maximum_number_of_triangles=MOST_TRIANGLES)
     ratio = PATTERNS[list(PATTERNS)[int(options["pattern"])]]
     texture = sd.turing_texture(
         fine.surface, feature_size=options["size"], seed=int(options["seed"]), progress=progress,

@@ -102,10 +102,9 @@ PieceRefinement::Piece& PieceRefinement::Find(std::size_t number, vtkPolyData* i
   return piece;
 }
 
-double PieceRefinement::FindMeanEdgeLength(const std::vector<SurfacePiece>& pieces)
+PieceRefinement::EdgeSum PieceRefinement::SumEdges(const std::vector<SurfacePiece>& pieces)
 {
-  double sum = 0.0;
-  double count = 0.0;
+  EdgeSum sum;
   for (std::size_t p = 0; p < pieces.size(); ++p)
   {
     Piece& piece = this->Find(p, pieces[p].Input);
@@ -132,20 +131,20 @@ double PieceRefinement::FindMeanEdgeLength(const std::vector<SurfacePiece>& piec
         piece.SumOfEdges += (arrays.Points.row(a) - arrays.Points.row(b)).norm();
       }
     }
-    sum += piece.SumOfEdges;
-    count += piece.NumberOfEdges;
+    sum.Length += piece.SumOfEdges;
+    sum.Number += piece.NumberOfEdges;
   }
-  return count > 0.0 ? sum / count : 0.0;
+  return sum;
 }
 
-void PieceRefinement::Bisect(
-  Piece& piece, vtkPolyData* input, double length, const ProgressMonitor& progress)
+void PieceRefinement::Bisect(Piece& piece, vtkPolyData* input, double length,
+  Index maximumTriangles, const ProgressMonitor& progress)
 {
   std::vector<Index> cells;
   const SurfaceArrays arrays = ReadSurface(input, nullptr, false, cells);
   RequireFiniteCoordinates(arrays.Points);
   const RefinedSurface refined =
-    RefineEdges(arrays.Points, arrays.Triangles, length, MaximumTriangles, progress);
+    RefineEdges(arrays.Points, arrays.Triangles, length, maximumTriangles, progress);
   piece.Points = nullptr;
   if (!refined.Parents.empty())
   {
@@ -171,6 +170,7 @@ void PieceRefinement::Bisect(
   piece.LongestEdge = refined.LongestEdge;
   piece.LimitReached = refined.LimitReached;
   piece.Length = length;
+  piece.MaximumTriangles = maximumTriangles;
 }
 
 vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vtkPolyData* input)
@@ -200,41 +200,41 @@ vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vt
   return surface;
 }
 
-void PieceRefinement::Refine(
-  std::vector<SurfacePiece>& pieces, double length, const ProgressMonitor& progress)
+double PieceRefinement::Bisect(const std::vector<SurfacePiece>& pieces, double length,
+  Index maximumTriangles, const ProgressMonitor& progress)
 {
-  this->Replaced.clear();
-  this->Triangles = 0;
-  this->LimitSentence = Sentence();
-  if (!(length > 0.0))
-  {
-    return;
-  }
-  this->Pieces.resize(pieces.size());
+  double longest = 0.0;
   for (std::size_t p = 0; p < pieces.size(); ++p)
   {
     vtkPolyData* const input = pieces[p].Input;
     Piece& piece = this->Find(p, input);
-    if (piece.Length != length)
+    if (piece.Length != length || piece.MaximumTriangles != maximumTriangles)
     {
-      Bisect(piece, input, length, progress);
+      Bisect(piece, input, length, maximumTriangles, progress);
     }
-    if (piece.LimitReached)
-    {
-      Sentence text;
-      text << "refinement stopped before " << MaximumTriangles << " triangles, with edges of up to "
-           << piece.LongestEdge << ", longer than " << length;
-      this->LimitSentence = text;
-    }
+    longest = std::max(longest, piece.LimitReached ? piece.LongestEdge : 0.0);
+  }
+  return longest;
+}
+
+Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces)
+{
+  this->Replaced.clear();
+  Index triangles = 0;
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+  {
+    const Piece& piece = this->Pieces[p];
     if (piece.Points)
     {
+      vtkPolyData* const input = pieces[p].Input;
       const auto refined = MakeSurface(piece, input);
       pieces[p].Output->ShallowCopy(refined);
       this->Replaced.push_back({ input, refined, pieces[p].Output });
-      this->Triangles += static_cast<Index>(piece.CellOf.size());
+      triangles += static_cast<Index>(piece.CellOf.size());
       pieces[p].Input = refined;
     }
   }
+  return triangles;
 }
 
 void PieceRefinement::Undo()
@@ -243,6 +243,7 @@ void PieceRefinement::Undo()
   {
     replacement.Output->ShallowCopy(replacement.Before);
   }
+  this->Replaced.clear();
 }
 
 } // namespace SurfaceDiffusion

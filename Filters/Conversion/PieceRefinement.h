@@ -6,7 +6,6 @@
 #include "Core/Foundation/Types.h"
 #include "Distributed/SurfacePieces.h"
 #include "Run/Fingerprint.h"
-#include "Run/Sentence.h"
 
 #include "vtkSmartPointer.h"
 
@@ -26,27 +25,30 @@ namespace SurfaceDiffusion
 class PieceRefinement
 {
 public:
-  /// The triangles that a piece is refined to at most.
-  static constexpr Index MaximumTriangles = 4'000'000;
   /// The cell of the input that each cell of a refined surface lies in.
   static constexpr const char* IdsName = "vtkOriginalCellIds";
 
-  /// The mean length of the distinct edges of the triangles of all pieces; 0 if there are none.
-  double FindMeanEdgeLength(const std::vector<SurfacePiece>& pieces);
+  /// The distinct edges of the triangles of all pieces.
+  struct EdgeSum
+  {
+    double Length = 0.0;
+    double Number = 0.0;
+  };
+  EdgeSum SumEdges(const std::vector<SurfacePiece>& pieces);
 
-  /// Replace the inputs of the pieces that have longer edges, and make their outputs copies of them.
+  /// Bisect the edges that are longer, until a piece would have more triangles. Returns the longest
+  /// edge that is left in such a piece; 0 if there is none. Throws Aborted.
+  double Bisect(const std::vector<SurfacePiece>& pieces, double length, Index maximumTriangles,
+    const ProgressMonitor& progress);
+
+  /// Replace the inputs of the pieces that were bisected, and make their outputs copies of them.
   /// Arrays of points are linear along the edges that are bisected, except that integers of one
   /// component, which are labels and marks, become the smaller of two. Triangles have the data of
-  /// their cells. Global ids, ghost cells and hidden cells are left out. Throws Aborted.
-  void Refine(std::vector<SurfacePiece>& pieces, double length, const ProgressMonitor& progress);
+  /// their cells. Global ids, ghost cells and hidden cells are left out. Returns the number of
+  /// triangles of the pieces that were replaced.
+  Index Replace(std::vector<SurfacePiece>& pieces);
 
-  /// Whether a piece was replaced, and the sum of the triangles of these.
-  bool HasRefined() const { return !this->Replaced.empty(); }
-  Index NumberOfTriangles() const { return this->Triangles; }
-  /// About the limit of triangles; empty if it was not reached.
-  const Sentence& Limit() const { return this->LimitSentence; }
-
-  /// Make the outputs copies of the inputs that were replaced.
+  /// Make the outputs copies of the inputs that were replaced, and forget these.
   void Undo();
 
 private:
@@ -56,6 +58,7 @@ private:
     double SumOfEdges = -1.0; ///< -1: not known
     double NumberOfEdges = 0.0;
     double Length = 0.0; ///< to which it was refined; 0: not yet
+    Index MaximumTriangles = 0;
     vtkSmartPointer<vtkPoints> Points; ///< null: no edge is longer
     vtkSmartPointer<vtkCellArray> Triangles;
     std::vector<vtkIdType> CellOf; ///< per triangle
@@ -66,19 +69,17 @@ private:
 
   struct Replacement
   {
-    vtkSmartPointer<vtkPolyData> Before, After;
+    vtkSmartPointer<vtkPolyData> Before, After; ///< the latter is the input during the update
     vtkPolyData* Output;
   };
 
   Piece& Find(std::size_t number, vtkPolyData* input);
-  static void Bisect(
-    Piece& piece, vtkPolyData* input, double length, const ProgressMonitor& progress);
+  static void Bisect(Piece& piece, vtkPolyData* input, double length, Index maximumTriangles,
+    const ProgressMonitor& progress);
   static vtkSmartPointer<vtkPolyData> MakeSurface(const Piece& piece, vtkPolyData* input);
 
   std::vector<Piece> Pieces;
   std::vector<Replacement> Replaced;
-  Index Triangles = 0;
-  Sentence LimitSentence;
 };
 
 } // namespace SurfaceDiffusion

@@ -11,7 +11,9 @@
 #include "Run/TextureRates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -340,6 +342,26 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
     std::move(*space), std::move(coarse), std::move(model), inputs.Parallel);
 }
 
+namespace
+{
+
+/// The diagonal of the bounding box of all pieces, in coordinate units.
+double DiagonalOf(const Points& points, const Reduction& processes)
+{
+  constexpr double none = std::numeric_limits<double>::lowest();
+  std::array<double, 6> ends; // the largest coordinates, and minus the smallest
+  ends.fill(none);
+  for (Eigen::Index axis = 0; points.rows() > 0 && axis < 3; ++axis)
+  {
+    ends[static_cast<std::size_t>(axis)] = points.col(axis).maxCoeff();
+    ends[static_cast<std::size_t>(axis) + 3] = -points.col(axis).minCoeff();
+  }
+  processes.Max(ends.data(), 6);
+  return std::hypot(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
+}
+
+} // namespace
+
 /// The rates, scaled to FeatureSize. Reports the wavelength.
 TextureRates TextureSettings::MakeRates(const ModelInputs& inputs, RunResult& result) const
 {
@@ -361,6 +383,13 @@ TextureRates TextureSettings::MakeRates(const ModelInputs& inputs, RunResult& re
       result.Warnings.push_back(Sentence(Word::Setting("FeatureSize"))
         << " has no effect: with these rates and parameters no wave grows faster than the uniform "
            "state");
+    }
+    const double diagonal = DiagonalOf(inputs.Surface.Points(), inputs.Processes);
+    if (this->FeatureSize > diagonal)
+    {
+      result.Warnings.push_back(Sentence(Word::Setting("FeatureSize"))
+        << " is " << this->FeatureSize << ", but the surface is " << diagonal
+        << " from corner to corner: it has no room for a pattern");
     }
   }
   const PatternForecast forecast = rates.ForecastAlong(jacobian);

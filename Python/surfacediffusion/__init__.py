@@ -61,9 +61,10 @@ from ._functions import *  # noqa: F403
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._images import estimate_fwhm_img, smooth_img
 from ._operators import *  # noqa: F403
+from ._refinement import RefinedSurface, refine
 from ._result import *  # noqa: F403
 from ._run import SurfaceDiffusionWarning
-from ._shape import RefinedSurface, ReliefResult, refine, relief
+from ._shape import ReliefResult, relief
 from ._surface import Surface, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
 

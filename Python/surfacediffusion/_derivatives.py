@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._functions import derivatives
+from ._refinement import MAXIMUM_TRIANGLES
 from ._run import Progress
 from ._surface import SurfaceLike
 
@@ -32,6 +33,8 @@ def gradient(
     smoothing_fwhm: float = 0.0,
     result_on_faces: bool = False,
     progress: Progress = False,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NDArray[np.float64]:
     """Compute the tangential gradient of data on a surface.
 
@@ -41,7 +44,7 @@ def gradient(
         The surface.
     values : array_like, shape (n,), (n, k), (m,) or (m, k)
         Data at points or faces; NaN is missing.
-    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress, refine_to, maximum_number_of_triangles
         As for :func:`derivatives`, which describes the discretisation.
 
     Returns
@@ -59,7 +62,8 @@ def gradient(
     """
     return derivatives(
         surface, values, quantity="Gradient", on_faces=on_faces, mask=mask,
-        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress,
+        refine_to=refine_to, maximum_number_of_triangles=maximum_number_of_triangles)
 
 
 def divergence(
@@ -71,6 +75,8 @@ def divergence(
     smoothing_fwhm: float = 0.0,
     result_on_faces: bool = False,
     progress: Progress = False,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NDArray[np.float64]:
     """Compute the divergence of the tangential parts of vectors on a surface.
 
@@ -80,7 +86,7 @@ def divergence(
         The surface.
     vectors : array_like, shape (n, 3), (n, 3 k), (m, 3) or (m, 3 k)
         Vectors in space at points or faces, whose tangential parts count; NaN is missing.
-    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress, refine_to, maximum_number_of_triangles
         As for :func:`derivatives`, which describes the discretisation.
 
     Returns
@@ -99,7 +105,8 @@ def divergence(
     """
     return derivatives(
         surface, vectors, quantity="Divergence", on_faces=on_faces, mask=mask,
-        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress,
+        refine_to=refine_to, maximum_number_of_triangles=maximum_number_of_triangles)
 
 
 def curl(
@@ -111,6 +118,8 @@ def curl(
     smoothing_fwhm: float = 0.0,
     result_on_faces: bool = False,
     progress: Progress = False,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NDArray[np.float64]:
     """Compute the curl about the normals of the tangential parts of vectors on a surface.
 
@@ -120,7 +129,7 @@ def curl(
         The surface.
     vectors : array_like, shape (n, 3), (n, 3 k), (m, 3) or (m, 3 k)
         Vectors in space at points or faces, whose tangential parts count; NaN is missing.
-    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress, refine_to, maximum_number_of_triangles
         As for :func:`derivatives`, which describes the discretisation.
 
     Returns
@@ -140,7 +149,8 @@ def curl(
     """
     return derivatives(
         surface, vectors, quantity="Curl", on_faces=on_faces, mask=mask,
-        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress,
+        refine_to=refine_to, maximum_number_of_triangles=maximum_number_of_triangles)
 
 
 def laplacian(
@@ -152,6 +162,8 @@ def laplacian(
     smoothing_fwhm: float = 0.0,
     result_on_faces: bool = False,
     progress: Progress = False,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NDArray[np.float64]:
     """Compute the Laplacian of data on a surface, the divergence of the gradient.
 
@@ -161,7 +173,7 @@ def laplacian(
         The surface.
     values : array_like, shape (n,), (n, k), (m,) or (m, k)
         Data at points or faces; NaN is missing.
-    on_faces, mask, smoothing_fwhm, result_on_faces, progress
+    on_faces, mask, smoothing_fwhm, result_on_faces, progress, refine_to, maximum_number_of_triangles
         As for :func:`derivatives`, which describes the discretisation.
 
     Returns
@@ -182,7 +194,8 @@ def laplacian(
     """
     return derivatives(
         surface, values, quantity="Laplacian", on_faces=on_faces, mask=mask,
-        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress)
+        smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, progress=progress,
+        refine_to=refine_to, maximum_number_of_triangles=maximum_number_of_triangles)
 
 
 def conduction_velocity(
@@ -194,6 +207,8 @@ def conduction_velocity(
     smoothing_fwhm: float = 0.0,
     result_on_faces: bool = False,
     progress: Progress = False,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> ConductionVelocity:
     """Compute the velocity of a wave on a surface from its arrival times T: grad T/|grad T|^2.
 
@@ -210,7 +225,7 @@ def conduction_velocity(
     smoothing_fwhm : float, default 0
         The width, in the unit of the coordinates, of the Gaussian that smooths the times first:
         several edges for times with noise. Linear functions on planes stay as they are.
-    on_faces, mask, result_on_faces, progress
+    on_faces, mask, result_on_faces, progress, refine_to, maximum_number_of_triangles
         As for :func:`derivatives`.
 
     Returns
@@ -233,6 +248,7 @@ def conduction_velocity(
     found = derivatives(
         surface, times, quantity="ConductionVelocity", on_faces=on_faces, mask=mask,
         smoothing_fwhm=smoothing_fwhm, result_on_faces=result_on_faces, full_output=True,
-        progress=progress)
+        progress=progress, refine_to=refine_to,
+        maximum_number_of_triangles=maximum_number_of_triangles)
     assert found.speed is not None
     return ConductionVelocity(found.values, found.speed)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import textwrap
 from dataclasses import replace
-from typing import Any, Callable, Iterator, Literal, TypeVar
+from typing import Any, Callable, Iterator, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,13 +18,13 @@ from ._models import (
     ARRAYS, Output, as_initial, as_samples, as_vectors, check_colors, find_outputs, make_result,
     read_outputs,
 )
+from ._refinement import document_keywords, keywords_of, with_refinement
 from ._result import (
     CurvatureResult, DerivativesResult, DiffusionResult, EdgeResult, HarmonicMapResult,
     InterpolationResult, MeshDenoisingResult, SegmentationResult, TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
 from ._settings import settings_of, shorten, spell_documentation
-from ._shape import refine_for_texture
 from ._surface import (
     Surface, SurfaceLike, as_data, as_outside, as_surface, find_on_faces, has_integers,
 )
@@ -136,8 +136,12 @@ def _with_settings(function: F) -> F:
                              92, initial_indent="    ", subsequent_indent="    ",
                              break_on_hyphens=False)
         entries.append(f"{setting.keyword} : {allowed}{unit}, default {setting.default}\n{text}")
+    parameters += keywords_of(function.__name__)
+    entries.append(document_keywords(function.__name__))
+    returned = inspect.signature(function).return_annotation
+    function = with_refinement(function)
     function.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
-        parameters, return_annotation=inspect.signature(function).return_annotation)
+        parameters, return_annotation=returned)
     text = inspect.cleandoc(function.__doc__ or "")
     for name, part in {**SHARED, "settings": "\n".join(entries)}.items():
         text = text.replace("{" + name + "}", part)
@@ -935,7 +939,6 @@ def turing_texture(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     rates: ArrayLike | None = None,
-    refine_to: float | Literal["Automatic"] | None = None,
     steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
@@ -958,10 +961,6 @@ def turing_texture(
     rates : array_like, shape (m, 4), optional
         Per face, in place of `diffusion_rate1`, `diffusion_rate_across1`, `diffusion_rate2` and
         `diffusion_rate_across2`.
-    refine_to : float or "Automatic", optional
-        Edges that are longer are bisected first, as by :func:`refine`, and the result belongs to the
-        points of its `surface`. "Automatic": to 8 edges per `feature_size`, for the large triangles of
-        CAD files. Arrays that belong to the given surface cannot be given then.
     {steps}
     {dtype}
     {progress}
@@ -986,13 +985,6 @@ def turing_texture(
     ((2562, 2), 0.0, 1.0)
     """
     surface = as_surface(surface)
-    if refine_to is not None:
-        for name, array in (("initial", initial), ("mask", mask), ("roi", roi), ("fixed", fixed),
-                            ("directions", directions), ("rates", rates)):
-            if array is not None:
-                raise ValueError(f"{name} and refine_to are both given; allowed: one of them, or refine() "
-                                 f"before, and {name} on its surface")
-        surface = refine_for_texture(surface, refine_to, properties.get("feature_size", 0.0)).surface
     data = as_initial(surface, initial)
     find_result_type(data, dtype)
     check_colors(properties)

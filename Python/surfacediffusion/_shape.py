@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Functions that make another surface: with shorter edges, and with relief."""
+"""Functions that make another surface: with relief."""
 
 from __future__ import annotations
 
@@ -12,133 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._refinement import MAXIMUM_TRIANGLES, as_length, take_along
 from ._run import Progress, ProgressReporter, warn
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_flags, as_numbers, as_surface, find_place
-
-#: The triangles that refine() makes at most by default: about 1 GB of memory for a texture.
-MAXIMUM_TRIANGLES = 4_000_000
-
-#: Edges per wavelength of a texture on a refined surface.
-EDGES_PER_WAVELENGTH = 8
-
-
-@dataclass(frozen=True)
-class RefinedSurface:
-    """A surface with shorter edges.
-
-    Attributes
-    ----------
-    surface : Surface
-        Its first points are those of the given surface.
-    faces : ndarray of int, shape (t,)
-        The face of the given surface that each triangle lies in.
-    parents : ndarray of int, shape (k, 2)
-        New point n + k, with n given points, is the middle of these two points.
-    longest_edge : float
-        In coordinate units.
-    limit_reached : bool
-        Whether edges that are too long are left, because there would be too many triangles.
-    """
-
-    surface: Surface
-    faces: NDArray[np.int32] = field(repr=False)
-    parents: NDArray[np.int32] = field(repr=False)
-    longest_edge: float
-    limit_reached: bool
-
-    def at_points(self, values: ArrayLike) -> NDArray[Any]:
-        """Data of the given points (n,) or (n, k) at the new points, by linear interpolation."""
-        array = as_numbers("values", values)
-        n = self.surface.n_points - len(self.parents)
-        if array.ndim not in (1, 2) or len(array) != n:
-            raise ValueError(f"values has shape {array.shape}; allowed: ({n},) or ({n}, k), one row "
-                             "per given point")
-        kind = array.dtype if array.dtype.kind == "f" else np.dtype(np.float64)
-        found = np.empty((self.surface.n_points, *array.shape[1:]), dtype=kind)
-        found[:n] = array
-        # Parents come before their children: all that have known parents are found at once.
-        newest = np.maximum.accumulate(self.parents.max(axis=1)) if len(self.parents) else np.empty(0)
-        known = 0
-        while known < len(self.parents):
-            end = int(np.searchsorted(newest, n + known))
-            first, second = self.parents[known:end].T
-            found[n + known:n + end] = (found[first] + found[second]) / 2
-            known = end
-        return found
-
-    def at_faces(self, values: ArrayLike) -> NDArray[Any]:
-        """Data of the given faces (m,) or (m, k) at the triangles: each has those of its face."""
-        array = np.asarray(values)
-        if array.ndim not in (1, 2) or len(array) <= self.faces.max(initial=0):
-            raise ValueError(f"values has shape {array.shape}; allowed: one row per given face")
-        return array[self.faces]
-
-
-def refine(
-    surface: SurfaceLike,
-    length: float,
-    *,
-    maximum_triangles: int = MAXIMUM_TRIANGLES,
-    progress: Progress = False,
-) -> RefinedSurface:
-    """Bisect the edges of a surface that are longer than `length`, and keep its shape.
-
-    CAD files have few large triangles, on which data and textures have no place. Flat faces stay
-    flat and sharp edges sharp, because new points are the middles of edges. The longest edge of the
-    surface is always bisected next, in all its triangles at once: there are no cracks, and angles
-    are at least half of those of the given triangles.
-
-    Parameters
-    ----------
-    surface : Surface or tuple (points, faces)
-        The surface. Polygons are cut into triangles first.
-    length : float
-        The length of the longest edge allowed, above 0, in the unit of the coordinates.
-    maximum_triangles : int, default 4,000,000
-        Refinement stops before there are more, with a warning.
-    progress : bool or callable, default False
-        As for :func:`heat`.
-
-    Returns
-    -------
-    RefinedSurface
-        `surface`, and what data on it need: `at_points` and `at_faces`.
-
-    Examples
-    --------
-    >>> from surfacediffusion import Surface, refine
-    >>> square = Surface([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]])
-    >>> fine = refine(square, 0.3)
-    >>> fine.surface, fine.longest_edge
-    (<Surface: 41 points, 64 faces>, 0.25)
-    >>> bool((fine.at_points(square.points) == fine.surface.points).all())
-    True
-    """
-    surface = as_surface(surface)
-    length = _as_length("length", length)
-    whole = isinstance(maximum_triangles, (int, np.integer)) and not isinstance(maximum_triangles, bool)
-    if not (whole and 1 <= maximum_triangles < 2**31):
-        raise ValueError(f"maximum_triangles is {shorten(maximum_triangles)}; allowed: 1 to {2**31 - 1}")
-    with ProgressReporter(progress) as reporter:
-        found = _core.refine(surface._core, length, int(maximum_triangles), reporter.callable)
-        reporter.finish_part()
-    if found["limit_reached"]:
-        warn([f"refinement stopped at {len(found['triangles'])} triangles with edges of up to "
-              f"{found['longest_edge']:.3g}, longer than {length:.3g}; maximum_triangles is "
-              f"{maximum_triangles}"])
-    return RefinedSurface(Surface(found["points"], found["triangles"]), found["faces"][:, 0],
-                          found["parents"], found["longest_edge"], found["limit_reached"])
-
-
-def refine_for_texture(surface: Any, refine_to: Any, feature_size: Any) -> RefinedSurface:
-    """For a texture of this wavelength, in the words of turing_texture()."""
-    if refine_to == "Automatic" or refine_to == "automatic":
-        size = _as_length("feature_size", feature_size)
-        return refine(surface, size / EDGES_PER_WAVELENGTH)
-    if isinstance(refine_to, str):
-        raise ValueError(f'refine_to is {refine_to!r}; allowed: "Automatic", or a length above 0')
-    return refine(surface, _as_length("refine_to", refine_to))
+from ._surface import Surface, SurfaceLike, as_flags, as_numbers, find_place
 
 
 @dataclass(frozen=True)
@@ -192,6 +69,8 @@ def relief(
     overhang: float | None = None,
     up: ArrayLike = (0.0, 0.0, 1.0),
     progress: Progress = False,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> ReliefResult:
     """Raise or carve values on a surface as relief, for printing.
 
@@ -201,7 +80,7 @@ def relief(
     Parameters
     ----------
     surface : Surface or tuple (points, faces)
-        The surface. Large triangles have no room for relief: see :func:`refine`.
+        The surface. Large triangles have no room for relief: see `refine_to`.
     values : array_like, shape (n,)
         The values at the points, usually from 0 to 1 as `texture` of :func:`turing_texture`.
     height : float
@@ -222,6 +101,11 @@ def relief(
         The direction of printing, for `overhang`.
     progress : bool or callable, default False
         As for :func:`heat`.
+    refine_to : float, default 0
+        Edges that are longer are bisected first, and values and masks go along: the result belongs to
+        the points of ``refine(surface, refine_to).surface``. 0: the surface stays as it is.
+    maximum_number_of_triangles : int, default 4,000,000
+        Refinement stops before there are more, with a warning.
 
     Returns
     -------
@@ -252,8 +136,9 @@ def relief(
     >>> result.open_edges, result.crossing_triangles, round(result.smallest_wall, 1)
     (0, 0, 21.0)
     """
-    surface = as_surface(surface)
-    array = as_numbers("values", values)
+    surface, rows = take_along(surface, "relief", refine_to, maximum_number_of_triangles,
+                               {"values": values, "mask": mask})
+    array, mask = as_numbers("values", rows["values"]), rows["mask"]
     n = surface.n_points
     if array.shape != (n,):
         raise ValueError(f"values has shape {array.shape}; allowed: ({n},), one number per point")
@@ -266,7 +151,7 @@ def relief(
     heights = _core.relief_heights(
         surface._core, numbers, _as_number("height", height), _as_number("base", base),
         levels in ("Two", "two"), _as_number("threshold", threshold),
-        _as_length("flank", flank, zero=True))[:, 0]
+        as_length("flank", flank, zero=True))[:, 0]
     extent = float(np.linalg.norm(np.ptp(surface.points, axis=0)))
     if not np.abs(heights).max() <= extent:
         raise ValueError(f"height is {shorten(height)}, which makes a relief larger than the surface, of "
@@ -313,12 +198,4 @@ def _as_number(name: str, value: Any) -> float:
     real = isinstance(value, (int, float, np.number)) and not isinstance(value, (bool, np.bool_))
     if not (real and math.isfinite(value)):
         raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers")
-    return float(value)
-
-
-def _as_length(name: str, value: Any, zero: bool = False) -> float:
-    real = isinstance(value, (int, float, np.number)) and not isinstance(value, (bool, np.bool_))
-    if not (real and math.isfinite(value) and (value > 0 or (zero and value == 0))):
-        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers "
-                         + ("of at least 0" if zero else "above 0"))
     return float(value)

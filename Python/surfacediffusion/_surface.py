@@ -221,6 +221,7 @@ class Surface:
         self._areas = None if areas is None else self._set_areas(areas)
         self._points.setflags(write=False)
         self._runs: dict[str, Any] = {}
+        self._refined: dict[tuple[float, int], Any] = {}  # the last one
         self._lock = threading.RLock()  # of a run: one call at a time
 
     def _set_areas(self, areas: ArrayLike) -> NDArray[np.float64]:

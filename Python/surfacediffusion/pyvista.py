@@ -60,6 +60,7 @@ from ._meshes import find_polydata
 from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
 )
+from ._refinement import RefinedSurface, keywords_of, refine_as_asked
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
     TensorDiffusionResult, TextureResult,
@@ -152,7 +153,7 @@ def segment(
     SegmentationResult, of a MultiBlock the list of them.
     """
     properties, result_name = _keywords("segment", properties)
-    blocks, results = _find_surfaces(mesh), []
+    blocks, results = _find_surfaces(mesh, "segment", properties), []
     for block in blocks:
         name = (array or block.mesh.point_data.active_scalars_name
                 or block.mesh.cell_data.active_scalars_name)
@@ -194,7 +195,7 @@ def interpolate(
     mesh, and the InterpolationResult, of a MultiBlock the list of them.
     """
     properties, result_name = _keywords("interpolate", properties)
-    blocks, results = _find_surfaces(mesh), []
+    blocks, results = _find_surfaces(mesh, "interpolate", properties), []
     for block in blocks:
         names = block.mesh.point_data if points is None else points.point_data
         name = array or names.active_scalars_name or (
@@ -246,7 +247,7 @@ def denoise_mesh(
     list of them.
     """
     properties, name = _keywords("denoise_mesh", properties)
-    blocks, results = _find_surfaces(mesh), []
+    blocks, results = _find_surfaces(mesh, "denoise_mesh", properties), []
     for block in blocks:
         marks = block.find("fixed", fixed, faces=True)[0]
         result = _denoise_mesh(block.surface, fixed=marks, full_output=True, progress=progress,
@@ -278,7 +279,7 @@ def relief(
     Active point normals are computed again, and cell normals and tangents are dropped. full_output: if
     True, the function returns a pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
     """
-    blocks, results = _find_surfaces(mesh), []
+    blocks, results = _find_surfaces(mesh, "relief", keywords), []
     for block in blocks:
         values = block.find("array", array)[0]
         marks = block.find("mask", mask, faces=True)[0]
@@ -312,7 +313,7 @@ def curvature(
     returns a pair: the mesh, and the CurvatureResult, of a MultiBlock the list of them.
     """
     properties, prefix = _keywords("curvature", properties)
-    blocks, results = _find_surfaces(mesh), []
+    blocks, results = _find_surfaces(mesh, "curvature", properties), []
     for block in blocks:
         marks = block.find("mask", mask, faces=True)[0]
         result = _curvature(block.surface, mask=marks, progress=progress, **properties)
@@ -346,7 +347,7 @@ def derivatives(
     properties, given = _keywords("derivatives", properties)
     quantity = settings_of("derivatives")["quantity"]
     word = quantity.words[quantity.convert(properties.get("quantity", quantity.default))]
-    blocks, results = _find_surfaces(mesh), []
+    blocks, results = _find_surfaces(mesh, "derivatives", properties), []
     names = [array or block.mesh.active_scalars_name for block in blocks]
     known = [name is not None and (name in block.mesh.point_data or name in block.mesh.cell_data)
              for name, block in zip(names, blocks)]
@@ -385,7 +386,7 @@ def direction_field(
     unit vectors whose sign has no meaning, zero in cells that have no direction.
     """
     properties, name = _keywords("direction_field", properties)
-    surfaces = _find_surfaces(mesh)
+    surfaces = _find_surfaces(mesh, "direction_field", properties)
     for block in surfaces:
         if block.has_strips:
             raise TypeError("the mesh has triangle strips, which have no single direction; allowed: "
@@ -407,7 +408,7 @@ class _Block:
     """One surface of the input, and the mesh of its results."""
 
     def __init__(self, mesh: pyvista.PolyData) -> None:
-        self.input = mesh
+        self.origin = self.input = mesh  #: as given, and with shorter edges
         self.mesh = mesh.copy(deep=False)
         faces, self.face_cells = _find_faces(mesh)
         self.has_strips = len(mesh.strips) > 0
@@ -452,6 +453,35 @@ class _Block:
             cells.remove(name)
         if "Tangents" in self.input.point_data:
             self.mesh.point_data.remove("Tangents")
+
+    def with_edges(self, fine: RefinedSurface) -> _Block:
+        """The block with the triangles of a finer surface in place of its faces, and with its data."""
+        given, cells = self.input, self.face_cells[fine.faces]
+        mesh = pyvista.PolyData()
+        mesh.SetPoints(pyvista.vtk_points(fine.surface.points.astype(given.points.dtype)))
+        mesh.SetVerts(given.GetVerts())
+        mesh.SetLines(given.GetLines())
+        mesh.faces = np.insert(fine.surface.triangles, 0, 3, axis=1).ravel()
+        cells = np.concatenate([np.arange(given.n_verts + given.n_lines), cells])
+        for name, values in given.point_data.items():
+            numbers = np.asarray(values)
+            if numbers.dtype.kind in "biuf":
+                mesh.point_data[name] = fine.at_points(numbers)
+            else:
+                mesh.point_data[name] = numbers[fine.at_points(np.arange(given.n_points))]
+        for name, values in given.cell_data.items():
+            mesh.cell_data[name] = np.asarray(values)[cells]
+        mesh.cell_data["vtkOriginalCellIds"] = cells
+        for data, attributes in ((given.GetPointData(), mesh.GetPointData()),
+                                 (given.GetCellData(), mesh.GetCellData())):
+            for kind in range(data.NUM_ATTRIBUTES):
+                active = data.GetAbstractAttribute(kind)
+                if active is not None:
+                    attributes.SetActiveAttribute(active.GetName(), kind)
+        mesh.field_data.update(given.field_data)
+        block = _Block(mesh)
+        block.origin = self.origin
+        return block
 
     def fresh(self) -> _Block:
         """The same surface, with a mesh for other results."""
@@ -502,14 +532,19 @@ def _split(padded: NDArray[Any]) -> Iterator[NDArray[Any]]:
         begin += 1 + size
 
 
-def _find_surfaces(mesh: Any) -> list[_Block]:
-    """The surfaces of a mesh, without empty blocks."""
+def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_Block]:
+    """The surfaces of a mesh, without empty blocks. Keywords of refinement are used and removed."""
+    given = [keywords.pop(new.name, new.default) for new in keywords_of(function)]
     leaves = list(find_polydata(mesh))
     blocks = [block for block in map(_Block, leaves) if not block.empty]
     if not any(leaf.n_points > 0 for leaf in leaves):
         raise ValueError("the mesh is empty; allowed: a surface of polygons or strips")
     if not blocks:
         raise ValueError("the mesh has no polygons or strips; allowed: a surface")
+    refined = refine_as_asked([block.surface for block in blocks], function, *given,
+                              keywords.get("feature_size", 0.0))
+    if refined is not None:
+        blocks = [block.with_edges(fine) for block, fine in zip(blocks, refined)]
     return blocks
 
 
@@ -525,7 +560,7 @@ def _rebuild(mesh: Any, blocks: Iterator[_Block]) -> Any:
                 if part[index] is not None:
                     copy.replace(index, build(part[index]))
             return copy
-        if following is not None and following.input is part:
+        if following is not None and following.origin is part:
             built, following = following.mesh, next(blocks, None)
             return built
         return part.copy(deep=False)
@@ -536,7 +571,8 @@ def _rebuild(mesh: Any, blocks: Iterator[_Block]) -> Any:
 def _keywords(function: str, properties: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
     """The keywords, also in the spelling of VTK, and the name of the result."""
     names = {setting.name: setting.keyword for setting in settings_of(function).values()}
-    names["ResultArrayName"] = "result_array_name"
+    names.update(ResultArrayName="result_array_name", RefineTo="refine_to",
+                 MaximumNumberOfTriangles="maximum_number_of_triangles")
     found = {names.get(name, name): value for name, value in properties.items()}
     return found, found.pop("result_array_name", None)
 
@@ -644,12 +680,13 @@ def _run(
     if names[1] is not None:
         exclude_outside(names[0], properties)
     dtype = properties.pop("dtype", None)
+    surfaces = _find_surfaces(mesh, function, properties)
     check_colors(properties)
     runner = Runner(function, properties, {
         **ARRAYS, "DirectionArray": "direction",
         "InputArray": "initial" if function == "turing_texture" else "array"})
     blocks, failures = [], []
-    for block in _find_surfaces(mesh):
+    for block in surfaces:
         try:
             _prepare(function, block, array, names, properties)
             find_result_type(block.given.data if block.given else None, dtype)
@@ -722,7 +759,8 @@ def _show_settings(name: str, function: Callable[..., Any]) -> None:
     own = inspect.signature(function)
     settings = [parameter for keyword, parameter
                 in inspect.signature(getattr(_functions, name)).parameters.items()
-                if keyword in settings_of(name) and keyword not in own.parameters]
+                if keyword in (*settings_of(name), *(new.name for new in keywords_of(name)))
+                and keyword not in own.parameters]
     function.__signature__ = own.replace(parameters=[  # type: ignore[attr-defined]
         *(parameter for parameter in own.parameters.values()
           if parameter.kind is not inspect.Parameter.VAR_KEYWORD), *settings])

@@ -583,7 +583,7 @@ class Reports(CommandTest):
     def test_help_of_every_command_shows_an_example(self):
         _, out, _ = run("--help")
         commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "interpolate", "segment",
-                    "texture", "directions", "curvature", "derivatives", "normals", "fwhm", "info")
+                    "refine", "texture", "directions", "curvature", "derivatives", "normals", "fwhm", "info")
         for command in commands:
             self.assertIn(command, out)
             code, text, _ = run(command, "--help")

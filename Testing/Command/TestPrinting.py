@@ -105,6 +105,29 @@ class Printing(unittest.TestCase):
         self.assertEqual(shades.shape, (len(points), 3))
         self.assertEqual((shades.min(), shades.max()), (0, 1))
 
+    def test_refine_shortens_edges_and_takes_data_along(self):
+        points, triangles = box()
+        export("box.ply", points, triangles)
+        np.save("x.npy", points[:, :1])
+        out = self.succeed("refine box.ply 3 fine.ply --data x.npy fine.npy")
+        self.assertRegex(out, r"^fine.ply: [0-9]+ triangles, edges of at most [0-9.]+, ")
+        surface, found = read_surface("fine.ply"), np.load("fine.npy")
+        self.assertTrue(is_closed(surface.faces))
+        np.testing.assert_array_equal(found[:, 0], surface.points[:, 0])
+        corners = surface.points[surface.faces]
+        self.assertLessEqual(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(), 3)
+        self.succeed("refine box.ply 0.1 few.stl --maximum-triangles 500",
+                     "refinement stopped at edges of [0-9.]+, longer than 0.1, because "
+                     "maximum_number_of_triangles is 500")
+        self.assertLessEqual(len(read_surface("few.stl").faces), 500)
+        for line, pattern in (("box.ply 0 fine.ply", ".*"),
+                              ("box.ply 1 fine.off", "fine.off: the name announces no format of surfaces.*"),
+                              ("box.ply 1 fine.ply --data x.npy y.txt", "y.txt: the name announces no .*"),
+                              ("box.ply 1 fine.ply --data part.stl y.npy", "part.stl: .*")):
+            code, out, error = run("refine", *line.split())
+            self.assertEqual((code, out), (2, ""), error)
+            self.assertRegex(error, f"^surfacediffusion.*: {pattern}\n$")
+
     def test_units_are_converted(self):
         self.succeed("texture part.stl 8mm a.stl --relief 0.5mm --steps 20")
         self.succeed("texture part.stl 0.8cm b.stl --relief 500um --steps 20")

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkCellData.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkSurfaceReliefFilter.h"
@@ -239,6 +240,58 @@ TEST(SurfaceReliefFilter, KeepsRimsAndPassesBlocksWithoutValues)
     EXPECT_EQ(grid->GetPoint(i)[2], rim ? 0.0 : -0.25) << i;
   }
   EXPECT_EQ(vtkPolyData::SafeDownCast(result->GetBlock(2))->GetPoints(), other->GetPoints());
+}
+
+TEST(SurfaceReliefFilter, CountsCrossingTrianglesOfTheInputAndRaisesThemAllTheSame)
+{
+  const auto box = Box(10.0, 8);
+  vtkNew<vtkPolyData> moved;
+  moved->DeepCopy(box);
+  for (vtkIdType i = 0; i < moved->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    moved->GetPoint(i, p);
+    moved->GetPoints()->SetPoint(i, p[0] + 6.3, p[1] + 3.7, p[2] + 1.1);
+  }
+  vtkNew<vtkAppendPolyData> both;
+  both->AddInputData(box);
+  both->AddInputData(moved);
+  vtkNew<vtkSurfaceReliefFilter> filter;
+  filter->SetInputConnection(both->GetOutputPort());
+  filter->SetHeight(0.1);
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  const auto count = static_cast<long>(filter->GetCrossingTrianglesBefore());
+  EXPECT_GT(count, 20);
+  EXPECT_NE(
+    messages.Warnings[0].find("the surface crosses itself at " + std::to_string(count) + " tri"),
+    std::string::npos)
+    << messages.Warnings[0];
+  EXPECT_GT(filter->GetVolumeChange(), 0.5 * 2.0 * 0.1 * 600.0);
+  EXPECT_EQ(filter->GetOpenEdges(), 0);
+}
+
+TEST(SurfaceReliefFilter, ReliefAboveTheWallIsLoweredWithAWarning)
+{
+  const auto plate = Box(10.0, 24);
+  for (vtkIdType i = 0; i < plate->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    plate->GetPoint(i, p);
+    plate->GetPoints()->SetPoint(i, p[0], p[1], 0.1 * p[2]);
+  }
+  vtkNew<vtkSurfaceReliefFilter> filter;
+  filter->SetInputData(plate);
+  filter->SetHeight(-0.9); // of a wall of 1
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(
+    messages.Warnings[0].find("is lowered by more than half of that at "), std::string::npos);
+  EXPECT_EQ(filter->GetCrossingTriangles(), 0);
+  EXPECT_NEAR(filter->GetSmallestWall(), 0.5, 1e-6); // a quarter from each side
+  EXPECT_GT(filter->GetLoweredPoints(), 400);
 }
 
 TEST(SurfaceReliefFilter, NamesEachWrongPropertyAndValue)

@@ -520,3 +520,22 @@ TEST(TuringTextureFilter, RefinesMeshesThatAreTooCoarseForTheFeatures)
   EXPECT_EQ(filter->GetOutput()->GetPoints(), sphere->GetPoints());
   EXPECT_EQ(filter->GetOutput()->GetPolys(), sphere->GetPolys());
 }
+
+TEST(TuringTextureFilter, SaysThatFeaturesAreLargerThanTheSurface)
+{
+  const auto sphere = Sphere(3); // of radius 1
+  vtkNew<vtkTuringTextureFilter> filter;
+  filter->SetInputData(sphere);
+  filter->SetNumberOfTimeSteps(2);
+  filter->SetFeatureSize(3.4);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_EQ(messages.Warnings, std::vector<std::string>());
+  filter->SetFeatureSize(3.5);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(
+    messages.Warnings[0].find("FeatureSize is 3.5, but the surface is 3.4"), std::string::npos)
+    << messages.Warnings[0];
+  EXPECT_NE(messages.Warnings[0].find("no room for a pattern"), std::string::npos);
+}

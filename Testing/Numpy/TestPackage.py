@@ -47,7 +47,7 @@ BAD = {
 
 class Package(unittest.TestCase):
     def test_examples_in_docstrings_hold(self):
-        names = ["_functions", "_fwhm", "_shape", "_surface", "_threads", "_result"]
+        names = ["_functions", "_fwhm", "_refinement", "_shape", "_surface", "_threads", "_result"]
         examples = 0
         for name in names:
             results = doctest.testmod(importlib.import_module(f"surfacediffusion.{name}"))

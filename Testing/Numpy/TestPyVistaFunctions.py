@@ -45,6 +45,30 @@ class Meshes(unittest.TestCase):
         self.assertNotIn("fDiffused", mesh.array_names)
         self.assertEqual(mesh.active_scalars_name, before)
 
+    def test_refinement_takes_data_along_and_is_that_of_the_arrays(self):
+        mesh = pyvista.Icosphere(nsub=1).compute_normals(split_vertices=False)
+        mesh["f"] = mesh.points[:, 2]
+        mesh["label"] = np.arange(mesh.n_points)
+        mesh.cell_data["c"] = np.arange(mesh.n_cells) ** 2
+        smooth = heat(mesh, "f", fwhm=0.4, RefineTo=0.2)
+        fine = sd.refine(as_surface(mesh), 0.2)
+        self.assertGreater(smooth.n_cells, 4 * mesh.n_cells)
+        np.testing.assert_array_equal(
+            smooth["fDiffused"], sd.heat(as_surface(mesh), mesh["f"], fwhm=0.4, refine_to=0.2))
+        np.testing.assert_array_equal(smooth["label"], fine.at_points(mesh["label"]))
+        np.testing.assert_array_equal(smooth.cell_data["vtkOriginalCellIds"], fine.faces)
+        np.testing.assert_array_equal(smooth.cell_data["c"], fine.faces.astype(int) ** 2)
+        self.assertEqual(smooth.point_data.active_normals_name, "Normals")
+        self.assertEqual(smooth.active_scalars_name, "fDiffused")
+        pair = pyvista.MultiBlock([mesh, None, pyvista.Icosphere(nsub=2)])
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "edges were bisected, to [0-9]+ triangles"):
+            textures = turing_texture(pair, feature_size=0.5, number_of_time_steps=2)
+        self.assertGreater(textures[0].n_points, mesh.n_points)
+        self.assertEqual(len(textures[2]["Texture"]), textures[2].n_points)
+        raised = relief(textures[0], "Texture", 0.01, refine_to=0.03)
+        self.assertEqual(len(raised["ReliefHeight"]), raised.n_points)
+        self.assertGreater(raised.n_points, textures[0].n_points)
+
     def test_heat_without_a_width_is_the_error_of_the_arrays(self):
         mesh = noisy_sphere()
         for keywords in ({}, {"times": [0, 1]}, {"fwhm": 0}, {"number_of_time_steps": 3}):

@@ -77,8 +77,9 @@ class Refine(unittest.TestCase):
 
     def test_the_limit_is_said(self):
         with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
-                                   "stopped at [0-9]+ triangles with edges of up to .*longer than 0.01"):
-            fine = sd.refine(box(), 0.01, maximum_triangles=1000)
+                                   "stopped at edges of [0-9.]+, longer than 0.01, because "
+                                   "maximum_number_of_triangles is 1000"):
+            fine = sd.refine(box(), 0.01, maximum_number_of_triangles=1000)
         self.assertTrue(fine.limit_reached)
         self.assertLessEqual(fine.surface.n_faces, 1000)
 
@@ -88,7 +89,8 @@ class Refine(unittest.TestCase):
                 (lambda: sd.refine(box(), 0), "length is 0; allowed: finite numbers above 0"),
                 (lambda: sd.refine(box(), "a"), "length is 'a'; allowed: .*"),
                 (lambda: sd.refine(box(), np.nan), "length is nan; allowed: .*"),
-                (lambda: sd.refine(box(), 1, maximum_triangles=0), "maximum_triangles is 0; allowed: .*"),
+                (lambda: sd.refine(box(), 1, maximum_number_of_triangles=0),
+                 "maximum_number_of_triangles is 0; allowed: .*"),
                 (lambda: sd.refine(5, 1), "surface is 5; allowed: .*"),
                 (lambda: fine.at_points(np.ones(3)), r"values has shape \(3,\); allowed: \(8,\).*"),
                 (lambda: fine.at_faces(np.ones(3)), r"values has shape \(3,\); allowed: .*")):
@@ -108,8 +110,10 @@ class Refine(unittest.TestCase):
 
 class Texture(unittest.TestCase):
     def test_a_box_of_12_triangles_gets_one_pattern_across_its_edges(self):
-        result = sd.turing_texture(box(2 * SIDES), feature_size=5.0, refine_to="Automatic",
-                                   diffusion_rate1=2.6 * 18, number_of_time_steps=300)
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "edges were bisected, to [0-9]+ triangles, "
+                                   "because feature_size is 5, less than 6 mean edge lengths"):
+            result = sd.turing_texture(box(2 * SIDES), feature_size=5.0, diffusion_rate1=2.6 * 18,
+                                       number_of_time_steps=300)
         surface = result.surface
         self.assertEqual(result.texture.shape, (surface.n_points,))
         self.assertAlmostEqual(result.wavelength, 5.0, delta=0.05)
@@ -120,13 +124,101 @@ class Texture(unittest.TestCase):
         edges = wavelength(surface, u1, away < 2.5)
         self.assertAlmostEqual(edges / faces, 1, delta=0.05)
 
-    def test_arrays_of_the_given_surface_are_refused(self):
-        with self.assertRaisesRegex(ValueError, "^mask and refine_to are both given; allowed: .*$"):
-            sd.turing_texture(box(), refine_to=3.0, mask=np.zeros(8))
-        with self.assertRaisesRegex(ValueError, "^feature_size is 0.0; allowed: .*$"):
-            sd.turing_texture(box(), refine_to="Automatic")
-        with self.assertRaisesRegex(ValueError, "^refine_to is 'fine'; allowed: .*$"):
-            sd.turing_texture(box(), refine_to="fine")
+    def test_fine_surfaces_and_0_keep_the_edges(self):
+        ball = sd.sphere(3)
+        for options in ({"feature_size": 2.0}, {"feature_size": 0.3, "refine_to": 0}, {}):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                result = sd.turing_texture(ball, number_of_time_steps=2, **options)
+            self.assertIs(result.surface, ball, options)
+
+    def test_features_larger_than_the_part_are_said(self):
+        part = box()  # 53.85 from corner to corner
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "feature_size is 60, but the surface is 53.85"
+                                   ".* from corner to corner: it has no room for a pattern"):
+            sd.turing_texture(part, feature_size=60.0, refine_to=8.0, number_of_time_steps=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            sd.turing_texture(part, feature_size=50.0, refine_to=8.0, number_of_time_steps=2)
+
+    def test_bad_lengths_are_one_line(self):
+        for options, pattern in (
+                ({"refine_to": "fine"}, "refine_to is 'fine'; allowed: .*"),
+                ({"refine_to": -2}, "refine_to is -2; allowed: finite numbers of at least 0"),
+                ({"refine_to": 3.0, "mask": np.zeros(9)}, r"mask has shape \(9,\); allowed: one row per "
+                 "point, of which there are 8, or per face, 12"),
+                ({"feature_size": "5"}, "feature_size is '5'; allowed: .*")):
+            with self.subTest(pattern), self.assertRaisesRegex(ValueError, f"^{pattern}$"):
+                sd.turing_texture(box(), **options)
+
+
+class RefineTo(unittest.TestCase):
+    """refine_to of a function is refine() before it, and data go along."""
+
+    def setUp(self):
+        self.ball = sd.sphere(1)
+        self.fine = sd.refine(self.ball, 0.25)
+        self.z = self.ball.points[:, 2]
+
+    def check(self, function, **arrays):
+        """arrays: of the points or faces of the ball."""
+        options = {name: arrays.pop(name) for name in list(arrays) if np.ndim(arrays[name]) == 0}
+        carried = {name: (self.fine.at_faces if len(array) == self.ball.n_faces
+                          else self.fine.at_points)(array) for name, array in arrays.items()}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = function(self.ball, refine_to=0.25, **arrays, **options)
+            expected = function(self.fine.surface, **carried, **options)
+        if isinstance(expected, sd.ReliefResult):
+            found, expected = found.heights, expected.heights
+        found, expected = np.asarray(found), np.asarray(expected)
+        np.testing.assert_array_equal(found, expected)
+        self.assertIn(len(found), (self.fine.surface.n_points, self.fine.surface.n_faces))
+
+    def test_holds_for_every_function(self):
+        z, up = self.z, np.tile([0.0, 0.0, 1.0], (80, 1))
+        mask, faces = (z > 0.9).astype(int), np.arange(80.0)
+        steps = {"number_of_time_steps": 2}
+        cases = {
+            "heat": dict(values=z, fwhm=0.5, mask=mask, directions=up, fixed=z < -0.8),
+            "intrinsic_tv": dict(values=faces, **steps),
+            "tensor_diffusion": dict(values=z, **steps), "mumford_shah": dict(values=z, **steps),
+            "harmonic_map": dict(vectors=self.ball.points, **steps),
+            "turing_texture": dict(initial=np.column_stack([4 + z, 4 - z]), **steps),
+            "segment": dict(values=z), "curvature": dict(mask=mask), "direction_field": {"method": "Smooth"},
+            "derivatives": dict(values=z, quantity="Laplacian"),
+            "interpolate": dict(values=np.where(z > 0, z, np.nan), exact=True), "denoise_mesh": {}}
+        self.assertEqual(set(cases), set(sd._functions.__all__))
+        for name, arrays in {**cases, "gradient": dict(values=z), "relief": dict(values=z, height=0.1)}.items():
+            with self.subTest(name):
+                self.check(getattr(sd, name), **arrays)
+
+    def test_regions_of_interest_reach_to_the_points_that_a_mask_leaves(self):
+        z = self.z
+        found = sd.heat(self.ball, z, fwhm=0.5, roi=z > 0, refine_to=0.25)
+        same = sd.heat(self.ball, z, fwhm=0.5, mask=(z <= 0).astype(int), mask_mode="Exclude", refine_to=0.25)
+        np.testing.assert_array_equal(found, same)
+
+    def test_values_at_other_places_stay(self):
+        places = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
+        found = sd.interpolate(self.ball, [1.0, 2.0, 3.0, 4.0], places, refine_to=0.25, exact=True)
+        expected = sd.interpolate(self.fine.surface, [1.0, 2.0, 3.0, 4.0], places, exact=True)
+        np.testing.assert_array_equal(found.values, expected.values)
+
+    def test_labels_and_colours_keep_their_type(self):
+        labels = self.fine.at_points(np.arange(42))
+        self.assertEqual(labels.dtype.kind, "i")
+        np.testing.assert_array_equal(labels[42:], labels[self.fine.parents].min(axis=1))
+        colours = np.random.default_rng(0).integers(0, 256, (42, 3), dtype=np.uint8)
+        found = self.fine.at_points(colours)
+        self.assertEqual(found.dtype, np.uint8)
+        np.testing.assert_array_equal(
+            found[42:], (found[self.fine.parents].astype(int).sum(axis=1) + 1) // 2)
+
+    def test_is_refused_with_areas(self):
+        surface = sd.Surface(self.ball.points, self.ball.triangles, areas=np.ones(42))
+        with self.assertRaisesRegex(ValueError, "^refine_to is 0.25, but areas are given .*; allowed: .*$"):
+            sd.heat(surface, self.z, fwhm=0.5, refine_to=0.25)
 
 
 class Relief(unittest.TestCase):

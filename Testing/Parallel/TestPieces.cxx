@@ -3,6 +3,7 @@
 #include "Pieces.h"
 
 #include "vtkFVMHeatFilter.h"
+#include "vtkTuringTextureFilter.h"
 
 #include "vtkMPIController.h"
 #include "vtkMultiBlockDataSet.h"
@@ -301,6 +302,44 @@ TEST(Pieces, WithoutTheArrayAreOneError)
   heat->Update();
   EXPECT_EQ(messages.Errors.size(), Rank() == 0 ? 1u : 0u);
   EXPECT_EQ(Result(heat), nullptr);
+}
+
+TEST(Pieces, AreRefinedAlikeForTheFeatureSizeOfATexture)
+{
+  const auto makeTexture = [](vtkPolyData* input)
+  {
+    auto texture = vtkSmartPointer<vtkTuringTextureFilter>::New();
+    texture->SetInputData(input);
+    texture->SetFeatureSize(0.4);
+    texture->SetNumberOfTimeSteps(2);
+    return texture;
+  };
+  const int n = 8; // 0.4 is three edges
+  auto pieces = makeTexture(Mine(n));
+  auto alone = makeTexture(Strip(0, n, n));
+  alone->SetController(nullptr);
+  Messages ofPieces(pieces);
+  Messages ofAlone(alone);
+  pieces->Update();
+  alone->Update();
+  ASSERT_EQ(ofAlone.Warnings.size(), 1u);
+  EXPECT_EQ(ofPieces.Warnings.size(), Rank() == 0 ? 1u : 0u);
+  vtkPolyData* const mine = pieces->GetOutput();
+  vtkPolyData* const whole = alone->GetOutput();
+  EXPECT_GT(whole->GetNumberOfCells(), 2 * 32 * 32 / 2);
+  EXPECT_EQ(OfAll(static_cast<double>(mine->GetNumberOfCells()), vtkCommunicator::SUM_OP),
+    static_cast<double>(whole->GetNumberOfCells()));
+  vtkDataArray* const u1 = mine->GetPointData()->GetArray("u1");
+  ASSERT_NE(u1, nullptr);
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < mine->GetNumberOfPoints(); ++i)
+  {
+    const vtkIdType same = whole->FindPoint(mine->GetPoint(i));
+    largest = std::max(largest,
+      std::abs(
+        u1->GetComponent(i, 0) - whole->GetPointData()->GetArray("u1")->GetComponent(same, 0)));
+  }
+  EXPECT_LT(largest, 1e-9);
 }
 
 int main(int argc, char** argv)

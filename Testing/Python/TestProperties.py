@@ -55,6 +55,7 @@ def of_each_property(test):
 #: The documented defaults, of all filters, of those with a model, of those with time steps, and of
 #: those that diffuse data
 SURFACE = dict(MergeCoincidentPoints=False, MergeTolerance=0.0, SeamTolerance=-1.0,
+               RefineTo=0.0, MaximumNumberOfTriangles=4000000,
                NumberOfThreads=0, ResultArrayName="")
 MODEL = dict(Units="Natural", MaskMode="Inpaint", RandomSeed=0, IntrinsicDelaunay=False,
              OutputPrecision="Input", **SURFACE)
@@ -114,8 +115,7 @@ DEFAULTS = {
         "SurfaceType": "Automatic"},
     "vtkSurfaceReliefFilter": {
         **SURFACE, "ResultArrayName": "ReliefHeight", "Height": 1.0, "Base": 0.0, "Levels": "Smooth",
-        "Threshold": 0.5, "Flank": 0.0, "Overhang": -1.0, "UpDirection": (0.0, 0.0, 1.0),
-        "RefineTo": 0.0},
+        "Threshold": 0.5, "Flank": 0.0, "Overhang": -1.0, "UpDirection": (0.0, 0.0, 1.0)},
     "vtkSurfaceCurvatureFilter": {**SURFACE, "FWHM": 0.0},
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},

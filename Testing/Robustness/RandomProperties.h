@@ -132,6 +132,8 @@ List OfSurface()
     RANDOM_PROPERTY(F, MergeCoincidentPoints, dice.Flip()),
     RANDOM_PROPERTY(F, MergeTolerance, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, SeamTolerance, dice.Flip() ? -1.0 : ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, RefineTo, dice.Below(3) > 0 ? 0.0 : 0.3 + dice.Unit()),
+    RANDOM_PROPERTY(F, MaximumNumberOfTriangles, dice.Flip() ? 4000000 : 1 + dice.Below(3000)),
     RANDOM_PROPERTY(F, NumberOfThreads, dice.Below(3)),
     RANDOM_PROPERTY(F, Controller, Controller(dice)),
     RANDOM_PROPERTY(F, ResultArrayName, Name(dice)),
@@ -367,7 +369,6 @@ inline List OfTexture()
     RANDOM_PROPERTY(F, DiffusionRateAcross1, dice.Flip() ? -1.0 : Near(dice, 21.0)),
     RANDOM_PROPERTY(F, DiffusionRateAcross2, dice.Flip() ? -1.0 : Near(dice, 2.6)),
     RANDOM_PROPERTY(F, FeatureSize, ZeroOrPositive(dice)),
-    RANDOM_PROPERTY(F, RefineTo, dice.Flip() ? 0.0 : 0.3 + dice.Unit()),
     RANDOM_PROPERTY(F, InitialNoise, ZeroOrPositive(dice, 8)),
     RANDOM_PROPERTY(F, ClampToNonNegative, dice.Flip()),
     RANDOM_PROPERTY(F, AutomaticTimeStep, dice.Flip()),
@@ -425,7 +426,6 @@ inline List OfRelief()
     RANDOM_PROPERTY(F, Flank, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, Overhang, dice.Flip() ? -1.0 : 90.0 * dice.Unit()),
     RANDOM_PROPERTY(F, UpDirection, Color(dice).data()),
-    RANDOM_PROPERTY(F, RefineTo, dice.Flip() ? 0.0 : 0.3 + dice.Unit()),
   };
 }
 

@@ -136,9 +136,12 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   }
   needed["vtkSurfaceReliefFilter Base"] = needed["Levels"] = needed["Overhang"] =
     needed["vtkSurfaceReliefFilter RefineTo"] = needed["vtkSurfaceReliefFilter ResultArrayName"] =
-      needed["vtkSurfaceReliefFilter MergeCoincidentPoints"] =
-        needed["vtkSurfaceReliefFilter MergeTolerance"] =
-          With<vtkSurfaceReliefFilter>([](vtkSurfaceReliefFilter* f) { f->SetHeight(0.03); });
+      needed["vtkSurfaceReliefFilter MaximumNumberOfTriangles"] =
+        needed["vtkSurfaceReliefFilter MergeCoincidentPoints"] =
+          needed["vtkSurfaceReliefFilter MergeTolerance"] =
+            With<vtkSurfaceReliefFilter>([](vtkSurfaceReliefFilter* f) { f->SetHeight(0.03); });
+  needed["MaximumNumberOfTriangles"] =
+    With<vtkSurfaceFilter>([](vtkSurfaceFilter* f) { f->SetRefineTo(0.3); });
   needed["UpDirection"] = With<vtkSurfaceReliefFilter>(
     [](vtkSurfaceReliefFilter* f)
     {

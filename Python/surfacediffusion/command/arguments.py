@@ -83,7 +83,8 @@ def make_parser(hemispheres=False):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
     for add in (_smooth, _metric_smoothing, _cifti_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
-                _edges, _segment, _texture, _directions, _curvature, _derivatives, _normals, _fwhm, _info, _doctor):
+                _edges, _segment, _refine, _texture, _directions, _curvature, _derivatives, _normals, _fwhm, _info,
+                _doctor):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -553,6 +554,29 @@ are bisected to 8 per FEATURE_SIZE, so that CAD files with few triangles do. .fu
 .mgh, .mgz, .npy, or .ply, .vtk, .vtp if SURFACE is such a file, are the pattern at the vertices of
 SURFACE as they are.
 """
+
+
+REFINE = """
+The name of OUTPUT gives its format: .ply, .obj, .stl or .3mf. NEW is .npy: a row per vertex of OUTPUT,
+those of SURFACE first.
+"""
+
+
+def _refine(commands):
+    text = ("Bisect the long edges of a surface, so that data and patterns have room on large triangles: "
+            "flat faces stay flat, sharp edges sharp, and data at the vertices go along.")
+    parser = commands.add(
+        "refine", tasks.refine, text,
+        [f"{PROGRAM} refine part.ply 0.5 fine.ply --data load.npy fine.npy"], REFINE)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("length", metavar="LENGTH", type=_positive,
+                        help="the length of the longest edge allowed, in the unit of the coordinates")
+    parser.add_argument("output", metavar="OUTPUT", help="the surface with shorter edges")
+    parser.add_argument("--data", metavar=("DATA", "NEW"), nargs=2, action="append", default=[],
+                        help="data at the vertices of SURFACE, and where to write those at the vertices "
+                             "of OUTPUT; may be repeated")
+    parser.add_argument("--maximum-triangles", metavar="N", type=_count, default=4_000_000,
+                        help="refinement stops before there are more, with a warning (default 4000000)")
 
 
 def _texture(commands):

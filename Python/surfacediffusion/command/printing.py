@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._shape import EDGES_PER_WAVELENGTH
+from .._refinement import EDGES_PER_WAVELENGTH
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export
 from .inputs import ArgumentProblem

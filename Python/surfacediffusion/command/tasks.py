@@ -11,6 +11,7 @@ import numpy as np
 from ..files import FileError, new_data, read_data, read_surface
 from ..files.content import (
     check_output_folder, check_output_name, kind_of_name, read_content)
+from ..files.export import export
 from . import batch, inputs
 from .inputs import choose_columns, make_patches, read_surfaces
 from .printing import PATTERNS, in_coordinates, is_for_printing, print_texture
@@ -333,7 +334,7 @@ def texture(arguments, report):
         options["number_of_time_steps"] = arguments.steps
     with report.timed("compute"), report.progress("Texture") as progress:
         result = turing_texture(Surface(surface.points, surface.faces), progress=progress,
-                                feature_size=size, seed=arguments.seed, **options)
+                                feature_size=size, seed=arguments.seed, refine_to=0, **options)
     report.facts.update(feature_size=size, seed=arguments.seed, steps=result.step,
                         wavelength=number(result.wavelength))
     _write_new(arguments, report, target, result.texture[:, None].astype(np.float32))
@@ -361,6 +362,35 @@ def directions(arguments, report):
             write_atomically(arguments.output, vtk_files.write(
                 kind, surface.image, cell_data={"Direction": field}))
     _say_written(arguments, report, f"{len(surface.faces)} directions")
+
+
+def refine(arguments, report):
+    from .. import Surface
+    from .. import refine as bisect
+    from ..files import write_atomically
+
+    for output in (arguments.output, *(new for _, new in arguments.data)):
+        check_output_folder(output)
+    for _, new in arguments.data:
+        if kind_of_name(new) != "npy":
+            raise FileError(f"{new}: the name announces no format for data of the new vertices; allowed: "
+                            ".npy")
+    with report.timed("read"):
+        surface = read_surface(arguments.surface)
+        columns = [inputs.read_values(path, surface, tables=False)[1] for path, _ in arguments.data]
+    with report.timed("compute"), report.progress("Refinement") as progress:
+        fine = bisect(Surface(surface.points, surface.faces), arguments.length, progress=progress,
+                      maximum_number_of_triangles=arguments.maximum_triangles)
+    report.facts.update(longest_edge=number(fine.longest_edge), vertices=fine.surface.n_points,
+                        triangles=fine.surface.n_faces)
+    with report.timed("write"):
+        export(arguments.output, fine.surface.points, fine.surface.triangles)
+        for (_, new), values in zip(arguments.data, columns):
+            file = io.BytesIO()
+            np.save(file, fine.at_points(values))
+            write_atomically(new, file.getvalue())
+    _say_written(arguments, report, f"{fine.surface.n_faces} triangles, edges of at most "
+                 f"{fine.longest_edge:.4g}")
 
 
 def curvature(arguments, report):

@@ -1,0 +1,278 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces with shorter edges, and the keyword refine_to of all functions."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+import textwrap
+from dataclasses import dataclass, field
+from typing import Any, Callable, Sequence, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._run import Progress, ProgressReporter, warn
+from ._settings import shorten
+from ._surface import Surface, SurfaceLike, as_numbers, as_outside, as_surface
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+#: The triangles that refinement makes at most by default: about 1 GB of memory for a texture.
+MAXIMUM_TRIANGLES = 4_000_000
+
+#: Edges per wavelength of a texture on a refined surface, and those that a mesh should have.
+EDGES_PER_WAVELENGTH = 8
+FEWEST_EDGES_PER_WAVELENGTH = 6
+
+@dataclass(frozen=True)
+class RefinedSurface:
+    """A surface with shorter edges.
+
+    Attributes
+    ----------
+    surface : Surface
+        Its first points are those of the given surface.
+    faces : ndarray of int, shape (t,)
+        The face of the given surface that each triangle lies in.
+    parents : ndarray of int, shape (k, 2)
+        New point n + k, with n given points, is the middle of these two points.
+    longest_edge : float
+        In coordinate units.
+    limit_reached : bool
+        Whether edges that are too long are left, because there would be too many triangles.
+    """
+
+    surface: Surface
+    faces: NDArray[np.int32] = field(repr=False)
+    parents: NDArray[np.int32] = field(repr=False)
+    longest_edge: float
+    limit_reached: bool
+
+    def at_points(self, values: ArrayLike) -> NDArray[Any]:
+        """Data of the given points (n,) or (n, k) at all points, by linear interpolation. Integers and
+        bools keep their type: single ones, which are labels and marks, become the smaller of two, and
+        others, such as colours, are rounded."""
+        array = as_numbers("values", values)
+        n = self.surface.n_points - len(self.parents)
+        if array.ndim not in (1, 2) or len(array) != n:
+            raise ValueError(f"values has shape {array.shape}; allowed: ({n},) or ({n}, k), one row "
+                             "per given point")
+        is_mark = array.dtype.kind != "f" and array.size == len(array)
+        found = np.empty((self.surface.n_points, *array.shape[1:]), dtype=array.dtype)
+        found[:n] = array
+        # Parents come before their children: all that have known parents are found at once.
+        newest = np.maximum.accumulate(self.parents.max(axis=1)) if len(self.parents) else np.empty(0)
+        known = 0
+        while known < len(self.parents):
+            end = int(np.searchsorted(newest, n + known))
+            first, second = self.parents[known:end].T
+            if is_mark:
+                found[n + known:n + end] = np.minimum(found[first], found[second])
+            else:
+                mean = 0.5 * found[first] + 0.5 * found[second]
+                found[n + known:n + end] = mean if array.dtype.kind == "f" else np.floor(mean + 0.5)
+            known = end
+        return found
+
+    def at_faces(self, values: ArrayLike) -> NDArray[Any]:
+        """Data of the given faces (m,) or (m, k) at the triangles: each has those of its face."""
+        array = np.asarray(values)
+        if array.ndim not in (1, 2) or len(array) <= self.faces.max(initial=0):
+            raise ValueError(f"values has shape {array.shape}; allowed: one row per given face")
+        return array[self.faces]
+
+
+def refine(
+    surface: SurfaceLike,
+    length: float,
+    *,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
+    progress: Progress = False,
+) -> RefinedSurface:
+    """Bisect the edges of a surface that are longer than `length`, and keep its shape.
+
+    CAD files have few large triangles, on which data and textures have no place. Flat faces stay
+    flat and sharp edges sharp, because new points are the middles of edges. The longest edge of the
+    surface is always bisected next, in all its triangles at once: there are no cracks, and angles
+    are at least half of those of the given triangles.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface. Polygons are cut into triangles first.
+    length : float
+        The length of the longest edge allowed, above 0, in the unit of the coordinates.
+    maximum_number_of_triangles : int, default 4,000,000
+        Refinement stops before there are more, with a warning.
+    progress : bool or callable, default False
+        As for :func:`heat`.
+
+    Returns
+    -------
+    RefinedSurface
+        `surface`, and what data on it need: `at_points` and `at_faces`.
+
+    Examples
+    --------
+    >>> from surfacediffusion import Surface, refine
+    >>> square = Surface([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]])
+    >>> fine = refine(square, 0.3)
+    >>> fine.surface, fine.longest_edge
+    (<Surface: 41 points, 64 faces>, 0.25)
+    >>> bool((fine.at_points(square.points) == fine.surface.points).all())
+    True
+    """
+    return _refine(as_surface(surface), as_length("length", length), maximum_number_of_triangles, progress)
+
+
+def _refine(surface: Surface, length: float, limit: Any, progress: Progress = False) -> RefinedSurface:
+    """The same; a surface keeps its last one."""
+    whole = isinstance(limit, (int, np.integer)) and not isinstance(limit, bool)
+    if not (whole and 1 <= limit < 2**31):
+        raise ValueError(f"maximum_number_of_triangles is {shorten(limit)}; allowed: 1 to {2**31 - 1}")
+    key = (length, int(limit))
+    with surface._lock, ProgressReporter(progress) as reporter:
+        if key not in surface._refined:
+            found = _core.refine(surface._core, *key, reporter.callable)
+            surface._refined.clear()
+            surface._refined[key] = RefinedSurface(
+                Surface(found["points"], found["triangles"]), found["faces"][:, 0], found["parents"],
+                found["longest_edge"], found["limit_reached"])
+        reporter.finish_part()
+        refined: RefinedSurface = surface._refined[key]
+    if refined.limit_reached:
+        warn([f"refinement stopped at edges of {refined.longest_edge:.6g}, longer than {length:.6g}, "
+              f"because maximum_number_of_triangles is {limit}"])
+    return refined
+
+
+def find_texture_length(surfaces: Sequence[Surface], feature_size: Any) -> float:
+    """The length of edges for a texture of this wavelength; 0 if those of the surfaces will do."""
+    if not (isinstance(feature_size, (int, float, np.number)) and 0 < feature_size < np.inf):
+        return 0.0
+    lengths = []
+    for surface in surfaces:
+        t = surface.triangles
+        edges = np.unique(np.sort(np.concatenate([t[:, :2], t[:, 1:], t[:, [0, 2]]]), axis=1), axis=0)
+        lengths.append(np.linalg.norm(np.subtract(*surface.points[edges.T]), axis=1))
+    size, h = float(feature_size), float(np.concatenate(lengths).mean())
+    return size / EDGES_PER_WAVELENGTH if size < FEWEST_EDGES_PER_WAVELENGTH * h else 0.0
+
+
+def refine_as_asked(
+    surfaces: Sequence[Surface], function: str, refine_to: Any, limit: Any, feature_size: Any = 0.0
+) -> list[RefinedSurface] | None:
+    """The surfaces with the keywords of a function; None if they stay as they are."""
+    automatic = function == "turing_texture" and isinstance(refine_to, (int, float)) and refine_to == -1
+    length = (find_texture_length(surfaces, feature_size) if automatic
+              else as_length("refine_to", refine_to, zero=True))
+    if length == 0:
+        return None
+    if any(surface.areas is not None for surface in surfaces):
+        raise ValueError(f"refine_to is {shorten(refine_to)}, but areas are given for the points; allowed: "
+                         "one of them")
+    refined = [_refine(surface, length, limit) for surface in surfaces]
+    if automatic:
+        triangles = sum(fine.surface.n_faces for fine in refined)
+        warn([f"edges were bisected, to {triangles} triangles, because feature_size is {feature_size:g}, "
+              f"less than {FEWEST_EDGES_PER_WAVELENGTH} mean edge lengths (to keep the edges, set "
+              "refine_to to 0)"])
+    return refined
+
+
+def with_refinement(function: F) -> F:
+    """The function of a surface with the keywords refine_to and maximum_number_of_triangles."""
+    own = inspect.signature(function)
+    name = function.__name__
+    new = keywords_of(name)
+
+    @functools.wraps(function)
+    def refining(surface: Any, *arguments: Any, refine_to: Any = new[0].default,
+                 maximum_number_of_triangles: Any = new[1].default, **keywords: Any) -> Any:
+        if refine_to == 0:
+            return function(surface, *arguments, **keywords)
+        bound = own.bind(surface, *arguments, **keywords)
+        bound.apply_defaults()
+        given = dict(bound.arguments)
+        properties = given.pop("properties")
+        surface, given = take_along(given.pop("surface"), name, refine_to, maximum_number_of_triangles,
+                                    given, properties.get("feature_size", 0.0))
+        return function(surface, **given, **properties)
+
+    return refining  # type: ignore[return-value]
+
+
+def keywords_of(function: str) -> tuple[inspect.Parameter, inspect.Parameter]:
+    """The parameters that all functions have."""
+    default = -1.0 if function == "turing_texture" else 0.0
+    return (inspect.Parameter("refine_to", inspect.Parameter.KEYWORD_ONLY, default=default,
+                              annotation="float"),
+            inspect.Parameter("maximum_number_of_triangles", inspect.Parameter.KEYWORD_ONLY,
+                              default=MAXIMUM_TRIANGLES, annotation="int"))
+
+
+def document_keywords(function: str) -> str:
+    """Their entries in a docstring."""
+    automatic = function == "turing_texture"
+    special = (", or -1: `feature_size` / 8 if that is less than 6 mean edge lengths, with a warning, and "
+               "otherwise 0") if automatic else ""
+    text = ("Edges that are longer are bisected first, and the data go along: the result belongs to "
+            "the points and faces of ``refine(surface, refine_to).surface``. 0: the surface stays as it "
+            f"is{special}.")
+    lines = textwrap.fill(text, 92, initial_indent="    ", subsequent_indent="    ")
+    return (f"refine_to : float, 0 or more{' or -1' * automatic}, in coordinates, default "
+            f"{-1.0 if automatic else 0.0}\n{lines}\n"
+            f"maximum_number_of_triangles : int, 1 or more, default {MAXIMUM_TRIANGLES}\n"
+            "    Refinement stops before there are more, with a warning.")
+
+
+#: The arguments with rows of points or faces. The first are where on_faces says, if it is given.
+_DATA = ("values", "terms", "vectors")
+_ROWS = ("initial", "mask", "roi", "directions", "fixed", "fidelity", "seeds", "rates", "hints")
+
+
+def take_along(
+    surface: Any, function: str, refine_to: Any, limit: Any, given: dict[str, Any],
+    feature_size: Any = 0.0,
+) -> tuple[Surface, dict[str, Any]]:
+    """The surface with shorter edges, if that is asked for, and the arguments of a function for it."""
+    surface = as_surface(surface)
+    refined = refine_as_asked([surface], function, refine_to, limit, feature_size)
+    if refined is None:
+        return surface, given
+    (fine,) = refined
+    n, m = surface.n_points, surface.n_faces
+    carried = dict(given)
+    beside = given.get("points") is not None  # values and their weights at other places
+    for name in (*_DATA, *_ROWS):
+        values = given.get(name)
+        if values is None or (beside and name in ("values", "fidelity")):
+            continue
+        array = ~as_outside(values, n, m) if name == "roi" else as_numbers(name, values)
+        on_faces = array.ndim > 0 and len(array) == m != n
+        if name in _DATA and given.get("on_faces") is not None:
+            on_faces = bool(given["on_faces"])
+        if array.ndim not in (1, 2) or len(array) != (m if on_faces else n):
+            raise ValueError(f"{name} has shape {array.shape}; allowed: one row per point, of which there "
+                             f"are {n}, or per face, {m}")
+        if on_faces:
+            carried[name] = fine.at_faces(array)
+        elif name == "roi":  # a point between the inside and the outside is inside, as that of a mask
+            carried[name] = ~fine.at_points(~array)
+        else:
+            carried[name] = fine.at_points(array)
+        if name in _DATA and "on_faces" in given:
+            carried["on_faces"] = on_faces
+    return fine.surface, carried
+
+
+def as_length(name: str, value: Any, zero: bool = False) -> float:
+    real = isinstance(value, (int, float, np.number)) and not isinstance(value, (bool, np.bool_))
+    if not (real and math.isfinite(value) and (value > 0 or (zero and value == 0))):
+        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers "
+                         + ("of at least 0" if zero else "above 0"))
+    return float(value)
