@@ -231,6 +231,47 @@ inline std::string ExpectConsistentCurvatures(vtkPolyData* output)
   return "consistent curvatures";
 }
 
+/// Distances are 0 at the sources. Arrival times, which are found on the triangles of the surface itself,
+/// differ along no edge by more than its length takes at the speed 1, which is the smallest here.
+inline std::string ExpectDistances(
+  vtkPolyData* input, vtkPolyData* output, vtkDataArray* times, bool isMarched)
+{
+  vtkDataArray* const sources = input->GetPointData()->GetArray("sources");
+  const bool isOfEdges = std::string(times->GetName()) == "ArrivalTime";
+  double largest = 0.0;
+  int zeros = 0;
+  for (vtkIdType i = 0; i < times->GetNumberOfTuples(); ++i)
+  {
+    const double time = times->GetComponent(i, 0);
+    const bool isSource = sources && sources->GetComponent(i, 0) != 0.0;
+    EXPECT_GE(time, 0.0) << i;
+    EXPECT_TRUE(!isMarched || !isSource || time == 0.0 || std::isinf(time)) << i;
+    zeros += time == 0.0 ? 1 : 0;
+    largest = std::isfinite(time) ? std::max(largest, time) : largest;
+  }
+  EXPECT_GT(zeros, 0);
+  for (vtkIdType c = 0; c < input->GetNumberOfCells() && isOfEdges; ++c)
+  {
+    vtkNew<vtkIdList> corners;
+    output->GetCellPoints(c, corners);
+    for (vtkIdType a = 0; a < corners->GetNumberOfIds(); ++a)
+    {
+      const vtkIdType i = corners->GetId(a);
+      const vtkIdType j = corners->GetId((a + 1) % corners->GetNumberOfIds());
+      const double difference = std::abs(times->GetComponent(i, 0) - times->GetComponent(j, 0));
+      double p[3], q[3];
+      output->GetPoint(i, p);
+      output->GetPoint(j, q);
+      const double length = std::sqrt(vtkMath::Distance2BetweenPoints(p, q));
+      if (std::isfinite(difference)) // triangles of zero area carry no front
+      {
+        EXPECT_LE(difference, length * (1.0 + 1e-9) + 1e-12 * largest) << i << ' ' << j;
+      }
+    }
+  }
+  return "at most " + std::to_string(largest);
+}
+
 /// The points of the output are those of the input plus the displacements, which are finite.
 inline std::string ExpectMovedPoints(
   vtkPolyData* input, vtkPolyData* output, vtkDataArray* displacements)
@@ -434,6 +475,11 @@ inline std::string ExpectPromises(
   if (vtkSurfaceCurvatureFilter::SafeDownCast(filter))
   {
     return ExpectConsistentCurvatures(filter->GetOutput());
+  }
+  if (auto* distance = vtkSurfaceDistanceFilter::SafeDownCast(filter))
+  {
+    const bool isMarched = distance->GetMethod() == vtkSurfaceDistanceFilter::METHOD_EIKONAL;
+    return ExpectDistances(input, filter->GetOutput(), u, isMarched);
   }
   if (vtkSurfaceDerivativesFilter::SafeDownCast(filter))
   {
