@@ -119,6 +119,8 @@ DEFAULTS = {
     "vtkSurfaceCurvatureFilter": {**SURFACE, "FWHM": 0.0},
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
+    "vtkSurfaceDistanceFilter": {
+        **SURFACE, "Method": "Heat", "MaximumDistance": 0.0, "ComputeGradient": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},
