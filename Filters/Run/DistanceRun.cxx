@@ -379,6 +379,7 @@ void DistanceRun::Update(
   };
   add(areTimes ? "ArrivalTime" : "Distance", OutputType::Double, std::move(times), Never);
   this->Results.back().Active = Role::Scalars;
+  this->Results.back().MayBeInfinite = true;
   add("NearestSource", areIntegers ? OutputType::Integer : OutputType::Double, std::move(nearest),
     none);
   if (settings.ComputeGradient)

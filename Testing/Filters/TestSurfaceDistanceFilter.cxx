@@ -177,7 +177,7 @@ TEST(DistanceFilter, TakesPointsAndLinesBesideTheSurface)
   filter->SetMaximumDistance(0.5); // the line ends where it leaves this distance
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfSources(), 3);
-  EXPECT_NEAR(At(filter, 21 * 10 + 16), 5.0, 1.0);
+  EXPECT_NEAR(At(filter, 21 * 10 + 16), 1.0, 1e-3);
   filter->RemoveAllInputConnections(1);
   EXPECT_TRUE(Has(ErrorOf(filter), "SourceArray \"source\" is not among the point arrays"));
 }
@@ -348,7 +348,7 @@ TEST(DistanceFilter, StopsWhenItIsAborted)
     Listen(filter,
       [&](double fraction)
       {
-        reached = fraction;
+        reached = fraction < 1.0 ? fraction : reached;
         ++reports;
         if (aborts && fraction > 0.4)
         {
@@ -390,7 +390,7 @@ TEST(DistanceFilter, NamesWhatIsNotAllowed)
   EXPECT_TRUE(
     Has(ErrorOf(filter), "SpeedArray is -1 at point 0; allowed: finite numbers, 0 or more"));
   filter->SetMethodToHeat();
-  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 (Eikonal) together with SpeedArray"))
+  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal together with SpeedArray"))
     << ErrorOf(filter);
   SetInputArray(filter, 8, "");
   filter->SetMaximumDistance(-2.0);
