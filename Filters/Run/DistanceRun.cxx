@@ -401,15 +401,17 @@ void DistanceRun::Update(
 void DistanceRun::RequireSource(const std::vector<const DistanceRun*>& runs)
 {
   SourceSet all;
+  Index vertices = 0; // none: all triangles have no area, which is no error
   for (const DistanceRun* run : runs)
   {
+    vertices += run->GetSurface().InputMesh().NumberOfVertices();
     all.Count += run->Found.Count;
     all.Given += run->Found.Given;
     all.TooFar += run->Found.TooFar;
     all.Outside += run->Found.Outside;
     all.AreShapes = run->Found.AreShapes;
   }
-  if (all.Count > 0 || runs.empty())
+  if (all.Count > 0 || vertices == 0)
   {
     return;
   }

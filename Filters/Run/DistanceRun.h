@@ -49,7 +49,7 @@ public:
   /// without source has infinite distances. Throws std::runtime_error, std::bad_alloc, Aborted.
   void Update(const BlockInput& input, DistanceSettings& settings, const ProgressMonitor& progress);
 
-  /// Throws InputError, which says why, if none of the surfaces has a source.
+  /// Throws InputError, which says why, if none of the surfaces, which have an area, has a source.
   static void RequireSource(const std::vector<const DistanceRun*>& runs);
 
 private:

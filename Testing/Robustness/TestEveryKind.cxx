@@ -152,6 +152,7 @@ std::vector<FilterKind> KindsOfParts()
       for (const char* const found :
         { "Automatic", "Found", "CoarseStart", "Segmentation", "Direction", "Interpolation",
           "DistanceHeat", // of one mean length of edges
+          "DistanceEikonal", "ArrivalTime", // round-off decides between fronts that arrive together
           "ConductionVelocity" }) // the inverse of gradients, in which round-off may be large
       {
         finds = finds || name.find(found) != std::string::npos;
