@@ -119,6 +119,10 @@ EFFECTS = {
         Effect("smoothing_fwhm", (0.1, 0.3, 0.6), "The length of the gradient: the wider the Gaussian, the "
                "less is left of the noise."),
     ),
+    "distance": (
+        Effect("method", ("Eikonal", "Heat"), "Distances from three points, in bands: fronts that meet have a "
+               "kink by fast marching and are round by the heat method.", {"sources": [200, 900, 1700]}, "bumps"),
+    ),
     "relief": (
         Effect("height", (0.02, 0.06, -0.06), "A height below 0 is carved.", {}, "waves"),
         Effect("levels", ("Smooth", "Two"), "Two levels have flat tops. Their slopes have the width flank.",
@@ -200,6 +204,11 @@ def waves():
     return ball, 0.5 + 0.5 * np.sin(12 * x) * np.sin(12 * y) * np.cos(12 * z)
 
 
+def bumps():
+    """A surface without data."""
+    return pebble(), None
+
+
 def block():
     """A rounded cube with sharp edges and a noisy surface, without data."""
     ball = sd.sphere(4)
@@ -236,6 +245,8 @@ def run(name, surface, values, keywords):
     if name == "derivatives":
         found = function(surface, values, **keywords)
         return points, np.linalg.norm(found, axis=1) if found.ndim == 2 else found
+    if name == "distance":
+        return points, function(surface, keywords.pop("sources"), **keywords) % 0.25
     if name == "turing_texture":
         return points, function(surface, **keywords).texture
     if name == "relief":
@@ -282,7 +293,7 @@ def panels_of(name, effect):
     surface, values = globals()[effect.data]()
     view = (1, 0.8, 1.2) if effect.data == "block" else (0, 0, 1)
     limits, panels = None, []
-    if name not in ("turing_texture", "direction_field"):
+    if name not in ("turing_texture", "direction_field", "distance"):
         panels.append(Panel(surface, surface.points, values, "data", None, view))
     if name in ("heat", "intrinsic_tv", "tensor_diffusion") and effect.data != "noise":
         limits = tuple(np.nanpercentile(values, (2, 98)))

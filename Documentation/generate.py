@@ -51,6 +51,8 @@ FILTERS = [
            ("ReactionDiffusion", "Kinetics", "CoarseStart")),
     Filter("curvature", "vtkSurfaceCurvatureFilter", ("Curvature",)),
     Filter("derivatives", "vtkSurfaceDerivativesFilter", ("Derivatives",)),
+    Filter("distance", "vtkSurfaceDistanceFilter",
+           ("GeodesicDistance", "HeatDistance", "DistanceRun")),
     Filter("relief", "vtkSurfaceReliefFilter", ("Relief",)),
     Filter("direction_field", "vtkSurfaceDirectionFieldFilter",
            ("SmoothLineField", "PrincipalDirections")),

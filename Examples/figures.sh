@@ -50,6 +50,7 @@ cd build/figures
 "${display[@]}" "$python" "$examples/deblurring_cortex.py" || [ $? -eq 77 ] # without wb_command
 "${display[@]}" "$python" "$examples/cell_data.py"
 "${display[@]}" "$python" "$examples/curvature.py"
+"${display[@]}" "$python" "$examples/distance.py"
 "${display[@]}" "$python" "$examples/harmonic_map.py"
 "${display[@]}" "$python" "$examples/interpolation.py"
 "${display[@]}" "$python" "$examples/mesh_denoising.py"

@@ -4,6 +4,7 @@
 
 #include "Conversion/PointInput.h"
 #include "Conversion/SMPParallelFor.h"
+#include "Conversion/SourceInput.h"
 #include "Conversion/SurfaceReader.h"
 #include "Conversion/TupleRange.h"
 #include "Distributed/ContentHash.h"
@@ -133,20 +134,24 @@ FieldSummary InputFields::Summarize() const
   summary.Fixed = this->Fixed.Values != nullptr;
   summary.Rates = this->Rates != nullptr;
   summary.DataAreTerms = this->DataAreTerms;
+  summary.Sources = this->Sources != nullptr;
+  summary.Speeds = this->Speeds.Values != nullptr;
+  summary.StartTimes = this->StartTimes.Values != nullptr;
   return summary;
 }
 
 std::vector<vtkDataArray*> InputFields::List() const
 {
   return { this->Data.Values, this->Mask.Values, this->Direction.Values, this->Fixed.Values,
-    this->Rates, this->Fidelity.Values, this->Seeds.Values, this->GlobalIds };
+    this->Rates, this->Fidelity.Values, this->Seeds.Values, this->Speeds.Values,
+    this->StartTimes.Values, this->GlobalIds };
 }
 
 unsigned int InputFields::Associations() const
 {
   unsigned int bits = 0;
-  for (const LocatedArray* const array :
-    { &this->Data, &this->Mask, &this->Direction, &this->Fixed, &this->Fidelity, &this->Seeds })
+  for (const LocatedArray* const array : { &this->Data, &this->Mask, &this->Direction, &this->Fixed,
+         &this->Fidelity, &this->Seeds, &this->Speeds })
   {
     bits = 2 * bits + (array->OnCells ? 1 : 0);
   }
@@ -192,6 +197,10 @@ Fingerprint FingerprintFields(const InputFields& arrays)
   {
     AddSamples(fingerprint, *arrays.Samples);
   }
+  if (arrays.Sources)
+  {
+    AddSources(fingerprint, *arrays.Sources);
+  }
   fingerprint.AddNumber(std::uint64_t{ arrays.DataAreTerms ? 1u : 0u });
   return fingerprint;
 }
@@ -212,6 +221,9 @@ Fields ReadFields(
   fields.Fixed = { ReadFlags(arrays.Fixed.Values), arrays.Fixed.OnCells };
   fields.FidelityFactors = { ReadFactors(arrays.Fidelity.Values), arrays.Fidelity.OnCells };
   fields.Seeds = { ReadSeeds(arrays.Seeds), arrays.Seeds.OnCells };
+  fields.Sources = arrays.Sources;
+  fields.Speeds = { ReadFactors(arrays.Speeds.Values), arrays.Speeds.OnCells };
+  fields.StartTimes = ReadFactors(arrays.StartTimes.Values);
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(numberOfCells);

@@ -19,6 +19,8 @@
 namespace SurfaceDiffusion
 {
 
+struct SourceShapes;
+
 /// The input arrays of a run on one surface.
 struct Fields
 {
@@ -50,6 +52,10 @@ struct Fields
   /// In place of Data; null if there are none.
   std::shared_ptr<const PointSamples> Samples;
   std::shared_ptr<const std::vector<ProjectedSample>> Projected; ///< of ProjectSamples()
+  /// Of distances. In place of Data; null if there are none.
+  std::shared_ptr<const SourceShapes> Sources;
+  Located<std::vector<double>> Speeds; ///< per point or cell; may be empty
+  std::vector<double> StartTimes; ///< per point; may be empty
   /// The cell of each input triangle, below NumberOfCells, if one of the arrays is on cells.
   std::vector<Index> Cells;
   Index NumberOfCells = 0;
@@ -57,7 +63,7 @@ struct Fields
   bool HasCells() const
   {
     return this->Data.OnCells || this->Mask.OnCells || this->Fixed.OnCells ||
-      this->FidelityFactors.OnCells || this->Seeds.OnCells;
+      this->FidelityFactors.OnCells || this->Seeds.OnCells || this->Speeds.OnCells;
   }
 };
 

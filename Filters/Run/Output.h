@@ -94,6 +94,7 @@ struct Output
   /// if the data are there; NaN where nothing determines floating-point data. -1: Elsewhere.
   int Given = -1;
   Values Elsewhere = {}; ///< one row; no row: 0
+  bool MayBeInfinite = false; ///< infinity is a result, of real types, and no overflow
 
   std::shared_ptr<const Curves> Lines = {}; ///< of the output of Place PerCurve that has the curves
 

@@ -82,6 +82,7 @@ OutputRows::OutputRows(const Output& output, const OutputSource& source)
   : Shared(&output.Rows)
   , Domain(&source.Surface)
   , Elsewhere(&output.Elsewhere)
+  , MayBeInfinite(output.MayBeInfinite)
 {
   const CellState* const cells = source.Block ? source.Block->Cells.get() : nullptr;
   this->IsOnCells = SurfaceDiffusion::IsOnCells(output, source.Block, source.Traits);

@@ -8,6 +8,7 @@
 #include "Run/Run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -75,11 +76,11 @@ public:
         const Eigen::Index known = row >= 0 ? std::min(this->NumberOfColumns, columns) : 0;
         for (Eigen::Index k = 0; k < known; ++k)
         {
-          tuple[k] = ConvertValue<T>(from(row, this->FirstColumn + k) * this->Unit);
+          tuple[k] = this->Convert<T>(from(row, this->FirstColumn + k) * this->Unit);
         }
         for (Eigen::Index k = known; k < columns; ++k)
         {
-          tuple[k] = ConvertValue<T>(this->Other(i, k, given));
+          tuple[k] = this->Convert<T>(this->Other(i, k, given));
         }
       });
   }
@@ -87,6 +88,13 @@ public:
 private:
   void MoveToCells(const Output& output, const OutputSource& source);
   void TakeState(const Output& output, const OutputSource& source);
+
+  template <typename T>
+  T Convert(double value) const
+  {
+    const bool isResult = !std::numeric_limits<T>::is_integer && this->MayBeInfinite;
+    return isResult && std::isinf(value) ? static_cast<T>(value) : ConvertValue<T>(value);
+  }
 
   const Values& From() const { return this->Shared ? *this->Shared : this->Own; }
 
@@ -134,6 +142,7 @@ private:
   Eigen::Index GivenColumn = -1;
   bool IsOnCells = false;
   bool HoldsNaN = false;
+  bool MayBeInfinite = false;
 };
 
 /// The outputs of one surface of a run.

@@ -50,6 +50,9 @@ struct FieldSummary
   bool Fixed = false;
   bool Rates = false;
   bool DataAreTerms = false; ///< the data are the data terms of a segmentation, one per region
+  bool Sources = false; ///< points or lines, in place of data
+  bool Speeds = false;
+  bool StartTimes = false;
 };
 
 /// The properties of a model that a run needs before it makes the model. By default it has no time:

@@ -7,6 +7,7 @@
 #include "Run/Run.h"
 
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -19,7 +20,8 @@ namespace
 const std::map<std::string, std::string> NamesOfArrays = { { "InputArray", "Data" },
   { "DataTermArray", "Data" }, { "MaskArray", "Mask" }, { "DirectionArray", "Directions" },
   { "FixedArray", "Fixed" }, { "DiffusionRateArray", "Rates" },
-  { "FidelityArray", "FidelityFactors" }, { "SeedArray", "Seeds" } };
+  { "FidelityArray", "FidelityFactors" }, { "SeedArray", "Seeds" }, { "SourceArray", "Data" },
+  { "SpeedArray", "Speeds" }, { "SourceTimes", "StartTimes" } };
 
 /// work(), whose errors are in the words of this interface.
 template <typename Work>
@@ -82,6 +84,8 @@ public:
     require(
       "FidelityFactors", fields.FidelityFactors.Values.size(), fields.FidelityFactors.OnCells);
     require("Seeds", fields.Seeds.Values.size(), fields.Seeds.OnCells);
+    require("Speeds", fields.Speeds.Values.size(), fields.Speeds.OnCells);
+    require("StartTimes", fields.StartTimes.size(), false);
     const auto faces = static_cast<std::size_t>(triangles.rows());
     RequireRows("Directions", rowsOf(fields.Directions.Values),
       fields.Directions.OnCells ? faces : static_cast<std::size_t>(points.rows()),
@@ -124,6 +128,9 @@ public:
     summary.Fixed = !this->Data.Fixed.Values.empty();
     summary.Rates = this->Data.Rates.rows() > 0;
     summary.DataAreTerms = this->Data.DataAreTerms;
+    summary.Sources = this->Data.Sources != nullptr;
+    summary.Speeds = !this->Data.Speeds.Values.empty();
+    summary.StartTimes = !this->Data.StartTimes.empty();
     return summary;
   }
 
@@ -230,6 +237,10 @@ Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor
   RunType run(parallel);
   NamingSettings(settings,
     [&] { run.Update(input.Block(RunType::ExcludesMasked), settings, ProgressMonitor()); });
+  if constexpr (std::is_same_v<RunType, DistanceRun>)
+  {
+    DistanceRun::RequireSource({ &run });
+  }
   Solution solution;
   OutputSource source{ run.GetSurface(), parallel };
   input.TakeOutputs(run.Outputs(), source, solution);
@@ -319,6 +330,12 @@ Solution Derivative(const Points& points, const Triangles& triangles, const Surf
   DerivativesSettings settings, const ParallelFor& parallel)
 {
   return CheckAndSolveOnce<DerivativesRun>(points, triangles, data, settings, parallel);
+}
+
+Solution Distance(const Points& points, const Triangles& triangles, const SurfaceData& data,
+  DistanceSettings settings, const ParallelFor& parallel)
+{
+  return CheckAndSolveOnce<DistanceRun>(points, triangles, data, settings, parallel);
 }
 
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,

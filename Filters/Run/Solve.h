@@ -6,6 +6,7 @@
 #include "Run/DenoisingRun.h"
 #include "Run/DerivativesRun.h"
 #include "Run/DirectionFieldRun.h"
+#include "Run/DistanceRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
 #include "Run/History.h"
@@ -183,6 +184,11 @@ Solution Curvature(const Points& points, const Triangles& triangles,
 /// times: see vtkSurfaceDerivativesFilter.
 Solution Derivative(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DerivativesSettings settings = {}, const ParallelFor& parallel = SerialFor());
+
+/// Distances from the nonzero points of data or from data.Sources, or the arrival times of fronts with
+/// data.Speeds: see vtkSurfaceDistanceFilter.
+Solution Distance(const Points& points, const Triangles& triangles, const SurfaceData& data,
+  DistanceSettings settings = {}, const ParallelFor& parallel = SerialFor());
 
 /// The surface without noise; points of data.Fixed stay: see vtkSurfaceDenoisingFilter.
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,

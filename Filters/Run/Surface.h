@@ -77,6 +77,8 @@ public:
   /// The mesh of MakeTriangles().
   const TriangleMesh& InputMesh() const { return *this->Input; }
 
+  std::shared_ptr<const TriangleMesh> SharedInputMesh() const { return this->Input; }
+
   /// The mesh that models work on: InputMesh() or its intrinsic Delaunay triangulation, which has
   /// the same vertices.
   const TriangleMesh& Mesh() const { return *this->Working; }

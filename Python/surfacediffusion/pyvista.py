@@ -51,6 +51,8 @@ import pyvista
 from numpy.typing import NDArray
 
 from . import _core, _functions
+from ._distance import distance as _distance
+from ._distance import nearest_sources as _nearest_sources
 from ._functions import curvature as _curvature
 from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import derivatives as _derivatives
@@ -71,7 +73,7 @@ from ._shape import relief as _relief
 from ._surface import Surface, as_data, as_outside, has_integers
 
 __all__: list[str] = []
-__all__ += [*_functions.__all__, "relief"]
+__all__ += [*_functions.__all__, "distance", "relief"]
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
@@ -329,6 +331,47 @@ def curvature(
     if not full_output:
         return written
     return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+
+def distance(
+    mesh: Any, sources: Any, *, speed: str | None = None, mask: str | None = None,
+    method: str = "Eikonal", progress: Progress = False, result_array_name: str | None = None,
+) -> Any:
+    """Compute the distance along the mesh from the nearest source, or with speeds the time at which
+    fronts arrive.
+
+    sources: the name of a point array, whose nonzero points are the sources; or numbers of points; or a
+    data set, whose points stand for the nearest points of the mesh, in each block of a MultiBlock. speed:
+    point or cell array. mask: point or cell array; points and cells with a nonzero value are left out.
+    The method is that of surfacediffusion.distance. The results are the point arrays Distance, with speed
+    ArrivalTime, which becomes active, and NearestSource: the value of the array at the nearest source, or
+    the number of the point. Points that no way reaches have inf, and 0 or -1. result_array_name is the
+    prefix of the names.
+    """
+    blocks = _find_surfaces(mesh)
+    for block in blocks:
+        fronts = {"speed": block.find("speed", speed, faces=True)[0],
+                  "mask": block.find("mask", mask, faces=True)[0]}
+        if isinstance(sources, str):
+            marks = block.find("sources", sources)[0]
+            assert marks is not None
+            rows = np.flatnonzero(np.nan_to_num(marks))
+            names, nowhere = marks[rows], 0
+        else:
+            rows = np.atleast_1d(
+                [block.mesh.find_closest_point(place) for place in sources.points]
+                if hasattr(sources, "points") else sources)
+            names, nowhere = np.arange(len(rows)) if hasattr(sources, "points") else rows, -1
+        times = _distance(block.surface, rows, method=method, progress=progress, **fronts)
+        if method == "Heat":
+            fronts["speed"] = None
+        nearest = _nearest_sources(block.surface, rows, **fronts).source
+        prefix = result_array_name or ""
+        name = prefix + ("Distance" if speed is None else "ArrivalTime")
+        block.add(name, times, False)
+        block.add(prefix + "NearestSource", np.where(nearest < 0, nowhere, names[nearest]), False)
+        block.mesh.set_active_scalars(name, "point")
+    return _rebuild(mesh, iter(blocks))
 
 
 def derivatives(

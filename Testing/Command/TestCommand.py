@@ -19,7 +19,7 @@ import numpy as np
 import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
-from surfacediffusion import (Surface, curvature, denoise_mesh, get_number_of_threads, gradient, heat,
+from surfacediffusion import (Surface, curvature, denoise_mesh, distance, get_number_of_threads, gradient, heat,
                               interpolate, intrinsic_tv, set_number_of_threads)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
@@ -392,6 +392,38 @@ class OtherCommands(CommandTest):
         self.succeed("derivatives lh.surf.gii lh.func.gii out.npy --quantity velocity --fwhm 3")
         self.assertEqual(np.load("out.npy").shape, (N, 8))
 
+    def test_distance_from_a_region_and_from_places(self):
+        regions = {"north": (POINTS[:, 2] > 8).astype(float),
+                   "one": np.where(np.arange(N) == 7, np.nan, np.arange(N) == 11)}
+        samples.write_gifti("regions.func.gii", regions)
+        out = self.succeed("distance lh.surf.gii regions.func.gii out.func.gii")
+        self.assertRegex(out, "^out.func.gii: 2 columns, ")
+        data = read_data("out.func.gii")
+        self.assertEqual(list(data.names), ["north", "one"])
+        for values, rows in zip(data.parts[0].values.T, (np.flatnonzero(regions["north"]), [11])):
+            np.testing.assert_allclose(values, distance(self.surface, rows), rtol=1e-6)
+        place = ",".join(str(x) for x in 1.2 * POINTS[40])
+        for method in ("heat", "eikonal"):
+            report = self.report(f"distance lh.surf.gii out.npy --from 3 --from={place} --method {method}")
+            expected = distance(self.surface, [3, 40], method=method.capitalize())
+            np.testing.assert_allclose(np.load("out.npy").ravel(), expected, rtol=1e-6, atol=1e-6)
+            self.assertEqual(report["columns"][0]["sources"], 2)
+            self.assertEqual(report["columns"][0]["unreached"], 0)
+
+    def test_distance_of_slow_fronts_is_a_time(self):
+        samples.write_gifti("speed.func.gii", {"v": np.full(N, 0.25)})
+        self.succeed("distance lh.surf.gii out.npy --from 5 --speed speed.func.gii")
+        expected = distance(self.surface, 5, speed=np.full(N, 0.25))
+        np.testing.assert_allclose(np.load("out.npy").ravel(), expected, rtol=1e-6)
+
+    def test_distance_of_what_no_way_reaches_is_missing(self):
+        samples.write_surface("two.surf.gii", np.vstack([POINTS, POINTS + 30]),
+                              np.vstack([FACES, FACES + N]))
+        report = self.report("distance two.surf.gii out.npy --from 5")
+        found = np.load("out.npy").ravel()
+        np.testing.assert_array_equal(np.isnan(found), np.arange(2 * N) >= N)
+        self.assertEqual(report["columns"][0]["unreached"], N)
+
     def test_normals_of_a_sphere_and_a_denoised_sphere(self):
         self.succeed("normals lh.surf.gii out.func.gii")
         np.testing.assert_allclose(read_data("out.func.gii").parts[0].values, POINTS / 10,
@@ -583,7 +615,8 @@ class Reports(CommandTest):
     def test_help_of_every_command_shows_an_example(self):
         _, out, _ = run("--help")
         commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "interpolate", "segment",
-                    "refine", "texture", "directions", "curvature", "derivatives", "normals", "fwhm", "info")
+                    "refine", "texture", "directions", "curvature", "derivatives", "distance", "normals", "fwhm",
+                    "info")
         for command in commands:
             self.assertIn(command, out)
             code, text, _ = run(command, "--help")

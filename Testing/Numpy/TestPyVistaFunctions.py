@@ -16,8 +16,8 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    curvature, denoise_mesh, derivatives, direction_field, harmonic_map, heat, interpolate, intrinsic_tv,
-    mumford_shah, relief, segment, tensor_diffusion, turing_texture,
+    curvature, denoise_mesh, derivatives, direction_field, distance, harmonic_map, heat, interpolate,
+    intrinsic_tv, mumford_shah, relief, segment, tensor_diffusion, turing_texture,
 )
 
 
@@ -181,6 +181,32 @@ class Meshes(unittest.TestCase):
         self.assertNotIn("zLaplacian", blocks[1].point_data)
         with self.assertRaisesRegex(ValueError, "array is 'w'; allowed: point or cell arrays"):
             derivatives(ball, "w")
+
+    def test_distance_from_arrays_points_and_data_sets(self):
+        ball = pyvista.Icosphere(nsub=4)
+        surface = as_surface(ball)
+        ball["label"] = np.where(np.arange(ball.n_points) == 3, 5, 2 * (np.arange(ball.n_points) == 40))
+        ball["v"] = np.full(ball.n_points, 0.5)
+        found = distance(ball, "label")
+        self.assertEqual(found.point_data.active_scalars_name, "Distance")
+        np.testing.assert_array_equal(found["Distance"], sd.distance(surface, [3, 40]))
+        nearest = sd.nearest_sources(surface, [3, 40]).source
+        np.testing.assert_array_equal(found["NearestSource"], np.array([5, 2])[nearest])
+        found = distance(ball, [40, 3], method="Heat", result_array_name="my")
+        np.testing.assert_array_equal(
+            found["myDistance"], sd.distance(surface, [40, 3], method="Heat"))
+        np.testing.assert_array_equal(found["myNearestSource"], np.array([3, 40])[nearest])
+        places = pyvista.PolyData(1.2 * ball.points[[7, 90]])
+        blocks = distance(pyvista.MultiBlock([ball, None, ball.copy()]), places, speed="v")
+        np.testing.assert_array_equal(
+            blocks[2]["ArrivalTime"], sd.distance(surface, [7, 90], speed=ball["v"]))
+        self.assertEqual(set(blocks[0]["NearestSource"]), {0, 1})
+        two = ball.merge(ball.translate((5, 0, 0), inplace=False))
+        apart = distance(two, 3)
+        self.assertEqual(np.isinf(apart["Distance"]).sum(), ball.n_points)
+        self.assertEqual(set(apart["NearestSource"]), {3, -1})
+        with self.assertRaisesRegex(ValueError, "sources is 'none'; allowed: point arrays"):
+            distance(ball, "none")
 
     def test_meshes_are_denoised_block_by_block(self):
         ball = pyvista.Icosphere(nsub=4)

@@ -24,7 +24,11 @@ if not VTK_PYTHON:
 
 #: Index of each input array of the filters.
 INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
-         "rates": 4, "fidelity": 5, "seeds": 6, "terms": 7}
+         "rates": 4, "fidelity": 5, "seeds": 6, "terms": 7, "marked": 0, "speed": 8}
+
+
+#: The classes of functions whose keywords are not made from the settings
+OTHERS = {"distance": "vtkSurfaceDistanceFilter", "relief": "vtkSurfaceReliefFilter"}
 
 
 def rough_sphere():
@@ -141,6 +145,11 @@ class SameBits(unittest.TestCase):
             ("derivatives", {"values": self.normals}, {"Quantity": "Curl"}),
             ("derivatives", {"values": self.of_faces}, {"ResultOnCells": True}),
             ("derivatives", {"values": nan}, {"Quantity": "ConductionVelocity"}),
+            ("distance", {"marked": (self.values > 1.3).astype(np.uint8)}, {"Method": "Heat"}),
+            ("distance", {"marked": 1 * (np.arange(len(x)) == 70), "mask": self.mask}, {"Method": "Eikonal"}),
+            ("distance", {"marked": 1 * (np.arange(len(x)) % 400 == 7),
+                          "speed": np.where(self.of_faces[:, 0] > 1.5, 0.0, 1.0 + self.of_faces[:, 1] ** 2)},
+             {"Method": "Eikonal"}),
             ("direction_field", {}, {}),
             ("direction_field", {}, {"Method": "Smooth", "Angle": 30.0}),
             ("direction_field", {"hints": self.around}, {"Method": "Hints"}),
@@ -158,7 +167,7 @@ class SameBits(unittest.TestCase):
             for number, (function, arrays, properties) in enumerate(cases):
                 np.savez(folder / f"case{number}.npz", points=self.points, faces=flat, sizes=sizes,
                          **arrays)
-                listed.append([CLASSES.get(function, "vtkSurfaceReliefFilter"), properties,
+                listed.append([{**CLASSES, **OTHERS}[function], properties,
                                {key: INDEX[key] for key in arrays}])
             (folder / "cases.json").write_text(json.dumps(listed))
             environment = dict(os.environ, PYTHONPATH=os.environ["SURFACEDIFFUSION_VTK_PATH"])
@@ -170,6 +179,9 @@ class SameBits(unittest.TestCase):
                         self.compare(function, arrays, properties, dict(expected))
 
     def compare(self, function, arrays, properties, expected):
+        if function == "distance":
+            self.compare_distance(arrays, properties["Method"], expected)
+            return
         keywords = {snake_case(name): value for name, value in properties.items()}
         if function in ("heat", "intrinsic_tv", "tensor_diffusion", "derivatives"):
             keywords["full_output"] = True
@@ -227,6 +239,14 @@ class SameBits(unittest.TestCase):
             if not key.startswith("history"):
                 self.assertEqual(expected[key].dtype, array.dtype, key)
             np.testing.assert_array_equal(expected[key], array, err_msg=key)
+
+    def compare_distance(self, arrays, method, expected):
+        rows = np.flatnonzero(arrays["marked"])
+        given = {key: array for key, array in arrays.items() if key != "marked"}
+        found = sd.distance(self.surface, rows, method=method, **given)
+        np.testing.assert_array_equal(
+            expected["ArrivalTime" if "speed" in given else "Distance"], found)
+        np.testing.assert_array_equal(expected["NearestSource"], np.isfinite(found).astype(np.int32))
 
     def regions(self, result, arrays):
         found = {"RegionId": result.values, "RegionProbability": result.probabilities,

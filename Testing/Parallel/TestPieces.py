@@ -14,7 +14,7 @@ from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceCurvatureFilter,
     SurfaceDenoisingFilter, SurfaceDerivativesFilter, SurfaceDirectionFieldFilter,
-    SurfaceInterpolationFilter, SurfaceReliefFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
+    SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceReliefFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
     TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.misc import calldata_type
@@ -83,6 +83,10 @@ CASES = (
     ("relief", SurfaceReliefFilter, dict(InputArray=["POINTS", "f"], Height=0.02), "ReliefHeight"),
     ("curvature", SurfaceCurvatureFilter, dict(FWHM=0.3), "MeanCurvature"),
     ("derivatives", SurfaceDerivativesFilter, {}, "fGradient"),
+    ("distance", SurfaceDistanceFilter, dict(SourceArray=["POINTS", "hole"]), "Distance"),
+    ("arrival", SurfaceDistanceFilter,
+     dict(SourceArray=["POINTS", "hole"], SpeedArray=["POINTS", "speed"], Method="Eikonal"),
+     "ArrivalTime"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),
@@ -200,7 +204,8 @@ class TestPieces(unittest.TestCase):
             LARGEST[partition, name] = worst
             self.assertLessEqual(worst, TOLERANCE.get(name, 1e-9), "%s, %s" % (partition, name))
             if make not in (SurfaceCurvatureFilter, SurfaceDenoisingFilter, SurfaceDerivativesFilter,
-                            SurfaceDirectionFieldFilter, SurfaceReliefFilter):
+                            SurfaceDirectionFieldFilter, SurfaceDistanceFilter,
+                            SurfaceReliefFilter):
                 rows = algorithm.GetOutputDataObject(1).GetNumberOfRows()
                 self.assertEqual(rows > 0, RANK == 0, "history of " + name)
 

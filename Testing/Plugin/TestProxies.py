@@ -21,6 +21,7 @@ GROUPS = ("Data", "Model", "Constraints", "Solver", "Time")
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
     "FidelityArray", "SeedArray", "DataTermArray", "PointsWithValues", "TimestepValues",
+    "Sources", "SourceArray", "SpeedArray", "SourceTimes",
     "Mean",  # a list: SetMean(region, component, value)
 }
 PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"],
@@ -50,6 +51,7 @@ SEARCHES = {
     "gradient": {"SurfaceDerivativesFilter"},
     "divergence": {"SurfaceDerivativesFilter"},
     "laplacian": {"SurfaceDerivativesFilter"},
+    "distance": {"SurfaceDistanceFilter"},
     "relief": {"SurfaceReliefFilter"},
     "3d printing": {"SurfaceReliefFilter"},
 }
@@ -134,7 +136,8 @@ VALUES = {
     "FixedArray": (["POINTS", "ends"], ["CELLS", "spots"]),
     "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (0.2, 0.5),
     "DiffusionRateArray": (["CELLS", "rates"],), "FidelityArray": (["POINTS", "weight"],),
-    "BlurFWHM": (0.0, 0.3),
+    "BlurFWHM": (0.0, 0.3), "SpeedArray": (["POINTS", "weight"], ["CELLS", "spots"], ["POINTS", ""]),
+    "SourceTimes": (["POINTS", "f"],),
 }
 
 
@@ -300,7 +303,7 @@ class TestProxies(unittest.TestCase):
                     grouped.append(group.GetProperty(k).GetXMLName())
             shown = [
                 key for key in proxy.ListProperties()
-                if key not in ("Input", "PointsWithValues")
+                if key not in ("Input", "PointsWithValues", "Sources")
                 and not proxy.SMProxy.GetProperty(key).GetInformationOnly()
             ]
             self.assertEqual(sorted(grouped), sorted(shown), name)
@@ -331,6 +334,7 @@ class TestProxies(unittest.TestCase):
             ("SurfaceDerivativesFilter", ["Quantity", "SmoothingFWHM", "ResultOnCells"]),
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
+            ("SurfaceDistanceFilter", ["Method", "ComputeGradient"]),
             ("SurfaceReliefFilter", ["Height", "Base", "Levels", "Overhang"]),
             ("SurfaceSegmentationFilter",
              ["NumberOfRegions", "AutomaticFidelity", "AutomaticMeans"]),
@@ -455,6 +459,7 @@ class TestProxies(unittest.TestCase):
             ("IntrinsicTVFilter", dict(AutomaticFidelity=1), {"FidelityNorm", "EdgeFunction"}),
             ("MumfordShahFilter", {}, {"EdgeThreshold", "SmoothingLength"}),
             ("MumfordShahFilter", dict(AutomaticThreshold=0), {"NoiseLevel"}),
+            ("SurfaceDistanceFilter", {}, {"SpeedArray", "SourceTimes"}),
             ("TuringTextureFilter", {}, {"FixedArray", "DiffusionRateAcross1"}),
             ("TuringTextureFilter", dict(IntrinsicDelaunay=1), {"DiffusionRateArray"}),
         ):

@@ -28,6 +28,7 @@ SETTINGS = {
     "SurfaceCurvatureFilter": dict(FWHM=0.3),
     "SurfaceDerivativesFilter": dict(Quantity="Laplacian"),
     "SurfaceDirectionFieldFilter": dict(Method="Smooth"),
+    "SurfaceDistanceFilter": dict(SourceArray=["POINTS", "poles"], Method="Eikonal"),
     "SurfaceInterpolationFilter": dict(ComputeError=1),
     "SurfaceSegmentationFilter": dict(NumberOfRegions=3),
     "TensorDiffusionFilter": dict(NumberOfTimeSteps=4),

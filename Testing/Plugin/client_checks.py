@@ -28,6 +28,7 @@ RESULTS = {
     "SurfaceCurvatureFilter": (("POINTS", "MeanCurvature"), 17.5400931, ("POINTS", "MeanCurvature")),
     "SurfaceDerivativesFilter": (("POINTS", "fGradient"), 10.6204755, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
+    "SurfaceDistanceFilter": (("POINTS", "Distance"), 0.518224936, ("POINTS", "Distance")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
@@ -48,6 +49,7 @@ SLIPS = {
     "SurfaceCurvatureFilter": lambda curved: {"FWHM": curved.FWHM + 0.2},
     "SurfaceDerivativesFilter": lambda derived: {"SmoothingFWHM": derived.SmoothingFWHM + 0.2},
     "SurfaceDirectionFieldFilter": lambda field: {"Angle": field.Angle + 3.0},
+    "SurfaceDistanceFilter": lambda _: {"Method": "Eikonal"},
     "SurfaceInterpolationFilter": lambda spline: {
         "AutomaticSmoothing": 0, "Smoothing": 1.2 * spline.GetPropertyValue("EffectiveSmoothing")},
     "SurfaceReliefFilter": lambda relief: {"Height": 1.2 * relief.Height},

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """The initial scene of the client: smooth data on an ellipsoid, and two regions of noisy data on an
-ellipsoid with noisy points. Results are shown in black and white bands, so that small differences of
+ellipsoid with noisy points, and a patch of an ellipsoid. Results are shown in black and white bands, so that small differences of
 values are large differences of images."""
 
 from paraview.simple import (
@@ -19,6 +19,9 @@ data = Calculator(Input=normals, Function=waves, ResultArrayName="f")
 RenameSource("Data", data)
 regions = noisy(normals)
 RenameSource("Noisy", regions)
+patch = Calculator(Input=normals, Function="if(coordsX > 0.4, 1, 0)", ResultArrayName="source")
+RenameSource("Patch", patch)
+patch.UpdatePipeline()
 regions.UpdatePipeline()  # without arrays the menu would not offer filters
 view = GetActiveViewOrCreate("RenderView")
 Show(data, view)
@@ -28,6 +31,7 @@ for array, largest in (
     ("fDiffused", 0.2), ("fTV", 1.0), ("NormalsHarmonic", 1.0), ("Texture", 1.0), ("Direction", 1.0),
     ("fMumfordShah", 1.0), ("fBeltrami", 0.5), ("RegionProbability", 1.0), ("Displacement", 0.02),
     ("fInterpolated", 1.0), ("ReliefHeight", 0.02), ("MeanCurvature", 40.0), ("fGradient", 30.0),
+    ("Distance", 1.0),
 ):
     colors = GetColorTransferFunction(array)
     colors.AutomaticRescaleRangeMode = "Never"

@@ -119,6 +119,8 @@ DEFAULTS = {
     "vtkSurfaceCurvatureFilter": {**SURFACE, "FWHM": 0.0},
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
+    "vtkSurfaceDistanceFilter": {
+        **SURFACE, "Method": "Heat", "MaximumDistance": 0.0, "ComputeGradient": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},
@@ -144,6 +146,7 @@ WORDS = {
     "TextureChemical": ("U1", "U2"), "SurfaceType": ("Automatic", "CAD", "Organic"),
     "Levels": ("Smooth", "Two"),
     "Method": ("PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints"),
+    "vtkSurfaceDistanceFilter Method": ("Heat", "Eikonal"),
     "PrincipalDirection": ("Minimum", "Maximum"), "Boundary": ("Natural", "Free"),
 }
 
@@ -196,7 +199,7 @@ class Properties(unittest.TestCase):
     @of_each_property
     def test_number_their_words_in_order_and_have_none_for_other_numbers(self, made, name):
         self.assertEqual(hasattr(made, f"Get{name}AsString"), name in WORDS)
-        words = WORDS.get(name, ())
+        words = WORDS.get(f"{type(made).__name__} {name}", WORDS.get(name, ()))
         for number in range(-1, len(words) + 1) if words else ():
             getattr(made, "Set" + name)(number)
             self.assertEqual(getattr(made, f"Get{name}AsString")(),

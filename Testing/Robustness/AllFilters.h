@@ -13,6 +13,7 @@
 #include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDerivativesFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkSurfaceDistanceFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceReliefFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
@@ -70,7 +71,7 @@ FilterKind MakeKind(
 }
 
 /// Adds the arrays other than "f" that some of AllFilters() take: the rough array "c" of cells,
-/// the colours "rgb", the mask "mask" and the directions "e1" of points.
+/// the colours "rgb", the mask "mask", the directions "e1" and the labels "sources" of points.
 inline void AddArraysOfAllFilters(vtkPolyData* surface)
 {
   surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 1,
@@ -80,6 +81,24 @@ inline void AddArraysOfAllFilters(vtkPolyData* surface)
     VTK_UNSIGNED_CHAR);
   AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 17 == 3; });
   AddPointArray(surface, "e1", 3, [](vtkIdType i, int k) { return k + 0.3 * Rough(i, k); });
+  // One of them is a corner of the largest triangle, which takes part.
+  vtkIdType largest = 0;
+  double area = 0.0;
+  for (vtkIdType c = 0; c < surface->GetNumberOfCells(); ++c)
+  {
+    vtkNew<vtkIdList> corners;
+    surface->GetCellPoints(c, corners);
+    double p[3][3];
+    for (vtkIdType a = 0; a < 3; ++a)
+    {
+      surface->GetPoint(corners->GetId(a), p[a]);
+    }
+    const double found = vtkTriangle::TriangleArea(p[0], p[1], p[2]);
+    largest = found > area ? corners->GetId(0) : largest;
+    area = std::max(area, found);
+  }
+  AddPointArray(surface, "sources", 1,
+    [&](vtkIdType i, int) { return i == largest || i % 17 == 3 ? 1 + i % 3 : 0; });
 }
 
 /// Every filter, also with the settings that select other algorithms.
@@ -325,6 +344,26 @@ inline std::vector<FilterKind> AllFilters()
         return filter;
       },
       "fConductionVelocity" },
+    MakeKind<vtkSurfaceDistanceFilter>("DistanceHeat", "Distance", 0,
+      [](vtkSurfaceDistanceFilter* f)
+      {
+        f->ComputeGradientOn();
+        SetInputArray(f, 0, "sources");
+      }),
+    MakeKind<vtkSurfaceDistanceFilter>("DistanceEikonal", "Distance", 0,
+      [](vtkSurfaceDistanceFilter* f)
+      {
+        f->SetMethodToEikonal();
+        SetInputArray(f, 0, "sources");
+      }),
+    MakeKind<vtkSurfaceDistanceFilter>("ArrivalTime", "ArrivalTime", 0,
+      [](vtkSurfaceDistanceFilter* f)
+      {
+        f->SetMethodToEikonal();
+        f->ComputeGradientOn();
+        SetInputArray(f, 0, "sources");
+        SetInputArray(f, 8, "c", true);
+      }),
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

@@ -13,6 +13,7 @@
 #include "vtkSurfaceDenoisingFilter.h"
 #include "vtkSurfaceDerivativesFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkSurfaceDistanceFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceReliefFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
@@ -445,6 +446,16 @@ inline List OfDerivatives()
   };
 }
 
+inline List OfDistance()
+{
+  using F = vtkSurfaceDistanceFilter;
+  return {
+    RANDOM_PROPERTY(F, Method, Choice(dice, 2)),
+    RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, ComputeGradient, dice.Flip()),
+  };
+}
+
 #undef RANDOM_PROPERTY
 
 template <typename F>
@@ -487,6 +498,7 @@ inline std::vector<FilterClass> AllFilterClasses()
     MakeClass<vtkSurfaceCurvatureFilter>({ OfSurface<vtkSurfaceCurvatureFilter>(), OfCurvature() }),
     MakeClass<vtkSurfaceDerivativesFilter>(
       { OfSurface<vtkSurfaceDerivativesFilter>(), OfDerivatives() }),
+    MakeClass<vtkSurfaceDistanceFilter>({ OfSurface<vtkSurfaceDistanceFilter>(), OfDistance() }),
     MakeClass<Direction>({ OfSurface<Direction>(), OfDirectionField() }),
     MakeClass<vtkSurfaceReliefFilter>({ OfSurface<vtkSurfaceReliefFilter>(), OfRelief() }),
     MakeClass<vtkSurfaceSegmentationFilter>({ OfSurface<vtkSurfaceSegmentationFilter>(),

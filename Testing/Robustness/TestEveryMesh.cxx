@@ -255,6 +255,18 @@ TEST_P(EveryMesh, HasATextureGrown)
   this->Run(firstOrder, "u1");
 }
 
+TEST_P(EveryMesh, HasDistancesMeasured)
+{
+  for (const int method : { 0, 1 })
+  {
+    vtkNew<vtkSurfaceDistanceFilter> distance;
+    distance->SetMethod(method);
+    distance->ComputeGradientOn();
+    SetInputArray(distance, 0, "sources");
+    this->Run(distance, "Distance");
+  }
+}
+
 TEST_P(EveryMesh, HasDirectionsFound)
 {
   vtkNew<vtkSurfaceDirectionFieldFilter> field;

@@ -37,6 +37,7 @@ const std::set<std::string> WithoutEffectInClass = {
   "vtkMumfordShahFilter EdgeCurves", // three steps find no edge that is long enough
   "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
   "vtkSurfaceInterpolationFilter MaximumDistance", // of points on the second input
+  "vtkSurfaceDistanceFilter MaximumDistance", // likewise
   "vtkSurfaceInterpolationFilter PointValueArray", "vtkSurfaceInterpolationFilter PointWeightArray",
   "vtkSurfaceInterpolationFilter RandomSeed", // of more values than the surface has
 };
@@ -79,6 +80,7 @@ vtkSmartPointer<vtkPolyData> PatchedEllipsoid()
     surface, "bytes", 3, [](vtkIdType i, int k) { return std::floor(127.0 + 120.0 * Rough(i, k)); },
     VTK_UNSIGNED_CHAR);
   AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 7 == 3; });
+  AddPointArray(surface, "few", 1, [](vtkIdType i, int) { return i % 7 == 5 && i < 40; });
   AddPointArray(surface, "height", 1, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
   surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 3,
     [](vtkIdType i, int k) { return 2.0 + Rough(i, k); }));
@@ -255,7 +257,8 @@ bool ChangeAlone(const FilterClass& kind, const RandomProperty& property)
   filter->SetInputData(surface);
   const bool isTexture = kind.Name == "vtkTuringTextureFilter"; // it starts from noise
   const bool isRelief = kind.Name == "vtkSurfaceReliefFilter"; // of one component
-  SetInputArray(filter, 0, isTexture ? "" : isRelief ? "height" : "f");
+  const bool isDistance = kind.Name == "vtkSurfaceDistanceFilter"; // from some points
+  SetInputArray(filter, 0, isTexture ? "" : isRelief ? "height" : isDistance ? "few" : "f");
   SetInputArray(filter, 1, "mask");
   SetInputArray(filter, 2, "e1");
   for (const std::string& name : { property.Name, kind.Name + " " + property.Name })
@@ -396,6 +399,11 @@ TEST_P(EveryProperty, GivesNoWarningAtItsDefault)
       surface, "Texture", 1, [](vtkIdType i, int) { return 0.005 * (1.0 + Rough(i, 0)); });
   }
   surface->GetPointData()->SetActiveScalars("f");
+  if (filter->IsA("vtkSurfaceDistanceFilter"))
+  {
+    AddPointArray(surface, "source", 1, [](vtkIdType i, int) { return i == 7; });
+    SetInputArray(filter, 0, "source");
+  }
   Messages messages(filter);
   filter->SetInputData(surface);
   filter->Update();

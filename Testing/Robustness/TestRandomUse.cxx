@@ -105,11 +105,20 @@ void AddRandomArrays(Dice& dice, vtkPolyData* surface)
 const char* const ArrayNames[] = { "f", "mask", "e1", "fixed", "rates", "fidelity", "seeds",
   "terms" };
 constexpr int NumberOfArrays = 8;
+/// Those of distances, at 8 and 9: speeds and start times.
+const char* const ArraysOfDistances[] = { "fidelity", "fixed" };
 constexpr int Rates = 4; ///< which are on cells
 constexpr int Terms = 7; ///< which may be those of index 0
 
 void SetRandomArray(Dice& dice, vtkPolyDataAlgorithm* filter)
 {
+  if (filter->IsA("vtkSurfaceDistanceFilter") && dice.Flip())
+  {
+    const int which = dice.Below(2);
+    const char* const name = dice.Flip(3) ? "" : ArraysOfDistances[which];
+    SetInputArray(filter, 8 + which, name, which == 0 && dice.Flip());
+    return;
+  }
   const int index = dice.Below(NumberOfArrays);
   const char* const name = ArrayNames[index == Terms && dice.Flip() ? 0 : index];
   const bool onCells = index == Rates ? !dice.Flip(8) : dice.Flip(3);
@@ -145,8 +154,8 @@ bool IsFinite(vtkDataArray* array, vtkIdType point)
   return finite;
 }
 
-/// Whether the added arrays are finite; unused points keep their value, even NaN, and derivatives are
-/// missing beside missing data.
+/// Whether the added arrays are finite; unused points keep their value, even NaN, derivatives are
+/// missing beside missing data, and distances are infinite where no source is near.
 bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 {
   vtkPolyData* const output = filter->GetOutput();
@@ -166,6 +175,7 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
       spreads = spreads || !IsFinite(data, i);
     }
   }
+  const bool isDistance = filter->IsA("vtkSurfaceDistanceFilter") != 0;
   const auto isMissing = [&](vtkDataArray* given, vtkIdType i)
   { return spreads || (given && !IsFinite(given, i)); };
   bool finite = true;
@@ -178,7 +188,10 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
       for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
       {
         const bool isNew = !before->HasArray(array->GetName());
-        finite = finite && (!isNew || IsFinite(array, i) || isMissing(given, i));
+        const bool mayBeInfinite = isDistance && array == added->GetScalars();
+        finite = finite &&
+          (!isNew || IsFinite(array, i) || isMissing(given, i) ||
+            (mayBeInfinite && array->GetComponent(i, 0) > 0.0));
       }
     }
   };
@@ -214,6 +227,10 @@ void UseAtRandom(
       // The default height is larger than these surfaces, and relief takes one component.
       relief->SetHeight(0.02);
       SetInputArray(relief, 0, "fidelity");
+    }
+    if (either->IsA("vtkSurfaceDistanceFilter"))
+    {
+      SetInputArray(either, 0, "seeds");
     }
   }
   Messages messages(filter);

@@ -25,7 +25,7 @@ inline vtkSmartPointer<vtkPolyDataAlgorithm> Twin(
   {
     property.Copy(filter, twin);
   }
-  for (int index = 0; index < 8; ++index)
+  for (int index = 0; index < 10; ++index)
   {
     vtkNew<vtkInformation> copy;
     copy->Copy(filter->GetInputArrayInformation(index), 1);

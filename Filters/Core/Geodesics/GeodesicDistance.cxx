@@ -136,9 +136,12 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
     return way;
   }
   const LaidOut triangle(shape.EdgeLength(a), toSecond, toThird);
-  // A corner is a point of the front that goes on from there.
-  const bool isOnePoint = one.Point == other.Point || one.Vertex == third || other.Vertex == second;
-  const FrontSource& point = other.Vertex == second ? other : one;
+  // A vertex that a front starts from, a source or a corner, is a point of it.
+  const auto startsAt = [](const FrontSource& front, Index vertex)
+  { return front.Vertex == vertex && front.Time == front.Start; };
+  const bool isOnePoint =
+    one.Point == other.Point || startsAt(one, third) || startsAt(other, second);
+  const FrontSource& point = startsAt(other, second) ? other : one;
   const double start = isOnePoint ? point.Start : std::min(ofSecond, ofThird);
   const double da = (ofSecond - start) / slowness;
   const double db = (ofThird - start) / slowness;

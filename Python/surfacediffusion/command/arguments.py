@@ -83,8 +83,8 @@ def make_parser(hemispheres=False):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True,
                                      parser_class=_Parser)
     for add in (_smooth, _metric_smoothing, _cifti_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
-                _edges, _segment, _refine, _texture, _directions, _curvature, _derivatives, _normals, _fwhm, _info,
-                _doctor):
+                _edges, _segment, _refine, _texture, _directions, _curvature, _derivatives, _distance, _normals, _fwhm,
+                _info, _doctor):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -544,6 +544,14 @@ The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or
 """
 
 
+DISTANCE = """
+SOURCES: GIFTI, FreeSurfer (.label, curv, .mgh, ...), NumPy (.npy), or a PLY or VTK file with data. NaN is
+no source.
+The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk,
+.vtp if SURFACE is such a file.
+"""
+
+
 TEXTURE = """
 Lengths may have a unit: 4mm, 0.2cm, 0.1in, 300um. Files of surfaces name no unit: --unit is that of
 SURFACE.
@@ -663,6 +671,45 @@ def _derivatives(commands):
     parser.add_argument("--fwhm", metavar="W", type=_not_negative, default=0.0,
                         help="the full width at half maximum of the Gaussian on the surface that "
                              "smooths DATA first, in the unit of the coordinates (default: 0)")
+
+
+def _distance(commands):
+    text = ("Compute the distance along a surface from the nearest of several vertices, the length of the "
+            "shortest way within it; with --speed the time at which fronts from them arrive. Vertices that "
+            "no way reaches are NaN.")
+    parser = commands.add(
+        "distance", tasks.distance, text,
+        [f"{PROGRAM} distance lh.white lh.V1.label from_v1.shape.gii",
+         f"{PROGRAM} distance scan.ply distances.ply --from 1041 --from=-3.5,20,4"], DISTANCE)
+    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    parser.add_argument("sources", metavar="SOURCES", nargs="?",
+                        help="data at its vertices, whose nonzero vertices are the sources; each column "
+                             "of its own")
+    parser.add_argument("output", metavar="OUTPUT", help="the distances, values at the vertices")
+    parser.add_argument("--from", dest="starts", metavar="PLACE", action="append", type=_place,
+                        help="in place of SOURCES: the number of a vertex, from 0, or x,y,z, which stands "
+                             "for the nearest vertex; may be given several times")
+    parser.add_argument("--method", choices=("eikonal", "heat"), default="eikonal",
+                        help="eikonal: fast marching (default); heat: the heat method, which is smooth "
+                             "where ways meet")
+    parser.add_argument("--speed", metavar="FILE",
+                        help="the speed of fronts at the vertices, 0 or more; faces of speed 0 are "
+                             "barriers")
+
+
+def _place(text):
+    """The number of a vertex, or coordinates."""
+    words = text.split(",")
+    try:
+        place = [float(word) for word in words]
+    except ValueError:
+        place = []
+    if len(place) == 1 and re.fullmatch(r"\d+", text.strip()):
+        return int(text)
+    if len(place) != 3 or not all(map(math.isfinite, place)):
+        raise argparse.ArgumentTypeError(
+            f"is {text!r}; allowed: the number of a vertex, from 0, or x,y,z")
+    return place
 
 
 def _normals(commands):

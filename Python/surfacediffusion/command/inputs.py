@@ -99,6 +99,27 @@ def read_values(path, surface, tables=True):
     return None, values[:, columns], [data.names[c] for c in columns]
 
 
+def read_sources(arguments, surface):
+    """The vertices of each set of sources of `distance`, and the names of their columns."""
+    count = len(surface.points)
+    if arguments.starts is not None:
+        rows = []
+        for place in arguments.starts:
+            if isinstance(place, int) and place >= count:
+                raise ArgumentProblem(f"--from is {place}; allowed: 0 to {count - 1}, the vertices of "
+                                      f"{surface.path}, or x,y,z")
+            rows.append(place if isinstance(place, int) else int(
+                np.argmin(((surface.points - place) ** 2).sum(axis=1))))
+        return [np.unique(rows)], ["distance"]
+    _, values, names = read_values(arguments.sources, surface, tables=False)
+    sets = [np.flatnonzero(np.nan_to_num(column)) for column in values.T]
+    for rows, name in zip(sets, names):
+        if len(rows) == 0:
+            raise FileError(f"{arguments.sources}: the column {name!r} is 0 at all vertices; allowed: a "
+                            "nonzero vertex, which is a source")
+    return sets, names
+
+
 def _read_table(path):
     """The rows x, y, z, value, ... of a text file and the names of the values; None if it is none."""
     if not re.search(r"\.(csv|tsv|txt)$", path, re.IGNORECASE):

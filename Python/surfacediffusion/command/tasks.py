@@ -436,6 +436,36 @@ def derivatives(arguments, report):
     _write_new(arguments, report, target, result.astype(np.float32))
 
 
+def distance(arguments, report):
+    from .. import Surface
+    from .. import distance as measure
+
+    if (arguments.sources is None) == (arguments.starts is None):
+        raise inputs.ArgumentProblem("the sources are " + (
+            "missing" if arguments.starts is None else "both SOURCES and --from")
+            + "; allowed: one of SOURCES and --from")
+    surface = _read_surface_for_output(arguments, report)
+    with report.timed("read"):
+        sets, names = inputs.read_sources(arguments, surface)
+        speed = None
+        if arguments.speed is not None:
+            _, values, _ = inputs.read_values(arguments.speed, surface, tables=False)
+            speed = values[:, 0]
+    target = new_data(surface, arguments.output, names)
+    solid = Surface(surface.points, surface.faces)
+    with report.timed("compute"), report.progress("Distance") as progress:
+        found = np.column_stack([
+            measure(solid, rows, speed=speed, method=arguments.method.capitalize(), progress=progress)
+            for rows in sets])
+    reached = np.isfinite(found)
+    report.facts.update(
+        method=arguments.method, columns=[
+            {"name": name, "sources": len(rows), "unreached": int((~column).sum()),
+             "maximum": number(values[column].max())}
+            for name, rows, values, column in zip(names, sets, found.T, reached.T)])
+    _write_new(arguments, report, target, np.where(reached, found, np.nan).astype(np.float32))
+
+
 def normals(arguments, report):
     from .. import Surface, harmonic_map
 

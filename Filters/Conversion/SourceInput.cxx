@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Conversion/SourceInput.h"
+
+#include "Distributed/Processes.h"
+
+#include "vtkCellType.h"
+#include "vtkDataObject.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointSet.h"
+
+#include <string>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+std::vector<double> ReadPlaces(vtkPointSet* points)
+{
+  std::vector<double> places(3 * static_cast<std::size_t>(points->GetNumberOfPoints()));
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    points->GetPoint(i, &places[3 * static_cast<std::size_t>(i)]);
+  }
+  return places;
+}
+
+/// The ends of the straight parts of lines, one after the other.
+std::vector<int> ReadSegments(vtkPointSet* points)
+{
+  std::vector<int> ends;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType c = 0; c < points->GetNumberOfCells(); ++c)
+  {
+    const int type = points->GetCellType(c);
+    if (type != VTK_LINE && type != VTK_POLY_LINE)
+    {
+      continue;
+    }
+    points->GetCellPoints(c, corners);
+    for (vtkIdType k = 1; k < corners->GetNumberOfIds(); ++k)
+    {
+      ends.push_back(static_cast<int>(corners->GetId(k - 1)));
+      ends.push_back(static_cast<int>(corners->GetId(k)));
+    }
+  }
+  return ends;
+}
+
+} // namespace
+
+std::shared_ptr<const SourceShapes> ReadSources(
+  vtkDataObject* data, vtkMultiProcessController* controller, Problems& problems)
+{
+  const Processes processes(controller);
+  vtkPointSet* const points = vtkPointSet::SafeDownCast(data);
+  if (processes.Any(!points))
+  {
+    problems.emplace_back(std::string("the second input, the sources, is a ") +
+      data->GetClassName() +
+      "; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
+      "vtkTableToPolyData)");
+    return nullptr;
+  }
+  std::vector<double> places = ReadPlaces(points);
+  std::vector<int> ends = ReadSegments(points);
+  if (processes.Count() > 1)
+  {
+    const std::vector<int> counts = processes.GatherAll({ static_cast<int>(places.size() / 3) });
+    int first = 0;
+    for (int rank = 0; rank < processes.Rank(); ++rank)
+    {
+      first += counts[static_cast<std::size_t>(rank)];
+    }
+    for (int& end : ends)
+    {
+      end += first;
+    }
+    places = processes.GatherAll(places);
+    ends = processes.GatherAll(ends);
+  }
+  if (places.empty())
+  {
+    problems.emplace_back(
+      "the second input, the sources, has 0 points; allowed: 1 or more points or lines");
+    return nullptr;
+  }
+  auto sources = std::make_shared<SourceShapes>();
+  sources->Places =
+    Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.size() / 3), 3);
+  for (std::size_t k = 0; k + 1 < ends.size(); k += 2)
+  {
+    sources->Segments.push_back({ ends[k], ends[k + 1] });
+  }
+  return sources;
+}
+
+void AddSources(Fingerprint& fingerprint, const SourceShapes& sources)
+{
+  const auto places = static_cast<std::size_t>(sources.Places.size());
+  fingerprint.AddNumber(std::uint64_t{ places });
+  fingerprint.AddBytes(sources.Places.data(), places * sizeof(double));
+  fingerprint.AddNumber(std::uint64_t{ sources.Segments.size() });
+  fingerprint.AddBytes(
+    sources.Segments.data(), sources.Segments.size() * sizeof(sources.Segments[0]));
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/DistanceSources.h"
+#include "Run/Fingerprint.h"
+#include "Run/Settings.h"
+
+#include <memory>
+
+class vtkDataObject;
+class vtkMultiProcessController;
+
+namespace SurfaceDiffusion
+{
+
+/// The points and lines of a vtkPointSet, those of all processes together. Null, with a problem, if
+/// the data are of another type or have no points. Collective.
+std::shared_ptr<const SourceShapes> ReadSources(
+  vtkDataObject* data, vtkMultiProcessController* controller, Problems& problems);
+
+/// Add the hash of everything in it.
+void AddSources(Fingerprint& fingerprint, const SourceShapes& sources);
+
+} // namespace SurfaceDiffusion

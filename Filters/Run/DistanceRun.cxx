@@ -1,0 +1,464 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/DistanceRun.h"
+
+#include "Core/Geometry/Derivatives.h"
+#include "Run/CellFields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+constexpr double Never = std::numeric_limits<double>::infinity();
+
+double SpeedOfTriangle(const Fields& fields, Index row, const Triangles& triangles, Index t)
+{
+  const std::vector<double>& speeds = fields.Speeds.Values;
+  if (fields.Speeds.OnCells)
+  {
+    return speeds[static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(row)])];
+  }
+  double sum = 0.0;
+  for (int a = 0; a < 3; ++a)
+  {
+    sum += speeds[static_cast<std::size_t>(triangles(t, a))];
+  }
+  return sum / 3.0;
+}
+
+/// Throws InputError unless all numbers are finite and, if `positive`, 0 or more.
+void RequireFinite(const std::vector<double>& numbers, const char* name, bool onCells,
+  bool nonNegative, const std::vector<char>& counts)
+{
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    const bool isAllowed = std::isfinite(numbers[i]) && (!nonNegative || numbers[i] >= 0.0);
+    if (!isAllowed && counts[i] != 0)
+    {
+      throw ErrorAt(Word::Array(name), Sentence("is ") << numbers[i], onCells,
+        static_cast<Eigen::Index>(i),
+        nonNegative ? "allowed: finite numbers, 0 or more" : "allowed: finite numbers");
+    }
+  }
+}
+
+} // namespace
+
+void DistanceSettings::Visit(SettingVisitor& visitor)
+{
+  visitor.Choice({ "Method", "",
+                   "Heat: the heat method, with smooth level sets. Eikonal: fast marching, with "
+                   "smaller errors, exact in planes; also with speeds and start times." },
+    this->Method, { "Heat", "Eikonal" });
+  visitor.Number({ "MaximumDistance", "coordinates",
+                   "The largest distance of points and lines of sources from the surface, in the "
+                   "unit of the coordinates: those farther away do not count. 0: any distance." },
+    this->MaximumDistance, SettingRange::NonNegative());
+  visitor.Switch({ "ComputeGradient", "",
+                   "On: the gradient of the result is added, vectors in the tangent planes that "
+                   "point away from the sources." },
+    this->ComputeGradient);
+  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+}
+
+void DistanceSettings::Check(const FieldSummary* fields, Problems& problems)
+{
+  CheckRanges(*this, problems);
+  if (!fields)
+  {
+    return;
+  }
+  if (!fields->Data && !fields->Sources)
+  {
+    problems.push_back(Sentence(Word::Array("SourceArray"))
+      << " is not set; allowed: an array on points, whose nonzero points are the sources, or "
+         "sources as a second input");
+  }
+  const std::pair<bool, const char*> timing[] = { { fields->Speeds, "SpeedArray" },
+    { fields->StartTimes, "SourceTimes" } };
+  for (const auto& [isSet, name] : timing)
+  {
+    if (isSet)
+    {
+      RequireChoice("Method", this->Method, DistanceMethod::Eikonal, "Eikonal",
+        Sentence(Word::Array(name)), problems);
+    }
+  }
+}
+
+/// 1 / speed per triangle of InputMesh(); empty without speeds.
+std::vector<double> DistanceRun::MakeSlowness(const Fields& fields) const
+{
+  std::vector<double> slowness;
+  if (fields.Speeds.Values.empty())
+  {
+    return slowness;
+  }
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = surface.InputMesh();
+  const Triangles triangles = surface.MakeTriangles();
+  std::vector<char> counts(fields.Speeds.Values.size(), 0);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
+    const Index ofInput = surface.InputTriangle(row);
+    for (int a = 0; a < 3 && !fields.Speeds.OnCells; ++a)
+    {
+      counts[static_cast<std::size_t>(triangles(row, a))] = 1;
+    }
+    if (fields.Speeds.OnCells)
+    {
+      counts[static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(ofInput)])] = 1;
+    }
+    slowness.push_back(1.0 / SpeedOfTriangle(fields, ofInput, triangles, row));
+  }
+  RequireFinite(fields.Speeds.Values, "SpeedArray", fields.Speeds.OnCells, true, counts);
+  return slowness;
+}
+
+/// The nonzero points of the data, with the label of their value.
+DistanceRun::SourceSet DistanceRun::FindMarked(const Fields& fields) const
+{
+  if (fields.Data.OnCells)
+  {
+    throw InputError(Sentence(Word::Array("SourceArray"))
+      << " is on " << Word::Cells() << "; allowed: an array on points");
+  }
+  const Surface& surface = *this->Domain;
+  const Values& marks = fields.Data.Values;
+  const std::vector<double>& starts = fields.StartTimes;
+  SourceSet set;
+  std::vector<char> counts(starts.size(), 0);
+  for (Eigen::Index i = 0; i < marks.rows(); ++i)
+  {
+    const double mark = marks(i, 0);
+    if (std::isinf(mark))
+    {
+      throw ErrorAt(Word::Array("SourceArray"), "is infinite", false, i,
+        "allowed: finite values, and NaN, which is no source");
+    }
+    if (mark == 0.0 || std::isnan(mark))
+    {
+      continue;
+    }
+    ++set.Given;
+    if (surface.VertexOf(static_cast<Index>(i)) < 0)
+    {
+      ++set.Outside;
+      continue;
+    }
+    ++set.Count;
+    set.NameOfLabel.push_back(mark);
+    if (!starts.empty())
+    {
+      counts[static_cast<std::size_t>(i)] = 1;
+    }
+  }
+  RequireFinite(starts, "SourceTimes", false, false, counts);
+  std::vector<double>& names = set.NameOfLabel;
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  const double unit = surface.InputMesh().LengthUnit();
+  for (Eigen::Index i = 0; i < marks.rows(); ++i)
+  {
+    const auto point = static_cast<Index>(i);
+    const Index vertex = surface.VertexOf(point);
+    if (vertex < 0 || marks(i, 0) == 0.0 || std::isnan(marks(i, 0)))
+    {
+      continue;
+    }
+    const double start = starts.empty() ? 0.0 : starts[static_cast<std::size_t>(i)] / unit;
+    const auto label = std::lower_bound(names.begin(), names.end(), marks(i, 0)) - names.begin();
+    set.Fronts.push_back({ vertex, start, static_cast<Index>(label), point, start });
+    set.Heat.push_back({ vertex });
+  }
+  return set;
+}
+
+DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
+  const SourceShapes& shapes, const std::vector<double>& slowness, double maximumDistance,
+  const ProgressMonitor& progress)
+{
+  const Surface& surface = *this->Domain;
+  if (!this->Projection || this->ProjectionVersion != this->SurfaceVersion)
+  {
+    this->Projection = std::make_unique<const SourceProjection>(input.ReadSurface(), surface);
+    this->ProjectionVersion = this->SurfaceVersion;
+  }
+  const ProjectedSources found =
+    this->Projection->Project(shapes, maximumDistance, slowness, progress);
+  SourceSet set;
+  set.AreShapes = true;
+  set.Count = found.Count;
+  set.TooFar = found.TooFar;
+  set.Outside = found.Outside;
+  set.Given = found.Count + found.TooFar + found.Outside;
+  auto nextPoint = static_cast<Index>(shapes.Places.rows());
+  for (const SourcePiece& piece : found.Pieces)
+  {
+    const double ofTriangle =
+      slowness.empty() ? 1.0 : slowness[static_cast<std::size_t>(piece.Triangle)];
+    AppendFronts(surface.InputMesh(), piece, ofTriangle, slowness.empty(), nextPoint, set.Fronts);
+    AppendHeat(surface.InputMesh(), piece, set.Heat);
+  }
+  // Labels that count, in their order.
+  std::vector<double>& names = set.NameOfLabel;
+  for (const FrontSource& front : set.Fronts)
+  {
+    names.push_back(front.Label);
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  for (FrontSource& front : set.Fronts)
+  {
+    front.Label = static_cast<Index>(
+      std::lower_bound(names.begin(), names.end(), static_cast<double>(front.Label)) -
+      names.begin());
+  }
+  return set;
+}
+
+DistanceRun::SourceSet DistanceRun::FindSources(const BlockInput& input, const Fields& fields,
+  const std::vector<double>& slowness, double maximumDistance, const ProgressMonitor& progress)
+{
+  return fields.Sources
+    ? this->FindProjected(input, *fields.Sources, slowness, maximumDistance, progress)
+    : this->FindMarked(fields);
+}
+
+Vector DistanceRun::SolveHeat(const SourceSet& sources, const ProgressMonitor& progress)
+{
+  const std::shared_ptr<const Assembler> operators = this->Domain->SharedAssembler();
+  if (this->HeatOperators != operators)
+  {
+    this->HeatOperators.reset();
+    this->Heat.reset();
+    this->Heat = std::make_unique<const HeatDistance>(
+      operators, HeatStep, this->Parallel, progress.Part(0.0, 0.8));
+    this->HeatOperators = operators;
+  }
+  return this->Heat->Find({ sources.Heat }, progress.Part(0.8, 1.0)).col(0);
+}
+
+/// Times per vertex, and the front that each comes from.
+GeodesicDistance::Arrival DistanceRun::Solve(const SourceSet& sources,
+  const std::vector<double>& slowness, const DistanceSettings& settings,
+  const ProgressMonitor& progress)
+{
+  const Surface& surface = *this->Domain;
+  const auto n = static_cast<std::size_t>(surface.Mesh().NumberOfVertices());
+  const bool byHeat = settings.Method == DistanceMethod::Heat;
+  GeodesicDistance::Arrival arrival{ std::vector<double>(n, Never), std::vector<Index>(n, -1) };
+  if (sources.Fronts.empty())
+  {
+    return arrival;
+  }
+  if (!byHeat || sources.NameOfLabel.size() > 1)
+  {
+    // Triangles of different speeds do not become others.
+    const GeodesicDistance fronts(
+      slowness.empty() ? surface.SharedMesh() : surface.SharedInputMesh(), slowness);
+    arrival = fronts.FindNearest(sources.Fronts, progress.Part(0.0, byHeat ? 0.2 : 1.0));
+  }
+  if (byHeat)
+  {
+    const Vector distances = this->SolveHeat(sources, progress.Part(0.2, 1.0));
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      arrival.Times[i] = distances[static_cast<Eigen::Index>(i)];
+      if (sources.NameOfLabel.size() == 1)
+      {
+        arrival.Sources[i] = arrival.Times[i] < Never ? 0 : -1;
+      }
+    }
+  }
+  return arrival;
+}
+
+/// The means at the vertices over the triangles that fronts cross.
+Values DistanceRun::FindGradient(
+  const std::vector<double>& times, const std::vector<double>& slowness) const
+{
+  const TriangleMesh& mesh = this->Domain->InputMesh();
+  const Points positions = VertexPositions(*this->Domain);
+  const Derivatives operators(mesh, positions, this->Parallel);
+  const Index n = mesh.NumberOfVertices();
+  Values finite(n, 1);
+  for (Index i = 0; i < n; ++i)
+  {
+    const double time = times[static_cast<std::size_t>(i)];
+    finite(i, 0) = time < Never ? time : 0.0;
+  }
+  Values ofTriangles = operators.Gradients(finite);
+  Vector areas = Vector::Zero(n);
+  Vector crossed = Vector::Zero(n);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto row = static_cast<std::size_t>(t);
+    bool isCrossed = slowness.empty() || slowness[row] < Never;
+    for (int a = 0; a < 3; ++a)
+    {
+      isCrossed =
+        isCrossed && times[static_cast<std::size_t>(mesh.TriangleVertices()(t, a))] < Never;
+    }
+    const double area = mesh.Shapes()[row].Area();
+    for (int a = 0; a < 3; ++a)
+    {
+      areas[mesh.TriangleVertices()(t, a)] += area;
+      crossed[mesh.TriangleVertices()(t, a)] += isCrossed ? area : 0.0;
+    }
+    if (!isCrossed)
+    {
+      ofTriangles.row(t).setZero();
+    }
+  }
+  Values gradient = operators.ToVertices(ofTriangles);
+  for (Index i = 0; i < n; ++i)
+  {
+    gradient.row(i) *= crossed[i] > 0.0 ? areas[i] / crossed[i] : 0.0;
+  }
+  return gradient;
+}
+
+void DistanceRun::Update(
+  const BlockInput& input, DistanceSettings& settings, const ProgressMonitor& progress)
+{
+  const BlockInput drawn = WithoutGivenAreas(input);
+  SurfaceOptions options;
+  options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
+  options.MergeTolerance = settings.MergeTolerance;
+  options.IntrinsicDelaunay = true;
+  if (!this->Prepare(drawn, settings, options, progress.Part(0.0, 0.2)))
+  {
+    return;
+  }
+  this->Results.clear();
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = surface.InputMesh();
+  const Fields fields = input.ReadFields();
+  const std::vector<double> slowness = this->MakeSlowness(fields);
+  SourceSet sources =
+    this->FindSources(drawn, fields, slowness, settings.MaximumDistance, progress.Part(0.2, 0.3));
+  const GeodesicDistance::Arrival arrival =
+    this->Solve(sources, slowness, settings, progress.Part(0.3, 0.95));
+
+  const Index n = mesh.NumberOfVertices();
+  Values times(n, 1);
+  Values nearest(n, 1);
+  const double none = sources.AreShapes ? -1.0 : 0.0;
+  bool areIntegers = true;
+  for (const double name : sources.NameOfLabel)
+  {
+    areIntegers =
+      areIntegers && name == std::floor(name) && std::abs(name) <= std::numeric_limits<int>::max();
+  }
+  Index unreached = 0;
+  for (Index i = 0; i < n; ++i)
+  {
+    const auto row = static_cast<std::size_t>(i);
+    const Index front = arrival.Times[row] < Never ? arrival.Sources[row] : -1;
+    times(i, 0) = arrival.Times[row] * mesh.LengthUnit();
+    nearest(i, 0) = front < 0 ? none
+                              : sources.NameOfLabel[static_cast<std::size_t>(
+                                  sources.Fronts[static_cast<std::size_t>(front)].Label)];
+    unreached += arrival.Times[row] < Never ? 0 : 1;
+  }
+  const bool areTimes = !fields.Speeds.Values.empty() || !fields.StartTimes.empty();
+  const auto add = [this](const char* name, OutputType type, Values rows, double elsewhere)
+  {
+    const Eigen::Index columns = rows.cols();
+    this->Results.push_back({ name, Place::PerVertex, type, std::move(rows) });
+    this->Results.back().Elsewhere = Values::Constant(1, columns, elsewhere);
+  };
+  add(areTimes ? "ArrivalTime" : "Distance", OutputType::Double, std::move(times), Never);
+  this->Results.back().Active = Role::Scalars;
+  this->Results.back().MayBeInfinite = true;
+  add("NearestSource", areIntegers ? OutputType::Integer : OutputType::Double, std::move(nearest),
+    none);
+  if (settings.ComputeGradient)
+  {
+    add(areTimes ? "ArrivalTimeGradient" : "DistanceGradient", OutputType::Double,
+      this->FindGradient(arrival.Times, slowness), 0.0);
+  }
+  this->AllAreSources = !areTimes && (this->Results.front().Rows.array() == 0.0).all();
+  this->Results.push_back(
+    Output::OfNumber("NumberOfSources", sources.Count, Combination::Sum, OutputType::Integer));
+  this->Results.push_back(
+    Output::OfNumber("NumberOfUnreachedPoints", unreached, Combination::Sum, OutputType::Integer));
+  sources.Fronts = {};
+  sources.Heat = {};
+  this->Found = std::move(sources);
+  this->Complete(drawn, settings);
+}
+
+void DistanceRun::RequireSource(const std::vector<const DistanceRun*>& runs)
+{
+  SourceSet all;
+  Index vertices = 0; // none: all triangles have no area, which is no error
+  for (const DistanceRun* run : runs)
+  {
+    vertices += run->GetSurface().InputMesh().NumberOfVertices();
+    all.Count += run->Found.Count;
+    all.Given += run->Found.Given;
+    all.TooFar += run->Found.TooFar;
+    all.Outside += run->Found.Outside;
+    all.AreShapes = run->Found.AreShapes;
+  }
+  if (all.Count > 0 || vertices == 0)
+  {
+    return;
+  }
+  const Sentence mask(Word::Array("MaskArray"));
+  if (all.AreShapes)
+  {
+    throw InputError(Sentence("no source is on the surface: of the points and lines, ")
+      << all.TooFar << " are farther than " << Word::Setting("MaximumDistance") << " and "
+      << all.Outside << " where " << mask << " excludes the surface; allowed: one source on it");
+  }
+  const Sentence array(Word::Array("SourceArray"));
+  if (all.Given == 0)
+  {
+    throw InputError(
+      Sentence(array) << " is 0 at all points; allowed: a nonzero point of the surface");
+  }
+  throw InputError(Sentence("all ")
+    << all.Given << " nonzero points of " << array << " are where " << mask
+    << " excludes the surface, or no triangle uses them; allowed: one of them on it");
+}
+
+std::vector<Warning> DistanceRun::FindOwnWarnings() const
+{
+  std::vector<Warning> warnings;
+  Fingerprint inputs = this->SurfaceVersion;
+  inputs.Add(this->FieldsVersion);
+  const auto add = [&](Index count, const char* what)
+  {
+    if (count > 0)
+    {
+      Sentence text;
+      text << count << what;
+      warnings.push_back({ text, inputs });
+    }
+  };
+  add(this->Found.TooFar,
+    " sources are farther than MaximumDistance from the surface and do not "
+    "count");
+  add(this->Found.Outside, " sources are on no triangle that takes part and do not count");
+  if (this->AllAreSources && !this->Found.AreShapes)
+  {
+    warnings.push_back(
+      { Sentence("all points of the surface are sources: SourceArray is 0 nowhere, "
+                 "and the distance 0 everywhere"),
+        inputs });
+  }
+  return warnings;
+}
+
+} // namespace SurfaceDiffusion

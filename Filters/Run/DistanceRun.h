@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/DistanceSources.h"
+#include "Run/SurfaceRun.h"
+#include "Run/WarningLog.h"
+
+#include <memory>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+enum class DistanceMethod
+{
+  Heat,
+  Eikonal
+};
+
+/// Distances from sources in the user's terms.
+struct DistanceSettings : Settings
+{
+  DistanceMethod Method = DistanceMethod::Heat;
+  double MaximumDistance = 0.0;
+  bool ComputeGradient = false;
+  bool MergeCoincidentPoints = false;
+  double MergeTolerance = 0.0;
+
+  void Visit(SettingVisitor& visitor) override;
+  /// Problems of the settings, and with `fields` those of settings and arrays together.
+  void Check(const FieldSummary* fields, Problems& problems);
+};
+
+/// Distances or arrival times on one surface, kept as long as neither inputs nor settings change.
+class DistanceRun : public SurfaceRun
+{
+public:
+  static constexpr bool ExcludesMasked = true;
+  /// m of the time step m h^2 of the heat method, as in numpy's distance()
+  static constexpr double HeatStep = 2.0;
+
+  explicit DistanceRun(const ParallelFor& parallel)
+    : SurfaceRun(parallel, "are barriers")
+  {
+  }
+
+  /// Data, with a row per point, or Sources, and Speeds and StartTimes of the fields are read. A surface
+  /// without source has infinite distances. Throws std::runtime_error, std::bad_alloc, Aborted.
+  void Update(const BlockInput& input, DistanceSettings& settings, const ProgressMonitor& progress);
+
+  /// Throws InputError, which says why, if none of the surfaces, which have an area, has a source.
+  static void RequireSource(const std::vector<const DistanceRun*>& runs);
+
+private:
+  /// The sources as fronts and as heat, and what NearestSource says of each label.
+  struct SourceSet
+  {
+    std::vector<FrontSource> Fronts;
+    std::vector<HeatSource> Heat;
+    std::vector<double> NameOfLabel;
+    Index Count = 0; ///< of sources on the surface
+    Index Given = 0; ///< of all
+    Index TooFar = 0, Outside = 0;
+    bool AreShapes = false;
+  };
+
+  std::vector<Warning> FindOwnWarnings() const override;
+  std::vector<double> MakeSlowness(const Fields& fields) const;
+  SourceSet FindSources(const BlockInput& input, const Fields& fields,
+    const std::vector<double>& slowness, double maximumDistance, const ProgressMonitor& progress);
+  SourceSet FindMarked(const Fields& fields) const;
+  SourceSet FindProjected(const BlockInput& input, const SourceShapes& shapes,
+    const std::vector<double>& slowness, double maximumDistance, const ProgressMonitor& progress);
+  GeodesicDistance::Arrival Solve(const SourceSet& sources, const std::vector<double>& slowness,
+    const DistanceSettings& settings, const ProgressMonitor& progress);
+  Vector SolveHeat(const SourceSet& sources, const ProgressMonitor& progress);
+  Values FindGradient(const std::vector<double>& times, const std::vector<double>& slowness) const;
+
+  SourceSet Found; ///< without its fronts
+  bool AllAreSources = false;
+  /// Of the surface, kept for other sources.
+  std::shared_ptr<const Assembler> HeatOperators;
+  std::unique_ptr<const HeatDistance> Heat;
+  std::unique_ptr<const SourceProjection> Projection;
+  Fingerprint ProjectionVersion;
+};
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,396 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sources anywhere on a surface, speeds and barriers, in the user's terms.
+#include "Core/Foundation/ThreadPool.h"
+#include "Meshes.h"
+#include "Run/Solve.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+using Shape = Testing::Surface;
+
+constexpr double Never = std::numeric_limits<double>::infinity();
+
+std::shared_ptr<const SourceShapes> Shapes(
+  const std::vector<Eigen::RowVector3d>& places, std::vector<std::array<Index, 2>> segments = {})
+{
+  auto shapes = std::make_shared<SourceShapes>();
+  shapes->Places.resize(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    shapes->Places.row(static_cast<Eigen::Index>(i)) = places[i];
+  }
+  shapes->Segments = std::move(segments);
+  return shapes;
+}
+
+Solution From(const Shape& s, const std::shared_ptr<const SourceShapes>& sources,
+  DistanceMethod method = DistanceMethod::Eikonal, bool gradient = false)
+{
+  SurfaceData data;
+  data.Sources = sources;
+  DistanceSettings settings;
+  settings.Method = method;
+  settings.ComputeGradient = gradient;
+  return Distance(s.Vertices, s.Faces, data, settings);
+}
+
+/// Distances from marked points.
+Solution From(const Shape& s, const std::vector<std::pair<Index, double>>& marks,
+  const SurfaceData& more = {}, DistanceMethod method = DistanceMethod::Eikonal)
+{
+  SurfaceData data = more;
+  data.Data.Values = Values::Zero(s.Vertices.rows(), 1);
+  for (const auto& [point, mark] : marks)
+  {
+    data.Data.Values(point, 0) = mark;
+  }
+  DistanceSettings settings;
+  settings.Method = method;
+  return Distance(s.Vertices, s.Faces, data, settings);
+}
+
+std::string ErrorOf(const Shape& s, const SurfaceData& data, const DistanceSettings& settings)
+{
+  try
+  {
+    Distance(s.Vertices, s.Faces, data, settings);
+  }
+  catch (const std::runtime_error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+/// Triangles so oblique that the intrinsic Delaunay triangulation has others.
+Shape ObliquePlate(double slope = 1.7)
+{
+  Shape s = Plate(20, 3.0);
+  s.Vertices.col(0) += slope * s.Vertices.col(1);
+  return s;
+}
+
+} // namespace
+
+// Ways in a plane are straight from points within triangles, too, also where the triangles that they
+// lie in are not those that the front runs over.
+TEST(DistanceRun, FromPointsWithinTrianglesIsExactInAPlane)
+{
+  const std::vector<Eigen::RowVector3d> places = { { 0.123, 0.271, 0.0 }, { -1.3, 0.3, 0.4 },
+    { 2.0, 0.91, -1.0 }, { 0.3, 0.3, 0.0 }, { 0.15, 0.3, 0.0 } };
+  const auto sources = Shapes(places);
+  for (const double slope : { 0.0, 1.7 })
+  {
+    const Shape plate = ObliquePlate(slope);
+    const Solution found = From(plate, sources);
+    const Values& nearest = found.Arrays.at("NearestSource");
+    double largest = 0.0;
+    for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+    {
+      double exact = Never;
+      Index argmin = -1;
+      for (std::size_t k = 0; k < places.size(); ++k)
+      {
+        const double distance = (plate.Vertices.row(i) - places[k]).head(2).norm();
+        argmin = distance < exact - 1e-9 ? static_cast<Index>(k) : argmin;
+        exact = std::min(exact, distance);
+      }
+      // Obtuse angles at a boundary, which cannot be flipped, have errors from vertices, too.
+      const double along = plate.Vertices(i, 0) - slope * plate.Vertices(i, 1);
+      largest = std::max(largest,
+        std::abs(along) < 2.0 && std::abs(plate.Vertices(i, 1)) < 2.0
+          ? std::abs(found.Result(i, 0) - exact)
+          : 0.0);
+      EXPECT_NEAR(
+        (plate.Vertices.row(i) - places[static_cast<std::size_t>(nearest(i, 0))]).head(2).norm(),
+        exact, 1e-9)
+        << i << ' ' << argmin;
+    }
+    EXPECT_LT(largest, slope == 0.0 ? 1e-12 : 0.01);
+    EXPECT_EQ(found.Numbers.at("NumberOfSources")(0, 0), 5.0);
+    EXPECT_EQ(found.Numbers.at("NumberOfUnreachedPoints")(0, 0), 0.0);
+  }
+}
+
+// A line across a plane has plane fronts on both sides, in any direction and with any points.
+TEST(DistanceRun, FromALineIsExactInAPlane)
+{
+  for (const double slope : { 0.0, 1.7 })
+  {
+    const Shape plate = ObliquePlate(slope);
+    const Eigen::RowVector3d a(-3.0 - 1.17 * slope, -1.17, 0.0);
+    const Eigen::RowVector3d b(3.0 + 0.41 * slope, 0.41, 0.0);
+    const Eigen::RowVector3d inside = 0.47 * a + 0.53 * b;
+    const Solution found = From(plate, Shapes({ a, b, inside }, { { 0, 2 }, { 2, 1 } }));
+    const Eigen::RowVector2d along = (b - a).head(2).normalized();
+    double largest = 0.0;
+    for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+    {
+      const Eigen::RowVector2d x = (plate.Vertices.row(i) - a).head(2);
+      const double exact = std::abs(x[0] * along[1] - x[1] * along[0]);
+      // Beside an end of the line, round fronts meet plane ones.
+      const double foot = x.dot(along) / (b - a).head(2).norm();
+      const bool isBeside = foot < 0.3 || foot > 0.7;
+      largest = std::max(largest, isBeside ? 0.0 : std::abs(found.Result(i, 0) - exact));
+      EXPECT_EQ(found.Arrays.at("NearestSource")(i, 0), 0.0); // one line
+    }
+    EXPECT_LT(largest, 1e-6) << slope;
+    EXPECT_EQ(found.Numbers.at("NumberOfSources")(0, 0), 2.0);
+  }
+}
+
+TEST(DistanceRun, FromAShortLineIsThatOfTheSegment)
+{
+  const Eigen::RowVector3d a(-1.03, -0.41, 0.2);
+  const Eigen::RowVector3d b(1.21, 0.77, 0.2);
+  for (const DistanceMethod method : { DistanceMethod::Eikonal, DistanceMethod::Heat })
+  {
+    const bool isMarched = method == DistanceMethod::Eikonal;
+    const Shape plate = ObliquePlate(isMarched ? 1.7 : 0.0);
+    const Solution found = From(plate, Shapes({ a, b }, { { 0, 1 } }), method);
+    double sum = 0.0;
+    double farthest = 0.0;
+    for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+    {
+      const Eigen::RowVector2d x = (plate.Vertices.row(i) - a).head(2);
+      const Eigen::RowVector2d ab = (b - a).head(2);
+      const double share = std::clamp(x.dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+      const double exact = (x - share * ab).norm();
+      sum += std::abs(found.Result(i, 0) - exact);
+      farthest = std::max(farthest, exact);
+    }
+    const double mean = sum / plate.NumberOfVertices() / farthest;
+    EXPECT_LT(mean, isMarched ? 0.002 : 0.05);
+  }
+}
+
+// Great circles from a place within a triangle.
+TEST(DistanceRun, FromAPlaceOnASphereIsThatOfGreatCircles)
+{
+  const Eigen::RowVector3d place = Eigen::RowVector3d(0.21, -0.53, 0.6).normalized();
+  for (const DistanceMethod method : { DistanceMethod::Eikonal, DistanceMethod::Heat })
+  {
+    double errors[2];
+    for (const int level : { 3, 5 })
+    {
+      const Shape s = Icosphere(level);
+      const Solution found = From(s, Shapes({ 3.0 * place }), method, true);
+      const Values& gradient = found.Arrays.at("DistanceGradient");
+      double sum = 0.0;
+      double ofGradients = 0.0;
+      Index counted = 0;
+      for (Index i = 0; i < s.NumberOfVertices(); ++i)
+      {
+        const double cosine = std::clamp(s.Vertices.row(i).dot(place), -1.0, 1.0);
+        sum += std::abs(found.Result(i, 0) - std::acos(cosine));
+        if (std::abs(cosine) < 0.9)
+        {
+          const Eigen::RowVector3d exact = (cosine * s.Vertices.row(i) - place).normalized();
+          ofGradients += (gradient.row(i) - exact).norm();
+          ++counted;
+        }
+      }
+      errors[level == 3 ? 0 : 1] = sum / s.NumberOfVertices();
+      EXPECT_LT(ofGradients / counted, level == 3 ? 0.1 : 0.03);
+    }
+    EXPECT_GT(errors[0] / errors[1], method == DistanceMethod::Eikonal ? 3.5 : 2.0);
+    EXPECT_LT(errors[1], method == DistanceMethod::Eikonal ? 0.003 * Pi : 0.005 * Pi);
+  }
+}
+
+// Two speeds: the time of a plane front adds up, and the gradient has the length 1/speed.
+TEST(DistanceRun, OfTwoSpeedsAddsUpAcrossThem)
+{
+  const Shape strip = Strip(30, 12, 6.0, 2.0);
+  SurfaceData data;
+  data.Speeds.OnCells = true;
+  std::vector<std::pair<Index, double>> side;
+  for (Index j = 0; j <= 12; ++j)
+  {
+    side.emplace_back(31 * j, 1.0);
+  }
+  for (const auto& corners : strip.Faces.rowwise())
+  {
+    const double x = (strip.Vertices(corners[0], 0) + strip.Vertices(corners[1], 0) +
+                       strip.Vertices(corners[2], 0)) /
+      3.0;
+    data.Speeds.Values.push_back(x < 2.0 ? 0.5 : 4.0);
+  }
+  const Solution found = From(strip, side, data);
+  ASSERT_EQ(found.Arrays.count("ArrivalTime"), 1U);
+  for (Index i = 0; i < strip.NumberOfVertices(); ++i)
+  {
+    const double x = strip.Vertices(i, 0);
+    EXPECT_NEAR(found.Result(i, 0), x < 2.0 ? x / 0.5 : 4.0 + (x - 2.0) / 4.0, 1e-12);
+  }
+  // Start times add up, too.
+  data.StartTimes.assign(static_cast<std::size_t>(strip.NumberOfVertices()), -3.0);
+  EXPECT_LT((From(strip, side, data).Result - found.Result).array().abs().maxCoeff() - 3.0, 1e-12);
+  EXPECT_NEAR(From(strip, side, data).Result(0, 0), -3.0, 1e-12);
+}
+
+// A barrier of speed 0, and the same one as a mask: ways go around its free end.
+TEST(DistanceRun, GoesAroundBarriersOfSpeedZeroAndOfMasks)
+{
+  const Shape strip = Strip(40, 20, 4.0, 2.0);
+  SurfaceData slow;
+  slow.Speeds.OnCells = true;
+  SurfaceData masked;
+  masked.Mask.OnCells = true;
+  for (const auto& corners : strip.Faces.rowwise())
+  {
+    const Eigen::RowVector3d middle =
+      (strip.Vertices.row(corners[0]) + strip.Vertices.row(corners[1]) +
+        strip.Vertices.row(corners[2])) /
+      3.0;
+    const bool isBarrier = std::abs(middle[0] - 2.05) < 0.05 && middle[1] > 0.5;
+    slow.Speeds.Values.push_back(isBarrier ? 0.0 : 1.0);
+    masked.Mask.Values.push_back(isBarrier ? 1 : 0);
+  }
+  const Index source = 41 * 15 + 10; // (1, 1.5)
+  const Index target = 41 * 15 + 30; // (3, 1.5)
+  // by (2, 0.5) and (2.1, 0.5)
+  const double around = std::hypot(1.0, 1.0) + 0.1 + std::hypot(0.9, 1.0);
+  for (const SurfaceData& data : { slow, masked })
+  {
+    const Solution found = From(strip, { { source, 1.0 } }, data);
+    EXPECT_NEAR(found.Result(target, 0), around, 0.01);
+    EXPECT_GT(found.Result(target, 0), 2.5); // not the straight 2
+  }
+  // Closed across the strip, it is not passed.
+  for (std::size_t t = 0; t < slow.Speeds.Values.size(); ++t)
+  {
+    const auto corners = strip.Faces.row(static_cast<Eigen::Index>(t));
+    const double x = (strip.Vertices(corners[0], 0) + strip.Vertices(corners[1], 0) +
+                       strip.Vertices(corners[2], 0)) /
+      3.0;
+    slow.Speeds.Values[t] = std::abs(x - 2.05) < 0.05 ? 0.0 : 1.0;
+  }
+  const Solution closed = From(strip, { { source, 7.0 } }, slow);
+  EXPECT_EQ(closed.Result(target, 0), Never);
+  EXPECT_EQ(closed.Arrays.at("NearestSource")(target, 0), 0.0);
+  EXPECT_EQ(closed.Arrays.at("NearestSource")(source, 0), 7.0);
+  EXPECT_EQ(closed.Numbers.at("NumberOfUnreachedPoints")(0, 0), 21.0 * 20.0);
+}
+
+TEST(DistanceRun, LabelsOfRegionsAreTheirValues)
+{
+  const Shape s = Icosphere(3);
+  for (const DistanceMethod method : { DistanceMethod::Eikonal, DistanceMethod::Heat })
+  {
+    const Solution found =
+      From(s, { { 0, -2.0 }, { 7, 4.0 }, { 8, 4.0 }, { 30, 2.5 } }, {}, method);
+    const Solution alone[] = { From(s, { { 0, 1.0 } }), From(s, { { 7, 1.0 }, { 8, 1.0 } }),
+      From(s, { { 30, 1.0 } }) };
+    const double names[] = { -2.0, 4.0, 2.5 };
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      int nearest = 0;
+      for (const int k : { 1, 2 })
+      {
+        nearest = alone[k].Result(i, 0) < alone[nearest].Result(i, 0) ? k : nearest;
+      }
+      EXPECT_EQ(found.Arrays.at("NearestSource")(i, 0), names[nearest]) << i;
+      if (method == DistanceMethod::Eikonal)
+      {
+        EXPECT_EQ(found.Result(i, 0), alone[nearest].Result(i, 0)) << i;
+      }
+    }
+  }
+}
+
+TEST(DistanceRun, SourcesNearExcludedTrianglesDoNotMove)
+{
+  const Shape plate = Plate(20, 3.0);
+  SurfaceData data;
+  data.Mask.Values.assign(static_cast<std::size_t>(plate.NumberOfVertices()), 0);
+  for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+  {
+    data.Mask.Values[static_cast<std::size_t>(i)] = plate.Vertices(i, 0) > 0.0 ? 1 : 0;
+  }
+  data.Sources = Shapes({ { 1.0, 0.0, 0.0 }, { -1.0, 0.0, 0.0 }, { -1.0, 0.5, 9.0 } });
+  DistanceSettings settings;
+  settings.Method = DistanceMethod::Eikonal;
+  settings.MaximumDistance = 5.0;
+  const Solution found = Distance(plate.Vertices, plate.Faces, data, settings);
+  EXPECT_EQ(found.Numbers.at("NumberOfSources")(0, 0), 1.0);
+  EXPECT_EQ(found.Warnings.size(), 2U);
+  for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+  {
+    const double exact = (plate.Vertices.row(i) - data.Sources->Places.row(1)).norm();
+    if (plate.Vertices(i, 0) > 0.0)
+    {
+      EXPECT_EQ(found.Result(i, 0), Never);
+    }
+    else
+    {
+      EXPECT_NEAR(found.Result(i, 0), exact, 1e-12);
+    }
+  }
+  data.Sources = Shapes({ { 1.0, 0.0, 0.0 }, { 0.0, 0.0, 9.0 } });
+  EXPECT_EQ(ErrorOf(plate, data, settings),
+    "no source is on the surface: of the points and lines, 1 are farther than MaximumDistance and "
+    "1 "
+    "where Mask excludes the surface; allowed: one source on it");
+}
+
+TEST(DistanceRun, NamesWhatIsNotAllowed)
+{
+  const Shape s = Icosphere(2);
+  DistanceSettings settings;
+  const auto expect = [&](const SurfaceData& data, const std::string& text)
+  {
+    EXPECT_NE(ErrorOf(s, data, settings).find(text), std::string::npos)
+      << ErrorOf(s, data, settings);
+  };
+  SurfaceData data;
+  expect(data, "Data is not set; allowed: ");
+  data.Data.Values = Values::Zero(s.NumberOfVertices(), 1);
+  expect(data, "Data is 0 at all points; allowed: a nonzero point of the surface");
+  data.Data.Values(3, 0) = 1.0;
+  data.Mask.Values.assign(static_cast<std::size_t>(s.NumberOfVertices()), 0);
+  data.Mask.Values[3] = 1;
+  expect(data, "all 1 nonzero points of Data are where Mask excludes the surface");
+  data.Mask.Values.clear();
+  data.Speeds.Values.assign(static_cast<std::size_t>(s.NumberOfVertices()), 1.0);
+  expect(data, "Method is 0; allowed: 1 Eikonal together with Speeds");
+  settings.Method = DistanceMethod::Eikonal;
+  data.Speeds.Values[5] = -1.0;
+  expect(data, "Speeds is -1 at point 5; allowed: finite numbers, 0 or more");
+  data.Speeds.Values.clear();
+  data.StartTimes.assign(static_cast<std::size_t>(s.NumberOfVertices()), Never);
+  expect(data, "StartTimes is inf at point 3; allowed: finite numbers");
+  data.StartTimes.clear();
+  data.Data.Values(4, 0) = Never;
+  expect(data, "Data is infinite at point 4");
+  settings.MaximumDistance = -1.0;
+  expect(data, "MaximumDistance is -1; allowed: ");
+}
+
+TEST(DistanceRun, ThreadsDoNotChangeABit)
+{
+  const Shape s = Jittered(Plate(30, 3.0), 0.05, -2.9, 2.9, -2.9, 2.9);
+  SurfaceData data;
+  data.Sources = Shapes({ { 0.1, 0.2, 0.0 }, { 1.0, 1.0, 0.0 }, { -1.0, 0.3, 0.0 } }, { { 0, 1 } });
+  DistanceSettings settings;
+  settings.ComputeGradient = true;
+  const Solution serial = Distance(s.Vertices, s.Faces, data, settings);
+  ThreadPool pool(4);
+  const Solution threaded = Distance(s.Vertices, s.Faces, data, settings, pool);
+  for (const auto& [name, values] : serial.Arrays)
+  {
+    EXPECT_EQ(threaded.Arrays.at(name), values) << name;
+  }
+}

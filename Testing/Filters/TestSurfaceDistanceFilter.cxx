@@ -1,0 +1,432 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilterTest.h"
+
+#include "vtkAppendPolyData.h"
+#include "vtkCellData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkStripper.h"
+#include "vtkSurfaceDistanceFilter.h"
+#include "vtkTable.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+using namespace FilterTest;
+
+namespace
+{
+
+using Filter = vtkSurfaceDistanceFilter;
+
+constexpr double Never = std::numeric_limits<double>::infinity();
+
+/// Points, and polylines of their numbers.
+vtkSmartPointer<vtkPolyData> Places(const std::vector<std::array<double, 3>>& places,
+  const std::vector<std::vector<vtkIdType>>& lines = {})
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const auto& place : places)
+  {
+    points->InsertNextPoint(place.data());
+  }
+  vtkNew<vtkCellArray> cells;
+  for (const auto& line : lines)
+  {
+    cells->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(cells);
+  return data;
+}
+
+/// The grid with the point array "source", 1 at one point.
+vtkSmartPointer<vtkPolyData> MarkedGrid(int nx, int ny, vtkIdType source)
+{
+  auto grid = Grid(nx, ny);
+  AddPointArray(grid, "source", 1, [&](vtkIdType i, int) { return i == source ? 1.0 : 0.0; });
+  return grid;
+}
+
+vtkSmartPointer<Filter> MakeFilter(vtkDataObject* surface, vtkDataObject* sources = nullptr)
+{
+  auto filter = vtkSmartPointer<Filter>::New();
+  filter->SetInputDataObject(surface);
+  filter->SetMethodToEikonal();
+  SetInputArray(filter, 0, "source");
+  if (sources)
+  {
+    filter->SetInputData(1, sources);
+  }
+  return filter;
+}
+
+double At(Filter* filter, vtkIdType point, const char* name = "Distance")
+{
+  return Result(filter, name)->GetComponent(point, 0);
+}
+
+double DistanceOf(Filter* filter, vtkIdType point, const std::array<double, 3>& place)
+{
+  double x[3];
+  filter->GetOutput()->GetPoint(point, x);
+  return std::sqrt(vtkMath::Distance2BetweenPoints(x, place.data()));
+}
+
+std::string ErrorOf(Filter* filter)
+{
+  const Messages messages(filter);
+  filter->Update();
+  return messages.Errors.empty() ? "" : messages.Errors[0];
+}
+
+bool Has(const std::string& text, const char* part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST(DistanceFilter, InAPlaneIsExact)
+{
+  const auto grid = MarkedGrid(30, 20, 30 * 7 + 4);
+  auto filter = MakeFilter(grid);
+  filter->ComputeGradientOn();
+  filter->Update();
+  vtkPointData* const arrays = filter->GetOutput()->GetPointData();
+  ASSERT_TRUE(arrays->HasArray("Distance") && arrays->HasArray("DistanceGradient"));
+  EXPECT_EQ(arrays->GetScalars(), arrays->GetArray("Distance"));
+  EXPECT_EQ(arrays->GetArray("NearestSource")->GetDataType(), VTK_INT);
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    const double exact = DistanceOf(filter, i, { 4.0, 7.0, 0.0 });
+    EXPECT_NEAR(At(filter, i), exact, 1e-12);
+    EXPECT_EQ(At(filter, i, "NearestSource"), 1.0);
+    if (exact > 6.0)
+    {
+      double x[3];
+      grid->GetPoint(i, x);
+      const double* const gradient = arrays->GetArray("DistanceGradient")->GetTuple3(i);
+      EXPECT_NEAR(gradient[0], (x[0] - 4.0) / exact, 0.12);
+      EXPECT_NEAR(gradient[1], (x[1] - 7.0) / exact, 0.12);
+      EXPECT_EQ(gradient[2], 0.0);
+    }
+  }
+  EXPECT_EQ(filter->GetNumberOfSources(), 1);
+  EXPECT_EQ(filter->GetNumberOfUnreachedPoints(), 0);
+  EXPECT_EQ(filter->GetMeanEdgeLength() > 1.0, true);
+  filter->SetResultArrayName("My");
+  filter->Update();
+  EXPECT_TRUE(arrays->HasArray("MyDistance") && arrays->HasArray("MyNearestSource"));
+}
+
+TEST(DistanceFilter, OnASphereIsThatOfGreatCirclesWithBothMethods)
+{
+  const auto sphere = Sphere(5);
+  AddPointArray(sphere, "source", 1, [](vtkIdType i, int) { return i == 5 ? -3.5 : 0.0; });
+  for (const bool heat : { false, true })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetMethod(heat ? Filter::METHOD_HEAT : Filter::METHOD_EIKONAL);
+    filter->Update();
+    double sum = 0.0;
+    for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+    {
+      double x[3], source[3];
+      sphere->GetPoint(i, x);
+      sphere->GetPoint(5, source);
+      const double exact = std::acos(std::clamp(vtkMath::Dot(x, source), -1.0, 1.0));
+      sum += std::abs(At(filter, i) - exact);
+      EXPECT_EQ(At(filter, i, "NearestSource"), -3.5);
+    }
+    EXPECT_LT(sum / sphere->GetNumberOfPoints(), (heat ? 0.01 : 0.004) * vtkMath::Pi());
+  }
+}
+
+TEST(DistanceFilter, TakesPointsAndLinesBesideTheSurface)
+{
+  const auto grid = Grid(21, 11);
+  const std::array<double, 3> place = { 3.4, 2.3, 0.7 };
+  auto filter = MakeFilter(grid,
+    Places({ place, { 16.0, -3.0, 1.0 }, { 16.0, 4.0, 0.0 }, { 16.0, 14.0, -1.0 } },
+      { { 1, 2 }, { 2, 3 } }));
+  filter->Update();
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    const double fromPoint = DistanceOf(filter, i, { 3.4, 2.3, 0.0 });
+    const double fromLine = std::abs(grid->GetPoint(i)[0] - 16.0);
+    EXPECT_NEAR(At(filter, i), std::min(fromPoint, fromLine), 1e-6) << i;
+    if (std::abs(fromPoint - fromLine) > 1e-3)
+    {
+      EXPECT_EQ(At(filter, i, "NearestSource"), fromPoint < fromLine ? 0.0 : 1.0) << i;
+    }
+  }
+  EXPECT_EQ(filter->GetNumberOfSources(), 3);
+  // A point that is moved in place is read again.
+  vtkPolyData* const sources = vtkPolyData::SafeDownCast(filter->GetInputDataObject(1, 0));
+  sources->GetPoints()->SetPoint(0, 9.2, 2.3, 0.0);
+  filter->Modified();
+  filter->Update();
+  EXPECT_NEAR(At(filter, 21 * 2 + 9), std::hypot(0.2, 0.3), 1e-12);
+  filter->SetMaximumDistance(0.5); // the line ends where it leaves this distance
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfSources(), 3);
+  EXPECT_NEAR(At(filter, 21 * 10 + 16), 1.0, 1e-3);
+  filter->RemoveAllInputConnections(1);
+  EXPECT_TRUE(Has(ErrorOf(filter), "SourceArray \"source\" is not among the point arrays"));
+}
+
+TEST(DistanceFilter, ArrivalTimesFollowTheSpeed)
+{
+  const auto grid = MarkedGrid(21, 11, 0);
+  AddPointArray(grid, "source", 1, [](vtkIdType i, int) { return i % 21 == 0 ? 1.0 : 0.0; });
+  grid->GetCellData()->AddArray(MakeArray(VTK_FLOAT, "v", grid->GetNumberOfCells(), 1,
+    [](vtkIdType c, int) { return c / 2 % 20 < 10 ? 2.0 : 0.25; }));
+  AddPointArray(grid, "start", 1, [](vtkIdType, int) { return 7.0; });
+  auto filter = MakeFilter(grid);
+  SetInputArray(filter, 8, "v", true);
+  SetInputArray(filter, 9, "start");
+  filter->ComputeGradientOn();
+  filter->Update();
+  ASSERT_NE(Result(filter, "ArrivalTime"), nullptr);
+  ASSERT_NE(Result(filter, "ArrivalTimeGradient"), nullptr);
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    const double x = grid->GetPoint(i)[0];
+    EXPECT_NEAR(
+      At(filter, i, "ArrivalTime"), 7.0 + (x < 10.0 ? x / 2.0 : 5.0 + (x - 10.0) / 0.25), 1e-12);
+    if (x != 10.0)
+    {
+      EXPECT_NEAR(At(filter, i, "ArrivalTimeGradient"), x < 10.0 ? 0.5 : 4.0, 1e-12);
+    }
+  }
+  // A column of cells of speed 0 is not passed.
+  vtkDataArray* const speeds = grid->GetCellData()->GetArray("v");
+  for (vtkIdType c = 0; c < speeds->GetNumberOfTuples(); ++c)
+  {
+    speeds->SetComponent(c, 0, c / 2 % 20 == 15 ? 0.0 : 1.0);
+  }
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfUnreachedPoints(), 11 * 5);
+  EXPECT_EQ(At(filter, 20, "ArrivalTime"), Never);
+  EXPECT_EQ(At(filter, 20, "NearestSource"), 0.0);
+  EXPECT_EQ(At(filter, 20, "ArrivalTimeGradient"), 0.0);
+}
+
+TEST(DistanceFilter, IsInfiniteWhereNoWayLeads)
+{
+  const auto grid = MarkedGrid(9, 5, 4 * 9);
+  vtkNew<vtkAppendPolyData> both;
+  both->AddInputData(grid);
+  const auto sphere = Sphere(2);
+  AddPointArray(sphere, "source", 1, [](vtkIdType, int) { return 0.0; });
+  both->AddInputData(sphere);
+  both->Update();
+  AddPointArray(both->GetOutput(), "wall", 1,
+    [](vtkIdType i, int) { return i < 45 && i % 9 == 5 ? 1.0 : 0.0; });
+  for (const bool heat : { false, true })
+  {
+    auto filter = MakeFilter(both->GetOutput());
+    filter->SetMethod(heat ? 0 : 1);
+    SetInputArray(filter, 1, "wall");
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty() && messages.Warnings.empty());
+    for (vtkIdType i = 0; i < 45; ++i)
+    {
+      EXPECT_EQ(std::isinf(At(filter, i)), i % 9 > 3 + (i % 9 == 4 ? 1 : 0)) << i;
+    }
+    EXPECT_EQ(At(filter, 45), Never);
+    EXPECT_EQ(filter->GetNumberOfUnreachedPoints(), 5 * 3 + sphere->GetNumberOfPoints());
+  }
+}
+
+TEST(DistanceFilter, TakesTheSourcesOfEachBlock)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MarkedGrid(9, 5, 0));
+  blocks->SetBlock(1, MarkedGrid(9, 5, -1)); // without a source
+  blocks->SetBlock(2, Grid(9, 5)); // without the array
+  vtkNew<vtkTable> table;
+  blocks->SetBlock(3, table);
+  auto filter = MakeFilter(blocks);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Errors.empty());
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_TRUE(Has(messages.Warnings[0], "counts as not set on block 2")) << messages.Warnings[0];
+  auto* const output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  const auto distances = [&](unsigned int b)
+  { return vtkPolyData::SafeDownCast(output->GetBlock(b))->GetPointData()->GetArray("Distance"); };
+  EXPECT_NEAR(distances(0)->GetComponent(44, 0), std::hypot(8.0, 4.0), 1e-12);
+  EXPECT_EQ(distances(1)->GetComponent(44, 0), Never);
+  EXPECT_EQ(distances(2), nullptr);
+  EXPECT_EQ(filter->GetNumberOfUnreachedPoints(), 45);
+  // Those of port 1 count on each block.
+  filter->SetInputData(1, Places({ { 1.5, 0.5, 0.0 } }));
+  filter->Update();
+  for (unsigned int b = 0; b < 3; ++b)
+  {
+    EXPECT_NEAR(distances(b)->GetComponent(0, 0), std::hypot(1.5, 0.5), 1e-12);
+  }
+}
+
+TEST(DistanceFilter, TakesPolygonsStripsAndMergedPoints)
+{
+  const auto grid = MarkedGrid(12, 8, 14);
+  vtkNew<vtkStripper> stripper;
+  stripper->SetInputData(grid);
+  stripper->PassThroughPointIdsOff();
+  auto filter = MakeFilter(grid);
+  filter->Update();
+  const auto expected = Copy(Result(filter, "Distance"));
+  filter->SetInputConnection(stripper->GetOutputPort());
+  filter->Update();
+  EXPECT_LE(LargestDifference(Result(filter, "Distance"), expected), 1e-12);
+  // Each triangle with points of its own
+  vtkNew<vtkPolyData> soup;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  std::vector<vtkIdType> origin;
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c)
+  {
+    vtkNew<vtkIdList> corners;
+    grid->GetCellPoints(c, corners);
+    cells->InsertNextCell(3);
+    for (vtkIdType a = 0; a < 3; ++a)
+    {
+      origin.push_back(corners->GetId(a));
+      cells->InsertCellPoint(points->InsertNextPoint(grid->GetPoint(corners->GetId(a))));
+    }
+  }
+  soup->SetPoints(points);
+  soup->SetPolys(cells);
+  AddPointArray(soup, "source", 1, [&](vtkIdType i, int) { return origin[i] == 14 ? 1.0 : 0.0; });
+  filter->SetInputData(soup);
+  filter->MergeCoincidentPointsOn();
+  filter->Update();
+  for (std::size_t i = 0; i < origin.size(); ++i)
+  {
+    EXPECT_NEAR(At(filter, static_cast<vtkIdType>(i)), expected->GetComponent(origin[i], 0), 1e-12);
+  }
+}
+
+TEST(DistanceFilter, ReadsArraysThatWereEditedInPlace)
+{
+  const auto grid = MarkedGrid(9, 5, 0);
+  auto filter = MakeFilter(grid);
+  filter->SetMethodToHeat();
+  filter->Update();
+  const double before = At(filter, 44);
+  grid->GetPointData()->GetArray("source")->SetComponent(0, 0, 0.0);
+  grid->GetPointData()->GetArray("source")->SetComponent(44, 0, 1.0);
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(At(filter, 44), 0.0);
+  EXPECT_NEAR(At(filter, 0), before, 1e-9); // the grid looks the same from its other corner
+}
+
+TEST(DistanceFilter, StopsWhenItIsAborted)
+{
+  const auto sphere = Sphere(6);
+  AddPointArray(sphere, "source", 1, [](vtkIdType i, int) { return i == 9 ? 1.0 : 0.0; });
+  for (const int method : { 0, 1 })
+  {
+    auto filter = MakeFilter(sphere);
+    filter->SetMethod(method);
+    double reached = 0.0;
+    int reports = 0;
+    bool aborts = true;
+    Listen(filter,
+      [&](double fraction)
+      {
+        reached = fraction < 1.0 ? fraction : reached;
+        ++reports;
+        if (aborts && fraction > 0.4)
+        {
+          filter->SetAbortExecute(1);
+        }
+      });
+    filter->Update();
+    EXPECT_EQ(Result(filter, "Distance"), nullptr) << method;
+    EXPECT_LT(reached, 0.9);
+    aborts = false;
+    filter->SetAbortExecute(0);
+    filter->Modified();
+    filter->Update();
+    EXPECT_GE(reports, 10);
+    EXPECT_NE(Result(filter, "Distance"), nullptr) << method;
+  }
+}
+
+TEST(DistanceFilter, NamesWhatIsNotAllowed)
+{
+  const auto grid = MarkedGrid(9, 5, 3);
+  grid->GetCellData()->AddArray(
+    MakeArray(VTK_DOUBLE, "c", grid->GetNumberOfCells(), 1, [](vtkIdType, int) { return 1.0; }));
+  AddPointArray(grid, "v", 1, [](vtkIdType i, int) { return i - 1.0; });
+  AddPointArray(grid, "zero", 1, [](vtkIdType, int) { return 0.0; });
+  auto filter = MakeFilter(grid);
+  SetInputArray(filter, 0, "c", true);
+  EXPECT_TRUE(
+    Has(ErrorOf(filter), "SourceArray is a cell array; allowed: point arrays of 1 component"));
+  SetInputArray(filter, 0, "zero");
+  EXPECT_TRUE(Has(ErrorOf(filter), "SourceArray is 0 at all points; allowed: a nonzero point"));
+  EXPECT_EQ(Result(filter, "Distance"), nullptr);
+  SetInputArray(filter, 0, "source");
+  SetInputArray(filter, 1, "source");
+  EXPECT_TRUE(Has(ErrorOf(filter),
+    "all 1 nonzero points of SourceArray are where MaskArray excludes the surface"));
+  SetInputArray(filter, 1, "");
+  SetInputArray(filter, 8, "v");
+  EXPECT_TRUE(
+    Has(ErrorOf(filter), "SpeedArray is -1 at point 0; allowed: finite numbers, 0 or more"));
+  filter->SetMethodToHeat();
+  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal together with SpeedArray"))
+    << ErrorOf(filter);
+  SetInputArray(filter, 8, "");
+  filter->SetMaximumDistance(-2.0);
+  EXPECT_TRUE(Has(ErrorOf(filter), "MaximumDistance is -2; allowed: "));
+  filter->SetMaximumDistance(0.0);
+  vtkNew<vtkTable> table;
+  filter->SetInputData(1, table);
+  EXPECT_TRUE(Has(ErrorOf(filter), "the sources, is a vtkTable; allowed: a vtkPointSet"));
+  filter->SetInputData(1, Places({}));
+  EXPECT_TRUE(Has(ErrorOf(filter), "the sources, has 0 points; allowed: 1 or more"));
+  filter->SetInputData(1, Places({ { vtkMath::Nan(), 0.0, 0.0 } }));
+  EXPECT_TRUE(Has(ErrorOf(filter), "a coordinate is not finite at point 0 of the sources"));
+  filter->SetInputData(1, Places({ { 0.0, 0.0, 3.0 } }));
+  filter->SetMaximumDistance(1.0);
+  EXPECT_TRUE(
+    Has(ErrorOf(filter), "no source is on the surface: of the points and lines, 1 are farther"));
+  filter->SetMaximumDistance(0.0);
+  EXPECT_EQ(ErrorOf(filter), "");
+}
+
+TEST(DistanceFilter, WarnsAboutSourcesThatDoNotCount)
+{
+  const auto grid = MarkedGrid(9, 5, 3);
+  AddPointArray(grid, "source", 1, [](vtkIdType i, int) { return i < 2 ? 1.0 : 0.0; });
+  AddPointArray(grid, "mask", 1, [](vtkIdType i, int) { return i == 0 ? 1.0 : 0.0; });
+  auto filter = MakeFilter(grid);
+  SetInputArray(filter, 1, "mask");
+  const auto warningOf = [&]
+  {
+    const Messages messages(filter);
+    filter->Update();
+    return messages.Warnings.empty() ? std::string() : messages.Warnings[0];
+  };
+  EXPECT_TRUE(Has(warningOf(), "1 sources are on no triangle that takes part and do not count"));
+  EXPECT_EQ(filter->GetNumberOfSources(), 1);
+  SetInputArray(filter, 1, "");
+  AddPointArray(grid, "source", 1, [](vtkIdType, int) { return 2.0; });
+  EXPECT_TRUE(Has(warningOf(), "all points of the surface are sources"));
+}
