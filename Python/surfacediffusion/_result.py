@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,46 @@ if TYPE_CHECKING:
 
 
 __all__ = [
-    "CurvatureResult", "DerivativesResult", "DiffusionResult", "EdgeResult", "HarmonicMapResult",
-    "MeshDenoisingResult", "ModelResult", "InterpolationResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult",
-    "TextureResult",
+    "ArrayResult", "ConductionVelocity", "CurvatureResult", "DerivativesResult", "DiffusionResult",
+    "EdgeResult", "HarmonicMapResult", "InterpolationResult", "MeshDenoisingResult", "ModelResult", "RegionBoundary",
+    "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
 ]
 
 
+class ArrayResult:
+    """A result of more than one array. It stands for its main array, which ``numpy.asarray(result)`` is:
+    functions of numpy take it, and it has the array's `shape`, `dtype`, length and elements. All results
+    of this package are such."""
+
+    #: The attribute that is the main array.
+    MAIN: ClassVar[str] = "values"
+    #: The outputs that `values` are the columns of; none: the result of the data.
+    VALUES: ClassVar[tuple[str, ...]] = ()
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        main: NDArray[Any] = getattr(self, self.MAIN)
+        array = main if dtype is None else main.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """That of the main array."""
+        return self.__array__().shape
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """That of the main array."""
+        return self.__array__().dtype
+
+    def __len__(self) -> int:
+        return len(self.__array__())
+
+    def __getitem__(self, key: Any) -> Any:
+        return self.__array__()[key]
+
+
 @dataclass(frozen=True)
-class ModelResult:
+class ModelResult(ArrayResult):
     """The result of a model. ``numpy.asarray(result)`` is `values`.
 
     Attributes
@@ -43,19 +75,12 @@ class ModelResult:
         The iterations of all solves together; 0 for direct solvers.
     """
 
-    #: The outputs that `values` are the columns of; none: the result of the data.
-    VALUES: ClassVar[tuple[str, ...]] = ()
-
     values: NDArray[Any]
     warnings: list[str] = field(repr=False)
     mean_edge_length: float = field(repr=False)
     value_range: float = field(repr=False)
     number_of_unused_points: int = field(repr=False)
     number_of_iterations: int = field(repr=False)
-
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
-        return array.copy() if copy else array
 
 
 @dataclass(frozen=True)
@@ -145,7 +170,7 @@ class HarmonicMapResult(Result):
 
 
 @dataclass(frozen=True)
-class CurvatureResult:
+class CurvatureResult(ArrayResult):
     """The result of :func:`curvature`. ``numpy.asarray(result)`` is `mean`.
 
     Attributes
@@ -168,7 +193,7 @@ class CurvatureResult:
         Everything that was also given as a Python warning.
     """
 
-    VALUES: ClassVar[tuple[str, ...]] = ()
+    MAIN: ClassVar[str] = "mean"
 
     mean: NDArray[np.float64] = field(repr=False)
     gaussian: NDArray[np.float64] = field(repr=False)
@@ -178,20 +203,16 @@ class CurvatureResult:
     mean_edge_length: float
     warnings: list[str] = field(repr=False)
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.mean if dtype is None else self.mean.astype(dtype, copy=False)
-        return array.copy() if copy else array
-
 
 @dataclass(frozen=True)
-class DerivativesResult:
-    """The result of :func:`derivatives` with ``full_output=True``. ``numpy.asarray(result)`` is
-    `values`.
+class DerivativesResult(ArrayResult):
+    """The derivatives of PyVista meshes, and of :func:`derivatives` with the old switch
+    ``full_output=True``. ``numpy.asarray(result)`` is `values`.
 
     Attributes
     ----------
     values : ndarray
-        The derivatives, as without `full_output`.
+        What :func:`derivatives` returns.
     speed : ndarray, shape (n,) or (n, k), or None
         The lengths of the conduction velocities, in the unit of the coordinates per unit of time.
     mean_edge_length : float
@@ -200,20 +221,21 @@ class DerivativesResult:
         Everything that was also given as a Python warning.
     """
 
-    VALUES: ClassVar[tuple[str, ...]] = ()
-
     values: NDArray[np.float64] = field(repr=False)
     speed: NDArray[np.float64] | None = field(repr=False)
     mean_edge_length: float
     warnings: list[str] = field(repr=False)
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
-        return array.copy() if copy else array
+
+class ConductionVelocity(NamedTuple):
+    """The velocity of a wave on a surface, and its length, the speed."""
+
+    velocity: NDArray[np.float64]  #: (n, 3), in the tangent planes
+    speed: NDArray[np.float64]  #: (n,)
 
 
 @dataclass(frozen=True)
-class MeshDenoisingResult:
+class MeshDenoisingResult(ArrayResult):
     """The result of :func:`denoise_mesh`. ``numpy.asarray(result)`` is `points`.
 
     Attributes
@@ -240,7 +262,7 @@ class MeshDenoisingResult:
         Everything that was also given as a Python warning.
     """
 
-    VALUES: ClassVar[tuple[str, ...]] = ()
+    MAIN: ClassVar[str] = "points"
 
     points: NDArray[np.float64] = field(repr=False)
     noise_level: float
@@ -252,10 +274,6 @@ class MeshDenoisingResult:
     volume_after: float = field(repr=False)
     mean_edge_length: float = field(repr=False)
     warnings: list[str] = field(repr=False)
-
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.points if dtype is None else self.points.astype(dtype, copy=False)
-        return array.copy() if copy else array
 
 
 @dataclass(frozen=True)
