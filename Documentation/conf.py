@@ -20,11 +20,15 @@ html_extra_path = ["extra"]
 html_copy_source = False
 autodoc_typehints = "none"
 napoleon_use_rtype = False
+napoleon_use_ivar = True
+nitpicky = True
+# The words in which docstrings describe types, and what other packages have
+nitpick_ignore_regex = [("py:class", r"(?!surfacediffusion\.)(?![A-Z]\w*$).*"),
+                        ("py:(class|obj)", r"None|NDArray|ArrayLike|Any|Callable|Iterator|Generic|NamedTuple")]
 suppress_warnings = ["config.cache"]
 sphinx_gallery_conf = {
     "examples_dirs": "tutorials",
     "gallery_dirs": "gallery",
-    "ignore_pattern": r"tutorial_data\.py",
     "filename_pattern": r"/\w+\.py",
     "image_scrapers": ("pyvista",),
     "abort_on_example_error": True,
