@@ -18,9 +18,9 @@ random = np.random.default_rng(0)
 # %%
 # Three colours in stripes, with noise, and a tenth of the points missing.
 size = np.ptp(points, axis=0).max()
-stripe = np.floor(4 * (points[:, 1] + 0.15 * points[:, 0]) / size).astype(int) % 3
+stripe = np.floor(3 * (points[:, 1] + 0.15 * points[:, 0]) / size).astype(int) % 3
 paint = np.array([(205, 60, 50), (245, 220, 160), (50, 110, 150)])[stripe].astype(float)
-noisy = np.clip(paint + random.normal(scale=50, size=paint.shape), 0, 255)
+noisy = np.clip(paint + random.normal(scale=30, size=paint.shape), 0, 255)
 missing = np.abs(np.sin(25 * points[:, 0] / size + 11 * points[:, 2] / size)) < 0.15
 result = intrinsic_tv(surface, noisy, mask=missing, mode="SteadyState", automatic_fidelity=True)
 

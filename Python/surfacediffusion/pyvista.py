@@ -9,31 +9,37 @@
     smooth, result = heat(mesh, "thickness", fwhm=10, return_result=True)
     result.history["Energy"]
 
-With PyVista 0.48 or newer they are also methods, without an import: mesh.diffusion.heat("thickness",
-fwhm=10). Any VTK will do, since no class of this package is compiled for one.
+With PyVista 0.48 or newer they are also methods, without an import: ``mesh.diffusion.heat("thickness",
+fwhm=10)``. Any VTK will do, since no class of this package is compiled for one.
 
 A mesh is a pyvista.PolyData with n points and m cells, or a pyvista.MultiBlock of such meshes, whose
 blocks may be None or empty; its surfaces share their natural units, and blocks without the array
 are returned as they are. The input is not modified. Arrays are passed by name:
 
-array      the data: point array (n,) or (n, k) of any numeric type, NaN is missing, or cell array
-           with m rows, whose result is a cell array unless result_on_faces=False; default: the
-           active scalars
-mask       point or cell array, nonzero is missing (or excluded with mask_mode="Exclude")
-roi        point or cell array, the region of interest, nonzero is inside: the opposite of a mask with
-           mask_mode="Exclude", and in place of one
-direction  point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along
-fixed      point or cell array, nonzero holds the value fixed (Dirichlet condition)
-fidelity   point or cell array, factors of fidelity_weight, 0 or more
+array
+    The data: point array (n,) or (n, k) of any numeric type, NaN is missing, or cell array with m rows,
+    whose result is a cell array unless ``result_on_faces=False``; default: the active scalars.
+mask
+    Point or cell array, nonzero is missing (or excluded with ``mask_mode="Exclude"``).
+roi
+    Point or cell array, the region of interest, nonzero is inside: the opposite of a mask with
+    ``mask_mode="Exclude"``, and in place of one.
+direction
+    Point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along.
+fixed
+    Point or cell array, nonzero holds the value fixed (Dirichlet condition).
+fidelity
+    Point or cell array, factors of fidelity_weight, 0 or more.
 
-times (of the functions of time): times in the unit of time_step, in any order. The function then returns a list with the mesh
-at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
-one. return_result (but of direction_field): if True, the function returns a pair: the mesh or the list, and
-the result (of a MultiBlock, or with times, the list of them). progress: True or a callable, as for arrays.
-result_array_name: in place of the default, and the prefix of the names of further arrays. All other
-keywords are those of the functions on arrays, also in the spelling of VTK and ParaView: FWHM=10 is
-fwhm=10. In place of OutputPrecision there is dtype. As for arrays, heat() needs a width: one of fwhm,
-time_step and mode. The results have the bits of the classes in the module vtkSurfaceDiffusion.
+The functions of time take `times`, in the unit of time_step and in any order, and then return a list with
+the mesh at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the
+earlier one. With ``return_result=True`` (but of direction_field) a function returns a pair: the mesh or the
+list, and the result of the function on arrays, of a MultiBlock, or with times, the list of them. `progress`
+is True or a callable, as for arrays. `result_array_name` stands in place of the default, and is the prefix
+of the names of further arrays. All other keywords are those of the functions on arrays, also in the
+spelling of VTK and ParaView: ``FWHM=10`` is ``fwhm=10``. In place of OutputPrecision there is dtype. As for
+arrays, heat() needs a width: one of fwhm, time_step and mode. The results have the bits of the classes in
+the module vtkSurfaceDiffusion.
 
 Errors: TypeError if the mesh is not a surface, with the remedy; ValueError if an array or a keyword
 is not allowed, with a message that names it, what was found and what is allowed.
