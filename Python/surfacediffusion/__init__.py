@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Diffusion equations on triangulated surfaces, for numpy arrays.
+"""Diffusion equations on triangulated surfaces, for numpy arrays::
 
     from surfacediffusion import Surface, heat
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions of this package for PyVista meshes: each takes a mesh and returns a new one.
+"""The functions of this package for PyVista meshes: each takes a mesh and returns a new one::
 
     from surfacediffusion.pyvista import heat
 

@@ -95,7 +95,7 @@ class TestCode(unittest.TestCase):
 
         pages = "".join((FOLDER / f"{page}.md").read_text(encoding="utf-8")
                         for page in ("python", "results", "pyvista", "files"))
-        shown = re.findall(r"^\.\. auto(?:function|class):: (\S+)$", pages, re.M)
+        shown = re.findall(r"^\.\. auto(?:function|class):: (\S+?)(?:\(\))?$", pages, re.M)
         public = [f"{module.__name__}.{name}" for module in (
             surfacediffusion, surfacediffusion.examples, surfacediffusion.files, of_meshes)
             for name in module.__all__]
