@@ -74,7 +74,8 @@ def _in_code(text):
 
 
 def _escape(text):
-    return re.sub(r"([|<>*_])", r"\\\1", text)
+    text = re.sub(r"([|<>*_])", r"\\\1", text)
+    return re.sub(r"(?<![\w`-])(--?[a-z][a-z-]*[a-z])", r"`\1`", text)  # options
 
 
 if __name__ == "__main__":

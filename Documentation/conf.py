@@ -22,7 +22,6 @@ autodoc_typehints = "none"
 napoleon_use_rtype = False
 napoleon_use_ivar = True
 nitpicky = True
-smartquotes = False  # dashes are options of the command
 default_role = "py:obj"  # links to what the pages have, code for all else
 # Types in docstrings are words ("array_like", those of choices); these end in names of classes.
 nitpick_ignore_regex = [("py:class", r"(?!\S*(Result|States|Surface|Estimate|Modes|Sources|Data|Part|File)$).*"),

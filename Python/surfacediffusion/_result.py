@@ -156,9 +156,11 @@ class HarmonicMapResult(Result):
     ----------
     points : ndarray, shape (n, 3)
         The points; moved if ``move_vertices=True``.
-    mean_displacement, maximum_displacement : float
+    mean_displacement : float
+    maximum_displacement : float
         Of the moved points, in coordinate units.
-    volume_before, volume_after : float
+    volume_before : float
+    volume_after : float
         The enclosed volumes, in coordinate units; of no meaning for open surfaces.
     """
 
@@ -251,9 +253,11 @@ class MeshDenoisingResult(ArrayResult):
     surface_type : str
         The kind of surface, given or found: "CAD" or "Organic". "Automatic" if no noise was found, or
         if connected components are of different kinds.
-    mean_displacement, maximum_displacement : float
+    mean_displacement : float
+    maximum_displacement : float
         Of the points, in coordinate units.
-    volume_before, volume_after : float
+    volume_before : float
+    volume_after : float
         The enclosed volumes, in coordinate units, signed by the orientation; 0 for surfaces that
         are not closed or not consistently oriented.
     mean_edge_length : float
@@ -288,7 +292,8 @@ class EdgeResult(Result):
     curves : list of ndarray, shape (k, 3)
         The edges, one array of points per edge between its ends and junctions, along the ridge of
         `edges`. A closed curve repeats its first point.
-    effective_edge_threshold, effective_smoothing_length : float
+    effective_edge_threshold : float
+    effective_smoothing_length : float
         Those of the run, given or found by ``automatic_threshold=True``, in the units of
         `edge_threshold` and `smoothing_length`, on the connected component with the most points.
     estimated_noise_level : float
@@ -408,7 +413,8 @@ class SegmentationResult(ModelResult):
         u of the relaxed problem.
     means : ndarray, shape (K, k)
         The means c of the regions, given or found; shape (K, 0) with given data terms.
-    areas, boundary_lengths : ndarray, shape (K,)
+    areas : ndarray, shape (K,)
+    boundary_lengths : ndarray, shape (K,)
         Of the regions within `boundaries`.
     components : ndarray of int, shape (K,)
         The number of connected components of each region.

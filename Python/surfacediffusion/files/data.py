@@ -50,8 +50,9 @@ class Data:
 
     Attributes
     ----------
-    path, kind : str
-        The file and its format.
+    path : str
+    kind : str
+        The format.
     names : list of str
         Of the k columns; columns of one array of VTK have one name.
     parts : list of Part

@@ -24,8 +24,9 @@ class SurfaceFile:
 
     Attributes
     ----------
-    path, kind : str
-        The file and its format.
+    path : str
+    kind : str
+        The format.
     points : ndarray, shape (n, 3)
     faces : ndarray, shape (m, 3), or list of polygons
     structure : str
