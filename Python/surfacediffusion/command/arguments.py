@@ -25,12 +25,14 @@ DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --
 --cerebellum instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), or a PLY or VTK
 file with data at its vertices; with --faces, where there is that option, at the faces. Files are
 recognised by their content, and may be compressed by gzip, or pipes. OUTPUT has the format and the
-metadata of DATA. NaN means missing: the value is not used, and the output has a value there.
+metadata of DATA; that of a FreeSurfer curv may be named .mgh or .shape.gii, too. NaN means missing: the value is not used, and the output has a value there.
 """
 
 
 def parse(argv):
     """The arguments of the command line, with the function that carries them out as `run`."""
+    if argv and argv[0] in ("-metric-smoothing", "-cifti-smoothing"):  # as after wb_command
+        argv = [argv[0][1:], *argv[1:]]
     # A CIFTI file has a surface per hemisphere, by --left and --right instead of SURFACE.
     hemispheres = any(word.split("=")[0] in _SIDES for word in argv) or (
         len(argv) > 1 and re.search(r"\.d[a-z]+\.nii$", argv[1]) is not None)

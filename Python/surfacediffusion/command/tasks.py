@@ -552,7 +552,7 @@ def _change_data(arguments, report, title, compute, groups, missing=None, say=No
     with report.timed("read"):
         surfaces, data, columns, patches = _read(arguments, missing, content)
         areas = inputs.read_areas(getattr(arguments, "areas", None), surfaces)
-        data.check_name(arguments.output)
+        target = _target(data, patches, arguments.output)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
     results = []
@@ -575,12 +575,21 @@ def _change_data(arguments, report, title, compute, groups, missing=None, say=No
             results.append(patch.to_part(new))
             _add_totals(report, data, columns, patch, new, areas)
     with report.timed("write"):
-        data.save(arguments.output, results, columns)
+        target.save(arguments.output, results, columns)
     report.facts.update(data=data.path, output=arguments.output)
     what = f"{len(columns)} column{'s' * (len(columns) > 1)}"
     if say is not None:
         what += ", " + say(patches[0].surface)
     _say_written(arguments, report, what)
+
+
+def _target(data, patches, path):
+    """What is written: DATA with other values, or of a curv file, which has no metadata, the format that
+    the name of the output announces."""
+    if data.kind == "curv" and kind_of_name(path) not in (None, "curv"):
+        return new_data(patches[0].surface, path, data.names)
+    data.check_name(path)
+    return data
 
 
 def _part_of(progress, start, share):
