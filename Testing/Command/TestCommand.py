@@ -467,7 +467,7 @@ class OtherCommands(CommandTest):
         np.testing.assert_array_equal(found.points[north], given.points[north])
         expected = denoise_mesh((given.points, given.faces), noise_level=0.03, surface_type="CAD",
                                 fixed=north)
-        np.testing.assert_array_equal(found.points, expected.astype(found.points.dtype))
+        np.testing.assert_array_equal(found.points, expected.points.astype(found.points.dtype))
 
     def test_denoise_mesh_says_if_no_point_moves(self):
         points, faces = samples.sphere(4)

@@ -103,7 +103,7 @@ class DenoiseMesh(unittest.TestCase):
 
     def test_a_larger_level_removes_more(self):
         noisy, _ = noisy_sphere()
-        roughness = [np.linalg.norm(sd.denoise_mesh(noisy, noise_level=level), axis=1).std()
+        roughness = [np.linalg.norm(sd.denoise_mesh(noisy, noise_level=level).points, axis=1).std()
                      for level in (0.003, 0.01)]
         self.assertLess(roughness[1], 0.8 * roughness[0])
 
@@ -128,7 +128,7 @@ class DenoiseMesh(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             merged = sd.denoise_mesh(soup, merge_coincident_points=True)
-        np.testing.assert_allclose(merged.reshape(-1, 3, 3),
+        np.testing.assert_allclose(merged.points.reshape(-1, 3, 3),
                                    sd.denoise_mesh(noisy)[noisy.triangles], atol=1e-3)
         for corner in range(noisy.n_points):
             copies = merged[(noisy.triangles == corner).ravel()]
