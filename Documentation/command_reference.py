@@ -43,7 +43,8 @@ def _part(name, parser, cifti):
     example, _, rest = parser.epilog.removeprefix("Example:\n").partition("\n\n")
     example, *more = re.split(r"\n(?=\S)", example, maxsplit=1)
     rows = [(_word(a) if not a.option_strings else ", ".join(_option(a)), a.help or "")
-            for a in parser._actions if a.help != argparse.SUPPRESS and a.dest != "help"]
+            for a in sorted(parser._actions, key=lambda a: bool(a.option_strings))  # OUTPUT before --json
+            if a.help != argparse.SUPPRESS and a.dest != "help"]
     known = {text for text, _ in rows}
     rows += [(text, a.help) for a in cifti._actions if a.option_strings and a.dest in (
         "left", "right", "cerebellum") for text in [", ".join(_option(a))] if text not in known]
@@ -77,7 +78,8 @@ def _in_code(text):
 
 
 def _escape(text):
-    return re.sub(r"([|<>*_])", r"\\\1", text)
+    text = re.sub(r"([|<>*_])", r"\\\1", text)
+    return re.sub(r"(?<![\w`-])(--?[a-z][a-z-]*[a-z])", r"`\1`", text)  # options
 
 
 if __name__ == "__main__":

@@ -20,11 +20,16 @@ html_extra_path = ["extra"]
 html_copy_source = False
 autodoc_typehints = "none"
 napoleon_use_rtype = False
+napoleon_use_ivar = True
+nitpicky = True
+default_role = "py:obj"  # links to what the pages have, code for all else
+# Types in docstrings are words ("array_like", those of choices); these end in names of classes.
+nitpick_ignore_regex = [("py:class", r"(?!\S*(Result|States|Surface|Estimate|Modes|Sources|Data|Part|File)$).*"),
+                        ("py:obj", ".*")]
 suppress_warnings = ["config.cache"]
 sphinx_gallery_conf = {
     "examples_dirs": "tutorials",
     "gallery_dirs": "gallery",
-    "ignore_pattern": r"tutorial_data\.py",
     "filename_pattern": r"/\w+\.py",
     "image_scrapers": ("pyvista",),
     "abort_on_example_error": True,

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Write surfacediffusion/_functions.pyi, the types of the functions' keywords for editors and type
-checkers, from the signatures that the functions get from the settings in C++.
+"""Write the types of the functions' keywords for editors and type checkers, from the signatures that the
+functions get from the settings in C++: _functions.pyi, _steps.pyi and _derivatives.pyi.
 
     make_stubs.py <folder of the package>
 """
@@ -13,78 +13,57 @@ import re
 import sys
 import types
 
+MODULES = ("_functions", "_steps", "_derivatives")
+
 HEADER = """\
-from typing import Any, Iterator, Literal, overload
+from typing import Any, Literal
 
 from numpy.typing import ArrayLike, NDArray
 import numpy as np
 
 from ._result import {results}
-from ._run import Progress
+from ._run import Progress, States
 from ._surface import SurfaceLike
 
 __all__ = {functions}
 """
 
 
-def returns(function):
-    """The return types of a function for the values of its switches: its annotation lists that of
-    neither, of full_output and of steps, in this order."""
-    annotations = str(inspect.signature(function).return_annotation).split(" | ")
-    has_steps = annotations[-1].startswith("Iterator")
-    has_full_output = len(annotations) > 1 + has_steps
-    switches = [{}] + has_full_output * [{"full_output": True}] + has_steps * [{"steps": True}]
-    return list(zip(switches, annotations))
-
-
-def load(folder):
-    """The module of functions without the package, which needs the installed version."""
+def load(folder, name):
+    """A module of functions without the package, which needs the installed version."""
     package = types.ModuleType("surfacediffusion")
     package.__path__ = [str(folder)]
-    sys.modules["surfacediffusion"] = package
-    return importlib.import_module("surfacediffusion._functions")
+    sys.modules.setdefault("surfacediffusion", package)
+    return importlib.import_module(f"surfacediffusion.{name}")
 
 
-def lines_of(name, signature, switches, returned, documentation, overloaded):
-    """One definition, for given values of the switches."""
-    lines, keyword_only = [f"def {name}("], False
+def lines_of(function):
+    """The definition of a function."""
+    signature = inspect.signature(function)
+    lines, keyword_only = ["", f"def {function.__name__}("], False
     for parameter in signature.parameters.values():
         if parameter.kind is parameter.KEYWORD_ONLY and not keyword_only:
             lines.append("    *,")
             keyword_only = True
-        annotation, default = parameter.annotation, repr(parameter.default)
-        if parameter.name in ("steps", "full_output") and overloaded:
-            if parameter.name in switches:
-                annotation, default = "Literal[True]", None
-            elif "steps" not in switches:
-                annotation = "Literal[False]"
-        end = "" if default is None or parameter.default is parameter.empty else f" = {default}"
-        lines.append(f"    {parameter.name}: {annotation}{end},")
-    lines.append(f") -> {returned}:" + (" ..." if not documentation else ""))
-    if documentation:
-        text = documentation.replace("\\", "\\\\")
-        lines += [("    " + line).rstrip() for line in f'"""{text}\n"""'.splitlines()]
-    return lines
+        end = "" if parameter.default is parameter.empty else f" = {parameter.default!r}"
+        lines.append(f"    {parameter.name}: {parameter.annotation}{end},")
+    lines.append(f") -> {signature.return_annotation}:")
+    text = inspect.getdoc(function).replace("\\", "\\\\")
+    return lines + [("    " + line).rstrip() for line in f'"""{text}\n"""'.splitlines()]
 
 
 def main(folder):
-    module = load(folder)
-    annotations = {name: returns(getattr(module, name)) for name in module.__all__}
-    results = {match for variants in annotations.values() for _, returned in variants
-               for match in re.findall(r"\w+Result", returned)}
-    lines = HEADER.format(results=", ".join(sorted(results)), functions=module.__all__).splitlines()
-    for name, variants in annotations.items():
-        function = getattr(module, name)
-        for number, (switches, returned) in enumerate(variants):
-            lines.append("")
-            if len(variants) > 1:
-                lines.append("@overload")
-            documentation = inspect.getdoc(function) if number == 0 else ""
-            lines += lines_of(name, inspect.signature(function), switches, returned, documentation,
-                              len(variants) > 1)
-    path = folder / "_functions.pyi"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    compile(path.read_text(encoding="utf-8"), str(path), "exec")
+    for name in MODULES:
+        module = load(folder, name)
+        functions = [getattr(module, function) for function in module.__all__]
+        results = {match for function in functions for match in re.findall(
+            r"\w+Result|ConductionVelocity", inspect.signature(function).return_annotation)}
+        lines = HEADER.format(results=", ".join(sorted(results)), functions=module.__all__).splitlines()
+        for function in functions:
+            lines += lines_of(function)
+        path = folder / f"{name}.pyi"
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        compile(path.read_text(encoding="utf-8"), str(path), "exec")
 
 
 if __name__ == "__main__":

@@ -8,17 +8,21 @@ cannot be read from the map, which is 0 at 263 vertices and small around them.
 
 From file to file this is one line::
 
-    surfacediffusion smooth surf/lh.white thickness.mgh 10 smooth.mgh --cortex
+    surfacediffusion smooth lh.white.surf.gii thickness.shape.gii 10 smooth.shape.gii --roi lh.cortex.label
 
-or, with any other region, ``--roi cortex.label`` in place of ``--cortex``.
+or, in the folder of a subject of FreeSurfer, ``--cortex`` in place of ``--roi lh.cortex.label``.
 """
-from tutorial_data import cortex, medial_wall, show
-
 import numpy as np
 from surfacediffusion import Surface, heat
+from surfacediffusion.examples import fetch, show
+from surfacediffusion.files import read_data, read_surface
 
-points, faces, thickness = cortex()
-wall = medial_wall()
+white = read_surface(fetch("lh.white.surf.gii.gz"))
+points, faces = white.points, white.faces
+thickness = read_data(fetch("lh.thickness.shape.gii.gz")).parts[0].values[:, 0]
+cortex = read_data(fetch("lh.cortex.label.gz")).parts[0]
+wall = np.ones(len(points), dtype=bool)
+wall[cortex.vertices] = False
 print(f"{wall.sum()} of {wall.size} vertices are the wall; {(thickness == 0).sum()} have no thickness")
 assert wall.sum() == 888
 

@@ -8,16 +8,16 @@ A labyrinth grows on a part from CAD, across its edges, and becomes relief for a
 import tempfile
 from pathlib import Path
 
-from tutorial_data import scan, show
-
 import numpy as np
+from pyvista.examples import load_nut
 from surfacediffusion import Surface, relief, turing_texture
+from surfacediffusion.examples import show
 from surfacediffusion.files import read_surface
 from surfacediffusion.files.export import export
 
-points, triangles = scan("joint")
-points = points * (20 / np.ptp(points, axis=0).max())  # 20 mm long
-part = Surface(points, triangles)
+nut = load_nut()
+points = nut.points * (20 / np.ptp(nut.points, axis=0).max())  # 20 mm long
+part = Surface(points, nut.regular_faces)
 print(part)
 
 # %%

@@ -5,10 +5,9 @@ Ocean temperature with coasts
 Buoys measure the temperature of the sea at a few places, with errors. Between them it is interpolated
 within the water, not across land.
 """
-from tutorial_data import show
-
 import numpy as np
 from surfacediffusion import interpolate, sphere
+from surfacediffusion.examples import show
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersHybrid import vtkEarthSource
 

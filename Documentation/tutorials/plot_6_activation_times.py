@@ -5,10 +5,9 @@ Activation times of an atrium
 A catheter measures when the wall of a heart chamber is activated, at some hundred points, with errors.
 The map between them is interpolated on the surface, which has holes for veins and the valve.
 """
-from tutorial_data import show
-
 import numpy as np
 from surfacediffusion import Surface, interpolate, sphere
+from surfacediffusion.examples import show
 
 # %%
 # A surface like an atrium: a bulged ball of 5 cm with four veins and a valve cut out.

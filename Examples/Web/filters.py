@@ -83,7 +83,7 @@ def run_heat(mesh, data, options, progress):
     else:
         settings = {"fidelity_weight": options["weight"], "time_step": options["time"] / STEPS,
                     "number_of_time_steps": STEPS}
-    return _diffused(sd.heat(mesh.surface, data, full_output=True, progress=progress, **settings))
+    return _diffused(sd.heat_steps(mesh.surface, data, progress=progress, **settings).last())
 
 
 def run_total_variation(mesh, data, options, progress):
@@ -94,15 +94,15 @@ def run_total_variation(mesh, data, options, progress):
         settings.update(time_step=options["time"] / STEPS, number_of_time_steps=STEPS)
     else:
         settings["mode"] = "SteadyState"
-    result = sd.intrinsic_tv(mesh.surface, data, full_output=True, progress=progress, **settings)
+    result = sd.intrinsic_tv_steps(mesh.surface, data, progress=progress, **settings).last()
     return _diffused(result, f"λ is {result.effective_fidelity_weight:.3g}")
 
 
 def run_tensor_diffusion(mesh, data, options, progress):
-    result = sd.tensor_diffusion(
-        mesh.surface, data, full_output=True, progress=progress, model=TENSORS[int(options["model"])],
+    result = sd.tensor_diffusion_steps(
+        mesh.surface, data, progress=progress, model=TENSORS[int(options["model"])],
         contrast=options["contrast"], fidelity_weight=options["weight"],
-        time_step=options["time"] / STEPS, number_of_time_steps=STEPS)
+        time_step=options["time"] / STEPS, number_of_time_steps=STEPS).last()
     return _diffused(result, TENSORS[int(options["model"])])
 
 
@@ -151,7 +151,7 @@ def run_normals(mesh, data, options, progress):
 
 def run_surface_denoising(mesh, _, options, progress):
     """The surface before and after, in grey."""
-    result = sd.denoise_mesh(mesh.surface, noise_level=options["noise"], full_output=True,
+    result = sd.denoise_mesh(mesh.surface, noise_level=options["noise"],
                              surface_type=SURFACES[int(options["type"])], progress=progress)
     return Outcome(None, {"Displacement": result.points - mesh.surface.points}, points=result.points,
                    note="no noise was found" if result.noise_level == 0 else

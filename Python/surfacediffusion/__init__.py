@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Diffusion equations on triangulated surfaces, for numpy arrays.
+"""Diffusion equations on triangulated surfaces, for numpy arrays::
 
     from surfacediffusion import Surface, heat
 
@@ -40,12 +40,15 @@
 `relief`              values as relief, for printing
 ===================== ============================================================================
 
-`heat`, `intrinsic_tv`, `tensor_diffusion`, `denoise_mesh`, `direction_field` and `smooth_to_fwhm`
-return an array; with ``full_output=True`` the first three return a result with history and times, and
-`denoise_mesh` one with the noise level that it found. `harmonic_map`, `interpolate`, `mumford_shah`,
-`segment`, `turing_texture` and `curvature` return a result, since theirs is more than one array. Keywords are the
-properties of the filters for VTK and ParaView in snake_case. The results have the same bits. The
-classes of VTK are in a module of their own, ``vtkSurfaceDiffusion``, which may be installed beside this package.
+A function that finds one array returns it. `harmonic_map`, `denoise_mesh`, `mumford_shah`, `segment`,
+`interpolate`, `turing_texture` and `curvature` find more, and return an :class:`ArrayResult`, which stands
+for its main array wherever numpy takes one. The functions of time have their states, with times, energies
+and totals, in `heat_steps`, `intrinsic_tv_steps`, `tensor_diffusion_steps`, `mumford_shah_steps`,
+`harmonic_map_steps` and `turing_texture_steps`, whose ``last()`` is the result.
+
+Keywords are the properties of the filters for VTK and ParaView in snake_case. The results have the same
+bits. The classes of VTK are in a module of their own, ``vtkSurfaceDiffusion``, which may be installed
+beside this package.
 """
 
 import importlib as _importlib
@@ -54,7 +57,7 @@ import typing as _typing
 import warnings as _warnings
 from importlib.metadata import version as _version
 
-from . import _core, _derivatives, _distance, _functions, _operators, _result
+from . import _core, _derivatives, _distance, _functions, _operators, _result, _steps
 from ._derivatives import *  # noqa: F403
 from ._distance import *  # noqa: F403
 from ._functions import *  # noqa: F403
@@ -63,15 +66,16 @@ from ._images import estimate_fwhm_img, smooth_img
 from ._operators import *  # noqa: F403
 from ._refinement import RefinedSurface, refine
 from ._result import *  # noqa: F403
-from ._run import SurfaceDiffusionWarning
+from ._run import States, SurfaceDiffusionWarning
 from ._shape import ReliefResult, relief
+from ._steps import *  # noqa: F403
 from ._surface import Surface, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
 
 __version__ = _version("surfacediffusion")
 
 __all__ = [
-    "FWHMEstimate", "RefinedSurface", "ReliefResult", "Surface", "SurfaceDiffusionWarning",
+    "FWHMEstimate", "RefinedSurface", "ReliefResult", "States", "Surface", "SurfaceDiffusionWarning",
     "estimate_fwhm", "estimate_fwhm_img", "get_number_of_threads", "refine", "relief",
     "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
 ]
@@ -80,6 +84,7 @@ __all__ += _distance.__all__
 __all__ += _functions.__all__
 __all__ += _operators.__all__
 __all__ += _result.__all__
+__all__ += _steps.__all__
 
 if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(after_in_child=_core.after_fork)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import textwrap
 from dataclasses import replace
-from typing import Any, Callable, Iterator, TypeVar
+from typing import Any, Callable, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,9 +21,12 @@ from ._models import (
 from ._refinement import document_keywords, keywords_of, with_refinement
 from ._result import (
     CurvatureResult, DerivativesResult, DiffusionResult, EdgeResult, HarmonicMapResult,
-    InterpolationResult, MeshDenoisingResult, SegmentationResult, TensorDiffusionResult, TextureResult,
+    InterpolationResult, MeshDenoisingResult, Result, SegmentationResult, TensorDiffusionResult,
+    TextureResult,
 )
-from ._run import Input, Progress, ProgressReporter, Runner, find_result_type, warn
+from ._run import (
+    Input, Progress, ProgressReporter, Runner, States, find_result_type, take_old_switch, warn,
+)
 from ._settings import settings_of, shorten, spell_documentation
 from ._surface import (
     Surface, SurfaceLike, as_data, as_outside, as_surface, find_on_faces, has_integers,
@@ -69,13 +72,6 @@ fixed : array_like, shape (n,) or (m,), optional
 fidelity : array_like, shape (n,) or (m,), optional
     Factors w >= 0 of `fidelity_weight` at each point or face, such as 1/s^2 for noise of standard
     deviation s.""",
-    "steps": """\
-steps : bool, default False
-    Return an iterator over the states at steps 0, k, 2k, ... and the last, with
-    k = `output_interval`.""",
-    "full_output": """\
-full_output : bool, default False
-    Return a :class:`DiffusionResult` in place of its `values`.""",
     "dtype": """\
 dtype : float32 or float64, optional
     The type of the result; default: float32 for float32, uint8 for uint8 (rounded at the end),
@@ -96,20 +92,23 @@ values : array_like, shape (n,) or (n, k), or (m,) or (m, k)
 on_faces : bool, optional
     Whether the data are on faces. Default: by their number of rows; on points if there are as many
     points as faces.""",
-    "problems": """\
+    "raises": """\
 Raises
 ------
 ValueError
     For settings and arrays that are not allowed; the message names the argument, what was found
     and what is allowed.
 KeyboardInterrupt
-    Within a block of work after Ctrl-C. The surface can be used again.
-
+    Within a block of work after Ctrl-C. The surface can be used again.""",
+    "warns": """\
 Warns
 -----
 SurfaceDiffusionWarning
     For degenerate triangles, solves above their tolerance, masks without effect.""",
 }
+SHARED["problems"] = SHARED["raises"] + "\n\n" + SHARED["warns"]
+SHARED["diffusion"] = "\n".join(SHARED[name] for name in (
+    "surface", "values", "on_faces", "mask", "roi", "directions", "fixed", "fidelity", "dtype", "progress"))
 
 
 def _with_settings(function: F) -> F:
@@ -143,10 +142,28 @@ def _with_settings(function: F) -> F:
     function.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         parameters, return_annotation=returned)
     text = inspect.cleandoc(function.__doc__ or "")
-    for name, part in {**SHARED, "settings": "\n".join(entries)}.items():
+    settings = "\n".join(["Other Parameters", "----------------", *entries])
+    for name, part in {**SHARED, "settings": settings}.items():
         text = text.replace("{" + name + "}", part)
     function.__doc__ = text
     return function
+
+
+def _find_form(properties: dict[str, Any], function: str) -> str:
+    """How a function with time steps returns what it finds, which leaves the properties: "states" for
+    <function>_steps(); with the old switches "states", or "result" in place of an array; otherwise ""."""
+    form = "states" if properties.pop("_states", False) else ""
+    instead = f"call {function}_steps()"
+    if take_old_switch(properties, function, "steps", instead):
+        form = "states"
+    if function in _ARRAYS_ALONE and take_old_switch(
+            properties, function, "full_output", f"{instead}.last()") and not form:
+        form = "result"
+    return form
+
+
+#: The functions with time steps whose result is an array alone.
+_ARRAYS_ALONE = ("heat", "intrinsic_tv", "tensor_diffusion")
 
 
 def _run(
@@ -154,17 +171,14 @@ def _run(
     given: Input,
     runner: Runner,
     make: Callable[[Any, dict[str, Any]], Any],
-    steps: bool,
+    form: str,
     progress: Progress,
     history: bool = True,
 ) -> Any:
-    """The result, or the iterator over states, which has a run of its own. history: whether the
-    result needs the energy and the totals of the states."""
-    if not isinstance(steps, (bool, np.bool_)):
-        raise ValueError(f"steps is {shorten(steps)}; allowed: True or False")
-    if steps:
-        run = _core.ModelRun(name)
-        return runner.iterate(run, given, progress, lambda found: make(run, found))
+    """The result, or the states. history: whether the result needs the energy and the totals of the
+    states."""
+    if form == "states":
+        return States(name, runner, given, make, progress)
     with given.surface._lock:
         run = given.surface._runs.setdefault(name, _core.ModelRun(name))
         return make(run, runner.finish(run, [given], progress, history)[0])
@@ -210,12 +224,10 @@ def _in_shape(values: NDArray[Any], given: Any) -> NDArray[Any]:
 
 
 def _diffusion(
-    name: str, surface: Any, values: Any, on_faces: Any, mask: Any, roi: Any, directions: Any,
-    fixed: Any, fidelity: Any, steps: bool, full_output: bool, dtype: Any, progress: Progress,
-    properties: dict[str, Any],
+    name: str, result_class: type[Result], surface: Any, values: Any, on_faces: Any, mask: Any, roi: Any,
+    directions: Any, fixed: Any, fidelity: Any, dtype: Any, progress: Progress, properties: dict[str, Any],
 ) -> Any:
-    if not isinstance(full_output, (bool, np.bool_)):
-        raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
+    form = _find_form(properties, name)
     surface = as_surface(surface)
     data, on_faces = _take("values", values, surface, on_faces)
     find_result_type(data, dtype)
@@ -224,11 +236,12 @@ def _diffusion(
                   directions=directions, fidelity=fidelity, integers=has_integers(values))
     runner = Runner(name, properties, ARRAYS)
 
-    def make(run: Any, found: dict[str, Any]) -> DiffusionResult:
-        result = make_result(DiffusionResult, find_outputs(run, 0, given, runner, dtype), found)
+    def make(run: Any, found: dict[str, Any]) -> Any:
+        result = make_result(result_class, find_outputs(run, 0, given, runner, dtype), found)
         return replace(result, values=_in_shape(result.values, values))
 
-    if data.shape[1] > PANEL and not (steps or full_output) and _are_independent(name, runner):
+    is_array = name in _ARRAYS_ALONE and not form
+    if data.shape[1] > PANEL and is_array and _are_independent(name, runner):
         stays = on_faces and runner.settings.get("ResultOnCells", True)
         rows = surface.n_faces if stays else surface.n_points
         output = np.empty((rows, data.shape[1]), dtype=find_result_type(data, dtype))
@@ -236,8 +249,8 @@ def _diffusion(
             run = surface._runs.setdefault(name, _core.ModelRun(name))
             runner.finish_panels(run, given, output, PANEL, progress)
         return output
-    result = _run(name, given, runner, make, steps, progress, full_output)
-    return result if steps or full_output else result.values
+    result = _run(name, given, runner, make, form, progress, not is_array)
+    return result.values if is_array else result
 
 
 @_with_settings
@@ -251,12 +264,10 @@ def heat(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     fidelity: ArrayLike | None = None,
-    steps: bool = False,
-    full_output: bool = False,
     dtype: Any = None,
     progress: Progress = False,
     **properties: Any,
-) -> NDArray[Any] | DiffusionResult | Iterator[DiffusionResult]:
+) -> NDArray[Any]:
     """Smooth, denoise or inpaint data on a surface by linear diffusion.
 
     Solves u_t = div(D grad u) + lambda chi (f - u), u(0) = f, with no flux across the boundary. D
@@ -270,26 +281,13 @@ def heat(
 
     Parameters
     ----------
-    {surface}
-    {values}
-    {on_faces}
-    {mask}
-    {roi}
-    {directions}
-    {fixed}
-    {fidelity}
-    {steps}
-    {full_output}
-    {dtype}
-    {progress}
+    {diffusion}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    ndarray of the shape of `values`, or DiffusionResult, or iterator of DiffusionResult
+    ndarray of the shape of `values`
 
     {problems}
 
@@ -305,30 +303,32 @@ def heat(
     with them thickness maps of cortices are within 0.1 % (L2) of the solution at widths of 6 to 20 mm.
 
     More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
-    in double precision does not grow with their number. This does not hold with `full_output`,
-    `steps`, `automatic_fidelity` and ``initial_fill="Noise"``, which need all columns at once.
+    in double precision does not grow with their number. This does not hold with `automatic_fidelity`
+    and ``initial_fill="Noise"``, which need all columns at once.
+
+    :func:`heat_steps` has the states on the way, and times, energies and totals.
 
     Examples
     --------
     >>> import numpy as np
-    >>> from surfacediffusion import heat, sphere
+    >>> from surfacediffusion import heat, heat_steps, sphere
     >>> surface = sphere(4, radius=100.0)
     >>> noise = np.random.default_rng(0).normal(size=surface.n_points)
     >>> smooth = heat(surface, noise, fwhm=30.0)
     >>> smooth.shape, bool(smooth.std() < 0.3 * noise.std())
     ((2562,), True)
-    >>> result = heat(surface, noise, fwhm=30.0, full_output=True)
+    >>> result = heat_steps(surface, noise, fwhm=30.0).last()
     >>> bool(np.array_equal(result.values, smooth)), result.step
     (True, 10)
-    >>> [state.step for state in heat(surface, noise, fwhm=30.0, steps=True, output_interval=4)]
+    >>> [state.step for state in heat_steps(surface, noise, fwhm=30.0, output_interval=4)]
     [0, 4, 8, 10]
     >>> north = surface.points[:, 2] > 0.0
     >>> region = heat(surface, noise, fwhm=30.0, roi=north)
     >>> bool(np.array_equal(region[~north], noise[~north]))
     True
     """
-    return _diffusion("heat", surface, values, on_faces, mask, roi, directions, fixed, fidelity,
-                      steps, full_output, dtype, progress, properties)
+    return _diffusion("heat", DiffusionResult, surface, values, on_faces, mask, roi, directions, fixed,
+                      fidelity, dtype, progress, properties)
 
 
 @_with_settings
@@ -342,12 +342,10 @@ def intrinsic_tv(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     fidelity: ArrayLike | None = None,
-    steps: bool = False,
-    full_output: bool = False,
     dtype: Any = None,
     progress: Progress = False,
     **properties: Any,
-) -> NDArray[Any] | DiffusionResult | Iterator[DiffusionResult]:
+) -> NDArray[Any]:
     """Denoise or inpaint data on a surface and preserve their edges.
 
     Solves u_t = div(g(abs(grad u)) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
@@ -360,45 +358,31 @@ def intrinsic_tv(
 
     Parameters
     ----------
-    {surface}
-    {values}
-    {on_faces}
-    {mask}
-    {roi}
-    {directions}
-    {fixed}
-    {fidelity}
-    {steps}
-    {full_output}
-    {dtype}
-    {progress}
+    {diffusion}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    ndarray of the shape of `values`, or DiffusionResult, or iterator of DiffusionResult
+    ndarray of the shape of `values`
 
     {problems}
 
     Examples
     --------
     >>> import numpy as np
-    >>> from surfacediffusion import intrinsic_tv, sphere
+    >>> from surfacediffusion import intrinsic_tv_steps, sphere
     >>> surface = sphere(4)
     >>> clean = np.sign(surface.points[:, 2])
     >>> noisy = clean + np.random.default_rng(0).normal(scale=0.3, size=clean.size)
-    >>> result = intrinsic_tv(surface, noisy, automatic_fidelity=True, mode="SteadyState",
-    ...                       full_output=True)
+    >>> result = intrinsic_tv_steps(surface, noisy, automatic_fidelity=True, mode="SteadyState").last()
     >>> bool(np.abs(result.values - clean).mean() < 0.5 * np.abs(noisy - clean).mean())
     True
     >>> bool(result.effective_fidelity_weight > 0)
     True
     """
-    return _diffusion("intrinsic_tv", surface, values, on_faces, mask, roi, directions, fixed,
-                      fidelity, steps, full_output, dtype, progress, properties)
+    return _diffusion("intrinsic_tv", DiffusionResult, surface, values, on_faces, mask, roi, directions, fixed,
+                      fidelity, dtype, progress, properties)
 
 
 @_with_settings
@@ -412,12 +396,10 @@ def tensor_diffusion(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     fidelity: ArrayLike | None = None,
-    steps: bool = False,
-    full_output: bool = False,
     dtype: Any = None,
     progress: Progress = False,
     **properties: Any,
-) -> NDArray[Any] | TensorDiffusionResult | Iterator[TensorDiffusionResult]:
+) -> NDArray[Any]:
     """Smooth data along their own edges or lines, with a diffusion tensor D that follows from them.
 
     Solves m u_t = div(D grad u) + lambda chi (f - u), u(0) = f. With T = sum over the components of
@@ -446,20 +428,14 @@ def tensor_diffusion(
         to; zero or NaN is none. D has its own axes besides.
     {fixed}
     {fidelity}
-    {steps}
-    full_output : bool, default False
-        Return a :class:`TensorDiffusionResult` in place of its `values`; it has the `axes` of
-        ``diffusion_axes=True``.
     {dtype}
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    ndarray of the shape of `values`, or TensorDiffusionResult, or iterator of TensorDiffusionResult
+    ndarray of the shape of `values`
 
     {problems}
 
@@ -474,22 +450,8 @@ def tensor_diffusion(
     >>> bool(np.abs(smooth - clean).mean() < 0.6 * np.abs(noisy - clean).mean())
     True
     """
-    if not isinstance(full_output, (bool, np.bool_)):
-        raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
-    surface = as_surface(surface)
-    data, on_faces = _take("values", values, surface, on_faces)
-    find_result_type(data, dtype)
-    mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
-                  directions=directions, fidelity=fidelity, integers=has_integers(values))
-    runner = Runner("tensor_diffusion", properties, ARRAYS)
-
-    def make(run: Any, found: dict[str, Any]) -> TensorDiffusionResult:
-        result = make_result(TensorDiffusionResult, find_outputs(run, 0, given, runner, dtype), found)
-        return replace(result, values=_in_shape(result.values, values))
-
-    result = _run("tensor_diffusion", given, runner, make, steps, progress, full_output)
-    return result if steps or full_output else result.values
+    return _diffusion("tensor_diffusion", TensorDiffusionResult, surface, values, on_faces, mask, roi,
+                      directions, fixed, fidelity, dtype, progress, properties)
 
 
 @_with_settings
@@ -503,11 +465,10 @@ def mumford_shah(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     fidelity: ArrayLike | None = None,
-    steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
     **properties: Any,
-) -> EdgeResult | Iterator[EdgeResult]:
+) -> EdgeResult:
     """Find the edges of data on a surface, and smooth or inpaint the data between them.
 
     Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli
@@ -524,25 +485,13 @@ def mumford_shah(
 
     Parameters
     ----------
-    {surface}
-    {values}
-    {on_faces}
-    {mask}
-    {roi}
-    {directions}
-    {fixed}
-    {fidelity}
-    {steps}
-    {dtype}
-    {progress}
+    {diffusion}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    EdgeResult, or iterator of EdgeResult
+    EdgeResult
         `values` are u, `edges` is 1 - v, and `curves` are the edges as polylines. If
         `edge_threshold` or `smoothing_length` is given, `automatic_threshold` is off unless it is
         given, too.
@@ -562,19 +511,8 @@ def mumford_shah(
     >>> bool(np.abs(result.values - clean).mean() < 0.2 * np.abs(noisy - clean).mean())
     True
     """
-    surface = as_surface(surface)
-    data, on_faces = _take("values", values, surface, on_faces)
-    find_result_type(data, dtype)
-    mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
-                  directions=directions, fidelity=fidelity, integers=has_integers(values))
-    runner = Runner("mumford_shah", properties, ARRAYS)
-
-    def make(run: Any, found: dict[str, Any]) -> EdgeResult:
-        result = make_result(EdgeResult, find_outputs(run, 0, given, runner, dtype), found)
-        return replace(result, values=_in_shape(result.values, values))
-
-    return _run("mumford_shah", given, runner, make, steps, progress)
+    return _diffusion("mumford_shah", EdgeResult, surface, values, on_faces, mask, roi, directions, fixed,
+                      fidelity, dtype, progress, properties)
 
 
 @_with_settings
@@ -588,11 +526,10 @@ def harmonic_map(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     fidelity: ArrayLike | None = None,
-    steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
     **properties: Any,
-) -> HarmonicMapResult | Iterator[HarmonicMapResult]:
+) -> HarmonicMapResult:
     """Regularise normals or other unit vectors, or denoise the points of the surface.
 
     Solves u_t = div(g grad u) + u g abs(grad u)^2 + lambda chi (f - u), u(0) = f/abs(f), with
@@ -610,17 +547,14 @@ def harmonic_map(
     {directions}
     {fixed}
     {fidelity}
-    {steps}
     {dtype}
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    HarmonicMapResult, or iterator of HarmonicMapResult
+    HarmonicMapResult
         `values` are the vectors, `points` the points, moved if ``move_vertices=True``.
 
     {problems}
@@ -636,6 +570,7 @@ def harmonic_map(
     >>> bool(np.linalg.norm(points, axis=1).std() < 0.5 * noise.std())
     True
     """
+    form = _find_form(properties, "harmonic_map")
     surface = as_surface(surface)
     on_faces = vectors is not None and find_on_faces("vectors", vectors, surface, on_faces)
     data = as_vectors(surface, vectors, properties, on_faces)
@@ -648,7 +583,7 @@ def harmonic_map(
                 lambda run, found: make_result(
                     HarmonicMapResult, find_outputs(run, 0, given, runner, dtype),
                     {"points": np.array(surface.points), **found}),
-                steps, progress)
+                form, progress)
 
 
 @_with_settings
@@ -656,10 +591,9 @@ def denoise_mesh(
     surface: SurfaceLike,
     *,
     fixed: ArrayLike | None = None,
-    full_output: bool = False,
     progress: Progress = False,
     **properties: Any,
-) -> NDArray[np.float64] | MeshDenoisingResult:
+) -> MeshDenoisingResult:
     """Remove the noise of the points of a surface, and keep its sharp edges.
 
     Two steps alternate. With n_f the unit normals, a_f the areas and c_f the centroids of the
@@ -686,27 +620,17 @@ def denoise_mesh(
     {surface}
     fixed : array_like, shape (n,) or (m,), optional
         Nonzero points, and the points of nonzero faces, stay where they are.
-    full_output : bool, default False
-        Return a :class:`MeshDenoisingResult` in place of its `points`.
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    ndarray, shape (n, 3), or MeshDenoisingResult
-        The points; those of no face stay. The result has the noise level, the kind of surface,
-        displacements, volumes and warnings, too.
+    MeshDenoisingResult
+        With the `points`; those of no face stay. It has the noise level, the kind of surface,
+        displacements, volumes and warnings, too, and stands for `points` where numpy takes an array.
 
-    Raises
-    ------
-    ValueError
-        For settings and arrays that are not allowed; the message names the argument, what was found
-        and what is allowed.
-    KeyboardInterrupt
-        Within a block of work after Ctrl-C. The surface can be used again.
+    {raises}
 
     Warns
     -----
@@ -721,29 +645,21 @@ def denoise_mesh(
     >>> clean = sphere(4)
     >>> noise = np.random.default_rng(0).normal(scale=0.01, size=(clean.n_points, 1))
     >>> noisy = Surface(clean.points * (1 + noise), clean.triangles)
-    >>> result = denoise_mesh(noisy, full_output=True)
+    >>> result = denoise_mesh(noisy)
     >>> bool(np.linalg.norm(result.points, axis=1).std() < 0.5 * noise.std())
     True
     >>> result.surface_type, bool(abs(result.noise_level - 0.01) < 0.002)
     ('Organic', True)
     """
-    if not isinstance(full_output, (bool, np.bool_)):
-        raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
+    take_old_switch(properties, "denoise_mesh", "full_output", "the result is always returned")
     surface = as_surface(surface)
     runner = Runner("denoise_mesh", properties, {"FixedArray": "fixed"})
     inputs = Input(surface, fixed=fixed)
-    with surface._lock, ProgressReporter(progress) as reporter:
-        run = surface._runs.setdefault("denoise_mesh", _core.MeshDenoiser())
-        runner.call(run.update, inputs.core, runner.settings, reporter.callable)
-        reporter.finish_part()
-        outputs = read_outputs(run.outputs(), run.write, inputs, runner)
-        found = {"points": np.array(surface.points), "mean_edge_length": run.mean_edge_length(),
-                 "warnings": runner.warnings(run)}
-    warn(found["warnings"])
-    result: MeshDenoisingResult = make_result(MeshDenoisingResult, outputs, found)
+    outputs, found = _run_once("denoise_mesh", _core.MeshDenoiser, inputs, runner, progress)
+    result: MeshDenoisingResult = make_result(
+        MeshDenoisingResult, outputs, {"points": np.array(surface.points), **found})
     words = settings_of("denoise_mesh")["surface_type"].words
-    result = replace(result, surface_type=words[int(result.surface_type)])
-    return result if full_output else result.points
+    return replace(result, surface_type=words[int(result.surface_type)])
 
 
 @_with_settings
@@ -784,8 +700,6 @@ def segment(
         deviation s; 0 is missing.
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
@@ -832,7 +746,7 @@ def segment_with_outputs(
         return make_result(SegmentationResult, outputs, found), outputs
 
     made: tuple[SegmentationResult, list[Output]] = _run(
-        "segment", given, runner, make, False, progress)
+        "segment", given, runner, make, "", progress)
     return made
 
 
@@ -874,8 +788,6 @@ def interpolate(
         ``noise_level=1``; 0 is unknown.
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
@@ -925,7 +837,7 @@ def interpolate_with_outputs(
                        error=result.error.reshape(shape) if result.error.size else result.error), outputs
 
     made: tuple[InterpolationResult, list[Output]] = _run(
-        "interpolate", given, runner, make, False, progress)
+        "interpolate", given, runner, make, "", progress)
     return made
 
 
@@ -939,11 +851,10 @@ def turing_texture(
     directions: ArrayLike | None = None,
     fixed: ArrayLike | None = None,
     rates: ArrayLike | None = None,
-    steps: bool = False,
     dtype: Any = None,
     progress: Progress = False,
     **properties: Any,
-) -> TextureResult | Iterator[TextureResult]:
+) -> TextureResult:
     """Grow a texture on a surface by reaction and diffusion.
 
     Solves du1/dt = D1 Lap u1 + s F(u1, u2), du2/dt = D2 Lap u2 + s G(u1, u2), where Lap is the
@@ -961,17 +872,14 @@ def turing_texture(
     rates : array_like, shape (m, 4), optional
         Per face, in place of `diffusion_rate1`, `diffusion_rate_across1`, `diffusion_rate2` and
         `diffusion_rate_across2`.
-    {steps}
     {dtype}
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    TextureResult, or iterator of TextureResult
+    TextureResult
         `values` are u1 and u2, `texture` is one of them stretched to [0, 1], `surface` is that of both.
 
     {problems}
@@ -984,6 +892,7 @@ def turing_texture(
     >>> result.values.shape, float(result.texture.min()), float(result.texture.max())
     ((2562, 2), 0.0, 1.0)
     """
+    form = _find_form(properties, "turing_texture")
     surface = as_surface(surface)
     data = as_initial(surface, initial)
     find_result_type(data, dtype)
@@ -995,7 +904,7 @@ def turing_texture(
                 lambda run, found: make_result(
                     TextureResult, find_outputs(run, 0, given, runner, dtype),
                     {**found, "surface": surface}),
-                steps, progress)
+                form, progress)
 
 
 def _left_out(mask: Any, roi: Any, surface: Surface) -> Any:
@@ -1036,8 +945,6 @@ def curvature(
     {left_out}
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
@@ -1046,13 +953,7 @@ def curvature(
         With `mean`, `gaussian`, `principal`, `shape_index` and `curvedness` at the points. Given
         areas of the surface are not used.
 
-    Raises
-    ------
-    ValueError
-        For settings and arrays that are not allowed; the message names the argument, what was found
-        and what is allowed.
-    KeyboardInterrupt
-        Within a block of work after Ctrl-C. The surface can be used again.
+    {raises}
 
     Warns
     -----
@@ -1089,10 +990,9 @@ def derivatives(
     on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
-    full_output: bool = False,
     progress: Progress = False,
     **properties: Any,
-) -> NDArray[np.float64] | DerivativesResult:
+) -> NDArray[np.float64]:
     """Compute derivatives of data in the tangent planes of a surface.
 
     :func:`gradient`, :func:`divergence`, :func:`curl`, :func:`laplacian` and
@@ -1117,28 +1017,18 @@ def derivatives(
         the means over their control areas; vectors do so if they are smoothed.
     {on_faces}
     {left_out}
-    full_output : bool, default False
-        Return a :class:`DerivativesResult` in place of its `values`.
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
     -------
-    ndarray, or DerivativesResult
+    ndarray
         At the points, or with `result_on_faces` at the faces: (n, 3) gradients or velocities, (n, 3 k)
         of k components; (n,) divergences, curls or Laplacians, (n, k) of k vectors or components.
         Points and faces without a triangle that takes part have 0, or NaN if any data are missing.
 
-    Raises
-    ------
-    ValueError
-        For settings and arrays that are not allowed; the message names the argument, what was found
-        and what is allowed.
-    KeyboardInterrupt
-        Within a block of work after Ctrl-C. The surface can be used again.
+    {raises}
 
     Warns
     -----
@@ -1154,15 +1044,24 @@ def derivatives(
     >>> round(float(laplacian @ z / (z @ z)), 2)
     -2.0
     """
-    if not isinstance(full_output, (bool, np.bool_)):
-        raise ValueError(f"full_output is {shorten(full_output)}; allowed: True or False")
+    whole = take_old_switch(properties, "derivatives", "full_output",
+                            "the array is returned, and the speed by conduction_velocity()")
+    result = find_derivatives(surface, values, on_faces, mask, roi, progress, properties)
+    return result if whole else result.values  # type: ignore[return-value]
+
+
+def find_derivatives(
+    surface: Any, values: Any, on_faces: Any, mask: Any, roi: Any, progress: Progress,
+    properties: dict[str, Any],
+) -> DerivativesResult:
+    """The result of derivatives(), with the speed."""
     surface = as_surface(surface)
-    runner = Runner("derivatives", properties, {**ARRAYS})
+    runner = Runner("derivatives", properties, ARRAYS)
     data, faces = _take("values", values, surface, on_faces)
     inputs = Input(surface, data, data_on_faces=faces, mask=_left_out(mask, roi, surface))
     outputs, found = _run_once("derivatives", _core.DerivativesRun, inputs, runner, progress)
     result: DerivativesResult = make_result(DerivativesResult, outputs, {"speed": None, **found})
-    return result if full_output else result.values
+    return result
 
 
 def _run_once(
@@ -1197,8 +1096,6 @@ def direction_field(
         Directions at points or faces for ``method="Hints"``; zero or NaN is no hint.
     {progress}
 
-    Other Parameters
-    ----------------
     {settings}
 
     Returns
@@ -1222,11 +1119,6 @@ def direction_field(
     if hints is not None and method != "Hints":
         raise ValueError(f'hints is given but method is {method}; allowed: method="Hints", or no hints')
     inputs = Input(surface, directions=hints, directions_name="hints")
-    with surface._lock, ProgressReporter(progress) as reporter:
-        run = surface._runs.setdefault("direction_field", _core.DirectionRun())
-        runner.call(run.update, inputs.core, runner.settings, reporter.callable)
-        reporter.finish_part()
-        (output,) = read_outputs(run.outputs(), run.write, inputs, runner)
-        warn(runner.warnings(run))
+    ((output,), _) = _run_once("direction_field", _core.DirectionRun, inputs, runner, progress)
     field: NDArray[np.float64] = output.values
     return field

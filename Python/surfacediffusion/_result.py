@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,46 @@ if TYPE_CHECKING:
 
 
 __all__ = [
-    "CurvatureResult", "DerivativesResult", "DiffusionResult", "EdgeResult", "HarmonicMapResult",
-    "MeshDenoisingResult", "ModelResult", "InterpolationResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult",
-    "TextureResult",
+    "ArrayResult", "ConductionVelocity", "CurvatureResult", "DerivativesResult", "DiffusionResult",
+    "EdgeResult", "HarmonicMapResult", "InterpolationResult", "MeshDenoisingResult", "ModelResult", "RegionBoundary",
+    "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
 ]
 
 
+class ArrayResult:
+    """A result of more than one array. It stands for its main array, which ``numpy.asarray(result)`` is:
+    functions of numpy take it, and it has the array's `shape`, `dtype`, length and elements. All results
+    of this package are such."""
+
+    #: The attribute that is the main array.
+    MAIN: ClassVar[str] = "values"
+    #: The outputs that `values` are the columns of; none: the result of the data.
+    VALUES: ClassVar[tuple[str, ...]] = ()
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        main: NDArray[Any] = getattr(self, self.MAIN)
+        array = main if dtype is None else main.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """That of the main array."""
+        return self.__array__().shape
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """That of the main array."""
+        return self.__array__().dtype
+
+    def __len__(self) -> int:
+        return len(self.__array__())
+
+    def __getitem__(self, key: Any) -> Any:
+        return self.__array__()[key]
+
+
 @dataclass(frozen=True)
-class ModelResult:
+class ModelResult(ArrayResult):
     """The result of a model. ``numpy.asarray(result)`` is `values`.
 
     Attributes
@@ -43,19 +75,12 @@ class ModelResult:
         The iterations of all solves together; 0 for direct solvers.
     """
 
-    #: The outputs that `values` are the columns of; none: the result of the data.
-    VALUES: ClassVar[tuple[str, ...]] = ()
-
     values: NDArray[Any]
     warnings: list[str] = field(repr=False)
     mean_edge_length: float = field(repr=False)
     value_range: float = field(repr=False)
     number_of_unused_points: int = field(repr=False)
     number_of_iterations: int = field(repr=False)
-
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
-        return array.copy() if copy else array
 
 
 @dataclass(frozen=True)
@@ -131,9 +156,11 @@ class HarmonicMapResult(Result):
     ----------
     points : ndarray, shape (n, 3)
         The points; moved if ``move_vertices=True``.
-    mean_displacement, maximum_displacement : float
+    mean_displacement : float
+    maximum_displacement : float
         Of the moved points, in coordinate units.
-    volume_before, volume_after : float
+    volume_before : float
+    volume_after : float
         The enclosed volumes, in coordinate units; of no meaning for open surfaces.
     """
 
@@ -145,7 +172,7 @@ class HarmonicMapResult(Result):
 
 
 @dataclass(frozen=True)
-class CurvatureResult:
+class CurvatureResult(ArrayResult):
     """The result of :func:`curvature`. ``numpy.asarray(result)`` is `mean`.
 
     Attributes
@@ -168,7 +195,7 @@ class CurvatureResult:
         Everything that was also given as a Python warning.
     """
 
-    VALUES: ClassVar[tuple[str, ...]] = ()
+    MAIN: ClassVar[str] = "mean"
 
     mean: NDArray[np.float64] = field(repr=False)
     gaussian: NDArray[np.float64] = field(repr=False)
@@ -178,20 +205,16 @@ class CurvatureResult:
     mean_edge_length: float
     warnings: list[str] = field(repr=False)
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.mean if dtype is None else self.mean.astype(dtype, copy=False)
-        return array.copy() if copy else array
-
 
 @dataclass(frozen=True)
-class DerivativesResult:
-    """The result of :func:`derivatives` with ``full_output=True``. ``numpy.asarray(result)`` is
-    `values`.
+class DerivativesResult(ArrayResult):
+    """The derivatives of PyVista meshes, and of :func:`derivatives` with the old switch
+    ``full_output=True``. ``numpy.asarray(result)`` is `values`.
 
     Attributes
     ----------
     values : ndarray
-        The derivatives, as without `full_output`.
+        What :func:`derivatives` returns.
     speed : ndarray, shape (n,) or (n, k), or None
         The lengths of the conduction velocities, in the unit of the coordinates per unit of time.
     mean_edge_length : float
@@ -200,20 +223,21 @@ class DerivativesResult:
         Everything that was also given as a Python warning.
     """
 
-    VALUES: ClassVar[tuple[str, ...]] = ()
-
     values: NDArray[np.float64] = field(repr=False)
     speed: NDArray[np.float64] | None = field(repr=False)
     mean_edge_length: float
     warnings: list[str] = field(repr=False)
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.values if dtype is None else self.values.astype(dtype, copy=False)
-        return array.copy() if copy else array
+
+class ConductionVelocity(NamedTuple):
+    """The velocity of a wave on a surface, and its length, the speed."""
+
+    velocity: NDArray[np.float64]  #: (n, 3), in the tangent planes
+    speed: NDArray[np.float64]  #: (n,)
 
 
 @dataclass(frozen=True)
-class MeshDenoisingResult:
+class MeshDenoisingResult(ArrayResult):
     """The result of :func:`denoise_mesh`. ``numpy.asarray(result)`` is `points`.
 
     Attributes
@@ -229,9 +253,11 @@ class MeshDenoisingResult:
     surface_type : str
         The kind of surface, given or found: "CAD" or "Organic". "Automatic" if no noise was found, or
         if connected components are of different kinds.
-    mean_displacement, maximum_displacement : float
+    mean_displacement : float
+    maximum_displacement : float
         Of the points, in coordinate units.
-    volume_before, volume_after : float
+    volume_before : float
+    volume_after : float
         The enclosed volumes, in coordinate units, signed by the orientation; 0 for surfaces that
         are not closed or not consistently oriented.
     mean_edge_length : float
@@ -240,7 +266,7 @@ class MeshDenoisingResult:
         Everything that was also given as a Python warning.
     """
 
-    VALUES: ClassVar[tuple[str, ...]] = ()
+    MAIN: ClassVar[str] = "points"
 
     points: NDArray[np.float64] = field(repr=False)
     noise_level: float
@@ -252,10 +278,6 @@ class MeshDenoisingResult:
     volume_after: float = field(repr=False)
     mean_edge_length: float = field(repr=False)
     warnings: list[str] = field(repr=False)
-
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        array = self.points if dtype is None else self.points.astype(dtype, copy=False)
-        return array.copy() if copy else array
 
 
 @dataclass(frozen=True)
@@ -270,7 +292,8 @@ class EdgeResult(Result):
     curves : list of ndarray, shape (k, 3)
         The edges, one array of points per edge between its ends and junctions, along the ridge of
         `edges`. A closed curve repeats its first point.
-    effective_edge_threshold, effective_smoothing_length : float
+    effective_edge_threshold : float
+    effective_smoothing_length : float
         Those of the run, given or found by ``automatic_threshold=True``, in the units of
         `edge_threshold` and `smoothing_length`, on the connected component with the most points.
     estimated_noise_level : float
@@ -390,7 +413,8 @@ class SegmentationResult(ModelResult):
         u of the relaxed problem.
     means : ndarray, shape (K, k)
         The means c of the regions, given or found; shape (K, 0) with given data terms.
-    areas, boundary_lengths : ndarray, shape (K,)
+    areas : ndarray, shape (K,)
+    boundary_lengths : ndarray, shape (K,)
         Of the regions within `boundaries`.
     components : ndarray of int, shape (K,)
         The number of connected components of each region.

@@ -7,7 +7,7 @@ from __future__ import annotations
 import sys
 import warnings
 from pathlib import Path
-from typing import Any, Callable, Iterator, Mapping, Union
+from typing import Any, Callable, Generic, Iterator, Mapping, TypeVar, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ class SurfaceDiffusionWarning(UserWarning):
     """The input was computed, but something in it may not be intended."""
 
 
-def warn(sentences: list[str]) -> None:
+def warn(sentences: list[str], category: type[Warning] = SurfaceDiffusionWarning) -> None:
     """One warning for all sentences, at the line that called this package."""
     if not sentences:
         return
@@ -33,7 +33,20 @@ def warn(sentences: list[str]) -> None:
     level, frame = 1, sys._getframe(0)
     while frame is not None and frame.f_code.co_filename.startswith(folder):
         level, frame = level + 1, frame.f_back  # type: ignore[assignment]
-    warnings.warn("; ".join(sentences), SurfaceDiffusionWarning, stacklevel=level)
+    warnings.warn("; ".join(sentences), category, stacklevel=level)
+
+
+def take_old_switch(
+    properties: dict[str, Any], function: str, word: str, instead: str, default: bool = False
+) -> bool:
+    """The value of a switch of former versions, which leaves the properties with a warning."""
+    if word not in properties:
+        return default
+    given = properties.pop(word)
+    if not isinstance(given, (bool, np.bool_)):
+        raise ValueError(f"{word} is {shorten(given)}; allowed: True or False")
+    warn([f"{word} of {function}() is deprecated: {instead}"], DeprecationWarning)
+    return bool(given)
 
 
 class ProgressReporter:
@@ -228,22 +241,6 @@ class Runner:
                 known += [text for text in self.warnings(run) if text not in known]
         warn(known)
 
-    def iterate(
-        self, run: Any, given: Input, progress: Progress, make: Callable[..., Any]
-    ) -> Iterator[Any]:
-        """make(attributes) at steps 0, k, 2k, ... and the last; errors of the input come at once."""
-        self.call(run.update, [given.core], self.settings, None)
-        steps = [*range(0, run.number_of_steps(), self.interval), run.number_of_steps()]
-        states = self.visit(run, [given], steps, progress)
-
-        def results() -> Iterator[Any]:
-            for step, (attributes,) in zip(steps, states):
-                yield make(attributes)
-                if attributes["step"] < step:
-                    return  # the run has ended by itself
-
-        return results()
-
     def visit(
         self, run: Any, inputs: list[Input], steps: list[int], progress: Progress
     ) -> Iterator[list[dict[str, Any]]]:
@@ -271,3 +268,50 @@ class Runner:
                            number_of_iterations=int(history["Iterations"].sum()))
             attributes.append(results)
         return attributes
+
+
+R = TypeVar("R")
+
+
+class States(Generic[R]):
+    """The states of a run in time steps: an iterator of results at steps 0, k, 2k, ... and the last, with
+    k = `output_interval`. Each state is computed when it is asked for. Errors of the input come at once.
+    """
+
+    def __init__(
+        self, name: str, runner: Runner, given: Input, make: Callable[[Any, dict[str, Any]], R],
+        progress: Progress,
+    ) -> None:
+        self._name, self._runner, self._given = name, runner, given
+        self._make, self._progress = make, progress
+        # The run of the surface, with its factors, is that of these states until the last one.
+        with given.surface._lock:
+            self._run = given.surface._runs.pop(name, None) or _core.ModelRun(name)
+        runner.call(self._run.update, [given.core], runner.settings, None)
+        self._states = self._results()
+        self._last: R | None = None
+
+    def __iter__(self) -> Iterator[R]:
+        return self
+
+    def __next__(self) -> R:
+        return next(self._states)
+
+    def _results(self) -> Iterator[R]:
+        count = self._run.number_of_steps()
+        steps = [*range(0, count, self._runner.interval), count]
+        states = self._runner.visit(self._run, [self._given], steps, self._progress)
+        for step, (attributes,) in zip(steps, states):
+            yield self._make(self._run, attributes)
+            if attributes["step"] < step:
+                return  # the run has ended by itself
+
+    def last(self) -> R:
+        """Compute the last state, without results of those before it. The iteration ends."""
+        if self._last is None:
+            ((attributes,),) = self._runner.visit(self._run, [self._given], [-1], self._progress)
+            self._last = self._make(self._run, attributes)
+            self._states = iter(())
+            with self._given.surface._lock:
+                self._given.surface._runs.setdefault(self._name, self._run)
+        return self._last

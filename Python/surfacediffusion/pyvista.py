@@ -1,39 +1,45 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions of this package for PyVista meshes: each takes a mesh and returns a new one.
+"""The functions of this package for PyVista meshes: each takes a mesh and returns a new one::
 
     from surfacediffusion.pyvista import heat
 
     smooth = heat(mesh, "thickness", fwhm=10)  # adds the point array "thicknessDiffused"
     states = heat(mesh, "thickness", time_step=1, times=[0, 1, 2, 4])  # a list of four meshes
-    smooth, result = heat(mesh, "thickness", fwhm=10, full_output=True)
+    smooth, result = heat(mesh, "thickness", fwhm=10, return_result=True)
     result.history["Energy"]
 
-With PyVista 0.48 or newer they are also methods, without an import: mesh.diffusion.heat("thickness",
-fwhm=10). Any VTK will do, since no class of this package is compiled for one.
+With PyVista 0.48 or newer they are also methods, without an import: ``mesh.diffusion.heat("thickness",
+fwhm=10)``. Any VTK will do, since no class of this package is compiled for one.
 
 A mesh is a pyvista.PolyData with n points and m cells, or a pyvista.MultiBlock of such meshes, whose
 blocks may be None or empty; its surfaces share their natural units, and blocks without the array
 are returned as they are. The input is not modified. Arrays are passed by name:
 
-array      the data: point array (n,) or (n, k) of any numeric type, NaN is missing, or cell array
-           with m rows, whose result is a cell array unless result_on_faces=False; default: the
-           active scalars
-mask       point or cell array, nonzero is missing (or excluded with mask_mode="Exclude")
-roi        point or cell array, the region of interest, nonzero is inside: the opposite of a mask with
-           mask_mode="Exclude", and in place of one
-direction  point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along
-fixed      point or cell array, nonzero holds the value fixed (Dirichlet condition)
-fidelity   point or cell array, factors of fidelity_weight, 0 or more
+array
+    The data: point array (n,) or (n, k) of any numeric type, NaN is missing, or cell array with m rows,
+    whose result is a cell array unless ``result_on_faces=False``; default: the active scalars.
+mask
+    Point or cell array, nonzero is missing (or excluded with ``mask_mode="Exclude"``).
+roi
+    Point or cell array, the region of interest, nonzero is inside: the opposite of a mask with
+    ``mask_mode="Exclude"``, and in place of one.
+direction
+    Point or cell array (n, 3) or (m, 3), the direction that along_diffusivity acts along.
+fixed
+    Point or cell array, nonzero holds the value fixed (Dirichlet condition).
+fidelity
+    Point or cell array, factors of fidelity_weight, 0 or more.
 
-times (of the functions of time): times in the unit of time_step, in any order. The function then returns a list with the mesh
-at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the earlier
-one. full_output (but of direction_field): if True, the function returns a pair: the mesh or the list, and the Result (of a
-MultiBlock, or with times, the list of them). progress: True or a callable, as for arrays.
-result_array_name: in place of the default, and the prefix of the names of further arrays. All other
-keywords are those of the functions on arrays, also in the spelling of VTK and ParaView: FWHM=10 is
-fwhm=10. In place of OutputPrecision there is dtype. As for arrays, heat() needs a width: one of fwhm,
-time_step and mode. The results have the bits of the classes in the module vtkSurfaceDiffusion.
+The functions of time take `times`, in the unit of time_step and in any order, and then return a list with
+the mesh at each of them. Time 0 is the initial state; between two time steps, the mesh is that of the
+earlier one. With ``return_result=True`` (but of direction_field) a function returns a pair: the mesh or the
+list, and the result of the function on arrays, of a MultiBlock, or with times, the list of them. `progress`
+is True or a callable, as for arrays. `result_array_name` stands in place of the default, and is the prefix
+of the names of further arrays. All other keywords are those of the functions on arrays, also in the
+spelling of VTK and ParaView: ``FWHM=10`` is ``fwhm=10``. In place of OutputPrecision there is dtype. As for
+arrays, heat() needs a width: one of fwhm, time_step and mode. The results have the bits of the classes in
+the module vtkSurfaceDiffusion.
 
 Errors: TypeError if the mesh is not a surface, with the remedy; ValueError if an array or a keyword
 is not allowed, with a message that names it, what was found and what is allowed.
@@ -41,6 +47,7 @@ is not allowed, with a message that names it, what was found and what is allowed
 
 from __future__ import annotations
 
+import functools
 import inspect
 import math
 import textwrap
@@ -55,9 +62,10 @@ from ._distance import distance as _distance
 from ._distance import nearest_sources as _nearest_sources
 from ._functions import curvature as _curvature
 from ._functions import denoise_mesh as _denoise_mesh
-from ._functions import derivatives as _derivatives
 from ._functions import direction_field as _direction_field
-from ._functions import exclude_outside, interpolate_with_outputs, segment_with_outputs
+from ._functions import (
+    exclude_outside, find_derivatives, interpolate_with_outputs, segment_with_outputs,
+)
 from ._meshes import find_polydata
 from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
@@ -67,7 +75,7 @@ from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
     TensorDiffusionResult, TextureResult,
 )
-from ._run import Input, Progress, Runner, find_result_type
+from ._run import Input, Progress, Runner, find_result_type, take_old_switch
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
 from ._surface import Surface, as_data, as_outside, has_integers
@@ -84,11 +92,11 @@ def _of_data(name: str, results: str) -> Callable[..., Any]:
     def function(
         mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
         direction: str | None = None, fixed: str | None = None, fidelity: str | None = None,
-        times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+        times: Sequence[float] | None = None, return_result: bool = False, progress: Progress = False,
         **properties: Any,
     ) -> Any:
         return _run(name, mesh, array, (mask, roi, direction, fixed, None, fidelity), times,
-                    full_output, progress, properties)
+                    return_result, progress, properties)
 
     function.__name__ = function.__qualname__ = name
     summary = (getattr(_functions, name).__doc__ or "").partition("\n")[0]
@@ -112,7 +120,7 @@ harmonic_map = _of_data(
 mumford_shah = _of_data(
     "mumford_shah",
     "The results are the arrays <array>MumfordShah, with the shape of the data, and Edges (n,). The "
-    "curves along the edges are `curves` of the report that full_output=True returns, a list of "
+    "curves along the edges are `curves` of the result that return_result=True returns, a list of "
     "arrays of points; pyvista.MultipleLines(curve) is a mesh of one.")
 
 tensor_diffusion = _of_data(
@@ -124,7 +132,7 @@ tensor_diffusion = _of_data(
 def turing_texture(
     mesh: Any, initial: str | None = None, *, mask: str | None = None, roi: str | None = None,
     direction: str | None = None, fixed: str | None = None, rates: str | None = None,
-    times: Sequence[float] | None = None, full_output: bool = False, progress: Progress = False,
+    times: Sequence[float] | None = None, return_result: bool = False, progress: Progress = False,
     **properties: Any,
 ) -> Any:
     """Grow a texture on the mesh by reaction and diffusion.
@@ -135,13 +143,13 @@ def turing_texture(
     point arrays u1, u2 and Texture (n,), and TextureColor (n, 3) with color_output=True.
     """
     return _run("turing_texture", mesh, initial, (mask, roi, direction, fixed, rates, None), times,
-                full_output, progress, properties)
+                return_result, progress, properties)
 
 
 def segment(
     mesh: Any, array: str | None = None, *, terms: str | None = None, seeds: str | None = None,
     mask: str | None = None, roi: str | None = None, fidelity: str | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    return_result: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Divide the mesh into regions with short boundaries.
 
@@ -151,7 +159,7 @@ def segment(
     help(surfacediffusion.segment). The blocks of a MultiBlock are segmented one by one, each with
     its own natural units. The results are the arrays RegionId (active), RegionProbability (n, K) and,
     with data, <array>Segmented: the mean of the region, or the data of points that take no part; of
-    cells if the data are on cells. full_output: if True, the function returns a pair: the mesh, and the
+    cells if the data are on cells. return_result: if True, the function returns a pair: the mesh, and the
     SegmentationResult, of a MultiBlock the list of them.
     """
     properties, result_name = _keywords("segment", properties)
@@ -175,16 +183,13 @@ def segment(
         results.append(result)
         block.name = name
         _write(block, outputs, result_name)
-    segmented = _rebuild(mesh, iter(blocks))
-    if not full_output:
-        return segmented
-    return segmented, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+    return _built(mesh, blocks, results, return_result)
 
 
 def interpolate(
     mesh: Any, array: str | None = None, *, points: Any = None, mask: str | None = None,
     roi: str | None = None, direction: str | None = None, fidelity: str | None = None,
-    full_output: bool = False, progress: Progress = False, **properties: Any,
+    return_result: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Compute a smooth function on the mesh from values at a few points.
 
@@ -193,7 +198,7 @@ def interpolate(
     the nearest points of the mesh; fidelity: array of weights of the values, such as 1/s^2, in the same
     place. The equation and all other keywords are described in help(surfacediffusion.interpolate). The
     results are the arrays <array>Interpolated (active) and, with compute_error=True, <array>Error.
-    Each block of a MultiBlock takes all points. full_output: if True, the function returns a pair: the
+    Each block of a MultiBlock takes all points. return_result: if True, the function returns a pair: the
     mesh, and the InterpolationResult, of a MultiBlock the list of them.
     """
     properties, result_name = _keywords("interpolate", properties)
@@ -229,14 +234,11 @@ def interpolate(
         block.name = name
         block.computed = points is not None
         _write(block, outputs, result_name)
-    written = _rebuild(mesh, iter(blocks))
-    if not full_output:
-        return written
-    return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+    return _built(mesh, blocks, results, return_result)
 
 
 def denoise_mesh(
-    mesh: Any, *, fixed: str | None = None, full_output: bool = False, progress: Progress = False,
+    mesh: Any, *, fixed: str | None = None, return_result: bool = False, progress: Progress = False,
     **properties: Any,
 ) -> Any:
     """Remove the noise of the points of the mesh, and keep its sharp edges.
@@ -244,7 +246,7 @@ def denoise_mesh(
     fixed: point or cell array; points, and the points of cells, with a nonzero value stay. The method
     and all other keywords are described in help(surfacediffusion.denoise_mesh). The result has moved
     points and the point array Displacement (n, 3); active point normals are computed again, and cell
-    normals and tangents are dropped. Each block of a MultiBlock has its own noise level. full_output:
+    normals and tangents are dropped. Each block of a MultiBlock has its own noise level. return_result:
     if True, the function returns a pair: the mesh, and the MeshDenoisingResult, of a MultiBlock the
     list of them.
     """
@@ -252,8 +254,7 @@ def denoise_mesh(
     blocks, results = _find_surfaces(mesh, "denoise_mesh", properties), []
     for block in blocks:
         marks = block.find("fixed", fixed, faces=True)[0]
-        result = _denoise_mesh(block.surface, fixed=marks, full_output=True, progress=progress,
-                               **properties)
+        result = _denoise_mesh(block.surface, fixed=marks, progress=progress, **properties)
         results.append(result)
         block.add(name or "Displacement", result.points - block.surface.points, False)
         block.move(result.points)
@@ -262,14 +263,11 @@ def denoise_mesh(
             moved = Surface(result.points, block.surface.triangles)
             block.mesh.point_data[normals] = moved._point_normals()
             block.mesh.GetPointData().SetActiveNormals(normals)
-    denoised = _rebuild(mesh, iter(blocks))
-    if not full_output:
-        return denoised
-    return denoised, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+    return _built(mesh, blocks, results, return_result)
 
 
 def relief(
-    mesh: Any, array: str, height: float, *, mask: str | None = None, full_output: bool = False,
+    mesh: Any, array: str, height: float, *, mask: str | None = None, return_result: bool = False,
     progress: Progress = False, result_array_name: str = "ReliefHeight", **keywords: Any,
 ) -> Any:
     """Raise or carve values on the mesh as relief, for printing.
@@ -278,7 +276,7 @@ def relief(
     array; points, and the points of cells, with a nonzero value have no relief. The method and all other
     keywords are described in help(surfacediffusion.relief). The result has moved points and the point
     array ReliefHeight (n,), the heights that were used; meshes of triangles are oriented outwards.
-    Active point normals are computed again, and cell normals and tangents are dropped. full_output: if
+    Active point normals are computed again, and cell normals and tangents are dropped. return_result: if
     True, the function returns a pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
     """
     blocks, results = _find_surfaces(mesh, "relief", keywords), []
@@ -296,14 +294,11 @@ def relief(
         if normals is not None:
             block.mesh.point_data[normals] = result.surface._point_normals()
             block.mesh.GetPointData().SetActiveNormals(normals)
-    raised = _rebuild(mesh, iter(blocks))
-    if not full_output:
-        return raised
-    return raised, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+    return _built(mesh, blocks, results, return_result)
 
 
 def curvature(
-    mesh: Any, *, mask: str | None = None, full_output: bool = False, progress: Progress = False,
+    mesh: Any, *, mask: str | None = None, return_result: bool = False, progress: Progress = False,
     **properties: Any,
 ) -> Any:
     """Compute the curvature of the mesh at a given scale.
@@ -311,7 +306,7 @@ def curvature(
     mask: point or cell array; points and cells with a nonzero value are left out, and the surface
     ends there. All other keywords are those of surfacediffusion.curvature. The results are the point
     arrays MeanCurvature, which becomes active, GaussianCurvature, PrincipalCurvatures, ShapeIndex and
-    Curvedness; result_array_name is the prefix of their names. full_output: if True, the function
+    Curvedness; result_array_name is the prefix of their names. return_result: if True, the function
     returns a pair: the mesh, and the CurvatureResult, of a MultiBlock the list of them.
     """
     properties, prefix = _keywords("curvature", properties)
@@ -327,10 +322,7 @@ def curvature(
         ):
             block.add((prefix or "") + name, values, False)
         block.mesh.set_active_scalars((prefix or "") + "MeanCurvature", "point")
-    written = _rebuild(mesh, iter(blocks))
-    if not full_output:
-        return written
-    return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+    return _built(mesh, blocks, results, return_result)
 
 
 def distance(
@@ -375,7 +367,7 @@ def distance(
 
 
 def derivatives(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, full_output: bool = False,
+    mesh: Any, array: str | None = None, *, mask: str | None = None, return_result: bool = False,
     progress: Progress = False, **properties: Any,
 ) -> Any:
     """Compute derivatives of data on the mesh.
@@ -384,7 +376,7 @@ def derivatives(
     have it. mask: point or cell array; points and cells with a nonzero value are left out. All other
     keywords are those of surfacediffusion.derivatives. The result has the name of the array followed
     by the quantity, for instance tGradient, or result_array_name; velocities have their lengths in
-    tSpeed. full_output: if True, the function returns a pair: the mesh, and the DerivativesResult, of
+    tSpeed. return_result: if True, the function returns a pair: the mesh, and the DerivativesResult, of
     a MultiBlock the list of them.
     """
     properties, given = _keywords("derivatives", properties)
@@ -403,8 +395,7 @@ def derivatives(
         values, on_faces = block.find("array", name, faces=True)
         marks = block.find("mask", mask, faces=True)[0]
         assert values is not None
-        result = _derivatives(block.surface, values, on_faces=on_faces, mask=marks, full_output=True,
-                              progress=progress, **properties)
+        result = find_derivatives(block.surface, values, on_faces, marks, None, progress, dict(properties))
         results.append(result)
         at_cells = bool(properties.get("result_on_faces", False))
         block.add(given or name + word, result.values, at_cells)
@@ -413,10 +404,7 @@ def derivatives(
         attributes = block.mesh.GetCellData() if at_cells else block.mesh.GetPointData()
         is_vector = word in ("Gradient", "ConductionVelocity") and result.values.shape[1:] == (3,)
         (attributes.SetActiveVectors if is_vector else attributes.SetActiveScalars)(given or name + word)
-    written = _rebuild(mesh, iter(blocks))
-    if not full_output:
-        return written
-    return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+    return _built(mesh, blocks, results, return_result)
 
 
 def direction_field(
@@ -611,6 +599,14 @@ def _rebuild(mesh: Any, blocks: Iterator[_Block]) -> Any:
     return build(mesh)
 
 
+def _built(mesh: Any, blocks: list[_Block], results: list[Any], return_result: bool) -> Any:
+    """What a function returns: the mesh, or the mesh with its result."""
+    written = _rebuild(mesh, iter(blocks))
+    if not return_result:
+        return written
+    return written, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
+
+
 def _keywords(function: str, properties: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
     """The keywords, also in the spelling of VTK, and the name of the result."""
     names = {setting.name: setting.keyword for setting in settings_of(function).values()}
@@ -717,7 +713,7 @@ def _write(block: _Block, outputs: list[Output], name: str | None) -> None:
 
 def _run(
     function: str, mesh: Any, array: str | None, names: Sequence[str | None],
-    times: Sequence[float] | None, full_output: bool, progress: Progress, properties: dict[str, Any],
+    times: Sequence[float] | None, return_result: bool, progress: Progress, properties: dict[str, Any],
 ) -> Any:
     properties, result_name = _keywords(function, properties)
     if names[1] is not None:
@@ -757,13 +753,13 @@ def _run(
 
     if times is None:
         output, reports = build(runner.finish(run, inputs, progress))
-        return (output, reports) if full_output else output
+        return (output, reports) if return_result else output
     runner.call(run.update, [given.core for given in inputs], runner.settings, None)
     steps = [_find_step(time, run, runner.interval) for time in times]
     ordered = sorted(set(steps))
     built = dict(zip(ordered, map(build, runner.visit(run, inputs, ordered, progress))))
     outputs = [built[step][0] for step in steps]
-    return (outputs, [built[step][1] for step in steps]) if full_output else outputs
+    return (outputs, [built[step][1] for step in steps]) if return_result else outputs
 
 
 def _find_step(time: Any, run: Any, interval: int) -> int:
@@ -809,9 +805,23 @@ def _show_settings(name: str, function: Callable[..., Any]) -> None:
           if parameter.kind is not inspect.Parameter.VAR_KEYWORD), *settings])
 
 
+def _with_old_switch(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function, which takes return_result by its former name, full_output, too."""
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **keywords: Any) -> Any:
+        if "full_output" in keywords and "return_result" in inspect.signature(function).parameters:
+            keywords["return_result"] = take_old_switch(
+                keywords, function.__name__, "full_output", "it is return_result")
+        return function(*arguments, **keywords)
+
+    return call
+
+
 for _name in __all__:
     if _name not in globals():  # a model without results of a special kind
         globals()[_name] = _of_data(_name, "The results have the names of those of the filter for VTK.")
+    globals()[_name] = _with_old_switch(globals()[_name])
     if _name in _functions.__all__:
         _show_settings(_name, globals()[_name])
     setattr(_Accessor, _name, _as_method(globals()[_name]))

@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 from samples import FACES, N, NOISE, POINTS
 
-from surfacediffusion import Surface, heat
+from surfacediffusion import Surface, heat, heat_steps
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import SurfaceFile
 
@@ -29,7 +29,7 @@ class Areas(unittest.TestCase):
     def test_the_integral_over_these_areas_is_kept(self):
         for surface in (Surface(POINTS, FACES, RANDOM),
                         pickle.loads(pickle.dumps(Surface(POINTS, FACES, RANDOM)))):
-            result = heat(surface, VALUES, fwhm=6, full_output=True)
+            result = heat_steps(surface, VALUES, fwhm=6).last()
             self.assertAlmostEqual(RANDOM @ result.values, RANDOM @ VALUES, delta=1e-9)
             np.testing.assert_allclose(result.history["Total_0"], RANDOM @ VALUES, rtol=1e-12)
 

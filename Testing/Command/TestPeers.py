@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 from samples import FACES, N, NOISE, POINTS
 
-from surfacediffusion import Surface, heat
+from surfacediffusion import Surface, heat, heat_steps
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import SurfaceFile
 
@@ -127,12 +127,12 @@ class LaPy(unittest.TestCase):
         np.testing.assert_allclose(areas, np.bincount(faces.ravel()) / 6)
         self.assertAlmostEqual(areas.sum(), 6)
         # The library's areas are the same: the integral in its history is that of 1.
-        result = heat((points, faces), np.ones(8), number_of_time_steps=1, full_output=True, time_step=1)
+        result = heat_steps((points, faces), np.ones(8), number_of_time_steps=1, time_step=1).last()
         np.testing.assert_allclose(result.history["Total_0"], 6)
         for i in range(8):
             one = np.arange(8) == i
-            result = heat((points, faces), one.astype(float), number_of_time_steps=0,
-                          full_output=True, time_step=1)
+            result = heat_steps((points, faces), one.astype(float), number_of_time_steps=0,
+                                time_step=1).last()
             self.assertAlmostEqual(result.history["Total_0"][0], areas[i])
 
 

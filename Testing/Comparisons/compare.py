@@ -19,7 +19,7 @@ import numpy as np
 import page
 import peers
 import reference
-from surfaces import make_samples, write_columns
+from surfaces import make_grayordinates, make_samples, write_columns
 
 PEERS = ("SurfaceDiffusion", "Workbench", "CAT", "nilearn")
 MISSING = 0.2
@@ -90,13 +90,14 @@ def _smooth_with_holes(peer, sample, values, holes, lost, fwhm):
     return [peers.smooth(peer, sample, data, fwhm) for data in (values, holes)]
 
 
-def measure_costs(sample, chosen, columns, rounds, results, folder, fwhm=10):
+def measure_costs(sample, chosen, columns, rounds, results, folder):
     """Time and memory of whole processes, and processor time without input and output: the medians
-    over rounds, in each of which all programs run after another."""
+    over rounds, in each of which all programs run after another. 60 columns and 4 mm are those of many
+    functional images."""
     data = folder / "columns.func.gii"
     output = folder / "out.func.gii"
     random = np.random.default_rng(6)
-    for count in (1, columns):
+    for count, fwhm in ((1, 10), (min(60, columns), 4), (columns, 10)):
         values = random.normal(size=(len(sample.points), count))
         # CAT smooths one map at a time: its time for many is that for a tenth, times ten.
         shares = {peer: 10 if peer == "CAT" and count >= 100 else 1 for peer in chosen}
@@ -116,9 +117,27 @@ def measure_costs(sample, chosen, columns, rounds, results, folder, fwhm=10):
                 output.unlink()
         for peer, found in measured.items():
             medians = {name: statistics.median(row[name] for row in found) for name in found[0]}
-            results.append({"columns": count, "peer": peer, "share": shares[peer], **medians,
-                            "rounds": [row["alone"] for row in found]})
+            results.append({"columns": count, "fwhm": fwhm, "peer": peer, "share": shares[peer],
+                            **medians, "rounds": [row["alone"] for row in found]})
     data.unlink()
+
+
+def measure_cifti(chosen, columns, rounds, results, folder, fwhm=4):
+    """The medians of whole processes that smooth a time series of 91,282 grayordinates, on surfaces and
+    among voxels, by the programs that do."""
+    chosen = [peer for peer in chosen if peer in peers.OF_CIFTI]
+    output = folder / "out.dtseries.nii"
+    for count in (min(60, columns), columns):
+        data, surfaces = make_grayordinates(folder, count)
+        measured = {peer: [] for peer in chosen}
+        for _ in range(rounds):
+            for peer in chosen:
+                cost = peers.run(peers.OF_CIFTI[peer](data, fwhm, output, *surfaces))
+                measured[peer].append({"wall": cost.wall, "cpu": cost.cpu, "memory": cost.memory})
+                output.unlink()
+        results += [{"columns": count, "fwhm": fwhm, "peer": peer, "file": data.stat().st_size,
+                     **{name: statistics.median(row[name] for row in found) for name in found[0]}}
+                    for peer, found in measured.items()]
 
 
 def main():
@@ -127,7 +146,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=3, help="of the measurement of times")
     parser.add_argument("--widths", type=float, nargs="+", default=[6, 10, 20], metavar="MM",
                         help="asked for; 10 must be among them")
-    parser.add_argument("--only", action="append", choices=("widths", "errors", "missing", "costs"),
+    parser.add_argument("--only", action="append", choices=("widths", "errors", "missing", "costs", "cifti"),
                         help="measure these parts; the others keep their last results")
     parser.add_argument("--peer", action="append", choices=PEERS,
                         help="measure these programs; the others keep their last results")
@@ -150,7 +169,9 @@ def main():
             "errors": lambda rows: measure_errors(samples, chosen, arguments.widths, rows),
             "missing": lambda rows: measure_missing(samples, chosen, rows),
             "costs": lambda rows: measure_costs(
-                samples[2], chosen, arguments.columns, arguments.rounds, rows, folder)}
+                samples[2], chosen, arguments.columns, arguments.rounds, rows, folder),
+            "cifti": lambda rows: measure_cifti(
+                chosen, arguments.columns, arguments.rounds, rows, folder)}
         for part in arguments.only or parts:
             print(f"measuring {part}", file=sys.stderr)
             rows = [row for row in results.get(part, []) if row["peer"] not in chosen]
@@ -160,7 +181,7 @@ def main():
             arguments.results.parent.mkdir(parents=True, exist_ok=True)
             arguments.results.write_text(json.dumps(results, indent=1, default=float))
     if all(any(row["peer"] == peer for row in results.get(part, []))
-           for part in parts for peer in PEERS):
+           for part in parts for peer in (peers.OF_CIFTI if part == "cifti" else PEERS)):
         page.write_page(results, arguments.page)
         page.draw(results, arguments.picture)
     else:

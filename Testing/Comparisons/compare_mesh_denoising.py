@@ -174,7 +174,7 @@ def polydata(points, triangles):
 # ---- programs: each takes points and triangles, and returns points ---------------------------------
 
 def surface_denoising(points, triangles, **settings):
-    return surfacediffusion.denoise_mesh((points, triangles), **settings)
+    return surfacediffusion.denoise_mesh((points, triangles), **settings).points
 
 
 def harmonic_map(points, triangles, **settings):

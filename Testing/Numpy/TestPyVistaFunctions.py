@@ -139,7 +139,7 @@ class Meshes(unittest.TestCase):
         self.assertIn("of_facesBeltrami", on_faces.cell_data)
         on_points = tensor_diffusion(mesh, "of_faces", number_of_time_steps=2, result_on_faces=False)
         self.assertEqual(on_points.point_data["of_facesBeltrami"].shape, (mesh.n_points,))
-        edges, report = mumford_shah(mesh, "f", mask="hole", full_output=True, edge_threshold=0.5)
+        edges, report = mumford_shah(mesh, "f", mask="hole", return_result=True, edge_threshold=0.5)
         self.assertEqual(edges["Edges"].shape, (mesh.n_points,))
         named = mumford_shah(mesh, "f", number_of_time_steps=1, result_array_name="g")
         self.assertLessEqual({"g", "gEdges"}, set(named.array_names))
@@ -147,7 +147,7 @@ class Meshes(unittest.TestCase):
         self.assertEqual(edges.point_data.active_scalars_name, "fMumfordShah")
         self.assertIsInstance(report.curves, list)
         mesh.point_data["seeds"] = np.where(mesh.points[:, 2] > 0.9, 2, 0)
-        regions, report = segment(mesh, "f", mask="hole", seeds="seeds", full_output=True)
+        regions, report = segment(mesh, "f", mask="hole", seeds="seeds", return_result=True)
         self.assertEqual(regions.point_data.active_scalars_name, "RegionId")
         np.testing.assert_array_equal(regions["RegionId"], report.values)
         np.testing.assert_array_equal(regions["fSegmented"], report.means[report.values - 1, 0])
@@ -160,7 +160,7 @@ class Meshes(unittest.TestCase):
         ball = pyvista.Icosphere(nsub=4)
         ball["z"] = np.array(ball.points[:, 2], dtype=float)
         ball["north"] = (ball.points[:, 2] > 0.3).astype(np.uint8)
-        curved, report = curvature(ball, FWHM=0.2, full_output=True)
+        curved, report = curvature(ball, FWHM=0.2, return_result=True)
         radius = np.linalg.norm(ball.points, axis=1).mean()
         np.testing.assert_allclose(np.abs(curved["MeanCurvature"]), 1 / radius, rtol=0.02)
         self.assertEqual(curved.point_data.active_scalars_name, "MeanCurvature")
@@ -219,7 +219,7 @@ class Meshes(unittest.TestCase):
         mesh.cell_data.active_normals_name = "ofCells"
         before = np.array(mesh.points)
         blocks = pyvista.MultiBlock([mesh, None, mesh.scale(10.0, inplace=False)])
-        denoised, reports = denoise_mesh(blocks, fixed="north", full_output=True)
+        denoised, reports = denoise_mesh(blocks, fixed="north", return_result=True)
         self.assertEqual(len(reports), 2)
         self.assertAlmostEqual(reports[1].noise_level / reports[0].noise_level, 10.0, delta=0.01)
         np.testing.assert_array_equal(mesh.points, before)
@@ -246,7 +246,7 @@ class Meshes(unittest.TestCase):
         ball.cell_data["c"] = np.arange(ball.n_cells)
         ball.cell_data["south"] = (ball.cell_centers().points[:, 2] < 0).astype(np.uint8)
         blocks, reports = relief(pyvista.MultiBlock([ball, None, ball.scale(2.0, inplace=False)]), "v",
-                                 0.5, base=0.1, mask="south", full_output=True)
+                                 0.5, base=0.1, mask="south", return_result=True)
         self.assertEqual([report.open_edges for report in reports], [0, 0])
         for block, size in ((blocks[0], 10), (blocks[2], 20)):
             radius = np.linalg.norm(block.points, axis=1)
@@ -270,7 +270,7 @@ class Meshes(unittest.TestCase):
         mesh["terms"] = np.stack([mesh.points[:, 0], -mesh.points[:, 0]], axis=1)
         mesh["w"] = np.where(mesh.points[:, 1] > 0.5, 0.0, 1.0)
         blocks = pyvista.MultiBlock([mesh, mesh.scale(2.0, inplace=False)])
-        regions, reports = segment(blocks, terms="terms", fidelity="w", full_output=True)
+        regions, reports = segment(blocks, terms="terms", fidelity="w", return_result=True)
         self.assertEqual(len(reports), 2)
         for block in regions:
             self.assertNotIn("fSegmented", block.array_names)
@@ -299,7 +299,7 @@ class Meshes(unittest.TestCase):
         np.testing.assert_allclose(
             named["u"], 2.0 * interpolate(mesh, "t", points=probes, exact=True)["tInterpolated"], atol=1e-12)
         blocks, reports = interpolate(pyvista.MultiBlock([mesh, None, mesh.scale(1.2, inplace=False)]),
-                                      points=probes, array="t", full_output=True)
+                                      points=probes, array="t", return_result=True)
         self.assertEqual([report.number_of_values for report in reports], [probes.n_points] * 2)
         np.testing.assert_array_equal(blocks[2]["tInterpolated"], reports[1].values)
         for message, options in (
@@ -314,7 +314,7 @@ class Meshes(unittest.TestCase):
         mesh = noisy_sphere()
         few = np.arange(mesh.n_points) % 7 == 0
         mesh["few"] = np.where(few, mesh.points[:, 2].astype(float), np.nan)
-        result, report = interpolate(mesh, "few", exact=True, full_output=True)
+        result, report = interpolate(mesh, "few", exact=True, return_result=True)
         np.testing.assert_array_equal(result["fewInterpolated"], report.values)
         np.testing.assert_allclose(result["fewInterpolated"][few], mesh["few"][few], atol=1e-12)
         self.assertEqual(report.number_of_values, few.sum())
@@ -341,15 +341,19 @@ class Meshes(unittest.TestCase):
     def test_times_and_history(self):
         mesh = noisy_sphere()
         states, results = heat(mesh, "f", time_step=1.0, times=[3.0, 0.0, 1.5, 99.0],
-                               full_output=True)
+                               return_result=True)
         np.testing.assert_array_equal(states[1]["fDiffused"], mesh["f"])
         for state, steps in zip(states, (3, 0, 1, 10)):
             np.testing.assert_array_equal(
                 state["fDiffused"],
                 heat(mesh, "f", time_step=1.0, number_of_time_steps=steps)["fDiffused"])
         self.assertEqual([result.step for result in results], [3, 0, 1, 10])
-        _, result = heat(mesh, "f", time_step=1, full_output=True)
+        _, result = heat(mesh, "f", time_step=1, return_result=True)
         self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
+        with self.assertWarnsRegex(DeprecationWarning, r"^full_output of heat\(\) is deprecated: it is "
+                                                       "return_result$"):
+            _, again = heat(mesh, "f", time_step=1, full_output=True)
+        np.testing.assert_array_equal(again.history["Energy"], result.history["Energy"])
 
     def test_blocks_share_their_units_and_empty_ones_pass(self):
         far = noisy_sphere(center=(5.0, 0.0, 0.0))
@@ -357,7 +361,7 @@ class Meshes(unittest.TestCase):
                                      "nested": pyvista.MultiBlock({"b": far}),
                                      "bare": pyvista.Plane()})
         blocks["a"].points *= 2.0
-        output, results = heat(blocks, "f", time_step=1, full_output=True)
+        output, results = heat(blocks, "f", time_step=1, return_result=True)
         self.assertEqual(list(output.keys()), list(blocks.keys()))
         self.assertEqual(len(results), 2)
         self.assertEqual(results[0].mean_edge_length, results[1].mean_edge_length)

@@ -183,9 +183,10 @@ class SameBits(unittest.TestCase):
             self.compare_distance(arrays, properties["Method"], expected)
             return
         keywords = {snake_case(name): value for name, value in properties.items()}
-        if function in ("heat", "intrinsic_tv", "tensor_diffusion", "derivatives"):
-            keywords["full_output"] = True
-        result = getattr(sd, function)(self.surface, **arrays, **keywords)
+        if function in ("heat", "intrinsic_tv", "tensor_diffusion"):
+            result = getattr(sd, f"{function}_steps")(self.surface, **arrays, **keywords).last()
+        else:
+            result = getattr(sd, function)(self.surface, **arrays, **keywords)
         if function == "direction_field":
             found = {"Direction": result}
         elif function == "curvature":
@@ -193,13 +194,15 @@ class SameBits(unittest.TestCase):
                      "PrincipalCurvatures": result.principal, "ShapeIndex": result.shape_index,
                      "Curvedness": result.curvedness}
         elif function == "derivatives":
-            found = {"values" + properties.get("Quantity", "Gradient"): result.values}
-            if result.speed is not None:
-                found["valuesSpeed"] = result.speed
+            found = {"values" + properties.get("Quantity", "Gradient"): result}
+            if properties.get("Quantity") == "ConductionVelocity":
+                del keywords["quantity"]
+                found["valuesSpeed"] = sd.conduction_velocity(
+                    self.surface, arrays["values"], **keywords).speed
         elif function == "relief":
             found = {"points": result.surface.points, "ReliefHeight": result.heights}
         elif function == "denoise_mesh":
-            found = {"points": result, "Displacement": result - self.points}
+            found = {"points": result.points, "Displacement": result.points - self.points}
         elif function == "turing_texture":
             found = {"u1": result.values[:, 0], "u2": result.values[:, 1], "Texture": result.texture}
             if result.colors is not None:

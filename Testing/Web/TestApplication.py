@@ -282,7 +282,7 @@ class TestApplication(unittest.TestCase):
         wait_for(lambda: "scan.off" in self.text("#mesh") and self.runs() > runs, "the mesh")
         self.choose("filter", FILTERS["denoise_mesh"].title)
         note = wait_for(lambda: "surface, noise of" in self.text("#note") and self.text("#note"), "its run")
-        found = sd.denoise_mesh(noisy, full_output=True)
+        found = sd.denoise_mesh(noisy)
         self.assertGreater(found.correlation_length, 0)
         self.assertIn(f"noise of {found.noise_level:.3g}, correlated over {found.correlation_length:.3g}",
                       note)

@@ -18,18 +18,22 @@ __all__ = ["parse"]
 
 PROGRAM = "surfacediffusion"
 
-FILES = """
-SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
+SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata."
+
+FILES = f"""
+{SURFACES}
 DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right and
 --cerebellum instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), or a PLY or VTK
 file with data at its vertices; with --faces, where there is that option, at the faces. Files are
 recognised by their content, and may be compressed by gzip, or pipes. OUTPUT has the format and the
-metadata of DATA. NaN means missing: the value is not used, and the output has a value there.
+metadata of DATA; that of a FreeSurfer curv may be named .mgh or .shape.gii, too. NaN means missing: the value is not used, and the output has a value there.
 """
 
 
 def parse(argv):
     """The arguments of the command line, with the function that carries them out as `run`."""
+    if argv and argv[0] in ("-metric-smoothing", "-cifti-smoothing"):  # as after wb_command
+        argv = [argv[0][1:], *argv[1:]]
     # A CIFTI file has a surface per hemisphere, by --left and --right instead of SURFACE.
     hemispheres = any(word.split("=")[0] in _SIDES for word in argv) or (
         len(argv) > 1 and re.search(r"\.d[a-z]+\.nii$", argv[1]) is not None)
@@ -125,7 +129,11 @@ class _Commands:
                                 help="the surface of the cerebellum, for files with its vertices")
         else:
             parser.set_defaults(left=None, right=None, cerebellum=None)
-            parser.add_argument("surface", metavar="SURFACE", help="the surface")
+            self.mesh(parser)
+
+    @staticmethod
+    def mesh(parser):
+        parser.add_argument("surface", metavar="SURFACE", help="the surface")
 
     def data(self, parser, many=False):
         self.surface(parser)
@@ -133,6 +141,16 @@ class _Commands:
                             help="the values at its vertices" + "; several files, if OUTPUT is a folder"
                             * many)
         return parser
+
+    @staticmethod
+    def output(parser, words="the result"):
+        parser.add_argument("output", metavar="OUTPUT", help=words)
+
+    @staticmethod
+    def merge(parser):
+        parser.add_argument("--merge", action="store_true",
+                            help="vertices at the same place are one vertex of the surface, as files "
+                                 "with split normals or texture seams need")
 
     @staticmethod
     def faces(parser):
@@ -160,44 +178,36 @@ class _Commands:
                                  "Default: all")
 
 
-def _positive(text):
-    return _number(text, lambda value: value > 0, "a number above 0")
+def _number(text, holds, allowed):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value) or not holds(value):
+        raise argparse.ArgumentTypeError(f"is {text!r}; allowed: {allowed}")
+    return value
 
 
-def _not_negative(text):
-    return _number(text, lambda value: value >= 0, "a number of at least 0")
+def _numbers(allowed, holds=lambda value: True):
+    """The type of an argument that is a number."""
+    return lambda text: _number(text, holds, allowed)
 
 
-def _count(text):
-    return int(_number(text, lambda value: value >= 1 and value == int(value) and value < 2**31,
-                       "a whole number of at least 1"))
+def _whole_numbers(allowed, least, most=2**31 - 1):
+    """The type of an argument that is a whole number."""
+    return lambda text: int(_number(
+        text, lambda value: value == int(value) and least <= value <= most, allowed))
 
 
-def _threads(text):
-    return int(_number(text, lambda value: 0 <= value <= 1024 and value == int(value),
-                       "a whole number from 0 to 1024"))
-
-
-def _regions(text):
-    return int(_number(text, lambda value: 2 <= value <= 1000 and value == int(value),
-                       "a whole number from 2 to 1000"))
-
-
-def _finite(text):
-    return _number(text, lambda value: True, "a finite number")
-
-
-def _whole(text):
-    return int(_number(text, lambda value: value == int(value) and abs(value) < 2**31,
-                       "a whole number"))
-
-
-def _exponent(text):
-    return _number(text, lambda value: 1 <= value <= 2, "a number from 1 to 2")
-
-
-def _degrees(text):
-    return _number(text, lambda value: 0 <= value <= 90, "degrees from 0 to 90")
+_finite = _numbers("a finite number")
+_positive = _numbers("a number above 0", lambda value: value > 0)
+_not_negative = _numbers("a number of at least 0", lambda value: value >= 0)
+_exponent = _numbers("a number from 1 to 2", lambda value: 1 <= value <= 2)
+_degrees = _numbers("degrees from 0 to 90", lambda value: 0 <= value <= 90)
+_whole = _whole_numbers("a whole number", 1 - 2**31)
+_count = _whole_numbers("a whole number of at least 1", 1)
+_threads = _whole_numbers("a whole number from 0 to 1024", 0, 1024)
+_regions = _whole_numbers("a whole number from 2 to 1000", 2, 1000)
 
 
 def _positive_length(text):
@@ -220,16 +230,6 @@ def _length(text, holds=lambda value: True, allowed="a length"):
         return _number(found[1], holds, allowed), unit or None
     except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(f"is {text!r}; allowed: {allowed}") from None
-
-
-def _number(text, holds, allowed):
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value) or not holds(value):
-        raise argparse.ArgumentTypeError(f"is {text!r}; allowed: {allowed}")
-    return value
 
 
 def _smooth(commands):
@@ -301,7 +301,7 @@ def _metric_smoothing(commands):
     commands.data(parser)
     parser.add_argument("width", metavar="KERNEL", type=_positive,
                         help="the standard deviation in the unit of the surface's coordinates (mm)")
-    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.output(parser)
     parser.add_argument("-fwhm", dest="sigma", action="store_false",
                         help="KERNEL is the full width at half maximum: sigma = FWHM / 2.3548")
     commands.choices(parser)
@@ -329,7 +329,7 @@ def _cifti_smoothing(commands):
                         help="the width among voxels in mm")
     parser.add_argument("direction", choices=("COLUMN",),
                         help="the direction of the vertices and voxels in the matrix")
-    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.output(parser)
     _Commands(commands.commands, True).surface(parser)
     parser.add_argument("-fwhm", dest="sigma", action="store_false",
                         help="the kernels are full widths at half maximum")
@@ -352,7 +352,7 @@ def _denoise(commands):
         [f"{PROGRAM} denoise scan.ply scan.ply clean.ply",
          f"{PROGRAM} denoise lh.white lh.curv lh.curv.clean --weight 3"])
     commands.data(parser)
-    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.output(parser)
     commands.choices(parser)
     commands.faces(parser)
     level = parser.add_mutually_exclusive_group()
@@ -366,8 +366,8 @@ def _denoise(commands):
                              "brightness; chromaticity: brightness and hue are separate")
 
 
-MESH = """
-SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
+MESH = f"""
+{SURFACES}
 OUTPUT has the format of SURFACE, its faces and its data. Normals in the file are computed again, or
 left out where they belong to corners of faces.
 """
@@ -380,8 +380,8 @@ def _denoise_mesh(commands):
         "denoise-mesh", tasks.denoise_mesh, text,
         [f"{PROGRAM} denoise-mesh scan.ply clean.ply",
          f"{PROGRAM} denoise-mesh part.stl clean.stl --type cad --noise 0.02"], MESH)
-    parser.add_argument("surface", metavar="SURFACE", help="the surface")
-    parser.add_argument("output", metavar="OUTPUT", help="the surface with moved points")
+    commands.mesh(parser)
+    commands.output(parser, "the surface with moved points")
     parser.add_argument("--noise", metavar="SD", type=_positive,
                         help="the standard deviation of the noise along the normal, in the unit of "
                              "the coordinates; larger removes more (default: measured)")
@@ -389,9 +389,7 @@ def _denoise_mesh(commands):
                         help="cad: smooth faces with sharp edges; organic: smooth shapes with "
                              "details, such as scans; automatic: found by the angles at edges "
                              "(default)")
-    parser.add_argument("--merge", action="store_true",
-                        help="vertices at the same place are one vertex of the surface, as files "
-                             "with split normals or texture seams need")
+    commands.merge(parser)
     parser.add_argument("--fixed", metavar="FILE",
                         help="data in which vertices stay where the first column is above 0")
 
@@ -403,7 +401,7 @@ def _inpaint(commands):
         "inpaint", tasks.inpaint, text,
         [f"{PROGRAM} inpaint lh.pial lh.thickness lh.thickness.full --fix-zeros"])
     commands.data(parser)
-    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.output(parser)
     commands.choices(parser)
     commands.faces(parser)
     parser.add_argument("--missing", metavar="FILE", help="missing where the first column is above 0")
@@ -412,15 +410,19 @@ def _inpaint(commands):
                              "which continues edges")
 
 
-POINTS = """
-SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata.
+NEW = """
+The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk,
+.vtp if SURFACE is such a file.
+"""
+
+
+POINTS = f"""
+{SURFACES}
 VALUES: a text file with a row x, y, z, value, ... for each point, separated by commas or spaces and
 with or without a line of names, whose points count at the nearest points of SURFACE; or data with a
 value for each vertex, in the formats of the other commands. NaN, and an empty value in a text file, is
 unknown.
-The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk, .vtp if
-SURFACE is such a file.
-"""
+""" + NEW[1:]
 
 
 def _interpolate(commands):
@@ -431,9 +433,9 @@ def _interpolate(commands):
         "interpolate", tasks.interpolate, text,
         [f"{PROGRAM} interpolate atrium.vtp electrodes.csv times.vtp --error errors.npy",
          f"{PROGRAM} interpolate lh.pial.surf.gii implants.txt map.shape.gii --exact"], POINTS)
-    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    commands.mesh(parser)
     parser.add_argument("values", metavar="VALUES", help="the values, with their points or at vertices")
-    parser.add_argument("output", metavar="OUTPUT", help="the map, values at the vertices")
+    commands.output(parser, "the map, values at the vertices")
     level = parser.add_mutually_exclusive_group()
     level.add_argument("--exact", action="store_true", help="keep the values exactly")
     level.add_argument("--noise", metavar="SD", type=_positive,
@@ -466,7 +468,7 @@ def _enhance(commands):
         [f"{PROGRAM} enhance scan.ply scan.ply closed.ply --time 20",
          f"{PROGRAM} enhance scan.ply scan.ply clean.ply --model beltrami"])
     commands.data(parser)
-    parser.add_argument("output", metavar="OUTPUT", help="the result")
+    commands.output(parser)
     commands.choices(parser)
     parser.add_argument("--model", choices=("lines", "edges", "beltrami"), default="lines",
                         help="lines: coherence-enhancing diffusion along lines (default); edges: "
@@ -492,7 +494,7 @@ def _edges(commands):
         "edges", tasks.edges, text,
         [f"{PROGRAM} edges scan.ply scan.ply smooth.ply --map edges.npy --curves curves.npy"])
     commands.data(parser)
-    parser.add_argument("output", metavar="OUTPUT", help="the data, smooth between edges")
+    commands.output(parser, "the data, smooth between edges")
     commands.choices(parser)
     parser.add_argument("--map", metavar="FILE",
                         help="write 1 - v, which is 1 on edges, at the vertices: .func.gii, "
@@ -524,7 +526,7 @@ def _segment(commands):
         [f"{PROGRAM} segment lh.midthickness.surf.gii lh.myelin.func.gii lh.regions.func.gii "
          "--regions 3"])
     commands.data(parser)
-    parser.add_argument("output", metavar="OUTPUT", help="the labels")
+    commands.output(parser, "the labels")
     commands.choices(parser)
     parser.add_argument("--regions", metavar="K", type=_regions, default=2,
                         help="the number of regions (default 2)")
@@ -536,12 +538,6 @@ def _segment(commands):
                              "--regions. Default: they are found")
     parser.add_argument("--seed", metavar="N", type=_whole, default=0,
                         help="of the search for means (default 0)")
-
-
-NEW = """
-The name of OUTPUT gives its format: .func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk,
-.vtp if SURFACE is such a file.
-"""
 
 
 DISTANCE = """
@@ -594,10 +590,10 @@ def _texture(commands):
         "texture", tasks.texture, text,
         [f"{PROGRAM} texture part.stl 4mm out.stl --relief 0.4mm --pattern labyrinth",
          f"{PROGRAM} texture lh.pial.surf.gii 8 lh.spots.shape.gii --seed 1"], TEXTURE)
-    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    commands.mesh(parser)
     parser.add_argument("size", metavar="FEATURE_SIZE", type=_positive_length,
                         help="the wavelength of the pattern")
-    parser.add_argument("output", metavar="OUTPUT", help="the part, or the pattern as values")
+    commands.output(parser, "the part, or the pattern as values")
     parser.add_argument("--relief", metavar="HEIGHT", type=_length,
                         help="raise the pattern by this height along the normal; --relief=-0.4mm "
                              "carves it")
@@ -629,8 +625,8 @@ def _directions(commands):
         [f"{PROGRAM} directions lh.pial directions.npy --method CurvatureAligned"],
         "\nThe directions are a .npy array, one row per face, or cell data of a .vtk or .vtp file "
         "if SURFACE is\nsuch a file. Their sign has no meaning.\n")
-    parser.add_argument("surface", metavar="SURFACE", help="the surface")
-    parser.add_argument("output", metavar="OUTPUT", help="unit vectors, or 0, on the faces")
+    commands.mesh(parser)
+    commands.output(parser, "unit vectors, or 0, on the faces")
     parser.add_argument("--method", metavar="NAME", default="PrincipalCurvature",
                         help="PrincipalCurvature (default), CurvatureAligned or Smooth")
 
@@ -642,15 +638,13 @@ def _curvature(commands):
         "curvature", tasks.curvature, text,
         [f"{PROGRAM} curvature lh.white.surf.gii lh.curvature.shape.gii --fwhm 5",
          f"{PROGRAM} curvature scan.ply scan.curved.ply --fwhm 2 --merge"], NEW)
-    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    commands.mesh(parser)
     parser.add_argument("output", metavar="OUTPUT",
                         help="columns mean, gaussian, k1, k2, shape_index and curvedness")
     parser.add_argument("--fwhm", metavar="W", type=_not_negative, default=0.0,
                         help="the full width at half maximum of the Gaussian on the surface, in the "
                              "unit of the coordinates (default: 0, the scale of the mesh)")
-    parser.add_argument("--merge", action="store_true",
-                        help="vertices at the same place are one vertex of the surface, as files "
-                             "with split normals or texture seams need")
+    commands.merge(parser)
 
 
 def _derivatives(commands):
@@ -660,7 +654,7 @@ def _derivatives(commands):
         "derivatives", tasks.derivatives, text,
         [f"{PROGRAM} derivatives lh.white lh.thickness gradient.shape.gii --fwhm 5",
          f"{PROGRAM} derivatives atrium.vtp times.npy velocity.vtp --quantity velocity --fwhm 8"], NEW)
-    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    commands.mesh(parser)
     parser.add_argument("data", metavar="DATA", help="data at its vertices; missing ones are NaN")
     parser.add_argument("output", metavar="OUTPUT",
                         help="columns x, y, z of each gradient or velocity, with the speed after that; "
@@ -718,7 +712,7 @@ def _normals(commands):
     parser = commands.add(
         "normals", tasks.normals, text,
         [f"{PROGRAM} normals scan.ply clean.ply --move"], NEW)
-    parser.add_argument("surface", metavar="SURFACE", help="the surface")
+    commands.mesh(parser)
     parser.add_argument("output", metavar="OUTPUT", help="three columns, or with --move a surface "
                                                          "in the format of SURFACE")
     parser.add_argument("--move", action="store_true", help="move the points")

@@ -106,7 +106,7 @@ def _width_text(fwhm, surface):
 
 
 def denoise(arguments, report):
-    from .. import intrinsic_tv
+    from .. import intrinsic_tv_steps
 
     options = {"fidelity_weight": arguments.weight} if arguments.weight else {
         "automatic_fidelity": True, "noise_level": arguments.noise or 0.0}
@@ -117,10 +117,9 @@ def denoise(arguments, report):
 
     def compute(surface, values, mask, progress):
         found.append(values.shape[1] == 3)
-        result = intrinsic_tv(surface, values, on_faces=arguments.faces, mask=mask,
-                              mask_mode="Exclude", mode="SteadyState",
-                              color_model=model if found[-1] else "RGB", progress=progress,
-                              full_output=True, **options)
+        result = intrinsic_tv_steps(
+            surface, values, on_faces=arguments.faces, mask=mask, mask_mode="Exclude", mode="SteadyState",
+            color_model=model if found[-1] else "RGB", progress=progress, **options).last()
         weights.append(number(result.effective_fidelity_weight))
         return result.values
 
@@ -142,8 +141,7 @@ def denoise_mesh(arguments, report):
         with report.timed("read"):
             options["fixed"] = dict(inputs.read_marks(arguments.fixed, {"": surface}))[id(surface)]
     with report.timed("compute"), report.progress("Denoising") as progress:
-        result = remove_noise(Surface(surface.points, surface.faces), full_output=True,
-                              progress=progress, **options)
+        result = remove_noise(Surface(surface.points, surface.faces), progress=progress, **options)
     _write_points(arguments, report, surface, result.points)
     for name in ("noise_level", "correlation_length", "mean_displacement", "maximum_displacement",
                  "volume_before", "volume_after", "mean_edge_length"):
@@ -411,29 +409,31 @@ def curvature(arguments, report):
 
 
 def derivatives(arguments, report):
-    from .. import Surface
+    from .. import Surface, conduction_velocity
     from .. import derivatives as derive
 
     surface = _read_surface_for_output(arguments, report)
     with report.timed("read"):
         _, values, names = inputs.read_values(arguments.data, surface, tables=False)
-    word = {"velocity": "ConductionVelocity"}.get(arguments.quantity, arguments.quantity.capitalize())
+    word = arguments.quantity.capitalize()
+    options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm}
     with report.timed("compute"), report.progress(word) as progress:
-        found = derive(Surface(surface.points, surface.faces), values, quantity=word, on_faces=False,
-                       smoothing_fwhm=arguments.fwhm, full_output=True, progress=progress)
-    result = found.values.reshape(len(surface.points), -1)
+        solver = Surface(surface.points, surface.faces)
+        if arguments.quantity == "velocity":
+            result = np.column_stack(conduction_velocity(solver, values, progress=progress, **options))
+        else:
+            result = derive(solver, values, quantity=word, progress=progress, **options)
     if arguments.quantity in ("gradient", "velocity"):
         columns = [f"{name} {axis}" for name in names for axis in "xyz"]
     elif arguments.quantity == "laplacian":
         columns = list(names)
     else:
         columns = list(names[::3])
-    if found.speed is not None:
-        result = np.column_stack([result, found.speed])
+    if arguments.quantity == "velocity":
         columns += [f"{name} speed" for name in names]
     report.facts.update(quantity=arguments.quantity, fwhm=arguments.fwhm)
     target = new_data(surface, arguments.output, columns)
-    _write_new(arguments, report, target, result.astype(np.float32))
+    _write_new(arguments, report, target, result.reshape(len(surface.points), -1).astype(np.float32))
 
 
 def distance(arguments, report):
@@ -612,7 +612,7 @@ def _change_data(arguments, report, title, compute, groups, missing=None, say=No
     with report.timed("read"):
         surfaces, data, columns, patches = _read(arguments, missing, content)
         areas = inputs.read_areas(getattr(arguments, "areas", None), surfaces)
-        data.check_name(arguments.output)
+        target = _target(data, patches, arguments.output)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
     results = []
@@ -635,12 +635,21 @@ def _change_data(arguments, report, title, compute, groups, missing=None, say=No
             results.append(patch.to_part(new))
             _add_totals(report, data, columns, patch, new, areas)
     with report.timed("write"):
-        data.save(arguments.output, results, columns)
+        target.save(arguments.output, results, columns)
     report.facts.update(data=data.path, output=arguments.output)
     what = f"{len(columns)} column{'s' * (len(columns) > 1)}"
     if say is not None:
         what += ", " + say(patches[0].surface)
     _say_written(arguments, report, what)
+
+
+def _target(data, patches, path):
+    """What is written: DATA with other values, or of a curv file, which has no metadata, the format that
+    the name of the output announces."""
+    if data.kind == "curv" and kind_of_name(path) not in (None, "curv"):
+        return new_data(patches[0].surface, path, data.names)
+    data.check_name(path)
+    return data
 
 
 def _part_of(progress, start, share):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of surfaces and of data at their vertices.
+"""Files of surfaces and of data at their vertices::
 
     surface = read_surface("lh.midthickness.surf.gii")  # .points (n, 3), .faces (m, 3)
     data = read_data("lh.thickness.shape.gii")          # .names, .parts[0].values (n, k)

@@ -26,10 +26,16 @@ NO_VERTICES = ("an STL file numbers no vertices, so that values at vertices belo
 class Part:
     """The values on one surface. Vertices are faces if the data are at faces.
 
-    values     (v, k): one row per vertex that has data, one column per map
-    vertices   (v,) the numbers of these vertices; None: all, in order
-    size       number of vertices of the surface; None if the file does not say
-    structure  "CortexLeft", "CortexRight", ...; empty if the file does not say
+    Attributes
+    ----------
+    values : ndarray, shape (v, k)
+        One row per vertex that has data, one column per map.
+    vertices : ndarray, shape (v,), or None
+        The numbers of these vertices; None: all, in order.
+    size : int or None
+        The number of vertices of the surface; None if the file does not say.
+    structure : str
+        "CortexLeft", "CortexRight", ...; empty if the file does not say.
     """
 
     values: np.ndarray
@@ -42,14 +48,27 @@ class Part:
 class Data:
     """The data of a file.
 
-    names   of the k columns; columns of one array of VTK have one name
-    parts   one, or one per surface of a CIFTI file
-    labels  the values are numbers of labels, which have no mean
-    label_names  {number: name} of the labels of the first column
-    usual   the columns to work on if nobody chooses (all but normals and the like)
-    extra   a remark about values that are carried over unchanged, or empty
-    on_faces  the values are at the faces
-    rows    of CIFTI, "dscalar" or "dtseries", as its name should say
+    Attributes
+    ----------
+    path : str
+    kind : str
+        The format.
+    names : list of str
+        Of the k columns; columns of one array of VTK have one name.
+    parts : list of Part
+        One, or one per surface of a CIFTI file.
+    labels : bool
+        The values are numbers of labels, which have no mean.
+    label_names : dict
+        {number: name} of the labels of the first column.
+    usual : sequence of int
+        The columns to work on if nobody chooses (all but normals and the like).
+    extra : str
+        A remark about values that are carried over unchanged, or empty.
+    on_faces : bool
+        The values are at the faces.
+    rows : str
+        Of CIFTI, "dscalar" or "dtseries", as its name should say.
     """
 
     path: str
@@ -71,9 +90,14 @@ class Data:
     def save(self, path, values, columns=None):
         """Write other values in the same format, with the metadata of the file.
 
-        values   for each part, an array (v, number of columns)
-        columns  the numbers of these columns; default: all. Files of meshes keep their other
-                 columns, other files then hold these alone
+        Parameters
+        ----------
+        path : path-like
+        values : list of array_like
+            For each part, an array (v, number of columns).
+        columns : list of int, optional
+            The numbers of these columns; default: all. Files of meshes keep their other columns, other
+            files then hold these alone.
         """
         known = _FORMATS.get(self.kind)
         if known is None or not (known.write or known.save):

@@ -22,9 +22,15 @@ ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, VTK polydata"
 class SurfaceFile:
     """A surface and the file that it was read from.
 
-    points     (n, 3) float
-    faces      (m, 3) int, or a list of polygons
-    structure  as GIFTI has it ("CortexLeft"); empty if unknown
+    Attributes
+    ----------
+    path : str
+    kind : str
+        The format.
+    points : ndarray, shape (n, 3)
+    faces : ndarray, shape (m, 3), or list of polygons
+    structure : str
+        As GIFTI has it ("CortexLeft"); empty if unknown.
     """
 
     path: str
