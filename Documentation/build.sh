@@ -16,6 +16,7 @@ if [ ! -e "$environment/complete" ]; then
 fi
 .ci/fetch-test-data "$data"
 export SURFACEDIFFUSION_MESH_DIR=$PWD/$data/meshes
+export SURFACEDIFFUSION_BRAIN_DIR=$PWD/$data/wheels/brains
 
 "$environment/bin/codespell" --ignore-words-list "te,ue,fo,numer" Documentation Examples/Web \
   README.md CONTRIBUTING.md RELEASING.md CHANGELOG.md Filters/*.md Examples/FIGURES.md Packaging/README.md Examples/ParaView/GUIDE.md Plugin/README.md

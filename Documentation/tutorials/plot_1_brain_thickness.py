@@ -17,12 +17,11 @@ from surfacediffusion import Surface, heat
 from surfacediffusion.examples import fetch, show
 from surfacediffusion.files import read_data, read_surface
 
-white = read_surface(fetch("lh.white.surf.gii.gz"))
+white = read_surface(fetch("white_left.gii.gz"))
 points, faces = white.points, white.faces
-thickness = read_data(fetch("lh.thickness.shape.gii.gz")).parts[0].values[:, 0]
-cortex = read_data(fetch("lh.cortex.label.gz")).parts[0]
-wall = np.ones(len(points), dtype=bool)
-wall[cortex.vertices] = False
+thickness = read_data(fetch("thick_left.gii.gz")).parts[0].values[:, 0]
+# A time series has no signal at the medial wall. FreeSurfer's lh.cortex.label has the other vertices.
+wall = ~read_data(fetch("rest_left.mgz")).parts[0].values.any(axis=1)
 print(f"{wall.sum()} of {wall.size} vertices are the wall; {(thickness == 0).sum()} have no thickness")
 assert wall.sum() == 888
 
