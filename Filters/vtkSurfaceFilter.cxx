@@ -373,6 +373,7 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
     return !this->IsAborted();
   };
   const ProgressMonitor progress(report);
+  refinement.Begin();
   this->Private->RefinementWarnings.clear();
   this->Private->IsComplete = true;
   Sentence reason;

@@ -219,7 +219,6 @@ double PieceRefinement::Bisect(const std::vector<SurfacePiece>& pieces, double l
 
 Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces)
 {
-  this->Replaced.clear();
   Index triangles = 0;
   for (std::size_t p = 0; p < pieces.size(); ++p)
   {
@@ -243,7 +242,6 @@ void PieceRefinement::Undo()
   {
     replacement.Output->ShallowCopy(replacement.Before);
   }
-  this->Replaced.clear();
 }
 
 } // namespace SurfaceDiffusion

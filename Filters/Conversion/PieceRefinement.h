@@ -28,6 +28,9 @@ public:
   /// The cell of the input that each cell of a refined surface lies in.
   static constexpr const char* IdsName = "vtkOriginalCellIds";
 
+  /// Forget the pieces that the last update has replaced.
+  void Begin() { this->Replaced.clear(); }
+
   /// The distinct edges of the triangles of all pieces.
   struct EdgeSum
   {
@@ -48,7 +51,7 @@ public:
   /// triangles of the pieces that were replaced.
   Index Replace(std::vector<SurfacePiece>& pieces);
 
-  /// Make the outputs copies of the inputs that were replaced, and forget these.
+  /// Make the outputs copies of the inputs that were replaced since Begin().
   void Undo();
 
 private:

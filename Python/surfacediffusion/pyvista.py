@@ -565,14 +565,14 @@ def _split(padded: NDArray[Any]) -> Iterator[NDArray[Any]]:
 
 def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_Block]:
     """The surfaces of a mesh, without empty blocks. Keywords of refinement are used and removed."""
-    given = [keywords.pop(new.name, new.default) for new in keywords_of(function)]
+    refine_to, limit = (keywords.pop(new.name, new.default) for new in keywords_of(function))
     leaves = list(find_polydata(mesh))
     blocks = [block for block in map(_Block, leaves) if not block.empty]
     if not any(leaf.n_points > 0 for leaf in leaves):
         raise ValueError("the mesh is empty; allowed: a surface of polygons or strips")
     if not blocks:
         raise ValueError("the mesh has no polygons or strips; allowed: a surface")
-    refined = refine_as_asked([block.surface for block in blocks], function, *given,
+    refined = refine_as_asked([block.surface for block in blocks], function, refine_to, limit,
                               keywords.get("feature_size", 0.0))
     if refined is not None:
         blocks = [block.with_edges(fine) for block, fine in zip(blocks, refined)]

@@ -415,6 +415,16 @@ TEST(SurfaceReliefFilter, RefinesLargeFacesWithTheirData)
   filter->Update();
   EXPECT_EQ(filter->GetOutput()->GetPoints(), box->GetPoints());
   filter->SetHeight(0.1);
+  filter->SetRefineTo(0.8);
+  filter->Update();
+  filter->SetRefineTo(0.0);
+  filter->SetHeight(vtkMath::Nan());
+  const auto other = Box(5.0, 2);
+  filter->SetInputData(other);
+  filter->Update(); // nothing of the former update comes back
+  EXPECT_EQ(filter->GetOutput()->GetPoints(), other->GetPoints());
+  filter->SetInputData(box);
+  filter->SetHeight(0.1);
   filter->SetRefineTo(-1.0);
   filter->Update();
   EXPECT_NE(messages.Errors.back().find("RefineTo is -1; allowed: finite numbers, 0 or more"),

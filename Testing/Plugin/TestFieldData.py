@@ -5,7 +5,7 @@ not offered as data of a filter, and do not enable it."""
 
 import unittest
 
-from paraview import servermanager
+from paraview import servermanager, simple
 from paraview.simple import TrivialProducer
 from plugin_testing import add_array, filter_names, menu
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -66,7 +66,7 @@ class TestFieldData(unittest.TestCase):
     def test_the_data_are_a_point_array_by_default(self):
         source = sphere(with_points=True)
         for name in NEED_AN_ARRAY:
-            filter = getattr(servermanager.filters, name)(Input=source)
+            filter = getattr(simple, name)(source)
             self.assertEqual(list(filter.InputArray), ["POINTS", "f"], name)
 
 
