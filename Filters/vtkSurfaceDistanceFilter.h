@@ -4,11 +4,11 @@
  * @class   vtkSurfaceDistanceFilter
  * @brief   computes distances along a surface, and the arrival times of fronts
  *
- * Adds the point array `Distance`, the length of the shortest way within the surface from the nearest
- * source, in coordinate units: the solution of |grad T| = 1 with T = 0 at the sources. With speeds or
- * start times it is the `ArrivalTime` T of fronts, |grad T| = 1/speed with T = T_0 at the sources. It
- * becomes the active scalars. Points that no way reaches have infinity, which NumberOfUnreachedPoints
- * counts: those on components without source, and those behind barriers.
+ * Adds the point array `Distance`, the length of the shortest way within the surface from the
+ * nearest source, in coordinate units: the solution of |grad T| = 1 with T = 0 at the sources. With
+ * speeds or start times it is the `ArrivalTime` T of fronts, |grad T| = 1/speed with T = T_0 at the
+ * sources. It becomes the active scalars. Points that no way reaches have infinity, which
+ * NumberOfUnreachedPoints counts: those on components without source, and those behind barriers.
  *
  * **Sources** are
  * - the places of the surface that are nearest to the points and lines on input port 1 (a
@@ -17,8 +17,8 @@
  * - without an input on port 1, the points at which input array 0 is not 0. Points of one value are
  *   one source: a region, or a label.
  *
- * `NearestSource` is the value of array 0 at the nearest source, or the number of the point on port 1,
- * of lines the smallest of their numbers. Points that no way reaches have 0, or -1 with port 1.
+ * `NearestSource` is the value of array 0 at the nearest source, or on port 1 the number of
+ * the point, of a line the smallest of its points. Points that no way reaches have 0, or -1.
  *
  * | input array | association | meaning |
  * | --- | --- | --- |
@@ -27,34 +27,35 @@
  * | 8 | points or cells | SpeedArray: the speed of fronts, 0 or more, in coordinate units per unit of time; on points, a triangle has the mean of its corners. Triangles of speed 0 are barriers |
  * | 9 | points | SourceTimes: T_0 of the sources of array 0 |
  *
- * Arrays 8 and 9 need Method Eikonal. A source that the mask or a barrier excludes, or that no triangle
- * uses, does not count, with a warning; sources of port 1 near to excluded triangles do not move to
- * others. Without any source that counts, the update is an error.
+ * Arrays 8 and 9 need Method Eikonal. A source that the mask or a barrier excludes, or that no
+ * triangle uses, does not count, with a warning; sources of port 1 near to excluded triangles do
+ * not move to others. Without any source that counts, the update is an error.
  *
  * **Method.**
- * - Heat: the heat method (K. Crane, C. Weischedel, M. Wardetzky, ACM Trans. Graph. 32(5), 2013) with
- *   the time step 2 h^2 of the mean edge length h, on the intrinsic Delaunay triangulation. Level sets
- *   are smooth, also where fronts meet. The mean error is 0.2 % of the largest distance on an icosphere
- *   of 10,242 points, and falls with order 0.6 to 0.9 in h. Its two factors are kept: further sources
- *   on the same surface take two substitutions. At boundaries its condition is that of no flux.
- * - Eikonal: fast marching on the triangles (R. Kimmel, J. Sethian, PNAS 95, 1998) that lays the way
- *   from the source out in the plane of each triangle (M. Novotni, R. Klein, WSCG 2002), on the
+ * - Heat: the heat method (K. Crane, C. Weischedel, M. Wardetzky, ACM Trans. Graph. 32(5), 2013)
+ *   with the time step 2 h^2 of the mean edge length h, on the intrinsic Delaunay triangulation.
+ *   Level sets are smooth, also where fronts meet. The mean error is 0.2 % of the largest distance
+ *   on an icosphere of 10,242 points, and falls with order 0.6 to 0.9 in h; distances from lines
+ *   are up to 2 h too long far away. Its two factors are kept: further sources on the same surface
+ *   take two substitutions. At boundaries its condition is that of no flux.
+ * - Eikonal: fast marching on the triangles (R. Kimmel, J. Sethian, PNAS 95, 1998) that lays the
+ *   way from the source out in the plane of each triangle (M. Novotni, R. Klein, WSCG 2002), on the
  *   intrinsic Delaunay triangulation or, with speeds, on the triangles of the surface. Distances in
  *   planes are exact; the mean error on the same icosphere is 0.09 %.
  *
- * Fronts of different sources do not mix: with Eikonal the distance is the smallest of those of each
- * source alone. With Heat, NearestSource is that of Eikonal.
+ * Fronts of different sources do not mix: with Eikonal the distance is the smallest of those of
+ * each source alone. With Heat, NearestSource is that of Eikonal.
  *
- * Ways end at boundaries, and go around their corners. Where three or more triangles share an edge, ways
- * go on from each of them to all others. With ComputeGradient, `DistanceGradient` or
- * `ArrivalTimeGradient` is the gradient in the tangent planes, the mean over the triangles around each
- * point by area: away from sources it has the length 1 or 1/speed. At sources and where fronts meet the
- * gradient is not continuous, and its mean is shorter.
+ * Ways end at boundaries, and go around their corners. Where three or more triangles share an edge,
+ * ways go on from each of them to all others. With ComputeGradient, `DistanceGradient` or
+ * `ArrivalTimeGradient` is the gradient in the tangent planes, the mean over the triangles around
+ * each point by area: away from sources it has the length 1 or 1/speed. At sources and where fronts
+ * meet the gradient is not continuous, and its mean is shorter.
  *
- * ResultArrayName, if it is not empty, is the prefix of the names of these arrays. With composite data
- * each block is a surface of its own, which takes the sources of its own array, or all those of port 1.
- * Surfaces in pieces, over processes and partitions, are gathered and solved in process 0, with the
- * points of port 1 of all processes; see vtkSurfaceFilter.
+ * ResultArrayName, if it is not empty, is the prefix of the names of these arrays. With composite
+ * data each block is a surface of its own, which takes the sources of its own array, or all those
+ * of port 1. Surfaces in pieces, over processes and partitions, are gathered and solved in process
+ * 0, with the points of port 1 of all processes; see vtkSurfaceFilter.
  *
  * @sa vtkSurfaceInterpolationFilter vtkSurfaceDerivativesFilter vtkDijkstraGraphGeodesicPath
  */

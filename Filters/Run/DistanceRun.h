@@ -45,8 +45,9 @@ public:
   {
   }
 
-  /// Data, with a row per point, or Sources, and Speeds and StartTimes of the fields are read. A surface
-  /// without source has infinite distances. Throws std::runtime_error, std::bad_alloc, Aborted.
+  /// Data, with a row per point, or Sources, and Speeds and StartTimes of the fields are read. A
+  /// surface without source has infinite distances. Throws std::runtime_error, std::bad_alloc,
+  /// Aborted.
   void Update(const BlockInput& input, DistanceSettings& settings, const ProgressMonitor& progress);
 
   /// Throws InputError, which says why, if none of the surfaces, which have an area, has a source.

@@ -150,8 +150,9 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
   return found;
 }
 
-/// Samples that are near enough for no triangle between them to be missed, in most cases, and pieces
-/// between those that are in one triangle. Where a line leaves a triangle, samples become denser.
+/// Samples that are near enough for no triangle between them to be missed, in most cases, and
+/// pieces between those that are in one triangle. Where a line leaves a triangle, samples become
+/// denser.
 void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Index, 2> ends,
   Index label, const Finder& findPlace, ProjectedSources& found) const
 {

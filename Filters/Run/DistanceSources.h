@@ -33,17 +33,17 @@ struct ProjectedSources
   Index Outside = 0; ///< without one: nearest to triangles that take no part
 };
 
-/// Finds the places of a surface that are nearest to points and lines. Those nearest to triangles that
-/// the mask excludes do not count, rather than to move to others.
+/// Finds the places of a surface that are nearest to points and lines. Those nearest to triangles
+/// that the mask excludes do not count, rather than to move to others.
 class SourceProjection
 {
 public:
-  /// arrays: of the surface, which must outlive this object. Throws std::runtime_error on coordinates
-  /// that are not finite.
+  /// arrays: of the surface, which must outlive this object. Throws std::runtime_error on
+  /// coordinates that are not finite.
   SourceProjection(SurfaceArrays arrays, const SurfaceDiffusion::Surface& surface);
 
-  /// maximumDistance: in coordinate units; 0: none. slowness: per triangle of the mesh, infinite: it
-  /// takes no part; may be empty. Throws InputError on coordinates that are not finite; Aborted.
+  /// maximumDistance: in coordinate units; 0: none. slowness: per triangle of the mesh, infinite:
+  /// it takes no part; may be empty. Throws InputError on coordinates that are not finite; Aborted.
   ProjectedSources Project(const SourceShapes& shapes, double maximumDistance,
     const std::vector<double>& slowness, const ProgressMonitor& progress) const;
 

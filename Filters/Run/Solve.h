@@ -185,8 +185,8 @@ Solution Curvature(const Points& points, const Triangles& triangles,
 Solution Derivative(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DerivativesSettings settings = {}, const ParallelFor& parallel = SerialFor());
 
-/// Distances from the nonzero points of data or from data.Sources, or the arrival times of fronts with
-/// data.Speeds: see vtkSurfaceDistanceFilter.
+/// Distances from the nonzero points of data or from data.Sources, or the arrival times of fronts
+/// with data.Speeds: see vtkSurfaceDistanceFilter.
 Solution Distance(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DistanceSettings settings = {}, const ParallelFor& parallel = SerialFor());
 

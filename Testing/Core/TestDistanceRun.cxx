@@ -84,8 +84,8 @@ Shape ObliquePlate(double slope = 1.7)
 
 } // namespace
 
-// Ways in a plane are straight from points within triangles, too, also where the triangles that they
-// lie in are not those that the front runs over.
+// Ways in a plane are straight from points within triangles, too, also where the triangles that
+// they lie in are not those that the front runs over.
 TEST(DistanceRun, FromPointsWithinTrianglesIsExactInAPlane)
 {
   const std::vector<Eigen::RowVector3d> places = { { 0.123, 0.271, 0.0 }, { -1.3, 0.3, 0.4 },

@@ -70,6 +70,8 @@ class SameBits(unittest.TestCase):
         x = self.points[:, 0]
         nan = np.where(self.mask != 0, np.nan, self.values)
         colours = self.random.integers(0, 256, (len(self.points), 4), np.uint8)
+        used = np.zeros(len(x), np.uint8)
+        used[np.concatenate([np.asarray(face) for face in self.faces])] = 1
         cases = [
             ("heat", {"values": self.values}, {"FWHM": 0.2}),
             ("heat", {"values": self.columns.astype(np.float32)}, {"FWHM": 0.1}),
@@ -145,9 +147,9 @@ class SameBits(unittest.TestCase):
             ("derivatives", {"values": self.normals}, {"Quantity": "Curl"}),
             ("derivatives", {"values": self.of_faces}, {"ResultOnCells": True}),
             ("derivatives", {"values": nan}, {"Quantity": "ConductionVelocity"}),
-            ("distance", {"marked": (self.values > 1.3).astype(np.uint8)}, {"Method": "Heat"}),
-            ("distance", {"marked": 1 * (np.arange(len(x)) == 70), "mask": self.mask}, {"Method": "Eikonal"}),
-            ("distance", {"marked": 1 * (np.arange(len(x)) % 400 == 7),
+            ("distance", {"marked": (self.values > 1.3) * used}, {"Method": "Heat"}),
+            ("distance", {"marked": (np.arange(len(x)) == 70) * used, "mask": self.mask}, {"Method": "Eikonal"}),
+            ("distance", {"marked": (np.arange(len(x)) % 400 == 7) * used,
                           "speed": np.where(self.of_faces[:, 0] > 1.5, 0.0, 1.0 + self.of_faces[:, 1] ** 2)},
              {"Method": "Eikonal"}),
             ("direction_field", {}, {}),

@@ -231,8 +231,9 @@ inline std::string ExpectConsistentCurvatures(vtkPolyData* output)
   return "consistent curvatures";
 }
 
-/// Distances are 0 at the sources. Arrival times, which are found on the triangles of the surface itself,
-/// differ along no edge by more than its length takes at the speed 1, which is the smallest here.
+/// Distances are 0 at the sources. Arrival times, which are found on the triangles of the surface
+/// itself, differ along no edge by more than its length takes at the speed 1, which is the smallest
+/// here.
 inline std::string ExpectDistances(
   vtkPolyData* input, vtkPolyData* output, vtkDataArray* times, bool isMarched)
 {

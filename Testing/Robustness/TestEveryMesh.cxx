@@ -285,7 +285,8 @@ TEST_P(EveryBadMesh, IsTakenByEveryModel)
     const auto filter = kind.Make();
     if (auto* const relief = vtkSurfaceReliefFilter::SafeDownCast(filter))
     {
-      // The heights are those of a sphere of radius 1; relief that is larger than a surface is an error.
+      // The heights are those of a sphere of radius 1; relief that is larger than a surface is an
+      // error.
       const double scale = std::min(1.0, this->Surface->GetLength() / 3.5);
       relief->SetHeight(scale * relief->GetHeight());
       relief->SetBase(scale * relief->GetBase());

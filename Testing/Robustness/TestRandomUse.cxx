@@ -112,7 +112,7 @@ constexpr int Terms = 7; ///< which may be those of index 0
 
 void SetRandomArray(Dice& dice, vtkPolyDataAlgorithm* filter)
 {
-  if (filter->IsA("vtkSurfaceDistanceFilter") && dice.Flip())
+  if (filter->IsA("vtkSurfaceDistanceFilter") && dice.Flip(4))
   {
     const int which = dice.Below(2);
     const char* const name = dice.Flip(3) ? "" : ArraysOfDistances[which];

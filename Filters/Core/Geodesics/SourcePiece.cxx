@@ -118,8 +118,8 @@ private:
       { vertex, this->Slowness * (x - place).norm(), this->Piece.Label, point, 0.0 });
   }
 
-  /// Lay out the triangles beyond the edge from vertex i at a to vertex j at b of triangle t, which is
-  /// on the left of it.
+  /// Lay out the triangles beyond the edge from vertex i at a to vertex j at b of triangle t, which
+  /// is on the left of it.
   void Continue(Index t, Index i, Index j, const Vector2d& a, const Vector2d& b, int left)
   {
     this->Gates.push_back({ a, b });

@@ -23,15 +23,16 @@ struct SourcePiece
 };
 
 /// Append the fronts of a piece: the vertices of its triangle, at their straight distances from it,
-/// times the slowness. With `around`, also the vertices that a straight way reaches over up to three
-/// more triangles, laid out side by side: on an intrinsic Delaunay triangulation of the same surface
-/// the piece may lie in a triangle with any of these vertices. Vertices that are nearest to a point of
-/// the source have its number, others numbers from nextPoint on, which becomes one more for each.
+/// times the slowness. With `around`, also the vertices that a straight way reaches over up to
+/// three more triangles, laid out side by side: on an intrinsic Delaunay triangulation of the same
+/// surface the piece may lie in a triangle with any of these vertices. Vertices that are nearest to
+/// a point of the source have its number, others numbers from nextPoint on, which becomes one more
+/// for each.
 void AppendFronts(const TriangleMesh& mesh, const SourcePiece& piece, double slowness, bool around,
   Index& nextPoint, std::vector<FrontSource>& fronts);
 
-/// The same for heat, at the vertices of the triangle. Their shares are the barycentric coordinates of
-/// the place of the piece that is nearest to them.
+/// The same for heat, at the vertices of the triangle. Their shares are the barycentric coordinates
+/// of the place of the piece that is nearest to them.
 void AppendHeat(
   const TriangleMesh& mesh, const SourcePiece& piece, std::vector<HeatSource>& sources);
 
