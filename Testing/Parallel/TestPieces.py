@@ -14,8 +14,8 @@ from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceCurvatureFilter,
     SurfaceDenoisingFilter, SurfaceDerivativesFilter, SurfaceDirectionFieldFilter,
-    SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceReliefFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
-    TrivialProducer, TuringTextureFilter,
+    SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceReliefFilter,
+    SurfaceSegmentationFilter, TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
