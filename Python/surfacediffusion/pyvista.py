@@ -342,8 +342,8 @@ def distance(
     """
     blocks = _find_surfaces(mesh)
     for block in blocks:
-        fronts = {"speed": block.find("speed", speed, faces=True)[0],
-                  "mask": block.find("mask", mask, faces=True)[0]}
+        speeds = block.find("speed", speed, faces=True)[0]
+        left_out = block.find("mask", mask, faces=True)[0]
         if isinstance(sources, str):
             marks = block.find("sources", sources)[0]
             assert marks is not None
@@ -354,10 +354,9 @@ def distance(
                 [block.mesh.find_closest_point(place) for place in sources.points]
                 if hasattr(sources, "points") else sources)
             names, nowhere = np.arange(len(rows)) if hasattr(sources, "points") else rows, -1
-        times = _distance(block.surface, rows, method=method, progress=progress, **fronts)
-        if method == "Heat":
-            fronts["speed"] = None
-        nearest = _nearest_sources(block.surface, rows, **fronts).source
+        times = _distance(block.surface, rows, speed=speeds, mask=left_out, method=method,
+                          progress=progress)
+        nearest = _nearest_sources(block.surface, rows, speed=speeds, mask=left_out).source
         prefix = result_array_name or ""
         name = prefix + ("Distance" if speed is None else "ArrivalTime")
         block.add(name, times, False)

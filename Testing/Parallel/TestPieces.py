@@ -14,8 +14,8 @@ from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceCurvatureFilter,
     SurfaceDenoisingFilter, SurfaceDerivativesFilter, SurfaceDirectionFieldFilter,
-    SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceReliefFilter, SurfaceSegmentationFilter, TensorDiffusionFilter,
-    TrivialProducer, TuringTextureFilter,
+    SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceReliefFilter,
+    SurfaceSegmentationFilter, TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -84,9 +84,6 @@ CASES = (
     ("curvature", SurfaceCurvatureFilter, dict(FWHM=0.3), "MeanCurvature"),
     ("derivatives", SurfaceDerivativesFilter, {}, "fGradient"),
     ("distance", SurfaceDistanceFilter, dict(SourceArray=["POINTS", "hole"]), "Distance"),
-    ("arrival", SurfaceDistanceFilter,
-     dict(SourceArray=["POINTS", "hole"], SpeedArray=["POINTS", "speed"], Method="Eikonal"),
-     "ArrivalTime"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
     ("direction, hints", SurfaceDirectionFieldFilter,
      dict(Method="Hints", DirectionArray=["CELLS", "around"]), "Direction"),

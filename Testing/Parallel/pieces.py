@@ -54,7 +54,6 @@ def make_surface(around=44, along=20):
     of_points.SetScalars(add(of_points, "f", np.sign(z) + 0.3 * x + noise))
     add(of_points, "colors", (127 + 100 * np.stack([np.sin(x), np.cos(y), noise], 1)).astype(np.uint8))
     add(of_points, "hole", hole)
-    add(of_points, "speed", 1.5 + np.sin(x))
     add(of_points, "damaged", np.where(hole, np.nan, np.sign(z) + 0.3 * x + noise))
     add(of_points, "ends", (np.abs(z) > 1.0).astype(np.uint8))
     add(of_points, "vectors", np.stack([np.cos(a) + noise, np.sin(a), noise], 1))

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """The initial scene of the client: smooth data on an ellipsoid, and two regions of noisy data on an
-ellipsoid with noisy points, and a patch of an ellipsoid. Results are shown in black and white bands, so that small differences of
-values are large differences of images."""
+ellipsoid with noisy points, and a patch of an ellipsoid. Results are shown in black and white
+bands, so that small differences of values are large differences of images."""
 
 from paraview.simple import (
     Calculator, GenerateSurfaceNormals, GetActiveViewOrCreate, GetColorTransferFunction, Render,
