@@ -303,8 +303,8 @@ def heat(
     with them thickness maps of cortices are within 0.1 % (L2) of the solution at widths of 6 to 20 mm.
 
     More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
-    in double precision does not grow with their number. This does not hold with `automatic_fidelity`
-    and ``initial_fill="Noise"``, which need all columns at once.
+    in double precision does not grow with their number. This does not hold with `automatic_fidelity`,
+    ``initial_fill="Noise"`` and :func:`heat_steps`, which need all columns at once.
 
     :func:`heat_steps` has the states on the way, and times, energies and totals.
 
@@ -381,8 +381,8 @@ def intrinsic_tv(
     >>> bool(result.effective_fidelity_weight > 0)
     True
     """
-    return _diffusion("intrinsic_tv", DiffusionResult, surface, values, on_faces, mask, roi, directions, fixed,
-                      fidelity, dtype, progress, properties)
+    return _diffusion("intrinsic_tv", DiffusionResult, surface, values, on_faces, mask, roi, directions,
+                      fixed, fidelity, dtype, progress, properties)
 
 
 @_with_settings
