@@ -470,15 +470,6 @@ class TestProxies(unittest.TestCase):
             # A state that a script has set can be left again.
             self.assertLessEqual(set(values), set(offered(proxy)), (name, values))
 
-    def test_relief_is_of_the_texture_or_else_of_the_active_scalars(self):
-        texture = simple.TuringTextureFilter(simple.Sphere(), NumberOfTimeSteps=2)
-        other = simple.Calculator(texture, ResultArrayName="other", Function="coordsX")
-        height = simple.Elevation(simple.Sphere())
-        for source, expected in ((texture, "Texture"), (other, "Texture"), (height, "Elevation")):
-            source.UpdatePipeline()
-            found = simple.SurfaceReliefFilter(source)
-            self.assertEqual(list(found.InputArray), ["POINTS", expected])
-
     def test_what_is_clicked_is_never_refused(self):
         """Any sequence of clicks on properties that the panel offers gives a run without error."""
         dice = random.Random(7)
