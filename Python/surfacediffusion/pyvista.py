@@ -340,7 +340,7 @@ def distance(
     the number of the point. Points that no way reaches have inf, and 0 or -1. result_array_name is the
     prefix of the names.
     """
-    blocks = _find_surfaces(mesh)
+    blocks = _find_surfaces(mesh, "distance", {})
     for block in blocks:
         speeds = block.find("speed", speed, faces=True)[0]
         left_out = block.find("mask", mask, faces=True)[0]
