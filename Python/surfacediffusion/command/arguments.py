@@ -576,9 +576,9 @@ def _refine(commands):
     parser.add_argument("length", metavar="LENGTH", type=_positive,
                         help="the length of the longest edge allowed, in the unit of the coordinates")
     parser.add_argument("output", metavar="OUTPUT", help="the surface with shorter edges")
-    parser.add_argument("--data", metavar=("DATA", "NEW"), nargs=2, action="append", default=[],
-                        help="data at the vertices of SURFACE, and where to write those at the vertices "
-                             "of OUTPUT; may be repeated")
+    parser.add_argument("--data", metavar="FILE", nargs=2, action="append", default=[],
+                        help="two files: DATA at the vertices of SURFACE, and NEW for those at the "
+                             "vertices of OUTPUT; may be repeated")
     parser.add_argument("--maximum-triangles", metavar="N", type=_count, default=4_000_000,
                         help="refinement stops before there are more, with a warning (default 4000000)")
 
