@@ -44,8 +44,8 @@
  *   planes are exact; the mean error on the same icosphere is 0.09 %.
  *
  * Where fronts of Eikonal arrive at the same time, as around a region on an even mesh, round-off
- * decides between them, so that another numbering of the points changes results by a small part of
- * an edge.
+ * decides between them, so that another numbering of the points changes results by up to a quarter
+ * of an edge, half of the error.
  *
  * Fronts of different sources do not mix: with Eikonal the distance is the smallest of those of
  * each source alone. With Heat, NearestSource is that of Eikonal.

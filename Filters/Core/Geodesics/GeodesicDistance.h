@@ -31,8 +31,9 @@ struct FrontSource
 /// is plane. In both cases the way has to cross the edge between them; others go along an edge.
 ///
 /// Each time is the length of a path over triangles laid out side by side. A vertex whose time
-/// decreases later is visited again, so that times do not depend on the order of the vertices, and
-/// obtuse triangles need no unfolding. On an intrinsic Delaunay triangulation (IntrinsicDelaunay)
+/// decreases later is visited again, and obtuse triangles need no unfolding. Times do not depend on
+/// the order of the vertices, except where ways from several points of a region are equally long, as
+/// on even meshes: by up to a quarter of an edge there, half of the error. On an intrinsic Delaunay triangulation (IntrinsicDelaunay)
 /// fewer ways go along edges, and distances have smaller errors; the vertices, and the surface, are
 /// the same.
 ///
