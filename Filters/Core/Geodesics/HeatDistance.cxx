@@ -145,23 +145,23 @@ Values HeatDistance::Directions(const std::vector<HeatSource>* sets, const Value
     {
       times = MarchFrom(this->Operators->SharedMesh(), sets[k]);
     }
-    // Between sources the distance is 0, where the heat has a gradient of any direction.
-    std::vector<char> isSource(static_cast<std::size_t>(heat.rows()), 0);
+    // Around sources the distance is known, and the heat has a gradient of any direction.
+    std::vector<double> known(static_cast<std::size_t>(heat.rows()), Never);
     for (const HeatSource& source : sets[k])
     {
-      isSource[static_cast<std::size_t>(source.Vertex)] |= source.Distance == 0.0 ? 1 : 0;
+      double& distance = known[static_cast<std::size_t>(source.Vertex)];
+      distance = std::min(distance, source.Distance);
     }
     ForEach(this->Parallel, triangles,
       [&](Index t)
       {
         const TriangleMesh::Shape& shape = mesh.Shapes()[static_cast<std::size_t>(t)];
-        Eigen::Vector3d u;
-        int sources = 0;
+        Eigen::Vector3d u, d;
         for (int a = 0; a < 3; ++a)
         {
           const Index vertex = mesh.TriangleVertices()(t, a);
           u[a] = -heat(vertex, k);
-          sources += isSource[static_cast<std::size_t>(vertex)];
+          d[a] = known[static_cast<std::size_t>(vertex)];
         }
         if (isFar && !(u.maxCoeff() < -LeastHeat))
         {
@@ -170,7 +170,8 @@ Values HeatDistance::Directions(const std::vector<HeatSource>* sets, const Value
             u[a] = times[static_cast<std::size_t>(mesh.TriangleVertices()(t, a))];
           }
         }
-        const Eigen::Vector2d x = (sources < 3 ? shape.Area() : 0.0) * UnitGradient(shape, u);
+        const Eigen::Vector2d x = shape.Area() *
+          (d.maxCoeff() < Never ? Gradient(shape, d[0], d[1], d[2]) : UnitGradient(shape, u));
         parts[static_cast<std::size_t>(t)] = { x.dot(Gradient(shape, 1.0, 0.0, 0.0)),
           x.dot(Gradient(shape, 0.0, 1.0, 0.0)), x.dot(Gradient(shape, 0.0, 0.0, 1.0)) };
       });

@@ -27,7 +27,7 @@ struct HeatSource
 ///     (M + t K) u = b,    t = m h^2,
 ///
 /// whose gradient points to them, and the function phi whose gradient is closest to the unit vectors
-/// X = -grad u / |grad u|, or 0 on triangles with three sources,
+/// X = -grad u / |grad u| or, on triangles with three sources, to the gradient of their distances,
 ///
 ///     K phi = sum over the triangles of area grad(phi_i) . X.
 ///
