@@ -41,7 +41,7 @@
  * - Eikonal: fast marching on the triangles (R. Kimmel, J. Sethian, PNAS 95, 1998) that lays the
  *   way from the source out in the plane of each triangle (M. Novotni, R. Klein, WSCG 2002), on the
  *   intrinsic Delaunay triangulation or, with speeds, on the triangles of the surface. Distances in
- *   planes are exact; the mean error on the same icosphere is 0.06 %.
+ *   planes are exact; mean errors on the same icosphere are 0.06 to 0.09 %.
  *
  * Where fronts of Eikonal arrive at the same time, as around a region on an even mesh, round-off
  * decides between them, so that another numbering of the points changes results by up to a quarter

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._operators import import_sparse
+from ._refinement import MAXIMUM_TRIANGLES, take_along
 from ._run import Progress, ProgressReporter
 from ._settings import shorten
 from ._surface import Surface, SurfaceLike, as_flags, as_numbers, as_surface, find_place
@@ -37,13 +38,15 @@ def distance(
     mask: ArrayLike | None = None,
     method: str = "Eikonal",
     progress: Progress = None,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NDArray[np.float64]:
     """The distance along a surface from the nearest source, or with `speed` the time at which
     fronts from the sources arrive: |grad T| = 1 / speed, T = `start` at the sources.
 
     Fast marching on the triangles, which lays out the way from the source in the plane of each
     triangle: distances in a plane are exact, and those of an icosphere of 10,242 points have a mean
-    error of 0.09 % of the largest one. Without `speed` the triangles are those of the intrinsic
+    error of 0.06 to 0.09 % of the largest one. Without `speed` the triangles are those of the intrinsic
     Delaunay triangulation. The method Heat has smooth level sets and, on the same sphere, an error of
     0.22 %.
 
@@ -66,6 +69,12 @@ def distance(
         edge length, without `start` and `speed`.
     progress : bool or callable, optional
         As for :func:`heat`.
+    refine_to : float, 0 or more, in coordinates, default 0
+        Edges that are longer are bisected first: the result belongs to the points of
+        ``refine(surface, refine_to).surface``, which begin with the given ones. 0: the surface stays as
+        it is.
+    maximum_number_of_triangles : int, 1 or more, default 4000000
+        Refinement stops before there are more, with a warning.
 
     Returns
     -------
@@ -94,11 +103,13 @@ def distance(
     if method not in ("Eikonal", "Heat"):
         raise ValueError(f"method is {shorten(method)}; allowed: Eikonal, Heat")
     if method == "Eikonal":
-        return _march(surface, sources, start, speed, mask, False, progress).distance
+        return _march(surface, sources, start, speed, mask, False, progress, refine_to,
+                      maximum_number_of_triangles).distance
     for name, given in (("start", start), ("speed", speed)):
         if given is not None:
             raise ValueError(f"method is Heat; allowed: Eikonal together with {name}")
-    fronts, rows = _prepare(as_surface(surface), sources, None, mask)
+    surface, given = take_along(surface, "distance", refine_to, maximum_number_of_triangles, {"mask": mask})
+    fronts, rows = _prepare(surface, sources, None, given["mask"])
     with ProgressReporter(progress) as reporter:
         found: NDArray[np.float64] = fronts.by_heat(rows, HEAT_STEP, reporter.callable)
         reporter.finish_part()
@@ -113,6 +124,8 @@ def nearest_sources(
     speed: ArrayLike | None = None,
     mask: ArrayLike | None = None,
     progress: Progress = None,
+    refine_to: float = 0.0,
+    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NearestSources:
     """The distance from the nearest source, and the row of this source. Fronts of the sources do not
     mix: the distance is the smallest of those by :func:`distance` from each source alone. From all
@@ -120,7 +133,7 @@ def nearest_sources(
 
     Parameters
     ----------
-    surface, sources, start, speed, mask, progress
+    surface, sources, start, speed, mask, progress, refine_to, maximum_number_of_triangles
         As for :func:`distance`.
 
     Returns
@@ -136,14 +149,16 @@ def nearest_sources(
     >>> nearest_sources(strip, [0, 5]).source
     array([0, 0, 1, 0, 1, 1])
     """
-    return _march(surface, sources, start, speed, mask, True, progress)
+    return _march(surface, sources, start, speed, mask, True, progress, refine_to,
+                  maximum_number_of_triangles)
 
 
 def _march(
     surface: SurfaceLike, sources: Any, start: Any, speed: Any, mask: Any, apart: bool,
-    progress: Progress
+    progress: Progress, refine_to: float, limit: int
 ) -> NearestSources:
-    fronts, rows = _prepare(as_surface(surface), sources, speed, mask)
+    surface, given = take_along(surface, "distance", refine_to, limit, {"mask": mask, "speed": speed})
+    fronts, rows = _prepare(surface, sources, given["speed"], given["mask"])
     times = np.zeros(len(rows)) if start is None else np.asarray(
         as_numbers("start", start), dtype=np.float64).reshape(-1)
     if times.shape != rows.shape or not np.isfinite(times).all():

@@ -232,7 +232,7 @@ def document_keywords(function: str) -> str:
 
 #: The arguments with rows of points or faces. The first are where on_faces says, if it is given.
 _DATA = ("values", "terms", "vectors")
-_ROWS = ("initial", "mask", "roi", "directions", "fixed", "fidelity", "seeds", "rates", "hints")
+_ROWS = ("initial", "mask", "roi", "directions", "fixed", "fidelity", "seeds", "rates", "hints", "speed")
 
 
 def take_along(

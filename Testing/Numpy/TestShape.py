@@ -189,7 +189,9 @@ class RefineTo(unittest.TestCase):
             "derivatives": dict(values=z, quantity="Laplacian"),
             "interpolate": dict(values=np.where(z > 0, z, np.nan), exact=True), "denoise_mesh": {}}
         self.assertEqual(set(cases), set(sd._functions.__all__))
-        for name, arrays in {**cases, "gradient": dict(values=z), "relief": dict(values=z, height=0.1)}.items():
+        others = {"gradient": dict(values=z), "relief": dict(values=z, height=0.1),
+                  "distance": dict(sources=3, mask=mask, speed=1 + faces)}
+        for name, arrays in {**cases, **others}.items():
             with self.subTest(name):
                 self.check(getattr(sd, name), **arrays)
 
