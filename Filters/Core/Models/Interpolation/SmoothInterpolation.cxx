@@ -326,6 +326,7 @@ void SmoothInterpolation::FitSmoothly(
       others.push_back(c);
     }
   }
+  work.Fit.Restore(); // another column may have the mu of the last one, and need its own factor
   for (const Eigen::Index c : others)
   {
     double mu = std::min(largest, start.BestSmoothing(c, noise));
