@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command tells what is installed here, finds wrong results, and completes its words in a shell."""
+"""Tests of the command doctor, of --version, and of completion in a shell."""
 
 import json
 import os
@@ -53,6 +53,11 @@ class Doctor(unittest.TestCase):
             self.assertEqual((code, error), (1, "surfacediffusion: wrong results here: distance\n"))
             self.assertIn("right: heat against the solution", out)
             self.assertIn("WRONG: distance", out)
+            with mock.patch.object(doctor, "CHECKS", checks):
+                code, out, _ = run("doctor", "--json")
+            report = json.loads(out)
+            self.assertEqual((code, report["error"]), (1, "wrong results here: distance"))
+            self.assertEqual(report["checks"][0]["error"], 0.1)
 
     def test_the_checks_see_errors_of_the_numerics(self):
         """Each error grows beyond what is allowed if the surface is another one."""

@@ -66,7 +66,8 @@ def doctor(arguments, report):
         report.say(f"{'right' if error <= allowed else 'WRONG'}: {name}, error {error:.2g} of at most "
                    f"{allowed:g}, {seconds:.2f} s")
     if wrong:
-        report.finish()
+        for line in () if arguments.json or arguments.quiet else report.lines:
+            print(line)
         raise RuntimeError(f"wrong results here: {', '.join(wrong)}")
 
 
