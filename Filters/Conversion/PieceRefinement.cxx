@@ -203,6 +203,7 @@ vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vt
 double PieceRefinement::Bisect(const std::vector<SurfacePiece>& pieces, double length,
   Index maximumTriangles, const ProgressMonitor& progress)
 {
+  this->Pieces.resize(pieces.size()); // no others are kept
   double longest = 0.0;
   for (std::size_t p = 0; p < pieces.size(); ++p)
   {

@@ -266,25 +266,24 @@ std::vector<Warning> DistanceRun::FindOwnWarnings() const
   std::vector<Warning> warnings;
   Fingerprint inputs = this->SurfaceVersion;
   inputs.Add(this->FieldsVersion);
-  const auto add = [&](Index count, const char* what)
+  if (this->Found.TooFar > 0)
   {
-    if (count > 0)
-    {
-      Sentence text;
-      text << count << what;
-      warnings.push_back({ text, inputs });
-    }
-  };
-  add(this->Found.TooFar,
-    " sources are farther than MaximumDistance from the surface and do not "
-    "count");
-  add(this->Found.Outside, " sources are on no triangle that takes part and do not count");
+    Sentence text;
+    text << this->Found.TooFar << " sources are farther than " << Word::Setting("MaximumDistance")
+         << " from the surface and do not count";
+    warnings.push_back({ text, inputs });
+  }
+  if (this->Found.Outside > 0)
+  {
+    Sentence text;
+    text << this->Found.Outside << " sources are on no triangle that takes part and do not count";
+    warnings.push_back({ text, inputs });
+  }
   if (this->AllAreSources && !this->Found.AreShapes)
   {
-    warnings.push_back(
-      { Sentence("all points of the surface are sources: SourceArray is 0 nowhere, "
-                 "and the distance 0 everywhere"),
-        inputs });
+    Sentence text("all points of the surface are sources: ");
+    text << Word::Array("SourceArray") << " is 0 nowhere, and the distance 0 everywhere";
+    warnings.push_back({ text, inputs });
   }
   return warnings;
 }

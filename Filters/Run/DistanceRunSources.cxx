@@ -32,7 +32,7 @@ double SpeedOfTriangle(const Fields& fields, Index row, const Triangles& triangl
   return sum / 3.0;
 }
 
-/// Throws InputError unless all numbers are finite and, if `positive`, 0 or more.
+/// Throws InputError unless the numbers that count are finite and, if `nonNegative`, 0 or more.
 void RequireFinite(const std::vector<double>& numbers, const char* name, bool onCells,
   bool nonNegative, const std::vector<char>& counts)
 {

@@ -33,9 +33,9 @@ struct FrontSource
 /// Each time is the length of a path over triangles laid out side by side. A vertex whose time
 /// decreases later is visited again, and obtuse triangles need no unfolding. Times do not depend on
 /// the order of the vertices, except where ways from several points of a region are equally long, as
-/// on even meshes: by up to a quarter of an edge there, half of the error. On an intrinsic Delaunay triangulation (IntrinsicDelaunay)
-/// fewer ways go along edges, and distances have smaller errors; the vertices, and the surface, are
-/// the same.
+/// on even meshes: by up to a quarter of an edge there, half of the error. On an intrinsic Delaunay
+/// triangulation (IntrinsicDelaunay) fewer ways go along edges, and distances have smaller errors;
+/// the vertices, and the surface, are the same.
 ///
 /// A triangle of infinite slowness is a barrier: no way crosses it, but ways along an edge that
 /// another triangle shares go by. Ways around a corner of a boundary or a barrier, where the open
