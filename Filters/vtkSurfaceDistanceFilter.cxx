@@ -4,15 +4,13 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
+#include "Conversion/PointInput.h"
 #include "Conversion/SourceInput.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DistanceRun.h"
 #include "Run/OwnedSettings.h"
 #include "vtkSurfaceFilterInternals.h"
 
-#include "vtkDataObject.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 
 using namespace SurfaceDiffusion;
@@ -44,10 +42,7 @@ int vtkSurfaceDistanceFilter::FillInputPortInformation(int port, vtkInformation*
   {
     return this->Superclass::FillInputPortInformation(port, info);
   }
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
-  // Other data are an error, whose message says what to do.
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+  DescribePointPort(info);
   return 1;
 }
 
@@ -55,8 +50,7 @@ int vtkSurfaceDistanceFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   UpdateState& state = *this->State;
-  vtkDataObject* const sources =
-    inputs[1]->GetNumberOfInformationObjects() > 0 ? vtkDataObject::GetData(inputs[1]) : nullptr;
+  vtkDataObject* const sources = FindSecondInput(inputs);
   state.HasSources = sources != nullptr;
   state.ProblemsOfSources.clear();
   if (sources)

@@ -32,18 +32,14 @@ int vtkSurfaceInterpolationFilter::FillInputPortInformation(int port, vtkInforma
   {
     return this->Superclass::FillInputPortInformation(port, info);
   }
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
-  // Other data are an error, whose message says what to do.
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+  DescribePointPort(info);
   return 1;
 }
 
 int vtkSurfaceInterpolationFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkDataObject* const points =
-    inputs[1]->GetNumberOfInformationObjects() > 0 ? vtkDataObject::GetData(inputs[1]) : nullptr;
+  vtkDataObject* const points = FindSecondInput(inputs);
   this->HasPoints = points != nullptr;
   this->ProblemsOfPoints.clear();
   if (points)

@@ -5,8 +5,11 @@
 #include "Conversion/FieldReader.h"
 #include "Distributed/Processes.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
@@ -64,6 +67,29 @@ void Gather(const Processes& processes, PointSamples& samples)
 
 } // namespace
 
+void DescribePointPort(vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+}
+
+vtkDataObject* FindSecondInput(vtkInformationVector** inputs)
+{
+  return inputs[1]->GetNumberOfInformationObjects() > 0 ? vtkDataObject::GetData(inputs[1])
+                                                        : nullptr;
+}
+
+Points ReadPlaces(vtkPointSet* points)
+{
+  Points places(points->GetNumberOfPoints(), 3);
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    points->GetPoint(i, places.row(i).data());
+  }
+  return places;
+}
+
 std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
   const PointInputNames& names, vtkMultiProcessController* controller, Problems& problems)
 {
@@ -95,11 +121,7 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
       const vtkIdType count = points->GetNumberOfPoints();
       samples->Name = values->GetName() ? values->GetName() : "";
       samples->Given = ReadValues(values);
-      samples->Places.resize(count, 3);
-      for (vtkIdType i = 0; i < count; ++i)
-      {
-        points->GetPoint(i, samples->Places.row(i).data());
-      }
+      samples->Places = ReadPlaces(points);
       for (vtkIdType i = 0; weights && i < count; ++i)
       {
         samples->Weights.push_back(weights->GetComponent(i, 0));

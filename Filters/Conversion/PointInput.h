@@ -10,10 +10,23 @@
 #include <string>
 
 class vtkDataObject;
+class vtkInformation;
+class vtkInformationVector;
 class vtkMultiProcessController;
+class vtkPointSet;
 
 namespace SurfaceDiffusion
 {
+
+/// Describe a port that takes a vtkPointSet or nothing. It also lets other data through, for an error
+/// whose message says what to do.
+void DescribePointPort(vtkInformation* info);
+
+/// The data on port 1; null without any.
+vtkDataObject* FindSecondInput(vtkInformationVector** inputs);
+
+/// The coordinates of all points.
+Points ReadPlaces(vtkPointSet* points);
 
 /// The names of point arrays of points with values.
 struct PointInputNames

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/SourceInput.h"
 
+#include "Conversion/PointInput.h"
 #include "Distributed/Processes.h"
 
 #include "vtkCellType.h"
@@ -18,16 +19,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-std::vector<double> ReadPlaces(vtkPointSet* points)
-{
-  std::vector<double> places(3 * static_cast<std::size_t>(points->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-  {
-    points->GetPoint(i, &places[3 * static_cast<std::size_t>(i)]);
-  }
-  return places;
-}
 
 /// The ends of the straight parts of lines, one after the other.
 std::vector<int> ReadSegments(vtkPointSet* points)
@@ -66,11 +57,13 @@ std::shared_ptr<const SourceShapes> ReadSources(
       "vtkTableToPolyData)");
     return nullptr;
   }
-  std::vector<double> places = ReadPlaces(points);
+  auto sources = std::make_shared<SourceShapes>();
+  sources->Places = ReadPlaces(points);
   std::vector<int> ends = ReadSegments(points);
   if (processes.Count() > 1)
   {
-    const std::vector<int> counts = processes.GatherAll({ static_cast<int>(places.size() / 3) });
+    const Points& here = sources->Places;
+    const std::vector<int> counts = processes.GatherAll({ static_cast<int>(here.rows()) });
     int first = 0;
     for (int rank = 0; rank < processes.Rank(); ++rank)
     {
@@ -80,18 +73,18 @@ std::shared_ptr<const SourceShapes> ReadSources(
     {
       end += first;
     }
-    places = processes.GatherAll(places);
+    const std::vector<double> places =
+      processes.GatherAll(std::vector<double>(here.data(), here.data() + here.size()));
+    sources->Places =
+      Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.size() / 3), 3);
     ends = processes.GatherAll(ends);
   }
-  if (places.empty())
+  if (sources->Places.rows() == 0)
   {
     problems.emplace_back(
       "the second input, the sources, has 0 points; allowed: 1 or more points or lines");
     return nullptr;
   }
-  auto sources = std::make_shared<SourceShapes>();
-  sources->Places =
-    Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.size() / 3), 3);
   for (std::size_t k = 0; k + 1 < ends.size(); k += 2)
   {
     sources->Segments.push_back({ ends[k], ends[k + 1] });

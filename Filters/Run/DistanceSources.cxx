@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/DistanceSources.h"
 
+#include "Core/Foundation/DisjointSets.h"
 #include "Run/Sentence.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -24,29 +24,18 @@ bool IsSet(const std::vector<char>& flags, std::size_t i)
 
 std::vector<Index> SourceShapes::FindLabels() const
 {
-  std::vector<Index> parent(static_cast<std::size_t>(this->Places.rows()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto rootOf = [&](Index i)
-  {
-    while (parent[static_cast<std::size_t>(i)] != i)
-    {
-      Index& above = parent[static_cast<std::size_t>(i)];
-      above = parent[static_cast<std::size_t>(above)];
-      i = above;
-    }
-    return i;
-  };
+  const auto count = static_cast<Index>(this->Places.rows());
+  DisjointSets sets(count);
   for (const auto& [first, second] : this->Segments)
   {
-    const Index a = rootOf(first);
-    const Index b = rootOf(second);
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    sets.Join(first, second);
   }
-  for (Index i = 0; i < static_cast<Index>(parent.size()); ++i)
+  std::vector<Index> smallest;
+  for (Index i = 0; i < count; ++i)
   {
-    parent[static_cast<std::size_t>(i)] = rootOf(i);
+    smallest.push_back(sets.Find(i));
   }
-  return parent;
+  return smallest;
 }
 
 SourceProjection::SourceProjection(SurfaceArrays arrays, const Surface& surface)
