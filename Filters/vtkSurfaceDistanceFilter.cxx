@@ -87,6 +87,7 @@ void vtkSurfaceDistanceFilter::ProcessSurfaces(
       fields[b].StartTimes = inputs.Find(9, "SourceTimes", 1);
     }
     fields[b].Mask = inputs.Find(1, "MaskArray", 1);
+    fields[b].Direction = inputs.Find(2, "DirectionArray", 3);
     fields[b].Speeds = inputs.Find(8, "SpeedArray", 1);
     const std::pair<const LocatedArray*, const char*> ofPoints[] = {
       { &fields[b].Data, "SourceArray" }, { &fields[b].StartTimes, "SourceTimes" }

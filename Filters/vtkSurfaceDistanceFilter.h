@@ -7,7 +7,7 @@
  * Adds the point array `Distance`, the length of the shortest way within the surface from the
  * nearest source, in coordinate units: the solution of |grad T| = 1 with T = 0 at the sources. With
  * speeds or start times it is the `ArrivalTime` T of fronts, |grad T| = 1/speed with T = T_0 at the
- * sources. It becomes the active scalars. Points that no way reaches have infinity, which
+ * sources; where the speed has factors along and across a direction, grad T . D grad T = 1. It becomes the active scalars. Points that no way reaches have infinity, which
  * NumberOfUnreachedPoints counts: those on components without source, and those behind barriers.
  *
  * **Sources** are
@@ -24,10 +24,11 @@
  * | --- | --- | --- |
  * | 0 | points | SourceArray: nonzero points are sources; NaN is none. Default: the active scalars. Not used with port 1 |
  * | 1 | points or cells | MaskArray: triangles with a nonzero point or cell take no part, which is a barrier |
+ * | 2 | points or cells | DirectionArray: directions e1, of any length and sign, for AlongSpeed and AcrossSpeed; zero or NaN is none, and the speed there has the geometric mean of both factors |
  * | 8 | points or cells | SpeedArray: the speed of fronts, 0 or more, in coordinate units per unit of time; on points, a triangle has the mean of its corners. Triangles of speed 0 are barriers |
  * | 9 | points | SourceTimes: T_0 of the sources of array 0 |
  *
- * Arrays 8 and 9 need Method Eikonal. A source that the mask or a barrier excludes, or that no
+ * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Eikonal. A source that the mask or a barrier excludes, or that no
  * triangle uses, does not count, with a warning; sources of port 1 near to excluded triangles do
  * not move to others. Without any source that counts, the update is an error.
  *
@@ -96,6 +97,17 @@ public:
    * more. Farther ones do not count. 0 (default): any distance.
    */
   SURFACEDIFFUSION_PROPERTY(MaximumDistance, double);
+
+  ///@{
+  /**
+   * Factors of the speed along and across the direction, above 0. Default: 1. If they differ, input
+   * array 2 is required. With directions e1, and e2 across them in the tangent plane, fronts have
+   * D = speed^2 (AlongSpeed^2 e1 e1^T + AcrossSpeed^2 e2 e2^T): from one point in a plane they are
+   * ellipses.
+   */
+  SURFACEDIFFUSION_PROPERTY(AlongSpeed, double);
+  SURFACEDIFFUSION_PROPERTY(AcrossSpeed, double);
+  ///@}
 
   /**
    * On: the output has the gradient of the result. Default: off.

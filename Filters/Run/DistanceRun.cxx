@@ -29,6 +29,13 @@ void DistanceSettings::Visit(SettingVisitor& visitor)
                    "The largest distance of points and lines of sources from the surface, in the "
                    "unit of the coordinates: those farther away do not count. 0: any distance." },
     this->MaximumDistance, SettingRange::NonNegative());
+  visitor.Number({ "AlongSpeed", "",
+                   "Factor of the speed of fronts along the direction, above 0. If it differs from "
+                   "AcrossSpeed, DirectionArray is required." },
+    this->AlongSpeed, SettingRange::Positive());
+  visitor.Number(
+    { "AcrossSpeed", "", "Factor of the speed of fronts across the direction, above 0." },
+    this->AcrossSpeed, SettingRange::Positive());
   visitor.Switch({ "ComputeGradient", "",
                    "On: the gradient of the result is added, vectors in the tangent planes that "
                    "point away from the sources." },
@@ -59,6 +66,16 @@ void DistanceSettings::Check(const FieldSummary* fields, Problems& problems)
         Sentence(Word::Array(name)), problems);
     }
   }
+  if (this->HasSpeed())
+  {
+    RequireChoice("Method", this->Method, DistanceMethod::Eikonal, "Eikonal",
+      Sentence(Word::Setting("AlongSpeed"))
+        << " " << this->AlongSpeed << " and " << Word::Setting("AcrossSpeed") << " "
+        << this->AcrossSpeed,
+      problems);
+  }
+  RequireDirections(
+    *fields, "AlongSpeed", this->AlongSpeed, "AcrossSpeed", this->AcrossSpeed, problems);
 }
 
 Vector DistanceRun::SolveHeat(const SourceSet& sources, const ProgressMonitor& progress)
@@ -76,9 +93,8 @@ Vector DistanceRun::SolveHeat(const SourceSet& sources, const ProgressMonitor& p
 }
 
 /// Times per vertex, and the front that each comes from.
-GeodesicDistance::Arrival DistanceRun::Solve(const SourceSet& sources,
-  const std::vector<double>& slowness, const DistanceSettings& settings,
-  const ProgressMonitor& progress)
+GeodesicDistance::Arrival DistanceRun::Solve(const SourceSet& sources, FrontShapes triangles,
+  const DistanceSettings& settings, const ProgressMonitor& progress)
 {
   const Surface& surface = *this->Domain;
   const auto n = static_cast<std::size_t>(surface.Mesh().NumberOfVertices());
@@ -91,8 +107,8 @@ GeodesicDistance::Arrival DistanceRun::Solve(const SourceSet& sources,
   if (!byHeat || sources.NameOfLabel.size() > 1)
   {
     // Triangles of different speeds do not become others.
-    const GeodesicDistance fronts(
-      slowness.empty() ? surface.SharedMesh() : surface.SharedInputMesh(), slowness);
+    const auto mesh = triangles.empty() ? surface.SharedMesh() : surface.SharedInputMesh();
+    const GeodesicDistance fronts(mesh, std::move(triangles));
     arrival = fronts.FindNearest(sources.Fronts, progress.Part(0.0, byHeat ? 0.2 : 1.0));
   }
   if (byHeat)
@@ -112,7 +128,7 @@ GeodesicDistance::Arrival DistanceRun::Solve(const SourceSet& sources,
 
 /// The means at the vertices over the triangles that fronts cross.
 Values DistanceRun::FindGradient(
-  const std::vector<double>& times, const std::vector<double>& slowness) const
+  const std::vector<double>& times, const FrontShapes& triangles) const
 {
   const TriangleMesh& mesh = this->Domain->InputMesh();
   const Points positions = VertexPositions(*this->Domain);
@@ -130,7 +146,7 @@ Values DistanceRun::FindGradient(
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const auto row = static_cast<std::size_t>(t);
-    bool isCrossed = slowness.empty() || slowness[row] < Never;
+    bool isCrossed = !IsBarrier(triangles, t);
     for (int a = 0; a < 3; ++a)
     {
       isCrossed =
@@ -171,11 +187,11 @@ void DistanceRun::Update(
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   const Fields fields = input.ReadFields();
-  const std::vector<double> slowness = this->MakeSlowness(fields);
+  const FrontShapes triangles = this->MakeShapes(fields, settings);
   SourceSet sources =
-    this->FindSources(drawn, fields, slowness, settings.MaximumDistance, progress.Part(0.2, 0.3));
+    this->FindSources(drawn, fields, triangles, settings.MaximumDistance, progress.Part(0.2, 0.3));
   const GeodesicDistance::Arrival arrival =
-    this->Solve(sources, slowness, settings, progress.Part(0.3, 0.95));
+    this->Solve(sources, triangles, settings, progress.Part(0.3, 0.95));
 
   const Index n = mesh.NumberOfVertices();
   Values times(n, 1);
@@ -198,7 +214,8 @@ void DistanceRun::Update(
                                   sources.Fronts[static_cast<std::size_t>(front)].Label)];
     unreached += arrival.Times[row] < Never ? 0 : 1;
   }
-  const bool areTimes = !fields.Speeds.Values.empty() || !fields.StartTimes.empty();
+  const bool areTimes =
+    !fields.Speeds.Values.empty() || !fields.StartTimes.empty() || settings.HasSpeed();
   const auto add = [this](const char* name, OutputType type, Values rows, double elsewhere)
   {
     const Eigen::Index columns = rows.cols();
@@ -213,7 +230,7 @@ void DistanceRun::Update(
   if (settings.ComputeGradient)
   {
     add(areTimes ? "ArrivalTimeGradient" : "DistanceGradient", OutputType::Double,
-      this->FindGradient(arrival.Times, slowness), 0.0);
+      this->FindGradient(arrival.Times, triangles), 0.0);
   }
   this->AllAreSources = !areTimes && (this->Results.front().Rows.array() == 0.0).all();
   this->Results.push_back(

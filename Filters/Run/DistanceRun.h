@@ -23,6 +23,8 @@ struct DistanceSettings : Settings
 {
   DistanceMethod Method = DistanceMethod::Heat;
   double MaximumDistance = 0.0;
+  double AlongSpeed = 1.0;
+  double AcrossSpeed = 1.0;
   bool ComputeGradient = false;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
@@ -30,6 +32,10 @@ struct DistanceSettings : Settings
   void Visit(SettingVisitor& visitor) override;
   /// Problems of the settings, and with `fields` those of settings and arrays together.
   void Check(const FieldSummary* fields, Problems& problems);
+
+  bool IsDirected() const { return this->AlongSpeed != this->AcrossSpeed; }
+  /// Whether fronts have another speed than 1, apart from that of an array.
+  bool HasSpeed() const { return this->AlongSpeed != 1.0 || this->AcrossSpeed != 1.0; }
 };
 
 /// Distances or arrival times on one surface, kept as long as neither inputs nor settings change.
@@ -67,16 +73,16 @@ private:
   };
 
   std::vector<Warning> FindOwnWarnings() const override;
-  std::vector<double> MakeSlowness(const Fields& fields) const;
-  SourceSet FindSources(const BlockInput& input, const Fields& fields,
-    const std::vector<double>& slowness, double maximumDistance, const ProgressMonitor& progress);
+  FrontShapes MakeShapes(const Fields& fields, const DistanceSettings& settings) const;
+  SourceSet FindSources(const BlockInput& input, const Fields& fields, const FrontShapes& triangles,
+    double maximumDistance, const ProgressMonitor& progress);
   SourceSet FindMarked(const Fields& fields) const;
   SourceSet FindProjected(const BlockInput& input, const SourceShapes& shapes,
-    const std::vector<double>& slowness, double maximumDistance, const ProgressMonitor& progress);
-  GeodesicDistance::Arrival Solve(const SourceSet& sources, const std::vector<double>& slowness,
+    const FrontShapes& triangles, double maximumDistance, const ProgressMonitor& progress);
+  GeodesicDistance::Arrival Solve(const SourceSet& sources, FrontShapes triangles,
     const DistanceSettings& settings, const ProgressMonitor& progress);
   Vector SolveHeat(const SourceSet& sources, const ProgressMonitor& progress);
-  Values FindGradient(const std::vector<double>& times, const std::vector<double>& slowness) const;
+  Values FindGradient(const std::vector<double>& times, const FrontShapes& triangles) const;
 
   SourceSet Found; ///< without its fronts
   bool AllAreSources = false;

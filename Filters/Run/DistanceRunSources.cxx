@@ -48,17 +48,14 @@ void RequireFinite(const std::vector<double>& numbers, const char* name, bool on
   }
 }
 
-} // namespace
-
 /// 1 / speed per triangle of InputMesh(); empty without speeds.
-std::vector<double> DistanceRun::MakeSlowness(const Fields& fields) const
+std::vector<double> MakeSlowness(const Surface& surface, const Fields& fields)
 {
   std::vector<double> slowness;
   if (fields.Speeds.Values.empty())
   {
     return slowness;
   }
-  const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   const Triangles triangles = surface.MakeTriangles();
   std::vector<char> counts(fields.Speeds.Values.size(), 0);
@@ -78,6 +75,22 @@ std::vector<double> DistanceRun::MakeSlowness(const Fields& fields) const
   }
   RequireFinite(fields.Speeds.Values, "SpeedArray", fields.Speeds.OnCells, true, counts);
   return slowness;
+}
+
+} // namespace
+
+/// Of InputMesh(); empty without speeds.
+FrontShapes DistanceRun::MakeShapes(const Fields& fields, const DistanceSettings& settings) const
+{
+  if (fields.Speeds.Values.empty() && !settings.HasSpeed())
+  {
+    return {};
+  }
+  const TangentVectors directions = settings.IsDirected()
+    ? MakeInputDirections(*this->Domain, fields, this->Parallel)
+    : TangentVectors(0, 2);
+  return MakeFrontShapes(this->Domain->InputMesh(), MakeSlowness(*this->Domain, fields), directions,
+    settings.AlongSpeed, settings.AcrossSpeed);
 }
 
 /// The nonzero points of the data, with the label of their value.
@@ -140,7 +153,7 @@ DistanceRun::SourceSet DistanceRun::FindMarked(const Fields& fields) const
 }
 
 DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
-  const SourceShapes& shapes, const std::vector<double>& slowness, double maximumDistance,
+  const SourceShapes& shapes, const FrontShapes& triangles, double maximumDistance,
   const ProgressMonitor& progress)
 {
   const Surface& surface = *this->Domain;
@@ -150,7 +163,7 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
     this->ProjectionVersion = this->SurfaceVersion;
   }
   const ProjectedSources found =
-    this->Projection->Project(shapes, maximumDistance, slowness, progress);
+    this->Projection->Project(shapes, maximumDistance, triangles, progress);
   SourceSet set;
   set.AreShapes = true;
   set.Count = found.Count;
@@ -160,9 +173,7 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
   auto nextPoint = static_cast<Index>(shapes.Places.rows());
   for (const SourcePiece& piece : found.Pieces)
   {
-    const double ofTriangle =
-      slowness.empty() ? 1.0 : slowness[static_cast<std::size_t>(piece.Triangle)];
-    AppendFronts(surface.InputMesh(), piece, ofTriangle, slowness.empty(), nextPoint, set.Fronts);
+    AppendFronts(surface.InputMesh(), triangles, piece, nextPoint, set.Fronts);
     AppendHeat(surface.InputMesh(), piece, set.Heat);
   }
   // Labels that count, in their order.
@@ -183,10 +194,10 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
 }
 
 DistanceRun::SourceSet DistanceRun::FindSources(const BlockInput& input, const Fields& fields,
-  const std::vector<double>& slowness, double maximumDistance, const ProgressMonitor& progress)
+  const FrontShapes& triangles, double maximumDistance, const ProgressMonitor& progress)
 {
   return fields.Sources
-    ? this->FindProjected(input, *fields.Sources, slowness, maximumDistance, progress)
+    ? this->FindProjected(input, *fields.Sources, triangles, maximumDistance, progress)
     : this->FindMarked(fields);
 }
 

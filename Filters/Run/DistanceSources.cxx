@@ -75,7 +75,7 @@ SourceProjection::SourceProjection(SurfaceArrays arrays, const Surface& surface)
 }
 
 ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double maximumDistance,
-  const std::vector<double>& slowness, const ProgressMonitor& progress) const
+  const FrontShapes& triangles, const ProgressMonitor& progress) const
 {
   const Finder find = [&](const Eigen::RowVector3d& x)
   {
@@ -88,8 +88,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     place.IsFar = maximumDistance > 0.0 && !(std::sqrt(nearest.SquaredDistance) <= maximumDistance);
     place.Coordinates = nearest.Coordinates;
     const Index t = this->MeshTriangles[static_cast<std::size_t>(nearest.Triangle)];
-    const bool isOpen =
-      t >= 0 && (slowness.empty() || std::isfinite(slowness[static_cast<std::size_t>(t)]));
+    const bool isOpen = t >= 0 && !IsBarrier(triangles, t);
     place.Triangle = isOpen && !place.IsFar ? t : -1;
     return place;
   };

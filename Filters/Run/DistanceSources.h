@@ -42,10 +42,10 @@ public:
   /// coordinates that are not finite.
   SourceProjection(SurfaceArrays arrays, const SurfaceDiffusion::Surface& surface);
 
-  /// maximumDistance: in coordinate units; 0: none. slowness: per triangle of the mesh, infinite:
-  /// it takes no part; may be empty. Throws InputError on coordinates that are not finite; Aborted.
+  /// maximumDistance: in coordinate units; 0: none. triangles: of the mesh; barriers take no part.
+  /// Throws InputError on coordinates that are not finite; Aborted.
   ProjectedSources Project(const SourceShapes& shapes, double maximumDistance,
-    const std::vector<double>& slowness, const ProgressMonitor& progress) const;
+    const FrontShapes& triangles, const ProgressMonitor& progress) const;
 
 private:
   struct Place

@@ -265,7 +265,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   return data;
 }
 
-TangentVectors MakeDirections(
+TangentVectors MakeInputDirections(
   const Surface& surface, const Fields& fields, const ParallelFor& parallel)
 {
   if (fields.Directions.Values.rows() == 0)
@@ -274,18 +274,23 @@ TangentVectors MakeDirections(
   }
   if (!fields.Directions.OnCells)
   {
-    return TransportToMesh(surface,
-      TangentVectorsFromPointVectors(surface.InputMesh(), surface.Points(), surface.MakeTriangles(),
-        fields.Directions.Values, parallel));
+    return TangentVectorsFromPointVectors(surface.InputMesh(), surface.Points(),
+      surface.MakeTriangles(), fields.Directions.Values, parallel);
   }
   SurfaceDiffusion::Points ofTriangles(surface.NumberOfTriangles(), 3);
   for (Eigen::Index t = 0; t < ofTriangles.rows(); ++t)
   {
     ofTriangles.row(t) = fields.Directions.Values.row(surface.InputTriangle(static_cast<Index>(t)));
   }
-  return TransportToMesh(surface,
-    TangentVectorsFromTriangleVectors(
-      surface.InputMesh(), surface.Points(), surface.MakeTriangles(), ofTriangles, parallel));
+  return TangentVectorsFromTriangleVectors(
+    surface.InputMesh(), surface.Points(), surface.MakeTriangles(), ofTriangles, parallel);
+}
+
+TangentVectors MakeDirections(
+  const Surface& surface, const Fields& fields, const ParallelFor& parallel)
+{
+  TangentVectors ofInput = MakeInputDirections(surface, fields, parallel);
+  return ofInput.rows() == 0 ? ofInput : TransportToMesh(surface, ofInput);
 }
 
 std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields)

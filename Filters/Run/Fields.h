@@ -112,7 +112,11 @@ std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fi
 /// and on fidelity factors that are negative or not finite.
 PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit);
 
-/// e1 on the triangles of surface.Mesh(); no row if there are no directions.
+/// e1 on the triangles of surface.InputMesh(); no row if there are no directions.
+TangentVectors MakeInputDirections(
+  const Surface& surface, const Fields& fields, const ParallelFor& parallel);
+
+/// The same on those of surface.Mesh().
 TangentVectors MakeDirections(
   const Surface& surface, const Fields& fields, const ParallelFor& parallel);
 

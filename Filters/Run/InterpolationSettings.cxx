@@ -170,12 +170,10 @@ void InterpolationSettings::CheckTogether(const FieldSummary* fields, Problems& 
       << "; allowed: " << Word::Switch(false) << ", or "
       << Word::Choice("Boundary", RimCondition::Natural, "Natural"));
   }
-  if (fields && !fields->Directions && this->IsDirected())
+  if (fields)
   {
-    problems.push_back(Sentence(Word::Setting("AlongDiffusivity"))
-      << " is " << this->AlongDiffusivity << " and " << Word::Setting("AcrossDiffusivity") << " is "
-      << this->AcrossDiffusivity << " but " << Word::Array("DirectionArray")
-      << " is not set; allowed: equal values, or an array of directions");
+    RequireDirections(*fields, "AlongDiffusivity", this->AlongDiffusivity, "AcrossDiffusivity",
+      this->AcrossDiffusivity, problems);
   }
 }
 

@@ -23,6 +23,18 @@ constexpr double LargestNumberOfPublishedTimes = 1e6;
 
 } // namespace
 
+void RequireDirections(const FieldSummary& fields, const char* along, double ofAlong,
+  const char* across, double ofAcross, Problems& problems)
+{
+  if (ofAlong != ofAcross && !fields.Directions)
+  {
+    problems.push_back(Sentence(Word::Setting(along))
+      << " is " << ofAlong << " and " << Word::Setting(across) << " is " << ofAcross << " but "
+      << Word::Array("DirectionArray")
+      << " is not set; allowed: equal values, or an array of directions");
+  }
+}
+
 void RunSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Choice({ "Units", "",
@@ -265,12 +277,10 @@ void DataSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
 {
   this->TimeSettings::CheckTogether(fields, problems);
   RequireData(fields, problems);
-  if (fields && !fields->Directions && this->IsDirected())
+  if (fields)
   {
-    problems.push_back(Sentence(Word::Setting("AlongDiffusivity"))
-      << " is " << this->AlongDiffusivity << " and " << Word::Setting("AcrossDiffusivity") << " is "
-      << this->AcrossDiffusivity << " but " << Word::Array("DirectionArray")
-      << " is not set; allowed: equal values, or an array of directions");
+    RequireDirections(*fields, "AlongDiffusivity", this->AlongDiffusivity, "AcrossDiffusivity",
+      this->AcrossDiffusivity, problems);
   }
 }
 

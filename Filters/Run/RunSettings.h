@@ -55,6 +55,11 @@ struct FieldSummary
   bool StartTimes = false;
 };
 
+/// Append a problem if factors along and across a direction differ and there are no directions. along,
+/// across: the names of their settings.
+void RequireDirections(const FieldSummary& fields, const char* along, double ofAlong,
+  const char* across, double ofAcross, Problems& problems);
+
 /// The properties of a model that a run needs before it makes the model. By default it has no time:
 /// its state is computed in one step.
 struct ModelTraits

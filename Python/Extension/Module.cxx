@@ -164,12 +164,17 @@ NB_MODULE(_core, m)
 
   nb::class_<SurfaceDistances>(m, "Distances")
     .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
-           const std::optional<FactorArray>&, const nb::object&>(),
-      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "slowness"_a.none(), "progress"_a.none())
+           const std::optional<FactorArray>&, const std::optional<DoubleArray>&, bool, double,
+           double, const nb::object&>(),
+      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "slowness"_a.none(), "directions"_a.none(),
+      "directions_on_faces"_a, "along"_a, "across"_a, "progress"_a.none())
     .def("has_point", &SurfaceDistances::HasPoint, "point"_a)
-    .def("from_all", &SurfaceDistances::FromAll, "points"_a, "starts"_a, "apart"_a,
+    .def("has_triangle", &SurfaceDistances::HasTriangle, "row"_a)
+    .def("project", &SurfaceDistances::Project, "points"_a, "progress"_a.none())
+    .def("from_all", &SurfaceDistances::FromAll, "rows"_a, "barycentric"_a.none(), "starts"_a,
+      "apart"_a, "progress"_a.none())
+    .def("by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(), "m"_a,
       "progress"_a.none())
-    .def("by_heat", &SurfaceDistances::ByHeat, "points"_a, "m"_a, "progress"_a.none())
     .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 
   BindSingleRun<CurvatureFinder>(m, "CurvatureRun");

@@ -4,6 +4,7 @@
 
 #include "NewArrays.h"
 #include "PythonProgress.h"
+#include "Run/DistanceSources.h"
 #include "Threads.h"
 
 #include <algorithm>
@@ -17,67 +18,160 @@ namespace nb = nanobind;
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+/// 1 / speed per triangle of the mesh; empty without speeds.
+std::vector<double> SlownessOf(const TriangleMesh& mesh, const InputSurface& input,
+  const Surface& surface, const std::optional<FactorArray>& ofFaces)
+{
+  std::vector<double> slowness;
+  for (Index t = 0; ofFaces && t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Index row = surface.InputTriangle(mesh.InputTriangle()[static_cast<std::size_t>(t)]);
+    slowness.push_back(ofFaces->data()[input.FaceOf(row)]);
+  }
+  return slowness;
+}
+
+} // namespace
+
 SurfaceDistances::SurfaceDistances(std::shared_ptr<const InputSurface> surface,
   const std::optional<FlagArray>& mask, bool maskOnFaces,
-  const std::optional<FactorArray>& slowness, const nb::object& progress)
+  const std::optional<FactorArray>& slowness, const std::optional<DoubleArray>& directions,
+  bool directionsOnFaces, double along, double across, const nb::object& progress)
   : Input(std::move(surface))
+  , Mask{ mask, maskOnFaces }
 {
+  const bool hasSpeed = slowness || along != 1.0 || across != 1.0;
   SurfaceOptions options;
-  options.IntrinsicDelaunay = !slowness;
+  options.IntrinsicDelaunay = !hasSpeed;
+  Fields fields;
+  if (directions)
+  {
+    InputFields given;
+    given.Surface = this->Input;
+    given.Directions = { directions, directionsOnFaces };
+    fields = given.Read();
+  }
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      SurfaceArrays arrays = this->Input->Read({ mask, maskOnFaces });
+      SurfaceArrays arrays = this->Input->Read(this->Mask);
       arrays.AreaFactors.clear(); // lengths do not depend on them
       this->Built = std::make_unique<const SurfaceDiffusion::Surface>(
         std::move(arrays), options, PythonThreads::Instance(), monitor);
-      const TriangleMesh& mesh = this->Built->Mesh();
-      std::vector<double> ofMesh;
-      for (Index t = 0; slowness && t < mesh.NumberOfTriangles(); ++t)
+      const TriangleMesh& mesh = this->Built->InputMesh();
+      this->MeshTriangles.assign(this->Input->GetTriangles().rows(), -1);
+      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
       {
-        const Index row = this->Built->InputTriangle(mesh.InputTriangle()[t]);
-        ofMesh.push_back(slowness->data()[this->Input->FaceOf(row)]);
+        this->MeshTriangles[this->Built->InputTriangle(mesh.InputTriangle()[t])] = t;
       }
-      this->Fronts =
-        std::make_unique<const GeodesicDistance>(this->Built->SharedMesh(), std::move(ofMesh));
+      if (hasSpeed)
+      {
+        const TangentVectors ofMesh =
+          MakeInputDirections(*this->Built, fields, PythonThreads::Instance());
+        this->Shapes = MakeFrontShapes(mesh, SlownessOf(mesh, *this->Input, *this->Built, slowness),
+          along != across ? ofMesh : TangentVectors(0, 2), along, across);
+      }
+      this->Fronts = std::make_unique<const GeodesicDistance>(
+        hasSpeed ? this->Built->SharedInputMesh() : this->Built->SharedMesh(), this->Shapes);
     });
 }
 
-nb::tuple SurfaceDistances::FromAll(
-  const LongArray& points, const FactorArray& starts, bool apart, const nb::object& progress) const
+bool SurfaceDistances::HasTriangle(std::int64_t row) const
 {
-  const TriangleMesh& mesh = this->Built->Mesh();
-  const double unit = mesh.LengthUnit();
-  const std::size_t n = this->Input->NumberOfPoints();
-  std::vector<double> times(n, std::numeric_limits<double>::infinity());
-  std::vector<Index> rows(n, -1);
+  const Index t = this->MeshTriangles[static_cast<std::size_t>(row)];
+  return t >= 0 && !IsBarrier(this->Shapes, t);
+}
+
+nb::tuple SurfaceDistances::Project(const DoubleArray& points, const nb::object& progress) const
+{
+  const std::size_t count = points.shape(0);
+  std::vector<std::int64_t> rows(count, -1);
+  std::vector<double> barycentric(3 * count, 0.0);
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      std::vector<FrontSource> sources;
-      for (std::size_t k = 0; k < points.size(); ++k)
+      SourceShapes shapes;
+      shapes.Places = Eigen::Map<const Points>(points.data(), static_cast<Eigen::Index>(count), 3);
+      const SourceProjection projection(this->Input->Read(this->Mask), *this->Built);
+      const ProjectedSources found = projection.Project(shapes, 0.0, this->Shapes, monitor);
+      const TriangleMesh& mesh = this->Built->InputMesh();
+      for (const SourcePiece& piece : found.Pieces)
       {
-        const Index vertex = this->Built->VertexOf(static_cast<Index>(points.data()[k]));
-        const auto number = static_cast<Index>(k);
+        const auto k = static_cast<std::size_t>(piece.FromPoint);
+        rows[k] = this->Built->InputTriangle(mesh.InputTriangle()[piece.Triangle]);
+        std::copy(piece.From.begin(), piece.From.end(), barycentric.begin() + 3 * k);
+      }
+    });
+  return nb::make_tuple(NewArray(std::move(rows)), NewArray(std::move(barycentric)));
+}
+
+/// Source k as a piece whose label is its number.
+SourcePiece SurfaceDistances::PieceOf(
+  const LongArray& rows, const DoubleArray& barycentric, std::size_t k) const
+{
+  const double* const at = barycentric.data() + 3 * k;
+  const auto number = static_cast<Index>(k);
+  const std::array<double, 3> place = { at[0], at[1], at[2] };
+  const Index t = this->MeshTriangles[static_cast<std::size_t>(rows.data()[k])];
+  return { t, place, place, number, number, number };
+}
+
+nb::tuple SurfaceDistances::FromAll(const LongArray& rows,
+  const std::optional<DoubleArray>& barycentric, const FactorArray& starts, bool apart,
+  const nb::object& progress) const
+{
+  const TriangleMesh& mesh = this->Built->InputMesh();
+  const double unit = mesh.LengthUnit();
+  const std::size_t n = this->Input->NumberOfPoints();
+  std::vector<double> times(n, std::numeric_limits<double>::infinity());
+  std::vector<Index> nearest(n, -1);
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      std::vector<FrontSource> fronts;
+      std::vector<Index> sourceOf;
+      auto nextPoint = static_cast<Index>(rows.size());
+      for (std::size_t k = 0; k < rows.size(); ++k)
+      {
+        if (barycentric)
+        {
+          AppendFronts(mesh, this->Shapes, this->PieceOf(rows, *barycentric, k), nextPoint, fronts);
+        }
+        else
+        {
+          const Index vertex = this->Built->VertexOf(static_cast<Index>(rows.data()[k]));
+          fronts.push_back({ vertex, 0.0, 0, static_cast<Index>(k), 0.0 });
+        }
         const double start = starts.data()[k] / unit;
-        sources.push_back({ vertex, start, apart ? number : 0, number, start });
+        for (; sourceOf.size() < fronts.size(); sourceOf.push_back(static_cast<Index>(k)))
+        {
+          FrontSource& front = fronts[sourceOf.size()];
+          front.Time += start;
+          front.Start = start;
+          front.Label = apart ? static_cast<Index>(k) : 0;
+        }
       }
       const GeodesicDistance::Arrival arrival = apart
-        ? this->Fronts->FindNearest(sources, monitor)
-        : this->Fronts->Find(sources, std::numeric_limits<double>::infinity(), monitor);
+        ? this->Fronts->FindNearest(fronts, monitor)
+        : this->Fronts->Find(fronts, std::numeric_limits<double>::infinity(), monitor);
       for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
       {
         const auto point = static_cast<std::size_t>(mesh.InputVertex()[i]);
+        const Index front = arrival.Sources[static_cast<std::size_t>(i)];
         times[point] = arrival.Times[static_cast<std::size_t>(i)] * unit;
-        rows[point] = arrival.Sources[static_cast<std::size_t>(i)];
+        nearest[point] = front < 0 ? -1 : sourceOf[static_cast<std::size_t>(front)];
       }
     });
-  return nb::make_tuple(NewArray(std::move(times)), NewArray(std::move(rows)));
+  return nb::make_tuple(NewArray(std::move(times)), NewArray(std::move(nearest)));
 }
 
-nb::object SurfaceDistances::ByHeat(const LongArray& points, double m, const nb::object& progress)
+nb::object SurfaceDistances::ByHeat(const LongArray& rows,
+  const std::optional<DoubleArray>& barycentric, double m, const nb::object& progress)
 {
-  const TriangleMesh& mesh = this->Built->Mesh();
+  const TriangleMesh& mesh = this->Built->InputMesh();
   std::vector<double> found(this->Input->NumberOfPoints(), std::numeric_limits<double>::infinity());
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
@@ -88,9 +182,16 @@ nb::object SurfaceDistances::ByHeat(const LongArray& points, double m, const nb:
           this->Built->SharedAssembler(), m, PythonThreads::Instance(), monitor.Part(0.0, 0.7));
       }
       std::vector<HeatSource> sources;
-      for (std::size_t k = 0; k < points.size(); ++k)
+      for (std::size_t k = 0; k < rows.size(); ++k)
       {
-        sources.push_back({ this->Built->VertexOf(static_cast<Index>(points.data()[k])) });
+        if (barycentric)
+        {
+          AppendHeat(mesh, this->PieceOf(rows, *barycentric, k), sources);
+        }
+        else
+        {
+          sources.push_back({ this->Built->VertexOf(static_cast<Index>(rows.data()[k])) });
+        }
       }
       const Values distances = this->Heat->Find({ sources }, monitor.Part(0.7, 1.0));
       for (Index i = 0; i < mesh.NumberOfVertices(); ++i)

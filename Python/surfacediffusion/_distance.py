@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, take_along
 from ._run import Progress, ProgressReporter
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_flags, as_numbers, as_surface, find_place
+from ._surface import Surface, SurfaceLike, as_directions, as_flags, as_numbers, as_surface, find_place
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
 
@@ -35,6 +36,9 @@ def distance(
     *,
     start: ArrayLike | None = None,
     speed: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    along_speed: float = 1.0,
+    across_speed: float = 1.0,
     mask: ArrayLike | None = None,
     method: str = "Eikonal",
     progress: Progress = None,
@@ -42,11 +46,13 @@ def distance(
     maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NDArray[np.float64]:
     """The distance along a surface from the nearest source, or with `speed` the time at which
-    fronts from the sources arrive: |grad T| = 1 / speed, T = `start` at the sources.
+    fronts from the sources arrive: |grad T| = 1 / speed, T = `start` at the sources. With directions
+    e1, and e2 across them in the tangent plane, grad T . D grad T = 1 with
+    D = speed^2 (along_speed^2 e1 e1^T + across_speed^2 e2 e2^T).
 
     Fast marching on the triangles, which lays out the way from the source in the plane of each
     triangle: distances in a plane are exact, and those of an icosphere of 10,242 points have a mean
-    error of 0.06 to 0.09 % of the largest one. Without `speed` the triangles are those of the intrinsic
+    error of 0.06 to 0.09 % of the largest one. Without speeds the triangles are those of the intrinsic
     Delaunay triangulation. The method Heat has smooth level sets and, on the same sphere, an error of
     0.22 %.
 
@@ -54,19 +60,26 @@ def distance(
     ----------
     surface : Surface or tuple (points, faces)
         The surface. Fronts go over edges of any number of faces, and not beyond boundaries.
-    sources : int, or array_like of int, shape (k,)
-        Points of the surface, by their rows.
+    sources : int, array_like of shape (k,) or (k, 3), or tuple (faces, barycentric)
+        Points of the surface, by their rows; or coordinates, (k, 3), which stand for the nearest
+        places of the surface; or places in triangles, by the rows of these faces, (k,), and
+        barycentric coordinates, (k, 3).
     start : array_like, shape (k,), optional
         The times at the sources, by default 0.
     speed : array_like, shape (m,) or (n,), optional
         The speed of fronts on each face, in the unit of the coordinates per unit of time, finite
         and 0 or more, or at each point: on a face that of its points on average. Faces of speed 0
         are barriers.
+    directions : array_like, shape (n, 3) or (m, 3), optional
+        Directions e1 at points or on faces, of any length and sign; zero or NaN is none, and fronts
+        have the geometric mean of both speeds there.
+    along_speed, across_speed : float, above 0, default 1
+        Factors of the speed along the directions and across them.
     mask : array_like, shape (n,) or (m,), optional
         Nonzero leaves a point with its faces, or a face, out: a barrier, too.
     method : str
         "Eikonal", fast marching, or "Heat", the heat method with the step 2 h^2, where h is the mean
-        edge length, without `start` and `speed`.
+        edge length, without `start` and speeds.
     progress : bool or callable, optional
         As for :func:`heat`.
     refine_to : float, 0 or more, in coordinates, default 0
@@ -84,8 +97,8 @@ def distance(
     Raises
     ------
     ValueError
-        Without sources, and if one is a point that no face uses or that is masked; with the method
-        Heat and `start` or `speed`.
+        Without sources, and if one is a point that no face uses or that is masked, or a place on a
+        face that is masked or a barrier; with the method Heat and `start` or speeds.
 
     References
     ----------
@@ -102,16 +115,19 @@ def distance(
     """
     if method not in ("Eikonal", "Heat"):
         raise ValueError(f"method is {shorten(method)}; allowed: Eikonal, Heat")
+    speeds = _Speeds(speed, directions, along_speed, across_speed)
     if method == "Eikonal":
-        return _march(surface, sources, start, speed, mask, False, progress, refine_to,
+        return _march(surface, sources, start, speeds, mask, False, progress, refine_to,
                       maximum_number_of_triangles).distance
-    for name, given in (("start", start), ("speed", speed)):
+    for name, given in (("start", start), ("speed", speed), ("directions", directions),
+                        ("along_speed", None if along_speed == 1.0 else along_speed),
+                        ("across_speed", None if across_speed == 1.0 else across_speed)):
         if given is not None:
             raise ValueError(f"method is Heat; allowed: Eikonal together with {name}")
-    surface, given = take_along(surface, "distance", refine_to, maximum_number_of_triangles, {"mask": mask})
-    fronts, rows = _prepare(surface, sources, None, given["mask"])
-    with ProgressReporter(progress) as reporter:
-        found: NDArray[np.float64] = fronts.by_heat(rows, HEAT_STEP, reporter.callable)
+    surface, fronts, given = _prepare(
+        surface, sources, speeds, mask, refine_to, maximum_number_of_triangles)
+    with surface._lock, ProgressReporter(progress) as reporter:
+        found: NDArray[np.float64] = fronts.by_heat(*given, HEAT_STEP, reporter.callable)
         reporter.finish_part()
     return found
 
@@ -122,6 +138,9 @@ def nearest_sources(
     *,
     start: ArrayLike | None = None,
     speed: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    along_speed: float = 1.0,
+    across_speed: float = 1.0,
     mask: ArrayLike | None = None,
     progress: Progress = None,
     refine_to: float = 0.0,
@@ -133,7 +152,8 @@ def nearest_sources(
 
     Parameters
     ----------
-    surface, sources, start, speed, mask, progress, refine_to, maximum_number_of_triangles
+    surface, sources, start, speed, directions, along_speed, across_speed, mask, progress, refine_to, \
+maximum_number_of_triangles
         As for :func:`distance`.
 
     Returns
@@ -149,16 +169,24 @@ def nearest_sources(
     >>> nearest_sources(strip, [0, 5]).source
     array([0, 0, 1, 0, 1, 1])
     """
-    return _march(surface, sources, start, speed, mask, True, progress, refine_to,
-                  maximum_number_of_triangles)
+    return _march(surface, sources, start, _Speeds(speed, directions, along_speed, across_speed), mask,
+                  True, progress, refine_to, maximum_number_of_triangles)
+
+
+class _Speeds(NamedTuple):
+    """The arguments of speeds as they are given."""
+
+    speed: Any = None
+    directions: Any = None
+    along: Any = 1.0
+    across: Any = 1.0
 
 
 def _march(
-    surface: SurfaceLike, sources: Any, start: Any, speed: Any, mask: Any, apart: bool,
+    surface: SurfaceLike, sources: Any, start: Any, speeds: _Speeds, mask: Any, apart: bool,
     progress: Progress, refine_to: float, limit: int
 ) -> NearestSources:
-    surface, given = take_along(surface, "distance", refine_to, limit, {"mask": mask, "speed": speed})
-    fronts, rows = _prepare(surface, sources, given["speed"], given["mask"])
+    _, fronts, (rows, barycentric) = _prepare(surface, sources, speeds, mask, refine_to, limit)
     times = np.zeros(len(rows)) if start is None else np.asarray(
         as_numbers("start", start), dtype=np.float64).reshape(-1)
     if times.shape != rows.shape or not np.isfinite(times).all():
@@ -166,7 +194,7 @@ def _march(
                          "source")
     with ProgressReporter(progress) as reporter:
         found, source = fronts.from_all(
-            rows, np.ascontiguousarray(times), apart, reporter.callable)
+            rows, barycentric, np.ascontiguousarray(times), apart, reporter.callable)
         reporter.finish_part()
     return NearestSources(found, source.astype(np.int64))
 
@@ -177,6 +205,9 @@ def distances(
     *,
     cutoff: float = np.inf,
     speed: ArrayLike | None = None,
+    directions: ArrayLike | None = None,
+    along_speed: float = 1.0,
+    across_speed: float = 1.0,
     mask: ArrayLike | None = None,
     progress: Progress = None,
 ) -> Any:
@@ -191,7 +222,7 @@ def distances(
         Points of the surface, by their rows; by default all points that faces use.
     cutoff : float, above 0
         In the unit of the coordinates, or of time.
-    speed, mask, progress
+    speed, directions, along_speed, across_speed, mask, progress
         As for :func:`distance`.
 
     Returns
@@ -223,7 +254,9 @@ def distances(
         if marked is not None and len(marked) == surface.n_points:
             faces = faces[(marked[faces] == 0).all(axis=1)]
         sources = np.unique(faces)
-    fronts, rows = _prepare(surface, sources, speed, mask)
+    rows = _as_rows(surface, sources)
+    fronts = _make_fronts(surface, _Speeds(speed, directions, along_speed, across_speed), mask)
+    _require_points(fronts, rows)
     with ProgressReporter(progress) as reporter:
         entries = fronts.from_each(rows, float(cutoff), reporter.callable)
         reporter.finish_part()
@@ -231,26 +264,119 @@ def distances(
 
 
 def _prepare(
-    surface: Surface, sources: Any, speed: Any, mask: Any
-) -> tuple[Any, NDArray[np.int64]]:
-    """The fronts on a surface, and the rows of the sources."""
-    n, sizes = surface.n_points, (surface.n_points, surface.n_faces)
+    surface: SurfaceLike, sources: Any, speeds: _Speeds, mask: Any, refine_to: float, limit: int
+) -> tuple[Surface, Any, tuple[NDArray[np.int64], NDArray[np.float64] | None]]:
+    """The surface, refined if that is asked for, the fronts on it, and the sources: rows of points, or of
+    triangles with barycentric coordinates."""
+    given = as_surface(surface)
+    rows: NDArray[np.int64] | None = None
+    barycentric: NDArray[np.float64] | None = None
+    places: NDArray[np.float64] | None = None
+    if isinstance(sources, tuple) and len(sources) == 2 and np.ndim(sources[1]) == 2:
+        rows, barycentric = _as_places_in_triangles(given, *sources)
+    elif np.ndim(sources) == 2:
+        places = np.ascontiguousarray(as_numbers("sources", sources), dtype=np.float64)
+        if places.shape[1] != 3 or len(places) == 0 or not np.isfinite(places).all():
+            raise ValueError(f"sources is {shorten(sources)}; allowed: finite coordinates, (k, 3)")
+    else:
+        rows = _as_rows(given, sources)
+    surface, carried = take_along(given, "distance", refine_to, limit, {
+        "mask": mask, "speed": speeds.speed, "directions": speeds.directions})
+    fronts = _make_fronts(surface, speeds._replace(speed=carried["speed"],
+                                                   directions=carried["directions"]), carried["mask"])
+    if barycentric is not None and surface is not given:  # other triangles, in the same planes
+        places = np.einsum("ki,kij->kj", barycentric, given.points[given.triangles[rows]])
+    if places is not None:
+        rows, flat = fronts.project(places, None)
+        barycentric = flat.reshape(-1, 3)
+        if (rows < 0).any():
+            raise ValueError(f"sources has {places[rows < 0][0].tolist()}, which is nearest to a face "
+                             "that is masked or a barrier; allowed: places near others")
+    assert rows is not None
+    if barycentric is None:
+        _require_points(fronts, rows)
+    else:
+        for k, row in enumerate(rows):
+            if not fronts.has_triangle(int(row)):
+                raise ValueError(f"sources has in row {k} a face that is masked, or a barrier, or has no "
+                                 "area; allowed: other faces")
+    return surface, fronts, (rows, barycentric)
+
+
+def _as_rows(surface: Surface, sources: Any) -> NDArray[np.int64]:
     rows = np.atleast_1d(as_numbers("sources", sources))
     if rows.ndim != 1 or rows.size == 0 or rows.dtype.kind not in "iu":
         raise ValueError(f"sources is {shorten(sources)}; allowed: rows of points, one or more "
-                         "integers")
-    outside = (rows < 0) | (rows >= n)
+                         "integers; coordinates, (k, 3); or faces with barycentric coordinates")
+    outside = (rows < 0) | (rows >= surface.n_points)
     if outside.any():
-        raise ValueError(f"sources has {rows[outside][0]}; allowed: 0 to {n - 1}, the rows of "
-                         "points")
+        raise ValueError(f"sources has {rows[outside][0]}; allowed: 0 to {surface.n_points - 1}, the "
+                         "rows of points")
+    return np.ascontiguousarray(rows, dtype=np.int64)
+
+
+def _as_places_in_triangles(
+    surface: Surface, faces: Any, barycentric: Any
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Rows of surface.triangles, and barycentric coordinates."""
+    rows = np.atleast_1d(as_numbers("sources[0]", faces))
+    if rows.ndim != 1 or rows.size == 0 or rows.dtype.kind not in "iu":
+        raise ValueError(f"sources[0] is {shorten(faces)}; allowed: rows of faces, one or more integers")
+    outside = (rows < 0) | (rows >= surface.n_faces)
+    if outside.any():
+        raise ValueError(f"sources[0] has {rows[outside][0]}; allowed: 0 to {surface.n_faces - 1}, the "
+                         "rows of faces")
+    weights = np.ascontiguousarray(as_numbers("sources[1]", barycentric), dtype=np.float64)
+    if weights.shape != (len(rows), 3):
+        raise ValueError(f"sources[1] has shape {weights.shape}; allowed: ({len(rows)}, 3), one row per "
+                         "face")
+    bad = ~((weights >= 0.0).all(axis=1) & (np.abs(weights.sum(axis=1) - 1.0) <= 1e-6))
+    if bad.any():
+        row = int(np.argmax(bad))
+        raise ValueError(f"sources[1] is {weights[row].tolist()} in row {row}; allowed: three numbers, 0 "
+                         "or more, whose sum is 1")
+    sizes = np.diff(surface._offsets)
+    polygons = sizes[rows] != 3
+    if polygons.any():
+        raise ValueError(f"sources[0] has face {rows[polygons][0]} with {sizes[rows[polygons][0]]} points; "
+                         "allowed: triangles, or coordinates in place of faces")
+    first = np.concatenate([[0], np.cumsum(sizes - 2)])
+    return np.ascontiguousarray(first[rows], dtype=np.int64), weights
+
+
+def _make_fronts(surface: Surface, speeds: _Speeds, mask: Any) -> Any:
+    """The fronts on a surface, and the factors of the heat method, which it keeps for other sources."""
+    sizes = (surface.n_points, surface.n_faces)
     flags = as_flags("mask", mask)
     on_faces = flags is not None and find_place("mask", flags, sizes, "flag", False)
-    fronts = _core.Distances(surface._core, flags, on_faces, _as_slowness(surface, speed), None)
+    for name, factor in (("along_speed", speeds.along), ("across_speed", speeds.across)):
+        if isinstance(factor, (bool, np.bool_)) or not isinstance(
+                factor, (int, float, np.number)) or not 0.0 < factor < np.inf:
+            raise ValueError(f"{name} is {shorten(factor)}; allowed: finite numbers above 0")
+    directions, directions_on_faces = None, False
+    if speeds.directions is not None:
+        directions, directions_on_faces = as_directions("directions", speeds.directions, sizes, None)
+    elif speeds.along != speeds.across:
+        raise ValueError(f"along_speed is {speeds.along} and across_speed is {speeds.across} but "
+                         "directions is not set; allowed: equal values, or directions")
+    slowness = _as_slowness(surface, speeds.speed)
+    contents = hashlib.blake2b(repr((speeds.along, speeds.across, directions_on_faces)).encode())
+    for array in (flags, slowness, directions):
+        contents.update(b"-" if array is None else repr(array.shape).encode() + array.tobytes())
+    with surface._lock:
+        version, fronts = surface._runs.get("distance", (b"", None))
+        if version != contents.digest():
+            fronts = _core.Distances(surface._core, flags, on_faces, slowness, directions,
+                                     directions_on_faces, float(speeds.along), float(speeds.across), None)
+            surface._runs["distance"] = contents.digest(), fronts
+    return fronts
+
+
+def _require_points(fronts: Any, rows: NDArray[np.int64]) -> None:
     for row in rows:
         if not fronts.has_point(int(row)):
             raise ValueError(f"sources has point {row}, which no face uses that is not masked and "
                              "has an area; allowed: points of the surface")
-    return fronts, np.ascontiguousarray(rows, dtype=np.int64)
 
 
 def _as_slowness(surface: Surface, speed: Any) -> NDArray[np.float64] | None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._settings import convert_all, settings_of, shorten, spell
 from ._surface import (
-    Surface, as_factors, as_flags, as_labels, as_numbers, as_rows, data_components, find_place,
+    Surface, as_directions, as_factors, as_flags, as_labels, as_rows, data_components, find_place,
 )
 
 Progress = Union[None, bool, Callable[[float], Any]]
@@ -131,19 +131,7 @@ class Input:
         n, m = surface.n_points, surface.n_faces
         self.surface, self.data, self.integers = surface, data, integers
         if directions is not None:
-            array = as_numbers(directions_name, directions)
-            if array.shape not in ((n, 3), (m, 3)):
-                raise ValueError(f"{directions_name} has shape {array.shape}; allowed: ({n}, 3), one "
-                                 f"row per point, or ({m}, 3), one row per face")
-            if n == m and on_faces is None:
-                raise ValueError(f"{directions_name} has one row per point and per face, of which "
-                                 f"there are {n} each; allowed: surfaces where they differ")
-            on_faces = array.shape[0] == m if on_faces is None else on_faces
-            infinite = np.isinf(array).any(axis=1)
-            if infinite.any():
-                raise ValueError(f"{directions_name} is infinite in row {int(np.argmax(infinite))}; "
-                                 "allowed: finite values and NaN")
-            directions = np.ascontiguousarray(array, dtype=np.float64)
+            directions, on_faces = as_directions(directions_name, directions, (n, m), on_faces)
         if rates is not None:
             rates = as_rows("rates", rates, m, 4, "face")
             bad = ~(np.isfinite(rates) & (rates >= 0.0)).all(axis=1)

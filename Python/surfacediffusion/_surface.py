@@ -49,6 +49,25 @@ def find_place(name: str, array: NDArray[Any], sizes: tuple[int, int], what: str
     return on_faces if n == m else array.shape[0] == m
 
 
+def as_directions(name: str, values: Any, sizes: tuple[int, int],
+                  on_faces: bool | None) -> tuple[NDArray[np.float64], bool]:
+    """Directions on points or faces, and whether they are on faces: by their number unless given."""
+    n, m = sizes
+    array = as_numbers(name, values)
+    if array.shape not in ((n, 3), (m, 3)):
+        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n}, 3), one row per point, or "
+                         f"({m}, 3), one row per face")
+    if n == m and on_faces is None:
+        raise ValueError(f"{name} has one row per point and per face, of which there are {n} each; "
+                         "allowed: surfaces where they differ")
+    infinite = np.isinf(array).any(axis=1)
+    if infinite.any():
+        raise ValueError(f"{name} is infinite in row {int(np.argmax(infinite))}; allowed: finite values "
+                         "and NaN")
+    return (np.ascontiguousarray(array, dtype=np.float64),
+            array.shape[0] == m if on_faces is None else on_faces)
+
+
 def as_labels(name: str, values: Any) -> NDArray[np.int64] | None:
     """Labels 1, 2, ..., 0 for none; None stays."""
     if values is None:

@@ -241,6 +241,119 @@ TEST(DistanceRun, OfTwoSpeedsAddsUpAcrossThem)
   EXPECT_NEAR(From(strip, side, data).Result(0, 0), -3.0, 1e-12);
 }
 
+// Constant speeds along and across a direction: ellipses, also from a place within a triangle, and
+// with sources on points of triangles that the map makes obtuse.
+TEST(DistanceRun, OfTwoSpeedsByDirectionAreEllipsesInAPlane)
+{
+  const Shape plate = Jittered(Plate(20, 3.0), 0.1, -2.99, 2.99, -2.99, 2.99);
+  const Eigen::RowVector3d place(0.123, 0.271, 0.0);
+  const double angle = 0.6;
+  const Eigen::RowVector3d e1(std::cos(angle), std::sin(angle), 0.0);
+  const Eigen::RowVector3d e2(-e1[1], e1[0], 0.0);
+  for (const bool onCells : { false, true })
+  {
+    for (const double along : { 1.0, 4.0 })
+    {
+      SurfaceData data;
+      data.Sources = Shapes({ place });
+      data.Directions.OnCells = onCells;
+      data.Directions.Values =
+        e1.replicate(onCells ? plate.Faces.rows() : plate.Vertices.rows(), 1);
+      data.Directions.Values.row(3) *= -7.0; // of any length and sign
+      DistanceSettings settings;
+      settings.Method = DistanceMethod::Eikonal;
+      settings.AlongSpeed = along;
+      settings.AcrossSpeed = 0.5;
+      const Solution found = Distance(plate.Vertices, plate.Faces, data, settings);
+      ASSERT_EQ(found.Arrays.count("ArrivalTime"), 1U);
+      for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+      {
+        const Eigen::RowVector3d x = plate.Vertices.row(i) - place;
+        const double exact = std::hypot(x.dot(e1) / along, x.dot(e2) / 0.5);
+        EXPECT_NEAR(found.Result(i, 0), exact, 1e-12 * exact);
+      }
+    }
+  }
+}
+
+// The plane as another one sees it: x -> S exp(x), with x as a complex number and S a stretching
+// by 3. Distances there are straight; here they have speeds 1/3 and 1, times |exp(-x)|, along and
+// across directions that turn.
+TEST(DistanceRun, OfDirectionsThatTurnConvergesToThatOfTheMappedPlane)
+{
+  double errors[2];
+  for (const Index cells : { 30, 60 })
+  {
+    const Shape plate = Jittered(Plate(cells, 0.6), 0.3 / cells, -0.599, 0.599, -0.599, 0.599);
+    const auto image = [](const Eigen::RowVector3d& x) -> Eigen::RowVector2d
+    { return std::exp(x[0]) * Eigen::RowVector2d(3.0 * std::cos(x[1]), std::sin(x[1])); };
+    SurfaceData data;
+    const Eigen::RowVector3d place(0.011, 0.017, 0.0);
+    data.Sources = Shapes({ place });
+    data.Directions.Values.resize(plate.Vertices.rows(), 3);
+    for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+    {
+      const Eigen::RowVector3d x = plate.Vertices.row(i);
+      data.Directions.Values.row(i) << std::cos(x[1]), -std::sin(x[1]), 0.0;
+      data.Speeds.Values.push_back(std::exp(-x[0]));
+    }
+    DistanceSettings settings;
+    settings.Method = DistanceMethod::Eikonal;
+    settings.AlongSpeed = 1.0 / 3.0;
+    const Solution found = Distance(plate.Vertices, plate.Faces, data, settings);
+    double& error = errors[cells == 30 ? 0 : 1];
+    error = 0.0;
+    Index counted = 0;
+    for (Index i = 0; i < plate.NumberOfVertices(); ++i)
+    {
+      const Eigen::RowVector3d x = plate.Vertices.row(i);
+      const double exact = (image(x) - image(place)).norm();
+      // Straight ways stay within the image of the plate.
+      if (exact < 0.5)
+      {
+        error += std::abs(found.Result(i, 0) - exact) / 0.5;
+        ++counted;
+      }
+    }
+    error /= counted;
+    EXPECT_GT(counted, 50);
+  }
+  EXPECT_LT(errors[1], 0.005);
+  EXPECT_GT(errors[0] / errors[1], 2.0);
+}
+
+// Without a direction, fronts have the geometric mean of both speeds; alike ones need none.
+TEST(DistanceRun, WithoutADirectionHasTheMeanOfBothSpeeds)
+{
+  const Shape s = Icosphere(2);
+  SurfaceData data;
+  const Values distances = From(s, { { 7, 1.0 } }).Result;
+  data.Data.Values = Values::Zero(s.Vertices.rows(), 1);
+  data.Data.Values(7, 0) = 1.0;
+  DistanceSettings settings;
+  settings.Method = DistanceMethod::Eikonal;
+  settings.AlongSpeed = settings.AcrossSpeed = 2.0;
+  EXPECT_LT((Distance(s.Vertices, s.Faces, data, settings).Result * 2.0 - distances)
+              .array()
+              .abs()
+              .maxCoeff(),
+    1e-12);
+  settings.AlongSpeed = 16.0;
+  settings.AcrossSpeed = 0.25;
+  EXPECT_NE(ErrorOf(s, data, settings).find("Directions is not set; allowed: equal values"),
+    std::string::npos);
+  data.Directions.Values =
+    Points::Constant(s.Vertices.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_LT((Distance(s.Vertices, s.Faces, data, settings).Result * 2.0 - distances)
+              .array()
+              .abs()
+              .maxCoeff(),
+    1e-12);
+  settings.Method = DistanceMethod::Heat;
+  EXPECT_EQ(ErrorOf(s, data, settings),
+    "Method is 0; allowed: 1 Eikonal together with AlongSpeed 16 and AcrossSpeed 0.25");
+}
+
 // A barrier of speed 0, and the same one as a mask: ways go around its free end.
 TEST(DistanceRun, GoesAroundBarriersOfSpeedZeroAndOfMasks)
 {

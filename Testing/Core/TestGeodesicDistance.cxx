@@ -57,7 +57,9 @@ Found Find(const Surface& s, const std::vector<Start>& starts,
   {
     mesh = IntrinsicDelaunay(mesh).Mesh();
   }
-  const GeodesicDistance fronts(mesh, ofMesh);
+  const GeodesicDistance fronts(mesh,
+    ofMesh.empty() ? FrontShapes()
+                   : MakeFrontShapes(*mesh, ofMesh, TangentVectors(0, 2), 1.0, 1.0));
   const auto arrival = nearest ? fronts.FindNearest(sources) : fronts.Find(sources, cutoff / unit);
   Found found{ std::vector<double>(vertexOf.size(), Never),
     std::vector<Index>(vertexOf.size(), -1) };

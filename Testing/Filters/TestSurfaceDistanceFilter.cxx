@@ -220,6 +220,49 @@ TEST(DistanceFilter, ArrivalTimesFollowTheSpeed)
   EXPECT_EQ(At(filter, 20, "ArrivalTimeGradient"), 0.0);
 }
 
+// Fibres on points or cells, edited in place; without a direction, the mean of both speeds.
+TEST(DistanceFilter, ArrivalTimesFollowTheDirection)
+{
+  const auto grid = MarkedGrid(21, 11, 0);
+  AddPointArray(grid, "source", 1, [](vtkIdType i, int) { return i == 21 * 5 + 3 ? 1.0 : 0.0; });
+  AddPointArray(
+    grid, "fibre", 3, [](vtkIdType, int k) { return k == 0 ? 0.8 : (k == 1 ? 0.6 : 4.0); });
+  grid->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "fibre", grid->GetNumberOfCells(), 3,
+    [](vtkIdType, int k) { return k == 1 ? -2.0 : 0.0; }));
+  auto filter = MakeFilter(grid);
+  filter->SetAlongSpeed(4.0);
+  filter->SetAcrossSpeed(0.25);
+  EXPECT_TRUE(Has(ErrorOf(filter), "DirectionArray is not set; allowed: equal values"));
+  const auto expect = [&](double x1, double x2)
+  {
+    filter->Update();
+    for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+    {
+      const double x = grid->GetPoint(i)[0] - grid->GetPoint(21 * 5 + 3)[0];
+      const double y = grid->GetPoint(i)[1] - grid->GetPoint(21 * 5 + 3)[1];
+      const double exact = std::hypot((x1 * x + x2 * y) / 4.0, (x1 * y - x2 * x) / 0.25);
+      EXPECT_NEAR(At(filter, i, "ArrivalTime"), exact, 1e-12 * (1.0 + exact)) << i;
+    }
+  };
+  SetInputArray(filter, 2, "fibre", true);
+  expect(0.0, 1.0);
+  SetInputArray(filter, 2, "fibre");
+  expect(0.8, 0.6);
+  vtkDataArray* const fibres = grid->GetPointData()->GetArray("fibre");
+  for (vtkIdType i = 0; i < fibres->GetNumberOfTuples(); ++i)
+  {
+    fibres->SetTuple3(i, -0.6, 0.8, 0.0);
+  }
+  filter->Modified();
+  expect(-0.6, 0.8);
+  fibres->Fill(0.0);
+  filter->Modified();
+  filter->Update();
+  EXPECT_NEAR(At(filter, 21 * 5 + 9, "ArrivalTime"), 6.0, 1e-12);
+  filter->SetMethodToHeat();
+  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal together with AlongSpeed 4"));
+}
+
 TEST(DistanceFilter, IsInfiniteWhereNoWayLeads)
 {
   const auto grid = MarkedGrid(9, 5, 4 * 9);

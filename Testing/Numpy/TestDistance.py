@@ -89,6 +89,68 @@ class Distance(unittest.TestCase):
         masked = sd.distance(surface, 0, mask=speed == 0)
         np.testing.assert_array_equal(np.isfinite(masked), np.isfinite(found))
 
+    def test_places_are_within_triangles(self):
+        points, faces = grid(12)
+        triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+        barycentric = np.array([[0.2, 0.5, 0.3], [1.0, 0.0, 0.0]])
+        places = np.einsum("ki,kij->kj", barycentric, points[triangles[[40, 7]]])
+        exact = np.linalg.norm(points[:, None] - places, axis=2)
+        for sources in (places, places + [0, 0, 0.3]):
+            for surface in ((points, triangles), (points, faces)):
+                found = sd.nearest_sources(surface, sources)
+                np.testing.assert_allclose(found.distance, exact.min(axis=1), atol=1e-12)
+                near = np.take_along_axis(exact, found.source[:, None], axis=1)[:, 0]
+                np.testing.assert_allclose(near, exact.min(axis=1), atol=1e-12)
+        inside = ([40, 7], barycentric)
+        found = sd.nearest_sources((points, triangles), inside)
+        np.testing.assert_allclose(found.distance, exact.min(axis=1), atol=1e-12)
+        later = sd.nearest_sources((points, triangles), inside, start=[0.5, 0.0])
+        np.testing.assert_allclose(later.distance, (exact + [0.5, 0.0]).min(axis=1), atol=1e-12)
+        fine = sd.refine((points, triangles), 0.05).surface
+        found = sd.nearest_sources((points, triangles), inside, refine_to=0.05)
+        np.testing.assert_allclose(
+            found.distance, np.linalg.norm(fine.points[:, None] - places, axis=2).min(axis=1), atol=1e-12)
+        ball = sd.sphere(4, 50.0)
+        place = np.array([[0.3, -0.7, 0.5]]) * 80
+        circles = 50.0 * np.arccos(np.clip(
+            ball.points / 50.0 @ place[0] / np.linalg.norm(place), -1.0, 1.0))
+        for method in ("Eikonal", "Heat"):
+            errors = np.abs(sd.distance(ball, place, method=method) - circles)
+            self.assertLess(errors.mean(), 0.005 * 50.0 * np.pi)
+
+    def test_fronts_along_directions_are_ellipses(self):
+        points, faces = grid(20)
+        e1 = np.array([0.8, 0.6, 0.0])
+        exact = np.hypot((points - points[87]) @ e1 / 3.0, (points - points[87]) @ [-0.6, 0.8, 0.0])
+        for rows in (len(points), len(faces)):
+            found = sd.distance((points, faces), 87, directions=np.tile(-2.0 * e1, (rows, 1)), along_speed=3.0)
+            np.testing.assert_allclose(found, exact, atol=1e-12)
+        slower = sd.distance((points, faces), 87, directions=np.tile(e1, (len(points), 1)), along_speed=1.5,
+                             across_speed=0.5, speed=np.full(len(faces), 2.0))
+        np.testing.assert_allclose(slower, exact, atol=1e-12)
+
+    @unittest.skipUnless(HAS_SCIPY, "scipy is not installed")
+    def test_rows_of_the_matrix_take_directions(self):
+        surface = sd.sphere(3)
+        east = np.cross([0.0, 0.0, 1.0], surface.points)
+        found = sd.distances(surface, [7, 90], directions=east, along_speed=4.0)
+        for row, source in zip(found.toarray(), (7, 90)):
+            np.testing.assert_array_equal(
+                row, sd.distance(surface, source, directions=east, along_speed=4.0))
+
+    def test_surfaces_keep_factors_for_other_sources_and_not_for_other_masks(self):
+        surface, inside = sd.sphere(3), np.arange(642) < 600
+        for method in ("Heat", "Eikonal"):
+            alone = [sd.distance(sd.sphere(3), source, method=method) for source in (7, 90)]
+            for source, expected in zip((7, 90), alone):
+                np.testing.assert_array_equal(sd.distance(surface, source, method=method), expected)
+            mask = ~inside
+            masked = sd.distance(surface, 7, method=method, mask=mask)
+            self.assertEqual(np.isinf(masked).sum(), 42)
+            mask[:] = False  # edited in place
+            np.testing.assert_array_equal(sd.distance(surface, 7, method=method, mask=mask), alone[0])
+            np.testing.assert_array_equal(sd.distance(surface, 7, method=method), alone[0])
+
     def test_other_parts_are_infinitely_far(self):
         a, b = sd.sphere(1), sd.sphere(1)
         surface = (np.concatenate([a.points, b.points + 5.0]),
@@ -116,6 +178,22 @@ class Distance(unittest.TestCase):
             "method is Heat; allowed: Eikonal together with start": dict(
                 sources=1, method="Heat", start=[1.0]),
             r"speed has shape \(5,\)": dict(sources=1, speed=np.ones(5)),
+            r"sources is .*; allowed: finite coordinates, \(k, 3\)": dict(sources=[[0, 0, np.nan]]),
+            r"sources\[0\] has 80; allowed: 0 to 79": dict(sources=([80], [[1, 0, 0]])),
+            r"sources\[1\] is .* in row 1; allowed: three": dict(
+                sources=([3, 4], [[1, 0, 0], [0.5, 0.6, 0.1]])),
+            r"sources\[1\] has shape \(1, 2\); allowed: \(1, 3\)": dict(sources=([3], [[1, 0]])),
+            "sources has in row 0 a face that is masked": dict(
+                sources=([3], [[1, 0, 0]]), mask=np.arange(80) == 3),
+            "nearest to a face that is masked or a barrier": dict(
+                sources=surface.points[:1], speed=np.zeros(80)),
+            "along_speed is 0; allowed: finite numbers above 0": dict(sources=1, along_speed=0),
+            "along_speed is 2 and across_speed is 1.0 but directions is not set": dict(
+                sources=1, along_speed=2),
+            "directions is infinite in row 0": dict(
+                sources=1, along_speed=2, directions=np.full((42, 3), np.inf)),
+            "method is Heat; allowed: Eikonal together with across_speed": dict(
+                sources=1, method="Heat", across_speed=2.0),
         }
         for message, keywords in bad.items():
             with self.assertRaisesRegex(ValueError, message):

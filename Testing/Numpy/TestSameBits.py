@@ -152,6 +152,8 @@ class SameBits(unittest.TestCase):
             ("distance", {"marked": (np.arange(len(x)) % 400 == 7) * used,
                           "speed": np.where(self.of_faces[:, 0] > 1.5, 0.0, 1.0 + self.of_faces[:, 1] ** 2)},
              {"Method": "Eikonal"}),
+            ("distance", {"marked": (np.arange(len(x)) % 400 == 7) * used, "directions": self.around},
+             {"Method": "Eikonal", "AlongSpeed": 3.0, "AcrossSpeed": 0.5}),
             ("direction_field", {}, {}),
             ("direction_field", {}, {"Method": "Smooth", "Angle": 30.0}),
             ("direction_field", {"hints": self.around}, {"Method": "Hints"}),
@@ -182,7 +184,7 @@ class SameBits(unittest.TestCase):
 
     def compare(self, function, arrays, properties, expected):
         if function == "distance":
-            self.compare_distance(arrays, properties["Method"], expected)
+            self.compare_distance(arrays, properties, expected)
             return
         keywords = {snake_case(name): value for name, value in properties.items()}
         if function in ("heat", "intrinsic_tv", "tensor_diffusion"):
@@ -245,12 +247,13 @@ class SameBits(unittest.TestCase):
                 self.assertEqual(expected[key].dtype, array.dtype, key)
             np.testing.assert_array_equal(expected[key], array, err_msg=key)
 
-    def compare_distance(self, arrays, method, expected):
+    def compare_distance(self, arrays, properties, expected):
         rows = np.flatnonzero(arrays["marked"])
         given = {key: array for key, array in arrays.items() if key != "marked"}
-        found = sd.distance(self.surface, rows, method=method, **given)
-        np.testing.assert_array_equal(
-            expected["ArrivalTime" if "speed" in given else "Distance"], found)
+        given.update({snake_case(name): value for name, value in properties.items()})
+        found = sd.distance(self.surface, rows, **given)
+        has_speed = "speed" in given or "along_speed" in given
+        np.testing.assert_array_equal(expected["ArrivalTime" if has_speed else "Distance"], found)
         np.testing.assert_array_equal(expected["NearestSource"], np.isfinite(found).astype(np.int32))
 
     def regions(self, result, arrays):

@@ -459,7 +459,9 @@ class TestProxies(unittest.TestCase):
             ("IntrinsicTVFilter", dict(AutomaticFidelity=1), {"FidelityNorm", "EdgeFunction"}),
             ("MumfordShahFilter", {}, {"EdgeThreshold", "SmoothingLength"}),
             ("MumfordShahFilter", dict(AutomaticThreshold=0), {"NoiseLevel"}),
-            ("SurfaceDistanceFilter", {}, {"SpeedArray", "SourceTimes"}),
+            ("SurfaceDistanceFilter", {}, {"SpeedArray", "SourceTimes", "DirectionArray", "AlongSpeed",
+                                           "AcrossSpeed"}),
+            ("SurfaceDistanceFilter", dict(Method=1), {"AlongSpeed", "AcrossSpeed"}),
             ("TuringTextureFilter", {}, {"FixedArray", "DiffusionRateAcross1"}),
             ("TuringTextureFilter", dict(IntrinsicDelaunay=1), {"DiffusionRateArray"}),
         ):

@@ -120,7 +120,8 @@ DEFAULTS = {
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDistanceFilter": {
-        **SURFACE, "Method": "Heat", "MaximumDistance": 0.0, "ComputeGradient": False},
+        **SURFACE, "Method": "Heat", "MaximumDistance": 0.0, "AlongSpeed": 1.0, "AcrossSpeed": 1.0,
+        "ComputeGradient": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},

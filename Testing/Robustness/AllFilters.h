@@ -364,6 +364,15 @@ inline std::vector<FilterKind> AllFilters()
         SetInputArray(f, 0, "sources");
         SetInputArray(f, 8, "c", true);
       }),
+    MakeKind<vtkSurfaceDistanceFilter>("ArrivalTimeDirected", "ArrivalTime", 0,
+      [](vtkSurfaceDistanceFilter* f)
+      {
+        f->SetMethodToEikonal();
+        f->SetAlongSpeed(2.0);
+        SetInputArray(f, 0, "sources");
+        SetInputArray(f, 2, "e1");
+        SetInputArray(f, 8, "c", true);
+      }),
     { "DirectionCurvature", [] { return vtkSmartPointer<vtkSurfaceDirectionFieldFilter>::New(); },
       "Direction" },
     { "DirectionSmooth",

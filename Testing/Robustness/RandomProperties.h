@@ -452,6 +452,8 @@ inline List OfDistance()
   return {
     RANDOM_PROPERTY(F, Method, Choice(dice, 2)),
     RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, AlongSpeed, dice.Flip() ? 1.0 : Positive(dice)),
+    RANDOM_PROPERTY(F, AcrossSpeed, dice.Flip() ? 1.0 : Positive(dice)),
     RANDOM_PROPERTY(F, ComputeGradient, dice.Flip()),
   };
 }

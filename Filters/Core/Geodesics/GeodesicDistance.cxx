@@ -58,10 +58,9 @@ struct LaidOut
 
 } // namespace
 
-GeodesicDistance::GeodesicDistance(
-  std::shared_ptr<const TriangleMesh> mesh, std::vector<double> slowness)
+GeodesicDistance::GeodesicDistance(std::shared_ptr<const TriangleMesh> mesh, FrontShapes shapes)
   : Mesh(std::move(mesh))
-  , Slowness(std::move(slowness))
+  , Shapes(std::move(shapes))
 {
   this->FindCorners();
 }
@@ -79,8 +78,8 @@ void GeodesicDistance::FindCorners()
   }
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const TriangleMesh::Shape& shape = mesh.Shapes()[static_cast<std::size_t>(t)];
-    const bool isOpen = this->SlownessOf(static_cast<std::size_t>(t)) < Never;
+    const TriangleMesh::Shape& shape = this->ShapeOf(t);
+    const bool isOpen = !IsBarrier(this->Shapes, t);
     const double first = std::atan2(shape.Y, shape.X);
     const double second = std::atan2(shape.Y, shape.Length - shape.X);
     const double angle[] = { first, second, std::acos(-1.0) - first - second };
@@ -104,14 +103,13 @@ void GeodesicDistance::FindCorners()
 GeodesicDistance::Way GeodesicDistance::WayThrough(
   Index corner, const std::vector<FrontSource>& fronts, const Arrival& arrival) const
 {
-  const auto t = static_cast<std::size_t>(corner / 3);
-  const double slowness = this->SlownessOf(t);
-  if (slowness == Never)
+  const Index t = corner / 3;
+  if (IsBarrier(this->Shapes, t))
   {
     return { Never, -1, -1 };
   }
   const int a = corner % 3;
-  const TriangleMesh::Shape& shape = this->Mesh->Shapes()[t];
+  const TriangleMesh::Shape& shape = this->ShapeOf(t);
   const Index second = this->Mesh->OtherCorner(corner, 1);
   const Index third = this->Mesh->OtherCorner(corner, 2);
   const double toSecond = shape.EdgeLength((a + 2) % 3);
@@ -120,10 +118,10 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
   const double ofThird = arrival.Times[static_cast<std::size_t>(third)];
   const Index bySecond = arrival.Sources[static_cast<std::size_t>(second)];
   const Index byThird = arrival.Sources[static_cast<std::size_t>(third)];
-  Way way{ ofSecond + slowness * toSecond, bySecond, second };
-  if (ofThird + slowness * toThird < way.Time)
+  Way way{ ofSecond + toSecond, bySecond, second };
+  if (ofThird + toThird < way.Time)
   {
-    way = { ofThird + slowness * toThird, byThird, third };
+    way = { ofThird + toThird, byThird, third };
   }
   if (bySecond < 0 || byThird < 0)
   {
@@ -143,10 +141,10 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
     one.Point == other.Point || startsAt(one, third) || startsAt(other, second);
   const FrontSource& point = startsAt(other, second) ? other : one;
   const double start = isOnePoint ? point.Start : std::min(ofSecond, ofThird);
-  const double da = (ofSecond - start) / slowness;
-  const double db = (ofThird - start) / slowness;
+  const double da = ofSecond - start;
+  const double db = ofThird - start;
   const double through =
-    start + slowness * (isOnePoint ? triangle.FromPoint(da, db) : triangle.FromPlane(da, db));
+    start + (isOnePoint ? triangle.FromPoint(da, db) : triangle.FromPlane(da, db));
   return through < way.Time ? Way{ through, ofSecond < ofThird ? bySecond : byThird, -1 } : way;
 }
 
@@ -217,14 +215,16 @@ std::vector<double> GeodesicDistance::LongestEdges() const
   std::vector<double> longest(static_cast<std::size_t>(mesh.NumberOfVertices()), 0.0);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const auto row = static_cast<std::size_t>(t);
-    const TriangleMesh::Shape& shape = mesh.Shapes()[row];
-    const double slowness = this->SlownessOf(row);
+    if (IsBarrier(this->Shapes, t))
+    {
+      continue;
+    }
+    const TriangleMesh::Shape& shape = this->ShapeOf(t);
     const double edge = std::max({ shape.EdgeLength(0), shape.EdgeLength(1), shape.EdgeLength(2) });
-    for (int a = 0; a < 3 && slowness < Never; ++a)
+    for (int a = 0; a < 3; ++a)
     {
       double& known = longest[static_cast<std::size_t>(mesh.TriangleVertices()(t, a))];
-      known = std::max(known, slowness * edge);
+      known = std::max(known, edge);
     }
   }
   return longest;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/ProgressMonitor.h"
-#include "Core/Surface/TriangleMesh.h"
+#include "Core/Geodesics/FrontShapes.h"
 
 #include <memory>
 #include <vector>
@@ -21,33 +21,33 @@ struct FrontSource
   double Start = 0.0; ///< the time at that point
 };
 
-/// Distances from sources along a surface, or arrival times: |grad T| = s, T = T_0 at the sources,
-/// with the slowness s of each triangle, by fast marching on the triangles (R. Kimmel, J. Sethian,
-/// PNAS 95, 1998). The update of a vertex lays the triangle out in the plane. If its other two
-/// vertices are reached from one source point, the place of this point in the plane follows from
-/// their times, and the third time from the length of the straight line from there (M. Novotni,
-/// R. Klein, WSCG 2002): in a plane such distances are exact, and on curved surfaces a front keeps
-/// its curvature. If they are reached from different points, as beside a line of sources, the front
-/// is plane. In both cases the way has to cross the edge between them; others go along an edge.
+/// Distances from sources along a surface, or arrival times: grad T . D grad T = 1, T = T_0 at the
+/// sources, with the squared speeds D of each triangle (FrontShapes), by fast marching on the
+/// triangles (R. Kimmel, J. Sethian, PNAS 95, 1998). The update of a vertex lays the triangle out in
+/// the plane. If its other two vertices are reached from one source point, the place of this point
+/// in the plane follows from their times, and the third time from the length of the straight line
+/// from there (M. Novotni, R. Klein, WSCG 2002): in a plane such distances are exact, and on curved
+/// surfaces a front keeps its curvature. If they are reached from different points, as beside a line
+/// of sources, the front is plane. In both cases the way has to cross the edge between them; others
+/// go along an edge.
 ///
 /// Each time is the length of a path over triangles laid out side by side. A vertex whose time
-/// decreases later is visited again, and obtuse triangles need no unfolding. Times do not depend on
-/// the order of the vertices, except where ways from several points of a region are equally long, as
-/// on even meshes: by up to a quarter of an edge there, half of the error. On an intrinsic Delaunay
-/// triangulation (IntrinsicDelaunay) fewer ways go along edges, and distances have smaller errors;
-/// the vertices, and the surface, are the same.
+/// decreases later is visited again, and obtuse triangles, which speeds that differ between
+/// directions make of others, need no unfolding. Times do not depend on the order of the vertices,
+/// except where ways from several points of a region are equally long, as on even meshes: by up to a
+/// quarter of an edge there, half of the error. On an intrinsic Delaunay triangulation
+/// (IntrinsicDelaunay) fewer ways go along edges, and distances have smaller errors; the vertices,
+/// and the surface, are the same.
 ///
-/// A triangle of infinite slowness is a barrier: no way crosses it, but ways along an edge that
-/// another triangle shares go by. Ways around a corner of a boundary or a barrier, where the open
-/// angle is above pi, go on from there as from a source. Fronts of different labels do not mix.
+/// No way crosses a barrier, but ways along an edge that another triangle shares go by. Ways around
+/// a corner of a boundary or a barrier, where the open angle is above pi, go on from there as from a
+/// source. Fronts of different labels do not mix.
 class GeodesicDistance
 {
 public:
-  /// slowness: s per triangle of the mesh, above 0 and possibly infinite; empty: 1.
-  explicit GeodesicDistance(
-    std::shared_ptr<const TriangleMesh> mesh, std::vector<double> slowness = {});
+  explicit GeodesicDistance(std::shared_ptr<const TriangleMesh> mesh, FrontShapes shapes = {});
 
-  /// T per vertex in units of the mesh times slowness, infinite where no front arrives, and the
+  /// T per vertex in units of the mesh over those of speed, infinite where no front arrives, and the
   /// number of the source that it comes from, -1 there.
   struct Arrival
   {
@@ -78,9 +78,10 @@ private:
 
   Way WayThrough(
     Index corner, const std::vector<FrontSource>& fronts, const Arrival& arrival) const;
-  double SlownessOf(std::size_t t) const
+  const TriangleMesh::Shape& ShapeOf(Index t) const
   {
-    return this->Slowness.empty() ? 1.0 : this->Slowness[t];
+    return (
+      this->Shapes.empty() ? this->Mesh->Shapes() : this->Shapes)[static_cast<std::size_t>(t)];
   }
   void FindCorners();
   /// Find() for times that `arrival` has infinite at first. latest: per vertex, the time from which on
@@ -91,7 +92,7 @@ private:
   std::vector<double> LongestEdges() const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
-  std::vector<double> Slowness;
+  FrontShapes Shapes;
   std::vector<char> IsCorner; ///< per vertex
 };
 

@@ -69,13 +69,12 @@ struct Gate
 class Spreading
 {
 public:
-  Spreading(const TriangleMesh& mesh, const SourcePiece& piece, double slowness, Index& nextPoint,
-    std::vector<FrontSource>& fronts)
+  Spreading(const TriangleMesh& mesh, const TriangleMesh::Shape& shape, const SourcePiece& piece,
+    Index& nextPoint, std::vector<FrontSource>& fronts)
     : Mesh(mesh)
     , Piece(piece)
-    , Corners(CornersOf(mesh.Shapes()[static_cast<std::size_t>(piece.Triangle)]))
+    , Corners(CornersOf(shape))
     , Flat(this->Corners, piece)
-    , Slowness(slowness)
     , NextPoint(nextPoint)
     , Fronts(fronts)
   {
@@ -114,8 +113,7 @@ private:
     }
     Index point = share == 0.0 ? this->Piece.FromPoint : (share == 1.0 ? this->Piece.ToPoint : -1);
     point = point < 0 ? this->NextPoint++ : point;
-    this->Fronts.push_back(
-      { vertex, this->Slowness * (x - place).norm(), this->Piece.Label, point, 0.0 });
+    this->Fronts.push_back({ vertex, (x - place).norm(), this->Piece.Label, point, 0.0 });
   }
 
   /// Lay out the triangles beyond the edge from vertex i at a to vertex j at b of triangle t, which
@@ -159,7 +157,6 @@ private:
   const SourcePiece& Piece;
   const std::array<Vector2d, 3> Corners;
   const FlatPiece Flat;
-  const double Slowness;
   Index& NextPoint;
   std::vector<FrontSource>& Fronts;
   std::vector<Gate> Gates;
@@ -167,7 +164,7 @@ private:
 
 } // namespace
 
-void AppendFronts(const TriangleMesh& mesh, const SourcePiece& piece, double slowness, bool around,
+void AppendFronts(const TriangleMesh& mesh, const FrontShapes& shapes, const SourcePiece& piece,
   Index& nextPoint, std::vector<FrontSource>& fronts)
 {
   for (int a = 0; a < 3; ++a)
@@ -181,7 +178,10 @@ void AppendFronts(const TriangleMesh& mesh, const SourcePiece& piece, double slo
       return;
     }
   }
-  Spreading(mesh, piece, slowness, nextPoint, fronts).Spread(around);
+  const bool around = shapes.empty();
+  const FrontShapes& measured = around ? mesh.Shapes() : shapes;
+  Spreading(mesh, measured[static_cast<std::size_t>(piece.Triangle)], piece, nextPoint, fronts)
+    .Spread(around);
 }
 
 void AppendHeat(

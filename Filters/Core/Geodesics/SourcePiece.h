@@ -22,13 +22,14 @@ struct SourcePiece
   Index Label = 0;
 };
 
-/// Append the fronts of a piece: the vertices of its triangle, at their straight distances from it,
-/// times the slowness. With `around`, also the vertices that a straight way reaches over up to
-/// three more triangles, laid out side by side: on an intrinsic Delaunay triangulation of the same
-/// surface the piece may lie in a triangle with any of these vertices. Vertices that are nearest to
+/// Append the fronts of a piece: the vertices of its triangle, at their straight distances from it in
+/// the triangle as fronts measure it. Where that is the shape of the mesh (`shapes` is empty), also the
+/// vertices that a straight way reaches over up to three more triangles, laid out side by side: on an
+/// intrinsic Delaunay triangulation of the same surface the piece may lie in a triangle with any of
+/// these vertices. Vertices that are nearest to
 /// a point of the source have its number, others numbers from nextPoint on, which becomes one more
 /// for each.
-void AppendFronts(const TriangleMesh& mesh, const SourcePiece& piece, double slowness, bool around,
+void AppendFronts(const TriangleMesh& mesh, const FrontShapes& shapes, const SourcePiece& piece,
   Index& nextPoint, std::vector<FrontSource>& fronts);
 
 /// The same for heat, at the vertices of the triangle. Their shares are the barycentric coordinates
