@@ -907,7 +907,7 @@ def turing_texture(
                 form, progress)
 
 
-def _left_out(mask: Any, roi: Any, surface: Surface) -> Any:
+def left_out(mask: Any, roi: Any, surface: Surface) -> Any:
     """The mask of a function that leaves masked parts out, or that of the region of interest."""
     if roi is None:
         return mask
@@ -976,7 +976,7 @@ def curvature(
     """
     surface = as_surface(surface)
     runner = Runner("curvature", properties, {"MaskArray": "mask"})
-    inputs = Input(surface, mask=_left_out(mask, roi, surface))
+    inputs = Input(surface, mask=left_out(mask, roi, surface))
     outputs, found = _run_once("curvature", _core.CurvatureRun, inputs, runner, progress)
     result: CurvatureResult = make_result(CurvatureResult, outputs, found)
     return result
@@ -1058,7 +1058,7 @@ def find_derivatives(
     surface = as_surface(surface)
     runner = Runner("derivatives", properties, ARRAYS)
     data, faces = _take("values", values, surface, on_faces)
-    inputs = Input(surface, data, data_on_faces=faces, mask=_left_out(mask, roi, surface))
+    inputs = Input(surface, data, data_on_faces=faces, mask=left_out(mask, roi, surface))
     outputs, found = _run_once("derivatives", _core.DerivativesRun, inputs, runner, progress)
     result: DerivativesResult = make_result(DerivativesResult, outputs, {"speed": None, **found})
     return result

@@ -36,6 +36,17 @@ class ArrayResult:
         array = main if dtype is None else main.astype(dtype, copy=False)
         return array.copy() if copy else array
 
+    def __array_function__(self, function: Any, types: Any, arguments: Any, keywords: Any) -> Any:
+        # Some functions of numpy would call a method of their name, and a result may have an array
+        # with it, such as `mean`.
+        def stand_for(given: Any) -> Any:
+            if isinstance(given, (list, tuple)) and not hasattr(given, "_fields"):
+                return type(given)(map(stand_for, given))
+            return np.asarray(given) if isinstance(given, ArrayResult) else given
+
+        return function(*map(stand_for, arguments),
+                        **{name: stand_for(given) for name, given in keywords.items()})
+
     @property
     def shape(self) -> tuple[int, ...]:
         """That of the main array."""

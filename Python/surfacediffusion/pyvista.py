@@ -64,7 +64,7 @@ from ._functions import curvature as _curvature
 from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import direction_field as _direction_field
 from ._functions import (
-    exclude_outside, find_derivatives, interpolate_with_outputs, segment_with_outputs,
+    exclude_outside, find_derivatives, interpolate_with_outputs, left_out, segment_with_outputs,
 )
 from ._meshes import find_polydata
 from ._models import (
@@ -298,13 +298,13 @@ def relief(
 
 
 def curvature(
-    mesh: Any, *, mask: str | None = None, return_result: bool = False, progress: Progress = False,
-    **properties: Any,
+    mesh: Any, *, mask: str | None = None, roi: str | None = None, return_result: bool = False,
+    progress: Progress = False, **properties: Any,
 ) -> Any:
     """Compute the curvature of the mesh at a given scale.
 
-    mask: point or cell array; points and cells with a nonzero value are left out, and the surface
-    ends there. All other keywords are those of surfacediffusion.curvature. The results are the point
+    mask, roi: point or cell array; points and cells with a nonzero value, or with 0, are left out, and
+    the surface ends there. All other keywords are those of surfacediffusion.curvature. The results are the point
     arrays MeanCurvature, which becomes active, GaussianCurvature, PrincipalCurvatures, ShapeIndex and
     Curvedness; result_array_name is the prefix of their names. return_result: if True, the function
     returns a pair: the mesh, and the CurvatureResult, of a MultiBlock the list of them.
@@ -312,7 +312,7 @@ def curvature(
     properties, prefix = _keywords("curvature", properties)
     blocks, results = _find_surfaces(mesh, "curvature", properties), []
     for block in blocks:
-        marks = block.find("mask", mask, faces=True)[0]
+        marks = block.find_left_out(mask, roi)
         result = _curvature(block.surface, mask=marks, progress=progress, **properties)
         results.append(result)
         for name, values in (
@@ -326,39 +326,42 @@ def curvature(
 
 
 def distance(
-    mesh: Any, sources: Any, *, speed: str | None = None, mask: str | None = None,
+    mesh: Any, sources: Any, *, speed: str | None = None, direction: str | None = None,
+    along_speed: float = 1.0, across_speed: float = 1.0, mask: str | None = None, roi: str | None = None,
     method: str = "Eikonal", progress: Progress = False, result_array_name: str | None = None,
 ) -> Any:
     """Compute the distance along the mesh from the nearest source, or with speeds the time at which
     fronts arrive.
 
     sources: the name of a point array, whose nonzero points are the sources; or numbers of points; or a
-    data set, whose points stand for the nearest points of the mesh, in each block of a MultiBlock. speed:
-    point or cell array. mask: point or cell array; points and cells with a nonzero value are left out.
-    The method is that of surfacediffusion.distance. The results are the point arrays Distance, with speed
-    ArrivalTime, which becomes active, and NearestSource: the value of the array at the nearest source, or
-    the number of the point. Points that no way reaches have inf, and 0 or -1. result_array_name is the
-    prefix of the names.
+    data set or an array (k, 3), whose points stand for the nearest places of the mesh, in each block of a
+    MultiBlock. speed: point or cell array. direction: point or cell array with three components, for
+    along_speed and across_speed. mask, roi: point or cell array; points and cells with a nonzero value,
+    or with 0, are left out. The method is that of surfacediffusion.distance. The results are the point
+    arrays Distance, with speeds ArrivalTime, which becomes active, and NearestSource: the value of the
+    array at the nearest source, or the number of the point. Points that no way reaches have inf, and 0 or
+    -1. result_array_name is the prefix of the names.
     """
     blocks = _find_surfaces(mesh, "distance", {})
+    given = getattr(sources, "points", sources)
     for block in blocks:
-        speeds = block.find("speed", speed, faces=True)[0]
-        left_out = block.find("mask", mask, faces=True)[0]
+        arrays = {"speed": block.find("speed", speed, faces=True)[0],
+                  "directions": block.find("direction", direction, faces=True)[0],
+                  "along_speed": along_speed, "across_speed": across_speed,
+                  "mask": block.find_left_out(mask, roi)}
+        rows = given
         if isinstance(sources, str):
             marks = block.find("sources", sources)[0]
             assert marks is not None
             rows = np.flatnonzero(np.nan_to_num(marks))
             names, nowhere = marks[rows], 0
         else:
-            rows = np.atleast_1d(
-                [block.mesh.find_closest_point(place) for place in sources.points]
-                if hasattr(sources, "points") else sources)
-            names, nowhere = np.arange(len(rows)) if hasattr(sources, "points") else rows, -1
-        times = _distance(block.surface, rows, speed=speeds, mask=left_out, method=method,
-                          progress=progress)
-        nearest = _nearest_sources(block.surface, rows, speed=speeds, mask=left_out).source
+            names, nowhere = np.atleast_1d(given) if np.ndim(given) < 2 else np.arange(len(given)), -1
+        times = _distance(block.surface, rows, method=method, progress=progress, **arrays)
+        nearest = _nearest_sources(block.surface, rows, **arrays).source
         prefix = result_array_name or ""
-        name = prefix + ("Distance" if speed is None else "ArrivalTime")
+        has_speed = speed is not None or along_speed != 1.0 or across_speed != 1.0
+        name = prefix + ("ArrivalTime" if has_speed else "Distance")
         block.add(name, times, False)
         block.add(prefix + "NearestSource", np.where(nearest < 0, nowhere, names[nearest]), False)
         block.mesh.set_active_scalars(name, "point")
@@ -366,14 +369,14 @@ def distance(
 
 
 def derivatives(
-    mesh: Any, array: str | None = None, *, mask: str | None = None, return_result: bool = False,
-    progress: Progress = False, **properties: Any,
+    mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
+    return_result: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Compute derivatives of data on the mesh.
 
     array: point or cell array; default: the active scalars. Blocks without it pass through, if others
-    have it. mask: point or cell array; points and cells with a nonzero value are left out. All other
-    keywords are those of surfacediffusion.derivatives. The result has the name of the array followed
+    have it. mask, roi: point or cell array; points and cells with a nonzero value, or with 0, are left
+    out. All other keywords are those of surfacediffusion.derivatives. The result has the name of the array followed
     by the quantity, for instance tGradient, or result_array_name; velocities have their lengths in
     tSpeed. return_result: if True, the function returns a pair: the mesh, and the DerivativesResult, of
     a MultiBlock the list of them.
@@ -392,7 +395,7 @@ def derivatives(
             raise ValueError("array is not given and the mesh has no active scalars; allowed: point or "
                              "cell arrays")
         values, on_faces = block.find("array", name, faces=True)
-        marks = block.find("mask", mask, faces=True)[0]
+        marks = block.find_left_out(mask, roi)
         assert values is not None
         result = find_derivatives(block.surface, values, on_faces, marks, None, progress, dict(properties))
         results.append(result)
@@ -464,6 +467,11 @@ class _Block:
         where = " or ".join(["point"] * points + ["cell"] * faces)
         listed = ", ".join(repr(other) for other in names) or "of which there are none"
         raise ValueError(f"{argument} is {shorten(name)}; allowed: {where} arrays, {listed}")
+
+    def find_left_out(self, mask: str | None, roi: str | None) -> NDArray[Any] | None:
+        """The mask, or that of what is outside of the region of interest."""
+        return left_out(self.find("mask", mask, faces=True)[0], self.find("roi", roi, faces=True)[0],
+                        self.surface)
 
     def add(self, name: str, values: NDArray[Any], on_faces: bool) -> None:
         """Add an array of points or, zero at cells that are no faces, of cells."""

@@ -20,7 +20,7 @@ import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
 from surfacediffusion import (Surface, curvature, denoise_mesh, distance, get_number_of_threads, gradient, heat,
-                              interpolate, intrinsic_tv, set_number_of_threads)
+                              interpolate, intrinsic_tv, nearest_sources, set_number_of_threads)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
@@ -419,6 +419,19 @@ class OtherCommands(CommandTest):
             np.testing.assert_allclose(np.load("out.npy").ravel(), expected, rtol=1e-6, atol=1e-6)
             self.assertEqual(report["columns"][0]["sources"], 2)
             self.assertEqual(report["columns"][0]["unreached"], 0)
+
+    def test_nearest_sources_are_values_or_places(self):
+        areas = np.where(POINTS[:, 2] > 8, 4, np.where(POINTS[:, 0] < -6, 7, 0))
+        samples.write_gifti("areas.func.gii", {"areas": areas, "one": 3.0 * (np.arange(N) == 11)})
+        self.succeed("distance lh.surf.gii areas.func.gii out.func.gii --nearest near.func.gii")
+        near = read_data("near.func.gii").parts[0].values
+        expected = nearest_sources(self.surface, np.flatnonzero(areas)).source
+        np.testing.assert_array_equal(near[:, 0], areas[areas != 0][expected])
+        self.assertEqual(set(near[:, 0]), {4, 7})
+        self.assertEqual(set(near[:, 1]), {3})
+        self.succeed("distance lh.surf.gii out.npy --from 40 --from 3 --nearest near.npy")
+        expected = nearest_sources(self.surface, [40, 3]).source + 1
+        np.testing.assert_array_equal(np.load("near.npy").ravel(), expected)
 
     def test_distance_of_slow_fronts_is_a_time(self):
         samples.write_gifti("speed.func.gii", {"v": np.full(N, 0.25)})

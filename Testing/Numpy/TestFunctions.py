@@ -450,6 +450,9 @@ class Results(unittest.TestCase):
             np.testing.assert_array_equal(result[north], array[north])
             np.testing.assert_array_equal(np.sqrt(np.abs(result)), np.sqrt(np.abs(array)))
             np.testing.assert_array_equal(result - array, 0)
+            self.assertEqual(np.mean(result), array.mean())
+            np.testing.assert_array_equal(np.concatenate([result, array]), np.concatenate([array, array]))
+            np.testing.assert_array_equal(np.stack(arrays=(result, array)), np.stack([array, array]))
 
     def test_old_switches_warn_and_work(self):
         def old(function, *arguments, **keywords):

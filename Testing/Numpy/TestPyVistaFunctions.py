@@ -198,8 +198,8 @@ class Meshes(unittest.TestCase):
         np.testing.assert_array_equal(found["myNearestSource"], np.array([3, 40])[nearest])
         places = pyvista.PolyData(1.2 * ball.points[[7, 90]])
         blocks = distance(pyvista.MultiBlock([ball, None, ball.copy()]), places, speed="v")
-        np.testing.assert_array_equal(
-            blocks[2]["ArrivalTime"], sd.distance(surface, [7, 90], speed=ball["v"]))
+        np.testing.assert_allclose(
+            blocks[2]["ArrivalTime"], sd.distance(surface, [7, 90], speed=ball["v"]), atol=1e-6)
         self.assertEqual(set(blocks[0]["NearestSource"]), {0, 1})
         two = ball.merge(ball.translate((5, 0, 0), inplace=False))
         apart = distance(two, 3)
@@ -207,6 +207,22 @@ class Meshes(unittest.TestCase):
         self.assertEqual(set(apart["NearestSource"]), {3, -1})
         with self.assertRaisesRegex(ValueError, "sources is 'none'; allowed: point arrays"):
             distance(ball, "none")
+        ball["east"] = np.cross((0, 0, 1), ball.points)
+        ball["south"] = ball.points[:, 2] < 0.2
+        swift = distance(ball, 3, direction="east", along_speed=3.0, roi="south")
+        np.testing.assert_array_equal(swift["ArrivalTime"], sd.distance(
+            surface, 3, directions=ball["east"], along_speed=3.0, mask=ball["south"] == 0))
+
+    def test_regions_of_interest_are_the_opposite_of_masks(self):
+        ball = pyvista.Icosphere(nsub=3)
+        ball["z"], ball["inside"] = ball.points[:, 2], ball.points[:, 0] > -0.3
+        ball["outside"] = ~ball["inside"]
+        for function, array in ((curvature, "MeanCurvature"), (derivatives, "zGradient")):
+            values = ("z",) if function is derivatives else ()
+            np.testing.assert_array_equal(function(ball, *values, roi="inside")[array],
+                                          function(ball, *values, mask="outside")[array])
+            with self.assertRaisesRegex(ValueError, "mask and roi are both given"):
+                function(ball, *values, roi="inside", mask="outside")
 
     def test_meshes_are_denoised_block_by_block(self):
         ball = pyvista.Icosphere(nsub=4)

@@ -674,6 +674,7 @@ def _distance(commands):
     parser = commands.add(
         "distance", tasks.distance, text,
         [f"{PROGRAM} distance lh.white lh.V1.label from_v1.shape.gii",
+         f"{PROGRAM} distance lh.white areas.label.gii distance.shape.gii --nearest territories.shape.gii",
          f"{PROGRAM} distance scan.ply distances.ply --from 1041 --from=-3.5,20,4"], DISTANCE)
     parser.add_argument("surface", metavar="SURFACE", help="the surface")
     parser.add_argument("sources", metavar="SOURCES", nargs="?",
@@ -689,6 +690,9 @@ def _distance(commands):
     parser.add_argument("--speed", metavar="FILE",
                         help="the speed of fronts at the vertices, 0 or more; faces of speed 0 are "
                              "barriers")
+    parser.add_argument("--nearest", metavar="FILE",
+                        help="also write which source is the nearest one: the value in SOURCES, or the "
+                             "place among --from, from 1; 0 where no way arrives")
 
 
 def _place(text):

@@ -100,7 +100,8 @@ def read_values(path, surface, tables=True):
 
 
 def read_sources(arguments, surface):
-    """The vertices of each set of sources of `distance`, and the names of their columns."""
+    """The vertices of each set of sources of `distance`, the number that each of them stands for, and
+    the names of the columns."""
     count = len(surface.points)
     if arguments.starts is not None:
         rows = []
@@ -110,14 +111,15 @@ def read_sources(arguments, surface):
                                       f"{surface.path}, or x,y,z")
             rows.append(place if isinstance(place, int) else int(
                 np.argmin(((surface.points - place) ** 2).sum(axis=1))))
-        return [np.unique(rows)], ["distance"]
+        found, places = np.unique(rows, return_index=True)
+        return [found], [places + 1], ["distance"]
     _, values, names = read_values(arguments.sources, surface, tables=False)
     sets = [np.flatnonzero(np.nan_to_num(column)) for column in values.T]
     for rows, name in zip(sets, names):
         if len(rows) == 0:
             raise FileError(f"{arguments.sources}: the column {name!r} is 0 at all vertices; allowed: a "
                             "nonzero vertex, which is a source")
-    return sets, names
+    return sets, [column[rows] for column, rows in zip(values.T, sets)], names
 
 
 def _read_table(path):

@@ -439,6 +439,7 @@ def derivatives(arguments, report):
 def distance(arguments, report):
     from .. import Surface
     from .. import distance as measure
+    from .. import nearest_sources
 
     if (arguments.sources is None) == (arguments.starts is None):
         raise inputs.ArgumentProblem("the sources are " + (
@@ -446,17 +447,23 @@ def distance(arguments, report):
             + "; allowed: one of SOURCES and --from")
     surface = _read_surface_for_output(arguments, report)
     with report.timed("read"):
-        sets, names = inputs.read_sources(arguments, surface)
+        sets, numbers, names = inputs.read_sources(arguments, surface)
         speed = None
         if arguments.speed is not None:
             _, values, _ = inputs.read_values(arguments.speed, surface, tables=False)
             speed = values[:, 0]
     target = new_data(surface, arguments.output, names)
+    nearest = arguments.nearest and new_data(surface, arguments.nearest, names)
     solid = Surface(surface.points, surface.faces)
     with report.timed("compute"), report.progress("Distance") as progress:
         found = np.column_stack([
             measure(solid, rows, speed=speed, method=arguments.method.capitalize(), progress=progress)
             for rows in sets])
+        if nearest:
+            labels = np.zeros_like(found)
+            for column, rows, given in zip(labels.T, sets, numbers):
+                first = nearest_sources(solid, rows, speed=speed).source
+                column[:] = np.where(first < 0, 0, given[first])
     reached = np.isfinite(found)
     report.facts.update(
         method=arguments.method, columns=[
@@ -464,6 +471,8 @@ def distance(arguments, report):
              "maximum": number(values[column].max())}
             for name, rows, values, column in zip(names, sets, found.T, reached.T)])
     _write_new(arguments, report, target, np.where(reached, found, np.nan).astype(np.float32))
+    if nearest:
+        nearest.save(arguments.nearest, [labels.astype(np.float32)])
 
 
 def normals(arguments, report):
