@@ -23,10 +23,13 @@ compares the versions with the last release of the changelog.
 
 
 def result_of(log):
-    """ctest's or the fuzzer's own count."""
+    """The count of ctest, of the fuzzer or of the links of the site."""
     passed = re.findall(r"^\d+% tests passed, \d+ tests failed out of (\d+)", log, re.MULTILINE)
     if passed:
         return f"{passed[-1]} tests pass"
+    pages = re.findall(r"^(\d+ pages, \d+ links), 0 broken$", log, re.MULTILINE)
+    if pages:
+        return f"{pages[-1]}, none broken"
     runs = re.findall(r"^stat::number_of_executed_units:\s*(\d+)", log, re.MULTILINE)
     return f"{runs[-1]} runs without a finding"
 

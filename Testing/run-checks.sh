@@ -1,7 +1,7 @@
 #!/bin/sh
 # Usage: run-checks.sh [CHECK...]
 # The checks before a release, which take hours and are not part of run-tests.sh: all tests under the
-# sanitizers, ten minutes of fuzzing, all meshes, and other versions of VTK. Without arguments all run,
+# sanitizers, ten minutes of fuzzing, all meshes, other versions of VTK, and the site. Without arguments all run,
 # also if one fails. Each that passes is entered into Testing/CHECKS.md with its day and its commit.
 # Logs are in build/checks. The exit code is 1 if a check has failed.
 set -eu
@@ -34,6 +34,10 @@ run()
         build/checks/corpus
       return
       ;;
+    site)
+      Documentation/build.sh
+      return
+      ;;
     sanitize | sanitize-more) build sanitize ;;
     tsan | tsan-filters | tsan-numpy) build tsan ;;
     *) build build ;;
@@ -41,7 +45,7 @@ run()
   xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "$1" -j2
 }
 
-[ $# -gt 0 ] || set -- fuzz sanitize sanitize-more tsan tsan-filters tsan-numpy long versions
+[ $# -gt 0 ] || set -- fuzz sanitize sanitize-more tsan tsan-filters tsan-numpy long versions site
 status=0
 for check in "$@"; do
   echo "== $check"

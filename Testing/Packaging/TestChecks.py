@@ -92,9 +92,10 @@ class Checks(unittest.TestCase):
                 self.assertIn(name, rows)
                 self.assertGreaterEqual(tuple(map(int, rows[name][4].split("."))), last, name)
 
-    def test_the_counts_of_ctest_and_of_the_fuzzer_are_read(self):
+    def test_the_counts_of_ctest_of_the_fuzzer_and_of_the_site_are_read(self):
         self.assertEqual(result_of("100% tests passed, 0 tests failed out of 12\n"), "12 tests pass")
         self.assertEqual(result_of("stat::number_of_executed_units: 345\n"), "345 runs without a finding")
+        self.assertEqual(result_of("4 pages, 56 links, 0 broken\n"), "4 pages, 56 links, none broken")
 
 
 if __name__ == "__main__":
