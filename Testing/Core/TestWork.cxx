@@ -21,6 +21,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <type_traits>
 
 namespace SurfaceDiffusion
 {
@@ -40,6 +41,10 @@ std::map<SolverPurpose, long> FactorizationsOf(ModelSettings settings)
   for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
   {
     input.Data.Data.Values(i, 0) = (input.Vertices(i, 2) > 0.2) + 0.1 * std::cos(7.0 * i);
+  }
+  if (std::is_same_v<ModelSettings, TextureSettings>) // whose data are both chemicals
+  {
+    input.Data.Data.Values = input.Data.Data.Values.col(0).replicate(1, 2).eval();
   }
   settings.Solver = SolverMethod::Direct;
   settings.NumberOfTimeSteps = NumberOfSteps;
