@@ -42,7 +42,7 @@ def _sphere(folder):
     points, faces = read_surface(path)
     points = points * (100 / np.linalg.norm(points, axis=1))[:, None]
     noise = np.random.default_rng(1).normal(2.5, 0.5, len(points))
-    return _write(folder, Sample("sphere 10k", None, points, faces, {"noise": noise}))
+    return write_sample(folder, Sample("sphere 10k", None, points, faces, {"noise": noise}))
 
 
 def _fsaverage5(folder):
@@ -51,7 +51,7 @@ def _fsaverage5(folder):
     pial, _ = read_surface(data / "pial_left.gii.gz")
     maps = {name: nib.load(data / f"{file}_left.gii.gz").darrays[0].data.astype(float)
             for name, file in (("thickness", "thick"), ("curvature", "curv"))}
-    return _write(folder, Sample("fsaverage5 10k", None, (white + pial) / 2, faces, maps,
+    return write_sample(folder, Sample("fsaverage5 10k", None, (white + pial) / 2, faces, maps,
                                  maps["thickness"] > 0.01))
 
 
@@ -64,7 +64,7 @@ def _conte69(folder):
                        ("myelin (T1w/T2w)", "t1wt2w")):
         both = np.loadtxt(data / f"matrices/main_group/conte69_32k_{file}.csv")
         maps[name] = np.nan_to_num(both[:len(points)])  # NaN on the medial wall
-    return _write(folder, Sample("conte69 32k", None, points, faces, maps, region))
+    return write_sample(folder, Sample("conte69 32k", None, points, faces, maps, region))
 
 
 def _s1200(folder):
@@ -76,7 +76,7 @@ def _s1200(folder):
     assert name.endswith("CORTEX_LEFT")
     sulc, region = np.zeros(len(points)), np.zeros(len(points), bool)
     sulc[model.vertex], region[model.vertex] = values[block], True
-    return _write(folder, Sample("S1200 32k", None, points, faces, {"sulcal depth": sulc}, region))
+    return write_sample(folder, Sample("S1200 32k", None, points, faces, {"sulcal depth": sulc}, region))
 
 
 def make_grayordinates(folder, columns):
@@ -106,7 +106,7 @@ def read_surface(path):
             image.agg_data("triangle").astype(np.int32))
 
 
-def _write(folder, sample):
+def write_sample(folder, sample):
     sample.path = Path(folder) / (sample.name.replace(" ", "_") + ".L.surf.gii")
     # Every program gets the coordinates with the digits that the file has.
     sample.points = sample.points.astype(np.float32).astype(float)
