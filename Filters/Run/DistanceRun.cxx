@@ -86,7 +86,7 @@ Vector DistanceRun::SolveHeat(const SourceSet& sources, const ProgressMonitor& p
     this->HeatOperators.reset();
     this->Heat.reset();
     this->Heat = std::make_unique<const HeatDistance>(
-      operators, HeatStep, this->Parallel, progress.Part(0.0, 0.8));
+      operators, HeatDistance::UsualStep, this->Parallel, progress.Part(0.0, 0.8));
     this->HeatOperators = operators;
   }
   return this->Heat->Find({ sources.Heat }, progress.Part(0.8, 1.0)).col(0);

@@ -43,8 +43,6 @@ class DistanceRun : public SurfaceRun
 {
 public:
   static constexpr bool ExcludesMasked = true;
-  /// m of the time step m h^2 of the heat method, as in numpy's distance()
-  static constexpr double HeatStep = 2.0;
 
   explicit DistanceRun(const ParallelFor& parallel)
     : SurfaceRun(parallel, "are barriers")

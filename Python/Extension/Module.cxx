@@ -173,7 +173,7 @@ NB_MODULE(_core, m)
     .def("project", &SurfaceDistances::Project, "points"_a, "progress"_a.none())
     .def("from_all", &SurfaceDistances::FromAll, "rows"_a, "barycentric"_a.none(), "starts"_a,
       "apart"_a, "progress"_a.none())
-    .def("by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(), "m"_a,
+    .def("by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(),
       "progress"_a.none())
     .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 

@@ -168,8 +168,8 @@ nb::tuple SurfaceDistances::FromAll(const LongArray& rows,
   return nb::make_tuple(NewArray(std::move(times)), NewArray(std::move(nearest)));
 }
 
-nb::object SurfaceDistances::ByHeat(const LongArray& rows,
-  const std::optional<DoubleArray>& barycentric, double m, const nb::object& progress)
+nb::object SurfaceDistances::ByHeat(
+  const LongArray& rows, const std::optional<DoubleArray>& barycentric, const nb::object& progress)
 {
   const TriangleMesh& mesh = this->Built->InputMesh();
   std::vector<double> found(this->Input->NumberOfPoints(), std::numeric_limits<double>::infinity());
@@ -178,8 +178,8 @@ nb::object SurfaceDistances::ByHeat(const LongArray& rows,
     {
       if (!this->Heat)
       {
-        this->Heat = std::make_unique<const HeatDistance>(
-          this->Built->SharedAssembler(), m, PythonThreads::Instance(), monitor.Part(0.0, 0.7));
+        this->Heat = std::make_unique<const HeatDistance>(this->Built->SharedAssembler(),
+          HeatDistance::UsualStep, PythonThreads::Instance(), monitor.Part(0.0, 0.7));
       }
       std::vector<HeatSource> sources;
       for (std::size_t k = 0; k < rows.size(); ++k)
@@ -218,6 +218,11 @@ nb::tuple SurfaceDistances::FromEach(
     {
       constexpr Index panel = 64; // rows that are found beside each other
       std::vector<Row> rows(static_cast<std::size_t>(panel));
+      const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
+      constexpr double never = std::numeric_limits<double>::infinity();
+      std::vector<GeodesicDistance::Arrival> arrivals(
+        static_cast<std::size_t>(std::min(panel, count)),
+        { std::vector<double>(n, never), std::vector<Index>(n, -1) });
       for (Index first = 0; first < count; first += panel)
       {
         const Index size = std::min(panel, count - first);
@@ -226,17 +231,16 @@ nb::tuple SurfaceDistances::FromEach(
           {
             const Index vertex =
               this->Built->VertexOf(static_cast<Index>(points.data()[first + k]));
-            const GeodesicDistance::Arrival arrival =
-              this->Fronts->Find({ { vertex, 0.0, 0, 0, 0.0 } }, cutoff / unit);
+            GeodesicDistance::Arrival& arrival = arrivals[static_cast<std::size_t>(k)];
             Row& row = rows[static_cast<std::size_t>(k)];
             row.clear();
-            for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+            for (const Index i :
+              this->Fronts->FindNear({ vertex, 0.0, 0, 0, 0.0 }, cutoff / unit, arrival))
             {
-              const double time = arrival.Times[static_cast<std::size_t>(i)];
-              if (std::isfinite(time))
-              {
-                row.emplace_back(mesh.InputVertex()[i], time * unit);
-              }
+              double& time = arrival.Times[static_cast<std::size_t>(i)];
+              row.emplace_back(mesh.InputVertex()[i], time * unit);
+              time = never;
+              arrival.Sources[static_cast<std::size_t>(i)] = -1;
             }
             std::sort(row.begin(), row.end());
           });

@@ -48,7 +48,7 @@ public:
 
   /// The distances (n) from sources by the heat method, without speeds. Its factors are kept.
   nanobind::object ByHeat(const LongArray& rows, const std::optional<DoubleArray>& barycentric,
-    double m, const nanobind::object& progress);
+    const nanobind::object& progress);
 
   /// data, indices and indptr of the times up to the cutoff from each of the points, one row each.
   nanobind::tuple FromEach(

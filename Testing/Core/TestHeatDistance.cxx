@@ -17,7 +17,7 @@ namespace
 {
 
 constexpr double Never = std::numeric_limits<double>::infinity();
-constexpr double Step = 2.0; ///< m of the filter
+constexpr double Step = HeatDistance::UsualStep;
 
 /// Distances on the intrinsic Delaunay triangulation of a surface, per point, in its unit.
 class Distances

@@ -179,6 +179,7 @@ class Distance(unittest.TestCase):
                 sources=1, method="Heat", start=[1.0]),
             r"speed has shape \(5,\)": dict(sources=1, speed=np.ones(5)),
             r"sources is .*; allowed: finite coordinates, \(k, 3\)": dict(sources=[[0, 0, np.nan]]),
+            r"sources is \[\[1\], \[2, 3\]\]; allowed": dict(sources=[[1], [2, 3]]),
             r"sources\[0\] has 80; allowed: 0 to 79": dict(sources=([80], [[1, 0, 0]])),
             r"sources\[1\] is .* in row 1; allowed: three": dict(
                 sources=([3, 4], [[1, 0, 0], [0.5, 0.6, 0.1]])),

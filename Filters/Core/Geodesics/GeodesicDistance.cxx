@@ -157,6 +157,14 @@ GeodesicDistance::Arrival GeodesicDistance::Find(
   return arrival;
 }
 
+std::vector<Index> GeodesicDistance::FindNear(
+  const FrontSource& source, double cutoff, Arrival& arrival) const
+{
+  std::vector<Index> reached;
+  this->March({ source }, cutoff, {}, arrival, &reached, ProgressMonitor());
+  return reached;
+}
+
 GeodesicDistance::Arrival GeodesicDistance::FindNearest(
   const std::vector<FrontSource>& sources, const ProgressMonitor& progress) const
 {

@@ -61,6 +61,10 @@ public:
   Arrival Find(const std::vector<FrontSource>& sources, double cutoff,
     const ProgressMonitor& progress = ProgressMonitor()) const;
 
+  /// The same from a source that reaches few vertices, which are returned in ascending order. arrival:
+  /// of all vertices, at first infinite and -1.
+  std::vector<Index> FindNear(const FrontSource& source, double cutoff, Arrival& arrival) const;
+
   /// The same, with the label that arrives first, and its time, exactly as if the fronts of each label
   /// ran alone: each goes three edges beyond the line where it meets others. Of labels that arrive at
   /// the same time, the one of the earliest source counts. Throws Aborted.

@@ -32,13 +32,18 @@ struct HeatSource
 ///     K phi = sum over the triangles of area grad(phi_i) . X.
 ///
 /// Both factors are kept, so that further sources take two substitutions. The condition at boundaries
-/// is that of no flux. The error falls with order 0.6 to 0.9 in h; level sets are smooth, also where
+/// is that of no flux. The error falls with order 0.5 to 0.9 in h; level sets are smooth, also where
 /// fronts meet. Where u is below the smallest numbers, more than 700 sqrt(m) h away, X is the gradient
 /// of GeodesicDistance. On an intrinsic Delaunay triangulation u is positive, and far from the sources
 /// its digits are right, too.
 class HeatDistance
 {
 public:
+  /// Mean errors on an icosphere of 10,242 vertices, a cortex of 32,492, and ten scans, in percent of the
+  /// largest distance: 0.58, 0.87, 1.29 with m = 1/2; 0.34, 1.25, 1.04 with 1.1; 0.24, 1.62, 1.29 with
+  /// 2. Each from three vertices.
+  static constexpr double UsualStep = 1.1;
+
   /// m: above 0. Throws Aborted.
   HeatDistance(std::shared_ptr<const Assembler> assembler, double m,
     const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
