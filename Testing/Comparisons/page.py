@@ -197,13 +197,17 @@ def _losses(results):
         ("costs", ("columns", "fwhm"), "processor time", lambda row: row["cpu"]),
         ("costs", ("columns", "fwhm"), "memory",
          lambda row: math.inf if row["share"] > 1 else row["memory"]),
-        ("costs", ("columns", "fwhm"), "processor time of smoothing", lambda row: row["alone"]))
+        ("costs", ("columns", "fwhm"), "processor time of smoothing", lambda row: row["alone"]),
+        ("cifti", ("columns", "fwhm"), "CIFTI, time", lambda row: row["wall"]),
+        ("cifti", ("columns", "fwhm"), "CIFTI, processor time", lambda row: row["cpu"]),
+        ("cifti", ("columns", "fwhm"), "CIFTI, memory", lambda row: row["memory"]))
     lines = []
     for part, keys, title, measure in kinds:
         rows = results.get(part, [])
         for case in _cases(rows, *keys):
-            found = {peer: measure(_find(rows, peer=peer, **dict(zip(keys, case)))) for peer in PEERS}
-            better = [peer for peer in PEERS if found[peer] < found[PEERS[0]]]
+            measured = {peer: _find(rows, peer=peer, **dict(zip(keys, case))) for peer in PEERS}
+            found = {peer: measure(row) for peer, row in measured.items() if row}
+            better = [peer for peer in found if found[peer] < found[PEERS[0]]]
             if better:
                 words = [f"{key} {value:,}" if isinstance(value, (int, float)) else value
                          for key, value in zip(keys, case)]
