@@ -58,7 +58,7 @@ SEARCHES = {
 
 # Shares, factors and exponents, which have no unit.
 WITHOUT_UNIT = {
-    "AlongDiffusivity", "AcrossDiffusivity", "Tolerance", "StopTolerance", "Alpha", "Exponent",
+    "AlongDiffusivity", "AcrossDiffusivity", "AlongSpeed", "AcrossSpeed", "Tolerance", "StopTolerance", "Alpha", "Exponent",
     "ChromaWeight", "ChromaticityExponent", "InitialNoise",
 }
 # The unit in the first sentence of a property's documentation

@@ -28,7 +28,7 @@ RESULTS = {
     "SurfaceCurvatureFilter": (("POINTS", "MeanCurvature"), 17.5400931, ("POINTS", "MeanCurvature")),
     "SurfaceDerivativesFilter": (("POINTS", "fGradient"), 10.6204755, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
-    "SurfaceDistanceFilter": (("POINTS", "Distance"), 0.518224936, ("POINTS", "Distance")),
+    "SurfaceDistanceFilter": (("POINTS", "Distance"), 0.517775714, ("POINTS", "Distance")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),

@@ -150,6 +150,11 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->SetHeight(0.03);
       f->SetOverhang(45.0);
     });
+  for (const char* name : { "AlongSpeed", "AcrossSpeed" })
+  {
+    needed[name] = With<vtkSurfaceDistanceFilter>(
+      [](vtkSurfaceDistanceFilter* f) { f->SetMethodToEikonal(); });
+  }
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
   needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
     With<TV>([](TV* f) { f->SetStopTolerance(0.1); }); // it takes long otherwise
