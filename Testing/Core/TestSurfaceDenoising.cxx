@@ -618,13 +618,14 @@ TEST(SurfaceDenoising, AbortEndsTheWorkOnALargeFanSoon)
   const TriangleMesh mesh(fan.Vertices, fan.Faces);
   DenoisingSettings settings;
   settings.NoiseLevel = 0.01;
-  double whole = 0.0; // processor time of a run to its end
+  // The processor time of the longest run to its end
+  settings.Type = SurfaceType::CAD;
+  const std::clock_t start = std::clock();
+  DenoiseSurface(mesh, GatherVertices(mesh, fan.Vertices), {}, settings, nullptr, SerialFor());
+  const auto whole = static_cast<double>(std::clock() - start);
   for (const SurfaceType type : { SurfaceType::Automatic, SurfaceType::CAD, SurfaceType::Organic })
   {
     settings.Type = type;
-    const std::clock_t start = std::clock();
-    DenoiseSurface(mesh, GatherVertices(mesh, fan.Vertices), {}, settings, nullptr, SerialFor());
-    whole = std::max(whole, static_cast<double>(std::clock() - start));
     for (const double from : { 0.0, 0.04, 0.08, 0.2, 0.4, 0.7, 0.9, 0.95, 1.0 })
     {
       // the user asks for it at once after a report, so that the next one obeys or the work ends

@@ -452,8 +452,9 @@ inline List OfDistance()
   return {
     RANDOM_PROPERTY(F, Method, Choice(dice, 2)),
     RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
-    RANDOM_PROPERTY(F, AlongSpeed, dice.Flip() ? 1.0 : Positive(dice)),
-    RANDOM_PROPERTY(F, AcrossSpeed, dice.Flip() ? 1.0 : Positive(dice)),
+    // Most runs have neither directions nor Eikonal, which other speeds need.
+    RANDOM_PROPERTY(F, AlongSpeed, dice.Flip(6) ? Positive(dice) : 1.0),
+    RANDOM_PROPERTY(F, AcrossSpeed, dice.Flip(6) ? Positive(dice) : 1.0),
     RANDOM_PROPERTY(F, ComputeGradient, dice.Flip()),
   };
 }

@@ -152,8 +152,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     });
   for (const char* name : { "AlongSpeed", "AcrossSpeed" })
   {
-    needed[name] = With<vtkSurfaceDistanceFilter>(
-      [](vtkSurfaceDistanceFilter* f) { f->SetMethodToEikonal(); });
+    needed[name] =
+      With<vtkSurfaceDistanceFilter>([](vtkSurfaceDistanceFilter* f) { f->SetMethodToEikonal(); });
   }
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
   needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
