@@ -134,7 +134,7 @@ List OfSurface()
     RANDOM_PROPERTY(F, MergeTolerance, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, SeamTolerance, dice.Flip() ? -1.0 : ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, RefineTo, dice.Below(3) > 0 ? 0.0 : 0.3 + dice.Unit()),
-    RANDOM_PROPERTY(F, MaximumNumberOfTriangles, dice.Flip() ? 4000000 : 1 + dice.Below(3000)),
+    RANDOM_PROPERTY(F, MaximumNumberOfTriangles, dice.Flip() ? 50000 : 1 + dice.Below(3000)),
     RANDOM_PROPERTY(F, NumberOfThreads, dice.Below(3)),
     RANDOM_PROPERTY(F, Controller, Controller(dice)),
     RANDOM_PROPERTY(F, ResultArrayName, Name(dice)),

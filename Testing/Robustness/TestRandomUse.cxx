@@ -223,6 +223,8 @@ void UseAtRandom(
   const auto untouched = kind.Make();
   for (vtkPolyDataAlgorithm* either : { filter.Get(), untouched.Get() })
   {
+    // Refinement makes millions of triangles otherwise.
+    vtkSurfaceFilter::SafeDownCast(either)->SetMaximumNumberOfTriangles(20000);
     if (auto* const relief = vtkSurfaceReliefFilter::SafeDownCast(either))
     {
       // The default height is larger than these surfaces, and relief takes one component.
