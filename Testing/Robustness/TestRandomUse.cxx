@@ -177,6 +177,7 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
     }
   }
   const bool isDistance = filter->IsA("vtkSurfaceDistanceFilter") != 0;
+  const bool hasErrors = filter->IsA("vtkSurfaceInterpolationFilter") != 0;
   const auto isMissing = [&](vtkDataArray* given, vtkIdType i)
   { return spreads || (given && !IsFinite(given, i)); };
   bool finite = true;
@@ -190,8 +191,11 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
       {
         const bool isNew = !before->HasArray(array->GetName());
         const bool mayBeInfinite = isDistance && array == added->GetScalars();
+        // Points that no triangle uses keep their values, and have no standard error.
+        const bool keepsValue = hasErrors && given && added->GetScalars() &&
+          added->GetScalars()->GetComponent(i, 0) == given->GetComponent(i, 0);
         finite = finite &&
-          (!isNew || IsFinite(array, i) || isMissing(given, i) ||
+          (!isNew || IsFinite(array, i) || isMissing(given, i) || keepsValue ||
             (mayBeInfinite && array->GetComponent(i, 0) > 0.0));
       }
     }
