@@ -183,7 +183,7 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
   bool finite = true;
   const auto check = [&](vtkDataSetAttributes* added, vtkDataSetAttributes* before)
   {
-    vtkDataArray* const given = before->GetArray("f");
+    vtkDataArray* const given = added->GetArray("f"); // of the refined surface
     for (int a = 0; a < added->GetNumberOfArrays(); ++a)
     {
       vtkDataArray* const array = added->GetArray(a);
