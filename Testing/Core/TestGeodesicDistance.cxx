@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geodesics/GeodesicDistance.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
 
 #include <gtest/gtest.h>
@@ -191,6 +192,27 @@ TEST(GeodesicDistance, OfTwoSpeedsIsRefracted)
     largest = std::max(largest, std::abs(point.Times[i] - best) / best);
   }
   EXPECT_LT(largest, 0.01);
+}
+
+// Speeds of 16:1 give edges lengths that differ much between their triangles. Fronts end nevertheless.
+TEST(GeodesicDistance, OfVeryDifferentSpeedsByDirectionEnds)
+{
+  const Surface torus = Torus(60, 30, 2.0, 0.8);
+  const auto mesh = MakeMesh(torus);
+  Points directions(torus.Faces.rows(), 3);
+  for (Eigen::Index f = 0; f < torus.Faces.rows(); ++f)
+  {
+    const Eigen::RowVector3d x = torus.Vertices.row(torus.Faces(f, 0));
+    directions.row(f) = Eigen::RowVector3d(0.3, -0.2, 1.0).cross(x);
+  }
+  const TangentVectors ofMesh =
+    TangentVectorsFromTriangleVectors(*mesh, torus.Vertices, torus.Faces, directions);
+  const GeodesicDistance fronts(mesh, MakeFrontShapes(*mesh, {}, ofMesh, 8.0, 0.5));
+  const auto arrival = fronts.Find({ { 5, 0.0, 0, 0, 0.0 } }, Never);
+  for (const double time : arrival.Times)
+  {
+    EXPECT_TRUE(time >= 0.0 && time < Never);
+  }
 }
 
 // Each label arrives as if it were alone, also beside the lines where labels meet.

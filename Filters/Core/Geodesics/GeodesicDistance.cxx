@@ -17,6 +17,16 @@ namespace
 
 constexpr double Never = std::numeric_limits<double>::infinity();
 
+/// What a time has to fall by, relatively, so that the front starts again: more than round-off. Where the
+/// lengths of an edge differ much between its two triangles, times may fall by less and less without an
+/// end; after UsualFalls, what counts doubles with each.
+double SmallestFall(int falls)
+{
+  constexpr double resolved = 1e-14;
+  constexpr int UsualFalls = 16;
+  return std::ldexp(resolved, std::max(0, falls - UsualFalls));
+}
+
 /// A triangle ABC in the plane: A at the origin, B at (Edge, 0), C above.
 struct LaidOut
 {
@@ -245,6 +255,7 @@ void GeodesicDistance::March(const std::vector<FrontSource>& sources, double cut
   const TriangleMesh& mesh = *this->Mesh;
   const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
   std::vector<Index> reached;
+  std::vector<int> falls(n, 0); // of the time of each vertex
   const auto limitAt = [&](std::size_t v)
   { return latest.empty() ? cutoff : std::min(cutoff, latest[v]); };
   // The sources, and the corners that ways go around with the numbers of their sources
@@ -290,13 +301,13 @@ void GeodesicDistance::March(const std::vector<FrontSource>& sources, double cut
         Way way = this->WayThrough(at, fronts, arrival);
         double& known = arrival.Times[static_cast<std::size_t>(neighbour)];
         const double limit = limitAt(static_cast<std::size_t>(neighbour));
-        // What falls by round-off alone does not start the front again.
-        constexpr double resolved = 1e-14;
+        int& fallsHere = falls[static_cast<std::size_t>(neighbour)];
         if (!(way.Time < Never && way.Time <= limit) ||
-          !(known == Never || way.Time < known - resolved * std::abs(known)))
+          !(known == Never || way.Time < known - SmallestFall(fallsHere) * std::abs(known)))
         {
           continue;
         }
+        ++fallsHere;
         if (way.Along == vertex && this->IsCorner[static_cast<std::size_t>(vertex)] != 0)
         {
           if (around < 0)
