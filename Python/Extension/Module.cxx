@@ -10,6 +10,7 @@
 #include "SettingsTable.h"
 #include "ShapeFunctions.h"
 #include "SurfaceDistances.h"
+#include "SurfaceFields.h"
 #include "SurfaceOperators.h"
 #include "Threads.h"
 
@@ -161,6 +162,18 @@ NB_MODULE(_core, m)
     .def("gradient", &SurfaceOperators::Gradient)
     .def("modes", &SurfaceOperators::Modes, "diffusivity"_a.none(), "count"_a, "progress"_a.none())
     .def("number_of_vertices", &SurfaceOperators::NumberOfVertices);
+
+  nb::class_<SurfaceFields>(m, "SurfaceFields")
+    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
+           const nb::object&>(),
+      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "progress"_a.none())
+    .def("prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "seed"_a, "unit_variance"_a,
+      "progress"_a.none())
+    .def("draw", &SurfaceFields::Draw, "first"_a, "fields"_a, "progress"_a.none())
+    .def("filter_scales", &SurfaceFields::FilterScales, "values"_a, "wavelengths"_a, "order"_a,
+      "progress"_a.none())
+    .def("number_of_vertices", &SurfaceFields::NumberOfVertices)
+    .def("mean_edge_length", &SurfaceFields::MeanEdgeLength);
 
   nb::class_<SurfaceDistances>(m, "Distances")
     .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Fields/FunctionDiagonal.h"
+
+#include "Core/Solvers/NestedDissection.h"
+#include "Core/Solvers/SupernodalFactor.h"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count)
+{
+  constexpr int samples = 2000;
+  constexpr double smallest = 1e-4;
+  constexpr double largest = 1e6;
+  PoleSum sum;
+  sum.Poles.resize(count);
+  for (int j = 0; j < count; ++j)
+  {
+    sum.Poles[j] = first * std::pow(last / first, count > 1 ? j / (count - 1.0) : 0.0);
+  }
+  Eigen::MatrixXd terms(samples, count);
+  Vector wanted(samples);
+  for (int i = 0; i < samples; ++i)
+  {
+    const double x = smallest * std::pow(largest / smallest, i / (samples - 1.0));
+    terms.row(i) = (x / (sum.Poles.array() + x)).transpose();
+    wanted[i] = x * g(x);
+  }
+  const Vector sizes = terms.colwise().norm();
+  terms.array().rowwise() /= sizes.transpose().array();
+  sum.Residues = terms.colPivHouseholderQr().solve(wanted).cwiseQuotient(sizes);
+  return sum;
+}
+
+Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coefficients, double s,
+  const PoleSum& f, const ParallelFor& parallel, const ProgressMonitor& progress)
+{
+  const TriangleMesh& mesh = assembler.Mesh();
+  Vector diagonal = Vector::Zero(mesh.NumberOfVertices());
+  if (mesh.NumberOfVertices() == 0)
+  {
+    return diagonal;
+  }
+  SparseMatrix matrix = ZeroMatrix(assembler.Pattern());
+  const bool isRegular = IsRegular(matrix);
+  constexpr double resolved = 1e-14;
+  SupernodalFactor factor;
+  const auto count = static_cast<double>(f.Poles.size());
+  for (Eigen::Index j = 0; j < f.Poles.size(); ++j)
+  {
+    const double done = static_cast<double>(j);
+    assembler.Fill(matrix, f.Poles[j] * mesh.ControlAreas(), s, coefficients, nullptr, parallel);
+    factor.Compute(
+      matrix, isRegular, resolved, parallel, progress.Part(done / count, (done + 0.5) / count));
+    diagonal += f.Residues[j] *
+      factor.InverseDiagonal(parallel, progress.Part((done + 0.5) / count, (done + 1.0) / count));
+  }
+  return diagonal;
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Fields/RandomField.h"
+
+#include "Core/Foundation/Columns.h"
+#include "Core/Foundation/Random.h"
+#include "Core/Models/Fields/FunctionDiagonal.h"
+#include "Core/Solvers/SolverChoice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+const double Pi = std::acos(-1.0);
+
+/// exp(-t L) by 10 solves with s = t / 8.37, to 2e-5: of this degree the best pole.
+constexpr int HeatDegree = 10;
+constexpr double HeatPole = 8.37;
+
+/// What the covariance means for the numerics.
+struct FieldOperator
+{
+  double Step; ///< s of the resolvent
+  std::vector<double> Series;
+  double DeviationOnPlane; ///< of p(Y) W
+  PoleSum Squared; ///< near to p^2 as a function of s lambda
+};
+
+FieldOperator MakeOperator(const RandomField::Settings& settings)
+{
+  FieldOperator found;
+  double first = 0.8; // poles near the one of the function itself: an error of 1e-7
+  double last = 1.2;
+  int count = 8;
+  if (settings.Covariance == FieldCovariance::Gaussian)
+  {
+    const double t = settings.Width * settings.Width / (16.0 * std::log(2.0));
+    found.Step = t / HeatPole;
+    const auto heat = [](double y)
+    { return y > 0.0 ? std::exp(-HeatPole * (1.0 / y - 1.0)) : 0.0; };
+    found.Series = ChebyshevSeries(heat, HeatDegree);
+    found.DeviationOnPlane = 1.0 / std::sqrt(8.0 * Pi * t);
+    first = 2.0 / HeatPole; // of all poles those with the smallest error, 4e-4 of the deviation
+    last = 6.0 / HeatPole;
+    count = 10;
+  }
+  else
+  {
+    const double kappa = std::sqrt(8.0 * settings.Nu) / settings.Range;
+    found.Step = 1.0 / (kappa * kappa);
+    const int degree = (settings.Nu + 1) / 2; // alpha / 2
+    found.Series = ChebyshevSeries([degree](double y) { return std::pow(y, degree); }, degree);
+    found.DeviationOnPlane = kappa / std::sqrt(4.0 * Pi * settings.Nu);
+  }
+  found.Squared = FitPoles(
+    [&](double x)
+    {
+      const double p = SumChebyshev(found.Series, 1.0 / (1.0 + x));
+      return p * p;
+    },
+    first, last, count);
+  return found;
+}
+
+/// A normal deviate by G. Box, M. Muller, Ann. Math. Stat. 29, 1958.
+double NormalRandom(std::int64_t seed, std::int64_t number, std::int64_t id)
+{
+  const double radius = std::sqrt(-2.0 * std::log1p(-UniformRandom(seed, 2 * number, id)));
+  return radius * std::cos(2.0 * Pi * UniformRandom(seed, 2 * number + 1, id));
+}
+
+} // namespace
+
+RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
+  const CornerWeights& coefficients, const Settings& settings, std::vector<std::int64_t> ids,
+  const ParallelFor& parallel, const ProgressMonitor& progress)
+  : Assembly(std::move(assembler))
+  , Parallel(parallel)
+  , Options(settings)
+  , Ids(std::move(ids))
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  FieldOperator made = MakeOperator(settings);
+  this->DeviationOnPlane = made.DeviationOnPlane;
+  if (settings.HasUnitVariance)
+  {
+    const Vector variances =
+      FunctionDiagonal(*this->Assembly, coefficients, made.Step, made.Squared, parallel, progress);
+    // Round-off may leave nothing of the variance of a vertex that is all but cut off.
+    this->RelativeDeviations = (variances.array() > 0.0)
+                                 .select(variances.array().max(0.0).sqrt() / made.DeviationOnPlane,
+                                   Vector::Ones(variances.size()).array());
+  }
+  SolverTask task;
+  task.NumberOfVertices = mesh.NumberOfVertices();
+  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
+  task.DiffusionNumber = made.Step / (h * h);
+  // As if for one panel: the same solver for any number of fields.
+  task.NumberOfColumns = ColumnPanel;
+  task.NumberOfSolves = static_cast<double>(made.Series.size() - 1);
+  this->Operator.emplace(this->Assembly, coefficients, made.Step, std::move(made.Series),
+    MakeSolver(SolverMethod::Automatic, task, parallel), parallel);
+}
+
+void RandomField::Draw(
+  std::int64_t first, Eigen::Ref<Values> fields, const ProgressMonitor& progress)
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  const auto columns = static_cast<double>(fields.cols());
+  for (Eigen::Index start = 0; start < fields.cols(); start += ColumnPanel)
+  {
+    Values u(fields.rows(), std::min<Eigen::Index>(ColumnPanel, fields.cols() - start));
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double deviation = 1.0 / std::sqrt(mesh.ControlAreas()[i]);
+        for (Eigen::Index k = 0; k < u.cols(); ++k)
+        {
+          u(i, k) = deviation *
+            NormalRandom(
+              this->Options.Seed, first + start + k, this->Ids[static_cast<std::size_t>(i)]);
+        }
+      });
+    this->Operator->Apply(u,
+      progress.Part(
+        static_cast<double>(start) / columns, static_cast<double>(start + u.cols()) / columns));
+    const bool isScaled = this->RelativeDeviations.size() > 0;
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        const double relative = isScaled ? this->RelativeDeviations[i] : 1.0;
+        fields.row(i).segment(start, u.cols()) = u.row(i) / (relative * this->DeviationOnPlane);
+      });
+  }
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Fields/ResolventPolynomial.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// The covariance of a Gaussian random field.
+enum class FieldCovariance
+{
+  /// White noise after the heat equation, exp(-t L) W: on the plane the correlation at distance r is
+  /// exp(-r^2 / (8 t)).
+  Gaussian,
+  /// The solution of (kappa^2 + L)^(alpha/2) u = W with alpha = nu + 1, for nu = 1 and 3: on the
+  /// plane the correlation is that of Matern's class, (kappa r)^nu K_nu(kappa r) / (2^(nu-1)
+  /// Gamma(nu)) (F. Lindgren, H. Rue, J. Lindstrom, J. R. Statist. Soc. B 73, 2011).
+  Matern
+};
+
+/// Gaussian random fields on a surface, of mean 0: L = M^-1 K with lumped masses, and white noise W,
+/// independent at the vertices with the variances 1 / A_i. Fields are divided by their standard
+/// deviation on the plane, which that on surfaces exceeds near boundaries (by sqrt(2) on a straight
+/// one, where there is no flux) and where the surface is small beside the correlation; or by that
+/// at each vertex, which makes it 1 everywhere.
+class RandomField
+{
+public:
+  struct Settings
+  {
+    FieldCovariance Covariance = FieldCovariance::Gaussian;
+    double Width = 1.0; ///< full width at half maximum of the kernel of Gaussian, above 0
+    double Range = 1.0; ///< of Matern, above 0: sqrt(8 nu) / kappa, where the correlation is 0.14
+    int Nu = 1; ///< of Matern: 1 or 3
+    std::int64_t Seed = 0;
+    bool HasUnitVariance = true; ///< at each vertex, rather than on the plane
+  };
+
+  /// ids: a number per vertex, of which its random numbers are functions. Lengths are in the units
+  /// of the mesh. Throws Aborted.
+  RandomField(std::shared_ptr<const Assembler> assembler, const CornerWeights& coefficients,
+    const Settings& settings, std::vector<std::int64_t> ids,
+    const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+
+  /// Fields first, first + 1, ... as the columns of `fields`, n x count. The numbers of a field
+  /// depend on the seed and on its own number, not on which others are drawn. Throws NotConverged
+  /// and Aborted.
+  void Draw(std::int64_t first, Eigen::Ref<Values> fields,
+    const ProgressMonitor& progress = ProgressMonitor());
+
+  /// The standard deviations before the division, relative to that on the plane; no row if they are
+  /// not needed.
+  const Vector& Deviations() const { return this->RelativeDeviations; }
+
+  double MissedResidual() const { return this->Operator->MissedResidual(); }
+
+private:
+  std::shared_ptr<const Assembler> Assembly;
+  const ParallelFor& Parallel;
+  Settings Options;
+  std::vector<std::int64_t> Ids;
+  double DeviationOnPlane = 1.0;
+  Vector RelativeDeviations;
+  std::optional<ResolventPolynomial> Operator;
+};
+
+} // namespace SurfaceDiffusion

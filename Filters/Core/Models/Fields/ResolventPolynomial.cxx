@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Fields/ResolventPolynomial.h"
+
+#include "Core/Foundation/Columns.h"
+#include "Core/Foundation/Resize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+std::vector<double> ChebyshevSeries(const std::function<double(double)>& g, int degree)
+{
+  const double pi = std::acos(-1.0);
+  std::vector<double> values(static_cast<std::size_t>(degree) + 1);
+  for (int j = 0; j <= degree; ++j)
+  {
+    values[static_cast<std::size_t>(j)] = g(0.5 * (1.0 + std::cos(pi * j / degree)));
+  }
+  // The discrete cosine transform; the terms at both ends count half, and so do both end points.
+  std::vector<double> series(values.size());
+  for (int k = 0; k <= degree; ++k)
+  {
+    double sum = 0.0;
+    for (int j = 0; j <= degree; ++j)
+    {
+      const double half = j == 0 || j == degree ? 0.5 : 1.0;
+      sum += half * values[static_cast<std::size_t>(j)] *
+        std::cos(pi * ((j * k) % (2 * degree)) / degree);
+    }
+    series[static_cast<std::size_t>(k)] = (k == 0 || k == degree ? 1.0 : 2.0) * sum / degree;
+  }
+  return series;
+}
+
+double SumChebyshev(const std::vector<double>& series, double y)
+{
+  const double w = 2.0 * y - 1.0;
+  double sum = 0.0;
+  double next = 0.0;
+  for (std::size_t k = series.size(); k-- > 1;)
+  {
+    next = std::exchange(sum, series[k] + 2.0 * w * sum - next);
+  }
+  return series[0] + w * sum - next;
+}
+
+ResolventPolynomial::ResolventPolynomial(std::shared_ptr<const Assembler> assembler,
+  const CornerWeights& coefficients, double step, std::vector<double> series,
+  std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
+  : Assembly(std::move(assembler))
+  , Parallel(parallel)
+  , Series(std::move(series))
+  , System(this->Assembly, std::move(solver), parallel)
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  this->System.Assemble(mesh.ControlAreas(), step, coefficients);
+  this->Balanced = MeanCorrection(
+    mesh, mesh.ControlAreas(), Flags::Constant(mesh.NumberOfVertices(), false), parallel);
+}
+
+void ResolventPolynomial::Apply(Values& u, const ProgressMonitor& progress)
+{
+  if (u.size() == 0)
+  {
+    return;
+  }
+  const double setup = this->IsPrepared ? 0.0 : 0.3;
+  if (!this->IsPrepared)
+  {
+    this->System.SetUpSolver(progress.Part(0.0, setup));
+    this->IsPrepared = true;
+  }
+  const auto columns = static_cast<double>(u.cols());
+  for (Eigen::Index first = 0; first < u.cols(); first += ColumnPanel)
+  {
+    const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, u.cols() - first);
+    const double share = (1.0 - setup) / columns;
+    Values panel = u.middleCols(first, count);
+    this->ApplyToPanel(panel,
+      progress.Part(setup + share * static_cast<double>(first),
+        setup + share * static_cast<double>(first + count)));
+    u.middleCols(first, count) = panel;
+  }
+}
+
+/// Clenshaw's recurrence for the Chebyshev polynomials of 2 Y - 1.
+void ResolventPolynomial::ApplyToPanel(Values& u, const ProgressMonitor& progress)
+{
+  // Values are measured from their mean, so that the errors of the solves are relative to the
+  // contrast.
+  Eigen::RowVectorXd mean;
+  FindMeans(this->Assembly->Mesh(), u, mean, this->Parallel);
+  u.rowwise() -= mean;
+  const auto n = static_cast<Index>(u.rows());
+  const std::size_t degree = this->Series.size() - 1;
+  Values b = this->Series[degree] * u;
+  Values next = Values::Zero(u.rows(), u.cols());
+  Values y;
+  for (std::size_t k = degree; k-- > 0;)
+  {
+    const auto all = static_cast<double>(degree);
+    const double done = static_cast<double>(degree - 1 - k) / all;
+    this->Solve(b, y, progress.Part(done, done + 1.0 / all));
+    const double twice = k == 0 ? 1.0 : 2.0;
+    ForEach(this->Parallel, n,
+      [&](Index i) {
+        next.row(i) =
+          this->Series[k] * u.row(i) + twice * (2.0 * y.row(i) - b.row(i)) - next.row(i);
+      });
+    std::swap(b, next);
+  }
+  const double ofConstants = SumChebyshev(this->Series, 1.0);
+  u = b.rowwise() + ofConstants * mean;
+}
+
+/// x = Y b.
+void ResolventPolynomial::Solve(const Values& b, Values& x, const ProgressMonitor& progress)
+{
+  const TriangleMesh& mesh = this->Assembly->Mesh();
+  Resize(this->RightHandSide, b.rows(), b.cols());
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i) { this->RightHandSide.row(i) = mesh.ControlAreas()[i] * b.row(i); });
+  x = b;
+  this->System.Solve(this->RightHandSide, x, this->Report, progress);
+  this->Balanced.Restore(mesh, this->RightHandSide, x, this->Parallel);
+}
+
+} // namespace SurfaceDiffusion

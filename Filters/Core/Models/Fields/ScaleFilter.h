@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Fields/ResolventPolynomial.h"
+
+namespace SurfaceDiffusion
+{
+
+/// The implicit filter of data by scale (K. Nowak, S. Danilov, V. Mueller, C. Liu, Geosci. Model Dev.
+/// 18, 2025),
+///   (1 + 2 (-Laplace / k^2)^order) u = f,  k = 2 pi / wavelength,
+/// which leaves a third of a wave of this wavelength, more of longer ones and less of shorter ones.
+/// The wavelength may differ from place to place: -div(k^-2 grad) then stands in place of
+/// -Laplace / k^2. Constants and the integral over each connected component stay.
+///
+/// Order 1 is one step of backward Euler. Order 2 is a polynomial in such a step, to 2e-10.
+/// wavelengths: per vertex, in the units of the mesh, above 0. order: 1 or 2.
+ResolventPolynomial MakeScaleFilter(std::shared_ptr<const Assembler> assembler,
+  const Vector& wavelengths, int order, const ParallelFor& parallel = SerialFor());
+
+} // namespace SurfaceDiffusion

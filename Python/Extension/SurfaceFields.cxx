@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfaceFields.h"
+
+#include "Core/Foundation/Columns.h"
+#include "Core/Models/Fields/ScaleFilter.h"
+#include "Core/Operators/CotanWeights.h"
+#include "PythonProgress.h"
+#include "Threads.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace nb = nanobind;
+
+namespace SurfaceDiffusion
+{
+
+SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
+  const std::optional<FlagArray>& mask, bool maskOnFaces, const nb::object& progress)
+{
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      this->Built = std::make_unique<const Surface>(
+        surface->Read({ mask, maskOnFaces }), SurfaceOptions(), PythonThreads::Instance(), monitor);
+    });
+}
+
+void SurfaceFields::Prepare(
+  double width, int nu, std::int64_t seed, bool unitVariance, const nb::object& progress)
+{
+  const TriangleMesh& mesh = this->Built->Mesh();
+  RandomField::Settings settings;
+  settings.Covariance = nu == 0 ? FieldCovariance::Gaussian : FieldCovariance::Matern;
+  settings.Width = width / mesh.LengthUnit();
+  settings.Range = settings.Width;
+  settings.Nu = nu;
+  settings.Seed = seed;
+  settings.HasUnitVariance = unitVariance;
+  this->Field.reset();
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      this->Field = std::make_unique<RandomField>(this->Built->SharedAssembler(),
+        CotanWeights(mesh, PythonThreads::Instance()), settings,
+        MakeVertexIds(*this->Built, Fields()), PythonThreads::Instance(), monitor);
+    });
+}
+
+double SurfaceFields::Draw(
+  std::int64_t first, const ColumnArray& fields, const nb::object& progress)
+{
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      const auto columns = static_cast<Eigen::Index>(fields.shape(1));
+      const auto all = static_cast<double>(columns);
+      for (Eigen::Index start = 0; start < columns; start += ColumnPanel)
+      {
+        const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, columns - start);
+        Values panel(this->NumberOfVertices(), count);
+        this->Field->Draw(first + start, panel,
+          monitor.Part(static_cast<double>(start) / all, static_cast<double>(start + count) / all));
+        this->Write(panel, start, fields);
+      }
+    });
+  return this->Field->MissedResidual();
+}
+
+double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray& wavelengths,
+  int order, const nb::object& progress) const
+{
+  double missed = 0.0;
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      const TriangleMesh& mesh = this->Built->Mesh();
+      Vector ofVertices(mesh.NumberOfVertices());
+      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      {
+        ofVertices[i] = wavelengths.data()[mesh.InputVertex()[i]] / mesh.LengthUnit();
+      }
+      ResolventPolynomial filter = MakeScaleFilter(
+        this->Built->SharedAssembler(), ofVertices, order, PythonThreads::Instance());
+      const auto columns = static_cast<Eigen::Index>(values.shape(1));
+      const auto all = static_cast<double>(columns);
+      for (Eigen::Index start = 0; start < columns; start += ColumnPanel)
+      {
+        const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, columns - start);
+        Values panel(mesh.NumberOfVertices(), count);
+        ForEach(PythonThreads::Instance(), mesh.NumberOfVertices(),
+          [&](Index i)
+          {
+            const double* const row =
+              values.data() + mesh.InputVertex()[i] * static_cast<std::ptrdiff_t>(columns) + start;
+            std::copy_n(row, count, &panel(i, 0));
+          });
+        filter.Apply(panel,
+          monitor.Part(static_cast<double>(start) / all, static_cast<double>(start + count) / all));
+        this->Write(panel, start, values);
+      }
+      missed = filter.MissedResidual();
+    });
+  return missed;
+}
+
+double SurfaceFields::MeanEdgeLength() const
+{
+  const TriangleMesh& mesh = this->Built->InputMesh();
+  const double edges = mesh.NumberOfEdges();
+  return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges : 1.0;
+}
+
+void SurfaceFields::Write(
+  const Values& ofVertices, Eigen::Index first, const ColumnArray& columns) const
+{
+  const auto width = static_cast<std::ptrdiff_t>(columns.shape(1));
+  ForEach(PythonThreads::Instance(), static_cast<Index>(columns.shape(0)),
+    [&](Index point)
+    {
+      double* const row = columns.data() + point * width + first;
+      const Index vertex = this->Built->VertexOf(point);
+      if (vertex >= 0)
+      {
+        std::copy_n(&ofVertices(vertex, 0), ofVertices.cols(), row);
+      }
+      else
+      {
+        std::fill_n(row, ofVertices.cols(), std::numeric_limits<double>::quiet_NaN());
+      }
+    });
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Fields/RandomField.h"
+#include "InputData.h"
+
+#include <memory>
+#include <optional>
+
+namespace SurfaceDiffusion
+{
+
+/// An array (n, k) of float64 that is written, one row per point of a surface.
+using ColumnArray =
+  nanobind::ndarray<double, nanobind::ndim<2>, nanobind::device::cpu, nanobind::c_contig>;
+
+/// Random fields on a surface and filters of its data, as arrays of Python in coordinate units.
+class SurfaceFields
+{
+public:
+  SurfaceFields(std::shared_ptr<const InputSurface> surface, const std::optional<FlagArray>& mask,
+    bool maskOnFaces, const nanobind::object& progress);
+
+  /// Take the covariance: Gaussian of the full width at half maximum `width` if nu is 0, and
+  /// otherwise Matern's with nu and the range `width`.
+  void Prepare(
+    double width, int nu, std::int64_t seed, bool unitVariance, const nanobind::object& progress);
+  /// Write fields first, first + 1, ... to the columns; NaN at points that take no part. Returns the
+  /// largest relative residual of solves above their tolerance.
+  double Draw(std::int64_t first, const ColumnArray& fields, const nanobind::object& progress);
+
+  /// Filter the columns by scale. wavelengths: per point. NaN at points that take no part.
+  double FilterScales(const ColumnArray& values, const FactorArray& wavelengths, int order,
+    const nanobind::object& progress) const;
+
+  Index NumberOfVertices() const { return this->Built->Mesh().NumberOfVertices(); }
+  /// h, the mean length of the edges.
+  double MeanEdgeLength() const;
+
+private:
+  void Write(const Values& ofVertices, Eigen::Index first, const ColumnArray& columns) const;
+
+  std::unique_ptr<const Surface> Built;
+  std::unique_ptr<RandomField> Field;
+};
+
+} // namespace SurfaceDiffusion

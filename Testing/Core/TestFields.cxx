@@ -1,0 +1,346 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Fields/FunctionDiagonal.h"
+#include "Core/Models/Fields/RandomField.h"
+#include "Core/Models/Fields/ScaleFilter.h"
+#include "Core/Operators/CotanWeights.h"
+#include "Core/Solvers/SolverChoice.h"
+#include "Meshes.h"
+#include "ThreadedFor.h"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+using namespace SurfaceDiffusion;
+using namespace SurfaceDiffusion::Testing;
+
+namespace
+{
+
+double Heat(double x)
+{
+  return std::exp(-x);
+}
+
+/// f(L) M^-1 with L = M^-1 K by all eigenvectors.
+Eigen::MatrixXd DenseFunction(
+  const Assembler& assembler, const std::function<double(double)>& f, bool timesMass = false)
+{
+  const TriangleMesh& mesh = assembler.Mesh();
+  SparseMatrix stiffness = ZeroMatrix(assembler.Pattern());
+  assembler.Fill(stiffness, Vector::Zero(mesh.NumberOfVertices()), 1.0, CotanWeights(mesh));
+  const Vector roots = mesh.ControlAreas().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense(
+    roots.asDiagonal() * Eigen::MatrixXd(stiffness) * roots.asDiagonal());
+  const Vector values = dense.eigenvalues().cwiseMax(0.0).unaryExpr(f);
+  const Eigen::MatrixXd vectors = roots.asDiagonal() * dense.eigenvectors();
+  Eigen::MatrixXd result = vectors * values.asDiagonal() * vectors.transpose();
+  if (timesMass)
+  {
+    result = result * mesh.ControlAreas().asDiagonal();
+  }
+  return result;
+}
+
+std::vector<std::int64_t> Numbers(Index count)
+{
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
+}
+
+RandomField MakeField(const std::shared_ptr<const Assembler>& assembler,
+  const RandomField::Settings& settings, const ParallelFor& parallel = SerialFor())
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  return { assembler, CotanWeights(mesh), settings, Numbers(mesh.NumberOfVertices()), parallel };
+}
+
+Values Draw(const std::shared_ptr<const Assembler>& assembler,
+  const RandomField::Settings& settings, Index count, std::int64_t first = 0)
+{
+  Values fields(assembler->Mesh().NumberOfVertices(), count);
+  MakeField(assembler, settings).Draw(first, fields);
+  return fields;
+}
+
+RandomField::Settings Gaussian(double width)
+{
+  RandomField::Settings settings;
+  settings.Width = width;
+  return settings;
+}
+
+RandomField::Settings MaternField(double range, int nu)
+{
+  RandomField::Settings settings;
+  settings.Covariance = FieldCovariance::Matern;
+  settings.Range = range;
+  settings.Nu = nu;
+  return settings;
+}
+
+std::vector<RandomField::Settings> AllCovariances()
+{
+  return { Gaussian(0.4), MaternField(0.8, 1), MaternField(0.8, 3) };
+}
+
+/// The weight of spherical harmonics of degree l in the covariance, without a factor.
+double WeightOfDegree(const RandomField::Settings& settings, int l)
+{
+  const double lambda = l * (l + 1.0);
+  if (settings.Covariance == FieldCovariance::Gaussian)
+  {
+    return std::exp(-settings.Width * settings.Width / (8.0 * std::log(2.0)) * lambda);
+  }
+  const double kappa = std::sqrt(8.0 * settings.Nu) / settings.Range;
+  return std::pow(kappa * kappa + lambda, -settings.Nu - 1.0);
+}
+
+/// The correlation at the angle `angle` on the unit sphere, by Legendre polynomials.
+double CorrelationOnSphere(const RandomField::Settings& settings, double angle)
+{
+  const double x = std::cos(angle);
+  double before = 1.0;
+  double polynomial = x;
+  double sum = WeightOfDegree(settings, 0);
+  double all = sum;
+  for (int l = 1; l < 400; ++l)
+  {
+    const double weight = (2.0 * l + 1.0) * WeightOfDegree(settings, l);
+    sum += weight * polynomial;
+    all += weight;
+    before = std::exchange(polynomial, ((2.0 * l + 1.0) * x * polynomial - l * before) / (l + 1.0));
+  }
+  return sum / all;
+}
+
+} // namespace
+
+TEST(ResolventPolynomial, SeriesHoldsExactlyAtBothEnds)
+{
+  const auto g = [](double y) { return y * y / (1.0 - 2.0 * y + 2.0 * y * y); };
+  for (const int degree : { 1, 2, 5, 10 })
+  {
+    const std::vector<double> series = ChebyshevSeries(g, degree);
+    EXPECT_NEAR(SumChebyshev(series, 0.0), 0.0, 1e-15);
+    EXPECT_NEAR(SumChebyshev(series, 1.0), 1.0, 1e-15);
+  }
+  EXPECT_NEAR(SumChebyshev(ChebyshevSeries([](double y) { return y * y; }, 2), 0.3), 0.09, 1e-16);
+}
+
+TEST(ResolventPolynomial, IsTheFunctionOfTheDenseOperator)
+{
+  for (const Testing::Surface& s : { Strip(24, 9, 5.0, 1.0), Disk(8), ThreeFins(7), Moebius(30, 6),
+         Joined(Torus(16, 8), Moved(Icosphere(1), { 9.0, 0.0, 0.0 })) })
+  {
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    constexpr double t = 0.02;
+    constexpr double pole = 8.37;
+    Values u = Noise(mesh, 19);
+    const double before = RootMeanSquare(mesh, u);
+    const Values expected = DenseFunction(
+                              *assembler, [](double lambda) { return Heat(t * lambda); }, true) *
+      u;
+    ResolventPolynomial heat(assembler, CotanWeights(mesh), t / pole,
+      ChebyshevSeries([](double y) { return y > 0.0 ? Heat(pole * (1.0 / y - 1.0)) : 0.0; }, 10),
+      MakeCholeskySolver());
+    heat.Apply(u);
+    EXPECT_LT(RootMeanSquare(mesh, u - expected), 3e-5 * before);
+  }
+}
+
+TEST(ResolventPolynomial, KeepsConstantsAndIntegralsOfComponents)
+{
+  const Testing::Surface s = Joined(Torus(40, 20), Moved(Icosphere(3), { 9.0, 0.0, 0.0 }));
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  Values u(mesh.NumberOfVertices(), 2);
+  u << Vector::Constant(mesh.NumberOfVertices(), 1e6), Noise(mesh).array() + 100.0;
+  const Values before = u;
+  for (const int order : { 1, 2 })
+  {
+    u = before;
+    MakeScaleFilter(assembler, Vector::Constant(u.rows(), 3.0), order).Apply(u);
+    EXPECT_LT((u.col(0).array() / 1e6 - 1.0).abs().maxCoeff(), 1e-14);
+    EXPECT_GT((u.col(1) - before.col(1)).norm(), 0.1 * Noise(mesh).norm());
+    for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+    {
+      double change = 0.0;
+      double total = 0.0;
+      for (Index k = mesh.ComponentsBegin()[c]; k < mesh.ComponentsBegin()[c + 1]; ++k)
+      {
+        change += mesh.ControlAreas()[k] * (u(k, 1) - before(k, 1));
+        total += mesh.ControlAreas()[k] * before(k, 1);
+      }
+      EXPECT_LT(std::abs(change), 1e-14 * total);
+    }
+  }
+}
+
+TEST(FunctionDiagonal, IsThatOfTheDenseOperator)
+{
+  const auto square = [](double x) { return 1.0 / ((1.0 + x) * (1.0 + x)); };
+  const PoleSum poles = FitPoles(square, 0.8, 1.2, 8);
+  for (const Testing::Surface& s : { Strip(24, 9, 5.0, 1.0), Disk(8), ThreeFins(7), Torus(24, 12) })
+  {
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    for (const double step : { 1e-3, 0.1, 10.0 })
+    {
+      const Vector expected =
+        DenseFunction(*assembler, [&](double lambda) { return square(step * lambda); }).diagonal();
+      const Vector found = FunctionDiagonal(*assembler, CotanWeights(mesh), step, poles);
+      EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-6) << step;
+    }
+  }
+}
+
+// The variance of each field by all eigenvectors of the surface, beside boundaries, too.
+TEST(RandomField, HasTheVarianceOfTheDenseOperator)
+{
+  for (const Testing::Surface& s : { Strip(24, 9, 3.0, 1.0), Disk(8), Icosphere(2) })
+  {
+    const auto assembler = MakeAssembler(s);
+    for (RandomField::Settings settings : AllCovariances())
+    {
+      const double unit = assembler->Mesh().LengthUnit();
+      settings.Width /= unit;
+      settings.Range /= unit;
+      const double t = settings.Width * settings.Width / (16.0 * std::log(2.0));
+      const double kappa = std::sqrt(8.0 * settings.Nu) / settings.Range;
+      const bool isMatern = settings.Covariance == FieldCovariance::Matern;
+      const auto square = [&](double lambda)
+      {
+        return isMatern ? std::pow(kappa * kappa + lambda, -settings.Nu - 1.0)
+                        : Heat(2.0 * t * lambda);
+      };
+      const double onPlane = isMatern
+        ? std::pow(kappa, -2.0 * settings.Nu) / (4.0 * Pi * settings.Nu)
+        : 1.0 / (8.0 * Pi * t);
+      const Vector expected = (DenseFunction(*assembler, square).diagonal() / onPlane).cwiseSqrt();
+      const Vector found = MakeField(assembler, settings).Deviations();
+      EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-3);
+    }
+  }
+}
+
+TEST(RandomField, CovarianceOnTheSphereIsTheSumOfLegendrePolynomials)
+{
+  const Testing::Surface s = Icosphere(5);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  constexpr Index count = 400;
+  for (RandomField::Settings settings : AllCovariances())
+  {
+    const RandomField::Settings given = settings;
+    settings.Width /= mesh.LengthUnit();
+    settings.Range /= mesh.LengthUnit();
+    const Values fields = Draw(assembler, settings, count);
+    EXPECT_NEAR(std::sqrt(fields.cwiseAbs2().mean()), 1.0, 0.01);
+    std::vector<double> sums(11, 0.0);
+    std::vector<double> expected(11, 0.0);
+    std::vector<Index> numbers(11, 0);
+    for (Index i = 0; i < mesh.NumberOfVertices(); i += 197)
+    {
+      for (Index j = 0; j < mesh.NumberOfVertices(); ++j)
+      {
+        const auto p = s.Vertices.row(mesh.InputVertex()[i]);
+        const auto q = s.Vertices.row(mesh.InputVertex()[j]);
+        const double angle = std::acos(std::clamp(p.dot(q), -1.0, 1.0));
+        const auto bin = static_cast<std::size_t>(angle / 0.1);
+        if (bin < sums.size())
+        {
+          sums[bin] += fields.row(i).dot(fields.row(j)) / count;
+          expected[bin] += CorrelationOnSphere(given, angle);
+          ++numbers[bin];
+        }
+      }
+    }
+    for (std::size_t bin = 0; bin < sums.size(); ++bin)
+    {
+      // Means over all pairs of a distance and 400 fields, of some 80 independent places each.
+      EXPECT_NEAR(sums[bin] / numbers[bin], expected[bin] / numbers[bin], 0.02) << bin;
+    }
+  }
+}
+
+TEST(RandomField, DependsOnItsNumberAloneAndNotOnThreads)
+{
+  const auto assembler = MakeAssembler(Torus(30, 16));
+  for (const RandomField::Settings& settings : AllCovariances())
+  {
+    const Values all = Draw(assembler, settings, 21);
+    EXPECT_EQ(all.middleCols(18, 2), Draw(assembler, settings, 2, 18));
+    Values threaded(all.rows(), all.cols());
+    const ThreadedFor threads(3);
+    MakeField(assembler, settings, threads).Draw(0, threaded);
+    EXPECT_EQ(all, threaded);
+    RandomField::Settings other = settings;
+    other.Seed = 1;
+    EXPECT_GT((all - Draw(assembler, other, 21)).norm(), all.norm()) << "independent";
+  }
+}
+
+// Y_lm times 1 / (1 + 2 (l (l + 1) / (k R)^2)^order), with an error of second order.
+TEST(ScaleFilter, ScalesSphericalHarmonics)
+{
+  constexpr double radius = 3.0;
+  constexpr double wavelength = 5.0;
+  const double k = 2.0 * Pi / wavelength;
+  for (const int order : { 1, 2 })
+  {
+    std::vector<double> errors;
+    for (const int subdivisions : { 3, 4 })
+    {
+      const Testing::Surface s = Icosphere(subdivisions, radius);
+      const auto assembler = MakeAssembler(s);
+      const TriangleMesh& mesh = assembler->Mesh();
+      Values u = Sample(mesh, s,
+        [](const Eigen::RowVector3d& x)
+        { return x[0] * x[1] * x[2] / (radius * radius * radius); }); // l = 3
+      const double expected = 1.0 / (1.0 + 2.0 * std::pow(12.0 / std::pow(k * radius, 2), order));
+      const Values exact = expected * u;
+      MakeScaleFilter(assembler, Vector::Constant(u.rows(), wavelength / mesh.LengthUnit()), order)
+        .Apply(u);
+      errors.push_back(RootMeanSquare(mesh, u - exact) / RootMeanSquare(mesh, exact));
+    }
+    EXPECT_LT(errors[1], 0.01);
+    EXPECT_GT(ObservedOrder(errors[0], errors[1]), 1.9);
+  }
+}
+
+TEST(ScaleFilter, SolvesItsEquationForWavelengthsThatDiffer)
+{
+  const Testing::Surface s = Disk(20);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Values x = Sample(mesh, s, [](const Eigen::RowVector3d& p) { return p[0]; });
+  const Vector wavelengths = (0.5 + 0.4 * x.col(0).array()) / mesh.LengthUnit();
+  const Values f = Noise(mesh, 3);
+  CornerWeights coefficients = CotanWeights(mesh);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    double square = 0.0;
+    for (int a = 0; a < 3; ++a)
+    {
+      square += std::pow(wavelengths[mesh.TriangleVertices()(t, a)] / (2.0 * Pi), 2) / 3.0;
+    }
+    coefficients.row(t) *= square;
+  }
+  SparseMatrix stiffness = ZeroMatrix(assembler->Pattern());
+  assembler->Fill(stiffness, Vector::Zero(mesh.NumberOfVertices()), 1.0, coefficients);
+  const auto laplace = [&](const Values& u) -> Values
+  { return mesh.ControlAreas().cwiseInverse().asDiagonal() * (stiffness * u); };
+  for (const int order : { 1, 2 })
+  {
+    Values u = f;
+    MakeScaleFilter(assembler, wavelengths, order).Apply(u);
+    const Values power = order == 1 ? laplace(u) : laplace(laplace(u));
+    EXPECT_LT((u + 2.0 * power - f).norm(), 1e-6 * f.norm());
+    EXPECT_LT(u.norm(), 0.5 * f.norm());
+  }
+}
