@@ -69,6 +69,7 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
       block.ModelSettings = snapshot;
       block.NumberOfBlocks = count;
       block.TimeStep = traits.TimeStep;
+      block.NumberOfSteps = traits.NumberOfSteps;
     }
     block.Path->Reserve(traits.NumberOfSteps);
     fields[b].reset();
@@ -84,6 +85,7 @@ bool Run::IsModelCurrent(const Block& block, const BlockInput& input,
   return block.Path && block.FieldsVersion == input.FieldsVersion &&
     block.ModelSettings == settings && (block.Path->KeepsHistory() || !this->KeepsHistory) &&
     block.NumberOfBlocks == this->Blocks.size() && block.TimeStep == traits.TimeStep &&
+    (!traits.DependsOnNumberOfSteps || block.NumberOfSteps == traits.NumberOfSteps) &&
     (block.HoldsDetail || !block.Cells || !traits.NeedsCellDetail()) &&
     block.Solvers.ServesRunOf(traits.NumberOfSteps);
 }

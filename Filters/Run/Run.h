@@ -108,6 +108,7 @@ public:
     SettingsSnapshot SurfaceSettings, ModelSettings;
     std::size_t NumberOfBlocks = 0;
     double TimeStep = 0.0;
+    int NumberOfSteps = 0; ///< of a model that depends on it
     ValueStatistics Statistics;
     SurfaceDiffusion::Undetermined Undetermined;
     bool HasData = false;

@@ -67,6 +67,8 @@ struct ModelTraits
   bool IsSteady = true; ///< there are no times, neither of the start nor of the one step
   int NumberOfSteps = 1;
   double TimeStep = 1.0; ///< in the unit that TimeStep is in
+  /// The model itself depends on NumberOfSteps, and not only how far it runs.
+  bool DependsOnNumberOfSteps = false;
   std::size_t CheckpointMemory = 0; ///< in bytes, for states to which a run goes back
   SolverMethod Solver = SolverMethod::Automatic; ///< of linear systems
   IterationLimits Limits; ///< of the same

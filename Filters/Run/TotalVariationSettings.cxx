@@ -209,6 +209,7 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   const bool dimensionless = PropertiesOf(this->EdgeFunction).Dimensionless;
   ModelTraits traits = this->DescribeSteps(this->Mode == TotalVariationMode::SteadyState);
   traits.ResultSuffix = "TV";
+  traits.DependsOnNumberOfSteps = this->FindsFidelity(); // the weight for all steps of the run
   traits.Time = dimensionless ? Dimension{ 2.0, 0.0 } : Dimension{ 1.0, 1.0 };
   traits.SettingsInRange = this->FindSettingsInRange();
   traits.Energy = dimensionless ? Dimension{ 0.0, 2.0 } : Dimension{ 1.0, 1.0 };

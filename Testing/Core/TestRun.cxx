@@ -80,6 +80,28 @@ TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
   }
 }
 
+// The weight that leaves the noise after 4 steps is not that of 8.
+TEST(Run, AutomaticFidelityIsFoundAgainForAnotherNumberOfSteps)
+{
+  RunInput input(Testing::Icosphere(2));
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    input.Data.Data.Values(i, 0) =
+      (input.Vertices(i, 2) > 0.5 ? 1.0 : 0.0) + 0.2 * (2.0 * UniformRandom(3, 0, i) - 1.0);
+  }
+  TotalVariationSettings settings;
+  settings.AutomaticFidelity = true;
+  settings.NoiseLevel = 0.1;
+  SurfaceDiffusion::Run kept(SerialFor());
+  for (const int steps : { 8, 4, 8 })
+  {
+    settings.NumberOfTimeSteps = steps;
+    SurfaceDiffusion::Run fresh(SerialFor());
+    const Values expected = StateOf(fresh, { input.Block() }, settings);
+    EXPECT_EQ(StateOf(kept, { input.Block() }, settings), expected) << steps;
+  }
+}
+
 TEST(Run, AutomaticFidelityWarnsOfNoiseThatItCannotLeave)
 {
   RunInput input(Testing::Icosphere(3));

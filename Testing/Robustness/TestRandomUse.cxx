@@ -278,7 +278,13 @@ void UseAtRandom(
       either->SetInputData(surface);
       UpdateAt(either, time);
     }
-    const std::string name = kind.Name + ", update " + std::to_string(update);
+    std::string name = kind.Name + ", update " + std::to_string(update);
+    if (std::getenv("SURFACEDIFFUSION_SEED"))
+    {
+      std::ostringstream properties;
+      filter->Print(properties);
+      name += "\n" + properties.str();
+    }
     ASSERT_EQ(Sentences(messages), Sentences(ofTwin)) << name;
     ASSERT_EQ(Difference(filter, twin), "") << name;
     ASSERT_TRUE(!messages.Errors.empty() || AddedIsFinite(filter, surface)) << name;
