@@ -167,11 +167,12 @@ NB_MODULE(_core, m)
     .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
            const nb::object&>(),
       "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "progress"_a.none())
-    .def("prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "seed"_a, "unit_variance"_a,
-      "progress"_a.none())
-    .def("draw", &SurfaceFields::Draw, "first"_a, "fields"_a, "progress"_a.none())
+    .def(
+      "prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "unit_variance"_a, "progress"_a.none())
+    .def("draw", &SurfaceFields::Draw, "seed"_a, "first"_a, "fields"_a, "progress"_a.none())
     .def("filter_scales", &SurfaceFields::FilterScales, "values"_a, "wavelengths"_a, "order"_a,
       "progress"_a.none())
+    .def("areas", &SurfaceFields::Areas)
     .def("number_of_vertices", &SurfaceFields::NumberOfVertices)
     .def("mean_edge_length", &SurfaceFields::MeanEdgeLength);
 
@@ -186,8 +187,8 @@ NB_MODULE(_core, m)
     .def("project", &SurfaceDistances::Project, "points"_a, "progress"_a.none())
     .def("from_all", &SurfaceDistances::FromAll, "rows"_a, "barycentric"_a.none(), "starts"_a,
       "apart"_a, "progress"_a.none())
-    .def("by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(),
-      "progress"_a.none())
+    .def(
+      "by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(), "progress"_a.none())
     .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 
   BindSingleRun<CurvatureFinder>(m, "CurvatureRun");

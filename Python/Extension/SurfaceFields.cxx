@@ -5,12 +5,14 @@
 #include "Core/Foundation/Columns.h"
 #include "Core/Models/Fields/ScaleFilter.h"
 #include "Core/Operators/CotanWeights.h"
+#include "NewArrays.h"
 #include "PythonProgress.h"
 #include "Threads.h"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace nb = nanobind;
 
@@ -28,16 +30,19 @@ SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
     });
 }
 
-void SurfaceFields::Prepare(
-  double width, int nu, std::int64_t seed, bool unitVariance, const nb::object& progress)
+void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::object& progress)
 {
+  const std::tuple<double, int, bool> wanted{ width, nu, unitVariance };
+  if (this->Field && this->Prepared == wanted)
+  {
+    return;
+  }
   const TriangleMesh& mesh = this->Built->Mesh();
   RandomField::Settings settings;
   settings.Covariance = nu == 0 ? FieldCovariance::Gaussian : FieldCovariance::Matern;
   settings.Width = width / mesh.LengthUnit();
   settings.Range = settings.Width;
   settings.Nu = nu;
-  settings.Seed = seed;
   settings.HasUnitVariance = unitVariance;
   this->Field.reset();
   PythonProgress(progress).Run(
@@ -47,10 +52,11 @@ void SurfaceFields::Prepare(
         CotanWeights(mesh, PythonThreads::Instance()), settings,
         MakeVertexIds(*this->Built, Fields()), PythonThreads::Instance(), monitor);
     });
+  this->Prepared = wanted;
 }
 
 double SurfaceFields::Draw(
-  std::int64_t first, const ColumnArray& fields, const nb::object& progress)
+  std::int64_t seed, std::int64_t first, const ColumnArray& fields, const nb::object& progress)
 {
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
@@ -61,7 +67,7 @@ double SurfaceFields::Draw(
       {
         const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, columns - start);
         Values panel(this->NumberOfVertices(), count);
-        this->Field->Draw(first + start, panel,
+        this->Field->Draw(seed, first + start, panel,
           monitor.Part(static_cast<double>(start) / all, static_cast<double>(start + count) / all));
         this->Write(panel, start, fields);
       }
@@ -104,6 +110,18 @@ double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray&
       missed = filter.MissedResidual();
     });
   return missed;
+}
+
+nb::object SurfaceFields::Areas() const
+{
+  const TriangleMesh& mesh = this->Built->Mesh();
+  std::vector<double> areas(static_cast<std::size_t>(this->Built->Points().rows()), 0.0);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    areas[static_cast<std::size_t>(mesh.InputVertex()[i])] =
+      mesh.ControlAreas()[i] * mesh.LengthUnit() * mesh.LengthUnit();
+  }
+  return NewArray(std::move(areas));
 }
 
 double SurfaceFields::MeanEdgeLength() const

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <tuple>
 
 namespace SurfaceDiffusion
 {
@@ -23,18 +24,20 @@ public:
     bool maskOnFaces, const nanobind::object& progress);
 
   /// Take the covariance: Gaussian of the full width at half maximum `width` if nu is 0, and
-  /// otherwise Matern's with nu and the range `width`.
-  void Prepare(
-    double width, int nu, std::int64_t seed, bool unitVariance, const nanobind::object& progress);
+  /// otherwise Matern's with nu and the range `width`. The last one is kept.
+  void Prepare(double width, int nu, bool unitVariance, const nanobind::object& progress);
   /// Write fields first, first + 1, ... to the columns; NaN at points that take no part. Returns the
   /// largest relative residual of solves above their tolerance.
-  double Draw(std::int64_t first, const ColumnArray& fields, const nanobind::object& progress);
+  double Draw(std::int64_t seed, std::int64_t first, const ColumnArray& fields,
+    const nanobind::object& progress);
 
   /// Filter the columns by scale. wavelengths: per point. NaN at points that take no part.
   double FilterScales(const ColumnArray& values, const FactorArray& wavelengths, int order,
     const nanobind::object& progress) const;
 
   Index NumberOfVertices() const { return this->Built->Mesh().NumberOfVertices(); }
+  /// The control areas (n); 0 at points that take no part.
+  nanobind::object Areas() const;
   /// h, the mean length of the edges.
   double MeanEdgeLength() const;
 
@@ -43,6 +46,7 @@ private:
 
   std::unique_ptr<const Surface> Built;
   std::unique_ptr<RandomField> Field;
+  std::tuple<double, int, bool> Prepared; ///< of Field
 };
 
 } // namespace SurfaceDiffusion

@@ -36,6 +36,10 @@
 `stiffness_matrix`    cotangent Laplacian, or that of tensors, for scipy
 `gradient_matrix`     gradients on the triangles, for scipy
 `eigenmodes`          eigenvalues and modes of the surface
+`random_field`        Gaussian random fields of a width or a range
+`surrogates`          random maps with the values and the smoothness of a map
+`scale_filter`        data without the scales below a wavelength
+`spectrum`            the variance of data between scales
 `refine`              shorter edges, for the large triangles of CAD files
 `relief`              values as relief, for printing
 ===================== ============================================================================
@@ -57,9 +61,10 @@ import typing as _typing
 import warnings as _warnings
 from importlib.metadata import version as _version
 
-from . import _core, _derivatives, _distance, _functions, _operators, _result, _steps
+from . import _core, _derivatives, _distance, _fields, _functions, _operators, _result, _scales, _steps
 from ._derivatives import *  # noqa: F403
 from ._distance import *  # noqa: F403
+from ._fields import *  # noqa: F403
 from ._functions import *  # noqa: F403
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._images import estimate_fwhm_img, smooth_img
@@ -67,6 +72,7 @@ from ._operators import *  # noqa: F403
 from ._refinement import RefinedSurface, refine
 from ._result import *  # noqa: F403
 from ._run import States, SurfaceDiffusionWarning
+from ._scales import *  # noqa: F403
 from ._shape import ReliefResult, relief
 from ._steps import *  # noqa: F403
 from ._surface import Surface, sphere
@@ -81,9 +87,11 @@ __all__ = [
 ]
 __all__ += _derivatives.__all__
 __all__ += _distance.__all__
+__all__ += _fields.__all__
 __all__ += _functions.__all__
 __all__ += _operators.__all__
 __all__ += _result.__all__
+__all__ += _scales.__all__
 __all__ += _steps.__all__
 
 if hasattr(_os, "register_at_fork"):

@@ -17,6 +17,7 @@ PoleSum FitPoles(const std::function<double(double)>& g, double first, double la
   constexpr int samples = 2000;
   constexpr double smallest = 1e-4;
   constexpr double largest = 1e6;
+  constexpr double atZero = 0.03; // the weight of small x, which are all there is if s is small
   PoleSum sum;
   sum.Poles.resize(count);
   for (int j = 0; j < count; ++j)
@@ -28,8 +29,9 @@ PoleSum FitPoles(const std::function<double(double)>& g, double first, double la
   for (int i = 0; i < samples; ++i)
   {
     const double x = smallest * std::pow(largest / smallest, i / (samples - 1.0));
-    terms.row(i) = (x / (sum.Poles.array() + x)).transpose();
-    wanted[i] = x * g(x);
+    const double weight = atZero + x;
+    terms.row(i) = (weight / (sum.Poles.array() + x)).transpose();
+    wanted[i] = weight * g(x);
   }
   const Vector sizes = terms.colwise().norm();
   terms.array().rowwise() /= sizes.transpose().array();

@@ -17,8 +17,8 @@ struct PoleSum
   Vector Residues; ///< c
 };
 
-/// The residues that make the sum fit g best, in the least squares of x (g - sum) over log x: as for
-/// the eigenvalues of a surface, whose number grows as x does. g falls faster than 1 / x. The poles
+/// The residues that make the sum fit g best, in the least squares of x (g - sum) over log x, and a
+/// little more near 0: as for the eigenvalues of a surface, whose number grows as x does. g falls faster than 1 / x. The poles
 /// are `count` numbers from first to last with equal ratios.
 PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count);
 

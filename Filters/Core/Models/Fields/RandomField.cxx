@@ -109,7 +109,7 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
 }
 
 void RandomField::Draw(
-  std::int64_t first, Eigen::Ref<Values> fields, const ProgressMonitor& progress)
+  std::int64_t seed, std::int64_t first, Eigen::Ref<Values> fields, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const auto columns = static_cast<double>(fields.cols());
@@ -123,8 +123,7 @@ void RandomField::Draw(
         for (Eigen::Index k = 0; k < u.cols(); ++k)
         {
           u(i, k) = deviation *
-            NormalRandom(
-              this->Options.Seed, first + start + k, this->Ids[static_cast<std::size_t>(i)]);
+            NormalRandom(seed, first + start + k, this->Ids[static_cast<std::size_t>(i)]);
         }
       });
     this->Operator->Apply(u,

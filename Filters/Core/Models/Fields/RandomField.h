@@ -38,7 +38,6 @@ public:
     double Width = 1.0; ///< full width at half maximum of the kernel of Gaussian, above 0
     double Range = 1.0; ///< of Matern, above 0: sqrt(8 nu) / kappa, where the correlation is 0.14
     int Nu = 1; ///< of Matern: 1 or 3
-    std::int64_t Seed = 0;
     bool HasUnitVariance = true; ///< at each vertex, rather than on the plane
   };
 
@@ -48,10 +47,10 @@ public:
     const Settings& settings, std::vector<std::int64_t> ids,
     const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 
-  /// Fields first, first + 1, ... as the columns of `fields`, n x count. The numbers of a field
-  /// depend on the seed and on its own number, not on which others are drawn. Throws NotConverged
-  /// and Aborted.
-  void Draw(std::int64_t first, Eigen::Ref<Values> fields,
+  /// Fields first, first + 1, ... of a seed as the columns of `fields`, n x count. The numbers of a
+  /// field depend on the seed and on its own number, not on which others are drawn. Throws
+  /// NotConverged and Aborted.
+  void Draw(std::int64_t seed, std::int64_t first, Eigen::Ref<Values> fields,
     const ProgressMonitor& progress = ProgressMonitor());
 
   /// The standard deviations before the division, relative to that on the plane; no row if they are

@@ -1,0 +1,439 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random fields on surfaces, and surrogates of maps: random maps with the values and the smoothness of
+a given one."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from statistics import NormalDist
+from typing import Any, Callable, NamedTuple, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._functions import left_out
+from ._run import Progress, ProgressReporter, warn
+from ._settings import shorten
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_place
+
+__all__ = ["Surrogates", "random_field", "surrogates"]
+
+#: Fields with which the variances of scales are measured.
+_SAMPLE = 64
+
+#: The numbers of the fields of one width begin at a multiple of this.
+_STREAM = 1 << 40
+
+
+def random_field(
+    surface: SurfaceLike,
+    n: int = 1,
+    *,
+    fwhm: float | None = None,
+    range: float | None = None,
+    nu: int = 1,
+    seed: int = 0,
+    first: int = 0,
+    mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
+    normalize: bool = True,
+    progress: Progress = None,
+) -> NDArray[np.float64]:
+    """Draw Gaussian random fields on a surface, of mean 0 and variance 1.
+
+    With the matrices M of :func:`mass_matrix` and K of :func:`stiffness_matrix`, L = M^-1 K, and white
+    noise W, independent at the points with variances 1 / A_i of their control areas, they are
+
+        exp(-t L) W,  t = fwhm^2 / (16 ln 2), or
+        (kappa^2 + L)^(-(nu + 1) / 2) W,  kappa = sqrt(8 nu) / range,
+
+    divided by their standard deviations. On the plane the correlation at distance r is
+    exp(-2 ln 2 r^2 / fwhm^2), as after a Gaussian kernel of this width, or Matern's
+    (kappa r)^nu K_nu(kappa r) / (2^(nu - 1) Gamma(nu)), which is 0.14 at the range.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface. A Surface keeps the factors for further fields of the same kind.
+    n : int, 1 or more, default 1
+        The number of fields.
+    fwhm : float, above 0, in coordinates
+        Full width at half maximum of the kernel. Below two edges the mesh does not resolve it, and a
+        warning says so.
+    range : float, above 0, in coordinates
+        The range of Matern's correlation, in place of `fwhm`.
+    nu : {1, 3}, default 1
+        The smoothness of Matern's correlation: fields have nu - 1 derivatives.
+    seed : int, default 0
+        Of the random numbers, which are functions of the seed, the number of the field, and the
+        coordinates of the point: the same fields for any numbering of the points.
+    first : int, 0 or more, default 0
+        The number of the first field: fields 10 to 19 are ``random_field(surface, 10, first=10)``, or
+        columns of more, bit by bit.
+    mask : array_like, shape (n,) or (m,), optional
+        Nonzero leaves a point with its faces, or a face, out.
+    roi : array_like, shape (n,) or (m,), optional
+        The region of interest, the opposite of a mask and in place of one.
+    normalize : bool, default True
+        Whether the variance is 1 at every point. Otherwise fields are divided by the standard
+        deviation on the plane, and have more variance near the boundary of the surface (twice as much
+        on a straight one), and where the surface is small beside the correlation.
+    progress : bool or callable, optional
+        As for :func:`heat`.
+
+    Returns
+    -------
+    ndarray, shape (points, n)
+        NaN at points that are left out.
+
+    Notes
+    -----
+    exp(-t L) is a polynomial of degree 10 in one step of backward Euler, whose factor serves all
+    fields, to 2e-5. The standard deviation at every point is that of the discrete field to 4e-4, by
+    selected inversion. 1,000 fields on 32,492 points take a few seconds, and the memory of the result.
+
+    References
+    ----------
+    F. Lindgren, H. Rue, J. Lindstrom, An explicit link between Gaussian fields and Gaussian Markov
+    random fields, J. R. Statist. Soc. B 73, 2011, 423-498. K. Takahashi, J. Fagan, M. Chin, Formation
+    of a sparse bus impedance matrix, PICA 1973.
+
+    Examples
+    --------
+    >>> from surfacediffusion import estimate_fwhm, random_field, sphere
+    >>> surface = sphere(5, radius=100.0)
+    >>> fields = random_field(surface, 20, fwhm=20.0)
+    >>> bool(abs(fields.std() - 1) < 0.03)
+    True
+    >>> bool(abs(estimate_fwhm(surface, fields).pooled / 20 - 1) < 0.03)
+    True
+    """
+    surface = as_surface(surface)
+    widths = [(name, width) for name, width in (("fwhm", fwhm), ("range", range)) if width is not None]
+    if len(widths) != 1:
+        found = "both given" if widths else "not given"
+        raise ValueError(f"fwhm and range are {found}; allowed: one of them")
+    (name, width), = widths
+    check_length(name, width)
+    if isinstance(nu, bool) or nu not in (1, 3):
+        raise ValueError(f"nu is {shorten(nu)}; allowed: 1 and 3")
+    if fwhm is not None and nu != 1:
+        raise ValueError(f"nu is {shorten(nu)}; allowed: 1, or range in place of fwhm")
+    _check_count("n", n, 1)
+    _check_count("first", first, 0)
+    _check_seed(seed)
+    if not isinstance(normalize, (bool, np.bool_)):
+        raise ValueError(f"normalize is {shorten(normalize)}; allowed: True or False")
+    fields = make_fields(surface, left_out(mask, roi, surface))
+    warn_of_edges(name, float(width), fields)
+    result = np.empty((surface.n_points, n))
+    with surface._lock, ProgressReporter(progress) as reporter:
+        _draw(fields, float(width), 0 if fwhm is not None else int(nu), int(seed), int(first),
+              bool(normalize), result, reporter.callable)
+        reporter.finish_part()
+    return result
+
+
+class Surrogates(NamedTuple):
+    """Surrogates of a map, and the model of its smoothness."""
+
+    values: NDArray[np.float64]  #: (points, n), one surrogate per column
+    fwhm: NDArray[np.float64]  #: (k,), the widths of the model, in coordinates; 0: without correlation
+    variances: NDArray[np.float64]  #: (k,), the share of each width in the variance of the normal scores
+
+
+def surrogates(
+    surface: SurfaceLike,
+    values: ArrayLike,
+    n: int = 1000,
+    *,
+    seed: int = 0,
+    mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
+    progress: Progress = None,
+) -> Surrogates:
+    """Draw surrogates of a map: random maps that have its values, each as often, and its smoothness, but
+    nothing else in common with it. The correlations of another map with them are the distribution
+    without a relation, which neighbours that are alike make wider than that of independent values.
+
+    The normal scores of the map are taken as a sum of random fields of widths 2 h, 4 h, ... up to the
+    size of the surface, and of values without correlation. The variances of these are found such that,
+    on average, the sum has the variances of the map between scales, as :func:`spectrum` measures them,
+    by nonnegative least squares. A surrogate is such a sum, whose values are replaced by those of the
+    map by their ranks.
+
+    Parameters
+    ----------
+    surface : Surface or tuple (points, faces)
+        The surface, or one hemisphere of a brain.
+    values : array_like, shape (n,)
+        The map, at points. NaN, such as in the medial wall, is left out, and is NaN in the surrogates.
+    n : int, 1 or more, default 1000
+        The number of surrogates.
+    seed : int, default 0
+        Of the random numbers. Surrogates of different maps that enter one test need different seeds.
+    mask : array_like, shape (n,) or (m,), optional
+        Nonzero leaves a point with its faces, or a face, out.
+    roi : array_like, shape (n,) or (m,), optional
+        The region of interest, the opposite of a mask and in place of one.
+    progress : bool or callable, optional
+        As for :func:`heat`.
+
+    Returns
+    -------
+    Surrogates
+        `values` (points, n), and the model: `fwhm` (k,) and `variances` (k,).
+
+    Notes
+    -----
+    In simulations with 500 pairs of independent maps on a sphere (Gaussian of FWHM 0.3 and 0.6 of the
+    radius, Matern of ranges 0.4 and 1.2, and a mixture with noise), tests at 5 % by 200 surrogates have
+    found 3.6 to 4.2 % of the pairs to be related, and those with the true model 3.4 to 4.6 %.
+
+    The surface stays as it is and no matrix of distances is made: time and memory grow with the number
+    of points.
+
+    References
+    ----------
+    J. Burt, M. Helmer, M. Shinn, A. Anticevic, J. Murray, Generative modeling of brain maps with
+    spatial autocorrelation, NeuroImage 220, 2020, where maps are compared by variograms.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import random_field, sphere, surrogates
+    >>> surface = sphere(4, radius=100.0)
+    >>> x, y = random_field(surface, 2, fwhm=60.0).T
+    >>> null = surrogates(surface, x, 199).values
+    >>> found = abs(np.corrcoef(x, y)[0, 1])
+    >>> smaller = [abs(np.corrcoef(s, y)[0, 1]) < found for s in null.T]
+    >>> bool(1 - np.mean(smaller) > 0.05)  # not significant
+    True
+    >>> bool((np.sort(null[:, 0]) == np.sort(x)).all())
+    True
+    """
+    surface = as_surface(surface)
+    array = as_data("values", values, surface.n_points)
+    if array.shape[1] != 1:
+        raise ValueError(f"values has shape {np.shape(values)}; allowed: ({surface.n_points},), one map")
+    given = array[:, 0].astype(np.float64)
+    check_finite("values", given)
+    _check_count("n", n, 1)
+    _check_seed(seed)
+    fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), given))
+    areas = fields.areas()
+    known = areas > 0.0
+    if len(np.unique(given[known])) < 2:
+        raise ValueError("values is constant; allowed: values that differ")
+    model = _Model(fields, areas, int(seed))
+    with surface._lock, ProgressReporter(progress, 2 * len(model.widths)) as reporter:
+        variances = model.fit(_normal_scores(given, known), reporter)
+        result = model.draw(variances, n, reporter)
+    ordered = np.sort(given[known])
+    for k in np.arange(n):
+        ranks = np.argsort(np.argsort(result[known, k], kind="stable"), kind="stable")
+        result[known, k] = ordered[ranks]
+    result[~known] = np.nan
+    return Surrogates(result, np.array([*model.widths[:-1], 0.0]), variances / variances.sum())
+
+
+class _Model:
+    """Sums of random fields of several widths, the last of which has no correlation."""
+
+    def __init__(self, fields: Any, areas: NDArray[np.float64], seed: int) -> None:
+        self._fields, self._areas, self._seed = fields, areas, seed
+        h, size = fields.mean_edge_length(), math.sqrt(areas.sum())
+        self.widths = [2.0 * h]
+        while 2.0 * self.widths[-1] < 0.75 * size:
+            self.widths.append(2.0 * self.widths[-1])
+        self._wavelengths = [3.0 * h]
+        while self._wavelengths[-1] < size:
+            self._wavelengths.append(2.0 * self._wavelengths[-1])
+        self.widths.append(1e-2 * h)
+
+    def fit(self, scores: NDArray[np.float64], reporter: ProgressReporter) -> NDArray[np.float64]:
+        """The variances of the fields."""
+        columns = []
+        for k in np.arange(len(self.widths)):
+            sample = self._draw(k, 0, np.empty((len(self._areas), _SAMPLE)), reporter.callable)
+            columns.append(self._bands(sample).mean(axis=1))
+            reporter.finish_part()
+        wanted = self._bands(scores[:, None])[:, 0]
+        # Relative errors count, down to a millionth of the variance.
+        weights = 1.0 / np.sqrt(np.maximum(wanted, 1e-6 * wanted.sum()))
+        return solve_nonnegative(np.column_stack(columns) * weights[:, None], wanted * weights)
+
+    def draw(
+        self, variances: NDArray[np.float64], n: int, reporter: ProgressReporter
+    ) -> NDArray[np.float64]:
+        """Sums of n fields of each width, of which those with a variance are needed."""
+        total = np.zeros((len(self._areas), n))
+        for k in np.arange(len(self.widths)):
+            for first in np.arange(0, n if variances[k] > 0.0 else 0, _SAMPLE):
+                part = np.empty((len(self._areas), min(_SAMPLE, n - int(first))))
+                share = None
+                if reporter.callable is not None:
+                    share = _Share(reporter.callable, first / n, part.shape[1] / n)
+                total[:, first:first + part.shape[1]] += math.sqrt(variances[k]) * self._draw(
+                    k, int(first), part, share)
+            reporter.finish_part()
+        return total
+
+    def _draw(
+        self, k: int, first: int, result: NDArray[np.float64], progress: Callable[[float], Any] | None
+    ) -> NDArray[np.float64]:
+        _draw(self._fields, self.widths[k], 0, self._seed, int(k) * _STREAM + first, True, result, progress)
+        return result
+
+    def _bands(self, maps: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The variances between the wavelengths, (bands, columns)."""
+        return find_bands(self._fields, self._areas, maps, self._wavelengths, 1, None)
+
+
+class _Share:
+    """Progress of a part of the work."""
+
+    def __init__(self, report: Callable[[float], Any], done: float, share: float) -> None:
+        self._report, self._done, self._share = report, done, share
+
+    def __call__(self, fraction: float) -> Any:
+        return self._report(self._done + fraction * self._share)
+
+
+def _draw(fields: Any, width: float, nu: int, seed: int, first: int, normalize: bool,
+          result: NDArray[np.float64], progress: Callable[[float], Any] | None) -> None:
+    """Write fields to the columns of `result`."""
+    half = [None if progress is None else _Share(progress, done, 0.5) for done in (0.0, 0.5)]
+    fields.prepare(width, nu, normalize, half[0])
+    warn_of_solves(fields.draw(seed, first, result, half[1]))
+
+
+def _normal_scores(given: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """The quantiles of the normal distribution of the ranks, equal ones for equal values; 0 at points
+    that are not known."""
+    _, inverse, counts = np.unique(given[known], return_inverse=True, return_counts=True)
+    ends = np.cumsum(counts)
+    shares = (ends - 0.5 * counts) / ends[-1]
+    quantile = NormalDist().inv_cdf
+    scores = np.zeros(len(given))
+    scores[known] = np.array([quantile(share) for share in shares])[inverse.reshape(-1)]
+    return scores
+
+
+def solve_nonnegative(matrix: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """x >= 0 with the smallest |matrix x - b| (C. Lawson, R. Hanson, Solving least squares problems,
+    1974, chapter 23). At least one x is above 0 for nonnegative, nonzero entries."""
+    n = matrix.shape[1]
+    x = np.zeros(n)
+    free = np.zeros(n, dtype=bool)
+    scale = np.abs(matrix).sum(axis=0).max() * np.abs(b).max()
+    for _ in np.arange(10 * n):
+        slope = np.where(free, 0.0, matrix.T @ (b - matrix @ x))
+        if slope.max() <= 1e-12 * scale:
+            break
+        free[np.argmax(slope)] = True
+        while True:
+            solved = np.zeros(n)
+            solved[free] = np.linalg.lstsq(matrix[:, free], b, rcond=None)[0]
+            below = free & (solved <= 0.0)
+            if not below.any():
+                break
+            step = (x[below] / (x[below] - solved[below])).min()
+            x += step * (solved - x)
+            free &= x > 1e-14 * x.max()
+            x[~free] = 0.0
+        x = solved
+    return x
+
+
+def make_fields(surface: Surface, mask: Any) -> Any:
+    """The operators of random fields and scales, which a surface keeps for the last mask."""
+    flags = as_flags("mask", mask)
+    on_faces = flags is not None and find_place(
+        "mask", flags, (surface.n_points, surface.n_faces), "flag", False)
+    version = hashlib.blake2b(b"" if flags is None else bytes([on_faces]) + flags.tobytes()).digest()
+    with surface._lock:
+        known, fields = surface._runs.get("fields", (b"", None))
+        if version != known:
+            fields = _core.SurfaceFields(surface._core, flags, on_faces, None)
+            surface._runs["fields"] = version, fields
+    if fields.number_of_vertices() == 0:
+        raise ValueError("no triangle of the surface is left; allowed: one or more that are not masked "
+                         "and have an area")
+    return fields
+
+
+def leave_out_missing(surface: Surface, mask: Any, values: NDArray[np.float64]) -> Any:
+    """The mask that leaves out points with NaN in any column, too."""
+    missing = np.isnan(values) if values.ndim == 1 else np.isnan(values).any(axis=1)
+    if not missing.any():
+        return mask
+    flags = as_flags("mask", mask)
+    if flags is None:
+        return missing
+    sizes = (surface.n_points, surface.n_faces)
+    if not find_place("mask", flags, sizes, "flag", False):
+        return missing | (flags != 0)
+    faces = np.repeat(np.arange(surface.n_faces), np.diff(surface._offsets))
+    masked = flags != 0
+    masked[faces[missing[surface._connectivity]]] = True
+    return masked
+
+
+def find_bands(
+    fields: Any, areas: NDArray[np.float64], maps: NDArray[np.float64],
+    wavelengths: Sequence[float], order: int, progress: Callable[[float], Any] | None
+) -> NDArray[np.float64]:
+    """The variance of each column between successive wavelengths: (wavelengths + 1, columns)."""
+    known = areas > 0.0
+    centred = np.where(known[:, None], maps, 0.0)
+    centred -= (areas @ centred) / areas.sum()
+    kept = [areas @ centred**2 / areas.sum()]
+    for number, wavelength in enumerate(wavelengths):
+        filtered = centred.copy()
+        share = None if progress is None else _Share(
+            progress, number / len(wavelengths), 1.0 / len(wavelengths))
+        warn_of_solves(fields.filter_scales(
+            filtered, np.full(len(areas), float(wavelength)), order, share))
+        filtered[~known] = 0.0
+        kept.append(areas @ filtered**2 / areas.sum())
+    return np.array([*(kept[k] - kept[k + 1] for k in np.arange(len(wavelengths))), kept[-1]])
+
+
+def check_length(name: str, value: Any) -> None:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(
+            value, (int, float, np.number)) or not 0.0 < value < np.inf:
+        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers above 0")
+
+
+def check_finite(name: str, values: NDArray[np.float64]) -> None:
+    if np.isinf(values).any():
+        row = int(np.argmax(np.isinf(values).reshape(len(values), -1).any(axis=1)))
+        raise ValueError(f"{name} is infinite in row {row}; allowed: finite values and NaN")
+
+
+def warn_of_edges(name: str, length: float, fields: Any) -> None:
+    """Below two edges the mesh decides."""
+    h = fields.mean_edge_length()
+    if length < 2.0 * h:
+        warn([f"{name} is {length:g}, below two mean edges of {h:g}, which the mesh does not resolve"])
+
+
+def warn_of_solves(residual: float) -> None:
+    if residual > 0.0:
+        warn([f"the linear solver missed its tolerance; the largest relative residual is {residual:g}"])
+
+
+def _check_count(name: str, value: Any, smallest: int) -> None:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(
+            value, (int, np.integer)) or not smallest <= value < _STREAM:
+        raise ValueError(f"{name} is {shorten(value)}; allowed: whole numbers, {smallest} or more")
+
+
+def _check_seed(seed: Any) -> None:
+    if isinstance(seed, (bool, np.bool_)) or not isinstance(
+            seed, (int, np.integer)) or not -2**63 <= seed < 2**63:
+        raise ValueError(f"seed is {shorten(seed)}; allowed: whole numbers of 64 bits")
