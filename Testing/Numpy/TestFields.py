@@ -1,0 +1,279 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random fields, surrogates of maps, and filters by scale."""
+
+import doctest
+import importlib
+import sys
+import unittest
+import warnings
+
+import numpy as np
+
+import surfacediffusion as sd
+
+RADIUS = 100.0
+BALL = sd.sphere(4, RADIUS)
+CAP = BALL.points[:, 2] < -0.3 * RADIUS  #: outside of a surface with a boundary
+
+
+def warnings_of(function, *arguments, **keywords):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        result = function(*arguments, **keywords)
+    return result, [str(warning.message) for warning in caught]
+
+
+class RandomField(unittest.TestCase):
+    def test_has_variance_one_at_every_point(self):
+        for keywords in ({"fwhm": 40.0}, {"range": 60.0}, {"range": 60.0, "nu": 3}):
+            for mask in (None, CAP):
+                fields = sd.random_field(BALL, 500, mask=mask, **keywords)
+                inside = fields if mask is None else fields[~mask]
+                variances = np.mean(inside[np.isfinite(inside).all(axis=1)]**2, axis=1)
+                # The standard error of the variance of 500 fields is 0.063.
+                self.assertLess(np.abs(variances - 1.0).max(), 5 * 0.063)
+                self.assertAlmostEqual(variances.mean(), 1.0, delta=0.02)
+
+    def test_without_normalize_boundaries_have_twice_the_variance(self):
+        fields = sd.random_field(BALL, 500, fwhm=30.0, mask=CAP, normalize=False)
+        variances = np.mean(fields**2, axis=1)
+        height = BALL.points[:, 2] / RADIUS
+        rim = (height > -0.31) & (height < -0.25) & np.isfinite(variances)
+        self.assertAlmostEqual(variances[rim].mean(), 2.0, delta=0.25)
+        self.assertAlmostEqual(variances[height > 0.3].mean(), 1.0, delta=0.1)
+
+    def test_width_is_that_of_estimate_fwhm(self):
+        surface = sd.sphere(5, RADIUS)
+        for fwhm in (30.0, 50.0):
+            fields = sd.random_field(surface, 200, fwhm=fwhm)
+            self.assertAlmostEqual(sd.estimate_fwhm(surface, fields).pooled / fwhm, 1.0, delta=0.02)
+
+    def test_fields_are_those_of_their_numbers(self):
+        many = sd.random_field(BALL, 40, fwhm=30.0)
+        self.assertTrue(np.array_equal(many[:, 17:19], sd.random_field(BALL, 2, fwhm=30.0, first=17)))
+        other = sd.random_field(BALL, 40, fwhm=30.0, seed=1)
+        correlations = [np.corrcoef(a, b)[0, 1] for a, b in zip(many.T, other.T)]
+        self.assertLess(abs(np.mean(correlations)), 0.1)
+        before = sd.get_number_of_threads()
+        try:
+            sd.set_number_of_threads(3)
+            again = sd.random_field((BALL.points, BALL.faces), 40, fwhm=30.0)
+        finally:
+            sd.set_number_of_threads(before)
+        self.assertTrue(np.array_equal(many, again))
+
+    def test_numbering_does_not_matter(self):
+        order = np.random.default_rng(0).permutation(BALL.n_points)
+        place = np.argsort(order)
+        renumbered = sd.Surface(BALL.points[order], place[BALL.faces])
+        for keywords in ({"fwhm": 30.0}, {"range": 60.0, "nu": 3}):
+            fields = sd.random_field(BALL, 3, **keywords)
+            np.testing.assert_allclose(
+                sd.random_field(renumbered, 3, **keywords), fields[order], atol=1e-8)
+
+    def test_units_and_offsets_do_not_matter(self):
+        fields = sd.random_field(BALL, 2, fwhm=30.0)
+        self.assertTrue(np.isfinite(fields).all())
+        for factor in (1e-6, 1e6):
+            scaled = sd.random_field((BALL.points * factor, BALL.faces), 50, fwhm=30.0 * factor)
+            self.assertAlmostEqual(scaled.std(), 1.0, delta=0.03)
+
+    def test_left_out_points_are_nan_and_roi_is_the_opposite(self):
+        fields = sd.random_field(BALL, 2, fwhm=30.0, mask=CAP)
+        np.testing.assert_array_equal(np.isnan(fields[:, 0]) | ~CAP, True)
+        self.assertTrue(np.array_equal(
+            fields, sd.random_field(BALL, 2, fwhm=30.0, roi=~CAP), equal_nan=True))
+        lonely = sd.Surface(np.vstack([BALL.points, [[500.0, 0.0, 0.0]]]), BALL.faces)
+        self.assertTrue(np.isnan(sd.random_field(lonely, 1, fwhm=30.0)[-1, 0]))
+
+    def test_two_surfaces_of_other_sizes_have_variance_one_each(self):
+        small = sd.sphere(2, 5.0)
+        points = np.vstack([BALL.points, small.points + [300.0, 0.0, 0.0]])
+        faces = np.vstack([BALL.faces, small.faces + BALL.n_points])
+        fields = sd.random_field((points, faces), 500, fwhm=30.0)
+        variances = np.mean(fields**2, axis=1)
+        self.assertAlmostEqual(variances[:BALL.n_points].mean(), 1.0, delta=0.03)
+        # The field is all but constant on the small one: one number of each field, +- 0.063.
+        self.assertAlmostEqual(variances[BALL.n_points:].mean(), 1.0, delta=0.3)
+        self.assertLess(fields[BALL.n_points:].std(axis=0).max(), 0.1)
+
+    def test_a_width_below_two_edges_is_reported(self):
+        fields, found = warnings_of(sd.random_field, BALL, 20, fwhm=1.0)
+        self.assertEqual(len(found), 1)
+        self.assertRegex(found[0], "^fwhm is 1, below two mean edges of 7.5")
+        self.assertAlmostEqual(fields.std(), 1.0, delta=0.02)
+        self.assertEqual(warnings_of(sd.random_field, BALL, 1, fwhm=20.0)[1], [])
+
+    def test_what_is_not_allowed_is_named(self):
+        for pattern, keywords in (
+                ("fwhm and range are not given", {}),
+                ("fwhm and range are both given", {"fwhm": 9.0, "range": 9.0}),
+                ("fwhm is -1; allowed: finite numbers above 0", {"fwhm": -1}),
+                ("range is nan; allowed", {"range": float("nan")}),
+                ("nu is 2; allowed: 1 and 3", {"range": 9.0, "nu": 2}),
+                ("nu is 3; allowed: 1, or range", {"fwhm": 9.0, "nu": 3}),
+                ("n is 0; allowed: whole numbers, 1 or more", {"fwhm": 9.0, "n": 0}),
+                ("first is -1; allowed: whole numbers, 0 or more", {"fwhm": 9.0, "first": -1}),
+                ("seed is 0.5; allowed: whole numbers", {"fwhm": 9.0, "seed": 0.5}),
+                ("normalize is 1; allowed: True or False", {"fwhm": 9.0, "normalize": 1}),
+                ("mask and roi are both given", {"fwhm": 9.0, "mask": CAP, "roi": CAP}),
+                ("no triangle of the surface is left", {"fwhm": 9.0, "mask": CAP | True})):
+            with self.assertRaisesRegex(ValueError, pattern):
+                sd.random_field(BALL, **keywords)
+
+    def test_a_callable_ends_the_work(self):
+        fractions = []
+
+        def stop(fraction):
+            fractions.append(fraction)
+            raise RuntimeError("enough")
+
+        surface = sd.sphere(6)
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            sd.random_field(surface, 500, fwhm=0.2, progress=stop)
+        self.assertLess(fractions[0], 0.9)
+        self.assertTrue(np.isfinite(sd.random_field(surface, 1, fwhm=0.2)).all())
+
+
+class Surrogates(unittest.TestCase):
+    def test_have_the_values_of_the_map_bit_by_bit(self):
+        values = np.exp(sd.random_field(BALL, 1, fwhm=50.0, seed=3)[:, 0])
+        values[::7] = 0.0  # ties
+        values[CAP] = np.nan
+        found = sd.surrogates(BALL, values, 5, seed=1)
+        self.assertEqual(found.values.shape, (BALL.n_points, 5))
+        for column in found.values.T:
+            np.testing.assert_array_equal(np.isnan(column), np.isnan(values))
+            np.testing.assert_array_equal(np.sort(column[~CAP]), np.sort(values[~CAP]))
+            self.assertLess(abs(np.corrcoef(column[~CAP], values[~CAP])[0, 1]), 0.6)
+
+    def test_have_the_smoothness_of_the_map(self):
+        noise = np.random.default_rng(5).normal(size=BALL.n_points)
+        for keywords, share in (({"fwhm": 40.0}, 0.0), ({"range": 90.0}, 0.0), ({"fwhm": 60.0}, 0.5)):
+            field = sd.random_field(BALL, 1, seed=8, **keywords)[:, 0]
+            values = np.sqrt(1.0 - share) * field + np.sqrt(share) * noise
+            found = sd.surrogates(BALL, values, 100)
+            bounds = [30.0, 60.0, 120.0]
+            mine = sd.spectrum(BALL, values, bounds, order=1).variance
+            theirs = sd.spectrum(BALL, found.values, bounds, order=1).variance
+            spread = theirs.std(axis=1)
+            self.assertTrue((np.abs(theirs.mean(axis=1) - mine) < spread + 0.05 * mine.sum()).all())
+            self.assertAlmostEqual(found.variances[-1], share, delta=0.1)
+            self.assertAlmostEqual(found.variances.sum(), 1.0, delta=1e-12)
+            self.assertEqual(found.fwhm[-1], 0.0)
+
+    def test_unrelated_maps_are_found_related_as_often_as_the_level_says(self):
+        surface = sd.sphere(3, RADIUS)
+        first = sd.random_field(surface, 200, fwhm=60.0, seed=11)
+        second = sd.random_field(surface, 200, fwhm=60.0, seed=12)
+        hits = 0
+        for k in range(200):
+            null = sd.surrogates(surface, first[:, k], 99, seed=1000 + k).values
+            found = abs(np.corrcoef(first[:, k], second[:, k])[0, 1])
+            others = np.abs(np.corrcoef(null.T, second[:, k])[-1, :-1])
+            hits += (1 + (others >= found).sum()) / 100 <= 0.05
+        # 5 % of 200, whose standard deviation is 3.1. Permuted values find 60 % related.
+        self.assertLessEqual(hits, 20)
+        self.assertGreaterEqual(hits, 2)
+
+    def test_what_is_not_allowed_is_named(self):
+        values = BALL.points[:, 0]
+        infinite = np.where(np.arange(BALL.n_points) == 4, np.inf, values)
+        for pattern, arguments in (
+                ("values is constant", (np.ones(BALL.n_points),)),
+                ("values has shape .*; allowed: \\(2562,\\), one map", (BALL.points,)),
+                ("values has shape", (values[1:],)),
+                ("values is infinite in row 4", (infinite,)),
+                ("no triangle of the surface is left", (np.full(BALL.n_points, np.nan),)),
+                ("n is 1.5; allowed", (values, 1.5))):
+            with self.assertRaisesRegex(ValueError, pattern):
+                sd.surrogates(BALL, *arguments)
+
+
+class ScaleFilter(unittest.TestCase):
+    def test_scales_harmonics(self):
+        surface = sd.sphere(5, RADIUS)
+        z = surface.points[:, 2]  # l = 1: -Laplace z = 2 z / R^2
+        for order in (1, 2):
+            for wavelength in (200.0, 600.0):
+                k = 2.0 * np.pi / wavelength
+                expected = z / (1.0 + 2.0 * (2.0 / (k * RADIUS) ** 2) ** order)
+                found = sd.scale_filter(surface, z, wavelength, order=order)
+                self.assertLess(np.abs(found - expected).max(), 2e-3 * RADIUS)
+
+    def test_order_one_is_a_step_of_heat(self):
+        values = sd.random_field(BALL, 3, fwhm=20.0)
+        wavelength = 80.0
+        step = 2.0 * (wavelength / (2.0 * np.pi)) ** 2
+        expected = sd.heat(BALL, values, time_step=step, number_of_time_steps=1, units="absolute",
+                           time_integrator="first_order", tolerance=1e-12)
+        np.testing.assert_allclose(sd.scale_filter(BALL, values, wavelength), expected, atol=1e-9)
+
+    def test_keeps_integrals_and_constants_and_leaves_land_out(self):
+        values = sd.random_field(BALL, 1, fwhm=20.0)[:, 0] + 1e4
+        areas = np.array(BALL.vertex_areas)
+        for order in (1, 2):
+            found = sd.scale_filter(BALL, values, 100.0, order=order)
+            self.assertLess(abs(areas @ (found - values)), 1e-13 * areas.sum() * 1e4)
+            land = np.where(CAP, np.nan, 7.0)
+            found = sd.scale_filter(BALL, land, 100.0, order=order)
+            np.testing.assert_array_equal(np.isnan(found), CAP)
+            np.testing.assert_allclose(found[~CAP & np.isfinite(found)], 7.0, rtol=1e-14)
+
+    def test_wavelengths_of_points_act_where_they_are(self):
+        values = np.random.default_rng(2).normal(size=BALL.n_points)
+        north = BALL.points[:, 2] > 0.0
+        found = sd.scale_filter(BALL, values, np.where(north, 20.0, 200.0))
+        self.assertGreater(found[BALL.points[:, 2] > 30].std(), 4 * found[BALL.points[:, 2] < -30].std())
+
+    def test_masks_of_faces_join_missing_points(self):
+        values = np.where(BALL.points[:, 0] > 90.0, np.nan, BALL.points[:, 1])
+        centres = BALL.points[BALL.faces].mean(axis=1)
+        found = sd.scale_filter(BALL, values, 60.0, mask=centres[:, 2] < -50.0)
+        self.assertTrue(np.isnan(found[BALL.points[:, 0] > 90.0]).all())
+        self.assertTrue(np.isnan(found[BALL.points[:, 2] < -60.0]).all())
+        self.assertTrue(np.isfinite(found[(BALL.points[:, 0] < 80.0) & (BALL.points[:, 2] > -40.0)]).all())
+
+    def test_spectrum_adds_up_and_finds_the_scale(self):
+        surface = sd.sphere(5, RADIUS)
+        l = 8  # a zonal harmonic, whose wavelength is 2 pi R / sqrt(l (l + 1))
+        x = surface.points[:, 2] / RADIUS
+        values = np.polynomial.legendre.legval(x, np.eye(l + 1)[l])
+        wavelength = 2.0 * np.pi * RADIUS / np.sqrt(l * (l + 1))
+        bounds = wavelength * 2.0 ** np.arange(-3.0, 4.0)
+        found = sd.spectrum(surface, values, bounds)
+        areas = np.array(surface.vertex_areas)
+        variance = np.average((values - np.average(values, weights=areas))**2, weights=areas)
+        self.assertAlmostEqual(found.variance.sum() / variance, 1.0, delta=1e-12)
+        # With order 2 a wave of this length goes between half of it and itself: 1 / 1.125^2 - 1 / 9.
+        self.assertAlmostEqual(found.variance[3] / variance, 1 / 1.125**2 - 1 / 9, delta=0.02)
+        self.assertEqual(sd.spectrum(surface, np.column_stack([values, values]), bounds).variance.shape,
+                         (8, 2))
+
+    def test_what_is_not_allowed_is_named(self):
+        values = BALL.points[:, 0]
+        for pattern, arguments, keywords in (
+                ("wavelength is 0.0; allowed: finite numbers above 0", (values, 0), {}),
+                ("wavelength is nan in row 3", (values, np.where(np.arange(2562) == 3, np.nan, 9)), {}),
+                ("wavelength has shape \\(2,\\)", (values, [1, 2]), {}),
+                ("order is 3; allowed: 1 and 2", (values, 50.0), {"order": 3}),
+                ("values has shape", (values[1:], 50.0), {})):
+            with self.assertRaisesRegex(ValueError, pattern):
+                sd.scale_filter(BALL, *arguments, **keywords)
+        for wavelengths in ([2.0, 1.0], [], [[1.0]], [-1.0, 2.0], 5.0):
+            with self.assertRaisesRegex(ValueError, "wavelengths is"):
+                sd.spectrum(BALL, values, wavelengths)
+
+
+class Examples(unittest.TestCase):
+    def test_hold(self):
+        for name in ("_fields", "_scales"):
+            module = importlib.import_module(f"surfacediffusion.{name}")
+            result = doctest.testmod(module)
+            self.assertEqual(result.failed, 0)
+            self.assertGreater(result.attempted, 8)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
