@@ -44,7 +44,7 @@ void vtkSurfaceDenoisingFilter::ProcessSurfaces(
     std::static_pointer_cast<DenoisingRunSettings>(this->Private->Properties.Copy());
   DenoisingRunSettings& settings = *copy;
   Problems problems;
-  CheckRanges(settings, problems);
+  settings.Check(nullptr, problems);
   this->CheckSurfaceProperties(problems);
   if (this->ResultArrayName.empty())
   {

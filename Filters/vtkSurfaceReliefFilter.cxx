@@ -110,7 +110,7 @@ void vtkSurfaceReliefFilter::ProcessSurfaces(
   // A copy: an observer of the progress may change properties during the update.
   const auto copy = std::static_pointer_cast<ReliefSettings>(this->Private->Properties.Copy());
   Problems problems;
-  copy->Check(problems);
+  copy->Check(nullptr, problems);
   this->CheckSurfaceProperties(problems);
   if (this->ResultArrayName.empty())
   {

@@ -15,11 +15,6 @@ void CurvatureSettings::Visit(SettingVisitor& visitor)
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
-void CurvatureSettings::Check(const FieldSummary*, Problems& problems)
-{
-  CheckRanges(*this, problems);
-}
-
 void CurvatureRun::Update(
   const BlockInput& input, CurvatureSettings& settings, const ProgressMonitor& progress)
 {

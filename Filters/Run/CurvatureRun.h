@@ -17,8 +17,6 @@ struct CurvatureSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings; no array has to agree with them.
-  void Check(const FieldSummary* fields, Problems& problems);
 };
 
 /// The curvatures of one surface, kept as long as neither inputs nor settings change.

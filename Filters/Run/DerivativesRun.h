@@ -29,8 +29,7 @@ struct DerivativesSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings, and with `fields` those of settings and data together.
-  void Check(const FieldSummary* fields, Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 
   bool TakesVectors() const
   {

@@ -22,8 +22,7 @@ struct DirectionFieldSettings : Settings
   int MaximumNumberOfSteps = 50; ///< of the inverse iteration of Smooth; no property
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings, and with `fields` those of settings and arrays together.
-  void Check(const FieldSummary* fields, Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 };
 
 /// The line field of one surface, kept as long as neither inputs nor settings change.

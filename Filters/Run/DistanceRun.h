@@ -30,8 +30,7 @@ struct DistanceSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings, and with `fields` those of settings and arrays together.
-  void Check(const FieldSummary* fields, Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 
   bool IsDirected() const { return this->AlongSpeed != this->AcrossSpeed; }
   /// Whether fronts have another speed than 1, apart from that of an array.

@@ -52,7 +52,7 @@ void ReliefSettings::Visit(SettingVisitor& visitor)
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
-void ReliefSettings::Check(Problems& problems)
+void ReliefSettings::Check(const FieldSummary*, Problems& problems)
 {
   CheckRanges(*this, problems);
   if (std::all_of(this->UpDirection.begin(), this->UpDirection.end(),

@@ -25,7 +25,7 @@ struct ReliefSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  void Check(Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 };
 
 /// What the user should know of a relief, each in a sentence of its own.

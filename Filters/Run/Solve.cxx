@@ -341,15 +341,7 @@ Solution Distance(const Points& points, const Triangles& triangles, const Surfac
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
   DenoisingRunSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  Solution solution = WordErrors(
-    [&]
-    {
-      const Input input(points, triangles, data);
-      Problems problems;
-      CheckRanges(settings, problems);
-      ThrowProblems(problems);
-      return SolveOnce<DenoisingRun>(input, settings, parallel);
-    });
+  Solution solution = CheckAndSolveOnce<DenoisingRun>(points, triangles, data, settings, parallel);
   if (solution.Arrays.count("Points") == 0) // nothing has moved
   {
     solution.Result = solution.Arrays["Points"] = points;
