@@ -52,16 +52,21 @@ public:
     {
       surfaces.push_back({ blocks[b].Input, &fields[b], blocks[b].Name });
     }
-    const std::vector<BlockInput> inputs = this->Inputs.Make(surfaces, RunType::ExcludesMasked);
-    const double count = static_cast<double>(surfaces.size());
     this->Runs.resize(surfaces.size());
     this->Names.resize(surfaces.size());
+    bool excludeMasked = false; // the same for all runs, which are of one class
+    for (std::unique_ptr<RunType>& run : this->Runs)
+    {
+      if (!run)
+      {
+        run = std::make_unique<RunType>(SMPParallelFor::Instance());
+      }
+      excludeMasked = run->ExcludesMasked();
+    }
+    const std::vector<BlockInput> inputs = this->Inputs.Make(surfaces, excludeMasked);
+    const double count = static_cast<double>(surfaces.size());
     for (std::size_t b = 0; b < surfaces.size(); ++b)
     {
-      if (!this->Runs[b])
-      {
-        this->Runs[b] = std::make_unique<RunType>(SMPParallelFor::Instance());
-      }
       this->Names[b] = inputs[b].Name;
       const ProgressMonitor part = progress.Part(b / count, (b + 0.95) / count);
       NameBlockInErrors(this->Names[b], settings,

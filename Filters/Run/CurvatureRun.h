@@ -23,16 +23,14 @@ struct CurvatureSettings : Settings
 class CurvatureRun : public SurfaceRun
 {
 public:
-  static constexpr bool ExcludesMasked = true;
-
   explicit CurvatureRun(const ParallelFor& parallel)
     : SurfaceRun(parallel, "have no curvature")
   {
   }
 
-  /// No field is read. Throws std::runtime_error, std::bad_alloc, Aborted.
-  void Update(
-    const BlockInput& input, CurvatureSettings& settings, const ProgressMonitor& progress);
+  /// No field is read.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
+  bool ExcludesMasked() const override { return true; }
 
 private:
   /// About turned triangles, and about solves that missed their tolerance.

@@ -34,9 +34,8 @@ public:
   {
   }
 
-  /// Only Directions of the fields are read. Throws std::runtime_error, std::bad_alloc, Aborted.
-  void Update(
-    const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress);
+  /// Only Directions of the fields are read.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
 
 private:
   /// About the line field.

@@ -107,9 +107,9 @@ std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted)
   return sentences;
 }
 
-void ReliefRun::Update(
-  const BlockInput& input, ReliefSettings& settings, const ProgressMonitor& progress)
+void ReliefRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)
 {
+  auto& settings = static_cast<ReliefSettings&>(given);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;

@@ -372,7 +372,8 @@ void SingleRun<RunType, SettingsType>::Update(
     [&](const ProgressMonitor& monitor)
     {
       NamingSettings(settings,
-        [&] { this->Model.Update(MakeBlock(input, RunType::ExcludesMasked), settings, monitor); });
+        [&]
+        { this->Model.Update(MakeBlock(input, this->Model.ExcludesMasked()), settings, monitor); });
     });
 }
 
