@@ -46,15 +46,13 @@
 #ifndef vtkSurfaceCurvatureFilter_h
 #define vtkSurfaceCurvatureFilter_h
 
-#include "vtkSurfaceFilter.h"
+#include "vtkSurfaceRunAlgorithm.h"
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceCurvatureFilter : public vtkSurfaceFilter
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceCurvatureFilter : public vtkSurfaceRunAlgorithm
 {
 public:
   static vtkSurfaceCurvatureFilter* New();
-  vtkTypeMacro(vtkSurfaceCurvatureFilter, vtkSurfaceFilter);
-
-  void ReleaseCache() override;
+  vtkTypeMacro(vtkSurfaceCurvatureFilter, vtkSurfaceRunAlgorithm);
 
   /**
    * The scale: full width at half maximum of the Gaussian on the surface that weighs the normals,
@@ -66,16 +64,12 @@ protected:
   vtkSurfaceCurvatureFilter();
   ~vtkSurfaceCurvatureFilter() override;
 
-  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
 
 private:
   vtkSurfaceCurvatureFilter(const vtkSurfaceCurvatureFilter&) = delete;
   void operator=(const vtkSurfaceCurvatureFilter&) = delete;
-
-  /// The curvatures, kept between updates.
-  struct UpdateState;
-  const std::unique_ptr<UpdateState> State;
 };
 
 #endif

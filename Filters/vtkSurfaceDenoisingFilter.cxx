@@ -7,7 +7,6 @@
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DenoisingRun.h"
 #include "Run/OwnedSettings.h"
-#include "vtkSurfaceFilterInternals.h"
 
 #include "vtkObjectFactory.h"
 
@@ -15,14 +14,9 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceDenoisingFilter);
 
-struct vtkSurfaceDenoisingFilter::UpdateState
-{
-  SurfaceRuns<DenoisingRun> Runs;
-};
-
 vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
-  : Superclass(OwnedSettings::Make<DenoisingRunSettings>())
-  , State(std::make_unique<UpdateState>())
+  : Superclass(
+      OwnedSettings::Make<DenoisingRunSettings>(), SurfaceRuns::Of<DenoisingRun>(), "Displacement")
 {
   this->DeclareNumber("EffectiveNoiseLevel");
   this->DeclareNumber("CorrelationLength");
@@ -31,56 +25,14 @@ vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
   this->DeclareNumber("MaximumDisplacement");
   this->DeclareNumber("VolumeBefore");
   this->DeclareNumber("VolumeAfter");
-  this->ResultArrayName = "Displacement";
 }
 
 vtkSurfaceDenoisingFilter::~vtkSurfaceDenoisingFilter() = default;
 
-void vtkSurfaceDenoisingFilter::ProcessSurfaces(
-  const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
+bool vtkSurfaceDenoisingFilter::FindFields(
+  vtkPolyData* block, InputFields& fields, Problems& problems)
 {
-  // A copy: an observer of the progress may change properties during the update.
-  const auto copy =
-    std::static_pointer_cast<DenoisingRunSettings>(this->Private->Properties.Copy());
-  DenoisingRunSettings& settings = *copy;
-  Problems problems;
-  CheckRanges(settings, problems);
-  this->CheckSurfaceProperties(problems);
-  if (this->ResultArrayName.empty())
-  {
-    problems.emplace_back("ResultArrayName is empty; allowed: any name");
-  }
-  const std::vector<SurfaceBlock> surfaces = this->SelectSurfaces(blocks, problems);
-  std::vector<InputFields> fields(surfaces.size());
-  BlockSentences found;
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    Problems here;
-    const InputArrays inputs(this, surfaces[b].Input, fields[b], here);
-    fields[b].Fixed = inputs.Find(3, "FixedArray", 1);
-    found.Add(here, surfaces[b].Name);
-    names.push_back(surfaces[b].Name);
-  }
-  found.AppendTo(problems, surfaces.size());
-  Problems absences;
-  SettleAbsence(fields, names, problems, absences);
-  if (this->ReportProblems(problems))
-  {
-    return;
-  }
-
-  auto& runs = this->State->Runs;
-  runs.Update(surfaces, fields, settings, progress);
-  this->BeginWriting();
-  std::vector<Warning> warnings =
-    runs.Write(surfaces, fields, nullptr, this->ResultArrayName, absences);
-  this->Private->Numbers = runs.FindNumbers();
-  this->ReportWarnings(std::move(warnings));
-}
-
-void vtkSurfaceDenoisingFilter::ReleaseCache()
-{
-  this->Superclass::ReleaseCache();
-  this->State->Runs.Clear();
+  const InputArrays inputs(this, block, fields, problems);
+  fields.Fixed = inputs.Find(3, "FixedArray", 1);
+  return true;
 }

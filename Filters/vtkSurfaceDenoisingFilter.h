@@ -53,15 +53,13 @@
 #ifndef vtkSurfaceDenoisingFilter_h
 #define vtkSurfaceDenoisingFilter_h
 
-#include "vtkSurfaceFilter.h"
+#include "vtkSurfaceRunAlgorithm.h"
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDenoisingFilter : public vtkSurfaceFilter
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDenoisingFilter : public vtkSurfaceRunAlgorithm
 {
 public:
   static vtkSurfaceDenoisingFilter* New();
-  vtkTypeMacro(vtkSurfaceDenoisingFilter, vtkSurfaceFilter);
-
-  void ReleaseCache() override;
+  vtkTypeMacro(vtkSurfaceDenoisingFilter, vtkSurfaceRunAlgorithm);
 
   /**
    * How much noise is removed: the standard deviation of the displacement of the points along the
@@ -134,16 +132,12 @@ protected:
   vtkSurfaceDenoisingFilter();
   ~vtkSurfaceDenoisingFilter() override;
 
-  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
 
 private:
   vtkSurfaceDenoisingFilter(const vtkSurfaceDenoisingFilter&) = delete;
   void operator=(const vtkSurfaceDenoisingFilter&) = delete;
-
-  /// The denoised surfaces, kept between updates.
-  struct UpdateState;
-  const std::unique_ptr<UpdateState> State;
 };
 
 #endif

@@ -59,15 +59,13 @@
 #ifndef vtkSurfaceDerivativesFilter_h
 #define vtkSurfaceDerivativesFilter_h
 
-#include "vtkSurfaceFilter.h"
+#include "vtkSurfaceRunAlgorithm.h"
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDerivativesFilter : public vtkSurfaceFilter
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDerivativesFilter : public vtkSurfaceRunAlgorithm
 {
 public:
   static vtkSurfaceDerivativesFilter* New();
-  vtkTypeMacro(vtkSurfaceDerivativesFilter, vtkSurfaceFilter);
-
-  void ReleaseCache() override;
+  vtkTypeMacro(vtkSurfaceDerivativesFilter, vtkSurfaceRunAlgorithm);
 
   enum QuantityType
   {
@@ -107,16 +105,12 @@ protected:
   vtkSurfaceDerivativesFilter();
   ~vtkSurfaceDerivativesFilter() override;
 
-  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
 
 private:
   vtkSurfaceDerivativesFilter(const vtkSurfaceDerivativesFilter&) = delete;
   void operator=(const vtkSurfaceDerivativesFilter&) = delete;
-
-  /// The derivatives, kept between updates.
-  struct UpdateState;
-  const std::unique_ptr<UpdateState> State;
 };
 
 #endif

@@ -47,15 +47,13 @@
 #ifndef vtkSurfaceDirectionFieldFilter_h
 #define vtkSurfaceDirectionFieldFilter_h
 
-#include "vtkSurfaceFilter.h"
+#include "vtkSurfaceRunAlgorithm.h"
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDirectionFieldFilter : public vtkSurfaceFilter
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDirectionFieldFilter : public vtkSurfaceRunAlgorithm
 {
 public:
   static vtkSurfaceDirectionFieldFilter* New();
-  vtkTypeMacro(vtkSurfaceDirectionFieldFilter, vtkSurfaceFilter);
-
-  void ReleaseCache() override;
+  vtkTypeMacro(vtkSurfaceDirectionFieldFilter, vtkSurfaceRunAlgorithm);
 
   enum MethodType
   {
@@ -122,16 +120,12 @@ protected:
   vtkSurfaceDirectionFieldFilter();
   ~vtkSurfaceDirectionFieldFilter() override;
 
-  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
 
 private:
   vtkSurfaceDirectionFieldFilter(const vtkSurfaceDirectionFieldFilter&) = delete;
   void operator=(const vtkSurfaceDirectionFieldFilter&) = delete;
-
-  /// The fields, kept between updates.
-  struct UpdateState;
-  const std::unique_ptr<UpdateState> State;
 };
 
 #endif

@@ -9,7 +9,6 @@
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DistanceRun.h"
 #include "Run/OwnedSettings.h"
-#include "vtkSurfaceFilterInternals.h"
 
 #include "vtkObjectFactory.h"
 
@@ -17,17 +16,8 @@ using namespace SurfaceDiffusion;
 
 vtkStandardNewMacro(vtkSurfaceDistanceFilter);
 
-struct vtkSurfaceDistanceFilter::UpdateState
-{
-  SurfaceRuns<DistanceRun> Runs;
-  bool HasSources = false; ///< a second input, during an update
-  std::shared_ptr<const SourceShapes> Sources;
-  Problems ProblemsOfSources;
-};
-
 vtkSurfaceDistanceFilter::vtkSurfaceDistanceFilter()
-  : Superclass(OwnedSettings::Make<DistanceSettings>())
-  , State(std::make_unique<UpdateState>())
+  : Superclass(OwnedSettings::Make<DistanceSettings>(), SurfaceRuns::Of<DistanceRun>())
 {
   this->DeclareNumber("NumberOfSources");
   this->DeclareNumber("NumberOfUnreachedPoints");
@@ -49,96 +39,52 @@ int vtkSurfaceDistanceFilter::FillInputPortInformation(int port, vtkInformation*
 int vtkSurfaceDistanceFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  UpdateState& state = *this->State;
   vtkDataObject* const sources = FindSecondInput(inputs);
-  state.HasSources = sources != nullptr;
-  state.ProblemsOfSources.clear();
+  this->HasSources = sources != nullptr;
+  this->ProblemsOfSources.clear();
   if (sources)
   {
-    state.Sources = ReadSources(sources, this->GetController(), state.ProblemsOfSources);
+    this->Sources = ReadSources(sources, this->GetController(), this->ProblemsOfSources);
   }
   const int result = this->Superclass::RequestData(request, inputs, outputs);
-  state.Sources.reset();
+  this->Sources.reset();
   return result;
 }
 
-void vtkSurfaceDistanceFilter::ProcessSurfaces(
-  const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
+bool vtkSurfaceDistanceFilter::FindFields(
+  vtkPolyData* block, InputFields& fields, Problems& problems)
 {
-  UpdateState& state = *this->State;
-  // A copy: an observer of the progress may change properties during the update.
-  const auto copy = std::static_pointer_cast<DistanceSettings>(this->Private->Properties.Copy());
-  DistanceSettings& settings = *copy;
-  Problems problems = state.ProblemsOfSources;
-  settings.Check(nullptr, problems);
-  this->CheckSurfaceProperties(problems);
-  std::vector<SurfaceBlock> surfaces = this->SelectSurfaces(blocks, problems);
-  std::vector<InputFields> fields(surfaces.size());
-  BlockSentences found;
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  const InputArrays inputs(this, block, fields, problems);
+  problems.insert(problems.end(), this->ProblemsOfSources.begin(), this->ProblemsOfSources.end());
+  fields.Sources = this->Sources;
+  if (!this->HasSources)
   {
-    Problems here;
-    const InputArrays inputs(this, surfaces[b].Input, fields[b], here);
-    fields[b].Sources = state.Sources;
-    if (!state.HasSources)
+    fields.Data = inputs.Find(0, "SourceArray", 1);
+    fields.StartTimes = inputs.Find(9, "SourceTimes", 1);
+  }
+  fields.Mask = inputs.Find(1, "MaskArray", 1);
+  fields.Direction = inputs.Find(2, "DirectionArray", 3);
+  fields.Speeds = inputs.Find(8, "SpeedArray", 1);
+  const std::pair<const LocatedArray*, const char*> ofPoints[] = { { &fields.Data, "SourceArray" },
+    { &fields.StartTimes, "SourceTimes" } };
+  for (const auto& [array, name] : ofPoints)
+  {
+    if (array->OnCells)
     {
-      fields[b].Data = inputs.Find(0, "SourceArray", 1);
-      fields[b].StartTimes = inputs.Find(9, "SourceTimes", 1);
+      problems.push_back(
+        std::string(name) + " is a cell array; allowed: point arrays of 1 component");
     }
-    fields[b].Mask = inputs.Find(1, "MaskArray", 1);
-    fields[b].Direction = inputs.Find(2, "DirectionArray", 3);
-    fields[b].Speeds = inputs.Find(8, "SpeedArray", 1);
-    const std::pair<const LocatedArray*, const char*> ofPoints[] = {
-      { &fields[b].Data, "SourceArray" }, { &fields[b].StartTimes, "SourceTimes" }
-    };
-    for (const auto& [array, name] : ofPoints)
-    {
-      if (array->OnCells)
-      {
-        here.push_back(
-          std::string(name) + " is a cell array; allowed: point arrays of 1 component");
-      }
-    }
-    found.Add(here, surfaces[b].Name);
-    names.push_back(surfaces[b].Name);
   }
-  Problems absences;
-  SettleAbsence(fields, names, problems, absences);
-  if (!state.HasSources)
-  {
-    PassBlocksWithoutData(surfaces, fields);
-  }
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    Problems here;
-    const FieldSummary summary = fields[b].Summarize();
-    settings.Check(state.ProblemsOfSources.empty() ? &summary : nullptr, here);
-    found.Add(here, surfaces[b].Name);
-  }
-  found.AppendTo(problems, names.size());
-  if (this->ReportProblems(problems))
-  {
-    return;
-  }
+  return fields.Data.Values || fields.Sources;
+}
 
-  auto& runs = state.Runs;
-  runs.Update(surfaces, fields, settings, progress);
+void vtkSurfaceDistanceFilter::PrepareOutputs(
+  const std::vector<SurfaceBlock>& surfaces, const SurfaceRuns& runs)
+{
   std::vector<const DistanceRun*> updated;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    updated.push_back(&runs.RunOf(b));
+    updated.push_back(static_cast<const DistanceRun*>(&runs.RunOf(b)));
   }
   DistanceRun::RequireSource(updated);
-  this->BeginWriting();
-  std::vector<Warning> warnings =
-    runs.Write(surfaces, fields, nullptr, this->ResultArrayName, absences);
-  this->Private->Numbers = runs.FindNumbers();
-  this->ReportWarnings(std::move(warnings));
-}
-
-void vtkSurfaceDistanceFilter::ReleaseCache()
-{
-  this->Superclass::ReleaseCache();
-  this->State->Runs.Clear();
 }

@@ -67,15 +67,18 @@
 #ifndef vtkSurfaceDistanceFilter_h
 #define vtkSurfaceDistanceFilter_h
 
-#include "vtkSurfaceFilter.h"
+#include "vtkSurfaceRunAlgorithm.h"
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDistanceFilter : public vtkSurfaceFilter
+namespace SurfaceDiffusion
+{
+struct SourceShapes;
+}
+
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDistanceFilter : public vtkSurfaceRunAlgorithm
 {
 public:
   static vtkSurfaceDistanceFilter* New();
-  vtkTypeMacro(vtkSurfaceDistanceFilter, vtkSurfaceFilter);
-
-  void ReleaseCache() override;
+  vtkTypeMacro(vtkSurfaceDistanceFilter, vtkSurfaceRunAlgorithm);
 
   enum MethodType
   {
@@ -128,8 +131,10 @@ protected:
   vtkSurfaceDistanceFilter();
   ~vtkSurfaceDistanceFilter() override;
 
-  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
+  void PrepareOutputs(
+    const std::vector<SurfaceBlock>& surfaces, const SurfaceDiffusion::SurfaceRuns& runs) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -137,9 +142,10 @@ private:
   vtkSurfaceDistanceFilter(const vtkSurfaceDistanceFilter&) = delete;
   void operator=(const vtkSurfaceDistanceFilter&) = delete;
 
-  /// The distances, kept between updates, and the sources of an update.
-  struct UpdateState;
-  const std::unique_ptr<UpdateState> State;
+  // Of one update:
+  bool HasSources = false; ///< there is a second input
+  std::shared_ptr<const SurfaceDiffusion::SourceShapes> Sources;
+  Problems ProblemsOfSources;
 };
 
 #endif

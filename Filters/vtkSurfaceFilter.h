@@ -33,7 +33,7 @@
  * that has succeeded or was aborted). The output is the unchanged input. The next update tries
  * again and reports the error again, until something has changed.
  *
- * @sa vtkSurfaceModelAlgorithm vtkSurfaceDiffusionAlgorithm vtkSurfaceDirectionFieldFilter
+ * @sa vtkSurfaceModelAlgorithm vtkSurfaceDiffusionAlgorithm vtkSurfaceRunAlgorithm
  */
 #ifndef vtkSurfaceFilter_h
 #define vtkSurfaceFilter_h

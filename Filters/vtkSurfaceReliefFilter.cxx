@@ -7,7 +7,6 @@
 #include "Conversion/SurfaceRuns.h"
 #include "Run/OwnedSettings.h"
 #include "Run/ReliefRun.h"
-#include "vtkSurfaceFilterInternals.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataObject.h"
@@ -59,21 +58,15 @@ void TurnPolygons(vtkPolyData* surface, const ReliefRun& run, const std::vector<
 
 } // namespace
 
-struct vtkSurfaceReliefFilter::UpdateState
-{
-  SurfaceRuns<ReliefRun> Runs;
-};
-
 vtkSurfaceReliefFilter::vtkSurfaceReliefFilter()
-  : Superclass(OwnedSettings::Make<ReliefSettings>())
-  , State(std::make_unique<UpdateState>())
+  : Superclass(OwnedSettings::Make<ReliefSettings>(),
+      SurfaceRuns::Of<ReliefRun>(&InputFields::Data), "ReliefHeight")
 {
   for (const char* const name : { "VolumeChange", "SmallestWall", "LoweredPoints", "OpenEdges",
          "NonManifoldEdges", "CrossingTrianglesBefore", "CrossingTriangles" })
   {
     this->DeclareNumber(name);
   }
-  this->ResultArrayName = "ReliefHeight";
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Texture");
 }
 
@@ -104,59 +97,24 @@ double* vtkSurfaceReliefFilter::GetUpDirection()
   return this->GetReliefSettings().UpDirection.data();
 }
 
-void vtkSurfaceReliefFilter::ProcessSurfaces(
-  const std::vector<SurfaceBlock>& blocks, const ProgressMonitor& progress)
+bool vtkSurfaceReliefFilter::FindFields(vtkPolyData* block, InputFields& fields, Problems& problems)
 {
-  // A copy: an observer of the progress may change properties during the update.
-  const auto copy = std::static_pointer_cast<ReliefSettings>(this->Private->Properties.Copy());
-  Problems problems;
-  copy->Check(problems);
-  this->CheckSurfaceProperties(problems);
-  if (this->ResultArrayName.empty())
+  const InputArrays inputs(this, block, fields, problems);
+  fields.Data = inputs.Find(0, "InputArray", 1);
+  if (fields.Data.OnCells)
   {
-    problems.emplace_back("ResultArrayName is empty; allowed: any name");
+    problems.emplace_back("InputArray is a cell array; allowed: point arrays of 1 component");
   }
-  std::vector<SurfaceBlock> surfaces = this->SelectSurfaces(blocks, problems);
-  std::vector<InputFields> fields(surfaces.size());
-  BlockSentences found;
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    Problems here;
-    const InputArrays inputs(this, surfaces[b].Input, fields[b], here);
-    fields[b].Data = inputs.Find(0, "InputArray", 1);
-    if (fields[b].Data.OnCells)
-    {
-      here.emplace_back("InputArray is a cell array; allowed: point arrays of 1 component");
-    }
-    fields[b].Mask = inputs.Find(1, "MaskArray", 1);
-    found.Add(here, surfaces[b].Name);
-    names.push_back(surfaces[b].Name);
-  }
-  found.AppendTo(problems, surfaces.size());
-  Problems absences;
-  SettleAbsence(fields, names, problems, absences);
-  if (this->ReportProblems(problems))
-  {
-    return;
-  }
-  PassBlocksWithoutData(surfaces, fields);
-
-  auto& runs = this->State->Runs;
-  runs.Update(surfaces, fields, *copy, progress);
-  this->BeginWriting();
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    TurnPolygons(surfaces[b].Output, runs.RunOf(b), runs.CellsOf(b));
-  }
-  std::vector<Warning> warnings =
-    runs.Write(surfaces, fields, &InputFields::Data, this->ResultArrayName, absences);
-  this->Private->Numbers = runs.FindNumbers();
-  this->ReportWarnings(std::move(warnings));
+  fields.Mask = inputs.Find(1, "MaskArray", 1);
+  return fields.Data.Values != nullptr;
 }
 
-void vtkSurfaceReliefFilter::ReleaseCache()
+void vtkSurfaceReliefFilter::PrepareOutputs(
+  const std::vector<SurfaceBlock>& surfaces, const SurfaceRuns& runs)
 {
-  this->Superclass::ReleaseCache();
-  this->State->Runs.Clear();
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+  {
+    const auto& run = static_cast<const ReliefRun&>(runs.RunOf(b));
+    TurnPolygons(surfaces[b].Output, run, runs.CellsOf(b));
+  }
 }

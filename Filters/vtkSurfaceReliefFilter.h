@@ -50,19 +50,18 @@
 #ifndef vtkSurfaceReliefFilter_h
 #define vtkSurfaceReliefFilter_h
 
-#include "vtkSurfaceFilter.h"
+#include "vtkSurfaceRunAlgorithm.h"
 
 namespace SurfaceDiffusion
 {
 struct ReliefSettings;
 }
 
-class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceReliefFilter : public vtkSurfaceFilter
+class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceReliefFilter : public vtkSurfaceRunAlgorithm
 {
 public:
   static vtkSurfaceReliefFilter* New();
-  vtkTypeMacro(vtkSurfaceReliefFilter, vtkSurfaceFilter);
-  void ReleaseCache() override;
+  vtkTypeMacro(vtkSurfaceReliefFilter, vtkSurfaceRunAlgorithm);
 
   ///@{
   /**
@@ -146,18 +145,16 @@ protected:
   vtkSurfaceReliefFilter();
   ~vtkSurfaceReliefFilter() override;
 
-  void ProcessSurfaces(const std::vector<SurfaceBlock>& blocks,
-    const SurfaceDiffusion::ProgressMonitor& progress) override;
+  bool FindFields(
+    vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
+  void PrepareOutputs(
+    const std::vector<SurfaceBlock>& surfaces, const SurfaceDiffusion::SurfaceRuns& runs) override;
 
 private:
   vtkSurfaceReliefFilter(const vtkSurfaceReliefFilter&) = delete;
   void operator=(const vtkSurfaceReliefFilter&) = delete;
 
   SurfaceDiffusion::ReliefSettings& GetReliefSettings() const;
-
-  /// The reliefs, kept between updates.
-  struct UpdateState;
-  const std::unique_ptr<UpdateState> State;
 };
 
 #endif

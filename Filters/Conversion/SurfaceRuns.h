@@ -3,104 +3,44 @@
 #pragma once
 
 #include "Conversion/BlockInputs.h"
-#include "Conversion/ResultWriter.h"
-#include "Conversion/SMPParallelFor.h"
-#include "Run/BlockSentences.h"
-#include "Run/Outputs.h"
 #include "Run/SurfaceRun.h"
-#include "Run/WarningLog.h"
 
 #include <map>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
 
-/// Leave out the blocks without the data that others have: they pass through.
-template <typename BlockType>
-void PassBlocksWithoutData(std::vector<BlockType>& blocks, std::vector<InputFields>& fields)
-{
-  for (std::size_t b = blocks.size(); b-- > 0;)
-  {
-    if (!fields[b].Data.Values)
-    {
-      blocks.erase(blocks.begin() + static_cast<std::ptrdiff_t>(b));
-      fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(b));
-    }
-  }
-}
-
 /// The runs of a filter without time steps, one for each surface of its input. They are kept from
 /// update to update, so that unchanged surfaces are not computed again.
-template <typename RunType>
 class SurfaceRuns
 {
-  static_assert(std::is_base_of_v<SurfaceRun, RunType>);
-
 public:
-  /// Update the run of each surface. fields: the arrays of each block. Throws std::runtime_error,
+  /// Runs of the class RunType. data: the array of the input that a result of the same name may
+  /// replace; null: none.
+  template <typename RunType>
+  static SurfaceRuns Of(LocatedArray InputFields::*data = nullptr)
+  {
+    SurfaceRuns made;
+    made.MakeRun = [](const ParallelFor& parallel) -> std::unique_ptr<SurfaceRun>
+    { return std::make_unique<RunType>(parallel); };
+    made.Data = data;
+    return made;
+  }
+
+  /// Update the run of each surface. settings: of the class of the runs. Throws std::runtime_error,
   /// std::bad_alloc, Aborted.
-  template <typename BlockType, typename SettingsType>
-  void Update(const std::vector<BlockType>& blocks, const std::vector<InputFields>& fields,
-    SettingsType& settings, const ProgressMonitor& progress)
-  {
-    std::vector<SurfaceInput> surfaces;
-    for (std::size_t b = 0; b < blocks.size(); ++b)
-    {
-      surfaces.push_back({ blocks[b].Input, &fields[b], blocks[b].Name });
-    }
-    const std::vector<BlockInput> inputs = this->Inputs.Make(surfaces, RunType::ExcludesMasked);
-    const double count = static_cast<double>(surfaces.size());
-    this->Runs.resize(surfaces.size());
-    this->Names.resize(surfaces.size());
-    for (std::size_t b = 0; b < surfaces.size(); ++b)
-    {
-      if (!this->Runs[b])
-      {
-        this->Runs[b] = std::make_unique<RunType>(SMPParallelFor::Instance());
-      }
-      this->Names[b] = inputs[b].Name;
-      const ProgressMonitor part = progress.Part(b / count, (b + 0.95) / count);
-      NameBlockInErrors(this->Names[b], settings,
-        [&]
-        { NamingSettings(settings, [&] { this->Runs[b]->Update(inputs[b], settings, part); }); });
-    }
-  }
+  void Update(
+    const std::vector<SurfaceInput>& surfaces, Settings& settings, const ProgressMonitor& progress);
 
-  /// Add the outputs of each surface. data: its array that a result of the same name may replace, or
-  /// null. absences: of arrays in some blocks. Returns the warnings that hold.
-  template <typename BlockType>
-  std::vector<Warning> Write(const std::vector<BlockType>& blocks,
-    const std::vector<InputFields>& fields, LocatedArray InputFields::*data,
-    const std::string& name, const Problems& absences = {}) const
-  {
-    std::vector<Warning> warnings = this->FindWarnings();
-    std::vector<std::string> replaced;
-    for (std::size_t b = 0; b < blocks.size(); ++b)
-    {
-      OutputSource source{ this->Runs[b]->GetSurface(), SMPParallelFor::Instance() };
-      source.NumberOfCells = blocks[b].Output->GetNumberOfCells();
-      source.CellOf = [&cells = this->Inputs.CellsOf(b)](Index t)
-      { return cells[static_cast<std::size_t>(t)]; };
-      WriteOutputs(this->Runs[b]->Outputs(), source,
-        { blocks[b].Output, fields[b], name, VTK_DOUBLE, data ? (fields[b].*data).Values : nullptr,
-          replaced });
-    }
-    if (!replaced.empty())
-    {
-      warnings.push_back({ DescribeReplacement(replaced), Fingerprint() });
-    }
-    for (const Sentence& sentence : absences)
-    {
-      warnings.push_back({ sentence, Fingerprint() });
-    }
-    return warnings;
-  }
+  /// Add the outputs of a surface. fields: its arrays. resultArrayName: see vtkSurfaceFilter.
+  /// Appends the names of arrays of the input that are replaced.
+  void Write(std::size_t surface, const InputFields& fields, const std::string& resultArrayName,
+    vtkPolyData* output, std::vector<std::string>& replaced) const;
 
-  const RunType& RunOf(std::size_t surface) const { return *this->Runs[surface]; }
+  const SurfaceRun& RunOf(std::size_t surface) const { return *this->Runs[surface]; }
   /// The cell of each triangle of a surface.
   const std::vector<Index>& CellsOf(std::size_t surface) const
   {
@@ -108,53 +48,21 @@ public:
   }
 
   /// The numbers of all surfaces.
-  std::map<std::string, Values> FindNumbers() const
-  {
-    std::vector<const OutputList*> surfaces;
-    for (const auto& run : this->Runs)
-    {
-      surfaces.push_back(&run->Outputs());
-    }
-    std::map<std::string, Values> numbers = CombineNumbers(surfaces, 0);
-    numbers["MeanEdgeLength"] = Values::Constant(1, 1, this->MeanEdgeLength());
-    return numbers;
-  }
-
-  /// Over all surfaces, in coordinate units; 1 if there is no edge.
-  double MeanEdgeLength() const
-  {
-    double length = 0.0;
-    double edges = 0.0;
-    for (const auto& run : this->Runs)
-    {
-      const TriangleMesh& mesh = run->GetSurface().InputMesh();
-      length += mesh.TotalEdgeLength() * mesh.LengthUnit();
-      edges += mesh.NumberOfEdges();
-    }
-    return edges > 0.0 ? length / edges : 1.0;
-  }
+  std::map<std::string, Values> FindNumbers() const;
 
   /// The warnings that hold.
-  std::vector<Warning> FindWarnings() const
-  {
-    std::vector<const SurfaceRun*> runs;
-    for (const auto& run : this->Runs)
-    {
-      runs.push_back(run.get());
-    }
-    return SurfaceRun::FindAllWarnings(runs, this->Names);
-  }
+  std::vector<Warning> FindWarnings() const;
 
-  void Clear()
-  {
-    this->Runs.clear();
-    this->Inputs = BlockInputs();
-  }
+  void Clear();
 
 private:
+  double MeanEdgeLength() const;
+
+  std::unique_ptr<SurfaceRun> (*MakeRun)(const ParallelFor&) = nullptr;
+  LocatedArray InputFields::*Data = nullptr;
   BlockInputs Inputs;
-  std::vector<std::unique_ptr<RunType>> Runs;
-  std::vector<std::string> Names;
+  std::vector<std::unique_ptr<SurfaceRun>> Runs;
+  std::vector<std::string> Names; ///< of the surfaces, if they are blocks
 };
 
 } // namespace SurfaceDiffusion

@@ -15,14 +15,9 @@ void CurvatureSettings::Visit(SettingVisitor& visitor)
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
-void CurvatureSettings::Check(const FieldSummary*, Problems& problems)
+void CurvatureRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)
 {
-  CheckRanges(*this, problems);
-}
-
-void CurvatureRun::Update(
-  const BlockInput& input, CurvatureSettings& settings, const ProgressMonitor& progress)
-{
+  auto& settings = static_cast<CurvatureSettings&>(given);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;

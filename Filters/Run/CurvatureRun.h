@@ -17,24 +17,20 @@ struct CurvatureSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings; no array has to agree with them.
-  void Check(const FieldSummary* fields, Problems& problems);
 };
 
 /// The curvatures of one surface, kept as long as neither inputs nor settings change.
 class CurvatureRun : public SurfaceRun
 {
 public:
-  static constexpr bool ExcludesMasked = true;
-
   explicit CurvatureRun(const ParallelFor& parallel)
     : SurfaceRun(parallel, "have no curvature")
   {
   }
 
-  /// No field is read. Throws std::runtime_error, std::bad_alloc, Aborted.
-  void Update(
-    const BlockInput& input, CurvatureSettings& settings, const ProgressMonitor& progress);
+  /// No field is read.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
+  bool ExcludesMasked() const override { return true; }
 
 private:
   /// About turned triangles, and about solves that missed their tolerance.

@@ -65,9 +65,9 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
   return warnings;
 }
 
-void DenoisingRun::Update(
-  const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress)
+void DenoisingRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)
 {
+  auto& settings = static_cast<DenoisingRunSettings&>(given);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;

@@ -29,9 +29,8 @@ public:
   {
   }
 
-  /// Only Fixed of the fields is read. Throws std::runtime_error, std::bad_alloc, Aborted.
-  void Update(
-    const BlockInput& input, DenoisingRunSettings& settings, const ProgressMonitor& progress);
+  /// Only Fixed of the fields is read.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
 
 private:
   /// About coincident points that may come apart, correlated noise, and points that moved far.

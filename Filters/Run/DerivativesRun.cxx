@@ -138,8 +138,9 @@ BlockInput DerivativesRun::WithoutMissing(const BlockInput& input)
 }
 
 void DerivativesRun::Update(
-  const BlockInput& input, DerivativesSettings& settings, const ProgressMonitor& progress)
+  const BlockInput& input, Settings& given, const ProgressMonitor& progress)
 {
+  auto& settings = static_cast<DerivativesSettings&>(given);
   const BlockInput known = this->WithoutMissing(input);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;

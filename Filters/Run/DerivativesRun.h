@@ -29,8 +29,7 @@ struct DerivativesSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings, and with `fields` those of settings and data together.
-  void Check(const FieldSummary* fields, Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 
   bool TakesVectors() const
   {
@@ -43,16 +42,14 @@ struct DerivativesSettings : Settings
 class DerivativesRun : public SurfaceRun
 {
 public:
-  static constexpr bool ExcludesMasked = true;
-
   explicit DerivativesRun(const ParallelFor& parallel)
     : SurfaceRun(parallel, "have no derivatives")
   {
   }
 
-  /// Only Data of the fields are read. Throws std::runtime_error, std::bad_alloc, Aborted.
-  void Update(
-    const BlockInput& input, DerivativesSettings& settings, const ProgressMonitor& progress);
+  /// Only Data of the fields are read.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
+  bool ExcludesMasked() const override { return true; }
 
 private:
   /// About turned triangles, and about solves that missed their tolerance.

@@ -63,8 +63,9 @@ void DirectionFieldSettings::Check(const FieldSummary* fields, Problems& problem
 }
 
 void DirectionFieldRun::Update(
-  const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress)
+  const BlockInput& input, Settings& given, const ProgressMonitor& progress)
 {
+  auto& settings = static_cast<DirectionFieldSettings&>(given);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;

@@ -22,8 +22,7 @@ struct DirectionFieldSettings : Settings
   int MaximumNumberOfSteps = 50; ///< of the inverse iteration of Smooth; no property
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings, and with `fields` those of settings and arrays together.
-  void Check(const FieldSummary* fields, Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 };
 
 /// The line field of one surface, kept as long as neither inputs nor settings change.
@@ -35,9 +34,8 @@ public:
   {
   }
 
-  /// Only Directions of the fields are read. Throws std::runtime_error, std::bad_alloc, Aborted.
-  void Update(
-    const BlockInput& input, DirectionFieldSettings& settings, const ProgressMonitor& progress);
+  /// Only Directions of the fields are read.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
 
 private:
   /// About the line field.

@@ -171,9 +171,9 @@ Values DistanceRun::FindGradient(
   return gradient;
 }
 
-void DistanceRun::Update(
-  const BlockInput& input, DistanceSettings& settings, const ProgressMonitor& progress)
+void DistanceRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)
 {
+  auto& settings = static_cast<DistanceSettings&>(given);
   const BlockInput drawn = WithoutGivenAreas(input);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;

@@ -30,8 +30,7 @@ struct DistanceSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  /// Problems of the settings, and with `fields` those of settings and arrays together.
-  void Check(const FieldSummary* fields, Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 
   bool IsDirected() const { return this->AlongSpeed != this->AcrossSpeed; }
   /// Whether fronts have another speed than 1, apart from that of an array.
@@ -42,17 +41,15 @@ struct DistanceSettings : Settings
 class DistanceRun : public SurfaceRun
 {
 public:
-  static constexpr bool ExcludesMasked = true;
-
   explicit DistanceRun(const ParallelFor& parallel)
     : SurfaceRun(parallel, "are barriers")
   {
   }
 
   /// Data, with a row per point, or Sources, and Speeds and StartTimes of the fields are read. A
-  /// surface without source has infinite distances. Throws std::runtime_error, std::bad_alloc,
-  /// Aborted.
-  void Update(const BlockInput& input, DistanceSettings& settings, const ProgressMonitor& progress);
+  /// surface without source has infinite distances.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
+  bool ExcludesMasked() const override { return true; }
 
   /// Throws InputError, which says why, if none of the surfaces, which have an area, has a source.
   static void RequireSource(const std::vector<const DistanceRun*>& runs);

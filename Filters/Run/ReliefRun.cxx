@@ -52,7 +52,7 @@ void ReliefSettings::Visit(SettingVisitor& visitor)
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
-void ReliefSettings::Check(Problems& problems)
+void ReliefSettings::Check(const FieldSummary*, Problems& problems)
 {
   CheckRanges(*this, problems);
   if (std::all_of(this->UpDirection.begin(), this->UpDirection.end(),
@@ -107,9 +107,9 @@ std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted)
   return sentences;
 }
 
-void ReliefRun::Update(
-  const BlockInput& input, ReliefSettings& settings, const ProgressMonitor& progress)
+void ReliefRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)
 {
+  auto& settings = static_cast<ReliefSettings&>(given);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;

@@ -25,7 +25,7 @@ struct ReliefSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
-  void Check(Problems& problems);
+  void Check(const FieldSummary* fields, Problems& problems) override;
 };
 
 /// What the user should know of a relief, each in a sentence of its own.
@@ -41,9 +41,8 @@ public:
   {
   }
 
-  /// Data, of one column at points, and Mask of the fields are read. Throws std::runtime_error,
-  /// std::bad_alloc, Aborted.
-  void Update(const BlockInput& input, ReliefSettings& settings, const ProgressMonitor& progress);
+  /// Data, of one column at points, and Mask of the fields are read.
+  void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
 
   /// The row of the input's triangles and whether the relief has it the other way round.
   const std::vector<char>& TurnedTriangles() const { return this->Turned; }

@@ -126,9 +126,8 @@ struct RunSettings : Settings
   /// the data.
   virtual std::vector<Output> Finish(const RunState& state, RunResult& result) const;
 
-  /// Problems of single settings and of settings that do not go together, all at once. `fields` is
-  /// null if the arrays are not known yet.
-  void Check(const FieldSummary* fields, Problems& problems);
+  /// Problems of single settings and of settings that do not go together, all at once.
+  void Check(const FieldSummary* fields, Problems& problems) override;
 
   bool IsAbsolute() const { return this->Units == UnitsMode::Absolute; }
 

@@ -250,6 +250,11 @@ void ThrowProblems(Problems problems)
   }
 }
 
+void Settings::Check(const FieldSummary*, Problems& problems)
+{
+  CheckRanges(*this, problems);
+}
+
 void CheckRanges(Settings& settings, Problems& problems)
 {
   RangeChecker checker(problems);

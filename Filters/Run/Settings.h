@@ -10,6 +10,8 @@
 namespace SurfaceDiffusion
 {
 
+struct FieldSummary;
+
 /// The part of a run that has to be recomputed if a setting changes.
 enum class SettingScope
 {
@@ -109,12 +111,18 @@ protected:
   virtual void See(const SettingInfo& info, double value) = 0;
 };
 
+/// One sentence per setting: name, value and what is allowed.
+using Problems = std::vector<Sentence>;
+
 /// A set of settings that can list itself. Copies are values; the functions below work on any.
 class Settings
 {
 public:
   virtual ~Settings() = default;
   virtual void Visit(SettingVisitor& visitor) = 0;
+  /// Append the problems of the settings, and with `fields` those of settings and arrays together.
+  /// fields: null if the arrays are not known yet. The default checks the ranges.
+  virtual void Check(const FieldSummary* fields, Problems& problems);
 };
 
 /// The values of all settings of one scope, in the order of Visit(). Two snapshots of one class are
@@ -135,9 +143,6 @@ public:
 private:
   std::vector<double> Values;
 };
-
-/// One sentence per setting: name, value and what is allowed.
-using Problems = std::vector<Sentence>;
 
 /// Throws InputError with all of them, sorted, each once, if there are any.
 void ThrowProblems(Problems problems);

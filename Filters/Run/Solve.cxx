@@ -231,21 +231,32 @@ std::vector<std::string> SentencesOf(const std::vector<Warning>& warnings)
   return sentences;
 }
 
-template <typename RunType, typename SettingsType>
-Solution SolveOnce(const Input& input, SettingsType& settings, const ParallelFor& parallel)
+/// A run without time steps, whose settings are checked together with the arrays.
+template <typename RunType>
+Solution SolveOnce(const Points& points, const Triangles& triangles, const SurfaceData& data,
+  Settings& settings, const ParallelFor& parallel)
 {
-  RunType run(parallel);
-  NamingSettings(settings,
-    [&] { run.Update(input.Block(RunType::ExcludesMasked), settings, ProgressMonitor()); });
-  if constexpr (std::is_same_v<RunType, DistanceRun>)
-  {
-    DistanceRun::RequireSource({ &run });
-  }
-  Solution solution;
-  OutputSource source{ run.GetSurface(), parallel };
-  input.TakeOutputs(run.Outputs(), source, solution);
-  solution.Warnings = SentencesOf(run.FindWarnings());
-  return solution;
+  return WordErrors(
+    [&]
+    {
+      const Input input(points, triangles, data);
+      const FieldSummary summary = input.Summarize();
+      Problems problems;
+      settings.Check(&summary, problems);
+      ThrowProblems(problems);
+      RunType run(parallel);
+      NamingSettings(settings,
+        [&] { run.Update(input.Block(run.ExcludesMasked()), settings, ProgressMonitor()); });
+      if constexpr (std::is_same_v<RunType, DistanceRun>)
+      {
+        DistanceRun::RequireSource({ &run });
+      }
+      Solution solution;
+      OutputSource source{ run.GetSurface(), parallel };
+      input.TakeOutputs(run.Outputs(), source, solution);
+      solution.Warnings = SentencesOf(run.FindWarnings());
+      return solution;
+    });
 }
 
 Solution SolveSteps(const Input& input, const std::shared_ptr<RunSettings>& settings,
@@ -292,64 +303,34 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Surf
     [&] { return SolveSteps(Input(points, triangles, data), settings, parallel, progress); });
 }
 
-namespace
-{
-
-/// A run without time steps, whose settings are checked together with the arrays.
-template <typename RunType, typename SettingsType>
-Solution CheckAndSolveOnce(const Points& points, const Triangles& triangles,
-  const SurfaceData& data, SettingsType& settings, const ParallelFor& parallel)
-{
-  return WordErrors(
-    [&]
-    {
-      const Input input(points, triangles, data);
-      const FieldSummary summary = input.Summarize();
-      Problems problems;
-      settings.Check(&summary, problems);
-      ThrowProblems(problems);
-      return SolveOnce<RunType>(input, settings, parallel);
-    });
-}
-
-} // namespace
-
 Solution DirectionField(const Points& points, const Triangles& triangles,
   DirectionFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  return CheckAndSolveOnce<DirectionFieldRun>(points, triangles, data, settings, parallel);
+  return SolveOnce<DirectionFieldRun>(points, triangles, data, settings, parallel);
 }
 
 Solution Curvature(const Points& points, const Triangles& triangles, CurvatureSettings settings,
   const SurfaceData& data, const ParallelFor& parallel)
 {
-  return CheckAndSolveOnce<CurvatureRun>(points, triangles, data, settings, parallel);
+  return SolveOnce<CurvatureRun>(points, triangles, data, settings, parallel);
 }
 
 Solution Derivative(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DerivativesSettings settings, const ParallelFor& parallel)
 {
-  return CheckAndSolveOnce<DerivativesRun>(points, triangles, data, settings, parallel);
+  return SolveOnce<DerivativesRun>(points, triangles, data, settings, parallel);
 }
 
 Solution Distance(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DistanceSettings settings, const ParallelFor& parallel)
 {
-  return CheckAndSolveOnce<DistanceRun>(points, triangles, data, settings, parallel);
+  return SolveOnce<DistanceRun>(points, triangles, data, settings, parallel);
 }
 
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
   DenoisingRunSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  Solution solution = WordErrors(
-    [&]
-    {
-      const Input input(points, triangles, data);
-      Problems problems;
-      CheckRanges(settings, problems);
-      ThrowProblems(problems);
-      return SolveOnce<DenoisingRun>(input, settings, parallel);
-    });
+  Solution solution = SolveOnce<DenoisingRun>(points, triangles, data, settings, parallel);
   if (solution.Arrays.count("Points") == 0) // nothing has moved
   {
     solution.Result = solution.Arrays["Points"] = points;

@@ -19,6 +19,15 @@ class SurfaceRun
 public:
   virtual ~SurfaceRun() = default;
 
+  /// Compute the result unless it is kept. given: settings that have passed Check(), of the class
+  /// that belongs to that of the run, as CurvatureSettings to CurvatureRun. Throws
+  /// std::runtime_error, std::bad_alloc, Aborted.
+  virtual void Update(
+    const BlockInput& input, Settings& given, const ProgressMonitor& progress) = 0;
+
+  /// Whether triangles that the mask marks take no part.
+  virtual bool ExcludesMasked() const { return false; }
+
   const Surface& GetSurface() const { return *this->Domain; }
   /// The surface that the result belongs to.
   const Fingerprint& GetSurfaceVersion() const { return this->SurfaceVersion; }
@@ -32,9 +41,6 @@ public:
   /// triangles of zero area are counted together.
   static std::vector<Warning> FindAllWarnings(
     const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks);
-
-  /// Whether triangles that the mask marks take no part. A subclass may hide it.
-  static constexpr bool ExcludesMasked = false;
 
 protected:
   /// ofDegenerate: what becomes of triangles of zero area, such as "have no normal".

@@ -356,18 +356,6 @@ BlockInput MakeBlock(const InputFields& input, bool excludes)
   return block;
 }
 
-/// The problems of the settings alone and with the arrays.
-template <typename SettingsType>
-void CheckSettings(SettingsType& settings, const FieldSummary& fields, Problems& problems)
-{
-  settings.Check(&fields, problems);
-}
-
-void CheckSettings(DenoisingRunSettings& settings, const FieldSummary&, Problems& problems)
-{
-  CheckRanges(settings, problems);
-}
-
 } // namespace
 
 template <typename RunType, typename SettingsType>
@@ -377,13 +365,15 @@ void SingleRun<RunType, SettingsType>::Update(
   SettingsType settings;
   AssignSettings(settings, values);
   Problems problems;
-  CheckSettings(settings, input.Summarize(), problems);
+  const FieldSummary summary = input.Summarize();
+  settings.Check(&summary, problems);
   ThrowProblems(std::move(problems));
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
       NamingSettings(settings,
-        [&] { this->Model.Update(MakeBlock(input, RunType::ExcludesMasked), settings, monitor); });
+        [&]
+        { this->Model.Update(MakeBlock(input, this->Model.ExcludesMasked()), settings, monitor); });
     });
 }
 

@@ -10,7 +10,9 @@
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkStringArray.h"
 #include "vtkSurfaceDenoisingFilter.h"
+#include "vtkSurfaceDerivativesFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
+#include "vtkSurfaceDistanceFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTuringTextureFilter.h"
 #include "vtkUnstructuredGrid.h"
@@ -212,6 +214,46 @@ TEST(BlockMessages, ErrorsNameTheirBlockUnlessTheyHoldForAll)
   filter->Update();
   ASSERT_EQ(messages.Errors.size(), 3u);
   EXPECT_NE(messages.Errors[2].find("block 2/1: "), std::string::npos) << messages.Errors[2];
+}
+
+/// As that of other filters without a model, which have one superclass.
+TEST(BlockMessages, ErrorsOfDerivativesNameTheirBlockIfAnotherHasNoData)
+{
+  auto blocks = ThreeBlocks();
+  BlockOf(blocks, 0)->GetPointData()->RemoveArray("f");
+  vtkNew<vtkStringArray> text;
+  text->SetName("f");
+  text->SetNumberOfValues(30);
+  BlockOf(blocks, 1)->GetPointData()->RemoveArray("f");
+  BlockOf(blocks, 1)->GetPointData()->AddArray(text);
+  vtkNew<vtkSurfaceDerivativesFilter> filter;
+  filter->SetInputDataObject(blocks);
+  SetInputArray(filter, 0, "f");
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 1u);
+  EXPECT_TRUE(Contains(messages.Errors, "block \"tail\": InputArray \"f\" is a vtkStringArray"))
+    << Join(messages.Errors);
+}
+
+TEST(BlockMessages, ASettingThatIsNotAllowedIsReportedOnceIfABlockHasNoData)
+{
+  auto blocks = ThreeBlocks();
+  AddPointArray(BlockOf(blocks, 0), "sources", 1, First);
+  AddPointArray(BlockOf(blocks, 2), "sources", 1, First);
+  vtkNew<vtkSurfaceDistanceFilter> filter;
+  filter->SetInputDataObject(blocks);
+  filter->SetMaximumDistance(-1.0);
+  filter->SetAlongSpeed(2.0);
+  filter->SetAcrossSpeed(2.0);
+  SetInputArray(filter, 0, "sources");
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 1u);
+  const std::string& error = messages.Errors[0];
+  EXPECT_EQ(error.find("MaximumDistance"), error.rfind("MaximumDistance")) << error;
+  EXPECT_NE(error.find("Method is "), std::string::npos) << error;
+  EXPECT_EQ(error.find("block"), std::string::npos) << error;
 }
 
 TEST(BlockMessages, MembersOfCollectionsHaveTheirNames)
