@@ -53,6 +53,8 @@ FILTERS = [
     Filter("derivatives", "vtkSurfaceDerivativesFilter", ("Derivatives",)),
     Filter("distance", "vtkSurfaceDistanceFilter",
            ("GeodesicDistance", "HeatDistance", "DistanceRun")),
+    Filter("random_field", "vtkSurfaceRandomFieldFilter",
+           ("RandomField", "ResolventPolynomial", "FunctionDiagonal", "ScaleFilter")),
     Filter("relief", "vtkSurfaceReliefFilter", ("Relief",)),
     Filter("direction_field", "vtkSurfaceDirectionFieldFilter",
            ("SmoothLineField", "PrincipalDirections")),

@@ -315,6 +315,12 @@ Solution Curvature(const Points& points, const Triangles& triangles, CurvatureSe
   return SolveOnce<CurvatureRun>(points, triangles, data, settings, parallel);
 }
 
+Solution RandomFields(const Points& points, const Triangles& triangles,
+  RandomFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
+{
+  return SolveOnce<RandomFieldRun>(points, triangles, data, settings, parallel);
+}
+
 Solution Derivative(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DerivativesSettings settings, const ParallelFor& parallel)
 {

@@ -12,6 +12,7 @@
 #include "Run/History.h"
 #include "Run/InterpolationSettings.h"
 #include "Run/MumfordShahSettings.h"
+#include "Run/RandomFieldRun.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/TensorDiffusionSettings.h"
 #include "Run/TextureSettings.h"
@@ -178,6 +179,11 @@ Solution DirectionField(const Points& points, const Triangles& triangles,
 /// Mean, Gaussian and principal curvatures: see vtkSurfaceCurvatureFilter.
 Solution Curvature(const Points& points, const Triangles& triangles,
   CurvatureSettings settings = {}, const SurfaceData& data = {},
+  const ParallelFor& parallel = SerialFor());
+
+/// Gaussian random fields: see vtkSurfaceRandomFieldFilter.
+Solution RandomFields(const Points& points, const Triangles& triangles,
+  RandomFieldSettings settings = {}, const SurfaceData& data = {},
   const ParallelFor& parallel = SerialFor());
 
 /// Gradient, divergence, curl or Laplacian of data, or the velocity of a wave from its arrival

@@ -198,7 +198,9 @@ inline bool Identical(vtkDataArray* a, vtkDataArray* b)
   {
     for (int k = 0; same && k < a->GetNumberOfComponents(); ++k)
     {
-      same = a->GetComponent(i, k) == b->GetComponent(i, k);
+      const double left = a->GetComponent(i, k);
+      const double right = b->GetComponent(i, k);
+      same = left == right || (std::isnan(left) && std::isnan(right));
     }
   }
   return same;

@@ -28,7 +28,8 @@ INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "h
 
 
 #: The classes of functions whose keywords are not made from the settings
-OTHERS = {"distance": "vtkSurfaceDistanceFilter", "relief": "vtkSurfaceReliefFilter"}
+OTHERS = {"distance": "vtkSurfaceDistanceFilter", "random_field": "vtkSurfaceRandomFieldFilter",
+          "relief": "vtkSurfaceReliefFilter"}
 
 
 def rough_sphere():
@@ -147,6 +148,9 @@ class SameBits(unittest.TestCase):
             ("derivatives", {"values": self.normals}, {"Quantity": "Curl"}),
             ("derivatives", {"values": self.of_faces}, {"ResultOnCells": True}),
             ("derivatives", {"values": nan}, {"Quantity": "ConductionVelocity"}),
+            ("random_field", {"mask": self.mask}, {"FWHM": 0.5, "NumberOfFields": 19, "RandomSeed": -4}),
+            ("random_field", {}, {"Covariance": "MaternNu1", "Range": 0.8, "NumberOfFields": 2}),
+            ("random_field", {}, {"Covariance": "MaternNu3", "Range": 0.8, "Normalize": False}),
             ("distance", {"marked": (self.values > 1.3) * used}, {"Method": "Heat"}),
             ("distance", {"marked": (np.arange(len(x)) == 70) * used, "mask": self.mask}, {"Method": "Eikonal"}),
             ("distance", {"marked": (np.arange(len(x)) % 400 == 7) * used,
@@ -185,6 +189,9 @@ class SameBits(unittest.TestCase):
     def compare(self, function, arrays, properties, expected):
         if function == "distance":
             self.compare_distance(arrays, properties, expected)
+            return
+        if function == "random_field":
+            self.compare_random_field(arrays, properties, expected)
             return
         keywords = {snake_case(name): value for name, value in properties.items()}
         if function in ("heat", "intrinsic_tv", "tensor_diffusion"):
@@ -255,6 +262,15 @@ class SameBits(unittest.TestCase):
         has_speed = "speed" in given or "along_speed" in given
         np.testing.assert_array_equal(expected["ArrivalTime" if has_speed else "Distance"], found)
         np.testing.assert_array_equal(expected["NearestSource"], np.isfinite(found).astype(np.int32))
+
+    def compare_random_field(self, arrays, properties, expected):
+        width = {"range": properties["Range"], "nu": int(properties["Covariance"][-1])} \
+            if "Range" in properties else {"fwhm": properties["FWHM"]}
+        found = sd.random_field(
+            self.surface, properties.get("NumberOfFields", 1), seed=properties.get("RandomSeed", 0),
+            normalize=properties.get("Normalize", True), **width, **arrays)
+        given = expected["RandomField"]
+        np.testing.assert_array_equal(given.reshape(len(given), -1), found)
 
     def regions(self, result, arrays):
         found = {"RegionId": result.values, "RegionProbability": result.probabilities,

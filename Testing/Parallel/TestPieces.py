@@ -14,8 +14,8 @@ from paraview.simple import (
     D3, Calculator, FVMHeatFilter, GenerateGlobalIds, GhostCellsGenerator, HarmonicMapFilter,
     IntrinsicTVFilter, ExtractSurface, MumfordShahFilter, Sphere, SurfaceCurvatureFilter,
     SurfaceDenoisingFilter, SurfaceDerivativesFilter, SurfaceDirectionFieldFilter,
-    SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceReliefFilter,
-    SurfaceSegmentationFilter, TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
+    SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceRandomFieldFilter,
+    SurfaceReliefFilter, SurfaceSegmentationFilter, TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
 )
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -82,6 +82,7 @@ CASES = (
     ("denoising", SurfaceDenoisingFilter, {}, "Displacement"),
     ("relief", SurfaceReliefFilter, dict(InputArray=["POINTS", "f"], Height=0.02), "ReliefHeight"),
     ("curvature", SurfaceCurvatureFilter, dict(FWHM=0.3), "MeanCurvature"),
+    ("random field", SurfaceRandomFieldFilter, dict(FWHM=0.3), "RandomField"),
     ("derivatives", SurfaceDerivativesFilter, {}, "fGradient"),
     ("distance", SurfaceDistanceFilter, dict(SourceArray=["POINTS", "hole"]), "Distance"),
     ("direction", SurfaceDirectionFieldFilter, {}, "Direction"),
@@ -202,7 +203,7 @@ class TestPieces(unittest.TestCase):
             self.assertLessEqual(worst, TOLERANCE.get(name, 1e-9), "%s, %s" % (partition, name))
             if make not in (SurfaceCurvatureFilter, SurfaceDenoisingFilter, SurfaceDerivativesFilter,
                             SurfaceDirectionFieldFilter, SurfaceDistanceFilter,
-                            SurfaceReliefFilter):
+                            SurfaceRandomFieldFilter, SurfaceReliefFilter):
                 rows = algorithm.GetOutputDataObject(1).GetNumberOfRows()
                 self.assertEqual(rows > 0, RANK == 0, "history of " + name)
 

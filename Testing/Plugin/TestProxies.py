@@ -52,6 +52,7 @@ SEARCHES = {
     "divergence": {"SurfaceDerivativesFilter"},
     "laplacian": {"SurfaceDerivativesFilter"},
     "distance": {"SurfaceDistanceFilter"},
+    "random": {"SurfaceRandomFieldFilter"},
     "relief": {"SurfaceReliefFilter"},
     "3d printing": {"SurfaceReliefFilter"},
 }
@@ -335,6 +336,8 @@ class TestProxies(unittest.TestCase):
             ("SurfaceDirectionFieldFilter",
              ["Method", "PrincipalDirection", "SmoothingLength", "Angle"]),
             ("SurfaceDistanceFilter", ["Method", "ComputeGradient"]),
+            ("SurfaceRandomFieldFilter",
+             ["Covariance", "FWHM", "NumberOfFields", "RandomSeed"]),
             ("SurfaceReliefFilter", ["Height", "Base", "Levels", "Overhang"]),
             ("SurfaceSegmentationFilter",
              ["NumberOfRegions", "AutomaticFidelity", "AutomaticMeans"]),

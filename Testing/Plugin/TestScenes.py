@@ -30,6 +30,7 @@ SETTINGS = {
     "SurfaceDirectionFieldFilter": dict(Method="Smooth"),
     "SurfaceDistanceFilter": dict(SourceArray=["POINTS", "poles"], Method="Eikonal"),
     "SurfaceInterpolationFilter": dict(ComputeError=1),
+    "SurfaceRandomFieldFilter": dict(Covariance="MaternNu1", NumberOfFields=2),
     "SurfaceSegmentationFilter": dict(NumberOfRegions=3),
     "TensorDiffusionFilter": dict(NumberOfTimeSteps=4),
     "TuringTextureFilter": dict(

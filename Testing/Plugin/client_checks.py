@@ -30,6 +30,7 @@ RESULTS = {
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceDistanceFilter": (("POINTS", "Distance"), 0.517775714, ("POINTS", "Distance")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
+    "SurfaceRandomFieldFilter": (("POINTS", "RandomField"), 1.0, ("POINTS", "RandomField")),
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
@@ -52,6 +53,7 @@ SLIPS = {
     "SurfaceDistanceFilter": lambda _: {"Method": "Eikonal"},
     "SurfaceInterpolationFilter": lambda spline: {
         "AutomaticSmoothing": 0, "Smoothing": 1.2 * spline.GetPropertyValue("EffectiveSmoothing")},
+    "SurfaceRandomFieldFilter": lambda field: {"RandomSeed": field.RandomSeed + 1},
     "SurfaceReliefFilter": lambda relief: {"Height": 1.2 * relief.Height},
     "SurfaceSegmentationFilter": lambda regions: {
         "AutomaticFidelity": 0,

@@ -117,6 +117,9 @@ DEFAULTS = {
         **SURFACE, "ResultArrayName": "ReliefHeight", "Height": 1.0, "Base": 0.0, "Levels": "Smooth",
         "Threshold": 0.5, "Flank": 0.0, "Overhang": -1.0, "UpDirection": (0.0, 0.0, 1.0)},
     "vtkSurfaceCurvatureFilter": {**SURFACE, "FWHM": 0.0},
+    "vtkSurfaceRandomFieldFilter": {
+        **SURFACE, "Covariance": "Gaussian", "FWHM": 0.0, "Range": 0.0, "NumberOfFields": 1,
+        "RandomSeed": 0, "Normalize": True},
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDistanceFilter": {
@@ -131,6 +134,7 @@ DEFAULTS = {
 EDGE_FUNCTIONS = ("TotalVariation", "PeronaMalikExponential", "PeronaMalikRational", "Charbonnier",
                   "Weickert", "Constant")
 WORDS = {
+    "Covariance": ("Gaussian", "MaternNu1", "MaternNu3"),
     "Quantity": ("Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity"),
     "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),
     "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),

@@ -15,6 +15,7 @@
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceDistanceFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
+#include "vtkSurfaceRandomFieldFilter.h"
 #include "vtkSurfaceReliefFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -312,6 +313,21 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFlank(0.05);
         f->SetOverhang(60.0);
         SetInputArray(f, 0, "f");
+        SetInputArray(f, 1, "mask");
+      }),
+    MakeKind<vtkSurfaceRandomFieldFilter>("RandomField", "RandomField", 0,
+      [](vtkSurfaceRandomFieldFilter* f)
+      {
+        f->SetFWHM(0.5);
+        f->SetNumberOfFields(2);
+      }),
+    MakeKind<vtkSurfaceRandomFieldFilter>("RandomFieldOfMatern", "RandomField", 0,
+      [](vtkSurfaceRandomFieldFilter* f)
+      {
+        f->SetCovarianceToMaternNu3();
+        f->SetRange(0.8);
+        f->NormalizeOff();
+        f->SetRandomSeed(7);
         SetInputArray(f, 1, "mask");
       }),
     { "Curvature", [] { return vtkSmartPointer<vtkSurfaceCurvatureFilter>::New(); },

@@ -15,6 +15,7 @@
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceDistanceFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
+#include "vtkSurfaceRandomFieldFilter.h"
 #include "vtkSurfaceReliefFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -436,6 +437,19 @@ inline List OfCurvature()
   return { RANDOM_PROPERTY(F, FWHM, ZeroOrPositive(dice)) };
 }
 
+inline List OfRandomField()
+{
+  using F = vtkSurfaceRandomFieldFilter;
+  return {
+    RANDOM_PROPERTY(F, Covariance, Choice(dice, 3)),
+    RANDOM_PROPERTY(F, FWHM, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, Range, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, NumberOfFields, 1 + dice.Below(20)),
+    RANDOM_PROPERTY(F, RandomSeed, dice.Below(100) - 50),
+    RANDOM_PROPERTY(F, Normalize, dice.Flip()),
+  };
+}
+
 inline List OfDerivatives()
 {
   using F = vtkSurfaceDerivativesFilter;
@@ -499,6 +513,8 @@ inline std::vector<FilterClass> AllFilterClasses()
       OfTimeIntegrators<Turing>(0b011), OfTexture() }),
     MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
     MakeClass<vtkSurfaceCurvatureFilter>({ OfSurface<vtkSurfaceCurvatureFilter>(), OfCurvature() }),
+    MakeClass<vtkSurfaceRandomFieldFilter>(
+      { OfSurface<vtkSurfaceRandomFieldFilter>(), OfRandomField() }),
     MakeClass<vtkSurfaceDerivativesFilter>(
       { OfSurface<vtkSurfaceDerivativesFilter>(), OfDerivatives() }),
     MakeClass<vtkSurfaceDistanceFilter>({ OfSurface<vtkSurfaceDistanceFilter>(), OfDistance() }),

@@ -381,6 +381,11 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
         {
           curvature->SetFWHM((scaled ? length : 1.0) * curvature->GetFWHM());
         }
+        if (auto* field = vtkSurfaceRandomFieldFilter::SafeDownCast(f))
+        {
+          field->SetFWHM((scaled ? length : 1.0) * field->GetFWHM());
+          field->SetRange((scaled ? length : 1.0) * field->GetRange());
+        }
         if (auto* derivatives = vtkSurfaceDerivativesFilter::SafeDownCast(f))
         {
           derivatives->SetSmoothingFWHM((scaled ? length : 1.0) * derivatives->GetSmoothingFWHM());
@@ -484,7 +489,9 @@ TEST_P(EveryKindOfParts, TreatsUnequalBlocksAsItDoesPartsOfOneSurface)
   }
   // Minimisers end when the energy of all parts is within a tolerance.
   const bool isTV = vtkIntrinsicTVFilter::SafeDownCast(apart) != nullptr;
-  EXPECT_LE(largest, isTV ? 1e-4 : 1e-11);
+  // Variances are differences of inverses, of which round-off takes nine digits.
+  const bool isField = vtkSurfaceRandomFieldFilter::SafeDownCast(apart) != nullptr;
+  EXPECT_LE(largest, isTV ? 1e-4 : isField ? 1e-6 : 1e-11);
 }
 
 TEST_P(EveryKindWithTimes, AgreesForAllSolvers)

@@ -155,6 +155,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed[name] =
       With<vtkSurfaceDistanceFilter>([](vtkSurfaceDistanceFilter* f) { f->SetMethodToEikonal(); });
   }
+  needed["vtkSurfaceRandomFieldFilter Range"] = With<vtkSurfaceRandomFieldFilter>(
+    [](vtkSurfaceRandomFieldFilter* f) { f->SetCovarianceToMaternNu1(); });
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
   needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
     With<TV>([](TV* f) { f->SetStopTolerance(0.1); }); // it takes long otherwise
