@@ -123,6 +123,11 @@ EFFECTS = {
         Effect("method", ("Eikonal", "Heat"), "Distances from three points, in bands: fronts that meet have a "
                "kink by fast marching and are round by the heat method.", {"sources": [200, 900, 1700]}, "bumps"),
     ),
+    "random_field": (
+        Effect("fwhm", (0.1, 0.3, 0.6), "Fields of one seed and several widths."),
+        Effect("nu", (1, 3), "Matern's fields of one range: nu = 3 is smoother.", {"range": 0.8}),
+        Effect("seed", (0, 1, 2), "Each seed gives another field.", {"fwhm": 0.3}),
+    ),
     "relief": (
         Effect("height", (0.02, 0.06, -0.06), "A height below 0 is carved.", {}, "waves"),
         Effect("levels", ("Smooth", "Two"), "Two levels have flat tops. Their slopes have the width flank.",
@@ -247,6 +252,8 @@ def run(name, surface, values, keywords):
         return points, np.linalg.norm(found, axis=1) if found.ndim == 2 else found
     if name == "distance":
         return points, function(surface, keywords.pop("sources"), **keywords) % 0.25
+    if name == "random_field":
+        return points, function(surface, **keywords)[:, 0]
     if name == "turing_texture":
         return points, function(surface, **keywords).texture
     if name == "relief":
@@ -293,7 +300,7 @@ def panels_of(name, effect):
     surface, values = globals()[effect.data]()
     view = (1, 0.8, 1.2) if effect.data == "block" else (0, 0, 1)
     limits, panels = None, []
-    if name not in ("turing_texture", "direction_field", "distance"):
+    if name not in ("turing_texture", "direction_field", "distance", "random_field"):
         panels.append(Panel(surface, surface.points, values, "data", None, view))
     if name in ("heat", "intrinsic_tv", "tensor_diffusion") and effect.data != "noise":
         limits = tuple(np.nanpercentile(values, (2, 98)))

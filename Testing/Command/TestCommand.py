@@ -19,8 +19,10 @@ import numpy as np
 import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
-from surfacediffusion import (Surface, curvature, denoise_mesh, distance, get_number_of_threads, gradient, heat,
-                              interpolate, intrinsic_tv, nearest_sources, set_number_of_threads)
+from surfacediffusion import (
+    Surface, curvature, denoise_mesh, distance, get_number_of_threads, gradient, heat, interpolate,
+    intrinsic_tv, nearest_sources, random_field, scale_filter, set_number_of_threads, spectrum,
+)
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
@@ -390,6 +392,34 @@ class OtherCommands(CommandTest):
             np.testing.assert_allclose(data.parts[0].values, expected, rtol=1e-5, atol=1e-6)
             self.assertAlmostEqual(abs(expected[:, 0].mean()), 0.1, delta=0.01)
 
+    def test_random_fields_are_those_of_the_function(self):
+        self.succeed("random-field lh.surf.gii out.func.gii --fwhm 6 --count 3 --seed 5")
+        data = read_data("out.func.gii")
+        self.assertEqual(list(data.names), ["field 1", "field 2", "field 3"])
+        np.testing.assert_allclose(
+            data.parts[0].values, random_field(self.surface, 3, fwhm=6.0, seed=5), rtol=1e-5, atol=1e-6)
+        self.succeed("random-field lh.surf.gii out.func.gii --range 9 --nu 3")
+        np.testing.assert_allclose(read_data("out.func.gii").parts[0].values,
+                                   random_field(self.surface, range=9.0, nu=3), rtol=1e-5, atol=1e-6)
+
+    def test_surrogates_have_the_values_of_the_map(self):
+        self.succeed("surrogates lh.surf.gii lh.func.gii null.func.gii --column 2 --count 4")
+        given = np.sort(read_data("lh.func.gii").parts[0].values[:, 1])
+        found = read_data("null.func.gii").parts[0].values
+        self.assertEqual(found.shape, (len(given), 4))
+        for column in found.T:
+            np.testing.assert_array_equal(np.sort(column), given)
+
+    def test_scales_are_those_of_the_function(self):
+        self.succeed("scale-filter lh.surf.gii lh.func.gii 12 out.func.gii --order 2")
+        given = read_data("lh.func.gii").parts[0].values.astype(float)
+        np.testing.assert_allclose(read_data("out.func.gii").parts[0].values,
+                                   scale_filter(self.surface, given, 12.0, order=2), rtol=1e-5, atol=1e-5)
+        out = self.succeed("spectrum lh.surf.gii lh.func.gii 8 16 --column 2 --json")
+        found = json.loads(out)["spectra"][0]["variance"]
+        expected = spectrum(self.surface, given[:, 1], [8.0, 16.0]).variance
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
+
     def test_derivatives_are_those_of_the_function(self):
         self.succeed("derivatives lh.surf.gii lh.func.gii out.func.gii --fwhm 3")
         data = read_data("out.func.gii")
@@ -639,7 +669,7 @@ class Reports(CommandTest):
         _, out, _ = run("--help")
         commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "interpolate", "segment",
                     "refine", "texture", "directions", "curvature", "derivatives", "distance", "normals", "fwhm",
-                    "info")
+                    "scale-filter", "spectrum", "random-field", "surrogates", "info")
         for command in commands:
             self.assertIn(command, out)
             code, text, _ = run(command, "--help")

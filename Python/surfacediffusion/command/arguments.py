@@ -88,7 +88,7 @@ def make_parser(hemispheres=False):
                                      parser_class=_Parser)
     for add in (_smooth, _metric_smoothing, _cifti_smoothing, _denoise, _denoise_mesh, _inpaint, _interpolate, _enhance,
                 _edges, _segment, _refine, _texture, _directions, _curvature, _derivatives, _distance, _normals, _fwhm,
-                _info, _doctor):
+                _scale_filter, _spectrum, _random_field, _surrogates, _info, _doctor):
         add(_Commands(commands, hemispheres))
     return parser
 
@@ -734,6 +734,83 @@ def _fwhm(commands):
         "fwhm", tasks.fwhm, text, [f"{PROGRAM} fwhm lh.pial residuals.mgh --json"])
     commands.data(parser)
     commands.choices(parser)
+
+
+def _scale_filter(commands):
+    text = ("Filter data by scale: a third is left of waves of WAVELENGTH, more of longer ones and less of "
+            "shorter ones. The integral over the surface is kept. Missing values stay missing, and nothing "
+            "flows across them, as at the coast of an ocean.")
+    parser = commands.add(
+        "scale-filter", tasks.scale_filter, text,
+        [f"{PROGRAM} scale-filter ocean.vtp height.npy 200 large.vtp --order 2",
+         f"{PROGRAM} scale-filter lh.white lh.thickness 40 lh.thickness.large --cortex"])
+    commands.data(parser)
+    parser.add_argument("wavelength", metavar="WAVELENGTH", type=_positive,
+                        help="in the unit of the coordinates")
+    commands.output(parser)
+    _order(parser, 1)
+    commands.choices(parser)
+
+
+def _spectrum(commands):
+    text = ("Print the variance of data between scales: what scale-filter takes away as its wavelength grows "
+            "from each WAVELENGTH to the next.")
+    parser = commands.add(
+        "spectrum", tasks.spectrum, text,
+        [f"{PROGRAM} spectrum ocean.vtp height.npy 50 100 200 400 800"])
+    commands.data(parser)
+    parser.add_argument("wavelengths", metavar="WAVELENGTH", type=_positive, nargs="+",
+                        help="in the unit of the coordinates, ascending")
+    _order(parser, 2)
+    commands.choices(parser)
+
+
+def _order(parser, order):
+    parser.add_argument("--order", type=int, choices=(1, 2), default=order,
+                        help=f"the sharpness of the filter, (1 + 2 (-Laplace / k^2)^order) u = DATA (default "
+                             f"{order})")
+
+
+def _random_field(commands):
+    text = ("Draw Gaussian random fields of mean 0 and variance 1: white noise smoothed to a width, or fields "
+            "of Matern's class with a range.")
+    parser = commands.add(
+        "random-field", tasks.random_field, text,
+        [f"{PROGRAM} random-field lh.white fields.func.gii --fwhm 10 --count 100",
+         f"{PROGRAM} random-field stone.ply rough.ply --range 5 --nu 1"], NEW)
+    commands.mesh(parser)
+    parser.add_argument("output", metavar="OUTPUT", help="the fields, one column each")
+    width = parser.add_mutually_exclusive_group(required=True)
+    width.add_argument("--fwhm", metavar="W", type=_positive,
+                       help="full width at half maximum of the kernel, in the unit of the coordinates")
+    width.add_argument("--range", metavar="R", type=_positive,
+                       help="the distance at which Matern's correlation has fallen to 0.14")
+    parser.add_argument("--nu", type=int, choices=(1, 3), default=1,
+                        help="the smoothness of Matern's correlation (default 1)")
+    _count_and_seed(parser, "fields", 1)
+
+
+def _surrogates(commands):
+    text = ("Draw surrogates of a map: random maps with its values and its smoothness, and nothing else in "
+            "common with it. The correlations of another map with them are the distribution without a "
+            "relation. Missing values stay missing.")
+    parser = commands.add(
+        "surrogates", tasks.surrogates, text,
+        [f"{PROGRAM} surrogates lh.white lh.thickness null.func.gii --cortex --count 1000"], f"""
+{SURFACES}
+DATA: GIFTI, FreeSurfer (curv, .mgh, ...), NumPy (.npy), or a PLY or VTK file with data.
+{NEW}""")
+    commands.data(parser)
+    parser.add_argument("output", metavar="OUTPUT", help="the surrogates, one column each; NaN outside")
+    _count_and_seed(parser, "surrogates", 1000)
+    commands.choices(parser)
+
+
+def _count_and_seed(parser, what, count):
+    parser.add_argument("--count", metavar="N", type=_count, default=count,
+                        help=f"the number of {what} (default {count})")
+    parser.add_argument("--seed", metavar="S", type=_whole, default=0,
+                        help="the seed of the random numbers (default 0)")
 
 
 def _doctor(commands):

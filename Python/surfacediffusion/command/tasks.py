@@ -526,6 +526,80 @@ def fwhm(arguments, report):
         report.say(f"{where}FWHM {_text(entry['pooled'])}")
 
 
+def scale_filter(arguments, report):
+    from .. import scale_filter as separate
+
+    report.facts.update(wavelength=arguments.wavelength, order=arguments.order)
+    _change_data(
+        arguments, report, "Scales",
+        lambda surface, values, mask, progress: separate(
+            surface, values, arguments.wavelength, order=arguments.order, mask=mask, progress=progress),
+        _groups_of_missing, say=lambda _: f"wavelength {arguments.wavelength:g}")
+
+
+def spectrum(arguments, report):
+    from .. import spectrum as measure
+
+    with report.timed("read"):
+        _, data, columns, patches = _read(arguments)
+    rows = report.facts.setdefault("spectra", [])
+    report.facts.update(wavelengths=arguments.wavelengths, order=arguments.order)
+    if (np.diff(arguments.wavelengths) <= 0).any():
+        raise inputs.ArgumentProblem("the WAVELENGTHs are not ascending; allowed: ascending numbers")
+    bounds = ["0", *(f"{length:g}" for length in arguments.wavelengths), "infinity"]
+    for patch in patches:
+        solver = inputs.make_solver(arguments, patch.surface, None)
+        for i, column in enumerate(columns):
+            _require_known(patch, [i], data, columns)
+            with report.timed("compute"):
+                found = measure(solver, patch.values[:, i].astype(float), arguments.wavelengths,
+                                order=arguments.order, mask=patch.excluded_of(i))
+            rows.append({"name": data.names[column], "structure": patch.part.structure,
+                         "variance": [number(value) for value in found.variance]})
+            report.say(f"{column + 1} {data.names[column]}:")
+            for low, high, value in zip(bounds, bounds[1:], found.variance):
+                report.say(f"  {low} to {high}: {value:.4g}")
+
+
+def random_field(arguments, report):
+    from .. import random_field as draw
+
+    if arguments.fwhm is not None and arguments.nu != 1:
+        raise inputs.ArgumentProblem("--nu with --fwhm; allowed: --nu with --range")
+    surface = _read_surface_for_output(arguments, report)
+    target = new_data(surface, arguments.output, [f"field {k + 1}" for k in range(arguments.count)])
+    with report.timed("compute"), report.progress("Fields") as progress:
+        solver = inputs.make_solver(arguments, surface, None)
+        found = draw(solver, arguments.count, fwhm=arguments.fwhm, range=arguments.range, nu=arguments.nu,
+                     seed=arguments.seed, progress=progress)
+    report.facts.update(fwhm=arguments.fwhm, range=arguments.range, seed=arguments.seed)
+    _write_new(arguments, report, target, found.astype(np.float32))
+
+
+def surrogates(arguments, report):
+    from .. import surrogates as draw
+
+    check_output_folder(arguments.output)
+    with report.timed("read"):
+        _, data, columns, patches = _read(arguments)
+    if len(patches) != 1 or len(columns) != 1:
+        found = f"{len(columns)} columns" if len(patches) == 1 else f"{len(patches)} surfaces"
+        raise inputs.ArgumentProblem(f"{data.path} has {found}; allowed: one surface and one column, by "
+                                     "--column")
+    patch = patches[0]
+    _require_known(patch, [0], data, columns)
+    target = new_data(patch.surface, arguments.output,
+                      [f"surrogate {k + 1}" for k in range(arguments.count)])
+    with report.timed("compute"), report.progress("Surrogates") as progress:
+        found = draw(inputs.make_solver(arguments, patch.surface, None), patch.values[:, 0].astype(float),
+                     arguments.count, seed=arguments.seed, mask=patch.excluded_of(0), progress=progress)
+    report.facts.update(
+        output=arguments.output, seed=arguments.seed, model=[
+            {"fwhm": number(width), "variance": number(share)}
+            for width, share in zip(found.fwhm, found.variances)])
+    _write_new(arguments, report, target, found.values.astype(np.float32))
+
+
 def _text(value, digits=4):
     return "unknown" if value is None else f"{value:.{digits}g}"
 
