@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from pyvista.examples import load_nut
-from surfacediffusion import Surface, relief, turing_texture
+from surfacediffusion import Surface, random_field, relief, sphere, turing_texture
 from surfacediffusion.examples import show
 from surfacediffusion.files import read_surface
 from surfacediffusion.files.export import export
@@ -47,3 +47,11 @@ with tempfile.TemporaryDirectory() as folder:
     again = read_surface(file)
 print(f"{len(again.points)} points, {len(again.faces)} triangles")
 assert len(again.faces) == fine.n_faces
+
+# %%
+# A rough stone: a ball with a random field of Matern's class, whose coarse shapes are 8 mm wide and which is rough
+# down to the triangles.
+ball = sphere(6, radius=12.0)
+stone = relief(ball, random_field(ball, 1, range=8.0, nu=1, seed=3)[:, 0], 0.8).surface
+show(stone.points, stone.triangles, {"a stone": stone.points}, view=(1, 1, 1.5), up=(0, 0, 1))
+assert abs(np.linalg.norm(stone.points, axis=1) - 12.0).max() > 1.0

@@ -6,7 +6,7 @@ Buoys measure the temperature of the sea at a few places, with errors. Between t
 within the water, not across land.
 """
 import numpy as np
-from surfacediffusion import interpolate, sphere
+from surfacediffusion import interpolate, random_field, scale_filter, spectrum, sphere
 from surfacediffusion.examples import show
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersHybrid import vtkEarthSource
@@ -63,3 +63,19 @@ print(f"error {error:.2f} degrees, of buoys estimated as {result.noise_level[0]:
 assert error < 1
 show(earth.points, earth.triangles, {"buoys": measured, "temperature": temperature}, view=(-0.5, -1, 0.4),
      up=(0, 0, 1), cmap="coolwarm", clim=(-3, 31), nan_color="white")
+
+# %%
+# Eddies of some 500 km, which no buoy resolves, on top of the temperature. The filter by scale leaves what is
+# longer than 3,000 km, within the water: land is NaN and takes no part.
+eddies = random_field(earth, 1, fwhm=500, mask=land)[:, 0]
+sea = np.where(land, np.nan, truth + eddies)
+large = scale_filter(earth, sea, 3000, order=2)
+show(earth.points, earth.triangles, {"with eddies": sea, "above 3,000 km": large, "eddies": sea - large},
+     view=(-0.5, -1, 0.4), up=(0, 0, 1), cmap="coolwarm", nan_color="white")
+assert np.corrcoef((sea - large)[np.isfinite(large)], eddies[np.isfinite(large)])[0, 1] > 0.8
+
+# %%
+# The variance of the eddies between wavelengths, in km and degrees squared.
+found = spectrum(earth, np.where(land, np.nan, eddies), [1000, 2000, 4000, 8000])
+for low, high, variance in zip([0, *found.wavelength], [*found.wavelength, np.inf], found.variance):
+    print(f"{low:5.0f} to {high:5.0f} km: {variance:.2f}")

@@ -104,7 +104,7 @@ class TestCode(unittest.TestCase):
     def test_tutorials_run(self):
         pyvista.Plotter.show = lambda self, *_, **__: self.close()
         tutorials = sorted((FOLDER / "tutorials").glob("plot_*.py"))
-        self.assertEqual(len(tutorials), 6)
+        self.assertEqual(len(tutorials), 7)
         for tutorial in tutorials:
             with self.subTest(tutorial.name):
                 runpy.run_path(str(tutorial), run_name="__main__")
