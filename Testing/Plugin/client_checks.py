@@ -30,7 +30,7 @@ RESULTS = {
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceDistanceFilter": (("POINTS", "Distance"), 0.517775714, ("POINTS", "Distance")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
-    "SurfaceRandomFieldFilter": (("POINTS", "RandomField"), 1.0, ("POINTS", "RandomField")),
+    "SurfaceRandomFieldFilter": (("POINTS", "RandomField"), 0.875830508, ("POINTS", "RandomField")),
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),

@@ -178,6 +178,7 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
   }
   const bool isDistance = filter->IsA("vtkSurfaceDistanceFilter") != 0;
   const bool hasErrors = filter->IsA("vtkSurfaceInterpolationFilter") != 0;
+  const bool isField = filter->IsA("vtkSurfaceRandomFieldFilter") != 0;
   const auto isMissing = [&](vtkDataArray* given, vtkIdType i)
   { return spreads || (given && !IsFinite(given, i)); };
   bool finite = true;
@@ -196,7 +197,8 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
           added->GetScalars()->GetComponent(i, 0) == given->GetComponent(i, 0);
         finite = finite &&
           (!isNew || IsFinite(array, i) || isMissing(given, i) || keepsValue ||
-            (mayBeInfinite && array->GetComponent(i, 0) > 0.0));
+            (mayBeInfinite && array->GetComponent(i, 0) > 0.0) ||
+            (isField && std::isnan(array->GetComponent(i, 0)))); // no triangle has the point
       }
     }
   };
