@@ -60,6 +60,8 @@ from numpy.typing import NDArray
 from . import _core, _functions
 from ._distance import distance as _distance
 from ._distance import nearest_sources as _nearest_sources
+from ._fields import random_field as _random_field
+from ._fields import surrogates as _surrogates
 from ._functions import curvature as _curvature
 from ._functions import denoise_mesh as _denoise_mesh
 from ._functions import direction_field as _direction_field
@@ -76,12 +78,13 @@ from ._result import (
     TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, Runner, find_result_type, take_old_switch
+from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
 from ._surface import Surface, as_data, as_outside, has_integers
 
 __all__: list[str] = []
-__all__ += [*_functions.__all__, "distance", "relief"]
+__all__ += [*_functions.__all__, "distance", "random_field", "relief", "scale_filter", "surrogates"]
 
 _ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
@@ -366,6 +369,87 @@ def distance(
         block.add(prefix + "NearestSource", np.where(nearest < 0, nowhere, names[nearest]), False)
         block.mesh.set_active_scalars(name, "point")
     return _rebuild(mesh, iter(blocks))
+
+
+def random_field(
+    mesh: Any, n: int = 1, *, fwhm: float | None = None, range: float | None = None, nu: int = 1,
+    seed: int = 0, normalize: bool = True, mask: str | None = None, roi: str | None = None,
+    progress: Progress = False, result_array_name: str | None = None,
+) -> Any:
+    """Draw Gaussian random fields of mean 0 and variance 1 on the mesh.
+
+    mask, roi: point or cell array; points and cells with a nonzero value, or with 0, are left out. All other
+    keywords are those of surfacediffusion.random_field. The result is the point array RandomField, with a
+    component per field, which becomes active, and NaN at points that are left out. result_array_name is the
+    prefix of its name.
+    """
+    blocks = _find_surfaces(mesh, "random_field", {})
+    name = (result_array_name or "") + "RandomField"
+    for block in blocks:
+        found = _random_field(
+            block.surface, n, fwhm=fwhm, range=range, nu=nu, seed=seed, normalize=normalize,
+            mask=block.find_left_out(mask, roi), progress=progress)
+        _add_columns(block, name, found)
+    return _rebuild(mesh, iter(blocks))
+
+
+def surrogates(
+    mesh: Any, array: str | None = None, n: int = 1000, *, seed: int = 0, mask: str | None = None,
+    roi: str | None = None, progress: Progress = False, result_array_name: str | None = None,
+) -> Any:
+    """Draw surrogates of a map: random maps with its values and its smoothness.
+
+    array: point array with one component; default: the active scalars. mask, roi: point or cell array;
+    points and cells with a nonzero value, or with 0, are left out. All other keywords are those of
+    surfacediffusion.surrogates. The result is a point array with a component per surrogate, which becomes
+    active: that of the map's name followed by Surrogates, or result_array_name.
+    """
+    blocks = _find_surfaces(mesh, "surrogates", {})
+    for block in blocks:
+        name, values = _find_data(block, array)
+        found = _surrogates(block.surface, values, n, seed=seed, mask=block.find_left_out(mask, roi),
+                            progress=progress)
+        _add_columns(block, result_array_name or name + "Surrogates", found.values)
+    return _rebuild(mesh, iter(blocks))
+
+
+def scale_filter(
+    mesh: Any, array: str | None = None, *, wavelength: float | str, order: int = 1,
+    mask: str | None = None, roi: str | None = None, progress: Progress = False,
+    result_array_name: str | None = None,
+) -> Any:
+    """Filter data by scale: a third is left of waves of the wavelength, more of longer ones.
+
+    array: point array; default: the active scalars. wavelength: a number, or a point array. mask, roi: point
+    or cell array; points and cells with a nonzero value, or with 0, are left out. The order is that of
+    surfacediffusion.scale_filter. The result has the name of the array followed by Filtered, or
+    result_array_name, and becomes active.
+    """
+    blocks = _find_surfaces(mesh, "scale_filter", {})
+    for block in blocks:
+        name, values = _find_data(block, array)
+        lengths = block.find("wavelength", wavelength)[0] if isinstance(wavelength, str) else wavelength
+        assert lengths is not None
+        found = _scale_filter(block.surface, values, lengths, order=order,
+                              mask=block.find_left_out(mask, roi), progress=progress)
+        _add_columns(block, result_array_name or name + "Filtered", found)
+    return _rebuild(mesh, iter(blocks))
+
+
+def _find_data(block: _Block, array: str | None) -> tuple[str, NDArray[Any]]:
+    """The point array of this name, or the active scalars."""
+    name = array or block.mesh.active_scalars_name
+    if name is None:
+        raise ValueError("array is not given and the mesh has no active scalars; allowed: point arrays")
+    values, _ = block.find("array", name)
+    assert values is not None
+    return name, values
+
+
+def _add_columns(block: _Block, name: str, values: NDArray[Any]) -> None:
+    """Add a point array, without a second dimension if it has one column, and make it active."""
+    block.add(name, values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values, False)
+    block.mesh.set_active_scalars(name, "point")
 
 
 def derivatives(

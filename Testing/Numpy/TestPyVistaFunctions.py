@@ -17,7 +17,8 @@ import numpy as np
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
     curvature, denoise_mesh, derivatives, direction_field, distance, harmonic_map, heat, interpolate,
-    intrinsic_tv, mumford_shah, relief, segment, tensor_diffusion, turing_texture,
+    intrinsic_tv, mumford_shah, random_field, relief, scale_filter, segment, surrogates, tensor_diffusion,
+    turing_texture,
 )
 
 
@@ -212,6 +213,30 @@ class Meshes(unittest.TestCase):
         swift = distance(ball, 3, direction="east", along_speed=3.0, roi="south")
         np.testing.assert_array_equal(swift["ArrivalTime"], sd.distance(
             surface, 3, directions=ball["east"], along_speed=3.0, mask=ball["south"] == 0))
+
+    def test_fields_and_scales_are_those_of_the_arrays(self):
+        ball = noisy_sphere()
+        surface, outside = as_surface(ball), ball["hole"]
+        found = random_field(ball, 2, fwhm=0.6, mask="hole")
+        self.assertEqual(found.point_data.active_scalars_name, "RandomField")
+        np.testing.assert_array_equal(
+            found["RandomField"], sd.random_field(surface, 2, fwhm=0.6, mask=outside))
+        self.assertEqual(random_field(ball, range=0.9, result_array_name="my")["myRandomField"].shape,
+                         (ball.n_points,))
+        found = scale_filter(ball, "f", wavelength=1.5, order=2)
+        np.testing.assert_array_equal(
+            found["fFiltered"], sd.scale_filter(surface, ball["f"], 1.5, order=2))
+        ball["width"] = 1.0 + np.abs(ball.points[:, 0])
+        np.testing.assert_array_equal(scale_filter(ball, "f", wavelength="width")["fFiltered"],
+                                      sd.scale_filter(surface, ball["f"], ball["width"]))
+        null = surrogates(ball, "f", 3, seed=2)
+        np.testing.assert_array_equal(null["fSurrogates"], sd.surrogates(surface, ball["f"], 3, seed=2).values)
+        blocks = random_field(pyvista.MultiBlock([ball, None, noisy_sphere((3, 0, 0))]), fwhm=0.6)
+        self.assertIn("RandomField", blocks[2].point_data)
+        with self.assertRaisesRegex(ValueError, "array is 'none'; allowed: point arrays"):
+            scale_filter(ball, "none", wavelength=1.0)
+        with self.assertRaisesRegex(ValueError, "fwhm and range are not given"):
+            random_field(ball)
 
     def test_regions_of_interest_are_the_opposite_of_masks(self):
         ball = pyvista.Icosphere(nsub=3)
