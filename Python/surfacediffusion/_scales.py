@@ -105,7 +105,7 @@ def scale_filter(
 
 
 class Spectrum(NamedTuple):
-    """The variance of data between scales."""
+    """The variance of data between successive wavelengths, by filters of :func:`scale_filter`."""
 
     wavelength: NDArray[np.float64]  #: (k,), ascending, in coordinates
     #: (k + 1,) or (k + 1, columns): below the first wavelength, between each and the next, above the last

@@ -9,5 +9,5 @@ folder=$PWD/build-comparisons
 PYTHON=${PYTHON:-python3}
 [ -x "$folder/bin/pip" ] || "$PYTHON" -m venv --clear "$folder"
 "$folder/bin/pip" install --quiet ".[io,cli]" scipy nilearn==0.14.1 \
-  brainsmash==0.11.0 brainspace==0.3.0 neuromodes==0.1.0
+  brainsmash==0.11.0 brainspace==0.3.0 neuromodes==0.1.0 gcm-filters==0.5.1
 exec "$folder/bin/python" Testing/Comparisons/compare_fields.py "$@"
