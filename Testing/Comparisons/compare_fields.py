@@ -146,9 +146,9 @@ LARGEST = {"SurfaceDiffusion": 6, "brainsmash": 3, "Moran": 4, "neuromodes": 6}
 KINDS = {
     "FWHM 60": lambda surface, n, seed: sd.random_field(surface, n, fwhm=60.0, seed=seed),
     "Matern, nu = 1, range 80": lambda surface, n, seed: sd.random_field(surface, n, range=80.0, seed=seed),
-    "FWHM 80, 20 and noise": lambda surface, n, seed: (
+    "FWHM 80, 35 and noise": lambda surface, n, seed: (
         sd.random_field(surface, n, fwhm=80.0, seed=seed)
-        + 0.7 * sd.random_field(surface, n, fwhm=20.0, seed=seed + 500)
+        + 0.7 * sd.random_field(surface, n, fwhm=35.0, seed=seed + 500)
         + 0.4 * np.random.default_rng(seed).normal(size=(surface.n_points, n))),
 }
 
