@@ -32,7 +32,8 @@
  * J. Numer. Anal. 14, 1977). It is L-stable and solves two systems with one matrix per step. For an
  * error of 1e-3 it takes 3 to 4 steps; FirstOrder, backward Euler as in (8) and (14), takes about
  * 100. Backward Euler keeps the bounds of the data on Delaunay meshes at any time step, SDIRK2 only
- * at small time steps.
+ * at small time steps. One FirstOrder step of 2/k^2 is the implicit filter by scale of order 1,
+ * (1 - 2/k^2 Laplace) u = f, which leaves a third of waves of the wave number k.
  *
  * The energy in the history is 1/2 int (g1 (grad u . e1)^2 + g2 (grad u . e2)^2) + lambda/2
  * int chi (u - f)^2, summed over the components, in (units of the array)^2.

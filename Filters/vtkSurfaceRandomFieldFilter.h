@@ -26,7 +26,8 @@
  *
  * Random numbers are a hash of RandomSeed, the number of the field, and the point's global id or,
  * without global ids, its coordinates: the fields do not depend on the numbering of the points, the
- * number of threads, or pieces, but for the tolerance of the solves, 1e-10.
+ * number of threads, or pieces, but for the tolerance of the solves, 1e-10. Surfaces and blocks with
+ * the same ids or coordinates have the same fields: they need different seeds.
  *
  * Input array 1 (points or cells) is a mask: triangles with a nonzero point or cell take no part,
  * and the surface ends there. Points that no triangle uses get NaN. A warning reports widths below
@@ -92,8 +93,8 @@ public:
   SURFACEDIFFUSION_PROPERTY(RandomSeed, int);
 
   /**
-   * On (default): the variance is 1 at every point. Off: the standard deviation on the plane is
-   * divided by, see above.
+   * On (default): the variance is 1 at every point. Off: fields are divided by the standard
+   * deviation on the plane, see above.
    */
   SURFACEDIFFUSION_SWITCH(Normalize);
 

@@ -218,6 +218,7 @@ void ClearOnFailure(Run& run, Settings& settings, const Work& work)
 void ModelRun::Update(
   const nb::list& list, const nb::dict& settings, const nb::object& progress, bool history)
 {
+  const UseGuard guard(this->InUse);
   std::vector<const InputFields*> blocks;
   for (const nb::handle& block : list)
   {
@@ -262,6 +263,7 @@ void ModelRun::Update(
 
 void ModelRun::Seek(int step, const nb::object& progress)
 {
+  const UseGuard guard(this->InUse);
   this->Step = step < 0 ? this->NumberOfSteps() : step;
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
@@ -362,6 +364,7 @@ template <typename RunType, typename SettingsType>
 void SingleRun<RunType, SettingsType>::Update(
   const InputFields& input, const nb::dict& values, const nb::object& progress)
 {
+  const UseGuard guard(this->InUse);
   SettingsType settings;
   AssignSettings(settings, values);
   Problems problems;

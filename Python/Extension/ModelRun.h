@@ -57,6 +57,7 @@ private:
   std::shared_ptr<RunSettings> Settings;
   SurfaceDiffusion::Run Model{ PythonThreads::Instance() };
   int Step = 0;
+  bool InUse = false;
 };
 
 /// A computation on one surface without time steps, with its settings: a line field, denoised
@@ -81,6 +82,7 @@ public:
 
 private:
   RunType Model{ PythonThreads::Instance() };
+  bool InUse = false;
 };
 
 using DirectionRun = SingleRun<DirectionFieldRun, DirectionFieldSettings>;

@@ -174,6 +174,7 @@ NB_MODULE(_core, m)
       "progress"_a.none())
     .def("areas", &SurfaceFields::Areas)
     .def("number_of_vertices", &SurfaceFields::NumberOfVertices)
+    .def("length_unit", &SurfaceFields::LengthUnit)
     .def("mean_edge_length", &SurfaceFields::MeanEdgeLength);
 
   nb::class_<SurfaceDistances>(m, "Distances")

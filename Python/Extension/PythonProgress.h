@@ -38,6 +38,28 @@ void WithValueErrors(const Work& work)
   }
 }
 
+/// Keeps an object from being used by the callable that reports the progress of its own work. Other
+/// threads wait for the lock of the surface.
+class UseGuard
+{
+public:
+  explicit UseGuard(bool& inUse)
+    : InUse(inUse)
+  {
+    if (inUse)
+    {
+      throw std::runtime_error("progress uses the surface whose work it reports; allowed: others");
+    }
+    inUse = true;
+  }
+  ~UseGuard() { this->InUse = false; }
+  UseGuard(const UseGuard&) = delete;
+  UseGuard& operator=(const UseGuard&) = delete;
+
+private:
+  bool& InUse;
+};
+
 /// Reports progress to Python and obeys Ctrl-C. At most every 50 ms it takes the interpreter's
 /// lock, handles signals, and calls a Python callable with the fraction done. An exception of
 /// either, such as KeyboardInterrupt, ends the work.

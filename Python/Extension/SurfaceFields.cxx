@@ -10,6 +10,7 @@
 #include "Threads.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -32,6 +33,7 @@ SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
 
 void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::object& progress)
 {
+  const UseGuard guard(this->InUse);
   const std::tuple<double, int, bool> wanted{ width, nu, unitVariance };
   if (this->Field && this->Prepared == wanted)
   {
@@ -58,6 +60,7 @@ void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::o
 double SurfaceFields::Draw(
   std::int64_t seed, std::int64_t first, const ColumnArray& fields, const nb::object& progress)
 {
+  const UseGuard guard(this->InUse);
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
@@ -118,8 +121,7 @@ nb::object SurfaceFields::Areas() const
   std::vector<double> areas(static_cast<std::size_t>(this->Built->Points().rows()), 0.0);
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
-    areas[static_cast<std::size_t>(mesh.InputVertex()[i])] =
-      mesh.ControlAreas()[i] * mesh.LengthUnit() * mesh.LengthUnit();
+    areas[static_cast<std::size_t>(mesh.InputVertex()[i])] = mesh.ControlAreas()[i];
   }
   return NewArray(std::move(areas));
 }
@@ -127,8 +129,15 @@ nb::object SurfaceFields::Areas() const
 double SurfaceFields::MeanEdgeLength() const
 {
   const TriangleMesh& mesh = this->Built->InputMesh();
+  double drawn = 0.0;
+  for (const TriangleMesh::Shape& shape : mesh.Shapes())
+  {
+    drawn += shape.Area();
+  }
   const double edges = mesh.NumberOfEdges();
-  return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges : 1.0;
+  return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges *
+      std::sqrt(mesh.ControlAreas().sum() / drawn)
+                     : 1.0;
 }
 
 void SurfaceFields::Write(

@@ -36,9 +36,10 @@ public:
     const nanobind::object& progress) const;
 
   Index NumberOfVertices() const { return this->Built->Mesh().NumberOfVertices(); }
-  /// The control areas (n); 0 at points that take no part.
+  /// The control areas (n) in LengthUnit()^2; 0 at points that take no part.
   nanobind::object Areas() const;
-  /// h, the mean length of the edges.
+  double LengthUnit() const { return this->Built->Mesh().LengthUnit(); }
+  /// h, the mean length of the edges, as long as the given areas of points say.
   double MeanEdgeLength() const;
 
 private:
@@ -46,6 +47,7 @@ private:
 
   std::unique_ptr<const Surface> Built;
   std::unique_ptr<RandomField> Field;
+  bool InUse = false;
   std::tuple<double, int, bool> Prepared; ///< of Field
 };
 

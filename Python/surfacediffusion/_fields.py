@@ -24,7 +24,8 @@ __all__ = ["Surrogates", "random_field", "surrogates"]
 #: Fields with which the variances of scales are measured.
 _SAMPLE = 64
 
-#: The numbers of the fields of one width begin at a multiple of this.
+#: The numbers of the fields of one width of surrogates begin at a multiple of this, above those of
+#: random_field(), and those of the sample halfway to the next multiple.
 _STREAM = 1 << 40
 
 
@@ -61,15 +62,16 @@ def random_field(
     n : int, 1 or more, default 1
         The number of fields.
     fwhm : float, above 0, in coordinates
-        Full width at half maximum of the kernel. Below two edges the mesh does not resolve it, and a
-        warning says so.
+        Full width at half maximum of the kernel. One of `fwhm` and `range` is given. Below two edges the
+        mesh does not resolve it, and a warning says so.
     range : float, above 0, in coordinates
         The range of Matern's correlation, in place of `fwhm`.
     nu : {1, 3}, default 1
         The smoothness of Matern's correlation: fields have nu - 1 derivatives.
-    seed : int, default 0
+    seed : int of 64 bits, default 0
         Of the random numbers, which are functions of the seed, the number of the field, and the
-        coordinates of the point: the same fields for any numbering of the points.
+        coordinates of the point: the same fields for any numbering of the points. Surfaces with the same
+        coordinates, such as both hemispheres' spheres, need different seeds for different fields.
     first : int, 0 or more, default 0
         The number of the first field: fields 10 to 19 are ``random_field(surface, 10, first=10)``, or
         columns of more, bit by bit.
@@ -87,7 +89,7 @@ def random_field(
     Returns
     -------
     ndarray, shape (points, n)
-        NaN at points that are left out.
+        NaN at points that are left out, and at those without a face that is left.
 
     Notes
     -----
@@ -118,7 +120,7 @@ def random_field(
         raise ValueError(f"fwhm and range are {found}; allowed: one of them")
     (name, width), = widths
     check_length(name, width)
-    if isinstance(nu, bool) or nu not in (1, 3):
+    if isinstance(nu, bool) or not isinstance(nu, (int, np.integer)) or nu not in (1, 3):
         raise ValueError(f"nu is {shorten(nu)}; allowed: 1 and 3")
     if fwhm is not None and nu != 1:
         raise ValueError(f"nu is {shorten(nu)}; allowed: 1, or range in place of fwhm")
@@ -159,8 +161,8 @@ def surrogates(
     nothing else in common with it. The correlations of another map with them are the distribution
     without a relation, which neighbours that are alike make wider than that of independent values.
 
-    The normal scores of the map are taken as a sum of random fields of widths 2 h, 4 h, ... up to the
-    size of the surface, and of values without correlation. The variances of these are found such that,
+    The normal scores of the map are taken as a sum of random fields of widths 2 h, 4 h, ... up to
+    three times the root of the area, and of values without correlation. The variances of these are found such that,
     on average, the sum has the variances of the map between scales, as :func:`spectrum` measures them,
     by nonnegative least squares. A surrogate is such a sum, whose values are replaced by those of the
     map by their ranks.
@@ -185,13 +187,16 @@ def surrogates(
     Returns
     -------
     Surrogates
-        `values` (points, n), and the model: `fwhm` (k,) and `variances` (k,).
+        `values` (points, n), and the model: `fwhm` (k,) and `variances` (k,). Points without a face that
+        is left, of points with known values, are NaN, too, and their values are not in the surrogates.
 
     Notes
     -----
     In simulations with 500 pairs of independent maps on a sphere (Gaussian of FWHM 0.3 and 0.6 of the
     radius, Matern of ranges 0.4 and 1.2, and a mixture with noise), tests at 5 % by 200 surrogates have
-    found 3.6 to 4.2 % of the pairs to be related, and those with the true model 3.4 to 4.6 %.
+    found 3.6 to 4.2 % of the pairs to be related, and those with the true model 3.4 to 4.6 %. Maps that
+    are as smooth as the surface is large have few independent parts, and no model can be found well: on a
+    cap of a sphere whose root of the area is 2 radii, 9 to 10 % at FWHM 1 and 1.6 of the radius.
 
     The surface stays as it is and no matrix of distances is made: time and memory grow with the number
     of points.
@@ -221,6 +226,8 @@ def surrogates(
         raise ValueError(f"values has shape {np.shape(values)}; allowed: ({surface.n_points},), one map")
     given = array[:, 0].astype(np.float64)
     check_finite("values", given)
+    if np.isnan(given).all():
+        raise ValueError("values has no known value: it is NaN everywhere; allowed: maps with known values")
     _check_count("n", n, 1)
     _check_seed(seed)
     fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), given))
@@ -237,7 +244,8 @@ def surrogates(
         ranks = np.argsort(np.argsort(result[known, k], kind="stable"), kind="stable")
         result[known, k] = ordered[ranks]
     result[~known] = np.nan
-    return Surrogates(result, np.array([*model.widths[:-1], 0.0]), variances / variances.sum())
+    shares = variances * model.totals
+    return Surrogates(result, np.array([*model.widths[:-1], 0.0]), shares / shares.sum())
 
 
 class _Model:
@@ -245,26 +253,30 @@ class _Model:
 
     def __init__(self, fields: Any, areas: NDArray[np.float64], seed: int) -> None:
         self._fields, self._areas, self._seed = fields, areas, seed
-        h, size = fields.mean_edge_length(), math.sqrt(areas.sum())
+        h = fields.mean_edge_length()
+        size = math.sqrt(areas.sum()) * fields.length_unit()
         self.widths = [2.0 * h]
-        while 2.0 * self.widths[-1] < 0.75 * size:
+        while 2.0 * self.widths[-1] < 3.0 * size:  # the trends of maps that are smoother than the surface
             self.widths.append(2.0 * self.widths[-1])
         self._wavelengths = [3.0 * h]
         while self._wavelengths[-1] < size:
             self._wavelengths.append(2.0 * self._wavelengths[-1])
         self.widths.append(1e-2 * h)
+        self.totals = np.ones(len(self.widths))
 
     def fit(self, scores: NDArray[np.float64], reporter: ProgressReporter) -> NDArray[np.float64]:
         """The variances of the fields."""
         columns = []
         for k in np.arange(len(self.widths)):
-            sample = self._draw(k, 0, np.empty((len(self._areas), _SAMPLE)), reporter.callable)
+            sample = self._draw(k, _STREAM // 2, np.empty((len(self._areas), _SAMPLE)), reporter.callable)
             columns.append(self._bands(sample).mean(axis=1))
             reporter.finish_part()
         wanted = self._bands(scores[:, None])[:, 0]
-        # Relative errors count, down to a millionth of the variance.
+        # Errors count relative to the root of the variance of their band.
         weights = 1.0 / np.sqrt(np.maximum(wanted, 1e-6 * wanted.sum()))
-        return solve_nonnegative(np.column_stack(columns) * weights[:, None], wanted * weights)
+        bands = np.column_stack(columns)
+        self.totals = bands.sum(axis=0)  # of fields of variance 1, without their mean
+        return solve_nonnegative(bands * weights[:, None], wanted * weights)
 
     def draw(
         self, variances: NDArray[np.float64], n: int, reporter: ProgressReporter
@@ -285,7 +297,7 @@ class _Model:
     def _draw(
         self, k: int, first: int, result: NDArray[np.float64], progress: Callable[[float], Any] | None
     ) -> NDArray[np.float64]:
-        _draw(self._fields, self.widths[k], 0, self._seed, int(k) * _STREAM + first, True, result, progress)
+        _draw(self._fields, self.widths[k], 0, self._seed, (int(k) + 1) * _STREAM + first, True, result, progress)
         return result
 
     def _bands(self, maps: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -416,8 +428,11 @@ def check_finite(name: str, values: NDArray[np.float64]) -> None:
 
 
 def warn_of_edges(name: str, length: float, fields: Any) -> None:
-    """Below two edges the mesh decides."""
+    """Below two edges the mesh decides. Beyond a million, or a millionth, nothing is left of one."""
     h = fields.mean_edge_length()
+    if not 1e-6 * h <= length <= 1e6 * h:
+        raise ValueError(f"{name} is {length:g}; allowed: {1e-6 * h:g} to {1e6 * h:g}, a millionth to a "
+                         "million of the mean length of edges")
     if length < 2.0 * h:
         warn([f"{name} is {length:g}, below two mean edges of {h:g}, which the mesh does not resolve"])
 
@@ -429,8 +444,9 @@ def warn_of_solves(residual: float) -> None:
 
 def _check_count(name: str, value: Any, smallest: int) -> None:
     if isinstance(value, (bool, np.bool_)) or not isinstance(
-            value, (int, np.integer)) or not smallest <= value < _STREAM:
-        raise ValueError(f"{name} is {shorten(value)}; allowed: whole numbers, {smallest} or more")
+            value, (int, np.integer)) or not smallest <= value < _STREAM // 2:
+        raise ValueError(f"{name} is {shorten(value)}; allowed: whole numbers, {smallest} or more, below "
+                         "2^39")
 
 
 def _check_seed(seed: Any) -> None:

@@ -63,7 +63,7 @@ def scale_filter(
     Returns
     -------
     ndarray of float64, the shape of values
-        NaN at points that are left out.
+        NaN at points that are left out, and at those without a face that is left.
 
     References
     ----------
@@ -82,6 +82,8 @@ def scale_filter(
     """
     surface = as_surface(surface)
     data, result = _as_data(values, surface)
+    if isinstance(wavelength, (bool, np.bool_)):
+        raise ValueError(f"wavelength is {wavelength}; allowed: finite numbers above 0")
     lengths = np.asarray(as_numbers("wavelength", wavelength), dtype=np.float64)
     if lengths.shape not in ((), (surface.n_points,)):
         raise ValueError(f"wavelength has shape {lengths.shape}; allowed: a number, or "
@@ -179,5 +181,5 @@ def _as_data(values: Any, surface: Surface) -> tuple[NDArray[np.float64], NDArra
 
 
 def _check_order(order: Any) -> None:
-    if isinstance(order, bool) or order not in (1, 2):
+    if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or order not in (1, 2):
         raise ValueError(f"order is {shorten(order)}; allowed: 1 and 2")

@@ -114,13 +114,46 @@ class RandomField(unittest.TestCase):
                 ("nu is 2; allowed: 1 and 3", {"range": 9.0, "nu": 2}),
                 ("nu is 3; allowed: 1, or range", {"fwhm": 9.0, "nu": 3}),
                 ("n is 0; allowed: whole numbers, 1 or more", {"fwhm": 9.0, "n": 0}),
-                ("first is -1; allowed: whole numbers, 0 or more", {"fwhm": 9.0, "first": -1}),
+                ("first is -1; allowed: whole numbers, 0 or more, below 2\\^39", {"fwhm": 9.0, "first": -1}),
                 ("seed is 0.5; allowed: whole numbers", {"fwhm": 9.0, "seed": 0.5}),
                 ("normalize is 1; allowed: True or False", {"fwhm": 9.0, "normalize": 1}),
                 ("mask and roi are both given", {"fwhm": 9.0, "mask": CAP, "roi": CAP}),
                 ("no triangle of the surface is left", {"fwhm": 9.0, "mask": CAP | True})):
             with self.assertRaisesRegex(ValueError, pattern):
                 sd.random_field(BALL, **keywords)
+
+    def test_a_callable_cannot_use_the_surface_whose_work_it_reports(self):
+        surface = sd.sphere(6)
+        with self.assertRaisesRegex(RuntimeError, "progress uses the surface whose work it reports"):
+            sd.random_field(surface, 300, fwhm=0.2,
+                            progress=lambda _: sd.random_field(surface, 1, fwhm=0.3))
+        values = surface.points[:, 2]
+        with self.assertRaisesRegex(RuntimeError, "progress uses the surface whose work it reports"):
+            sd.heat(surface, values, fwhm=0.2, number_of_time_steps=100,
+                    progress=lambda _: sd.heat(surface, values, fwhm=0.3))
+        self.assertTrue(np.isfinite(sd.heat(surface, values, fwhm=0.3)).all())
+        self.assertTrue(np.isfinite(sd.random_field(surface, 1, fwhm=0.3)).all())
+
+    def test_parts_without_area_and_smaller_than_the_width_have_variance_one(self):
+        for height, edge in ((1e-6, 1.0), (1e-5, 1e-5), (1e-2, 1e-2)):
+            triangle = np.array([[0, 0, 0], [edge, 0, 0], [0.5 * edge, height, 0]]) + [300.0, 0.0, 0.0]
+            points = np.vstack([BALL.points, triangle])
+            faces = np.vstack([BALL.faces, np.arange(3) + BALL.n_points])
+            for keywords in ({"fwhm": 30.0}, {"range": 60.0}):
+                fields, _ = warnings_of(sd.random_field, (points, faces), 200, **keywords)
+                self.assertAlmostEqual(np.sqrt(np.mean(fields[:-3]**2)), 1.0, delta=0.05)
+                found = np.sqrt(np.mean(fields[-3:]**2))
+                self.assertTrue(0.7 < found < 1.4, (height, edge, keywords, found))
+        wide = sd.random_field(BALL, 300, fwhm=1e6)
+        self.assertAlmostEqual(np.sqrt(np.mean(wide**2)), 1.0, delta=0.15)
+
+    def test_given_areas_are_those_of_edges_and_widths(self):
+        inflated = sd.Surface(BALL.points, BALL.faces, np.array(BALL.vertex_areas) * 1e4)
+        field = sd.random_field(inflated, 1, fwhm=3000.0, seed=2)[:, 0]
+        found = sd.surrogates(inflated, field, 3)
+        self.assertLess(found.variances[-1], 0.1)
+        with self.assertRaisesRegex(ValueError, "fwhm is 1e-07; allowed: "):
+            sd.random_field(BALL, fwhm=1e-7)
 
     def test_a_callable_ends_the_work(self):
         fractions = []
@@ -177,6 +210,32 @@ class Surrogates(unittest.TestCase):
         self.assertLessEqual(hits, 20)
         self.assertGreaterEqual(hits, 2)
 
+    def test_maps_of_few_independent_parts_have_the_documented_share(self):
+        surface = sd.sphere(2, RADIUS)
+        mask = surface.points[:, 2] < 20.0
+        first = sd.random_field(surface, 200, range=500.0, nu=3, mask=mask, seed=1)
+        second = sd.random_field(surface, 200, range=500.0, nu=3, mask=mask, seed=2)
+        known = np.isfinite(first[:, 0])
+        hits = 0
+        for k in range(200):
+            null = sd.surrogates(surface, first[:, k], 99, seed=1000 + k, mask=mask).values[known]
+            found = abs(np.corrcoef(first[known, k], second[known, k])[0, 1])
+            hits += (1 + (np.abs(np.corrcoef(null.T, second[known, k])[-1, :-1]) >= found).sum()) / 100 <= 0.05
+        self.assertLessEqual(hits, 30)  # 9 % of 200, and three standard deviations
+
+    def test_have_nothing_in_common_with_fields_of_the_same_seed(self):
+        for keywords in ({"fwhm": 15.0}, {"range": 20.0}):
+            fields = sd.random_field(BALL, 3, **keywords)
+            for k in range(3):
+                found = sd.surrogates(BALL, fields[:, k], 5).values
+                others = np.corrcoef(found.T, fields[:, k])[-1, :-1]
+                self.assertLess(np.abs(others).max(), 0.3)
+
+    def test_shares_are_those_of_the_variance(self):
+        noise = np.random.default_rng(1).normal(size=BALL.n_points)
+        height = BALL.points[:, 2] / BALL.points[:, 2].std()
+        self.assertAlmostEqual(sd.surrogates(BALL, height + noise, 1).variances[-1], 0.5, delta=0.07)
+
     def test_what_is_not_allowed_is_named(self):
         values = BALL.points[:, 0]
         infinite = np.where(np.arange(BALL.n_points) == 4, np.inf, values)
@@ -185,7 +244,7 @@ class Surrogates(unittest.TestCase):
                 ("values has shape .*; allowed: \\(2562,\\), one map", (BALL.points,)),
                 ("values has shape", (values[1:],)),
                 ("values is infinite in row 4", (infinite,)),
-                ("no triangle of the surface is left", (np.full(BALL.n_points, np.nan),)),
+                ("values has no known value: it is NaN everywhere", (np.full(BALL.n_points, np.nan),)),
                 ("n is 1.5; allowed", (values, 1.5))):
             with self.assertRaisesRegex(ValueError, pattern):
                 sd.surrogates(BALL, *arguments)

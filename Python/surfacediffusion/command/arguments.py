@@ -784,7 +784,8 @@ def _random_field(commands):
     width.add_argument("--fwhm", metavar="W", type=_positive,
                        help="full width at half maximum of the kernel, in the unit of the coordinates")
     width.add_argument("--range", metavar="R", type=_positive,
-                       help="the distance at which Matern's correlation has fallen to 0.14")
+                       help="the distance at which Matern's correlation has fallen to 0.14, in the unit of the "
+                            "coordinates")
     parser.add_argument("--nu", type=int, choices=(1, 3), default=1,
                         help="the smoothness of Matern's correlation (default 1)")
     _count_and_seed(parser, "fields", 1)

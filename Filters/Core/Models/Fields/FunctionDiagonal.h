@@ -17,9 +17,9 @@ struct PoleSum
   Vector Residues; ///< c
 };
 
-/// The residues that make the sum fit g best, in the least squares of x (g - sum) over log x, and a
-/// little more near 0: as for the eigenvalues of a surface, whose number grows as x does. g falls faster than 1 / x. The poles
-/// are `count` numbers from first to last with equal ratios.
+/// The residues minimise the squared error of the sum, weighted by x + 0.03, over log x: the number
+/// of eigenvalues of a surface below x grows as x does. g falls faster than 1 / x. The poles are
+/// `count` numbers from first to last with equal ratios.
 PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count);
 
 /// The diagonal of f(s L) M^-1 with L = M^-1 K and f the sum of poles: per vertex. It is

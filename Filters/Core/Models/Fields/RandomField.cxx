@@ -68,6 +68,42 @@ FieldOperator MakeOperator(const RandomField::Settings& settings)
   return found;
 }
 
+/// Twice the total length of edges, which no distance within a component exceeds, per component.
+std::vector<double> SizesOfComponents(const TriangleMesh& mesh)
+{
+  const auto& begin = mesh.ComponentsBegin();
+  std::vector<double> sizes(static_cast<std::size_t>(mesh.NumberOfComponents()), 0.0);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto after = std::upper_bound(begin.begin(), begin.end(), mesh.TriangleVertices()(t, 0));
+    const TriangleMesh::Shape& s = mesh.Shapes()[t];
+    sizes[static_cast<std::size_t>(after - begin.begin()) - 1] +=
+      s.Length + std::hypot(s.X, s.Y) + std::hypot(s.Length - s.X, s.Y);
+  }
+  return sizes;
+}
+
+/// Since 0 <= p <= 1, and p(Y) keeps constants, the variances are between 1 over the area of the
+/// component and 1 over that of the vertex; on a component that is much smaller than the width
+/// nothing but constants is left. Round-off takes these away where the matrix is all but singular.
+void BoundVariances(const TriangleMesh& mesh, double step, Vector& variances)
+{
+  const std::vector<double> sizes = SizesOfComponents(mesh);
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const auto number = static_cast<std::size_t>(c);
+    const auto first = static_cast<Eigen::Index>(mesh.ComponentsBegin()[number]);
+    const auto end = static_cast<Eigen::Index>(mesh.ComponentsBegin()[number + 1]);
+    const double smallest = 1.0 / mesh.ControlAreas().segment(first, end - first).sum();
+    const bool isConstant = step > sizes[number] * sizes[number];
+    for (Eigen::Index i = first; i < end; ++i)
+    {
+      const double found = isConstant || !std::isfinite(variances[i]) ? smallest : variances[i];
+      variances[i] = std::max(smallest, std::min(found, 1.0 / mesh.ControlAreas()[i]));
+    }
+  }
+}
+
 /// A normal deviate by G. Box, M. Muller, Ann. Math. Stat. 29, 1958.
 double NormalRandom(std::int64_t seed, std::int64_t number, std::int64_t id)
 {
@@ -90,12 +126,10 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
   this->DeviationOnPlane = made.DeviationOnPlane;
   if (settings.HasUnitVariance)
   {
-    const Vector variances =
+    Vector variances =
       FunctionDiagonal(*this->Assembly, coefficients, made.Step, made.Squared, parallel, progress);
-    // Round-off may leave nothing of the variance of a vertex that is all but cut off.
-    this->RelativeDeviations = (variances.array() > 0.0)
-                                 .select(variances.array().max(0.0).sqrt() / made.DeviationOnPlane,
-                                   Vector::Ones(variances.size()).array());
+    BoundVariances(mesh, made.Step, variances);
+    this->RelativeDeviations = variances.cwiseSqrt() / made.DeviationOnPlane;
   }
   SolverTask task;
   task.NumberOfVertices = mesh.NumberOfVertices();
@@ -112,6 +146,7 @@ void RandomField::Draw(
   std::int64_t seed, std::int64_t first, Eigen::Ref<Values> fields, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
+  this->Operator->ForgetResiduals();
   const auto columns = static_cast<double>(fields.cols());
   for (Eigen::Index start = 0; start < fields.cols(); start += ColumnPanel)
   {

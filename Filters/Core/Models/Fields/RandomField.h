@@ -57,6 +57,7 @@ public:
   /// not needed.
   const Vector& Deviations() const { return this->RelativeDeviations; }
 
+  /// Of the last Draw(): see ResolventPolynomial.
   double MissedResidual() const { return this->Operator->MissedResidual(); }
 
 private:

@@ -43,6 +43,7 @@ public:
 
   /// The largest relative residual of solves above their tolerance; 0 if there was none.
   double MissedResidual() const { return this->Report.MissedResidual; }
+  void ForgetResiduals() { this->Report = StepReport(); }
 
 private:
   void ApplyToPanel(Values& u, const ProgressMonitor& progress);
