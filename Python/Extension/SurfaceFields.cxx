@@ -47,20 +47,30 @@ void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::o
   settings.Nu = nu;
   settings.HasUnitVariance = unitVariance;
   this->Field.reset();
+  const std::pair<double, int> covariance{ width, nu };
+  const auto known = this->Deviations.find(covariance);
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
       this->Field = std::make_unique<RandomField>(this->Built->SharedAssembler(),
         CotanWeights(mesh, PythonThreads::Instance()), settings,
-        MakeVertexIds(*this->Built, Fields()), PythonThreads::Instance(), monitor);
+        MakeVertexIds(*this->Built, Fields()),
+        unitVariance && known != this->Deviations.end() ? known->second : Vector(),
+        PythonThreads::Instance(), monitor);
     });
   this->Prepared = wanted;
+  constexpr std::size_t most = 16; // covariances, with a number per point each
+  if (unitVariance && known == this->Deviations.end() && this->Deviations.size() < most)
+  {
+    this->Deviations[covariance] = this->Field->Deviations();
+  }
 }
 
 double SurfaceFields::Draw(
   std::int64_t seed, std::int64_t first, const ColumnArray& fields, const nb::object& progress)
 {
   const UseGuard guard(this->InUse);
+  double missed = 0.0;
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
@@ -72,10 +82,11 @@ double SurfaceFields::Draw(
         Values panel(this->NumberOfVertices(), count);
         this->Field->Draw(seed, first + start, panel,
           monitor.Part(static_cast<double>(start) / all, static_cast<double>(start + count) / all));
+        missed = std::max(missed, this->Field->MissedResidual());
         this->Write(panel, start, fields);
       }
     });
-  return this->Field->MissedResidual();
+  return missed;
 }
 
 double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray& wavelengths,

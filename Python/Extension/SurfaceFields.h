@@ -5,9 +5,11 @@
 #include "Core/Models/Fields/RandomField.h"
 #include "InputData.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -48,6 +50,8 @@ private:
   std::unique_ptr<const Surface> Built;
   std::unique_ptr<RandomField> Field;
   bool InUse = false;
+  std::map<std::pair<double, int>, Vector>
+    Deviations; ///< of fields with variance 1, by width and nu
   std::tuple<double, int, bool> Prepared; ///< of Field
 };
 

@@ -24,6 +24,9 @@ __all__ = ["Surrogates", "random_field", "surrogates"]
 #: Fields with which the variances of scales are measured.
 _SAMPLE = 64
 
+#: Numbers in maps that are filtered together: 256 MB.
+_LARGEST = 1 << 25
+
 #: The numbers of the fields of one width of surrogates begin at a multiple of this, above those of
 #: random_field(), and those of the sample halfway to the next multiple.
 _STREAM = 1 << 40
@@ -266,15 +269,20 @@ class _Model:
 
     def fit(self, scores: NDArray[np.float64], reporter: ProgressReporter) -> NDArray[np.float64]:
         """The variances of the fields."""
-        columns = []
+        found, maps = [], [scores[:, None]]
         for k in np.arange(len(self.widths)):
-            sample = self._draw(k, _STREAM // 2, np.empty((len(self._areas), _SAMPLE)), reporter.callable)
-            columns.append(self._bands(sample).mean(axis=1))
+            maps.append(self._draw(k, _STREAM // 2, np.empty((len(self._areas), _SAMPLE)),
+                                   reporter.callable))
+            # Maps of several widths share the factors of the filters, as memory allows.
+            if k + 1 == len(self.widths) or len(maps) * maps[-1].size > _LARGEST:
+                found.append(self._bands(np.hstack(maps)))
+                maps = []
             reporter.finish_part()
-        wanted = self._bands(scores[:, None])[:, 0]
+        variances = np.hstack(found)
+        wanted = variances[:, 0]
         # Errors count relative to the root of the variance of their band.
         weights = 1.0 / np.sqrt(np.maximum(wanted, 1e-6 * wanted.sum()))
-        bands = np.column_stack(columns)
+        bands = variances[:, 1:].reshape(len(wanted), -1, _SAMPLE).mean(axis=2)
         self.totals = bands.sum(axis=0)  # of fields of variance 1, without their mean
         return solve_nonnegative(bands * weights[:, None], wanted * weights)
 

@@ -55,7 +55,8 @@ RandomField MakeField(const std::shared_ptr<const Assembler>& assembler,
   const RandomField::Settings& settings, const ParallelFor& parallel = SerialFor())
 {
   const TriangleMesh& mesh = assembler->Mesh();
-  return { assembler, CotanWeights(mesh), settings, Numbers(mesh.NumberOfVertices()), parallel };
+  return { assembler, CotanWeights(mesh), settings, Numbers(mesh.NumberOfVertices()), Vector(),
+    parallel };
 }
 
 Values Draw(const std::shared_ptr<const Assembler>& assembler,

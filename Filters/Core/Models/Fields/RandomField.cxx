@@ -115,16 +115,16 @@ double NormalRandom(std::int64_t seed, std::int64_t number, std::int64_t id)
 
 RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
   const CornerWeights& coefficients, const Settings& settings, std::vector<std::int64_t> ids,
-  const ParallelFor& parallel, const ProgressMonitor& progress)
+  Vector deviations, const ParallelFor& parallel, const ProgressMonitor& progress)
   : Assembly(std::move(assembler))
   , Parallel(parallel)
-  , Options(settings)
   , Ids(std::move(ids))
+  , RelativeDeviations(std::move(deviations))
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
   FieldOperator made = MakeOperator(settings);
   this->DeviationOnPlane = made.DeviationOnPlane;
-  if (settings.HasUnitVariance)
+  if (settings.HasUnitVariance && this->RelativeDeviations.size() == 0)
   {
     Vector variances =
       FunctionDiagonal(*this->Assembly, coefficients, made.Step, made.Squared, parallel, progress);

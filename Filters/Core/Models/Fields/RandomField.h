@@ -42,9 +42,10 @@ public:
   };
 
   /// ids: a number per vertex, of which its random numbers are functions. Lengths are in the units
-  /// of the mesh. Throws Aborted.
+  /// of the mesh. deviations: Deviations() of fields with these settings; no row: they are found.
+  /// Throws Aborted.
   RandomField(std::shared_ptr<const Assembler> assembler, const CornerWeights& coefficients,
-    const Settings& settings, std::vector<std::int64_t> ids,
+    const Settings& settings, std::vector<std::int64_t> ids, Vector deviations = Vector(),
     const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 
   /// Fields first, first + 1, ... of a seed as the columns of `fields`, n x count. The numbers of a
@@ -63,7 +64,6 @@ public:
 private:
   std::shared_ptr<const Assembler> Assembly;
   const ParallelFor& Parallel;
-  Settings Options;
   std::vector<std::int64_t> Ids;
   double DeviationOnPlane = 1.0;
   Vector RelativeDeviations;
