@@ -24,8 +24,8 @@ __all__ = ["Surrogates", "random_field", "surrogates"]
 #: Fields with which the variances of scales are measured.
 _SAMPLE = 64
 
-#: Numbers in maps that are filtered together: 256 MB.
-_LARGEST = 1 << 25
+#: Numbers in maps that are filtered together: 64 MB.
+_LARGEST = 1 << 23
 
 #: The numbers of the fields of one width of surrogates begin at a multiple of this, above those of
 #: random_field(), and those of the sample halfway to the next multiple.
