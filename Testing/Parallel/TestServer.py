@@ -41,7 +41,8 @@ def results(path, distribute):
     heat = FVMHeatFilter(data, InputArray=["POINTS", "noisy"], GenerateTimeSteps=1)
     heat.UpdatePipeline(4.0)
     filters = {"heat at 4": heat}
-    for name in filter_names():
+    # Random fields follow global ids, which D3 makes; TestPieces compares those of pieces.
+    for name in set(filter_names()) - {"SurfaceRandomFieldFilter"}:
         settings = dict(SETTINGS.get(name, {}))
         filters[name] = getattr(simple, name)(data)
         if "InputArray" in filters[name].ListProperties():

@@ -392,7 +392,9 @@ inline std::string ExpectPromises(
   vtkPolyDataAlgorithm* filter, vtkPolyData* input, const char* name)
 {
   vtkDataArray* const u = ResultOf(filter, name);
-  const bool mayBeInfinite = vtkSurfaceDistanceFilter::SafeDownCast(filter) != nullptr;
+  auto* const field =
+    vtkSurfaceRandomFieldFilter::SafeDownCast(filter); // NaN where nothing is drawn
+  const bool mayBeInfinite = vtkSurfaceDistanceFilter::SafeDownCast(filter) || field;
   EXPECT_TRUE(AllFinite(u) || mayBeInfinite);
   if (!u)
   {
@@ -486,16 +488,21 @@ inline std::string ExpectPromises(
     const bool isMarched = distance->GetMethod() == vtkSurfaceDistanceFilter::METHOD_EIKONAL;
     return ExpectDistances(input, filter->GetOutput(), u, isMarched);
   }
-  if (vtkSurfaceRandomFieldFilter::SafeDownCast(filter))
+  if (field)
   {
-    // Six standard deviations are exceeded in 2e-9 of all numbers, those beside boundaries in more.
+    // Without Normalize, the variance grows where the surface is narrower than the range. Twenty
+    // standard deviations are never exceeded.
     double largest = 0.0;
+    vtkIdType drawn = 0;
     for (vtkIdType i = 0; i < u->GetNumberOfValues(); ++i)
     {
-      EXPECT_FALSE(std::isinf(u->GetVariantValue(i).ToDouble()));
-      largest = std::max(largest, std::abs(u->GetVariantValue(i).ToDouble()));
+      const double value = u->GetVariantValue(i).ToDouble();
+      EXPECT_FALSE(std::isinf(value));
+      drawn += !std::isnan(value);
+      largest = std::max(largest, std::isnan(value) ? 0.0 : std::abs(value));
     }
-    EXPECT_LT(largest, 20.0);
+    EXPECT_TRUE(largest < 20.0 || !field->GetNormalize()) << largest;
+    EXPECT_TRUE(largest > 0.0 || drawn == 0);
     return "at most " + std::to_string(largest);
   }
   if (vtkSurfaceDerivativesFilter::SafeDownCast(filter))

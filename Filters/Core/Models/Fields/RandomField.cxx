@@ -68,6 +68,17 @@ FieldOperator MakeOperator(const RandomField::Settings& settings)
   return found;
 }
 
+/// Below a thousandth of an edge a field is white noise, and above a million times the size of the
+/// surface a constant. Their widths within these bounds have squares that are no zero and finite.
+RandomField::Settings WithinBounds(RandomField::Settings settings, double h, double size)
+{
+  for (double* const width : { &settings.Width, &settings.Range })
+  {
+    *width = std::max(1e-3 * h, std::min(*width, 1e6 * std::max(size, h)));
+  }
+  return settings;
+}
+
 /// Twice the total length of edges, which no distance within a component exceeds, per component.
 std::vector<double> SizesOfComponents(const TriangleMesh& mesh)
 {
@@ -122,7 +133,9 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
   , RelativeDeviations(std::move(deviations))
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  FieldOperator made = MakeOperator(settings);
+  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
+  const double size = std::sqrt(mesh.ControlAreas().sum());
+  FieldOperator made = MakeOperator(WithinBounds(settings, h, size));
   this->DeviationOnPlane = made.DeviationOnPlane;
   if (settings.HasUnitVariance && this->RelativeDeviations.size() == 0)
   {
@@ -133,7 +146,6 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
   }
   SolverTask task;
   task.NumberOfVertices = mesh.NumberOfVertices();
-  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
   task.DiffusionNumber = made.Step / (h * h);
   // As if for one panel: the same solver for any number of fields.
   task.NumberOfColumns = ColumnPanel;
