@@ -165,10 +165,10 @@ def surrogates(
     without a relation, which neighbours that are alike make wider than that of independent values.
 
     The normal scores of the map are taken as a sum of random fields of widths 2 h, 4 h, ... up to
-    three times the root of the area, and of values without correlation. The variances of these are found such that,
-    on average, the sum has the variances of the map between scales, as :func:`spectrum` measures them,
-    by nonnegative least squares. A surrogate is such a sum, whose values are replaced by those of the
-    map by their ranks.
+    three times the root of the area, and of values without correlation. The variances of these are
+    found such that, on average, the sum has the variances of the map between scales, as
+    :func:`spectrum` measures them, by nonnegative least squares. A surrogate is such a sum, whose
+    values are replaced by those of the map by their ranks.
 
     Parameters
     ----------

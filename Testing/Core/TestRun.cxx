@@ -28,6 +28,22 @@ using Testing::Alone;
 using Testing::RunInput;
 using Testing::StateOf;
 
+namespace
+{
+
+RunInput NoisyCap(int level)
+{
+  RunInput input(Testing::Icosphere(level));
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    input.Data.Data.Values(i, 0) =
+      (input.Vertices(i, 2) > 0.5 ? 1.0 : 0.0) + 0.2 * (2.0 * UniformRandom(3, 0, i) - 1.0);
+  }
+  return input;
+}
+
+} // namespace
+
 TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 {
   // u = z is an eigenfunction of the Laplace-Beltrami operator of the unit sphere: -div grad z = 2
@@ -48,12 +64,7 @@ TEST(Run, SmoothsALinearFunctionOnASphereAtTheFirstEigenvalue)
 
 TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
 {
-  RunInput input(Testing::Icosphere(3));
-  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
-  {
-    input.Data.Data.Values(i, 0) =
-      (input.Vertices(i, 2) > 0.5 ? 1.0 : 0.0) + 0.2 * (2.0 * UniformRandom(3, 0, i) - 1.0);
-  }
+  RunInput input = NoisyCap(3);
   TotalVariationSettings settings;
   settings.AutomaticFidelity = true;
   settings.NoiseLevel = 0.1;
@@ -83,12 +94,7 @@ TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
 // The weight that leaves the noise after 4 steps is not that of 8.
 TEST(Run, AutomaticFidelityIsFoundAgainForAnotherNumberOfSteps)
 {
-  RunInput input(Testing::Icosphere(2));
-  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
-  {
-    input.Data.Data.Values(i, 0) =
-      (input.Vertices(i, 2) > 0.5 ? 1.0 : 0.0) + 0.2 * (2.0 * UniformRandom(3, 0, i) - 1.0);
-  }
+  RunInput input = NoisyCap(2);
   TotalVariationSettings settings;
   settings.AutomaticFidelity = true;
   settings.NoiseLevel = 0.1;

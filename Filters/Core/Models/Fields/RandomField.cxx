@@ -155,35 +155,28 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
 }
 
 void RandomField::Draw(
-  std::int64_t seed, std::int64_t first, Eigen::Ref<Values> fields, const ProgressMonitor& progress)
+  std::int64_t seed, std::int64_t first, Values& fields, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      const double deviation = 1.0 / std::sqrt(mesh.ControlAreas()[i]);
+      for (Eigen::Index k = 0; k < fields.cols(); ++k)
+      {
+        fields(i, k) =
+          deviation * NormalRandom(seed, first + k, this->Ids[static_cast<std::size_t>(i)]);
+      }
+    });
   this->Operator->ForgetResiduals();
-  const auto columns = static_cast<double>(fields.cols());
-  for (Eigen::Index start = 0; start < fields.cols(); start += ColumnPanel)
-  {
-    Values u(fields.rows(), std::min<Eigen::Index>(ColumnPanel, fields.cols() - start));
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        const double deviation = 1.0 / std::sqrt(mesh.ControlAreas()[i]);
-        for (Eigen::Index k = 0; k < u.cols(); ++k)
-        {
-          u(i, k) = deviation *
-            NormalRandom(seed, first + start + k, this->Ids[static_cast<std::size_t>(i)]);
-        }
-      });
-    this->Operator->Apply(u,
-      progress.Part(
-        static_cast<double>(start) / columns, static_cast<double>(start + u.cols()) / columns));
-    const bool isScaled = this->RelativeDeviations.size() > 0;
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        const double relative = isScaled ? this->RelativeDeviations[i] : 1.0;
-        fields.row(i).segment(start, u.cols()) = u.row(i) / (relative * this->DeviationOnPlane);
-      });
-  }
+  this->Operator->Apply(fields, progress);
+  const bool isScaled = this->RelativeDeviations.size() > 0;
+  ForEach(this->Parallel, mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      const double relative = isScaled ? this->RelativeDeviations[i] : 1.0;
+      fields.row(i) /= relative * this->DeviationOnPlane;
+    });
 }
 
 } // namespace SurfaceDiffusion

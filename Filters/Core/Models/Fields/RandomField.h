@@ -51,7 +51,7 @@ public:
   /// Fields first, first + 1, ... of a seed as the columns of `fields`, n x count. The numbers of a
   /// field depend on the seed and on its own number, not on which others are drawn. Throws
   /// NotConverged and Aborted.
-  void Draw(std::int64_t seed, std::int64_t first, Eigen::Ref<Values> fields,
+  void Draw(std::int64_t seed, std::int64_t first, Values& fields,
     const ProgressMonitor& progress = ProgressMonitor());
 
   /// The standard deviations before the division, relative to that on the plane; no row if they are
