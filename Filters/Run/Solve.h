@@ -13,6 +13,7 @@
 #include "Run/InterpolationSettings.h"
 #include "Run/MumfordShahSettings.h"
 #include "Run/RandomFieldRun.h"
+#include "Run/ReliefRun.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/TensorDiffusionSettings.h"
 #include "Run/TextureSettings.h"
@@ -74,11 +75,13 @@ inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<C
   { "denoise_mesh", &MakeDefaults<DenoisingRunSettings> },
   { "derivatives", &MakeDefaults<DerivativesSettings> },
   { "direction_field", &MakeDefaults<DirectionFieldSettings> },
+  { "distance", &MakeDefaults<DistanceSettings> },
   { "harmonic_map", &MakeDefaults<HarmonicMapSettings> }, { "heat", &MakeDefaults<HeatSettings> },
   { "intrinsic_tv", &MakeDefaults<TotalVariationSettings> },
   { "mumford_shah", &MakeDefaults<MumfordShahSettings> },
   { "interpolate", &MakeDefaults<InterpolationSettings> },
-  { "segment", &MakeDefaults<SegmentationSettings> },
+  { "random_field", &MakeDefaults<RandomFieldSettings> },
+  { "relief", &MakeDefaults<ReliefSettings> }, { "segment", &MakeDefaults<SegmentationSettings> },
   { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings> },
   { "turing_texture", &MakeDefaults<TextureSettings> } };
 

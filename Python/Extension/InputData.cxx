@@ -64,6 +64,12 @@ std::vector<char> ReadFlags(const std::optional<FlagArray>& array)
                : std::vector<char>();
 }
 
+std::vector<double> ReadNumbers(const std::optional<FactorArray>& array)
+{
+  return array ? std::vector<double>(array->data(), array->data() + array->size())
+               : std::vector<double>();
+}
+
 /// The rows of an array that the triangles of the surface belong to.
 template <typename Matrix>
 Matrix ReadOnTriangles(const InputSurface& surface, const DoubleArray& array)
@@ -133,6 +139,28 @@ InputSurface::InputSurface(
     this->TriangleRows.data(), sizeof(Index) * static_cast<std::size_t>(this->TriangleRows.size()));
 }
 
+InputSurface::InputSurface(const DoubleArray& points, const LongArray& triangles,
+  const LongArray& faces, std::size_t numberOfFaces, const std::optional<FlagArray>& hidden)
+  : Coordinates(
+      Eigen::Map<const Points>(points.data(), static_cast<Eigen::Index>(points.shape(0)), 3))
+  , Faces(faces.data(), faces.data() + faces.size())
+  , FaceCount(numberOfFaces)
+  , Hidden(ReadFlags(hidden))
+{
+  RequireFiniteCoordinates(this->Coordinates);
+  const auto count = static_cast<Eigen::Index>(triangles.size() / 3);
+  this->TriangleRows = Eigen::Map<const Eigen::Matrix<std::int64_t, -1, 3, Eigen::RowMajor>>(
+    triangles.data(), count, 3)
+                         .cast<Index>();
+  const auto add = [this](const void* data, std::size_t size)
+  { this->Contents.AddBytes(data, size, PythonThreads::Instance()); };
+  add(points.data(), points.nbytes());
+  add(triangles.data(), triangles.nbytes());
+  add(faces.data(), faces.nbytes());
+  add(this->Hidden.data(), this->Hidden.size());
+  this->Contents.AddNumber(std::uint64_t{ numberOfFaces });
+}
+
 void InputSurface::SetAreaFactors(const FactorArray& factors)
 {
   this->AreaFactors.assign(factors.data(), factors.data() + factors.size());
@@ -142,10 +170,15 @@ void InputSurface::SetAreaFactors(const FactorArray& factors)
 
 SurfaceArrays InputSurface::Read(const Located<std::optional<FlagArray>>& excluded) const
 {
-  SurfaceArrays arrays{ this->Coordinates, this->TriangleRows, {}, this->AreaFactors };
+  SurfaceArrays arrays{ this->Coordinates, this->TriangleRows, this->Hidden, this->AreaFactors };
   if (!excluded.OnCells)
   {
-    arrays.Excluded = ReadFlags(excluded.Values);
+    const std::vector<char> masked = ReadFlags(excluded.Values);
+    arrays.Excluded.resize(std::max(masked.size(), this->Hidden.size()), 0);
+    for (std::size_t i = 0; i < masked.size(); ++i)
+    {
+      arrays.Excluded[i] = arrays.Excluded[i] != 0 || masked[i] != 0;
+    }
     return arrays;
   }
   for (Index t = 0; excluded.Values && t < static_cast<Index>(this->TriangleRows.rows()); ++t)
@@ -173,11 +206,21 @@ FieldSummary InputFields::Summarize() const
     summary.Data = true;
     summary.DataComponents = static_cast<int>(this->Samples->Given.cols());
   }
+  summary.DataName = this->DataWord();
+  summary.Sources = this->Sources != nullptr;
+  summary.Speeds = this->Speeds.Values.has_value();
+  summary.StartTimes = this->StartTimes.has_value();
   summary.Directions = this->Directions.Values.has_value();
   summary.Fixed = this->Fixed.Values.has_value();
   summary.Rates = this->Rates.has_value();
   summary.DataAreTerms = this->DataAreTerms;
   return summary;
+}
+
+Word InputFields::DataWord() const
+{
+  return Word::Array(this->DataAreTerms ? "DataTermArray" : "InputArray",
+    this->Name.empty() ? "" : " \"" + this->Name + "\"");
 }
 
 Fields InputFields::Read() const
@@ -186,7 +229,7 @@ Fields InputFields::Read() const
   fields.Data.OnCells = this->Data.OnCells;
   if (this->Data.Values)
   {
-    fields.DataName = Word::Array(this->DataAreTerms ? "DataTermArray" : "InputArray");
+    fields.DataName = this->DataWord();
     fields.DataAreTerms = this->DataAreTerms;
     fields.DataAreBytes = this->Data.Values->dtype() == nb::dtype<std::uint8_t>();
     Values& values = fields.Data.Values;
@@ -212,6 +255,14 @@ Fields InputFields::Read() const
     fields.Missing = *this->Missing;
   }
   fields.Samples = this->Samples;
+  fields.Sources = this->Sources;
+  fields.Speeds = { ReadNumbers(this->Speeds.Values), this->Speeds.OnCells };
+  fields.StartTimes = ReadNumbers(this->StartTimes);
+  if (this->Ids)
+  {
+    fields.MakeIds = [ids = *this->Ids]
+    { return std::vector<std::int64_t>(ids.data(), ids.data() + ids.size()); };
+  }
   fields.Mask = { ReadFlags(this->Mask.Values), this->Mask.OnCells };
   fields.Fixed = { ReadFlags(this->Fixed.Values), this->Fixed.OnCells };
   fields.FidelityFactors.OnCells = this->FidelityFactors.OnCells;
@@ -237,10 +288,7 @@ Fields InputFields::Read() const
   {
     fields.Rates = ReadOnTriangles<Values>(*this->Surface, *this->Rates);
   }
-  if (const auto& given = this->FidelityFactors.Values)
-  {
-    fields.FidelityFactors.Values.assign(given->data(), given->data() + given->size());
-  }
+  fields.FidelityFactors.Values = ReadNumbers(this->FidelityFactors.Values);
   if (const auto& given = this->Seeds.Values)
   {
     fields.Seeds.Values.assign(given->data(), given->data() + given->size());
@@ -248,8 +296,8 @@ Fields InputFields::Read() const
   return fields;
 }
 
-void InputFields::SetSamples(
-  const DoubleArray& places, const DoubleArray& values, const std::optional<FactorArray>& weights)
+void InputFields::SetSamples(const DoubleArray& places, const DoubleArray& values,
+  const std::optional<FactorArray>& weights, const std::string& name)
 {
   const auto count = static_cast<Eigen::Index>(values.shape(0));
   auto samples = std::make_shared<PointSamples>();
@@ -260,7 +308,21 @@ void InputFields::SetSamples(
   {
     samples->Weights.assign(weights->data(), weights->data() + weights->size());
   }
+  samples->Name = name;
   this->Samples = std::move(samples);
+}
+
+void InputFields::SetSources(const DoubleArray& places, const LongArray& segments)
+{
+  auto sources = std::make_shared<SourceShapes>();
+  sources->Places =
+    Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.shape(0)), 3);
+  for (std::size_t k = 0; k + 1 < segments.size(); k += 2)
+  {
+    sources->Segments.push_back(
+      { static_cast<Index>(segments.data()[k]), static_cast<Index>(segments.data()[k + 1]) });
+  }
+  this->Sources = std::move(sources);
 }
 
 InputFields InputFields::Columns(int first, int count) const
@@ -293,25 +355,60 @@ Fingerprint InputFields::Version() const
   AddArray(version, this->Rates);
   AddArray(version, this->FidelityFactors.Values);
   AddArray(version, this->Seeds.Values);
+  AddArray(version, this->Speeds.Values);
+  AddArray(version, this->StartTimes);
+  AddArray(version, this->Ids);
+  const auto add = [&](const auto& numbers)
+  {
+    const auto count = static_cast<std::size_t>(numbers.size());
+    version.AddNumber(std::uint64_t{ count });
+    version.AddBytes(numbers.data(), count * sizeof(*numbers.data()), SerialFor());
+  };
   if (this->Samples)
   {
-    const auto add = [&](const auto& numbers)
-    {
-      const auto count = static_cast<std::size_t>(numbers.size());
-      version.AddNumber(std::uint64_t{ count });
-      version.AddBytes(numbers.data(), count * sizeof(double), SerialFor());
-    };
     add(this->Samples->Places);
     add(this->Samples->Given);
     add(this->Samples->Weights);
   }
+  if (this->Sources)
+  {
+    add(this->Sources->Places);
+    add(this->Sources->Segments);
+  }
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
-  for (const bool onFaces : { this->Directions.OnCells, this->Data.OnCells, this->Mask.OnCells,
-         this->Fixed.OnCells, this->FidelityFactors.OnCells, this->Seeds.OnCells })
+  for (const bool onFaces :
+    { this->Speeds.OnCells, this->Directions.OnCells, this->Data.OnCells, this->Mask.OnCells,
+      this->Fixed.OnCells, this->FidelityFactors.OnCells, this->Seeds.OnCells })
   {
     version.AddNumber(std::uint64_t{ onFaces ? 1U : 0U });
   }
   return version;
+}
+
+BlockInput InputFields::Describe(bool excludes) const
+{
+  auto excluded = this->Mask;
+  if (!excludes)
+  {
+    excluded.Values.reset();
+  }
+  BlockInput input;
+  input.Name = this->Block;
+  input.SurfaceVersion = this->Surface->Version(excluded);
+  input.FieldsVersion = this->Version();
+  input.ReadSurface = [this, excluded] { return this->Surface->Read(excluded); };
+  input.ReadFields = [this] { return this->Read(); };
+  return input;
+}
+
+std::vector<const InputFields*> ListInputs(const nb::list& inputs)
+{
+  std::vector<const InputFields*> list;
+  for (const nb::handle& input : inputs)
+  {
+    list.push_back(nb::cast<const InputFields*>(input));
+  }
+  return list;
 }
 
 } // namespace SurfaceDiffusion

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Run/DistanceSources.h"
 #include "Run/Fields.h"
 #include "Run/Fingerprint.h"
+#include "Run/Run.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -11,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -67,6 +70,10 @@ class InputSurface
 public:
   /// Polygon p has the points connectivity[offsets[p]] to connectivity[offsets[p + 1] - 1].
   InputSurface(const DoubleArray& points, const LongArray& connectivity, const LongArray& offsets);
+  /// Triangles, as rows of three points, and the face of each, below numberOfFaces: faces may have
+  /// several triangles or none. hidden: per point, nonzero for those that take no part.
+  InputSurface(const DoubleArray& points, const LongArray& triangles, const LongArray& faces,
+    std::size_t numberOfFaces, const std::optional<FlagArray>& hidden);
 
   std::size_t NumberOfPoints() const { return static_cast<std::size_t>(this->Coordinates.rows()); }
   std::size_t NumberOfFaces() const { return this->FaceCount; }
@@ -89,6 +96,7 @@ private:
   Triangles TriangleRows;
   std::vector<std::int64_t> Faces; ///< per triangle; empty if all polygons are triangles
   std::size_t FaceCount = 0;
+  std::vector<char> Hidden; ///< per point; may be empty
   std::vector<double> AreaFactors;
   Fingerprint Contents;
 };
@@ -107,18 +115,32 @@ public:
   Located<std::optional<LongArray>> Seeds; ///< labels, 0 = free
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
+  std::string Name; ///< of the data, for messages; may be empty
+  std::string Block; ///< the name of the surface among several, likewise
+
   std::shared_ptr<const PointSamples> Samples; ///< in place of Data
+  std::shared_ptr<const SourceShapes> Sources; ///< of distances, in place of Data
+  Located<std::optional<FactorArray>> Speeds; ///< of distances
+  std::optional<FactorArray> StartTimes; ///< of distances, per point
+  std::optional<LongArray> Ids; ///< per point, for random numbers
 
   void SetSamples(const DoubleArray& places, const DoubleArray& values,
-    const std::optional<FactorArray>& weights);
+    const std::optional<FactorArray>& weights, const std::string& name);
+  /// segments: pairs of rows of `places`, the straight parts of lines.
+  void SetSources(const DoubleArray& places, const LongArray& segments);
 
   /// The same with a panel of the data's columns, which Components counts.
   InputFields Columns(int first, int count) const;
   FieldSummary Summarize() const;
+  /// For a run, as long as this object lives. excludes: whether masked triangles are left out;
+  /// otherwise the surface does not depend on the mask.
+  BlockInput Describe(bool excludes) const;
   Fields Read() const;
   Fingerprint Version() const;
 
 private:
+  Word DataWord() const;
+
   int FirstColumn = 0;
   int AllColumns = 0; ///< 0: no panel
   std::shared_ptr<const std::vector<char>> Missing; ///< as in Fields
@@ -126,5 +148,8 @@ private:
   // Of the input that a panel was taken from: found once.
   mutable std::shared_ptr<const std::vector<char>> Found;
 };
+
+/// The inputs of a run, from a list in Python.
+std::vector<const InputFields*> ListInputs(const nanobind::list& inputs);
 
 } // namespace SurfaceDiffusion

@@ -3,16 +3,11 @@
 #pragma once
 
 #include "InputData.h"
-#include "Run/CurvatureRun.h"
-#include "Run/DenoisingRun.h"
-#include "Run/DerivativesRun.h"
-#include "Run/DirectionFieldRun.h"
 #include "Run/Run.h"
 #include "Threads.h"
 
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -38,13 +33,16 @@ public:
 
   int NumberOfSteps() const { return this->Settings->DescribeModel().NumberOfSteps; }
   double TimeStep() const { return this->Settings->DescribeModel().TimeStep; }
+  /// The last step of a run that may end early, for which it is computed to its end.
+  int FindLastStep(const nanobind::object& progress);
   /// All warnings that hold, as lists of words.
   nanobind::list GetWarnings() const;
   nanobind::dict GetHistory() const;
+  /// The read-only values of the classes for VTK, as lists of rows.
+  nanobind::dict GetNumbers() const;
   /// The units of the run, and the number of points without triangle of a surface.
   nanobind::dict GetResults(std::size_t block) const;
-  /// A dict for each output of a surface: its name, place, type, role, shape, and for curves where
-  /// each begins and the rows of its corners.
+  /// See OutputTable.h.
   nanobind::list ListOutputs(std::size_t block) const;
   /// Write an output of the list. source: the input of the surface. first: the column of `output`
   /// from which on the columns of the output are written, and no others; -1: all columns.
@@ -59,40 +57,5 @@ private:
   int Step = 0;
   bool InUse = false;
 };
-
-/// A computation on one surface without time steps, with its settings: a line field, denoised
-/// points, curvatures or derivatives.
-template <typename RunType, typename SettingsType>
-class SingleRun
-{
-public:
-  SingleRun() = default;
-  SingleRun(const SingleRun&) = delete;
-  SingleRun& operator=(const SingleRun&) = delete;
-
-  /// The mask of the input is read by those that leave masked triangles out.
-  void Update(
-    const InputFields& input, const nanobind::dict& settings, const nanobind::object& progress);
-  double MeanEdgeLength() const { return this->Model.MeanEdgeLength(); }
-  /// All warnings that hold, as lists of words.
-  nanobind::list GetWarnings() const;
-  /// As those of ModelRun.
-  nanobind::list ListOutputs() const;
-  void Write(std::size_t number, const OutputArray& output, const InputFields& source) const;
-
-private:
-  RunType Model{ PythonThreads::Instance() };
-  bool InUse = false;
-};
-
-using DirectionRun = SingleRun<DirectionFieldRun, DirectionFieldSettings>;
-using CurvatureFinder = SingleRun<CurvatureRun, CurvatureSettings>;
-using DerivativesFinder = SingleRun<DerivativesRun, DerivativesSettings>;
-using MeshDenoiser = SingleRun<DenoisingRun, DenoisingRunSettings>;
-
-extern template class SingleRun<CurvatureRun, CurvatureSettings>;
-extern template class SingleRun<DerivativesRun, DerivativesSettings>;
-extern template class SingleRun<DirectionFieldRun, DirectionFieldSettings>;
-extern template class SingleRun<DenoisingRun, DenoisingRunSettings>;
 
 } // namespace SurfaceDiffusion

@@ -12,6 +12,7 @@
 #include "SurfaceDistances.h"
 #include "SurfaceFields.h"
 #include "SurfaceOperators.h"
+#include "SurfaceRuns.h"
 #include "Threads.h"
 
 #include <nanobind/nanobind.h>
@@ -59,18 +60,6 @@ nb::object GetTriangles(const std::shared_ptr<InputSurface>& surface)
     triangles.data(), { static_cast<std::size_t>(triangles.rows()), 3 }, nb::cast(surface)));
 }
 
-template <typename RunType>
-void BindSingleRun(nb::module_& m, const char* name)
-{
-  nb::class_<RunType>(m, name)
-    .def(nb::init<>())
-    .def("update", &RunType::Update, "fields"_a, "settings"_a, "progress"_a.none())
-    .def("mean_edge_length", &RunType::MeanEdgeLength)
-    .def("warnings", &RunType::GetWarnings)
-    .def("outputs", &RunType::ListOutputs)
-    .def("write", &RunType::Write, "number"_a, "output"_a, "source"_a);
-}
-
 /// InputError becomes an exception of Python with the words of its message.
 void TranslateInputError(const std::exception_ptr& error, void* type)
 {
@@ -92,6 +81,8 @@ NB_MODULE(_core, m)
 {
   m.doc() = "Runs of the numerics on arrays.";
   m.attr("build") = SURFACEDIFFUSION_BUILD;
+  // ParaView ends Python before it deletes the filters of its plugin, which have runs.
+  nb::set_leak_warnings(false);
 
   nb::object inputError = nb::steal(PyErr_NewExceptionWithDoc("surfacediffusion._core.InputError",
     "An error of the input. words: the words of its message, as in Run/Sentence.h: tuples of a "
@@ -103,6 +94,17 @@ NB_MODULE(_core, m)
   m.def(
     "list_settings", [](const std::string& model) { return ListSettings(*MakeSettings(model)); },
     "model"_a);
+  m.def(
+    "find_problems",
+    [](const std::string& model, const nb::dict& settings, const InputFields* fields)
+    {
+      const FieldSummary summary = fields ? fields->Summarize() : FieldSummary();
+      return FindProblems(model, settings, fields ? &summary : nullptr);
+    },
+    "model"_a, "settings"_a, "fields"_a.none());
+  m.def("find_times", &FindTimes, "model"_a, "settings"_a, "last"_a = -1);
+  m.def("find_time_step", &FindTimeStep, "model"_a, "settings"_a);
+  m.def("find_step", &FindStep, "model"_a, "settings"_a, "time"_a, "last"_a);
   m.def("number_of_threads", [] { return PythonThreads::Instance().NumberOfThreads(); });
   m.def(
     "set_number_of_threads",
@@ -117,6 +119,9 @@ NB_MODULE(_core, m)
   nb::class_<InputSurface>(m, "Surface")
     .def(nb::init<const DoubleArray&, const LongArray&, const LongArray&>(), "points"_a,
       "connectivity"_a, "offsets"_a)
+    .def(nb::init<const DoubleArray&, const LongArray&, const LongArray&, std::size_t,
+           const std::optional<FlagArray>&>(),
+      "points"_a, "triangles"_a, "faces"_a, "number_of_faces"_a, "hidden"_a.none())
     .def("set_area_factors", &InputSurface::SetAreaFactors, "factors"_a)
     .def("triangles", &GetTriangles);
 
@@ -136,7 +141,28 @@ NB_MODULE(_core, m)
       "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
       "directions"_a.none(), "rates"_a.none(), "fidelity"_a.none(), "seeds"_a.none(),
       "data_are_terms"_a, "on_faces"_a)
-    .def("set_samples", &InputFields::SetSamples, "places"_a, "values"_a, "weights"_a.none())
+    .def("set_samples", &InputFields::SetSamples, "places"_a, "values"_a, "weights"_a.none(),
+      "name"_a = "")
+    .def("set_sources", &InputFields::SetSources, "places"_a, "segments"_a)
+    .def(
+      "set_speeds",
+      [](InputFields& self, const FactorArray& speeds, bool onFaces) {
+        self.Speeds = { speeds, onFaces };
+      },
+      "speeds"_a, "on_faces"_a)
+    .def(
+      "set_start_times",
+      [](InputFields& self, const FactorArray& times) { self.StartTimes = times; }, "times"_a)
+    .def(
+      "set_ids", [](InputFields& self, const LongArray& ids) { self.Ids = ids; }, "ids"_a)
+    .def(
+      "set_names",
+      [](InputFields& self, const std::string& data, const std::string& block)
+      {
+        self.Name = data;
+        self.Block = block;
+      },
+      "data"_a, "block"_a)
     .def("columns", &InputFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")
@@ -144,6 +170,8 @@ NB_MODULE(_core, m)
     .def("update", &ModelRun::Update, "blocks"_a, "settings"_a, "progress"_a.none(),
       "history"_a = true)
     .def("seek", &ModelRun::Seek, "step"_a, "progress"_a.none())
+    .def("find_last_step", &ModelRun::FindLastStep, "progress"_a.none())
+    .def("numbers", &ModelRun::GetNumbers)
     .def("number_of_steps", &ModelRun::NumberOfSteps)
     .def("time_step", &ModelRun::TimeStep)
     .def("warnings", &ModelRun::GetWarnings)
@@ -192,9 +220,14 @@ NB_MODULE(_core, m)
       "by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(), "progress"_a.none())
     .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 
-  BindSingleRun<CurvatureFinder>(m, "CurvatureRun");
-  BindSingleRun<DerivativesFinder>(m, "DerivativesRun");
-  BindSingleRun<DirectionRun>(m, "DirectionRun");
-  BindSingleRun<MeshDenoiser>(m, "MeshDenoiser");
+  nb::class_<SurfaceRuns>(m, "SurfaceRuns")
+    .def(nb::init<std::string>(), "function"_a)
+    .def("update", &SurfaceRuns::Update, "surfaces"_a, "settings"_a, "progress"_a.none())
+    .def("mean_edge_length", &SurfaceRuns::MeanEdgeLength)
+    .def("warnings", &SurfaceRuns::GetWarnings)
+    .def("numbers", &SurfaceRuns::GetNumbers)
+    .def("outputs", &SurfaceRuns::ListOutputs, "surface"_a)
+    .def("write", &SurfaceRuns::Write, "surface"_a, "number"_a, "output"_a, "source"_a)
+    .def("turned_faces", &SurfaceRuns::TurnedFaces, "surface"_a, "source"_a);
   BindShapeFunctions(m);
 }

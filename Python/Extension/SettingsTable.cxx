@@ -75,6 +75,7 @@ private:
     entry["name"] = info.Name;
     entry["unit"] = info.Unit;
     entry["documentation"] = info.Documentation;
+    entry["is_of_output"] = info.Scope == SettingScope::Output;
     entry["kind"] = kind;
     this->Entries.append(entry);
     return entry;
@@ -188,6 +189,68 @@ void AssignSettings(Settings& settings, const nb::dict& values)
 {
   Assigner assigner(values);
   settings.Visit(assigner);
+}
+
+nb::list FindProblems(const std::string& model, const nb::dict& values, const FieldSummary* fields)
+{
+  const std::unique_ptr<Settings> settings = MakeSettings(model);
+  AssignSettings(*settings, values);
+  Problems problems;
+  settings->Check(fields, problems);
+  nb::list list;
+  for (const Sentence& problem : problems)
+  {
+    list.append(ListWords(problem));
+  }
+  return list;
+}
+
+namespace
+{
+
+/// Null if the model has no time steps.
+std::unique_ptr<TimeSettings> MakeTimeSettings(const std::string& model, const nb::dict& values)
+{
+  std::unique_ptr<Settings> settings = MakeSettings(model);
+  AssignSettings(*settings, values);
+  auto* const found = dynamic_cast<TimeSettings*>(settings.get());
+  if (found)
+  {
+    settings.release();
+  }
+  return std::unique_ptr<TimeSettings>(found);
+}
+
+} // namespace
+
+nb::object FindTimes(const std::string& model, const nb::dict& values, int last)
+{
+  const std::unique_ptr<TimeSettings> settings = MakeTimeSettings(model, values);
+  Problems problems;
+  if (settings)
+  {
+    settings->Check(nullptr, problems);
+  }
+  if (!settings || !problems.empty() || !settings->PublishesTimes())
+  {
+    return nb::none();
+  }
+  const ModelTraits traits = settings->DescribeModel();
+  nb::dict found;
+  found["times"] = nb::cast(settings->PublishedTimes(last < 0 ? traits.NumberOfSteps : last));
+  found["time_step"] = traits.TimeStep;
+  found["number_of_steps"] = traits.NumberOfSteps;
+  return found;
+}
+
+double FindTimeStep(const std::string& model, const nb::dict& values)
+{
+  return MakeTimeSettings(model, values)->DescribeModel().TimeStep;
+}
+
+int FindStep(const std::string& model, const nb::dict& values, double time, int last)
+{
+  return MakeTimeSettings(model, values)->FindStep(time, last);
 }
 
 } // namespace SurfaceDiffusion

@@ -12,6 +12,7 @@
 namespace SurfaceDiffusion
 {
 
+struct FieldSummary;
 struct RunSettings;
 
 /// The settings of a model by the name of its Python function, with their defaults.
@@ -20,11 +21,27 @@ std::unique_ptr<Settings> MakeSettings(const std::string& model);
 /// The same of a model of arrays, which a Run computes.
 std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model);
 
-/// One dict per setting: name, unit, documentation, kind, default, allowed and words.
+/// One dict per setting: name, unit, documentation, is_of_output, kind, default, allowed and words.
 nanobind::list ListSettings(Settings& settings);
 
 /// Set those settings that the dict has: a number, a bool, or the index of a word.
 void AssignSettings(Settings& settings, const nanobind::dict& values);
+
+/// The problems of settings, of single ones and with the inputs, as lists of words. fields: null if
+/// only those of single settings are asked for.
+nanobind::list FindProblems(
+  const std::string& model, const nanobind::dict& values, const FieldSummary* fields);
+
+/// The times that a model with these settings publishes to a pipeline, in a run that ends at step
+/// `last`, or after all steps for -1: a dict of times, time_step and number_of_steps. None without
+/// times, and if there are problems with the settings.
+nanobind::object FindTimes(const std::string& model, const nanobind::dict& values, int last);
+
+/// The time step that a model with these settings takes.
+double FindTimeStep(const std::string& model, const nanobind::dict& values);
+
+/// The step of the last published time at or before `time`, of a run that ends at step `last`.
+int FindStep(const std::string& model, const nanobind::dict& values, double time, int last);
 
 /// A tuple of kind, spelling, name and value for each word.
 nanobind::list ListWords(const Sentence& sentence);

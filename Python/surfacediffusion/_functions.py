@@ -655,7 +655,7 @@ def denoise_mesh(
     surface = as_surface(surface)
     runner = Runner("denoise_mesh", properties, {"FixedArray": "fixed"})
     inputs = Input(surface, fixed=fixed)
-    outputs, found = _run_once("denoise_mesh", _core.MeshDenoiser, inputs, runner, progress)
+    outputs, found = _run_once("denoise_mesh", inputs, runner, progress)
     result: MeshDenoisingResult = make_result(
         MeshDenoisingResult, outputs, {"points": np.array(surface.points), **found})
     words = settings_of("denoise_mesh")["surface_type"].words
@@ -977,7 +977,7 @@ def curvature(
     surface = as_surface(surface)
     runner = Runner("curvature", properties, {"MaskArray": "mask"})
     inputs = Input(surface, mask=left_out(mask, roi, surface))
-    outputs, found = _run_once("curvature", _core.CurvatureRun, inputs, runner, progress)
+    outputs, found = _run_once("curvature", inputs, runner, progress)
     result: CurvatureResult = make_result(CurvatureResult, outputs, found)
     return result
 
@@ -1059,21 +1059,25 @@ def find_derivatives(
     runner = Runner("derivatives", properties, ARRAYS)
     data, faces = _take("values", values, surface, on_faces)
     inputs = Input(surface, data, data_on_faces=faces, mask=left_out(mask, roi, surface))
-    outputs, found = _run_once("derivatives", _core.DerivativesRun, inputs, runner, progress)
+    outputs, found = _run_once("derivatives", inputs, runner, progress)
     result: DerivativesResult = make_result(DerivativesResult, outputs, {"speed": None, **found})
     return result
 
 
 def _run_once(
-    name: str, make: Callable[[], Any], inputs: Input, runner: Runner, progress: Progress
+    name: str, inputs: Input, runner: Runner, progress: Progress
 ) -> tuple[list[Output], dict[str, Any]]:
     """The outputs of a computation without time steps, and the attributes of its result."""
     surface = inputs.surface
     with surface._lock, ProgressReporter(progress) as reporter:
-        run = surface._runs.setdefault(name, make())
-        runner.call(run.update, inputs.core, runner.settings, reporter.callable)
+        run = surface._runs.setdefault(name, _core.SurfaceRuns(name))
+        runner.call(run.update, [inputs.core], runner.settings, reporter.callable)
         reporter.finish_part()
-        outputs = read_outputs(run.outputs(), run.write, inputs, runner)
+
+        def write(number: int, values: NDArray[Any], source: Any) -> None:
+            run.write(0, number, values, source)
+
+        outputs = read_outputs(run.outputs(0), write, inputs, runner)
         found = {"mean_edge_length": run.mean_edge_length(), "warnings": runner.warnings(run)}
     warn(found["warnings"])
     return outputs, found
@@ -1119,6 +1123,6 @@ def direction_field(
     if hints is not None and method != "Hints":
         raise ValueError(f'hints is given but method is {method}; allowed: method="Hints", or no hints')
     inputs = Input(surface, directions=hints, directions_name="hints")
-    ((output,), _) = _run_once("direction_field", _core.DirectionRun, inputs, runner, progress)
+    ((output,), _) = _run_once("direction_field", inputs, runner, progress)
     field: NDArray[np.float64] = output.values
     return field

@@ -36,6 +36,7 @@ class Setting:
     documentation: str
     default: Any
     allowed: str
+    is_of_output: bool  #: no state depends on it
     words: tuple[str, ...] = ()  #: of a choice
     usable: tuple[str, ...] = ()  #: the words that may be chosen
 

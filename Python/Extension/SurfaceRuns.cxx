@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfaceRuns.h"
+
+#include "OutputTable.h"
+#include "PythonProgress.h"
+#include "Run/BlockSentences.h"
+#include "Run/CurvatureRun.h"
+#include "Run/DenoisingRun.h"
+#include "Run/DerivativesRun.h"
+#include "Run/DirectionFieldRun.h"
+#include "Run/DistanceRun.h"
+#include "Run/ErrorCauses.h"
+#include "Run/RandomFieldRun.h"
+#include "Run/ReliefRun.h"
+#include "SettingsTable.h"
+#include "Threads.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace nb = nanobind;
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+template <typename RunType>
+std::unique_ptr<SurfaceRun> Make()
+{
+  return std::make_unique<RunType>(PythonThreads::Instance());
+}
+
+const std::pair<const char*, std::unique_ptr<SurfaceRun> (*)()> RunsOfFunctions[] = {
+  { "curvature", &Make<CurvatureRun> },
+  { "denoise_mesh", &Make<DenoisingRun> },
+  { "derivatives", &Make<DerivativesRun> },
+  { "direction_field", &Make<DirectionFieldRun> },
+  { "distance", &Make<DistanceRun> },
+  { "random_field", &Make<RandomFieldRun> },
+  { "relief", &Make<ReliefRun> },
+};
+
+std::unique_ptr<SurfaceRun> MakeRun(const std::string& name)
+{
+  for (const auto& [function, make] : RunsOfFunctions)
+  {
+    if (name == function)
+    {
+      return make();
+    }
+  }
+  throw nb::key_error(name.c_str());
+}
+
+} // namespace
+
+SurfaceRuns::SurfaceRuns(std::string name)
+  : Name(std::move(name))
+{
+  MakeRun(this->Name);
+}
+
+void SurfaceRuns::Update(
+  const nb::list& surfaces, const nb::dict& values, const nb::object& progress)
+{
+  const UseGuard guard(this->InUse);
+  const std::vector<const InputFields*> given = ListInputs(surfaces);
+  const std::unique_ptr<Settings> settings = MakeSettings(this->Name);
+  AssignSettings(*settings, values);
+  Problems problems;
+  for (const InputFields* const fields : given)
+  {
+    const FieldSummary summary = fields->Summarize();
+    settings->Check(&summary, problems);
+  }
+  ThrowProblems(std::move(problems));
+  this->Runs.resize(given.size());
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      const auto count = static_cast<double>(given.size());
+      std::vector<const DistanceRun*> distances;
+      for (std::size_t s = 0; s < given.size(); ++s)
+      {
+        std::unique_ptr<SurfaceRun>& run = this->Runs[s];
+        run = run ? std::move(run) : MakeRun(this->Name);
+        const BlockInput input = given[s]->Describe(run->ExcludesMasked());
+        const double first = static_cast<double>(s) / count;
+        NameBlockInErrors(input.Name, *settings,
+          [&]
+          {
+            NamingSettings(*settings,
+              [&] { run->Update(input, *settings, monitor.Part(first, first + 0.95 / count)); });
+          });
+        if (const auto* const distance = dynamic_cast<const DistanceRun*>(run.get()))
+        {
+          distances.push_back(distance);
+        }
+      }
+      if (!distances.empty())
+      {
+        DistanceRun::RequireSource(distances);
+      }
+    });
+  this->BlockNames.clear();
+  for (const InputFields* const fields : given)
+  {
+    this->BlockNames.push_back(fields->Block);
+  }
+}
+
+double SurfaceRuns::MeanEdgeLength() const
+{
+  double length = 0.0;
+  double edges = 0.0;
+  for (const auto& run : this->Runs)
+  {
+    const TriangleMesh& mesh = run->GetSurface().InputMesh();
+    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
+    edges += mesh.NumberOfEdges();
+  }
+  return edges > 0.0 ? length / edges : 1.0;
+}
+
+nb::list SurfaceRuns::GetWarnings() const
+{
+  std::vector<const SurfaceRun*> runs;
+  for (const auto& run : this->Runs)
+  {
+    runs.push_back(run.get());
+  }
+  return ListSentences(SurfaceRun::FindAllWarnings(runs, this->BlockNames));
+}
+
+nb::dict SurfaceRuns::GetNumbers() const
+{
+  std::vector<const OutputList*> outputs;
+  for (const auto& run : this->Runs)
+  {
+    outputs.push_back(&run->Outputs());
+  }
+  return ListNumbers(CombineNumbers(outputs, 0));
+}
+
+nb::list SurfaceRuns::ListOutputs(std::size_t surface) const
+{
+  return SurfaceDiffusion::ListOutputs(this->Runs.at(surface)->Outputs());
+}
+
+void SurfaceRuns::Write(std::size_t surface, std::size_t number, const OutputArray& output,
+  const InputFields& input) const
+{
+  const SurfaceRun& run = *this->Runs.at(surface);
+  OutputSource source{ run.GetSurface(), PythonThreads::Instance() };
+  WithValueErrors([&] { WriteOutput(run.Outputs().at(number), source, input, output, -1); });
+}
+
+std::vector<std::int64_t> SurfaceRuns::TurnedFaces(
+  std::size_t surface, const InputSurface& source) const
+{
+  std::vector<std::int64_t> faces;
+  if (const auto* const relief = dynamic_cast<const ReliefRun*>(this->Runs.at(surface).get()))
+  {
+    const std::vector<char>& turned = relief->TurnedTriangles();
+    for (std::size_t t = 0; t < turned.size(); ++t)
+    {
+      if (turned[t])
+      {
+        faces.push_back(source.FaceOf(relief->GetSurface().InputTriangle(static_cast<Index>(t))));
+      }
+    }
+  }
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+} // namespace SurfaceDiffusion
