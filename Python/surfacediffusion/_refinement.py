@@ -150,17 +150,26 @@ def _refine(surface: Surface, length: float, limit: Any, progress: Progress = Fa
     return refined
 
 
+def edge_lengths(points: NDArray[np.float64], triangles: NDArray[Any]) -> NDArray[np.float64]:
+    """The lengths of the distinct edges."""
+    edges = np.concatenate([triangles[:, :2], triangles[:, 1:], triangles[:, [0, 2]]])
+    edges = np.unique(np.sort(edges, axis=1), axis=0)
+    lengths: NDArray[np.float64] = np.linalg.norm(np.subtract(*points[edges.T]), axis=1)
+    return lengths
+
+
 def find_texture_length(surfaces: Sequence[Surface], feature_size: Any) -> float:
     """The length of edges for a texture of this wavelength; 0 if those of the surfaces will do."""
     if not (isinstance(feature_size, (int, float, np.number)) and 0 < feature_size < np.inf):
         return 0.0
-    lengths = []
-    for surface in surfaces:
-        t = surface.triangles
-        edges = np.unique(np.sort(np.concatenate([t[:, :2], t[:, 1:], t[:, [0, 2]]]), axis=1), axis=0)
-        lengths.append(np.linalg.norm(np.subtract(*surface.points[edges.T]), axis=1))
-    size, h = float(feature_size), float(np.concatenate(lengths).mean())
-    return size / EDGES_PER_WAVELENGTH if size < FEWEST_EDGES_PER_WAVELENGTH * h else 0.0
+    lengths = np.concatenate([edge_lengths(surface.points, surface.triangles) for surface in surfaces])
+    return texture_length(float(lengths.mean()), float(feature_size))
+
+
+def texture_length(mean: float, feature_size: float) -> float:
+    """The same from the mean edge length."""
+    is_coarse = feature_size < FEWEST_EDGES_PER_WAVELENGTH * mean
+    return feature_size / EDGES_PER_WAVELENGTH if is_coarse else 0.0
 
 
 def refine_as_asked(

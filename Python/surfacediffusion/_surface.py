@@ -320,33 +320,39 @@ class Surface:
         """The normalised sums of the unit normals of the faces at each point, in single precision;
         zero at points without face."""
         sums = np.zeros((self.n_points, 3))
-        normals, faces = self._face_normals()
+        normals = unit_normals(self._points, self._connectivity, self._offsets)
         for axis in range(3):
-            weights = np.repeat(normals[:, axis], np.diff(self._offsets)[faces])
+            weights = np.repeat(normals[:, axis], np.diff(self._offsets))
             sums[:, axis] = np.bincount(self._connectivity, weights, minlength=self.n_points)
-        lengths = np.sqrt(sums[:, 0] * sums[:, 0] + sums[:, 1] * sums[:, 1] + sums[:, 2] * sums[:, 2])
-        sums[lengths > 0] /= lengths[lengths > 0, None]
-        return sums.astype(np.float32)
+        return normalize(sums).astype(np.float32)
 
-    def _face_normals(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Unit normals of all faces by Newell's sum, and the numbers 0, 1, ... of the faces."""
-        sizes = np.diff(self._offsets)
-        normals = np.zeros((self.n_faces, 3))
-        for size in np.unique(sizes):
-            chosen = np.flatnonzero(sizes == size)
-            rows = self._connectivity[self._offsets[chosen, None] + np.arange(size)]
-            corners = self._points[rows]
-            if size == 3:
-                a, b = corners[:, 2] - corners[:, 1], corners[:, 0] - corners[:, 1]
-                normals[chosen] = _cross(a, b)
-                continue
-            for i in range(size):
-                at = corners[:, (i + 1) % size]
-                normals[chosen] += _cross(corners[:, (i + 2) % size] - at, corners[:, i] - at)
-        lengths = np.sqrt((normals[:, 0] * normals[:, 0] + normals[:, 1] * normals[:, 1])
-                          + normals[:, 2] * normals[:, 2])
-        normals[lengths > 0] /= lengths[lengths > 0, None]
-        return normals, np.arange(self.n_faces)
+
+def unit_normals(
+    points: NDArray[np.float64], connectivity: NDArray[np.int64], offsets: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Unit normals of polygons by Newell's sum; zero for those without area."""
+    sizes = np.diff(offsets)
+    normals = np.zeros((len(sizes), 3))
+    for size in np.unique(sizes):
+        chosen = np.flatnonzero(sizes == size)
+        rows = connectivity[offsets[chosen, None] + np.arange(size)]
+        corners = points[rows]
+        if size == 3:
+            a, b = corners[:, 2] - corners[:, 1], corners[:, 0] - corners[:, 1]
+            normals[chosen] = _cross(a, b)
+            continue
+        for i in range(size):
+            at = corners[:, (i + 1) % size]
+            normals[chosen] += _cross(corners[:, (i + 2) % size] - at, corners[:, i] - at)
+    return normalize(normals)
+
+
+def normalize(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The vectors (n, 3), divided by their lengths in place; those of length 0 stay."""
+    lengths = np.sqrt(vectors[:, 0] * vectors[:, 0] + vectors[:, 1] * vectors[:, 1]
+                      + vectors[:, 2] * vectors[:, 2])
+    vectors[lengths > 0] /= lengths[lengths > 0, None]
+    return vectors
 
 
 def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

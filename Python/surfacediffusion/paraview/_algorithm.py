@@ -1,0 +1,335 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The update of all filters: from a request of the pipeline to the outputs, with progress, aborts, errors
+and warnings. It is the update of vtkSurfaceFilter, of surfaces in one process and in one piece each."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any, Callable
+
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+from .. import _core
+from ._fields import ArrayFinder, Choice, Fields, join_sentences, make_core
+from ._refinement import Refinement, mean_edge_length
+from ._surfaces import Block, Parts, SurfaceError, copy_structure, read_surface
+
+#: Properties that are no settings of the numerics, with their defaults.
+_OWN = {"RefineTo": 0.0, "MaximumNumberOfTriangles": 4000000, "NumberOfThreads": 0, "SeamTolerance": -1.0,
+        "ResultArrayName": "", "OutputPrecision": 2, "UseAsNormals": 1, "PointValueArray": "",
+        "PointWeightArray": ""}
+
+#: Read-only values before the first update, unless that is 0.
+_NUMBERS = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}
+
+
+class _Aborted(Exception):
+    """The user has asked for the end of an update."""
+
+
+@functools.lru_cache(maxsize=None)
+def _kinds(model: str) -> dict[str, str]:
+    return {entry["name"]: entry["kind"] for entry in _core.list_settings(model)}
+
+
+def spell(words: list[Any]) -> str:
+    """A sentence of the numerics in the words of VTK and ParaView."""
+    return "".join(word[1] for word in words)
+
+
+class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
+    """A filter on surfaces, whose model is that of a function of this package."""
+
+    MODEL = ""
+    OUTPUTS: tuple[str, ...] = ("vtkDataObject",)
+    HAS_POINT_INPUT = False
+    RESULT_NAME = ""
+    DEFAULT_CHOICE = Choice()
+
+    def __init__(self) -> None:
+        VTKPythonAlgorithmBase.__init__(
+            self, nInputPorts=2 if self.HAS_POINT_INPUT else 1, nOutputPorts=len(self.OUTPUTS))
+        self.settings: dict[str, Any] = {}
+        self.own = {**_OWN, "ResultArrayName": self.RESULT_NAME}
+        self.choices: dict[int, Choice] = {0: self.DEFAULT_CHOICE}
+        self._numbers: dict[str, Any] = {}
+        self._reported: list[str] = []
+        self._warnings: list[str] = []
+        self._quiet: int | None = None
+
+    # Properties --------------------------------------------------------------------------------
+
+    def assign(self, name: str, values: tuple[Any, ...]) -> None:
+        """Set a property. ParaView gives None for an empty string, and one number or several."""
+        given: Any = values[0] if len(values) == 1 else list(values)
+        if name in _OWN:
+            target, value = self.own, type(_OWN[name])("" if given is None else given)
+        else:
+            kind = _kinds(self.MODEL)[name]
+            convert: Callable[[Any], Any] = {
+                "switch": lambda x: bool(int(x)), "number": float,
+                "numbers": lambda x: [float(each) for each in x]}.get(kind, int)
+            target, value = self.settings, convert(given)
+        if target.get(name, _OWN) != value:
+            target[name] = value
+            self.Modified()
+
+    def find_number(self, name: str) -> Any:
+        """A read-only value of the last update."""
+        rows = self._numbers.get(name)
+        return rows[0][0] if rows else _NUMBERS.get(name, 0.0)
+
+    def SetInputArrayToProcess(self, index: int, _port: int, _connection: int, association: int,
+                               name: Any) -> None:
+        """Choose an array by its name, or as an active attribute by its number."""
+        choice = Choice(association, None if isinstance(name, int) else name or "",
+                        name if isinstance(name, int) else None)
+        if self.choices.get(index) != choice:
+            self.choices[index] = choice
+            self.Modified()
+
+    # Pipeline ----------------------------------------------------------------------------------
+
+    def FillInputPortInformation(self, port: int, info: Any) -> int:
+        # Other data are an error, whose message says what to do. That of the executive does not.
+        key = vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE()
+        if port == 0:
+            info.Set(key, "vtkCompositeDataSet")
+            info.Append(key, "vtkPolyData")
+        else:
+            info.Set(vtkAlgorithm.INPUT_IS_OPTIONAL(), 1)
+            info.Set(key, "vtkPointSet")
+        info.Append(key, "vtkDataObject")
+        return 1
+
+    def FillOutputPortInformation(self, port: int, info: Any) -> int:
+        info.Set(vtkDataObject.DATA_TYPE_NAME(), self.OUTPUTS[port])
+        return 1
+
+    def RequestDataObject(self, _request: Any, inputs: Any, outputs: Any) -> int:
+        given, output = self._first_input(inputs), outputs.GetInformationObject(0)
+        made = output.Get(vtkDataObject.DATA_OBJECT())
+        if given is None:
+            if made is None:
+                output.Set(vtkDataObject.DATA_OBJECT(), vtkPolyData())
+        elif made is None or made.GetClassName() != given.GetClassName():
+            output.Set(vtkDataObject.DATA_OBJECT(), given.NewInstance())
+        return 1
+
+    def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:
+        made = [self.GetOutputData(outputs, port) for port in range(len(self.OUTPUTS))]
+        for extra in made[1:]:
+            extra.Initialize()
+        parts = copy_structure(self._first_input(inputs), made[0])
+        refinement = Refinement()
+        threads = _core.number_of_threads()
+        self._warnings = []
+        failure = ""
+        completed = False
+        try:
+            if self.own["NumberOfThreads"] > 0:
+                _core.set_number_of_threads(self.own["NumberOfThreads"])
+            failure = self._update(request, parts, refinement, inputs, outputs, made)
+            completed = not failure
+        except _Aborted:
+            pass  # The output is the unchanged input. Completed parts of the run are kept.
+        except _core.InputError as error:
+            failure = str(error)
+        except MemoryError:
+            failure = "the memory does not suffice"
+        except (RuntimeError, ValueError, SurfaceError) as error:
+            failure = str(error)
+        finally:
+            if _core.number_of_threads() != threads:
+                _core.set_number_of_threads(threads)
+        if not completed:
+            for block in parts.blocks:
+                block.output.ShallowCopy(block.input)
+            refinement.undo()
+            for extra in made[1:]:
+                extra.Initialize()
+        if failure:
+            self._report_error(failure)
+            return 0
+        return 1
+
+    @staticmethod
+    def _first_input(inputs: Any) -> Any:
+        if inputs[0].GetNumberOfInformationObjects() == 0:
+            return None
+        return inputs[0].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
+
+    @staticmethod
+    def second_input(inputs: Any) -> Any:
+        if len(inputs) < 2 or inputs[1].GetNumberOfInformationObjects() == 0:
+            return None
+        return inputs[1].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
+
+    # Update ------------------------------------------------------------------------------------
+
+    def _update(
+        self, request: Any, parts: Parts, refinement: Refinement, inputs: Any, outputs: Any, made: list[Any]
+    ) -> str:
+        """An update up to its outputs. The text of an error, or an empty one."""
+        controller = vtkMultiProcessController.GetGlobalController()
+        if controller is not None and controller.GetNumberOfProcesses() > 1:
+            return ("ParaView runs in several processes; allowed: one (the plugin in C++ works on pieces in "
+                    "several)")
+        if parts.in_pieces is not None:
+            name = f"{parts.in_pieces} " if parts.in_pieces else ""
+            return (f"the surface {name}is in pieces; allowed: one piece (the plugin in C++ joins pieces; so "
+                    "does Merge Blocks with Merge Points)")
+        problems = self._check_own()
+        blocks = self._select(parts, problems)
+        if not problems:
+            self._refine(blocks, refinement)
+        # Problems of the arrays are reported with those of the settings.
+        self.begin(inputs)
+        fields = self._find_all(blocks, problems)
+        if problems:
+            return "; ".join(sorted(set(problems)))
+        blocks = [block for block, _ in fields]
+        of_blocks = [found for _, found in fields]
+        replaced, warnings = self.run(request, outputs, blocks, of_blocks, made)
+        if replaced:
+            names = ", ".join(f'"{name}"' for name in sorted(set(replaced)))
+            warnings.append(f"results replace arrays of the input: {names}; to keep these, set another "
+                            "ResultArrayName")
+        self._report_warnings(warnings + self._warnings)
+        self.UpdateProgress(1.0)
+        return ""
+
+    def begin(self, inputs: Any) -> None:
+        """Read what all blocks share."""
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        """Find the arrays of a block. False if it takes no part."""
+        raise NotImplementedError
+
+    def run(
+        self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
+    ) -> tuple[list[str], list[str]]:
+        """Compute and write. The names of arrays that results have replaced, and warnings."""
+        raise NotImplementedError
+
+    def _check_own(self) -> list[str]:
+        own, problems = self.own, []
+        seam = own["SeamTolerance"]
+        if not (0.0 <= seam < float("inf") or seam == -1.0):
+            problems.append(f"SeamTolerance is {seam:g}; allowed: finite numbers, 0 or more, or -1: 1e-6 of "
+                            "the bounding box")
+        length = own["RefineTo"]
+        if not (0.0 <= length < float("inf") or (self.may_refine_automatically() and length == -1.0)):
+            also = ", or -1: automatic" if self.may_refine_automatically() else ""
+            problems.append(f"RefineTo is {length:g}; allowed: finite numbers, 0 or more{also}")
+        for name, lowest, allowed in (("MaximumNumberOfTriangles", 1, "integers, 1 or more"),
+                                      ("NumberOfThreads", 0, "integers, 0 or more; 0: all")):
+            if own[name] < lowest:
+                problems.append(f"{name} is {own[name]}; allowed: {allowed}")
+        return problems
+
+    def may_refine_automatically(self) -> bool:
+        return False
+
+    def _select(self, parts: Parts, problems: list[str]) -> list[Block]:
+        """The blocks with polygons."""
+        with_points = [block for block in parts.blocks if block.input.GetNumberOfPoints() > 0]
+        selected = [block for block in with_points
+                    if block.input.GetNumberOfPolys() + block.input.GetNumberOfStrips() > 0]
+        if not with_points and parts.other_types:
+            problems.append(("the blocks are " if parts.is_composite else "the input is ") + parts.other_types
+                            + "; a surface of polygons or strips is needed (for the surface of a grid, apply "
+                            "Extract Surface, which is vtkDataSetSurfaceFilter)")
+        elif not with_points:
+            problems.append("the input is empty; a surface of polygons or strips is needed")
+        elif not selected:
+            problems.append("the input has no polygons or strips; a surface is needed")
+        return selected
+
+    def find_refinement(self, mean: float) -> tuple[float, str]:
+        """The length above which edges are bisected, 0 for none, and the reason to report. mean: the mean
+        edge length, if RefineTo is -1."""
+        return max(0.0, self.own["RefineTo"]), ""
+
+    def _refine(self, blocks: list[Block], refinement: Refinement) -> None:
+        automatic = self.own["RefineTo"] == -1.0
+        length, reason = self.find_refinement(mean_edge_length(blocks) if automatic else 0.0)
+        limit = self.own["MaximumNumberOfTriangles"]
+        if not length > 0.0:
+            return
+        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0))
+        if refinement.longest > 0.0:
+            self._warnings.append(f"refinement stopped at edges of {refinement.longest:g}, longer than "
+                                  f"{length:g}, because MaximumNumberOfTriangles is {limit}")
+        if refinement.triangles and reason:
+            self._warnings.append(
+                f"edges were bisected, to {refinement.triangles} triangles, because {reason}")
+
+    def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
+        """The blocks that take part, with their arrays. Appends problems."""
+        raise NotImplementedError
+
+    def find_arrays(self, block: Block, fields: Fields) -> ArrayFinder:
+        return ArrayFinder(self.choices, block.input, fields)
+
+    def check(self, found: list[tuple[Block, Fields]], problems: list[str]) -> None:
+        """Append the problems of the settings with the arrays of each block."""
+        sentences = []
+        for block, fields in found:
+            if block.core is None:
+                read_surface(block)
+            make_core(fields, block)
+            sentences += [(spell(words), block.name) for words in
+                          _core.find_problems(self.MODEL, self.settings, fields.core)]
+        problems += join_sentences(sentences, len(found))
+
+    # Reports -----------------------------------------------------------------------------------
+
+    def progress(self, fraction: float) -> None:
+        """Report the fraction done. Raises _Aborted."""
+        self.UpdateProgress(fraction)
+        aborted = bool(self.GetAbortExecute())
+        if not aborted and hasattr(self, "CheckAbort"):
+            aborted = bool(self.CheckAbort())
+            if hasattr(self, "SetAbortOutput"):
+                self.SetAbortOutput(False)  # the executive would empty the output
+        if aborted:
+            raise _Aborted
+
+    def set_numbers(self, numbers: dict[str, Any]) -> None:
+        self._numbers = numbers
+
+    def _report_error(self, text: str) -> None:
+        self._quiet_executive()
+        self._report("ErrorEvent", text, vtkOutputWindow.GetInstance().DisplayErrorText)
+
+    def _report_warnings(self, sentences: list[str]) -> None:
+        """As one warning, those that hold now and did not hold at the last update."""
+        new = [text for text in dict.fromkeys(sentences) if text not in self._reported]
+        self._reported = sentences
+        if new:
+            self._report("WarningEvent", "; ".join(new), vtkOutputWindow.GetInstance().DisplayWarningText)
+
+    def _report(self, event: str, text: str, display: Callable[[str], None]) -> None:
+        kind = "ERROR" if event == "ErrorEvent" else "Warning"
+        message = f"{kind}: In {type(self).__name__} ({id(self):#x}): {text}\n\n"
+        if self.HasObserver(event):
+            self.InvokeEvent(event, message)
+        else:
+            display(message)
+
+    def _quiet_executive(self) -> None:
+        """Leave out the next error of the executive, that the filter has failed: the filter has said why."""
+        executive = self.GetExecutive()
+
+        def forget(_object: Any, _event: str) -> None:
+            executive.RemoveObserver(self._quiet)
+
+        if self._quiet is not None:
+            executive.RemoveObserver(self._quiet)
+        self._quiet = executive.AddObserver("ErrorEvent", forget)

@@ -1,0 +1,327 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The input arrays of the filters: how they are chosen, and what the numerics take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkCommonDataModel import vtkCellTypes, vtkDataObject, vtkDataSetAttributes, vtkPointSet
+
+from .. import _core
+from .._surface import data_components
+from ._surfaces import Block, SurfaceError, to_numpy
+
+POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
+ANY = 0  #: number of components
+_LINES = (3, 4)  #: types of cells: line, polyline
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The array that SetInputArrayToProcess() chose: by its name, or as an active attribute."""
+
+    association: int = POINTS
+    name: str | None = None
+    attribute: int | None = None
+
+    @property
+    def is_set(self) -> bool:
+        return bool(self.name) or (self.name is None and self.attribute is not None)
+
+    def find_in(self, attributes: Any) -> Any:
+        if self.name:
+            return attributes.GetAbstractArray(self.name)
+        return attributes.GetAbstractAttribute(self.attribute or vtkDataSetAttributes.SCALARS)
+
+
+@dataclass
+class Array:
+    """An array of a block; values: None if there is none."""
+
+    values: Any = None
+    on_cells: bool = False
+
+
+@dataclass
+class Fields:
+    """The input arrays of a filter on one block, and the problems with them."""
+
+    data: Array = field(default_factory=Array)
+    mask: Array = field(default_factory=Array)
+    direction: Array = field(default_factory=Array)
+    fixed: Array = field(default_factory=Array)
+    rates: Array = field(default_factory=Array)
+    fidelity: Array = field(default_factory=Array)
+    seeds: Array = field(default_factory=Array)
+    speeds: Array = field(default_factory=Array)
+    start_times: Array = field(default_factory=Array)
+    global_ids: Any = None
+    data_are_terms: bool = False
+    data_are_computed: bool = False  #: normals
+    result_is_normals: bool = False
+    samples: Samples | None = None
+    sources: Sources | None = None
+    absent: dict[int, tuple[str, str]] = field(default_factory=dict)  #: index: label, problem
+    problems: list[str] = field(default_factory=list)
+    core: Any = None
+    integers: bool = False
+
+    def name(self, attribute: str = "data") -> str:
+        array = getattr(self, attribute).values
+        return "" if array is None else array.GetName() or ""
+
+
+@dataclass
+class Samples:
+    """Values at points that need not be points of the surface."""
+
+    places: NDArray[np.float64]
+    values: NDArray[np.float64]
+    weights: NDArray[np.float64] | None
+    name: str
+
+
+@dataclass
+class Sources:
+    """Points and lines of distances."""
+
+    places: NDArray[np.float64]
+    segments: NDArray[np.int64]
+
+
+class ArrayFinder:
+    """Finds the arrays of a block that were chosen."""
+
+    def __init__(self, choices: dict[int, Choice], block: Any, fields: Fields) -> None:
+        self._choices, self._block, self._fields = choices, block, fields
+
+    def find(self, index: int, name: str, components: int) -> Array:
+        choice = self._choices.get(index, Choice())
+        if not choice.is_set and index != 0:
+            return Array()
+        label = f'{name} "{choice.name}"' if choice.name else name
+        problems = self._fields.problems
+        if choice.association not in (POINTS, CELLS, POINTS_THEN_CELLS):
+            problems.append(f"{label} has association {choice.association}; allowed: points (0) or cells (1)")
+            return Array()
+        block = self._block
+        found = None if choice.association == CELLS else choice.find_in(block.GetPointData())
+        on_cells = found is None and choice.association != POINTS
+        if on_cells:
+            found = choice.find_in(block.GetCellData())
+        if found is None:
+            self._fields.absent[index] = (label, f"{label} {self._describe_absence(choice)}")
+            return Array()
+        if not isinstance(found, vtkDataArray):
+            problems.append(f"{label} is a {found.GetClassName()}; allowed: numeric arrays")
+            return Array()
+        tuples = block.GetNumberOfCells() if on_cells else block.GetNumberOfPoints()
+        if found.GetNumberOfTuples() != tuples:
+            problems.append(f"{label} has {found.GetNumberOfTuples()} tuples; allowed: {tuples}, one per "
+                            + ("cell" if on_cells else "point"))
+            return Array()
+        size = found.GetNumberOfComponents()
+        if size < 1 if components == ANY else size != components:
+            problems.append(f"{label} has {size} components; allowed: "
+                            + ("1 or more" if components == ANY else str(components)))
+            return Array()
+        return Array(found, on_cells)
+
+    def _describe_absence(self, choice: Choice) -> str:
+        on_points, on_cells = choice.association != CELLS, choice.association != POINTS
+        kind = "point or cell" if on_points and on_cells else "cell" if on_cells else "point"
+        if not choice.name:
+            attribute = vtkDataSetAttributes.GetAttributeTypeAsString(
+                choice.attribute or vtkDataSetAttributes.SCALARS)
+            return (f"is not set and the input has no active {kind} {attribute}; choose a {kind} array")
+        text = f"is not among the {kind} arrays of the input; choose one of them"
+        if not on_cells and self._block.GetCellData().HasArray(choice.name):
+            return text + ", or association 1 for the cell array of this name"
+        if not on_points and self._block.GetPointData().HasArray(choice.name):
+            return text + ", or association 0 for the point array of this name"
+        return text
+
+
+def settle_absence(fields: list[Fields], names: list[str]) -> tuple[list[str], list[str]]:
+    """Problems with arrays that no block has, and warnings about those that some do not have."""
+    blocks: dict[int, list[str]] = {}
+    texts: dict[int, tuple[str, str]] = {}
+    for of_block, name in zip(fields, names):
+        for index, text in of_block.absent.items():
+            blocks.setdefault(index, []).append(name)
+            texts.setdefault(index, text)
+    problems, warnings = [], []
+    for index in sorted(blocks):
+        label, problem = texts[index]
+        if len(blocks[index]) == len(fields):
+            problems.append(problem)
+        else:
+            warnings.append(f"{label} counts as not set on {list_blocks(blocks[index])}, without this array")
+    return problems, warnings
+
+
+def list_blocks(names: list[str]) -> str:
+    """Data of thousands of blocks would make messages of thousands of names."""
+    text = ("block " if len(names) == 1 else "blocks ") + ", ".join(names[:8])
+    return text if len(names) <= 8 else f"{text} and {len(names) - 8} more"
+
+
+def join_sentences(found: list[tuple[str, str]], blocks: int) -> list[str]:
+    """Sentences about blocks, each once with the names of its blocks, unless it is about all of them.
+    found: pairs of sentence and block."""
+    names: dict[str, list[str]] = {}
+    for sentence, name in found:
+        known = names.setdefault(sentence, [])
+        if not known or known[-1] != name:
+            known.append(name)
+    return [sentence if len(known) == blocks or not known[0] else f"{list_blocks(known)}: {sentence}"
+            for sentence, known in names.items()]
+
+
+def make_core(fields: Fields, block: Block) -> None:
+    """What the numerics take. Raises SurfaceError on values that are not allowed."""
+    data, places = None, []
+    if fields.data.values is not None:
+        data = _as_data(fields.data.values)
+        fields.integers = fields.data.values.GetDataType() not in (10, 11)  # float, double
+    flags = {name: _as_flags(getattr(fields, name).values) for name in ("mask", "fixed")}
+    for name, found in (("data", fields.data), ("mask", fields.mask), ("fixed", fields.fixed),
+                        ("directions", fields.direction), ("fidelity", fields.fidelity),
+                        ("seeds", fields.seeds)):
+        if found.values is not None and found.on_cells:
+            places.append(name)
+    fields.core = _core.Fields(
+        block.core, data, 0 if data is None else data_components(data), flags["mask"], flags["fixed"],
+        _as_directions(fields), _as_rates(fields, block), _as_numbers(fields.fidelity.values),
+        _as_seeds(fields), fields.data_are_terms, places)
+    fields.core.set_names(fields.name(), block.name)
+    if fields.samples is not None:
+        fields.core.set_samples(
+            fields.samples.places, fields.samples.values, fields.samples.weights, fields.samples.name)
+    if fields.sources is not None:
+        fields.core.set_sources(fields.sources.places, fields.sources.segments)
+    speeds, times = _as_numbers(fields.speeds.values), _as_numbers(fields.start_times.values)
+    if speeds is not None:
+        fields.core.set_speeds(speeds, fields.speeds.on_cells)
+    if times is not None:
+        fields.core.set_start_times(times)
+    if fields.global_ids is not None:
+        ids, count = fields.global_ids, block.input.GetNumberOfPoints()
+        if ids.GetNumberOfTuples() != count:
+            raise SurfaceError(f"the input's array \"{ids.GetName()}\" has {ids.GetNumberOfTuples()} "
+                               f"tuples; allowed: {count}, one per point")
+        fields.core.set_ids(to_numpy(ids).astype(np.int64))
+
+
+def _as_data(array: Any) -> NDArray[Any]:
+    values = to_numpy(array)
+    kept = values.dtype in (np.float32, np.float64, np.uint8)
+    return np.ascontiguousarray(
+        values.reshape(len(values), -1), dtype=values.dtype if kept else np.float64)
+
+
+def _as_numbers(array: Any) -> NDArray[np.float64] | None:
+    return None if array is None else np.ascontiguousarray(to_numpy(array), dtype=np.float64)
+
+
+def _as_flags(array: Any) -> NDArray[np.uint8] | None:
+    return None if array is None else np.ascontiguousarray(to_numpy(array) != 0, dtype=np.uint8)
+
+
+def _as_directions(fields: Fields) -> NDArray[np.float64] | None:
+    vectors = _as_numbers(fields.direction.values)
+    if vectors is not None and np.isinf(vectors).any():
+        row = int(np.argmax(np.isinf(vectors).any(axis=1)))
+        raise SurfaceError(f'DirectionArray "{fields.name("direction")}" is infinite at tuple {row}; '
+                           "allowed: finite values and NaN")
+    return vectors
+
+
+def _as_rates(fields: Fields, block: Block) -> NDArray[np.float64] | None:
+    rates = _as_numbers(fields.rates.values)
+    if rates is not None:
+        used = rates[block.cells]
+        bad = ~(np.isfinite(used) & (used >= 0.0))
+        if bad.any():
+            row, column = divmod(int(np.argmax(bad)), used.shape[1])
+            raise SurfaceError(f"DiffusionRateArray is {used[row, column]:g} at cell {block.cells[row]}; "
+                               "allowed: finite numbers, 0 or more")
+    return rates
+
+
+def _as_seeds(fields: Fields) -> NDArray[np.int64] | None:
+    labels = _as_numbers(fields.seeds.values)
+    if labels is None:
+        return None
+    bad = ~((labels >= 0) & (labels == np.floor(labels)) & (labels < 2**31))
+    if bad.any():
+        row, place = int(np.argmax(bad)), "cell" if fields.seeds.on_cells else "point"
+        raise SurfaceError(f'SeedArray "{fields.name("seeds")}" is {labels[row]:g} at {place} {row}; '
+                           f"allowed: the labels 1 to NumberOfRegions, and 0 for {place}s that are free")
+    return labels.astype(np.int64)
+
+
+def _table_hint(kind: str) -> str:
+    return (f"; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
+            "vtkTableToPolyData)" if kind else "")
+
+
+def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples | None, list[str]]:
+    """The values of the second input of an interpolation, and problems with it."""
+    if not isinstance(data, vtkPointSet):
+        return None, [f"the points with values are a {data.GetClassName()}" + _table_hint("samples")]
+    problems: list[str] = []
+
+    def find(name: str, label: str) -> Any:
+        attributes = data.GetPointData()
+        found = attributes.GetAbstractArray(name) if name else attributes.GetScalars()
+        label = f'{label} "{name}"' if name else label
+        if found is None:
+            problems.append(label + (
+                " is not among the point arrays of the points with values; choose one of them" if name else
+                " is not set and the points with values have no active scalars; choose an array"))
+        elif not isinstance(found, vtkDataArray):
+            problems.append(f"{label} is a {found.GetClassName()}; allowed: numeric arrays")
+        else:
+            return found
+        return None
+
+    values = find(value_name, "PointValueArray")
+    weights = find(weight_name, "PointWeightArray") if weight_name else None
+    if weights is not None and weights.GetNumberOfComponents() != 1:
+        problems.append(f"PointWeightArray has {weights.GetNumberOfComponents()} components; allowed: 1")
+    if problems:
+        return None, problems
+    given = _as_data(values)
+    given = given[:, :data_components(given)]
+    return Samples(_places(data), np.ascontiguousarray(given, dtype=np.float64), _as_numbers(weights),
+                   values.GetName() or ""), []
+
+
+def read_sources(data: Any) -> tuple[Sources | None, list[str]]:
+    """The points and lines of the second input of distances, and problems with it."""
+    if not isinstance(data, vtkPointSet):
+        return None, [f"the second input, the sources, is a {data.GetClassName()}" + _table_hint("sources")]
+    if data.GetNumberOfPoints() == 0:
+        return None, ["the second input, the sources, has 0 points; allowed: 1 or more points or lines"]
+    segments: list[int] = []
+    kinds = vtkCellTypes()
+    data.GetCellTypes(kinds)
+    if any(kinds.IsType(kind) for kind in _LINES):
+        for cell in range(data.GetNumberOfCells()):
+            if data.GetCellType(cell) in _LINES:
+                corners = data.GetCell(cell).GetPointIds()
+                for k in range(1, corners.GetNumberOfIds()):
+                    segments += [corners.GetId(k - 1), corners.GetId(k)]
+    return Sources(_places(data), np.array(segments, dtype=np.int64)), []
+
+
+def _places(data: Any) -> NDArray[np.float64]:
+    if data.GetNumberOfPoints() == 0:
+        return np.empty((0, 3))
+    return to_numpy(data.GetPoints().GetData()).astype(np.float64, order="C")

@@ -1,0 +1,518 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The filters: which arrays each reads, and how runs with and without time steps are computed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkDataSetAttributes, vtkPolyData
+from vtkmodules.vtkCommonExecutionModel import vtkDemandDrivenPipeline, vtkStreamingDemandDrivenPipeline
+
+from .. import _core
+from .._refinement import texture_length
+from ._algorithm import SurfaceFilter, spell
+from ._fields import (
+    ANY, CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
+    settle_absence,
+)
+from ._normals import compute_point_normals
+from ._results import (
+    Output, make_array, read_outputs, write_columns, write_curves, write_history, write_outputs,
+)
+from ._surfaces import Block
+
+_SCALARS = Choice(POINTS_THEN_CELLS, None, vtkDataSetAttributes.SCALARS)
+_TIME = vtkStreamingDemandDrivenPipeline
+
+
+class RunFilter(SurfaceFilter):
+    """A filter without time steps."""
+
+    NAMED_AFTER = ""  #: the array of the fields that results are named after
+
+    def __init__(self) -> None:
+        SurfaceFilter.__init__(self)
+        self._runs = _core.SurfaceRuns(self.MODEL)
+
+    def ReleaseCache(self) -> None:
+        self._runs = _core.SurfaceRuns(self.MODEL)
+
+    def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
+        problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
+        if self.RESULT_NAME and not self.own["ResultArrayName"]:
+            problems.append("ResultArrayName is empty; allowed: any name")
+        found, everything, sentences = [], [], []
+        for block in blocks:
+            fields = Fields()
+            takes_part = self.find_fields(block, fields)
+            sentences += [(text, block.name) for text in fields.problems]
+            everything.append(fields)
+            if takes_part:
+                found.append((block, fields))
+        problems += join_sentences(sentences, len(blocks))
+        absent, warnings = settle_absence(everything, [block.name for block in blocks])
+        problems += absent
+        self._warnings += warnings
+        # An array that is not found would be reported as not set, too.
+        if not absent and not sentences:
+            self.check(found, problems)
+        return found
+
+    def run(
+        self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
+    ) -> tuple[list[str], list[str]]:
+        self._runs.update([found.core for found in fields], self.settings, self.progress)
+        self.progress(0.95)  # the last chance to abort
+        replaced = []
+        for number, (block, found) in enumerate(zip(blocks, fields)):
+            def write(entry: int, values: Any, source: Any, number: int = number) -> None:
+                self._runs.write(number, entry, values, source)
+
+            results = read_outputs(self._runs.outputs(number), write, found, block, np.float64)
+            turned = self._runs.turned_faces(number, block.core)
+            if turned:
+                _turn_polygons(block.output, turned)
+            data = getattr(found, self.NAMED_AFTER).values if self.NAMED_AFTER else None
+            replaced += write_outputs(results, found, data, block, self.own["ResultArrayName"])
+        self.set_numbers({**self._runs.numbers(), "MeanEdgeLength": [[self._runs.mean_edge_length()]]})
+        return replaced, [spell(words) for words in self._runs.warnings()]
+
+
+def _turn_polygons(surface: Any, cells: list[int]) -> None:
+    first = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+    polygons = vtkCellArray()
+    polygons.DeepCopy(surface.GetPolys())
+    for cell in cells:
+        if 0 <= cell - first < surface.GetNumberOfPolys():
+            polygons.ReverseCellAtId(cell - first)
+    surface.SetPolys(polygons)
+
+
+class ModelFilter(SurfaceFilter):
+    """A filter of a model of arrays, which may have time steps."""
+
+    OUTPUTS = ("vtkDataObject", "vtkTable")
+    DEFAULT_CHOICE = _SCALARS
+
+    def __init__(self) -> None:
+        SurfaceFilter.__init__(self)
+        self._run = _core.ModelRun(self.MODEL)
+        self._length: tuple[Any, int] | None = None  # settings and last step of a run that ended early
+
+    def ReleaseCache(self) -> None:
+        self._run = _core.ModelRun(self.MODEL)
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        arrays = self.find_arrays(block, fields)
+        fields.data = arrays.find(0, "InputArray", ANY)
+        fields.mask = arrays.find(1, "MaskArray", 1)
+        fields.direction = arrays.find(2, "DirectionArray", 3)
+        fields.fixed = arrays.find(3, "FixedArray", 1)
+        return fields.data.values is not None
+
+    def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
+        """Blocks without data pass through if at least one block has data."""
+        problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
+        precision = self.own["OutputPrecision"]
+        if precision not in (0, 1, 2):
+            problems.append(f"OutputPrecision is {precision}; allowed: 0 (Single), 1 (Double), 2 (Input)")
+        found, without = [], []
+        for block in blocks:
+            fields = Fields()
+            if self.find_fields(block, fields):
+                fields.global_ids = block.input.GetPointData().GetGlobalIds()
+                found.append((block, fields))
+                continue
+            texts = fields.problems + [problem for _, problem in fields.absent.values()]
+            without += [(text, block.name) for text in texts]
+        sentences = join_sentences(without, len(blocks))
+        if not found:
+            problems += sentences
+            return []
+        self._warnings += [text + " (without data, a block passes through)" for text in sentences]
+        absent, warnings = settle_absence(
+            [fields for _, fields in found], [block.name for block, _ in found])
+        problems += absent
+        self._warnings += warnings
+        for block, fields in found:
+            if 2 in fields.absent:  # where there is no direction, diffusion is isotropic
+                fields.direction.values = make_array("", np.zeros((block.input.GetNumberOfPoints(), 3)))
+        of_blocks = [(text, block.name) for block, fields in found for text in fields.problems]
+        problems += join_sentences(of_blocks, len(found))
+        if not absent:
+            self.check([pair for pair in found if not pair[1].problems], problems)
+        return found
+
+    def run(
+        self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
+    ) -> tuple[list[str], list[str]]:
+        run = self._run
+        try:
+            run.update([found.core for found in fields], self.settings, self.progress)
+            step = self._choose_step(request, outputs)
+            run.seek(step, self.progress)
+            self.progress(0.95)  # the last chance to abort
+        except (RuntimeError, ValueError):
+            self.ReleaseCache()
+            raise
+        results, replaced = [], []
+        for number, (block, found) in enumerate(zip(blocks, fields)):
+            def write(entry: int, values: Any, source: Any, number: int = number,
+                      found: Fields = found) -> None:
+                run.write(number, entry, values, source, -1, found.integers)
+
+            results.append(read_outputs(run.outputs(number), write, found, block, self._result_type(found)))
+            replaced += write_outputs(
+                results[-1], found, found.data.values, block, self.own["ResultArrayName"])
+        replaced += self._write_weights(blocks, results)
+        if not write_columns(results, made[1]):
+            write_history(run.history(), made[1])
+        if len(made) > 2:
+            write_curves(results, self.own["ResultArrayName"], made[2])
+        self.set_numbers(run.numbers())
+        return replaced, [spell(words) for words in run.warnings()]
+
+    def _result_type(self, fields: Fields) -> Any:
+        data, precision = fields.data.values, self.own["OutputPrecision"]
+        if precision == 2 and data is not None:
+            return {10: np.float32, 3: np.uint8}.get(data.GetDataType(), np.float64)
+        return np.float32 if precision == 0 else np.float64
+
+    def _write_weights(self, blocks: list[Block], results: list[list[Output]]) -> list[str]:
+        """If blocks have different weights, which AutomaticFidelity finds, each has its own as field data."""
+        weights = [next((float(output.values[0, 0]) for output in outputs if output.place == "number"
+                         and output.name == "EffectiveFidelityWeight"), 0.0) for outputs in results]
+        name = self.own["ResultArrayName"] + "EffectiveFidelityWeight"
+        replaced = []
+        if any(weight != weights[0] for weight in weights):
+            for block, weight in zip(blocks, weights):
+                data = block.output.GetFieldData()
+                replaced += [name] if data.HasArray(name) else []
+                data.AddArray(make_array(name, np.array([weight])))
+        return replaced
+
+    # Time --------------------------------------------------------------------------------------
+
+    def _key(self) -> Any:
+        """The settings that the length of a run depends on."""
+        of_output = {entry["name"] for entry in _core.list_settings(self.MODEL) if entry["is_of_output"]}
+        return {name: value for name, value in self.settings.items() if name not in of_output}
+
+    def _last_step(self) -> int:
+        """Of a run with these settings, if it is known; otherwise -1, all steps."""
+        return self._length[1] if self._length is not None and self._length[0] == self._key() else -1
+
+    def _publish(self, outputs: Any) -> bool:
+        found = _core.find_times(self.MODEL, self.settings, self._last_step())
+        for port in range(outputs.GetNumberOfInformationObjects() if found else 0):
+            info, times = outputs.GetInformationObject(port), found["times"]
+            info.Set(_TIME.TIME_STEPS(), times, len(times))
+            info.Set(_TIME.TIME_RANGE(), [times[0], times[-1]], 2)
+        return found is not None
+
+    def RequestInformation(self, request: Any, inputs: Any, outputs: Any) -> int:
+        self._publish(outputs)
+        return 1
+
+    def RequestUpdateExtent(self, request: Any, inputs: Any, outputs: Any) -> int:
+        if inputs[0].GetNumberOfInformationObjects() == 0 or not _core.find_times(self.MODEL, self.settings):
+            return 1
+        info = inputs[0].GetInformationObject(0)
+        if info.Has(_TIME.TIME_STEPS()) and info.Length(_TIME.TIME_STEPS()) > 0:
+            info.Set(_TIME.UPDATE_TIME_STEP(), info.Get(_TIME.TIME_STEPS())[0])
+        elif info.Has(_TIME.TIME_RANGE()):
+            info.Set(_TIME.UPDATE_TIME_STEP(), info.Get(_TIME.TIME_RANGE())[0])
+        else:
+            info.Remove(_TIME.UPDATE_TIME_STEP())
+        return 1
+
+    def _choose_step(self, request: Any, outputs: Any) -> int:
+        """The step of the requested time; without one, the last."""
+        found = _core.find_times(self.MODEL, self.settings, self._last_step())
+        if found is None:
+            return -1
+        last = self._run.find_last_step(self.progress)
+        if last != (self._last_step() if self._last_step() >= 0 else found["number_of_steps"]):
+            self._length = (self._key(), last)
+            self._publish(outputs)
+            self.Modified()  # filters downstream, which have not seen these times
+        port = request.Get(vtkDemandDrivenPipeline.FROM_OUTPUT_PORT()) if request.Has(
+            vtkDemandDrivenPipeline.FROM_OUTPUT_PORT()) else 0
+        info = outputs.GetInformationObject(max(0, port))
+        step = last
+        if info.Has(_TIME.UPDATE_TIME_STEP()):
+            step = _core.find_step(self.MODEL, self.settings, info.Get(_TIME.UPDATE_TIME_STEP()), last)
+        for each in range(outputs.GetNumberOfInformationObjects()):
+            output = outputs.GetInformationObject(each).Get(vtkDataObject.DATA_OBJECT())
+            output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), step * found["time_step"])
+        return int(step)
+
+
+class DataFilter(ModelFilter):
+    """A model of given data, with fidelity factors."""
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        found = ModelFilter.find_fields(self, block, fields)
+        fields.fidelity = self.find_arrays(block, fields).find(5, "FidelityArray", 1)
+        return found
+
+
+class Heat(DataFilter):
+    MODEL = "heat"
+
+
+class TotalVariation(DataFilter):
+    MODEL = "intrinsic_tv"
+
+
+class MumfordShah(DataFilter):
+    MODEL = "mumford_shah"
+    OUTPUTS = ("vtkDataObject", "vtkTable", "vtkPolyData")
+
+
+class TensorDiffusion(DataFilter):
+    MODEL = "tensor_diffusion"
+
+
+class HarmonicMap(DataFilter):
+    MODEL = "harmonic_map"
+    DEFAULT_CHOICE = Choice(POINTS, None, vtkDataSetAttributes.NORMALS)
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        """If no other array is chosen, a block is read as if it had normals in any case."""
+        choice, given = self.choices[0], block.input
+        with_normals = vtkPolyData()
+        with_normals.ShallowCopy(given)
+        by_other = choice.name is None and choice.attribute not in (None, vtkDataSetAttributes.NORMALS)
+        if not choice.name and not by_other and choice.association != CELLS:
+            normals = given.GetPointData().GetNormals()
+            fields.data_are_computed = normals is None
+            if normals is None:
+                normals = compute_point_normals(given)
+            with_normals.GetPointData().SetNormals(normals)
+            with_normals.GetPointData().SetScalars(normals)  # the meaning of an empty name
+        if not DataFilter.find_fields(self, Block(with_normals, None), fields):
+            return False
+        data = fields.data.values
+        is_normals = fields.data_are_computed or data is given.GetPointData().GetNormals() or (
+            data is given.GetCellData().GetNormals())
+        fields.result_is_normals = bool(self.own["UseAsNormals"]) and is_normals
+        if self.settings.get("MoveVertices") and not is_normals:
+            fields.problems.append(
+                f'MoveVertices is on but InputArray "{fields.name()}" is not the surface\'s normals; '
+                "allowed: off, or the active normals of points or cells, or none, as InputArray")
+        return True
+
+
+class Texture(ModelFilter):
+    MODEL = "turing_texture"
+    DEFAULT_CHOICE = Choice(POINTS, "")
+
+    def __init__(self) -> None:
+        ModelFilter.__init__(self)
+        self.own["RefineTo"] = -1.0
+
+    def find_number(self, name: str) -> Any:
+        if name == "EffectiveTimeStep":
+            return _core.find_time_step(self.MODEL, self.settings)
+        return ModelFilter.find_number(self, name)
+
+    def may_refine_automatically(self) -> bool:
+        return True
+
+    def find_refinement(self, mean: float) -> tuple[float, str]:
+        if self.own["RefineTo"] != -1.0:
+            return ModelFilter.find_refinement(self, mean)
+        size = self.settings.get("FeatureSize", 0.0)
+        if not 0.0 < size < float("inf"):
+            return 0.0, ""
+        length = texture_length(mean, size)
+        return length, (f"FeatureSize is {size:g}, only {size / mean:g} mean edge lengths (to keep the "
+                        "edges, set RefineTo to 0)" if length > 0.0 else "")
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        arrays, choice = self.find_arrays(block, fields), self.choices[0]
+        if choice.is_set:
+            fields.data = arrays.find(0, "InputArray", 2)
+        fields.mask = arrays.find(1, "MaskArray", 1)
+        fields.direction = arrays.find(2, "DirectionArray", 3)
+        fields.fixed = arrays.find(3, "FixedArray", 1)
+        fields.rates = arrays.find(4, "DiffusionRateArray", 4)
+        if fields.rates.values is not None and not fields.rates.on_cells:
+            fields.problems.append(
+                "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell")
+        return True  # an initial state is optional
+
+
+class Segmentation(ModelFilter):
+    MODEL = "segment"
+    OUTPUTS = ("vtkDataObject", "vtkTable", "vtkPolyData")
+
+    def __init__(self) -> None:
+        ModelFilter.__init__(self)
+        self._means: dict[tuple[int, int], float] = {}
+
+    def AddMean(self, region: float, component: float, value: float) -> None:
+        self._means[int(region), int(component)] = float(value)
+        self._pass_means()
+
+    def RemoveAllMeans(self) -> None:
+        self._means.clear()
+        self._pass_means()
+
+    def _pass_means(self) -> None:
+        self.settings["Means"] = [value for _, value in sorted(self._means.items())]
+        self.Modified()
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        arrays = self.find_arrays(block, fields)
+        fields.data = arrays.find(7, "DataTermArray", ANY)
+        fields.data_are_terms = fields.data.values is not None
+        if not fields.data_are_terms and not fields.problems and not fields.absent:
+            fields.data = arrays.find(0, "InputArray", ANY)
+        fields.mask = arrays.find(1, "MaskArray", 1)
+        fields.fidelity = arrays.find(5, "FidelityArray", 1)
+        fields.seeds = arrays.find(6, "SeedArray", 1)
+        data = fields.data.values
+        if data is not None and not fields.data_are_terms and not self.settings.get("AutomaticMeans", True):
+            self._check_means(data, fields.problems)
+        return data is not None
+
+    def _check_means(self, data: Any, problems: list[str]) -> None:
+        regions = self.settings.get("NumberOfRegions", 2)
+        components = data.GetNumberOfComponents()
+        components -= data.GetDataType() == 3 and components in (2, 4)  # alpha
+        for region, component in sorted(self._means):
+            if not 1 <= region <= regions:
+                problems.append(f"the region of a Mean is {region}; allowed: 1 to NumberOfRegions {regions}")
+            if not 0 <= component < components:
+                problems.append(f"the component of a Mean is {component}; allowed: 0 to {components - 1}, "
+                                "the last component of InputArray")
+
+
+class Interpolation(ModelFilter):
+    MODEL = "interpolate"
+    HAS_POINT_INPUT = True
+
+    def begin(self, inputs: Any) -> None:
+        data = self.second_input(inputs)
+        self._has_points, self._samples, self._problems = data is not None, None, []
+        if data is not None:
+            self._samples, self._problems = read_samples(
+                data, self.own["PointValueArray"], self.own["PointWeightArray"])
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        arrays = self.find_arrays(block, fields)
+        fields.samples = self._samples
+        fields.problems += self._problems
+        if not self._has_points:
+            fields.data = arrays.find(0, "InputArray", ANY)
+            fields.fidelity = arrays.find(5, "FidelityArray", 1)
+        fields.mask = arrays.find(1, "MaskArray", 1)
+        fields.direction = arrays.find(2, "DirectionArray", 3)
+        return fields.data.values is not None or fields.samples is not None
+
+
+class Curvature(RunFilter):
+    MODEL = "curvature"
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        fields.mask = self.find_arrays(block, fields).find(1, "MaskArray", 1)
+        return True
+
+
+class Denoising(RunFilter):
+    MODEL = "denoise_mesh"
+    RESULT_NAME = "Displacement"
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        fields.fixed = self.find_arrays(block, fields).find(3, "FixedArray", 1)
+        return True
+
+
+class Derivatives(RunFilter):
+    MODEL = "derivatives"
+    DEFAULT_CHOICE = _SCALARS
+    NAMED_AFTER = "data"
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        arrays = self.find_arrays(block, fields)
+        fields.data = arrays.find(0, "InputArray", ANY)
+        fields.mask = arrays.find(1, "MaskArray", 1)
+        return fields.data.values is not None
+
+
+class DirectionField(RunFilter):
+    MODEL = "direction_field"
+    RESULT_NAME = "Direction"
+    NAMED_AFTER = "direction"
+    _HINTS = 3  #: of Method
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        if self.settings.get("Method", 0) == self._HINTS:
+            fields.direction = self.find_arrays(block, fields).find(2, "DirectionArray", 3)
+        return True  # without hints, which is an error if they are needed
+
+
+class Distance(RunFilter):
+    MODEL = "distance"
+    HAS_POINT_INPUT = True
+
+    def begin(self, inputs: Any) -> None:
+        data = self.second_input(inputs)
+        self._has_sources, self._sources, self._problems = data is not None, None, []
+        if data is not None:
+            self._sources, self._problems = read_sources(data)
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        arrays = self.find_arrays(block, fields)
+        fields.problems += self._problems
+        fields.sources = self._sources
+        if not self._has_sources:
+            fields.data = arrays.find(0, "SourceArray", 1)
+            fields.start_times = arrays.find(9, "SourceTimes", 1)
+        fields.mask = arrays.find(1, "MaskArray", 1)
+        fields.direction = arrays.find(2, "DirectionArray", 3)
+        fields.speeds = arrays.find(8, "SpeedArray", 1)
+        for array, name in ((fields.data, "SourceArray"), (fields.start_times, "SourceTimes")):
+            if array.on_cells:
+                fields.problems.append(f"{name} is a cell array; allowed: point arrays of 1 component")
+        return fields.data.values is not None or fields.sources is not None
+
+
+class RandomField(RunFilter):
+    MODEL = "random_field"
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        fields.mask = self.find_arrays(block, fields).find(1, "MaskArray", 1)
+        fields.global_ids = block.input.GetPointData().GetGlobalIds()
+        return True
+
+
+class Relief(RunFilter):
+    MODEL = "relief"
+    RESULT_NAME = "ReliefHeight"
+    DEFAULT_CHOICE = Choice(POINTS, "Texture")
+    NAMED_AFTER = "data"
+
+    def find_fields(self, block: Block, fields: Fields) -> bool:
+        arrays = self.find_arrays(block, fields)
+        fields.data = arrays.find(0, "InputArray", 1)
+        if fields.data.on_cells:
+            fields.problems.append("InputArray is a cell array; allowed: point arrays of 1 component")
+        fields.mask = arrays.find(1, "MaskArray", 1)
+        return fields.data.values is not None
+
+
+#: The class of each proxy.
+CLASSES: dict[str, type[SurfaceFilter]] = {
+    "FVMHeatFilter": Heat, "HarmonicMapFilter": HarmonicMap, "IntrinsicTVFilter": TotalVariation,
+    "MumfordShahFilter": MumfordShah, "SurfaceCurvatureFilter": Curvature,
+    "SurfaceDenoisingFilter": Denoising, "SurfaceDerivativesFilter": Derivatives,
+    "SurfaceDirectionFieldFilter": DirectionField, "SurfaceDistanceFilter": Distance,
+    "SurfaceInterpolationFilter": Interpolation, "SurfaceRandomFieldFilter": RandomField,
+    "SurfaceReliefFilter": Relief, "SurfaceSegmentationFilter": Segmentation,
+    "TensorDiffusionFilter": TensorDiffusion, "TuringTextureFilter": Texture,
+}

@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the plugin gives to ParaView: a class for each filter, with its properties, and its proxies, which
+are those of the plugin in C++ with another class."""
+
+from __future__ import annotations
+
+import glob
+import os
+import re
+import xml.etree.ElementTree as ElementTree
+from typing import Any, Callable
+
+from paraview.modules.vtkRemotingCore import vtkPVPluginTracker
+
+from ._filters import CLASSES
+
+_PROXIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "proxies")
+_SHARED = "SurfaceDiffusionAlgorithm.xml"  #: the properties that filters inherit
+
+
+class _Definition:
+    """An object of a plugin's module whose XML ParaView reads."""
+
+    def __init__(self, xml: str) -> None:
+        self._pvsm_proxy_xml = xml
+
+
+def define_filters(module: str) -> dict[str, Any]:
+    """The objects of the plugin's module: classes and proxies. None if the plugin in C++ is loaded."""
+    if _is_loaded("SurfaceDiffusion"):
+        print("SurfaceDiffusionPython: the plugin SurfaceDiffusion is loaded, whose filters stay.")
+        return {}
+    shared = _read(_SHARED)
+    properties = {
+        proxy.get("name"): proxy for proxy in ElementTree.fromstring(shared).iter("SourceProxy")}
+    objects: dict[str, Any] = {"_SharedProperties": _Definition(shared)}
+    for path in sorted(glob.glob(os.path.join(_PROXIES, "*Filter.xml"))):
+        xml = _read(os.path.basename(path))
+        (proxy,) = ElementTree.fromstring(xml).iter("SourceProxy")
+        name, old = proxy.get("name", ""), proxy.get("class", "")
+        xml = xml.replace(f'class="{old}"', f'class="{module}.{old}" si_class="vtkSIPythonSourceProxy"')
+        made = type(old, (CLASSES[name],), {"__module__": module, **_methods(proxy, properties)})
+        made._pvsm_proxy_xml = xml  # type: ignore[attr-defined]
+        objects[old] = made
+        objects[f"_{name}ByClass"] = _Definition(_by_class(name, xml))
+    return objects
+
+
+def _is_loaded(name: str) -> bool:
+    tracker = vtkPVPluginTracker.GetInstance()
+    return any(tracker.GetPluginName(number) == name and tracker.GetPluginLoaded(number)
+               for number in range(tracker.GetNumberOfPlugins()))
+
+
+def _read(name: str) -> str:
+    with open(os.path.join(_PROXIES, name), encoding="utf-8") as file:
+        return file.read()
+
+
+def _by_class(name: str, xml: str) -> str:
+    """The second proxy of a filter, for the function of paraview.simple with the name of its class: see
+    CMakeLists.txt of the plugin in C++."""
+    xml = re.sub(rf'(<SourceProxy name="{name})("[^>]*label=")[^"]*', rf"\1ByClass\2{name}", xml)
+    return re.sub("<ShowInMenu[^>]*>", "<ReaderFactory/>", xml)
+
+
+def _methods(proxy: Any, shared: dict[str | None, Any]) -> dict[str, Callable[..., Any]]:
+    """The methods that the properties of a proxy call, inherited ones first."""
+    base = shared.get(proxy.get("base_proxyname"))
+    methods = {} if base is None else _methods(base, shared)
+    for element in proxy:
+        command = element.get("command", "")
+        if element.get("information_only") == "1" and command.startswith("Get"):
+            methods[command] = _getter(command[3:], element.tag != "DoubleVectorProperty")
+        elif command.startswith("Set") and element.tag.endswith("VectorProperty"):
+            if command != "SetInputArrayToProcess":
+                methods[command] = _setter(command[3:])
+    return methods
+
+
+def _setter(name: str) -> Callable[..., None]:
+    def assign(self: Any, *values: Any) -> None:
+        self.assign(name, values)
+
+    return assign
+
+
+def _getter(name: str, is_integer: bool) -> Callable[..., Any]:
+    def find(self: Any) -> Any:
+        number = self.find_number(name)
+        return int(number) if is_integer else float(number)
+
+    return find

@@ -1,0 +1,241 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces of ParaView's data as arrays: points, triangles and their cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList
+from vtkmodules.vtkCommonDataModel import (
+    vtkCompositeDataSet, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection,
+    vtkPolyData, vtkPolygon,
+)
+
+from .. import _core
+
+ABSENT = 1 | 32  #: bits of cells in vtkGhostType: duplicate, hidden
+_HIDDEN_POINT = 2  #: the bit of points
+
+
+class SurfaceError(Exception):
+    """An error that the filter reports."""
+
+
+@dataclass
+class Block:
+    """A surface of the input, and its copy in the output. name: of a block of composite data."""
+
+    input: Any
+    output: Any
+    name: str = ""
+    cells: Any = None  #: per triangle, its cell
+    core: Any = None  #: the surface of the numerics
+
+
+def to_numpy(array: Any) -> NDArray[Any]:
+    """The values of a vtkDataArray: (n,) or (n, k)."""
+    try:
+        return np.asarray(vtk_to_numpy(array))
+    except (AssertionError, KeyError, TypeError, ValueError):  # bits, and arrays without a buffer
+        copy = vtkDoubleArray()
+        copy.DeepCopy(array)
+        return np.asarray(vtk_to_numpy(copy))
+
+
+@dataclass
+class Parts:
+    """The surfaces of an input."""
+
+    blocks: list[Block]
+    other_types: str = ""  #: the classes of leaves that are no polydata
+    is_composite: bool = False
+    in_pieces: str | None = None  #: the name of a surface that has several pieces
+
+
+def copy_structure(given: Any, output: Any) -> Parts:
+    """Make the output a shallow copy of the input, blocks included, and list the surfaces."""
+    parts = Parts([], is_composite=isinstance(given, vtkCompositeDataSet))
+    if not parts.is_composite:
+        output.ShallowCopy(given)
+        _add(parts, given, output, "", set())
+        return parts
+    output.CopyStructure(given)
+    output.GetFieldData().ShallowCopy(given.GetFieldData())
+    output.GetInformation().CopyEntry(given.GetInformation(), given.DATA_TIME_STEP())
+    names = list(_names(given, "", ""))
+    seen: set[int] = set()
+    types: set[str] = set()
+    iterator = given.NewIterator()
+    number = 0
+    while not iterator.IsDoneWithTraversal():
+        leaf = iterator.GetCurrentDataObject()
+        copy = leaf.NewInstance()
+        copy.ShallowCopy(leaf)
+        output.SetDataSet(iterator, copy)
+        surface, name = names[number] if number < len(names) else (0, "")
+        if isinstance(leaf, vtkPolyData) and leaf.GetNumberOfPoints() > 0:
+            if surface in seen:
+                parts.in_pieces = name
+            seen.add(surface)
+        _add(parts, leaf, copy, name, types)
+        number += 1
+        iterator.GoToNextItem()
+    parts.other_types = ", ".join(sorted(types))
+    return parts
+
+
+def _add(parts: Parts, leaf: Any, copy: Any, name: str, types: set[str]) -> None:
+    if isinstance(leaf, vtkPolyData):
+        parts.blocks.append(Block(leaf, copy, name))
+    else:
+        types.add(leaf.GetClassName())
+        parts.other_types = ", ".join(sorted(types))
+
+
+def _names(data: Any, name: str, path: str, counter: list[int] | None = None) -> Iterator[tuple[int, str]]:
+    """The number and the name of the surface of each leaf that exists: the name of its block in quotation
+    marks, or its indices. Partitions are pieces of one surface."""
+    counter = [0] if counter is None else counter
+    children: list[tuple[Any, Any]] = []
+    if isinstance(data, vtkMultiBlockDataSet):
+        children = [(data.GetBlock(b), data.GetMetaData(b) if data.HasMetaData(b) else None)
+                    for b in range(data.GetNumberOfBlocks())]
+    elif isinstance(data, vtkPartitionedDataSetCollection):
+        children = [(data.GetPartitionedDataSet(m), data.GetMetaData(m) if data.HasMetaData(m) else None)
+                    for m in range(data.GetNumberOfPartitionedDataSets())]
+    else:
+        label = f'"{name}"' if name else path
+        leaves = ([data.GetPartitionAsDataObject(p) for p in range(data.GetNumberOfPartitions())]
+                  if isinstance(data, vtkPartitionedDataSet) else [data])
+        yield from ((counter[0], label) for leaf in leaves if leaf is not None)
+        counter[0] += 1
+        return
+    for number, (child, information) in enumerate(children):
+        key = vtkCompositeDataSet.NAME()
+        found = information.Get(key) if information is not None and information.Has(key) else ""
+        yield from _names(child, found or "", f"{path}/{number}" if path else str(number), counter)
+
+
+def read_surface(block: Block) -> None:
+    """Read the triangles of a block. Raises SurfaceError on cells with points that there are not."""
+    data = block.input
+    points = to_numpy(data.GetPoints().GetData()).astype(np.float64, order="C")
+    first = data.GetNumberOfVerts() + data.GetNumberOfLines()
+    triangles, cells = _cut(data.GetPolys(), first, points)
+    if data.GetNumberOfStrips():
+        of_strips, cells_of_strips = _cut_strips(
+            data.GetStrips(), first + data.GetNumberOfPolys(), len(points))
+        triangles, cells = np.vstack([triangles, of_strips]), np.append(cells, cells_of_strips)
+    flags, hidden = cell_flags(data), hidden_points(data)
+    if flags is not None:
+        kept = (flags[cells] & ABSENT) == 0
+        triangles, cells = triangles[kept], cells[kept]
+    block.cells = cells
+    block.core = _core.Surface(
+        points, np.ascontiguousarray(triangles, dtype=np.int64).ravel(),
+        np.ascontiguousarray(cells, dtype=np.int64), data.GetNumberOfCells(), hidden)
+
+
+def polygons_of(array: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The points of all cells of a vtkCellArray in a row, and where each cell begins."""
+    if array is None or array.GetNumberOfCells() == 0:
+        return np.empty(0, dtype=np.int64), np.zeros(1, dtype=np.int64)
+    return (to_numpy(array.GetConnectivityArray()).astype(np.int64),
+            to_numpy(array.GetOffsetsArray()).astype(np.int64))
+
+
+def hidden_points(data: Any) -> NDArray[np.uint8] | None:
+    """Nonzero for hidden points; None if there are none."""
+    flags = data.GetPointGhostArray()
+    if flags is None or flags.GetNumberOfTuples() != data.GetNumberOfPoints():
+        return None
+    hidden = (to_numpy(flags) & _HIDDEN_POINT) != 0
+    return np.ascontiguousarray(hidden, dtype=np.uint8) if hidden.any() else None
+
+
+def cell_flags(data: Any) -> NDArray[np.uint8] | None:
+    """vtkGhostType of the cells, where cells of hidden points are hidden; None if there are none."""
+    given, count = data.GetCellGhostArray(), data.GetNumberOfCells()
+    if given is not None and given.GetNumberOfTuples() != count:
+        raise SurfaceError(f"the input's array \"{given.GetName()}\" has {given.GetNumberOfTuples()} "
+                           f"tuples; allowed: {count}, one per cell")
+    hidden = hidden_points(data)
+    if given is None and hidden is None:
+        return None
+    flags = (np.zeros(count, dtype=np.uint8) if given is None else to_numpy(given).copy())
+    if hidden is not None:
+        first = 0
+        for array in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
+            corners, offsets = polygons_of(array)
+            inside = (corners >= 0) & (corners < len(hidden))
+            is_hidden = np.zeros(len(corners), dtype=bool)
+            is_hidden[inside] = hidden[corners[inside]] != 0
+            cell = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+            flags[first + np.unique(cell[is_hidden])] |= 32
+            first += len(offsets) - 1
+    return flags
+
+
+def _check(corners: Any, offsets: Any, first: int, count: int) -> None:
+    outside = (corners < 0) | (corners >= count)
+    if outside.any():
+        at = int(np.argmax(outside))
+        cell = first + int(np.searchsorted(offsets, at, side="right")) - 1
+        raise SurfaceError(f"cell {cell} of the input refers to point {corners[at]}, but there are {count} "
+                           "points")
+
+
+def _cut(array: Any, first: int, points: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The triangles of polygons, in the order of their cells. Quadrilaterals are cut as by the numerics,
+    larger polygons by vtkPolygon."""
+    corners, offsets = polygons_of(array)
+    _check(corners, offsets, first, len(points))
+    sizes = np.diff(offsets)
+    if (sizes == 3).all():
+        return corners.reshape(-1, 3), first + np.arange(len(sizes))
+    numbers = [np.flatnonzero(sizes == 3)]
+    triangles = [corners[offsets[numbers[0], None] + np.arange(3)]]
+    quads = np.flatnonzero(sizes == 4)
+    if len(quads):
+        of_quads = corners[offsets[quads, None] + np.arange(4)]
+        cut = _core.Surface(points, of_quads.ravel(), np.arange(0, 4 * len(quads) + 1, 4))
+        triangles.append(cut.triangles().astype(np.int64))
+        numbers.append(np.repeat(quads, 2))
+    for number in np.flatnonzero(sizes > 4):
+        found = _cut_polygon(points, corners[offsets[number]:offsets[number + 1]])
+        triangles.append(found)
+        numbers.append(np.full(len(found), number))
+    all_numbers = np.concatenate(numbers)
+    order = np.argsort(all_numbers, kind="stable")
+    return np.vstack(triangles)[order], first + all_numbers[order]
+
+
+def _cut_polygon(points: Any, corners: Any) -> NDArray[np.int64]:
+    polygon, ears = vtkPolygon(), vtkIdList()
+    polygon.GetPointIds().SetNumberOfIds(len(corners))
+    polygon.GetPoints().SetNumberOfPoints(len(corners))
+    for i, corner in enumerate(corners):
+        polygon.GetPointIds().SetId(i, i)
+        polygon.GetPoints().SetPoint(i, points[corner])
+    if polygon.EarCutTriangulation(ears) and ears.GetNumberOfIds() > 0:
+        rows = np.array([ears.GetId(i) for i in range(ears.GetNumberOfIds())]).reshape(-1, 3)
+    else:  # it intersects itself or is flat: use a fan
+        rows = np.array([[0, i, i + 1] for i in range(1, len(corners) - 1)])
+    return np.asarray(corners[rows], dtype=np.int64)
+
+
+def _cut_strips(array: Any, first: int, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    corners, offsets = polygons_of(array)
+    _check(corners, offsets, first, count)
+    triangles, cells = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for number in range(len(offsets) - 1):
+        strip = corners[offsets[number]:offsets[number + 1]]
+        i = np.arange(max(0, len(strip) - 2))
+        triangles.append(strip[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)])
+        cells.append(np.full(len(i), first + number))
+    return np.vstack(triangles), np.concatenate(cells)
