@@ -1,0 +1,367 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs all filters of a plugin, in Python or C++, in many ways, and writes what they give:
+
+    pvpython python_plugin.py PLUGIN RESULTS.npz
+
+TestPythonPlugin.py compares the two."""
+
+import inspect
+import json
+import random
+import sys
+import time
+
+import numpy as np
+from panel import click, sphere_with_arrays
+from paraview import servermanager, simple
+from plugin_testing import filter_names, noisy, outputs
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints
+from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray, vtkDataObject, vtkPolyData, vtkUnstructuredGrid,
+)
+
+CLICKS = 12  # runs of each filter with random properties
+# Debian's ParaView 5.11 has Python 3.11, which has not this function of former versions.
+if not hasattr(inspect, "getargspec"):
+    inspect.getargspec = inspect.getfullargspec
+
+found = {}  # what is compared: arrays, and texts
+
+
+def put(key, value):
+    assert key not in found, key
+    found[key] = value
+
+
+def producer(data):
+    source = servermanager.sources.TrivialProducer()
+    source.SMProxy.GetClientSideObject().SetOutput(data)
+    return source
+
+
+def make(name, source, **properties):
+    """A filter and the messages that it will have, with steps enough to be seen."""
+    made = getattr(servermanager.filters, name)(Input=source)
+    if "NumberOfTimeSteps" in made.ListProperties():
+        made.NumberOfTimeSteps = 3
+    if name == "SurfaceReliefFilter":
+        made.InputArray = ["POINTS", "f"]
+    if name == "SurfaceDistanceFilter" and "Sources" not in properties:
+        made.SourceArray = ["POINTS", "ends"]
+    for key, value in properties.items():
+        setattr(made, key, value)
+    messages = []
+    algorithm = made.SMProxy.GetClientSideObject()
+
+    def remember(_object, event, text):
+        # After the name and address of the object, which each has on a line of its own in C++
+        lines = [line for line in text.strip().splitlines() if not line.startswith("ERROR: In /")
+                 and not line.startswith("Warning: In /")]
+        message = (event, " ".join(lines).partition("): ")[2].strip())
+        if message not in messages[-1:]:  # one request may update a filter twice
+            messages.append(message)
+
+    remember.CallDataType = "string0"
+    for event in ("ErrorEvent", "WarningEvent"):
+        algorithm.AddObserver(event, remember)
+    return made, messages
+
+
+def roles(data):
+    """The names of the active attributes."""
+    names = {}
+    for place, kind in (("POINTS", vtkDataObject.POINT), ("CELLS", vtkDataObject.CELL)):
+        attributes = data.GetAttributes(kind)
+        for role in range(6 if attributes else 0):
+            array = attributes.GetAbstractAttribute(role)
+            names["%s %d" % (place, role)] = array.GetName() if array else None
+    return names
+
+
+def leaves(data):
+    if not data.IsA("vtkCompositeDataSet"):
+        return [data]
+    iterator, all_leaves = data.NewIterator(), []
+    while not iterator.IsDoneWithTraversal():
+        all_leaves.append(iterator.GetCurrentDataObject())
+        iterator.GoToNextItem()
+    return all_leaves
+
+
+def describe(made, key):
+    """Put the outputs of a filter: numbers, types, roles, times."""
+    algorithm = made.SMProxy.GetClientSideObject()
+    for port in range(algorithm.GetNumberOfOutputPorts()):
+        data = algorithm.GetOutputDataObject(port)
+        put("%s/%d/class" % (key, port), data.GetClassName())
+        if port == 0:
+            information = data.GetInformation()
+            at = vtkDataObject.DATA_TIME_STEP()
+            put(key + "/time", information.Get(at) if information.Has(at) else None)
+        for number, leaf in enumerate(leaves(data)):
+            here = "%s/%d/%d" % (key, port, number)
+            if leaf.IsA("vtkPolyData"):
+                put(here + "/roles", roles(leaf))
+                for kind, cells in (("polys", leaf.GetPolys()), ("lines", leaf.GetLines())):
+                    if cells.GetNumberOfCells():
+                        put(here + "/" + kind, vtk_to_numpy(cells.GetConnectivityArray()).copy())
+            if leaf.IsA("vtkPointSet") and leaf.GetNumberOfPoints():
+                put(here + "/coordinates", vtk_to_numpy(leaf.GetPoints().GetData()).copy())
+            for place, kind in (("POINTS", vtkDataObject.POINT), ("CELLS", vtkDataObject.CELL),
+                                ("ROWS", vtkDataObject.ROW), ("FIELD", vtkDataObject.FIELD)):
+                attributes = leaf.GetAttributesAsFieldData(kind)
+                for a in range(attributes.GetNumberOfArrays() if attributes else 0):
+                    array = attributes.GetArray(a)
+                    if array and (place, array.GetName()) != ("ROWS", "Seconds"):
+                        names = [array.GetComponentName(k) for k in range(array.GetNumberOfComponents())]
+                        put("%s/%s/%s" % (here, place, array.GetName()), vtk_to_numpy(array).copy())
+                        put("%s/%s/%s/names" % (here, place, array.GetName()), names)
+    made.UpdatePipelineInformation()
+    for name in made.ListProperties():
+        prop = made.SMProxy.GetProperty(name)
+        # Steps are counted over the life of a filter.
+        if prop.GetInformationOnly() and name != "NumberOfStepsComputed":
+            made.SMProxy.UpdatePropertyInformation(prop)
+            put("%s/%s" % (key, name), [prop.GetElement(i) for i in range(prop.GetNumberOfElements())])
+
+
+def run(name, source, key, **properties):
+    made, messages = make(name, source, **properties)
+    made.UpdatePipeline()
+    put("%s/%s/messages" % (key, name), messages)
+    describe(made, "%s/%s" % (key, name))
+    return made
+
+
+def list_properties():
+    for name in filter_names():
+        made = getattr(servermanager.filters, name)()
+        for key in made.ListProperties():
+            prop = made.SMProxy.GetProperty(key)
+            elements = None if prop.IsA("vtkSMProxyProperty") else [
+                prop.GetElement(i) for i in range(prop.GetNumberOfElements())]
+            put("properties/%s/%s" % (name, key), [
+                prop.GetXMLLabel(), prop.GetPanelVisibility(), elements,
+                prop.GetDocumentation().GetDescription(), prop.GetCommand()])
+        groups = [made.SMProxy.GetPropertyGroup(i) for i in range(made.SMProxy.GetNumberOfPropertyGroups())]
+        put("groups/%s" % name, [
+            [group.GetXMLLabel()] + [group.GetProperty(k).GetXMLName()
+                                     for k in range(group.GetNumberOfProperties())] for group in groups])
+        put("simple/%s" % name, globals()[name].__doc__)
+
+
+def run_clicks():
+    for name in filter_names():
+        for number in range(CLICKS):
+            dice = random.Random("%s %d" % (name, number))
+            made, messages = make(name, sphere_with_arrays())
+            if name in ("FVMHeatFilter", "IntrinsicTVFilter", "SurfaceInterpolationFilter",
+                        "SurfaceSegmentationFilter"):
+                made.InputArray = dice.choice((["POINTS", "f"], ["CELLS", "g"]))
+            clicked = []
+            for _ in range(8):
+                click(made, dice, clicked)
+            made.UpdatePipeline()
+            key = "clicks/%s/%d" % (name, number)
+            put(key + "/clicked", repr(clicked))
+            put(key + "/messages", messages)
+            describe(made, key)
+
+
+def mixed():
+    """Vertices, lines, polygons of three to six corners, strips, a hidden cell and a hidden point."""
+    sphere = sphere_with_arrays().SMProxy.GetClientSideObject().GetOutputDataObject(0)
+    data = vtkPolyData()
+    data.SetPoints(sphere.GetPoints())
+    data.GetPointData().ShallowCopy(sphere.GetPointData())
+    corners = vtk_to_numpy(sphere.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    polygons, strips = vtkCellArray(), vtkCellArray()
+    taken = set()
+    for t, triangle in enumerate(corners.tolist()):
+        if t in taken:
+            continue
+        polygon = list(triangle)
+        for u in range(t + 1, len(corners)):  # join neighbours into polygons
+            shared = set(polygon) & set(corners[u].tolist())
+            if len(polygon) < 3 + t % 4 and len(shared) == 2 and u not in taken:
+                a, b = sorted(polygon.index(s) for s in shared)
+                if b - a in (1, len(polygon) - 1):
+                    (new,) = set(corners[u].tolist()) - shared
+                    polygon.insert(b if b - a == 1 else len(polygon), new)
+                    taken.add(u)
+        target = strips if len(polygon) == 3 and t % 5 == 0 else polygons
+        target.InsertNextCell(len(polygon), polygon)
+    verts, lines = vtkCellArray(), vtkCellArray()
+    verts.InsertNextCell(1, [3])
+    lines.InsertNextCell(2, [4, 5])
+    data.SetVerts(verts)
+    data.SetLines(lines)
+    data.SetPolys(polygons)
+    data.SetStrips(strips)
+    cells = data.GetNumberOfCells()
+    for name, values in (("g", np.cos(np.arange(cells))), ("spots", (np.arange(cells) % 7 == 0) * 1.0),
+                         ("up", np.tile([0.0, 0.0, 1.0], (cells, 1))),
+                         ("rates", np.tile([21.0, 21.0, 2.6, 2.6], (cells, 1)))):
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        data.GetCellData().AddArray(array)
+    ghosts = np.zeros(cells, dtype=np.uint8)
+    ghosts[cells // 2] = 32
+    hidden = np.zeros(data.GetNumberOfPoints(), dtype=np.uint8)
+    hidden[20] = 2
+    for attributes, flags in ((data.GetCellData(), ghosts), (data.GetPointData(), hidden)):
+        array = numpy_to_vtk(flags, deep=True)
+        array.SetName("vtkGhostType")
+        attributes.AddArray(array)
+    return producer(data)
+
+
+def typed(kind):
+    """The sphere with values of another type, and single precision coordinates with normals."""
+    data = vtkPolyData()
+    data.DeepCopy(sphere_with_arrays().SMProxy.GetClientSideObject().GetOutputDataObject(0))
+    values = vtk_to_numpy(data.GetPointData().GetArray("f"))
+    values = 100.0 * (values - values.min()) if kind != np.float32 else values
+    array = numpy_to_vtk(values.astype(kind), deep=True)
+    array.SetName("f")
+    data.GetPointData().AddArray(array)
+    colors = numpy_to_vtk(np.stack([values, values[::-1], values, values], axis=1).astype(np.uint8), deep=True)
+    colors.SetName("rgba")
+    colors.SetComponentName(3, "alpha")
+    data.GetPointData().AddArray(colors)
+    ids = vtkIdTypeArray()
+    ids.DeepCopy(numpy_to_vtk(np.arange(data.GetNumberOfPoints())[::-1].copy()))
+    ids.SetName("ids")
+    data.GetPointData().SetGlobalIds(ids)
+    return producer(data)
+
+
+def run_kinds_of_input():
+    for name in filter_names():
+        run(name, noisy(sphere_with_arrays()), "noisy")
+        run(name, mixed(), "mixed")
+        run(name, sphere_with_arrays(), "refined", RefineTo=0.12)
+        run(name, sphere_with_arrays(), "limit", RefineTo=0.05, MaximumNumberOfTriangles=900)
+        for kind in (np.float32, np.int32, np.uint8):
+            run(name, typed(kind), kind.__name__)
+        for kind in ("vtkMultiBlockDataSet", "vtkPartitionedDataSetCollection"):
+            parts = [sphere_with_arrays(), simple.Transform(Input=sphere_with_arrays())]
+            parts[1].Transform.Translate = [3.0, 0.0, 0.0]
+            parts[1].Transform.Scale = [1.5, 1.5, 1.5]
+            group = simple.GroupDatasets(Input=parts, OutputType=kind)
+            group.UpdatePipeline()
+            run(name, group, kind)
+    colors = dict(InputArray=["POINTS", "rgba"])
+    for name in ("FVMHeatFilter", "IntrinsicTVFilter", "TensorDiffusionFilter", "SurfaceSegmentationFilter"):
+        run(name, typed(np.uint8), "colors", **colors)
+        run(name, typed(np.uint8), "single", OutputPrecision=0, ResultArrayName="mine", **colors)
+    points = producer(scattered())
+    run("SurfaceInterpolationFilter", sphere_with_arrays(), "samples", PointsWithValues=points,
+        ComputeError=1)
+    for method in ("Heat", "Eikonal"):
+        run("SurfaceDistanceFilter", sphere_with_arrays(), "sources" + method, Sources=points, Method=method,
+            ComputeGradient=1)
+    run("HarmonicMapFilter", noisy(sphere_with_arrays()), "moved", MoveVertices=1)
+    run("SurfaceSegmentationFilter", sphere_with_arrays(), "means", InputArray=["POINTS", "f"],
+        AutomaticMeans=0, NumberOfRegions=2, Mean=[1, 0, -0.3, 2, 0, 0.3])
+    run("TuringTextureFilter", sphere_with_arrays(), "feature", FeatureSize=0.3)
+
+
+def scattered():
+    """Points with values and a line, around the sphere."""
+    data = vtkPolyData()
+    points = vtkPoints()
+    places = np.random.default_rng(5).normal(size=(12, 3))
+    points.SetData(numpy_to_vtk(0.52 * places / np.linalg.norm(places, axis=1)[:, None], deep=True))
+    data.SetPoints(points)
+    verts, lines = vtkCellArray(), vtkCellArray()
+    for i in range(8):
+        verts.InsertNextCell(1, [i])
+    lines.InsertNextCell(3, [8, 9, 10])
+    data.SetVerts(verts)
+    data.SetLines(lines)
+    array = numpy_to_vtk(places[:, 2].copy(), deep=True)
+    array.SetName("height")
+    data.GetPointData().SetScalars(array)
+    return data
+
+
+def run_times():
+    """Times asked for in any order, and properties changed in between."""
+    for name in filter_names():
+        made, messages = make(name, noisy(sphere_with_arrays()))
+        if "GenerateTimeSteps" not in made.ListProperties():
+            continue
+        made.GenerateTimeSteps = 1
+        made.NumberOfTimeSteps = 6
+        made.OutputInterval = 2
+        for number, at in enumerate((6, 0, 3, 5, 6, 1)):
+            if number == 4:
+                made.OutputInterval = 3
+            made.UpdatePipelineInformation()
+            times = list(made.TimestepValues)
+            put("times/%s/%d/all" % (name, number), times)
+            made.UpdatePipeline(times[-1] * at / 6.0)
+            describe(made, "times/%s/%d" % (name, number))
+        put("times/%s/messages" % name, messages)
+
+
+def run_faults():
+    grid = producer(vtkUnstructuredGrid())
+    for name in filter_names():
+        for key, source, properties in (
+            ("grid", grid, {}), ("empty", producer(vtkPolyData()), {}),
+            ("length", sphere_with_arrays(), {"RefineTo": -3.0}),
+            ("unknown", sphere_with_arrays(), {"MaskArray": ["POINTS", "nothing"]}),
+            ("text", sphere_with_arrays(), {"MaskArray": ["POINTS", "pair"], "TimeStep": -1.0}),
+        ):
+            probe = getattr(servermanager.filters, name)()
+            if not set(properties) & set(probe.ListProperties()) and properties:
+                continue
+            known = {k: v for k, v in properties.items() if k in probe.ListProperties()}
+            made, messages = make(name, source, **known)
+            made.UpdatePipeline()
+            put("faults/%s/%s" % (key, name), messages)
+
+
+def run_aborts():
+    """An update that is aborted gives the input, and the next one the whole result."""
+    for name in filter_names():
+        source = simple.LoopSubdivision(Input=sphere_with_arrays(), NumberofSubdivisions=3)
+        made, messages = make(name, noisy(source))
+        algorithm = made.SMProxy.GetClientSideObject()
+        seen = []
+
+        def stop(_object, _event):
+            seen.append(algorithm.GetProgress())
+            if len(seen) == 2:
+                algorithm.SetAbortExecute(1)
+
+        number = algorithm.AddObserver("ProgressEvent", stop)
+        made.UpdatePipeline()
+        aborted = outputs(made)
+        algorithm.RemoveObserver(number)
+        algorithm.SetAbortExecute(0)
+        algorithm.Modified()
+        made.SMProxy.MarkModified(made.SMProxy)
+        made.UpdatePipeline()
+        put("aborts/%s/seen" % name, len(seen) > 1)
+        put("aborts/%s/increases" % name, seen == sorted(seen))
+        put("aborts/%s/input" % name, [
+            key for key in aborted if key[0] == 0 and key not in outputs(made.Input)])
+        put("aborts/%s/messages" % name, [event for event, _ in messages])
+        describe(made, "aborts/%s" % name)
+
+
+begin = time.perf_counter()
+simple.LoadPlugin(sys.argv[1], remote=False, ns=globals())
+seconds = time.perf_counter() - begin
+steps = (list_properties, run_clicks, run_kinds_of_input, run_times, run_faults, run_aborts)
+for step in steps:
+    step()
+arrays = {key: value for key, value in found.items() if isinstance(value, np.ndarray)}
+rest = {key: value for key, value in found.items() if not isinstance(value, np.ndarray)}
+np.savez(sys.argv[2], **{"text": np.array(json.dumps({"seconds": seconds, **rest})), **{
+    "array %s" % key: value for key, value in arrays.items()}})
