@@ -27,8 +27,9 @@ class _Definition:
 
 
 def define_filters(module: str) -> dict[str, Any]:
-    """The objects of the plugin's module: classes and proxies. None if the plugin in C++ is loaded."""
-    if _is_loaded("SurfaceDiffusion"):
+    """The objects of the plugin's module: classes and proxies. None if the plugin in C++ is loaded, whose
+    filters need no Python; if it comes later, it replaces these proxies."""
+    if _is_loaded():
         print("SurfaceDiffusionPython: the plugin SurfaceDiffusion is loaded, whose filters stay.")
         return {}
     shared = _read(_SHARED)
@@ -47,9 +48,10 @@ def define_filters(module: str) -> dict[str, Any]:
     return objects
 
 
-def _is_loaded(name: str) -> bool:
+def _is_loaded() -> bool:
+    """Whether the plugin in C++ is there."""
     tracker = vtkPVPluginTracker.GetInstance()
-    return any(tracker.GetPluginName(number) == name and tracker.GetPluginLoaded(number)
+    return any(tracker.GetPluginName(number) == "SurfaceDiffusion" and tracker.GetPluginLoaded(number)
                for number in range(tracker.GetNumberOfPlugins()))
 
 
