@@ -67,9 +67,7 @@ SourceProjection::SourceProjection(SurfaceArrays arrays, const Surface& surface)
     }
   }
   this->Arrays.Triangles.conservativeResize(kept, 3);
-  this->EdgeLength = mesh.NumberOfEdges() > 0
-    ? mesh.TotalEdgeLength() * mesh.LengthUnit() / mesh.NumberOfEdges()
-    : 1.0;
+  this->EdgeLength = mesh.MeanEdgeLength() * mesh.LengthUnit();
   this->Nearest =
     std::make_unique<const NearestPoints>(this->Arrays.Points, this->Arrays.Triangles);
 }

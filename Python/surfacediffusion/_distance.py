@@ -14,8 +14,10 @@ from . import _core
 from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, take_along
 from ._run import Progress, ProgressReporter
-from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_directions, as_flags, as_numbers, as_surface, find_place
+from ._settings import check_positive, shorten
+from ._surface import (
+    Surface, SurfaceLike, as_directions, as_flags, as_numbers, as_surface, find_mask, find_place,
+)
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
 
@@ -351,12 +353,9 @@ def _as_places_in_triangles(
 def _make_fronts(surface: Surface, speeds: _Speeds, mask: Any) -> Any:
     """The fronts on a surface, and the factors of the heat method, which it keeps for other sources."""
     sizes = (surface.n_points, surface.n_faces)
-    flags = as_flags("mask", mask)
-    on_faces = flags is not None and find_place("mask", flags, sizes, "flag", False)
+    flags, on_faces = find_mask(mask, sizes)
     for name, factor in (("along_speed", speeds.along), ("across_speed", speeds.across)):
-        if isinstance(factor, (bool, np.bool_)) or not isinstance(
-                factor, (int, float, np.number)) or not 0.0 < factor < np.inf:
-            raise ValueError(f"{name} is {shorten(factor)}; allowed: finite numbers above 0")
+        check_positive(name, factor)
     directions, directions_on_faces = None, False
     if speeds.directions is not None:
         directions, directions_on_faces = as_directions("directions", speeds.directions, sizes, None)

@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._functions import left_out
-from ._run import Progress, ProgressReporter, warn
-from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_place
+from ._run import Progress, ProgressReporter, part_of, warn
+from ._settings import check_positive, shorten
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place
 
 __all__ = ["Surrogates", "random_field", "surrogates"]
 
@@ -122,7 +122,7 @@ def random_field(
         found = "both given" if widths else "not given"
         raise ValueError(f"fwhm and range are {found}; allowed: one of them")
     (name, width), = widths
-    check_length(name, width)
+    check_positive(name, width)
     if isinstance(nu, bool) or not isinstance(nu, (int, np.integer)) or nu not in (1, 3):
         raise ValueError(f"nu is {shorten(nu)}; allowed: 1 and 3")
     if fwhm is not None and nu != 1:
@@ -294,9 +294,7 @@ class _Model:
         for k in np.arange(len(self.widths)):
             for first in np.arange(0, n if variances[k] > 0.0 else 0, _SAMPLE):
                 part = np.empty((len(self._areas), min(_SAMPLE, n - int(first))))
-                share = None
-                if reporter.callable is not None:
-                    share = _Share(reporter.callable, first / n, part.shape[1] / n)
+                share = part_of(reporter.callable, first / n, part.shape[1] / n)
                 total[:, first:first + part.shape[1]] += math.sqrt(variances[k]) * self._draw(
                     k, int(first), part, share)
             reporter.finish_part()
@@ -313,20 +311,10 @@ class _Model:
         return find_bands(self._fields, self._areas, maps, self._wavelengths, 1, None)
 
 
-class _Share:
-    """Progress of a part of the work."""
-
-    def __init__(self, report: Callable[[float], Any], done: float, share: float) -> None:
-        self._report, self._done, self._share = report, done, share
-
-    def __call__(self, fraction: float) -> Any:
-        return self._report(self._done + fraction * self._share)
-
-
 def _draw(fields: Any, width: float, nu: int, seed: int, first: int, normalize: bool,
           result: NDArray[np.float64], progress: Callable[[float], Any] | None) -> None:
     """Write fields to the columns of `result`."""
-    half = [None if progress is None else _Share(progress, done, 0.5) for done in (0.0, 0.5)]
+    half = [part_of(progress, done, 0.5) for done in (0.0, 0.5)]
     fields.prepare(width, nu, normalize, half[0])
     warn_of_solves(fields.draw(seed, first, result, half[1]))
 
@@ -371,9 +359,7 @@ def solve_nonnegative(matrix: NDArray[np.float64], b: NDArray[np.float64]) -> ND
 
 def make_fields(surface: Surface, mask: Any) -> Any:
     """The operators of random fields and scales, which a surface keeps for the last mask."""
-    flags = as_flags("mask", mask)
-    on_faces = flags is not None and find_place(
-        "mask", flags, (surface.n_points, surface.n_faces), "flag", False)
+    flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
     version = hashlib.blake2b(b"" if flags is None else bytes([on_faces]) + flags.tobytes()).digest()
     with surface._lock:
         known, fields = surface._runs.get("fields", (b"", None))
@@ -414,19 +400,12 @@ def find_bands(
     kept = [areas @ centred**2 / areas.sum()]
     for number, wavelength in enumerate(wavelengths):
         filtered = centred.copy()
-        share = None if progress is None else _Share(
-            progress, number / len(wavelengths), 1.0 / len(wavelengths))
+        share = part_of(progress, number / len(wavelengths), 1.0 / len(wavelengths))
         warn_of_solves(fields.filter_scales(
             filtered, np.full(len(areas), float(wavelength)), order, share))
         filtered[~known] = 0.0
         kept.append(areas @ filtered**2 / areas.sum())
     return np.array([*(kept[k] - kept[k + 1] for k in np.arange(len(wavelengths))), kept[-1]])
-
-
-def check_length(name: str, value: Any) -> None:
-    if isinstance(value, (bool, np.bool_)) or not isinstance(
-            value, (int, float, np.number)) or not 0.0 < value < np.inf:
-        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers above 0")
 
 
 def check_finite(name: str, values: NDArray[np.float64]) -> None:

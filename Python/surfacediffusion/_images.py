@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ._functions import heat
 from ._fwhm import FWHMEstimate, estimate_fwhm
-from ._settings import shorten
+from ._settings import check_positive, shorten
 from ._surface import Surface, as_surface
 
 
@@ -116,9 +116,7 @@ def _parts(
 
 def _smooth(img: Any, fwhm: float, mask_img: Any, steps: int, progress: Any,
             surfaces: dict[int, Surface]) -> Any:
-    real = isinstance(fwhm, (int, float, np.number)) and not isinstance(fwhm, bool)
-    if not (real and 0.0 < fwhm < np.inf):
-        raise ValueError(f"fwhm is {shorten(fwhm)}; allowed: finite numbers above 0")
+    check_positive("fwhm", fwhm)
     meshes, data, roi = _parts(img, mask_img)
     results = {}
     for name, mesh in meshes.items():

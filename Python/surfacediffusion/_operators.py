@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._run import Progress, ProgressReporter
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_flags, as_numbers, as_surface, find_place
+from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask
 
 __all__ = ["Eigenmodes", "eigenmodes", "gradient_matrix", "mass_matrix", "stiffness_matrix"]
 
@@ -235,9 +235,7 @@ def import_sparse(function: str) -> Any:
 
 
 def _make_operators(surface: Surface, mask: Any, intrinsic_delaunay: bool = False) -> Any:
-    flags = as_flags("mask", mask)
-    sizes = (surface.n_points, surface.n_faces)
-    on_faces = flags is not None and find_place("mask", flags, sizes, "flag", False)
+    flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
     return _core.Operators(surface._core, flags, on_faces, intrinsic_delaunay, None)
 
 

@@ -90,6 +90,15 @@ class ProgressReporter:
             self._bar.close()
 
 
+def part_of(
+    progress: Callable[[float], Any] | None, start: float, share: float
+) -> Callable[[float], Any] | None:
+    """The callable for a part of the work, from the fraction `start` on; None stays."""
+    if progress is None:
+        return None
+    return lambda fraction: progress(start + share * fraction)
+
+
 def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
     """The type of a result: that of the data, or float64 if there are none, unless `dtype` is
     given."""

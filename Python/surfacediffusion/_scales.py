@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._fields import (
-    check_finite, check_length, find_bands, leave_out_missing, make_fields, warn_of_edges, warn_of_solves,
+    check_finite, find_bands, leave_out_missing, make_fields, warn_of_edges, warn_of_solves,
 )
 from ._functions import left_out
 from ._run import Progress, ProgressReporter
-from ._settings import shorten
+from ._settings import check_positive, shorten
 from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface
 
 __all__ = ["Spectrum", "scale_filter", "spectrum"]
@@ -163,7 +163,7 @@ def spectrum(
     if lengths.ndim != 1 or lengths.size == 0 or not (np.diff(lengths) > 0.0).all():
         raise ValueError(f"wavelengths is {shorten(wavelengths)}; allowed: one or more ascending numbers")
     for length in lengths:
-        check_length("wavelengths", float(length))
+        check_positive("wavelengths", float(length))
     _check_order(order)
     fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data))
     warn_of_edges("wavelengths", float(lengths[0]), fields)

@@ -75,6 +75,13 @@ def shorten(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def check_positive(name: str, value: Any) -> None:
+    """ValueError unless the value is a finite number above 0."""
+    is_number = isinstance(value, (int, float, np.number)) and not isinstance(value, (bool, np.bool_))
+    if not (is_number and 0.0 < value < math.inf):
+        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers above 0")
+
+
 def snake_case(name: str) -> str:
     """The keyword of a C++ name: "NumberOfTimeSteps" is "number_of_time_steps"."""
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name)

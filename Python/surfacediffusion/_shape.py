@@ -15,7 +15,7 @@ from . import _core
 from ._refinement import MAXIMUM_TRIANGLES, as_length, take_along
 from ._run import Progress, ProgressReporter, warn
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_flags, as_numbers, find_place
+from ._surface import Surface, SurfaceLike, as_numbers, find_mask
 
 
 @dataclass(frozen=True)
@@ -173,12 +173,10 @@ def _smooth_points(surface: Surface, mask: Any, overhang: Any, up: Any) -> NDArr
     """The points without relief."""
     smooth = np.zeros(surface.n_points, dtype=bool)
     faces = np.zeros(surface.n_faces, dtype=bool)
-    flags = as_flags("mask", mask)
+    flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
     if flags is not None:
-        if find_place("mask", flags, (surface.n_points, surface.n_faces), "flag", False):
-            faces |= flags != 0
-        else:
-            smooth |= flags != 0
+        marked = faces if on_faces else smooth
+        marked |= flags != 0
     if overhang is not None:
         angle = _as_number("overhang", overhang)
         axis = as_numbers("up", up).astype(float)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._settings import shorten
+from ._settings import check_positive, shorten
 
 _NUMBERS = "biuf"  #: kinds of numpy types: bool, integer, unsigned integer, float
 
@@ -89,6 +89,12 @@ def as_flags(name: str, values: Any, points: int | None = None) -> NDArray[np.ui
     if points is not None and array.shape != (points,):
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},), one flag per point")
     return np.ascontiguousarray(array != 0, dtype=np.uint8)
+
+
+def find_mask(mask: Any, sizes: tuple[int, int]) -> tuple[NDArray[np.uint8] | None, bool]:
+    """The flags of a mask, and whether they are on faces. sizes: the numbers of points and of faces."""
+    flags = as_flags("mask", mask)
+    return flags, flags is not None and find_place("mask", flags, sizes, "flag", False)
 
 
 def as_outside(roi: Any, *sizes: int) -> NDArray[np.bool_]:
@@ -320,11 +326,14 @@ class Surface:
         """The normalised sums of the unit normals of the faces at each point, in single precision;
         zero at points without face."""
         sums = np.zeros((self.n_points, 3))
-        normals = unit_normals(self._points, self._connectivity, self._offsets)
+        normals = self._face_normals()
         for axis in range(3):
             weights = np.repeat(normals[:, axis], np.diff(self._offsets))
             sums[:, axis] = np.bincount(self._connectivity, weights, minlength=self.n_points)
         return normalize(sums).astype(np.float32)
+
+    def _face_normals(self) -> NDArray[np.float64]:
+        return unit_normals(self._points, self._connectivity, self._offsets)
 
 
 def unit_normals(
@@ -455,8 +464,7 @@ def sphere(subdivisions: int = 4, radius: float = 1.0) -> Surface:
     """
     if not (isinstance(subdivisions, (int, np.integer)) and 0 <= subdivisions <= 9):
         raise ValueError(f"subdivisions is {shorten(subdivisions)}; allowed: 0 to 9")
-    if not (isinstance(radius, (int, float)) and 0.0 < radius < np.inf):
-        raise ValueError(f"radius is {shorten(radius)}; allowed: finite numbers above 0")
+    check_positive("radius", radius)
     g = (1.0 + 5.0**0.5) / 2.0
     points = np.array([[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0], [0, -1, g], [0, 1, g],
                        [0, -1, -g], [0, 1, -g], [g, 0, -1], [g, 0, 1], [-g, 0, -1], [-g, 0, 1]])

@@ -29,7 +29,7 @@ struct Faces
 
   NormalVariation Variation(const ParallelFor& parallel = SerialFor()) const
   {
-    NormalVariation variation(this->Graph, MeanEdgeLength(this->Mesh), parallel);
+    NormalVariation variation(this->Graph, this->Mesh.MeanEdgeLength(), parallel);
     variation.SetPlaces(this->Places, this->Geometry);
     return variation;
   }
@@ -143,7 +143,7 @@ TEST(NormalVariation, OfManyTimesTheSecondOrderIsTheTotalVariation)
   };
   const Points data = faces.Data(
     [&](Index t) { return Eigen::RowVector3d(isBar(t) ? 1.0 : 0.0, 2.0, isBar(t) ? -1.0 : 0.0); });
-  const double h = MeanEdgeLength(faces.Mesh) * faces.Mesh.LengthUnit();
+  const double h = faces.Mesh.MeanEdgeLength() * faces.Mesh.LengthUnit();
   const double first = 0.2;
   const double force = first * 2.0 * 0.5 / h; // per component, as a vector of the length 1
   const double triangles = 2.0 * along;

@@ -63,8 +63,8 @@ class Refine(unittest.TestCase):
         np.testing.assert_array_equal(fine.at_points(part.points), fine.surface.points)
         np.testing.assert_array_equal(fine.at_points(part.points[:, 0]), fine.surface.points[:, 0])
         self.assertEqual(fine.at_points(np.ones(8, dtype=np.float32)).dtype, np.float32)
-        normals = fine.at_faces(part._face_normals()[0])
-        np.testing.assert_allclose(normals, fine.surface._face_normals()[0], atol=1e-12)
+        normals = fine.at_faces(part._face_normals())
+        np.testing.assert_allclose(normals, fine.surface._face_normals(), atol=1e-12)
 
     def test_polygons_have_one_number_each(self):
         square = sd.Surface([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0]],

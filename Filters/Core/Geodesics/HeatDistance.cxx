@@ -64,7 +64,7 @@ HeatDistance::HeatDistance(std::shared_ptr<const Assembler> assembler, double m,
   {
     return;
   }
-  const double h = mesh.TotalEdgeLength() / mesh.NumberOfEdges();
+  const double h = mesh.MeanEdgeLength();
   const CornerWeights cotangents = CotanWeights(mesh, parallel);
   const Assembler& operators = *this->Operators;
   SparseMatrix matrix = ZeroMatrix(operators.Pattern());

@@ -150,7 +150,7 @@ private:
   {
     const DenoisingScheme& scheme = this->Scheme;
     const TriangleMesh& mesh = this->Graph.Mesh;
-    NormalVariation variation(this->Graph, MeanEdgeLength(mesh), this->Parallel);
+    NormalVariation variation(this->Graph, mesh.MeanEdgeLength(), this->Parallel);
     const int count = scheme.VariationIterations;
     for (int i = 0; i < count; ++i)
     {
@@ -189,7 +189,7 @@ private:
   /// The reciprocal of the noise in units of ReferenceNoise.
   double RelativePrecision() const
   {
-    return ReferenceNoise * MeanEdgeLength(this->Graph.Mesh) / this->Noise;
+    return ReferenceNoise * this->Graph.Mesh.MeanEdgeLength() / this->Noise;
   }
 
   /// fidelity: for ReferenceNoise.

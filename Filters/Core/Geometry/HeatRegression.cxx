@@ -122,7 +122,7 @@ LinearFits FitByHeat(const Assembler& assembler, const Points& positions, const 
   const Eigen::RowVectorXd middle = u.colwise().mean();
   Values moments = MakeMoments(x, u.rowwise() - middle, parallel);
   SolverTask task;
-  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
+  const double h = mesh.MeanEdgeLength();
   task.NumberOfVertices = n;
   task.DiffusionNumber = StepOfWidth(fwhm) / (h * h);
   task.NumberOfSolves = NumberOfSteps;

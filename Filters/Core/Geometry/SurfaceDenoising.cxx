@@ -65,13 +65,13 @@ double EstimateNoise(const TriangleMesh& mesh, const Points& points,
     return correlated.Level;
   }
   const double estimate = EstimateVertexNoise(mesh, points, parallel);
-  return estimate < SmallestEstimate * MeanEdgeLength(mesh) ? 0.0 : estimate;
+  return estimate < SmallestEstimate * mesh.MeanEdgeLength() ? 0.0 : estimate;
 }
 
 SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::vector<char>& fixed,
   double noise, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  DenoisingScheme probe = SchemeFor(SurfaceKind::Sharp, noise / MeanEdgeLength(graph.Mesh));
+  DenoisingScheme probe = SchemeFor(SurfaceKind::Sharp, noise / graph.Mesh.MeanEdgeLength());
   probe.Iterations = ProbeIterations;
   probe.LinearIterations = 0;
   probe.FitIterations = 10;
@@ -108,7 +108,7 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   DenoisedPart result;
   result.NoiseLevel = noise * unit;
   result.Displacements = Points::Zero(part.Places.rows(), 3);
-  if (!(noise > SmallestNoise * MeanEdgeLength(mesh)))
+  if (!(noise > SmallestNoise * mesh.MeanEdgeLength()))
   {
     return result;
   }
@@ -124,7 +124,7 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
       SurfaceKind::Sharp
     : settings.Type == SurfaceType::CAD;
   result.Type = isSharp ? SurfaceType::CAD : SurfaceType::Organic;
-  const double h = MeanEdgeLength(mesh);
+  const double h = mesh.MeanEdgeLength();
   const DenoisingScheme scheme = correlated.Length > 0.0
     ? SchemeForCorrelatedNoise(correlated.Length / h)
     : SchemeFor(isSharp ? SurfaceKind::Sharp : SurfaceKind::Smooth, noise / h);

@@ -180,7 +180,7 @@ std::vector<double> MeasureDeviations(const TriangleMesh& mesh, const Points& po
   const std::vector<int>& rings, Index stride, const ParallelFor& parallel)
 {
   const Index count = mesh.NumberOfVertices() / stride;
-  const double h = MeanEdgeLength(mesh);
+  const double h = mesh.MeanEdgeLength();
   std::vector<std::vector<double>> distances(
     rings.size(), std::vector<double>(static_cast<std::size_t>(count)));
   ForEachBlock(parallel, count,
@@ -226,11 +226,6 @@ double MedianDeviation(std::vector<double>& absoluteValues)
   return QuantileOf(absoluteValues, 0.5) / MedianOfNormalDistribution;
 }
 
-double MeanEdgeLength(const TriangleMesh& mesh)
-{
-  return mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
-}
-
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
@@ -260,7 +255,7 @@ CorrelatedNoise EstimateCorrelatedNoise(
   const std::vector<int> rings{ 2, 3, 4, 6, 8, 12, 16 };
   const std::vector<double> deviations =
     MeasureDeviations(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);
-  const double h = MeanEdgeLength(mesh);
+  const double h = mesh.MeanEdgeLength();
   const double first = deviations.front();
   const double eight = deviations[4];
   const double level = deviations.back();

@@ -16,9 +16,6 @@ double QuantileOf(std::vector<double>& values, double fraction);
 /// median.
 double MedianDeviation(std::vector<double>& absoluteValues);
 
-/// h, the unit of noise levels; 1 without edges.
-double MeanEdgeLength(const TriangleMesh& mesh);
-
 /// An estimate of the noise of the vertices of a surface: the standard deviation of their
 /// displacement along the normal, in the unit of the points.
 ///

@@ -139,6 +139,11 @@ public:
   /// one h.
   double TotalEdgeLength() const { return this->Given.TotalEdgeLength; }
   Index NumberOfEdges() const { return this->Given.NumberOfEdges; }
+  /// h, in LengthUnit(); 1 without edges.
+  double MeanEdgeLength() const
+  {
+    return this->NumberOfEdges() > 0 ? this->TotalEdgeLength() / this->NumberOfEdges() : 1.0;
+  }
 
   /// Vertices of edges that only one triangle uses, ascending.
   const std::vector<Index>& BoundaryVertices() const { return this->Given.BoundaryVertices; }

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from .._run import part_of
 from ..files import FileError, new_data, read_data, read_surface
 from ..files.content import (
     check_output_folder, check_output_name, kind_of_name, read_content)
@@ -713,7 +714,7 @@ def _change_data(arguments, report, title, compute, groups, missing=None, say=No
                 with report.timed("compute"):
                     new[:, chosen] = compute(
                         surface, patch.values[:, chosen], mask,
-                        _part_of(progress, done / total, len(group) / total))
+                        part_of(progress, done / total, len(group) / total))
                 done += len(group)
             results.append(patch.to_part(new))
             _add_totals(report, data, columns, patch, new, areas)
@@ -733,12 +734,6 @@ def _target(data, patches, path):
         return new_data(patches[0].surface, path, data.names)
     data.check_name(path)
     return data
-
-
-def _part_of(progress, start, share):
-    if progress is None:
-        return None
-    return lambda fraction, *_: progress(start + share * fraction)
 
 
 def _groups_of_missing(data, columns, patch):

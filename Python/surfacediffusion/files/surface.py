@@ -79,10 +79,10 @@ def _faces(polygons):
 
 def _normals(points, faces):
     """Unit normals at the points and on the faces."""
-    from .._surface import Surface, unit_normals
+    from .._surface import Surface
 
     surface = Surface(points, faces)
-    return surface._point_normals(), unit_normals(surface._points, surface._connectivity, surface._offsets)
+    return surface._point_normals(), surface._face_normals()
 
 
 def _check(content, surface):

@@ -5,7 +5,6 @@
 #include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Random.h"
 #include "Core/Models/Fields/FunctionDiagonal.h"
-#include "Core/Solvers/SolverChoice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -133,7 +132,7 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
   , RelativeDeviations(std::move(deviations))
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
+  const double h = mesh.MeanEdgeLength();
   const double size = std::sqrt(mesh.ControlAreas().sum());
   FieldOperator made = MakeOperator(WithinBounds(settings, h, size));
   this->DeviationOnPlane = made.DeviationOnPlane;
@@ -144,14 +143,9 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
     BoundVariances(mesh, made.Step, variances);
     this->RelativeDeviations = variances.cwiseSqrt() / made.DeviationOnPlane;
   }
-  SolverTask task;
-  task.NumberOfVertices = mesh.NumberOfVertices();
-  task.DiffusionNumber = made.Step / (h * h);
-  // As if for one panel: the same solver for any number of fields.
-  task.NumberOfColumns = ColumnPanel;
-  task.NumberOfSolves = static_cast<double>(made.Series.size() - 1);
+  auto solver = MakeResolventSolver(mesh, made.Step, made.Series, parallel);
   this->Operator.emplace(this->Assembly, coefficients, made.Step, std::move(made.Series),
-    MakeSolver(SolverMethod::Automatic, task, parallel), parallel);
+    std::move(solver), parallel);
 }
 
 void RandomField::Draw(

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Resize.h"
+#include "Core/Solvers/SolverChoice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +47,18 @@ double SumChebyshev(const std::vector<double>& series, double y)
     next = std::exchange(sum, series[k] + 2.0 * w * sum - next);
   }
   return series[0] + w * sum - next;
+}
+
+std::unique_ptr<LinearSolver> MakeResolventSolver(const TriangleMesh& mesh, double largestStep,
+  const std::vector<double>& series, const ParallelFor& parallel)
+{
+  const double h = mesh.MeanEdgeLength();
+  SolverTask task;
+  task.NumberOfVertices = mesh.NumberOfVertices();
+  task.DiffusionNumber = largestStep / (h * h);
+  task.NumberOfColumns = ColumnPanel;
+  task.NumberOfSolves = static_cast<double>(series.size() - 1);
+  return MakeSolver(SolverMethod::Automatic, task, parallel);
 }
 
 ResolventPolynomial::ResolventPolynomial(std::shared_ptr<const Assembler> assembler,

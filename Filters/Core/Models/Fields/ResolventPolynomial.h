@@ -19,6 +19,11 @@ std::vector<double> ChebyshevSeries(const std::function<double(double)>& g, int 
 /// The sum of such a series at y in [0, 1].
 double SumChebyshev(const std::vector<double>& series, double y);
 
+/// A solver for the systems of a polynomial with this series: the same for any number of columns, of
+/// which a panel is solved at once. largestStep: of s, in the units of the mesh.
+std::unique_ptr<LinearSolver> MakeResolventSolver(const TriangleMesh& mesh, double largestStep,
+  const std::vector<double>& series, const ParallelFor& parallel);
+
 /// A function of the Laplace-Beltrami operator L = M^-1 K applied to data: p(Y) u with a polynomial
 /// p and the resolvent
 ///   Y = (1 + s L)^-1 = (M + s K)^-1 M,

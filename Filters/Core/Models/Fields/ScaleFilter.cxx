@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Fields/ScaleFilter.h"
 
-#include "Core/Foundation/Columns.h"
 #include "Core/Operators/CotanWeights.h"
-#include "Core/Solvers/SolverChoice.h"
 
 #include <cmath>
 #include <utility>
@@ -42,16 +40,12 @@ ResolventPolynomial MakeScaleFilter(std::shared_ptr<const Assembler> assembler,
       coefficients.row(t) *=
         (squares[corners[0]] + squares[corners[1]] + squares[corners[2]]) / 3.0;
     });
-  const double h = mesh.NumberOfEdges() > 0 ? mesh.TotalEdgeLength() / mesh.NumberOfEdges() : 1.0;
   std::vector<double> series = order == 1 ? std::vector<double>{ 0.5, 0.5 }
                                           : ChebyshevSeries(&SecondOrder, DegreeOfSecondOrder);
-  SolverTask task;
-  task.NumberOfVertices = mesh.NumberOfVertices();
-  task.DiffusionNumber = squares.size() > 0 ? squares.maxCoeff() / (h * h) : 1.0;
-  task.NumberOfColumns = ColumnPanel;
-  task.NumberOfSolves = static_cast<double>(series.size() - 1);
+  const double largestStep = squares.size() > 0 ? squares.maxCoeff() : 1.0;
+  auto solver = MakeResolventSolver(mesh, largestStep, series, parallel);
   return { std::move(assembler), coefficients, 1.0, std::move(series),
-    MakeSolver(SolverMethod::Automatic, task, parallel), parallel };
+    std::move(solver), parallel };
 }
 
 } // namespace SurfaceDiffusion
