@@ -85,7 +85,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return rows[0][0] if rows else _NUMBERS.get(name, 0.0)
 
     def SetInputArrayToProcess(self, index: int, _port: int, _connection: int, association: int,
-                               name: Any) -> None:
+                               name: Any, *_component: Any) -> None:
         """Choose an array by its name, or as an active attribute by its number."""
         choice = Choice(association, None if isinstance(name, int) else name or "",
                         name if isinstance(name, int) else None)
