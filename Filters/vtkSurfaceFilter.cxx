@@ -3,6 +3,7 @@
 #include "vtkSurfaceFilter.h"
 
 #include "Conversion/PointNormals.h"
+#include "Conversion/RefineTogether.h"
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Distributed/SurfacePieces.h"
@@ -15,7 +16,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
-#include "vtkMultiProcessStream.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersionMacros.h"
@@ -23,9 +23,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <new>
-#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -339,7 +337,7 @@ int vtkSurfaceFilter::RequestData(
       this->CompletePiece(piece);
     }
   }
-  this->ShareNumbers();
+  this->Private->Numbers.Share(processes);
   if (processes.Any(!this->Private->IsComplete))
   {
     this->Private->Refinement.Undo();
@@ -360,71 +358,27 @@ double vtkSurfaceFilter::FindRefinement(double, Sentence&) const
 /// Bisect long edges. False, in all processes: one was aborted or has failed.
 bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
 {
-  PieceRefinement& refinement = this->Private->Refinement;
-  const Processes processes(this->Controller);
-  const auto sum = [&](double number)
-  {
-    const std::vector<double> all = processes.GatherAll({ number });
-    return std::accumulate(all.begin(), all.end(), 0.0);
-  };
   const ProgressMonitor::Callback report = [this](double)
   {
     this->UpdateProgress(0.0);
     return !this->IsAborted();
   };
-  const ProgressMonitor progress(report);
-  refinement.Begin();
+  RefinementTask task;
+  task.NeedsMeanEdgeLength =
+    this->RefineTo == RefineAutomatically && this->MayRefineAutomatically();
+  task.MaximumNumberOfTriangles = this->MaximumNumberOfTriangles;
+  task.FindLength = [this](double meanEdgeLength, Sentence& explanation)
+  { return this->FindRefinement(meanEdgeLength, explanation); };
+  task.Complete = [this](const std::function<void()>& step)
+  { return this->CompleteTogether(step); };
+  const Processes processes(this->Controller);
   this->Private->RefinementWarnings.clear();
   this->Private->IsComplete = true;
-  Sentence reason;
-  double length = 0.0;
-  double left = 0.0;
-  double triangles = 0.0;
-  const int limit = this->MaximumNumberOfTriangles;
-  const auto bisect = [&] { left = refinement.Bisect(pieces, length, limit, progress); };
-  bool completed = true;
-  PieceRefinement::EdgeSum edges;
-  if (this->RefineTo == RefineAutomatically && this->MayRefineAutomatically())
-  {
-    completed = this->CompleteTogether([&] { edges = refinement.SumEdges(pieces); });
-    edges = { sum(edges.Length), sum(edges.Number) };
-  }
-  if (completed && limit > 0)
-  {
-    length = this->FindRefinement(edges.Number > 0.0 ? edges.Length / edges.Number : 0.0, reason);
-  }
-  if (completed && length > 0.0)
-  {
-    const double asked = length;
-    completed = this->CompleteTogether(bisect);
-    const std::vector<double> all = processes.GatherAll({ left });
-    const double longest = *std::max_element(all.begin(), all.end());
-    if (completed && longest > 0.0)
-    {
-      Sentence text("refinement stopped at edges of ");
-      text << longest << ", longer than " << asked << ", because "
-           << Word::Setting("MaximumNumberOfTriangles") << " is " << limit;
-      this->Private->RefinementWarnings.push_back(text);
-      if (sum(static_cast<double>(pieces.size())) > 1.0)
-      {
-        length = longest; // in every piece, so that pieces of a surface fit
-        completed = this->CompleteTogether(bisect);
-      }
-    }
-    completed =
-      completed && this->CompleteTogether([&] { triangles = refinement.Replace(pieces); });
-    triangles = sum(triangles);
-  }
-  if (triangles > 0.0 && !reason.Words().empty())
-  {
-    Sentence text("edges were bisected, to ");
-    text << static_cast<vtkIdType>(triangles) << " triangles, because " << reason;
-    this->Private->RefinementWarnings.push_back(text);
-  }
+  const bool completed = RefineTogether(this->Private->Refinement, pieces, task, processes,
+    ProgressMonitor(report), this->Private->RefinementWarnings);
   if (!completed)
   {
     this->Private->HasFailed = processes.Any(this->Private->HasFailed);
-    refinement.Undo();
   }
   return completed;
 }
@@ -535,60 +489,12 @@ void vtkSurfaceFilter::CompletePiece(const SurfaceBlock&) {}
 
 void vtkSurfaceFilter::DeclareNumber(const char* name, double byDefault)
 {
-  this->Private->DefaultNumbers[name] = byDefault;
+  this->Private->Numbers.Declare(name, byDefault);
 }
 
 double vtkSurfaceFilter::FindNumber(const char* name, int row, int column) const
 {
-  const auto number = this->Private->Numbers.find(name);
-  if (number == this->Private->Numbers.end())
-  {
-    const auto byDefault = this->Private->DefaultNumbers.find(name);
-    return byDefault == this->Private->DefaultNumbers.end()
-      ? std::numeric_limits<double>::quiet_NaN()
-      : byDefault->second;
-  }
-  const Values& matrix = number->second;
-  const bool isInside = row >= 0 && row < matrix.rows() && column >= 0 && column < matrix.cols();
-  return isInside ? matrix(row, column) : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// Give all processes the numbers of process 0.
-void vtkSurfaceFilter::ShareNumbers()
-{
-  const Processes processes(this->Controller);
-  if (processes.Count() == 1)
-  {
-    return;
-  }
-  auto& numbers = this->Private->Numbers;
-  vtkMultiProcessStream stream;
-  stream << static_cast<int>(numbers.size());
-  for (const auto& [name, matrix] : numbers)
-  {
-    stream << name << static_cast<int>(matrix.rows()) << static_cast<int>(matrix.cols());
-    for (Eigen::Index i = 0; i < matrix.size(); ++i)
-    {
-      stream << matrix.data()[i];
-    }
-  }
-  this->Controller->Broadcast(stream, 0);
-  int count = 0;
-  stream >> count;
-  numbers.clear();
-  for (int n = 0; n < count; ++n)
-  {
-    std::string name;
-    int rows = 0;
-    int columns = 0;
-    stream >> name >> rows >> columns;
-    Values& matrix = numbers[name];
-    matrix.resize(rows, columns);
-    for (Eigen::Index i = 0; i < matrix.size(); ++i)
-    {
-      stream >> matrix.data()[i];
-    }
-  }
+  return this->Private->Numbers.Find(name, row, column);
 }
 
 void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
@@ -603,7 +509,7 @@ void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ResultArrayName: " << this->ResultArrayName << "\n";
-  for (const auto& [name, byDefault] : this->Private->DefaultNumbers)
+  for (const auto& [name, byDefault] : this->Private->Numbers.Declared())
   {
     os << indent << name << ": " << this->FindNumber(name.c_str()) << "\n";
   }

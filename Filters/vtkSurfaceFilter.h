@@ -322,7 +322,6 @@ private:
   void ReportError(const std::string& text);
   int EndUpdate();
   bool IsAborted();
-  void ShareNumbers();
 
   vtkMultiProcessController* Controller = nullptr;
   bool HasWholeSurface = false; ///< the meaning of a null Controller

@@ -5,8 +5,8 @@
 #include "vtkSurfaceFilter.h"
 
 #include "Conversion/PieceRefinement.h"
+#include "Conversion/RunNumbers.h"
 #include "Conversion/SMPParallelFor.h"
-#include "Core/Foundation/Types.h"
 #include "Distributed/GatheredSurfaces.h"
 #include "Distributed/ProcessReduction.h"
 #include "Distributed/SurfacePieces.h"
@@ -21,7 +21,6 @@
 #include "vtkWeakPointer.h"
 
 #include <cstring>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,9 +30,7 @@ struct vtkSurfaceFilter::Internals
 {
   SurfaceDiffusion::OwnedSettings Properties;
 
-  /// Read-only values by their names: those before the first update, and those of the last one.
-  std::map<std::string, double> DefaultNumbers;
-  std::map<std::string, SurfaceDiffusion::Values> Numbers;
+  SurfaceDiffusion::RunNumbers Numbers;
 
   std::unique_ptr<SurfaceDiffusion::GatheredSurfaces> Gathered;
   SurfaceDiffusion::WarningLog Reported;

@@ -25,6 +25,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 using namespace SurfaceDiffusion;
@@ -446,8 +447,7 @@ int vtkSurfaceModelAlgorithm::FindResultType(const InputFields& fields) const
 void vtkSurfaceModelAlgorithm::TakeNumbers()
 {
   const UpdateState& state = *this->State;
-  auto& numbers = this->Private->Numbers;
-  numbers = FindNumbers(state.Run);
+  std::map<std::string, Values> numbers = FindNumbers(state.Run);
   for (const auto& [name, number] :
     { std::pair{ "NumberOfIterations", static_cast<double>(state.History.NumberOfIterations()) },
       std::pair{ "Residual", state.History.LargestResidual() },
@@ -458,6 +458,7 @@ void vtkSurfaceModelAlgorithm::TakeNumbers()
   {
     numbers[name] = Values::Constant(1, 1, number);
   }
+  this->Private->Numbers.Set(std::move(numbers));
 }
 
 void vtkSurfaceModelAlgorithm::PrintSelf(ostream& os, vtkIndent indent)

@@ -70,7 +70,7 @@ void vtkSurfaceRunAlgorithm::ProcessSurfaces(
   {
     state.Runs.Write(b, fields[b], this->ResultArrayName, surfaces[b].Output, replaced);
   }
-  this->Private->Numbers = state.Runs.FindNumbers();
+  this->Private->Numbers.Set(state.Runs.FindNumbers());
   std::vector<Warning> warnings = state.Runs.FindWarnings();
   if (!replaced.empty())
   {
