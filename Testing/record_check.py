@@ -14,7 +14,7 @@ ROW = re.compile(r"^\| `([\w-]+)` \| (.*?) \| (\d{4}-\d\d-\d\d) \| ([0-9a-f]{10}
 HEAD = """# Checks before a release
 
 `Testing/run-tests.sh checks` runs them, and enters those that pass. A row has the day and the commit of
-the last run that passed, and the version of the project then. `Packaging.ChecksAreOfTheLastRelease`
+the last run that passed, and the version of the project then. `Packaging.TestChecks`
 compares the versions with the last release of the changelog.
 
 | check | result | day | commit | version |

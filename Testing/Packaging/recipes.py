@@ -126,7 +126,7 @@ def check_dependencies():
 
 def check_page():
     """The page for an index: README.md without links to files, or with their addresses; the version of
-    both packages is that of CMakeLists.txt."""
+    both packages and of CITATION.cff is that of CMakeLists.txt."""
     version = re.search(r"VERSION (\d\S+)", (source / "CMakeLists.txt").read_text().split("project(")[1])
     relative = re.compile(r"\]\((?!https?://|#)[^()]*\)")
     assert len(relative.findall((source / "README.md").read_text())) > 10
@@ -151,6 +151,8 @@ def check_page():
             _, page = metadata.split("\n\n", 1)
             assert len(page) > 8000 and not relative.search(page), relative.findall(page)
             assert "License: BSD-3-Clause\n" in metadata
+    citation = yaml.safe_load((source / "CITATION.cff").read_text())
+    assert citation["version"] == version.group(1), citation["version"]
 
 
 load_build_backend()
