@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
