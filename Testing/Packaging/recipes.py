@@ -131,7 +131,7 @@ def check_page():
     relative = re.compile(r"\]\((?!https?://|#)[^()]*\)")
     assert len(relative.findall((source / "README.md").read_text())) > 10
     sys.path.insert(0, str(source / "Packaging"))
-    from pypi_readme import readme_for_index
+    from pypi_page import readme_for_index
 
     text = "![a](b/c.png) [d](e.md#f) [g](https://h.example/i) [j](#k)"
     assert readme_for_index(text, "") == " d [g](https://h.example/i) [j](#k)"
@@ -140,6 +140,7 @@ def check_page():
                                "[d](https://x.example/y/blob/main/e.md#f) [g](https"), absolute
     from scikit_build_core.build import prepare_metadata_for_build_wheel
 
+    project = (source / "pyproject.toml").read_text()
     for package in ("", "Packaging/VTK"):
         os.chdir(source / package)
         target = folder / "page" / package
@@ -151,6 +152,19 @@ def check_page():
             _, page = metadata.split("\n\n", 1)
             assert len(page) > 8000 and not relative.search(page), relative.findall(page)
             assert "License: BSD-3-Clause\n" in metadata
+            assert ("Project-URL: " in metadata) == bool(re.search('^address = "."', project, re.M))
+    with_address = folder / "with_address"
+    (with_address / "Packaging").mkdir(parents=True)
+    for name in ("README.md", "CMakeLists.txt", "LICENSE", "Packaging/pypi_page.py"):
+        shutil.copy(source / name, with_address / name)
+    (with_address / "pyproject.toml").write_text(
+        re.sub('^address = ".*?"', 'address = "https://x.example/y"', project, flags=re.M))
+    os.chdir(with_address)
+    metadata = Path(prepare_metadata_for_build_wheel("."), "METADATA").read_text()
+    links = dict(re.findall(r"^Project-URL: (\w+), (\S+)$", metadata, re.M))
+    assert links == {"Repository": "https://x.example/y", "Issues": "https://x.example/y/issues",
+                     "Changelog": "https://x.example/y/blob/main/CHANGELOG.md"}, links
+    assert "](https://x.example/y/raw/main/Examples/" in metadata
     citation = yaml.safe_load((source / "CITATION.cff").read_text())
     assert citation["version"] == version.group(1), citation["version"]
 
