@@ -55,6 +55,7 @@ cmake_dependent_option(SURFACEDIFFUSION_BUILD_PLUGIN "Build the ParaView plugin"
   "ParaView_FOUND;NOT SKBUILD" OFF)
 message(STATUS "SurfaceDiffusion: VTK ${VTK_VERSION}, "
   "ParaView ${ParaView_VERSION}, plugin ${SURFACEDIFFUSION_BUILD_PLUGIN}")
+set(SURFACEDIFFUSION_PARAVIEW_VERSION "${ParaView_VERSION}" CACHE INTERNAL "For names of archives")
 
 # Installation folder of the Python module
 if (SURFACEDIFFUSION_WRAP_PYTHON)

@@ -21,20 +21,6 @@ import venv
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-USE_PLUGIN = """
-import math, sys
-from paraview.simple import *
-LoadPlugin(sys.argv[1], remote=False, ns=globals())
-source = Elevation(Sphere(ThetaResolution=64, PhiResolution=64))
-smooth = FVMHeatFilter(source, FWHM=0.2)
-smooth.UpdatePipeline()
-low, high = source.PointData["Elevation"].GetRange()
-smoothLow, smoothHigh = smooth.PointData["ElevationDiffused"].GetRange()
-# A linear function on a sphere of radius 1/2, whose eigenvalue is 8, after the time FWHM^2 / (16 log 2)
-factor = (smoothHigh - smoothLow) / (high - low)
-assert abs(factor - math.exp(-8 * 0.2**2 / (16 * math.log(2)))) < 1e-3, factor
-print("the plugin smooths by", factor)
-"""
 
 
 def call(*command, cwd=ROOT, **environment):
@@ -120,17 +106,16 @@ def make_plugin(folder, scratch):
 
 
 def _paraview_version(build):
-    cache = (build / "CMakeCache.txt").read_text()
-    found = re.search(r"^ParaView_DIR:PATH=.*paraview-(\d+\.\d+)$", cache, re.M)
-    return found.group(1) if found else "unknown"
+    found = re.search(r"^SURFACEDIFFUSION_PARAVIEW_VERSION:INTERNAL=(.+)$",
+                      (build / "CMakeCache.txt").read_text(), re.M)
+    return found.group(1)
 
 
 def _use_plugin(folder, scratch):
+    """In a folder of its own, without the repository and without a path to the library."""
     (plugin,) = folder.rglob("SurfaceDiffusion.so")
-    script = scratch / "use.py"
-    script.write_text(USE_PLUGIN)
-    (library,) = {path.parent for path in folder.rglob("libvtkSurfaceDiffusion.so")}
-    call("pvpython", script, plugin, cwd=scratch, LD_LIBRARY_PATH=str(library))
+    script = shutil.copy(ROOT / "Packaging/use_plugin.py", scratch)
+    call("pvpython", script, plugin, cwd=scratch)
 
 
 def make_site(folder, _):

@@ -26,7 +26,11 @@ else:
     surface = WarpByVector(
         Calculator(fine, Function=noise, ResultArrayName="noise"), Vectors=["POINTS", "noise"])
 
-normals = GenerateSurfaceNormals(surface, Splitting=0)  # those of the noisy surface, for comparison
+try:
+    make_normals = SurfaceNormals
+except NameError:  # its name in ParaView 5.11
+    make_normals = GenerateSurfaceNormals
+normals = make_normals(surface, Splitting=0)  # those of the noisy surface, for comparison
 lighted = HarmonicMapFilter(normals, TimeStep=0.03, NumberOfTimeSteps=10)
 moved = HarmonicMapFilter(normals, TimeStep=0.03, NumberOfTimeSteps=10, MoveVertices=1)
 moved.UpdatePipeline()
