@@ -7,7 +7,9 @@ import os
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
+from importlib import metadata
 from unittest import mock
 
 from samples import run
@@ -44,6 +46,24 @@ class Doctor(unittest.TestCase):
         for check in report["checks"]:
             self.assertLessEqual(check["error"], check["allowed"], check)
         self.assertLess(sum(check["seconds"] for check in report["checks"]), 60)
+
+    def test_a_vtk_that_pip_does_not_know_is_found(self):
+        core = types.ModuleType("vtkmodules.vtkCommonCore")
+        core.vtkVersion = types.SimpleNamespace(GetVTKVersion=lambda: "9.2.6")
+        known = metadata.version
+
+        def version(name):
+            if name == "vtk":
+                raise metadata.PackageNotFoundError(name)
+            return known(name)
+        parts = {"vtkmodules": types.ModuleType("vtkmodules"), "vtkmodules.vtkCommonCore": core}
+        with mock.patch.object(doctor.metadata, "version", version), mock.patch.object(doctor, "CHECKS", ()):
+            with mock.patch.dict(sys.modules, parts):
+                _, out, _ = run("doctor", "--json")
+            self.assertEqual(json.loads(out)["packages"]["vtk"], "9.2.6")
+            with mock.patch.dict(sys.modules, {"vtkmodules": None, "vtkmodules.vtkCommonCore": None}):
+                _, out, _ = run("doctor", "--json")
+            self.assertIsNone(json.loads(out)["packages"]["vtk"])
 
     def test_a_wrong_result_is_an_error_that_names_it(self):
         for wrong in (0.3, float("nan")):

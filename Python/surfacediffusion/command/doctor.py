@@ -75,7 +75,16 @@ def _version_of(name):
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
+        return _version_of_vtk() if name == "vtk" else None
+
+
+def _version_of_vtk():
+    """That of a VTK which pip does not know: of the system, or of ParaView. None without one."""
+    try:
+        from vtkmodules.vtkCommonCore import vtkVersion
+    except ImportError:
         return None
+    return vtkVersion.GetVTKVersion()
 
 
 def _paraview():
