@@ -1,7 +1,7 @@
 #!/bin/sh
 # Usage: run-checks.sh [CHECK...]
 # The checks before a release, which take hours and are not part of run-tests.sh: all tests under the
-# sanitizers, ten minutes of fuzzing, all meshes, other versions of VTK, and the site. Without arguments all run,
+# sanitizers, ten minutes of fuzzing, clang with libc++, all meshes, other versions of VTK, and the site. Without arguments all run,
 # also if one fails. Each that passes is entered into Testing/CHECKS.md with its day and its commit.
 # Logs are in build/checks. The exit code is 1 if a check has failed.
 set -eu
@@ -38,6 +38,14 @@ run()
       Documentation/build.sh
       return
       ;;
+    libcxx | libcxx-numpy)
+      # GoogleTest has texts of the standard library in its interface, so it is built with the same one.
+      cmake -S /usr/src/googletest -B build-libcxx/googletest -D CMAKE_BUILD_TYPE=Release \
+        -D CMAKE_C_COMPILER=clang -D CMAKE_CXX_COMPILER=clang++ -D CMAKE_CXX_FLAGS=-stdlib=libc++ \
+        -D BUILD_GMOCK=OFF -D CMAKE_INSTALL_PREFIX="$PWD/build-libcxx/prefix"
+      cmake --build build-libcxx/googletest --target install
+      build libcxx
+      ;;
     sanitize | sanitize-more) build sanitize ;;
     tsan | tsan-filters | tsan-numpy) build tsan ;;
     *) build build ;;
@@ -45,7 +53,7 @@ run()
   xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "$1" -j2
 }
 
-[ $# -gt 0 ] || set -- fuzz sanitize sanitize-more tsan tsan-filters tsan-numpy long versions site
+[ $# -gt 0 ] || set -- fuzz libcxx libcxx-numpy sanitize sanitize-more tsan tsan-filters tsan-numpy long versions site
 status=0
 for check in "$@"; do
   echo "== $check"
