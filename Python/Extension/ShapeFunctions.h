@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdio> // nanobind uses its stderr
-
 #include <nanobind/nanobind.h>
 
 namespace SurfaceDiffusion

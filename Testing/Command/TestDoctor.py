@@ -41,7 +41,7 @@ class Doctor(unittest.TestCase):
         code, out, _ = run("doctor", "--json")
         report = json.loads(out)
         self.assertEqual(code, 0)
-        self.assertIn("GNU", report["version"])
+        self.assertRegex(report["version"], r"\b(GNU|Clang) \d")
         self.assertEqual(report["packages"]["nibabel"], __import__("nibabel").__version__)
         for check in report["checks"]:
             self.assertLessEqual(check["error"], check["allowed"], check)

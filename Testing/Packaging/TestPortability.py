@@ -93,6 +93,7 @@ def without_texts(code):
 
 def for_every_compiler(code):
     """The code without sections that only one compiler sees: from #if with its name to #else."""
+    of_one = re.compile(r"__GNUC__|__clang__|_MSC_VER|_WIN32")
     lines, depth, hidden = [], 0, None
     for line in code.split("\n"):
         directive = re.match(r"\s*#\s*(if|ifdef|ifndef|elif|else|endif)\b(.*)", line)
@@ -100,10 +101,10 @@ def for_every_compiler(code):
             word, condition = directive.groups()
             if word.startswith("if"):
                 depth += 1
-                if hidden is None and re.search(r"__GNUC__|__clang__|_MSC_VER|_WIN32", condition):
+                if hidden is None and of_one.search(condition):
                     hidden = depth
-            elif word in ("else", "elif") and hidden == depth:
-                hidden = None
+            elif word in ("else", "elif") and hidden in (None, depth):
+                hidden = depth if word == "elif" and of_one.search(condition) else None
             elif word == "endif":
                 if hidden == depth:
                     hidden = None
@@ -187,8 +188,10 @@ class Readers(unittest.TestCase):
                          'int a; \nauto b = ""; \n char c = \'\'; int d;\n#include "x/y.h"')
 
     def test_sections_for_one_compiler_are_left_out(self):
-        code = "a\n#if defined(__GNUC__)\nb\n#if X\nc\n#endif\n#else\nd\n#endif\ne"
-        self.assertEqual(for_every_compiler(code).split(), ["a", "#else", "d", "#endif", "e"])
+        code = ("a\n#if defined(__GNUC__)\nb\n#if X\nc\n#endif\n#elif __clang__\nd\n#else\ne\n#endif\n"
+                "#if X\nf\n#elif _WIN32\ng\n#endif\nh")
+        self.assertEqual([line for line in for_every_compiler(code).split() if len(line) == 1 and line != "X"],
+                         ["a", "e", "f", "h"])
 
     def test_texts_beside_each_other_are_one(self):
         self.assertEqual([size for _, size in texts_of('f("ab"\n  "cde", "f");')], [5, 1])

@@ -9,6 +9,7 @@
 
 // A function with this attribute, and all that is inlined into it, is compiled for several widths
 // of vectors, of which the widest is used. No operations are fused, so that all have the same bits.
+// clang leaves functions out that only such functions call (22.1), and has one width.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) &&   \
   !defined(__SANITIZE_THREAD__) // it is not set up yet when the width is chosen
 #define SURFACEDIFFUSION_ANY_VECTORS                                                               \
