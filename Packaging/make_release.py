@@ -118,14 +118,15 @@ def make_plugin(folder, scratch, _):
     _use_plugin(scratch / "package", scratch)
 
     name = f"surfacediffusion-{version()}-paraview-{_paraview_version(build)}"
-    call("cmake", "--install", build, "--prefix", scratch / name)
+    # The package's script for login shells has an absolute place, which DESTDIR keeps off this machine.
+    call("cmake", "--install", build, "--prefix", f"/{name}", DESTDIR=str(scratch / "installed"))
     archive = folder / f"{name}.tar.gz"
     with tarfile.open(archive, "w:gz") as made:
-        made.add(scratch / name, name)
+        made.add(scratch / "installed" / name, name)
     moved = scratch / "moved"
     with tarfile.open(archive) as opened:
         opened.extractall(moved)
-    shutil.rmtree(scratch / name)
+    shutil.rmtree(scratch / "installed")
     _use_plugin(moved, scratch)
 
 
