@@ -71,6 +71,8 @@ REFUSED = {
     r"__builtin_\w+|__attribute__|\btypeof\b|__typeof__|\[\[gnu::|#\s*pragma (?:GCC|clang)":
         "an extension of GCC and clang",
     r"(?<![\w.>])(?:and|or|not|xor|bitand|bitor|compl)(?=[\s(])": "a word for an operator",
+    r"\bstd::(?:cyl_\w+|sph_\w+|assoc_\w+|(?:comp_)?ellint_\w+|expint|legendre|hermite|laguerre|beta|"
+    r"riemann_zeta)\s*\(": "a special function, which libc++ has not",
     r"[{,]\s*\.\w+\s*=[^=]": "a designated initialiser, which is C++20",
 }
 
