@@ -68,14 +68,15 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(
   return to;
 }
 
-void InterpolatePointData(
-  vtkPointData* from, vtkPointData* to, const std::vector<std::array<Index, 2>>& parents)
+/// Arrays that do not have a tuple per point are left out. points: their number.
+void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to,
+  const std::vector<std::array<Index, 2>>& parents)
 {
   for (int n = 0; n < from->GetNumberOfArrays(); ++n)
   {
     vtkAbstractArray* const array = from->GetAbstractArray(n);
     const int role = from->IsArrayAnAttribute(n);
-    if (role == vtkDataSetAttributes::GLOBALIDS)
+    if (role == vtkDataSetAttributes::GLOBALIDS || array->GetNumberOfTuples() != points)
     {
       continue;
     }
@@ -181,7 +182,8 @@ vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vt
   surface->SetLines(input->GetLines());
   surface->SetPolys(piece.Triangles);
   surface->GetFieldData()->ShallowCopy(input->GetFieldData());
-  InterpolatePointData(input->GetPointData(), surface->GetPointData(), piece.Parents);
+  InterpolatePointData(
+    input->GetPointData(), input->GetNumberOfPoints(), surface->GetPointData(), piece.Parents);
   const vtkIdType others = input->GetNumberOfVerts() + input->GetNumberOfLines();
   const auto ids =
     NewArray<vtkIdTypeArray>(IdsName, 1, others + static_cast<vtkIdType>(piece.CellOf.size()));

@@ -84,6 +84,16 @@ Matrix ReadOnTriangles(const InputSurface& surface, const DoubleArray& array)
   return rows;
 }
 
+/// Throws std::runtime_error.
+void RequireIndices(std::size_t count, const char* what)
+{
+  if (count > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+  {
+    throw std::runtime_error(
+      std::string("the surface has more ") + what + " than this library can number");
+  }
+}
+
 } // namespace
 
 InputSurface::InputSurface(
@@ -92,6 +102,8 @@ InputSurface::InputSurface(
       Eigen::Map<const Points>(points.data(), static_cast<Eigen::Index>(points.shape(0)), 3))
   , FaceCount(offsets.size() - 1)
 {
+  RequireIndices(points.shape(0), "points");
+  RequireIndices(this->FaceCount, "faces");
   RequireFiniteCoordinates(this->Coordinates);
   std::vector<Corners> triangles;
   std::vector<Eigen::RowVector3d> polygon;
@@ -147,6 +159,9 @@ InputSurface::InputSurface(const DoubleArray& points, const LongArray& triangles
   , FaceCount(numberOfFaces)
   , Hidden(ReadFlags(hidden))
 {
+  RequireIndices(points.shape(0), "points");
+  RequireIndices(numberOfFaces, "cells");
+  RequireIndices(triangles.size() / 3, "triangles");
   RequireFiniteCoordinates(this->Coordinates);
   const auto count = static_cast<Eigen::Index>(triangles.size() / 3);
   this->TriangleRows = Eigen::Map<const Eigen::Matrix<std::int64_t, -1, 3, Eigen::RowMajor>>(

@@ -132,6 +132,11 @@ nb::list ModelRun::GetWarnings() const
   return ListSentences(this->Model.FindWarnings(Reduction::Serial()));
 }
 
+nb::list ModelRun::GetNewWarnings()
+{
+  return ListSentences(this->Reported.Report(this->Model.FindWarnings(Reduction::Serial())));
+}
+
 int ModelRun::FindLastStep(const nb::object& progress)
 {
   const UseGuard guard(this->InUse);

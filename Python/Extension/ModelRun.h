@@ -31,12 +31,17 @@ public:
   /// Move to a step, or to the last one if that is -1.
   void Seek(int step, const nanobind::object& progress);
 
+  /// Free what is kept for the next update, but not which warnings are known.
+  void Clear() { this->Model.Clear(); }
+
   int NumberOfSteps() const { return this->Settings->DescribeModel().NumberOfSteps; }
   double TimeStep() const { return this->Settings->DescribeModel().TimeStep; }
   /// The last step of a run that may end early, for which it is computed to its end.
   int FindLastStep(const nanobind::object& progress);
   /// All warnings that hold, as lists of words.
   nanobind::list GetWarnings() const;
+  /// Those that hold now and did not hold at the last call.
+  nanobind::list GetNewWarnings();
   nanobind::dict GetHistory() const;
   /// The read-only values of the classes for VTK, as lists of rows.
   nanobind::dict GetNumbers() const;
@@ -54,6 +59,7 @@ private:
   std::string Name;
   std::shared_ptr<RunSettings> Settings;
   SurfaceDiffusion::Run Model{ PythonThreads::Instance() };
+  WarningLog Reported;
   int Step = 0;
   bool InUse = false;
 };

@@ -6,13 +6,13 @@
 
 #include "InputData.h"
 #include "ModelRun.h"
+#include "PythonRuns.h"
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
 #include "ShapeFunctions.h"
 #include "SurfaceDistances.h"
 #include "SurfaceFields.h"
 #include "SurfaceOperators.h"
-#include "SurfaceRuns.h"
 #include "Threads.h"
 
 #include <nanobind/nanobind.h>
@@ -172,9 +172,11 @@ NB_MODULE(_core, m)
     .def("seek", &ModelRun::Seek, "step"_a, "progress"_a.none())
     .def("find_last_step", &ModelRun::FindLastStep, "progress"_a.none())
     .def("numbers", &ModelRun::GetNumbers)
+    .def("clear", &ModelRun::Clear)
     .def("number_of_steps", &ModelRun::NumberOfSteps)
     .def("time_step", &ModelRun::TimeStep)
     .def("warnings", &ModelRun::GetWarnings)
+    .def("new_warnings", &ModelRun::GetNewWarnings)
     .def("history", &ModelRun::GetHistory)
     .def("results", &ModelRun::GetResults, "block"_a)
     .def("outputs", &ModelRun::ListOutputs, "block"_a)
@@ -220,14 +222,16 @@ NB_MODULE(_core, m)
       "by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(), "progress"_a.none())
     .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
 
-  nb::class_<SurfaceRuns>(m, "SurfaceRuns")
+  nb::class_<PythonRuns>(m, "SurfaceRuns")
     .def(nb::init<std::string>(), "function"_a)
-    .def("update", &SurfaceRuns::Update, "surfaces"_a, "settings"_a, "progress"_a.none())
-    .def("mean_edge_length", &SurfaceRuns::MeanEdgeLength)
-    .def("warnings", &SurfaceRuns::GetWarnings)
-    .def("numbers", &SurfaceRuns::GetNumbers)
-    .def("outputs", &SurfaceRuns::ListOutputs, "surface"_a)
-    .def("write", &SurfaceRuns::Write, "surface"_a, "number"_a, "output"_a, "source"_a)
-    .def("turned_faces", &SurfaceRuns::TurnedFaces, "surface"_a, "source"_a);
+    .def("update", &PythonRuns::Update, "surfaces"_a, "settings"_a, "progress"_a.none())
+    .def("clear", &PythonRuns::Clear)
+    .def("mean_edge_length", &PythonRuns::MeanEdgeLength)
+    .def("warnings", &PythonRuns::GetWarnings)
+    .def("new_warnings", &PythonRuns::GetNewWarnings)
+    .def("numbers", &PythonRuns::GetNumbers)
+    .def("outputs", &PythonRuns::ListOutputs, "surface"_a)
+    .def("write", &PythonRuns::Write, "surface"_a, "number"_a, "output"_a, "source"_a)
+    .def("turned_faces", &PythonRuns::TurnedFaces, "surface"_a, "source"_a);
   BindShapeFunctions(m);
 }

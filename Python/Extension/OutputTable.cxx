@@ -106,8 +106,10 @@ void WriteMatrix(const Matrix& from, const OutputArray& output)
     [&](auto* to)
     {
       using T = std::remove_pointer_t<decltype(to)>;
-      std::transform(
-        from.data(), from.data() + from.size(), to, [](double x) { return ConvertValue<T>(x); });
+      // Infinity is a number in a table, and no overflow.
+      std::transform(from.data(), from.data() + from.size(), to,
+        [](double x)
+        { return std::is_same_v<T, double> ? static_cast<T>(x) : ConvertValue<T>(x); });
     });
 }
 
@@ -178,6 +180,16 @@ nb::list ListSentences(const std::vector<Warning>& warnings)
     sentences.append(ListWords(warning.Sentence));
   }
   return sentences;
+}
+
+nb::list ListSentences(const std::vector<Sentence>& sentences)
+{
+  nb::list list;
+  for (const Sentence& sentence : sentences)
+  {
+    list.append(ListWords(sentence));
+  }
+  return list;
 }
 
 } // namespace SurfaceDiffusion

@@ -28,7 +28,10 @@ void WriteOutput(const Output& from, OutputSource& source, const InputFields& in
 /// A dict of the numbers of a run on all its surfaces: each a list of rows.
 nanobind::dict ListNumbers(const std::map<std::string, Values>& numbers);
 
+///@{
 /// The words of each warning.
 nanobind::list ListSentences(const std::vector<Warning>& warnings);
+nanobind::list ListSentences(const std::vector<Sentence>& sentences);
+///@}
 
 } // namespace SurfaceDiffusion

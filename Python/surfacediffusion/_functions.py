@@ -1070,7 +1070,9 @@ def _run_once(
     """The outputs of a computation without time steps, and the attributes of its result."""
     surface = inputs.surface
     with surface._lock, ProgressReporter(progress) as reporter:
-        run = surface._runs.setdefault(name, _core.SurfaceRuns(name))
+        if name not in surface._runs:
+            surface._runs[name] = _core.SurfaceRuns(name)
+        run = surface._runs[name]
         runner.call(run.update, [inputs.core], runner.settings, reporter.callable)
         reporter.finish_part()
 

@@ -61,22 +61,7 @@ class RefinedSurface:
         if array.ndim not in (1, 2) or len(array) != n:
             raise ValueError(f"values has shape {array.shape}; allowed: ({n},) or ({n}, k), one row "
                              "per given point")
-        is_mark = array.dtype.kind != "f" and array.size == len(array)
-        found = np.empty((self.surface.n_points, *array.shape[1:]), dtype=array.dtype)
-        found[:n] = array
-        # Parents come before their children: all that have known parents are found at once.
-        newest = np.maximum.accumulate(self.parents.max(axis=1)) if len(self.parents) else np.empty(0)
-        known = 0
-        while known < len(self.parents):
-            end = int(np.searchsorted(newest, n + known))
-            first, second = self.parents[known:end].T
-            if is_mark:
-                found[n + known:n + end] = np.minimum(found[first], found[second])
-            else:
-                mean = 0.5 * found[first] + 0.5 * found[second]
-                found[n + known:n + end] = mean if array.dtype.kind == "f" else np.floor(mean + 0.5)
-            known = end
-        return found
+        return interpolate_points(array, self.parents)
 
     def at_faces(self, values: ArrayLike) -> NDArray[Any]:
         """Data of the given faces (m,) or (m, k) at the triangles: each has those of its face."""
@@ -84,6 +69,27 @@ class RefinedSurface:
         if array.ndim not in (1, 2) or len(array) <= self.faces.max(initial=0):
             raise ValueError(f"values has shape {array.shape}; allowed: one row per given face")
         return array[self.faces]
+
+
+def interpolate_points(array: NDArray[Any], parents: NDArray[Any]) -> NDArray[Any]:
+    """Data (n, ...) of points, and between them: row n + i belongs to the middle of the two parents i."""
+    n = len(array)
+    is_mark = array.dtype.kind != "f" and array.size == len(array)
+    found = np.empty((n + len(parents), *array.shape[1:]), dtype=array.dtype)
+    found[:n] = array
+    # Parents come before their children: all that have known parents are found at once.
+    newest = np.maximum.accumulate(parents.max(axis=1)) if len(parents) else np.empty(0)
+    known = 0
+    while known < len(parents):
+        end = int(np.searchsorted(newest, n + known))
+        first, second = parents[known:end].T
+        if is_mark:
+            found[n + known:n + end] = np.minimum(found[first], found[second])
+        else:
+            mean = 0.5 * found[first] + 0.5 * found[second]
+            found[n + known:n + end] = mean if array.dtype.kind == "f" else np.floor(mean + 0.5)
+        known = end
+    return found
 
 
 def refine(

@@ -69,6 +69,12 @@ class TestPythonPlugin(unittest.TestCase):
         self.compare("noisy/", "mixed/", "refined/", "limit/", "float32/", "int32/", "uint8/", "vtk",
                      "colors/", "single/", "samples/", "sources", "moved/", "means/", "feature/")
 
+    def test_special_input_gives_the_same_bits(self):
+        self.compare("open/", "converted", "empty array/", "polygons")
+
+    def test_edits_in_place_give_the_same_bits_and_warnings(self):
+        self.compare("edits/")
+
     def test_times_in_any_order_give_the_same_bits(self):
         self.compare("times/")
 

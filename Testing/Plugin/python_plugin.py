@@ -17,7 +17,7 @@ from panel import click, sphere_with_arrays
 from paraview import servermanager, simple
 from plugin_testing import filter_names, noisy, outputs
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     vtkCellArray, vtkDataObject, vtkPolyData, vtkUnstructuredGrid,
 )
@@ -269,6 +269,52 @@ def run_kinds_of_input():
     run("TuringTextureFilter", sphere_with_arrays(), "feature", FeatureSize=0.3)
 
 
+def run_special_input():
+    """What other lists have not: a surface without walls, arrays that ParaView converts, an array without
+    tuples, and polygons of many corners at every step."""
+    plane = simple.Plane(XResolution=6, YResolution=6)
+    run("SurfaceReliefFilter", simple.Calculator(Input=plane, Function="coordsX", ResultArrayName="f"), "open")
+    for number, choice in enumerate((["POINTS", "east_X"], ["POINTS", "east_Magnitude"], ["CELLS", "f"],
+                                     ["POINTS", "g"])):
+        run("FVMHeatFilter", sphere_with_arrays(), "converted%d" % number, InputArray=choice)
+    data = vtkPolyData()
+    data.DeepCopy(sphere_with_arrays().SMProxy.GetClientSideObject().GetOutputDataObject(0))
+    empty = vtkDoubleArray()
+    empty.SetName("empty")
+    data.GetPointData().AddArray(empty)
+    run("FVMHeatFilter", producer(data), "empty array", RefineTo=0.12)
+    made = run("FVMHeatFilter", mixed(), "polygons", InputArray=["POINTS", "f"])
+    made.TimeStep = 2.0 * made.TimeStep
+    made.UpdatePipeline()
+    describe(made, "polygons again")
+
+
+def run_edits():
+    """Points and values that are edited in place: results and warnings follow the contents."""
+    for name in filter_names():
+        data = vtkPolyData()
+        data.DeepCopy(sphere_with_arrays().SMProxy.GetClientSideObject().GetOutputDataObject(0))
+        made, messages = make(name, producer(data))
+        made.UpdatePipeline()
+        for number, change in enumerate((data.GetPoints().GetData(), data.GetPointData().GetArray("f"))):
+            vtk_to_numpy(change)[::3] *= 1.02
+            data.Modified()
+            made.SMProxy.GetClientSideObject().Modified()
+            made.SMProxy.MarkModified(made.SMProxy)
+            made.UpdatePipeline()
+            describe(made, "edits/%s/%d" % (name, number))
+        put("edits/%s/messages" % name, messages)
+
+
+def broken():
+    """A triangle with a point that does not exist."""
+    data = vtkPolyData()
+    data.DeepCopy(sphere_with_arrays().SMProxy.GetClientSideObject().GetOutputDataObject(0))
+    corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
+    corners[4] = 10000
+    return producer(data)
+
+
 def scattered():
     """Points with values and a line, around the sphere."""
     data = vtkPolyData()
@@ -316,6 +362,8 @@ def run_faults():
             ("length", sphere_with_arrays(), {"RefineTo": -3.0}),
             ("unknown", sphere_with_arrays(), {"MaskArray": ["POINTS", "nothing"]}),
             ("text", sphere_with_arrays(), {"MaskArray": ["POINTS", "pair"], "TimeStep": -1.0}),
+            ("broken", broken(), {}),
+            ("precision", sphere_with_arrays(), {"OutputPrecision": 7}),
         ):
             probe = getattr(servermanager.filters, name)()
             if not set(properties) & set(probe.ListProperties()) and properties:
@@ -358,7 +406,8 @@ def run_aborts():
 begin = time.perf_counter()
 simple.LoadPlugin(sys.argv[1], remote=False, ns=globals())
 seconds = time.perf_counter() - begin
-steps = (list_properties, run_clicks, run_kinds_of_input, run_times, run_faults, run_aborts)
+steps = (list_properties, run_clicks, run_kinds_of_input, run_special_input, run_edits, run_times,
+         run_faults, run_aborts)
 for step in steps:
     step()
 arrays = {key: value for key, value in found.items() if isinstance(value, np.ndarray)}

@@ -17,15 +17,18 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 from .. import _core
 from ._fields import ArrayFinder, Choice, Fields, join_sentences, make_core
 from ._refinement import Refinement, mean_edge_length
-from ._surfaces import Block, Parts, SurfaceError, copy_structure, read_surface
+from ._surfaces import Block, Parts, Shapes, SurfaceError, copy_structure
 
-#: Properties that are no settings of the numerics, with their defaults.
+#: Properties that are no settings of the extension, with their defaults.
 _OWN = {"RefineTo": 0.0, "MaximumNumberOfTriangles": 4000000, "NumberOfThreads": 0, "SeamTolerance": -1.0,
         "ResultArrayName": "", "OutputPrecision": 2, "UseAsNormals": 1, "PointValueArray": "",
         "PointWeightArray": ""}
 
-#: Read-only values before the first update, unless that is 0.
+#: Read-only values before the first update; those that are not listed are 0.
 _NUMBERS = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}
+
+
+_MISSING = object()
 
 
 class _Aborted(Exception):
@@ -49,18 +52,24 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     OUTPUTS: tuple[str, ...] = ("vtkDataObject",)
     HAS_POINT_INPUT = False
     RESULT_NAME = ""
-    DEFAULT_CHOICE = Choice()
+    DEFAULT_CHOICE: Choice | None = None
 
     def __init__(self) -> None:
         VTKPythonAlgorithmBase.__init__(
             self, nInputPorts=2 if self.HAS_POINT_INPUT else 1, nOutputPorts=len(self.OUTPUTS))
         self.settings: dict[str, Any] = {}
         self.own = {**_OWN, "ResultArrayName": self.RESULT_NAME}
-        self.choices: dict[int, Choice] = {0: self.DEFAULT_CHOICE}
+        self.choices: dict[int, Choice] = {}
+        self.shapes = Shapes()
         self._numbers: dict[str, Any] = {}
         self._reported: list[str] = []
-        self._warnings: list[str] = []
+        self._warnings: list[str] = []  # of this class, in the present update
+        self._of_refinement: list[str] = []
         self._quiet: int | None = None
+        choice = self.DEFAULT_CHOICE
+        if choice is not None:
+            self.SetInputArrayToProcess(
+                0, 0, 0, choice.association, choice.attribute if choice.name is None else choice.name)
 
     # Properties --------------------------------------------------------------------------------
 
@@ -75,18 +84,21 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                 "switch": lambda x: bool(int(x)), "number": float,
                 "numbers": lambda x: [float(each) for each in x]}.get(kind, int)
             target, value = self.settings, convert(given)
-        if target.get(name, _OWN) != value:
+        if target.get(name, _MISSING) != value:
             target[name] = value
             self.Modified()
 
     def find_number(self, name: str) -> Any:
-        """A read-only value of the last update."""
+        """Return a read-only value of the last update."""
         rows = self._numbers.get(name)
         return rows[0][0] if rows else _NUMBERS.get(name, 0.0)
 
     def SetInputArrayToProcess(self, index: int, _port: int, _connection: int, association: int,
                                name: Any, *_component: Any) -> None:
         """Choose an array by its name, or as an active attribute by its number."""
+        # ParaView looks there for arrays that it should convert.
+        VTKPythonAlgorithmBase.SetInputArrayToProcess(
+            self, index, _port, _connection, association, "" if name is None else name)
         choice = Choice(association, None if isinstance(name, int) else name or "",
                         name if isinstance(name, int) else None)
         if self.choices.get(index) != choice:
@@ -126,7 +138,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         for extra in made[1:]:
             extra.Initialize()
         parts = copy_structure(self._first_input(inputs), made[0])
-        refinement = Refinement()
+        self.shapes.begin_update()
+        refinement = Refinement(self.shapes)
         threads = _core.number_of_threads()
         self._warnings = []
         failure = ""
@@ -138,12 +151,11 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             completed = not failure
         except _Aborted:
             pass  # The output is the unchanged input. Completed parts of the run are kept.
-        except _core.InputError as error:
-            failure = str(error)
         except MemoryError:
             failure = "the memory does not suffice"
-        except (RuntimeError, ValueError, SurfaceError) as error:
-            failure = str(error)
+        except Exception as error:  # also one that nobody has foreseen: the outputs must be restored
+            known = isinstance(error, (RuntimeError, ValueError, SurfaceError))
+            failure = str(error) if known else f"{type(error).__name__}: {error}"
         finally:
             if _core.number_of_threads() != threads:
                 _core.set_number_of_threads(threads)
@@ -153,10 +165,16 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             refinement.undo()
             for extra in made[1:]:
                 extra.Initialize()
+        if self.GetReleaseDataFlag() or vtkDataObject.GetGlobalReleaseDataFlag():
+            self.ReleaseCache()
         if failure:
             self._report_error(failure)
             return 0
         return 1
+
+    def ReleaseCache(self) -> None:
+        """Free what is kept from one update to the next."""
+        self.shapes = Shapes()
 
     @staticmethod
     def _first_input(inputs: Any) -> Any:
@@ -175,7 +193,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def _update(
         self, request: Any, parts: Parts, refinement: Refinement, inputs: Any, outputs: Any, made: list[Any]
     ) -> str:
-        """An update up to its outputs. The text of an error, or an empty one."""
+        """Update the outputs. Return the text of an error, or an empty one."""
         controller = vtkMultiProcessController.GetGlobalController()
         if controller is not None and controller.GetNumberOfProcesses() > 1:
             return ("ParaView runs in several processes; allowed: one (the plugin in C++ works on pieces in "
@@ -198,9 +216,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         replaced, warnings = self.run(request, outputs, blocks, of_blocks, made)
         if replaced:
             names = ", ".join(f'"{name}"' for name in sorted(set(replaced)))
-            warnings.append(f"results replace arrays of the input: {names}; to keep these, set another "
-                            "ResultArrayName")
-        self._report_warnings(warnings + self._warnings)
+            self._warnings.insert(0, f"results replace arrays of the input: {names}; to keep these, set "
+                                  "another ResultArrayName")
+        self._warnings += self._of_refinement
+        self._report_warnings(warnings)
         self.UpdateProgress(1.0)
         return ""
 
@@ -208,13 +227,14 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         """Read what all blocks share."""
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        """Find the arrays of a block. False if it takes no part."""
+        """Find the arrays of a block. Return False if it takes no part."""
         raise NotImplementedError
 
     def run(
         self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
     ) -> tuple[list[str], list[str]]:
-        """Compute and write. The names of arrays that results have replaced, and warnings."""
+        """Compute and write. Return the names of arrays that results have replaced, and the warnings that
+        hold now and did not hold before."""
         raise NotImplementedError
 
     def _check_own(self) -> list[str]:
@@ -237,7 +257,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return False
 
     def _select(self, parts: Parts, problems: list[str]) -> list[Block]:
-        """The blocks with polygons."""
+        """Return the blocks with polygons."""
         with_points = [block for block in parts.blocks if block.input.GetNumberOfPoints() > 0]
         selected = [block for block in with_points
                     if block.input.GetNumberOfPolys() + block.input.GetNumberOfStrips() > 0]
@@ -252,26 +272,27 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return selected
 
     def find_refinement(self, mean: float) -> tuple[float, str]:
-        """The length above which edges are bisected, 0 for none, and the reason to report. mean: the mean
-        edge length, if RefineTo is -1."""
+        """Return the length above which edges are bisected, 0 for none, and the reason to report. mean: the
+        mean edge length, if RefineTo is -1."""
         return max(0.0, self.own["RefineTo"]), ""
 
     def _refine(self, blocks: list[Block], refinement: Refinement) -> None:
         automatic = self.own["RefineTo"] == -1.0
-        length, reason = self.find_refinement(mean_edge_length(blocks) if automatic else 0.0)
+        length, reason = self.find_refinement(mean_edge_length(blocks, self.shapes) if automatic else 0.0)
         limit = self.own["MaximumNumberOfTriangles"]
+        self._of_refinement = []
         if not length > 0.0:
             return
         refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0))
         if refinement.longest > 0.0:
-            self._warnings.append(f"refinement stopped at edges of {refinement.longest:g}, longer than "
+            self._of_refinement.append(f"refinement stopped at edges of {refinement.longest:g}, longer than "
                                   f"{length:g}, because MaximumNumberOfTriangles is {limit}")
         if refinement.triangles and reason:
-            self._warnings.append(
+            self._of_refinement.append(
                 f"edges were bisected, to {refinement.triangles} triangles, because {reason}")
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
-        """The blocks that take part, with their arrays. Appends problems."""
+        """Return the blocks that take part, with their arrays. Append problems."""
         raise NotImplementedError
 
     def find_arrays(self, block: Block, fields: Fields) -> ArrayFinder:
@@ -281,8 +302,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         """Append the problems of the settings with the arrays of each block."""
         sentences = []
         for block, fields in found:
-            if block.core is None:
-                read_surface(block)
+            self.shapes.find(block)
             make_core(fields, block)
             sentences += [(spell(words), block.name) for words in
                           _core.find_problems(self.MODEL, self.settings, fields.core)]
@@ -308,12 +328,13 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self._quiet_executive()
         self._report("ErrorEvent", text, vtkOutputWindow.GetInstance().DisplayErrorText)
 
-    def _report_warnings(self, sentences: list[str]) -> None:
-        """As one warning, those that hold now and did not hold at the last update."""
-        new = [text for text in dict.fromkeys(sentences) if text not in self._reported]
-        self._reported = sentences
+    def _report_warnings(self, of_run: list[str]) -> None:
+        """Report, as one warning, those of the run and those of this class that did not hold before."""
+        new = of_run + [text for text in self._warnings if text not in self._reported]
+        self._reported = self._warnings
         if new:
-            self._report("WarningEvent", "; ".join(new), vtkOutputWindow.GetInstance().DisplayWarningText)
+            text = "; ".join(dict.fromkeys(new))
+            self._report("WarningEvent", text, vtkOutputWindow.GetInstance().DisplayWarningText)
 
     def _report(self, event: str, text: str, display: Callable[[str], None]) -> None:
         kind = "ERROR" if event == "ErrorEvent" else "Warning"
@@ -327,9 +348,12 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         """Leave out the next error of the executive, that the filter has failed: the filter has said why."""
         executive = self.GetExecutive()
 
-        def forget(_object: Any, _event: str) -> None:
+        def forget(_object: Any, _event: str, text: str) -> None:
             executive.RemoveObserver(self._quiet)
+            if "returned failure for request" not in text:
+                vtkOutputWindow.GetInstance().DisplayErrorText(text)
 
+        forget.CallDataType = "string0"  # type: ignore[attr-defined]
         if self._quiet is not None:
             executive.RemoveObserver(self._quiet)
         self._quiet = executive.AddObserver("ErrorEvent", forget)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT, vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkCellTypes, vtkDataObject, vtkDataSetAttributes, vtkPointSet
 
 from .. import _core
@@ -188,7 +188,7 @@ def make_core(fields: Fields, block: Block) -> None:
     data, places = None, []
     if fields.data.values is not None:
         data = _as_data(fields.data.values)
-        fields.integers = fields.data.values.GetDataType() not in (10, 11)  # float, double
+        fields.integers = fields.data.values.GetDataType() not in (VTK_FLOAT, VTK_DOUBLE)
     flags = {name: _as_flags(getattr(fields, name).values) for name in ("mask", "fixed")}
     for name, found in (("data", fields.data), ("mask", fields.mask), ("fixed", fields.fixed),
                         ("directions", fields.direction), ("fidelity", fields.fidelity),
@@ -266,15 +266,14 @@ def _as_seeds(fields: Fields) -> NDArray[np.int64] | None:
     return labels.astype(np.int64)
 
 
-def _table_hint(kind: str) -> str:
-    return (f"; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
-            "vtkTableToPolyData)" if kind else "")
+_POINT_SET = ("; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
+              "vtkTableToPolyData)")
 
 
 def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples | None, list[str]]:
     """The values of the second input of an interpolation, and problems with it."""
     if not isinstance(data, vtkPointSet):
-        return None, [f"the points with values are a {data.GetClassName()}" + _table_hint("samples")]
+        return None, [f"the points with values are a {data.GetClassName()}" + _POINT_SET]
     problems: list[str] = []
 
     def find(name: str, label: str) -> Any:
@@ -306,7 +305,7 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples 
 def read_sources(data: Any) -> tuple[Sources | None, list[str]]:
     """The points and lines of the second input of distances, and problems with it."""
     if not isinstance(data, vtkPointSet):
-        return None, [f"the second input, the sources, is a {data.GetClassName()}" + _table_hint("sources")]
+        return None, [f"the second input, the sources, is a {data.GetClassName()}" + _POINT_SET]
     if data.GetNumberOfPoints() == 0:
         return None, ["the second input, the sources, has 0 points; allowed: 1 or more points or lines"]
     segments: list[int] = []

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonCore import VTK_FLOAT, VTK_UNSIGNED_CHAR
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkDemandDrivenPipeline, vtkStreamingDemandDrivenPipeline
 
@@ -37,7 +38,8 @@ class RunFilter(SurfaceFilter):
         self._runs = _core.SurfaceRuns(self.MODEL)
 
     def ReleaseCache(self) -> None:
-        self._runs = _core.SurfaceRuns(self.MODEL)
+        SurfaceFilter.ReleaseCache(self)
+        self._runs.clear()
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
         problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
@@ -77,7 +79,7 @@ class RunFilter(SurfaceFilter):
             data = getattr(found, self.NAMED_AFTER).values if self.NAMED_AFTER else None
             replaced += write_outputs(results, found, data, block, self.own["ResultArrayName"])
         self.set_numbers({**self._runs.numbers(), "MeanEdgeLength": [[self._runs.mean_edge_length()]]})
-        return replaced, [spell(words) for words in self._runs.warnings()]
+        return replaced, [spell(words) for words in self._runs.new_warnings()]
 
 
 def _turn_polygons(surface: Any, cells: list[int]) -> None:
@@ -102,7 +104,8 @@ class ModelFilter(SurfaceFilter):
         self._length: tuple[Any, int] | None = None  # settings and last step of a run that ended early
 
     def ReleaseCache(self) -> None:
-        self._run = _core.ModelRun(self.MODEL)
+        SurfaceFilter.ReleaseCache(self)
+        self._run.clear()
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         arrays = self.find_arrays(block, fields)
@@ -117,7 +120,7 @@ class ModelFilter(SurfaceFilter):
         problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
         precision = self.own["OutputPrecision"]
         if precision not in (0, 1, 2):
-            problems.append(f"OutputPrecision is {precision}; allowed: 0 (Single), 1 (Double), 2 (Input)")
+            problems.append(f"OutputPrecision is {precision}; allowed: 0 Single, 1 Double, 2 Input")
         found, without = [], []
         for block in blocks:
             fields = Fields()
@@ -149,14 +152,10 @@ class ModelFilter(SurfaceFilter):
         self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
     ) -> tuple[list[str], list[str]]:
         run = self._run
-        try:
-            run.update([found.core for found in fields], self.settings, self.progress)
-            step = self._choose_step(request, outputs)
-            run.seek(step, self.progress)
-            self.progress(0.95)  # the last chance to abort
-        except (RuntimeError, ValueError):
-            self.ReleaseCache()
-            raise
+        run.update([found.core for found in fields], self.settings, self.progress)
+        step = self._choose_step(request, outputs)
+        run.seek(step, self.progress)
+        self.progress(0.95)  # the last chance to abort
         results, replaced = [], []
         for number, (block, found) in enumerate(zip(blocks, fields)):
             def write(entry: int, values: Any, source: Any, number: int = number,
@@ -172,12 +171,12 @@ class ModelFilter(SurfaceFilter):
         if len(made) > 2:
             write_curves(results, self.own["ResultArrayName"], made[2])
         self.set_numbers(run.numbers())
-        return replaced, [spell(words) for words in run.warnings()]
+        return replaced, [spell(words) for words in run.new_warnings()]
 
     def _result_type(self, fields: Fields) -> Any:
         data, precision = fields.data.values, self.own["OutputPrecision"]
         if precision == 2 and data is not None:
-            return {10: np.float32, 3: np.uint8}.get(data.GetDataType(), np.float64)
+            return {VTK_FLOAT: np.float32, VTK_UNSIGNED_CHAR: np.uint8}.get(data.GetDataType(), np.float64)
         return np.float32 if precision == 0 else np.float64
 
     def _write_weights(self, blocks: list[Block], results: list[list[Output]]) -> list[str]:
@@ -292,7 +291,7 @@ class HarmonicMap(DataFilter):
             if normals is None:
                 normals = compute_point_normals(given)
             with_normals.GetPointData().SetNormals(normals)
-            with_normals.GetPointData().SetScalars(normals)  # the meaning of an empty name
+            with_normals.GetPointData().SetScalars(normals)  # an empty name means these
         if not DataFilter.find_fields(self, Block(with_normals, None), fields):
             return False
         data = fields.data.values
@@ -333,8 +332,8 @@ class Texture(ModelFilter):
                         "edges, set RefineTo to 0)" if length > 0.0 else "")
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays, choice = self.find_arrays(block, fields), self.choices[0]
-        if choice.is_set:
+        arrays = self.find_arrays(block, fields)
+        if self.choices[0].is_set:
             fields.data = arrays.find(0, "InputArray", 2)
         fields.mask = arrays.find(1, "MaskArray", 1)
         fields.direction = arrays.find(2, "DirectionArray", 3)
@@ -383,7 +382,7 @@ class Segmentation(ModelFilter):
     def _check_means(self, data: Any, problems: list[str]) -> None:
         regions = self.settings.get("NumberOfRegions", 2)
         components = data.GetNumberOfComponents()
-        components -= data.GetDataType() == 3 and components in (2, 4)  # alpha
+        components -= data.GetDataType() == VTK_UNSIGNED_CHAR and components in (2, 4)  # alpha
         for region, component in sorted(self._means):
             if not 1 <= region <= regions:
                 problems.append(f"the region of a Mean is {region}; allowed: 1 to NumberOfRegions {regions}")

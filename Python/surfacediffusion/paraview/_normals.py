@@ -13,7 +13,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 from .._surface import normalize, unit_normals
-from ._surfaces import cell_flags, polygons_of, to_numpy
+from ._surfaces import cell_flags, polygons_of, to_numpy, triangles_of_strip
 
 _HIDDEN_CELL = 32
 
@@ -26,7 +26,7 @@ def compute_point_normals(data: Any) -> Any:
 
 
 def update_normals(before: Any, after: Any) -> None:
-    """Compute the normals of a surface again whose points have moved, and drop its tangents."""
+    """Compute the normals of a surface whose points have moved again, and drop its tangents."""
     for given, made, find in ((before.GetPointData(), after.GetPointData(), _normals_of_points),
                               (before.GetCellData(), after.GetCellData(), _normals_of_cells)):
         for array in [given.GetAbstractArray(a) for a in range(given.GetNumberOfArrays())]:
@@ -93,24 +93,23 @@ def _polygons(data: Any) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[
     """The corners of all polygons and of the triangles of strips, where each begins, and its cell."""
     first = data.GetNumberOfVerts() + data.GetNumberOfLines()
     polygons, cells = [], []
+    points = data.GetNumberOfPoints()
     for array, is_strip in ((data.GetPolys(), False), (data.GetStrips(), True)):
         connectivity, offsets = polygons_of(array)
-        if not is_strip and (np.diff(offsets) >= 3).all():
-            polygons.append((connectivity, np.diff(offsets)))
-            cells.append(first + np.arange(len(offsets) - 1))
+        sizes = np.diff(offsets)
+        bad = (connectivity < 0) | (connectivity >= points)
+        if not is_strip and (sizes >= 3).all() and not bad.any():
+            polygons.append((connectivity, sizes))
+            cells.append(first + np.arange(len(sizes)))
         else:
-            for number in range(len(offsets) - 1):
+            for number in range(len(sizes)):
                 corners = connectivity[offsets[number]:offsets[number + 1]]
-                i = np.arange(max(0, len(corners) - 2))
-                if is_strip:
-                    rows = corners[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)]
-                elif len(corners) >= 3:
-                    rows = corners[None]
-                else:
-                    continue
+                if len(corners) < 3 or bad[offsets[number]:offsets[number + 1]].any():
+                    continue  # an error, reported later with others of its kind
+                rows = triangles_of_strip(corners) if is_strip else corners[None]
                 polygons.append((rows.ravel(), np.full(len(rows), rows.shape[1])))
                 cells.append(np.full(len(rows), first + number))
-        first += len(offsets) - 1
+        first += len(sizes)
     sizes = np.concatenate([size for _, size in polygons] or [np.empty(0, dtype=np.int64)])
     return (np.concatenate([corners for corners, _ in polygons] or [np.empty(0, dtype=np.int64)]),
             np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64),

@@ -27,8 +27,8 @@ class _Definition:
 
 
 def define_filters(module: str) -> dict[str, Any]:
-    """The objects of the plugin's module: classes and proxies. None if the plugin in C++ is loaded, whose
-    filters need no Python; if it comes later, it replaces these proxies."""
+    """Return the objects of the plugin's module: classes and proxies. There are none if the plugin in C++ is
+    loaded, whose filters need no Python; if it comes later, it replaces these proxies."""
     if _is_loaded():
         print("SurfaceDiffusionPython: the plugin SurfaceDiffusion is loaded, whose filters stay.")
         return {}

@@ -9,32 +9,38 @@ from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from vtkmodules.vtkCommonCore import VTK_ID_TYPE, vtkDataArray, vtkIdList, vtkPoints
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkDataArray, vtkIdTypeArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from .. import _core
-from .._refinement import edge_lengths
-from ._results import _as_int64, _copy_component_names, make_array
-from ._surfaces import Block, read_surface, to_numpy
+from .._refinement import edge_lengths, interpolate_points
+from ._results import copy_component_names, make_array
+from ._surfaces import Block, Shapes, to_numpy
 
 
-def mean_edge_length(blocks: list[Block]) -> float:
-    """Of the distinct edges of each block; 0 if there is none."""
-    lengths = [np.empty(0)]
+def mean_edge_length(blocks: list[Block], shapes: Shapes) -> float:
+    """Return the mean length of the distinct edges of each block; 0 if there is none."""
+    lengths, counts = [0.0], [0]
     for block in blocks:
-        if block.core is None:
-            read_surface(block)
-        points = to_numpy(block.input.GetPoints().GetData()).astype(np.float64)
-        lengths.append(edge_lengths(points, block.core.triangles()))
-    return float(np.concatenate(lengths).mean()) if sum(map(len, lengths)) else 0.0
+        shape = shapes.find(block)
+        triangles = shape.core.triangles()
+        if shape.total_edge_length is None:
+            points = to_numpy(block.input.GetPoints().GetData()).astype(np.float64)
+            found = edge_lengths(points, triangles)
+            shape.total_edge_length, shape.number_of_edges = float(found.sum()), len(found)
+        lengths.append(shape.total_edge_length)
+        counts.append(shape.number_of_edges)
+    return sum(lengths) / sum(counts) if sum(counts) else 0.0
 
 
 class Refinement:
     """The refined surfaces of an update, which replace its blocks."""
 
-    def __init__(self) -> None:
+    def __init__(self, shapes: Shapes) -> None:
         self.longest = 0.0  #: edge that is left where the limit was reached; 0: nowhere
         self.triangles = 0  #: of the blocks that were replaced
+        self._shapes = shapes
         self._before: list[tuple[Block, Any]] = []
 
     def bisect(
@@ -42,27 +48,29 @@ class Refinement:
     ) -> None:
         """Bisect the edges that are longer, until a block would have more triangles than the limit."""
         found = self._bisect_all(blocks, length, limit, progress)
+        self.longest = max([refined["longest_edge"] for refined in found if refined["limit_reached"]],
+                           default=0.0)
         if self.longest > 0.0 and len(blocks) > 1:
             found = self._bisect_all(blocks, self.longest, limit, progress)  # alike in every block
         for block, refined in zip(blocks, found):
             if len(refined["parents"]):
-                surface = _make_surface(block, refined)
+                surface = _make_surface(block.input, refined)
                 self._before.append((block, block.input))
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(surface)
-                block.input, block.core = surface, None
+                block.input = surface
+                self._shapes.find(block)
 
     def _bisect_all(
         self, blocks: list[Block], length: float, limit: int, progress: Callable[[float], Any]
     ) -> list[dict[str, Any]]:
         found = []
         for block in blocks:
-            if block.core is None:
-                read_surface(block)
-            found.append(_core.refine(block.core, length, limit, progress))
-        if not self.longest:
-            self.longest = max([refined["longest_edge"] for refined in found if refined["limit_reached"]],
-                               default=0.0)
+            shape = self._shapes.find(block)
+            if (length, limit) not in shape.refined:
+                refined = _core.refine(shape.core, length, limit, progress)
+                shape.refined = {(length, limit): refined}
+            found.append(shape.refined[length, limit])
         return found
 
     def undo(self) -> None:
@@ -71,81 +79,61 @@ class Refinement:
             block.output.ShallowCopy(before)
 
 
-def _make_surface(block: Block, refined: dict[str, Any]) -> Any:
-    given = block.input
+def _make_surface(given: Any, refined: dict[str, Any]) -> Any:
     surface = vtkPolyData()
-    single = given.GetPoints().GetDataType() == 10
+    single = given.GetPoints().GetDataType() == VTK_FLOAT
     points = vtkPoints()
     points.SetData(make_array("Points", refined["points"].astype(np.float32 if single else np.float64)))
     surface.SetPoints(points)
     surface.SetVerts(given.GetVerts())
     surface.SetLines(given.GetLines())
-    triangles = refined["triangles"]
+    triangles = refined["triangles"].astype(np.int64)
     polygons = vtkCellArray()
-    polygons.SetData(_as_int64(3 * np.arange(len(triangles) + 1)), _as_int64(triangles.ravel()))
+    polygons.SetData(make_array("", 3 * np.arange(len(triangles) + 1)), make_array("", triangles.ravel()))
     surface.SetPolys(polygons)
     surface.GetFieldData().ShallowCopy(given.GetFieldData())
-    _interpolate(given.GetPointData(), surface.GetPointData(), refined["parents"])
+    parents = refined["parents"]
+    _copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
+                 lambda values: interpolate_points(values, parents), parents.min(axis=1))
     others = given.GetNumberOfVerts() + given.GetNumberOfLines()
     ids = np.concatenate([np.arange(others), refined["faces"].ravel()]).astype(np.int64)
-    cells = surface.GetCellData()
-    cells.CopyGlobalIdsOff()
-    cells.CopyAllocate(given.GetCellData(), len(ids))
-    before, after = vtkIdList(), vtkIdList()
-    before.SetNumberOfIds(len(ids))
-    after.SetNumberOfIds(len(ids))
-    for cell, original in enumerate(ids.tolist()):
-        before.SetId(cell, original)
-        after.SetId(cell, cell)
-    cells.CopyData(given.GetCellData(), before, after)
-    cells.AddArray(make_array("vtkOriginalCellIds", ids, VTK_ID_TYPE))
+    _copy_arrays(given.GetCellData(), surface.GetCellData(), given.GetNumberOfCells(),
+                 lambda values: values[ids], ids)
+    surface.GetCellData().AddArray(make_array("vtkOriginalCellIds", ids, vtkIdTypeArray))
     return surface
 
 
-def _interpolate(given: Any, made: Any, parents: NDArray[Any]) -> None:
-    """Arrays are linear along the edges, except that integers of one component, which are labels and marks,
-    become the smaller of two."""
+def _copy_arrays(
+    given: Any, made: Any, count: int, make: Callable[[NDArray[Any]], NDArray[Any]], rows: NDArray[Any]
+) -> None:
+    """Add the arrays of `given` with a tuple for each of `count` points or cells, but global ids, and keep
+    their roles. make: the values from those of an array. rows: of arrays that are no numbers, the tuples to
+    copy; those of points come after all that there are."""
     for number in range(given.GetNumberOfArrays()):
         array, role = given.GetAbstractArray(number), given.IsArrayAnAttribute(number)
-        if role == vtkDataSetAttributes.GLOBALIDS:
+        if role == vtkDataSetAttributes.GLOBALIDS or array.GetNumberOfTuples() != count:
             continue
-        added = made.AddArray(_interpolated(array, parents))
+        new = array.NewInstance()
+        if isinstance(array, vtkDataArray):
+            values = make(to_numpy(array))
+            kind = values.dtype.name
+            new.DeepCopy(make_array("", values) if kind in ("float64", "float32") else numpy_to_vtk(values))
+        else:
+            _copy_tuples(array, new, rows, keeps=given.IsA("vtkPointData"))
+        new.SetName(array.GetName())
+        copy_component_names(array, new)
+        added = made.AddArray(new)
         if role >= 0:
             made.SetActiveAttribute(added, role)
 
 
-def _interpolated(array: Any, parents: NDArray[Any]) -> Any:
-    count = array.GetNumberOfTuples()
-    new = array.NewInstance()
-    new.SetName(array.GetName())
+def _copy_tuples(array: Any, new: Any, rows: NDArray[Any], keeps: bool) -> None:
+    """Copy tuples of an array of texts and the like. keeps: all tuples come first, and a row may be a new
+    one."""
     new.SetNumberOfComponents(array.GetNumberOfComponents())
-    _copy_component_names(array, new)
-    if not isinstance(array, vtkDataArray):
-        new.SetNumberOfTuples(count + len(parents))
+    count = array.GetNumberOfTuples() if keeps else 0
+    new.SetNumberOfTuples(count + len(rows))
+    if keeps:
         new.InsertTuples(0, count, 0, array)
-        for i, parent in enumerate(parents.min(axis=1).tolist()):
-            new.InsertTuple(count + i, parent, new)
-        return new
-    values = to_numpy(array)
-    values = values.reshape(count, -1)
-    whole = np.vstack([values, np.empty((len(parents), values.shape[1]), dtype=values.dtype)])
-    rounds = values.dtype.kind != "f"
-    # A parent may be a new point, so that generations follow one another.
-    begin = 0
-    while begin < len(parents):
-        known = count + begin
-        ready = (parents[begin:] < known).all(axis=1)
-        end = len(parents) if ready.all() else begin + max(1, int(np.argmin(ready)))
-        a, b = whole[parents[begin:end, 0]], whole[parents[begin:end, 1]]
-        if rounds and values.shape[1] == 1:
-            found = np.minimum(a, b)
-        else:
-            found = 0.5 * a.astype(np.float64) + 0.5 * b.astype(np.float64)
-            found = np.floor(found + 0.5) if rounds else found
-        whole[known:count + end] = found.astype(values.dtype)
-        begin = end
-    typed = make_array(array.GetName() or "", whole if whole.shape[1] > 1 else whole[:, 0])
-    new.DeepCopy(typed)
-    new.SetName(array.GetName())
-    _copy_component_names(array, new)
-    return new
+    for i, row in enumerate(rows.tolist()):
+        new.InsertTuple(count + i, row, new if keeps else array)

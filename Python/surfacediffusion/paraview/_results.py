@@ -10,8 +10,11 @@ from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints, vtkTypeInt64Array
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import (
+    VTK_FLOAT, VTK_UNSIGNED_CHAR, vtkDoubleArray, vtkFloatArray, vtkIntArray, vtkPoints,
+    vtkTypeInt64Array, vtkUnsignedCharArray,
+)
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from ._fields import Fields
@@ -37,10 +40,20 @@ class Output:
         return str(self.entry["place"])
 
 
-def make_array(name: str, values: NDArray[Any], array_type: Any = None) -> Any:
-    """A vtkDataArray with a copy of the values."""
-    array = numpy_to_vtk(np.ascontiguousarray(values), deep=True, array_type=array_type)
+_CLASSES: dict[str, Any] = {
+    "float64": vtkDoubleArray, "float32": vtkFloatArray, "int32": vtkIntArray, "int64": vtkTypeInt64Array,
+    "uint8": vtkUnsignedCharArray,
+}
+
+
+def make_array(name: str, values: NDArray[Any], array_class: Any = None) -> Any:
+    """An array with a copy of the values, (n,) or (n, k), of the class of their type unless one is given."""
+    array = (array_class or _CLASSES[values.dtype.name])()
     array.SetName(name)
+    array.SetNumberOfComponents(1 if values.ndim == 1 else values.shape[1])
+    array.SetNumberOfTuples(len(values))
+    if values.size:
+        vtk_to_numpy(array)[:] = values
     return array
 
 
@@ -48,7 +61,7 @@ def read_outputs(
     entries: list[dict[str, Any]], write: Callable[[int, Any, Any], None], fields: Fields, block: Block,
     result_type: Any,
 ) -> list[Output]:
-    """The outputs of a run on one block. write: its function of the number of an output, an array, and the
+    """Return the outputs of a run on one block. write: its function of the number of an output, an array, and the
     input. result_type: of the result of the data."""
     types = {**_TYPES, "data": result_type,
              "real": np.float32 if result_type == np.float32 else np.float64}
@@ -68,9 +81,9 @@ def read_outputs(
 def write_outputs(
     outputs: list[Output], fields: Fields, data: Any, block: Block, prefix: str,
 ) -> list[str]:
-    """Add arrays to the output of a block, and move its points. data: the array that gives results their
-    name and that a result of this name replaces, or None. prefix: ResultArrayName. The names of other
-    arrays of the input that were replaced."""
+    """Add arrays to the output of a block, and move its points. Return the names of other arrays of the
+    input that were replaced. data: the array that gives results their name and that a result of this name
+    replaces, or None. prefix: ResultArrayName."""
     before = vtkPolyData()
     before.ShallowCopy(block.output)
     replaced = []
@@ -87,7 +100,7 @@ def write_outputs(
         values = output.values
         array = make_array(name, values[:, 0] if values.shape[1] == 1 else values)
         if output.entry["kind"] == "data" and fields.data.values is not None:
-            _copy_component_names(fields.data.values, array)
+            copy_component_names(fields.data.values, array)
         on_cells = output.place == "faces"
         attributes = block.output.GetCellData() if on_cells else block.output.GetPointData()
         former = attributes.GetAbstractArray(name)
@@ -101,7 +114,7 @@ def write_outputs(
     return replaced
 
 
-def _copy_component_names(source: Any, array: Any) -> None:
+def copy_component_names(source: Any, array: Any) -> None:
     for k in range(source.GetNumberOfComponents()):
         name = source.GetComponentName(k)
         if name:
@@ -115,13 +128,13 @@ def _role(output: Output, fields: Fields, array: Any) -> int:
     if fields.result_is_normals:
         return int(vtkDataSetAttributes.NORMALS)  # only these: ParaView shades with no vectors
     data = fields.data.values
-    is_color = data is not None and output.entry["kind"] == "data" and data.GetDataType() == 3
+    is_color = data is not None and output.entry["kind"] == "data" and data.GetDataType() == VTK_UNSIGNED_CHAR
     in_space = array.GetNumberOfComponents() == 3 and not is_color
     return int(vtkDataSetAttributes.VECTORS if in_space else vtkDataSetAttributes.SCALARS)
 
 
 def _move(places: NDArray[np.float64], before: Any, after: Any) -> None:
-    single = before.GetPoints().GetDataType() == 10
+    single = before.GetPoints().GetDataType() == VTK_FLOAT
     points = vtkPoints()
     points.SetData(make_array("Points", places.astype(np.float32 if single else np.float64)))
     after.SetPoints(points)
@@ -209,7 +222,9 @@ def write_curves(blocks: list[list[Output]], prefix: str, curves: Any) -> None:
     points = vtkPoints()
     points.SetData(make_array("Points", np.vstack(coordinates)))
     lines = vtkCellArray()
-    lines.SetData(_as_int64(offsets), _as_int64(np.concatenate(connectivity) if connectivity else []))
+    lines.SetData(
+        make_array("", np.array(offsets, dtype=np.int64)),
+        make_array("", np.concatenate(connectivity + [np.empty(0, dtype=np.int64)])))
     curves.SetPoints(points)
     curves.SetLines(lines)
     for name, column in _join(blocks, "curve points")[0].items():
@@ -218,9 +233,3 @@ def write_curves(blocks: list[list[Output]], prefix: str, curves: Any) -> None:
     for name, column in columns.items():
         curves.GetCellData().AddArray(column.write(name))
     curves.GetCellData().AddArray(make_array("Block", owners))
-
-
-def _as_int64(values: Any) -> Any:
-    array = vtkTypeInt64Array()
-    array.DeepCopy(numpy_to_vtk(np.asarray(values, dtype=np.int64), deep=True))
-    return array

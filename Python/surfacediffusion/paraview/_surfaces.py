@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import hashlib
+from dataclasses import dataclass, field
 from typing import Any, Iterator
 
 import numpy as np
@@ -27,14 +28,69 @@ class SurfaceError(Exception):
 
 
 @dataclass
+class Shape:
+    """The triangles of a surface, which depend on its points and cells alone."""
+
+    cells: NDArray[np.int64]  #: per triangle, its cell
+    core: Any  #: the surface of the extension
+    total_edge_length: float | None = None
+    number_of_edges: int = 0
+    refined: dict[tuple[float, int], dict[str, Any]] = field(default_factory=dict)  #: the last one
+
+
+@dataclass
 class Block:
     """A surface of the input, and its copy in the output. name: of a block of composite data."""
 
     input: Any
     output: Any
     name: str = ""
-    cells: Any = None  #: per triangle, its cell
-    core: Any = None  #: the surface of the numerics
+    shape: Shape | None = None
+
+    @property
+    def core(self) -> Any:
+        assert self.shape is not None
+        return self.shape.core
+
+    @property
+    def cells(self) -> NDArray[np.int64]:
+        assert self.shape is not None
+        return self.shape.cells
+
+
+class Shapes:
+    """The shapes of the last two updates, by the contents of points and cells, which are compared at every
+    update, since arrays that were edited in place need not be marked as modified."""
+
+    def __init__(self) -> None:
+        self._used: dict[bytes, Shape] = {}
+        self._former: dict[bytes, Shape] = {}
+
+    def begin_update(self) -> None:
+        self._former, self._used = self._used or self._former, {}
+
+    def find(self, block: Block) -> Shape:
+        """The shape of a block, which is read unless it is known. Raises SurfaceError on cells with points
+        that do not exist."""
+        key = _contents(block.input)
+        shape = self._used.get(key) or self._former.get(key) or _read_shape(block.input)
+        self._used[key] = block.shape = shape
+        return shape
+
+
+def _contents(data: Any) -> bytes:
+    """A hash of what a shape depends on."""
+    found = hashlib.blake2b(digest_size=16)
+    arrays = [data.GetPoints().GetData(), data.GetPointGhostArray(), data.GetCellGhostArray()]
+    for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
+        has_cells = cells is not None and cells.GetNumberOfCells() > 0
+        arrays += [cells.GetConnectivityArray(), cells.GetOffsetsArray()] if has_cells else [None, None]
+    for array in arrays:
+        values = None if array is None else to_numpy(array)
+        found.update(b"-" if values is None else f"{values.dtype} {values.shape}".encode())
+        if values is not None:
+            found.update(np.ascontiguousarray(values).data.cast("B") if values.size else b"")
+    return found.digest()
 
 
 def to_numpy(array: Any) -> NDArray[Any]:
@@ -62,7 +118,10 @@ def copy_structure(given: Any, output: Any) -> Parts:
     parts = Parts([], is_composite=isinstance(given, vtkCompositeDataSet))
     if not parts.is_composite:
         output.ShallowCopy(given)
-        _add(parts, given, output, "", set())
+        if isinstance(given, vtkPolyData):
+            parts.blocks.append(Block(given, output))
+        else:
+            parts.other_types = given.GetClassName()
         return parts
     output.CopyStructure(given)
     output.GetFieldData().ShallowCopy(given.GetFieldData())
@@ -82,19 +141,14 @@ def copy_structure(given: Any, output: Any) -> Parts:
             if surface in seen:
                 parts.in_pieces = name
             seen.add(surface)
-        _add(parts, leaf, copy, name, types)
+        if isinstance(leaf, vtkPolyData):
+            parts.blocks.append(Block(leaf, copy, name))
+        else:
+            types.add(leaf.GetClassName())
         number += 1
         iterator.GoToNextItem()
     parts.other_types = ", ".join(sorted(types))
     return parts
-
-
-def _add(parts: Parts, leaf: Any, copy: Any, name: str, types: set[str]) -> None:
-    if isinstance(leaf, vtkPolyData):
-        parts.blocks.append(Block(leaf, copy, name))
-    else:
-        types.add(leaf.GetClassName())
-        parts.other_types = ", ".join(sorted(types))
 
 
 def _names(data: Any, name: str, path: str, counter: list[int] | None = None) -> Iterator[tuple[int, str]]:
@@ -121,9 +175,7 @@ def _names(data: Any, name: str, path: str, counter: list[int] | None = None) ->
         yield from _names(child, found or "", f"{path}/{number}" if path else str(number), counter)
 
 
-def read_surface(block: Block) -> None:
-    """Read the triangles of a block. Raises SurfaceError on cells with points that there are not."""
-    data = block.input
+def _read_shape(data: Any) -> Shape:
     points = to_numpy(data.GetPoints().GetData()).astype(np.float64, order="C")
     first = data.GetNumberOfVerts() + data.GetNumberOfLines()
     triangles, cells = _cut(data.GetPolys(), first, points)
@@ -135,10 +187,10 @@ def read_surface(block: Block) -> None:
     if flags is not None:
         kept = (flags[cells] & ABSENT) == 0
         triangles, cells = triangles[kept], cells[kept]
-    block.cells = cells
-    block.core = _core.Surface(
-        points, np.ascontiguousarray(triangles, dtype=np.int64).ravel(),
-        np.ascontiguousarray(cells, dtype=np.int64), data.GetNumberOfCells(), hidden)
+    cells = np.ascontiguousarray(cells, dtype=np.int64)
+    return Shape(cells, _core.Surface(
+        points, np.ascontiguousarray(triangles, dtype=np.int64).ravel(), cells, data.GetNumberOfCells(),
+        hidden))
 
 
 def polygons_of(array: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -206,27 +258,34 @@ def _cut(array: Any, first: int, points: Any) -> tuple[NDArray[np.int64], NDArra
         cut = _core.Surface(points, of_quads.ravel(), np.arange(0, 4 * len(quads) + 1, 4))
         triangles.append(cut.triangles().astype(np.int64))
         numbers.append(np.repeat(quads, 2))
-    for number in np.flatnonzero(sizes > 4):
-        found = _cut_polygon(points, corners[offsets[number]:offsets[number + 1]])
-        triangles.append(found)
-        numbers.append(np.full(len(found), number))
+    large = np.flatnonzero(sizes > 4)
+    if len(large):
+        found = [_cut_polygon(points, corners[offsets[number]:offsets[number + 1]]) for number in large]
+        triangles.append(np.concatenate(found))
+        numbers.append(np.repeat(large, [len(rows) for rows in found]))
     all_numbers = np.concatenate(numbers)
     order = np.argsort(all_numbers, kind="stable")
     return np.vstack(triangles)[order], first + all_numbers[order]
 
 
 def _cut_polygon(points: Any, corners: Any) -> NDArray[np.int64]:
+    count = len(corners)
     polygon, ears = vtkPolygon(), vtkIdList()
-    polygon.GetPointIds().SetNumberOfIds(len(corners))
-    polygon.GetPoints().SetNumberOfPoints(len(corners))
-    for i, corner in enumerate(corners):
+    polygon.GetPointIds().SetNumberOfIds(count)
+    polygon.GetPoints().SetNumberOfPoints(count)
+    for i, place in enumerate(points[corners].tolist()):
         polygon.GetPointIds().SetId(i, i)
-        polygon.GetPoints().SetPoint(i, points[corner])
+        polygon.GetPoints().SetPoint(i, place)
     if polygon.EarCutTriangulation(ears) and ears.GetNumberOfIds() > 0:
-        rows = np.array([ears.GetId(i) for i in range(ears.GetNumberOfIds())]).reshape(-1, 3)
+        rows = [ears.GetId(i) for i in range(ears.GetNumberOfIds())]
     else:  # it intersects itself or is flat: use a fan
-        rows = np.array([[0, i, i + 1] for i in range(1, len(corners) - 1)])
-    return np.asarray(corners[rows], dtype=np.int64)
+        rows = [corner for i in range(1, count - 1) for corner in (0, i, i + 1)]
+    return np.asarray(corners[rows], dtype=np.int64).reshape(-1, 3)
+
+
+def triangles_of_strip(corners: NDArray[np.int64]) -> NDArray[np.int64]:
+    i = np.arange(max(0, len(corners) - 2))
+    return corners[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)]
 
 
 def _cut_strips(array: Any, first: int, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -235,7 +294,6 @@ def _cut_strips(array: Any, first: int, count: int) -> tuple[NDArray[np.int64], 
     triangles, cells = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for number in range(len(offsets) - 1):
         strip = corners[offsets[number]:offsets[number + 1]]
-        i = np.arange(max(0, len(strip) - 2))
-        triangles.append(strip[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)])
-        cells.append(np.full(len(i), first + number))
+        triangles.append(triangles_of_strip(strip))
+        cells.append(np.full(len(triangles[-1]), first + number))
     return np.vstack(triangles), np.concatenate(cells)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SurfaceRuns.h"
+#include "PythonRuns.h"
 
 #include "OutputTable.h"
 #include "PythonProgress.h"
@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <utility>
 
 namespace nb = nanobind;
@@ -58,13 +59,13 @@ std::unique_ptr<SurfaceRun> MakeRun(const std::string& name)
 
 } // namespace
 
-SurfaceRuns::SurfaceRuns(std::string name)
+PythonRuns::PythonRuns(std::string name)
   : Name(std::move(name))
 {
   MakeRun(this->Name);
 }
 
-void SurfaceRuns::Update(
+void PythonRuns::Update(
   const nb::list& surfaces, const nb::dict& values, const nb::object& progress)
 {
   const UseGuard guard(this->InUse);
@@ -78,6 +79,7 @@ void SurfaceRuns::Update(
     settings->Check(&summary, problems);
   }
   ThrowProblems(std::move(problems));
+  this->IsComplete = false;
   this->Runs.resize(given.size());
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
@@ -111,59 +113,85 @@ void SurfaceRuns::Update(
   {
     this->BlockNames.push_back(fields->Block);
   }
+  this->IsComplete = true;
 }
 
-double SurfaceRuns::MeanEdgeLength() const
+const SurfaceRun& PythonRuns::RunOf(std::size_t surface) const
+{
+  if (!this->IsComplete)
+  {
+    throw std::runtime_error("there is no result: the last update was aborted or has failed");
+  }
+  return *this->Runs.at(surface);
+}
+
+void PythonRuns::Clear()
+{
+  this->Runs.clear();
+  this->IsComplete = false;
+}
+
+double PythonRuns::MeanEdgeLength() const
 {
   double length = 0.0;
   double edges = 0.0;
-  for (const auto& run : this->Runs)
+  for (std::size_t s = 0; s < this->Runs.size(); ++s)
   {
-    const TriangleMesh& mesh = run->GetSurface().InputMesh();
+    const TriangleMesh& mesh = this->RunOf(s).GetSurface().InputMesh();
     length += mesh.TotalEdgeLength() * mesh.LengthUnit();
     edges += mesh.NumberOfEdges();
   }
   return edges > 0.0 ? length / edges : 1.0;
 }
 
-nb::list SurfaceRuns::GetWarnings() const
+std::vector<Warning> PythonRuns::FindWarnings() const
 {
   std::vector<const SurfaceRun*> runs;
-  for (const auto& run : this->Runs)
+  for (std::size_t s = 0; s < this->Runs.size(); ++s)
   {
-    runs.push_back(run.get());
+    runs.push_back(&this->RunOf(s));
   }
-  return ListSentences(SurfaceRun::FindAllWarnings(runs, this->BlockNames));
+  return SurfaceRun::FindAllWarnings(runs, this->BlockNames);
 }
 
-nb::dict SurfaceRuns::GetNumbers() const
+nb::list PythonRuns::GetWarnings() const
+{
+  return ListSentences(this->FindWarnings());
+}
+
+nb::list PythonRuns::GetNewWarnings()
+{
+  return ListSentences(this->Reported.Report(this->FindWarnings()));
+}
+
+nb::dict PythonRuns::GetNumbers() const
 {
   std::vector<const OutputList*> outputs;
-  for (const auto& run : this->Runs)
+  for (std::size_t s = 0; s < this->Runs.size(); ++s)
   {
-    outputs.push_back(&run->Outputs());
+    outputs.push_back(&this->RunOf(s).Outputs());
   }
   return ListNumbers(CombineNumbers(outputs, 0));
 }
 
-nb::list SurfaceRuns::ListOutputs(std::size_t surface) const
+nb::list PythonRuns::ListOutputs(std::size_t surface) const
 {
-  return SurfaceDiffusion::ListOutputs(this->Runs.at(surface)->Outputs());
+  return SurfaceDiffusion::ListOutputs(this->RunOf(surface).Outputs());
 }
 
-void SurfaceRuns::Write(std::size_t surface, std::size_t number, const OutputArray& output,
+void PythonRuns::Write(std::size_t surface, std::size_t number, const OutputArray& output,
   const InputFields& input) const
 {
-  const SurfaceRun& run = *this->Runs.at(surface);
+  const SurfaceRun& run = this->RunOf(surface);
   OutputSource source{ run.GetSurface(), PythonThreads::Instance() };
   WithValueErrors([&] { WriteOutput(run.Outputs().at(number), source, input, output, -1); });
 }
 
-std::vector<std::int64_t> SurfaceRuns::TurnedFaces(
+std::vector<std::int64_t> PythonRuns::TurnedFaces(
   std::size_t surface, const InputSurface& source) const
 {
   std::vector<std::int64_t> faces;
-  if (const auto* const relief = dynamic_cast<const ReliefRun*>(this->Runs.at(surface).get()))
+  if (const auto* const relief = dynamic_cast<const ReliefRun*>(&this->RunOf(surface)))
   {
     const std::vector<char>& turned = relief->TurnedTriangles();
     for (std::size_t t = 0; t < turned.size(); ++t)
@@ -174,6 +202,7 @@ std::vector<std::int64_t> SurfaceRuns::TurnedFaces(
       }
     }
   }
+  std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
 }

@@ -4,6 +4,7 @@
 
 #include "InputData.h"
 #include "Run/SurfaceRun.h"
+#include "Run/WarningLog.h"
 
 #include <cstdint>
 #include <memory>
@@ -15,22 +16,26 @@ namespace SurfaceDiffusion
 
 /// A computation without time steps on one or more surfaces, each for itself, with its settings: a
 /// line field, denoised points, curvatures, derivatives, distances, random fields or relief.
-class SurfaceRuns
+class PythonRuns
 {
 public:
   /// name: of the function in Python. Throws nanobind::key_error.
-  explicit SurfaceRuns(std::string name);
-  SurfaceRuns(const SurfaceRuns&) = delete;
-  SurfaceRuns& operator=(const SurfaceRuns&) = delete;
+  explicit PythonRuns(std::string name);
+  PythonRuns(const PythonRuns&) = delete;
+  PythonRuns& operator=(const PythonRuns&) = delete;
 
   /// Check and take settings and inputs, a list of InputFields, and compute. The mask of the inputs
   /// is read by those that leave masked triangles out. Throws InputError and nanobind::value_error.
   void Update(const nanobind::list& surfaces, const nanobind::dict& settings,
     const nanobind::object& progress);
+  /// Free what is kept for the next update, but not which warnings are known.
+  void Clear();
   /// Of all surfaces, in coordinate units; 1 if there is no edge.
   double MeanEdgeLength() const;
   /// All warnings that hold, as lists of words.
   nanobind::list GetWarnings() const;
+  /// Those that hold now and did not hold at the last call.
+  nanobind::list GetNewWarnings();
   nanobind::dict GetNumbers() const;
   ///@{
   /// As those of ModelRun.
@@ -38,13 +43,19 @@ public:
   void Write(std::size_t surface, std::size_t number, const OutputArray& output,
     const InputFields& source) const;
   ///@}
-  /// Of relief: the faces of a surface that have a triangle which it has the other way round.
+  /// Of relief: the faces of a surface with a triangle that the relief has turned, ascending.
   std::vector<std::int64_t> TurnedFaces(std::size_t surface, const InputSurface& source) const;
 
 private:
+  std::vector<Warning> FindWarnings() const;
+  /// Throws std::runtime_error unless the last update has succeeded.
+  const SurfaceRun& RunOf(std::size_t surface) const;
+
   std::string Name;
   std::vector<std::unique_ptr<SurfaceRun>> Runs; ///< per surface
   std::vector<std::string> BlockNames; ///< likewise
+  WarningLog Reported;
+  bool IsComplete = false; ///< the last update has succeeded
   bool InUse = false;
 };
 
