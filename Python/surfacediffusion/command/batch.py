@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import concurrent.futures
-import multiprocessing
 import os
 
 from .._threads import get_number_of_threads, set_number_of_threads
@@ -26,15 +24,24 @@ def run(arguments, report, work):
     files = report.facts.setdefault("files", [])
     with report.timed("read"):
         read_surfaces(arguments)
+    for facts in _one_by_one(arguments, report, work, pairs):
+        files.append(facts)
+
+
+def _one_by_one(arguments, report, work, pairs):
+    """The facts of each file, which are no facts of the whole run."""
     vars(arguments).setdefault("solvers", {})
     for data, output in pairs:
-        single = argparse.Namespace(**{**vars(arguments), "data": data, "output": output})
         whole, report.facts = report.facts, {}
         try:
-            work(single, report)
+            work(_changed(arguments, data=data, output=output), report)
         finally:
             found, report.facts = report.facts, whole
-        files.append(found)
+        yield found
+
+
+def _changed(arguments, **others):
+    return argparse.Namespace(**{**vars(arguments), **others})
 
 
 def _pairs(arguments):
@@ -56,6 +63,9 @@ def _pairs(arguments):
 
 
 def _run_in_processes(arguments, report, work, pairs):
+    import concurrent.futures
+    import multiprocessing
+
     jobs = min(arguments.jobs, len(pairs))
     threads = max(1, get_number_of_threads() // jobs)
     # New processes, since threads of this one would be lost in a fork.
@@ -86,20 +96,15 @@ def _run_part(arguments, work, pairs, threads):
     from .report import Report
 
     set_number_of_threads(threads)
-    arguments = argparse.Namespace(**{**vars(arguments), "quiet": True, "jobs": 1})
+    arguments = _changed(arguments, quiet=True, jobs=1)
     report = Report(arguments)
     files, error = [], None
     with report.collecting_warnings():
         read_surfaces(arguments)
-        vars(arguments).setdefault("solvers", {})
-        for data, output in pairs:
-            report.facts = {}
-            single = argparse.Namespace(**{**vars(arguments), "data": data, "output": output})
-            try:
-                work(single, report)
-            except (ValueError, ArithmeticError, RuntimeError, OSError, MemoryError) as problem:
-                error = problem
-                break
-            files.append(report.facts)
+        try:
+            for facts in _one_by_one(arguments, report, work, pairs):
+                files.append(facts)
+        except (ValueError, ArithmeticError, RuntimeError, OSError, MemoryError) as problem:
+            error = problem
     return {"files": files, "lines": report.lines, "seconds": report.seconds,
             "warnings": report.warnings, "error": error}
