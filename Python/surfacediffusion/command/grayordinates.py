@@ -129,11 +129,7 @@ def _surface_place(entry, part, surface, areas, width, arguments):
     def measure(inside):
         excluded = np.ones(solver.n_points, dtype=bool)
         excluded[entry.vertices[inside]] = False
-        sizes = inputs.vertex_areas(surface, excluded)
-        if areas is not None:
-            whole = inputs.vertex_areas(surface)
-            sizes = np.divide(sizes * areas, whole, out=sizes, where=whole > 0)
-        return sizes[entry.vertices]
+        return inputs.vertex_areas(surface, excluded, areas)[entry.vertices]
 
     return _Place(entry.name, [entry.place], part, solve if width else None, measure)
 
@@ -202,9 +198,8 @@ def _read_region(arguments, file, places, surfaces):
     if content.kind != "cifti" or arguments.surface is not None:
         return _region_of_one_surface(arguments, file, places, surfaces, count)
     region = open_cifti(content)
-    if arguments.match_columns and len(region.names) != len(file.names):
-        raise ArgumentProblem(f"{path} has {len(region.names)} columns, but {file.content.path} has "
-                              f"{len(file.names)}; allowed with --match-columns: the same number")
+    if arguments.match_columns:
+        inputs.require_same_number(path, region.names, file.content.path, file.names)
     rows = list(range(len(region.names))) if arguments.match_columns else [0]
     atlas = Data(path, "cifti", region.names, [], labels=region.rows == "dlabel",
                  label_names=region.label_names)

@@ -277,16 +277,21 @@ def read_areas(path, surfaces):
 def _regions(arguments, surfaces, on_faces, own, columns):
     """{id of the surface: its flags}. own: data of which each column has its own region."""
     if own is not None:
-        count = len(read_data(split_label(arguments.roi)[0], on_faces).names)
-        if count != len(own.names):
-            raise ArgumentProblem(f"{arguments.roi} has {count} columns, but {own.path} has "
-                                  f"{len(own.names)}; allowed with --match-columns: the same number")
+        of_region = read_data(split_label(arguments.roi)[0], on_faces)
+        require_same_number(arguments.roi, of_region.names, own.path, own.names)
     found = dict(read_marks(arguments.roi, surfaces, on_faces, columns if own is not None else None))
     for surface in surfaces.values():
         if id(surface) not in found:
             raise FileError(f"{arguments.roi}: nothing for {surface.path}; allowed: a region on "
                             "each surface")
     return found
+
+
+def require_same_number(path, names, path_of_data, names_of_data):
+    """Each column of the data has a region of its own."""
+    if len(names) != len(names_of_data):
+        raise ArgumentProblem(f"{path} has {len(names)} columns, but {path_of_data} has "
+                              f"{len(names_of_data)}; allowed with --match-columns: the same number")
 
 
 def surface_for(part, surfaces, data):
@@ -350,27 +355,33 @@ def require_finite(values, data, part, columns):
                         f"vertex {vertex}; allowed: finite values, or NaN for missing")
 
 
-def vertex_areas(surface: SurfaceFile, excluded=None):
+def vertex_areas(surface: SurfaceFile, excluded=None, given=None):
     """The areas of the barycentric control cells (n,): a third of those of the triangles. Triangles
-    with an excluded corner take no part."""
-    points = np.asarray(surface.points, dtype=float)
+    with an excluded corner take no part. given: the areas of whole cells in place of the true ones."""
     faces = triangles(surface)
     if excluded is not None:
         faces = faces[~excluded[faces].any(axis=1)]
-    a, b, c = (points[faces[:, i]] for i in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    return np.bincount(faces.ravel(), np.repeat(areas / 3, 3), minlength=len(points))
+    areas = np.bincount(faces.ravel(), np.repeat(_triangle_areas(surface, faces) / 3, 3),
+                        minlength=len(surface.points))
+    if given is not None:
+        whole = vertex_areas(surface)
+        areas = np.divide(areas * given, whole, out=areas, where=whole > 0)
+    return areas
 
 
 def face_areas(surface: SurfaceFile):
     """The areas of the faces (m,)."""
-    points = np.asarray(surface.points, dtype=float)
     faces = triangles(surface)
-    a, b, c = (points[faces[:, i]] for i in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    areas = _triangle_areas(surface, faces)
     counts = ([1] * len(faces) if isinstance(surface.faces, np.ndarray)
               else [len(face) - 2 for face in surface.faces])
     return np.bincount(np.repeat(np.arange(len(counts)), counts), areas, minlength=len(counts))
+
+
+def _triangle_areas(surface, faces):
+    points = np.asarray(surface.points, dtype=float)
+    a, b, c = (points[faces[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
 
 def triangles(surface: SurfaceFile):
