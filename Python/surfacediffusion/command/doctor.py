@@ -26,6 +26,14 @@ def version():
     return f"{__version__} ({_core.build})"
 
 
+def add_doctor(commands):
+    commands.add(
+        "doctor", doctor,
+        "Show what is installed, and compare results with exact solutions: version, compiler, threads, "
+        "packages that read files and meshes, VTK and ParaView. Takes about ten seconds.",
+        ["", "--json > report.json"], "")
+
+
 def doctor(arguments, report):
     """Raises RuntimeError if a result is wrong."""
     from .. import get_number_of_threads

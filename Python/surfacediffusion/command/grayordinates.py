@@ -61,8 +61,8 @@ def smooth(arguments, report, content, width, voxel_width):
 
 def _fixes_zeros(arguments, place):
     """Whether zeros are missing; with the words of Workbench, on surfaces or among voxels."""
-    word = "fix_zeros_volume" if place.is_volume else "fix_zeros_surface"
-    return arguments.fix_zeros or getattr(arguments, word, False)
+    return arguments.fix_zeros or (
+        arguments.fix_zeros_volume if place.is_volume else arguments.fix_zeros_surface)
 
 
 @dataclass

@@ -99,29 +99,6 @@ def read_values(path, surface, tables=True):
     return None, values[:, columns], [data.names[c] for c in columns]
 
 
-def read_sources(arguments, surface):
-    """The vertices of each set of sources of `distance`, the number that each of them stands for, and
-    the names of the columns."""
-    count = len(surface.points)
-    if arguments.starts is not None:
-        rows = []
-        for place in arguments.starts:
-            if isinstance(place, int) and place >= count:
-                raise ArgumentProblem(f"--from is {place}; allowed: 0 to {count - 1}, the vertices of "
-                                      f"{surface.path}, or x,y,z")
-            rows.append(place if isinstance(place, int) else int(
-                np.argmin(((surface.points - place) ** 2).sum(axis=1))))
-        found, places = np.unique(rows, return_index=True)
-        return [found], [places + 1], ["distance"]
-    _, values, names = read_values(arguments.sources, surface, tables=False)
-    sets = [np.flatnonzero(np.nan_to_num(column)) for column in values.T]
-    for rows, name in zip(sets, names):
-        if len(rows) == 0:
-            raise FileError(f"{arguments.sources}: the column {name!r} is 0 at all vertices; allowed: a "
-                            "nonzero vertex, which is a source")
-    return sets, [column[rows] for column, rows in zip(values.T, sets)], names
-
-
 def _read_table(path):
     """The rows x, y, z, value, ... of a text file and the names of the values; None if it is none."""
     if not re.search(r"\.(csv|tsv|txt)$", path, re.IGNORECASE):
@@ -184,7 +161,7 @@ def make_patches(surfaces, data: Data, columns, arguments):
         raise FileError(f"{data.path}: labels, which have no mean; allowed: real values")
     regions = {}
     if arguments.roi is not None:
-        own = data if getattr(arguments, "match_columns", False) else None
+        own = data if arguments.match_columns else None
         regions = dict(_regions(arguments, surfaces, data.on_faces, own, columns))
     patches = []
     for part in data.parts:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .. import Surface, refine, relief, turing_texture
 from .._refinement import EDGES_PER_WAVELENGTH
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export
@@ -19,6 +20,10 @@ PATTERNS = {"labyrinth": 18.0, "spots": 5.0, "net": 30.0}
 COARSE_START_SIZE = 250_000
 
 
+def reaction_of_pattern(pattern):
+    return {"diffusion_rate1": 2.6 * PATTERNS[pattern], "diffusion_rate2": 2.6}
+
+
 def is_for_printing(arguments):
     """Whether the output of the command texture is a surface, and not values at its vertices."""
     kind = kind_of_export(arguments.output)
@@ -27,8 +32,6 @@ def is_for_printing(arguments):
 
 def print_texture(arguments, surface, report):
     """Refine, grow the texture, raise it as relief, and write the surface. surface: as read."""
-    from .. import Surface, refine, relief, turing_texture
-
     check_output_folder(arguments.output)
     kind = kind_of_export(arguments.output)
     if kind is None:
@@ -55,13 +58,13 @@ def print_texture(arguments, surface, report):
     if height is not None and not abs(height) < extent:
         raise ArgumentProblem(f"--relief is {height:.4g} {unit}, but the part is {extent:.4g} {unit} from "
                               "corner to corner; allowed: less")
-    options = {"kinetics": arguments.kinetics} if arguments.kinetics else {
-        "diffusion_rate1": 2.6 * PATTERNS[arguments.pattern or "labyrinth"], "diffusion_rate2": 2.6}
-    with report.timed("refine"), report.progress("Refinement") as progress:
+    options = {"kinetics": arguments.kinetics} if arguments.kinetics else reaction_of_pattern(
+        arguments.pattern or "labyrinth")
+    with report.working("Refinement", "refine") as progress:
         fine = refine(part, size / EDGES_PER_WAVELENGTH, progress=progress).surface
     options.update(coarse_start_size=COARSE_START_SIZE, stop_tolerance=0.02)
     options["number_of_time_steps"] = arguments.steps or 2000
-    with report.timed("texture"), report.progress("Texture") as progress:
+    with report.working("Texture", "texture") as progress:
         texture = turing_texture(fine, feature_size=size, seed=arguments.seed, progress=progress,
                                  **options)
     points, triangles = fine.points, fine.triangles
@@ -70,7 +73,7 @@ def print_texture(arguments, surface, report):
     said = [f"{len(triangles)} triangles", f"pattern of {size:.4g} {unit}"]
     if height is not None:
         two = arguments.flank is not None
-        with report.timed("relief"), report.progress("Relief") as progress:
+        with report.working("Relief", "relief") as progress:
             result = relief(fine, texture.texture, height, base=lengths["base"] or 0.0,
                             levels="Two" if two else "Smooth", flank=lengths["flank"] or 0.0,
                             overhang=arguments.overhang, progress=progress)
@@ -87,14 +90,11 @@ def print_texture(arguments, surface, report):
     shades = np.rint(255 * np.clip(texture.texture, 0, 1)).astype(np.uint8)
     with report.timed("write"):
         export(arguments.output, points, triangles, np.repeat(shades[:, None], 3, axis=1), unit)
-    seconds = sum(entry["wall"] for entry in report.seconds.values())
-    report.say(f"{arguments.output}: {', '.join(said)}, {seconds:.2f} s")
+    report.say_written(arguments.output, ", ".join(said))
 
 
 def welded(surface):
     """Vertices at the same place are one: files for viewers have one per face."""
-    from .. import Surface
-
     faces = Surface(surface.points, surface.faces).triangles
     points, numbers = np.unique(np.asarray(surface.points, dtype=float) + 0.0, axis=0,
                                 return_inverse=True)

@@ -32,6 +32,12 @@ class Report:
         entry["cpu"] += time.process_time() - processor
 
     @contextlib.contextmanager
+    def working(self, title, phase="compute"):
+        """Measures the time of the phase; a callable for progress(), whose bar has the title."""
+        with self.timed(phase), self.progress(title) as progress:
+            yield progress
+
+    @contextlib.contextmanager
     def collecting_warnings(self):
         with warnings.catch_warnings():
             warnings.simplefilter("always", UserWarning)
@@ -70,6 +76,15 @@ class Report:
     def say(self, line):
         self.lines.append(line)
 
+    def say_written(self, path, what):
+        """The line about an output, with the time until now."""
+        seconds = sum(entry["wall"] for entry in self.seconds.values())
+        self.say(f"{path}: {what}, {seconds:.2f} s")
+
+    def add_numbers(self, result, *names):
+        """Facts from attributes of a result."""
+        self.facts.update({name: number(getattr(result, name)) for name in names})
+
     def finish(self):
         if self.arguments.json:
             self.facts["seconds"] = self.seconds
@@ -100,3 +115,13 @@ def number(value):
     """A number for JSON, which has no NaN: None instead."""
     value = float(value)
     return value if np.isfinite(value) else None
+
+
+def number_text(value, digits=4):
+    """What a line says of such a number."""
+    return "unknown" if value is None else f"{value:.{digits}g}"
+
+
+def counted(count, noun):
+    """As in 1 column, 2 columns."""
+    return f"{count} {noun}{'s' * (count != 1)}"

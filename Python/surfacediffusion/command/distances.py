@@ -1,0 +1,145 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Distances along a surface, and derivatives of data on it: distance, derivatives."""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import conduction_velocity, nearest_sources
+from .. import derivatives as derive
+from .. import distance as measure
+from ..files import FileError, new_data
+from . import common, inputs, values
+from .report import number
+from .stages import read_surface_for_output, solid, write_new
+
+SOURCES = f"""
+SOURCES: GIFTI, FreeSurfer (.label, curv, .mgh, ...), NumPy (.npy), or a PLY or VTK file with data. NaN is
+no source.{common.NEW}"""
+
+
+def add_distance(commands):
+    parser = commands.add(
+        "distance", distance,
+        "Compute the distance along a surface from the nearest of several vertices, the length of the "
+        "shortest way within it; with --speed the time at which fronts from them arrive. Vertices that "
+        "no way reaches are NaN.",
+        ["lh.white lh.V1.label from_v1.shape.gii",
+         "lh.white areas.label.gii distance.shape.gii --nearest territories.shape.gii",
+         "scan.ply distances.ply --from 1041 --from=-3.5,20,4"], SOURCES)
+    common.mesh(parser)
+    parser.add_argument("sources", metavar="SOURCES", nargs="?",
+                        help="data at its vertices, whose nonzero vertices are the sources; each column "
+                             "of its own")
+    common.output(parser, "the distances, values at the vertices")
+    parser.add_argument("--from", dest="starts", metavar="PLACE", action="append", type=values.place,
+                        help="in place of SOURCES: the number of a vertex, from 0, or x,y,z, which "
+                             "stands for the nearest vertex; may be given several times")
+    parser.add_argument("--method", choices=("eikonal", "heat"), default="eikonal",
+                        help="eikonal: fast marching (default); heat: the heat method, which is smooth "
+                             "where ways meet")
+    parser.add_argument("--speed", metavar="FILE",
+                        help="the speed of fronts at the vertices, 0 or more; faces of speed 0 are "
+                             "barriers")
+    parser.add_argument("--nearest", metavar="FILE",
+                        help="also write which source is the nearest one: the value in SOURCES, or the "
+                             "place among --from, from 1; 0 where no way arrives")
+
+
+def distance(arguments, report):
+    if (arguments.sources is None) == (arguments.starts is None):
+        raise inputs.ArgumentProblem("the sources are " + (
+            "missing" if arguments.starts is None else "both SOURCES and --from")
+            + "; allowed: one of SOURCES and --from")
+    surface = read_surface_for_output(arguments, report)
+    with report.timed("read"):
+        sets, numbers, names = _read_sources(arguments, surface)
+        speed = None
+        if arguments.speed is not None:
+            speed = inputs.read_values(arguments.speed, surface, tables=False)[1][:, 0]
+    target = new_data(surface, arguments.output, names)
+    nearest = arguments.nearest and new_data(surface, arguments.nearest, names)
+    solver = solid(surface)
+    with report.working("Distance") as progress:
+        found = np.column_stack([
+            measure(solver, rows, speed=speed, method=arguments.method.capitalize(), progress=progress)
+            for rows in sets])
+        if nearest:
+            labels = np.zeros_like(found)
+            for column, rows, given in zip(labels.T, sets, numbers):
+                first = nearest_sources(solver, rows, speed=speed).source
+                column[:] = np.where(first < 0, 0, given[first])
+    reached = np.isfinite(found)
+    report.facts.update(
+        method=arguments.method, columns=[
+            {"name": name, "sources": len(rows), "unreached": int((~column).sum()),
+             "maximum": number(times[column].max())}
+            for name, rows, times, column in zip(names, sets, found.T, reached.T)])
+    write_new(arguments, report, target, np.where(reached, found, np.nan))
+    if nearest:
+        nearest.save(arguments.nearest, [labels.astype(np.float32)])
+
+
+def _read_sources(arguments, surface):
+    """The vertices of each set of sources, the number that each of them stands for, and the names of the
+    columns."""
+    count = len(surface.points)
+    if arguments.starts is not None:
+        rows = []
+        for place in arguments.starts:
+            if isinstance(place, int) and place >= count:
+                raise inputs.ArgumentProblem(f"--from is {place}; allowed: 0 to {count - 1}, the "
+                                             f"vertices of {surface.path}, or x,y,z")
+            rows.append(place if isinstance(place, int) else int(
+                np.argmin(((surface.points - place) ** 2).sum(axis=1))))
+        found, places = np.unique(rows, return_index=True)
+        return [found], [places + 1], ["distance"]
+    _, columns, names = inputs.read_values(arguments.sources, surface, tables=False)
+    sets = [np.flatnonzero(np.nan_to_num(column)) for column in columns.T]
+    for rows, name in zip(sets, names):
+        if len(rows) == 0:
+            raise FileError(f"{arguments.sources}: the column {name!r} is 0 at all vertices; allowed: a "
+                            "nonzero vertex, which is a source")
+    return sets, [column[rows] for column, rows in zip(columns.T, sets)], names
+
+
+def add_derivatives(commands):
+    parser = commands.add(
+        "derivatives", derivatives,
+        "Compute the gradient or the Laplacian of data on a surface, the divergence or curl of "
+        "vectors, or the conduction velocity of a wave from its arrival times.",
+        ["lh.white lh.thickness gradient.shape.gii --fwhm 5",
+         "atrium.vtp times.npy velocity.vtp --quantity velocity --fwhm 8"], common.NEW)
+    common.mesh(parser)
+    parser.add_argument("data", metavar="DATA", help="data at its vertices; missing ones are NaN")
+    common.output(parser, "columns x, y, z of each gradient or velocity, with the speed after that; "
+                          "or one column for each column or vector of DATA")
+    parser.add_argument("--quantity", default="gradient",
+                        choices=("gradient", "divergence", "curl", "laplacian", "velocity"),
+                        help="what to compute (default: gradient); velocity: grad T/|grad T|^2")
+    common.fwhm(parser, " that smooths DATA first", "0")
+
+
+def derivatives(arguments, report):
+    surface = read_surface_for_output(arguments, report)
+    with report.timed("read"):
+        _, data, names = inputs.read_values(arguments.data, surface, tables=False)
+    word = arguments.quantity.capitalize()
+    options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm}
+    with report.working(word) as progress:
+        solver = solid(surface)
+        if arguments.quantity == "velocity":
+            result = np.column_stack(conduction_velocity(solver, data, progress=progress, **options))
+        else:
+            result = derive(solver, data, quantity=word, progress=progress, **options)
+    if arguments.quantity in ("gradient", "velocity"):
+        columns = [f"{name} {axis}" for name in names for axis in "xyz"]
+    elif arguments.quantity == "laplacian":
+        columns = list(names)
+    else:
+        columns = list(names[::3])
+    if arguments.quantity == "velocity":
+        columns += [f"{name} speed" for name in names]
+    report.facts.update(quantity=arguments.quantity, fwhm=arguments.fwhm)
+    target = new_data(surface, arguments.output, columns)
+    write_new(arguments, report, target, result.reshape(len(surface.points), -1))

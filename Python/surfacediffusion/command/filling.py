@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Values where there are none: inpaint fills in missing data, interpolate continues values at points."""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import heat, intrinsic_tv
+from .. import interpolate as fit
+from ..files import new_data
+from ..files.content import check_output_folder
+from . import common, inputs
+from .report import number
+from .stages import (
+    change_data, columns_of_arrays, columns_of_missing, given, read_surface_for_output, solid)
+
+POINTS = f"""
+{common.SURFACES}
+VALUES: a text file with a row x, y, z, value, ... for each point, separated by commas or spaces and
+with or without a line of names, whose points count at the nearest points of SURFACE; or data with a
+value for each vertex, in the formats of the other commands. NaN, and an empty value in a text file, is
+unknown.{common.NEW}"""
+
+
+def add_inpaint(commands):
+    parser = commands.add(
+        "inpaint", inpaint,
+        "Fill in missing values and keep all others exactly. Missing are NaN, zeros with "
+        "--fix-zeros, and vertices where the first column of --missing is above 0.",
+        ["lh.pial lh.thickness lh.thickness.full --fix-zeros"])
+    common.data_to_data(parser)
+    common.faces(parser)
+    parser.add_argument("--missing", metavar="FILE", help="missing where the first column is above 0")
+    parser.add_argument("--model", choices=("heat", "tv"), default="heat",
+                        help="heat: harmonic functions, smooth (default); tv: total variation, "
+                             "which continues edges")
+
+
+def inpaint(arguments, report):
+    model, groups = {"heat": (heat, columns_of_missing), "tv": (intrinsic_tv, columns_of_arrays)}[
+        arguments.model]
+    report.facts["model"] = arguments.model
+
+    def compute(surface, values, **run):
+        if not np.isnan(values).any():
+            return values
+        return model(surface, values, on_faces=arguments.faces, mode="SteadyState",
+                     hold_known_values=True, **run)
+
+    change_data(arguments, report, "Inpainting", compute, groups, arguments.missing)
+    if not any(row["missing"] for row in report.facts["columns"]):
+        report.warn(f"{arguments.data}: nothing is missing, the values are unchanged")
+
+
+def add_interpolate(commands):
+    parser = commands.add(
+        "interpolate", interpolate,
+        "Compute a smooth map from values at a few points, on the surface or beside it. The values "
+        "are smoothed by an amount that generalised cross-validation finds, unless --exact or "
+        "--noise is given. Parts of the surface that are connected to no value are NaN.",
+        ["atrium.vtp electrodes.csv times.vtp --error errors.npy",
+         "lh.pial.surf.gii implants.txt map.shape.gii --exact"], POINTS)
+    common.mesh(parser)
+    parser.add_argument("values", metavar="VALUES", help="the values, with their points or at vertices")
+    common.output(parser, "the map, values at the vertices")
+    level = parser.add_mutually_exclusive_group()
+    level.add_argument("--exact", action="store_true", help="keep the values exactly")
+    common.noise(level, "the values' noise, in their unit (default: estimated)")
+    common.positive(level, "--smoothing", "MU",
+                    "the strength of the smoothing, in squared mean edge lengths (default: found)")
+    common.positive(parser, "--length", "L",
+                    "the distance beyond which the map returns to the mean of the values, in the unit of "
+                    "the coordinates (default: it continues smoothly)")
+    parser.add_argument("--free", action="store_true",
+                        help="continue slopes at the boundary of the surface, in place of becoming flat")
+    parser.add_argument("--keep-range", action="store_true",
+                        help="stay between the smallest and the largest value")
+    common.positive(parser, "--within", "D",
+                    "leave out points farther than D from the surface, in the unit of the coordinates "
+                    "(default: none)")
+    parser.add_argument("--error", metavar="FILE",
+                        help="write the standard error of the map, which is large where nothing was "
+                             "measured, in one of the formats of OUTPUT")
+
+
+def interpolate(arguments, report):
+    surface = read_surface_for_output(arguments, report)
+    if arguments.error is not None:
+        check_output_folder(arguments.error)
+    with report.timed("read"):
+        places, values, names = inputs.read_values(arguments.values, surface)
+    target = new_data(surface, arguments.output, names)
+    errors = new_data(surface, arguments.error, names) if arguments.error else None
+    with report.working("Interpolation") as progress:
+        result = fit(
+            solid(surface), values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
+            correlation_length=arguments.length or 0.0, boundary="Free" if arguments.free else "Natural",
+            keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
+            compute_error=errors is not None, progress=progress, **given(smoothing=arguments.smoothing))
+    rows = zip(result.smoothing, result.misfit, result.degrees_of_freedom, result.noise_level)
+    report.facts.update(
+        values=result.number_of_values, far_values=result.number_of_far_values,
+        columns=[{"name": name, "smoothing": number(mu), "misfit": number(misfit),
+                  "degrees_of_freedom": number(freedom), "noise": number(noise)}
+                 for name, (mu, misfit, freedom, noise) in zip(names, rows)])
+    with report.timed("write"):
+        target.save(arguments.output, [result.values.astype(np.float32)])
+        if errors is not None:
+            errors.save(arguments.error, [result.error.astype(np.float32)])
+    report.say_written(arguments.output, f"{result.number_of_values} values, misfit "
+                       + ", ".join(f"{misfit:.4g}" for misfit in result.misfit))
