@@ -88,7 +88,7 @@ ModelKind MakeKind(std::string name, int steps, std::function<void(ModelSettings
     }
   };
   return { std::move(name),
-    [steps, set = std::move(set)](Model** made) -> std::shared_ptr<RunSettings>
+    [=, set = std::move(set)](Model** made) -> std::shared_ptr<RunSettings>
     {
       auto settings = std::make_shared<Watched>();
       if constexpr (std::is_base_of_v<TimeSettings, ModelSettings>)

@@ -100,8 +100,10 @@ TEST(TotalVariationMinimizer, DualOfTheTermsAtVerticesIsTheirMinimum)
   const double area = mesh->ControlAreas()[0];
   const double range = 0.7;
   const Values g = Noise(*mesh, 3, 1), f = Noise(*mesh, 3, 2), u = Noise(*mesh, 3, 3);
-  for (const auto& [mu, nu] : { std::pair(0.0, 0.0), { 0.0, 0.9 }, { 1.3, 0.0 }, { 1.3, 0.9 } })
+  for (const auto& weights : { std::pair(0.0, 0.0), { 0.0, 0.9 }, { 1.3, 0.0 }, { 1.3, 0.9 } })
   {
+    const double mu = weights.first; // a lambda cannot capture the names of a structured binding
+    const double nu = weights.second;
     for (const ChannelCoupling coupling : { ChannelCoupling::Joint, ChannelCoupling::PerChannel })
     {
       VertexSplitting terms(mesh, Values::Constant(4, 1, mu), Vector::Constant(4, nu),
