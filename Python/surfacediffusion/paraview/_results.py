@@ -61,8 +61,8 @@ def read_outputs(
     entries: list[dict[str, Any]], write: Callable[[int, Any, Any], None], fields: Fields, block: Block,
     result_type: Any,
 ) -> list[Output]:
-    """Return the outputs of a run on one block. write: its function of the number of an output, an array, and the
-    input. result_type: of the result of the data."""
+    """Return the outputs of a run on one block. write: its function of the number of an output, an array,
+    and the input. result_type: of the result of the data."""
     types = {**_TYPES, "data": result_type,
              "real": np.float32 if result_type == np.float32 else np.float64}
     rows = {"points": block.input.GetNumberOfPoints(), "faces": block.input.GetNumberOfCells()}
