@@ -37,6 +37,7 @@ GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   , Coupling(coupling)
   , Parallel(parallel)
   , Penalty(this->Mesh->NumberOfTriangles())
+  , Scales(Vector::Ones(this->Mesh->NumberOfTriangles()))
   , Single(function, coupling, parallel)
   , Double(function, coupling, parallel)
 {
@@ -83,6 +84,17 @@ double GradientSplitting::Stiffness() const
 
 void GradientSplitting::Start(int columns, bool keepMultipliers, bool inSinglePrecision)
 {
+  if (this->CanBalance())
+  {
+    this->Visit(
+      [this](auto& splitting)
+      {
+        if (splitting.HasMesh())
+        {
+          splitting.Unbalance(this->Scales);
+        }
+      });
+  }
   const bool isSingle = inSinglePrecision && this->CanBeSingle();
   if (keepMultipliers && isSingle != this->IsSingle && this->Kept.empty())
   {

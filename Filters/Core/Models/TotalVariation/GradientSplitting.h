@@ -56,6 +56,25 @@ public:
     return this->Visit([](const auto& splitting) { return splitting.Growth(); });
   }
 
+  /// Whether Balance() does anything: for total variation, where |y| is at most 1.
+  bool CanBalance() const { return this->Function.Kind == EdgeFunctionKind::TotalVariation; }
+
+  /// Adapts the penalty of each triangle to p: in flat regions, where p = 0, values settle the
+  /// faster the larger r is, and at edges the faster the smaller it is. Both are fast where r |p| is
+  /// near 1, since the multiplier, a direction, and p then change alike: residual balancing (Boyd
+  /// et al. 2011, section 3.4.1) on each triangle. It may be called between updates; convergence is
+  /// that of a method with a penalty that stays, since it changes within bounds only.
+  void Balance()
+  {
+    if (this->CanBalance())
+    {
+      this->Visit([this](auto& splitting) { splitting.Balance(this->Scales); });
+    }
+  }
+
+  /// r over the first penalty times growth, per triangle, after Balance().
+  const Vector& GetScales() const { return this->Scales; }
+
   /// p = S grad u in the next Update(), the first penalty, and y = 0 unless there are multipliers
   /// to start from. inSinglePrecision: if the function and the numbers of the surface allow it.
   void Start(int columns, bool keepMultipliers, bool inSinglePrecision);
@@ -111,6 +130,7 @@ private:
   ChannelCoupling Coupling;
   const ParallelFor& Parallel;
   Vector Penalty; ///< r per triangle at the start, times its area
+  Vector Scales; ///< of the penalty in that of Single and Double which has the state
   SlicedSplitting<float> Single;
   SlicedSplitting<double> Double;
   bool IsSingle = false; ///< which one has the state

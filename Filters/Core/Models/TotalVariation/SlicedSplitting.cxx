@@ -17,6 +17,13 @@ namespace
 constexpr Index Lanes = SlicedSplitting<float>::Lanes;
 static_assert(BlockSize % Lanes == 0, "a slice is in one block");
 
+/// Balance(): where r |p| is larger than the first r falls, where it is smaller than the second r
+/// rises. Measured on caps, patterns, waves, ramps and colours with weak and strong fidelity: the
+/// goal 0.3 is best, goals of 3 and more leave edges where they are for hundreds of iterations.
+constexpr double LargestBalanced = 0.6;
+constexpr double SmallestBalanced = 0.15;
+constexpr double MostScale = 8.0; ///< and 1 / MostScale the least
+
 /// What Update() knows of all slices.
 template <typename Number>
 struct Iteration
@@ -348,6 +355,94 @@ void SlicedSplitting<Number>::SetGrowth(double growth)
     this->Scale([factor](Number share) { return factor + (1 - factor) * share; });
   }
   this->PenaltyGrowth = growth;
+}
+
+/// r on the triangles of a slice times factors.
+template <typename Number>
+void SlicedSplitting<Number>::ScalePenalty(
+  Index s, const Number (&factors)[Lanes], Vector& scales)
+{
+  Slice& slice = this->Slices[s];
+  for (auto& numbers : slice.Map)
+  {
+    for (Index l = 0; l < Lanes; ++l)
+    {
+      numbers[l] *= factors[l];
+    }
+  }
+  for (Index l = 0; l < this->LanesOf(s); ++l)
+  {
+    slice.AreaOverPenalty[l] /= factors[l];
+    scales[s * Lanes + l] *= factors[l];
+  }
+}
+
+template <typename Number>
+void SlicedSplitting<Number>::Balance(Vector& scales)
+{
+  if (!this->HasP)
+  {
+    return;
+  }
+  this->ForEachSlice(
+    [&](Index s)
+    {
+      // Columns with norms of their own have one r: that for the steepest.
+      Number least[Lanes];
+      std::fill_n(least, Lanes, Number(1));
+      this->ForNorms(s,
+        [&](int, int, const Number(&shares)[Lanes])
+        {
+          for (Index l = 0; l < Lanes; ++l)
+          {
+            least[l] = std::min(least[l], shares[l]);
+          }
+        });
+      Number factors[Lanes];
+      std::fill_n(factors, Lanes, Number(1));
+      for (Index l = 0; l < this->LanesOf(s); ++l)
+      {
+        const double scale = scales[s * Lanes + l];
+        const double product = 1.0 / least[l] - 1.0; // |w| = r |p| + 1 where p is not 0
+        if (product > LargestBalanced && scale * MostScale > 1.0)
+        {
+          factors[l] = Number(0.5);
+        }
+        else if (product < SmallestBalanced && scale < MostScale)
+        {
+          factors[l] = Number(2);
+        }
+      }
+      this->ForNorms(s,
+        [&](int first, int last, const Number(&shares)[Lanes])
+        {
+          for (int c = 2 * first; c < 2 * last; ++c)
+          {
+            Number* const w = &this->W[this->Place(s, c, 0)];
+            for (Index l = 0; l < Lanes; ++l)
+            {
+              w[l] *= factors[l] + (1 - factors[l]) * shares[l];
+            }
+          }
+        });
+      this->ScalePenalty(s, factors, scales);
+    });
+}
+
+template <typename Number>
+void SlicedSplitting<Number>::Unbalance(Vector& scales)
+{
+  this->ForEachSlice(
+    [&](Index s)
+    {
+      Number factors[Lanes];
+      std::fill_n(factors, Lanes, Number(1));
+      for (Index l = 0; l < this->LanesOf(s); ++l)
+      {
+        factors[l] = static_cast<Number>(1.0 / scales[s * Lanes + l]);
+      }
+      this->ScalePenalty(s, factors, scales);
+    });
 }
 
 template <typename Number>

@@ -57,6 +57,13 @@ public:
   void SetGrowth(double growth);
   double Growth() const { return this->PenaltyGrowth; }
 
+  /// Double or halve r on each triangle so that r |p| tends to a value that is best; for total
+  /// variation. scales: r over that of before the first call, a power of two per triangle, which
+  /// this updates. The multipliers stay. Does nothing before the first Update().
+  void Balance(Vector& scales);
+  /// The r of before the first Balance(), to the same bits, and scales of 1; before Start().
+  void Unbalance(Vector& scales);
+
   /// p and b from u, over-relaxed, and A r (p - b) . S grad phi at the corners of the triangles.
   void Update(const Values& u, double relaxation);
 
@@ -110,6 +117,7 @@ private:
   void ForNorms(Index s, const Act& act) const;
   template <typename Factor>
   void Scale(const Factor& factor);
+  void ScalePenalty(Index s, const Number (&factors)[Lanes], Vector& scales);
   void SetShares(Index s, const Number (&squares)[Lanes], Number (&shares)[Lanes]) const;
 
   const EdgeFunction Function;

@@ -100,7 +100,7 @@ private:
 
   double NoiseEnergy() const;
   void Start(const Values& u, bool keepMultipliers, bool isSingle);
-  void SetGrowth(double growth, const Values& u);
+  void SetPenalty(double growth, const Values& u);
   void AssembleMatrix(const Values& u);
   void SetResidual(const Values& u);
   void UpdateResidual();
