@@ -41,7 +41,7 @@ STAGES = {
     "Filter100Steps": "the same in the filter",
     "TimeSeek": "seek to another time of that run",
 }
-MODELS = ("MinimizeToGap|FlowOfSteps|PaperSteps|SegmentToGap|DenoiseColors/s:6|DeblurBy.*/s:6|FindEdges|"
+MODELS = ("MinimizeToGap|MinimizeAllData|FlowOfSteps|PaperSteps|SegmentToGap|DenoiseColors/s:6|DeblurBy.*/s:6|FindEdges|"
           "ExtractCurves|LaggedStep/.*:3$|ChannelStep|TenSteps/[56]/[12]/1|^Step/mesh:[13]|"
           "Stands/mesh:[13]")
 PRECISION = {
@@ -50,7 +50,7 @@ PRECISION = {
     "total variation: update of the gradients": ("UpdateIn<double>", "UpdateIn<float>"),
 }
 NOTED = {"vertices", "Gap", "Iterations", "Error", "steps", "time", "step_over_solves",
-         "degrees_before", "degrees_after"}
+         "degrees_before", "degrees_after", "Worst", "Median"}
 
 
 def run(command, **options):

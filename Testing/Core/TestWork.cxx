@@ -8,6 +8,8 @@
 #include "Core/Geometry/SurfaceDenoising.h"
 #include "NoisySurfaces.h"
 #include "RunInput.h"
+#include "SphereData.h"
+#include "TotalVariation.h"
 
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
@@ -22,6 +24,7 @@
 #include <map>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -133,6 +136,31 @@ TEST(Work, OfSmoothestLineFieldsIsOneFactorisationAndFewSolves)
     EXPECT_EQ(solver.NumberOfFactorizations(), 1);
     EXPECT_GE(solver.NumberOfSolves, 1);
     EXPECT_LE(solver.NumberOfSolves, 10); // 2 to 4
+  }
+}
+
+/// To a duality gap of 1e-3 and of 1e-5, for data of all kinds with strong and weak fidelity. The
+/// largest numbers are 50 and 110; without a balance of the penalties they are 90 and 310.
+TEST(Work, OfTotalVariationIsFewIterationsForAllKindsOfData)
+{
+  for (const SphereData& data : AllSphereData())
+  {
+    const Testing::Surface s = SphereOf(data, 5);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const PointData given = PointData::FromValues(NoisyValues(data, mesh, s));
+    for (const double weight : { 3.0, 0.3 })
+    {
+      for (const auto& [tolerance, most] : { std::pair(1e-3, 60), std::pair(1e-5, 150) })
+      {
+        const double fidelity = weight / (MeanEdge(mesh) * mesh.LengthUnit());
+        const StepReport report =
+          MakeExact(assembler, given, ExactSettings(mesh, 0.0, fidelity, tolerance))
+            ->Advance(ProgressMonitor());
+        EXPECT_LE(report.Residual, tolerance);
+        EXPECT_LE(report.Iterations, most) << data.Name << ", " << weight << ", " << tolerance;
+      }
+    }
   }
 }
 

@@ -359,8 +359,7 @@ void SlicedSplitting<Number>::SetGrowth(double growth)
 
 /// r on the triangles of a slice times factors.
 template <typename Number>
-void SlicedSplitting<Number>::ScalePenalty(
-  Index s, const Number (&factors)[Lanes], Vector& scales)
+void SlicedSplitting<Number>::ScalePenalty(Index s, const Number (&factors)[Lanes], Vector& scales)
 {
   Slice& slice = this->Slices[s];
   for (auto& numbers : slice.Map)

@@ -31,6 +31,8 @@ constexpr double SmallestSingleGapOfSplit = 1e-4;
 constexpr int InnerIterations = 4;
 constexpr int MostInnerIterations = 20;
 constexpr int IterationsPerCheck = 10;
+/// Many runs to a gap of 1e-3 end between the first two checks: there it is measured once more.
+constexpr int EarlyMeasurement = 15;
 
 /// The growth of the penalty per iteration, in mu times the squared edge length: the convergence
 /// of an accelerated method is fastest near 1/3.
@@ -199,7 +201,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   while (true)
   {
     const bool isCheck = report.Iterations % IterationsPerCheck == 0;
-    if (isCheck)
+    if (isCheck || report.Iterations == EarlyMeasurement)
     {
       this->MeasureGap(u, negligible, report);
       const double left = std::log(std::max(1.0, report.Gap / this->Options.StopTolerance));

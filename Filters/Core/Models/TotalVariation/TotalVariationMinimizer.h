@@ -27,7 +27,8 @@ namespace SurfaceDiffusion
 /// for u is not solved but improved by conjugate gradient iterations from the last u. With
 /// mu > 0 the energy is strongly convex, and the penalty of the gradients grows linearly with the
 /// iterations as long as the gap falls (accelerated ADMM; A. Chambolle, T. Pock, J. Math. Imaging
-/// Vis. 40, 2011, algorithm 2; Y. Xu, SIAM J. Optim. 27, 2017). The
+/// Vis. 40, 2011, algorithm 2; Y. Xu, SIAM J. Optim. 27, 2017). For total variation the penalty of
+/// each triangle is then also adapted to p (GradientSplitting::Balance). The
 /// multipliers are feasible for the dual problem at every iteration, so that the duality gap bounds
 /// E(u) - min E from above: it is the stopping criterion. At vertices with mu_i = 0 the bound is
 /// that over all u within Range of the data.
