@@ -28,6 +28,7 @@ struct Problem
   Vector Penalty; ///< r A
   std::vector<Eigen::MatrixX2d> P, B; ///< per triangle a row for each column
   double Growth = 1.0;
+  Vector Scales;
 
   Problem(Kind kind, ChannelCoupling coupling, const Surface& s = Icosphere(2),
     const ParallelFor& parallel = SerialFor())
@@ -38,6 +39,7 @@ struct Problem
     , Splitting(Mesh, Gradients, Function, coupling, Vector::Ones(Mesh->NumberOfTriangles()),
         Mesh->NumberOfVertices(), parallel)
     , Penalty(Mesh->NumberOfTriangles())
+    , Scales(Vector::Ones(Mesh->NumberOfTriangles()))
   {
     const CornerWeights weights = this->Splitting.MakeCoefficients();
     for (Index t = 0; t < this->Mesh->NumberOfTriangles(); ++t)
@@ -78,6 +80,30 @@ struct Problem
     this->Splitting.SetGrowth(growth);
   }
 
+  /// Both: where p = 0 the penalty doubles, and where r |p| is far from 1 it changes towards it. The
+  /// multipliers r b stay, and so does p.
+  void Balance()
+  {
+    this->Splitting.Balance();
+    for (Index t = 0; t < this->Mesh->NumberOfTriangles(); ++t)
+    {
+      const double r =
+        this->Growth * this->Scales[t] * this->Penalty[t] / this->Mesh->Shapes()[t].Area();
+      const double factor = this->Splitting.GetScales()[t] / this->Scales[t];
+      double largest = 0.0;
+      ForEachNorm(this->Coupling, static_cast<int>(this->P[t].rows()),
+        [&](int first, int last)
+        { largest = std::max(largest, r * this->P[t].middleRows(first, last - first).norm()); });
+      EXPECT_TRUE(factor == 0.5 || factor == 1.0 || factor == 2.0);
+      EXPECT_TRUE(factor != 0.5 || largest > 0.5);
+      EXPECT_TRUE(factor != 2.0 || largest < 0.2);
+      EXPECT_TRUE(factor != 1.0 || (largest > 0.1 && largest < 0.7) || this->Scales[t] == 8.0 ||
+        this->Scales[t] == 0.125);
+      this->Scales[t] *= factor;
+      this->B[t] /= factor;
+    }
+  }
+
   /// Both, and the largest difference of what they give to the equation for u, as a share of it.
   double Update(const Values& u)
   {
@@ -87,7 +113,7 @@ struct Problem
       Eigen::MatrixX2d& p = this->P[t];
       Eigen::MatrixX2d& b = this->B[t];
       const double area = this->Mesh->Shapes()[t].Area();
-      const double r = this->Growth * this->Penalty[t] / area;
+      const double r = this->Growth * this->Scales[t] * this->Penalty[t] / area;
       b += Relaxation * this->GradientOf(u, t) + (1.0 - Relaxation) * p;
       ForEachNorm(this->Coupling, static_cast<int>(u.cols()),
         [&](int first, int last)
@@ -179,6 +205,40 @@ TEST(GradientSplitting, MultipliersAreWithinTheirBoundAndGrowthLeavesThem)
       EXPECT_LT((y - grown).norm(), isSingle ? 1e-6 : 1e-14);
     }
     EXPECT_NEAR(largest, 1.0, isSingle ? 1e-6 : 1e-14);
+  }
+}
+
+TEST(GradientSplitting, IsTheMethodOfMultipliersWithABalancedPenalty)
+{
+  for (const ChannelCoupling coupling : { ChannelCoupling::PerChannel, ChannelCoupling::Joint })
+  {
+    for (const bool isSingle : { false, true })
+    {
+      Problem problem(Kind::TotalVariation, coupling);
+      const auto gentle = [&](int seed) { return Values(0.005 * Noise(*problem.Mesh, 2, seed)); };
+      problem.Splitting.Start(2, false, isSingle);
+      problem.Start(gentle(0));
+      problem.Splitting.Balance(); // nothing before the first update
+      EXPECT_EQ(problem.Splitting.GetScales(), Vector::Ones(problem.Penalty.size()));
+      problem.Update(gentle(0));
+      for (int update = 1; update < 6; ++update)
+      {
+        problem.SetGrowth(1.0 + 0.5 * update);
+        problem.Balance();
+        EXPECT_LT(problem.Update(gentle(update)), isSingle ? 1e-5 : 1e-12);
+      }
+      EXPECT_LT(problem.Splitting.GetScales().minCoeff(), 1.0);
+      EXPECT_GT(problem.Splitting.GetScales().maxCoeff(), 1.0);
+      // A new start has the first penalties, to the same bits.
+      Problem fresh(Kind::TotalVariation, coupling);
+      const Values u = Noise(*problem.Mesh, 2, 9);
+      for (Problem* other : { &problem, &fresh })
+      {
+        other->Splitting.Start(2, false, isSingle);
+        other->Splitting.Update(u, Relaxation);
+      }
+      EXPECT_TRUE(problem.RightHandSide(2) == fresh.RightHandSide(2));
+    }
   }
 }
 
