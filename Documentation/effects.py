@@ -124,7 +124,7 @@ EFFECTS = {
                "kink by fast marching and are round by the heat method.", {"sources": [200, 900, 1700]}, "bumps"),
     ),
     "random_field": (
-        Effect("fwhm", (0.1, 0.3, 0.6), "Fields of one seed and several widths."),
+        Effect("fwhm", (0.2, 0.4, 0.8), "Fields of one seed and several widths."),
         Effect("nu", (1, 3), "Matern's fields of one range: nu = 3 is smoother.", {"range": 0.8}),
         Effect("seed", (0, 1, 2), "Each seed gives another field.", {"fwhm": 0.3}),
     ),
