@@ -66,8 +66,8 @@ class TestPythonPlugin(unittest.TestCase):
         self.compare("clicks/")
 
     def test_all_kinds_of_input_give_the_same_bits(self):
-        self.compare("noisy/", "mixed/", "refined/", "limit/", "float32/", "int32/", "uint8/", "vtk",
-                     "colors/", "single/", "samples/", "sources", "moved/", "means/", "feature/")
+        self.compare("noisy/", "mixed/", "one thread/", "refined/", "limit/", "float32/", "int32/", "uint8/",
+                     "vtk", "colors/", "single/", "samples/", "sources", "moved/", "means/", "feature/")
 
     def test_special_input_gives_the_same_bits(self):
         self.compare("open/", "converted", "empty array/", "polygons")

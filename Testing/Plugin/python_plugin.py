@@ -242,6 +242,7 @@ def run_kinds_of_input():
     for name in filter_names():
         run(name, noisy(sphere_with_arrays()), "noisy")
         run(name, mixed(), "mixed")
+        run(name, noisy(sphere_with_arrays()), "one thread", NumberOfThreads=1)
         run(name, sphere_with_arrays(), "refined", RefineTo=0.12)
         run(name, sphere_with_arrays(), "limit", RefineTo=0.05, MaximumNumberOfTriangles=900)
         for kind in (np.float32, np.int32, np.uint8):
