@@ -36,8 +36,9 @@ class _Aborted(Exception):
 
 
 @functools.lru_cache(maxsize=None)
-def _kinds(model: str) -> dict[str, str]:
-    return {entry["name"]: entry["kind"] for entry in _core.list_settings(model)}
+def list_settings(model: str) -> dict[str, dict[str, Any]]:
+    """The settings of a model, by name."""
+    return {entry["name"]: entry for entry in _core.list_settings(model)}
 
 
 def spell(words: list[Any]) -> str:
@@ -79,7 +80,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         if name in _OWN:
             target, value = self.own, type(_OWN[name])("" if given is None else given)
         else:
-            kind = _kinds(self.MODEL)[name]
+            kind = list_settings(self.MODEL)[name]["kind"]
             convert: Callable[[Any], Any] = {
                 "switch": lambda x: bool(int(x)), "number": float,
                 "numbers": lambda x: [float(each) for each in x]}.get(kind, int)
@@ -141,7 +142,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self.shapes.begin_update()
         refinement = Refinement(self.shapes)
         threads = _core.number_of_threads()
-        self._warnings = []
+        self._warnings, self._of_refinement = [], []
         failure = ""
         completed = False
         try:
@@ -183,7 +184,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return inputs[0].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
 
     @staticmethod
-    def second_input(inputs: Any) -> Any:
+    def _second_input(inputs: Any) -> Any:
         if len(inputs) < 2 or inputs[1].GetNumberOfInformationObjects() == 0:
             return None
         return inputs[1].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
@@ -224,7 +225,14 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return ""
 
     def begin(self, inputs: Any) -> None:
-        """Read what all blocks share."""
+        """Read the points of the second input, which all blocks share."""
+        data = self._second_input(inputs)
+        self.has_points = data is not None
+        self.points, self.problems_of_points = (None, []) if data is None else self.read_points(data)
+
+    def read_points(self, data: Any) -> tuple[Any, list[str]]:
+        """Return what the model takes of a second input, None if that is not valid, and the problems."""
+        raise NotImplementedError
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         """Find the arrays of a block. Return False if it takes no part."""
@@ -280,13 +288,13 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         automatic = self.own["RefineTo"] == -1.0
         length, reason = self.find_refinement(mean_edge_length(blocks, self.shapes) if automatic else 0.0)
         limit = self.own["MaximumNumberOfTriangles"]
-        self._of_refinement = []
         if not length > 0.0:
             return
         refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0))
         if refinement.longest > 0.0:
-            self._of_refinement.append(f"refinement stopped at edges of {refinement.longest:g}, longer than "
-                                  f"{length:g}, because MaximumNumberOfTriangles is {limit}")
+            self._of_refinement.append(
+                f"refinement stopped at edges of {refinement.longest:g}, longer than {length:g}, because "
+                f"MaximumNumberOfTriangles is {limit}")
         if refinement.triangles and reason:
             self._of_refinement.append(
                 f"edges were bisected, to {refinement.triangles} triangles, because {reason}")

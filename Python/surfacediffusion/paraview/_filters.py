@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkDemandDrivenPipeline, vtkStrea
 
 from .. import _core
 from .._refinement import texture_length
-from ._algorithm import SurfaceFilter, spell
+from ._algorithm import SurfaceFilter, list_settings, spell
 from ._fields import (
     ANY, CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
     settle_absence,
@@ -196,8 +196,8 @@ class ModelFilter(SurfaceFilter):
 
     def _key(self) -> Any:
         """The settings that the length of a run depends on."""
-        of_output = {entry["name"] for entry in _core.list_settings(self.MODEL) if entry["is_of_output"]}
-        return {name: value for name, value in self.settings.items() if name not in of_output}
+        entries = list_settings(self.MODEL)
+        return {name: value for name, value in self.settings.items() if not entries[name]["is_of_output"]}
 
     def _last_step(self) -> int:
         """Of a run with these settings, if it is known; otherwise -1, all steps."""
@@ -395,18 +395,14 @@ class Interpolation(ModelFilter):
     MODEL = "interpolate"
     HAS_POINT_INPUT = True
 
-    def begin(self, inputs: Any) -> None:
-        data = self.second_input(inputs)
-        self._has_points, self._samples, self._problems = data is not None, None, []
-        if data is not None:
-            self._samples, self._problems = read_samples(
-                data, self.own["PointValueArray"], self.own["PointWeightArray"])
+    def read_points(self, data: Any) -> tuple[Any, list[str]]:
+        return read_samples(data, self.own["PointValueArray"], self.own["PointWeightArray"])
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         arrays = self.find_arrays(block, fields)
-        fields.samples = self._samples
-        fields.problems += self._problems
-        if not self._has_points:
+        fields.samples = self.points
+        fields.problems += self.problems_of_points
+        if not self.has_points:
             fields.data = arrays.find(0, "InputArray", ANY)
             fields.fidelity = arrays.find(5, "FidelityArray", 1)
         fields.mask = arrays.find(1, "MaskArray", 1)
@@ -459,17 +455,14 @@ class Distance(RunFilter):
     MODEL = "distance"
     HAS_POINT_INPUT = True
 
-    def begin(self, inputs: Any) -> None:
-        data = self.second_input(inputs)
-        self._has_sources, self._sources, self._problems = data is not None, None, []
-        if data is not None:
-            self._sources, self._problems = read_sources(data)
+    def read_points(self, data: Any) -> tuple[Any, list[str]]:
+        return read_sources(data)
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         arrays = self.find_arrays(block, fields)
-        fields.problems += self._problems
-        fields.sources = self._sources
-        if not self._has_sources:
+        fields.problems += self.problems_of_points
+        fields.sources = self.points
+        if not self.has_points:
             fields.data = arrays.find(0, "SourceArray", 1)
             fields.start_times = arrays.find(9, "SourceTimes", 1)
         fields.mask = arrays.find(1, "MaskArray", 1)

@@ -58,7 +58,7 @@ class Refinement:
                 self._before.append((block, block.input))
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(surface)
-                block.input = surface
+                block.input, block.shape = surface, None
                 self._shapes.find(block)
 
     def _bisect_all(
@@ -115,9 +115,7 @@ def _copy_arrays(
             continue
         new = array.NewInstance()
         if isinstance(array, vtkDataArray):
-            values = make(to_numpy(array))
-            kind = values.dtype.name
-            new.DeepCopy(make_array("", values) if kind in ("float64", "float32") else numpy_to_vtk(values))
+            new.DeepCopy(numpy_to_vtk(make(to_numpy(array))))
         else:
             _copy_tuples(array, new, rows, keeps=given.IsA("vtkPointData"))
         new.SetName(array.GetName())

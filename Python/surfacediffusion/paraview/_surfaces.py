@@ -72,6 +72,8 @@ class Shapes:
     def find(self, block: Block) -> Shape:
         """The shape of a block, which is read unless it is known. Raises SurfaceError on cells with points
         that do not exist."""
+        if block.shape is not None:
+            return block.shape  # of this update
         key = _contents(block.input)
         shape = self._used.get(key) or self._former.get(key) or _read_shape(block.input)
         self._used[key] = block.shape = shape
