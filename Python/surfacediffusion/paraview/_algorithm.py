@@ -20,12 +20,12 @@ from ._refinement import Refinement, mean_edge_length
 from ._surfaces import Block, Parts, Shapes, SurfaceError, copy_structure
 
 #: Properties that are no settings of the extension, with their defaults.
-_OWN = {"RefineTo": 0.0, "MaximumNumberOfTriangles": 4000000, "NumberOfThreads": 0, "SeamTolerance": -1.0,
+_OWN: dict[str, Any] = {"RefineTo": 0.0, "MaximumNumberOfTriangles": 4000000, "NumberOfThreads": 0, "SeamTolerance": -1.0,
         "ResultArrayName": "", "OutputPrecision": 2, "UseAsNormals": 1, "PointValueArray": "",
         "PointWeightArray": ""}
 
 #: Read-only values before the first update; those that are not listed are 0.
-_NUMBERS = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}
+_NUMBERS: dict[str, float] = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}
 
 
 _MISSING = object()
@@ -228,7 +228,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         """Read the points of the second input, which all blocks share."""
         data = self._second_input(inputs)
         self.has_points = data is not None
-        self.points, self.problems_of_points = (None, []) if data is None else self.read_points(data)
+        nothing: tuple[Any, list[str]] = (None, [])
+        self.points, self.problems_of_points = nothing if data is None else self.read_points(data)
 
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
         """Return what the model takes of a second input, None if that is not valid, and the problems."""

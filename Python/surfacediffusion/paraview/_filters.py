@@ -95,7 +95,7 @@ def _turn_polygons(surface: Any, cells: list[int]) -> None:
 class ModelFilter(SurfaceFilter):
     """A filter of a model of arrays, which may have time steps."""
 
-    OUTPUTS = ("vtkDataObject", "vtkTable")
+    OUTPUTS: tuple[str, ...] = ("vtkDataObject", "vtkTable")
     DEFAULT_CHOICE = _SCALARS
 
     def __init__(self) -> None:
