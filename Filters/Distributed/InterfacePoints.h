@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Surface/PointMatching.h"
 #include "Distributed/Processes.h"
 #include "Distributed/SurfacePieces.h"
 
@@ -10,7 +11,6 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
-#include <array>
 #include <vector>
 
 class vtkDataArray;
@@ -26,18 +26,6 @@ struct PieceEntry
   int Surface;
   vtkIdType FirstLabel;
   vtkBoundingBox Box;
-};
-
-/// A point of a piece that may be a point of other pieces too.
-struct InterfacePoint
-{
-  int Piece; ///< its number in the list
-  int Surface;
-  vtkIdType Label;
-  bool IsOpen; ///< on the edge of its piece, or used by no cell of its own
-  bool IsCopy; ///< used by no cell of its own, or flagged as a duplicate
-  vtkIdType GlobalId; ///< 0 if points are matched by their coordinates
-  std::array<double, 3> Coordinates; ///< zeros if points are matched by their ids
 };
 
 /// Global ids without rounding: the array itself, or a copy of an array of another type. Null for

@@ -3,8 +3,8 @@
 #include "Distributed/PointIdentity.h"
 
 #include "Core/Foundation/Random.h"
+#include "Core/Surface/PointMatching.h"
 #include "Distributed/InterfacePoints.h"
-#include "Distributed/PointMatching.h"
 
 #include "vtkDataArray.h"
 #include "vtkPolyData.h"

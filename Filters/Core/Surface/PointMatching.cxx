@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Distributed/PointMatching.h"
-
-#include "vtkMath.h"
+#include "Core/Surface/PointMatching.h"
 
 #include <algorithm>
 #include <array>
@@ -122,8 +120,13 @@ void SnapNearPoints(std::vector<InterfacePoint>& points, const Group& among, dou
   }
   const auto isNear = [&](std::size_t p, std::size_t q)
   {
-    return vtkMath::Distance2BetweenPoints(
-             points[p].Coordinates.data(), points[q].Coordinates.data()) <= tolerance * tolerance;
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const double difference = points[p].Coordinates[k] - points[q].Coordinates[k];
+      square += difference * difference;
+    }
+    return square <= tolerance * tolerance;
   };
   std::vector<std::size_t> firsts;
   for (const std::size_t p : among)
