@@ -6,6 +6,7 @@
 
 #include "InputData.h"
 #include "ModelRun.h"
+#include "PieceFunctions.h"
 #include "PythonRuns.h"
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
@@ -234,4 +235,5 @@ NB_MODULE(_core, m)
     .def("write", &PythonRuns::Write, "surface"_a, "number"_a, "output"_a, "source"_a)
     .def("turned_faces", &PythonRuns::TurnedFaces, "surface"_a, "source"_a);
   BindShapeFunctions(m);
+  BindPieceFunctions(m);
 }

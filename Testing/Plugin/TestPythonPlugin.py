@@ -72,6 +72,9 @@ class TestPythonPlugin(unittest.TestCase):
     def test_special_input_gives_the_same_bits(self):
         self.compare("open/", "converted", "empty array/", "polygons")
 
+    def test_surfaces_in_pieces_give_the_same_bits_and_messages(self):
+        self.compare("pieces ")
+
     def test_edits_in_place_give_the_same_bits_and_warnings(self):
         self.compare("edits/")
 
@@ -86,6 +89,8 @@ class TestPythonPlugin(unittest.TestCase):
         for key, value in self.texts["Python"].items():
             if key.startswith("aborts/") and key.endswith("/seen"):
                 self.assertTrue(value, key)
+            if key.startswith("aborts/") and key.endswith("/input"):
+                self.assertEqual(value, [], key)
 
     def test_with_both_plugins_filters_are_those_in_cxx_and_the_second_one_says_so(self):
         script = (

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """The update of all filters: from a request of the pipeline to the outputs, with progress, aborts, errors
-and warnings. It is the update of vtkSurfaceFilter, of surfaces in one process and in one piece each."""
+and warnings. It is the update of vtkSurfaceFilter, in one process."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from typing import Any, Callable
 
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
 from ._fields import ArrayFinder, Choice, Fields, join_sentences, make_core
+from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement, mean_edge_length
 from ._surfaces import Block, Parts, Shapes, SurfaceError, copy_structure
 
@@ -29,6 +30,11 @@ _NUMBERS: dict[str, float] = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}
 
 
 _MISSING = object()
+
+
+def _has_polygons(block: Block) -> bool:
+    return bool(block.input.GetNumberOfPoints() > 0
+                and block.input.GetNumberOfPolys() + block.input.GetNumberOfStrips() > 0)
 
 
 class _Aborted(Exception):
@@ -197,16 +203,15 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         """Update the outputs. Return the text of an error, or an empty one."""
         controller = vtkMultiProcessController.GetGlobalController()
         if controller is not None and controller.GetNumberOfProcesses() > 1:
-            return ("ParaView runs in several processes; allowed: one (the plugin in C++ works on pieces in "
-                    "several)")
-        if parts.in_pieces is not None:
-            name = f"{parts.in_pieces} " if parts.in_pieces else ""
-            return (f"the surface {name}is in pieces; allowed: one piece (the plugin in C++ joins pieces; so "
-                    "does Merge Blocks with Merge Points)")
+            return "ParaView runs in several processes; allowed: one (the plugin in C++ works in several)"
         problems = self._check_own()
         blocks = self._select(parts, problems)
         if not problems:
             self._refine(blocks, refinement)
+        stitched: list[Stitched] = []
+        if parts.in_pieces:
+            stitched = self._stitch(parts.blocks)
+            blocks = [surface.block for surface in stitched if _has_polygons(surface.block)]
         # Problems of the arrays are reported with those of the settings.
         self.begin(inputs)
         fields = self._find_all(blocks, problems)
@@ -215,6 +220,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         blocks = [block for block, _ in fields]
         of_blocks = [found for _, found in fields]
         replaced, warnings = self.run(request, outputs, blocks, of_blocks, made)
+        for surface in stitched:
+            scatter_results(surface)
+            self.complete_pieces(surface)
         if replaced:
             names = ", ".join(f'"{name}"' for name in sorted(set(replaced)))
             self._warnings.insert(0, f"results replace arrays of the input: {names}; to keep these, set "
@@ -268,8 +276,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def _select(self, parts: Parts, problems: list[str]) -> list[Block]:
         """Return the blocks with polygons."""
         with_points = [block for block in parts.blocks if block.input.GetNumberOfPoints() > 0]
-        selected = [block for block in with_points
-                    if block.input.GetNumberOfPolys() + block.input.GetNumberOfStrips() > 0]
+        selected = [block for block in with_points if _has_polygons(block)]
         if not with_points and parts.other_types:
             problems.append(("the blocks are " if parts.is_composite else "the input is ") + parts.other_types
                             + "; a surface of polygons or strips is needed (for the surface of a grid, apply "
@@ -279,6 +286,18 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         elif not selected:
             problems.append("the input has no polygons or strips; a surface is needed")
         return selected
+
+    def _stitch(self, pieces: list[Block]) -> list[Stitched]:
+        """The surfaces of the pieces, with the arrays that the filter may read."""
+        choices = self.choices.values()
+        attributes: set[int] = {
+            vtkDataSetAttributes.SCALARS, vtkDataSetAttributes.VECTORS, vtkDataSetAttributes.NORMALS}
+        attributes |= {choice.attribute for choice in choices if choice.attribute is not None}
+        names = {choice.name for choice in choices if choice.name}
+        return stitch_pieces(pieces, self.own["SeamTolerance"], names, attributes)
+
+    def complete_pieces(self, surface: Stitched) -> None:
+        """Change results of the pieces of a surface that are not those of the surface."""
 
     def find_refinement(self, mean: float) -> tuple[float, str]:
         """Return the length above which edges are bisected, 0 for none, and the reason to report. mean: the

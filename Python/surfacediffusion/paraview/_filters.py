@@ -19,10 +19,11 @@ from ._fields import (
     settle_absence,
 )
 from ._normals import compute_point_normals
+from ._pieces import Stitched
 from ._results import (
     Output, make_array, read_outputs, write_columns, write_curves, write_history, write_outputs,
 )
-from ._surfaces import Block
+from ._surfaces import HIDDEN_CELL, Block, cell_flags, to_numpy
 
 _SCALARS = Choice(POINTS_THEN_CELLS, None, vtkDataSetAttributes.SCALARS)
 _TIME = vtkStreamingDemandDrivenPipeline
@@ -172,6 +173,21 @@ class ModelFilter(SurfaceFilter):
             write_curves(results, self.own["ResultArrayName"], made[2])
         self.set_numbers(run.numbers())
         return replaced, [spell(words) for words in run.new_warnings()]
+
+    def complete_pieces(self, surface: Stitched) -> None:
+        """Vertices, lines and hidden cells keep their value, as those of a surface in one piece do."""
+        name = surface.block.cell_result
+        for piece in surface.pieces if name else []:
+            fields = Fields()
+            self.find_fields(piece.block, fields)
+            result = piece.block.output.GetCellData().GetArray(name)
+            if not fields.data.on_cells or result is None or result is fields.data.values:
+                continue
+            flags = cell_flags(piece.block.input)
+            keeps = np.arange(result.GetNumberOfTuples()) < piece.cells.first
+            if flags is not None:
+                keeps |= (flags & HIDDEN_CELL) != 0
+            to_numpy(result)[keeps] = to_numpy(fields.data.values)[keeps]
 
     def _result_type(self, fields: Fields) -> Any:
         data, precision = fields.data.values, self.own["OutputPrecision"]

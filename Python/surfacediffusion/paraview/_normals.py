@@ -13,9 +13,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 from .._surface import normalize, unit_normals
-from ._surfaces import cell_flags, polygons_of, to_numpy, triangles_of_strip
-
-_HIDDEN_CELL = 32
+from ._surfaces import HIDDEN_CELL, cell_flags, polygons_of, to_numpy, triangles_of_strip
 
 
 def compute_point_normals(data: Any) -> Any:
@@ -29,21 +27,40 @@ def update_normals(before: Any, after: Any) -> None:
     """Compute the normals of a surface whose points have moved again, and drop its tangents."""
     for given, made, find in ((before.GetPointData(), after.GetPointData(), _normals_of_points),
                               (before.GetCellData(), after.GetCellData(), _normals_of_cells)):
-        for array in [given.GetAbstractArray(a) for a in range(given.GetNumberOfArrays())]:
-            kind = _kind(array, given)
-            numbers = [made.GetAbstractArray(b) for b in range(made.GetNumberOfArrays())]
-            if not kind or array not in numbers:
-                continue
+        for array, kind in _find_normals(given, made):
             is_active = made.GetNormals() is array
             normals_before, normals_after = find(before), find(after)
             is_kept = (kind == "normals" and isinstance(array, vtkDataArray)
                        and array.GetNumberOfComponents() == 3
                        and array.GetNumberOfTuples() == len(normals_after))
-            made.RemoveArray(numbers.index(array))
+            _remove(array, made)
             if is_kept:
                 index = made.AddArray(_moved(array, normals_before, normals_after))
                 if is_active:
                     made.SetActiveAttribute(index, made.NORMALS)
+
+
+def drop_normals(before: Any, after: Any) -> None:
+    """Drop the normals and tangents that a surface with other points still has from the one before."""
+    for given, made in ((before.GetPointData(), after.GetPointData()),
+                        (before.GetCellData(), after.GetCellData())):
+        for array, _ in _find_normals(given, made):
+            _remove(array, made)
+
+
+def _list_arrays(attributes: Any) -> list[Any]:
+    return [attributes.GetAbstractArray(a) for a in range(attributes.GetNumberOfArrays())]
+
+
+def _find_normals(given: Any, made: Any) -> list[tuple[Any, str]]:
+    """The normals and tangents of `given` that `made` has, too, and the kind of each."""
+    kept = _list_arrays(made)
+    found = [(array, _kind(array, given)) for array in _list_arrays(given) if array in kept]
+    return [(array, kind) for array, kind in found if kind]
+
+
+def _remove(array: Any, attributes: Any) -> None:
+    attributes.RemoveArray(_list_arrays(attributes).index(array))
 
 
 def _kind(array: Any, attributes: Any) -> str:
@@ -71,7 +88,7 @@ def _normals_of_points(data: Any) -> NDArray[np.float64]:
     normals = unit_normals(_moderate_points(data), connectivity, offsets)
     flags = cell_flags(data)
     if flags is not None:
-        normals[(flags[cells] & _HIDDEN_CELL) != 0] = 0.0
+        normals[(flags[cells] & HIDDEN_CELL) != 0] = 0.0
     sums = np.zeros((data.GetNumberOfPoints(), 3))
     for axis in range(3):
         weights = np.repeat(normals[:, axis], np.diff(offsets))

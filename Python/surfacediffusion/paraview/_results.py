@@ -109,6 +109,8 @@ def write_outputs(
                 replaced.append(name)
             attributes.RemoveArray(name)
         attributes.AddArray(array)
+        if on_cells and is_result:
+            block.cell_result = name
         if output.entry["role"]:
             attributes.SetActiveAttribute(name, _role(output, fields, array))
     return replaced

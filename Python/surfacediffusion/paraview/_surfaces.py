@@ -19,7 +19,8 @@ from vtkmodules.vtkCommonDataModel import (
 
 from .. import _core
 
-ABSENT = 1 | 32  #: bits of cells in vtkGhostType: duplicate, hidden
+HIDDEN_CELL = 32  #: the bit of cells in vtkGhostType
+ABSENT = 1 | HIDDEN_CELL  #: duplicate or hidden
 _HIDDEN_POINT = 2  #: the bit of points
 
 
@@ -45,7 +46,9 @@ class Block:
     input: Any
     output: Any
     name: str = ""
+    surface: int = 0  #: blocks with the same number are pieces of one surface
     shape: Shape | None = None
+    cell_result: str = ""  #: the array with the result on its cells
 
     @property
     def core(self) -> Any:
@@ -112,7 +115,7 @@ class Parts:
     blocks: list[Block]
     other_types: str = ""  #: the classes of leaves that are no polydata
     is_composite: bool = False
-    in_pieces: str | None = None  #: the name of a surface that has several pieces
+    in_pieces: bool = False  #: whether a surface has several pieces
 
 
 def copy_structure(given: Any, output: Any) -> Parts:
@@ -140,11 +143,10 @@ def copy_structure(given: Any, output: Any) -> Parts:
         output.SetDataSet(iterator, copy)
         surface, name = names[number] if number < len(names) else (0, "")
         if isinstance(leaf, vtkPolyData) and leaf.GetNumberOfPoints() > 0:
-            if surface in seen:
-                parts.in_pieces = name
+            parts.in_pieces = parts.in_pieces or surface in seen
             seen.add(surface)
         if isinstance(leaf, vtkPolyData):
-            parts.blocks.append(Block(leaf, copy, name))
+            parts.blocks.append(Block(leaf, copy, name, surface))
         else:
             types.add(leaf.GetClassName())
         number += 1
@@ -230,7 +232,7 @@ def cell_flags(data: Any) -> NDArray[np.uint8] | None:
             is_hidden = np.zeros(len(corners), dtype=bool)
             is_hidden[inside] = hidden[corners[inside]] != 0
             cell = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
-            flags[first + np.unique(cell[is_hidden])] |= 32
+            flags[first + np.unique(cell[is_hidden])] |= HIDDEN_CELL
             first += len(offsets) - 1
     return flags
 

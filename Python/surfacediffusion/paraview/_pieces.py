@@ -1,0 +1,375 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces in several pieces, as partitioned data sets have them: each is made one surface, whose points and
+cells do not depend on the partition, and its results go back to the pieces. The rules are those of the classes
+in C++, Filters/Distributed/PointIdentity.h and StitchedSurface.h."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import (
+    VTK_DOUBLE, vtkDataArray, vtkIdTypeArray, vtkPoints, vtkTypeInt64Array, vtkUnsignedCharArray,
+)
+from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkDataSetAttributes, vtkPolyData
+
+from .. import _core
+from ._normals import drop_normals
+from ._results import copy_component_names, make_array
+from ._surfaces import ABSENT, Block, cell_flags, polygons_of, to_numpy
+
+_DUPLICATE_POINT = 1  #: the bit in vtkGhostType
+_GHOSTS = vtkDataSetAttributes.GhostArrayName()
+_DEFAULT_TOLERANCE = 1e-6  #: in diagonals of the bounding box of all pieces
+_REACH = 3.0  #: in tolerances: what a point matches depends on points within it (PointMatching.h)
+_LARGE = 16  #: corners, from which on cells are sorted as tuples
+
+
+@dataclass
+class Cells:
+    """Polygons and strips of a piece, polygons first."""
+
+    corners: NDArray[np.int64]
+    offsets: NDArray[np.int64]
+    is_strip: NDArray[np.bool_]
+    is_absent: NDArray[np.bool_]  #: a ghost or hidden
+    first: int  #: the number of vertices and lines, which come before
+
+    @property
+    def count(self) -> int:
+        return len(self.is_strip)
+
+    def rows(self) -> Iterator[NDArray[np.int64]]:
+        return (self.corners[self.offsets[c]:self.offsets[c + 1]] for c in range(self.count))
+
+
+@dataclass
+class Piece:
+    """A piece, and the way from the surface back to it."""
+
+    block: Block
+    places: NDArray[np.float64]
+    cells: Cells
+    first: int  #: the row of its first point among those of all pieces
+    points: NDArray[np.int64]  #: per point, the surface's point
+    originals: NDArray[np.int64]  #: per polygon and strip, the surface's cell, or -1
+
+    @property
+    def rows(self) -> slice:
+        return slice(self.first, self.first + len(self.places))
+
+
+@dataclass
+class Stitched:
+    """A surface made from its pieces. block: its data, and a shallow copy for the results."""
+
+    block: Block
+    pieces: list[Piece]
+
+
+def stitch_pieces(blocks: list[Block], tolerance: float, names: set[str], attributes: set[int]) -> list[Stitched]:
+    """Make the surfaces whose pieces are the blocks. names, attributes: of the arrays that are read, all the
+    others are known by their name only."""
+    pieces: list[Piece] = []
+    for block in blocks:
+        first = pieces[-1].rows.stop if pieces else 0
+        nothing = np.empty(0, dtype=np.int64)
+        pieces.append(Piece(block, _read_places(block.input), _read_cells(block.input), first, nothing, nothing))
+    ids = [_global_ids(piece.block.input) for piece in pieces]
+    by_id = all(found is not None for found in ids)
+    owners = _match(pieces, np.concatenate(ids) if by_id else None, tolerance)
+    numbers = np.concatenate(ids if by_id else [_core.number_places(piece.places) for piece in pieces])
+    by_surface: dict[int, list[Piece]] = {}
+    for piece in pieces:
+        by_surface.setdefault(piece.block.surface, []).append(piece)
+    return [_stitch(by_surface[number], owners, numbers, names, attributes) for number in sorted(by_surface)]
+
+
+def _read_places(data: Any) -> NDArray[np.float64]:
+    if data.GetNumberOfPoints() == 0:
+        return np.empty((0, 3))
+    return to_numpy(data.GetPoints().GetData()).astype(np.float64, order="C")
+
+
+def _global_ids(data: Any) -> NDArray[np.int64] | None:
+    if data.GetNumberOfPoints() == 0:
+        return np.empty(0, dtype=np.int64)
+    ids = data.GetPointData().GetGlobalIds()
+    if ids is None or ids.GetNumberOfComponents() != 1 or ids.GetNumberOfTuples() != data.GetNumberOfPoints():
+        return None
+    return to_numpy(ids).astype(np.int64)
+
+
+def _read_cells(data: Any) -> Cells:
+    parts = [polygons_of(data.GetPolys()), polygons_of(data.GetStrips())]
+    (polygons, of_polygons), (strips, of_strips) = parts
+    first = data.GetNumberOfVerts() + data.GetNumberOfLines()
+    flags = cell_flags(data)
+    is_strip = np.repeat([False, True], [len(of_polygons) - 1, len(of_strips) - 1])
+    absent = np.zeros(len(is_strip), dtype=bool) if flags is None else (flags[first:] & ABSENT) != 0
+    return Cells(np.append(polygons, strips), np.append(of_polygons, of_strips[1:] + len(polygons)), is_strip,
+                 absent, first)
+
+
+# Points ----------------------------------------------------------------------------------------
+
+
+def _match(pieces: list[Piece], ids: NDArray[np.int64] | None, tolerance: float) -> NDArray[np.int64]:
+    """Per point of all pieces, the point that owns it."""
+    boxes = [vtkBoundingBox(piece.block.input.GetBounds()) for piece in pieces]
+    if tolerance < 0.0 or not math.isfinite(tolerance):
+        everything = vtkBoundingBox()
+        for box in boxes:
+            everything.AddBox(box)
+        tolerance = _DEFAULT_TOLERANCE * everything.GetDiagonalLength() if everything.IsValid() else 0.0
+    for box in boxes:
+        if box.IsValid():
+            box.Inflate(_REACH * tolerance)
+    near, flags = [], []
+    for piece, box in zip(pieces, boxes):
+        inside = np.zeros(len(piece.places), dtype=bool)
+        for other, other_box in zip(pieces, boxes):
+            if other is not piece and other.block.surface == piece.block.surface and (
+                    box.IsValid() and other_box.IsValid() and box.Intersects(other_box)):
+                low, high = np.array(other_box.GetMinPoint()), np.array(other_box.GetMaxPoint())
+                inside |= ((piece.places >= low) & (piece.places <= high)).all(axis=1)
+        near.append(inside & np.isfinite(piece.places).all(axis=1))
+        flags.append(_flags(piece))
+    owners = np.arange(pieces[-1].rows.stop)
+    candidates = np.flatnonzero(np.concatenate(near))
+    if len(candidates):
+        sizes = [len(piece.places) for piece in pieces]
+        surfaces = np.repeat([piece.block.surface for piece in pieces], sizes)[candidates]
+        numbers = np.repeat(np.arange(len(pieces)), sizes)[candidates]
+        is_open, is_copy = (np.concatenate(kind).astype(np.uint8)[candidates] for kind in zip(*flags))
+        found = _core.match_points(
+            surfaces, numbers, np.concatenate([piece.places for piece in pieces])[candidates], is_open, is_copy,
+            None if ids is None else ids[candidates], tolerance)
+        owners[candidates] = candidates[found]
+    return owners
+
+
+def _flags(piece: Piece) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which points are open, and which are copies, as in PointMatching.h."""
+    cells, count = piece.cells, len(piece.places)
+    owner = np.repeat(np.arange(cells.count), np.diff(cells.offsets))
+    is_bad = (cells.corners < 0) | (cells.corners >= count)  # an error, which is reported later
+    kept = ~cells.is_absent
+    kept[owner[is_bad]] = False
+    used = np.zeros(count, dtype=bool)
+    used[cells.corners[kept[owner]]] = True
+    following = np.roll(cells.corners, -1)
+    full = np.flatnonzero(np.diff(cells.offsets))
+    following[cells.offsets[full + 1] - 1] = cells.corners[cells.offsets[full]]
+    of_polygons = (kept & ~cells.is_strip)[owner]
+    edges = [np.stack([cells.corners, following], axis=1)[of_polygons]]
+    for number in np.flatnonzero(kept & cells.is_strip):
+        strip = cells.corners[cells.offsets[number]:cells.offsets[number + 1]]
+        triangles = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1)
+        edges.append(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
+    ends = np.sort(np.vstack(edges), axis=1)
+    keys, number = np.unique(ends[:, 0] * count + ends[:, 1], return_counts=True)
+    on_edge = np.zeros(count, dtype=bool)
+    for side in np.divmod(keys[number == 1], max(1, count)):
+        on_edge[side] = True
+    ghosts = piece.block.input.GetPointGhostArray()
+    is_duplicate = np.zeros(count, dtype=bool)
+    if ghosts is not None and ghosts.GetNumberOfTuples() == count:
+        is_duplicate = (to_numpy(ghosts) & _DUPLICATE_POINT) != 0
+    return ~used | on_edge, ~used | is_duplicate
+
+
+# Surfaces --------------------------------------------------------------------------------------
+
+
+def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.int64], names: set[str],
+            attributes: set[int]) -> Stitched:
+    rows = np.concatenate([np.arange(piece.rows.start, piece.rows.stop) for piece in pieces])
+    sources = rows[owners[rows] == rows]
+    sources = sources[np.argsort(numbers[sources], kind="stable")]
+    point_of = np.full(len(owners), -1)
+    point_of[sources] = np.arange(len(sources))
+    for piece in pieces:
+        piece.points = point_of[owners[piece.rows]]
+    surface = vtkPolyData()
+    places = np.concatenate([piece.places for piece in pieces])[np.searchsorted(rows, sources)]
+    with_points = [piece for piece in pieces if len(piece.places)]
+    is_double = any(piece.block.input.GetPoints().GetDataType() == VTK_DOUBLE for piece in with_points)
+    points = vtkPoints()
+    points.SetData(make_array("Points", places.astype(np.float64 if is_double else np.float32)))
+    surface.SetPoints(points)
+    _merge([(piece.block.input.GetPointData(), 0, len(piece.places)) for piece in with_points],
+           np.searchsorted(rows, sources), names, attributes, surface.GetPointData())
+    surface.GetPointData().SetGlobalIds(make_array("surface diffusion point id", numbers[sources]))
+    cell_sources = _stitch_cells(pieces, surface)
+    with_cells = [piece for piece in pieces if piece.cells.count]
+    _merge([(piece.block.input.GetCellData(), piece.cells.first, piece.cells.count) for piece in with_cells],
+           cell_sources, names, attributes, surface.GetCellData())
+    for piece in pieces:
+        _keep_names(piece.block.input.GetPointData(), surface.GetPointData())
+        _keep_names(piece.block.input.GetCellData(), surface.GetCellData())
+    output = vtkPolyData()
+    output.ShallowCopy(surface)
+    return Stitched(Block(surface, output, pieces[0].block.name), pieces)
+
+
+def _stitch_cells(pieces: list[Piece], surface: Any) -> NDArray[np.int64]:
+    """Add the cells, apart from ghosts and hidden ones, ordered by their global ids and points. Return the row
+    of each among the cells of all pieces."""
+    corners, sizes = [], []
+    for piece in pieces:
+        is_good = (piece.cells.corners >= 0) & (piece.cells.corners < len(piece.places))
+        mapped = np.full(len(is_good), -1)  # points that do not exist stay so, for the filter to report
+        mapped[is_good] = piece.points[piece.cells.corners[is_good]]
+        corners.append(mapped)
+        sizes.append(np.diff(piece.cells.offsets))
+    everything = Cells(
+        np.concatenate(corners), np.append(0, np.cumsum(np.concatenate(sizes))),
+        np.concatenate([piece.cells.is_strip for piece in pieces]),
+        np.concatenate([piece.cells.is_absent for piece in pieces]), 0)
+    order = _sort_cells(everything, _cell_ids(pieces))
+    order = order[~everything.is_absent[order]]
+    original = np.full(everything.count, -1)
+    original[order] = np.arange(len(order))
+    if everything.is_absent.any():  # a ghost gets the results of the cell with the same corners
+        known: dict[tuple[int, ...], int] = {}
+        rows = list(everything.rows())
+        for number, cell in enumerate(order):
+            known.setdefault(tuple(sorted(rows[cell])), number)
+        for cell in np.flatnonzero(everything.is_absent):
+            original[cell] = known.get(tuple(sorted(rows[cell])), -1)
+    begin = 0
+    for piece in pieces:
+        piece.originals = original[begin:begin + piece.cells.count]
+        begin += piece.cells.count
+    all_sizes = np.diff(everything.offsets)
+    for is_strip, add in ((False, surface.SetPolys), (True, surface.SetStrips)):
+        kept = order[everything.is_strip[order] == is_strip]
+        offsets = np.append(0, np.cumsum(all_sizes[kept]))
+        taken = np.arange(offsets[-1]) + np.repeat(everything.offsets[kept] - offsets[:-1], all_sizes[kept])
+        cells = vtkCellArray()
+        cells.SetData(make_array("", offsets), make_array("", everything.corners[taken]))
+        add(cells)
+    return order
+
+
+def _cell_ids(pieces: list[Piece]) -> NDArray[np.int64]:
+    """The global ids of polygons and strips; zeros unless all pieces with cells have them."""
+    found = []
+    for piece in pieces:
+        ids, data = piece.block.input.GetCellData().GetGlobalIds(), piece.block.input
+        if piece.cells.count and (ids is None or ids.GetNumberOfTuples() != data.GetNumberOfCells()):
+            return np.zeros(sum(each.cells.count for each in pieces), dtype=np.int64)
+        found.append(to_numpy(ids).astype(np.int64)[piece.cells.first:] if piece.cells.count else
+                     np.empty(0, dtype=np.int64))
+    return np.concatenate(found)
+
+
+def _sort_cells(cells: Cells, ids: NDArray[np.int64]) -> NDArray[np.int64]:
+    sizes = np.diff(cells.offsets)
+    width = int(sizes.max(initial=0))
+    if width > _LARGE:
+        keys = [(strip, number, tuple(row.tolist())) for strip, number, row in
+                zip(cells.is_strip.tolist(), ids.tolist(), cells.rows())]
+        return np.array(sorted(range(len(keys)), key=keys.__getitem__), dtype=np.int64)
+    padded = np.full((cells.count, width), -2)  # a cell comes before longer ones that begin with its points
+    padded[np.arange(width) < sizes[:, None]] = cells.corners
+    return np.lexsort([*padded.T[::-1], ids, cells.is_strip])
+
+
+# Arrays ----------------------------------------------------------------------------------------
+
+
+def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: set[str], attributes: set[int],
+           merged: Any) -> None:
+    """Add the arrays that are read and that all pieces have, with the same name, type and number of components.
+    pieces: of each the arrays, its first tuple and their number. rows: of the tuples of all pieces."""
+    lists = [list(_find_read(*piece, names, attributes)) for piece in pieces]
+    for key, array in lists[0] if lists else []:
+        arrays = [dict(found).get(key) for found in lists]
+        if any(other is None or other.GetDataType() != array.GetDataType()
+               or other.GetNumberOfComponents() != array.GetNumberOfComponents() for other in arrays):
+            continue
+        new = vtkTypeInt64Array() if isinstance(array, vtkIdTypeArray) else array.NewInstance()
+        if isinstance(array, vtkDataArray):
+            values = [to_numpy(other)[first:first + count] for other, (_, first, count) in zip(arrays, pieces)]
+            new.DeepCopy(numpy_to_vtk(np.ascontiguousarray(np.concatenate(values)[rows])))
+        else:  # which cannot be data
+            new.SetNumberOfComponents(array.GetNumberOfComponents())
+            new.SetNumberOfTuples(len(rows))
+        new.SetName(array.GetName())
+        for other in arrays[::-1]:
+            copy_component_names(other, new)
+        index = merged.AddArray(new)
+        for kind in attributes:
+            if all(of_piece.GetAbstractAttribute(kind) is other for (of_piece, _, _), other in zip(pieces, arrays)):
+                merged.SetActiveAttribute(index, kind)
+
+
+def _find_read(
+    arrays: Any, first: int, count: int, names: set[str], attributes: set[int]
+) -> Iterator[tuple[tuple[str, int], Any]]:
+    """The arrays that are read, by name and the number among those of this name."""
+    active = [arrays.GetAbstractAttribute(kind) for kind in attributes]
+    seen: dict[str, int] = {}
+    for a in range(arrays.GetNumberOfArrays()):
+        array = arrays.GetAbstractArray(a)
+        name = array.GetName() or ""
+        if (name in names or any(array is each for each in active)) and name != _GHOSTS and (
+                array.GetNumberOfTuples() >= first + count):
+            seen[name] = seen.get(name, -1) + 1
+            yield (name, seen[name]), array
+
+
+def _keep_names(given: Any, merged: Any) -> None:
+    """Arrays that the surface does not have become arrays without tuples, so that a result that replaces one
+    is noticed."""
+    for a in range(given.GetNumberOfArrays()):
+        name = given.GetAbstractArray(a).GetName()
+        if name and name != _GHOSTS and not merged.HasArray(name):
+            placeholder = vtkUnsignedCharArray()
+            placeholder.SetName(name)
+            merged.AddArray(placeholder)
+
+
+# Results ---------------------------------------------------------------------------------------
+
+
+def scatter_results(surface: Stitched) -> None:
+    """Add the arrays and moved points of the output of a surface to the outputs of its pieces."""
+    before, after = surface.block.input, surface.block.output
+    for piece in surface.pieces:
+        output = piece.block.output
+        for given, made, of_piece, rows, first, count in (
+                (before.GetPointData(), after.GetPointData(), output.GetPointData(), piece.points, 0,
+                 len(piece.places)),
+                (before.GetCellData(), after.GetCellData(), output.GetCellData(), piece.originals,
+                 piece.cells.first, output.GetNumberOfCells())):
+            for a in range(made.GetNumberOfArrays()):
+                array = made.GetArray(a)
+                if array is not None and given.GetArray(array.GetName()) is not array:
+                    of_piece.RemoveArray(array.GetName())  # and its role, which it would keep
+                    index = of_piece.AddArray(_restrict(array, rows, first, count))
+                    if made.IsArrayAnAttribute(a) >= 0:
+                        of_piece.SetActiveAttribute(index, made.IsArrayAnAttribute(a))
+        if before.GetPoints() is not after.GetPoints():
+            points = vtkPoints()
+            points.SetData(_restrict(after.GetPoints().GetData(), piece.points, 0, len(piece.places)))
+            output.SetPoints(points)
+            drop_normals(piece.block.input, output)
+
+
+def _restrict(array: Any, rows: NDArray[np.int64], first: int, count: int) -> Any:
+    """Rows of an array from tuple `first` on; zeros elsewhere and where a row is -1."""
+    values = to_numpy(array)
+    part = np.zeros((count, *values.shape[1:]), dtype=values.dtype)
+    known = np.flatnonzero(rows >= 0)
+    part[first + known] = values[rows[known]]
+    made = make_array(array.GetName(), part, type(array))
+    copy_component_names(array, made)
+    return made
