@@ -447,18 +447,7 @@ int vtkSurfaceModelAlgorithm::FindResultType(const InputFields& fields) const
 void vtkSurfaceModelAlgorithm::TakeNumbers()
 {
   const UpdateState& state = *this->State;
-  std::map<std::string, Values> numbers = FindNumbers(state.Run);
-  for (const auto& [name, number] :
-    { std::pair{ "NumberOfIterations", static_cast<double>(state.History.NumberOfIterations()) },
-      std::pair{ "Residual", state.History.LargestResidual() },
-      std::pair{ "NumberOfUnusedPoints",
-        static_cast<double>(state.Run.CountUnusedPoints(this->GetProcesses())) },
-      std::pair{
-        "NumberOfStepsComputed", static_cast<double>(state.Run.NumberOfStepsComputed()) } })
-  {
-    numbers[name] = Values::Constant(1, 1, number);
-  }
-  this->Private->Numbers.Set(std::move(numbers));
+  this->Private->Numbers.Set(FindNumbers(state.Run, state.History, this->GetProcesses()));
 }
 
 void vtkSurfaceModelAlgorithm::PrintSelf(ostream& os, vtkIndent indent)

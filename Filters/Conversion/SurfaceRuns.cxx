@@ -50,40 +50,24 @@ void SurfaceRuns::Write(std::size_t surface, const InputFields& fields,
     run.Outputs(), source, { output, fields, resultArrayName, VTK_DOUBLE, data, replaced });
 }
 
-std::map<std::string, Values> SurfaceRuns::FindNumbers() const
-{
-  std::vector<const OutputList*> surfaces;
-  for (const auto& run : this->Runs)
-  {
-    surfaces.push_back(&run->Outputs());
-  }
-  std::map<std::string, Values> numbers = CombineNumbers(surfaces, 0);
-  numbers["MeanEdgeLength"] = Values::Constant(1, 1, this->MeanEdgeLength());
-  return numbers;
-}
-
-/// Over all surfaces, in coordinate units; 1 if there is no edge.
-double SurfaceRuns::MeanEdgeLength() const
-{
-  double length = 0.0;
-  double edges = 0.0;
-  for (const auto& run : this->Runs)
-  {
-    const TriangleMesh& mesh = run->GetSurface().InputMesh();
-    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
-    edges += mesh.NumberOfEdges();
-  }
-  return edges > 0.0 ? length / edges : 1.0;
-}
-
-std::vector<Warning> SurfaceRuns::FindWarnings() const
+std::vector<const SurfaceRun*> SurfaceRuns::ListRuns() const
 {
   std::vector<const SurfaceRun*> runs;
   for (const auto& run : this->Runs)
   {
     runs.push_back(run.get());
   }
-  return SurfaceRun::FindAllWarnings(runs, this->Names);
+  return runs;
+}
+
+std::map<std::string, Values> SurfaceRuns::FindNumbers() const
+{
+  return SurfaceRun::FindAllNumbers(this->ListRuns());
+}
+
+std::vector<Warning> SurfaceRuns::FindWarnings() const
+{
+  return SurfaceRun::FindAllWarnings(this->ListRuns(), this->Names);
 }
 
 void SurfaceRuns::Clear()

@@ -56,7 +56,7 @@ public:
   void Clear();
 
 private:
-  double MeanEdgeLength() const;
+  std::vector<const SurfaceRun*> ListRuns() const;
 
   std::unique_ptr<SurfaceRun> (*MakeRun)(const ParallelFor&) = nullptr;
   LocatedArray InputFields::*Data = nullptr;

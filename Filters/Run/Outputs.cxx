@@ -254,4 +254,19 @@ std::map<std::string, Values> FindNumbers(const Run& run)
   return numbers;
 }
 
+std::map<std::string, Values> FindNumbers(
+  const Run& run, const History& history, const Reduction& processes)
+{
+  std::map<std::string, Values> numbers = FindNumbers(run);
+  for (const auto& [name, number] :
+    { std::pair{ "NumberOfIterations", static_cast<double>(history.NumberOfIterations()) },
+      std::pair{ "Residual", history.LargestResidual() },
+      std::pair{ "NumberOfUnusedPoints", static_cast<double>(run.CountUnusedPoints(processes)) },
+      std::pair{ "NumberOfStepsComputed", static_cast<double>(run.NumberOfStepsComputed()) } })
+  {
+    numbers[name] = Values::Constant(1, 1, number);
+  }
+  return numbers;
+}
+
 } // namespace SurfaceDiffusion

@@ -156,4 +156,9 @@ std::map<std::string, Values> CombineNumbers(
 /// The numbers of a run on all its surfaces, with TimeUnit, MeanEdgeLength and ValueRange.
 std::map<std::string, Values> FindNumbers(const Run& run);
 
+/// The same with those of the way there: NumberOfIterations, Residual, NumberOfUnusedPoints and
+/// NumberOfStepsComputed. processes: those that share the run.
+std::map<std::string, Values> FindNumbers(
+  const Run& run, const History& history, const Reduction& processes);
+
 } // namespace SurfaceDiffusion

@@ -3,6 +3,7 @@
 #include "Run/SurfaceRun.h"
 
 #include "Run/BlockSentences.h"
+#include "Run/Outputs.h"
 
 namespace SurfaceDiffusion
 {
@@ -27,11 +28,39 @@ bool SurfaceRun::Prepare(const BlockInput& input, Settings& settings, const Surf
   return !isCurrent;
 }
 
+namespace
+{
+
+double MeanEdgeLengthOf(const std::vector<const SurfaceRun*>& runs)
+{
+  double length = 0.0;
+  double edges = 0.0;
+  for (const SurfaceRun* const run : runs)
+  {
+    const TriangleMesh& mesh = run->GetSurface().InputMesh();
+    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
+    edges += mesh.NumberOfEdges();
+  }
+  return edges > 0.0 ? length / edges : 1.0;
+}
+
+} // namespace
+
 double SurfaceRun::MeanEdgeLength() const
 {
-  const TriangleMesh& mesh = this->Domain->InputMesh();
-  const double edges = mesh.NumberOfEdges();
-  return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges : 1.0;
+  return MeanEdgeLengthOf({ this });
+}
+
+std::map<std::string, Values> SurfaceRun::FindAllNumbers(const std::vector<const SurfaceRun*>& runs)
+{
+  std::vector<const OutputList*> surfaces;
+  for (const SurfaceRun* const run : runs)
+  {
+    surfaces.push_back(&run->Outputs());
+  }
+  std::map<std::string, Values> numbers = CombineNumbers(surfaces, 0);
+  numbers["MeanEdgeLength"] = Values::Constant(1, 1, MeanEdgeLengthOf(runs));
+  return numbers;
 }
 
 std::vector<Warning> SurfaceRun::FindAllWarnings(

@@ -5,6 +5,7 @@
 #include "Run/Output.h"
 #include "Run/Run.h"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,8 @@ public:
   /// triangles of zero area are counted together.
   static std::vector<Warning> FindAllWarnings(
     const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks);
+  /// The numbers of several runs, each as a matrix, with the MeanEdgeLength of all.
+  static std::map<std::string, Values> FindAllNumbers(const std::vector<const SurfaceRun*>& runs);
 
 protected:
   /// ofDegenerate: what becomes of triangles of zero area, such as "have no normal".

@@ -152,19 +152,8 @@ int ModelRun::FindLastStep(const nb::object& progress)
 
 nb::dict ModelRun::GetNumbers() const
 {
-  const History history = this->Model.MakeHistory(this->Step);
-  std::map<std::string, Values> numbers = FindNumbers(this->Model);
-  for (const auto& [name, number] :
-    { std::pair{ "NumberOfIterations", static_cast<double>(history.NumberOfIterations()) },
-      std::pair{ "Residual", history.LargestResidual() },
-      std::pair{ "NumberOfUnusedPoints",
-        static_cast<double>(this->Model.CountUnusedPoints(Reduction::Serial())) },
-      std::pair{
-        "NumberOfStepsComputed", static_cast<double>(this->Model.NumberOfStepsComputed()) } })
-  {
-    numbers[name] = Values::Constant(1, 1, number);
-  }
-  return ListNumbers(numbers);
+  return ListNumbers(
+    FindNumbers(this->Model, this->Model.MakeHistory(this->Step), Reduction::Serial()));
 }
 
 nb::dict ModelRun::GetHistory() const

@@ -131,27 +131,19 @@ void PythonRuns::Clear()
   this->IsComplete = false;
 }
 
-double PythonRuns::MeanEdgeLength() const
-{
-  double length = 0.0;
-  double edges = 0.0;
-  for (std::size_t s = 0; s < this->Runs.size(); ++s)
-  {
-    const TriangleMesh& mesh = this->RunOf(s).GetSurface().InputMesh();
-    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
-    edges += mesh.NumberOfEdges();
-  }
-  return edges > 0.0 ? length / edges : 1.0;
-}
-
-std::vector<Warning> PythonRuns::FindWarnings() const
+std::vector<const SurfaceRun*> PythonRuns::ListRuns() const
 {
   std::vector<const SurfaceRun*> runs;
   for (std::size_t s = 0; s < this->Runs.size(); ++s)
   {
     runs.push_back(&this->RunOf(s));
   }
-  return SurfaceRun::FindAllWarnings(runs, this->BlockNames);
+  return runs;
+}
+
+std::vector<Warning> PythonRuns::FindWarnings() const
+{
+  return SurfaceRun::FindAllWarnings(this->ListRuns(), this->BlockNames);
 }
 
 nb::list PythonRuns::GetWarnings() const
@@ -166,12 +158,7 @@ nb::list PythonRuns::GetNewWarnings()
 
 nb::dict PythonRuns::GetNumbers() const
 {
-  std::vector<const OutputList*> outputs;
-  for (std::size_t s = 0; s < this->Runs.size(); ++s)
-  {
-    outputs.push_back(&this->RunOf(s).Outputs());
-  }
-  return ListNumbers(CombineNumbers(outputs, 0));
+  return ListNumbers(SurfaceRun::FindAllNumbers(this->ListRuns()));
 }
 
 nb::list PythonRuns::ListOutputs(std::size_t surface) const

@@ -30,12 +30,11 @@ public:
     const nanobind::object& progress);
   /// Free what is kept for the next update, but not which warnings are known.
   void Clear();
-  /// Of all surfaces, in coordinate units; 1 if there is no edge.
-  double MeanEdgeLength() const;
   /// All warnings that hold, as lists of words.
   nanobind::list GetWarnings() const;
   /// Those that hold now and did not hold at the last call.
   nanobind::list GetNewWarnings();
+  /// See SurfaceRun::FindAllNumbers().
   nanobind::dict GetNumbers() const;
   ///@{
   /// As those of ModelRun.
@@ -47,6 +46,7 @@ public:
   std::vector<std::int64_t> TurnedFaces(std::size_t surface, const InputSurface& source) const;
 
 private:
+  std::vector<const SurfaceRun*> ListRuns() const;
   std::vector<Warning> FindWarnings() const;
   /// Throws std::runtime_error unless the last update has succeeded.
   const SurfaceRun& RunOf(std::size_t surface) const;

@@ -1080,7 +1080,7 @@ def _run_once(
             run.write(0, number, values, source)
 
         outputs = read_outputs(run.outputs(0), write, inputs, runner)
-        found = {"mean_edge_length": run.mean_edge_length(), "warnings": runner.warnings(run)}
+        found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run)}
     warn(found["warnings"])
     return outputs, found
 

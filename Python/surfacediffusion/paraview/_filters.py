@@ -79,7 +79,7 @@ class RunFilter(SurfaceFilter):
                 _turn_polygons(block.output, turned)
             data = getattr(found, self.NAMED_AFTER).values if self.NAMED_AFTER else None
             replaced += write_outputs(results, found, data, block, self.own["ResultArrayName"])
-        self.set_numbers({**self._runs.numbers(), "MeanEdgeLength": [[self._runs.mean_edge_length()]]})
+        self.set_numbers(self._runs.numbers())
         return replaced, [spell(words) for words in self._runs.new_warnings()]
 
 
