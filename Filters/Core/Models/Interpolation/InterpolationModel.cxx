@@ -26,8 +26,11 @@ InterpolationModel::InterpolationModel(std::shared_ptr<const Assembler> assemble
   , Method(std::move(assembler), std::move(coefficients), settings, parallel)
   , Data(std::move(data))
 {
-  const Values misfit = this->Data.Given.rowwise() - this->U.row(0);
-  this->EnergyOfStart = 0.5 * this->Data.Weights.dot(misfit.rowwise().squaredNorm());
+  if (this->U.rows() > 0) // otherwise no triangle has an area
+  {
+    const Values misfit = this->Data.Given.rowwise() - this->U.row(0);
+    this->EnergyOfStart = 0.5 * this->Data.Weights.dot(misfit.rowwise().squaredNorm());
+  }
 }
 
 StepReport InterpolationModel::Advance(const ProgressMonitor& progress)

@@ -40,7 +40,7 @@ private:
   ScatteredValues Data;
   SmoothInterpolation::Result Last, None;
   bool IsFitted = false; ///< the state is that of Last
-  double EnergyOfStart;
+  double EnergyOfStart = 0.0;
   double EnergyOfFit = 0.0;
 };
 
