@@ -139,8 +139,8 @@ EFFECTS = {
     "denoise_mesh": (
         Effect("noise_level", (0.0, 0.01, 0.05), "0 means that the noise is estimated. A larger level "
                "removes more.", {}, "block"),
-        Effect("surface_type", ("Automatic", "CAD", "Organic"), "A CAD surface has sharp edges. An organic "
-               "one is smooth, with details.", {}, "block"),
+        Effect("surface_type", ("Automatic", "CAD", "Organic"), "A CAD surface has smooth faces and sharp "
+               "edges. An organic one has details of a few triangles.", {}, "block"),
     ),
 }
 

@@ -14,9 +14,9 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
                    "points along the normal, in the unit of the coordinates. 0: measured." },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Choice({ "SurfaceType", "",
-                   "CAD: smooth faces that meet in sharp edges. Organic: smooth shapes with "
-                   "details, such as scans. Automatic: chosen by the angles at the edges of the "
-                   "surface after a few iterations." },
+                   "CAD: smooth faces, which may meet in sharp edges. Organic: shapes with details "
+                   "of the size of a few triangles, such as scans. Automatic: CAD unless details "
+                   "would be lost." },
     this->SurfaceType, { "Automatic", "CAD", "Organic" });
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }

@@ -610,8 +610,9 @@ def denoise_mesh(
         sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2 + sum_i l_i (N_i . (x_i - x0_i))^2
 
     and a term that keeps tangential displacements small. All weights follow from the noise level: l_i
-    is proportional to the inverse of its square, and smaller for outliers. Connected components have
-    levels, kinds and units of length of their own; those with less than 200 points share one level,
+    is proportional to the inverse of its square, and smaller for outliers. A surface is denoised as a
+    CAD shape unless the displacements are then more alike at neighbours than independent noise is:
+    they would be details, as organic shapes have them. Connected components have levels, kinds and units of length of their own; those with less than 200 points share one level,
     relative to their mean edge lengths, and one kind. A surface whose estimated noise is 0 stays as it
     is. Faces may be oriented at random, and the numbering of points and faces does not matter.
 
@@ -649,7 +650,7 @@ def denoise_mesh(
     >>> bool(np.linalg.norm(result.points, axis=1).std() < 0.5 * noise.std())
     True
     >>> result.surface_type, bool(abs(result.noise_level - 0.01) < 0.002)
-    ('Organic', True)
+    ('CAD', True)
     """
     take_old_switch(properties, "denoise_mesh", "full_output", "the result is always returned")
     surface = as_surface(surface)

@@ -493,7 +493,7 @@ class OtherCommands(CommandTest):
         noise = np.random.default_rng(8).normal(0, 0.005, (len(points), 1))
         samples.write_surface("noisy.surf.gii", points * (1 + noise), faces)
         out = self.succeed("denoise-mesh noisy.surf.gii clean.surf.gii")
-        self.assertRegex(out, r"^clean.surf.gii: Organic, noise 0\.0\d+, points moved by 0\.0\d+ on "
+        self.assertRegex(out, r"^clean.surf.gii: CAD, noise 0\.0\d+, points moved by 0\.0\d+ on "
                               r"average, at most 0\.\d+, \d+\.\d\d s\n$")
         given, found = read_surface("noisy.surf.gii"), read_surface("clean.surf.gii")
         expected = denoise_mesh((given.points, given.faces))
@@ -501,7 +501,7 @@ class OtherCommands(CommandTest):
         np.testing.assert_array_equal(found.faces, given.faces)
         self.assertLess(np.linalg.norm(found.points, axis=1).std(), 0.03)  # 0.05 before
         report = self.report("denoise-mesh noisy.surf.gii clean.surf.gii")
-        self.assertEqual(report["surface_type"], "Organic")
+        self.assertEqual(report["surface_type"], "CAD")
         for name in ("noise_level", "mean_displacement", "maximum_displacement", "volume_before",
                      "volume_after", "mean_edge_length"):
             self.assertEqual(report[name], getattr(expected, name), name)

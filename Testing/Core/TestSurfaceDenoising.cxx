@@ -72,6 +72,24 @@ struct FlatSurface
 
 } // namespace
 
+namespace
+{
+
+Surface RoughTorus(Index across)
+{
+  Surface rough = Torus(2 * across, across);
+  for (Index i = 0; i < rough.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVector3d p = rough.Vertices.row(i);
+    const Eigen::RowVector3d centre = 2.0 * Eigen::RowVector3d(p[0], p[1], 0.0).normalized();
+    rough.Vertices.row(i) +=
+      0.15 * std::sin(7.0 * p[0]) * std::cos(6.0 * p[1] + 3.0 * p[2]) * (p - centre).normalized();
+  }
+  return rough;
+}
+
+} // namespace
+
 TEST(SurfaceDenoising, NoisyBlockRegainsItsPlanesAndSharpEdges)
 {
   const Surface block = LBlock(24);
@@ -215,18 +233,30 @@ TEST(SurfaceDenoising, ImpulsiveNoiseOfABlockIsRemoved)
   EXPECT_LT(MeanAngle(result, block), 4.0);
 }
 
-TEST(SurfaceDenoising, SphereAndTorusAreOrganicAndBecomeSmooth)
+TEST(SurfaceDenoising, SphereAndTorusAreNoOrganicSurfacesAndBecomeSmooth)
 {
   for (const Surface& surface : { Icosphere(5), Torus(80, 40) })
   {
     const Surface noisy = NoisyAlongNormals(surface, 0.3);
     DenoisingReport report;
     const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
-    EXPECT_EQ(report.Type, SurfaceType::Organic);
+    EXPECT_EQ(report.Type, SurfaceType::CAD);
     EXPECT_GT(MeanAngle(noisy, surface), 25.0);
-    EXPECT_LT(MeanAngle(result, surface), 4.0);
+    EXPECT_LT(MeanAngle(result, surface), 2.0);
     EXPECT_NEAR(Volume(result) / Volume(surface), 1.0, 0.005);
   }
+}
+
+TEST(SurfaceDenoising, SurfacesWithDetailsOfAFewTrianglesAreOrganic)
+{
+  const Surface rough = RoughTorus(120);
+  const Surface noisy = NoisyAlongNormals(rough, 0.3);
+  DenoisingReport report;
+  const double angle = MeanAngle(Denoised(noisy, DenoisingSettings(), {}, &report), rough);
+  EXPECT_EQ(report.Type, SurfaceType::Organic);
+  DenoisingSettings asCad;
+  asCad.Type = SurfaceType::CAD;
+  EXPECT_LT(angle, MeanAngle(Denoised(noisy, asCad), rough));
 }
 
 TEST(SurfaceDenoising, SurfacesWithoutNoiseStay)
@@ -456,10 +486,10 @@ TEST(SurfaceDenoising, ScaledCopiesTogetherAreEachDenoisedAsAlone)
 TEST(SurfaceDenoising, ComponentsOfDifferentTypesKeepTheirs)
 {
   const Surface block = NoisyAlongNormals(LBlock(12), 0.2);
-  const Surface sphere = NoisyAlongNormals(Icosphere(4), 0.2);
+  const Surface rough = NoisyAlongNormals(RoughTorus(120), 0.3);
   DenoisingReport report;
-  const Surface together = Denoised(Joined(block, sphere), DenoisingSettings(), {}, &report);
-  const Surface alone = Joined(Denoised(block), Denoised(sphere));
+  const Surface together = Denoised(Joined(block, rough), DenoisingSettings(), {}, &report);
+  const Surface alone = Joined(Denoised(block), Denoised(rough));
   EXPECT_LT(LargestDistance(together, alone), 1e-12);
   EXPECT_EQ(report.Type, SurfaceType::Automatic);
 }

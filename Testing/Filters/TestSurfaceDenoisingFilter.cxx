@@ -136,7 +136,7 @@ TEST(SurfaceDenoisingFilter, ReportsTheKindOfSurfaceAndTheVolume)
   const auto noisy = NoisySphere(0.01);
   filter->SetInputData(noisy);
   filter->Update();
-  EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_ORGANIC);
+  EXPECT_EQ(filter->GetEffectiveSurfaceType(), vtkSurfaceDenoisingFilter::SURFACE_TYPE_CAD);
   const double ball = 4.0 / 3.0 * vtkMath::Pi();
   EXPECT_NEAR(filter->GetVolumeBefore(), ball, 0.01 * ball);
   EXPECT_NEAR(filter->GetVolumeAfter(), filter->GetVolumeBefore(), 0.005 * ball);

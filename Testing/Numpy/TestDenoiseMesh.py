@@ -42,7 +42,7 @@ class DenoiseMesh(unittest.TestCase):
         radii = np.linalg.norm(result.points, axis=1)
         self.assertLess(radii.std(), 0.003)
         self.assertLess(abs(result.noise_level - 0.01), 0.0015)
-        self.assertEqual(result.surface_type, "Organic")
+        self.assertEqual(result.surface_type, "CAD")
         self.assertLess(angles(result.points, clean.points, clean.triangles).mean(),
                         0.3 * angles(noisy.points, clean.points, clean.triangles).mean())
         self.assertEqual(result.warnings, [])

@@ -22,6 +22,8 @@ constexpr double LargestTightening = 4.0;
 /// The shares of the work up to the third stage, and up to the final fit.
 constexpr double VariationProgress = 0.5;
 constexpr double FinalProgress = 0.95;
+/// In standard deviations of the noise: the largest displacement that counts.
+constexpr double LargestDisplacement = 3.0;
 /// Of the local fidelity: the largest displacement that counts, in standard deviations of the
 /// noise, the sweeps of averaging, and the range of the factors.
 constexpr double LargestLocalDisplacement = 1.5;
@@ -84,9 +86,16 @@ public:
   /// The moved points.
   const Points& Run(const ProgressMonitor& progress)
   {
+    this->RunFilters(progress);
+    this->RunVariation(progress);
+    return this->Moved;
+  }
+
+  /// The first two stages.
+  void RunFilters(const ProgressMonitor& progress)
+  {
     const int count = this->Scheme.Iterations + this->Scheme.LinearIterations;
-    const bool hasVariation = this->Scheme.VariationIterations > 0;
-    const double iterations = hasVariation ? VariationProgress : FinalProgress;
+    const double iterations = this->HasVariation() ? VariationProgress : FinalProgress;
     for (int i = 0; i < count; ++i)
     {
       const ProgressMonitor part =
@@ -102,7 +111,12 @@ public:
         this->IterateLinear(part);
       }
     }
-    if (hasVariation)
+  }
+
+  /// The others.
+  const Points& RunVariation(const ProgressMonitor& progress)
+  {
+    if (this->HasVariation())
     {
       this->MinimizeVariation(progress.Part(VariationProgress, FinalProgress));
     }
@@ -113,7 +127,66 @@ public:
     return this->Moved;
   }
 
+  /// Whether the displacements along the normals are no more alike at neighbours than independent
+  /// noise: the variance of their sums over a vertex and its neighbours is that of as many
+  /// independent numbers, within two of its standard deviations.
+  bool LeavesOnlyNoise() const
+  {
+    const TriangleMesh& mesh = this->Graph.Mesh;
+    const Vector displacements = this->DisplacementsAlongNormals(this->LastNormals);
+    double free = 0.0;
+    double square = 0.0;
+    double squareOfSums = 0.0;
+    double terms = 0.0;
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      if (!this->Fixed.empty() && this->Fixed[i] != 0)
+      {
+        continue;
+      }
+      const Index begin = mesh.VertexCornersBegin()[i];
+      const Index end = mesh.VertexCornersBegin()[i + 1];
+      double sum = displacements[i];
+      for (Index k = begin; k < end; ++k)
+      {
+        const Index corner = mesh.VertexCorners()[k];
+        sum += 0.5 *
+          (displacements[mesh.OtherCorner(corner, 1)] + displacements[mesh.OtherCorner(corner, 2)]);
+      }
+      free += 1.0;
+      square += displacements[i] * displacements[i];
+      squareOfSums += sum * sum;
+      terms += 1.0 + end - begin;
+    }
+    // Sums share terms, so that there are as many independent ones as sums without a common term.
+    const double deviation = std::sqrt(2.0 * terms) / std::max(1.0, free);
+    return squareOfSums * free <= (1.0 + 2.0 * deviation) * square * terms;
+  }
+
 private:
+  bool HasVariation() const { return this->Scheme.VariationIterations > 0; }
+
+  /// Per vertex, in standard deviations of the noise, without outliers.
+  Vector DisplacementsAlongNormals(const Points& normals) const
+  {
+    const TriangleMesh& mesh = this->Graph.Mesh;
+    Vector displacements(mesh.NumberOfVertices());
+    ForEach(this->Parallel, mesh.NumberOfVertices(),
+      [&](Index i)
+      {
+        Eigen::RowVector3d normal = Eigen::RowVector3d::Zero();
+        for (Index k = mesh.VertexCornersBegin()[i]; k < mesh.VertexCornersBegin()[i + 1]; ++k)
+        {
+          normal += normals.row(mesh.VertexCorners()[k] / 3);
+        }
+        normal.normalize();
+        displacements[i] =
+          std::clamp(normal.dot(this->Moved.row(i) - this->Given.row(i)) / this->Noise,
+            -LargestDisplacement, LargestDisplacement);
+      });
+    return displacements;
+  }
+
   void IterateConstant(int iteration, const ProgressMonitor& progress)
   {
     const DenoisingScheme& scheme = this->Scheme;
@@ -215,20 +288,11 @@ private:
   void AdaptLocally(const Points& normals)
   {
     const TriangleMesh& mesh = this->Graph.Mesh;
-    Vector squares(mesh.NumberOfVertices());
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        Eigen::RowVector3d normal = Eigen::RowVector3d::Zero();
-        for (Index k = mesh.VertexCornersBegin()[i]; k < mesh.VertexCornersBegin()[i + 1]; ++k)
-        {
-          normal += normals.row(mesh.VertexCorners()[k] / 3);
-        }
-        normal.normalize();
-        const double moved = std::abs(normal.dot(this->Moved.row(i) - this->Given.row(i)));
-        const double counted = std::min(moved / this->Noise, LargestLocalDisplacement);
-        squares[i] = counted * counted / MeanOfLocalSquares;
-      });
+    Vector squares = this->DisplacementsAlongNormals(normals)
+                       .cwiseAbs()
+                       .cwiseMin(LargestLocalDisplacement)
+                       .cwiseAbs2() /
+      MeanOfLocalSquares;
     for (int sweep = 0; sweep < LocalSweeps; ++sweep)
     {
       AverageOverNeighbours(mesh, squares, this->Parallel);
@@ -305,6 +369,19 @@ Points DenoiseWithScheme(const FaceGraph& graph, const Points& points,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   return Denoising(graph, points, fixed, noise, scheme, parallel).Run(progress);
+}
+
+std::optional<Points> DenoiseUnlessDetailsAreLost(const FaceGraph& graph, const Points& points,
+  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
+  const ParallelFor& parallel, const ProgressMonitor& progress)
+{
+  Denoising denoising(graph, points, fixed, noise, scheme, parallel);
+  denoising.RunFilters(progress);
+  if (!denoising.LeavesOnlyNoise())
+  {
+    return std::nullopt;
+  }
+  return denoising.RunVariation(progress);
 }
 
 } // namespace SurfaceDiffusion

@@ -6,6 +6,9 @@
 #include "Core/Geometry/NormalFit.h"
 #include "Core/Geometry/NormalVariation.h"
 
+#include <optional>
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
@@ -55,6 +58,12 @@ DenoisingScheme SchemeForCorrelatedNoise(double length);
 /// Remove noise of this standard deviation, in the unit of the points, by the iterations of a
 /// scheme: DenoiseSurface() says which.
 Points DenoiseWithScheme(const FaceGraph& graph, const Points& points,
+  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
+  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+
+/// The same, or nothing if the displacements after the second stage are more alike at neighbours
+/// than independent noise is: then they are details of the surface, too.
+std::optional<Points> DenoiseUnlessDetailsAreLost(const FaceGraph& graph, const Points& points,
   const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
   const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 

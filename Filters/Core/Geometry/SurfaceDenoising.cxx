@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -20,41 +22,8 @@ namespace
 constexpr double SmallestEstimate = 0.005;
 /// A given level below this, in h, is none: that of points in single precision.
 constexpr double SmallestNoise = 1e-4;
-/// A surface is sharp if, after ProbeIterations for sharp surfaces, the quantile AngleQuantile of
-/// the angles between normals across edges is less than SharpAngleRatio of their root mean square:
-/// a few sharp edges have most of the curvature.
-constexpr double AngleQuantile = 0.8;
-constexpr double SharpAngleRatio = 0.4;
-constexpr int ProbeIterations = 5;
-
 /// A displacement beyond this many noise levels is reported.
 constexpr double FarDisplacement = 10.0;
-
-/// The quantile of the angles over their root mean square.
-double MeasureAngleRatio(const FaceGraph& graph, const Points& normals)
-{
-  std::vector<double> differences;
-  double squares = 0.0;
-  for (Index f = 0; f < graph.NumberOfFaces(); ++f)
-  {
-    for (Offset k = graph.Across.Begin[f]; k < graph.Across.Begin[f + 1]; ++k)
-    {
-      const Index g = graph.Across.Entries[k];
-      if (g > f)
-      {
-        const double square = (normals.row(f) - normals.row(g)).squaredNorm();
-        differences.push_back(std::sqrt(square));
-        squares += square;
-      }
-    }
-  }
-  if (!(squares > 0.0))
-  {
-    return 0.0;
-  }
-  return QuantileOf(differences, AngleQuantile) /
-    std::sqrt(squares / static_cast<double>(differences.size()));
-}
 
 /// correlated: what was found of it.
 double EstimateNoise(const TriangleMesh& mesh, const Points& points,
@@ -66,22 +35,6 @@ double EstimateNoise(const TriangleMesh& mesh, const Points& points,
   }
   const double estimate = EstimateVertexNoise(mesh, points, parallel);
   return estimate < SmallestEstimate * mesh.MeanEdgeLength() ? 0.0 : estimate;
-}
-
-SurfaceKind FindKind(const FaceGraph& graph, const Points& points, const std::vector<char>& fixed,
-  double noise, const ParallelFor& parallel, const ProgressMonitor& progress)
-{
-  DenoisingScheme probe = SchemeFor(SurfaceKind::Sharp, noise / graph.Mesh.MeanEdgeLength());
-  probe.Iterations = ProbeIterations;
-  probe.LinearIterations = 0;
-  probe.FitIterations = 10;
-  probe.FinalFitIterations = 0;
-  probe.VariationIterations = 0;
-  FaceGeometry geometry;
-  geometry.Measure(graph.Mesh,
-    DenoiseWithScheme(graph, points, fixed, noise, probe, parallel, progress), parallel);
-  return MeasureAngleRatio(graph, geometry.Normals) < SharpAngleRatio ? SurfaceKind::Sharp
-                                                                      : SurfaceKind::Smooth;
 }
 
 /// What was found of a part, and the displacements of its rows in their units.
@@ -119,17 +72,33 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   }
   const FaceGraph graph(mesh, parallel);
   progress.Report(0.1);
-  const bool isSharp = settings.Type == SurfaceType::Automatic
-    ? FindKind(graph, points, isFixed, noise, parallel, progress.Part(0.1, 0.25)) ==
-      SurfaceKind::Sharp
-    : settings.Type == SurfaceType::CAD;
-  result.Type = isSharp ? SurfaceType::CAD : SurfaceType::Organic;
   const double h = mesh.MeanEdgeLength();
-  const DenoisingScheme scheme = correlated.Length > 0.0
-    ? SchemeForCorrelatedNoise(correlated.Length / h)
-    : SchemeFor(isSharp ? SurfaceKind::Sharp : SurfaceKind::Smooth, noise / h);
-  const Points moved =
-    DenoiseWithScheme(graph, points, isFixed, noise, scheme, parallel, progress.Part(0.25, 1.0));
+  const ProgressMonitor rest = progress.Part(0.1, 1.0);
+  const auto denoise = [&](const DenoisingScheme& scheme, const ProgressMonitor& share)
+  { return DenoiseWithScheme(graph, points, isFixed, noise, scheme, parallel, share); };
+  const DenoisingScheme sharp = SchemeFor(SurfaceKind::Sharp, noise / h);
+  const DenoisingScheme smooth = SchemeFor(SurfaceKind::Smooth, noise / h);
+  Points moved;
+  result.Type = settings.Type;
+  if (correlated.Length > 0.0)
+  {
+    moved = denoise(SchemeForCorrelatedNoise(correlated.Length / h), rest);
+  }
+  else if (settings.Type != SurfaceType::Automatic)
+  {
+    moved = denoise(settings.Type == SurfaceType::CAD ? sharp : smooth, rest);
+  }
+  else if (std::optional<Points> found =
+             DenoiseUnlessDetailsAreLost(graph, points, isFixed, noise, sharp, parallel, rest))
+  {
+    moved = std::move(*found);
+    result.Type = SurfaceType::CAD;
+  }
+  else
+  {
+    moved = denoise(smooth, rest.Part(0.5, 1.0));
+    result.Type = SurfaceType::Organic;
+  }
   result.CorrelationLength = correlated.Length * unit;
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {

@@ -28,7 +28,8 @@ struct DenoisingReport
 {
   /// Given or estimated, in the unit of the points: the root mean square over the vertices.
   double NoiseLevel = 0.0;
-  /// Given or found; Automatic: no noise was found, or parts are of different types.
+  /// Given or found; Automatic: no noise or correlated noise was found, or parts are of different
+  /// types.
   SurfaceType Type = SurfaceType::Automatic;
   /// The length over which the noise is correlated, in the unit of the points: the largest of the
   /// parts. 0: none was found (see EstimateCorrelatedNoise()).
@@ -62,6 +63,10 @@ struct DenoisingReport
 /// falls per vertex, by local means of the squared displacements (G. Gilboa, N. Sochen, Y. Zeevi,
 /// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
 /// Transactions on Image Processing 15(8), 2006), so that regions of fine details keep them.
+///
+/// If the type is Automatic, the scheme for sharp surfaces is tried first, and left after its second
+/// stage if displacements are then more alike at neighbours than independent noise: it has removed
+/// details, which are of a few triangles on organic surfaces.
 ///
 /// Noise that is correlated over several edges has a scheme of its own, SchemeForCorrelatedNoise().
 ///
