@@ -14,6 +14,10 @@ export PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1
 export PIP_FIND_LINKS="$wheels"
 export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
 export CC="${CC:-/usr/bin/cc}" CXX="${CXX:-/usr/bin/c++}" # the compilers of CMake, not those of Python
+if [ -n "${LD_PRELOAD:-}" ]; then # a sanitizer for the package, under which compilers would be slow
+  launcher=${CMAKE_CXX_COMPILER_LAUNCHER:-}
+  export CMAKE_CXX_COMPILER_LAUNCHER="env;-u;LD_PRELOAD${launcher:+;$launcher}"
+fi
 export CMAKE_ARGS="-DSURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON ${CMAKE_ARGS:-}"
 
 rm -rf "$folder/environment" "$folder/dist" "$folder/source"
