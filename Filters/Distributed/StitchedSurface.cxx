@@ -197,7 +197,7 @@ void StitchedSurface::StitchCells(vtkPolyData* surface)
 {
   std::vector<Cell> cells, ghosts;
   this->ReadCells(cells, ghosts);
-  std::sort(cells.begin(), cells.end());
+  std::stable_sort(cells.begin(), cells.end()); // cells may be equal
   for (GatheredPiece& piece : this->Pieces)
   {
     piece.SurfaceCells.assign(piece.Data->GetNumberOfCells(), -1);
