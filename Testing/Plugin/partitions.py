@@ -83,8 +83,8 @@ def part_of(data, kept, ghosts=None, also=()):
 
 def split(data, count, how=""):
     """The pieces of a surface: slabs along x, or "random" cells, or slabs with "ghosts", with points "apart"
-    by less than the tolerance, with an "array" that one piece does not have, or with points that are
-    "unused"."""
+    by less than the tolerance, with an "array" that one piece does not have, with points that are
+    "unused", with cells that are all "absent", or with "flags" of some cells only."""
     numbers = number_cells(data)
     owner = numbers * count // len(numbers)
     if how == "random":
@@ -100,6 +100,15 @@ def split(data, count, how=""):
     if how == "apart":
         points = vtk_to_numpy(pieces[1].GetPoints().GetData())
         points += points.dtype.type(1e-7) * np.sin(np.arange(points.size, dtype=points.dtype)).reshape(-1, 3)
+    if how == "absent":
+        for piece in pieces:
+            flags = numpy_to_vtk(np.full(piece.GetNumberOfCells(), 32, dtype=np.uint8), deep=True)
+            flags.SetName("vtkGhostType")
+            piece.GetCellData().AddArray(flags)
+    if how == "flags":
+        flags = numpy_to_vtk(np.ones(3, dtype=np.uint8), deep=True)
+        flags.SetName("vtkGhostType")
+        pieces[0].GetCellData().AddArray(flags)
     if how == "array":
         for attributes in (pieces[0].GetPointData(), pieces[-1].GetCellData()):
             attributes.RemoveArray("hole")

@@ -30,11 +30,7 @@ _NUMBERS: dict[str, float] = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}
 
 
 _MISSING = object()
-
-
-def _has_polygons(block: Block) -> bool:
-    return bool(block.input.GetNumberOfPoints() > 0
-                and block.input.GetNumberOfPolys() + block.input.GetNumberOfStrips() > 0)
+_NO_POLYGONS = "the input has no polygons or strips; a surface is needed"
 
 
 class _Aborted(Exception):
@@ -50,6 +46,11 @@ def list_settings(model: str) -> dict[str, dict[str, Any]]:
 def spell(words: list[Any]) -> str:
     """A sentence of the numerics in the words of VTK and ParaView."""
     return "".join(word[1] for word in words)
+
+
+def _has_polygons(block: Block) -> bool:
+    return bool(block.input.GetNumberOfPoints() > 0
+                and block.input.GetNumberOfPolys() + block.input.GetNumberOfStrips() > 0)
 
 
 class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
@@ -211,7 +212,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         stitched: list[Stitched] = []
         if parts.in_pieces:
             stitched = self._stitch(parts.blocks)
+            had_blocks = bool(blocks)
             blocks = [surface.block for surface in stitched if _has_polygons(surface.block)]
+            if had_blocks and not blocks:  # all cells were ghosts or hidden
+                problems.append(_NO_POLYGONS)
         # Problems of the arrays are reported with those of the settings.
         self.begin(inputs)
         fields = self._find_all(blocks, problems)
@@ -284,7 +288,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         elif not with_points:
             problems.append("the input is empty; a surface of polygons or strips is needed")
         elif not selected:
-            problems.append("the input has no polygons or strips; a surface is needed")
+            problems.append(_NO_POLYGONS)
         return selected
 
     def _stitch(self, pieces: list[Block]) -> list[Stitched]:

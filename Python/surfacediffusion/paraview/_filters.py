@@ -183,7 +183,7 @@ class ModelFilter(SurfaceFilter):
             result = piece.block.output.GetCellData().GetArray(name)
             if not fields.data.on_cells or result is None or result is fields.data.values:
                 continue
-            flags = cell_flags(piece.block.input)
+            flags = cell_flags(piece.block.input, of_piece=True)
             keeps = np.arange(result.GetNumberOfTuples()) < piece.cells.first
             if flags is not None:
                 keeps |= (flags & HIDDEN_CELL) != 0

@@ -27,7 +27,7 @@ _DUPLICATE_POINT = 1  #: the bit in vtkGhostType
 _GHOSTS = vtkDataSetAttributes.GhostArrayName()
 _DEFAULT_TOLERANCE = 1e-6  #: in diagonals of the bounding box of all pieces
 _REACH = 3.0  #: in tolerances: what a point matches depends on points within it (PointMatching.h)
-_LARGE = 16  #: corners, from which on cells are sorted as tuples
+_LARGE = 16  #: the most corners of cells that are sorted as one array, padded to the largest
 
 
 @dataclass
@@ -48,7 +48,7 @@ class Cells:
         return (self.corners[self.offsets[c]:self.offsets[c + 1]] for c in range(self.count))
 
 
-@dataclass
+@dataclass(eq=False)
 class Piece:
     """A piece, and the way from the surface back to it."""
 
@@ -73,8 +73,8 @@ class Stitched:
 
 
 def stitch_pieces(blocks: list[Block], tolerance: float, names: set[str], attributes: set[int]) -> list[Stitched]:
-    """Make the surfaces whose pieces are the blocks. names, attributes: of the arrays that are read, all the
-    others are known by their name only."""
+    """Make the surfaces whose pieces are the blocks. names, attributes: of the arrays that are read; all others
+    are known by their names only."""
     pieces: list[Piece] = []
     for block in blocks:
         first = pieces[-1].rows.stop if pieces else 0
@@ -109,7 +109,7 @@ def _read_cells(data: Any) -> Cells:
     parts = [polygons_of(data.GetPolys()), polygons_of(data.GetStrips())]
     (polygons, of_polygons), (strips, of_strips) = parts
     first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-    flags = cell_flags(data)
+    flags = cell_flags(data, of_piece=True)
     is_strip = np.repeat([False, True], [len(of_polygons) - 1, len(of_strips) - 1])
     absent = np.zeros(len(is_strip), dtype=bool) if flags is None else (flags[first:] & ABSENT) != 0
     return Cells(np.append(polygons, strips), np.append(of_polygons, of_strips[1:] + len(polygons)), is_strip,
@@ -130,23 +130,27 @@ def _match(pieces: list[Piece], ids: NDArray[np.int64] | None, tolerance: float)
     for box in boxes:
         if box.IsValid():
             box.Inflate(_REACH * tolerance)
-    near, flags = [], []
-    for piece, box in zip(pieces, boxes):
+    valid = np.array([bool(box.IsValid()) for box in boxes])
+    low, high = (np.array(ends).reshape(-1, 3) for ends in (
+        [box.GetMinPoint() for box in boxes], [box.GetMaxPoint() for box in boxes]))
+    of_piece = np.array([piece.block.surface for piece in pieces])
+    near = []
+    for number, piece in enumerate(pieces):
         inside = np.zeros(len(piece.places), dtype=bool)
-        for other, other_box in zip(pieces, boxes):
-            if other is not piece and other.block.surface == piece.block.surface and (
-                    box.IsValid() and other_box.IsValid() and box.Intersects(other_box)):
-                low, high = np.array(other_box.GetMinPoint()), np.array(other_box.GetMaxPoint())
-                inside |= ((piece.places >= low) & (piece.places <= high)).all(axis=1)
+        meets = valid & (of_piece == of_piece[number]) & (low <= high[number]).all(axis=1) & (
+            high >= low[number]).all(axis=1)
+        for other in np.flatnonzero(meets) if valid[number] else []:
+            if other != number:
+                inside |= ((piece.places >= low[other]) & (piece.places <= high[other])).all(axis=1)
         near.append(inside & np.isfinite(piece.places).all(axis=1))
-        flags.append(_flags(piece))
     owners = np.arange(pieces[-1].rows.stop)
     candidates = np.flatnonzero(np.concatenate(near))
     if len(candidates):
         sizes = [len(piece.places) for piece in pieces]
-        surfaces = np.repeat([piece.block.surface for piece in pieces], sizes)[candidates]
+        surfaces = np.repeat(of_piece, sizes)[candidates]
         numbers = np.repeat(np.arange(len(pieces)), sizes)[candidates]
-        is_open, is_copy = (np.concatenate(kind).astype(np.uint8)[candidates] for kind in zip(*flags))
+        is_open, is_copy = (np.concatenate(kind).astype(np.uint8)[candidates] for kind in
+                            zip(*(_flags(piece) for piece in pieces)))
         found = _core.match_points(
             surfaces, numbers, np.concatenate([piece.places for piece in pieces])[candidates], is_open, is_copy,
             None if ids is None else ids[candidates], tolerance)
@@ -197,14 +201,15 @@ def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.
     for piece in pieces:
         piece.points = point_of[owners[piece.rows]]
     surface = vtkPolyData()
-    places = np.concatenate([piece.places for piece in pieces])[np.searchsorted(rows, sources)]
+    of_pieces = np.searchsorted(rows, sources)  # among the points of these pieces
+    places = np.concatenate([piece.places for piece in pieces])[of_pieces]
     with_points = [piece for piece in pieces if len(piece.places)]
     is_double = any(piece.block.input.GetPoints().GetDataType() == VTK_DOUBLE for piece in with_points)
     points = vtkPoints()
     points.SetData(make_array("Points", places.astype(np.float64 if is_double else np.float32)))
     surface.SetPoints(points)
     _merge([(piece.block.input.GetPointData(), 0, len(piece.places)) for piece in with_points],
-           np.searchsorted(rows, sources), names, attributes, surface.GetPointData())
+           of_pieces, names, attributes, surface.GetPointData())
     surface.GetPointData().SetGlobalIds(make_array("surface diffusion point id", numbers[sources]))
     cell_sources = _stitch_cells(pieces, surface)
     with_cells = [piece for piece in pieces if piece.cells.count]

@@ -214,9 +214,12 @@ def hidden_points(data: Any) -> NDArray[np.uint8] | None:
     return np.ascontiguousarray(hidden, dtype=np.uint8) if hidden.any() else None
 
 
-def cell_flags(data: Any) -> NDArray[np.uint8] | None:
-    """vtkGhostType of the cells, where cells of hidden points are hidden; None if there are none."""
+def cell_flags(data: Any, of_piece: bool = False) -> NDArray[np.uint8] | None:
+    """vtkGhostType of the cells, where cells of hidden points are hidden; None if there are none. of_piece:
+    whether an array that has not one tuple per cell is ignored, as it is in pieces, instead of an error."""
     given, count = data.GetCellGhostArray(), data.GetNumberOfCells()
+    if of_piece and given is not None and given.GetNumberOfTuples() != count:
+        given = None
     if given is not None and given.GetNumberOfTuples() != count:
         raise SurfaceError(f"the input's array \"{given.GetName()}\" has {given.GetNumberOfTuples()} "
                            f"tuples; allowed: {count}, one per cell")
